@@ -1,0 +1,46 @@
+"""solidgear: one pinion shaft, four models, and the evidence for which to trust.
+
+    import solidgear as sg
+    scene = sg.load("geometry/pinion_overhung.toml")
+    body = sg.build(scene, "harmonic")
+    sg.condense(body, scene, port="pinion").stiffness
+    sg.modes(body, scene, n=10).frequency_hz
+    sg.compare(scene).write_report("out")
+
+Names are imported when first used, so that importing the package stays cheap.
+"""
+
+from __future__ import annotations
+
+import importlib
+from typing import TYPE_CHECKING
+
+__version__ = "0.1.0"
+
+_WHERE = {
+    "load": "solidgear.scene",
+    "Scene": "solidgear.scene",
+    "build": "solidgear.fidelity",
+    "condense": "solidgear.solve.statics",
+    "modes": "solidgear.solve.modes",
+    "compare": "solidgear.compare",
+    "SolidgearError": "solidgear.errors",
+    "SceneError": "solidgear.errors",
+}
+__all__ = ["__version__", *_WHERE]
+
+if TYPE_CHECKING:
+    from solidgear.compare import compare
+    from solidgear.errors import SceneError, SolidgearError
+    from solidgear.fidelity import build
+    from solidgear.scene import Scene, load
+    from solidgear.solve.modes import modes
+    from solidgear.solve.statics import condense
+
+
+def __getattr__(name: str):
+    if name not in _WHERE:
+        raise AttributeError(f"module 'solidgear' has no attribute {name!r}")
+    value = getattr(importlib.import_module(_WHERE[name]), name)
+    globals()[name] = value  # sg.compare must stay the function once the module of that name is imported
+    return value

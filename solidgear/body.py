@@ -1,0 +1,292 @@
+"""The one currency of the house: a free elastic shaft with named ports.
+
+Every fidelity (beam, harmonic solid, 3D solid) is turned into a :class:`Body`;
+everything after that (condensation, modes, evidence) is written once against it.
+Bearings are never part of a body: they are :class:`Supports` that act on ports.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+import scipy.sparse as sp
+
+from solidgear.errors import SolidgearError
+from solidgear.frames import DOF_NAMES, shift
+
+
+@dataclass(frozen=True)
+class Port:
+    """A six-component point on the axis through which a body is loaded and held.
+
+    Attributes
+    ----------
+    name : str
+    y : float
+        Axial position of the reference point, m.
+    attachment : str
+        How the point is tied to the material: ``average``, ``rigid``, ``section`` or ``node``.
+    """
+
+    name: str
+    y: float
+    attachment: str
+
+
+@dataclass(frozen=True, eq=False)
+class Block:
+    """One family of motions that symmetry decouples from the others.
+
+    Attributes
+    ----------
+    name : str
+        ``bending_z``, ``bending_x``, ``axial``, ``torsion``, ``ovalising_n`` or ``full``.
+    components : tuple of int
+        Which of the six port components this block carries.
+    stiffness, mass : (n, n) sparse
+        Symmetric; two blocks that are twins hold the *same* objects.
+    rigid : (n, len(components)) ndarray
+        Rigid motions about the origin of the scene, one column per component.
+    y : (n,) ndarray
+        Axial position of each unknown; NaN for unknowns that are not point values.
+    ports : (n_ports * len(components), n) sparse
+        Port motions as linear functions of the unknowns, port by port.
+    mirror : (int, tuple of float), optional
+        Index of the block this one repeats in the other plane, and the sign of each component there.
+    planar : bool
+        Whether the matrix comes from a 1D or 2D mesh, for which a light factorisation is best.
+    """
+
+    name: str
+    components: tuple[int, ...]
+    stiffness: sp.csr_matrix
+    mass: sp.csr_matrix
+    rigid: np.ndarray
+    y: np.ndarray
+    ports: sp.csr_matrix
+    mirror: tuple[int, tuple[float, ...]] | None = None
+    planar: bool = True
+
+    def mirrored(self, name: str, components: tuple[int, ...], index: int, signs: tuple[float, ...]) -> Block:
+        """The same block in the other bending plane.
+
+        In the x plane the matrices of the z plane act on ``(u_x, -thz)``: same matrices, signs on the components.
+
+        Parameters
+        ----------
+        name, components
+            Of the new block.
+        index : int
+            Place of this block in its body.
+        signs : tuple of float
+            One per component.
+        """
+        count = self.ports.shape[0] // len(signs)
+        ports = sp.diags(np.tile(signs, count)) @ self.ports
+        rigid = self.rigid * np.asarray(signs)
+        return Block(name, components, self.stiffness, self.mass, rigid, self.y, ports.tocsr(), (index, signs), self.planar)
+
+    @property
+    def size(self) -> int:
+        """Number of unknowns."""
+        return self.stiffness.shape[0]
+
+    def station_fields(self, stations: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Piecewise linear section motions along the axis, as vectors of unknowns.
+
+        Each field is a hat function of y times the rigid motion of a section about its own centre.
+
+        Parameters
+        ----------
+        stations : (s,) ndarray
+            Axial positions, ascending, m.
+
+        Returns
+        -------
+        fields : (n, s * c) ndarray
+        columns : (s * c,) ndarray of int
+            Index ``6 * station + component`` of every column.
+        """
+        # A rigid tilt about the origin is a section tilt plus y times a translation:
+        # subtracting the latter leaves what a section does about its own centre.
+        local = self.rigid.copy()
+        place = {c: k for k, c in enumerate(self.components)}
+        y = np.nan_to_num(self.y)
+        for tilt, translation, sign in ((3, 2, 1.0), (5, 0, -1.0)):
+            if tilt in place and translation in place:
+                local[:, place[tilt]] -= sign * y * self.rigid[:, place[translation]]
+        known = ~np.isnan(self.y)
+        out, columns = [], []
+        for k in range(len(stations)):
+            unit = np.zeros(len(stations))
+            unit[k] = 1.0
+            hat = np.where(known, np.interp(y, stations, unit), 0.0)
+            out.append(hat[:, None] * local)
+            columns += [6 * k + c for c in self.components]
+        return np.hstack(out), np.array(columns, int)
+
+
+@dataclass(frozen=True, eq=False)
+class Body:
+    """A free elastic shaft at one fidelity.
+
+    Attributes
+    ----------
+    fidelity : str
+    blocks : tuple of Block
+    ports : tuple of Port
+        In the order of the rows of every block's ``ports``.
+    scale : float
+        Estimate of the lowest elastic eigenvalue of the free body, rad^2/s^2; it sets the spectral shift.
+    length : float
+        Overall length, m; it makes rotations and translations comparable.
+    mesh : dict
+        Facts about the discretisation, for the record.
+    geometry : object or None
+        What a renderer needs to draw the body (fidelity specific), or None.
+    """
+
+    fidelity: str
+    blocks: tuple[Block, ...]
+    ports: tuple[Port, ...]
+    scale: float
+    length: float
+    mesh: dict[str, Any] = field(default_factory=dict)
+    geometry: Any = None
+    # Factorisations and flexibilities are kept with the body they belong to, so that they die with it.
+    memory: dict[str, Any] = field(default_factory=dict, repr=False)
+
+    @property
+    def size(self) -> int:
+        """Number of unknowns, twins counted twice."""
+        return sum(block.size for block in self.blocks)
+
+    def port_index(self, name: str, attachment: str | None = None) -> int:
+        """Index of the port called ``name``; the first one unless an attachment is asked for.
+
+        Raises
+        ------
+        SolidgearError
+            If the body has no such port.
+        """
+        for k, port in enumerate(self.ports):
+            if port.name == name and attachment in (None, port.attachment):
+                return k
+        have = ", ".join(f"{p.name} ({p.attachment})" for p in self.ports)
+        wanted = name if attachment is None else f"{name} ({attachment})"
+        raise SolidgearError(f"the {self.fidelity} body has no port {wanted}; it has {have}")
+
+    @cached_property
+    def rigid_ports(self) -> np.ndarray:
+        """(6 * n_ports, 6) motions of all ports under unit rigid motions about the origin."""
+        return np.vstack([shift((0.0, p.y, 0.0)) for p in self.ports])
+
+    def rows(self, block: Block) -> np.ndarray:
+        """Places of a block's port rows among the ``6 * n_ports`` port components."""
+        return np.array([6 * k + c for k in range(len(self.ports)) for c in block.components], int)
+
+    def mass_matrix(self) -> np.ndarray:
+        """(6, 6) rigid-body mass matrix about the origin of the scene, kg, kg m, kg m^2."""
+        out = np.zeros((6, 6))
+        for block in self.blocks:
+            c = list(block.components)
+            out[np.ix_(c, c)] += block.rigid.T @ (block.mass @ block.rigid)
+        return out
+
+    def rigid_residual(self) -> float:
+        """Largest ``|K R|`` relative to ``|K| |R|``: zero for a body that is truly free."""
+        worst = 0.0
+        for block in self.blocks:
+            if not block.components:
+                continue
+            scale = abs(block.stiffness) @ abs(block.rigid)
+            worst = max(worst, float((abs(block.stiffness @ block.rigid) / scale.max(axis=0)).max()))
+        return worst
+
+
+@dataclass(frozen=True, eq=False)
+class Supports:
+    """Springs between ports and ground.
+
+    Attributes
+    ----------
+    ports : tuple of str
+        Names of the supported ports.
+    stiffness : (6 m, 6 m) ndarray
+        Symmetric positive semidefinite, port by port; off-diagonal blocks only where a common housing ties bearings together.
+    attachments : tuple of (str or None)
+        Attachment asked for at each port; None takes the body's first.
+    """
+
+    ports: tuple[str, ...]
+    stiffness: np.ndarray
+    attachments: tuple[str | None, ...] = ()
+
+    @cached_property
+    def root(self) -> np.ndarray:
+        """(6 m, r) matrix ``L`` with ``L L' = stiffness`` and r its rank.
+
+        Scaled by the diagonal first, so that springs of 1e-3 and 1e24 N/m keep their own precision.
+        """
+        if not self.ports:
+            return np.zeros((0, 0))
+        d = np.sqrt(np.abs(np.diag(self.stiffness)))
+        safe = np.where(d > 0, d, 1.0)
+        w, v = np.linalg.eigh(self.stiffness / np.outer(safe, safe))
+        keep = w > 1e-12
+        return (d[:, None] * v[:, keep]) * np.sqrt(w[keep])
+
+    def rows(self, body: Body) -> np.ndarray:
+        """Places of the supported components among the body's port components."""
+        wanted = self.attachments or (None,) * len(self.ports)
+        places = [6 * body.port_index(n, a) + np.arange(6) for n, a in zip(self.ports, wanted)]
+        return np.concatenate(places) if places else np.zeros(0, int)
+
+    def with_attachment(self, attachment: str | None) -> Supports:
+        """The same springs acting on another attachment of the same ports."""
+        return Supports(self.ports, self.stiffness, (attachment,) * len(self.ports))
+
+    def unresisted(self, body: Body) -> np.ndarray:
+        """(6, k) rigid motions about the origin that no spring resists (orthonormal, rotations times the length)."""
+        size = np.array([1.0, 1.0, 1.0, 1 / body.length, 1 / body.length, 1 / body.length])
+        if not self.ports:
+            return np.eye(6) * size
+        # Rank does not depend on how stiff a spring is: every row is brought to unit length first.
+        a = self.root.T @ body.rigid_ports[self.rows(body)] * size
+        norm = np.linalg.norm(a, axis=1, keepdims=True)
+        a = a / np.where(norm > 0, norm, 1.0)
+        _, s, vt = np.linalg.svd(a)
+        rank = int((s > 1e-9).sum())
+        null = vt[rank:].T
+        null[np.abs(null) < 1e-9] = 0.0
+        return size[:, None] * null
+
+
+def as_supports(source) -> Supports:
+    """Supports from a scene (housing included), from bearings (no housing), or as they are.
+
+    A housing spring sits between ground and the axially rigid ring that carries all outer races:
+    eliminating that ring leaves ``K - K e (e'K e + k)^-1 e'K`` with e the common axial motion.
+    """
+    if isinstance(source, Supports):
+        return source
+    housing = getattr(source, "housing_axial", None)
+    bearings: Iterable = getattr(source, "bearings", source) or ()
+    bearings = tuple(bearings)
+    n = len(bearings)
+    k = np.zeros((6 * n, 6 * n))
+    for i, bearing in enumerate(bearings):
+        k[6 * i : 6 * i + 6, 6 * i : 6 * i + 6] = bearing.stiffness
+    if housing is not None and n:
+        e = np.zeros(6 * n)
+        e[1::6] = 1.0
+        ke = k @ e
+        k = k - np.outer(ke, ke) / (e @ ke + housing)
+    return Supports(tuple(b.name for b in bearings), k)
+
+
+__all__ = ["DOF_NAMES", "Block", "Body", "Port", "Supports", "as_supports"]

@@ -1,0 +1,43 @@
+"""One builder a file, cheapest first; ``build`` picks one by name."""
+
+from __future__ import annotations
+
+from solidgear.body import Body
+from solidgear.errors import SolidgearError
+
+FIDELITIES = ("euler", "timoshenko", "harmonic", "solid")
+
+
+def build(scene, fidelity: str, **options) -> Body:
+    """Free body of a scene at one fidelity.
+
+    Parameters
+    ----------
+    scene : Scene
+    fidelity : {'euler', 'timoshenko', 'harmonic', 'solid'}
+    **options
+        Passed to the builder: see :func:`solidgear.fidelity.beam.beam`,
+        :func:`solidgear.fidelity.harmonic.harmonic`, :func:`solidgear.fidelity.solid.solid`.
+
+    Raises
+    ------
+    SolidgearError
+        For an unknown fidelity.
+    """
+    if fidelity == "euler":
+        from solidgear.fidelity.beam import beam
+
+        return beam(scene, **{"shear": False, "rotary_inertia": False, **options})
+    if fidelity == "timoshenko":
+        from solidgear.fidelity.beam import beam
+
+        return beam(scene, **options)
+    if fidelity == "harmonic":
+        from solidgear.fidelity.harmonic import harmonic
+
+        return harmonic(scene, **options)
+    if fidelity == "solid":
+        from solidgear.fidelity.solid import solid
+
+        return solid(scene, **options)
+    raise SolidgearError(f"fidelity {fidelity!r} is unknown; use one of {', '.join(FIDELITIES)}")

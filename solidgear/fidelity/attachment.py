@@ -1,0 +1,83 @@
+"""Rigid (kinematic) attachment: seat unknowns replaced by the six motions of a port."""
+
+from __future__ import annotations
+
+import numpy as np
+import scipy.sparse as sp
+
+from solidgear.body import Block
+from solidgear.errors import SolidgearError
+
+
+def tie_rigidly(block: Block, ties) -> Block:
+    """Let surfaces of a block move as rigid bodies.
+
+    Parameters
+    ----------
+    block : Block
+    ties : list of (port index, y, mask)
+        Port whose motion the surface takes, its position (m), and the (n,) mask of unknowns on the surface.
+
+    Returns
+    -------
+    Block
+        With the unknowns on each surface replaced by the motion of its port, through
+        ``u = T u_reduced``, so ``T'KT`` and ``T'MT``; the same block when there are no ties.
+
+    Raises
+    ------
+    SolidgearError
+        If two surfaces share unknowns, which would make them one rigid body.
+    """
+    if not ties:
+        return block
+    n, c = block.size, len(block.components)
+    tied = np.zeros(n, int)
+    for _, _, mask in ties:
+        tied += mask
+    if tied.max() > 1:
+        raise SolidgearError("two rigid seats share points of the surface; separate them or use the attachment 'average'")
+    free = np.flatnonzero(tied == 0)
+    columns = [sp.csr_matrix((np.ones(len(free)), (free, np.arange(len(free)))), shape=(n, len(free)))]
+    rigid, y = [block.rigid[free]], [block.y[free]]
+    ports = block.ports.tolil()[:, free]
+    extra = sp.lil_matrix((ports.shape[0], c * len(ties)))
+    for k, (index, y0, mask) in enumerate(ties):
+        local = _about(block, y0)
+        at = np.flatnonzero(mask)
+        columns.append(sp.csr_matrix(_rows(local, at, n)))
+        # Motion of the port under rigid motions of the body about the origin.
+        carry = np.linalg.lstsq(local[at], block.rigid[at], rcond=None)[0]
+        carry[np.abs(carry) < 1e-12] = 0.0
+        rigid.append(carry)
+        y.append(np.full(c, np.nan))
+        for i in range(c):
+            extra[index * c + i, k * c + i] = 1.0
+    t = sp.hstack(columns).tocsr()
+    # Means taken over a tied surface (a section that touches a seat) follow the tie.
+    follow = block.ports @ sp.hstack(columns[1:])
+    return Block(
+        block.name,
+        block.components,
+        (t.T @ block.stiffness @ t).tocsr(),
+        (t.T @ block.mass @ t).tocsr(),
+        np.vstack(rigid),
+        np.concatenate(y),
+        sp.hstack([ports, extra + follow]).tocsr(),
+    )
+
+
+def _about(block: Block, y0: float) -> np.ndarray:
+    """Rigid motions about the point at y0 on the axis."""
+    out = block.rigid.copy()
+    place = {c: k for k, c in enumerate(block.components)}
+    for tilt, translation, sign in ((3, 2, 1.0), (5, 0, -1.0)):
+        if tilt in place and translation in place:
+            out[:, place[tilt]] -= sign * y0 * block.rigid[:, place[translation]]
+    return out
+
+
+def _rows(values, at, n):
+    out = np.zeros((n, values.shape[1]))
+    out[at] = values[at]
+    return out

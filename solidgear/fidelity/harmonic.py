@@ -1,0 +1,342 @@
+"""Axisymmetric-harmonic solid: exact 3D elasticity of a body of revolution on its meridian.
+
+With y the axis and ``z = r cos t, x = r sin t``, harmonic n >= 1 of the displacement is
+``u_r = U cos nt, u_t = -V sin nt, u_y = W cos nt`` (n = 0: ``u_r = U, u_y = W``; torsion apart).
+The unknowns are ``p = (U + V)/2, q = (U - V)/2, w = W``, for which the conditions on the axis are
+plain zeros; p is the mean lateral displacement of a ring.  For torsion the unknown is ``u_t / r``.
+See e.g. Zienkiewicz and Taylor, The Finite Element Method, 5th ed., vol. 2, sec. 9.6, for the
+semi-analytical idea; the choice of unknowns is ours.
+"""
+
+from __future__ import annotations
+
+import logging
+from dataclasses import dataclass
+
+import numpy as np
+import scipy.sparse as sp
+from skfem import ElementQuad1, ElementQuad2, MeshQuad1
+from skfem.element import ElementQuadP
+
+from solidgear.body import Block, Body, Port
+from solidgear.errors import SolidgearError
+from solidgear.fidelity.assembly import Pattern, chunks, tabulate, unknowns
+from solidgear.fidelity.attachment import tie_rigidly
+from solidgear.meshing.layout import layout
+from solidgear.meshing.meridian import Meridian, meridian
+
+
+@dataclass(frozen=True)
+class HarmonicMesh:
+    """What a renderer and the port integrals need of a harmonic body."""
+
+    mesh: MeshQuad1
+    element: object
+    dofs: np.ndarray
+    meridian: Meridian
+
+
+def harmonic(
+    scene,
+    *,
+    order: int = 4,
+    layers: int = 2,
+    ratio: float = 0.2,
+    size: float | None = None,
+    refinement: float = 1.0,
+    attachments: tuple[str, ...] | None = None,
+    ovalising: tuple[int, ...] = (),
+) -> Body:
+    """Free harmonic solid of a scene.
+
+    Parameters
+    ----------
+    scene : Scene
+    order : int
+        Polynomial order of the quadrilaterals, 1 to 12.  4 with two layers is the reference setting (about 1e-4);
+        6 to 8 with three layers gives 1e-6.
+    layers, ratio : int, float
+        Geometric grading towards shoulders, seat ends and corners.
+    size : float, optional
+        Cell size away from them, m; by default the smallest outer radius.
+    refinement : float
+        Multiplies the number of cells for convergence studies.
+    attachments : tuple of str, optional
+        Attachments to build for every station, the first being the default one; by
+        default what the scene says.
+    ovalising : tuple of int
+        Further harmonics n >= 2; they carry no port motion.
+
+    Returns
+    -------
+    Body
+
+    Raises
+    ------
+    SolidgearError
+        For an unknown order or attachment.
+    """
+    if not 1 <= order <= 12:
+        raise SolidgearError(f"harmonic: order {order} is not between 1 and 12")
+    size = size or min(min(s.outer0, s.outer1) for s in scene.segments)
+    plan = layout(scene, size=size, layers=layers, ratio=ratio, refinement=refinement)
+    flat = meridian(scene, plan)
+    mesh = MeshQuad1(flat.points, flat.cells, sort_t=False)
+    element = _element(order)
+    dofs = unknowns(mesh, element)
+    work = _Work(scene, mesh, element, dofs, flat, order)
+    ports, wanted = [], []
+    for station in scene.stations:
+        for attachment in attachments or (station.attachment,):
+            ports.append(Port(station.name, station.y, attachment))
+            wanted.append((station, attachment))
+
+    bending = work.bending_block("bending_z", (2, 3), 1, wanted)
+    blocks = [bending, bending.mirrored("bending_x", (0, 5), 0, (1.0, -1.0)), work.bending_block("axial", (1,), 0, wanted), work.torsion_block(wanted)]
+    blocks += [work.bending_block(f"ovalising_{n}", (), n, wanted) for n in ovalising]
+    from solidgear.fidelity.beam import elastic_scale
+
+    facts = {
+        "element": f"Q{order}",
+        "cells": flat.cells.shape[1],
+        "layers": layers,
+        "ratio": ratio,
+        "refinement": refinement,
+        "representative_size": float(np.sqrt(work.area / flat.cells.shape[1])),
+        "pair_tolerance": 1e-9,
+    }
+    return Body(
+        "harmonic", tuple(blocks), tuple(ports), elastic_scale(scene), scene.length, facts, HarmonicMesh(mesh, element, dofs, flat)
+    )
+
+
+def _element(order):
+    if order == 1:
+        return ElementQuad1()
+    if order == 2:
+        return ElementQuad2()
+    return ElementQuadP(order)
+
+
+def _energy(n: int):
+    """Coefficients of twice the strain energy density of harmonic n.
+
+    Returns three (3, c, 3, c) arrays that multiply lambda, 2 mu and mu: entry [i, p, j, q] belongs to the product of
+    function i of unknown p with function j of unknown q, functions being (phi / r, phi,r, phi,y) and
+    unknowns (u_r, u_y) for n = 0, (p, q, w) otherwise.
+    """
+    if n == 0:
+        rr, tt, yy, rt, ty, ry = np.zeros((6, 3, 2))
+        rr[1, 0] = tt[0, 0] = yy[2, 1] = ry[2, 0] = ry[1, 1] = 1.0
+    else:
+        rr, tt, yy, rt, ty, ry = np.zeros((6, 3, 3))
+        rr[1, 0] = rr[1, 1] = 1.0
+        tt[0, 0], tt[0, 1] = 1 - n, 1 + n
+        yy[2, 2] = 1.0
+        rt[0, 0], rt[1, 0], rt[0, 1], rt[1, 1] = 1 - n, -1.0, -(1 + n), 1.0
+        ty[2, 0], ty[2, 1], ty[0, 2] = -1.0, 1.0, -n
+        ry[2, 0] = ry[2, 1] = ry[1, 2] = 1.0
+
+    def product(strains):
+        return sum(np.multiply.outer(s, s) for s in strains)
+
+    return product([rr + tt + yy]), product([rr, tt, yy]), product([rt, ty, ry])
+
+
+class _Work:
+    """Tabulated basis, materials and surface integrals shared by the blocks of one body."""
+
+    def __init__(self, scene, mesh, element, dofs, flat, order):
+        self.scene, self.mesh, self.element, self.dofs, self.flat = scene, mesh, element, dofs, flat
+        x, w = np.polynomial.legendre.leggauss(order + 2)
+        self.g, self.gw = (x + 1) / 2, w / 2
+        a, b = np.meshgrid(self.g, self.g, indexing="ij")
+        self.points = np.array([a.ravel(), b.ravel()])
+        self.weights = np.outer(self.gw, self.gw).ravel()
+        self.pattern = Pattern(dofs)
+        self.n = self.pattern.n
+        materials = [s.material for s in scene.segments]
+        e = np.array([m.E for m in materials])[flat.segment]
+        nu = np.array([m.nu for m in materials])[flat.segment]
+        self.shear = e / (2 * (1 + nu))
+        self.lame = e * nu / ((1 + nu) * (1 - 2 * nu))
+        self.density = np.array([m.density for m in materials])[flat.segment]
+        # Vertex functions carry all rigid motions; higher ones are zero there in a hierarchical basis.
+        self.r = np.zeros(self.n)
+        self.y = np.full(self.n, np.nan)
+        if order > 2:
+            self.r[dofs[:4]], self.y[dofs[:4]] = flat.points[0][flat.cells], flat.points[1][flat.cells]
+            self.point = ~np.isnan(self.y)
+        else:
+            at = np.nan_to_num(np.array([element.doflocs[:, 0], element.doflocs[:, 1]]))
+            x = tabulate(mesh, element, at).x
+            self.r[dofs.T], self.y[dofs.T] = x[0], x[1]
+            self.point = np.ones(self.n, bool)
+        self.area = 0.0
+        # Unknowns with a share on the axis.
+        on_axis = np.zeros(self.n, bool)
+        tol = 1e-9 * flat.points[0].max()
+        axis_cells = flat.inner[np.abs(flat.points[0][flat.cells[0, flat.inner]]) < tol]
+        axis_cells = axis_cells[np.abs(flat.points[0][flat.cells[3, axis_cells]]) < tol]
+        on_axis[self._edge_unknowns(axis_cells, 0, 0.0)] = True
+        self.on_axis = on_axis
+
+    def _edge_unknowns(self, cells, direction, value):
+        """Unknowns of ``cells`` that do not vanish on a local edge."""
+        points = np.empty((2, len(self.g)))
+        points[direction], points[1 - direction] = value, self.g
+        from solidgear.fidelity.assembly import reference
+
+        alive = np.abs(reference(self.element, points)[0]).max(axis=1) > 1e-12
+        return np.unique(self.dofs[alive][:, cells])
+
+    def _batches(self):
+        bytes_each = self.dofs.shape[0] * len(self.weights) * 8 * 30
+        for part in chunks(self.dofs.shape[1], bytes_each):
+            t = tabulate(self.mesh, self.element, self.points, part)
+            yield part, t, t.det * self.weights
+
+    def bending_block(self, name, components, n, wanted) -> Block:
+        """Block of harmonic n (0 is axial) in the unknowns (p, q, w), or (u_r, u_y) for n = 0."""
+        c = 2 if n == 0 else 3
+        nb = self.dofs.shape[0]
+        k_all, m_all = [], []
+        area = 0.0
+        # Strains are linear in (phi / r, phi,r, phi,y) of each unknown; one Gram matrix of those three
+        # functions per element holds every product that occurs.
+        trace, normal, shear = _energy(n)
+        for part, t, dv in self._batches():
+            area += dv.sum()
+            r = t.x[0]
+            ne = len(r)
+            w = (2 * np.pi if n == 0 else np.pi) * dv * r
+            f = np.concatenate([t.value[None] / r[:, None], t.gradient[:, :, 0], t.gradient[:, :, 1]], axis=1)
+            f *= np.sqrt(w)[:, None]
+            gram = (f @ np.swapaxes(f, 1, 2)).reshape(ne, 3, nb, 3, nb)
+            k = np.zeros((ne, nb, c, nb, c))
+            lame, mu = self.lame[part][:, None, None], self.shear[part][:, None, None]
+            for i, j, p, q in np.ndindex(3, 3, c, c):
+                a, b = trace[i, p, j, q], 2 * normal[i, p, j, q] + shear[i, p, j, q]
+                if a or b:
+                    k[:, :, p, :, q] += (a * lame + b * mu) * gram[:, i, :, j]
+            k_all.append(k)
+            s = t.value[None] * np.sqrt(w * self.density[part][:, None])[:, None]
+            m_all.append(s @ np.swapaxes(s, 1, 2))
+        self.area = area
+        k = self.pattern.blocks(np.concatenate(k_all))
+        share = np.ones(2) if n == 0 else np.array([2.0, 2.0, 1.0])
+        m = sp.kron(self.pattern.scalar(np.concatenate(m_all)), sp.diags(share)).tocsr()
+
+        keep = np.ones((self.n, c), bool)
+        if n == 0:
+            keep[self.on_axis, 0] = False
+        elif n == 1:
+            keep[self.on_axis, 1:] = False
+        else:
+            keep[self.on_axis] = False
+        keep = keep.ravel()
+        y = np.repeat(self.y, c)[keep]
+        rigid = np.zeros((self.n, c, len(components)))
+        on = self.point
+        if n == 0 and components:
+            rigid[on, 1, 0] = 1.0
+        elif n == 1:
+            rigid[on, 0, 0] = 1.0
+            rigid[on, 0, 1] = self.y[on]
+            rigid[on, 2, 1] = -self.r[on]
+        rigid = rigid.reshape(self.n * c, -1)[keep]
+        k, m = k[keep][:, keep], m[keep][:, keep]
+        if not components:
+            return Block(name, (), k, m, rigid, y, sp.csr_matrix((0, k.shape[0])))
+        rows, ties = [], []
+        for i, (station, attachment) in enumerate(wanted):
+            if attachment == "rigid":
+                cells = self._seat_cells(station)
+                seat = np.zeros((self.n, c), bool)
+                seat[self._edge_unknowns(cells, 0, 1.0)] = True
+                ties.append((i, station.y, seat.ravel()[keep]))
+                rows.append(np.zeros((len(components), k.shape[0])))
+            else:
+                rows.append(self._mean(n, station, attachment)[:, keep])
+        ports = sp.csr_matrix(np.vstack(rows))
+        return tie_rigidly(Block(name, components, k, m, rigid, y, ports), ties)
+
+    def torsion_block(self, wanted) -> Block:
+        """Block of torsion in the unknown ``u_t / r``; no condition on the axis."""
+        k_all, m_all = [], []
+        for part, t, dv in self._batches():
+            w = 2 * np.pi * dv * t.x[0] ** 3
+            g = t.gradient * np.sqrt(w * self.shear[part][:, None])[:, None, None]
+            g = g.reshape(*g.shape[:2], -1)
+            k_all.append(g @ np.swapaxes(g, 1, 2))
+            s = t.value[None] * np.sqrt(w * self.density[part][:, None])[:, None]
+            m_all.append(s @ np.swapaxes(s, 1, 2))
+        k, m = self.pattern.scalar(np.concatenate(k_all)), self.pattern.scalar(np.concatenate(m_all))
+        rigid = self.point.astype(float)[:, None]
+        rows, ties = [], []
+        for i, (station, attachment) in enumerate(wanted):
+            if attachment == "rigid":
+                seat = np.zeros(self.n, bool)
+                seat[self._edge_unknowns(self._seat_cells(station), 0, 1.0)] = True
+                ties.append((i, station.y, seat))
+                rows.append(np.zeros((1, self.n)))
+            else:
+                value, r, _, weight, dofs = self._surface(station, attachment)
+                row = np.zeros(self.n)
+                w = weight * r**3
+                np.add.at(row, dofs.T, np.einsum("bq,eq->eb", value, w))
+                rows.append(row[None] / w.sum())
+        block = Block("torsion", (4,), k, m, rigid, self.y, sp.csr_matrix(np.vstack(rows)))
+        return tie_rigidly(block, ties)
+
+    def _seat_cells(self, station):
+        """Cells with their outer edge on the seat."""
+        y = self.flat.points[1][self.flat.cells[:, self.flat.outer]]
+        tol = 1e-9 * self.scene.length
+        return self.flat.outer[(y.min(axis=0) >= station.lo - tol) & (y.max(axis=0) <= station.hi + tol)]
+
+    def _surface(self, station, attachment):
+        """Basis values (nb, q), r, y - y0, length weights (e, q) and unknowns on a seat or a section."""
+        if attachment == "average":
+            cells, direction, value = self._seat_cells(station), 0, 1.0
+        elif attachment == "section":
+            y = self.flat.points[1][self.flat.cells]
+            tol = 1e-9 * self.scene.length
+            cells, direction, value = np.flatnonzero(np.abs(y[3] - station.y) < tol), 1, 1.0
+            if not len(cells):  # a section at the very start
+                cells, value = np.flatnonzero(np.abs(y[0] - station.y) < tol), 0.0
+        else:
+            raise SolidgearError(f"attachment {attachment!r} is unknown; use 'average', 'rigid' or 'section'")
+        points = np.empty((2, len(self.g)))
+        points[direction], points[1 - direction] = value, self.g
+        t = tabulate(self.mesh, self.element, points, cells)
+        weight = np.linalg.norm(t.tangent[:, :, :, 1 - direction], axis=2) * self.gw
+        return t.value, t.x[0], t.x[1] - station.y, weight, self.dofs[:, cells]
+
+    def _mean(self, n, station, attachment):
+        """Least-squares rigid motion of a surface, as rows on the unknowns of harmonic n."""
+        value, r, h, w, dofs = self._surface(station, attachment)
+
+        def scatter(weight):
+            row = np.zeros(self.n)
+            np.add.at(row, dofs.T, np.einsum("bq,eq->eb", value, weight))
+            return row
+
+        if n == 0:
+            out = np.zeros((1, self.n, 2))
+            out[0, :, 1] = scatter(w * r) / (w * r).sum()
+            return out.reshape(1, -1)
+        out = np.zeros((2, self.n, 3))
+        out[0, :, 0] = scatter(2 * np.pi * w * r)
+        out[1, :, 0] = scatter(2 * np.pi * w * r * h)
+        out[1, :, 2] = scatter(-np.pi * w * r * r)
+        a = np.array(
+            [
+                [2 * np.pi * (w * r).sum(), 2 * np.pi * (w * r * h).sum()],
+                [2 * np.pi * (w * r * h).sum(), np.pi * (w * r * (2 * h * h + r * r)).sum()],
+            ]
+        )
+        return np.linalg.solve(a, out.reshape(2, -1))
+
+
+logging.getLogger("skfem").setLevel(logging.ERROR)

@@ -1,0 +1,76 @@
+"""Structured quadrilateral mesh of the meridian (r, y) of a shaft of revolution."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from solidgear.meshing.layout import Layout
+
+
+@dataclass(frozen=True)
+class Meridian:
+    """Quadrilaterals in the (r, y) plane, all numbered alike.
+
+    Every cell is numbered inner-low, outer-low, outer-high, inner-high, so that its first
+    local coordinate runs outwards and its second along the shaft: hierarchical
+    edge functions of scikit-fem carry no orientation sign and need just that.
+
+    Attributes
+    ----------
+    points : (2, n) ndarray
+        r and y, m.
+    cells : (4, m) ndarray of int
+    segment : (m,) ndarray of int
+    outer, inner : (k,) ndarray of int
+        Cells with their outer (inner) edge on a lateral surface.
+    """
+
+    points: np.ndarray
+    cells: np.ndarray
+    segment: np.ndarray
+    outer: np.ndarray
+    inner: np.ndarray
+
+
+def meridian(scene, plan: Layout) -> Meridian:
+    """Mesh the meridian of a scene along a layout."""
+    points: list[tuple[float, float]] = []
+    index: dict[tuple[int, int, int], int] = {}
+    cells, owner, outer, inner = [], [], [], []
+    base = {}
+    at = 0
+    for band in sorted(plan.fractions):
+        base[band] = at
+        at += len(plan.fractions[band]) - 1
+    for row, seg in enumerate(plan.segment):
+        segment = scene.segments[seg]
+        lowest, end = plan.bands[seg]
+        rings = []
+        for y in (plan.y[row], plan.y[row + 1]):
+            b = plan.radii(seg, (segment.y0, segment.y1), y)
+            r = [b[:1]]
+            for band in range(lowest, end):
+                f = plan.fractions[band][1:]
+                r.append(b[band - lowest] + f * (b[band - lowest + 1] - b[band - lowest]))
+            rings.append(np.concatenate(r))
+        first, last = base[lowest], base[end - 1] + len(plan.fractions[end - 1]) - 1
+
+        def node(line, ring):
+            key = (line, ring)
+            if key not in index:
+                index[key] = len(points)
+                points.append((rings[line - row][ring - first], plan.y[line]))
+            return index[key]
+
+        for ring in range(first, last):
+            if ring == first:
+                inner.append(len(cells))
+            if ring == last - 1:
+                outer.append(len(cells))
+            cells.append((node(row, ring), node(row, ring + 1), node(row + 1, ring + 1), node(row + 1, ring)))
+            owner.append(seg)
+    return Meridian(
+        np.array(points).T, np.array(cells).T, np.array(owner), np.array(outer), np.array(inner)
+    )

@@ -1,0 +1,217 @@
+"""Gates every volume mesh passes before it is worth a factorisation.
+
+A curved element can be inverted between its Gauss points, and a mesh can lose a sliver of its volume without any
+solver complaining. So the Jacobian is looked at where the integrals are taken *and* at the element's own nodes, and the
+volume is held against the closed form of the shaft.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from skfem.quadrature import get_quadrature
+
+from solidgear.errors import SolidgearError
+
+
+class MeshError(SolidgearError):
+    """A mesh that cannot be made, or must not be used; the message says which element and what to do."""
+
+
+@dataclass(frozen=True)
+class MeshQuality:
+    """What was measured on a mesh.
+
+    Attributes
+    ----------
+    n_elements, n_vertices : int
+        Elements, and their corner nodes (mid nodes are not counted).
+    volume : float
+        Volume of the elements with their curved faces, exact for the geometry of the mesh [m^3].
+    min_det_j, max_det_j : float
+        Extremes of the Jacobian determinant over all elements and sampling points [m^3].
+    min_ratio : float
+        Smallest (min det J) / (max det J) inside one element: 1 is an affine element, 0 or less a folded one.
+    min_volume_ratio : float
+        Smallest element volume over the mean one; grading lowers it rightly (size ratio cubed), a sliver wrongly.
+    """
+
+    n_elements: int
+    n_vertices: int
+    volume: float
+    min_det_j: float
+    max_det_j: float
+    min_ratio: float
+    min_volume_ratio: float
+
+
+def check_mesh(mesh, *, volume=None, rtol=1e-3, min_ratio=1e-3):
+    """Measure a volume mesh and refuse it when an element is inverted or the volume is wrong.
+
+    Parameters
+    ----------
+    mesh : skfem.MeshTet1, MeshTet2, MeshHex1 or MeshHex2
+        Right-handed. scikit-fem itself integrates with |det J|, and its `init_tensor` meshes are left-handed.
+    volume : float, optional
+        Volume the mesh should have [m^3], see `volume_of`; None skips the comparison.
+    rtol : float
+        Relative mismatch of volume that is still accepted.
+    min_ratio : float
+        Least accepted (min det J) / (max det J) inside an element.
+
+    Returns
+    -------
+    MeshQuality
+
+    Raises
+    ------
+    MeshError
+        Inverted or nearly folded elements, a volume off by more than `rtol`, or not a volume mesh.
+    """
+    quality, low, high, ratio = _measure(mesh)
+    # written so that a NaN coordinate counts as bad
+    cure = ("move the mid-edge nodes back between their corners or order the corners right-handed, "
+            "or mesh finer where the surface curves")
+    if (high < 0.0).all():
+        cure = "the whole mesh is left-handed, so exchange two local axes of the elements or mirror the coordinates"
+    _refuse(mesh, ~(low > 0.0), low, "inverted", "det J", "m^3", cure)
+    _refuse(mesh, ~(ratio >= min_ratio), ratio, "nearly folded", "min/max det J", f"(limit {min_ratio:g})",
+            "mesh finer where the surface curves, or straighten the edges of these elements")
+    if volume is not None and not abs(quality.volume - volume) <= rtol * abs(volume):
+        raise MeshError(f"the mesh has volume {quality.volume:.9g} m^3 instead of {volume:.9g} m^3 "
+                        f"({quality.volume / volume - 1.0:+.2e}, limit {rtol:g}): mesh finer around the "
+                        "circumference, use second-order curved elements, or look for a missing part")
+    return quality
+
+
+def element_ratios(mesh):
+    """(min det J) / (max det J) inside each element, -1 where no det J is positive; no gate."""
+    return _measure(mesh)[3]
+
+
+def _measure(mesh):
+    """Quality, and per element the least and greatest det J and their ratio."""
+    if mesh.dim() != 3:
+        raise MeshError(f"a volume mesh is needed, but {type(mesh).__name__} has dimension {mesh.dim()}: "
+                        "give a tetrahedral or hexahedral mesh")
+    if mesh.t.shape[1] == 0:
+        raise MeshError("the mesh has no elements: check the geometry it was made from")
+
+    det, weights = _determinants(mesh)
+    low, high = det.min(axis=0), det.max(axis=0)
+    volumes = weights @ det[:len(weights)]
+    ratio = np.divide(low, high, out=np.full_like(low, -1.0), where=high > 0.0)
+    quality = MeshQuality(
+        n_elements=int(mesh.t.shape[1]),
+        n_vertices=len(np.unique(mesh.t)),
+        volume=float(volumes.sum()),
+        min_det_j=float(low.min()),
+        max_det_j=float(high.max()),
+        min_ratio=float(ratio.min()),
+        min_volume_ratio=float(volumes.min() / volumes.mean()),
+    )
+    return quality, low, high, ratio
+
+
+def _determinants(mesh):
+    """det J, shape (points, elements), at the Gauss points first and then at the element's nodes; Gauss weights.
+
+    det J is a cubic on the curved tetrahedron and of degree 5 in each coordinate on the triquadratic hexahedron, so
+    a rule of order 3 (respectively 5) makes the volume exact; of order 0 and 2 on the linear ones.
+    """
+    element = mesh.elem()
+    tet = element.refdom.nnodes == 4
+    nodes = element.doflocs.T
+    order = (3 if tet else 5) if nodes.shape[1] > element.refdom.nnodes else (1 if tet else 2)
+    points, weights = get_quadrature(element.refdom, order)
+    points = np.hstack([points, nodes])
+    # one small dense product instead of scikit-fem's cached loop over nine Jacobian entries
+    gradients = np.stack([np.broadcast_to(np.stack(np.broadcast_arrays(*element.lbasis(points, i)[1])),
+                                          points.shape)
+                          for i in range(nodes.shape[1])])                              # (node, 3, point)
+    location = mesh.doflocs[:, mesh.dofs.element_dofs]                                  # (3, node, element)
+    a, b, c = np.einsum("njq,ine->jiqe", gradients, location, optimize=True)            # columns of J
+    det = (a[0] * (b[1] * c[2] - b[2] * c[1])
+           - a[1] * (b[0] * c[2] - b[2] * c[0])
+           + a[2] * (b[0] * c[1] - b[1] * c[0]))
+    return det, weights
+
+
+def _refuse(mesh, bad, value, what, name, unit, cure):
+    if not bad.any():
+        return
+    worst = int(np.argmin(np.where(np.isnan(value), -np.inf, value)))
+    x, y, z = mesh.p[:, mesh.t[:, worst]].mean(axis=1)
+    count = int(bad.sum())
+    raise MeshError(f"{count} of {len(bad)} elements {'is' if count == 1 else 'are'} {what}, the worst is element "
+                    f"{worst} at ({x:.4g}, {y:.4g}, {z:.4g}) m with {name} {value[worst]:.3g} {unit}: {cure}")
+
+
+def volume_of(segments):
+    """Volume of hollow frusta end to end [m^3], closed form.
+
+    Parameters
+    ----------
+    segments : sequence
+        Objects with y0, y1, outer0, outer1, inner0, inner1 [m].
+    """
+    return float(sum(np.pi * (s.y1 - s.y0) * (_squares(s.outer0, s.outer1) - _squares(s.inner0, s.inner1))
+                     for s in segments))
+
+
+@dataclass(frozen=True)
+class MassProperties:
+    """Rigid-body constants of a body of revolution about the axis y.
+
+    Attributes
+    ----------
+    mass : float
+        [kg]
+    centre : float
+        Position of the centre of mass along y [m].
+    ixx : float
+        Moment of inertia about a transverse axis through the centre of mass [kg m^2]; the one about z is the same.
+    iyy : float
+        Polar moment of inertia about the axis y [kg m^2].
+    """
+
+    mass: float
+    centre: float
+    ixx: float
+    iyy: float
+
+
+def mass_properties(segments):
+    """Mass, centre and inertia of hollow frusta, by exact integration of the polynomials in y.
+
+    Parameters
+    ----------
+    segments : sequence
+        Objects with y0, y1, outer0, outer1, inner0, inner1 [m] and material.density [kg/m^3].
+
+    Returns
+    -------
+    MassProperties
+    """
+    parts = np.array([_frustum(s.y0, s.y1, s.outer0, s.outer1, s.material.density) for s in segments]
+                     + [_frustum(s.y0, s.y1, s.inner0, s.inner1, -s.material.density) for s in segments])
+    mass, first, polar = parts[:, :3].sum(axis=0)
+    centre = first / mass
+    # second moment of each part about the common centre: about its own small end, then shifted
+    offset = parts[:, 3] - centre
+    axial = (parts[:, 5] + 2.0 * offset * parts[:, 4] + offset**2 * parts[:, 0]).sum()
+    return MassProperties(mass=float(mass), centre=float(centre), ixx=float(0.5 * polar + axial), iyy=float(polar))
+
+
+def _frustum(y0, y1, a, b, density):
+    """Mass, moment of mass in y, polar inertia, and y0 with first and second moment about y0, of a solid frustum."""
+    h = y1 - y0
+    mass = density * np.pi * h * _squares(a, b)
+    first = density * np.pi * h**2 * (a * a + 2.0 * a * b + 3.0 * b * b) / 12.0         # int r^2 s
+    second = density * np.pi * h**3 * (a * a + 3.0 * a * b + 6.0 * b * b) / 30.0        # int r^2 s^2
+    fourth = (a**4 + a**3 * b + a**2 * b**2 + a * b**3 + b**4) / 5.0                    # int r^4
+    return mass, first + y0 * mass, 0.5 * density * np.pi * h * fourth, y0, first, second
+
+
+def _squares(a, b):
+    """Mean of r^2 along a cone from radius a to radius b."""
+    return (a * a + a * b + b * b) / 3.0

@@ -1,0 +1,448 @@
+"""The scene: what is modelled, and what is asked of it.
+
+A shaft of cylinders and cones along y, bearings with 6x6 stiffness, one lumped point (the port), and the questions.
+Frozen and validated, SI inside, no numerics beyond geometry bookkeeping. Degrees of freedom are everywhere in the
+order (x, y, z, thx, thy, thz); y runs along the shaft and is 0 at its first end face.
+
+>>> scene = load("geometry/pinion_overhung.toml")
+>>> stiff = scene.with_attachment("rigid").with_bearing_scale(10.0)
+>>> rod = Scene.from_parts([Segment.cylinder("rod", length=0.3, diameter=0.06)])
+"""
+
+from __future__ import annotations
+
+import difflib
+import os
+from collections.abc import Iterable, Mapping, Sequence
+from typing import Annotated, Any, Literal, TypeVar
+
+import numpy as np
+from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationError, model_validator
+
+from solidgear.errors import SceneError, first_problem, show
+from solidgear.frames import DOF_NAMES
+from solidgear.units import (
+    POSITION_DECIMALS, AxialSpring, Density, Frequency, Modulus, Poisson, Position, PositiveLength, Thickness, Tolerance, quantity,
+)  # fmt: skip
+
+#: m; two edges nearer than this are one edge
+TOUCH = 1e-9
+
+
+def nearest(word: Any, known: Iterable[str]) -> str:
+    """``'; did you mean "x"?'``, or nothing when no known word is near."""
+    close = difflib.get_close_matches(str(word), list(known), 1)
+    return f'; did you mean "{close[0]}"?' if close else ""
+
+
+Attachment = Literal["average", "rigid", "section"]
+Status = Literal["published", "identified", "assumed", "measured"]
+
+_Self = TypeVar("_Self", bound="Model")
+
+
+class Model(BaseModel):
+    """Frozen, validated, and one sentence when it refuses."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True)
+
+    def __init__(self, /, **data: Any):
+        try:
+            super().__init__(**data)
+        except ValidationError as error:
+            raise first_problem(error, data) from None
+
+    @model_validator(mode="before")
+    @classmethod
+    def _known_keys_only(cls, data: Any) -> Any:
+        # before pydantic's own check, whose first complaint about a misspelt key is that the right one is missing
+        if isinstance(data, Mapping):
+            known = [field.alias or name for name, field in cls.model_fields.items()]
+            for key in data:
+                if key not in known:
+                    raise SceneError(f"unknown key{nearest(key, known) or '; known here: ' + ', '.join(known)}", path=(key,))
+        return data
+
+    def with_changes(self: _Self, **changes: Any) -> _Self:
+        """A validated copy with some fields replaced. Raises `SceneError` like the constructor."""
+        return type(self)(**{name: getattr(self, name) for name in type(self).model_fields} | changes)
+
+    def model_copy(self: _Self, *, update: Mapping[str, Any] | None = None, deep: bool = False) -> _Self:
+        """As `with_changes`: pydantic's own copy would skip validation."""
+        return self.with_changes(**(update or {}))
+
+
+# ------------------------------------------------------------------------------------------------- stiffness
+def _entry_names() -> dict[str, tuple[int, int, str]]:
+    names = {}
+    for i, a in enumerate(DOF_NAMES):
+        for j, b in enumerate(DOF_NAMES[i:], start=i):
+            dimension = "force_per_length" if j < 3 else "force" if i < 3 else "moment"
+            name = f"k{a}{b}" if j < 3 else f"k{a}" if i == j else f"k{a}_{b}"
+            names[name] = (i, j, dimension)
+    return names
+
+
+#: name of a stiffness entry -> (row, column, dimension); 21 names make the symmetric 6x6
+STIFFNESS_NAMES = _entry_names()
+
+
+def stiffness_matrix(entries: Mapping[str, Any]) -> np.ndarray:
+    """Symmetric 6x6 from named entries (`STIFFNESS_NAMES`); the ones not named are zero.
+
+    Parameters
+    ----------
+    entries : mapping
+        For example ``{"kxx": "8.8e9 N/m", "kx_thz": 1.45e8}``; plain numbers are SI (N/m, N/rad, N m/rad).
+
+    Returns
+    -------
+    (6, 6) ndarray, order x y z thx thy thz
+
+    Raises
+    ------
+    SceneError
+        Unknown name, or an entry that is not a quantity of its dimension.
+    """
+    K = np.zeros((6, 6))
+    for name, value in entries.items():
+        if name not in STIFFNESS_NAMES:
+            raise SceneError(f"unknown stiffness entry{nearest(name, STIFFNESS_NAMES)}; valid are {', '.join(STIFFNESS_NAMES)}", path=(name,))
+        i, j, dimension = STIFFNESS_NAMES[name]
+        try:
+            K[i, j] = K[j, i] = quantity(value, dimension)
+        except SceneError as error:
+            raise SceneError(error.reason, path=(name,), value=error.value) from None
+    return K
+
+
+def stiffness_entries(K: Any) -> dict[str, float]:
+    """Named non-zero entries (SI) of a symmetric 6x6: the inverse of `stiffness_matrix`."""
+    K = np.asarray(K, dtype=float)
+    return {name: float(K[i, j]) for name, (i, j, _) in STIFFNESS_NAMES.items() if K[i, j] != 0.0}
+
+
+def _bearing_matrix(value: Any) -> tuple[tuple[float, ...], ...]:
+    """A checked symmetric positive semidefinite 6x6 as nested tuples (hashable, comparable) from entries or rows."""
+    if isinstance(value, Mapping):
+        K = stiffness_matrix(value)
+    else:
+        rows = value.tolist() if isinstance(value, np.ndarray) else value
+        if not (isinstance(rows, Sequence) and len(rows) == 6 and all(isinstance(r, Sequence) and len(r) == 6 for r in rows)):
+            raise SceneError("must be 6 rows of 6 numbers, order x y z thx thy thz")
+        K = np.zeros((6, 6))
+        for i, row in enumerate(rows):
+            for j, entry in enumerate(row):
+                try:
+                    K[i, j] = quantity(entry if not isinstance(entry, str) else None, "dimensionless")
+                except SceneError:
+                    raise SceneError(f"row {i + 1}, column {j + 1} must be a finite number in SI, not {show(entry)}") from None
+    size = np.sqrt(np.abs(np.diag(K)))
+    bound = 1e-9 * np.maximum(np.maximum(np.abs(K), np.abs(K.T)), np.outer(size, size))
+    if np.any(np.abs(K - K.T) > bound):
+        i, j = np.unravel_index(np.argmax(np.abs(K - K.T) - bound), (6, 6))
+        raise SceneError(f"the stiffness is not symmetric: ({DOF_NAMES[i]}, {DOF_NAMES[j]}) is {K[i, j]:.6g} and ({DOF_NAMES[j]}, {DOF_NAMES[i]}) is {K[j, i]:.6g}")
+    K = (K + K.T) / 2
+    # unit-free: a row with no stiffness of its own is scaled so that its largest coupling becomes 1, hence indefinite
+    for i in np.flatnonzero(size == 0):
+        coupling = np.abs(K[i]) / np.where(size > 0, size, np.sqrt(np.abs(K[i])) + (K[i] == 0))
+        size[i] = coupling.max() or 1.0
+    eigenvalue, vector = np.linalg.eigh(K / np.outer(size, size))
+    if eigenvalue[0] < -1e-9:
+        a, b = sorted(np.argsort(-np.abs(vector[:, 0]), kind="stable")[:2])
+        raise SceneError(
+            f"the stiffness is indefinite in the pair ({DOF_NAMES[a]}, {DOF_NAMES[b]}): their entries are {K[a, a]:.6g} and {K[b, b]:.6g}, coupled by "
+            f"{K[a, b]:.6g}, and the smallest eigenvalue, with the diagonal scaled to 1, is {eigenvalue[0]:.3g}; it must not be negative"
+        )
+    return tuple(tuple(float(v) for v in row) for row in K)
+
+
+# ------------------------------------------------------------------------------------------------- parts
+class Material(Model):
+    """Isotropic linear elastic material: `E` in Pa, `nu`, `density` in kg/m3 (numbers in SI, or texts with units)."""
+
+    E: Modulus
+    nu: Poisson
+    density: Density
+
+    @property
+    def shear_modulus(self) -> float:
+        """G = E / (2 (1 + nu)) in Pa."""
+        return self.E / (2 * (1 + self.nu))
+
+
+STEEL = Material(E=2.07e11, nu=0.3, density=7850.0)
+
+
+class Segment(Model):
+    """A cylinder or cone between `y0` and `y1` (m), with radii (m) at both ends; `inner` 0 is solid."""
+
+    name: str
+    y0: Position
+    y1: Position
+    outer0: PositiveLength
+    outer1: PositiveLength
+    inner0: Thickness = 0.0
+    inner1: Thickness = 0.0
+    material: Material = STEEL
+    part: Literal["shaft", "frustum", "backcone"] = "shaft"
+
+    @model_validator(mode="after")
+    def _has_a_wall(self) -> Segment:
+        if self.y1 <= self.y0:
+            raise SceneError("must lie beyond y0", path=("y1",))
+        for end in "01":
+            if getattr(self, "inner" + end) >= getattr(self, "outer" + end):
+                raise SceneError(f"the bore must be smaller than the outer radius {getattr(self, 'outer' + end):.6g} m", path=("inner" + end,))
+        return self
+
+    @classmethod
+    def cylinder(cls, name: str, *, length: Any, diameter: Any, bore: Any = 0.0, y0: float = 0.0, material: Material | None = None) -> Segment:
+        """A cylinder from `y0` on; without `material` it takes that of the scene it is put into."""
+        return cls.cone(name, length=length, start_diameter=diameter, end_diameter=diameter, bore=bore, y0=y0, material=material)
+
+    @classmethod
+    def cone(cls, name: str, *, length: Any, start_diameter: Any, end_diameter: Any, bore: Any = 0.0, y0: float = 0.0,
+             material: Material | None = None) -> Segment:  # fmt: skip
+        """A cone with a constant bore from `y0` on; `cylinder` says the rest."""
+        outer0, outer1, inner = (quantity(d, "length") / 2 for d in (start_diameter, end_diameter, bore))
+        given = {} if material is None else {"material": material}
+        return cls(name=name, y0=y0, y1=y0 + quantity(length, "length"), outer0=outer0, outer1=outer1, inner0=inner, inner1=inner, **given)
+
+    @property
+    def length(self) -> float:
+        """Axial length in m."""
+        return self.y1 - self.y0
+
+    def radius_at(self, y: float) -> tuple[float, float]:
+        """(inner, outer) radius in m at `y`; ValueError outside the segment."""
+        if not self.y0 - TOUCH <= y <= self.y1 + TOUCH:
+            raise ValueError(f'y = {y} m is outside segment "{self.name}" ({self.y0} to {self.y1} m)')
+        t = min(max((y - self.y0) / self.length, 0.0), 1.0)
+        return (1 - t) * self.inner0 + t * self.inner1, (1 - t) * self.outer0 + t * self.outer1
+
+
+class Bearing(Model):
+    """A bearing: a 6x6 between ground and the seat it sits on.
+
+    `matrix` (or, as a constructor argument, `stiffness`: rows or named entries) is the bearing alone, in SI;
+    `axial_series` lists springs (N/m) in series with its axial stiffness. `y` is the middle of the seat.
+    """
+
+    name: str
+    y: Position
+    seat_width: PositiveLength
+    matrix: Annotated[tuple[tuple[float, ...], ...], BeforeValidator(_bearing_matrix)]
+    axial_series: tuple[AxialSpring, ...] = ()
+    attachment: Attachment = "average"
+    status: Status = "assumed"
+    note: str = ""
+
+    def __init__(self, /, **data: Any):
+        if "stiffness" in data:
+            data["matrix"] = data.pop("stiffness")
+        super().__init__(**data)
+
+    @property
+    def lo(self) -> float:
+        """Seat end towards y = 0, in m."""
+        return round(self.y - self.seat_width / 2, POSITION_DECIMALS)
+
+    @property
+    def hi(self) -> float:
+        """Seat end away from y = 0, in m."""
+        return round(self.y + self.seat_width / 2, POSITION_DECIMALS)
+
+    @property
+    def stiffness(self) -> np.ndarray:
+        """(6, 6) read-only, SI, order x y z thx thy thz: the bearing with its axial series springs condensed in."""
+        K = np.array(self.matrix)
+        if self.axial_series:
+            # the ring between bearing and spring carries no load of its own: condense its y out, couplings included
+            spring = 1 / sum(1 / k for k in self.axial_series)
+            K -= np.outer(K[:, 1], K[1, :]) / (K[1, 1] + spring)
+        K.flags.writeable = False
+        return K
+
+    def scaled(self, factor: float) -> Bearing:
+        """The same bearing with every stiffness, series springs included, times `factor` > 0."""
+        if not factor > 0:
+            raise SceneError("must be greater than zero", field="factor", value=show(factor))
+        return self.with_changes(matrix=np.array(self.matrix) * factor, axial_series=tuple(k * factor for k in self.axial_series))
+
+
+class Port(Model):
+    """The lumped point on the axis at `y` (m), attached to the outer surface from `lo` to `hi` (m)."""
+
+    name: str = "port"
+    y: Position
+    lo: Position
+    hi: Position
+    attachment: Attachment = "average"
+
+
+class Ask(Model):
+    """The questions: how many modes, up to what frequency (Hz; None is no limit), to what relative tolerance."""
+
+    modes: Annotated[int, Field(strict=True, ge=1)] = 10
+    max_frequency: Frequency | None = None
+    tolerance: Tolerance = 0.05
+
+
+# ------------------------------------------------------------------------------------------------- the scene
+class Scene(Model):
+    """A shaft on its bearings; read one with `load`, or make one with `Scene.from_parts`.
+
+    `segments` lie end to end from y = 0; `port` is the lumped point; `housing_axial` (N/m or None) is the spring along
+    y between the common bearing housing and ground; `source` says where the data come from.
+    """
+
+    title: str = ""
+    name: str = "scene"
+    source: str = ""
+    segments: tuple[Segment, ...]
+    material: Material = STEEL
+    bearings: tuple[Bearing, ...] = ()
+    housing_axial: AxialSpring | None = None
+    port: Port
+    ask: Ask = Ask()
+
+    @model_validator(mode="after")
+    def _hangs_together(self) -> Scene:
+        _check_shaft(self.segments)
+        _check_stations(self)
+        return self
+
+    @classmethod
+    def from_parts(cls, segments: Iterable[Segment], material: Material = STEEL, bearings: Iterable[Bearing] = (),
+                   port: Port | None = None, **rest: Any) -> Scene:  # fmt: skip
+        """A scene made in Python.
+
+        Parameters
+        ----------
+        segments : iterable of Segment
+            End to end from y = 0. One made without a material takes `material`.
+        material : Material
+        bearings : iterable of Bearing
+        port : Port, optional
+            Without it, the middle of the longest segment, attached to all of that segment's outer surface.
+        **rest
+            title, name, source, housing_axial, ask.
+
+        Raises
+        ------
+        SceneError
+        """
+        segments = tuple(s if "material" in s.model_fields_set else s.with_changes(material=material) for s in segments)
+        if port is None and segments:
+            longest = max(segments, key=lambda s: s.length)
+            port = Port(y=(longest.y0 + longest.y1) / 2, lo=longest.y0, hi=longest.y1)
+        given = {} if port is None else {"port": port}
+        return cls(segments=segments, material=material, bearings=tuple(bearings), **given, **rest)
+
+    @property
+    def length(self) -> float:
+        """Length of the shaft in m."""
+        return self.segments[-1].y1
+
+    @property
+    def stations(self) -> tuple[Port | Bearing, ...]:
+        """Everything attached to the shaft, the port first: each has name, y, lo, hi, attachment."""
+        return (self.port, *self.bearings)
+
+    @property
+    def steps(self) -> tuple[float, ...]:
+        """y (m) where the outer radius jumps, end faces left out."""
+        pairs = zip(self.segments, self.segments[1:])
+        return tuple(b.y0 for a, b in pairs if abs(a.outer1 - b.outer0) > 1e-9 * a.outer1)
+
+    def with_changes(self, **changes: Any) -> Scene:
+        """A validated copy with some fields replaced; a new `material` also replaces the old default in the segments."""
+        if "material" in changes and "segments" not in changes:
+            swap = {self.material: changes["material"]}
+            changes["segments"] = tuple(s.with_changes(material=swap.get(s.material, s.material)) for s in self.segments)
+        return super().with_changes(**changes)
+
+    def with_attachment(self, attachment: str) -> Scene:
+        """The same scene with the port and every bearing attached by 'average', 'rigid' or 'section'."""
+        bearings = tuple(b.with_changes(attachment=attachment) for b in self.bearings)
+        return self.with_changes(bearings=bearings, port=self.port.with_changes(attachment=attachment))
+
+    def with_seat_width(self, width: float | str) -> Scene:
+        """The same scene with every bearing seat `width` wide."""
+        return self.with_changes(bearings=tuple(b.with_changes(seat_width=width) for b in self.bearings))
+
+    def with_material(self, **changes: Any) -> Scene:
+        """The same scene with `E`, `nu` or `density` replaced in the default material and in every segment."""
+        segments = tuple(s.with_changes(material=s.material.with_changes(**changes)) for s in self.segments)
+        return self.with_changes(material=self.material.with_changes(**changes), segments=segments)
+
+    def with_bearing_scale(self, factor: float) -> Scene:
+        """The same scene with every bearing's stiffness, series springs included, times `factor` > 0."""
+        return self.with_changes(bearings=tuple(b.scaled(factor) for b in self.bearings))
+
+    def with_port(self, **changes: Any) -> Scene:
+        """The same scene with fields of its port replaced, such as ``y=0.03``; the span stays unless given too."""
+        return self.with_changes(port=self.port.with_changes(**changes))
+
+    def as_dict(self) -> dict[str, Any]:
+        """Everything resolved, in SI, as plain JSON-serialisable data."""
+        data = self.model_dump(mode="json")
+        for row, segment in zip(data["segments"], self.segments):
+            row["length"] = segment.length
+        for row, bearing in zip(data["bearings"], self.bearings):
+            row |= {"lo": bearing.lo, "hi": bearing.hi, "stiffness": bearing.stiffness.tolist(), "entries": stiffness_entries(row.pop("matrix"))}
+        return data | {"length": self.length, "steps": list(self.steps)}
+
+
+def _check_shaft(segments: Sequence[Segment]) -> None:
+    if not segments:
+        raise SceneError("a scene needs at least one segment", path=("segments",))
+    end, names = 0.0, set()
+    for i, segment in enumerate(segments):
+        if abs(segment.y0 - end) > TOUCH:
+            raise SceneError(f"segments lie end to end from y = 0, so this must be {end:.6g}", path=("segments", i, "y0"))
+        if segment.name in names:
+            raise SceneError("another segment has this name; each needs its own", path=("segments", i, "name"))
+        if max(segment.outer0, segment.outer1) > 10.0:
+            radius = max(segment.outer0, segment.outer1)
+            raise SceneError(f"a radius of {radius:.6g} m is above 10 m: probably wrong units", path=("segments", i, "outer0"))
+        end = segment.y1
+        names.add(segment.name)
+    if not 1e-3 <= end <= 20.0:
+        i = max(range(len(segments)), key=lambda k: segments[k].length)
+        raise SceneError(f"the shaft is {end:.6g} m long, outside 1 mm to 20 m: probably wrong units", path=("segments", i, "y1"))
+
+
+def _check_stations(scene: Scene) -> None:
+    """Ports and seats lie on the shaft, on one smooth surface each, and seats do not share any of it."""
+    length, steps = scene.length, scene.steps
+    if not -TOUCH <= scene.port.y <= length + TOUCH:
+        raise SceneError(f"the port is at y = {scene.port.y:.6g} m, outside the shaft (0 to {length:.6g} m)", path=("port", "y"))
+    if scene.port.hi <= scene.port.lo:
+        raise SceneError(f"the span must end beyond its start at {scene.port.lo:.6g} m", path=("port", "hi"))
+    places = [(("port", "hi"), scene.port, "attached span")]
+    places += [(("bearings", i, "seat_width"), bearing, "seat") for i, bearing in enumerate(scene.bearings)]
+    names = set()
+    for k, (path, here, what) in enumerate(places):
+        if here.name in names:
+            raise SceneError("the port or another bearing has this name; each needs its own", path=(*path[:-1], "name"))
+        names.add(here.name)
+        reach = f"the {what} reaches from {here.lo:.6g} to {here.hi:.6g} m"
+        if here.lo < -TOUCH or here.hi > length + TOUCH:
+            raise SceneError(f"{reach}, which must lie inside the shaft (0 to {length:.6g} m)", path=path)
+        for step in steps:
+            if here.lo + TOUCH < step < here.hi - TOUCH:
+                raise SceneError(f"{reach}, across the step of the outer radius at {step:.6g} m; it must end there", path=path)
+        for _, other, other_what in places[:k]:
+            # the port may share a seat's surface, unless both hold it rigid: that would weld the two points together
+            both = other_what == what or other.attachment == here.attachment == "rigid"
+            if both and min(here.hi, other.hi) - max(here.lo, other.lo) > TOUCH:
+                raise SceneError(f'{reach} and overlaps that of "{other.name}" ({other.lo:.6g} to {other.hi:.6g} m)', path=path)
+
+
+def load(path: str | os.PathLike) -> Scene:
+    """Read a scene from a TOML file (the files in ``geometry`` document the format); `SceneError` if it cannot be used."""
+    from solidgear.scene_file import read  # a scene made in Python has no use for it
+
+    return read(path)

@@ -1,0 +1,151 @@
+"""Units at the border: a quantity as a user writes it in, a float in SI out.
+
+The only module that touches pint, and only once a text is met: the import costs more than solving a beam.
+"""
+
+from __future__ import annotations
+
+import functools
+import math
+import numbers
+import re
+from collections.abc import Callable
+from typing import Annotated, Any
+
+from pydantic import AfterValidator, BeforeValidator
+
+from solidgear.errors import SceneError, show
+
+#: dimension -> (SI unit, example as text, allowed powers of the radian). pint holds the radian to be dimensionless,
+#: so N, N/rad and N*rad look alike to it; the power is what tells an angle from a ratio and rpm from Hz.
+DIMENSIONS: dict[str, tuple[str, str, tuple[int, ...]]] = {
+    "length": ("m", "90 mm", (0,)),
+    "angle": ("rad", "22.4 deg", (1,)),
+    "pressure": ("Pa", "207 GPa", (0,)),
+    "density": ("kg/m^3", "7850 kg/m^3", (0,)),
+    "force_per_length": ("N/m", "8.6e9 N/m", (0,)),
+    "force": ("N/rad", "1.45e8 N/rad", (0, -1)),
+    "moment": ("N*m/rad", "3.6e6 N*m/rad", (0, -1)),
+    "frequency": ("Hz", "10 kHz", (0,)),
+    "dimensionless": ("", "0.3", (0,)),
+}
+
+_TEXT = re.compile(r"\s*(?P<number>[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?|[+-]?(?:nan|inf)\b)\s*(?P<unit>.*?)\s*", re.S | re.I)
+_UNIT = re.compile(r"[^\W\d_][^\W\d]*|%|\d|[\s*/^().·-]", re.U)
+
+
+def quantity(value: Any, dimension: str) -> float:
+    """Read a quantity in SI.
+
+    Parameters
+    ----------
+    value : int, float or str
+        A plain number is SI already; a text is a number and a unit, such as ``"90 mm"`` or ``"8.6e9 N/m"``.
+    dimension : str
+        One of `DIMENSIONS`: length (m), angle (rad), pressure (Pa), density (kg/m3), force_per_length (N/m),
+        force (N or N/rad), moment (N m or N m/rad), frequency (Hz), dimensionless.
+
+    Returns
+    -------
+    float
+        The value in the SI unit of `dimension`.
+
+    Raises
+    ------
+    SceneError
+        Not a number, NaN or infinite, no unit or an unknown one, or a unit of another dimension.
+    """
+    si, example, _ = DIMENSIONS[dimension]
+    if isinstance(value, str):
+        number = _read_text(value, dimension)
+    elif isinstance(value, numbers.Real) and not isinstance(value, bool):
+        try:
+            number = float(value)
+        except OverflowError:
+            number = math.inf
+    else:
+        raise SceneError(f"must be a number{f' in {si}' if si else ''} or a text such as \"{example}\"", value=show(value))
+    if not math.isfinite(number):
+        raise SceneError(f"must be a finite number, for example \"{example}\"", value=show(value))
+    return number
+
+
+def _read_text(text: str, dimension: str) -> float:
+    si, example, powers = DIMENSIONS[dimension]
+    value, name = show(text), dimension.replace("_", " ")
+    match = _TEXT.fullmatch(text)
+    if match is None:
+        raise SceneError(f"must be a number with a unit, such as \"{example}\"", value=value)
+    number, unit = float(match["number"]), match["unit"]
+    if not unit:
+        if si:
+            raise SceneError(f"has no unit: write a plain number (without quotes) for SI ({si}), or add a unit as in \"{example}\"", value=value)
+        return number
+    known = _si_factor(unit)
+    if known is None:
+        raise SceneError(f"unknown unit \"{unit}\"; write for example \"{example}\"", value=value)
+    factor, radians, dimensionality = known
+    if dimensionality != (_si_factor(si)[2] if si else "dimensionless") or radians not in powers:
+        wrong = f"not a unit of {name}" if si else "a unit, but this is a plain ratio"
+        raise SceneError(f"\"{unit}\" is {wrong}; write for example \"{example}\"", value=value)
+    # dividing by 1000 is exact where multiplying by 0.001 is not: "208 mm" must be the same float as 0.208
+    return number / round(1 / factor) if factor < 1 and (1 / factor).is_integer() else number * factor
+
+
+@functools.lru_cache(maxsize=256)
+def _si_factor(unit: str) -> tuple[float, float, str] | None:
+    """(SI units in one `unit`, power of the radian in it, its dimensionality), or None when pint does not know it."""
+    # pint evaluates exponents as it parses; a chain such as m**9**9**9 would never return
+    if len(unit) > 60 or re.search(r"\d{3}|(\*\*|\^).*(\*\*|\^).*(\*\*|\^)", unit) or _UNIT.sub("", unit):
+        return None
+    registry = _registry()
+    try:
+        parsed = registry.parse_units(unit)
+        one = registry.get_root_units(parsed)
+        factor, radians = float(one[0]), float(dict(one[1]._units).get("radian", 0))
+        mass = float(dict(one[1]._units).get("gram", 0))
+        return float(f"{factor * 1e-3**mass:.15g}"), radians, str(parsed.dimensionality)  # pint's root of mass is the gram
+    except Exception:  # pint raises a dozen kinds, some its own, some of the tokenizer underneath
+        return None
+
+
+@functools.cache
+def _registry():
+    import pint
+
+    return pint.UnitRegistry(on_redefinition="ignore")
+
+
+# Field types of the scene's models: a quantity, and the range it must lie in.
+
+#: positions are kept to a picometre, so that ends computed along different routes compare equal
+POSITION_DECIMALS = 12
+
+
+def _in(dimension: str) -> BeforeValidator:
+    return BeforeValidator(lambda value: quantity(value, dimension))
+
+
+def _must(test: Callable[[float], bool], reason: str) -> AfterValidator:
+    def check(value):
+        if not test(value):
+            raise SceneError(reason)
+        return value
+
+    return AfterValidator(check)
+
+
+_POSITIVE = _must(lambda v: v > 0, "must be greater than zero")
+_NOT_NEGATIVE = _must(lambda v: v >= 0, "must not be negative")
+
+Length = Annotated[float, _in("length")]
+Position = Annotated[float, _in("length"), AfterValidator(lambda v: round(v, POSITION_DECIMALS) + 0.0)]
+PositiveLength = Annotated[Length, _POSITIVE]
+Thickness = Annotated[Length, _NOT_NEGATIVE]
+Angle = Annotated[float, _in("angle"), _must(lambda v: 0 < v < math.pi / 2, "must lie between 0 and 90 degrees (0 and 1.571 rad)")]
+Modulus = Annotated[float, _in("pressure"), _POSITIVE]
+Density = Annotated[float, _in("density"), _POSITIVE]
+Poisson = Annotated[float, _in("dimensionless"), _must(lambda v: -1 < v < 0.5, "must lie between -1 and 0.5, both excluded; steel is 0.3")]
+AxialSpring = Annotated[float, _in("force_per_length"), _POSITIVE]
+Frequency = Annotated[float, _in("frequency"), _POSITIVE]
+Tolerance = Annotated[float, _in("dimensionless"), _must(lambda v: 0 < v < 1, "must lie between 0 and 1; 0.05 is five per cent")]
