@@ -19,7 +19,8 @@ CHUNK_BYTES = 1.5e8
 class Tabulated:
     """Basis functions of some elements at reference points, in physical coordinates.
 
-    ``value`` (nb, nq); ``gradient`` (ne, nb, dim, nq); ``det`` (ne, nq); ``x`` (dim, ne, nq).
+    ``value`` (nb, nq); ``gradient`` (ne, nb, dim, nq); ``det`` (ne, nq); ``x`` (dim, ne, nq);
+    ``tangent`` (ne, nq, dim, dim) derivative of position (third axis) along reference coordinates (fourth).
     """
 
     value: np.ndarray
@@ -41,11 +42,22 @@ def reference(element, points):
     return value, gradient
 
 
-def tabulate(mesh, element, points, elements=slice(None)) -> Tabulated:
-    """Tabulate ``element`` on ``elements`` of a mesh at reference ``points`` (dim, nq)."""
-    shape, dshape = reference(mesh.elem(), points)
-    value, dvalue = reference(element, points)
-    nodes = mesh.doflocs[:, mesh.dofs.element_dofs[:, elements]]  # (dim, nn, ne)
+def tabulate(geometry, nodes, element, points) -> Tabulated:
+    """Tabulate basis functions in physical coordinates.
+
+    Parameters
+    ----------
+    geometry : scikit-fem element
+        Of the mapping; for an isoparametric element the element itself.
+    nodes : (dim, nn, ne) ndarray
+        Nodes of the mapping, m.
+    element : scikit-fem element
+        Of the unknowns.
+    points : (dim, nq) ndarray
+        Reference points.
+    """
+    shape, dshape = reference(geometry, points)
+    value, dvalue = (shape, dshape) if geometry is element else reference(element, points)
     x = np.einsum("dne,nq->deq", nodes, shape, optimize=True)
     jac = np.einsum("dne,ncq->eqdc", nodes, dshape, optimize=True)
     det = np.linalg.det(jac)
@@ -77,20 +89,26 @@ class Pattern:
         self.indices = (keys % self.n).astype(np.int32)
         self.indptr = np.searchsorted(keys, np.arange(self.n + 1, dtype=np.int64) * self.n).astype(np.int32)
 
-    def scalar(self, local: np.ndarray) -> sp.csr_matrix:
-        """Sum (ne, nb, nb) element matrices into an (n, n) matrix."""
-        data = np.bincount(self.place, weights=local.ravel(), minlength=len(self.indices))
-        return sp.csr_matrix((data, self.indices, self.indptr), shape=(self.n, self.n))
+    def scalar(self, parts) -> sp.csr_matrix:
+        """Sum (m, nb, nb) element matrices, given in order and in parts, into an (n, n) matrix."""
+        return self.blocks(part[:, :, None, :, None] for part in parts)
 
-    def blocks(self, local: np.ndarray) -> sp.csr_matrix:
-        """Sum (ne, nb, c, nb, c) element matrices into an (n c, n c) matrix, unknowns grouped by node."""
-        c = local.shape[2]
-        data = np.empty((len(self.indices), c, c))
-        for i in range(c):
-            for j in range(c):
-                data[:, i, j] = np.bincount(
-                    self.place, weights=np.ascontiguousarray(local[:, :, i, :, j]).ravel(), minlength=len(self.indices)
-                )
+    def blocks(self, parts) -> sp.csr_matrix:
+        """Sum (m, nb, c, nb, c) element matrices into an (n c, n c) matrix, unknowns grouped by node."""
+        data, done = None, 0
+        square = self.dofs.shape[0] ** 2
+        for part in parts:
+            c = part.shape[2]
+            if data is None:
+                data = np.zeros((c, c, len(self.indices)))
+            place = self.place[done : done + len(part) * square]
+            done += len(part) * square
+            for i in range(c):
+                for j in range(c):
+                    data[i, j] += np.bincount(place, weights=part[:, :, i, :, j].ravel(), minlength=len(self.indices))
+        if c == 1:
+            return sp.csr_matrix((data[0, 0], self.indices, self.indptr), shape=(self.n,) * 2)
+        data = np.ascontiguousarray(np.moveaxis(data, 2, 0))
         return sp.bsr_matrix((data, self.indices, self.indptr), shape=(self.n * c,) * 2).tocsr()
 
 

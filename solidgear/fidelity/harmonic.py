@@ -20,10 +20,13 @@ from skfem.element import ElementQuadP
 
 from solidgear.body import Block, Body, Port
 from solidgear.errors import SolidgearError
-from solidgear.fidelity.assembly import Pattern, chunks, tabulate, unknowns
+from solidgear.fidelity.assembly import Pattern, chunks, reference, tabulate, unknowns
 from solidgear.fidelity.attachment import tie_rigidly
 from solidgear.meshing.layout import layout
 from solidgear.meshing.meridian import Meridian, meridian
+
+
+_CORNERS = ElementQuad1()
 
 
 @dataclass(frozen=True)
@@ -169,7 +172,7 @@ class _Work:
             self.point = ~np.isnan(self.y)
         else:
             at = np.nan_to_num(np.array([element.doflocs[:, 0], element.doflocs[:, 1]]))
-            x = tabulate(mesh, element, at).x
+            x = tabulate(_CORNERS, self._nodes(slice(None)), element, at).x
             self.r[dofs.T], self.y[dofs.T] = x[0], x[1]
             self.point = np.ones(self.n, bool)
         self.area = 0.0
@@ -181,19 +184,20 @@ class _Work:
         on_axis[self._edge_unknowns(axis_cells, 0, 0.0)] = True
         self.on_axis = on_axis
 
+    def _nodes(self, cells):
+        return self.flat.points[:, self.flat.cells[:, cells]]
+
     def _edge_unknowns(self, cells, direction, value):
         """Unknowns of ``cells`` that do not vanish on a local edge."""
         points = np.empty((2, len(self.g)))
         points[direction], points[1 - direction] = value, self.g
-        from solidgear.fidelity.assembly import reference
-
         alive = np.abs(reference(self.element, points)[0]).max(axis=1) > 1e-12
         return np.unique(self.dofs[alive][:, cells])
 
     def _batches(self):
         bytes_each = self.dofs.shape[0] * len(self.weights) * 8 * 30
         for part in chunks(self.dofs.shape[1], bytes_each):
-            t = tabulate(self.mesh, self.element, self.points, part)
+            t = tabulate(_CORNERS, self._nodes(part), self.element, self.points)
             yield part, t, t.det * self.weights
 
     def bending_block(self, name, components, n, wanted) -> Block:
@@ -223,9 +227,9 @@ class _Work:
             s = t.value[None] * np.sqrt(w * self.density[part][:, None])[:, None]
             m_all.append(s @ np.swapaxes(s, 1, 2))
         self.area = area
-        k = self.pattern.blocks(np.concatenate(k_all))
+        k = self.pattern.blocks(k_all)
         share = np.ones(2) if n == 0 else np.array([2.0, 2.0, 1.0])
-        m = sp.kron(self.pattern.scalar(np.concatenate(m_all)), sp.diags(share)).tocsr()
+        m = sp.kron(self.pattern.scalar(m_all), sp.diags(share)).tocsr()
 
         keep = np.ones((self.n, c), bool)
         if n == 0:
@@ -271,7 +275,7 @@ class _Work:
             k_all.append(g @ np.swapaxes(g, 1, 2))
             s = t.value[None] * np.sqrt(w * self.density[part][:, None])[:, None]
             m_all.append(s @ np.swapaxes(s, 1, 2))
-        k, m = self.pattern.scalar(np.concatenate(k_all)), self.pattern.scalar(np.concatenate(m_all))
+        k, m = self.pattern.scalar(k_all), self.pattern.scalar(m_all)
         rigid = self.point.astype(float)[:, None]
         rows, ties = [], []
         for i, (station, attachment) in enumerate(wanted):
@@ -309,7 +313,7 @@ class _Work:
             raise SolidgearError(f"attachment {attachment!r} is unknown; use 'average', 'rigid' or 'section'")
         points = np.empty((2, len(self.g)))
         points[direction], points[1 - direction] = value, self.g
-        t = tabulate(self.mesh, self.element, points, cells)
+        t = tabulate(_CORNERS, self._nodes(cells), self.element, points)
         weight = np.linalg.norm(t.tangent[:, :, :, 1 - direction], axis=2) * self.gw
         return t.value, t.x[0], t.x[1] - station.y, weight, self.dofs[:, cells]
 

@@ -43,7 +43,7 @@ class Layout:
         return (1 - t) * self.left[segment] + t * self.right[segment]
 
 
-def layout(scene, *, size: float, layers: int, ratio: float, refinement: float = 1.0, reach: float | None = None) -> Layout:
+def layout(scene, *, size: float, layers: int, ratio: float, refinement: float = 1.0, reach: float | None = None, core: bool = False) -> Layout:
     """Lay out bands and mesh lines for a scene.
 
     Parameters
@@ -59,6 +59,8 @@ def layout(scene, *, size: float, layers: int, ratio: float, refinement: float =
         Multiplies the number of cells everywhere.
     reach : float, optional
         Where grading starts, distance from the singular line in m; by default ``size``.
+    core : bool
+        Start the band on the axis with one cell of half its width, room for the core of an O-grid.
     """
     segments = scene.segments
     bands, left, right = _bands(segments)
@@ -74,7 +76,11 @@ def layout(scene, *, size: float, layers: int, ratio: float, refinement: float =
         )
         # The axis is the only band boundary that is no surface anywhere.
         on_axis = any(b[0] == band and l[0] == 0.0 and r[0] == 0.0 for b, l, r in zip(bands, left, right))
-        fractions[band] = graded(thickness, size, layers, ratio, reach, refinement, low=not on_axis, high=True) / thickness
+        if on_axis and core:
+            outside = graded(thickness / 2, size, layers, ratio, reach, refinement, low=False, high=True)
+            fractions[band] = np.concatenate([[0.0], thickness / 2 + outside]) / thickness
+        else:
+            fractions[band] = graded(thickness, size, layers, ratio, reach, refinement, low=not on_axis, high=True) / thickness
     sharp = {s.y0 for s in segments} | {segments[-1].y1}
     for station in scene.stations:
         sharp |= {station.lo, station.hi}
