@@ -43,7 +43,19 @@ class Layout:
         return (1 - t) * self.left[segment] + t * self.right[segment]
 
 
-def layout(scene, *, size: float, layers: int, ratio: float, refinement: float = 1.0, reach: float | None = None, core: bool = False) -> Layout:
+def layout(
+    scene,
+    *,
+    size: float,
+    layers: int,
+    edge_layers: int | None = None,
+    ratio: float,
+    refinement: float = 1.0,
+    reach: float | None = None,
+    radial_layers: int | None = None,
+    radial_reach: float | None = None,
+    core: bool = False,
+) -> Layout:
     """Lay out bands and mesh lines for a scene.
 
     Parameters
@@ -52,68 +64,85 @@ def layout(scene, *, size: float, layers: int, ratio: float, refinement: float =
     size : float
         Cell size away from singular points at refinement 1, m.
     layers : int
-        Geometric layers towards each singular line; 0 is uniform.
+        Geometric layers towards shoulders, the strongest singularity; 0 is uniform.
+    edge_layers : int, optional
+        Geometric layers towards seat ends; as many as ``layers`` by default.
     ratio : float
         Size of a layer relative to the one before, 0.15 to 0.5.
     refinement : float
         Multiplies the number of cells everywhere.
     reach : float, optional
         Where grading starts, distance from the singular line in m; by default ``size``.
+    radial_layers, radial_reach : optional
+        The same across the thickness, where a line costs more cells than along the shaft.
     core : bool
         Start the band on the axis with one cell of half its width, room for the core of an O-grid.
     """
     segments = scene.segments
+    edge_layers = layers if edge_layers is None else min(edge_layers, layers)
     bands, left, right = _bands(segments)
     reach = reach or size
-    top = max(b[1] for b in bands)
-    bottom = min(b[0] for b in bands)
-    fractions = {}
-    for band in range(bottom, top):
-        thickness = max(
-            max(l[band - b[0] + 1] - l[band - b[0]], r[band - b[0] + 1] - r[band - b[0]])
-            for b, l, r in zip(bands, left, right)
-            if b[0] <= band < b[1]
-        )
-        # The axis is the only band boundary that is no surface anywhere.
-        on_axis = any(b[0] == band and l[0] == 0.0 and r[0] == 0.0 for b, l, r in zip(bands, left, right))
-        if on_axis and core:
-            outside = graded(thickness / 2, size, layers, ratio, reach, refinement, low=False, high=True)
-            fractions[band] = np.concatenate([[0.0], thickness / 2 + outside]) / thickness
-        else:
-            fractions[band] = graded(thickness, size, layers, ratio, reach, refinement, low=not on_axis, high=True) / thickness
-    sharp = {s.y0 for s in segments} | {segments[-1].y1}
-    for station in scene.stations:
-        sharp |= {station.lo, station.hi}
-    plain = {s.y for s in scene.stations}
-    marks = _distinct(sorted(sharp | plain), 1e-9 * scene.length)
+    radial_reach = radial_reach or reach
+    across = layers if radial_layers is None else radial_layers
     tol = 1e-9 * scene.length
-    is_sharp = [any(abs(y - s) <= tol for s in sharp) for y in marks]
+
+    # Seat ends and shoulders are singular; end faces and kinks that bulge outwards are not.
+    ends = {0.0, segments[-1].y1}
+    weight = {y: 0 for y in ends} | {s.y: 0 for s in scene.stations} | {s.y0: 0 for s in segments}
+    for station in scene.stations:
+        weight |= {y: edge_layers for y in (station.lo, station.hi) if y not in ends}
+    corners = [(a, b) for a, b in zip(segments, segments[1:]) if _singular(a, b)]
+    weight |= {b.y0: layers for _, b in corners}
+    marks = _distinct(sorted(weight), tol)
+    strength = [max(w for y, w in weight.items() if abs(y - m) <= tol) for m in marks]
     lines = [np.array([marks[0]])]
-    for i in range(len(marks) - 1):
-        a, b = marks[i], marks[i + 1]
-        lines.append(a + graded(b - a, size, layers, ratio, reach, refinement, is_sharp[i], is_sharp[i + 1])[1:])
+    for a, b, low, high in zip(marks, marks[1:], strength, strength[1:]):
+        lines.append(a + graded(b - a, size, ratio, reach, refinement, low, high)[1:])
     y = np.concatenate(lines)
     middle = (y[1:] + y[:-1]) / 2
-    ends = np.array([s.y1 for s in segments])
-    segment = np.minimum(np.searchsorted(ends, middle), len(segments) - 1)
+    segment = np.minimum(np.searchsorted([s.y1 for s in segments], middle), len(segments) - 1)
+
+    # A band boundary meets a shoulder where it is the surface of the smaller neighbour; other surfaces carry seats.
+    strong = set()
+    for i, (a, b) in enumerate(zip(segments, segments[1:])):
+        if _singular(a, b):
+            strong |= {min(bands[i][1], bands[i + 1][1]), max(bands[i][0], bands[i + 1][0])}
+    fractions = {}
+    for band in range(min(b[0] for b in bands), max(b[1] for b in bands)):
+        here = [(b, l, r) for b, l, r in zip(bands, left, right) if b[0] <= band < b[1]]
+        thickness = max(max(np.diff(l)[band - b[0]], np.diff(r)[band - b[0]]) for b, l, r in here)
+        low, high = (across if k in strong else min(edge_layers, across) for k in (band, band + 1))
+        # The axis is the only band boundary that is no surface anywhere.
+        on_axis = any(b[0] == band and l[0] == 0.0 and r[0] == 0.0 for b, l, r in here)
+        if on_axis and core:
+            outside = graded(thickness / 2, size, ratio, radial_reach, refinement, 0, high)
+            lines = np.concatenate([[0.0], thickness / 2 + outside])
+        else:
+            lines = graded(thickness, size, ratio, radial_reach, refinement, 0 if on_axis else low, high)
+        fractions[band] = lines / thickness
     return Layout(y, segment, bands, left, right, fractions)
 
 
-def graded(length, size, layers, ratio, reach, refinement, low=True, high=True) -> np.ndarray:
-    """Positions 0 .. length of mesh lines, graded towards the ends flagged ``low`` and ``high``.
+def _singular(a, b) -> bool:
+    """Whether the outline has a re-entrant corner or a change of material where segment b follows a."""
+    tol = 1e-9 * a.length
+    if a.material != b.material or abs(a.outer1 - b.outer0) > tol or abs(a.inner1 - b.inner0) > tol:
+        return True
+    outside = (b.outer1 - b.outer0) / b.length - (a.outer1 - a.outer0) / a.length
+    inside = (b.inner1 - b.inner0) / b.length - (a.inner1 - a.inner0) / a.length
+    return outside > 1e-6 or inside < -1e-6
+
+
+def graded(length, size, ratio, reach, refinement, low: int, high: int) -> np.ndarray:
+    """Positions 0 .. length of mesh lines with ``low`` and ``high`` geometric layers towards the two ends.
 
     The density is that of refinement 1; other refinements sample it with
     proportionally more cells, which keeps meshes similar.
     """
-    ends = int(low) + int(high)
-    start = min(reach, length / 2 if ends == 2 else length) if ends else 0.0
-    powers = start * ratio ** np.arange(layers, 0, -1.0)
-    near = np.concatenate([powers, [start]]) if layers else np.zeros(0)
+    start = min(reach, length / 2 if low and high else length)
     lines = {0.0, float(length)}
-    if low:
-        lines |= set(near.tolist())
-    if high:
-        lines |= set((length - near).tolist())
+    for layers, place in ((low, lambda d: d), (high, lambda d: length - d)):
+        lines |= {float(place(start * ratio**k)) for k in range(layers + 1)} if layers else set()
     lines = np.array(_distinct(sorted(lines), 1e-9 * length))
     # Fill gaps that are longer than a cell.
     filled = [lines[:1]]
