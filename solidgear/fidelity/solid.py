@@ -108,13 +108,13 @@ class SolidMesh:
 def solid(
     scene,
     *,
-    element: str = "hex27",
+    element: str = "hex20",
     size: float | None = None,
     layers: int = 4,
     edge_layers: int = 1,
     radial_layers: int = 3,
     ratio: float = 0.35,
-    around: int = 8,
+    around: int = 12,
     graded_size: float | None = None,
     refinement: float = 1.0,
     attachments: tuple[str, ...] | None = None,
@@ -124,7 +124,7 @@ def solid(
     Parameters
     ----------
     scene : Scene
-    element : {'hex27', 'hex20', 'hex8', 'tet10', 'tet4'}
+    element : {'hex20', 'hex27', 'hex8', 'tet10', 'tet4'}
         Hexahedra on a structured O-grid, tetrahedra from gmsh.
     size : float, optional
         Element size away from singular edges, m; by default 0.6 of the smallest outer radius (hexahedra) or a
@@ -134,7 +134,7 @@ def solid(
         surfaces across it, and the size of each relative to the last.  The defaults came out of a search for the least
         error at 45k unknowns on the overhung pinion.
     around : int
-        Elements around the circumference (tetrahedra: at least twice that).
+        Elements around the circumference (tetrahedra: at least 16).
     graded_size : float, optional
         Size of tetrahedra at shoulders and seat ends, m; a quarter of ``size`` by default, ``size`` for a uniform mesh.
     refinement : float
@@ -237,7 +237,7 @@ def _tets(scene, wanted, element, size, graded_size, refinement, around):
     graded_size = (graded_size / refinement) if graded_size else size / 4
     planes = sorted({s.y for s, a in wanted if a == "section"})
     circles = sorted({y for s, a in wanted if a != "section" for y in (s.lo, s.hi)})
-    made = tetrahedra(scene.segments, planes, circles, size=size, graded_size=None if graded_size >= size else graded_size, around=2 * around)
+    made = tetrahedra(scene.segments, planes, circles, size=size, graded_size=None if graded_size >= size else graded_size, around=max(16, around))
     if element == "tet10":
         return made.mesh, made.segment, made.quality
     from skfem import MeshTet1
