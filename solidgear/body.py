@@ -57,8 +57,12 @@ class Block:
         Port motions as linear functions of the unknowns, port by port.
     mirror : (int, tuple of float), optional
         Index of the block this one repeats in the other plane, and the sign of each component there.
+    border : int
+        Number of unknowns at the end that are coupled to very many others (motions of rigid seats).
     planar : bool
         Whether the matrix comes from a 1D or 2D mesh, for which a light factorisation is best.
+    expand : (n_mesh, n) sparse, optional
+        The unknowns of the mesh from those of a block with rigidly tied seats; None where they are the same.
     """
 
     name: str
@@ -70,6 +74,8 @@ class Block:
     ports: sp.csr_matrix
     mirror: tuple[int, tuple[float, ...]] | None = None
     planar: bool = True
+    border: int = 0
+    expand: sp.csr_matrix | None = None
 
     def mirrored(self, name: str, components: tuple[int, ...], index: int, signs: tuple[float, ...]) -> Block:
         """The same block in the other bending plane.
@@ -88,7 +94,7 @@ class Block:
         count = self.ports.shape[0] // len(signs)
         ports = sp.diags(np.tile(signs, count)) @ self.ports
         rigid = self.rigid * np.asarray(signs)
-        return Block(name, components, self.stiffness, self.mass, rigid, self.y, ports.tocsr(), (index, signs), self.planar)
+        return Block(name, components, self.stiffness, self.mass, rigid, self.y, ports.tocsr(), (index, signs), self.planar, self.expand)
 
     @property
     def size(self) -> int:

@@ -64,6 +64,9 @@ def tie_rigidly(block: Block, ties) -> Block:
         np.vstack(rigid),
         np.concatenate(y),
         sp.hstack([ports, extra + follow]).tocsr(),
+        planar=block.planar,
+        border=c * len(ties),
+        expand=t,
     )
 
 

@@ -49,6 +49,7 @@ def beam(
     rotary_inertia: bool = True,
     head: str = "cone",
     mass: str = "consistent",
+    kappa: str = "hutchinson",
     elements: int | None = None,
 ) -> Body:
     """Free beam model of a scene.
@@ -63,6 +64,8 @@ def beam(
     head : {'cone', 'mean'}
         Follow the taper of conical segments, or replace each by the cylinder of its mean radii.
     mass : {'consistent', 'lumped'}
+    kappa : {'hutchinson', 'cowper'}
+        Shear coefficient; Cowper's for comparison with older work, solid sections only.
     elements : int, optional
         Least number of elements along the shaft; by default eight to a diameter.
 
@@ -75,13 +78,17 @@ def beam(
         raise SolidgearError(f"head: {head!r} is unknown; use 'cone' or 'mean'")
     if mass not in ("consistent", "lumped"):
         raise SolidgearError(f"mass: {mass!r} is unknown; use 'consistent' or 'lumped'")
+    if kappa not in ("hutchinson", "cowper"):
+        raise SolidgearError(f"kappa: {kappa!r} is unknown; use 'hutchinson' or 'cowper'")
+    if kappa == "cowper" and any(s.inner0 or s.inner1 for s in scene.segments):
+        raise SolidgearError("kappa: 'cowper' is given for solid sections only; use 'hutchinson' for a hollow shaft")
     nodes, owner = _mesh(scene, elements)
     n = len(nodes)
     size = {"bending": 2 * n, "axial": n, "torsion": n}
     entries = {name: ([], [], [], []) for name in size}
     for e, segment in enumerate(owner):
         left, right = nodes[e], nodes[e + 1]
-        section = _Section(segment, left, right, head)
+        section = _Section(segment, left, right, head, kappa)
         parts = {
             "bending": (*_bending(section, shear, rotary_inertia, mass), np.arange(2 * e, 2 * e + 4)),
             "axial": (*_rod(section, section.stretch, section.mass, mass), np.array([e, e + 1])),
@@ -148,7 +155,7 @@ def _mesh(scene, elements):
 class _Section:
     """Section properties of one element at its Gauss points (distances s from the left end)."""
 
-    def __init__(self, segment, left, right, head):
+    def __init__(self, segment, left, right, head, kappa):
         x, w = _GAUSS
         self.length = right - left
         self.s = self.length * (x + 1) / 2
@@ -165,7 +172,9 @@ class _Section:
         second = np.pi / 4 * (a**4 - b**4)
         g = mat.E / (2 * (1 + mat.nu))
         self.bend = mat.E * second
-        self.shear = shear_coefficient(mat.nu, a, b) * g * area
+        # Cowper (1966), J. Appl. Mech. 33, 335: 6 (1 + nu) / (7 + 6 nu)
+        factor = shear_coefficient(mat.nu, a, b) if kappa == "hutchinson" else 6 * (1 + mat.nu) / (7 + 6 * mat.nu)
+        self.shear = factor * g * area
         self.stretch = mat.E * area
         self.twist = 2 * g * second
         self.mass = mat.density * area

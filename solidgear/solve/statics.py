@@ -44,7 +44,7 @@ class Flexibility:
     asymmetry : float
         Relative asymmetry of the computed matrix before it was symmetrised.
     residual : float
-        Relative change in the last refinement step.
+        Relative change in the last refinement step; what is left is smaller by about ``SHIFT``.
     backend : str
     """
 
@@ -92,7 +92,7 @@ def factors(body: Body) -> list[Factor]:
         for block in body.blocks:
             key = id(block.stiffness)
             if key not in made:
-                made[key] = factorise((block.stiffness + SHIFT * body.scale * block.mass).tocsr(), planar=block.planar)
+                made[key] = factorise((block.stiffness + SHIFT * body.scale * block.mass).tocsr(), planar=block.planar, border=block.border)
         body.memory["factors"] = [made[id(b.stiffness)] for b in body.blocks]
     return body.memory["factors"]
 
@@ -135,7 +135,8 @@ def flexibility(body: Body, tolerance: float = 1e-12, most: int = 12) -> Flexibi
             new = block.ports @ u
             change, last = np.abs(new - f_block).max() / np.abs(new).max(), change
             f_block = new
-            if change < tolerance or change > 0.5 * last:
+            # Steps shrink by a constant factor, so what is left after this one is known.
+            if change * min(change / last, 1.0) < tolerance or change < tolerance or change > 0.5 * last:
                 break
         size = np.sqrt(np.abs(np.diag(f_block)))
         asymmetry = max(asymmetry, float((np.abs(f_block - f_block.T) / np.outer(size, size)).max()))

@@ -1,0 +1,58 @@
+"""Seconds and peak memory of a stage of work."""
+
+from __future__ import annotations
+
+import threading
+import time
+from contextlib import contextmanager
+
+
+def _resident_mb() -> float | None:
+    """Resident memory of this process, MB; None where the system does not tell."""
+    try:
+        with open("/proc/self/statm") as f:
+            pages = int(f.read().split()[1])
+    except OSError:
+        return None
+    import resource
+
+    return pages * resource.getpagesize() / 2**20
+
+
+class Meter:
+    """Collects ``seconds`` per stage and the peak resident memory over all of them.
+
+    Memory is sampled every 20 ms: what is shown is the size of the whole process while the stage ran.
+    """
+
+    def __init__(self):
+        self.seconds: dict[str, float] = {}
+        self.peak_mb: float | None = None
+
+    @contextmanager
+    def stage(self, name: str):
+        """Time a block of code under ``name``; stages of one name add up."""
+        stop = threading.Event()
+
+        def watch():
+            while True:
+                now = _resident_mb()
+                if now is None:
+                    return
+                self.peak_mb = max(self.peak_mb or 0.0, now)
+                if stop.wait(0.02):
+                    return
+
+        watcher = threading.Thread(target=watch, daemon=True)
+        watcher.start()
+        start = time.perf_counter()
+        try:
+            yield
+        finally:
+            self.seconds[name] = self.seconds.get(name, 0.0) + time.perf_counter() - start
+            stop.set()
+            watcher.join()
+
+    def total(self) -> dict[str, float]:
+        """Seconds per stage and their sum."""
+        return {**self.seconds, "total": sum(self.seconds.values())}
