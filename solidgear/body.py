@@ -94,7 +94,7 @@ class Block:
         count = self.ports.shape[0] // len(signs)
         ports = sp.diags(np.tile(signs, count)) @ self.ports
         rigid = self.rigid * np.asarray(signs)
-        return Block(name, components, self.stiffness, self.mass, rigid, self.y, ports.tocsr(), (index, signs), self.planar, self.expand)
+        return Block(name, components, self.stiffness, self.mass, rigid, self.y, ports.tocsr(), (index, signs), self.planar, self.border, self.expand)
 
     @property
     def size(self) -> int:

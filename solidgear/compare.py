@@ -24,8 +24,6 @@ from solidgear.verdict import deviations, judge
 log = logging.getLogger(__name__)
 Progress = Callable[[str], None]
 
-#: settings of the main job; the harmonic ones are the reference setting, 1e-4 on the overhung pinion
-SETTINGS: dict[str, dict] = {"euler": {}, "timoshenko": {}, "harmonic": {"order": 5, "layers": 3, "ratio": 0.2}, "solid": {}}
 #: coarser relatives for the band; the run itself is the finest of the three
 SOLID_LEVELS = (0.35, 0.65)
 ATTACHMENTS = ("average", "rigid", "section")
@@ -96,7 +94,7 @@ def compare(
     models : tuple of str
         Any of euler, timoshenko, harmonic, solid.
     settings : dict, optional
-        Builder options per model, on top of :data:`SETTINGS`.
+        Builder options per model, such as ``{"harmonic": {"order": 8}}``.
     progress : callable
         Told in words what is going on.
 
@@ -113,7 +111,7 @@ def compare(
     unknown = [m for m in models if m not in FIDELITIES]
     if unknown or not models:
         raise SolidgearError(f"models: {', '.join(unknown) or 'none given'}; choose from {', '.join(FIDELITIES)}")
-    options = {m: {**SETTINGS[m], **(settings or {}).get(m, {})} for m in FIDELITIES}
+    options = {m: dict((settings or {}).get(m, {})) for m in FIDELITIES}
     rungs: dict[str, Rung] = {}
     failed: dict[str, str] = {}
     causes: list = []
@@ -194,9 +192,8 @@ def rigid_seats(scene):
 def _add_band(scene, rung: Rung, model, options, progress: Progress):
     """Two coarser solutions and the grid convergence index of every compared number."""
     angle, exponent = sharpest_corner(scene)
-    order = rung.body.mesh
     if model == "harmonic":
-        top = options.get("order", 5)
+        top = rung.body.mesh["order"]
         if top < 3:
             levels = [{**options, "refinement": options.get("refinement", 1.0) * s} for s in (0.4, 0.65)]
             sizes = None
@@ -211,7 +208,7 @@ def _add_band(scene, rung: Rung, model, options, progress: Progress):
         sizes = None
         expected, highest = 2 * exponent, 4.0
         # Tetrahedra are refined by the same factor everywhere: nothing lifts them above the order of the corner.
-        cap = expected if order["element"].startswith("tet") else 2.0
+        cap = expected if rung.body.mesh["element"].startswith("tet") else 2.0
     runs = []
     with rung.meter.stage("band"):
         for level in levels:
@@ -252,7 +249,7 @@ def _causes(scene, rungs: dict[str, Rung], options, progress: Progress) -> list:
         if harmonic and "timoshenko" in rungs and "section" in harmonic.variants:
             section = measure(*harmonic.variants["section"])
             gap = {name: change(rungs["timoshenko"].quantities, section, name) for name in ("C_zz", "K_zz", "bending 1")}
-            found = shoulder_cause(scene, gap, {**options["harmonic"], "order": min(3, options["harmonic"].get("order", 3))}, progress)
+            found = shoulder_cause(scene, gap, {**options["harmonic"], "order": 3}, progress)
             out += [found] if found else []
     except SolidgearError as error:
         log.warning("causes left out: %s", error)

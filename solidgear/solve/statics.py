@@ -136,7 +136,7 @@ def flexibility(body: Body, tolerance: float = 1e-12, most: int = 12) -> Flexibi
             change, last = np.abs(new - f_block).max() / np.abs(new).max(), change
             f_block = new
             # Steps shrink by a constant factor, so what is left after this one is known.
-            if change * min(change / last, 1.0) < tolerance or change < tolerance or change > 0.5 * last:
+            if change < tolerance or (np.isfinite(last) and change * change / last < tolerance) or change > 0.5 * last:
                 break
         size = np.sqrt(np.abs(np.diag(f_block)))
         asymmetry = max(asymmetry, float((np.abs(f_block - f_block.T) / np.outer(size, size)).max()))

@@ -1,0 +1,110 @@
+"""Meshes and mode shapes as VTU files, for ParaView and its kin."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterable
+from itertools import islice
+from pathlib import Path
+
+import numpy as np
+
+from solidgear.report.fields import mesh_unknowns, surface
+
+#: solid element -> (meshio's cell type, VTK's class of cell)
+CELLS = {
+    "tet4": ("tetra", "vtkTetra"),
+    "tet10": ("tetra10", "vtkQuadraticTetra"),
+    "hex8": ("hexahedron", "vtkHexahedron"),
+    "hex20": ("hexahedron20", "vtkQuadraticHexahedron"),
+    "hex27": ("hexahedron27", "vtkTriQuadraticHexahedron"),
+}
+
+
+def write_vtu(scene, body, modes, path: str | Path, *, most: int | None = None) -> Path:
+    """Write a body and its mode shapes.
+
+    A solid is written as its volume mesh, with cells of its own type; any other body as its surface.
+    Every shape is a vector at the points, named such as ``bending 1a (2758.00 Hz)``, normalised to unit modal mass
+    (kg^-1/2, so scale it before taking it for metres). Coordinates are in m.
+
+    Parameters
+    ----------
+    scene : Scene
+    body : Body
+    modes : ModeSet or iterable of Mode
+    path : str or Path
+        Of the vtu file; there is a whole one or none.
+    most : int, optional
+        Write the first so many modes only.
+
+    Returns
+    -------
+    Path
+
+    Raises
+    ------
+    SolidgearError
+        For a body that carries no geometry, or modes of another body.
+    OSError
+        If the file cannot be written.
+    """
+    import meshio
+
+    path = Path(path)
+    shapes = dict(_shapes(islice(getattr(modes, "modes", modes), most)))
+    if body.fidelity == "solid" and body.geometry is not None:
+        points, cells, data = _volume(body, shapes)
+    else:
+        still = surface(scene, body, {})
+        points = still.points
+        cells = [(kind, at) for kind, at in (("quad", still.faces), ("triangle", still.triangles)) if len(at)]
+        data = {name: surface(scene, body, vectors).displacement for name, vectors in shapes.items()}
+    path.parent.mkdir(parents=True, exist_ok=True)
+    # A rename within a folder is all or nothing.
+    partial = path.with_name(f".{path.name}.{os.getpid()}.part")
+    try:
+        meshio.write(partial, meshio.Mesh(points, cells, point_data=data), file_format="vtu")
+        os.replace(partial, path)
+    finally:
+        partial.unlink(missing_ok=True)
+    return path
+
+
+def _shapes(modes: Iterable):
+    """Name and vectors of every shape; those of a pair are told apart by a letter."""
+    for mode in modes:
+        for k, vectors in enumerate(mode.vectors):
+            letter = chr(ord("a") + k) if len(mode.vectors) > 1 else ""
+            yield f"{mode.name}{letter} ({mode.frequency_hz:.2f} Hz)", vectors
+
+
+def _volume(body, shapes):
+    mesh = body.geometry
+    kind, vtk_name = CELLS[mesh.name]
+    order = node_order(mesh.element.doflocs, vtk_name)
+    data = {name: mesh_unknowns(body, vectors)["full"].reshape(-1, 3) for name, vectors in shapes.items()}
+    return mesh.nodes.T, [(kind, mesh.dofs[order].T)], data
+
+
+def node_order(doflocs: np.ndarray, vtk_name: str) -> np.ndarray:
+    """Local nodes of an element in VTK's order, found by their reference coordinates.
+
+    Both sides use the unit cube or the unit tetrahedron; meshio keeps VTK's order for these types.
+
+    Parameters
+    ----------
+    doflocs : (nb, 3) ndarray
+        Reference coordinates in the element's own order.
+    vtk_name : str
+        Class of the VTK cell, which knows its own.
+    """
+    from vtkmodules import vtkCommonDataModel  # needs no OpenGL
+
+    cell = getattr(vtkCommonDataModel, vtk_name)()
+    theirs = np.reshape(cell.GetParametricCoords(), (-1, 3))[: cell.GetNumberOfPoints()]
+    distance = np.abs(theirs[:, None] - np.asarray(doflocs)[None]).max(axis=2)
+    order = distance.argmin(axis=1)
+    if distance.min(axis=1).max() > 1e-12 or len(set(order)) != len(doflocs):
+        raise ValueError(f"the nodes of {vtk_name} are not those of the element")
+    return order

@@ -1,0 +1,202 @@
+"""The scene as a dimensioned section, to scale along the shaft."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from solidgear.report.terminal import is_number
+
+FILL = {"shaft": "#d5dbe1", "frustum": "#ecd9b4", "backcone": "#dcc08a"}
+PART_NAMES = {"shaft": "shaft", "frustum": "gear head (pitch cone)", "backcone": "backcone"}
+INK, SEAT, SPAN = "#222222", "#1f5f99", "#c4541c"
+#: inches on paper
+WIDTH, DRAWN, TALLEST, FLATTEST = 10.6, 8.8, 1.75, 0.45
+CHAR = 0.075  # of a letter at the size of the labels
+
+
+def draw(results: Mapping) -> Any:
+    """The figure, or None when the scene has no segments.
+
+    The upper half is cut (hatched), the lower half shows the surface. Radii are to the same scale as lengths, unless
+    the shaft is so slender that they have to be enlarged; then the sketch says by how much.
+    """
+    from matplotlib.figure import Figure
+
+    scene = results.get("scene") or {}
+    segments = scene.get("segments") or []
+    if not segments:
+        return None
+    length = max(s["y1"] for s in segments)
+    radius = max(max(s["outer0"], s["outer1"]) for s in segments)
+    inch = min(DRAWN / length, TALLEST / radius)  # inches per metre
+    enlarged = 1.0 if radius * inch >= FLATTEST else FLATTEST / (radius * inch)
+    top = radius * inch * enlarged
+    left = (WIDTH - length * inch) / 2
+
+    stations = [(b, False) for b in scene.get("bearings") or []] + ([(scene["port"], True)] if scene.get("port") else [])
+    labels = _labels(stations, lambda y: left + y * inch)
+    ordinates = _staggered([(left + y * inch, f"{1e3 * y:.1f}") for y in _marks(scene, length)])
+    above = top + 0.62 + 0.34 * (1 + max((level for *_, level in labels), default=0))
+    below = top + 1.62 + 0.17 * max((level for *_, level in ordinates), default=0)
+
+    figure = Figure(figsize=(WIDTH, above + below))
+    ax = figure.add_axes((0, 0, 1, 1))
+    ax.set(xlim=(0, WIDTH), ylim=(-below, above))
+    ax.axis("off")
+    pen = _Pen(ax, left, inch, enlarged, top)
+    for s in segments:
+        pen.segment(s)
+    ax.plot([left - 0.3, left + length * inch + 0.3], [0, 0], color=INK, lw=0.8, dashes=(12, 3, 2, 3), zorder=4)
+    for b in scene.get("bearings") or []:
+        pen.bearing(b, segments)
+    if scene.get("port"):
+        pen.port(scene["port"], segments)
+    for x, y, text, is_port, level in labels:
+        colour = SPAN if is_port else SEAT
+        height = top + 0.62 + 0.34 * level
+        ax.plot([x, x], [0.08 if is_port else top + 0.45, height - 0.04], color=colour, lw=0.6, zorder=6)
+        ax.text(x, height, text, color=colour, ha="center", va="bottom", fontsize=8.5, linespacing=1.1, parse_math=False,
+                bbox={"facecolor": "white", "edgecolor": "none", "pad": 0.6}, zorder=7)  # fmt: skip
+    pen.lengths(segments, -top - 0.72)
+    pen.ruler(ordinates, length, -top - 1.04)
+    if enlarged > 1:
+        ax.text(WIDTH - 0.15, above - 0.1, f"radii drawn {enlarged:.2g} times larger than lengths", ha="right", va="top", fontsize=8, style="italic")
+    _legend(ax, segments, scene, -below + 0.1)
+    return figure
+
+
+def _marks(scene: Mapping, length: float) -> list[float]:
+    port = [scene["port"]["y"]] if scene.get("port") else []
+    return sorted({0.0, length, *port, *(b["y"] for b in scene.get("bearings") or [])})
+
+
+def _staggered(items: list[tuple[float, str]]) -> list[tuple[float, str, int]]:
+    """(x, text) and the lowest level at which the text runs into no earlier one."""
+    ends: list[float] = []
+    placed = []
+    for x, text in sorted(items):
+        half = CHAR * max(len(line) for line in text.splitlines() or [""]) / 2 + 0.05
+        level = next((k for k, end in enumerate(ends) if x - half >= end), len(ends))
+        ends[level:level + 1] = [x + half]
+        placed.append((x, text, level))
+    return placed
+
+
+def _labels(stations, at):
+    texts = []
+    for s, is_port in stations:
+        name = str(s.get("name", ""))
+        name = name if len(name) <= 22 else name[:21] + "…"
+        what = f"lumped point {name}" if is_port else f"bearing {name}"
+        below = f"{s.get('attachment', '')}, {'span' if is_port else 'seat'} {1e3 * (s['hi'] - s['lo']):.1f} mm"
+        texts.append((at(s["y"]), f"{what}\n{below}", is_port, s["y"]))
+    placed = _staggered([(x, text) for x, text, *_ in texts])
+    by_place = {(x, text): level for x, text, level in placed}
+    return [(x, y, text, is_port, by_place[x, text]) for x, text, is_port, y in texts]
+
+
+def _surface(segments, lo: float, hi: float) -> list[tuple[float, float]]:
+    """(y, outer radius) along the shaft from `lo` to `hi`, steps included."""
+    points = []
+    for s in segments:
+        a, b = max(lo, s["y0"]), min(hi, s["y1"])
+        if b - a > 1e-9:
+            slope = (s["outer1"] - s["outer0"]) / (s["y1"] - s["y0"])
+            points += [(y, s["outer0"] + slope * (y - s["y0"])) for y in (a, b)]
+    return points
+
+
+class _Pen:
+    """Draws in inches: x along the shaft, 0 on the axis."""
+
+    def __init__(self, ax, left: float, inch: float, enlarged: float, top: float):
+        self.ax, self.left, self.inch, self.radial, self.top = ax, left, inch, inch * enlarged, top
+
+    def x(self, y: float) -> float:
+        return self.left + y * self.inch
+
+    def segment(self, s: Mapping) -> None:
+        x0, x1 = self.x(s["y0"]), self.x(s["y1"])
+        o0, o1, i0, i1 = (self.radial * s[k] for k in ("outer0", "outer1", "inner0", "inner1"))
+        colour = FILL.get(s.get("part"), FILL["shaft"])
+        self.ax.fill([x0, x1, x1, x0], [i0, i1, o1, o0], facecolor=colour, edgecolor="#8a8f94", hatch="////", lw=0, zorder=2)
+        self.ax.fill([x0, x1, x1, x0], [0, 0, -o1, -o0], facecolor=colour, alpha=0.55, lw=0, zorder=2)
+        self.ax.plot([x0, x0, x1, x1, x0], [-o0, o0, o1, -o1, -o0], color=INK, lw=1.1, zorder=3)
+        if i0 > 0 or i1 > 0:
+            self.ax.plot([x0, x1], [i0, i1], color=INK, lw=0.9, zorder=3)
+            self.ax.plot([x0, x1], [-i0, -i1], color=INK, lw=0.7, ls="--", zorder=3)
+        self._diameter(s, x0, x1, min(o0, o1))
+
+    def _diameter(self, s, x0, x1, room):
+        d0, d1 = (f"⌀{2e3 * s[k]:.5g}" for k in ("outer0", "outer1"))
+        text = d0 if d0 == d1 else f"{d0} – {d1}"
+        bore = "" if not (s["inner0"] or s["inner1"]) else f", bore {2e3 * s['inner0']:.5g}" + ("" if s["inner0"] == s["inner1"] else f" – {2e3 * s['inner1']:.5g}")
+        size = CHAR * len(text + bore) * 0.95
+        upright = size > x1 - x0
+        if upright and (size > 0.95 * room or x1 - x0 < 0.14):
+            return
+        self.ax.text((x0 + x1) / 2, -room / 2, text + bore, rotation=90 if upright else 0, ha="center", va="center", fontsize=8, color=INK, zorder=5,
+                     bbox={"facecolor": "white", "edgecolor": "none", "alpha": 0.55, "pad": 0.5})  # fmt: skip
+
+    def bearing(self, b: Mapping, segments) -> None:
+        points = _surface(segments, b["lo"], b["hi"])
+        middle = _surface(segments, b["y"] - 1e-6, b["y"] + 1e-6)
+        radius = self.radial * (middle[0][1] if middle else 0.0)
+        x, ground = self.x(b["y"]), self.top + 0.38
+        for side in (1, -1):
+            self.ax.plot([self.x(y) for y, _ in points], [side * self.radial * r for _, r in points], color=SEAT, lw=4.5, solid_capstyle="butt", zorder=5)
+            rise = ground - radius
+            zigzag = [(0, 0), (0, 0.2)] + [(0.07 * (-1) ** k, 0.2 + 0.6 * (k + 0.5) / 6) for k in range(6)] + [(0, 0.8), (0, 1)]
+            self.ax.plot([x + dx for dx, _ in zigzag], [side * (radius + t * rise) for _, t in zigzag], color=SEAT, lw=1.1, zorder=5)
+            self.ax.plot([x - 0.17, x + 0.17], [side * ground] * 2, color=SEAT, lw=1.4, zorder=5)
+            for k in range(6):
+                foot = x - 0.17 + 0.068 * k
+                self.ax.plot([foot, foot - 0.05], [side * ground, side * (ground + 0.06)], color=SEAT, lw=0.7, zorder=5)
+
+    def port(self, port: Mapping, segments) -> None:
+        points = _surface(segments, port["lo"], port["hi"])
+        x = self.x(port["y"])
+        for side in (1, -1):
+            self.ax.plot([self.x(y) for y, _ in points], [side * self.radial * r for _, r in points], color=SPAN, lw=4, alpha=0.9, solid_capstyle="butt", zorder=5)
+            for k in range(5):
+                y = port["lo"] + (port["hi"] - port["lo"]) * (0.04 + 0.92 * k / 4)
+                spot = _surface(segments, y - 1e-6, y + 1e-6)
+                if spot:
+                    self.ax.plot([x, self.x(y)], [0, side * self.radial * spot[0][1]], color=SPAN, lw=0.5, ls=":", zorder=4)
+        self.ax.plot([x], [0], marker="o", ms=8, mfc="white", mec=SPAN, mew=1.6, zorder=8)
+        self.ax.plot([x], [0], marker="+", ms=8, mec=SPAN, mew=1.0, zorder=9)
+
+    def lengths(self, segments, level: float) -> None:
+        """The chain of segment lengths."""
+        for s in segments:
+            a, b = self.x(s["y0"]), self.x(s["y1"])
+            text = f"{1e3 * (s['y1'] - s['y0']):.2f}".rstrip("0").rstrip(".")
+            wide = b - a > CHAR * len(text) + 0.2
+            for x, y in ((a, s["outer0"]), (b, s["outer1"])):
+                self.ax.plot([x, x], [-self.radial * y - 0.04, level - 0.06], color="#777777", lw=0.4, zorder=1)
+            self.ax.annotate("", (a, level), (b, level), arrowprops={"arrowstyle": "<|-|>", "lw": 0.6, "shrinkA": 0, "shrinkB": 0, "color": INK, "mutation_scale": 6 if wide else 4})
+            self.ax.text((a + b) / 2, level + (0.02 if wide else 0.07), text, ha="center", va="bottom", fontsize=8, bbox={"facecolor": "white", "edgecolor": "none", "pad": 0.5}, zorder=6)
+
+    def ruler(self, ordinates, length: float, level: float) -> None:
+        """Positions from y = 0 of the ends, the bearings and the lumped point."""
+        self.ax.plot([self.x(0), self.x(length)], [level, level], color=INK, lw=0.6)
+        for x, text, step in ordinates:
+            self.ax.plot([x, x], [level + 0.05, level - 0.05 - 0.17 * step], color=INK, lw=0.6)
+            self.ax.text(x, level - 0.07 - 0.17 * step, text, ha="center", va="top", fontsize=8)
+        self.ax.text(self.x(length) + 0.3, level, "y, mm", va="center", fontsize=8, style="italic")
+
+
+def _legend(ax, segments, scene, y: float) -> None:
+    from matplotlib.lines import Line2D
+    from matplotlib.patches import Patch
+
+    parts = [p for p in FILL if any(s.get("part", "shaft") == p for s in segments)]
+    handles: list[Any] = [Patch(facecolor=FILL[p], edgecolor=INK, lw=0.6, label=PART_NAMES[p]) for p in parts]
+    if scene.get("bearings"):
+        handles.append(Line2D([], [], color=SEAT, lw=4, label="bearing seat"))
+    if scene.get("port"):
+        handles.append(Line2D([], [], color=SPAN, lw=4, label="surface that carries the lumped point"))
+    if is_number(scene.get("housing_axial")):
+        handles.append(Line2D([], [], lw=0, label=f"common housing on an axial spring, {scene['housing_axial']:.4g} N/m (not drawn)"))
+    ax.legend(handles=handles, loc="lower center", bbox_to_anchor=(WIDTH / 2, y), bbox_transform=ax.transData, ncols=len(handles), frameon=False, fontsize=8, borderaxespad=0)
