@@ -221,15 +221,20 @@ def _add_band(scene, rung: Rung, model, options, progress: Progress):
                 rung.failed["band"] = str(error)
                 return
     runs.append((rung.body, rung.quantities))
+    by_order = sizes is not None
     sizes = sizes or [b.mesh["representative_size"] for b, _ in runs]
     for (body, values), size in zip(runs, sizes):
-        rung.levels.append({"dofs": body.size, "h": size, "c_zz": values.get("C_zz"), "bending_1_hz": values.get("bending 1"), "mesh": body.mesh})
+        h = None if by_order else size
+        rung.levels.append({"dofs": body.size, "h": h, "order": body.mesh.get("order"), "c_zz": values.get("C_zz"), "bending_1_hz": values.get("bending 1"), "mesh": body.mesh})
     for name in QUANTITIES:
         values = [q.get(name) for _, q in runs]
         if None in values:
             continue
         try:
-            rung.bands[name] = gci(values, sizes, expected, highest, cap).as_dict() | {"corner_deg": float(np.degrees(angle))}
+            found = gci(values, sizes, expected, highest, cap)
+            inside = None if found.asymptotic is None else 0.8 <= found.asymptotic <= 1.25
+            extra = {"corner_deg": float(np.degrees(angle)), "asymptotic": inside, "asymptotic_ratio": found.asymptotic}
+            rung.bands[name] = found.as_dict() | extra
         except ValueError as error:
             rung.failed["band"] = str(error)
             return

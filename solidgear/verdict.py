@@ -99,7 +99,7 @@ def _trust(rungs, reference, gaps) -> list[str]:
     if mine:
         worst = max(mine, key=lambda g: abs(g["relative"]))
         open_ones = [g for g in mine if g["verdict"] == "resolved"]
-        text = f"The full 3D solid, which shares no assembly with it, is within {_percent(abs(worst['relative']))} of it in every judged number"
+        text = f"The full 3D solid, another mesh and another formulation, is within {_percent(abs(worst['relative']))} of it in every judged number"
         text += "; all gaps lie inside the bands (not resolved)." if not open_ones else f", beyond the bands in {', '.join(g['quantity'] for g in open_ones)}."
         out.append(text)
     return out

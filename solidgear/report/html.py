@@ -7,6 +7,7 @@
 from __future__ import annotations
 
 import base64
+import functools
 import logging
 import os
 from collections.abc import Iterable, Mapping
@@ -82,7 +83,6 @@ def write_report(results: Mapping, folder: str | os.PathLike, images: Mapping[st
 
 def render_page(results: Mapping, folder: str | os.PathLike | None = None, images: Mapping[str, bytes | str | os.PathLike] | None = None) -> str:
     """The page as text; the parameters are those of `write_report`."""
-    from jinja2 import Environment, FileSystemLoader, StrictUndefined
     from markupsafe import Markup
 
     r = plain(results)
@@ -97,9 +97,8 @@ def render_page(results: Mapping, folder: str | os.PathLike | None = None, image
             warnings.append(f"the chart of {name} could not be drawn: {error}")
             svg = None
         drawn[name] = Markup(svg.decode()) if svg else None
-    environment = Environment(loader=FileSystemLoader(Path(__file__).parent), autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True)
     reference = reference_of(r)
-    return environment.get_template("report.html").render(
+    return _template().render(
         title=r["scene"].get("title") or r["scene"].get("name") or "shaft",
         scene=r["scene"], verdict=r["verdict"], port=r.get("port") or r["scene"].get("port") or {}, warnings=warnings,
         complete=r.get("complete", True), missing=[model_name(k) for k in MODEL_NAMES if k not in r["models"]],
@@ -114,6 +113,14 @@ def render_page(results: Mapping, folder: str | os.PathLike | None = None, image
         algebra=_algebra(r), pairs=_pairs(r), cost=_cost(r), provenance=_provenance(r), environment=_pairs_of(r.get("environment"), "Environment of the run"),
         mesh=_mesh(r), total=seconds(r.get("seconds_total"), DASH),
     )  # fmt: skip
+
+
+@functools.cache
+def _template():
+    from jinja2 import Environment, FileSystemLoader, StrictUndefined
+
+    loader = FileSystemLoader(Path(__file__).parent)
+    return Environment(loader=loader, autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True).get_template("report.html")
 
 
 # ------------------------------------------------------------------------------------------------- figures

@@ -1,0 +1,127 @@
+"""Everything a comparison leaves in its folder."""
+
+from __future__ import annotations
+
+import json
+import os
+from pathlib import Path
+
+from solidgear.errors import SolidgearError
+
+MODE = "bending 1"
+
+
+def prepare(out) -> Path:
+    """Make sure a folder can be written, before an hour is spent on what goes into it.
+
+    Raises
+    ------
+    SolidgearError
+        If it cannot.
+    """
+    folder = Path(out)
+    probe = folder / f".probe.{os.getpid()}"
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        probe.touch()
+        probe.unlink()
+    except OSError as error:
+        raise SolidgearError(f"--out {out}: cannot write there ({error.strerror or error}); name a folder you may write") from None
+    return folder
+
+
+def write_all(comparison, out, *, renders: bool, progress) -> Path:
+    """Write results.json, renders, vtu files and the report; see :meth:`solidgear.compare.Comparison.write_report`."""
+    from solidgear.report.html import write_report
+
+    folder = prepare(out)
+    results = comparison.results
+    try:
+        # Numbers first: whatever happens to pictures, they are there.
+        _write_json(folder / "results.json", results)
+        for model, rung in comparison.rungs.items():
+            _try(results, f"vtu of {model}", _write_vtu, comparison.scene, rung, folder / f"modes_{model}.vtu")
+        if renders:
+            progress("renders")
+            _draw(comparison, folder)
+        progress("report")
+        _write_json(folder / "results.json", results)
+        write_report(results, folder)
+    except OSError as error:
+        raise SolidgearError(f"--out {out}: writing stopped ({error.strerror or error}); files already there are whole") from error
+    return folder
+
+
+def _write_json(path: Path, data: dict) -> None:
+    partial = path.with_name(f".{path.name}.{os.getpid()}.part")
+    try:
+        partial.write_text(json.dumps(data, indent=1, allow_nan=False) + "\n", encoding="utf-8")
+        os.replace(partial, path)
+    finally:
+        partial.unlink(missing_ok=True)
+
+
+def _try(results: dict, what: str, action, *arguments) -> None:
+    """Run something the numbers do not depend on; a failure becomes a warning."""
+    try:
+        action(*arguments)
+    except OSError:
+        raise
+    except Exception as error:
+        results["warnings"].append(f"{what} left out: {error}")
+
+
+def _write_vtu(scene, rung, path: Path) -> None:
+    from solidgear.report.export import write_vtu
+
+    write_vtu(scene, rung.body, rung.modes, path)
+
+
+def _job(scene, body, modes, name: str, path: Path):
+    from solidgear.report.fields import surface
+    from solidgear.report.render import RenderJob
+
+    mode = modes.named(name)
+    if mode is None:
+        have = ", ".join(m.name for m in modes.modes)
+        raise SolidgearError(f"mode {name!r}: the {body.fidelity} model found none of that name; it has {have}")
+    title = f"{body.fidelity}: {mode.name}, {mode.frequency_hz:.1f} Hz"
+    return RenderJob(surface(scene, body, mode.vectors[0]), title, path)
+
+
+def _draw(comparison, folder: Path) -> None:
+    from solidgear.report.render import render_modes
+
+    results, jobs = comparison.results, {}
+    for model, rung in comparison.rungs.items():
+        name = MODE if rung.modes.named(MODE) else next((m.name for m in rung.modes.modes if m.frequency_hz > 0), None)
+        if name is None:
+            continue
+        path = folder / f"mode_{model}.png"
+        path.unlink(missing_ok=True)  # a picture of an earlier run must not pass for this one's
+        _try(results, f"render of {model}", lambda m=model, r=rung, n=name, p=path: jobs.update({m: _job(comparison.scene, r.body, r.modes, n, p)}))
+    reasons = []
+    for model, done in zip(jobs, render_modes(jobs.values())):
+        if done.ok:
+            results["images"][model] = done.path.name
+        elif done.reason not in reasons:
+            reasons.append(done.reason)
+            results["warnings"].append(f"render of {model} left out: {done.reason}")
+
+
+def render_mode(scene, body, modes, name: str, path) -> Path:
+    """Draw one mode of one body.
+
+    Raises
+    ------
+    SolidgearError
+        If there is no such mode, or nothing can be drawn here (the sentence says what mends it).
+    """
+    from solidgear.report.render import render_modes
+
+    path = Path(path)
+    prepare(path.parent)
+    (done,) = render_modes([_job(scene, body, modes, name, path)])
+    if not done.ok:
+        raise SolidgearError(done.reason)
+    return done.path

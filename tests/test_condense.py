@@ -1,0 +1,260 @@
+"""Condensation to a port: limits that can be worked out by hand, exact transformations, and a direct dense solution."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+import scipy.linalg as sla
+
+import solidgear as sg
+from solidgear.scene import Bearing, Port, Scene, Segment
+from solidgear.solve.statics import flexibility
+
+GEOMETRY = Path(__file__).parent.parent / "geometry"
+OPTIONS = {"timoshenko": {}, "harmonic": {"order": 2}, "solid": {"element": "hex8", "refinement": 0.5}}
+PINIONS = ("pinion_overhung", "pinion_straddle", "gear_shaft")
+
+
+def shipped(name):
+    return sg.load(GEOMETRY / f"{name}.toml")
+
+
+@pytest.fixture(scope="module")
+def overhung():
+    return shipped("pinion_overhung")
+
+
+@pytest.fixture(scope="module", params=list(OPTIONS))
+def body(request, overhung):
+    return sg.build(overhung, request.param, **OPTIONS[request.param])
+
+
+def moved(stiffness, d):
+    """6x6 at y0 + d of a spring at y0 + 0, both on the axis, from the work of a rigid motion; by hand, no library code."""
+    # motion of the spring's point for a motion of a point d further along y: thx carries -d to z, thz +d to x
+    t = np.eye(6)
+    t[2, 3], t[0, 5] = -d, d
+    return t.T @ stiffness @ t
+
+
+def bearing_by_hand(bearing):
+    """Bearing matrix with the springs in series with its axial stiffness, the ring between eliminated as a seventh unknown."""
+    k = np.array(bearing.matrix)
+    if not bearing.axial_series:
+        return k
+    spring = 1 / sum(1 / s for s in bearing.axial_series)
+    # unknowns: six of the shaft side, one axial of the ring; the bearing sees shaft minus ring along y
+    b = np.hstack([np.eye(6), -np.eye(6)[:, 1:2]])
+    big = b.T @ k @ b
+    big[6, 6] += spring
+    return big[:6, :6] - np.outer(big[:6, 6], big[6, :6]) / big[6, 6]
+
+
+def rigid_sum(scene):
+    """Bearings seen from the port through a rigid shaft (no housing)."""
+    return sum(moved(bearing_by_hand(b), scene.port.y - b.y) for b in scene.bearings)
+
+
+def relative(a, b):
+    """Largest difference with forces and moments made comparable by the diagonal of b."""
+    d = np.sqrt(np.abs(np.diag(b)))
+    d[d == 0] = d[d > 0].min()
+    return np.abs((a - b) / np.outer(d, d)).max()
+
+
+# --------------------------------------------------------------------------- form of the result
+def test_stiffness_is_symmetric_and_positive_semidefinite(body, overhung):
+    k = sg.condense(body, overhung, "pinion").stiffness
+    assert relative(k, k.T) < 1e-10  # symmetrised on the way; anything else would be a slip
+    eigenvalues = np.linalg.eigvalsh(k / np.abs(k).max())
+    assert eigenvalues.min() > -1e-12  # rounding of an exact zero, the free torsion
+    assert (eigenvalues > 1e-9).sum() == 5
+
+
+def test_free_torsion_is_an_exact_zero(body, overhung):
+    c = sg.condense(body, overhung, "pinion")
+    assert not c.stiffness[4].any() and not c.stiffness[:, 4].any()
+    assert np.isnan(c.compliance[4]).all() and np.isnan(c.compliance[:, 4]).all()
+    assert c.free_names == ("thy",)
+    on = [0, 1, 2, 3, 5]
+    product = c.stiffness[np.ix_(on, on)] @ c.compliance[np.ix_(on, on)]
+    scale = np.sqrt(np.diag(c.compliance)[on])
+    # inverse of a matrix whose scaled condition number is below 100
+    assert np.abs(product * scale[None] / scale[:, None] - np.eye(5)).max() < 1e-10
+
+
+@pytest.mark.parametrize("name", PINIONS)
+def test_both_bending_planes_agree(name):
+    scene = shipped(name)
+    k = sg.condense(sg.build(scene, "harmonic", order=2), scene, scene.port.name).stiffness
+    # the shaft's planes are equal bit by bit; the bearings' weak couplings (100 N/m in 1e9) enter linearly at 1e-7
+    assert k[0, 0] == pytest.approx(k[2, 2], rel=1e-6)
+    assert k[3, 3] == pytest.approx(k[5, 5], rel=1e-6)
+    assert k[0, 5] == pytest.approx(-k[2, 3], rel=1e-6)
+
+
+def test_body_is_reciprocal(body):
+    flexible = flexibility(body)
+    # two solutions with one symmetric factor: rounding times the condition of the shifted matrix, before symmetrising
+    assert flexible.asymmetry < 1e-8
+    assert flexible.residual < 1e-9
+
+
+# --------------------------------------------------------------------------- against a direct solution
+def direct_stiffness(body, scene):
+    """K + G' Kb G of the whole beam, dense, torsion left out; then the port's 5x5 compliance, inverted."""
+    blocks = [b for b in body.blocks if b.name != "torsion"]
+    k = sla.block_diag(*[b.stiffness.toarray() for b in blocks])
+    ports = len(body.ports)
+    g = np.zeros((6 * ports, len(k)))
+    start = 0
+    for b in blocks:
+        rows = b.ports.toarray()
+        for p in range(ports):
+            for i, component in enumerate(b.components):
+                g[6 * p + component, start : start + b.size] = rows[p * len(b.components) + i]
+        start += b.size
+    for p, bearing in enumerate(scene.bearings, start=1):
+        at = slice(6 * p, 6 * p + 6)
+        k = k + g[at].T @ bearing_by_hand(bearing) @ g[at]
+    on = [0, 1, 2, 3, 5]
+    d = 1 / np.sqrt(np.diag(k))
+    u = d[:, None] * sla.solve(k * np.outer(d, d), d[:, None] * g[on].T, assume_a="pos")
+    out = np.zeros((6, 6))
+    out[np.ix_(on, on)] = np.linalg.inv(g[on] @ u)
+    return out
+
+
+@pytest.mark.parametrize("fidelity", ["euler", "timoshenko"])
+@pytest.mark.parametrize("scale", [1e-3, 1.0, 1e3])
+def test_against_a_direct_dense_solution(overhung, fidelity, scale):
+    scene = overhung.with_bearing_scale(scale)
+    body = sg.build(scene, fidelity, elements=20)
+    found = sg.condense(body, scene, "pinion").stiffness
+    # the direct matrix has a condition number near 1e6 after scaling, more with soft bearings: 1e-8 is what *it* can do
+    assert relative(found, direct_stiffness(body, scene)) < 1e-8
+
+
+# --------------------------------------------------------------------------- reference point
+@pytest.mark.parametrize("attachment", ["average", "rigid"])
+@pytest.mark.parametrize("fidelity", ["harmonic", "solid"])
+def test_moving_the_reference_point_is_an_adjoint(overhung, attachment, fidelity):
+    # The port's motion is a rigid motion fitted to the same surface, so its reference point is a matter of book-keeping.
+    # Mesh lines through the port move with it, hence both points are chosen on existing lines: seat ends of the head.
+    here = overhung.with_port(attachment=attachment)
+    y0, y1 = here.port.lo, here.port.hi
+    a, b = here.with_port(y=y0), here.with_port(y=y1)
+    options = OPTIONS[fidelity]
+    ka = sg.condense(sg.build(a, fidelity, **options), a, "pinion").stiffness
+    kb = sg.condense(sg.build(b, fidelity, **options), b, "pinion").stiffness
+    # the same numbers in another order: rounding times the condition of statics
+    assert relative(moved(ka, y1 - y0), kb) < 1e-9
+
+
+# --------------------------------------------------------------------------- limits
+@pytest.mark.parametrize("fidelity", list(OPTIONS))
+def test_stiff_shaft_leaves_the_bearings(overhung, fidelity):
+    expected = rigid_sum(overhung)
+    error = []
+    for modulus in (2e15, 2e17):
+        scene = overhung.with_material(E=modulus)
+        k = sg.condense(sg.build(scene, fidelity, **OPTIONS[fidelity]), scene, "pinion").stiffness
+        error.append(relative(k, expected))
+    # In the stiffest direction of the rigid lever the bearings are some 40 times stiffer than the steel shaft, so a
+    # shaft 1e6 times stiffer leaves 4e-5 of it
+    assert error[1] < 1e-4
+    # ... and proportionally to 1/E
+    assert error[0] / error[1] == pytest.approx(100, rel=0.02)
+
+
+def test_soft_bearings_leave_their_rigid_sum(body, overhung):
+    soft = overhung.with_bearing_scale(1e-3 / 8.823e9)  # radial stiffness of bearing 1: 1e-3 N/m
+    k = sg.condense(body, soft, "pinion").stiffness
+    # elastic compliance is 1e-12 of the springs'; nothing larger than the result is subtracted on the way
+    assert relative(k, rigid_sum(soft)) < 1e-9
+
+
+def test_soft_bearings_lengthen_the_compliance_of_a_beam_exactly(overhung):
+    # the soft limit tests nothing but rigid motions; at equal stiffness the two parts add: C = C_rigid + C_elastic(Kb)
+    body = sg.build(overhung, "timoshenko")
+    soft, softer = overhung.with_bearing_scale(1e-6), overhung.with_bearing_scale(1e-8)
+    on = np.ix_([0, 1, 2, 3, 5], [0, 1, 2, 3, 5])
+    elastic = []
+    for scene in (soft, softer):
+        c = sg.condense(body, scene, "pinion").compliance[on]
+        elastic.append(c - np.linalg.inv(rigid_sum(scene)[on]))
+    # what is left after the springs' own compliance is the shaft under statically determined bearing shares: independent
+    # of the scale; the subtraction costs the ratio of the compliances, 1e8
+    assert relative(elastic[1], elastic[0]) < 1e-4
+
+
+def test_very_stiff_bearings_stay_finite_and_clamp_the_seats(body, overhung):
+    values = []
+    for scale in (1e12, 1e14):
+        scene = overhung.with_bearing_scale(scale)  # up to 1e24 N/m
+        k = sg.condense(body, scene, "pinion").stiffness
+        assert np.all(np.isfinite(k))
+        values.append(k)
+    # both are clamps as seen from the shaft: compliances of 1e-22 and 1e-24 m/N against 1e-10
+    assert relative(values[0], values[1]) < 1e-8
+
+
+def test_stiffness_grows_with_the_bearings(body, overhung):
+    scales = 10.0 ** np.arange(-6, 7)
+    previous = None
+    for scale in scales:
+        k = sg.condense(body, overhung.with_bearing_scale(scale), "pinion").stiffness
+        if previous is not None:
+            d = 1 / np.sqrt(np.where(np.diag(k) > 0, np.diag(k), 1.0))
+            # adding springs adds a positive semidefinite part; 1e-9 of the larger matrix is rounding once all is clamped
+            assert np.linalg.eigvalsh((k - previous) * np.outer(d, d)).min() > -1e-9, scale
+        previous = k
+
+
+def test_free_body_resists_nothing(body):
+    c = sg.condense(body, (), "pinion")
+    assert not c.stiffness.any()
+    assert np.isnan(c.compliance).all()
+    assert c.free.shape == (6, 6)
+
+
+def test_bearings_of_no_stiffness_are_no_bearings(body, overhung):
+    nothing = [b.with_changes(matrix=np.zeros((6, 6)), axial_series=()) for b in overhung.bearings]
+    c = sg.condense(body, nothing, "pinion")
+    assert not c.stiffness.any() and np.isnan(c.compliance).all()
+
+
+def test_one_spring_leaves_its_own_motion_only():
+    # a single lateral spring at the port: its stiffness in z, and nothing about any other motion
+    segment = Segment.cylinder("rod", length=0.3, diameter=0.06)
+    k = np.zeros((6, 6))
+    k[2, 2] = 1e7
+    spring = Bearing(name="spring", y=0.15, seat_width=0.02, matrix=k)
+    scene = Scene.from_parts([segment], bearings=[spring], port=Port(y=0.15, lo=0.14, hi=0.16))
+    c = sg.condense(sg.build(scene, "timoshenko"), scene, "port")
+    expected = np.zeros((6, 6))
+    expected[2, 2] = 1e7
+    assert np.abs(c.stiffness - expected).max() < 1e-9 * 1e7  # port and spring share a node: no elasticity in between
+
+
+# --------------------------------------------------------------------------- housing
+@pytest.mark.parametrize("fidelity", ["timoshenko", "harmonic"])
+def test_axial_chain_of_bearings_and_housing(fidelity):
+    scene = shipped("pinion_straddle").with_material(E=2e19)
+    assert scene.housing_axial == 7.71e9
+    # bearing 0 carries no axial load; bearing 2 has K_c in series; both side by side, then the housing in series
+    second = 1 / (1 / 1.721e9 + 1 / 4.1e8)
+    expected = 1 / (1 / (8.887e8 + second) + 1 / 7.71e9)
+    k = sg.condense(sg.build(scene, fidelity, **OPTIONS[fidelity]), scene, "pinion").stiffness
+    # weak couplings (100 N/m) and a shaft 1e8 times stiffer than steel both stay below 1e-7
+    assert k[1, 1] == pytest.approx(expected, rel=1e-6)
+
+
+def test_housing_spring_has_the_limits_it_must_have():
+    scene = shipped("pinion_straddle")
+    body = sg.build(scene, "timoshenko")
+    k = {h: sg.condense(body, scene.with_changes(housing_axial=h), "pinion").stiffness for h in (None, 1e30, 7.71e9)}
+    assert relative(k[1e30], k[None]) < 1e-12  # a rigid housing is none
+    assert k[7.71e9][1, 1] < k[None][1, 1] * 0.95  # K_hb takes 15 % of this chain
+    # the housing is axial: radial stiffness feels it through the weak couplings only (1e2 of 1e9 N/m, squared)
+    assert k[7.71e9][2, 2] == pytest.approx(k[None][2, 2], rel=1e-9)

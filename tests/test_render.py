@@ -1,0 +1,258 @@
+"""Surface fields, pictures and VTU files."""
+
+import json
+import os
+import subprocess
+import sys
+from collections import Counter
+from pathlib import Path
+
+import meshio
+import numpy as np
+import pytest
+import pyvista as pv
+from scipy.spatial import cKDTree
+from skfem.quadrature import get_quadrature
+from skfem.refdom import RefHex, RefTet
+
+import solidgear as sg
+from solidgear.errors import SolidgearError
+from solidgear.meshing.quality import volume_of
+from solidgear.report import render
+from solidgear.report.export import write_vtu
+from solidgear.report.fields import surface
+from solidgear.report.render import PACKAGES, RenderJob, render_modes
+from solidgear.solve.modes import Mode
+
+ROOT = Path(__file__).parents[1]
+SOLID = {"refinement": 0.5}
+FINE = {"order": 4}
+RIGID = {"attachments": ("rigid",)}
+
+
+@pytest.fixture(scope="module")
+def pinion():
+    return sg.load(ROOT / "geometry" / "pinion_overhung.toml")
+
+
+@pytest.fixture(scope="module")
+def solved(pinion):
+    """Bodies and modes, each built once."""
+    made = {}
+
+    def get(fidelity, **options):
+        key = fidelity, tuple(sorted(options.items()))
+        if key not in made:
+            body = sg.build(pinion, fidelity, **options)
+            made[key] = body, sg.modes(body, pinion, n=4)
+        return made[key]
+
+    return get
+
+
+def unit_motion(body, component):
+    return {i: b.rigid[:, b.components.index(component)] for i, b in enumerate(body.blocks) if component in b.components}
+
+
+@pytest.mark.parametrize("name", ["pinion_overhung", "shaft_hollow", "shaft_stepped"])
+@pytest.mark.parametrize(
+    "fidelity, options",
+    [
+        ("euler", {}),
+        ("timoshenko", {}),
+        ("harmonic", {"order": 1}),
+        ("harmonic", {"order": 2} | RIGID),
+        ("harmonic", {"order": 5}),
+        ("solid", {"element": "hex8"} | SOLID),
+        ("solid", {"element": "hex20"} | SOLID | RIGID),
+        ("solid", {"element": "tet10", "size": 0.06, "graded_size": 0.06}),
+    ],
+)
+def test_six_rigid_motions_and_a_closed_surface(name, fidelity, options):
+    scene = sg.load(ROOT / "geometry" / f"{name}.toml")
+    body = sg.build(scene, fidelity, **options)
+    for component in range(6):
+        s = surface(scene, body, unit_motion(body, component))
+        axis = np.eye(3)[component % 3]
+        wanted = np.broadcast_to(axis, s.points.shape) if component < 3 else np.cross(axis, s.points)
+        np.testing.assert_allclose(s.displacement, wanted, rtol=0, atol=1e-14)
+
+    # Every edge belongs to two faces that run along it in opposite senses, so the surface is closed and oriented.
+    sides = [s.faces[:, [i, (i + 1) % 4]] for i in range(4)] + [s.triangles[:, [i, (i + 1) % 3]] for i in range(3)]
+    count = Counter(map(tuple, np.concatenate(sides)))
+    assert all(count[a, b] == count[b, a] == 1 for a, b in count)
+    p = s.points
+    three = np.concatenate([s.faces[:, :3], s.faces[:, [0, 2, 3]], s.triangles])
+    volume = np.einsum("ij,ij->", p[three[:, 0]], np.cross(p[three[:, 1]], p[three[:, 2]])) / 6
+    # 48 chords around enclose 0.29 % less than a circle; 8 straight elements 10 %
+    assert volume == pytest.approx(volume_of(scene.segments), rel=0.11 if options.get("element") == "hex8" else 0.01)
+
+
+def test_ovalising_shapes_move_as_their_harmonic(pinion):
+    body = sg.build(pinion, "harmonic", order=2, ovalising=(2,))
+    index = next(i for i, b in enumerate(body.blocks) if b.name == "ovalising_2")
+    s = surface(pinion, body, {index: np.ones(body.blocks[index].size)})
+    x, _, z = s.points.T
+    t = np.arctan2(x, z)
+    # all unknowns one: U = 2, V = 0, W = 1 beyond the cells that touch the axis, where they are held at zero
+    off, on = np.hypot(x, z) > 0.04, np.hypot(x, z) < 1e-9
+    radial = s.displacement[:, 0] * np.sin(t) + s.displacement[:, 2] * np.cos(t)
+    around = s.displacement[:, 0] * np.cos(t) - s.displacement[:, 2] * np.sin(t)
+    np.testing.assert_allclose(radial[off], 2 * np.cos(2 * t[off]), atol=1e-12)
+    np.testing.assert_allclose(around[off], 0, atol=1e-12)
+    np.testing.assert_allclose(s.displacement[off, 1], np.cos(2 * t[off]), atol=1e-12)
+    np.testing.assert_allclose(s.displacement[on], 0, atol=1e-12)
+
+
+def shapes(scene, body, modes, name="bending 1"):
+    return [surface(scene, body, v) for v in modes.named(name).vectors]
+
+
+@pytest.mark.parametrize("fidelity, options, share", [("harmonic", FINE, 0.01), ("timoshenko", {}, 0.08)])
+def test_first_bending_moves_as_in_the_solid(pinion, solved, fidelity, options, share):
+    pair = shapes(pinion, *solved(fidelity, **options))
+    others = shapes(pinion, *solved("solid", **SOLID))
+    distance, at = cKDTree(pair[0].points).query(others[0].points)
+    near = distance < 1e-3
+    assert near.sum() > 300
+    basis = np.column_stack([s.displacement[at[near]].ravel() for s in pair])
+    turn = []
+    for other in others:
+        target = other.displacement[near].ravel()
+        # A pair may be turned about the axis: two numbers align it. Left over are 0.4 % (harmonic) and 5.9 % (beam,
+        # whose sections stay plane).
+        c, *_ = np.linalg.lstsq(basis, target, rcond=None)
+        assert np.linalg.norm(basis @ c - target) < share * np.linalg.norm(target)
+        turn.append(c)
+    # Both sides are normalised to unit mass, so the alignment is a rotation and hides no scale.
+    np.testing.assert_allclose(np.array(turn) @ np.array(turn).T, np.eye(2), atol=2 * share)
+
+
+def test_what_does_not_fit_is_refused(pinion, solved):
+    body, _ = solved("timoshenko")
+    with pytest.raises(SolidgearError, match="block bending_z has"):
+        surface(pinion, body, {0: np.zeros(3)})
+
+
+def drawing(pinion, solved, folder):
+    jobs = []
+    for fidelity, options in (("timoshenko", {}), ("harmonic", FINE)):
+        body, modes = solved(fidelity, **options)
+        mode = modes.named("bending 1")
+        title = f"{fidelity} - {mode.name} - {mode.frequency_hz:.1f} Hz"
+        jobs.append(RenderJob(surface(pinion, body, mode.vectors[0]), title, folder / f"{fidelity}.png"))
+    return jobs
+
+
+def test_pictures(pinion, solved, tmp_path):
+    from matplotlib.image import imread
+
+    jobs = drawing(pinion, solved, tmp_path)
+    still = jobs[0].surface
+    dead = RenderJob(type(still)(still.points, 0 * still.points, still.faces, still.triangles, still.lines), "still", tmp_path / "still.png")
+    *results, refused = render_modes([*jobs, dead])
+    if any(r.no_renderer for r in results):
+        pytest.skip(results[0].reason)
+    for job, result in zip(jobs, results):
+        assert result.ok, result.reason
+        picture = (imread(result.path)[:, :, :3] * 255).round().astype(int)
+        assert picture.shape == (700, 1200, 3)
+        colours = np.unique(picture.reshape(-1, 3) @ [65536, 256, 1])
+        assert len(colours) > 1000
+        covered = (picture < 250).any(axis=2)
+        assert 0.2 < covered.mean() < 0.7
+        columns = np.flatnonzero(covered[100:580].any(axis=0))
+        assert np.ptp(columns) > 0.7 * 1200
+    # One picture that cannot be drawn costs no other, and leaves nothing behind.
+    assert not refused.ok and not refused.no_renderer and "zero or not finite" in refused.reason
+    assert sorted(p.name for p in tmp_path.iterdir()) == ["harmonic.png", "timoshenko.png"]
+
+
+def test_without_a_renderer_there_is_a_sentence_and_no_file(pinion, solved, tmp_path, monkeypatch):
+    monkeypatch.setenv("SOLIDGEAR_RENDERER", "none")
+    results = render_modes(drawing(pinion, solved, tmp_path))
+    assert len(results) == 2
+    for r in results:
+        assert not r.ok and r.no_renderer
+        assert PACKAGES in r.reason and "\n" not in r.reason
+    assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize("death, timeout", [("import os, signal; os.kill(os.getpid(), signal.SIGSEGV)", 60), ("import time; time.sleep(60)", 1)])
+def test_a_child_that_dies_or_hangs_is_survived(pinion, solved, tmp_path, monkeypatch, death, timeout):
+    fake = tmp_path / "python"
+    fake.write_text(f"#!{sys.executable}\n{death}\n")
+    fake.chmod(0o755)
+    monkeypatch.setattr(render.sys, "executable", str(fake))
+    out = tmp_path / "out"
+    results = render_modes(drawing(pinion, solved, out), timeout=timeout)
+    assert [r.ok for r in results] == [False, False]
+    assert all(PACKAGES in r.reason for r in results)
+    assert ("signal 11" in results[0].reason) == ("SIGSEGV" in death)
+    assert not out.exists()
+
+
+def test_the_child_starts_without_the_rest_of_the_package():
+    code = "import sys, json, solidgear.report.render; print(json.dumps([m for m in sys.modules if m.startswith(('solidgear', 'scipy', 'skfem', 'pyvista'))]))"
+    out = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True, env={**os.environ, "PYTHONPATH": str(ROOT)})
+    assert set(json.loads(out.stdout)) == {"solidgear", "solidgear.report", "solidgear.report.render"}
+
+
+def volumes(points, cells, vtk_name):
+    """Volume of every cell and its least Jacobian determinant, by VTK's own shape functions."""
+    from vtkmodules import vtkCommonDataModel
+
+    cell = getattr(vtkCommonDataModel, vtk_name)()
+    rule, weights = get_quadrature(RefTet if "Tetra" in vtk_name else RefHex, 7)
+    total, least = np.zeros(len(cells)), np.full(len(cells), np.inf)
+    for at, weight in zip(rule.T, weights):
+        slopes = [0.0] * (3 * cells.shape[1])
+        cell.InterpolateDerivs(at.tolist(), slopes)
+        det = np.linalg.det(np.einsum("enc,kn->eck", points[cells], np.reshape(slopes, (3, -1))))
+        total, least = total + weight * det, np.minimum(least, det)
+    return total, least
+
+
+@pytest.mark.parametrize(
+    "element, kind, vtk_name, loss",
+    [
+        # Curved cells lose what their builder reports: 1e-3 at the most. Straight ones lose the arcs: an octagon has
+        # 90.03 % of its circle.
+        ("hex27", "hexahedron27", "vtkTriQuadraticHexahedron", 1e-3),
+        ("hex20", "hexahedron20", "vtkQuadraticHexahedron", 1e-3),
+        ("tet10", "tetra10", "vtkQuadraticTetra", 1e-3),
+        ("hex8", "hexahedron", "vtkHexahedron", 0.1),
+        ("tet4", "tetra", "vtkTetra", 0.03),
+    ],
+)
+def test_a_solid_comes_back_from_its_file(pinion, tmp_path, element, kind, vtk_name, loss):
+    options = SOLID if element.startswith("hex") else {"size": 0.06, "graded_size": 0.06}
+    body = sg.build(pinion, "solid", element=element, **options)
+    made_up = [Mode(f"motion {c}", "", 1.5, 1, (unit_motion(body, c),), np.zeros((1, 1, 6)), 1.0) for c in range(6)]
+    path = write_vtu(pinion, body, made_up, tmp_path / "new" / "body.vtu", most=4)
+    assert [p.name for p in path.parent.iterdir()] == ["body.vtu"]
+    back = meshio.read(path)
+    assert [c.type for c in back.cells] == [kind]
+    assert list(back.point_data) == [f"motion {c} (1.50 Hz)" for c in range(4)]
+    np.testing.assert_allclose(back.point_data["motion 3 (1.50 Hz)"], np.cross([1.0, 0.0, 0.0], back.points), atol=1e-14)
+    # A wrong order of nodes would turn some of every cell inside out.
+    volume, least = volumes(back.points, back.cells[0].data, vtk_name)
+    assert least.min() > 0
+    assert volume.sum() == pytest.approx(volume_of(pinion.segments), rel=loss)
+    # And VTK reads the same file; it measures curved cells by flat pieces, so up to 16 chords for a circle (2.6 %).
+    measured = pv.read(path).compute_cell_sizes(length=False, area=False)["Volume"]
+    assert measured.min() > 0
+    assert measured.sum() == pytest.approx(volume.sum(), rel=0.026 if kind[-1].isdigit() else 1e-12)
+
+
+@pytest.mark.parametrize("fidelity, options", [("timoshenko", {}), ("harmonic", FINE)])
+def test_other_bodies_are_written_as_surfaces(pinion, solved, tmp_path, fidelity, options):
+    body, modes = solved(fidelity, **options)
+    back = meshio.read(write_vtu(pinion, body, modes, tmp_path / "body.vtu"))
+    assert {c.type for c in back.cells} == {"quad", "triangle"}
+    bending = modes.named("bending 1")
+    for letter, vectors in zip("ab", bending.vectors):
+        s = surface(pinion, body, vectors)
+        np.testing.assert_array_equal(back.points, s.points)
+        np.testing.assert_array_equal(back.point_data[f"bending 1{letter} ({bending.frequency_hz:.2f} Hz)"], s.displacement)
+    assert len(back.point_data) == sum(len(m.vectors) for m in modes.modes)

@@ -1,0 +1,183 @@
+"""The full 3D solid: mass, rigid motions, and convergence to the axisymmetric-harmonic solid from above."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import solidgear as sg
+from solidgear.scene import Scene, Segment
+
+GEOMETRY = Path(__file__).parent.parent / "geometry"
+SMALL = {
+    "tet4": {"size": 0.03, "graded_size": 0.03},
+    "tet10": {"size": 0.03, "graded_size": 0.03},
+    "hex8": {"refinement": 0.5},
+    "hex20": {"refinement": 0.5},
+    "hex27": {"refinement": 0.5},
+}
+
+# harmonic solid on the overhung pinion, order 10 with five graded layers, confirmed by a second code
+K_ZZ, FIRST_BENDING = 4.70996e9, 2758.003
+
+
+@pytest.fixture(scope="module")
+def overhung():
+    return sg.load(GEOMETRY / "pinion_overhung.toml")
+
+
+@pytest.fixture(scope="module")
+def light(overhung):
+    return sg.build(overhung, "solid", element="hex27", refinement=0.5)
+
+
+# --------------------------------------------------------------------------- mass
+def frustum_moments(y0, y1, a, b, density):
+    """Mass, first and second axial moment and polar inertia of a solid frustum, closed form, about y = 0."""
+    # r = a + (b - a) t: moments of r^2 t^k and r^4 over 0..1
+    d, h = b - a, y1 - y0
+    square = [a * a / (k + 1) + 2 * a * d / (k + 2) + d * d / (k + 3) for k in range(3)]
+    fourth = sum(c * a ** (4 - i) * d**i / (i + 1) for i, c in enumerate((1, 4, 6, 4, 1)))
+    m = density * np.pi * h
+    return np.array([
+        m * square[0],
+        m * (y0 * square[0] + h * square[1]),
+        m * (y0 * y0 * square[0] + 2 * y0 * h * square[1] + h * h * square[2]),
+        m / 2 * fourth,
+    ])  # fmt: skip
+
+
+def closed_form_mass(scene):
+    """(6, 6) mass matrix about the origin."""
+    mass, first, second, polar = sum(
+        frustum_moments(s.y0, s.y1, s.outer0, s.outer1, s.material.density)
+        - (frustum_moments(s.y0, s.y1, s.inner0, s.inner1, s.material.density) if s.inner0 else 0)
+        for s in scene.segments
+    )
+    out = np.diag([mass, mass, mass, second + polar / 2, polar, second + polar / 2])
+    out[2, 3] = out[3, 2] = first
+    out[0, 5] = out[5, 0] = -first
+    return out
+
+
+@pytest.mark.parametrize("name", ["pinion_overhung", "shaft_hollow"])
+@pytest.mark.parametrize("element", ["tet10", "hex20", "hex27"])
+def test_mass_centre_and_inertia(name, element):
+    scene = sg.load(GEOMETRY / f"{name}.toml")
+    m = sg.build(scene, "solid", element=element, **SMALL[element]).mass_matrix()
+    expected = closed_form_mass(scene)
+    size = np.sqrt(np.diag(expected))
+    error = np.abs((m - expected) / np.outer(size, size))
+    # 16 quadratic edges around lose a^4 / 30 = 5e-5 of the area (half angle a = pi / 16) and twice that of the polar
+    # inertia; the O-grid has the area of the circle by construction and errs in the polar inertia only.
+    assert error.max() < 1e-4
+
+
+def test_mass_of_straight_sides_is_short():
+    # straight-sided elements lie inside the circle: the gate above would notice if geometry were not curved
+    scene = Scene.from_parts([Segment.cylinder("rod", length=0.1, diameter=0.06)])
+    m = sg.build(scene, "solid", element="tet4", size=0.02, graded_size=0.02).mass_matrix()
+    # sixteen and more chords around: short by less than 1 - sin(2 pi / 16) / (2 pi / 16), which is 2.5 %
+    assert 0.002 < 1 - m[0, 0] / closed_form_mass(scene)[0, 0] < 0.026
+
+
+# --------------------------------------------------------------------------- rigid motions
+@pytest.mark.parametrize("element", list(SMALL))
+def test_rigid_motions_cost_no_energy(element):
+    scene = sg.load(GEOMETRY / "shaft_hollow.toml")
+    body = sg.build(scene, "solid", element=element, **SMALL[element])
+    # isoparametric elements hold every rigid motion: rounding of |K| |R|
+    assert body.rigid_residual() < 1e-13
+
+
+@pytest.mark.parametrize("element", list(SMALL))
+def test_free_cylinder_has_six_rigid_modes_and_no_spurious_one(element):
+    scene = sg.load(GEOMETRY / "cylinder_free.toml")
+    found = sg.modes(sg.build(scene, "solid", element=element, **SMALL[element]), scene, n=6)
+    assert [m.frequency_hz for m in found.modes[:6]] == [0.0] * 6
+    assert found.evidence["rigid_modes"] == 6
+    exact = sg.modes(sg.build(scene, "harmonic", order=6), scene, n=6)
+    elastic, wanted = ([(m.name, m.multiplicity, m.frequency_hz) for m in x.modes[6:]] for x in (found, exact))
+    # A spurious mode would stand between these.  Quadratic elements reach 1 % on these coarse meshes; linear ones are far
+    # too stiff in bending, so that for them only the first is looked at: it must lie above the exact one.
+    if element in ("tet4", "hex8"):
+        assert elastic[0][0] == "bending 1" and wanted[0][2] < elastic[0][2] < 1.6 * wanted[0][2]
+    else:
+        assert [e[:2] for e in elastic] == [w[:2] for w in wanted]
+        ratio = np.array([e[2] / w[2] for e, w in zip(elastic, wanted)])
+        assert np.all(ratio > 1 - 5e-5)  # from above, but for the mass and inertia of the polygonal circle
+        assert np.all(ratio < 1.01)
+
+
+def test_smallest_eigenvalues_of_one_stiffness():
+    # the raw matrix of a short cylinder: six zeros, then a gap; hourglass modes of an under-integrated element would fill it
+    scene = Scene.from_parts([Segment.cylinder("disc", length=0.05, diameter=0.06)])
+    for element in SMALL:
+        size = {"size": 0.02, "graded_size": 0.02} if element.startswith("tet") else {"size": 0.05, "layers": 0, "edge_layers": 0, "radial_layers": 0}
+        block = sg.build(scene, "solid", element=element, **size).blocks[0]
+        d = 1 / np.sqrt(block.stiffness.diagonal())
+        values = np.linalg.eigvalsh((block.stiffness.toarray() * d[:, None]) * d)
+        assert np.abs(values[:6]).max() < 1e-12, element  # rounding of a matrix of norm of order ten
+        assert values[6] > 1e-6, element  # the softest strain of a few elements: far above rounding, far below one
+
+
+# --------------------------------------------------------------------------- convergence on the pinion
+def test_light_hexahedra_are_near_the_reference(overhung, light):
+    k = sg.condense(light, overhung, "pinion").stiffness
+    # 14k unknowns: the graded mesh is above the reference, as displacement elements are, by less than half a per cent
+    assert 0 < k[2, 2] / K_ZZ - 1 < 5e-3
+
+
+def test_light_hexahedra_keep_the_pair(overhung, light):
+    k = sg.condense(light, overhung, "pinion").stiffness
+    # the O-grid has fourfold symmetry, hence equal planes to rounding; bearings' weak couplings are equal to 1e-8 too
+    assert k[0, 0] == pytest.approx(k[2, 2], rel=1e-8)
+    assert k[0, 5] == pytest.approx(-k[2, 3], rel=1e-7)
+    found = sg.modes(light, overhung, n=6, coupling_tolerance=1.0)
+    first = found.named("bending 1")
+    assert first.multiplicity == 2
+    values = []
+    for vectors in first.vectors:
+        u = vectors[0]
+        block = light.blocks[0]
+        rows = block.ports.toarray()
+        energy = u @ (block.stiffness @ u)
+        for p, bearing in enumerate(overhung.bearings, start=1):
+            d = rows[6 * p : 6 * p + 6] @ u
+            energy += d @ bearing.stiffness @ d
+        values.append(energy / (u @ (block.mass @ u)))
+    # Rayleigh quotients of the two shapes, formed here: degenerate to 1e-8, as the symmetry says
+    assert values[0] == pytest.approx(values[1], rel=1e-8)
+    assert first.frequency_hz == pytest.approx(np.sqrt(np.mean(values)) / (2 * np.pi), rel=1e-8)
+
+
+def test_light_hexahedra_bend_near_the_reference(overhung, light):
+    f = sg.modes(light, overhung, n=3).named("bending 1").frequency_hz
+    # frequencies feel the singular corners less than the port's stiffness does: a quarter of that error
+    assert 0 < f / FIRST_BENDING - 1 < 2e-3
+
+
+def test_hexahedra_approach_the_reference_from_above(overhung, light):
+    coarse = sg.condense(light, overhung, "pinion").stiffness[2, 2]
+    fine = sg.condense(sg.build(overhung, "solid", refinement=0.75), overhung, "pinion").stiffness[2, 2]
+    assert coarse > fine > K_ZZ
+    assert fine / K_ZZ - 1 < 3e-3
+
+
+@pytest.mark.slow
+def test_tetrahedra_are_near_the_reference(overhung):
+    body = sg.build(overhung, "solid", element="tet10", size=0.025, graded_size=0.0055)
+    assert 4e4 < body.size < 6e4
+    k = sg.condense(body, overhung, "pinion").stiffness
+    # graded to 5.5 mm at seats and shoulder: 0.6 % above in stiffness, 0.1 % in frequency
+    assert 0 < k[2, 2] / K_ZZ - 1 < 1e-2
+    f = sg.modes(body, overhung, n=3).named("bending 1")
+    assert f.multiplicity == 2
+    assert 0 < f.frequency_hz / FIRST_BENDING - 1 < 3e-3
+
+
+def test_tetrahedra_are_above_the_reference(overhung):
+    body = sg.build(overhung, "solid", element="tet10", size=0.03, graded_size=0.012)
+    k = sg.condense(body, overhung, "pinion").stiffness
+    # a light mesh: two per cent above
+    assert 0 < k[2, 2] / K_ZZ - 1 < 4e-2
