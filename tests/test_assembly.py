@@ -49,9 +49,9 @@ def frustum():
 def small_solid(element):
     scene = frustum()
     if element.startswith("tet"):
-        body = sg.build(scene, "solid", element=element, size=0.03, graded_size=0.03, around=4)
+        body = sg.build(scene, "solid", element=element, size=0.04, graded_size=0.04)
     else:
-        body = sg.build(scene, "solid", element=element, size=0.04, layers=1, edge_layers=0, radial_layers=1)
+        body = sg.build(scene, "solid", element=element, size=0.04, layers=0, edge_layers=0, radial_layers=0, around=8)
     return scene, body
 
 

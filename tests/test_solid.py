@@ -69,8 +69,10 @@ def test_mass_centre_and_inertia(name, element):
     size = np.sqrt(np.diag(expected))
     error = np.abs((m - expected) / np.outer(size, size))
     # 16 quadratic edges around lose a^4 / 30 = 5e-5 of the area (half angle a = pi / 16) and twice that of the polar
-    # inertia; the O-grid has the area of the circle by construction and errs in the polar inertia only.
-    assert error.max() < 1e-4
+    # inertia; the O-grid has the area of the circle by construction and errs by 3e-7 in the polar inertia only.
+    assert error.max() < (1e-4 if element == "tet10" else 1e-6)
+    if element != "tet10":
+        assert error[0, 0] < 1e-12  # straight generators, exact area: rounding
 
 
 def test_mass_of_straight_sides_is_short():
@@ -98,7 +100,7 @@ def test_free_cylinder_has_six_rigid_modes_and_no_spurious_one(element):
     assert found.evidence["rigid_modes"] == 6
     exact = sg.modes(sg.build(scene, "harmonic", order=6), scene, n=6)
     elastic, wanted = ([(m.name, m.multiplicity, m.frequency_hz) for m in x.modes[6:]] for x in (found, exact))
-    # A spurious mode would stand between these.  Quadratic elements reach 1 % on these coarse meshes; linear ones are far
+    # A spurious mode would stand between these.  Quadratic elements reach 0.3 % on these coarse meshes; linear ones are far
     # too stiff in bending, so that for them only the first is looked at: it must lie above the exact one.
     if element in ("tet4", "hex8"):
         assert elastic[0][0] == "bending 1" and wanted[0][2] < elastic[0][2] < 1.6 * wanted[0][2]
@@ -106,7 +108,7 @@ def test_free_cylinder_has_six_rigid_modes_and_no_spurious_one(element):
         assert [e[:2] for e in elastic] == [w[:2] for w in wanted]
         ratio = np.array([e[2] / w[2] for e, w in zip(elastic, wanted)])
         assert np.all(ratio > 1 - 5e-5)  # from above, but for the mass and inertia of the polygonal circle
-        assert np.all(ratio < 1.01)
+        assert np.all(ratio < 1.005)
 
 
 def test_smallest_eigenvalues_of_one_stiffness():
@@ -118,7 +120,7 @@ def test_smallest_eigenvalues_of_one_stiffness():
         d = 1 / np.sqrt(block.stiffness.diagonal())
         values = np.linalg.eigvalsh((block.stiffness.toarray() * d[:, None]) * d)
         assert np.abs(values[:6]).max() < 1e-12, element  # rounding of a matrix of norm of order ten
-        assert values[6] > 1e-6, element  # the softest strain of a few elements: far above rounding, far below one
+        assert values[6] > 1e-3, element  # the softest strain of a few elements: 0.01 to 0.1
 
 
 # --------------------------------------------------------------------------- convergence on the pinion
@@ -133,7 +135,7 @@ def test_light_hexahedra_keep_the_pair(overhung, light):
     # the O-grid has fourfold symmetry, hence equal planes to rounding; bearings' weak couplings are equal to 1e-8 too
     assert k[0, 0] == pytest.approx(k[2, 2], rel=1e-8)
     assert k[0, 5] == pytest.approx(-k[2, 3], rel=1e-7)
-    found = sg.modes(light, overhung, n=6, coupling_tolerance=1.0)
+    found = sg.modes(light, overhung, n=6)
     first = found.named("bending 1")
     assert first.multiplicity == 2
     values = []
@@ -157,11 +159,14 @@ def test_light_hexahedra_bend_near_the_reference(overhung, light):
     assert 0 < f / FIRST_BENDING - 1 < 2e-3
 
 
-def test_hexahedra_approach_the_reference_from_above(overhung, light):
-    coarse = sg.condense(light, overhung, "pinion").stiffness[2, 2]
-    fine = sg.condense(sg.build(overhung, "solid", refinement=0.75), overhung, "pinion").stiffness[2, 2]
+def test_hexahedra_approach_the_reference_from_above(overhung):
+    coarse, fine = (
+        sg.condense(sg.build(overhung, "solid", element="hex20", around=8, refinement=r), overhung, "pinion").stiffness[2, 2] for r in (0.5, 0.75)
+    )
     assert coarse > fine > K_ZZ
-    assert fine / K_ZZ - 1 < 3e-3
+    # more layers towards the shoulder as well as more cells: 0.6 % becomes 0.24 %
+    assert fine / K_ZZ - 1 < 0.5 * (coarse / K_ZZ - 1)
+    assert fine / K_ZZ - 1 < 4e-3
 
 
 @pytest.mark.slow
@@ -179,5 +184,5 @@ def test_tetrahedra_are_near_the_reference(overhung):
 def test_tetrahedra_are_above_the_reference(overhung):
     body = sg.build(overhung, "solid", element="tet10", size=0.03, graded_size=0.012)
     k = sg.condense(body, overhung, "pinion").stiffness
-    # a light mesh: two per cent above
-    assert 0 < k[2, 2] / K_ZZ - 1 < 4e-2
+    # graded to 12 mm only: 1.1 % above; gmsh's mesh, and with it this figure, may change a little with its version
+    assert 0 < k[2, 2] / K_ZZ - 1 < 2e-2

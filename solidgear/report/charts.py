@@ -324,17 +324,17 @@ def cost_chart(results):
             marker = "x" if rejected else _marker(key)
             ax.plot([total], [error], marker, ms=8, color=_colour(key), mfc="white" if hollow else _colour(key), mew=2 if rejected or hollow else 1)
             remark = ", ".join(r for r in (remark, "rejected" if rejected else "") if r)
-            ax.annotate(model_name(key) + (f"\n({remark})" if remark else ""), (total, error), xytext=(0, 9), textcoords="offset points", ha="center", va="bottom", fontsize=8)
+            ax.annotate(model_name(key) + (f"\n({remark})" if remark else ""), (total, error), xytext=(9, 0), textcoords="offset points", ha="left", va="center", fontsize=8)
         ax.set(xscale="log", yscale="log", xlabel="wall time of the model, s", ylabel=f"{quantity}: distance from reference")
         ax.xaxis.set_major_formatter(FuncFormatter(lambda v, _: f"{v:g}"))
         ax.xaxis.set_minor_formatter(NullFormatter())
         _percent_decades(ax)
         if is_number(tolerance) and tolerance > 0:
             ax.axhline(tolerance, color="#aa2222", lw=0.9, ls="--")
-            ax.annotate(f"tolerance {percent(tolerance, signed=False)}", (0.01, tolerance), xycoords=("axes fraction", "data"), xytext=(0, 2), textcoords="offset points", fontsize=8, color="#aa2222")
+            ax.annotate(f"tolerance {100 * tolerance:.4g} %", (0.99, tolerance), xycoords=("axes fraction", "data"), xytext=(0, 2), textcoords="offset points", ha="right", fontsize=8, color="#aa2222")
         if points:
             times, errors = [p[1] for p in points], [p[2] for p in points] + [tolerance if is_number(tolerance) and tolerance > 0 else points[0][2]]
-            ax.set_xlim(min(times) / 4, max(times) * 4)
+            ax.set_xlim(min(times) / 3, max(times) * 15)  # room for the last label
             ax.set_ylim(min(errors) / 2.5, max(errors) * 5)
     return figure
 

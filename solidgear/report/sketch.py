@@ -62,6 +62,8 @@ def draw(results: Mapping) -> Any:
     pen.ruler(ordinates, length, -top - 1.04)
     if enlarged > 1:
         ax.text(WIDTH - 0.15, above - 0.1, f"radii drawn {enlarged:.2g} times larger than lengths", ha="right", va="top", fontsize=8, style="italic")
+    if is_number(scene.get("housing_axial")):
+        ax.text(0.15, -top - 1.04, "not drawn: housing on\nan axial spring", va="center", fontsize=8, style="italic")
     _legend(ax, segments, scene, -below + 0.1)
     return figure
 
@@ -131,8 +133,8 @@ class _Pen:
     def _diameter(self, s, x0, x1, room):
         d0, d1 = (f"⌀{2e3 * s[k]:.5g}" for k in ("outer0", "outer1"))
         text = d0 if d0 == d1 else f"{d0} – {d1}"
-        bore = "" if not (s["inner0"] or s["inner1"]) else f", bore {2e3 * s['inner0']:.5g}" + ("" if s["inner0"] == s["inner1"] else f" – {2e3 * s['inner1']:.5g}")
-        size = CHAR * len(text + bore) * 0.95
+        bore = "" if not (s["inner0"] or s["inner1"]) else f"\nbore {2e3 * s['inner0']:.5g}" + ("" if s["inner0"] == s["inner1"] else f" – {2e3 * s['inner1']:.5g}")
+        size = CHAR * max(len(line) for line in (text + bore).splitlines()) * 0.95
         upright = size > x1 - x0
         if upright and (size > 0.95 * room or x1 - x0 < 0.14):
             return
@@ -197,6 +199,4 @@ def _legend(ax, segments, scene, y: float) -> None:
         handles.append(Line2D([], [], color=SEAT, lw=4, label="bearing seat"))
     if scene.get("port"):
         handles.append(Line2D([], [], color=SPAN, lw=4, label="surface that carries the lumped point"))
-    if is_number(scene.get("housing_axial")):
-        handles.append(Line2D([], [], lw=0, label=f"common housing on an axial spring, {scene['housing_axial']:.4g} N/m (not drawn)"))
     ax.legend(handles=handles, loc="lower center", bbox_to_anchor=(WIDTH / 2, y), bbox_transform=ax.transData, ncols=len(handles), frameon=False, fontsize=8, borderaxespad=0)
