@@ -232,7 +232,9 @@ def _add_band(scene, rung: Rung, model, options, progress: Progress):
             continue
         try:
             found = gci(values, sizes, expected, highest, cap)
-            inside = None if found.asymptotic is None else 0.8 <= found.asymptotic <= 1.25
+            # With a capped order the check only shows that the sequence converges faster than the band assumes.
+            capped = found.observed_order is not None and found.used_order < found.observed_order
+            inside = None if found.asymptotic is None or capped else 0.8 <= found.asymptotic <= 1.25
             extra = {"corner_deg": float(np.degrees(angle)), "asymptotic": inside, "asymptotic_ratio": found.asymptotic}
             rung.bands[name] = found.as_dict() | extra
         except ValueError as error:

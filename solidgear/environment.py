@@ -16,6 +16,10 @@ def environment() -> dict:
             out[name] = version(name)
         except PackageNotFoundError:
             out[name] = None
+    if out["solidgear"] is None:  # run from a source tree
+        from solidgear import __version__
+
+        out["solidgear"] = __version__
     out["platform"] = f"{platform.system()} {platform.machine()}"
     out["cpu"] = _cpu()
     # cores this process may use, not those of the machine

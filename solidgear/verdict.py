@@ -70,7 +70,7 @@ def judge(scene, rungs: dict, reference: str | None, gaps: list[dict]) -> tuple[
         if worst and abs(worst["relative"]) > tolerance:
             how = "with the attachments of the scene" if worst["attachment"] == "as scene" else "like for like (section means)"
             why = (
-                f"{worst['quantity']} is {100 * worst['relative']:+.1f} % off the {reference} model {how}, "
+                f"{worst['quantity']} is {100 * abs(worst['relative']):.1f} % {_side(worst)} against the {reference} model {how}, "
                 f"more than the {100 * tolerance:g} % asked for"
             )
             validity[model] = (False, why)
@@ -81,8 +81,15 @@ def judge(scene, rungs: dict, reference: str | None, gaps: list[dict]) -> tuple[
     return {"trust": reference, "reference": reference, "cheapest": cheapest, "tolerance": tolerance, "sentences": sentences}, validity
 
 
+def _side(gap: dict) -> str:
+    """What the sign of a gap means to an engineer."""
+    if gap["quantity"].startswith("C_"):
+        return "too small (too stiff)" if gap["relative"] < 0 else "too large (too soft)"
+    return "too high" if gap["relative"] > 0 else "too low"
+
+
 def _percent(x: float) -> str:
-    return f"{100 * x:.2g} %" if abs(x) >= 1e-4 else f"{x:.1e}"
+    return f"{100 * x:.2g} %"
 
 
 def _trust(rungs, reference, gaps) -> list[str]:

@@ -21,8 +21,9 @@ from solidgear.scene import STEEL, Material, Port, Scene, Segment
 
 SOLID = ("tet4", "tet10", "hex8", "hex20", "hex27")
 
-# Same sums in another order: a few hundred products a entry, some of which cancel.
-SAME_SUM = 1e-12
+# Same sums in another order: a few hundred products an entry, some of which cancel.  1e-15 is what one sees here;
+# another BLAS may add in yet another order.
+SAME_SUM = 1e-13
 
 
 def relative_difference(a, b):
@@ -137,10 +138,11 @@ def test_distorted_solid_matches_skfem_with_its_own_quadrature(element):
     # order gives the same entries; the stiffness of a distorted brick is rational and depends on the rule.
     geometry, k, m = assembled_box(element)
     stiffness, mass = skfem_elasticity(geometry, [STEEL], intorder=7)
-    # 7 points a direction or high-order rules with many weights: an order of magnitude more rounding than above
-    assert relative_difference(m, mass) < 1e-11
+    assert relative_difference(m, mass) < SAME_SUM
     if element.startswith("tet"):
-        assert relative_difference(k, stiffness) < 1e-11
+        assert relative_difference(k, stiffness) < SAME_SUM
+    if element in ("hex20", "hex27"):  # order 7 is the four Gauss points a direction that the library means to use
+        assert relative_difference(k, stiffness) < SAME_SUM
 
 
 @pytest.mark.parametrize("element, curved", [(e, c) for e in SOLID for c in (False, True) if not (c and e in ("tet4", "hex8"))])
@@ -151,13 +153,12 @@ def test_patch_of_constant_stress(element, curved):
     u = (gradient @ geometry.nodes).T.ravel()
     force = (k @ u).reshape(-1, 3)
     size = np.array([1.0, 2.0, 3.0])
-    on_face = np.abs(geometry.nodes / size[:, None] - 1) < 1e-9
     interior = np.all((geometry.nodes > 1e-9) & (geometry.nodes < (1 - 1e-9) * size[:, None]), axis=0)
     assert interior.sum() >= 8
     # The rules integrate grad N det J exactly on these elements (degree at most 6 a direction for curved bricks,
-    # 4 Gauss points do 7), so nothing but rounding of the products K_ij u_j is left.
+    # 4 Gauss points do 7), so nothing but rounding of the products K_ij u_j is left: 4e-16 and a margin.
     scale = (abs(k) @ abs(u)).max()
-    assert np.abs(force[interior]).max() / scale < 1e-13
+    assert np.abs(force[interior]).max() / scale < 1e-14
     # ... and the faces carry the stress of Hooke's law times their area
     strain = (gradient + gradient.T) / 2
     lame, mu = STEEL.E * STEEL.nu / (1 + STEEL.nu) / (1 - 2 * STEEL.nu), STEEL.E / 2 / (1 + STEEL.nu)
@@ -165,7 +166,6 @@ def test_patch_of_constant_stress(element, curved):
     # shear on the side faces shares the edge nodes, so look at the virial: sum of x f = volume times stress
     virial = force.T @ geometry.nodes.T
     assert np.abs(virial - stress * size.prod()).max() / np.abs(stress).max() / size.prod() < 1e-11
-    assert on_face.any()
 
 
 def test_patch_test_can_fail():
@@ -253,8 +253,7 @@ def test_harmonic_blocks_match_skfem(order, bore):
         if block.name in names:
             k, m = harmonic_by_skfem(scene, body, order, names[block.name])
             seen.add(block.name)
-            # Ring strains divide by r at points within 1e-3 of the axis and then cancel: one digit more than a plain sum.
-            assert relative_difference(block.stiffness, k) < 1e-11
+            assert relative_difference(block.stiffness, k) < SAME_SUM
             assert relative_difference(block.mass, m) < SAME_SUM
     assert seen == set(names)
 
@@ -279,7 +278,7 @@ def test_torsion_block_matches_skfem(order, bore):
 def test_harmonic_rigid_motions_cost_no_energy(order, bore):
     body = sg.build(stepped(bore), "harmonic", order=order, layers=1)
     # rigid motions are polynomials of degree one, which every order holds: rounding of |K| |R| only
-    assert body.rigid_residual() < 1e-13
+    assert body.rigid_residual() < 1e-14
 
 
 def nodal_field(body, field, components):

@@ -63,13 +63,14 @@ def test_free_free_timoshenko(bore, kappa):
     found = bending(sg.modes(body, n=12), 3)
     exact = free_free_timoshenko(3, kappa, b=bore / 2)
     # Elements shorter than the shear length interpolate the shear part of the deflection linearly, which costs
-    # (k h)^2 / 24 of that part: 3e-5 and 2e-4 here for the solid rod, more for the tube with its lower kappa.
-    assert np.abs(found / exact - 1) == pytest.approx(0, abs=1e-3)
+    # (k h)^2 / 24 of that part: 3e-5 and 2e-4 here for the solid rod, more for the tube with its lower kappa
+    # (6e-4 and 1e-3 in the third mode).
+    assert np.abs(found / exact - 1).max() < 1.5e-3
     assert abs(found[0] / exact[0] - 1) < 1e-4
     assert np.all(found > exact)  # Rayleigh: consistent elements bound from above
-    # That error is of second order and smooth, so one Richardson step leaves the fourth-order part, (k h)^4 / 720.
+    # That error is of second order and smooth, so one Richardson step leaves the fourth-order part, below 1e-7.
     half = bending(sg.modes(sg.build(rod(bore), "timoshenko", elements=80), n=12), 3)
-    assert (4 * half - found)[:2] / 3 / exact[:2] == pytest.approx(1, abs=1e-6)
+    assert (4 * half - found)[:2] / 3 / exact[:2] == pytest.approx(1, abs=3e-7)
 
 
 def test_free_free_timoshenko_converges_with_second_order():
@@ -137,10 +138,10 @@ def test_uniform_cantilever(fidelity):
     expected[0, 5] = expected[5, 0] = -bend * length / 2
     expected[1, 1] = length / (E * area)
     expected[4, 4] = length / (G * 2 * second)
-    # The elements are exact in statics.  A spring of 1e24 N/m adds 1e-24 m/N to 1e-9, so rounding alone is left:
-    # the condition of ten elements costs three digits of sixteen, ten times that is allowed.
+    # The elements are exact in statics, and a spring of 1e24 N/m adds 1e-24 m/N to 1e-9.  What is left is where the
+    # static refinement stops, 1e-12 of the flexibility, and here the flexibility of the free body is of the result's size.
     size = np.sqrt(np.diag(expected))
-    assert np.abs((c - expected) / np.outer(size, size)).max() < 1e-12
+    assert np.abs((c - expected) / np.outer(size, size)).max() < 1e-11
 
 
 def test_soft_clamp_adds_its_own_compliance():
@@ -154,7 +155,8 @@ def test_soft_clamp_adds_its_own_compliance():
     added[2, 3] = added[3, 2] = 1e-6 * length
     added[0, 5] = added[5, 0] = -1e-6 * length
     # exact in algebra; the largest entries are of the same order on both sides, so a few roundings of them
-    assert np.abs(soft - stiff - added).max() < 1e-12 * np.abs(added).max()
+    # and the static refinement's 1e-12
+    assert np.abs(soft - stiff - added).max() < 1e-11 * np.abs(added).max()
 
 
 @pytest.mark.parametrize("bore", [0.0, 0.02])

@@ -39,7 +39,8 @@ def measure(condensed: Condensed, modes: ModeSet) -> dict[str, float]:
 
 
 def change(new: dict[str, float], old: dict[str, float], name: str) -> float | None:
-    """Relative change of one quantity, or None where either lacks it."""
+    """Relative change of one quantity, or None where either lacks it; rounding (below 1e-11) counts as none."""
     if name in new and name in old:
-        return new[name] / old[name] - 1
+        relative = new[name] / old[name] - 1
+        return relative if abs(relative) > 1e-11 else 0.0
     return None

@@ -13,7 +13,7 @@ from collections.abc import Callable, Mapping
 from typing import Any
 
 from solidgear.report import sketch as scene_sketch
-from solidgear.report.terminal import headline, is_number, is_resolved, model_name, percent, plain, reference_of
+from solidgear.report.terminal import answer_seconds, headline, is_number, is_resolved, model_name, percent, plain, reference_of
 
 #: colours that stay apart for the colour-blind, and markers that stay apart in grey
 COLOUR = {"euler": "#c98a00", "timoshenko": "#0072b2", "harmonic": "#00805e", "solid": "#5a3e8c"}
@@ -175,13 +175,13 @@ def convergence_chart(results):
     for key, model in (results.get("models") or {}).items():
         convergence = model.get("convergence") or {}
         levels = convergence.get("levels") or []
-        along = "h" if levels and all(is_number(v.get("h")) and v["h"] > 0 for v in levels) else "dofs"
+        along = next((a for a in ("h", "order") if levels and all(is_number(v.get(a)) and v[a] > 0 for v in levels)), "dofs")
         for quantity, column in (("c_zz", "c_zz"), ("bending_1", "bending_1_hz")):
             estimate = convergence.get(quantity) or {}
             limit = estimate.get("extrapolated")
             if is_number(limit) and limit != 0:
                 spots = [(v[along], abs(v[column] / limit - 1)) for v in levels if is_number(v.get(along)) and is_number(v.get(column))]
-                spots = [(1e3 * x if along == "h" else x, y) for x, y in spots if y > 0]
+                spots = [({"h": 1e3 * x, "order": 1 / x}.get(along, x), y) for x, y in spots if y > 0]
                 if len(spots) >= 2:
                     panels.append((key, quantity, along, sorted(spots), estimate))
     if not panels:
@@ -202,23 +202,23 @@ def convergence_chart(results):
             ax.annotate(f"GCI {percent(band, signed=False)}, factor {estimate.get('factor')}", (0.01, band), xycoords=("axes fraction", "data"), xytext=(0, 2),
                         textcoords="offset points", ha="left", va="bottom", fontsize=8)  # fmt: skip
         expected = estimate.get("expected_order")
-        if is_number(expected) and along == "h":
+        if is_number(expected) and along != "dofs":
             ax.loglog(xs, [ys[-1] * (x / xs[-1]) ** expected for x in xs], color="#888888", lw=0.9, ls=":")
         ax.set_ylim(low, high)
-        _log_ticks(ax, xs)
+        _log_ticks(ax, xs, [f"1/{1 / x:.0f}" for x in xs] if along == "order" else [f"{x:.3g}" if x < 1e4 else f"{x / 1e3:.3g}k" for x in xs])
         words = ", ".join(f"{label} {estimate[k]:.2f}" for label, k in (("observed order", "observed_order"), ("expected", "expected_order")) if is_number(estimate.get(k)))
         ax.set_title(f"{model_name(key)}, {QUANTITY_NAME[quantity]}\n{words}")
-        ax.set(xlabel="representative element size h, mm" if along == "h" else "unknowns", ylabel="distance from extrapolated")
+        ax.set(xlabel={"h": "representative element size h, mm", "order": "1 / order of the elements", "dofs": "unknowns"}[along], ylabel="distance from extrapolated")
     for ax in axes[len(panels):]:
         ax.axis("off")
     return figure
 
 
-def _log_ticks(ax, xs) -> None:
+def _log_ticks(ax, xs, labels) -> None:
     """Ticks at the meshes themselves: three meshes seldom span a decade."""
     from matplotlib.ticker import NullFormatter, NullLocator
 
-    ax.set_xticks(list(xs), [f"{x:.3g}" if x < 1e4 else f"{x / 1e3:.3g}k" for x in xs])
+    ax.set_xticks(list(xs), labels)
     ax.xaxis.set_minor_locator(NullLocator())
     ax.xaxis.set_minor_formatter(NullFormatter())
     _percent_decades(ax)
@@ -262,7 +262,7 @@ def cause_chart(results):
         return None
     figure = _figure(10.4, 0.7 + 0.58 * len(rows))
     ax = figure.subplots()
-    _bars(ax, [f"{r.get('cause', '')}\n({r.get('change', '')})" for r in rows], {q: [r.get(q) for r in rows] for q in QUANTITY_NAME})
+    _bars(ax, [f"{r.get('cause', '')}, {'beam' if r.get('model') == 'beam' else model_name(r.get('model'))}\n({r.get('change', '')})" for r in rows], {q: [r.get(q) for r in rows] for q in QUANTITY_NAME})
     ax.set_xlabel("relative change when this alone is switched")
     ax.legend(ncols=3, loc="lower right", bbox_to_anchor=(1, 1), borderaxespad=0.1)
     return figure
@@ -304,7 +304,7 @@ def cost_chart(results):
     panels = {"C_zz": "compliance", "bending 1": "bending_1"}
     spots: dict[str, list] = {q: [] for q in panels}
     for key, model in models.items():
-        total = (model.get("seconds") or {}).get("total")
+        total = answer_seconds(model)
         if not is_number(total) or total <= 0:
             continue
         for quantity, band_key in panels.items():
@@ -325,7 +325,7 @@ def cost_chart(results):
             ax.plot([total], [error], marker, ms=8, color=_colour(key), mfc="white" if hollow else _colour(key), mew=2 if rejected or hollow else 1)
             remark = ", ".join(r for r in (remark, "rejected" if rejected else "") if r)
             ax.annotate(model_name(key) + (f"\n({remark})" if remark else ""), (total, error), xytext=(9, 0), textcoords="offset points", ha="left", va="center", fontsize=8)
-        ax.set(xscale="log", yscale="log", xlabel="wall time of the model, s", ylabel=f"{quantity}: distance from reference")
+        ax.set(xscale="log", yscale="log", xlabel="building and solving, s", ylabel=f"{quantity}: distance from reference")
         ax.xaxis.set_major_formatter(FuncFormatter(lambda v, _: f"{v:g}"))
         ax.xaxis.set_minor_formatter(NullFormatter())
         _percent_decades(ax)

@@ -18,7 +18,7 @@ from typing import Any
 from solidgear.frames import DOF_NAMES
 from solidgear.report import charts
 from solidgear.report.terminal import (
-    BEAMS, BLOCK_UNITS, MODEL_NAMES, engineering, entry, first_mode, headline, hertz, is_number, is_resolved, model_name, percent, plain,
+    BEAMS, BLOCK_UNITS, MODEL_NAMES, answer_seconds, engineering, entry, first_mode, headline, hertz, is_number, is_resolved, model_name, percent, plain,
     reference_of, seconds,
 )  # fmt: skip
 
@@ -224,10 +224,10 @@ def _summary(r: Mapping) -> Table:
         row("first torsion, Hz", frequency("torsion")),
         row("C_zz against reference", apart("C_zz")),
         row("first bending against reference", apart("bending 1")),
-        row("band of C_zz (mesh)", band("compliance")),
+        row("band of the worst compliance (mesh)", band("compliance")),
         row("band of first bending (mesh)", band("bending_1")),
         row("degrees of freedom", lambda k, m: f"{m['dofs']:,}".replace(",", " ") if is_number(m.get("dofs")) else DASH),
-        row("wall time, s", lambda k, m: seconds((m.get("seconds") or {}).get("total"), DASH)),
+        row("building and solving, s", lambda k, m: seconds(answer_seconds(m), DASH)),
         row("peak memory, MB", lambda k, m: f"{m['peak_mb']:.0f}" if is_number(m.get("peak_mb")) else DASH),
     ]  # fmt: skip
     note = "Stiffness and compliance with the attachments of the scene. “Against reference” compares beams with section ties on both sides, where they have a like-for-like partner, and solids as the scene has them."
@@ -318,7 +318,7 @@ def _deviations(r: Mapping) -> list[Table]:
             figure = hertz if _rank(quantity) == 2 else engineering
             inside = abs(row["relative"]) <= tolerance if is_number(row.get("relative")) and is_number(tolerance) else None
             table.rows.append([quantity, (str(row.get("unit") or _unit(quantity)), "word text"), figure(row.get("value"), nothing=DASH), figure(row.get("reference_value"), nothing=DASH), _pct(row.get("relative")),
-                               _pct(row.get("band"), signed=False), ("resolved", "word text") if is_resolved(row) else ("not resolved", "word text unresolved"),
+                               _pct(row.get("band"), signed=False), (str(row.get("verdict") or "resolved"), "word text") if is_resolved(row) else ("not resolved", "word text unresolved"),
                                {True: ("yes", "good"), False: ("no", "bad"), None: DASH}[inside]])  # fmt: skip
         tables.append(table)
     return tables
@@ -350,24 +350,26 @@ def _levels(r: Mapping) -> Table:
     for key, model in r["models"].items():
         for n, v in enumerate((model.get("convergence") or {}).get("levels") or [], start=1):
             dofs = f"{v['dofs']:,}".replace(",", " ") if is_number(v.get("dofs")) else DASH
-            rows.append([f"{_capital(model_name(key))}, mesh {n}", dofs, _mm(v.get("h")), _eng(v.get("c_zz"), 7), f"{v['bending_1_hz']:.3f}" if is_number(v.get("bending_1_hz")) else DASH])
-    return Table("Meshes of the study", ["mesh", "degrees of freedom", "element size h, mm", "C_zz, m/N", "first bending, Hz"], rows)
+            rows.append([f"{_capital(model_name(key))}, {n}", dofs, _mm(v.get("h")), str(v.get("order") or DASH), _eng(v.get("c_zz"), 7), f"{v['bending_1_hz']:.3f}" if is_number(v.get("bending_1_hz")) else DASH])
+    return Table("The three discretisations", ["model", "degrees of freedom", "element size h, mm", "element order", "C_zz, m/N", "first bending, Hz"], rows)
 
 
 def _orders(r: Mapping) -> Table:
     rows = []
     for key, model in r["models"].items():
-        for name, label in (("c_zz", "C_zz, m/N"), ("bending_1", "first bending, Hz")):
-            e = (model.get("convergence") or {}).get(name)
-            if not e:
+        for name, e in (model.get("convergence") or {}).items():
+            if name == "levels" or not e:
                 continue
+            stiff = name.startswith(("c_", "k_"))
+            label = _capital(name) if stiff else f"{name.replace('_', ' ')}, Hz"
             ratio = e.get("ratio")
             ratios = ", ".join(f"{v:.3g}" for v in (ratio if isinstance(ratio, list) else [ratio]) if is_number(v)) or DASH
             safe = {True: ("yes", "good"), False: ("no", "bad")}.get(e.get("asymptotic"), DASH)
-            two = (f"{e[k]:.2f}" if is_number(e.get(k)) else DASH for k in ("observed_order", "expected_order"))
-            rows.append([f"{_capital(model_name(key))}: {label}", ratios, *two, _eng(e.get("extrapolated"), 7) if name == "c_zz" else f"{e['extrapolated']:.3f}" if is_number(e.get("extrapolated")) else DASH,
+            three = (f"{e[k]:.2f}" if is_number(e.get(k)) else DASH for k in ("observed_order", "expected_order", "used_order"))
+            rows.append([f"{_capital(model_name(key))}: {label}", ratios, *three, _eng(e.get("extrapolated"), 7) if stiff else f"{e['extrapolated']:.3f}" if is_number(e.get("extrapolated")) else DASH,
                          _pct(e.get("gci"), signed=False), str(e.get("factor") or DASH), safe])  # fmt: skip
-    return Table("Orders and bands", ["quantity", "refinement ratios", "observed order", "expected order", "extrapolated", "GCI", "factor", "asymptotic"], rows)
+    return Table("Orders and bands", ["quantity", "refinement ratios", "observed order", "expected order", "order used", "extrapolated", "GCI", "factor", "asymptotic"], rows,
+                 "Asymptotic “no”: the three results do not fall at the order used. Where the observed order is the higher of the two, the band is the more cautious one.")
 
 
 def _algebra(r: Mapping) -> Table:
