@@ -253,9 +253,9 @@ def test_shaft_on_soft_springs_is_a_rigid_mass(fidelity, options):
     scene = on_two_springs(radial, axial)
     found = every_shape(sg.modes(sg.build(scene, fidelity, **options), scene, n=5))
     assert found[0] == 0.0
-    # Elastic compliance of the shaft is 1e-5 of the springs' (1e4 N/m against about 1e9).  The solid's O-grid carries the
-    # volume of the circle to 1e-6 and its inertia to 1e-5.
-    assert found[1:] == pytest.approx(rigid_frequencies(scene, radial, axial), rel=2e-5)
+    # The shaft's own compliance lowers the frequencies by 1e-6 (1e4 N/m against some 1e9 to 1e10 of a rod on two points);
+    # the solid's O-grid carries the volume of the circle exactly and its inertia to 3e-7.
+    assert found[1:] == pytest.approx(rigid_frequencies(scene, radial, axial), rel=3e-6)
 
 
 @pytest.mark.parametrize("fidelity, options", [("timoshenko", {}), ("harmonic", {"order": 2})])
@@ -263,14 +263,14 @@ def test_near_rigid_shaft_on_stiff_springs(fidelity, options):
     radial, axial = 1e7, 3e7
     scene = on_two_springs(radial, axial, modulus=2e15)
     found = every_shape(sg.modes(sg.build(scene, fidelity, **options), scene, n=5))
-    # 1e4 times steel, some 1e13 N/m, against springs of 1e7 N/m: 1e-6
-    assert found[1:] == pytest.approx(rigid_frequencies(scene, radial, axial), rel=1e-5)
+    # 1e4 times steel, some 1e13 to 1e14 N/m, against springs of 1e7 N/m: 1e-7; the shifted solve rounds to 3e-7
+    assert found[1:] == pytest.approx(rigid_frequencies(scene, radial, axial), rel=5e-6)
 
 
 @pytest.mark.xfail(
     strict=True,
     reason="eigenvalues are shifted ones less a shift of 1e-3 of the first elastic eigenvalue, and K u of a nearly rigid shape "
-    "is rounding: frequencies are 5e-5 (beam) to 9e-3 (harmonic) wrong at 1 N/m and meaningless at 1e-3 N/m",
+    "is rounding: frequencies are 5e-5 to 1e-2 wrong at 1 N/m and 5 to 100 % at 1e-3 N/m",
 )
 @pytest.mark.parametrize("radial", [1.0, 1e-3])
 @pytest.mark.parametrize("fidelity, options", [("timoshenko", {}), ("harmonic", {"order": 2})])
