@@ -49,7 +49,7 @@ def told():
 
 @pytest.fixture(scope="module")
 def found(overhung, told):
-    return sg.compare(overhung, settings=LIGHT, progress=told.append)
+    return compare(overhung, settings=LIGHT, progress=told.append)
 
 
 @pytest.fixture(scope="module")

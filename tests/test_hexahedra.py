@@ -102,8 +102,8 @@ def test_conforming(case):
     assert not cKDTree(mesh.doflocs.T).query_pairs(1e-6 * scale)
     # ... and facets inside that see only one element: then the surface would be larger than the shaft's
     surface = facet_area(mesh, mesh.boundary_facets()).sum()
-    # flat facets between nodes on circles: less than pi^2 / 2 / around^2 of error on each part, and cones add as little
-    assert surface == pytest.approx(skin(scene), rel=5 / around**2)
+    # flat facets make polygons of circles: their area is 2 pi^2 / 3 / around^2 too small, their circumference less so
+    assert surface == pytest.approx(skin(scene), rel=7 / around**2)
     inside = np.sum(mesh.f2t[1] != -1)
     assert 2 * inside + len(mesh.boundary_facets()) == 6 * mesh.t.shape[1]
 

@@ -75,8 +75,11 @@ def test_against_dense_eigenvalues(name, fidelity):
     assert found[0] == 0.0  # nothing holds the shaft about its axis
     assert expected[0] < 1.0  # the dense solver sees rounding noise there, in Hz
     # Couplings that change eigenvalues by less than 1e-6 are left out (reported bound 5e-8 here), hence frequencies by
-    # less than half of that; the dense solver adds eps (highest / lowest eigenvalue), about 1e-9.
-    assert found[1:] == pytest.approx(expected[1 : len(found)], rel=1e-7)
+    # less than half of that.  The dense solver adds eps (highest / lowest eigenvalue), half of it in frequency: on the
+    # stubby gear shaft that is 1e-6 with Euler elements, and it splits pairs that are exact.
+    noise = np.finfo(float).eps * (expected[-1] / expected[1]) ** 2
+    assert noise < 1e-4
+    assert found[1:] == pytest.approx(expected[1 : len(found)], rel=1e-7 + noise)
     assert len(found) >= 11
 
 
@@ -267,11 +270,6 @@ def test_near_rigid_shaft_on_stiff_springs(fidelity, options):
     assert found[1:] == pytest.approx(rigid_frequencies(scene, radial, axial), rel=5e-6)
 
 
-@pytest.mark.xfail(
-    strict=True,
-    reason="eigenvalues are shifted ones less a shift of 1e-3 of the first elastic eigenvalue, and K u of a nearly rigid shape "
-    "is rounding: frequencies are 5e-5 to 1e-2 wrong at 1 N/m and 5 to 100 % at 1e-3 N/m",
-)
 @pytest.mark.parametrize("radial", [1.0, 1e-3])
 @pytest.mark.parametrize("fidelity, options", [("timoshenko", {}), ("harmonic", {"order": 2})])
 def test_very_soft_springs_keep_their_digits(fidelity, options, radial):

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 import solidgear as sg
+from solidgear.compare import compare
 from solidgear.verdict import JUDGED, deviations, judge
 
 GEOMETRY = Path(__file__).parent.parent / "geometry"
@@ -172,7 +173,7 @@ def test_cancellation_is_said_where_there_is_one(as_scene, section, said):
 
 def test_cancellation_on_the_overhung_pinion():
     scene = sg.load(GEOMETRY / "pinion_overhung.toml")
-    found = sg.compare(scene, ("timoshenko", "harmonic"), settings={"harmonic": {"order": 3, "layers": 1}}).results
+    found = compare(scene, ("timoshenko", "harmonic"), settings={"harmonic": {"order": 3, "layers": 1}}).results
     # measured 0.87 % with the scene's seats and 3.0 % like for like
     (sentence,) = cancels(found["verdict"])
     assert sentence.startswith("Timoshenko's first bending looks 0.87 % off") and "but is 3 % off" in sentence
@@ -181,5 +182,5 @@ def test_cancellation_on_the_overhung_pinion():
     assert "like for like" in found["models"]["timoshenko"]["why_not"]
     # and is good enough for someone who asks for 20 %
     loose = scene.with_changes(ask=scene.ask.with_changes(tolerance=0.2))
-    found = sg.compare(loose, ("timoshenko", "harmonic"), settings={"harmonic": {"order": 3, "layers": 1}}).results
+    found = compare(loose, ("timoshenko", "harmonic"), settings={"harmonic": {"order": 3, "layers": 1}}).results
     assert found["models"]["timoshenko"]["valid"] and found["verdict"]["cheapest"] == "timoshenko"

@@ -10,6 +10,7 @@ independence is what makes a comparison worth having.
 from __future__ import annotations
 
 import numpy as np
+import scipy.linalg as sla
 import scipy.sparse as sp
 
 from solidgear.body import Block, Body, Port
@@ -84,13 +85,18 @@ def beam(
         raise SolidgearError("kappa: 'cowper' is given for solid sections only; use 'hutchinson' for a hollow shaft")
     nodes, owner = _mesh(scene, elements)
     n = len(nodes)
-    size = {"bending": 2 * n, "axial": n, "torsion": n}
+    # Timoshenko elements carry internal unknowns, after the nodal ones; only rotary inertia drives the second.
+    inner = 1 + rotary_inertia if shear and mass == "consistent" else 0
+    size = {"bending": 2 * n + inner * (n - 1), "axial": n, "torsion": n}
     entries = {name: ([], [], [], []) for name in size}
     for e, segment in enumerate(owner):
         left, right = nodes[e], nodes[e + 1]
         section = _Section(segment, left, right, head, kappa)
         parts = {
-            "bending": (*_bending(section, shear, rotary_inertia, mass), np.arange(2 * e, 2 * e + 4)),
+            "bending": (
+                *_bending(section, shear, rotary_inertia, mass),
+                np.concatenate([np.arange(2 * e, 2 * e + 4), 2 * n + inner * e + np.arange(inner)]),
+            ),
             "axial": (*_rod(section, section.stretch, section.mass, mass), np.array([e, e + 1])),
             "torsion": (*_rod(section, section.twist, section.polar, mass), np.array([e, e + 1])),
         }
@@ -106,9 +112,10 @@ def beam(
     ports = tuple(Port(s.name, s.y, "node") for s in scene.stations)
     one, zero = np.ones(n), np.zeros(n)
     lift = np.column_stack([np.column_stack([one, zero]).ravel(), np.column_stack([nodes, one]).ravel()])
-    pick2 = _pick([2 * p + c for p in places for c in (0, 1)], 2 * n)
+    pick2 = _pick([2 * p + c for p in places for c in (0, 1)], size["bending"])
     pick1 = _pick(places, n)
-    y2 = np.repeat(nodes, 2)
+    lift = np.vstack([lift, np.zeros((size["bending"] - 2 * n, 2))])
+    y2 = np.concatenate([np.repeat(nodes, 2), np.full(size["bending"] - 2 * n, np.nan)])
     bending = Block("bending_z", (2, 3), k["bending"], m["bending"], lift, y2, pick2)
     blocks = (
         bending,
@@ -187,32 +194,49 @@ class _Section:
 
 
 def _bending(c: _Section, shear: bool, rotary: bool, mass: str):
-    """Stiffness and mass (4, 4) of one bending element on ``(z, thx)`` at both ends."""
+    """Stiffness and mass of one bending element on ``(z, thx)`` at both ends, then internal unknowns.
+
+    With shear the static field has constant shear in an element, which alone converges with the square of its
+    length.  Two internal fields, those of a clamped element under a uniform force and a uniform moment, lift
+    that to the fourth power; they store no energy together with the nodal fields.
+    """
     L, s, w = c.length, c.s, c.w
-    # Clamped at the left, loaded at the right by a unit force and a unit moment.  With
-    # dz/dy = thx a force F at the tip bends by F (L - s), a moment by 1.
-    moment = np.column_stack([L - s, np.ones_like(s)])
-    force = np.column_stack([np.ones_like(s), np.zeros_like(s)])
-    turn = c.integral @ (moment / c.bend[:, None])
-    slope = turn + (force / c.shear[:, None] if shear else 0.0)
-    deflection = c.integral @ slope
-    flex = moment.T @ (w[:, None] * moment / c.bend[:, None])
-    if shear:
-        flex = flex + force.T @ (w[:, None] * force / c.shear[:, None])
-    tip = np.linalg.inv(flex)
+    soft = np.stack([1 / c.bend, 1 / c.shear if shear else np.zeros_like(s)])
+    # Clamped at the left.  With dz/dy = thx a tip force bends by L - s, a tip moment by 1, a uniform
+    # force by (L - s)^2 / 2 and a uniform moment by L - s.  First row moments, second row shear forces.
+    tip = np.stack([np.column_stack([L - s, np.ones_like(s)]), np.column_stack([np.ones_like(s), np.zeros_like(s)])])
+    spread = np.stack([np.column_stack([(L - s) ** 2 / 2, L - s]), np.column_stack([L - s, np.zeros_like(s)])])
+
+    def energy(a, b):
+        return np.einsum("kqi,kq,kqj->ij", a, w * soft, b)
+
+    def field(inner):
+        """Deflection and turn along the cantilever for internal moments and forces."""
+        turn = c.integral @ (inner[0] * soft[0][:, None])
+        return np.stack([c.integral @ (turn + inner[1] * soft[1][:, None]), turn])
+
+    resist = np.linalg.inv(energy(tip, tip))
     carry = np.array([[1.0, L], [0.0, 1.0]])  # rigid motion of the right end under that of the left
     difference = np.hstack([-carry, np.eye(2)])
-    k = difference.T @ tip @ difference
-    rigid = np.stack([np.column_stack([np.ones_like(s), s]), np.column_stack([np.zeros_like(s), np.ones_like(s)])])
-    elastic = np.stack([deflection, turn]) @ tip @ difference
-    field = elastic + np.concatenate([rigid, np.zeros_like(rigid)], axis=2)
-    inertia = (c.mass, c.rotary if rotary else np.zeros_like(s))
-    m = sum(f.T @ (w[:, None] * i[:, None] * f) for f, i in zip(field, inertia))
+    k = difference.T @ resist @ difference
+    rigid = np.zeros((2, len(s), 4))
+    rigid[0, :, 0] = rigid[1, :, 1] = 1.0
+    rigid[0, :, 1] = s
+    shape = field(tip) @ resist @ difference + rigid
+    inertia = np.stack([c.mass, c.rotary if rotary else np.zeros_like(s)])
     if mass == "lumped":
         left = s < L / 2
-        ends = [(w * c.mass)[left].sum(), (w * c.mass)[~left].sum()]
-        turns = [(w * inertia[1])[left].sum(), (w * inertia[1])[~left].sum()]
-        m = np.diag([ends[0], turns[0], ends[1], turns[1]])
+        ends = [(w * i)[part].sum() for part in (left, ~left) for i in inertia]
+        return k, np.diag(ends)
+    if shear:
+        spread = spread[:, :, : 1 + rotary]
+        clamped = spread - tip @ (resist @ energy(tip, spread))
+        stiff = energy(clamped, clamped)
+        # Brought to the size of the nodal stiffness, for a well-scaled matrix.
+        clamped = clamped * np.sqrt(k[0, 0] / np.diag(stiff))
+        k = sla.block_diag(k, energy(clamped, clamped))
+        shape = np.concatenate([shape, field(clamped)], axis=2)
+    m = np.einsum("kqi,kq,kqj->ij", shape, w * inertia, shape)
     return k, m
 
 

@@ -164,7 +164,7 @@ def _beam(scene, nodes, moved):
     for name, start in (("bending_z", 0.0), ("bending_x", np.pi / 2)):
         if name in moved:
             # In the x plane the second unknown is -thz, which turns z into x as thx turns y into z.
-            lift, tilt = (np.interp(rings.y, nodes, moved[name][k::2]) for k in (0, 1))
+            lift, tilt = (np.interp(rings.y, nodes, moved[name][k : 2 * len(nodes) : 2]) for k in (0, 1))
             waves.append(_wave(1, start, lift, lift, -rings.r * tilt))
     if "axial" in moved:
         waves.append(_wave(0, 0.0, 0.0, 0.0, np.interp(rings.y, nodes, moved["axial"])))

@@ -1,0 +1,374 @@
+"""The command line: numbers on standard output, one sentence on standard error, and nothing written by a refused command."""
+
+import json
+import os
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from solidgear import cli
+from solidgear.solve.factor import pardiso_missing
+
+ROOT = Path(__file__).parent.parent
+SCENE = str(ROOT / "geometry" / "pinion_overhung.toml")
+FREE = str(ROOT / "geometry" / "cylinder_free.toml")
+LIGHT = {
+    "euler": [],
+    "timoshenko": [],
+    "harmonic": ["--set", "order=3", "--set", "layers=1"],
+    "solid": ["--set", "refinement=0.35"],
+}
+ORDER = ["x", "y", "z", "thx", "thy", "thz"]
+
+
+def strict(text):
+    def refuse(word):
+        raise AssertionError(f"{word} is not JSON")
+
+    return json.loads(text, parse_constant=refuse)
+
+
+class Done:
+    def __init__(self, code, out, err):
+        self.code, self.out, self.err = code, out, err
+
+
+@pytest.fixture
+def run(monkeypatch, capsys, tmp_path):
+    """The installed command's entry point, in an empty folder."""
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.delenv("SOLIDGEAR_BACKEND", raising=False)
+    monkeypatch.setenv("COLUMNS", "100")
+
+    def call(*arguments):
+        monkeypatch.setattr(sys, "argv", ["solidgear", *map(str, arguments)])
+        capsys.readouterr()
+        try:
+            cli.main()
+            code = 0
+        except SystemExit as end:
+            code = end.code
+        streams = capsys.readouterr()
+        return Done(code or 0, streams.out, streams.err)
+
+    return call
+
+
+def environment(**more):
+    path = os.pathsep.join(filter(None, [str(ROOT), os.environ.get("PYTHONPATH")]))
+    return {**os.environ, "PYTHONPATH": path, "OPENBLAS_NUM_THREADS": "1", **more}
+
+
+def python(*arguments, cwd=None, **more):
+    return subprocess.run([sys.executable, *arguments], capture_output=True, text=True, cwd=cwd, env=environment(**more), timeout=120)
+
+
+# --------------------------------------------------------------------------- answers
+@pytest.mark.parametrize("fidelity", LIGHT)
+def test_stiffness_as_json(run, fidelity):
+    done = run("stiffness", SCENE, "--fidelity", fidelity, "--json", *LIGHT[fidelity])
+    assert done.code == 0 and done.err == ""
+    found = strict(done.out)
+    assert found["fidelity"] == fidelity and found["port"] == "pinion" and found["order"] == ORDER and found["free"] == ["thy"]
+    assert [len(row) for row in found["stiffness"]] == [6] * 6
+    assert found["stiffness"][4] == [0.0] * 6 and found["compliance"][4] == [None] * 6
+    # Between the beams and the solids K_zz spreads from 4.2e9 to 7.3e9; the converged solid has 4.71e9, and what these light
+    # settings leave is 0.2 % (harmonic) and 1 % (solid).
+    low, high = {"euler": (7.2e9, 7.5e9), "timoshenko": (4.1e9, 4.3e9)}.get(fidelity, (4.71e9 * 0.97, 4.71e9 * 1.03))
+    assert low < found["stiffness"][2][2] < high
+
+
+@pytest.mark.parametrize("fidelity", LIGHT)
+def test_modes_as_json(run, fidelity):
+    done = run("modes", SCENE, "-f", fidelity, "-n", "4", "--json", *LIGHT[fidelity])
+    assert done.code == 0 and done.err == ""
+    found = strict(done.out)
+    names = {m["name"]: m for m in found["modes"]}
+    assert names["rigid torsion"]["frequency_hz"] == 0 and names["bending 1"]["multiplicity"] == 2
+    # 2758 Hz converged; Euler 21 % above it, the others within 1 %
+    want, rtol = (3344, 0.01) if fidelity == "euler" else (2758, 0.01)
+    assert names["bending 1"]["frequency_hz"] == pytest.approx(want, rel=rtol)
+    # four shapes, twins counted twice, besides the rigid one
+    assert sum(m["multiplicity"] for m in found["modes"] if m["frequency_hz"] > 0) in (4, 5)
+    assert found["evidence"]["rigid_modes"] == 1
+
+
+def test_max_frequency_cuts(run):
+    found = strict(run("modes", SCENE, "-f", "timoshenko", "--max-frequency", "3000", "--json").out)
+    assert [m["name"] for m in found["modes"]] == ["rigid torsion", "axial 1", "bending 1"]
+
+
+@pytest.mark.parametrize("fidelity", LIGHT)
+def test_check_as_json(run, fidelity):
+    done = run("check", SCENE, "-f", fidelity, "--json", *LIGHT[fidelity])
+    found = strict(done.out)
+    assert done.code == 0 and found["faults"] == []
+    assert any("closed form" in fact for fact in found["facts"])
+    assert any("270 degrees" in caution for caution in found["cautions"])
+
+
+def test_check_of_a_mesh_that_is_off_fails(run, monkeypatch):
+    monkeypatch.setitem(__import__("solidgear.check", fromlist=["x"]).MASS_TOLERANCE, "timoshenko", -1.0)
+    done = run("check", SCENE, "-f", "timoshenko")
+    assert done.code == 1 and "fault: mass of the timoshenko mesh" in done.out
+
+
+def test_tables_for_people(run):
+    done = run("stiffness", SCENE, "-f", "timoshenko")
+    assert done.code == 0 and re.search(r"pinion_overhung: timoshenko, \d+ unknowns", done.out) and "Free: thy" in done.out
+    done = run("modes", SCENE, "-f", "timoshenko")
+    assert done.code == 0 and "bending 1" in done.out and "Residual" in done.out
+    done = run("check", SCENE, "-f", "timoshenko")
+    assert done.code == 0 and "caution: " in done.out
+    assert list(Path.cwd().iterdir()) == []
+
+
+def test_free_body_has_no_compliance_but_json(run):
+    found = strict(run("stiffness", FREE, "-f", "euler", "--json").out)
+    assert found["free"] == ORDER and found["compliance"] == [[None] * 6] * 6 and found["stiffness"] == [[0.0] * 6] * 6
+    assert strict(run("modes", FREE, "-f", "euler", "--json").out)["evidence"]["rigid_modes"] == 6
+
+
+def test_attachment_for_every_port(run):
+    found = {a: strict(run("stiffness", SCENE, *LIGHT["harmonic"], "--attachment", a, "--json").out) for a in ("average", "rigid", "section")}
+    assert all(f["attachment"] == a for a, f in found.items())
+    c = {a: f["compliance"][2][2] for a, f in found.items()}
+    assert c["section"] > c["average"] > c["rigid"]
+
+
+def test_builder_options(run):
+    sizes = {order: strict(run("stiffness", SCENE, "--set", f"order={order}", "--json").out)["dofs"] for order in (2, 3)}
+    assert sizes[3] > sizes[2]
+    # words, whole numbers, fractions and truth values
+    found = strict(run("stiffness", SCENE, "-f", "timoshenko", "--set", "head=mean", "--set", "elements=30", "--set", "shear=false", "--json").out)
+    same = strict(run("stiffness", SCENE, "-f", "euler", "--set", "head=mean", "--set", "elements=30", "--json").out)
+    other = strict(run("stiffness", SCENE, "-f", "euler", "--set", "elements=30", "--json").out)
+    # one stiffness matrix, two mass matrices behind its regularisation (measured 1e-13); the head as a cone is 5 % away
+    assert found["dofs"] == same["dofs"] and found["stiffness"][2][2] == pytest.approx(same["stiffness"][2][2], rel=1e-9)
+    assert found["stiffness"][2][2] != pytest.approx(other["stiffness"][2][2], rel=0.01)
+
+
+def test_compare_writes_a_folder_and_prints_json_alone(run, tmp_path):
+    done = run("compare", SCENE, "--models", "euler, timoshenko", "--no-renders", "--json", "--out", "deep/out")
+    assert done.code == 0 and done.err == ""
+    found = strict(done.out)
+    assert list(found["models"]) == ["euler", "timoshenko"] and found["complete"]
+    out = tmp_path / "deep" / "out"
+    assert {p.name for p in out.iterdir()} == {"results.json", "report.html", "modes_euler.vtu", "modes_timoshenko.vtu"}
+    assert strict((out / "results.json").read_text()) == found
+
+
+def test_compare_for_people(run):
+    done = run("compare", SCENE, "--models", "timoshenko", "--no-renders", "-o", "out")
+    assert done.code == 0 and "Report: out/report.html" in done.out
+    assert "timoshenko: build" in done.err and "Traceback" not in done.err
+
+
+def test_compare_in_which_all_fails_says_so(run, monkeypatch):
+    monkeypatch.setenv("SOLIDGEAR_BACKEND", "cholmod")
+    done = run("compare", SCENE, "--models", "euler", "--no-renders", "-o", "out", "--json")
+    assert done.code == 1 and "cholmod" in strict(done.out)["models"]["euler"]["why_not"]
+
+
+def test_interrupted_compare_ends_with_130(run, monkeypatch):
+    import solidgear.compare
+
+    def stop(*_, **__):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(solidgear.compare, "_solve", stop)
+    done = run("compare", SCENE, "--models", "euler", "-o", "out", "--json")
+    assert done.code == 130 and strict(done.out)["complete"] is False
+
+
+@pytest.mark.xfail(strict=True, reason="typer takes KeyboardInterrupt before main() sees it: status 130, but not a word")
+def test_interrupt_elsewhere_is_a_sentence(run, monkeypatch, tmp_path):
+    def stop(*_, **__):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("solidgear.fidelity.build", stop)
+    refused(run("stiffness", SCENE, "-f", "euler"), tmp_path, "interrupted", code=130)
+
+
+def test_render_or_a_sentence_that_helps(run, monkeypatch, tmp_path):
+    done = run("render", SCENE, "-f", "timoshenko", "--mode", "axial 1", "--out", "mode.png")
+    if done.code == 0:
+        assert done.out.strip() == "mode.png" and (tmp_path / "mode.png").read_bytes().startswith(b"\x89PNG")
+    else:
+        assert "libgl1" in done.err and list(tmp_path.iterdir()) == []
+    (tmp_path / "mode.png").unlink(missing_ok=True)
+    monkeypatch.setenv("SOLIDGEAR_RENDERER", "none")
+    done = run("render", SCENE, "-f", "timoshenko", "--out", "mode.png")
+    refused(done, tmp_path, "libgl1")
+
+
+# --------------------------------------------------------------------------- refusals
+def refused(done, folder, *words, code=1):
+    assert done.code == code and done.out == ""
+    assert "Traceback" not in done.err
+    assert done.err.startswith("solidgear: ") and done.err.count("\n") == 1
+    for word in words:
+        assert word in done.err
+    assert sorted(folder.rglob("*")) == []
+
+
+REFUSED = {
+    "option without a value": (["stiffness", SCENE, "--set", "nonsense"], ["nonsense", "key=value"]),
+    "value without an option": (["stiffness", SCENE, "--set", "=3"], ["key=value"]),
+    "option of no builder": (["stiffness", SCENE, "--set", "banana=3"], ["banana", "harmonic", "no such option"]),
+    "option of another builder": (["modes", SCENE, "-f", "euler", "--set", "order=3"], ["order", "euler", "no such option"]),
+    "order out of range": (["modes", SCENE, "--set", "order=13"], ["order 13", "1 and 12"]),
+    "unknown element": (["check", SCENE, "-f", "solid", "--set", "element=tet7"], ["tet7", "tet10"]),
+    "unknown attachment": (["stiffness", SCENE, "--attachment", "glued"], ["glued", "rigid"]),
+    "negative number of modes": (["modes", SCENE, "-f", "euler", "-n", "-2"], ["-2"]),
+    "missing file": (["stiffness", "nowhere.toml"], ["nowhere.toml", "no such file"]),
+    "folder for a file": (["check", str(ROOT / "geometry")], ["geometry", "folder"]),
+    "missing file to compare": (["compare", "nowhere.toml", "--out", "out"], ["nowhere.toml"]),
+    "unknown mode": (["render", SCENE, "-f", "euler", "--mode", "banana 7", "--out", "x.png"], ["banana 7", "bending 1"]),
+    "not a number": (["stiffness", SCENE, "--set", "order=abc"], ["order"]),
+    "broken order": (["stiffness", SCENE, "--set", "order=2.5"], ["order"]),
+    "NaN": (["stiffness", SCENE, "--set", "refinement=nan"], ["refinement"]),
+    "no refinement": (["stiffness", SCENE, "--set", "refinement=0"], ["refinement"]),
+    "negative refinement": (["stiffness", SCENE, "-f", "solid", "--set", "refinement=-1"], ["refinement"]),
+    "negative size": (["stiffness", SCENE, "--set", "size=-1"], ["size"]),
+    "layers that grow": (["stiffness", SCENE, "--set", "ratio=2"], ["ratio"]),
+    "one number for a list": (["stiffness", SCENE, "--set", "order=2", "--set", "ovalising=2"], ["ovalising"]),
+    "negative elements": (["stiffness", SCENE, "-f", "euler", "--set", "elements=-4"], ["elements"]),
+    "no modes": (["modes", SCENE, "-f", "euler", "-n", "0"], ["0"]),
+    "negative frequency": (["modes", SCENE, "-f", "euler", "--max-frequency", "-5"], ["-5"]),
+    "unknown model to compare": (["compare", SCENE, "--models", "banana", "--out", "out"], ["banana", "timoshenko"]),
+    "unknown mode in a new folder": (["render", SCENE, "-f", "euler", "--mode", "banana 7", "--out", "new/x.png"], ["banana 7"]),
+}
+KNOWN = {
+    "not a number": "a text for a number ends in TypeError (fidelity/harmonic.py: order is compared before its kind is known)",
+    "broken order": "order=2.5 ends in TypeError in scikit-fem",
+    "NaN": "refinement=nan ends in ValueError (meshing/layout.py, graded)",
+    "no refinement": "refinement=0 is taken for the coarsest mesh without a word",
+    "negative refinement": "refinement=-1 is taken for the coarsest mesh without a word",
+    "negative size": "size=-1 is noticed only as NaN in the matrix, after warnings of numpy",
+    "layers that grow": "ratio=2 ends in LinAlgError",
+    "one number for a list": "ovalising=2, which check recommends as (2, 3), ends in TypeError; no text makes a list",
+    "negative elements": "elements=-4 is taken without a word",
+    "no modes": "-n 0 is taken for the scene's number of modes (cli.py: n or ...)",
+    "negative frequency": "a negative max-frequency gives an empty table (and 0 is taken for the scene's)",
+    "unknown model to compare": "compare makes the folder before it looks at --models",
+    "unknown mode in a new folder": "render makes the folder before it looks at --mode",
+}
+
+
+@pytest.mark.filterwarnings("ignore::RuntimeWarning")
+@pytest.mark.parametrize("name", [pytest.param(n, marks=pytest.mark.xfail(strict=True, reason=KNOWN[n])) if n in KNOWN else n for n in REFUSED])
+def test_refused_in_one_sentence(run, tmp_path, name):
+    arguments, words = REFUSED[name]
+    refused(run(*arguments), tmp_path, *words)
+
+
+def test_bad_scene_is_refused_by_every_command(run, tmp_path):
+    bad = tmp_path / "bad.toml"
+    bad.write_text(Path(SCENE).read_text(encoding="utf-8").replace('diameter = "90 mm"', 'diameter = "-90 mm"'), encoding="utf-8")
+    for command in (["stiffness"], ["modes"], ["check"], ["render"], ["compare", "--out", "out"]):
+        done = run(command[0], bad, *command[1:])
+        assert done.code == 1 and done.out == "" and done.err.count("\n") == 1
+        assert "bad.toml" in done.err and "-90 mm" in done.err
+        assert [p.name for p in tmp_path.iterdir()] == ["bad.toml"]
+
+
+@pytest.mark.parametrize("out", ["occupied", "occupied/deeper"])
+def test_unwritable_folder_is_found_before_the_work(run, tmp_path, monkeypatch, out):
+    (tmp_path / "occupied").write_text("a file")
+    monkeypatch.setattr("solidgear.compare.compare", lambda *_, **__: pytest.fail("solved first"))
+    done = run("compare", SCENE, "--models", "euler", "--out", out)
+    assert done.code == 1 and done.out == "" and done.err.count("\n") == 1
+    assert done.err.startswith(f"solidgear: --out {out}: cannot write there")
+    assert (tmp_path / "occupied").read_text() == "a file" and len(list(tmp_path.iterdir())) == 1
+
+
+def test_unwritable_picture(run, tmp_path):
+    (tmp_path / "occupied").write_text("a file")
+    done = run("render", SCENE, "-f", "euler", "--out", "occupied/x.png")
+    assert done.code == 1 and done.err.startswith("solidgear: --out occupied: cannot write there") and done.err.count("\n") == 1
+
+
+@pytest.mark.parametrize("arguments", [["stiffness", SCENE, "-f", "banana"], ["stiffness"], ["stiffness", SCENE, "--banana"], ["banana"]])
+def test_wrong_usage_is_explained(run, tmp_path, arguments):
+    done = run(*arguments)
+    assert done.code == 2 and done.out == "" and "Traceback" not in done.err
+    assert "Usage: " in done.err and list(tmp_path.iterdir()) == []
+
+
+def test_memory_that_runs_out_is_a_sentence(run, tmp_path, monkeypatch):
+    def broken(*_, **__):
+        raise MemoryError
+
+    monkeypatch.setattr("solidgear.fidelity.build", broken)
+    refused(run("stiffness", SCENE), tmp_path, "not enough memory")
+
+
+# --------------------------------------------------------------------------- help, back ends, imports
+def test_help_lists_the_commands(run):
+    done = run("--help")
+    assert done.code == 0
+    for command in ("compare", "stiffness", "modes", "render", "check"):
+        assert re.search(rf"^\W*{command}\b", done.out, re.MULTILINE)
+        page = run(command, "-h")
+        assert page.code == 0 and "scene" in page.out.lower()
+
+
+def test_backends_give_the_same_stiffness(run, monkeypatch):
+    found = {}
+    for backend in ("superlu", "pardiso"):
+        if backend == "pardiso" and pardiso_missing():
+            pytest.skip(pardiso_missing())
+        monkeypatch.setenv("SOLIDGEAR_BACKEND", backend)
+        record = strict(run("stiffness", SCENE, *LIGHT["harmonic"], "--json").out)
+        assert record["evidence"]["backend"] == backend
+        found[backend] = record["stiffness"][2][2]
+    # two factorisations of one matrix, each refined to 1e-10 and better
+    assert found["superlu"] == pytest.approx(found["pardiso"], rel=1e-9)
+
+
+def test_unknown_backend_is_refused(run, tmp_path, monkeypatch):
+    monkeypatch.setenv("SOLIDGEAR_BACKEND", "cholmod")
+    refused(run("stiffness", SCENE, "-f", "euler"), tmp_path, "cholmod", "superlu")
+
+
+def test_module_runs_as_a_program(tmp_path):
+    done = python("-m", "solidgear.cli", "stiffness", SCENE, "-f", "euler", "--json", cwd=tmp_path)
+    assert done.returncode == 0 and done.stderr == ""
+    assert strict(done.stdout)["fidelity"] == "euler"
+    done = python("-m", "solidgear.cli", "stiffness", "nowhere.toml", cwd=tmp_path)
+    assert done.returncode == 1 and done.stdout == "" and done.stderr == "solidgear: nowhere.toml: there is no such file\n"
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_importing_the_package_is_cheap():
+    code = "import solidgear, sys; heavy = {'numpy', 'scipy', 'skfem', 'gmsh', 'pydantic', 'matplotlib', 'pyvista'}; print(sorted(heavy & set(sys.modules)))"
+    done = python("-c", code)
+    assert done.stdout.strip() == "[]", done.stderr
+
+
+def test_importing_the_command_line_is_cheap():
+    code = "import solidgear.cli, sys; print(sorted({'numpy', 'scipy', 'skfem', 'gmsh', 'pydantic', 'matplotlib', 'pyvista'} & set(sys.modules)))"
+    done = python("-c", code)
+    assert done.stdout.strip() == "[]", done.stderr
+
+
+def test_unknown_name_of_the_package():
+    import solidgear
+
+    with pytest.raises(AttributeError, match="no attribute 'banana'"):
+        solidgear.banana  # noqa: B018
+
+
+def test_names_of_the_package():
+    code = "import solidgear as sg; print([n for n in sg.__all__ if getattr(sg, n) is None], callable(sg.compare))"
+    assert python("-c", code).stdout.split() == ["[]", "True"]
+
+
+@pytest.mark.xfail(strict=True, reason="an import of the module solidgear.compare puts the module in the function's place")
+def test_compare_stays_a_function_after_an_import_of_its_module():
+    code = "import solidgear.compare; import solidgear as sg; print(callable(sg.compare))"
+    assert python("-c", code).stdout.strip() == "True"
