@@ -364,6 +364,18 @@ def test_pictures_of_an_earlier_run_do_not_stay(overhung, tmp_path, monkeypatch)
     assert not (tmp_path / "mode_euler.png").exists() and (tmp_path / "keep.txt").read_text() == "mine"
 
 
+def test_disk_that_fills_up_is_a_sentence_and_leaves_no_halves(overhung, tmp_path, monkeypatch):
+    found = compare(overhung, ("euler",))
+
+    def full(*_):
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr("os.replace", full)
+    with pytest.raises(SolidgearError, match="writing stopped .No space left on device."):
+        found.write_report(tmp_path / "out", renders=False)
+    assert list((tmp_path / "out").iterdir()) == []
+
+
 @pytest.mark.parametrize("below", ["", "deeper", "deeper/still"])
 def test_file_in_place_of_the_folder(found, tmp_path, below):
     occupied = tmp_path / "occupied"

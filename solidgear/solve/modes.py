@@ -13,9 +13,10 @@ import numpy as np
 import scipy.linalg as sla
 import scipy.sparse.linalg as spla
 
-from solidgear.body import Block, Body, Supports, as_supports
+from solidgear.body import Body, as_supports
 from solidgear.errors import SolidgearError
 from solidgear.solve.statics import SHIFT, factors
+from solidgear.solve.supported import Supported, decoupled, groups
 
 STATIONS = 13
 DENSE = 400
@@ -128,16 +129,15 @@ def modes(
     if n < 1:
         raise SolidgearError(f"modes: n = {n} is not a number of modes; ask for 1 or more")
     supports = as_supports(supports)
-    spring, bound = _decoupled(body, supports, coupling_tolerance)
-    null = supports.unresisted(body)
+    spring, bound = decoupled(body, supports, coupling_tolerance)
     raw, rigid, orthogonality = [], [], 0.0
     done: list[tuple[list[int], list[_Raw], list[_Raw]]] = []
-    for group in _groups(body, supports, spring):
+    for group in groups(body, supports, spring):
         twin = _twin_of(body, supports, spring, group, done)
         if twin is not None:
             elastic, free = ([_Raw(r.value, {group[0]: next(iter(r.vectors.values()))}, r.residual) for r in part] for part in twin)
         else:
-            elastic, free, worst = _solve_group(body, supports, spring, null, group, n)
+            elastic, free, worst = _solve_group(Supported(body, supports, spring, group), n)
             orthogonality = max(orthogonality, worst)
         done.append((group, elastic, free))
         raw += elastic
@@ -157,63 +157,6 @@ def modes(
     return ModeSet(body.fidelity, found, stations, project.gram, evidence)
 
 
-def _decoupled(body: Body, supports: Supports, tolerance: float):
-    """Bearing matrix with negligible couplings between blocks removed, and the bound that allows it.
-
-    If ``|v' D v| <= eps v' K0 v`` for the removed part D and all v, then by Rayleigh's quotient no
-    eigenvalue of the supported body moves by more than eps, relative.
-    """
-    k = supports.stiffness
-    if not supports.ports or len(body.blocks) == 1:
-        return k, 0.0
-    owner = {c: b for b, block in enumerate(body.blocks) for c in block.components}
-    of = np.array([owner[c] for c in list(range(6)) * len(supports.ports)])
-    same = of[:, None] == of[None, :]
-    kept, removed = np.where(same, k, 0.0), np.where(same, 0.0, k)
-    if not removed.any():
-        return k, 0.0
-    d = np.sqrt(np.abs(np.diag(k)))
-    if removed[d == 0].any():
-        return k, 0.0
-    on = d > 0
-    scale = np.outer(d[on], d[on])
-    w, v = np.linalg.eigh(kept[np.ix_(on, on)] / scale)
-    if w[0] < 1e-9:
-        return k, 0.0
-    half = v / np.sqrt(w)
-    bound = float(np.abs(np.linalg.eigvalsh(half.T @ (removed[np.ix_(on, on)] / scale) @ half)).max())
-    return (kept, bound) if bound <= tolerance else (k, 0.0)
-
-
-def _groups(body: Body, supports: Supports, spring: np.ndarray) -> list[list[int]]:
-    """Blocks that bearings couple, as lists of block indices."""
-    count = len(body.blocks)
-    label = list(range(count))
-    m = len(supports.ports)
-
-    def rows(block: Block):
-        return np.array([6 * p + c for p in range(m) for c in block.components], int)
-
-    for i in range(count):
-        for j in range(i + 1, count):
-            a, b = rows(body.blocks[i]), rows(body.blocks[j])
-            if a.size and b.size and np.any(spring[np.ix_(a, b)]):
-                label = [label[i] if x == label[j] else x for x in label]
-    return [[i for i in range(count) if label[i] == x] for x in sorted(set(label))]
-
-
-def _block_springs(body: Body, supports: Supports, spring: np.ndarray, group: list[int]):
-    """Square root of the springs on a group of blocks, and the port rows of each block they act on."""
-    m = len(supports.ports)
-    components = [list(body.blocks[b].components) for b in group]
-    place = np.array([6 * p + c for cs in components for p in range(m) for c in cs], int)
-    root = Supports(supports.ports, spring[np.ix_(place, place)]).root if m else np.zeros((0, 0))
-    wanted = supports.attachments or (None,) * m
-    index = [body.port_index(name, a) for name, a in zip(supports.ports, wanted)]
-    rows = [np.array([len(cs) * p + i for p in index for i in range(len(cs))], int) for cs in components]
-    return root, rows
-
-
 def _twin_of(body, supports, spring, group, done):
     """Earlier result that a lone mirrored block shares, if its springs are mirrored too."""
     block = body.blocks[group[0]]
@@ -230,74 +173,30 @@ def _twin_of(body, supports, spring, group, done):
     return next(((elastic, free) for other, elastic, free in done if other == [index]), None)
 
 
-def _solve_group(body, supports, spring, null, group, n):
+def _solve_group(supported: Supported, n: int):
     """Elastic and rigid modes of blocks that belong together."""
-    blocks = [body.blocks[b] for b in group]
-    facs = [factors(body)[b] for b in group]
-    cuts = np.cumsum([0] + [b.size for b in blocks])
-    total = int(cuts[-1])
-    root, rows = _block_springs(body, supports, spring, group)
-
-    def per_block(f, x):
-        return np.concatenate([f(i, x[cuts[i] : cuts[i + 1]]) for i in range(len(blocks))])
-
-    def mass(x):
-        return per_block(lambda i, part: blocks[i].mass @ part, x)
-
-    def inverse(x):
-        return per_block(lambda i, part: facs[i].solve(part), x)
-
-    # Rigid motions of this group that no spring resists, mass-orthonormal.
-    rigid = np.vstack([b.rigid @ null[list(b.components)] if b.components else np.zeros((b.size, null.shape[1])) for b in blocks])
-    rigid = rigid[:, np.abs(rigid).max(axis=0, initial=0.0) > 0]
-    if rigid.shape[1]:
-        w, v = np.linalg.eigh(rigid.T @ mass(rigid))
-        keep = w > 1e-10 * w.max()
-        rigid = rigid @ (v[:, keep] / np.sqrt(w[keep]))
-    mass_rigid = mass(rigid) if rigid.shape[1] else rigid
-
-    if root.size:
-        parts, start = [], 0
-        for block, at in zip(blocks, rows):
-            parts.append(block.ports[at].T @ root[start : start + len(at)])
-            start += len(at)
-        load = np.vstack(parts)
-        z = inverse(load)
-        inner = sla.cho_factor(np.eye(root.shape[1]) + load.T @ z)
-
-    def purge(x):
-        return x - rigid @ (mass_rigid.T @ x) if rigid.shape[1] else x
-
-    def operator(x):
-        """Rigid-free ``(K + sigma M + G' Kb G)^-1 x`` for a load x."""
-        if rigid.shape[1]:
-            x = x - mass_rigid @ (rigid.T @ x)
-        y = inverse(x)
-        if root.size:
-            y = y - z @ sla.cho_solve(inner, z.T @ x)
-        return purge(y)
-
-    shift = SHIFT * body.scale
+    total, shift = supported.size, supported.shift
+    mass, operator = supported.mass, supported.inverse
+    rigid = supported.free
     wanted = min(n + 2, total - rigid.shape[1])
     if wanted < 1:
         theta, u = np.zeros(0), np.zeros((total, 0))
     elif total <= DENSE or wanted >= total - 2:
-        m = mass(np.eye(total))
-        chol = np.linalg.cholesky(m + 0.0)
+        chol = np.linalg.cholesky(mass(np.eye(total)))
         small = chol.T @ operator(chol)
         theta, w = np.linalg.eigh((small + small.T) / 2)
         theta, w = theta[::-1][:wanted], w[:, ::-1][:, :wanted]
         u = sla.solve_triangular(chol.T, w, lower=False)
     else:
         shape = (total, total)
-        start = operator(np.random.default_rng(0).standard_normal(total))
+        heavy = spla.LinearOperator(shape, matvec=mass, dtype=float)
         theta, u = spla.eigsh(
-            spla.LinearOperator(shape, matvec=mass, dtype=float),  # only its shape is used in this mode
+            heavy,  # only its shape is used in this mode
             k=wanted,
-            M=spla.LinearOperator(shape, matvec=mass, dtype=float),
+            M=heavy,
             sigma=-shift,
             OPinv=spla.LinearOperator(shape, matvec=operator, dtype=float),
-            v0=start,
+            v0=operator(np.random.default_rng(0).standard_normal(total)),
             ncv=min(total - 1, max(2 * wanted + 10, 30)),
             tol=1e-12,
         )
@@ -310,23 +209,18 @@ def _solve_group(body, supports, spring, null, group, n):
     residual = np.sqrt(np.abs(np.einsum("ij,ij->j", back, mass(back)))) / np.where(theta > 0, theta, 1.0)
     # What the shift leaves of an eigenvalue below a thousandth of it is less than a direct Ritz step gives.
     soft = value < 1e-3 * shift
-    if soft.any():
-        # The shift drowns eigenvalues far below it, those of a nearly rigid body on soft springs.
-        whole = np.vstack([b.rigid for b in blocks]) if len(blocks) == 1 else sla.block_diag(*(b.rigid for b in blocks))
-        value[soft], u[:, soft] = _soft_modes(u[:, soft], purge(whole), mass, lambda x: per_block(lambda i, part: blocks[i].stiffness @ part, x), load.T if root.size else np.zeros((0, total)))
+    whole = supported.rigid_motions()
+    if soft.any() and whole.shape[1]:
+        value[soft], u[:, soft] = _soft_modes(u[:, soft], supported.purge(whole), supported)
     residual = residual * np.where(soft, 1.0, 1.0 + shift / np.maximum(value, 1e-3 * shift))
     gram = u.T @ mass(u)
     orthogonality = float(np.abs(gram - np.eye(len(theta))).max(initial=0.0))
-
-    def split(x):
-        return {b: x[cuts[i] : cuts[i + 1]] for i, b in enumerate(group)}
-
-    elastic = [_Raw(float(t), split(u[:, i]), float(residual[i])) for i, t in enumerate(value)]
-    free = [_Raw(0.0, split(rigid[:, i]), 0.0) for i in range(rigid.shape[1])]
+    elastic = [_Raw(float(t), supported.split(u[:, i]), float(residual[i])) for i, t in enumerate(value)]
+    free = [_Raw(0.0, supported.split(rigid[:, i]), 0.0) for i in range(rigid.shape[1])]
     return elastic, free, orthogonality
 
 
-def _soft_modes(u, rigid, mass, stiffness, springs):
+def _soft_modes(u, rigid, supported: Supported):
     """Ritz values and vectors of nearly rigid modes in the span of the rigid motions and of what is elastic in them.
 
     Splitting the rigid part off exactly leaves no large stiffness to cancel: ``K`` sees the elastic remainder only.
@@ -337,10 +231,9 @@ def _soft_modes(u, rigid, mass, stiffness, springs):
         Mass-orthonormal shapes with inaccurate eigenvalues.
     rigid : (n, r) ndarray
         Rigid motions that springs resist, perhaps linearly dependent.
-    mass, stiffness : callable
-    springs : (s, n) ndarray
-        Root of the springs, ``springs.T @ springs`` being their stiffness.
+    supported : Supported
     """
+    mass = supported.mass
     w, v = np.linalg.eigh(rigid.T @ mass(rigid))
     keep = w > 1e-10 * w.max()
     rigid = rigid @ (v[:, keep] / np.sqrt(w[keep]))
@@ -352,8 +245,8 @@ def _soft_modes(u, rigid, mass, stiffness, springs):
     basis = np.hstack([rigid, rest])
     small = np.zeros((basis.shape[1],) * 2)
     k = rigid.shape[1]
-    small[k:, k:] = rest.T @ stiffness(rest)
-    held = springs @ basis
+    small[k:, k:] = rest.T @ supported.elastic(rest)
+    held = supported.load.T @ basis
     small = small + held.T @ held
     value, vector = np.linalg.eigh((small + small.T) / 2)
     count = u.shape[1]

@@ -1,0 +1,1 @@
+"""Lumped-parameter synthesis: stiffness at the lumped point, effective mass and inertia, and what they are worth."""

@@ -1,0 +1,175 @@
+"""A body with its bearings, as linear operators on the blocks that belong together.
+
+The factor of the free body does all the work; bearings enter by the Woodbury identity.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import scipy.linalg as sla
+
+from solidgear.body import Block, Body, Supports
+from solidgear.solve.statics import SHIFT, factors
+
+
+def decoupled(body: Body, supports: Supports, tolerance: float):
+    """Bearing matrix with negligible couplings between blocks removed, and the bound that allows it.
+
+    If ``|v' D v| <= eps v' K0 v`` for the removed part D and all v, then by Rayleigh's quotient no
+    eigenvalue of the supported body moves by more than eps, relative.
+    """
+    k = supports.stiffness
+    if not supports.ports or len(body.blocks) == 1:
+        return k, 0.0
+    owner = {c: b for b, block in enumerate(body.blocks) for c in block.components}
+    of = np.array([owner[c] for c in list(range(6)) * len(supports.ports)])
+    same = of[:, None] == of[None, :]
+    kept, removed = np.where(same, k, 0.0), np.where(same, 0.0, k)
+    if not removed.any():
+        return k, 0.0
+    d = np.sqrt(np.abs(np.diag(k)))
+    if removed[d == 0].any():
+        return k, 0.0
+    on = d > 0
+    scale = np.outer(d[on], d[on])
+    w, v = np.linalg.eigh(kept[np.ix_(on, on)] / scale)
+    if w[0] < 1e-9:
+        return k, 0.0
+    half = v / np.sqrt(w)
+    bound = float(np.abs(np.linalg.eigvalsh(half.T @ (removed[np.ix_(on, on)] / scale) @ half)).max())
+    return (kept, bound) if bound <= tolerance else (k, 0.0)
+
+
+def groups(body: Body, supports: Supports, spring: np.ndarray) -> list[list[int]]:
+    """Blocks that bearings couple, as lists of block indices."""
+    count = len(body.blocks)
+    label = list(range(count))
+    m = len(supports.ports)
+
+    def rows(block: Block):
+        return np.array([6 * p + c for p in range(m) for c in block.components], int)
+
+    for i in range(count):
+        for j in range(i + 1, count):
+            a, b = rows(body.blocks[i]), rows(body.blocks[j])
+            if a.size and b.size and np.any(spring[np.ix_(a, b)]):
+                label = [label[i] if x == label[j] else x for x in label]
+    return [[i for i in range(count) if label[i] == x] for x in sorted(set(label))]
+
+
+class Supported:
+    """Operators of a group of blocks on their bearings.
+
+    Parameters
+    ----------
+    body : Body
+    supports : Supports
+    spring : (6 m, 6 m) ndarray
+        Stiffness of the supports, perhaps without negligible couplings (see :func:`decoupled`).
+    group : list of int
+        Blocks, as given by :func:`groups`.
+
+    Attributes
+    ----------
+    size : int
+    shift : float
+        The operator inverted is ``K + springs + shift M``, rad^2/s^2.
+    free : (n, k) ndarray
+        Mass-orthonormal rigid motions that no spring resists; they are taken out of every inverse.
+    load : (n, r) ndarray
+        ``load @ load.T`` is the stiffness of the springs.
+    """
+
+    def __init__(self, body: Body, supports: Supports, spring: np.ndarray, group: list[int]):
+        self.group = group
+        self.blocks = [body.blocks[b] for b in group]
+        self._factors = [factors(body)[b] for b in group]
+        self._cuts = np.cumsum([0] + [b.size for b in self.blocks])
+        self.size = int(self._cuts[-1])
+        self.shift = SHIFT * body.scale
+        null = supports.unresisted(body)
+        self.free = np.vstack([b.rigid @ null[list(b.components)] if b.components else np.zeros((b.size, null.shape[1])) for b in self.blocks])
+        self.free = self.free[:, np.abs(self.free).max(axis=0, initial=0.0) > 0]
+        if self.free.shape[1]:
+            w, v = np.linalg.eigh(self.free.T @ self.mass(self.free))
+            keep = w > 1e-10 * w.max()
+            self.free = self.free @ (v[:, keep] / np.sqrt(w[keep]))
+        self._mass_free = self.mass(self.free) if self.free.shape[1] else self.free
+        self.load = self._spring_root(body, supports, spring)
+        if self.load.shape[1]:
+            self._through = self._free_inverse(self.load)
+            self._inner = sla.cho_factor(np.eye(self.load.shape[1]) + self.load.T @ self._through)
+
+    def _spring_root(self, body, supports, spring) -> np.ndarray:
+        m = len(supports.ports)
+        components = [list(b.components) for b in self.blocks]
+        place = np.array([6 * p + c for cs in components for p in range(m) for c in cs], int)
+        if not place.size:
+            return np.zeros((self.size, 0))
+        root = Supports(supports.ports, spring[np.ix_(place, place)]).root
+        wanted = supports.attachments or (None,) * m
+        index = [body.port_index(name, a) for name, a in zip(supports.ports, wanted)]
+        parts, start = [], 0
+        for block, cs in zip(self.blocks, components):
+            at = np.array([len(cs) * p + i for p in index for i in range(len(cs))], int)
+            parts.append(block.ports[at].T @ root[start : start + len(at)])
+            start += len(at)
+        return np.vstack(parts)
+
+    def _per_block(self, f, x):
+        return np.concatenate([f(i, x[a:b]) for i, (a, b) in enumerate(zip(self._cuts, self._cuts[1:]))])
+
+    def _free_inverse(self, x):
+        return self._per_block(lambda i, part: self._factors[i].solve(part), x)
+
+    def mass(self, x):
+        """``M x``."""
+        return self._per_block(lambda i, part: self.blocks[i].mass @ part, x)
+
+    def elastic(self, x):
+        """``K x`` of the free body."""
+        return self._per_block(lambda i, part: self.blocks[i].stiffness @ part, x)
+
+    def stiffness(self, x):
+        """``K x`` with springs."""
+        return self.elastic(x) + self.load @ (self.load.T @ x)
+
+    def purge(self, x):
+        """Take unresisted rigid motions out of displacements."""
+        return x - self.free @ (self._mass_free.T @ x) if self.free.shape[1] else x
+
+    def inverse(self, x):
+        """Displacements ``(K + springs + shift M)^-1 x`` without unresisted rigid motions."""
+        if self.free.shape[1]:
+            x = x - self._mass_free @ (self.free.T @ x)
+        y = self._free_inverse(x)
+        if self.load.shape[1]:
+            y = y - self._through @ sla.cho_solve(self._inner, self._through.T @ x)
+        return self.purge(y)
+
+    def rigid_motions(self) -> np.ndarray:
+        """All rigid motions of the group, one column per component, resisted or not."""
+        return sla.block_diag(*(b.rigid for b in self.blocks))
+
+    def split(self, x) -> dict[int, np.ndarray]:
+        """A vector of the group as block index -> vector."""
+        return {b: x[a:c] for b, a, c in zip(self.group, self._cuts, self._cuts[1:])}
+
+    def static(self, load: np.ndarray, tolerance: float = 1e-11, most: int = 30) -> np.ndarray:
+        """Static displacements under loads, springs included.
+
+        The shifted factor is refined on the unshifted system; slow only where a spring holds the body so softly that
+        its rigid motion lies below the shift.
+
+        Parameters
+        ----------
+        load : (n, k) ndarray
+            Unresisted rigid motions must do no work on it.
+        """
+        u = self.inverse(load)
+        for _ in range(most):
+            step = self.inverse(load - self.stiffness(u))
+            u = u + step
+            if np.abs(step).max() <= tolerance * np.abs(u).max():
+                break
+        return u
