@@ -119,7 +119,7 @@ class _Progress:
 def compare(
     scene: SceneFile,
     out: Annotated[Path, typer.Option("--out", "-o", help="Folder for results.json, report.html, renders and vtu files.")] = Path("out"),
-    models: Annotated[str, typer.Option("--models", help="Comma-separated: euler,timoshenko,harmonic,solid.")] = "euler,timoshenko,harmonic,solid",
+    models: Annotated[str, typer.Option("--models", help="Comma-separated: lumped,euler,timoshenko,harmonic,solid.")] = "lumped,euler,timoshenko,harmonic,solid",
     as_json: JsonFlag = False,
     renders: Annotated[bool, typer.Option("--renders/--no-renders", help="Draw the first bending mode of every model.")] = True,
     solid_element: Annotated[Optional[str], typer.Option("--solid-element", help="hex20, hex27, hex8, tet10 or tet4.")] = None,

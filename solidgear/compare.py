@@ -16,6 +16,7 @@ from solidgear.evidence.correlate import correlate
 from solidgear.evidence.quantities import QUANTITIES, change, measure
 from solidgear.fidelity import FIDELITIES, build
 from solidgear.frames import DOF_NAMES
+from solidgear.lumped.rung import model_record, synthesise_all
 from solidgear.meter import Meter
 from solidgear.solve.modes import ModeSet, modes
 from solidgear.solve.statics import Condensed, condense
@@ -27,6 +28,7 @@ Progress = Callable[[str], None]
 #: coarser relatives for the band; the run itself is the finest of the three
 SOLID_LEVELS = (0.35, 0.65)
 ATTACHMENTS = ("average", "rigid", "section")
+MODELS = ("lumped", *FIDELITIES)
 
 
 @dataclass
@@ -81,7 +83,7 @@ class Comparison:
 
 def compare(
     scene,
-    models: tuple[str, ...] = FIDELITIES,
+    models: tuple[str, ...] = MODELS,
     *,
     settings: dict[str, dict] | None = None,
     progress: Progress = lambda _: None,
@@ -92,7 +94,7 @@ def compare(
     ----------
     scene : Scene
     models : tuple of str
-        Any of euler, timoshenko, harmonic, solid.
+        Any of lumped, euler, timoshenko, harmonic, solid; lumped needs one of the others to rest on.
     settings : dict, optional
         Builder options per model, such as ``{"harmonic": {"order": 8}}``.
     progress : callable
@@ -108,13 +110,14 @@ def compare(
     SolidgearError
         For an unknown model.  A model that fails is reported as not valid, and the others go on.
     """
-    unknown = [m for m in models if m not in FIDELITIES]
-    if unknown or not models:
-        raise SolidgearError(f"models: {', '.join(unknown) or 'none given'}; choose from {', '.join(FIDELITIES)}")
+    unknown = [m for m in models if m not in MODELS]
+    if unknown or not set(models) & set(FIDELITIES):
+        raise SolidgearError(f"models: {', '.join(unknown or models) or 'none given'}; choose from {', '.join(MODELS)}, lumped not alone")
     options = {m: dict((settings or {}).get(m, {})) for m in FIDELITIES}
     rungs: dict[str, Rung] = {}
     failed: dict[str, str] = {}
     causes: list = []
+    lumped: dict = {}
     complete = True
     overall = Meter()
     with overall.stage("all"):
@@ -125,11 +128,14 @@ def compare(
                 except (SolidgearError, MemoryError) as error:
                     failed[model] = str(error) or "not enough memory"
                     log.warning("%s failed: %s", model, failed[model])
+            if "lumped" in models:
+                progress("lumped: synthesis from every body")
+                lumped = synthesise_all(scene, rungs, log.info)
             causes = _causes(scene, rungs, options, progress)
         except KeyboardInterrupt:
             complete = False
             progress("interrupted; keeping what is there")
-    results = _results(scene, rungs, failed, causes, complete)
+    results = _results(scene, rungs, failed, causes, lumped, complete)
     results["seconds_total"] = overall.seconds["all"]
     return Comparison(scene, results, rungs)
 
@@ -263,7 +269,7 @@ def _causes(scene, rungs: dict[str, Rung], options, progress: Progress) -> list:
     return out
 
 
-def _results(scene, rungs: dict[str, Rung], failed: dict[str, str], causes, complete: bool) -> dict:
+def _results(scene, rungs: dict[str, Rung], failed: dict[str, str], causes, lumped: dict, complete: bool) -> dict:
     reference = next((m for m in ("harmonic", "solid", "timoshenko", "euler") if m in rungs), None)
     gaps = deviations(rungs, reference) if reference else []
     verdict, validity = judge(scene, rungs, reference, gaps)
@@ -274,6 +280,12 @@ def _results(scene, rungs: dict[str, Rung], failed: dict[str, str], causes, comp
             models[model] = _model_record(rungs[model], valid, why_not)
         elif model in failed:
             models[model] = {"valid": False, "why_not": failed[model], "modes": []}
+    if lumped:
+        best = rungs[reference].quantities.get("bending 1") if reference else None
+        record = model_record(lumped, models, best, scene.ask.tolerance)
+        if record:
+            models = {"lumped": record, **models}
+            _add_lumped(verdict, record, lumped, reference, best)
     warnings = [f"{m}: {what}: {why}" for m, r in rungs.items() for what, why in r.failed.items()]
     free = list(next(iter(rungs.values())).condensed.free_names) if rungs else []
     from solidgear.environment import environment
@@ -288,11 +300,34 @@ def _results(scene, rungs: dict[str, Rung], failed: dict[str, str], causes, comp
         "mac": _mac(rungs, reference),
         "deviations": gaps,
         "causes": [asdict(c) for c in causes],
+        "lumped": lumped,
         "verdict": verdict,
         "environment": environment(),
         "images": {},
         "warnings": warnings,
     }
+
+
+def _add_lumped(verdict: dict, record: dict, lumped: dict, reference: str, best: float | None) -> None:
+    """What the lumped models are worth, in the verdict."""
+    if record["valid"]:
+        verdict["cheapest"] = "lumped"
+        verdict["sentences"] = [s for s in verdict["sentences"] if not s.startswith("Cheapest model")]
+        verdict["sentences"].append(
+            f"Cheapest model within {100 * verdict['tolerance']:g} %: lumped ({record['variant']} masses on the {record['source']} stiffness), for first bending and below only."
+        )
+    elif record["why_not"]:
+        verdict["sentences"].append(f"Lumped is out: {record['why_not']}.")
+    own = lumped.get(reference, {}).get("variants", {})
+    if own:
+        errors = [f"{n} {_error(v['frequency_error'])}" for n, v in own.items() if v["feasible"] and v["frequency_error"] is not None]
+        verdict["sentences"].append(f"First bending of lumped models made from the {reference} solid itself: {', '.join(errors)}.")
+        if not own["thesis"]["feasible"]:
+            verdict["sentences"].append(f"The thesis's equations 52 and 53 have no usable solution here: {own['thesis']['verdict']}.")
+
+
+def _error(relative: float) -> str:
+    return "exact" if abs(relative) < 1e-9 else f"{100 * relative:+.2g} %"
 
 
 def _matrix(a) -> list:

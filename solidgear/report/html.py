@@ -11,12 +11,13 @@ import functools
 import logging
 import os
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
 from solidgear.frames import DOF_NAMES
 from solidgear.report import charts
+from solidgear.report.lumped import lumped_tables
+from solidgear.report.table import Table
 from solidgear.report.terminal import (
     BEAMS, BLOCK_UNITS, MODEL_NAMES, answer_seconds, engineering, entry, first_mode, headline, hertz, is_number, is_resolved, model_name, percent, plain,
     reference_of, seconds,
@@ -26,29 +27,6 @@ log = logging.getLogger(__name__)
 DASH = "–"
 #: below this share of the geometric mean of its diagonal entries a coupling is printed faint
 FAINT = 1e-6
-
-
-@dataclass
-class Table:
-    """A table as the template takes it: cells are texts or (text, css class); the first of a row is its header."""
-
-    caption: str
-    head: list[str]
-    rows: list[list[Any]] = field(default_factory=list)
-    note: str = ""
-    css: str = ""
-
-    def __post_init__(self):
-        self.head = [h.replace("N m", "N\u00a0m") for h in self.head]  # a unit is one word
-
-    @property
-    def columns(self) -> list[tuple[str, str]]:
-        """(head, css class): a head stands over its column, texts to the left and numbers to the right."""
-        first = self.rows[0] if self.rows else []
-        return [(h, "text" if k < len(first) and isinstance(first[k], tuple) and "text" in first[k][1] else "") for k, h in enumerate(self.head)]
-
-    def __bool__(self) -> bool:
-        return bool(self.rows)
 
 
 def write_report(results: Mapping, folder: str | os.PathLike, images: Mapping[str, bytes | str | os.PathLike] | None = None) -> Path:
@@ -108,8 +86,9 @@ def render_page(results: Mapping, folder: str | os.PathLike | None = None, image
         distrusted=[(model_name(k), m.get("why_not") or "not valid for this scene") for k, m in r["models"].items() if m.get("valid") is False],
         charts=drawn, renders=_renders(r, folder, images),
         scene_facts=_scene_facts(r), segments=_segments(r["scene"]), bearings=_bearings(r["scene"]), summary=_summary(r),
-        matrices=[(model_name(k), [_matrix(r, k, m, kind) for kind in BLOCK_UNITS if m.get(kind)]) for k, m in r["models"].items()],
-        frequencies=_frequencies(r), deviations=_deviations(r), causes=_causes(r), attachments=_attachments(r), levels=_levels(r), orders=_orders(r),
+        # The lumped model stands on the matrix of another model, shown there.
+        matrices=[(model_name(k), [_matrix(r, k, m, kind) for kind in BLOCK_UNITS if m.get(kind)]) for k, m in r["models"].items() if k != "lumped"],
+        frequencies=_frequencies(r), deviations=_deviations(r), causes=_causes(r), lumped=lumped_tables(r), attachments=_attachments(r), levels=_levels(r), orders=_orders(r),
         algebra=_algebra(r), pairs=_pairs(r), cost=_cost(r), provenance=_provenance(r), environment=_pairs_of(r.get("environment"), "Environment of the run"),
         mesh=_mesh(r), total=seconds(r.get("seconds_total"), DASH),
     )  # fmt: skip

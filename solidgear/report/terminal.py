@@ -18,7 +18,7 @@ from rich.text import Text
 from solidgear.frames import DOF_NAMES
 
 #: key -> name in a sentence, cheapest first
-MODEL_NAMES = {"euler": "Euler beam", "timoshenko": "Timoshenko beam", "harmonic": "harmonic solid", "solid": "3D solid"}
+MODEL_NAMES = {"lumped": "lumped", "euler": "Euler beam", "timoshenko": "Timoshenko beam", "harmonic": "harmonic solid", "solid": "3D solid"}
 BEAMS = ("euler", "timoshenko")
 #: kind -> unit of the blocks (translation, translation), (mixed), (rotation, rotation)
 BLOCK_UNITS = {"stiffness": ("N/m", "N/rad", "N m/rad"), "compliance": ("m/N", "rad/N", "rad/(N m)")}

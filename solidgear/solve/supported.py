@@ -155,21 +155,45 @@ class Supported:
         """A vector of the group as block index -> vector."""
         return {b: x[a:c] for b, a, c in zip(self.group, self._cuts, self._cuts[1:])}
 
-    def static(self, load: np.ndarray, tolerance: float = 1e-11, most: int = 30) -> np.ndarray:
+    def static(self, load: np.ndarray) -> np.ndarray:
         """Static displacements under loads, springs included.
 
-        The shifted factor is refined on the unshifted system; slow only where a spring holds the body so softly that
-        its rigid motion lies below the shift.
+        The elastic and the rigid part are found apart, as in :mod:`solidgear.solve.statics`, so that springs may be as soft or as
+        stiff as they like.  With ``s = load_b' u`` the root of the spring energy, E the inertia-relief fields and R the rigid
+        motions, ``u = E_f - E_b s + R a`` and equilibrium ``R'(f - load_b s) = 0``.
 
         Parameters
         ----------
         load : (n, k) ndarray
             Unresisted rigid motions must do no work on it.
         """
-        u = self.inverse(load)
+        rigid = self.rigid_motions()
+        # Rotations are about 1/length of translations in size: equal columns keep the small systems well scaled.
+        rigid = rigid / np.linalg.norm(rigid, axis=0)
+        e_f, e_b = self._relieved(load, rigid), self._relieved(self.load, rigid)
+        held = self.load.T @ rigid
+        inner = sla.cho_factor(np.eye(self.load.shape[1]) + self.load.T @ e_b)
+        h = held.T @ sla.cho_solve(inner, held)
+        reached = sla.cho_solve(inner, self.load.T @ e_f)
+        # Unresisted motions make h singular; they get nothing.
+        a = np.linalg.pinv(h, rcond=1e-13, hermitian=True) @ (rigid.T @ load - held.T @ reached)
+        s = reached + sla.cho_solve(inner, held @ a)
+        return self.purge(e_f - e_b @ s + rigid @ a)
+
+    def _relieved(self, load, rigid, tolerance: float = 1e-12, most: int = 12):
+        """Elastic displacements of the free body under loads balanced by their own inertia."""
+        heavy = self.mass(rigid)
+        gram = sla.cho_factor(rigid.T @ heavy)
+        load = load - heavy @ sla.cho_solve(gram, rigid.T @ load)
+
+        def solve(f):
+            u = self._free_inverse(f)
+            return u - rigid @ sla.cho_solve(gram, heavy.T @ u)
+
+        u = solve(load)
         for _ in range(most):
-            step = self.inverse(load - self.stiffness(u))
+            step = solve(load - self.elastic(u))
             u = u + step
-            if np.abs(step).max() <= tolerance * np.abs(u).max():
+            if np.abs(step).max(initial=0.0) <= tolerance * np.abs(u).max(initial=0.0):
                 break
         return u

@@ -1,0 +1,118 @@
+"""The lumped rung of a comparison: every synthesis from every body, and the one that stands for them."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+
+from solidgear.errors import SolidgearError
+from solidgear.lumped.effective_mass import Synthesis, synthesise
+
+#: bodies the lumped rung may rest on, the usual one of a lumped-parameter program first
+SOURCES = ("timoshenko", "euler", "harmonic", "solid")
+
+
+def synthesise_all(scene, rungs: dict, tell: Callable[[str], None] = lambda _: None) -> dict:
+    """Lumped models of every solved body, as plain data.
+
+    Parameters
+    ----------
+    scene : Scene
+    rungs : dict of str to object with ``body`` and ``modes``
+
+    Returns
+    -------
+    dict
+        Per model: ``stiffness`` (2x2 on z, thx), ``motion``, ``first_bending_hz``, ``static_share``, ``seconds`` and ``variants``;
+        or ``why_not`` where there is nothing to lump.
+    """
+    out = {}
+    for model, rung in rungs.items():
+        start = time.perf_counter()
+        try:
+            point, found = synthesise(rung.body, scene, scene.port.name, rung.modes)
+        except SolidgearError as error:
+            tell(f"lumped from {model}: {error}")
+            out[model] = {"why_not": str(error)}
+            continue
+        out[model] = {
+            "stiffness": point.stiffness.tolist(),
+            "motion": point.motion.tolist(),
+            "first_bending_hz": rung.modes.named("bending 1").frequency_hz if rung.modes.named("bending 1") else point.omega / 6.283185307179586,
+            "static_share": point.static_share,
+            "total_mass": point.total_mass,
+            "seconds": time.perf_counter() - start,
+            "variants": {name: _record(s) for name, s in found.items()},
+        }
+    return out
+
+
+def _record(s: Synthesis) -> dict:
+    return {
+        "mass": None if s.mass is None else s.mass.tolist(),
+        "feasible": s.feasible,
+        "first": s.first,
+        "frequency_hz": s.frequency_hz,
+        "frequency_error": s.frequency_error,
+        "slope_error": s.slope_error,
+        "kinetic_error": s.kinetic_error,
+        "valid_to_hz": s.valid_to_hz,
+        "verdict": s.verdict,
+        **s.numbers,
+    }
+
+
+def representative(lumped: dict) -> tuple[str, str] | None:
+    """(source model, variant) that stands for the lumped rung: mode-matched where it is physical and first, else Guyan."""
+    for source in SOURCES:
+        variants = lumped.get(source, {}).get("variants")
+        if not variants:
+            continue
+        for name in ("mode-matched", "guyan"):
+            if variants[name]["feasible"] and variants[name]["first"]:
+                return source, name
+    return None
+
+
+def model_record(lumped: dict, models: dict, reference_hz: float | None, tolerance: float) -> dict | None:
+    """Record of the lumped rung among the models; its stiffness is its source's.
+
+    Parameters
+    ----------
+    lumped : dict
+        From :func:`synthesise_all`.
+    models : dict
+        Records of the other rungs.
+    reference_hz : float or None
+        First bending of the reference model.
+    tolerance : float
+    """
+    chosen = representative(lumped)
+    if chosen is None:
+        return None
+    source, variant = chosen
+    base, own = models[source], lumped[source]["variants"][variant]
+    why_not = None
+    if not base["valid"]:
+        why_not = f"its stiffness is that of the {source} model, which is out: {base['why_not']}"
+    elif reference_hz and abs(own["frequency_hz"] / reference_hz - 1) > tolerance:
+        why_not = f"its first bending is {100 * (own['frequency_hz'] / reference_hz - 1):+.1f} % off, more than the {100 * tolerance:g} % asked for"
+    # The price of its source comes first: there is no lumped model without a body to condense.
+    seconds = {k: base["seconds"].get(k, 0.0) for k in ("build", "statics", "modes")} | {"synthesis": lumped[source]["seconds"]}
+    return {
+        "valid": why_not is None,
+        "why_not": why_not,
+        "source": source,
+        "variant": variant,
+        "compliance": base["compliance"],
+        "stiffness": base["stiffness"],
+        "modes": [{"name": "bending 1", "family": "bending", "frequency_hz": own["frequency_hz"], "multiplicity": 2, "captured": None}],
+        "band": None,
+        "convergence": None,
+        "dofs": 6,
+        "seconds": {**seconds, "total": sum(seconds.values())},
+        "peak_mb": base["peak_mb"],
+        "backend": base["backend"],
+        "mesh": {"element": f"{variant} masses on the {source} stiffness"},
+        "evidence": {},
+    }
