@@ -23,14 +23,14 @@ _WHERE = {
     "build": "solidgear.fidelity",
     "condense": "solidgear.solve.statics",
     "modes": "solidgear.solve.modes",
-    "compare": "solidgear.compare",
+    "compare": "solidgear.comparison",
     "SolidgearError": "solidgear.errors",
     "SceneError": "solidgear.errors",
 }
 __all__ = ["__version__", *_WHERE]
 
 if TYPE_CHECKING:
-    from solidgear.compare import compare
+    from solidgear.comparison import compare
     from solidgear.errors import SceneError, SolidgearError
     from solidgear.fidelity import build
     from solidgear.scene import Scene, load

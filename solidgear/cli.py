@@ -9,6 +9,7 @@ import sys
 # matrices here are small, so OpenBLAS gets one thread. It reads this when numpy is first imported.
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
+import functools
 import json
 from enum import Enum
 from pathlib import Path
@@ -52,15 +53,17 @@ def _options(pairs: list[str] | None) -> dict:
         key, sep, text = pair.partition("=")
         if not sep or not key.isidentifier():
             raise SolidgearError(f"--set {pair}: write key=value, such as --set order=8")
-        for kind in (int, float):
-            try:
-                out[key] = kind(text)
-                break
-            except ValueError:
-                continue
-        else:
-            out[key] = {"true": True, "false": False}.get(text, text)
+        out[key] = tuple(_value(part) for part in text.split(",")) if "," in text else _value(text)
     return out
+
+
+def _value(text: str):
+    for kind in (int, float):
+        try:
+            return kind(text)
+        except ValueError:
+            continue
+    return {"true": True, "false": False}.get(text, text)
 
 
 def _build(scene, fidelity: Fidelity, pairs):
@@ -115,7 +118,21 @@ class _Progress:
             print(line, file=sys.stderr, flush=True)
 
 
-@app.command()
+def _command(function):
+    """Register a command; typer would swallow Ctrl-C without a word."""
+
+    @functools.wraps(function)
+    def quiet(*args, **kwargs):
+        try:
+            return function(*args, **kwargs)
+        except KeyboardInterrupt:
+            print("solidgear: interrupted", file=sys.stderr)
+            raise typer.Exit(130) from None
+
+    return app.command(name=function.__name__)(quiet)
+
+
+@_command
 def compare(
     scene: SceneFile,
     out: Annotated[Path, typer.Option("--out", "-o", help="Folder for results.json, report.html, renders and vtu files.")] = Path("out"),
@@ -125,15 +142,18 @@ def compare(
     solid_element: Annotated[Optional[str], typer.Option("--solid-element", help="hex20, hex27, hex8, tet10 or tet4.")] = None,
 ) -> None:
     """Solve a scene with every model and write a report on which to trust."""
-    from solidgear.compare import compare as run
+    from solidgear.comparison import check_models
+    from solidgear.comparison import compare as run
     from solidgear.report.write import prepare
     from solidgear.scene import load
 
     loaded = load(scene)
+    wanted = tuple(m.strip() for m in models.split(",") if m.strip())
+    check_models(wanted)
     prepare(out)
     settings = {"solid": {"element": solid_element}} if solid_element else None
     with _Progress(quiet=as_json) as progress:
-        found = run(loaded, tuple(m.strip() for m in models.split(",") if m.strip()), settings=settings, progress=progress)
+        found = run(loaded, wanted, settings=settings, progress=progress)
         found.write_report(out, renders=renders and found.results["complete"], progress=progress)
     if as_json:
         print(json.dumps(found.results, allow_nan=False))
@@ -150,7 +170,7 @@ def compare(
         raise typer.Exit(1)
 
 
-@app.command()
+@_command
 def stiffness(
     scene: SceneFile,
     fidelity: FidelityOption = Fidelity.harmonic,
@@ -200,7 +220,7 @@ def stiffness(
         console.print(f"Free: {', '.join(found.free_names)} (stiffness exactly zero).")
 
 
-@app.command()
+@_command
 def modes(
     scene: SceneFile,
     fidelity: FidelityOption = Fidelity.harmonic,
@@ -215,7 +235,9 @@ def modes(
 
     loaded = load(scene)
     body = _build(loaded, fidelity, settings)
-    found = solve(body, loaded, n or loaded.ask.modes, max_frequency=max_frequency or loaded.ask.max_frequency)
+    if max_frequency is not None and not max_frequency > 0:
+        raise SolidgearError(f"--max-frequency {max_frequency:g}: must be greater than zero, in Hz")
+    found = solve(body, loaded, loaded.ask.modes if n is None else n, max_frequency=max_frequency or loaded.ask.max_frequency)
     rows = [{"name": m.name, "family": m.family, "frequency_hz": m.frequency_hz, "multiplicity": m.multiplicity} for m in found.modes]
     if as_json:
         print(json.dumps({"scene": loaded.name, "fidelity": fidelity.value, "dofs": body.size, "modes": rows, "evidence": found.evidence}, default=float))
@@ -229,7 +251,7 @@ def modes(
     console.print(f"Residual {e['residual']:.1e}, orthogonality {e['orthogonality']:.1e}, rigid modes {e['rigid_modes']}, back end {e['backend']}.")
 
 
-@app.command()
+@_command
 def render(
     scene: SceneFile,
     out: Annotated[Path, typer.Option("--out", "-o", help="PNG file to write.")] = Path("mode.png"),
@@ -249,7 +271,7 @@ def render(
     print(path)
 
 
-@app.command()
+@_command
 def check(
     scene: SceneFile,
     fidelity: FidelityOption = Fidelity.harmonic,
@@ -286,9 +308,6 @@ def main() -> None:
     except MemoryError:
         print("solidgear: not enough memory for this model; use a coarser one (--set refinement=0.5) or the harmonic model", file=sys.stderr)
         sys.exit(1)
-    except KeyboardInterrupt:
-        print("solidgear: interrupted", file=sys.stderr)
-        sys.exit(130)
 
 
 if __name__ == "__main__":

@@ -407,6 +407,12 @@ def _check_shaft(segments: Sequence[Segment]) -> None:
         if max(segment.outer0, segment.outer1) > 10.0:
             radius = max(segment.outer0, segment.outer1)
             raise SceneError(f"a radius of {radius:.6g} m is above 10 m: probably wrong units", path=("segments", i, "outer0"))
+        if i and not max(segments[i - 1].inner1, segment.inner0) < min(segments[i - 1].outer1, segment.outer0):
+            raise SceneError(
+                f'shares no end face with "{segments[i - 1].name}" (radii {segments[i - 1].inner1:.6g} to {segments[i - 1].outer1:.6g} m there, '
+                f"{segment.inner0:.6g} to {segment.outer0:.6g} m here); they must overlap",
+                path=("segments", i, "outer0"),
+            )
         end = segment.y1
         names.add(segment.name)
     if not 1e-3 <= end <= 20.0:

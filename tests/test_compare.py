@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import solidgear as sg
-from solidgear.compare import ATTACHMENTS, compare
+from solidgear.comparison import ATTACHMENTS, compare
 from solidgear.errors import SolidgearError
 from solidgear.evidence.quantities import QUANTITIES
 from solidgear.fidelity import FIDELITIES
@@ -251,7 +251,7 @@ def failing(monkeypatch, model, error):
             raise error
         return build(scene, fidelity, **options)
 
-    monkeypatch.setattr("solidgear.compare.build", broken)
+    monkeypatch.setattr("solidgear.comparison.build", broken)
 
 
 @pytest.mark.parametrize(("error", "why"), [(MeshError("12 of 420 elements are inverted"), "12 of 420 elements are inverted"), (MemoryError(), "not enough memory")])
@@ -285,7 +285,7 @@ def test_band_that_cannot_be_made_is_a_warning(overhung, monkeypatch):
             raise MeshError("too coarse to mesh")
         return build(scene, fidelity, **options)
 
-    monkeypatch.setattr("solidgear.compare.build", broken)
+    monkeypatch.setattr("solidgear.comparison.build", broken)
     found = compare(overhung, ("harmonic",), settings={"harmonic": {"order": 3, "layers": 0}}).results
     assert found["models"]["harmonic"]["band"] is None
     assert found["warnings"] == ["harmonic: band: too coarse to mesh"]

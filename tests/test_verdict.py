@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import solidgear as sg
-from solidgear.compare import compare
+from solidgear.comparison import compare
 from solidgear.verdict import JUDGED, deviations, judge
 
 GEOMETRY = Path(__file__).parent.parent / "geometry"

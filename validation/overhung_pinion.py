@@ -14,7 +14,7 @@ import time
 from common import ROOT, results_folder, show, write_rows
 
 import solidgear as sg
-from solidgear.compare import rigid_seats
+from solidgear.comparison import rigid_seats
 from solidgear.evidence.quantities import change, measure
 
 # Independent solution, polynomial order 10 on five graded layers, digits as published with it; |K_z,thx| is given.

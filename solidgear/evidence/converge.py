@@ -158,6 +158,7 @@ def gci(values: Sequence[float], sizes: Sequence[float], expected: float, highes
     extrapolated = f3 + fine / (r32**order - 1)
     asymptotic = None
     if plausible:
-        coarse_band = factor * abs(coarse) / abs(f2) / (r21**order - 1)
+        # Relative to the finest value, like the band itself: the middle one may pass through zero.
+        coarse_band = factor * abs(coarse) / scale / (r21**order - 1)
         asymptotic = float(coarse_band / (r32**order * band))
     return Convergence((f1, f2, f3), (h1, h2, h3), observed, expected, plausible, float(order), factor, float(band), float(extrapolated), asymptotic, (r21, r32))

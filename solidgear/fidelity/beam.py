@@ -15,6 +15,7 @@ import scipy.sparse as sp
 
 from solidgear.body import Block, Body, Port
 from solidgear.errors import SolidgearError
+from solidgear.fidelity.options import number
 
 _GAUSS = np.polynomial.legendre.leggauss(8)
 
@@ -75,6 +76,7 @@ def beam(
     Body
         Four blocks (axial, torsion and the two bending planes); ports are nodes.
     """
+    number("beam", "elements", elements, least=1, whole=True)
     if head not in ("cone", "mean"):
         raise SolidgearError(f"head: {head!r} is unknown; use 'cone' or 'mean'")
     if mass not in ("consistent", "lumped"):

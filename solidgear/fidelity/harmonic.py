@@ -22,6 +22,7 @@ from solidgear.body import Block, Body, Port
 from solidgear.errors import SolidgearError
 from solidgear.fidelity.assembly import Pattern, chunks, reference, tabulate, unknowns
 from solidgear.fidelity.attachment import tie_rigidly
+from solidgear.fidelity.options import harmonics, number
 from solidgear.meshing.layout import layout
 from solidgear.meshing.meridian import Meridian, meridian
 
@@ -80,8 +81,15 @@ def harmonic(
     SolidgearError
         For an unknown order or attachment.
     """
-    if not 1 <= order <= 12:
+    number("harmonic", "order", order, least=1, whole=True)
+    if order > 12:
         raise SolidgearError(f"harmonic: order {order} is not between 1 and 12")
+    number("harmonic", "layers", layers, least=0, whole=True)
+    number("harmonic", "edge_layers", edge_layers, least=0, whole=True)
+    number("harmonic", "ratio", ratio, above=0, below=1)
+    number("harmonic", "size", size, above=0)
+    number("harmonic", "refinement", refinement, above=0)
+    ovalising = harmonics("harmonic", ovalising)
     size = size or min(min(s.outer0, s.outer1) for s in scene.segments)
     plan = layout(scene, size=size, layers=layers, edge_layers=edge_layers, ratio=ratio, refinement=refinement)
     flat = meridian(scene, plan)

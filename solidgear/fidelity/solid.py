@@ -19,6 +19,7 @@ from solidgear.body import Block, Body, Port
 from solidgear.errors import SolidgearError
 from solidgear.fidelity.assembly import Pattern, chunks, reference, tabulate, unknowns
 from solidgear.fidelity.attachment import tie_rigidly
+from solidgear.fidelity.options import number
 from solidgear.frames import cross_matrix
 
 ELEMENTS = {"tet4": ElementTetP1, "tet10": ElementTetP2, "hex8": ElementHex1, "hex20": ElementHexS2, "hex27": ElementHex2}
@@ -154,6 +155,14 @@ def solid(
     """
     if element not in ELEMENTS:
         raise SolidgearError(f"solid: element {element!r} is unknown; use one of {', '.join(ELEMENTS)}")
+    for name, value in (("size", size), ("graded_size", graded_size), ("refinement", refinement)):
+        number("solid", name, value, above=0)
+    for name, value in (("layers", layers), ("edge_layers", edge_layers), ("radial_layers", radial_layers)):
+        number("solid", name, value, least=0, whole=True)
+    number("solid", "ratio", ratio, above=0, below=1)
+    number("solid", "around", around, least=8, whole=True)
+    if element.startswith("hex") and around % 4:
+        raise SolidgearError(f"solid: around = {around} does not fit an O-grid; use a multiple of 4")
     wanted = [(s, a) for s in scene.stations for a in (attachments or (s.attachment,))]
     for _, attachment in wanted:
         if attachment not in ("average", "rigid", "section"):

@@ -144,6 +144,7 @@ def graded(length, size, ratio, reach, refinement, low: int, high: int) -> np.nd
     for layers, place in ((low, lambda d: d), (high, lambda d: length - d)):
         lines |= {float(place(start * ratio**k)) for k in range(layers + 1)} if layers else set()
     lines = np.array(_distinct(sorted(lines), 1e-9 * length))
+    lines[-1] = length  # a last layer thinner than that must not move the end
     # Fill gaps that are longer than a cell.
     filled = [lines[:1]]
     for a, b in zip(lines[:-1], lines[1:]):

@@ -79,7 +79,7 @@ def render_page(results: Mapping, folder: str | os.PathLike | None = None, image
     return _template().render(
         title=r["scene"].get("title") or r["scene"].get("name") or "shaft",
         scene=r["scene"], verdict=r["verdict"], port=r.get("port") or r["scene"].get("port") or {}, warnings=warnings,
-        complete=r.get("complete", True), missing=[model_name(k) for k in MODEL_NAMES if k not in r["models"]],
+        complete=r.get("complete", True), missing=[model_name(k) for k in MODEL_NAMES if k not in r["models"] and k != "lumped"],
         trusted=model_name(r["verdict"].get("trust")) if r["verdict"].get("trust") else None,
         cheapest=model_name(r["verdict"].get("cheapest")) if r["verdict"].get("cheapest") else None,
         tolerance=_short_percent(r["verdict"].get("tolerance")), reference=model_name(reference) if reference else None,

@@ -31,7 +31,7 @@ def prepare(out) -> Path:
 
 
 def write_all(comparison, out, *, renders: bool, progress) -> Path:
-    """Write results.json, renders, vtu files and the report; see :meth:`solidgear.compare.Comparison.write_report`."""
+    """Write results.json, renders, vtu files and the report; see :meth:`solidgear.comparison.Comparison.write_report`."""
     from solidgear.report.html import write_report
 
     folder = prepare(out)
@@ -120,8 +120,9 @@ def render_mode(scene, body, modes, name: str, path) -> Path:
     from solidgear.report.render import render_modes
 
     path = Path(path)
+    job = _job(scene, body, modes, name, path)
     prepare(path.parent)
-    (done,) = render_modes([_job(scene, body, modes, name, path)])
+    (done,) = render_modes([job])
     if not done.ok:
         raise SolidgearError(done.reason)
     return done.path

@@ -169,8 +169,11 @@ class _Pardiso:
             raise FactorError(f"PARDISO failed on the system matrix: {error}") from error
 
     def __call__(self, rhs):
-        rhs = np.asfortranarray(rhs, dtype=float)
-        return self._call(33, rhs)
+        x = self._call(33, np.asfortranarray(rhs, dtype=float))
+        # An indefinite matrix can pass the factorisation and come back as NaN.
+        if not np.isfinite(x).all():
+            raise FactorError("PARDISO returned NaN: the system matrix is not positive definite")
+        return x
 
     def __del__(self):
         try:

@@ -110,9 +110,7 @@ def compare(
     SolidgearError
         For an unknown model.  A model that fails is reported as not valid, and the others go on.
     """
-    unknown = [m for m in models if m not in MODELS]
-    if unknown or not set(models) & set(FIDELITIES):
-        raise SolidgearError(f"models: {', '.join(unknown or models) or 'none given'}; choose from {', '.join(MODELS)}, lumped not alone")
+    check_models(models)
     options = {m: dict((settings or {}).get(m, {})) for m in FIDELITIES}
     rungs: dict[str, Rung] = {}
     failed: dict[str, str] = {}
@@ -124,7 +122,11 @@ def compare(
         try:
             for model in (m for m in FIDELITIES if m in models):
                 try:
-                    rungs[model] = _solve(scene, model, options[model], progress)
+                    rungs[model] = rung = _solve(scene, model, options[model], progress)
+                    # Evidence on top: an interrupt from here on leaves the solution itself.
+                    if model in ("harmonic", "solid"):
+                        _add_variants(scene, rung, model, options[model], progress)
+                        _add_band(scene, rung, model, options[model], progress)
                 except (SolidgearError, MemoryError) as error:
                     failed[model] = str(error) or "not enough memory"
                     log.warning("%s failed: %s", model, failed[model])
@@ -140,15 +142,27 @@ def compare(
     return Comparison(scene, results, rungs)
 
 
+def check_models(models: tuple[str, ...]) -> None:
+    """Refuse unknown models, and the lumped one alone, in one sentence."""
+    unknown = [m for m in models if m not in MODELS]
+    if unknown or not set(models) & set(FIDELITIES):
+        raise SolidgearError(f"models: {', '.join(unknown or models) or 'none given'}; choose from {', '.join(MODELS)}, lumped not alone")
+
+
+def _shared(scene, model: str) -> tuple[str, ...] | None:
+    """Attachments that can be built on one mesh: means over seats and over sections are only rows on the same matrices."""
+    given = {s.attachment for s in scene.stations}
+    if model in ("harmonic", "solid") and len(given) == 1 and given <= {"average", "section"}:
+        return (*given, *({"average", "section"} - given))
+    return None
+
+
 def _solve(scene, model: str, options: dict, progress: Progress) -> Rung:
-    solidlike = model in ("harmonic", "solid")
     meter = Meter()
     ask = scene.ask
     supports = as_supports(scene)
-    given = {s.attachment for s in scene.stations}
-    # Means over seats and over sections are only rows on the same matrices: one factor serves both.
-    shared = solidlike and given <= {"average", "section"} and len(given) == 1
-    extra = {"attachments": (*given, *({"average", "section"} - given))} if shared else {}
+    shared = _shared(scene, model)
+    extra = {"attachments": shared} if shared else {}
     progress(f"{model}: build")
     with meter.stage("build"):
         body = build(scene, model, **options, **extra)
@@ -158,15 +172,12 @@ def _solve(scene, model: str, options: dict, progress: Progress) -> Rung:
     progress(f"{model}: modes")
     with meter.stage("modes"):
         found = modes(body, supports, max(ask.modes, 10), max_frequency=ask.max_frequency)
-    rung = Rung(body, condensed, found, measure(condensed, found), meter)
-    if solidlike:
-        _add_variants(scene, rung, model, options, given, shared, progress)
-        _add_band(scene, rung, model, options, progress)
-    return rung
+    return Rung(body, condensed, found, measure(condensed, found), meter)
 
 
-def _add_variants(scene, rung: Rung, model, options, given, shared, progress: Progress):
+def _add_variants(scene, rung: Rung, model, options, progress: Progress):
     """The same scene with every other attachment."""
+    given, shared = {s.attachment for s in scene.stations}, _shared(scene, model)
     supports = as_supports(scene)
     port = scene.port.name
     n = max(scene.ask.modes, 10)

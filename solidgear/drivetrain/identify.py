@@ -1,0 +1,278 @@
+"""Least-squares identification of what a source does not publish, from the frequencies it does.
+
+What comes out is `identified`, never `published`: every quantity carries its bounds, whether it rests on one of them,
+how strongly each frequency depends on it, and how well the frequencies fix it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.optimize import least_squares
+
+from solidgear.errors import SolidgearError
+
+# A quantity this close to a bound, as a fraction of the way between the bounds, rests on it.
+ON_BOUND = 1e-3
+# Central differences of frequencies that are good to about 1e-13: 1e-5 of the way balances rounding and curvature.
+STEP = 1e-5
+
+
+@dataclass(frozen=True)
+class Unknown:
+    """A quantity to be identified.
+
+    Attributes
+    ----------
+    name : str
+    lower, upper : float
+        Bounds, SI.
+    unit : str
+    log : bool
+        Search on a logarithmic scale, for positive quantities whose order of magnitude is in doubt.
+    """
+
+    name: str
+    lower: float
+    upper: float
+    unit: str = ""
+    log: bool = True
+
+    def __post_init__(self):
+        if not (np.isfinite(self.lower) and np.isfinite(self.upper) and self.lower < self.upper):
+            raise SolidgearError(f"{self.name}: the bounds {self.lower} and {self.upper} must be finite and in ascending order")
+        if self.log and self.lower <= 0:
+            raise SolidgearError(f"{self.name}: a logarithmic scale needs a positive lower bound, not {self.lower}")
+
+    def at(self, t: float) -> float:
+        """Value at the fraction t of the way between the bounds."""
+        if self.log:
+            return float(self.lower * (self.upper / self.lower) ** t)
+        return float(self.lower + t * (self.upper - self.lower))
+
+    def slope(self, t: float) -> float:
+        """d value / d t."""
+        return self.at(t) * float(np.log(self.upper / self.lower)) if self.log else self.upper - self.lower
+
+
+@dataclass(frozen=True, eq=False)
+class Identified:
+    """An identified quantity.
+
+    Attributes
+    ----------
+    name, unit : str
+    value, lower, upper : float
+    on_bound : {"", "lower", "upper"}
+        Not empty where the data pull the quantity out of its bounds: then the value is the bound's, not the data's.
+    sensitivity : (n,) ndarray
+        ``d ln f_j / d ln p``.
+    spread : float
+        Relative standard deviation of the value if the misfit of the frequencies is taken as independent noise; inf where
+        they do not fix it.  The misfit is mostly systematic, so this is a scale and not a confidence interval.
+    status : str
+        Always ``identified``.
+    """
+
+    name: str
+    unit: str
+    value: float
+    lower: float
+    upper: float
+    on_bound: str
+    sensitivity: np.ndarray
+    spread: float
+    status: str = "identified"
+
+
+@dataclass(frozen=True, eq=False)
+class Identification:
+    """Result of `identify`.
+
+    Attributes
+    ----------
+    quantities : tuple of Identified
+    frequency_hz, published_hz : (n,) ndarray
+    starts, agreeing : int
+        Starting points, and how many of them ended at a cost within 1 % of the best.
+    condition : float
+        Condition number of the matrix of sensitivities; far above 1e3 means that combinations of the quantities are free.
+    """
+
+    quantities: tuple[Identified, ...]
+    frequency_hz: np.ndarray
+    published_hz: np.ndarray
+    starts: int
+    agreeing: int
+    condition: float
+
+    @property
+    def error(self) -> np.ndarray:
+        """(n,) relative to the published frequencies."""
+        return self.frequency_hz / self.published_hz - 1
+
+    @property
+    def worst(self) -> int:
+        """Index of the frequency with the largest relative error."""
+        return int(np.argmax(np.abs(self.error)))
+
+    @property
+    def rms(self) -> float:
+        """Root mean square of the relative errors."""
+        return float(np.sqrt(np.mean(self.error**2)))
+
+    @property
+    def values(self) -> dict[str, float]:
+        """Identified values by name."""
+        return {q.name: q.value for q in self.quantities}
+
+    @property
+    def on_bounds(self) -> tuple[str, ...]:
+        """Names of the quantities that rest on a bound."""
+        return tuple(q.name for q in self.quantities if q.on_bound)
+
+
+def identify(
+    model: Callable[[dict[str, float]], np.ndarray],
+    unknowns: Sequence[Unknown],
+    published_hz,
+    starts: int = 8,
+    seed: int = 0,
+) -> Identification:
+    """Bounded least squares on the logarithms of frequencies, from several starting points.
+
+    Parameters
+    ----------
+    model : callable
+        Natural frequencies, Hz, in the order of `published_hz`, from a dict of the unknowns by name.
+    unknowns : sequence of Unknown
+    published_hz : (n,) array_like
+        Positive; leave out zero frequencies, which say nothing.
+    starts : int
+        The middle of the bounds and ``starts - 1`` seeded random points.
+    seed : int
+
+    Returns
+    -------
+    Identification
+
+    Raises
+    ------
+    SolidgearError
+        If there are more unknowns than frequencies, names repeat, or the model does not answer in kind.
+
+    Notes
+    -----
+    Frequencies are compared in ascending order, without mode shapes: where two modes of the model
+    cross, each published frequency is met by whichever is next.
+    """
+    unknowns = tuple(unknowns)
+    published = np.asarray(published_hz, float)
+    names = [u.name for u in unknowns]
+    if published.ndim != 1 or published.size == 0 or not (np.isfinite(published).all() and (published > 0).all()):
+        raise SolidgearError("the published frequencies must be a list of finite, positive numbers of Hz; leave out the zero ones")
+    if not names or len(set(names)) < len(names):
+        raise SolidgearError(f"the unknowns need different names, at least one; got {names}")
+    if len(names) > published.size:
+        raise SolidgearError(f"{len(names)} unknowns cannot be identified from {published.size} frequencies; fix some of them")
+    if starts < 1:
+        raise SolidgearError(f"starts is {starts}; at least one starting point is needed")
+
+    def log_ratio(t):
+        found = np.asarray(model({u.name: u.at(x) for u, x in zip(unknowns, t)}), float)
+        if found.shape != published.shape:
+            raise SolidgearError(f"the model gives frequencies of shape {found.shape}, but {published.size} are published")
+        if not (np.isfinite(found).all() and (found > 0).all()):
+            raise SolidgearError("the model gives frequencies that are not finite and positive; leave out its rigid modes")
+        return np.log(found / published)
+
+    rng = np.random.default_rng(seed)
+    points = [np.full(len(names), 0.5), *rng.uniform(0.1, 0.9, (starts - 1, len(names)))]
+    found = [least_squares(log_ratio, p, bounds=(0.0, 1.0), x_scale=0.1, xtol=1e-12, ftol=1e-12, gtol=1e-12, max_nfev=200) for p in points]
+    best = min(found, key=lambda s: s.cost)
+    # An exact fit leaves costs of rounding size, which differ by large factors: those agree as well.
+    agreeing = sum(s.cost <= 1.01 * best.cost + 1e-18 for s in found)
+    return _report(log_ratio, unknowns, best.x, published, starts, agreeing)
+
+
+def _report(log_ratio, unknowns, t, published, starts, agreeing) -> Identification:
+    ratio = log_ratio(t)
+    slope = np.empty((published.size, len(unknowns)))
+    for k in range(len(unknowns)):
+        step = np.zeros(len(unknowns))
+        step[k] = STEP
+        slope[:, k] = (log_ratio(t + step) - log_ratio(t - step)) / (2 * STEP)
+    quantities = []
+    per_value = slope / np.array([u.slope(x) for u, x in zip(unknowns, t)])
+    values = np.array([u.at(x) for u, x in zip(unknowns, t)])
+    singular = np.linalg.svd(slope, compute_uv=False)
+    condition = float(singular[0] / singular[-1]) if singular[-1] > 0 else np.inf
+    freedom = max(published.size - len(unknowns), 1)
+    noise = float(ratio @ ratio) / freedom
+    # Beyond this the inverse of the normal matrix is rounding.
+    covariance = noise * np.linalg.inv(per_value.T @ per_value) if condition < 1e6 else np.full((len(unknowns),) * 2, np.inf)
+    for k, (u, x) in enumerate(zip(unknowns, t)):
+        side = "lower" if x < ON_BOUND else "upper" if x > 1 - ON_BOUND else ""
+        spread = float(np.sqrt(covariance[k, k]) / abs(values[k])) if values[k] else np.inf
+        quantities.append(Identified(u.name, u.unit, float(values[k]), u.lower, u.upper, side, per_value[:, k] * values[k], spread))
+    return Identification(tuple(quantities), published * np.exp(ratio), published, starts, agreeing, condition)
+
+
+def torsion_springs(
+    engine: float, pinion: float, gear: float, load: float, ratio: float, first_hz: float, second_hz: float
+) -> list[tuple[float, float]]:
+    """Exact springs of the torsional chain with a rigid mesh, from its two frequencies.
+
+    With everything on the pinion's side, ``J1 = engine``, ``J2 = pinion + gear/R^2``, ``J3 = load/R^2``, the springs obey
+
+        k1 (1/J1 + 1/J2) + k2 (1/J2 + 1/J3) = w1^2 + w2^2
+        k1 k2 (J1 + J2 + J3) / (J1 J2 J3) = w1^2 w2^2
+
+    which is a quadratic: none, one or two pairs fit, and the frequencies alone cannot tell which of two it is.
+
+    Parameters
+    ----------
+    engine, pinion, gear, load : float
+        Inertias about their own shafts, kg m^2.
+    ratio : float
+        R, teeth of the gear over teeth of the pinion.
+    first_hz, second_hz : float
+        The two elastic torsional frequencies, Hz.
+
+    Returns
+    -------
+    list of (float, float)
+        Engine-to-pinion and gear-to-load springs on their own shafts, N m/rad, the softer gear side first.
+
+    Raises
+    ------
+    SolidgearError
+        If an argument is not positive or no real springs give these frequencies.
+    """
+    given = {
+        "engine": engine,
+        "pinion": pinion,
+        "gear": gear,
+        "load": load,
+        "ratio": ratio,
+        "first_hz": first_hz,
+        "second_hz": second_hz,
+    }
+    for name, value in given.items():
+        if not (np.isfinite(value) and value > 0):
+            raise SolidgearError(f"{name} of the torsional chain is {value}; it must be finite and positive")
+    j1, j2, j3 = engine, pinion + gear / ratio**2, load / ratio**2
+    w1, w2 = (2 * np.pi * first_hz) ** 2, (2 * np.pi * second_hz) ** 2
+    a, b = 1 / j1 + 1 / j2, 1 / j2 + 1 / j3
+    product = w1 * w2 * j1 * j2 * j3 / (j1 + j2 + j3)
+    # a k1 and b k2 are the roots of s^2 - (w1 + w2) s + a b product.
+    discriminant = (w1 + w2) ** 2 - 4 * a * b * product
+    if discriminant < 0:
+        raise SolidgearError(f"no torsional springs give both {first_hz:g} and {second_hz:g} Hz with these inertias")
+    root = np.sqrt(discriminant)
+    big = (w1 + w2 + root) / 2
+    small = a * b * product / big
+    pairs = {(float(s / a), float(product / (s / a) * ratio**2)) for s in (big, small)}
+    return sorted(pairs, key=lambda pair: pair[1])
