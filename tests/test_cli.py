@@ -234,7 +234,7 @@ REFUSED = {
     "negative refinement": (["stiffness", SCENE, "-f", "solid", "--set", "refinement=-1"], ["refinement"]),
     "negative size": (["stiffness", SCENE, "--set", "size=-1"], ["size"]),
     "layers that grow": (["stiffness", SCENE, "--set", "ratio=2"], ["ratio"]),
-    "one number for a list": (["stiffness", SCENE, "--set", "order=2", "--set", "ovalising=2"], ["ovalising"]),
+    "harmonic that carries ports": (["stiffness", SCENE, "--set", "order=2", "--set", "ovalising=1"], ["ovalising", "at least 2"]),
     "negative elements": (["stiffness", SCENE, "-f", "euler", "--set", "elements=-4"], ["elements"]),
     "no modes": (["modes", SCENE, "-f", "euler", "-n", "0"], ["0"]),
     "negative frequency": (["modes", SCENE, "-f", "euler", "--max-frequency", "-5"], ["-5"]),
