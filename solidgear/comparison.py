@@ -327,8 +327,6 @@ def _add_lumped(verdict: dict, record: dict, lumped: dict, reference: str, best:
         verdict["sentences"].append(
             f"Cheapest model within {100 * verdict['tolerance']:g} %: lumped ({record['variant']} masses on the {record['source']} stiffness), for first bending and below only."
         )
-    elif record["why_not"]:
-        verdict["sentences"].append(f"Lumped is out: {record['why_not']}.")
     own = lumped.get(reference, {}).get("variants", {})
     if own:
         errors = [f"{n} {_error(v['frequency_error'])}" for n, v in own.items() if v["feasible"] and v["frequency_error"] is not None]

@@ -77,7 +77,7 @@ def judge(scene, rungs: dict, reference: str | None, gaps: list[dict]) -> tuple[
     if reference is None:
         return {"trust": None, "reference": None, "cheapest": None, "tolerance": tolerance, "sentences": ["No model could be solved."]}, validity
     cheapest = next((m for m in FIDELITIES if m in rungs and validity[m][0]), None)
-    sentences = [*_trust(rungs, reference, gaps), *_cheapest(rungs, reference, cheapest, tolerance, validity, gaps)]
+    sentences = [*_trust(rungs, reference, gaps), *_cheapest(rungs, reference, cheapest, tolerance, gaps)]
     return {"trust": reference, "reference": reference, "cheapest": cheapest, "tolerance": tolerance, "sentences": sentences}, validity
 
 
@@ -112,11 +112,8 @@ def _trust(rungs, reference, gaps) -> list[str]:
     return out
 
 
-def _cheapest(rungs, reference, cheapest, tolerance, validity, gaps) -> list[str]:
+def _cheapest(rungs, reference, cheapest, tolerance, gaps) -> list[str]:
     out = []
-    for model in FIDELITIES:
-        if model in rungs and not validity[model][0]:
-            out.append(f"{model.capitalize()} is out: {validity[model][1]}.")
     if cheapest:
         out.append(f"Cheapest model within {100 * tolerance:g} %: {cheapest} ({_cost(rungs[cheapest])}).")
     if "timoshenko" in rungs and reference != "timoshenko":

@@ -448,3 +448,31 @@ def test_ring_gear_shaft():
 
 def test_names_of_components_are_those_of_the_frames():
     assert list(DOF_NAMES) == ORDER
+
+
+# --------------------------------------------------------------------------- the lumped rung
+def test_lumped_rung_rests_on_a_body(overhung):
+    found = compare(overhung, ("lumped", "timoshenko", "harmonic"), settings=LIGHT).results
+    record = found["models"]["lumped"]
+    assert list(found["models"])[0] == "lumped" and record["source"] == "timoshenko" and record["variant"] == "mode-matched"
+    assert record["stiffness"] == found["models"]["timoshenko"]["stiffness"]
+    beam = next(m for m in found["models"]["timoshenko"]["modes"] if m["name"] == "bending 1")
+    # mode-matched masses keep the body's first bending; 1e-8 is what the synthesis promises
+    assert record["modes"][0]["frequency_hz"] == pytest.approx(beam["frequency_hz"], rel=1e-8)
+    assert not record["valid"] and "timoshenko" in record["why_not"]  # it inherits what is wrong with its stiffness
+    variants = found["lumped"]["harmonic"]["variants"]
+    assert list(variants) == ["old", "thesis", "mode-matched", "guyan"]
+    assert not variants["thesis"]["feasible"] and variants["guyan"]["frequency_error"] > 0
+    assert any("equations 52 and 53" in s for s in found["verdict"]["sentences"])
+    strict(json.dumps(found, allow_nan=False))
+
+
+def test_lumped_alone_has_nothing_to_rest_on(overhung):
+    with pytest.raises(SolidgearError, match="not alone"):
+        compare(overhung, ("lumped",))
+
+
+def test_a_free_shaft_has_no_lumped_rung():
+    free = scene_of("cylinder_free")
+    found = compare(free, ("lumped", "timoshenko")).results
+    assert "lumped" not in found["models"] and "leave it free" in found["lumped"]["timoshenko"]["why_not"]

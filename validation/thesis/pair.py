@@ -1,7 +1,8 @@
 """Problem: the 28 natural frequencies of Hua (2010), two pinion mountings of one spiral bevel geared rotor.
 
 Reference: the printed frequencies.  Models: the 14-DOF lumped pair with (i) the published masses, (ii) pinion mass, pinion
-inertia, mesh stiffness and torsional springs identified, (iii) the mesh stiffness kept within the thesis's plots.
+inertia, mesh stiffness and torsional springs identified, (iii) the mesh stiffness kept within the thesis's plots and its point and
+the axial mass identified instead, (iv) as (ii) with a mass and inertia for each mounting, as the effective-mass method gives.
 The pinion's K_ll is the published one, the gear's is condensed from an Euler beam of the published shaft and bearings.
 
     python validation/thesis/pair.py
@@ -39,16 +40,26 @@ UNKNOWNS = {
         Unknown("pinion mass", 10.0, 40.0, "kg"),
         Unknown("pinion bending inertia", 0.2, 1.0, "kg m^2"),
         Unknown("mesh stiffness", 5e7, 5e9, "N/m"),
+        Unknown("pinion mass, 2-bearing", 10.0, 40.0, "kg"),
+        Unknown("pinion mass, 3-bearing", 10.0, 40.0, "kg"),
+        Unknown("pinion bending inertia, 2-bearing", 0.2, 1.0, "kg m^2"),
+        Unknown("pinion bending inertia, 3-bearing", 0.2, 1.0, "kg m^2"),
         Unknown("pinion axial mass", 10.0, 40.0, "kg"),
         Unknown("mesh radius", 0.045, 0.067, "m", log=False),  # toe to heel is 0.043 to 0.067
         Unknown("mesh axial, pinion", -0.06, 0.06, "m", log=False),
         Unknown("mesh axial, gear", -0.1, 0.1, "m", log=False),
-        Unknown("mesh height", -0.02, 0.02, "m", log=False),
     )
 }
+MASSES = ("pinion mass", "pinion bending inertia")
+MASSES_EACH = tuple(f"{name}, {case}" for name in MASSES for case in CASES)
+MESH_POINT = ("mesh radius", "mesh axial, pinion", "mesh axial, gear")
 TORSION_AND_MESH = ("pinion torsion", "gear torsion", "mesh stiffness")
-# Without better knowledge the lumped points are taken at the middle of the face, level with the mesh point.
-DEFAULTS = {"mesh axial, pinion": 0.0, "mesh axial, gear": 0.0, "mesh height": 0.0}
+# Without better knowledge the lumped points are taken at the middle of the face.  The mesh point stays at the height of the
+# axes: moving it along the line of action changes nothing, so of its three coordinates only two can be identified.
+DEFAULTS = {"mesh axial, pinion": 0.0, "mesh axial, gear": 0.0}
+
+# The mesh-blind frequencies of the pinion, by their place in the spectrum of model (ii).
+BLIND = {"2-bearing": (620.2, 3145.5), "3-bearing": (1739.2, 4062.8)}
 
 
 def gear_support() -> np.ndarray:
@@ -63,14 +74,16 @@ def geared_pair(values: dict[str, float], case: str, gear_stiffness: np.ndarray)
     v = {**DEFAULTS, **values}
     n = line_of_action(gears["pitch_angle"][0], gears["spiral_angle"], PRESSURE_ANGLE, gears["hand"][0], gears["loaded_side"][0])
     radius = v.get("mesh radius", mean_radius(gears["pitch_radius"][0], gears["pitch_angle"][0], gears["face_width"]))
-    pinion = MeshVector(n, mesh_point(radius, v["mesh axial, pinion"], v["mesh height"]))
-    # The gear's mesh point is where the tooth ratio is met exactly: the published pitch angles, 0.391 and 1.282 rad,
-    # do not belong to 14 and 45 teeth (0.302 and 1.269), so the two mean radii in Table 1 would miss it.
+    pinion = MeshVector(n, mesh_point(radius, v["mesh axial, pinion"]))
+    # The radii are in the ratio of the teeth: the published pitch angles, 0.391 and 1.282 rad, do not belong to
+    # 14 and 45 teeth (0.302 and 1.269), so the mean radii that follow from them would miss it.
     n_gear = to_gear_frame(n)
-    x = (RATIO * pinion.lever + v["mesh height"] * n_gear[0]) / n_gear[2]
-    gear = MeshVector(n_gear, [x, v["mesh axial, gear"], v["mesh height"]])
-    mass = v.get("pinion mass", inertia["pinion"]["mass"])
-    m = diagonal_mass(mass, inertia["pinion"]["torsional"], v.get("pinion bending inertia", inertia["pinion"]["bending"]))
+    gear = MeshVector(n_gear, mesh_point(RATIO * radius, v["mesh axial, gear"], member="gear"))
+    mass, bending = (
+        v.get(f"{name}, {case}", v.get(name, inertia["pinion"][key]))
+        for name, key in (("pinion mass", "mass"), ("pinion bending inertia", "bending"))
+    )
+    m = diagonal_mass(mass, inertia["pinion"]["torsional"], bending)
     m[1, 1] = v.get("pinion axial mass", mass)
     return LumpedPair(
         inertia["engine"],
@@ -158,16 +171,14 @@ def sensitivity_rows(found) -> list[dict]:
 
 def rayleigh_rows(fits: dict) -> list[dict]:
     """Can the highest published frequency belong to these stiffnesses and masses?"""
-    p, rows = DATA["inertia"]["pinion"], []
-    for name in ("published", *fits):
-        v = {} if name == "published" else fits[name].values
-        m = diagonal_mass(v.get("pinion mass", p["mass"]), p["torsional"], v.get("pinion bending inertia", p["bending"]))
-        m[1, 1] = v.get("pinion axial mass", m[1, 1])
+    rows = []
+    for name, found in fits.items():
         for case in CASES:
-            verdict = consistency(np.diag(shaft_stiffness(**DATA["support"][case])), np.diag(m), PUBLISHED[case].max())
+            pair = geared_pair(found.values, case, np.zeros((6, 6)))
+            verdict = consistency(np.diag(pair.pinion_support), np.diag(pair.pinion_mass), PUBLISHED[case].max())
             rows.append(
                 {
-                    "masses": name,
+                    "masses": "(i) published" if name == "i" else f"({name})",
                     "mounting": case,
                     "bound_hz": f"{verdict.bound_hz:.1f}",
                     "published_hz": verdict.published_hz,
@@ -179,24 +190,52 @@ def rayleigh_rows(fits: dict) -> list[dict]:
 
 
 def blind_rows(gear_stiffness: np.ndarray, mass: float, inertia: float) -> list[dict]:
-    """Frequencies the mesh cannot move, against the published ones they must be."""
-    gear = DATA["inertia"]["gear"]
+    """Frequencies the mesh cannot move, against the published ones in their places of the spectrum."""
+    gear, pinion = DATA["inertia"]["gear"], DATA["inertia"]["pinion"]
     cases = [("gear, published mass, nothing identified", gear_stiffness, gear["mass"], gear["bending"], (430.3, 1920.2))]
-    for case, pair in (("2-bearing", (678.5, 3145.5)), ("3-bearing", (1739.2, 4062.8))):
+    for case, pair in BLIND.items():
         stiffness = shaft_stiffness(**DATA["support"][case])
-        published = DATA["inertia"]["pinion"]
-        cases.append((f"pinion {case}, published mass", stiffness, published["mass"], published["bending"], pair))
+        own = exact_masses(stiffness, pair)
+        cases.append((f"pinion {case}, published mass", stiffness, pinion["mass"], pinion["bending"], pair))
         cases.append((f"pinion {case}, identified (ii)", stiffness, mass, inertia, pair))
+        cases.append((f"pinion {case}, mass of its own", stiffness, *own, pair))
     rows = []
     for name, stiffness, m, i, pair in cases:
         for found, hz in zip(bending_frequencies(stiffness, m, i), pair):
-            rows.append({"body": name, "published_hz": hz, "computed_hz": f"{found:.1f}", "error": f"{100 * (found / hz - 1):+.1f} %"})
+            error = f"{100 * (found / hz - 1):+.1f} %"
+            row = {"body": name, "mass": f"{m:.2f}", "inertia": f"{i:.4f}", "published_hz": f"{hz:.1f}", "computed_hz": f"{found:.1f}"}
+            rows.append({**row, "error": error})
+    return rows
+
+
+def exact_masses(stiffness: np.ndarray, pair: tuple[float, float]) -> tuple[float, float]:
+    """Mass and inertia that give one mounting's two mesh-blind frequencies exactly, kg and kg m^2.
+
+    ``kxx/M + kthz/I`` is the sum and ``det K / (M I)`` the product of the squared angular frequencies.  Of the two solutions
+    of that quadratic the one is taken whose mass belongs to the translation.
+    """
+    low, high = (2 * np.pi * np.array(pair)) ** 2
+    k, t, c = stiffness[0, 0], stiffness[5, 5], stiffness[0, 5]
+    share = k * t * low * high / (k * t - c**2)
+    over_mass = max(np.roots([1.0, -(low + high), share]).real) / k
+    return 1 / over_mass, (k * t - c**2) * over_mass / (low * high)
+
+
+def mesh_rows() -> list[dict]:
+    """Line of action and mean mesh point from Table 1, against the plots."""
+    gears, plotted, rows = DATA["gears"], DATA["plotted"], []
+    n = line_of_action(gears["pitch_angle"][0], gears["spiral_angle"], PRESSURE_ANGLE, gears["hand"][0], gears["loaded_side"][0])
+    rows.append({"quantity": "line of action, pinion", "ours": np.round(n, 3).tolist(), "plotted": plotted["line_of_action"]})
+    for name, angle in (("published pitch angle", gears["pitch_angle"][0]), ("pitch angle of 14/45 teeth", float(np.arctan(1 / RATIO)))):
+        r = mean_radius(gears["pitch_radius"][0], angle, gears["face_width"])
+        ours = [round(-r, 3), round(r / float(np.tan(angle)), 3), 0.0]
+        rows.append({"quantity": f"mesh point from the apex, {name}", "ours": ours, "plotted": plotted["mesh_point"]})
     return rows
 
 
 def torsion_rows(identified: dict[str, float]) -> list[dict]:
     """Both exact springs of the rigid-mesh chain, and what the chain becomes with the identified ones."""
-    inertia, gears, rows = DATA["inertia"], DATA["gears"], []
+    inertia, rows = DATA["inertia"], []
     chain = (inertia["engine"], inertia["pinion"]["torsional"], inertia["gear"]["torsional"], inertia["load"])
     exact = torsion_springs(*chain, RATIO, 16.3, 47.3)
     for name, (k1, k2) in [
@@ -207,7 +246,6 @@ def torsion_rows(identified: dict[str, float]) -> list[dict]:
         k = k1 * np.outer([1, -1, 0], [1, -1, 0]) + k2 / RATIO**2 * np.outer([0, 1, -1], [0, 1, -1])
         hz = np.sqrt(np.abs(eigh(k, j, eigvals_only=True))) / (2 * np.pi)
         rows.append({"chain": name, "engine-pinion N m/rad": f"{k1:.4g}", "gear-load N m/rad": f"{k2:.4g}", "hz": f"{hz[1]:.3f}, {hz[2]:.3f}"})
-    assert len(gears["teeth"]) == 2
     return rows
 
 
@@ -215,16 +253,19 @@ def main() -> int:
     """Run every case; exit code 1 if (ii) misses 10 % anywhere or 1 % on the torsional modes."""
     stiffness = gear_support()
     low, high = DATA["plotted"]["mesh_stiffness"]
+    plotted = Unknown("mesh stiffness", low, high, "N/m")
     fits = {
         "i": fit(TORSION_AND_MESH, stiffness),
-        "ii": fit((*TORSION_AND_MESH, "pinion mass", "pinion bending inertia"), stiffness),
-        "iii": fit(tuple(UNKNOWNS), stiffness, mesh_stiffness=Unknown("mesh stiffness", low, high, "N/m")),
+        "ii": fit((*TORSION_AND_MESH, *MASSES), stiffness),
+        "iii": fit((*TORSION_AND_MESH, *MASSES, "pinion axial mass", *MESH_POINT), stiffness, mesh_stiffness=plotted),
+        "iv": fit((*TORSION_AND_MESH, *MASSES_EACH), stiffness),
     }
     tables = {
         "frequencies": frequency_rows(fits, stiffness),
         "identified": [row for name, found in fits.items() for row in quantity_rows(name, found)],
         "rayleigh": rayleigh_rows(fits),
         "mesh_blind": blind_rows(stiffness, fits["ii"].values["pinion mass"], fits["ii"].values["pinion bending inertia"]),
+        "mesh": mesh_rows(),
         "torsion": torsion_rows(fits["ii"].values),
         "sensitivity": sensitivity_rows(fits["ii"]),
     }
@@ -233,10 +274,9 @@ def main() -> int:
         write_rows(folder / f"{name}.csv", rows)
         if name != "sensitivity":
             show(name.replace("_", " "), rows)
-    two = [ELASTIC[f.worst] for f in fits.values()]
-    for (name, f), hz in zip(fits.items(), two):
+    for name, f in fits.items():
         print(
-            f"({name}) rms {100 * f.rms:.2f} %, worst {100 * f.error[f.worst]:+.1f} % on {hz:.1f} Hz ({CASES[f.worst // 13]}); "
+            f"({name}) rms {100 * f.rms:.2f} %, worst {100 * f.error[f.worst]:+.1f} % on {ELASTIC[f.worst]:.1f} Hz ({CASES[f.worst // 13]}); "
             f"on bounds: {', '.join(f.on_bounds) or 'none'}; condition {f.condition:.0f}; {f.agreeing} of {f.starts} starts agree"
         )
     torsional = max(abs(fits["ii"].error[k]) for k in (0, 1, 13, 14))
