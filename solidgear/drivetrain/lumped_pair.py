@@ -182,7 +182,7 @@ class LumpedPair:
         """(14,) rotation of the whole train that strains no spring, the faster side turning by 1 rad."""
         lever_p, lever_g = self.pinion_mesh.lever, self.gear_mesh.lever
         if lever_p == 0 and lever_g == 0:
-            raise SolidgearError("the line of action meets both shafts, so the mesh transmits no rotation; check mesh point and line of action")
+            raise SolidgearError("the line of action meets both shafts, so the mesh transmits no rotation; check the mesh vectors")
         turn = np.zeros(14)
         size = max(abs(lever_p), abs(lever_g))
         turn[[ENGINE, PINION_THY]], turn[[GEAR_THY, LOAD]] = lever_g / size, lever_p / size
@@ -240,8 +240,9 @@ class LumpedPair:
         # A sign that does not depend on the library: largest component (in energy) positive.
         largest = np.argmax(np.abs(chol.T @ shapes), axis=0)
         shapes *= np.where(np.take_along_axis(shapes, largest[None, :], 0)[0] < 0, -1.0, 1.0)
-        scale = np.abs(k) @ np.abs(shapes)
-        residual = float((np.abs(k @ shapes - m @ shapes * omega**2).max(axis=0) / scale.max(axis=0)).max())
+        scale = (np.abs(k) @ np.abs(shapes)).max(axis=0)
+        miss = np.abs(k @ shapes - m @ shapes * omega**2).max(axis=0)
+        residual = float((miss / np.where(scale > 0, scale, 1.0)).max())  # a rigid motion may touch no spring at all
         return PairModes(omega / (2 * np.pi), shapes, self._energy(shapes, omega, strain, where), residual)
 
     def _energy(self, shapes, omega, strain, where) -> np.ndarray:
