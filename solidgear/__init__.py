@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING
 __version__ = "0.1.0"
 
 _WHERE = {
-    "load": "solidgear.scene",
+    "load": "solidgear.scene_file",
     "Scene": "solidgear.scene",
     "build": "solidgear.fidelity",
     "condense": "solidgear.solve.statics",
@@ -33,7 +33,8 @@ if TYPE_CHECKING:
     from solidgear.comparison import compare
     from solidgear.errors import SceneError, SolidgearError
     from solidgear.fidelity import build
-    from solidgear.scene import Scene, load
+    from solidgear.scene import Scene
+    from solidgear.scene_file import load
     from solidgear.solve.modes import modes
     from solidgear.solve.statics import condense
 
@@ -42,5 +43,5 @@ def __getattr__(name: str):
     if name not in _WHERE:
         raise AttributeError(f"module 'solidgear' has no attribute {name!r}")
     value = getattr(importlib.import_module(_WHERE[name]), name)
-    globals()[name] = value  # sg.compare must stay the function once the module of that name is imported
+    globals()[name] = value
     return value

@@ -145,7 +145,7 @@ def compare(
     from solidgear.comparison import check_models
     from solidgear.comparison import compare as run
     from solidgear.report.write import prepare
-    from solidgear.scene import load
+    from solidgear.scene_file import load
 
     loaded = load(scene)
     wanted = tuple(m.strip() for m in models.split(",") if m.strip())
@@ -182,7 +182,7 @@ def stiffness(
     import numpy as np
 
     from solidgear.frames import DOF_NAMES
-    from solidgear.scene import load
+    from solidgear.scene_file import load
     from solidgear.solve.statics import condense
 
     loaded = load(scene)
@@ -230,7 +230,7 @@ def modes(
     settings: Settings = None,
 ) -> None:
     """Natural frequencies on the bearings, with the evidence for them."""
-    from solidgear.scene import load
+    from solidgear.scene_file import load
     from solidgear.solve.modes import modes as solve
 
     loaded = load(scene)
@@ -261,7 +261,7 @@ def render(
 ) -> None:
     """Draw one mode shape off-screen."""
     from solidgear.report.write import render_mode
-    from solidgear.scene import load
+    from solidgear.scene_file import load
     from solidgear.solve.modes import modes as solve
 
     loaded = load(scene)
@@ -280,7 +280,7 @@ def check(
 ) -> None:
     """Say what will be modelled and what will not hold, before anything is solved."""
     from solidgear.check import check_scene
-    from solidgear.scene import load
+    from solidgear.scene_file import load
 
     loaded = load(scene)
     body = _build(loaded, fidelity, settings)

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import difflib
 import json
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
 
@@ -113,3 +114,9 @@ def _child(data: Any, key: Any) -> tuple[bool, Any]:
         inside = isinstance(data, Sequence) and not isinstance(data, str) and key < len(data)
         return (True, data[key]) if inside else (False, None)
     return (True, getattr(data, key)) if hasattr(data, key) else (False, None)
+
+
+def nearest(word: Any, known: Iterable[str]) -> str:
+    """``'; did you mean "x"?'``, or nothing when no known word is near."""
+    close = difflib.get_close_matches(str(word), list(known), 1)
+    return f'; did you mean "{close[0]}"?' if close else ""

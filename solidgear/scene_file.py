@@ -13,8 +13,9 @@ from typing import Annotated, Any, Literal
 
 from pydantic import AfterValidator, Field, model_validator
 
-from solidgear.errors import SceneError
-from solidgear.scene import Ask, Attachment, Bearing, Material, Model, Port, Scene, Segment, Status, nearest, stiffness_matrix
+from solidgear.bearing_stiffness import stiffness_matrix
+from solidgear.errors import SceneError, nearest
+from solidgear.scene import Ask, Attachment, Bearing, Material, Model, Port, Scene, Segment, Status
 from solidgear.units import Angle, AxialSpring, Density, Length, Modulus, Poisson, PositiveLength, Thickness
 
 _WORDS = ("start", "end", "bearing")  # first words of datums, so no segment may be called that
@@ -196,7 +197,7 @@ class _Datums:
         return self.y[text]
 
 
-def read(path: str | os.PathLike) -> Scene:
+def load(path: str | os.PathLike) -> Scene:
     """Read and resolve a scene file.
 
     Raises

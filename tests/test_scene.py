@@ -10,7 +10,9 @@ import numpy as np
 import pytest
 
 from solidgear.errors import SceneError
-from solidgear.scene import STEEL, STIFFNESS_NAMES, Bearing, Material, Port, Scene, Segment, load, stiffness_entries, stiffness_matrix
+from solidgear.bearing_stiffness import STIFFNESS_NAMES, stiffness_entries, stiffness_matrix
+from solidgear.scene import STEEL, Bearing, Material, Port, Scene, Segment
+from solidgear.scene_file import load
 from solidgear.units import quantity
 
 GEOMETRY = Path(__file__).parents[1] / "geometry"
