@@ -22,7 +22,6 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
-import scipy.linalg as sla
 import scipy.sparse as sp
 from scipy.sparse.linalg import splu
 
@@ -62,17 +61,7 @@ def krylov_duncan(kl):
 
 @dataclass(frozen=True)
 class Span:
-    """A uniform length of shaft.
-
-    Attributes
-    ----------
-    length : float
-        m.
-    bending_stiffness : float
-        E I, N m^2.
-    mass_per_length : float
-        kg/m.
-    """
+    """A uniform length of shaft: `length` in m, `bending_stiffness` E I in N m^2, `mass_per_length` in kg/m."""
 
     length: float
     bending_stiffness: float
@@ -80,7 +69,7 @@ class Span:
 
     def __post_init__(self):
         for name in ("length", "bending_stiffness", "mass_per_length"):
-            _real("span", name, getattr(self, name), above=0)
+            _given("span", name, getattr(self, name), above=0)
 
 
 @dataclass(frozen=True, eq=False)
@@ -93,10 +82,8 @@ class Station:
         m, from the left end of the first span.
     spring : (2, 2) ndarray
         On (z, thx): N/m, N/rad, N m/rad; symmetric positive semidefinite.
-    mass : float
-        kg.
-    inertia : float
-        About the x axis through the station, kg m^2.
+    mass, inertia : float
+        kg, and kg m^2 about the x axis through the station.
     """
 
     y: float
@@ -105,21 +92,21 @@ class Station:
     inertia: float = 0.0
 
     def __post_init__(self):
-        _real("station", "y", self.y)
-        _real("station", "mass", self.mass, least=0)
-        _real("station", "inertia", self.inertia, least=0)
+        _given("station", "y", self.y)
+        _given("station", "mass", self.mass, least=0)
+        _given("station", "inertia", self.inertia, least=0)
         try:
             k = np.array(self.spring, float)
         except (TypeError, ValueError):
             k = np.zeros(0)
+        here = f"station at y = {self.y:g} m: the spring"
         if k.shape != (2, 2) or not np.isfinite(k).all():
-            raise SolidgearError(f"station at y = {self.y:g} m: the spring must be 2 rows of 2 finite numbers, on (z, thx)")
-        size = np.sqrt(abs(np.diag(k)))
-        bound = 1e-9 * size[0] * size[1]
-        if abs(k[0, 1] - k[1, 0]) > bound:
-            raise SolidgearError(f"station at y = {self.y:g} m: the spring is not symmetric ({k[0, 1]:g} and {k[1, 0]:g} off the diagonal)")
-        if k[0, 0] < 0 or k[1, 1] < 0 or abs(k[0, 1]) > size[0] * size[1] + bound:
-            raise SolidgearError(f"station at y = {self.y:g} m: the spring {k.tolist()} is indefinite; no motion may give energy back")
+            raise SolidgearError(f"{here} must be 2 rows of 2 finite numbers, on (z, thx)")
+        bound = np.sqrt(abs(k[0, 0])) * np.sqrt(abs(k[1, 1]))  # of the coupling, in its own unit
+        if abs(k[0, 1] - k[1, 0]) > 1e-9 * bound:
+            raise SolidgearError(f"{here} is not symmetric: {k[0, 1]:g} and {k[1, 0]:g} off the diagonal")
+        if min(k[0, 0], k[1, 1]) < 0 or abs(k[0, 1]) > (1 + 1e-9) * bound:
+            raise SolidgearError(f"{here} {k.tolist()} is indefinite; no motion may give energy back")
         k.flags.writeable = False
         object.__setattr__(self, "spring", k)
 
@@ -185,10 +172,7 @@ class KrylovModes:
             raise SolidgearError(f"shape: side = {side!r} is unknown; use 'after' or 'before'")
         if not np.all((y >= -1e-9 * end) & (y <= end * (1 + 1e-9))):
             raise SolidgearError(f"shape: y must lie on the shaft, from 0 to {end:g} m")
-        if side == "after":
-            i = np.clip(np.searchsorted(self.y, y, "right") - 1, 0, len(self.y) - 2)
-        else:
-            i = np.clip(np.searchsorted(self.y, y, "left") - 1, 0, len(self.y) - 2)
+        i = np.clip(np.searchsorted(self.y, y, "right" if side == "after" else "left") - 1, 0, len(self.y) - 2)
         s = np.clip(y - self.y[i], 0, None)
         stiff, heavy = self._pieces
         start = np.moveaxis(self._states[k][:, [0, 1, 4, 5]][i], -1, 0)
@@ -225,23 +209,17 @@ def krylov(spans: Sequence[Span], stations: Iterable[Station] = (), n: int | Non
     number("krylov", "max_frequency", max_frequency, above=0)
     if n is None and max_frequency is None:
         raise SolidgearError("krylov: give n, max_frequency or both; a shaft has infinitely many modes")
-    shaft = _Shaft(spans, stations)
+    shaft = _joined(tuple(spans), tuple(stations))
     loose = shaft.loose()
-    wanted = n
-    top = None
-    if max_frequency is not None:
-        top = 2 * np.pi * max_frequency
-        below = max(int(shaft.count(np.array([top]))[0]), loose.shape[1])
-        wanted = below if n is None else min(n, below)
-    rigid = min(loose.shape[1], wanted)
-    omega = np.concatenate([np.zeros(rigid), shaft.roots(loose.shape[1], wanted, top)])
-    pieces = shaft.cut(omega.max(initial=0.0))
-    states, defect = pieces.shapes(omega, loose)
-    states, distributed, lumped = pieces.normalise(omega, states)
+    top = np.inf if max_frequency is None else 2 * np.pi * max_frequency
+    rigid = min(loose.shape[1], n or 2)
+    omega = np.concatenate([np.zeros(rigid), shaft.roots(rigid, n, top)])
+    shaped = shaft.cut(omega.max(initial=0.0))
+    states, defect = shaped.shapes(omega, loose)
+    states, distributed, lumped = shaped.normalise(omega, states)
     around = shaft.count((omega[:, None] * (1 + np.array([-1e-8, 1e-8]))).ravel()).reshape(-1, 2)
     around[:rigid] = 0, loose.shape[1]
-    facts = (pieces.stiff, pieces.heavy)
-    return KrylovModes(omega / (2 * np.pi), rigid, around, distributed, lumped, defect, pieces.y, facts, states)
+    return KrylovModes(omega / (2 * np.pi), rigid, around, distributed, lumped, defect, shaped.y, (shaped.stiff, shaped.heavy), states)
 
 
 def from_scene(scene, *, pieces: int = 1) -> tuple[tuple[Span, ...], tuple[Station, ...]]:
@@ -279,10 +257,9 @@ def from_scene(scene, *, pieces: int = 1) -> tuple[tuple[Span, ...], tuple[Stati
     return tuple(spans), (point, *(Station(b.y, b.stiffness[2:4, 2:4]) for b in scene.bearings))
 
 
-def _real(what, name, value, **limits):
-    if value is None:  # an option may be left out, a property may not
-        raise SolidgearError(f"{what}: {name} is missing")
-    return number(what, name, value, **limits)
+def _given(what, name, value, **limits):
+    # An option may be left out, a property may not: nan is refused where None would pass.
+    number(what, name, np.nan if value is None else value, **limits)
 
 
 def _transfer(s, stiff, force):
@@ -313,15 +290,15 @@ class _Joint:
 
     def __init__(self, stations, length):
         k = sum((s.spring for s in stations), np.zeros((2, 2)))
-        self.spring = k
         self.mass = np.array([sum(s.mass for s in stations), sum(s.inertia for s in stations)], float)
         self.p = p = 0 if k[0, 0] * length**2 >= k[1, 1] else 1
         self.ell = k[0, 1] / k[p, p] if k[p, p] else 0.0
-        self.d = np.array([k[p, p], max(k[1 - p, 1 - p] - self.ell * k[0, 1], 0.0)])
-        # The difference is rounding when the spring has rank one.
-        if self.d[1] < 1e-12 * k[1 - p, 1 - p]:
-            self.d[1] = 0.0
+        soft = k[1 - p, 1 - p] - self.ell * k[0, 1]
+        # What is left of a spring of rank one is rounding.
+        self.d = np.array([k[p, p], soft if soft > 1e-12 * k[1 - p, 1 - p] else 0.0])
         self.first = 0 if self.mass[0] * length**2 >= self.mass[1] else 1
+        order = [p, 1 - p]
+        self.up, self.down = np.array([[1.0, self.ell], [0.0, 1.0]])[:, order], np.array([[1.0, 0.0], [-self.ell, 1.0]])[:, order]
 
     def act(self, b, omega):
         """Add the forces of the joint to the two solutions in `b` (4, 2, ...)."""
@@ -348,39 +325,39 @@ class _Joint:
         return b
 
 
-class _Shaft:
-    """Spans cut at the stations, and the number of modes below a frequency."""
+def _joined(spans, stations):
+    """The shaft with a joint at the ends of every span and at every station."""
+    if not spans:
+        raise SolidgearError("krylov: a shaft needs at least one span")
+    ends = np.concatenate([[0.0], np.cumsum([s.length for s in spans])])
+    length, near = ends[-1], 1e-9 * ends[-1]
+    marks, held = list(ends), [[] for _ in ends]
+    for station in stations:
+        if not -near <= station.y <= length + near:
+            raise SolidgearError(f"krylov: the station at y = {station.y:g} m is outside the shaft, 0 to {length:g} m")
+        at = int(np.argmin(abs(np.array(marks) - station.y)))
+        if abs(marks[at] - station.y) > near:  # nearer than that, it is meant to be at the mark
+            at = int(np.searchsorted(marks, station.y))
+            marks.insert(at, station.y)
+            held.insert(at, [])
+        held[at].append(station)
+    y = np.array(marks)
+    owner = np.clip(np.searchsorted(ends, (y[1:] + y[:-1]) / 2) - 1, 0, len(spans) - 1)
+    stiff, heavy = np.array([(spans[i].bending_stiffness, spans[i].mass_per_length) for i in owner], float).T
+    return _Shaft(y, stiff, heavy, [_Joint(h, length) for h in held])
 
-    def __init__(self, spans, stations):
-        spans, stations = tuple(spans), tuple(stations)
-        if not spans:
-            raise SolidgearError("krylov: a shaft needs at least one span")
-        ends = np.concatenate([[0.0], np.cumsum([s.length for s in spans])])
-        self.length = ends[-1]
-        near = 1e-9 * self.length
-        marks, held = list(ends), [[] for _ in ends]
-        for station in sorted(stations, key=lambda s: s.y):
-            if not -near <= station.y <= self.length + near:
-                raise SolidgearError(f"krylov: the station at y = {station.y:g} m is outside the shaft, 0 to {self.length:g} m")
-            at = int(np.argmin(abs(np.array(marks) - station.y)))
-            if abs(marks[at] - station.y) > near:  # nearer than that, it is meant to be at the mark
-                at = int(np.searchsorted(marks, station.y))
-                marks.insert(at, station.y)
-                held.insert(at, [])
-            held[at].append(station)
-        self.y = np.array(marks)
-        owner = np.minimum(np.searchsorted(ends, (self.y[1:] + self.y[:-1]) / 2) - 1, len(spans) - 1)
-        self.stiff = np.array([spans[i].bending_stiffness for i in owner], float)
-        self.heavy = np.array([spans[i].mass_per_length for i in owner], float)
-        self.joints = [_Joint(h, self.length) for h in held]
+
+class _Shaft:
+    """Joints and the uniform spans between them."""
+
+    def __init__(self, y, stiff, heavy, joints):
+        self.y, self.stiff, self.heavy, self.joints = y, stiff, heavy, joints
+        self.length = y[-1]
 
     def loose(self):
         """(2, r) rigid motions (z at y = 0, tilt) that no spring resists; found by rank, not by a small frequency."""
-        rows = [np.zeros((1, 2))]
-        for y, joint in zip(self.y, self.joints):
-            along = np.array([[1.0, y / self.length], [0.0, 1 / self.length]])[[joint.p, 1 - joint.p]]
-            rows.append((np.array([[1.0, joint.ell], [0.0, 1.0]]) @ along)[joint.d > 0])
-        rows = np.vstack(rows)
+        motions = [np.array([[1.0, y / self.length], [0.0, 1 / self.length]]) for y in self.y]
+        rows = np.vstack([np.zeros((1, 2))] + [(joint.up @ r)[joint.d > 0] for joint, r in zip(self.joints, motions)])
         norm = np.linalg.norm(rows, axis=1, keepdims=True)
         _, s, vt = np.linalg.svd(rows / np.where(norm > 0, norm, 1.0))
         return vt[int((s > 1e-9).sum()) :].T / np.array([[1.0], [self.length]])
@@ -423,14 +400,12 @@ class _Shaft:
         return total + negative
 
     def roots(self, first, last, top):
-        """Frequencies (rad/s) number `first` to `last`, bracketed by counts until nothing lies between."""
-        if last <= first:
-            return np.zeros(0)
+        """Frequencies (rad/s) number `first` (from zero) to `last`, None for all, and below `top`, bracketed by counts until nothing lies between."""
         span = np.diff(self.y)
-        high = top or np.sqrt((self.stiff @ span) / (self.heavy @ span)) / self.length**2
-        while top is None and self.count(np.array([high]))[0] < last:
-            high *= 4.0
-        order = np.arange(first + 1, last + 1)
+        high = top if last is None else min(top, np.sqrt((self.stiff @ span) / (self.heavy @ span)) / self.length**2)
+        while (below := self.count(np.array([high]))[0]) < (last or 0) and high < top:
+            high = min(4 * high, top)
+        order = np.arange(first, min(below, last or below)) + 1
         lo, hi = np.zeros(len(order)), np.full(len(order), float(high))
         while np.any(wide := hi - lo > 8 * np.finfo(float).eps * hi):
             brackets, of = np.unique(np.column_stack([lo, hi])[wide], axis=0, return_inverse=True)
@@ -444,20 +419,12 @@ class _Shaft:
 
     def cut(self, omega):
         """The same shaft with a joint at the end of every piece."""
-        return _Pieces(self, self.parts(omega))
-
-
-class _Pieces(_Shaft):
-    """A shaft whose spans are all short against the wave: shapes are found here."""
-
-    def __init__(self, shaft, parts):
-        self.length = shaft.length
-        self.stiff, self.heavy = np.repeat(shaft.stiff, parts), np.repeat(shaft.heavy, parts)
-        y, self.joints, empty = [shaft.y[:1]], [shaft.joints[0]], _Joint((), shaft.length)
-        for i, count in enumerate(parts):
-            y.append(np.linspace(shaft.y[i], shaft.y[i + 1], count + 1)[1:])
-            self.joints += [empty] * (count - 1) + [shaft.joints[i + 1]]
-        self.y = np.concatenate(y)
+        parts, empty = self.parts(omega), _Joint((), self.length)
+        y, joints = [self.y[:1]], [self.joints[0]]
+        for a, b, count, joint in zip(self.y, self.y[1:], parts, self.joints[1:]):
+            y.append(np.linspace(a, b, count + 1)[1:])
+            joints += [empty] * (count - 1) + [joint]
+        return _Shaft(np.concatenate(y), np.repeat(self.stiff, parts), np.repeat(self.heavy, parts), joints)
 
     def shapes(self, omega, loose):
         """(n, j, 6) motions, and forces before and after, at every joint; and the (n,) violation of the equations."""
@@ -466,10 +433,8 @@ class _Pieces(_Shaft):
         for k in range(rigid):
             out[k, :, 0], out[k, :, 1] = loose[0, k] + loose[1, k] * self.y, loose[1, k]
         # Frequencies nearer than this are one: the equations have as many solutions there.
-        elastic = omega[rigid:]
-        groups = np.split(np.arange(rigid, len(omega)), np.flatnonzero(np.diff(elastic) > 1e-10 * elastic[1:]) + 1)
-        for group in groups:
-            if len(group):
+        for group in _groups(omega, 1e-10):
+            if group[0] >= rigid:
                 out[group], defect[group] = self._null(omega[group].mean(), len(group))
         return out, defect
 
@@ -478,38 +443,32 @@ class _Pieces(_Shaft):
 
         A sweep from the left would lose a mode that lives elsewhere; here no end is preferred.
         """
-        nodes, rows, spots = len(self.y), [], []
-        weight = self.weights(np.maximum(np.arange(nodes) - 1, 0), omega)
-        unit = weight[[0, 1, 2, 3, 2, 3]].T.ravel()
-        end = np.array([[0.0, 0.0, 1.0, 0.0], [0.0, 0.0, 0.0, 1.0]])
+        nodes, blocks, spots = len(self.y), [], []
+        unit = self.weights(np.maximum(np.arange(nodes) - 1, 0), omega)[[0, 1, 2, 3, 2, 3]].T.ravel()
         for i, joint in enumerate(self.joints):
             # Factored as in `_Joint`, so that a stiff row does not hide the soft one.
-            p, q = joint.p, 1 - joint.p
-            left = np.array([[1.0, 0.0], [-joint.ell, 1.0]])[:, [p, q]]
-            up = np.array([[1.0, joint.ell], [0.0, 1.0]])[:, [p, q]]
-            rows.append(np.hstack([left @ np.diag(joint.mass) * omega**2 - joint.d[:, None] * up, -left, left]))
+            down, up = joint.down, joint.up
+            blocks.append(np.hstack([down @ np.diag(joint.mass) * omega**2 - joint.d[:, None] * up, -down, down]))
             spots.append(6 * i + np.arange(6))
-        pieces = np.moveaxis(_transfer(np.diff(self.y), self.stiff, self.heavy * omega**2), -1, 0)
-        for i, t in enumerate(pieces):
-            rows.append(np.hstack([-t, np.eye(4)]))
+        for i, t in enumerate(np.moveaxis(_transfer(np.diff(self.y), self.stiff, self.heavy * omega**2), -1, 0)):
+            blocks.append(np.hstack([-t, np.eye(4)]))
             spots.append(6 * i + np.array([0, 1, 4, 5, 6, 7, 8, 9]))
-        rows += [end[:, 2:], end[:, 2:]]
+        blocks += [np.eye(2), np.eye(2)]  # nothing pulls on the outer faces
         spots += [np.array([2, 3]), 6 * nodes - 2 + np.arange(2)]
-        scaled = [r / unit[s] for r, s in zip(rows, spots)]
-        scaled = [r / abs(r).max(axis=1, keepdims=True) for r in scaled]
-        lines = np.concatenate([[len(s)] * len(r) for r, s in zip(rows, spots)])
-        column = np.concatenate([np.tile(s, len(r)) for r, s in zip(rows, spots)])
-        a = sp.csr_matrix((np.concatenate([r.ravel() for r in scaled]), column, np.concatenate([[0], np.cumsum(lines)])), shape=(6 * nodes,) * 2)
+        blocks = [b / unit[s] for b, s in zip(blocks, spots)]
+        values = np.concatenate([(b / abs(b).max(axis=1, keepdims=True)).ravel() for b in blocks])
+        row = np.repeat(np.arange(6 * nodes), [len(s) for b, s in zip(blocks, spots) for _ in b])
+        column = np.concatenate([np.tile(s, len(b)) for b, s in zip(blocks, spots)])
+        a = sp.csc_matrix((values, (row, column)), shape=(6 * nodes,) * 2)
         v = np.random.default_rng(0).standard_normal((6 * nodes, many))
         try:
-            lu = splu(a.tocsc())
+            lu = splu(a)
         except RuntimeError:  # singular to the last bit: a step of a few bits away the solutions are the same
             lu = splu((a + 1e-15 * sp.identity(6 * nodes)).tocsc())
         for _ in range(4):
             v = np.linalg.qr(lu.solve(v, trans="T"))[0]
             v = np.linalg.qr(lu.solve(v))[0]
-        defect = abs(a @ v).max(axis=0)
-        return (v / unit[:, None]).T.reshape(many, nodes, 6), defect
+        return (v / unit[:, None]).T.reshape(many, nodes, 6), abs(a @ v).max(axis=0)
 
     def normalise(self, omega, states):
         """States of unit modal mass, orthogonal also where frequencies nearly meet; and the shares of the mass."""
@@ -517,28 +476,27 @@ class _Pieces(_Shaft):
         size = np.diff(self.y)
         s = size[:, None] * (x + 1) / 2
         weight = (self.heavy * size)[:, None] * w / 2
-        z = np.empty((len(omega), *s.shape))
-        for k, frequency in enumerate(omega):
-            start = states[k, :-1][:, [0, 1, 4, 5]].T[:, :, None]
-            z[k] = _apply(_transfer(s, self.stiff[:, None], self.heavy[:, None] * frequency**2), start)[0]
-        z = z.reshape(len(omega), -1)
+        start = np.moveaxis(states[:, :-1][:, :, [0, 1, 4, 5]], 2, 0)[..., None]
+        z = [_apply(_transfer(s, self.stiff[:, None], self.heavy[:, None] * w2), start[:, k])[0].ravel() for k, w2 in enumerate(omega**2)]
+        z, moved = np.reshape(z, (len(omega), -1)), states[:, :, :2].reshape(len(omega), -1)
         mass = np.array([j.mass for j in self.joints]).ravel()
-        moved = states[:, :, :2].reshape(len(omega), -1)
-        groups = np.split(np.arange(len(omega)), np.flatnonzero(np.diff(omega) > 1e-4 * omega[1:]) + 1)
         states, distributed, lumped = states.copy(), np.zeros(len(omega)), np.zeros(len(omega))
-        for g in groups:
-            if not len(g):
-                continue
+        for g in _groups(omega, 1e-4):
             spread, points = (z[g] * weight.ravel()) @ z[g].T, (moved[g] * mass) @ moved[g].T
             # The nearest orthonormal set: solutions of frequencies this close know each other to fewer digits.
             scale = 1 / np.sqrt(np.diag(spread + points))
-            mix = sla.inv(sla.sqrtm(scale[:, None] * (spread + points) * scale)).real * scale
+            values, vectors = np.linalg.eigh(scale[:, None] * (spread + points) * scale)
+            mix = (vectors / np.sqrt(values)) @ vectors.T * scale
             states[g] = np.tensordot(mix, states[g], 1)
             distributed[g], lumped[g] = np.diag(mix @ spread @ mix.T), np.diag(mix @ points @ mix.T)
-            for k in g:
-                top = np.argmax(abs(states[k, :, 0]) > 0.999 * abs(states[k, :, 0]).max())
-                states[k] *= 1.0 if states[k, top, 0] >= 0 else -1.0
-        return states, distributed, lumped
+        largest = abs(states[:, :, 0]) > 0.999 * abs(states[:, :, :1]).max(axis=1)  # of equals the first, whatever the rounding
+        first = np.take_along_axis(states[:, :, 0], largest.argmax(axis=1)[:, None], 1)
+        return states * np.where(first < 0, -1.0, 1.0)[:, :, None], distributed, lumped
+
+
+def _groups(omega, gap):
+    """Indices of ascending frequencies, split where neighbours differ by more than `gap`, relatively."""
+    return [g for g in np.split(np.arange(len(omega)), np.flatnonzero(np.diff(omega) > gap * omega[1:]) + 1) if len(g)]
 
 
 def _det(x):

@@ -18,6 +18,8 @@ import scipy.sparse.linalg as spla
 
 from solidgear.errors import SolidgearError
 
+# SuperLU's indices overflow on the factors of planar meshes of very high order ("not enough memory").
+LARGE_PLANAR = 30_000_000  # entries
 # Below this size SuperLU's lack of start-up cost wins over PARDISO (0.09 s per constructor).
 SMALL = 12_000
 
@@ -87,6 +89,7 @@ def factorise(matrix: sp.spmatrix, backend: str | None = None, planar: bool = Fa
         return _bordered(matrix.tocsr(), backend, planar, border)
     backend = backend or os.environ.get("SOLIDGEAR_BACKEND") or None
     n = matrix.shape[0]
+    planar = planar and matrix.nnz < LARGE_PLANAR
     if backend is None:
         light = planar or n <= SMALL
         missing = "" if light else pardiso_missing()
@@ -138,6 +141,8 @@ def _superlu(matrix):
         )
     except RuntimeError as error:
         raise FactorError(f"SuperLU could not factor the system matrix ({error})") from error
+    except MemoryError:
+        raise FactorError(f"SuperLU ran out of memory or of 32-bit indices on {matrix.shape[0]} unknowns; install the extra 'fast', or use a coarser model") from None
     return lu.solve
 
 
