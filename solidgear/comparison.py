@@ -128,8 +128,12 @@ def compare(
                         _add_variants(scene, rung, model, options[model], progress)
                         _add_band(scene, rung, model, options[model], progress)
                 except (SolidgearError, MemoryError) as error:
-                    failed[model] = str(error) or "not enough memory"
-                    log.warning("%s failed: %s", model, failed[model])
+                    why = str(error) or "not enough memory"
+                    log.warning("%s failed: %s", model, why)
+                    if model in rungs:
+                        rungs[model].failed["evidence"] = why
+                    else:
+                        failed[model] = why
             if "lumped" in models:
                 progress("lumped: synthesis from every body")
                 lumped = synthesise_all(scene, rungs, log.info)
