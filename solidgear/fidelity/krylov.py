@@ -149,11 +149,12 @@ def krylov(spans: Sequence[Span], stations: Iterable[Station] = (), n: int | Non
     """
     number("krylov", "n", n, least=1, whole=True)
     number("krylov", "max_frequency", max_frequency, above=0)
-    if not len(spans) or (n is None and max_frequency is None):
-        raise SolidgearError("krylov: a shaft needs at least one span" if not len(spans) else "krylov: give n, max_frequency or both; modes are infinitely many")
+    if not len(spans):
+        raise SolidgearError("krylov: a shaft needs at least one span")
+    if n is None and max_frequency is None:
+        raise SolidgearError("krylov: give n, max_frequency or both; a shaft has infinitely many modes")
     shaft = _joined(tuple(spans), tuple(stations))
-    free = shaft.rigid()
-    rigid = min(free, n or free)
+    rigid = min(free := shaft.rigid(), n or 2)
     omega = np.append(np.zeros(rigid), shaft.roots(rigid, n, 2 * np.pi * (max_frequency or np.inf)))
     cut = shaft.cut(omega.max(initial=0.0))
     states, defect, distributed, lumped = cut.shapes(omega)
@@ -264,7 +265,8 @@ class _Shaft:
         """Number of rigid motions that no spring resists; by rank, not by a small frequency."""
         motions = [np.array([[1.0, y / self.y[-1]], [0.0, 1 / self.y[-1]]]) for y in self.y]
         rows = np.vstack([np.zeros((1, 2))] + [(joint.up @ r)[joint.d > 0] for joint, r in zip(self.joints, motions)])
-        return 2 - np.linalg.matrix_rank(rows / np.maximum(np.linalg.norm(rows, axis=1, keepdims=True), 1e-300), tol=1e-9)
+        rows /= np.maximum(np.linalg.norm(rows, axis=1, keepdims=True), 1e-300)  # how stiff a spring is does not matter
+        return 2 - int(np.linalg.matrix_rank(rows, tol=1e-9))
 
     def weights(self, span, omega):
         """(4, ...) factors that bring (z, phi, Q, M) of a span to one unit, that of its wave."""
@@ -279,8 +281,8 @@ class _Shaft:
 
     def count(self, omega):
         """Number of modes below each frequency (rad/s, 1-d)."""
-        total, sign, b = np.zeros(len(omega), int), np.ones(len(omega)), np.zeros((4, 2, len(omega)))
-        b[0, 0] = b[1, 1] = 1.0  # the left end is free until its joint acts
+        total, sign = np.zeros(len(omega), int), np.ones(len(omega))
+        b = np.eye(4, 2)[:, :, None] + np.zeros(len(omega))  # the left end is free until its joint acts
         for i, parts in enumerate(self.parts(omega.max(initial=0.0))):
             w = self.weights(i, omega)
             b = _orthonormal(self.joints[i].act(b, omega), w)
@@ -326,9 +328,8 @@ class _Shaft:
 
         A sweep from the left would lose a mode that lives elsewhere; here no end is preferred.
         """
-        nodes = len(self.y)
         # Six unknowns a joint; from the third row on, its two equations and then the four of the piece beyond it.
-        block = np.zeros((nodes, 6, 12))
+        block = np.zeros((nodes := len(self.y), 6, 12))
         for joint, b in zip(self.joints, block):
             # In the factors of the spring, so that a stiff row does not hide the soft one.
             b[:2, :2] = joint.down * joint.mass * omega**2 - joint.d[:, None] * joint.up
