@@ -136,7 +136,12 @@ def test_plain_functions():
 # ------------------------------------------------------------------------------------------- segments
 STEPPED = [Span(0.3, 2.0, 1.0), Span(0.2, 30.0, 4.0), Span(0.5, 1.0, 0.7)]
 # One bearing nearly of rank one, one stiffer against tilt than against deflection.
-HELD = [Station(0.1, [[500.0, 140.0], [140.0, 40.0]]), Station(0.8, [[40.0, -30.0], [-30.0, 900.0]]), Station(0.0, mass=0.3, inertia=0.01), Station(0.55, mass=0.2)]
+HELD = [
+    Station(0.1, [[500.0, 140.0], [140.0, 40.0]]),
+    Station(0.8, [[40.0, -30.0], [-30.0, 900.0]]),
+    Station(0.0, mass=0.3, inertia=0.01),
+    Station(0.55, mass=0.2),
+]
 
 
 def test_splitting_changes_nothing():
