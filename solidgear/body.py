@@ -37,6 +37,11 @@ class Port:
     attachment: str
 
 
+def component_rows(ports, components) -> np.ndarray:
+    """Places of some components of some ports (indices) in a vector of six per port."""
+    return np.array([6 * p + c for p in ports for c in components], int)
+
+
 @dataclass(frozen=True, eq=False)
 class Block:
     """One family of motions that symmetry decouples from the others.
@@ -193,7 +198,7 @@ class Body:
 
     def rows(self, block: Block) -> np.ndarray:
         """Places of a block's port rows among the ``6 * n_ports`` port components."""
-        return np.array([6 * k + c for k in range(len(self.ports)) for c in block.components], int)
+        return component_rows(range(len(self.ports)), block.components)
 
     def mass_matrix(self) -> np.ndarray:
         """(6, 6) rigid-body mass matrix about the origin of the scene, kg, kg m, kg m^2."""

@@ -6,6 +6,7 @@ import numpy as np
 
 from solidgear.body import Body, as_supports
 from solidgear.evidence.converge import sharpest_corner
+from solidgear.meshing.quality import mass_properties
 
 # Closure of mass and inertia that each discretisation owes to the closed form.
 MASS_TOLERANCE = {"euler": 1e-9, "timoshenko": 1e-9, "harmonic": 1e-9, "solid": 1e-3}
@@ -25,7 +26,8 @@ def check_scene(scene, body: Body) -> dict[str, list[str]]:
         ``facts``, ``cautions`` (will not hold as well as one might think) and ``faults`` (must not be used).
     """
     facts, cautions, faults = [], [], []
-    mass, centre, polar, transverse = _closed_form(scene)
+    exact = mass_properties(scene.segments)
+    mass, centre, polar, transverse = exact.mass, exact.centre, exact.iyy, exact.ixx
     matrix = body.mass_matrix()
     facts.append(f"{scene.name}: {body.fidelity}, {body.size} unknowns, length {1e3 * scene.length:.6g} mm")
     facts.append(f"mass {mass:.6g} kg, centre at y = {1e3 * centre:.6g} mm, polar inertia {polar:.6g}, transverse {transverse:.6g} kg m^2 (closed form)")
@@ -61,10 +63,3 @@ def check_scene(scene, body: Body) -> dict[str, list[str]]:
     if doubtful:
         cautions.append("data not measured or published: " + ", ".join(doubtful))
     return {"facts": facts, "cautions": cautions, "faults": faults}
-
-
-def _closed_form(scene):
-    from solidgear.meshing.quality import mass_properties
-
-    p = mass_properties(scene.segments)
-    return p.mass, p.centre, p.iyy, p.ixx

@@ -8,6 +8,8 @@ import pytest
 from scipy.spatial import cKDTree
 from skfem.quadrature import get_quadrature
 
+from shafts import NASTY
+
 import solidgear as sg
 from solidgear.meshing.hexahedra import hexahedra
 from solidgear.meshing.layout import layout
@@ -28,15 +30,8 @@ def shaft(*parts):
 
 
 def nasty():
-    """Steps up and down outside and in the bore, cones next to steps, a blind bore, a conical bore."""
     return shaft(
-        (0.04, 0.030, 0.030, 0.010, 0.010),
-        (0.03, 0.030, 0.050, 0.010, 0.010),
-        (0.02, 0.080, 0.080, 0.020, 0.020),
-        (0.03, 0.060, 0.025, 0.020, 0.008),
-        (0.03, 0.025, 0.025, 0.008, 0.008),
-        (0.02, 0.040, 0.040, 0.0, 0.0),
-        (0.05, 0.020, 0.035, 0.0, 0.0),
+        *NASTY,
     )
 
 

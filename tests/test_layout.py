@@ -7,6 +7,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from shafts import NASTY
+
 import solidgear as sg
 from solidgear.errors import SolidgearError
 from solidgear.meshing.layout import graded, layout
@@ -30,15 +32,8 @@ def shaft(*parts, **rest):
 
 
 def nasty():
-    """Steps up and down outside and in the bore, cones next to steps, a blind bore, a conical bore."""
     return shaft(
-        (0.04, 0.030, 0.030, 0.010, 0.010),
-        (0.03, 0.030, 0.050, 0.010, 0.010),
-        (0.02, 0.080, 0.080, 0.020, 0.020),
-        (0.03, 0.060, 0.025, 0.020, 0.008),
-        (0.03, 0.025, 0.025, 0.008, 0.008),
-        (0.02, 0.040, 0.040, 0.0, 0.0),
-        (0.05, 0.020, 0.035, 0.0, 0.0),
+        *NASTY,
         bearings=[Bearing(name=n, y=y, seat_width=0.02, stiffness={"kxx": 1e8}) for n, y in (("A", 0.02), ("B", 0.135))],
         port=Port(y=0.08, lo=0.07, hi=0.09),
     )

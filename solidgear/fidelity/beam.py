@@ -16,6 +16,7 @@ import scipy.sparse as sp
 from solidgear.body import Block, Body, Port
 from solidgear.errors import SolidgearError
 from solidgear.fidelity.options import number
+from solidgear.fidelity.scale import elastic_scale
 
 _GAUSS = np.polynomial.legendre.leggauss(8)
 
@@ -130,17 +131,6 @@ def beam(
     return Body(
         "timoshenko" if shear else "euler", blocks, ports, elastic_scale(scene), scene.length, facts, geometry=nodes
     )
-
-
-def elastic_scale(scene) -> float:
-    """Rough lowest elastic eigenvalue of the free shaft, rad^2/s^2 (Euler free-free or axial, the lower).
-
-    Used only to place spectral shifts; an error of a factor of ten is harmless.
-    """
-    material = scene.segments[0].material
-    c2 = material.E / material.density
-    mean = np.sqrt(sum(s.length * (s.outer0**2 + s.outer1**2 + s.inner0**2 + s.inner1**2) / 8 for s in scene.segments) / scene.length)
-    return min(500.0 * c2 * mean**2 / scene.length**4, np.pi**2 * c2 / scene.length**2)
 
 
 def _mesh(scene, elements):

@@ -23,6 +23,7 @@ from solidgear.errors import SolidgearError
 from solidgear.fidelity.assembly import Pattern, chunks, reference, tabulate, unknowns
 from solidgear.fidelity.attachment import tie_rigidly
 from solidgear.fidelity.options import harmonics, number
+from solidgear.fidelity.scale import elastic_scale
 from solidgear.meshing.layout import layout
 from solidgear.meshing.meridian import Meridian, meridian
 
@@ -106,8 +107,6 @@ def harmonic(
     bending = work.bending_block("bending_z", (2, 3), 1, wanted)
     blocks = [bending, bending.mirrored("bending_x", (0, 5), 0, (1.0, -1.0)), work.bending_block("axial", (1,), 0, wanted), work.torsion_block(wanted)]
     blocks += [work.bending_block(f"ovalising_{n}", (), n, wanted) for n in ovalising]
-    from solidgear.fidelity.beam import elastic_scale
-
     facts = {
         "element": f"Q{order}",
         "order": order,

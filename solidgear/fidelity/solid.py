@@ -20,6 +20,7 @@ from solidgear.errors import SolidgearError
 from solidgear.fidelity.assembly import Pattern, chunks, reference, tabulate, unknowns
 from solidgear.fidelity.attachment import tie_rigidly
 from solidgear.fidelity.options import number
+from solidgear.fidelity.scale import elastic_scale
 from solidgear.frames import cross_matrix
 
 ELEMENTS = {"tet4": ElementTetP1, "tet10": ElementTetP2, "hex8": ElementHex1, "hex20": ElementHexS2, "hex27": ElementHex2}
@@ -198,8 +199,6 @@ def solid(
         else:
             rows.append(_mean(body_mesh, facets, station.y, n))
     block = Block("full", tuple(range(6)), k, m, rigid, np.repeat(y, 3), sp.vstack(rows).tocsr(), None, False)
-    from solidgear.fidelity.beam import elastic_scale
-
     facts = {
         "element": element,
         "elements": int(body_mesh.dofs.shape[1]),

@@ -47,31 +47,19 @@ def hexahedra(scene, plan: Layout, around: int = 8) -> tuple[MeshHex2, np.ndarra
     angle = 5 * np.pi / 4 + np.arange(2 * around) * half
     core = _core(k)
     rim = _rim(core)
-    base, at = {}, 0
-    for band in sorted(plan.fractions):
-        base[band] = at
-        at += len(plan.fractions[band]) - 1
     offsets = (2 * ElementHex2.doflocs).round().astype(int)  # (27, 3) in half cells
     nodes, keys, owner = [], [], []
-    n_lines = at + 1
+    n_lines = plan.ring_lines
     a = np.arange(around)
     i, j = (g.ravel() for g in np.meshgrid(np.arange(k), np.arange(k), indexing="ij"))
     for row, seg in enumerate(plan.segment):
         segment = scene.segments[seg]
-        lowest, end = plan.bands[seg]
         ys = np.array([plan.y[row], (plan.y[row] + plan.y[row + 1]) / 2, plan.y[row + 1]])
-        radii = []
-        for y in ys:
-            b = plan.radii(seg, (segment.y0, segment.y1), y)
-            r = [b[:1]]
-            for band in range(lowest, end):
-                r.append(b[band - lowest] + plan.fractions[band][1:] * (b[band - lowest + 1] - b[band - lowest]))
-            radii.append(np.concatenate(r))
-        radii = np.array(radii)
+        radii = np.array([plan.rings(seg, (segment.y0, segment.y1), y) for y in ys])
         solid = np.all(radii[:, 0] == 0.0)
         if not solid and np.any(radii[:, 0] == 0.0):
             raise MeshError(f"segment {segment.name!r}: its bore closes to a point, which an O-grid cannot mesh; use element 'tet10'")
-        first = base[lowest]
+        first = plan.first_ring(seg)
         if solid:
             # cells of the core: local axes (z, x, y) are right-handed
             fine = offsets[None] + 2 * np.column_stack([i, j, np.zeros_like(i)])[:, None]

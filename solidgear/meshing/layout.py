@@ -42,6 +42,22 @@ class Layout:
         t = (y - span[0]) / (span[1] - span[0])
         return (1 - t) * self.left[segment] + t * self.right[segment]
 
+    def first_ring(self, segment: int) -> int:
+        """Number of a segment's innermost ring line; ring lines are counted outwards through all bands of the shaft."""
+        lowest = self.bands[segment][0]
+        return sum(len(f) - 1 for band, f in self.fractions.items() if band < lowest)
+
+    @property
+    def ring_lines(self) -> int:
+        """Number of ring lines of the whole shaft."""
+        return sum(len(f) - 1 for f in self.fractions.values()) + 1
+
+    def rings(self, segment: int, span: tuple[float, float], y: float) -> np.ndarray:
+        """Radii of all ring lines of a segment at ``y``, from its bore (or the axis) outwards."""
+        b, (lowest, end) = self.radii(segment, span, y), self.bands[segment]
+        parts = [b[k] + self.fractions[lowest + k][1:] * (b[k + 1] - b[k]) for k in range(end - lowest)]
+        return np.concatenate([b[:1], *parts])
+
 
 def layout(
     scene,

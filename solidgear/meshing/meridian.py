@@ -39,23 +39,11 @@ def meridian(scene, plan: Layout) -> Meridian:
     points: list[tuple[float, float]] = []
     index: dict[tuple[int, int, int], int] = {}
     cells, owner, outer, inner = [], [], [], []
-    base = {}
-    at = 0
-    for band in sorted(plan.fractions):
-        base[band] = at
-        at += len(plan.fractions[band]) - 1
     for row, seg in enumerate(plan.segment):
         segment = scene.segments[seg]
-        lowest, end = plan.bands[seg]
-        rings = []
-        for y in (plan.y[row], plan.y[row + 1]):
-            b = plan.radii(seg, (segment.y0, segment.y1), y)
-            r = [b[:1]]
-            for band in range(lowest, end):
-                f = plan.fractions[band][1:]
-                r.append(b[band - lowest] + f * (b[band - lowest + 1] - b[band - lowest]))
-            rings.append(np.concatenate(r))
-        first, last = base[lowest], base[end - 1] + len(plan.fractions[end - 1]) - 1
+        rings = [plan.rings(seg, (segment.y0, segment.y1), y) for y in (plan.y[row], plan.y[row + 1])]
+        first = plan.first_ring(seg)
+        last = first + len(rings[0]) - 1
 
         def node(line, ring):
             key = (line, ring)

@@ -13,7 +13,7 @@ import numpy as np
 import scipy.linalg as sla
 import scipy.sparse.linalg as spla
 
-from solidgear.body import Body, as_supports
+from solidgear.body import Body, as_supports, component_rows
 from solidgear.errors import SolidgearError
 from solidgear.solve.statics import SHIFT, factors
 from solidgear.solve.supported import Supported, decoupled, groups
@@ -164,8 +164,7 @@ def _twin_of(body, supports, spring, group, done):
         return None
     index, signs = block.mirror
     m = len(supports.ports)
-    mine = np.array([6 * p + c for p in range(m) for c in block.components], int)
-    theirs = np.array([6 * p + c for p in range(m) for c in body.blocks[index].components], int)
+    mine, theirs = (component_rows(range(m), b.components) for b in (block, body.blocks[index]))
     sign = np.tile(signs, m)
     a, b = spring[np.ix_(mine, mine)], spring[np.ix_(theirs, theirs)] * np.outer(sign, sign)
     if np.abs(a - b).max(initial=0.0) > 1e-14 * np.abs(b).max(initial=0.0):

@@ -97,6 +97,34 @@ def factors(body: Body) -> list[Factor]:
     return body.memory["factors"]
 
 
+def inertia_relief(solve, mass, rigid: np.ndarray):
+    """Two functions for a free body: loads balanced by its own inertia, and their elastic displacements.
+
+    Parameters
+    ----------
+    solve, mass : callable
+        ``(K + sigma M)^-1 f`` and ``M u``.
+    rigid : (n, r) ndarray
+        Rigid motions.
+
+    Returns
+    -------
+    balanced, relieved : callable
+        The load less the inertia forces of the rigid acceleration it causes; the solution less its rigid part in the mass norm.
+    """
+    heavy = mass(rigid)
+    gram = sla.cho_factor(rigid.T @ heavy)
+
+    def balanced(load):
+        return load - heavy @ sla.cho_solve(gram, rigid.T @ load)
+
+    def relieved(load):
+        u = solve(load)
+        return u - rigid @ sla.cho_solve(gram, heavy.T @ u)
+
+    return balanced, relieved
+
+
 def flexibility(body: Body, tolerance: float = 1e-12, most: int = 12) -> Flexibility:
     """Flexibility of the free body at all its ports (inertia relief).
 
@@ -117,16 +145,9 @@ def flexibility(body: Body, tolerance: float = 1e-12, most: int = 12) -> Flexibi
             original, signs = body.rows(body.blocks[block.mirror[0]]), np.tile(block.mirror[1], len(body.ports))
             out[np.ix_(rows, rows)] = out[np.ix_(original, original)] * np.outer(signs, signs)
             continue
-        k, m, r = block.stiffness, block.mass, block.rigid
-        mr = m @ r
-        gram = sla.cho_factor(r.T @ mr)
-        load = block.ports.T.toarray() if sp.issparse(block.ports) else block.ports.T
-        load = load - mr @ sla.cho_solve(gram, r.T @ load)
-
-        def relieved(f):
-            u = factor.solve(f)
-            return u - r @ sla.cho_solve(gram, mr.T @ u)
-
+        k = block.stiffness
+        balanced, relieved = inertia_relief(factor.solve, block.mass.__matmul__, block.rigid)
+        load = balanced(block.ports.T.toarray() if sp.issparse(block.ports) else block.ports.T)
         u = relieved(load)
         f_block = block.ports @ u
         change = np.inf

@@ -8,8 +8,8 @@ from __future__ import annotations
 import numpy as np
 import scipy.linalg as sla
 
-from solidgear.body import Block, Body, Supports
-from solidgear.solve.statics import SHIFT, factors
+from solidgear.body import Body, Supports, component_rows
+from solidgear.solve.statics import SHIFT, factors, inertia_relief
 
 
 def decoupled(body: Body, supports: Supports, tolerance: float):
@@ -44,14 +44,10 @@ def groups(body: Body, supports: Supports, spring: np.ndarray) -> list[list[int]
     """Blocks that bearings couple, as lists of block indices."""
     count = len(body.blocks)
     label = list(range(count))
-    m = len(supports.ports)
-
-    def rows(block: Block):
-        return np.array([6 * p + c for p in range(m) for c in block.components], int)
-
+    rows = [component_rows(range(len(supports.ports)), block.components) for block in body.blocks]
     for i in range(count):
         for j in range(i + 1, count):
-            a, b = rows(body.blocks[i]), rows(body.blocks[j])
+            a, b = rows[i], rows[j]
             if a.size and b.size and np.any(spring[np.ix_(a, b)]):
                 label = [label[i] if x == label[j] else x for x in label]
     return [[i for i in range(count) if label[i] == x] for x in sorted(set(label))]
@@ -103,7 +99,7 @@ class Supported:
     def _spring_root(self, body, supports, spring) -> np.ndarray:
         m = len(supports.ports)
         components = [list(b.components) for b in self.blocks]
-        place = np.array([6 * p + c for cs in components for p in range(m) for c in cs], int)
+        place = np.concatenate([component_rows(range(m), cs) for cs in components])
         if not place.size:
             return np.zeros((self.size, 0))
         root = Supports(supports.ports, spring[np.ix_(place, place)]).root
@@ -129,10 +125,6 @@ class Supported:
     def elastic(self, x):
         """``K x`` of the free body."""
         return self._per_block(lambda i, part: self.blocks[i].stiffness @ part, x)
-
-    def stiffness(self, x):
-        """``K x`` with springs."""
-        return self.elastic(x) + self.load @ (self.load.T @ x)
 
     def purge(self, x):
         """Take unresisted rigid motions out of displacements."""
@@ -182,17 +174,11 @@ class Supported:
 
     def _relieved(self, load, rigid, tolerance: float = 1e-12, most: int = 12):
         """Elastic displacements of the free body under loads balanced by their own inertia."""
-        heavy = self.mass(rigid)
-        gram = sla.cho_factor(rigid.T @ heavy)
-        load = load - heavy @ sla.cho_solve(gram, rigid.T @ load)
-
-        def solve(f):
-            u = self._free_inverse(f)
-            return u - rigid @ sla.cho_solve(gram, heavy.T @ u)
-
-        u = solve(load)
+        balanced, relieved = inertia_relief(self._free_inverse, self.mass, rigid)
+        load = balanced(load)
+        u = relieved(load)
         for _ in range(most):
-            step = solve(load - self.elastic(u))
+            step = relieved(load - self.elastic(u))
             u = u + step
             if np.abs(step).max(initial=0.0) <= tolerance * np.abs(u).max(initial=0.0):
                 break
