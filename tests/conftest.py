@@ -1,5 +1,5 @@
-"""One BLAS thread for the whole suite, as on the command line (see solidgear.cli): read when numpy is first imported."""
+"""One BLAS thread for the whole suite, as on the command line; before anything imports numpy."""
 
-import os
+from solidgear.threads import pin
 
-os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+pin()

@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import csv
-import os
 import sys
 from pathlib import Path
 
-os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # see solidgear.cli
 ROOT = Path(__file__).resolve().parent.parent
 sys.path.insert(0, str(ROOT))
+
+from solidgear.threads import pin
+
+pin()
 
 
 def results_folder(name: str) -> Path:

@@ -1,138 +1,18 @@
-"""Command line: compare, stiffness, modes, render, check."""
+"""Commands on one scene: compare, stiffness, modes, render, check."""
 
 from __future__ import annotations
 
-import os
-import sys
-
-# MKL's and OpenBLAS's thread pools fight each other (five times slower eigensolution was seen); the dense
-# matrices here are small, so OpenBLAS gets one thread. It reads this when numpy is first imported.
-os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
-
-import functools
 import json
-from enum import Enum
 from pathlib import Path
 from typing import Annotated, Optional
 
 import typer
 
+from solidgear.cli.app import Fidelity, FidelityOption, JsonFlag, Progress, SceneFile, Settings, build_body, command, console
 from solidgear.errors import SolidgearError
 
-app = typer.Typer(
-    no_args_is_help=True,
-    add_completion=False,
-    help="One pinion shaft on its bearings as beam, axisymmetric-harmonic solid and full 3D solid, side by side.",
-    context_settings={"help_option_names": ["-h", "--help"]},
-    pretty_exceptions_enable=False,
-)
 
-
-class Fidelity(str, Enum):
-    """Models, cheapest first."""
-
-    euler = "euler"
-    timoshenko = "timoshenko"
-    harmonic = "harmonic"
-    solid = "solid"
-
-
-SceneFile = Annotated[Path, typer.Argument(help="Scene file (TOML), such as geometry/pinion_overhung.toml.")]
-FidelityOption = Annotated[Fidelity, typer.Option("--fidelity", "-f", help="Model to solve with.")]
-JsonFlag = Annotated[bool, typer.Option("--json", help="Print JSON for machines instead of tables.")]
-Settings = Annotated[
-    Optional[list[str]],
-    typer.Option("--set", help="Builder option as key=value, repeatable: order=8, layers=4, element=tet10, refinement=1.5."),
-]
-
-
-def _options(pairs: list[str] | None) -> dict:
-    """Builder options from ``key=value`` texts; numbers as numbers."""
-    out: dict = {}
-    for pair in pairs or []:
-        key, sep, text = pair.partition("=")
-        if not sep or not key.isidentifier():
-            raise SolidgearError(f"--set {pair}: write key=value, such as --set order=8")
-        out[key] = tuple(_value(part) for part in text.split(",")) if "," in text else _value(text)
-    return out
-
-
-def _value(text: str):
-    for kind in (int, float):
-        try:
-            return kind(text)
-        except ValueError:
-            continue
-    return {"true": True, "false": False}.get(text, text)
-
-
-def _build(scene, fidelity: Fidelity, pairs):
-    from solidgear.fidelity import build
-
-    options = _options(pairs)
-    try:
-        return build(scene, fidelity.value, **options)
-    except TypeError as error:
-        if "unexpected keyword" in str(error):
-            word = str(error).rsplit("'", 2)[-2]
-            raise SolidgearError(f"--set {word}: the {fidelity.value} model has no such option; its docstring lists them") from None
-        raise
-
-
-def _console():
-    from rich.console import Console
-
-    # Without a terminal rich assumes 80 columns; a pipe can take more, but 80 is what people paste.
-    return Console(highlight=False)
-
-
-class _Progress:
-    """One line per stage on standard error, a spinner where there is a terminal."""
-
-    def __init__(self, quiet: bool = False):
-        import time
-
-        from rich.console import Console
-
-        self.console = Console(stderr=True, highlight=False)
-        self.quiet, self.start, self.clock = quiet, time.perf_counter(), time.perf_counter
-        self.status = None
-
-    def __enter__(self):
-        if not self.quiet and self.console.is_terminal:
-            self.status = self.console.status("starting")
-            self.status.start()
-        return self
-
-    def __exit__(self, *_):
-        if self.status:
-            self.status.stop()
-
-    def __call__(self, text: str) -> None:
-        if self.quiet:
-            return
-        line = f"{self.clock() - self.start:6.1f} s  {text}"
-        if self.status:
-            self.status.update(line)
-        else:
-            print(line, file=sys.stderr, flush=True)
-
-
-def _command(function):
-    """Register a command; typer would swallow Ctrl-C without a word."""
-
-    @functools.wraps(function)
-    def quiet(*args, **kwargs):
-        try:
-            return function(*args, **kwargs)
-        except KeyboardInterrupt:
-            print("solidgear: interrupted", file=sys.stderr)
-            raise typer.Exit(130) from None
-
-    return app.command(name=function.__name__)(quiet)
-
-
-@_command
+@command
 def compare(
     scene: SceneFile,
     out: Annotated[Path, typer.Option("--out", "-o", help="Folder for results.json, report.html, renders and vtu files.")] = Path("out"),
@@ -152,7 +32,7 @@ def compare(
     check_models(wanted)
     prepare(out)
     settings = {"solid": {"element": solid_element}} if solid_element else None
-    with _Progress(quiet=as_json) as progress:
+    with Progress(quiet=as_json) as progress:
         found = run(loaded, wanted, settings=settings, progress=progress)
         found.write_report(out, renders=renders and found.results["complete"], progress=progress)
     if as_json:
@@ -160,17 +40,17 @@ def compare(
     else:
         from solidgear.report.terminal import final_table, verdict_text
 
-        console = _console()
-        console.print(final_table(found.results))
-        console.print(verdict_text(found.results), markup=False)
-        console.print(f"Report: {out / 'report.html'}", markup=False, soft_wrap=True)
+        terminal = console()
+        terminal.print(final_table(found.results))
+        terminal.print(verdict_text(found.results), markup=False)
+        terminal.print(f"Report: {out / 'report.html'}", markup=False, soft_wrap=True)
     if not found.results["complete"]:
         raise typer.Exit(130)
     if not found.rungs:
         raise typer.Exit(1)
 
 
-@_command
+@command
 def stiffness(
     scene: SceneFile,
     fidelity: FidelityOption = Fidelity.harmonic,
@@ -188,7 +68,7 @@ def stiffness(
     loaded = load(scene)
     if attachment:
         loaded = loaded.with_attachment(attachment)
-    body = _build(loaded, fidelity, settings)
+    body = build_body(loaded, fidelity, settings)
     found = condense(body, loaded, loaded.port.name)
 
     if as_json:
@@ -212,15 +92,15 @@ def stiffness(
         return
     from solidgear.report.terminal import matrix_table
 
-    console = _console()
-    console.print(f"{loaded.name}: {fidelity.value}, {body.size} unknowns, port {found.port!r} at y = {1e3 * loaded.port.y:.3f} mm ({found.attachment})", markup=False)
-    console.print(matrix_table(found.stiffness, "stiffness"))
-    console.print(matrix_table(found.compliance, "compliance"))
+    terminal = console()
+    terminal.print(f"{loaded.name}: {fidelity.value}, {body.size} unknowns, port {found.port!r} at y = {1e3 * loaded.port.y:.3f} mm ({found.attachment})", markup=False)
+    terminal.print(matrix_table(found.stiffness, "stiffness"))
+    terminal.print(matrix_table(found.compliance, "compliance"))
     if found.free_names:
-        console.print(f"Free: {', '.join(found.free_names)} (stiffness exactly zero).")
+        terminal.print(f"Free: {', '.join(found.free_names)} (stiffness exactly zero).")
 
 
-@_command
+@command
 def modes(
     scene: SceneFile,
     fidelity: FidelityOption = Fidelity.harmonic,
@@ -234,7 +114,7 @@ def modes(
     from solidgear.solve.modes import modes as solve
 
     loaded = load(scene)
-    body = _build(loaded, fidelity, settings)
+    body = build_body(loaded, fidelity, settings)
     if max_frequency is not None and not max_frequency > 0:
         raise SolidgearError(f"--max-frequency {max_frequency:g}: must be greater than zero, in Hz")
     found = solve(body, loaded, loaded.ask.modes if n is None else n, max_frequency=max_frequency or loaded.ask.max_frequency)
@@ -244,14 +124,14 @@ def modes(
         return
     from solidgear.report.terminal import modes_table
 
-    console = _console()
-    console.print(f"{loaded.name}: {fidelity.value}, {body.size} unknowns", markup=False)
-    console.print(modes_table(rows))
+    terminal = console()
+    terminal.print(f"{loaded.name}: {fidelity.value}, {body.size} unknowns", markup=False)
+    terminal.print(modes_table(rows))
     e = found.evidence
-    console.print(f"Residual {e['residual']:.1e}, orthogonality {e['orthogonality']:.1e}, rigid modes {e['rigid_modes']}, back end {e['backend']}.")
+    terminal.print(f"Residual {e['residual']:.1e}, orthogonality {e['orthogonality']:.1e}, rigid modes {e['rigid_modes']}, back end {e['backend']}.")
 
 
-@_command
+@command
 def render(
     scene: SceneFile,
     out: Annotated[Path, typer.Option("--out", "-o", help="PNG file to write.")] = Path("mode.png"),
@@ -265,13 +145,13 @@ def render(
     from solidgear.solve.modes import modes as solve
 
     loaded = load(scene)
-    body = _build(loaded, fidelity, settings)
+    body = build_body(loaded, fidelity, settings)
     found = solve(body, loaded, max(loaded.ask.modes, 10))
     path = render_mode(loaded, body, found, mode, out)
     print(path)
 
 
-@_command
+@command
 def check(
     scene: SceneFile,
     fidelity: FidelityOption = Fidelity.harmonic,
@@ -283,7 +163,7 @@ def check(
     from solidgear.scene_file import load
 
     loaded = load(scene)
-    body = _build(loaded, fidelity, settings)
+    body = build_body(loaded, fidelity, settings)
     found = check_scene(loaded, body)
     if as_json:
         print(json.dumps(found, default=float))
@@ -296,19 +176,3 @@ def check(
             print(f"fault: {line}")
     if found["faults"]:
         raise typer.Exit(1)
-
-
-def main() -> None:
-    """Entry point: errors raised on purpose become one sentence and exit code 1."""
-    try:
-        app()
-    except SolidgearError as error:
-        print(f"solidgear: {error}", file=sys.stderr)
-        sys.exit(1)
-    except MemoryError:
-        print("solidgear: not enough memory for this model; use a coarser one (--set refinement=0.5) or the harmonic model", file=sys.stderr)
-        sys.exit(1)
-
-
-if __name__ == "__main__":
-    main()

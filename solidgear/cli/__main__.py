@@ -1,0 +1,5 @@
+"""``python -m solidgear.cli``."""
+
+from solidgear.cli import main
+
+main()

@@ -1,0 +1,126 @@
+"""What the commands share: the application, its argument types, progress and error handling."""
+
+from __future__ import annotations
+
+import functools
+import sys
+from enum import Enum
+from pathlib import Path
+from typing import Annotated, Optional
+
+import typer
+
+from solidgear.errors import SolidgearError
+
+app = typer.Typer(
+    no_args_is_help=True,
+    add_completion=False,
+    help="One pinion shaft on its bearings as beam, axisymmetric-harmonic solid and full 3D solid, side by side.",
+    context_settings={"help_option_names": ["-h", "--help"]},
+    pretty_exceptions_enable=False,
+)
+
+
+class Fidelity(str, Enum):
+    """Models, cheapest first."""
+
+    euler = "euler"
+    timoshenko = "timoshenko"
+    harmonic = "harmonic"
+    solid = "solid"
+
+
+SceneFile = Annotated[Path, typer.Argument(help="Scene file (TOML), such as geometry/pinion_overhung.toml.")]
+FidelityOption = Annotated[Fidelity, typer.Option("--fidelity", "-f", help="Model to solve with.")]
+JsonFlag = Annotated[bool, typer.Option("--json", help="Print JSON for machines instead of tables.")]
+Settings = Annotated[
+    Optional[list[str]],
+    typer.Option("--set", help="Builder option as key=value, repeatable: order=8, layers=4, element=tet10, refinement=1.5."),
+]
+
+
+def options(pairs: list[str] | None) -> dict:
+    """Builder options from ``key=value`` texts; numbers as numbers."""
+    out: dict = {}
+    for pair in pairs or []:
+        key, sep, text = pair.partition("=")
+        if not sep or not key.isidentifier():
+            raise SolidgearError(f"--set {pair}: write key=value, such as --set order=8")
+        out[key] = tuple(_value(part) for part in text.split(",")) if "," in text else _value(text)
+    return out
+
+
+def _value(text: str):
+    for kind in (int, float):
+        try:
+            return kind(text)
+        except ValueError:
+            continue
+    return {"true": True, "false": False}.get(text, text)
+
+
+def build_body(scene, fidelity: Fidelity, pairs):
+    """Body of a scene at one fidelity, with ``--set`` options."""
+    from solidgear.fidelity import build
+
+    try:
+        return build(scene, fidelity.value, **options(pairs))
+    except TypeError as error:
+        if "unexpected keyword" in str(error):
+            word = str(error).rsplit("'", 2)[-2]
+            raise SolidgearError(f"--set {word}: the {fidelity.value} model has no such option; its docstring lists them") from None
+        raise
+
+
+def console():
+    """Terminal for tables on standard output."""
+    from rich.console import Console
+
+    # Without a terminal rich assumes 80 columns; a pipe can take more, but 80 is what people paste.
+    return Console(highlight=False)
+
+
+class Progress:
+    """One line per stage on standard error, a spinner where there is a terminal."""
+
+    def __init__(self, quiet: bool = False):
+        import time
+
+        from rich.console import Console
+
+        self.console = Console(stderr=True, highlight=False)
+        self.quiet, self.start, self.clock = quiet, time.perf_counter(), time.perf_counter
+        self.status = None
+
+    def __enter__(self):
+        if not self.quiet and self.console.is_terminal:
+            self.status = self.console.status("starting")
+            self.status.start()
+        return self
+
+    def __exit__(self, *_):
+        if self.status:
+            self.status.stop()
+
+    def __call__(self, text: str) -> None:
+        if self.quiet:
+            return
+        line = f"{self.clock() - self.start:6.1f} s  {text}"
+        if self.status:
+            self.status.update(line)
+        else:
+            print(line, file=sys.stderr, flush=True)
+
+
+def command(function):
+    """Register a command; typer would swallow Ctrl-C without a word."""
+
+    @functools.wraps(function)
+    def quiet(*args, **kwargs):
+        try:
+            return function(*args, **kwargs)
+        except KeyboardInterrupt:
+            print("solidgear: interrupted", file=sys.stderr)
+            raise typer.Exit(130) from None
+
+    return app.command(name=function.__name__)(quiet)
