@@ -17,6 +17,7 @@ import scipy.sparse as sp
 
 from solidgear.errors import SolidgearError
 from solidgear.frames import DOF_NAMES, shift
+from solidgear.mass import ScalarMass
 
 
 @dataclass(frozen=True)
@@ -52,7 +53,7 @@ class Block:
         ``bending_z``, ``bending_x``, ``axial``, ``torsion``, ``ovalising_n`` or ``full``.
     components : tuple of int
         Which of the six port components this block carries.
-    stiffness, mass : (n, n) sparse
+    stiffness, mass : (n, n) sparse, or a :class:`~solidgear.mass.ScalarMass` for the mass
         Symmetric; two blocks that are twins hold the *same* objects.
     rigid : (n, len(components)) ndarray
         Rigid motions about the origin of the scene, one column per component.
@@ -73,7 +74,7 @@ class Block:
     name: str
     components: tuple[int, ...]
     stiffness: sp.csr_matrix
-    mass: sp.csr_matrix
+    mass: sp.csr_matrix | ScalarMass
     rigid: np.ndarray
     y: np.ndarray
     ports: sp.csr_matrix
@@ -241,15 +242,25 @@ class Supports:
     def root(self) -> np.ndarray:
         """(6 m, r) matrix ``L`` with ``L L' = stiffness`` and r its rank.
 
-        Scaled by the diagonal first, so that springs of 1e-3 and 1e24 N/m keep their own precision.
+        Cholesky's factor with the stiffest pivots first, of the matrix scaled to a unit diagonal: a spring of 1e-3 N/m beside one of 1e24
+        keeps its own precision, in a column of its own.  (Eigenvectors would mix equal entries of the scaled matrix, whatever they couple.)
         """
         if not self.ports:
             return np.zeros((0, 0))
         d = np.sqrt(np.abs(np.diag(self.stiffness)))
-        safe = np.where(d > 0, d, 1.0)
-        w, v = np.linalg.eigh(self.stiffness / np.outer(safe, safe))
-        keep = w > 1e-12
-        return (d[:, None] * v[:, keep]) * np.sqrt(w[keep])
+        order = np.argsort(-d, kind="stable")
+        unit = np.where(d > 0, d, 1.0)[order]
+        left = self.stiffness[np.ix_(order, order)] / np.outer(unit, unit)
+        columns = []
+        for j in range(len(left)):
+            if left[j, j] > 1e-12:
+                column = left[:, j] / np.sqrt(left[j, j])
+                column[:j] = 0.0
+                columns.append(column)
+                left = left - np.outer(column, column)
+        out = np.zeros((len(d), len(columns)))
+        out[order] = d[order, None] * np.array(columns).reshape(len(columns), len(d)).T
+        return out
 
     def rows(self, body: Body) -> np.ndarray:
         """Places of the supported components among the body's port components."""

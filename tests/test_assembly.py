@@ -1,7 +1,7 @@
 """Block assembly against scikit-fem's own vector forms, and patch tests on distorted meshes.
 
 The forms below are written as in a textbook and assembled by scikit-fem; they share elements and mesh with the
-library, and nothing of its tabulation, its Gram matrices or its scatter.
+library, and nothing of its tabulation, its reference integrals, its Gram matrices or its scatter.
 """
 
 from dataclasses import dataclass, replace
@@ -17,6 +17,7 @@ from skfem.refdom import RefQuad
 
 import solidgear as sg
 from solidgear.fidelity import solid as solid_module
+from solidgear.fidelity.assembly import STRAIGHT, Pattern, inverted, straight
 from solidgear.scene import STEEL, Material, Port, Scene, Segment
 
 SOLID = ("tet4", "tet10", "hex8", "hex20", "hex27")
@@ -181,6 +182,118 @@ def test_patch_test_can_fail():
     size = np.array([1.0, 2.0, 3.0])[:, None]
     interior = np.all((geometry.nodes > 1e-9) & (geometry.nodes < (1 - 1e-9) * size), axis=0)
     assert np.abs((k @ u).reshape(-1, 3)[interior]).max() / (abs(k) @ abs(u)).max() > 1e-9
+
+
+# --------------------------------------------------------------------------- straight and curved elements
+def bent_box(element, amount, every=3):
+    """A box of straight elements of two materials with one mid node of every third element moved, by a share of the element's size."""
+    mesh = box(element)
+    geometry = solid_module._isoparametric(mesh, element, np.arange(mesh.t.shape[1]) % 2)
+    touched = geometry.dofs[-1 if element == "hex27" else geometry.mesh.p.shape[0] + 1 if element == "tet10" else 8, ::every]
+    size = np.ptp(geometry.nodes[:, geometry.dofs], axis=1).min()
+    geometry.nodes[:, touched] += amount * size * np.array([[0.6], [0.0], [0.8]])
+    bent = np.isin(geometry.dofs, touched).any(axis=0)
+    return geometry, bent
+
+
+SOFT = Material(E=7e10, nu=0.4, density=2700.0)
+TWO = SimpleNamespace(segments=(SimpleNamespace(material=STEEL), SimpleNamespace(material=SOFT)))
+
+
+@pytest.mark.parametrize("amount", [0.0, 1e-12, 1e-11, 1e-9, 1e-6, 1e-2])
+def test_bends_large_and_small_match_skfem(amount):
+    geometry, bent = bent_box("tet10", amount)
+    assert 0.2 < bent.mean() < 1  # both ways of assembly in one mesh
+    found, _ = straight(geometry.element, geometry.nodes[:, geometry.dofs])
+    assert found[~bent].all()
+    if amount == 0:
+        assert found.all()
+    if amount >= 1e-11:
+        assert not found[bent].any()
+    k, m = solid_module._matrices(geometry, TWO)
+    stiffness, mass = skfem_elasticity(geometry, [STEEL, SOFT], quadrature=solid_module._cell_rule("tet10"))
+    # whatever is taken for straight may change entries by less than this
+    assert relative_difference(k, stiffness) < 1e-12
+    assert relative_difference(m, mass) < 1e-12
+
+
+def test_taking_a_slightly_bent_element_for_straight_would_be_seen(monkeypatch):
+    geometry, _ = bent_box("tet10", 1e-9)
+    right, _ = solid_module._matrices(geometry, TWO)
+    monkeypatch.setattr("solidgear.fidelity.assembly.STRAIGHT", 1e-3)
+    wrong, _ = solid_module._matrices(geometry, TWO)
+    assert 1e-11 < relative_difference(wrong, right) < 1e-7
+
+
+def test_straightness_is_measured_against_the_least_extent():
+    # A flat element: a bend that is small beside its length and not beside its height changes its stiffness.
+    element = solid_module.ELEMENTS["tet10"]()
+    flat = (np.diag([1.0, 1.0, 1e-2]) @ element.doflocs.T)[:, :, None]
+    assert straight(element, flat)[0].all()
+    flat[2, 4] += 30 * STRAIGHT * 1e-2
+    assert not straight(element, flat)[0].any()
+
+
+def cubes():
+    """Eight right-handed cubes."""
+    mesh = MeshHex1.init_tensor(*[np.linspace(0, 1, 3)] * 3)
+    return MeshHex2.from_mesh(MeshHex1(mesh.p, mesh.t[[0, 2, 1, 3, 4, 6, 5, 7]]))
+
+
+@pytest.mark.parametrize("element", ["hex8", "hex20", "hex27"])
+def test_parallelepipeds_match_skfem(element):
+    # affine bricks take the reference integrals, as straight tetrahedra do
+    mesh = cubes()
+    mesh = replace(mesh, doflocs=np.array([[1.0, 0.3, 0.1], [0.0, 1.2, -0.2], [0.1, 0.0, 0.7]]) @ mesh.doflocs)
+    geometry = solid_module._isoparametric(mesh, element, np.arange(8) % 2)
+    assert straight(geometry.element, geometry.nodes[:, geometry.dofs])[0].all()
+    k, m = solid_module._matrices(geometry, TWO)
+    stiffness, mass = skfem_elasticity(geometry, [STEEL, SOFT], quadrature=solid_module._cell_rule(element))
+    assert relative_difference(k, stiffness) < SAME_SUM
+    assert relative_difference(m, mass) < SAME_SUM
+
+
+@pytest.mark.parametrize("element", ["hex20", "hex27"])
+def test_one_bent_brick_among_straight_ones(element):
+    mesh = cubes()
+    geometry = solid_module._isoparametric(mesh, element, np.arange(8) % 2)
+    geometry.nodes[:, geometry.dofs[-1, 2]] += 0.02
+    found, _ = straight(geometry.element, geometry.nodes[:, geometry.dofs])
+    assert 0 < found.sum() < 8
+    k, m = solid_module._matrices(geometry, TWO)
+    stiffness, mass = skfem_elasticity(geometry, [STEEL, SOFT], quadrature=solid_module._cell_rule(element))
+    assert relative_difference(k, stiffness) < SAME_SUM
+    assert relative_difference(m, mass) < SAME_SUM
+
+
+@pytest.mark.parametrize("dim", [2, 3])
+def test_inverses_by_cofactors(dim):
+    jac = np.random.default_rng(0).standard_normal((50, dim, dim)) + 3 * np.eye(dim)
+    inverse, det = inverted(jac.transpose(1, 2, 0))
+    # condition numbers stay below a hundred or so
+    assert np.abs(inverse.transpose(2, 0, 1) @ jac - np.eye(dim)).max() < 1e-13
+    assert det == pytest.approx(np.linalg.det(jac), rel=1e-13)
+
+
+@pytest.mark.parametrize("components", [1, 2, 3])
+def test_scatter_of_unsymmetric_element_matrices_is_the_sum_one_by_one(components):
+    rng = np.random.default_rng(5)
+    dofs = np.array([rng.permutation(12)[:5] for _ in range(9)]).T
+    dofs[:, 0], dofs[:2, 1] = [0, 11, 3, 7, 5], [10, 2]
+    dofs = np.unique(dofs, return_inverse=True)[1].reshape(dofs.shape)
+    n, c = dofs.max() + 1, components
+    values = rng.standard_normal((c, c, 9, 5, 5))
+    whole = Pattern(dofs).sum(c)
+    whole.add(np.array([4, 0, 8]), values[:, :, [4, 0, 8]])  # any order, any batches
+    whole.add(np.array([1, 2, 3, 5, 6, 7]), values[:, :, [1, 2, 3, 5, 6, 7]])
+    expected = np.zeros((n, c, n, c))
+    for e in range(9):
+        for a in range(5):
+            for b in range(5):
+                expected[dofs[a, e], :, dofs[b, e]] += values[:, :, e, a, b]
+    found = whole.matrix()
+    assert np.abs(found.toarray() - expected.reshape(n * c, n * c)).max() < 1e-14
+    assert found.has_canonical_format
 
 
 # --------------------------------------------------------------------------- harmonic blocks

@@ -2,6 +2,7 @@
 
 scikit-fem supplies elements, mappings, quadrature and the numbering of unknowns; its own
 forms (the oracle in the tests) spend their time in Python loops over pairs of vector components.
+Batches are small enough to stay in the cache: fresh memory costs more than the arithmetic.
 """
 
 from __future__ import annotations
@@ -9,25 +10,46 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+import scipy.linalg as sla
 import scipy.sparse as sp
 from skfem.assembly import Dofs
 
-CHUNK_BYTES = 1.5e8
+BATCH_BYTES = 4e6
+# Rounding of coordinates puts the nodes of a straight element off by 1e-14 to 1e-13 of its least extent; a bend changes the entries by about
+# its own size.  Elements bent by more go through quadrature.
+STRAIGHT = 3e-13
 
 
 @dataclass(frozen=True)
 class Tabulated:
-    """Basis functions of some elements at reference points, in physical coordinates.
+    """Basis functions of some elements at reference points.
 
-    ``value`` (nb, nq); ``gradient`` (ne, nb, dim, nq); ``det`` (ne, nq); ``x`` (dim, ne, nq);
-    ``tangent`` (ne, nq, dim, dim) derivative of position (third axis) along reference coordinates (fourth).
+    ``value`` (nb, nq); ``slope`` (nb, dim, nq) reference gradients; ``det`` (ne, nq); ``x`` (dim, ne, nq); ``jac`` and ``inverse``
+    (dim, dim, ne, nq), position along reference coordinates and back.
     """
 
     value: np.ndarray
-    gradient: np.ndarray
+    slope: np.ndarray
     det: np.ndarray
     x: np.ndarray
-    tangent: np.ndarray
+    jac: np.ndarray
+    inverse: np.ndarray
+
+    @property
+    def tangent(self) -> np.ndarray:
+        """(ne, nq, dim, dim) derivative of position (third axis) along reference coordinates (fourth)."""
+        return self.jac.transpose(2, 3, 0, 1)
+
+    def gradient(self, factor) -> np.ndarray:
+        """(ne, dim, nb, nq) gradients in physical coordinates, times a (ne, nq) factor."""
+        to = self.inverse * factor
+        dim = len(to)
+        out = np.empty((to.shape[2], dim, *self.value.shape))
+        for i in range(dim):
+            np.multiply(self.slope[:, 0], to[0, i][:, None], out=out[:, i])
+            for c in range(1, dim):
+                out[:, i] += self.slope[:, c] * to[c, i][:, None]
+        return out
 
 
 def reference(element, points):
@@ -42,28 +64,79 @@ def reference(element, points):
     return value, gradient
 
 
-def tabulate(geometry, nodes, element, points) -> Tabulated:
-    """Tabulate basis functions in physical coordinates.
+class Tabulation:
+    """Basis functions at reference points, to be mapped to elements a batch at a time.
 
     Parameters
     ----------
     geometry : scikit-fem element
         Of the mapping; for an isoparametric element the element itself.
-    nodes : (dim, nn, ne) ndarray
-        Nodes of the mapping, m.
     element : scikit-fem element
         Of the unknowns.
     points : (dim, nq) ndarray
         Reference points.
     """
-    shape, dshape = reference(geometry, points)
-    value, dvalue = (shape, dshape) if geometry is element else reference(element, points)
-    x = np.einsum("dne,nq->deq", nodes, shape, optimize=True)
-    jac = np.einsum("dne,ncq->eqdc", nodes, dshape, optimize=True)
-    det = np.linalg.det(jac)
-    inverse = np.linalg.inv(jac)
-    gradient = np.einsum("bcq,eqcd->ebdq", dvalue, inverse, optimize=True)
-    return Tabulated(value, gradient, det, x, jac)
+
+    def __init__(self, geometry, element, points: np.ndarray):
+        self._shape, self._dshape = reference(geometry, points)
+        self.value, self.slope = (self._shape, self._dshape) if geometry is element else reference(element, points)
+
+    def on(self, nodes: np.ndarray) -> Tabulated:
+        """Tabulate on elements with (dim, nn, ne) nodes of the mapping, m."""
+        nn, dim, nq = self._dshape.shape
+        nodes = np.ascontiguousarray(nodes.transpose(0, 2, 1))
+        jac = (nodes @ self._dshape.reshape(nn, dim * nq)).reshape(dim, -1, dim, nq).transpose(0, 2, 1, 3)
+        inverse, det = inverted(jac)
+        return Tabulated(self.value, self.slope, det, nodes @ self._shape, jac, inverse)
+
+
+def tabulate(geometry, nodes, element, points) -> Tabulated:
+    """Tabulate basis functions on (dim, nn, ne) nodes once; see :class:`Tabulation`."""
+    return Tabulation(geometry, element, points).on(nodes)
+
+
+def inverted(jac: np.ndarray):
+    """Inverses, and determinants (...), of (d, d, ...) small matrices, d = 2 or 3, by cofactors."""
+    d = len(jac)
+    if d == 2:
+        det = jac[0, 0] * jac[1, 1] - jac[0, 1] * jac[1, 0]
+        return np.array([[jac[1, 1], -jac[0, 1]], [-jac[1, 0], jac[0, 0]]]) / det, det
+    out = np.empty(jac.shape)
+    for i in range(3):
+        for j in range(3):
+            # cyclic indices bring the signs along
+            a, b, c, e = (j + 1) % 3, (j + 2) % 3, (i + 1) % 3, (i + 2) % 3
+            np.multiply(jac[a, c], jac[b, e], out=out[i, j])
+            out[i, j] -= jac[a, e] * jac[b, c]
+    det = sum(out[0, j] * jac[j, 0] for j in range(3))
+    out /= det
+    return out, det
+
+
+def straight(element, nodes: np.ndarray):
+    """Elements whose nodes are an affine image of the reference nodes, and the constant Jacobians.
+
+    Parameters
+    ----------
+    element : scikit-fem element
+        With a node for every unknown.
+    nodes : (dim, nb, ne) ndarray
+
+    Returns
+    -------
+    mask : (ne,) ndarray of bool
+        False where nodes are off by more than ``STRAIGHT`` of the smallest extent of the element.
+    jac : (dim, dim, ne) ndarray
+        Derivative of position (first axis) along reference coordinates (second), in the least-squares sense.
+    """
+    dim, _, ne = nodes.shape
+    affine = np.column_stack([element.doflocs, np.ones(len(element.doflocs))])
+    jac = np.matmul(np.linalg.pinv(affine)[:dim], nodes)
+    bend = np.matmul(sla.null_space(affine.T).T, nodes)
+    bend = np.sqrt(np.einsum("dne,dne->e", bend, bend))
+    size = np.sqrt(np.einsum("dce,dce->e", jac, jac))
+    # the least extent is at least the determinant over the square (in the plane: the first power) of the largest
+    return bend <= STRAIGHT * np.abs(inverted(jac)[1]) / size ** (dim - 1), jac
 
 
 def unknowns(mesh, element) -> np.ndarray:
@@ -77,42 +150,71 @@ class Pattern:
     Parameters
     ----------
     dofs : (nb, ne) ndarray of int
+
+    Attributes
+    ----------
+    n : int
+        Number of unknowns.
+    place : (ne, nb * nb) ndarray of int
+        Place of every entry of every element matrix among the entries of the assembled one.
     """
 
     def __init__(self, dofs: np.ndarray):
-        self.dofs = dofs
         self.n = int(dofs.max()) + 1
         nb, ne = dofs.shape
-        row = np.broadcast_to(dofs.T[:, :, None], (ne, nb, nb)).ravel().astype(np.int64)
-        col = np.broadcast_to(dofs.T[:, None, :], (ne, nb, nb)).ravel()
-        keys, self.place = np.unique(row * self.n + col, return_inverse=True)
-        self.indices = (keys % self.n).astype(np.int32)
-        self.indptr = np.searchsorted(keys, np.arange(self.n + 1, dtype=np.int64) * self.n).astype(np.int32)
+        of = np.ascontiguousarray(dofs.T, np.int32)
+        # Element entries row by row, each row being an unknown of an element.  A transposition is a counting sort by column that
+        # leaves rows in order; the pattern is symmetric, so each entry carries the number of its mirror image.
+        slots = np.arange(ne * nb, dtype=np.int32).reshape(ne, nb)
+        by_row = sp.csr_matrix((slots.ravel(), of.ravel(), np.arange(0, ne * nb + 1, nb)), shape=(ne, self.n)).tocsc()
+        element, a = by_row.indices, by_row.data % nb
+        mirror = (element * (nb * nb) + a)[:, None] + np.arange(0, nb * nb, nb, dtype=np.int32)
+        entries = sp.csr_matrix((mirror.ravel(), of[element].ravel(), by_row.indptr * nb), shape=(self.n, self.n)).tocsc()
+        # A change of row opens a new entry.  So does a change of column: were the last row of column j the first of column j + 1,
+        # symmetry and the diagonal would contradict it.
+        first = np.ones(entries.nnz, bool)
+        np.not_equal(entries.indices[1:], entries.indices[:-1], out=first[1:])
+        self.place = np.empty((ne, nb * nb), np.int32)
+        self.place.ravel()[entries.data] = np.cumsum(first, dtype=np.int32) - 1
+        starts = np.flatnonzero(first)
+        self.indices = entries.indices[starts]
+        self.indptr = np.searchsorted(starts, entries.indptr).astype(np.int32)
 
-    def scalar(self, parts) -> sp.csr_matrix:
-        """Sum (m, nb, nb) element matrices, given in order and in parts, into an (n, n) matrix."""
-        return self.blocks(part[:, :, None, :, None] for part in parts)
+    def sum(self, components: int = 1) -> Sum:
+        """An empty matrix on this pattern, unknowns grouped by node."""
+        return Sum(self, components)
 
-    def blocks(self, parts) -> sp.csr_matrix:
-        """Sum (m, nb, c, nb, c) element matrices into an (n c, n c) matrix, unknowns grouped by node."""
-        data, done = None, 0
-        square = self.dofs.shape[0] ** 2
-        for part in parts:
-            c = part.shape[2]
-            if data is None:
-                data = np.zeros((c, c, len(self.indices)))
-            place = self.place[done : done + len(part) * square]
-            done += len(part) * square
-            for i in range(c):
-                for j in range(c):
-                    data[i, j] += np.bincount(place, weights=part[:, :, i, :, j].ravel(), minlength=len(self.indices))
+
+class Sum:
+    """A matrix that element matrices are added to; see :meth:`Pattern.sum`."""
+
+    def __init__(self, pattern: Pattern, components: int):
+        self.pattern, self.c = pattern, components
+        self.data = np.zeros(len(pattern.indices) * components**2)
+
+    def add(self, elements, values: np.ndarray) -> None:
+        """Add element matrices.
+
+        Parameters
+        ----------
+        elements : slice or (m,) ndarray of int
+        values : (c, c, m, nb, nb) ndarray
+            Component of row and column first; for one component (m, nb, nb) will do.
+        """
+        c = self.c
+        at = self.pattern.place[elements].ravel() * np.intp(c * c)
+        for k, plane in enumerate(values.reshape(c * c, -1)):
+            np.add.at(self.data[k:], at, plane)
+
+    def matrix(self) -> sp.csr_matrix:
+        """(n c, n c) matrix."""
+        p, c = self.pattern, self.c
         if c == 1:
-            return sp.csr_matrix((data[0, 0], self.indices, self.indptr), shape=(self.n,) * 2)
-        data = np.ascontiguousarray(np.moveaxis(data, 2, 0))
-        return sp.bsr_matrix((data, self.indices, self.indptr), shape=(self.n * c,) * 2).tocsr()
+            return sp.csr_matrix((self.data, p.indices, p.indptr), shape=(p.n, p.n))
+        return sp.bsr_matrix((self.data.reshape(-1, c, c), p.indices, p.indptr), shape=(p.n * c, p.n * c)).tocsr()
 
 
-def chunks(count: int, bytes_each: float):
-    """Slices of a range whose work arrays stay within ``CHUNK_BYTES``."""
-    step = max(1, int(CHUNK_BYTES / bytes_each))
-    return [slice(i, min(i + step, count)) for i in range(0, count, step)]
+def batches(elements: np.ndarray, bytes_each: float):
+    """Cut a list of elements into pieces whose work arrays stay within ``BATCH_BYTES``."""
+    step = max(1, int(BATCH_BYTES / bytes_each))
+    return [elements[i : i + step] for i in range(0, len(elements), step)]

@@ -20,7 +20,7 @@ from skfem.element import ElementQuadP
 
 from solidgear.body import Block, Body, Port
 from solidgear.errors import SolidgearError
-from solidgear.fidelity.assembly import Pattern, chunks, reference, tabulate, unknowns
+from solidgear.fidelity.assembly import Pattern, Tabulation, batches, reference, tabulate, unknowns
 from solidgear.fidelity.attachment import tie_rigidly
 from solidgear.fidelity.options import harmonics, number
 from solidgear.fidelity.scale import elastic_scale
@@ -168,12 +168,9 @@ class _Work:
         self.weights = np.outer(self.gw, self.gw).ravel()
         self.pattern = Pattern(dofs)
         self.n = self.pattern.n
-        materials = [s.material for s in scene.segments]
-        e = np.array([m.E for m in materials])[flat.segment]
-        nu = np.array([m.nu for m in materials])[flat.segment]
-        self.shear = e / (2 * (1 + nu))
-        self.lame = e * nu / ((1 + nu) * (1 - 2 * nu))
-        self.density = np.array([m.density for m in materials])[flat.segment]
+        self.basis = Tabulation(_CORNERS, element, self.points)
+        # products of basis functions, of which every mass is a weighted sum
+        self.products = (self.basis.value[:, None] * self.basis.value).reshape(-1, len(self.weights)).T
         # Vertex functions carry all rigid motions; higher ones are zero there in a hierarchical basis.
         self.r = np.zeros(self.n)
         self.y = np.full(self.n, np.nan)
@@ -205,41 +202,37 @@ class _Work:
         return np.unique(self.dofs[alive][:, cells])
 
     def _batches(self):
-        bytes_each = self.dofs.shape[0] * len(self.weights) * 8 * 30
-        for part in chunks(self.dofs.shape[1], bytes_each):
-            t = tabulate(_CORNERS, self._nodes(part), self.element, self.points)
-            yield part, t, t.det * self.weights
+        """Yields (cells, material, tabulated basis, area weights (m, nq)), one material at a time."""
+        bytes_each = 8 * (3 * self.dofs.shape[0] * len(self.weights) + 30 * self.dofs.shape[0] ** 2)
+        for index, segment in enumerate(self.scene.segments):
+            for part in batches(np.flatnonzero(self.flat.segment == index), bytes_each):
+                t = self.basis.on(self._nodes(part))
+                yield part, segment.material, t, t.det * self.weights
 
     def bending_block(self, name, components, n, wanted) -> Block:
         """Block of harmonic n (0 is axial) in the unknowns (p, q, w), or (u_r, u_y) for n = 0."""
         c = 2 if n == 0 else 3
         nb = self.dofs.shape[0]
-        k_all, m_all = [], []
+        stiffness, heavy = self.pattern.sum(c), self.pattern.sum()
         area = 0.0
         # Strains are linear in (phi / r, phi,r, phi,y) of each unknown; one Gram matrix of those three
         # functions per element holds every product that occurs.
-        trace, normal, shear = _energy(n)
-        for part, t, dv in self._batches():
+        trace, normal, shear = (part.transpose(1, 3, 0, 2).reshape(c * c, 9) for part in _energy(n))
+        for part, material, t, dv in self._batches():
             area += dv.sum()
             r = t.x[0]
-            ne = len(r)
             w = (2 * np.pi if n == 0 else np.pi) * dv * r
-            f = np.concatenate([t.value[None] / r[:, None], t.gradient[:, :, 0], t.gradient[:, :, 1]], axis=1)
-            f *= np.sqrt(w)[:, None]
-            gram = (f @ np.swapaxes(f, 1, 2)).reshape(ne, 3, nb, 3, nb)
-            k = np.zeros((ne, nb, c, nb, c))
-            lame, mu = self.lame[part][:, None, None], self.shear[part][:, None, None]
-            for i, j, p, q in np.ndindex(3, 3, c, c):
-                a, b = trace[i, p, j, q], 2 * normal[i, p, j, q] + shear[i, p, j, q]
-                if a or b:
-                    k[:, :, p, :, q] += (a * lame + b * mu) * gram[:, i, :, j]
-            k_all.append(k)
-            s = t.value[None] * np.sqrt(w * self.density[part][:, None])[:, None]
-            m_all.append(s @ np.swapaxes(s, 1, 2))
+            root = np.sqrt(w)
+            f = np.concatenate([(t.value * (root / r)[:, None])[:, None], t.gradient(root)], axis=1).reshape(len(part), 3 * nb, -1)
+            gram = (f @ f.transpose(0, 2, 1)).reshape(-1, 3, nb, 3, nb).transpose(1, 3, 0, 2, 4).reshape(9, -1)
+            mu = material.shear_modulus
+            lame = 2 * mu * material.nu / (1 - 2 * material.nu)
+            stiffness.add(part, (lame * trace + mu * (2 * normal + shear)) @ gram)
+            heavy.add(part, material.density * w @ self.products)
         self.area = area
-        k = self.pattern.blocks(k_all)
+        k = stiffness.matrix()
         share = np.ones(2) if n == 0 else np.array([2.0, 2.0, 1.0])
-        m = sp.kron(self.pattern.scalar(m_all), sp.diags(share)).tocsr()
+        m = sp.kron(heavy.matrix(), sp.diags(share)).tocsr()
 
         keep = np.ones((self.n, c), bool)
         if n == 0:
@@ -277,15 +270,14 @@ class _Work:
 
     def torsion_block(self, wanted) -> Block:
         """Block of torsion in the unknown ``u_t / r``; no condition on the axis."""
-        k_all, m_all = [], []
-        for part, t, dv in self._batches():
+        stiffness, heavy = self.pattern.sum(), self.pattern.sum()
+        for part, material, t, dv in self._batches():
             w = 2 * np.pi * dv * t.x[0] ** 3
-            g = t.gradient * np.sqrt(w * self.shear[part][:, None])[:, None, None]
-            g = g.reshape(*g.shape[:2], -1)
-            k_all.append(g @ np.swapaxes(g, 1, 2))
-            s = t.value[None] * np.sqrt(w * self.density[part][:, None])[:, None]
-            m_all.append(s @ np.swapaxes(s, 1, 2))
-        k, m = self.pattern.scalar(k_all), self.pattern.scalar(m_all)
+            g = t.gradient(np.sqrt(w * material.shear_modulus))
+            g = g.swapaxes(1, 2).reshape(len(part), self.dofs.shape[0], -1)
+            stiffness.add(part, g @ g.transpose(0, 2, 1))
+            heavy.add(part, material.density * w @ self.products)
+        k, m = stiffness.matrix(), heavy.matrix()
         rigid = self.point.astype(float)[:, None]
         rows, ties = [], []
         for i, (station, attachment) in enumerate(wanted):

@@ -17,11 +17,12 @@ from skfem.refdom import RefTet, RefTri
 
 from solidgear.body import Block, Body, Port
 from solidgear.errors import SolidgearError
-from solidgear.fidelity.assembly import Pattern, chunks, reference, tabulate, unknowns
+from solidgear.fidelity.assembly import Pattern, Tabulation, batches, inverted, reference, straight, tabulate, unknowns
 from solidgear.fidelity.attachment import tie_rigidly
 from solidgear.fidelity.options import number
 from solidgear.fidelity.scale import elastic_scale
 from solidgear.frames import cross_matrix
+from solidgear.mass import ScalarMass
 
 ELEMENTS = {"tet4": ElementTetP1, "tet10": ElementTetP2, "hex8": ElementHex1, "hex20": ElementHexS2, "hex27": ElementHex2}
 
@@ -267,37 +268,45 @@ def _isoparametric(mesh, name, segment) -> SolidMesh:
 
 
 def _matrices(m: SolidMesh, scene):
-    """Stiffness (3n, 3n) and consistent mass (3n, 3n) of an isotropic solid."""
+    """Stiffness (3n, 3n) and consistent mass of an isotropic solid."""
     points, weights = _cell_rule(m.name)
+    basis = Tabulation(m.element, m.element, points)
+    nb, nq = basis.value.shape
     pattern = Pattern(m.dofs)
-    nb, ne = m.dofs.shape
-    materials = [s.material for s in scene.segments]
-    e = np.array([x.E for x in materials])[m.segment]
-    nu = np.array([x.nu for x in materials])[m.segment]
-    rho = np.array([x.density for x in materials])[m.segment]
-    mu, lame = e / (2 * (1 + nu)), e * nu / ((1 + nu) * (1 - 2 * nu))
-    parts = chunks(ne, 8 * (3 * nb * len(weights) * 3 + 2 * (3 * nb) ** 2))
-
-    heavy = []
-
-    def stiffness():
-        for part in parts:
-            t = m.tabulate(points, part)
+    stiffness, mass = pattern.sum(3), pattern.sum()
+    # products of basis functions, and of reference gradients, of which straight elements take one multiple each
+    products = (basis.value[:, None] * basis.value).reshape(nb * nb, nq).T
+    slopes = np.einsum("apq,brq,q->prab", basis.slope, basis.slope, weights, optimize=True).reshape(9, nb * nb)
+    is_straight, jac = straight(m.element, m.nodes[:, m.dofs])
+    for index, segment in enumerate(scene.segments):
+        nu, mu, rho = segment.material.nu, segment.material.shear_modulus, segment.material.density
+        lame = 2 * mu * nu / (1 - 2 * nu)
+        here = m.segment == index
+        for part in batches(np.flatnonzero(here & is_straight), 8 * 20 * nb * nb):
+            inverse, det = inverted(jac[:, :, part])
+            along = (inverse * det)[:, :, None, None] * inverse  # (reference, space) twice
+            tensor = _elastic(along.transpose(1, 3, 4, 0, 2).reshape(3, 3, len(part), 9), lame, mu)
+            stiffness.add(part, tensor @ slopes)
+            mass.add(part, np.outer(rho * det, weights @ products))
+        for part in batches(np.flatnonzero(here & ~is_straight), 8 * (3 * nb * nq + 30 * nb * nb)):
+            t = basis.on(m.nodes[:, m.dofs[:, part]])
             dv = t.det * weights
-            g = (t.gradient * np.sqrt(dv)[:, None, None]).reshape(len(dv), 3 * nb, -1)
-            gram = (g @ np.swapaxes(g, 1, 2)).reshape(-1, nb, 3, nb, 3)
-            k = lame[part][:, None, None, None, None] * gram
-            shear = mu[part][:, None, None, None, None] * gram
-            k += shear.transpose(0, 1, 4, 3, 2)
-            trace = np.einsum("eicjc->eij", shear)
-            for c in range(3):
-                k[:, :, c, :, c] += trace
-            s = t.value[None] * np.sqrt(dv * rho[part][:, None])[:, None]
-            heavy.append(s @ np.swapaxes(s, 1, 2))
-            yield k
+            g = t.gradient(np.sqrt(dv)).reshape(len(part), 3 * nb, nq)
+            gram = (g @ g.transpose(0, 2, 1)).reshape(-1, 3, nb, 3, nb).transpose(1, 3, 0, 2, 4)
+            stiffness.add(part, _elastic(gram, lame, mu))
+            mass.add(part, rho * dv @ products)
+    return stiffness.matrix(), ScalarMass(mass.matrix(), 3)
 
-    k = pattern.blocks(stiffness())
-    return k, sp.kron(pattern.scalar(heavy), sp.eye(3), format="csr")
+
+def _elastic(gram, lame: float, mu: float):
+    """Isotropic stiffness from the integrals of products of gradients, components (3, 3, ...) of row and column first."""
+    out = lame * gram
+    shear = mu * gram
+    out += shear.swapaxes(0, 1)
+    trace = shear[0, 0] + shear[1, 1] + shear[2, 2]
+    for i in range(3):
+        out[i, i] += trace
+    return out
 
 
 def _mean(m: SolidMesh, facets, y0, n) -> sp.csr_matrix:

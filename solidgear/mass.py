@@ -1,0 +1,86 @@
+"""The consistent mass of a solid, held as the scalar matrix it is made of."""
+
+from __future__ import annotations
+
+import numpy as np
+import scipy.sparse as sp
+
+
+class ScalarMass:
+    """``kron(scalar, I)``: the same mass for every component of a node's motion.
+
+    Takes a third of the memory of the full matrix of a solid.  It multiplies arrays and sparse matrices, is added to sparse matrices,
+    and is turned into one by :meth:`tocsr`; scipy leaves all mixed operations to it.
+
+    Parameters
+    ----------
+    scalar : (n, n) sparse
+        Symmetric, kg.
+    components : int
+        Unknowns of a node, numbered together.
+    """
+
+    __array_ufunc__ = None  # numpy leaves operators to us
+    __array_priority__ = 20.0  # and so does scipy, whose matrices have 10.1
+
+    def __init__(self, scalar, components: int):
+        self.scalar, self.components = scalar, components
+
+    @property
+    def shape(self) -> tuple[int, int]:
+        n = self.scalar.shape[0] * self.components
+        return n, n
+
+    @property
+    def nnz(self) -> int:
+        """Entries of the full matrix."""
+        return self.scalar.nnz * self.components
+
+    @property
+    def dtype(self):
+        return self.scalar.dtype
+
+    @property
+    def T(self) -> ScalarMass:
+        return ScalarMass(self.scalar.T.tocsr(), self.components)
+
+    def diagonal(self) -> np.ndarray:
+        """(n c,) main diagonal."""
+        return np.repeat(self.scalar.diagonal(), self.components)
+
+    def tocsr(self) -> sp.csr_matrix:
+        """The full matrix."""
+        return sp.kron(self.scalar, sp.eye(self.components), format="csr")
+
+    def toarray(self) -> np.ndarray:
+        return self.tocsr().toarray()
+
+    def __matmul__(self, other):
+        if sp.issparse(other):
+            return self.tocsr() @ other
+        other = np.asarray(other)
+        if other.ndim not in (1, 2) or len(other) != self.shape[1]:
+            raise ValueError(f"matmul: dimension mismatch, {self.shape} by {other.shape}")
+        columns = other.reshape(self.scalar.shape[1], -1)  # all components and columns of a node side by side
+        return (self.scalar @ columns).reshape(other.shape)
+
+    def __rmatmul__(self, other):
+        return other @ self.tocsr() if sp.issparse(other) else (self.T @ np.asarray(other).T).T
+
+    def __mul__(self, factor: float) -> ScalarMass:
+        if not np.isscalar(factor):
+            return NotImplemented
+        return ScalarMass(factor * self.scalar, self.components)
+
+    __rmul__ = __mul__
+
+    def __add__(self, other):
+        return self.tocsr() + other
+
+    __radd__ = __add__
+
+    def __sub__(self, other):
+        return self.tocsr() - other
+
+    def __rsub__(self, other):
+        return other - self.tocsr()
