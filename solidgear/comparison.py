@@ -175,7 +175,7 @@ def _solve(scene, model: str, options: dict, progress: Progress) -> Rung:
         condensed = condense(body, supports, scene.port.name)
     progress(f"{model}: modes")
     with meter.stage("modes"):
-        found = modes(body, supports, max(ask.modes, 10), max_frequency=ask.max_frequency)
+        found = modes(body, supports, max(ask.modes, 10), max_frequency=ask.max_frequency, count=True)
     return Rung(body, condensed, found, measure(condensed, found), meter)
 
 
@@ -360,6 +360,8 @@ def _model_record(rung: Rung, valid: bool, why_not: str | None) -> dict:
         "rigid_residual": rung.body.rigid_residual(),
         "modal_residual": rung.modes.evidence["residual"],
         "orthogonality": rung.modes.evidence["orthogonality"],
+        "eigensolver": rung.modes.evidence["method"],
+        "mode_count": rung.modes.evidence["count"],
         "rigid_modes": rung.modes.evidence["rigid_modes"],
         "coupling_bound": rung.modes.evidence["coupling_bound"],
         "shift_rad2": float(rung.modes.evidence["shift_rad2"]),

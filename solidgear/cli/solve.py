@@ -106,6 +106,7 @@ def modes(
     fidelity: FidelityOption = Fidelity.harmonic,
     n: Annotated[Optional[int], typer.Option("-n", help="Number of elastic shapes; twins count twice.")] = None,
     max_frequency: Annotated[Optional[float], typer.Option(help="Hz; leave out modes above.")] = None,
+    count: Annotated[bool, typer.Option("--count", help="Prove by the inertia of a second factor that no mode was missed.")] = False,
     as_json: JsonFlag = False,
     settings: Settings = None,
 ) -> None:
@@ -117,7 +118,7 @@ def modes(
     body = build_body(loaded, fidelity, settings)
     if max_frequency is not None and not max_frequency > 0:
         raise SolidgearError(f"--max-frequency {max_frequency:g}: must be greater than zero, in Hz")
-    found = solve(body, loaded, loaded.ask.modes if n is None else n, max_frequency=max_frequency or loaded.ask.max_frequency)
+    found = solve(body, loaded, loaded.ask.modes if n is None else n, max_frequency=max_frequency or loaded.ask.max_frequency, count=count)
     rows = [{"name": m.name, "family": m.family, "frequency_hz": m.frequency_hz, "multiplicity": m.multiplicity} for m in found.modes]
     if as_json:
         print(json.dumps({"scene": loaded.name, "fidelity": fidelity.value, "dofs": body.size, "modes": rows, "evidence": found.evidence}, default=float))
@@ -128,7 +129,11 @@ def modes(
     terminal.print(f"{loaded.name}: {fidelity.value}, {body.size} unknowns", markup=False)
     terminal.print(modes_table(rows))
     e = found.evidence
-    terminal.print(f"Residual {e['residual']:.1e}, orthogonality {e['orthogonality']:.1e}, rigid modes {e['rigid_modes']}, back end {e['backend']}.")
+    terminal.print(f"Residual {e['residual']:.1e}, orthogonality {e['orthogonality']:.1e}, rigid modes {e['rigid_modes']}, {e['method']} on {e['backend']}.")
+    if count:
+        bad = [part["why"] for part in e["count"] if not part["checked"]]
+        below = min((part["below_hz"] for part in e["count"] if part["checked"]), default=0.0)
+        terminal.print(f"Not counted: {bad[0]}." if bad else f"No mode missed below {below:.6g} Hz (counted by the inertia of a second factor).")
 
 
 @command

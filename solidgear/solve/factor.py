@@ -1,31 +1,35 @@
-"""Factorisation of sparse symmetric positive definite matrices, behind one small interface.
+"""Factorisation of sparse symmetric matrices: which back end, whether it will fit, and what came of it.
 
-``factorise(matrix)`` returns an object with ``solve(rhs)``, ``backend`` and ``reason``.
-PARDISO (extra ``fast``) is used for large matrices when it is there; SuperLU always works.
+``factorise(matrix)`` is for positive definite matrices, ``indefinite(matrix)`` for those whose negative eigenvalues are counted.
+The back ends themselves are in :mod:`solidgear.solve.backends`.
 """
 
 from __future__ import annotations
 
 import os
-import warnings
+from collections.abc import Callable
 from dataclasses import dataclass
-from functools import lru_cache
 
 import numpy as np
 import scipy.linalg as sla
 import scipy.sparse as sp
-import scipy.sparse.linalg as spla
 
-from solidgear.errors import SolidgearError
+from solidgear.memory import available_mb
+from solidgear.solve.backends import BACKENDS, INSTALL, FactorError, missing
+
+__all__ = ["Factor", "FactorError", "Indefinite", "factorise", "indefinite", "negative_pivots", "pardiso_missing"]
 
 # SuperLU's indices overflow on the factors of planar meshes of very high order ("not enough memory").
 LARGE_PLANAR = 30_000_000  # entries
-# Below this size SuperLU's lack of start-up cost wins over PARDISO (0.09 s per constructor).
-SMALL = 12_000
-
-
-class FactorError(SolidgearError):
-    """A matrix could not be factored."""
+# Solids below this size: what PARDISO gains is what it costs to load MKL (0.2 s, once).
+SMALL = 6_000
+# Fastest first, for solids.  Factorisation against PARDISO at 41 000 (HEX20) and 93 000 unknowns (TET10), two runs in turn on two busy cores: CHOLMOD
+# 0.65 to 1.3, MUMPS 1.4 to 1.8 with OpenBLAS; 2.7 and 5 with the reference BLAS (TET10, one run); SuperLU about 14 (HEX20, one run apart from these).
+FASTEST = ("pardiso", "cholmod", "mumps", "superlu")
+COUNTING = ("pardiso", "mumps", "superlu")
+# Normwise backward error (Rigal and Gaches) of one solve.  Solids give 1e-17, since their solutions lie in the low modes; it must be far
+# below the ratio of the lowest eigenvalues to the norm, about 1e-9 there, for the signs of those to mean anything.
+SOUND = 1e-14
 
 
 @dataclass
@@ -35,30 +39,42 @@ class Factor:
     Attributes
     ----------
     backend : str
-        ``pardiso`` or ``superlu``.
+        ``pardiso``, ``cholmod``, ``mumps`` or ``superlu``.
     reason : str
         Why this back end was taken.
+    estimate_mb : float or None
+        Memory it was expected to need, MB.
+    nnz : int or None
+        Entries of the factor, where the back end tells.
     """
 
     backend: str
     reason: str
-    _solve: object
+    _solve: Callable[[np.ndarray], np.ndarray]
+    estimate_mb: float | None = None
+    nnz: int | None = None
 
     def solve(self, rhs: np.ndarray) -> np.ndarray:
         """Solve for one (n,) or several (n, k) right-hand sides."""
         return self._solve(rhs)
 
 
-@lru_cache(maxsize=1)
+@dataclass
+class Indefinite(Factor):
+    """Result of :func:`indefinite`.
+
+    Attributes
+    ----------
+    negative : int
+        Number of negative eigenvalues.
+    """
+
+    negative: int = 0
+
+
 def pardiso_missing() -> str:
     """Empty if PARDISO can be used, else the reason why not."""
-    try:
-        import pypardiso.pardiso_wrapper as wrapper
-
-        wrapper.PyPardisoSolver(mtype=2)
-    except Exception as error:  # a broken MKL raises OSError, ImportError or AttributeError
-        return f"pypardiso is not usable ({type(error).__name__})"
-    return ""
+    return missing("pardiso")
 
 
 def factorise(matrix: sp.spmatrix, backend: str | None = None, planar: bool = False, border: int = 0) -> Factor:
@@ -68,12 +84,10 @@ def factorise(matrix: sp.spmatrix, backend: str | None = None, planar: bool = Fa
     ----------
     matrix : (n, n) sparse
         Both triangles given.
-    backend : {None, 'pardiso', 'superlu'}
-        None chooses by size and availability; the environment variable
-        ``SOLIDGEAR_BACKEND`` forces one for a whole run.
+    backend : {None, 'pardiso', 'cholmod', 'mumps', 'superlu'}
+        None chooses by size and availability; the environment variable ``SOLIDGEAR_BACKEND`` forces one for a whole run.
     planar : bool
         The matrix comes from a 1D or 2D mesh: fill is small and SuperLU is the fastest.
-
     border : int
         Unknowns at the end that couple to very many others.  They are eliminated by hand, as a dense Schur complement:
         left to a fill-reducing ordering they cost ten times the rest.
@@ -81,107 +95,172 @@ def factorise(matrix: sp.spmatrix, backend: str | None = None, planar: bool = Fa
     Raises
     ------
     FactorError
-        If the matrix holds NaN, is singular to the back end, or the back end is not there.
+        If the matrix holds NaN, is not positive definite to the back end, will not fit into memory, or the back end is not there.
     """
+    matrix = _canonical(matrix)
+    if border:
+        return _bordered(matrix, border, lambda inner: factorise(inner, backend, planar), _definite_corner)
+    name, reason = _choice(matrix, backend, planar)
+    work = _factored(name, matrix, planar, definite=True)
+    return Factor(name, reason, work.solve, work.estimate_mb, work.nnz)
+
+
+def indefinite(matrix: sp.spmatrix, backend: str | None = None, planar: bool = False, border: int = 0) -> Indefinite | None:
+    """Factor a symmetric matrix of any sign and count its negative eigenvalues (Sylvester's law of inertia).
+
+    Every count is backed by the backward error of one solve with a random load: a stable factorisation counts exactly for a matrix within
+    its backward error, so a count is in doubt only for eigenvalues that close to zero (one load is a sample, not a bound).  A back end whose factor is not sound, or whose pivots do not tell, is passed over for the next.
+
+    Parameters
+    ----------
+    matrix, backend, planar, border
+        As for :func:`factorise`; CHOLMOD cannot, and if it is forced the others are tried.
+
+    Returns
+    -------
+    Indefinite or None
+        None if no back end gave a count that can be trusted; a matrix that is singular to rounding is such a case.
+
+    Raises
+    ------
+    FactorError
+        If the matrix holds NaN, will not fit into memory, or the back end is not there.
+    """
+    matrix = _canonical(matrix)
+    if border:
+        return _bordered(matrix, border, lambda inner: indefinite(inner, backend, planar), _any_corner)
+    name, reason = _choice(matrix, backend, planar)
+    forced = reason == FORCED and name in COUNTING
+    for name in [name] if forced else [name, *(other for other in COUNTING if other != name)]:
+        if name not in COUNTING or missing(name):
+            continue
+        try:
+            work = _factored(name, matrix, planar, definite=False)
+            if work.negative is not None and _backward_error(matrix, work.solve) < SOUND:
+                return Indefinite(name, reason, work.solve, work.estimate_mb, work.nnz, work.negative)
+        except NoRoom:
+            raise
+        except FactorError:
+            pass
+        reason = f"no sound factor by {name}"
+    return None
+
+
+def negative_pivots(matrix: sp.spmatrix, backend: str | None = None) -> tuple[int, str] | None:
+    """Number of negative eigenvalues of a sparse symmetric matrix and the back end that counted them; None as for :func:`indefinite`."""
+    found = indefinite(matrix, backend)
+    return None if found is None else (found.negative, found.backend)
+
+
+# --------------------------------------------------------------------------- choice
+FORCED = "asked for"
+
+
+class NoRoom(FactorError):
+    """A factor that will not fit into memory."""
+
+
+def _canonical(matrix):
     if not np.all(np.isfinite(matrix.data)):
         raise FactorError("the system matrix holds NaN or infinite entries; check material and geometry")
-    if border:
-        return _bordered(matrix.tocsr(), backend, planar, border)
+    matrix = sp.csr_matrix(matrix)
+    if not matrix.has_canonical_format:
+        matrix = matrix.copy() if matrix.has_sorted_indices else matrix.sorted_indices()
+        matrix.sum_duplicates()
+    return matrix
+
+
+def _choice(matrix, backend, planar):
+    """Name of the back end and the reason for it."""
     backend = backend or os.environ.get("SOLIDGEAR_BACKEND") or None
     n = matrix.shape[0]
-    planar = planar and matrix.nnz < LARGE_PLANAR
-    if backend is None:
-        light = planar or n <= SMALL
-        missing = "" if light else pardiso_missing()
-        if planar:
-            backend, reason = "superlu", "a planar mesh fills in little"
-        elif n <= SMALL:
-            backend, reason = "superlu", f"{n} unknowns are below {SMALL}"
-        elif missing:
-            backend, reason = "superlu", f"{missing}; install the extra 'fast' for large solids"
-        else:
-            backend, reason = "pardiso", f"{n} unknowns are above {SMALL}"
-    else:
-        reason = "asked for"
-    if backend == "pardiso":
-        if pardiso_missing():
-            raise FactorError(f"back end pardiso was asked for but {pardiso_missing()}")
-        return Factor("pardiso", reason, _Pardiso(matrix))
-    if backend == "superlu":
-        return Factor("superlu", reason, _superlu(matrix))
-    raise FactorError(f"unknown back end {backend!r}; use 'pardiso' or 'superlu'")
+    if backend is not None:
+        if backend not in BACKENDS:
+            raise FactorError(f"unknown back end {backend!r}; use " + ", ".join(map(repr, BACKENDS)))
+        if why := _missing(backend):
+            raise FactorError(f"back end {backend} was asked for but {why}")
+        return backend, FORCED
+    if planar and matrix.nnz < LARGE_PLANAR:
+        return "superlu", "a planar mesh fills in little"
+    if n <= SMALL:
+        return "superlu", f"{n} unknowns are not above {SMALL}"
+    absent = []
+    for name in FASTEST:
+        if not (why := _missing(name)):
+            break
+        absent.append(f"{why}; {INSTALL[name]}")
+    return name, f"{n} unknowns are above {SMALL}" + "".join(f"; faster but absent: {why}" for why in absent)
 
 
-def _bordered(matrix, backend, planar, border):
+def _missing(name):
+    return pardiso_missing() if name == "pardiso" else missing(name)
+
+
+def _factored(name, matrix, planar, definite):
+    free = available_mb()
+    options = {"planar": planar} if name in ("cholmod", "superlu") else {}
+    work = BACKENDS[name](matrix, definite=definite, **options)
+    if free is not None and work.estimate_mb > free:
+        raise NoRoom(
+            f"{matrix.shape[0]} unknowns need about {_mb(work.estimate_mb)} MB to factor by {name}, {_mb(free)} MB are free; "
+            "use a coarser mesh, or the harmonic model, which needs far less"
+        )
+    work.factor()
+    return work
+
+
+def _mb(amount):
+    return f"{amount:.0f}" if amount >= 10 else f"{amount:.2g}"
+
+
+def _backward_error(matrix, solve):
+    rhs = np.random.default_rng(0).standard_normal(matrix.shape[0])
+    x = solve(rhs)
+    if not np.isfinite(x).all():
+        return np.inf
+    largest = np.linalg.norm(matrix.data)  # Frobenius: bounds the 2-norm from above, by no more than the bandwidth's root
+    return np.linalg.norm(matrix @ x - rhs) / (largest * np.linalg.norm(x) + np.linalg.norm(rhs))
+
+
+# --------------------------------------------------------------------------- border
+def _bordered(matrix, border, factor, corner_of):
+    """Factor the inner part by `factor`, the Schur complement of the last unknowns by `corner_of`."""
     n = matrix.shape[0] - border
-    inner = factorise(matrix[:n, :n], backend, planar)
+    inner = factor(matrix[:n, :n])
+    if inner is None:
+        return None
     edge = matrix[:n, n:].toarray()
     through = inner.solve(edge)
     corner = matrix[n:, n:].toarray() - edge.T @ through
-    try:
-        corner = sla.cho_factor((corner + corner.T) / 2)
-    except np.linalg.LinAlgError as error:
-        raise FactorError("the system matrix is not positive definite") from error
+    found = corner_of((corner + corner.T) / 2)
+    if found is None:
+        return None
+    through_corner, negative = found
 
     def solve(rhs):
         top = inner.solve(rhs[:n])
-        bottom = sla.cho_solve(corner, rhs[n:] - edge.T @ top)
+        bottom = through_corner(rhs[n:] - edge.T @ top)
         return np.concatenate([top - through @ bottom, bottom])
 
-    return Factor(inner.backend, inner.reason, solve)
+    if isinstance(inner, Indefinite):
+        # Haynsworth: the inertia of a matrix is that of a block plus that of its Schur complement.
+        return Indefinite(inner.backend, inner.reason, solve, inner.estimate_mb, inner.nnz, inner.negative + negative)
+    return Factor(inner.backend, inner.reason, solve, inner.estimate_mb, inner.nnz)
 
 
-def _superlu(matrix):
+def _definite_corner(corner):
     try:
-        lu = spla.splu(
-            matrix.tocsc(),
-            permc_spec="MMD_AT_PLUS_A",
-            diag_pivot_thresh=0.0,
-            options={"SymmetricMode": True},
-        )
-    except RuntimeError as error:
-        raise FactorError(f"SuperLU could not factor the system matrix ({error})") from error
-    except MemoryError:
-        raise FactorError(f"SuperLU ran out of memory or of 32-bit indices on {matrix.shape[0]} unknowns; install the extra 'fast', or use a coarser model") from None
-    return lu.solve
+        factor = sla.cho_factor(corner)
+    except np.linalg.LinAlgError as error:
+        raise FactorError("the system matrix is not positive definite") from error
+    return (lambda rhs: sla.cho_solve(factor, rhs)), 0
 
 
-class _Pardiso:
-    """MKL PARDISO for symmetric positive definite matrices, solve phase called directly.
-
-    pypardiso's own ``solve`` hashes the matrix at every call and refines twice.
-    """
-
-    def __init__(self, matrix):
-        import pypardiso.pardiso_wrapper as wrapper
-
-        self._error = wrapper.PyPardisoError
-        self.upper = sp.triu(matrix, format="csr")
-        self.upper.sort_indices()
-        self.solver = wrapper.PyPardisoSolver(mtype=2)
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore")
-            # no defaults; parallel nested dissection; no refinement; two-level factorisation; report nnz
-            for i, value in {1: 1, 2: 3, 8: 0, 24: 1, 25: 2, 18: -1}.items():
-                self.solver.set_iparm(i, value)
-        self._call(12, np.zeros((matrix.shape[0], 1), order="F"))
-
-    def _call(self, phase, rhs):
-        self.solver.set_phase(phase)
-        try:
-            return self.solver._call_pardiso(self.upper, rhs)
-        except self._error as error:
-            raise FactorError(f"PARDISO failed on the system matrix: {error}") from error
-
-    def __call__(self, rhs):
-        x = self._call(33, np.asfortranarray(rhs, dtype=float))
-        # An indefinite matrix can pass the factorisation and come back as NaN.
-        if not np.isfinite(x).all():
-            raise FactorError("PARDISO returned NaN: the system matrix is not positive definite")
-        return x
-
-    def __del__(self):
-        try:
-            self.solver.free_memory(everything=True)
-        except Exception:  # interpreter shutdown
-            pass
+def _any_corner(corner):
+    # Rows of a border differ in unit (forces, moments): scaled, so that small ones are not taken for rounding.
+    scale = 1 / np.sqrt(np.maximum(np.abs(corner).max(axis=1), np.finfo(float).tiny))
+    values, vectors = np.linalg.eigh(corner * np.outer(scale, scale))
+    if np.abs(values).min() < 1e-13 * np.abs(values).max():
+        return None
+    inverse = scale[:, None] * (vectors / values) @ vectors.T * scale
+    return (lambda rhs: inverse @ rhs), int(np.count_nonzero(values < 0))

@@ -1,6 +1,6 @@
 """Natural frequencies and mode shapes of a body on its bearings.
 
-Symmetric shift-invert about a small negative shift, with the bearings added to the factor of
+Symmetric shift-invert (:mod:`solidgear.solve.eigen`) about a small negative shift, with the bearings added to the factor of
 the free body by the Woodbury identity.  Rigid motions that no spring resists are
 known exactly; they are projected out and reported as 0 Hz instead of as noise.
 """
@@ -10,16 +10,14 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 import numpy as np
-import scipy.linalg as sla
-import scipy.sparse.linalg as spla
 
 from solidgear.body import Body, as_supports, component_rows
 from solidgear.errors import SolidgearError
+from solidgear.solve.eigen import Raw, count_below, lowest
 from solidgear.solve.statics import SHIFT, factors
 from solidgear.solve.supported import Supported, decoupled, groups
 
 STATIONS = 13
-DENSE = 400
 FAMILIES = {"bending": (0, 2, 3, 5), "axial": (1,), "torsion": (4,)}
 
 
@@ -58,7 +56,7 @@ class ModeSet:
 
     ``evidence`` holds ``residual`` (largest ``|A^-1 M u - theta u| / theta`` in the mass norm, brought back from the shifted to
     the true eigenvalue: a bound on its relative error), ``orthogonality`` (largest entry of ``U'MU - I``),
-    ``rigid_modes``, ``shift_rad2``, ``coupling_bound`` and ``backend``.
+    ``rigid_modes``, ``shift_rad2``, ``coupling_bound``, ``backend``, ``method`` and, where asked for, ``count``.
     """
 
     fidelity: str
@@ -87,13 +85,6 @@ class ModeSet:
         return next((m for m in self.modes if m.name == name), None)
 
 
-@dataclass(frozen=True)
-class _Raw:
-    value: float
-    vectors: dict[int, np.ndarray]
-    residual: float
-
-
 def modes(
     body: Body,
     supports=(),
@@ -101,6 +92,8 @@ def modes(
     *,
     max_frequency: float | None = None,
     coupling_tolerance: float = 1e-6,
+    method: str | None = None,
+    count: bool = False,
 ) -> ModeSet:
     """Lowest modes of a supported body.
 
@@ -116,6 +109,10 @@ def modes(
     coupling_tolerance : float
         Bearing terms that couple bending planes, axial motion and torsion are left out
         when they provably change no eigenvalue by more than this, relative; the bound is reported.
+    method : {None, 'lanczos', 'arpack', 'dense'}
+        Eigensolver; None takes the quickest for the size and the back end (see :func:`solidgear.solve.eigen.lowest`).
+    count : bool
+        Check by the inertia of another factor that no mode was missed (Sylvester's law); costs about one more factorisation.
 
     Returns
     -------
@@ -124,21 +121,27 @@ def modes(
     Raises
     ------
     SolidgearError
-        If ``n`` is not positive.
+        If ``n`` is not positive, the method unknown, or a mode was missed and could not be found.
     """
     if n < 1:
         raise SolidgearError(f"modes: n = {n} is not a number of modes; ask for 1 or more")
     supports = as_supports(supports)
     spring, bound = decoupled(body, supports, coupling_tolerance)
-    raw, rigid, orthogonality = [], [], 0.0
-    done: list[tuple[list[int], list[_Raw], list[_Raw]]] = []
+    raw, rigid, orthogonality, used, counted = [], [], 0.0, {}, []
+    done: list[tuple[list[int], list[Raw], list[Raw]]] = []
     for group in groups(body, supports, spring):
         twin = _twin_of(body, supports, spring, group, done)
         if twin is not None:
-            elastic, free = ([_Raw(r.value, {group[0]: next(iter(r.vectors.values()))}, r.residual) for r in part] for part in twin)
+            elastic, free = ([Raw(r.value, {group[0]: next(iter(r.vectors.values()))}, r.residual) for r in part] for part in twin)
         else:
-            elastic, free, worst = _solve_group(Supported(body, supports, spring, group), n)
-            orthogonality = max(orthogonality, worst)
+            supported = Supported(body, supports, spring, group)
+            solved = lowest(supported, n, method)
+            if count:
+                solved, verdict = _complete(supported, solved, n, method)
+                counted.append(verdict)
+            elastic, free = solved.elastic, solved.free
+            orthogonality = max(orthogonality, solved.orthogonality)
+            used[solved.method] = None
         done.append((group, elastic, free))
         raw += elastic
         rigid += free
@@ -153,8 +156,27 @@ def modes(
         "shift_rad2": -SHIFT * body.scale,
         "coupling_bound": bound,
         "backend": "+".join(sorted({f.backend for f in factors(body)})),
+        "method": "+".join(used),
     }
+    if count:
+        evidence["count"] = counted
     return ModeSet(body.fidelity, found, stations, project.gram, evidence)
+
+
+def _complete(supported: Supported, solved, n: int, method: str | None):
+    """A result with no mode missed, and what the count says; a second search with more vectors where one was."""
+    seen = count_below(supported, solved, n)
+    if seen is not None and seen.counted != seen.found:
+        missed = seen.counted - seen.found
+        solved = lowest(supported, n + 4 + 2 * abs(missed), "arpack" if solved.method == "lanczos" else "lanczos")
+        seen = count_below(supported, solved, n)
+        if seen is not None and seen.counted != seen.found:
+            raise SolidgearError(
+                f"modes: {seen.found} modes were found below {np.sqrt(seen.below) / (2 * np.pi):.6g} Hz but the factor counts {seen.counted}; ask for more modes (n = {n})"
+            )
+    if seen is None:
+        return solved, {"checked": False, "why": f"no inertia from {supported.backend}"}
+    return solved, {"checked": True, "below_hz": float(np.sqrt(seen.below) / (2 * np.pi)), "modes": seen.counted, "backend": seen.backend}
 
 
 def _twin_of(body, supports, spring, group, done):
@@ -170,86 +192,6 @@ def _twin_of(body, supports, spring, group, done):
     if np.abs(a - b).max(initial=0.0) > 1e-14 * np.abs(b).max(initial=0.0):
         return None
     return next(((elastic, free) for other, elastic, free in done if other == [index]), None)
-
-
-def _solve_group(supported: Supported, n: int):
-    """Elastic and rigid modes of blocks that belong together."""
-    total, shift = supported.size, supported.shift
-    mass, operator = supported.mass, supported.inverse
-    rigid = supported.free
-    wanted = min(n + 2, total - rigid.shape[1])
-    if wanted < 1:
-        theta, u = np.zeros(0), np.zeros((total, 0))
-    elif total <= DENSE or wanted >= total - 2:
-        chol = np.linalg.cholesky(mass(np.eye(total)))
-        small = chol.T @ operator(chol)
-        theta, w = np.linalg.eigh((small + small.T) / 2)
-        theta, w = theta[::-1][:wanted], w[:, ::-1][:, :wanted]
-        u = sla.solve_triangular(chol.T, w, lower=False)
-    else:
-        shape = (total, total)
-        heavy = spla.LinearOperator(shape, matvec=mass, dtype=float)
-        theta, u = spla.eigsh(
-            heavy,  # only its shape is used in this mode
-            k=wanted,
-            M=heavy,
-            sigma=-shift,
-            OPinv=spla.LinearOperator(shape, matvec=operator, dtype=float),
-            v0=operator(np.random.default_rng(0).standard_normal(total)),
-            ncv=min(total - 1, max(2 * wanted + 10, 30)),
-            tol=1e-12,
-        )
-        # eigsh returns lambda = 1/theta + sigma
-        theta = 1.0 / (theta + shift)
-        order = np.argsort(-theta)
-        theta, u = theta[order], u[:, order]
-    value = 1.0 / theta - shift
-    back = operator(mass(u)) - u * theta
-    residual = np.sqrt(np.abs(np.einsum("ij,ij->j", back, mass(back)))) / np.where(theta > 0, theta, 1.0)
-    # What the shift leaves of an eigenvalue below a thousandth of it is less than a direct Ritz step gives.
-    soft = value < 1e-3 * shift
-    whole = supported.rigid_motions()
-    if soft.any() and whole.shape[1]:
-        value[soft], u[:, soft] = _soft_modes(u[:, soft], supported.purge(whole), supported)
-    residual = residual * np.where(soft, 1.0, 1.0 + shift / np.maximum(value, 1e-3 * shift))
-    gram = u.T @ mass(u)
-    orthogonality = float(np.abs(gram - np.eye(len(theta))).max(initial=0.0))
-    elastic = [_Raw(float(t), supported.split(u[:, i]), float(residual[i])) for i, t in enumerate(value)]
-    free = [_Raw(0.0, supported.split(rigid[:, i]), 0.0) for i in range(rigid.shape[1])]
-    return elastic, free, orthogonality
-
-
-def _soft_modes(u, rigid, supported: Supported):
-    """Ritz values and vectors of nearly rigid modes in the span of the rigid motions and of what is elastic in them.
-
-    Splitting the rigid part off exactly leaves no large stiffness to cancel: ``K`` sees the elastic remainder only.
-
-    Parameters
-    ----------
-    u : (n, k) ndarray
-        Mass-orthonormal shapes with inaccurate eigenvalues.
-    rigid : (n, r) ndarray
-        Rigid motions that springs resist, perhaps linearly dependent.
-    supported : Supported
-    """
-    mass = supported.mass
-    w, v = np.linalg.eigh(rigid.T @ mass(rigid))
-    keep = w > 1e-10 * w.max()
-    rigid = rigid @ (v[:, keep] / np.sqrt(w[keep]))
-    rest = u - rigid @ (rigid.T @ mass(u))
-    rest = rest - rigid @ (rigid.T @ mass(rest))
-    w, v = np.linalg.eigh(rest.T @ mass(rest))
-    keep = w > 1e-18  # a remainder below 1e-9 of the shape is rounding
-    rest = rest @ (v[:, keep] / np.sqrt(w[keep]))
-    basis = np.hstack([rigid, rest])
-    small = np.zeros((basis.shape[1],) * 2)
-    k = rigid.shape[1]
-    small[k:, k:] = rest.T @ supported.elastic(rest)
-    held = supported.load.T @ basis
-    small = small + held.T @ held
-    value, vector = np.linalg.eigh((small + small.T) / 2)
-    count = u.shape[1]
-    return value[:count], basis @ vector[:, :count]
 
 
 class _Projection:

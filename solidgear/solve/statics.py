@@ -206,13 +206,15 @@ def condense(body: Body, supports, port: str, attachment: str | None = None) -> 
     if free.shape[1] < 6:
         f_lb, f_bb = flex.matrix[np.ix_(here, there)], flex.matrix[np.ix_(there, there)]
         p_b, root = body.rigid_ports[there], supports.root
+        # S = N'N and H = (N P_b)'(N P_b); with the stiffest springs first both N and its QR factor keep the digits of the softest.
         inner = np.eye(root.shape[1]) + root.T @ f_bb @ root
-        s = root @ _spd_solve(inner, root.T)
-        s = (s + s.T) / 2
-        x = p_l - f_lb @ s @ p_b
+        n = _half_solve(inner, root.T)
         held = _complement(free, body.length)
-        h = held.T @ (p_b.T @ s @ p_b) @ held
-        full = f_ll - f_lb @ s @ f_lb.T + x @ held @ _spd_solve(h, (x @ held).T)
+        reach = n @ f_lb.T
+        rigid = n @ p_b @ held
+        x = (p_l @ held - reach.T @ rigid).T
+        swing = _half_inverse(rigid, x)
+        full = f_ll - reach.T @ reach + swing.T @ swing
         loads = _allowed_loads(p_l @ free)
         small = loads.T @ full @ loads
         small = (small + small.T) / 2
@@ -223,6 +225,31 @@ def condense(body: Body, supports, port: str, attachment: str | None = None) -> 
             c[np.ix_(on, on)] = ((full + full.T) / 2)[np.ix_(on, on)]
     evidence = {"asymmetry": flex.asymmetry, "residual": flex.residual, "backend": flex.backend}
     return Condensed(port, body.ports[index].attachment, k, c, p_l @ free, evidence)
+
+
+def _half_solve(a, b):
+    """``C^-1 b`` with ``C C' = a`` positive definite, ``C`` lower triangular."""
+    d = 1 / np.sqrt(np.diag(a))
+    try:
+        c = np.linalg.cholesky(a * np.outer(d, d))
+    except np.linalg.LinAlgError as error:
+        raise SolidgearError("the condensed system is not positive definite; check the bearing stiffnesses") from error
+    return sla.solve_triangular(c, d[:, None] * b, lower=True)
+
+
+def _half_inverse(n, b):
+    """``R^-T b`` with ``R`` the triangular factor of ``n``: its Gram matrix is ``b' (n'n)^-1 b``, without forming ``n'n``.
+
+    The rows of ``n`` must fall in size: Householder's reflections then lose nothing of the small ones (Cox and Higham 1998).
+    """
+    size = np.linalg.norm(n, axis=0)
+    size = np.where(size > 0, size, 1.0)
+    order = np.argsort(-np.abs(n).max(axis=1, initial=0.0), kind="stable")
+    r, pivot = sla.qr((n / size)[order], mode="r", pivoting=True)
+    r = r[: n.shape[1]]
+    if len(r) < n.shape[1] or np.any(np.diag(r) == 0):
+        raise SolidgearError("the condensed system is not positive definite; check the bearing stiffnesses")
+    return sla.solve_triangular(r, (b / size[:, None])[pivot], trans="T")
 
 
 def _spd_solve(a, b):

@@ -112,8 +112,19 @@ class Supported:
             start += len(at)
         return np.vstack(parts)
 
+    @property
+    def backend(self) -> str:
+        """Back ends of the factors, joined by ``+``."""
+        return "+".join(sorted({f.backend for f in self._factors}))
+
+    def parts(self, x) -> list[np.ndarray]:
+        """Rows of ``x`` block by block."""
+        return [x[a:b] for a, b in zip(self._cuts, self._cuts[1:])]
+
     def _per_block(self, f, x):
-        return np.concatenate([f(i, x[a:b]) for i, (a, b) in enumerate(zip(self._cuts, self._cuts[1:]))])
+        # one block is the common case, and large vectors are not copied for it
+        found = [f(i, part) for i, part in enumerate(self.parts(x))]
+        return found[0] if len(found) == 1 else np.concatenate(found)
 
     def _free_inverse(self, x):
         return self._per_block(lambda i, part: self._factors[i].solve(part), x)

@@ -1,0 +1,79 @@
+"""How much memory this process may still take: of the machine, of its control groups, of what the user allows."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator
+from pathlib import Path
+
+from solidgear.errors import SolidgearError
+
+# cgroup v1 writes "no limit" as the largest multiple of a page; anything above an exabyte is none.
+UNLIMITED = 2**60
+
+
+def available_mb(root: str | Path = "/") -> float | None:
+    """Memory (MB of 2**20 bytes) that can still be taken; None where the system does not tell.
+
+    The least of ``MemAvailable``, the room below the limit of every control group (v1 and v2) this process is in, and the environment
+    variable ``SOLIDGEAR_MEMORY_MB``, which can only lower it.
+
+    Parameters
+    ----------
+    root : path
+        Where ``proc`` and ``sys`` are looked for.
+
+    Raises
+    ------
+    SolidgearError
+        If ``SOLIDGEAR_MEMORY_MB`` is not a number above zero.
+    """
+    root = Path(root)
+    found = [*_machine(root), *_groups(root)]
+    if text := os.environ.get("SOLIDGEAR_MEMORY_MB", "").strip():
+        try:
+            allowed = float(text)
+        except ValueError:
+            allowed = 0.0
+        if not 0 < allowed < float("inf"):
+            raise SolidgearError(f"SOLIDGEAR_MEMORY_MB = {text!r}: must be a number of megabytes above zero")
+        found.append(allowed)
+    return min(found, default=None)
+
+
+def _machine(root: Path) -> Iterator[float]:
+    for line in _text(root / "proc/meminfo").splitlines():
+        if line.startswith("MemAvailable:"):
+            yield int(line.split()[1]) / 1024
+
+
+def _groups(root: Path) -> Iterator[float]:
+    """Room in every control group from that of this process up to the root: each may carry the limit."""
+    for line in _text(root / "proc/self/cgroup").splitlines():
+        _, kinds, path = line.split(":", 2)
+        if kinds == "":
+            top, limit, used, cache = root / "sys/fs/cgroup", "memory.max", "memory.current", "inactive_file"
+        elif "memory" in kinds.split(","):
+            top, limit, used, cache = root / "sys/fs/cgroup/memory", "memory.limit_in_bytes", "memory.usage_in_bytes", "total_inactive_file"
+        else:
+            continue
+        group = top / path.lstrip("/")
+        # Inside a container the path is that of the host and need not exist here: its own group is then mounted at the top.
+        for place in [group, *group.parents] if group.is_dir() else [top]:
+            ceiling, taken = _text(place / limit).strip(), _text(place / used).strip()
+            if ceiling.isdigit() and taken.isdigit() and int(ceiling) < UNLIMITED:
+                # Cached files count as used but are given back on demand.
+                yield max(0, int(ceiling) - int(taken) + _field(_text(place / "memory.stat"), cache)) / 2**20
+            if place == top:
+                break
+
+
+def _field(text: str, name: str) -> int:
+    return next((int(line.split()[1]) for line in text.splitlines() if line.startswith(name + " ")), 0)
+
+
+def _text(path: Path) -> str:
+    try:
+        return path.read_text()
+    except OSError:
+        return ""

@@ -1,0 +1,126 @@
+"""The eigensolvers against each other, their fall-back, and the count that proves no mode was missed."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import solidgear as sg
+from solidgear.body import as_supports
+from solidgear.solve import eigen, modes
+from solidgear.solve.eigen import count_below, lowest
+from solidgear.solve.supported import Supported, decoupled, groups
+
+ROOT = Path(__file__).parent.parent
+
+
+@pytest.fixture(scope="module")
+def scene():
+    return sg.load(ROOT / "geometry" / "pinion_overhung.toml")
+
+
+@pytest.fixture(scope="module")
+def solid(scene):
+    return sg.build(scene, "solid", refinement=0.4)
+
+
+@pytest.fixture(scope="module")
+def harmonic(scene):
+    return sg.build(scene, "harmonic", order=2, layers=1)
+
+
+def supported(body, scene, group=0):
+    spring, _ = decoupled(body, as_supports(scene), 1e-6)
+    return Supported(body, as_supports(scene), spring, groups(body, as_supports(scene), spring)[group])
+
+
+@pytest.mark.parametrize("fidelity", ["solid", "harmonic"])
+@pytest.mark.parametrize("bearings", [True, False])
+def test_lanczos_and_arpack_agree(scene, fidelity, bearings, request):
+    """Two algorithms on the same factor: eigenvalues to 1e-9, ten times what the factor's own rounding was seen to do."""
+    body = request.getfixturevalue(fidelity)
+    on = scene if bearings else ()
+    a, b = (sg.modes(body, on, n=12, method=m) for m in ("lanczos", "arpack"))
+    assert a.names == b.names
+    assert a.multiplicity == b.multiplicity
+    np.testing.assert_allclose(a.frequency_hz, b.frequency_hz, rtol=1e-9)
+    assert a.evidence["method"] == "lanczos" and b.evidence["method"] == "arpack"
+    assert a.evidence["residual"] < 1e-6
+    assert a.evidence["orthogonality"] < 1e-10
+
+
+def test_dense_is_the_oracle(scene):
+    body = sg.build(scene, "timoshenko")
+    dense = sg.modes(body, scene, n=8)
+    assert dense.evidence["method"] == "dense"
+    fine = sg.build(scene, "timoshenko", elements=400)
+    exact = lowest(supported(fine, scene), 6, "dense")
+    for method in ("lanczos", "arpack"):
+        if supported(fine, scene).size > eigen.DENSE:
+            found = lowest(supported(fine, scene), 6, method)
+            np.testing.assert_allclose([r.value for r in found.elastic], [r.value for r in exact.elastic], rtol=1e-6)
+
+
+def test_unknown_method_is_refused(scene, harmonic):
+    with pytest.raises(sg.SolidgearError, match="'power' is unknown; use 'lanczos'"):
+        sg.modes(harmonic, scene, method="power")
+
+
+def test_arpack_takes_over_where_lanczos_gives_up(scene, solid, monkeypatch):
+    real = eigen.block_lanczos
+    monkeypatch.setattr(eigen, "block_lanczos", lambda *a, **k: real(*a, **{**k, "most": 8}))
+    found = sg.modes(solid, scene, n=6, method="lanczos")
+    assert "did not converge" in found.evidence["method"]
+    np.testing.assert_allclose(found.frequency_hz, sg.modes(solid, scene, n=6, method="arpack").frequency_hz, rtol=1e-9)
+
+
+@pytest.mark.parametrize("fidelity", ["solid", "harmonic"])
+@pytest.mark.parametrize("scale", [1e-9, 1.0, 1e6])
+def test_count_confirms_complete_results(scene, fidelity, scale, request):
+    """Bearings from next to nothing to near rigid: the inertia of K - mu M and the correction for the springs add up."""
+    body = request.getfixturevalue(fidelity)
+    found = sg.modes(body, scene.with_bearing_scale(scale), n=10, count=True)
+    assert all(c["checked"] for c in found.evidence["count"]), found.evidence["count"]
+
+
+def test_count_of_a_free_body_includes_its_rigid_motions(solid):
+    body_modes = sg.modes(solid, (), n=6, count=True)
+    count = body_modes.evidence["count"][0]
+    below = sum(m.multiplicity for m in body_modes.modes if m.frequency_hz < count["below_hz"])
+    assert count["modes"] >= 6 + 3
+    assert below <= count["modes"] <= below + 2  # two shapes more than asked for are found, and counted where the gap is behind them
+
+
+@pytest.mark.parametrize("lost", [0, 1, 5])
+def test_count_notices_a_lost_mode(scene, solid, lost):
+    on = supported(solid, scene)
+    solved = lowest(on, 10)
+    whole = count_below(on, solved, 10)
+    assert whole.found == whole.counted
+    short = replace(solved, elastic=[r for i, r in enumerate(solved.elastic) if i != lost])
+    seen = count_below(on, short, 9)
+    assert seen.counted == seen.found + 1
+
+
+def test_a_lost_mode_is_searched_again(scene, solid, monkeypatch):
+    real = modes.lowest
+    calls = []
+
+    def forgetful(on, n, method=None):
+        calls.append(method)
+        solved = real(on, n, method)
+        return replace(solved, elastic=solved.elastic[:1] + solved.elastic[2:]) if len(calls) == 1 else solved
+
+    monkeypatch.setattr(modes, "lowest", forgetful)
+    found = sg.modes(solid, scene, n=8, count=True)
+    assert len(calls) == 2
+    monkeypatch.undo()
+    np.testing.assert_allclose(found.frequency_hz[:5], sg.modes(solid, scene, n=8).frequency_hz[:5], rtol=1e-9)
+
+
+def test_a_mode_lost_twice_ends_in_a_sentence(scene, solid, monkeypatch):
+    real = modes.lowest
+    monkeypatch.setattr(modes, "lowest", lambda *a: (lambda s: replace(s, elastic=s.elastic[1:]))(real(*a)))
+    with pytest.raises(sg.SolidgearError, match=r"modes were found below .* Hz but the factor counts"):
+        sg.modes(solid, scene, n=8, count=True)
