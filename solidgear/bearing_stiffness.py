@@ -78,13 +78,16 @@ def checked_matrix(value: Any) -> tuple[tuple[float, ...], ...]:
                 try:
                     K[i, j] = quantity(entry if not isinstance(entry, str) else None, "dimensionless")
                 except SceneError:
-                    raise SceneError(f"row {i + 1}, column {j + 1} must be a finite number in SI, not {show(entry)}") from None
+                    raise SceneError(f"row {i + 1}, column {j + 1} must be a number in SI, finite and at most 1e24, not {show(entry)}") from None
     size = np.sqrt(np.abs(np.diag(K)))
     bound = 1e-9 * np.maximum(np.maximum(np.abs(K), np.abs(K.T)), np.outer(size, size))
     if np.any(np.abs(K - K.T) > bound):
         i, j = np.unravel_index(np.argmax(np.abs(K - K.T) - bound), (6, 6))
         raise SceneError(f"the stiffness is not symmetric: ({DOF_NAMES[i]}, {DOF_NAMES[j]}) is {K[i, j]:.6g} and ({DOF_NAMES[j]}, {DOF_NAMES[i]}) is {K[j, i]:.6g}")
     K = (K + K.T) / 2
+    # a matrix turned by a rotation couples what has no stiffness of its own by rounding only
+    bare = np.diag(K) == 0
+    K[(bare[:, None] | bare) & (np.abs(K) <= 1e-14 * np.abs(K).max())] = 0.0
     # unit-free: a row with no stiffness of its own is scaled so that its largest coupling becomes 1, hence indefinite
     for i in np.flatnonzero(size == 0):
         coupling = np.abs(K[i]) / np.where(size > 0, size, np.sqrt(np.abs(K[i])) + (K[i] == 0))

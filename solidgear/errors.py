@@ -100,7 +100,7 @@ def _name_and_value(path: tuple, data: Any) -> tuple[str, Any, bool]:
         if isinstance(key, int):
             field += f"[{key + 1}]"  # engineers count from one
             named, name = _child(data, "name") if known else (False, None)
-            field += f' "{name}"' if named and isinstance(name, str) else ""
+            field += f" {show(name, 40)}" if named and isinstance(name, str) else ""
         else:
             text = key if str(key).replace("_", "").isalnum() else json.dumps(str(key))
             field += f".{text}" if field else str(text)

@@ -19,12 +19,17 @@ from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationEr
 
 from solidgear.bearing_stiffness import checked_matrix, stiffness_entries
 from solidgear.errors import SceneError, first_problem, nearest, show
+from solidgear.frames import DOF_NAMES
 from solidgear.units import (
-    POSITION_DECIMALS, AxialSpring, Density, Frequency, Modulus, Poisson, Position, PositiveLength, Thickness, Tolerance, quantity,
+    POSITION_DECIMALS, SOFTEST, AxialSpring, Density, Frequency, Modulus, Poisson, Position, PositiveLength, Thickness, Tolerance, quantity,
 )  # fmt: skip
 
 #: m; two edges nearer than this are one edge
 TOUCH = 1e-9
+
+#: least diameter and least length of a part over the length of the shaft, least wall over the radius; what is thinner would
+#: ask for meshes without end, or drown in rounding, and comes from a slip in the units
+SLIMMEST, SHORTEST, THINNEST = 1e-3, 1e-6, 1e-4
 
 
 Attachment = Literal["average", "rigid", "section"]
@@ -149,6 +154,13 @@ class Bearing(Model):
         if "stiffness" in data:
             data["matrix"] = data.pop("stiffness")
         super().__init__(**data)
+
+    @model_validator(mode="after")
+    def _springs_or_none(self) -> Bearing:
+        for name, k in zip(DOF_NAMES, np.diag(self.matrix)):
+            if 0 < k < SOFTEST:
+                raise SceneError(f"the stiffness in {name} is {k:.6g}, below {SOFTEST:g} in SI, which is no spring: write 0", path=("matrix",))
+        return self
 
     @property
     def lo(self) -> float:
@@ -327,6 +339,20 @@ def _check_shaft(segments: Sequence[Segment]) -> None:
         raise SceneError(f"the shaft is {end:.6g} m long, outside 1 mm to 20 m: probably wrong units", path=("segments", i, "y1"))
 
 
+    for i, segment in enumerate(segments):
+        for at in "01":
+            outer, inner = getattr(segment, "outer" + at), getattr(segment, "inner" + at)
+            if 2 * outer < SLIMMEST * end:
+                reason = f"a diameter of {2 * outer:.6g} m is under a thousandth of the length of the shaft, {end:.6g} m: probably wrong units"
+                raise SceneError(reason, path=("segments", i, "outer" + at))
+            if outer - inner < THINNEST * outer:
+                reason = f"leaves a wall of {outer - inner:.3g} m at a radius of {outer:.6g} m, under one in ten thousand: probably wrong units"
+                raise SceneError(reason, path=("segments", i, "inner" + at))
+        if segment.length < SHORTEST * end:
+            reason = f"a segment of {segment.length:.6g} m is under a millionth of the length of the shaft, {end:.6g} m: probably wrong units"
+            raise SceneError(reason, path=("segments", i, "y1"))
+
+
 def _check_stations(scene: Scene) -> None:
     """Ports and seats lie on the shaft, on one smooth surface each, and seats do not share any of it."""
     length, steps = scene.length, scene.steps
@@ -344,6 +370,8 @@ def _check_stations(scene: Scene) -> None:
         reach = f"the {what} reaches from {here.lo:.6g} to {here.hi:.6g} m"
         if here.lo < -TOUCH or here.hi > length + TOUCH:
             raise SceneError(f"{reach}, which must lie inside the shaft (0 to {length:.6g} m)", path=path)
+        if here.hi - here.lo < SHORTEST * length:
+            raise SceneError(f"{reach}, under a millionth of the length of the shaft, {length:.6g} m: probably wrong units", path=path)
         for step in steps:
             if here.lo + TOUCH < step < here.hi - TOUCH:
                 raise SceneError(f"{reach}, across the step of the outer radius at {step:.6g} m; it must end there", path=path)

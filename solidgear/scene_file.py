@@ -312,8 +312,9 @@ def _file_path(path: tuple, table: _SceneTable, owner: list[int]) -> tuple:
     match path:
         case ("segments", index, key):
             kind = table.segment[owner[index]].kind
-            radius = {"cylinder": "diameter", "cone": "start_diameter", "bevel_head": "pitch_radius"}[kind]
-            key = {"outer0": radius, "y1": "face_width" if kind == "bevel_head" else "length"}.get(key, key)
+            start, end = {"cylinder": ("diameter",) * 2, "cone": ("start_diameter", "end_diameter"), "bevel_head": ("pitch_radius",) * 2}[kind]
+            length = "face_width" if kind == "bevel_head" else "length"
+            key = {"outer0": start, "outer1": end, "inner0": "bore", "inner1": "bore", "y1": length}.get(key, key)
             return ("segment", owner[index], key)
         case ("bearings", index, key):
             return ("bearing", index, {"y": "position"}.get(key, key))

@@ -30,6 +30,9 @@ DIMENSIONS: dict[str, tuple[str, str, tuple[int, ...]]] = {
     "dimensionless": ("", "0.3", (0,)),
 }
 
+#: no quantity of a scene is larger than this in SI, and no spring softer: squares and products of such numbers neither overflow nor vanish
+LARGEST, SOFTEST = 1e24, 1e-30
+
 _TEXT = re.compile(r"\s*(?P<number>[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?|[+-]?(?:nan|inf)\b)\s*(?P<unit>.*?)\s*", re.S | re.I)
 _UNIT = re.compile(r"[^\W\d_][^\W\d]*|%|\d|[\s*/^().·-]", re.U)
 
@@ -53,7 +56,7 @@ def quantity(value: Any, dimension: str) -> float:
     Raises
     ------
     SceneError
-        Not a number, NaN or infinite, no unit or an unknown one, or a unit of another dimension.
+        Not a number, NaN, infinite or larger than `LARGEST`, no unit or an unknown one, or a unit of another dimension.
     """
     si, example, _ = DIMENSIONS[dimension]
     if isinstance(value, str):
@@ -67,6 +70,8 @@ def quantity(value: Any, dimension: str) -> float:
         raise SceneError(f"must be a number{f' in {si}' if si else ''} or a text such as \"{example}\"", value=show(value))
     if not math.isfinite(number):
         raise SceneError(f"must be a finite number, for example \"{example}\"", value=show(value))
+    if abs(number) > LARGEST:
+        raise SceneError(f"is larger than {LARGEST:g}{f' {si}' if si else ''}, beyond anything physical; write for example \"{example}\"", value=show(value))
     return number
 
 
@@ -83,11 +88,11 @@ def _read_text(text: str, dimension: str) -> float:
         return number
     known = _si_factor(unit)
     if known is None:
-        raise SceneError(f"unknown unit \"{unit}\"; write for example \"{example}\"", value=value)
+        raise SceneError(f"unknown unit {show(unit)}; write for example \"{example}\"", value=value)
     factor, radians, dimensionality = known
     if dimensionality != (_si_factor(si)[2] if si else "dimensionless") or radians not in powers:
         wrong = f"not a unit of {name}" if si else "a unit, but this is a plain ratio"
-        raise SceneError(f"\"{unit}\" is {wrong}; write for example \"{example}\"", value=value)
+        raise SceneError(f"{show(unit)} is {wrong}; write for example \"{example}\"", value=value)
     # dividing by 1000 is exact where multiplying by 0.001 is not: "208 mm" must be the same float as 0.208
     return number / round(1 / factor) if factor < 1 and (1 / factor).is_integer() else number * factor
 
@@ -143,9 +148,9 @@ Position = Annotated[float, _in("length"), AfterValidator(lambda v: round(v, POS
 PositiveLength = Annotated[Length, _POSITIVE]
 Thickness = Annotated[Length, _NOT_NEGATIVE]
 Angle = Annotated[float, _in("angle"), _must(lambda v: 0 < v < math.pi / 2, "must lie between 0 and 90 degrees (0 and 1.571 rad)")]
-Modulus = Annotated[float, _in("pressure"), _POSITIVE]
-Density = Annotated[float, _in("density"), _POSITIVE]
+Modulus = Annotated[float, _in("pressure"), _POSITIVE, _must(lambda v: v >= 1, "is below 1 Pa, softer than any solid: probably wrong units")]
+Density = Annotated[float, _in("density"), _POSITIVE, _must(lambda v: v >= 1e-6, "is below 1e-6 kg/m^3, lighter than any solid: probably wrong units")]
 Poisson = Annotated[float, _in("dimensionless"), _must(lambda v: -1 < v < 0.5, "must lie between -1 and 0.5, both excluded; steel is 0.3")]
-AxialSpring = Annotated[float, _in("force_per_length"), _POSITIVE]
+AxialSpring = Annotated[float, _in("force_per_length"), _POSITIVE, _must(lambda v: v >= SOFTEST, f"is softer than {SOFTEST:g} N/m, which is no spring: leave it out")]
 Frequency = Annotated[float, _in("frequency"), _POSITIVE]
 Tolerance = Annotated[float, _in("dimensionless"), _must(lambda v: 0 < v < 1, "must lie between 0 and 1; 0.05 is five per cent")]

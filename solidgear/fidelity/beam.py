@@ -18,6 +18,8 @@ from solidgear.errors import SolidgearError
 from solidgear.fidelity.options import number
 from solidgear.fidelity.scale import elastic_scale
 
+# Shortest Euler element over the length of the shaft.
+SHORTEST = 3e-4
 _GAUSS = np.polynomial.legendre.leggauss(8)
 
 
@@ -88,6 +90,8 @@ def beam(
         raise SolidgearError("kappa: 'cowper' is given for solid sections only; use 'hutchinson' for a hollow shaft")
     nodes, owner = _mesh(scene, elements)
     n = len(nodes)
+    if not shear:
+        _long_enough(nodes)
     # Timoshenko elements carry internal unknowns, after the nodal ones; only rotary inertia drives the second.
     inner = 1 + rotary_inertia if shear and mass == "consistent" else 0
     size = {"bending": 2 * n + inner * (n - 1), "axial": n, "torsion": n}
@@ -149,6 +153,22 @@ def _mesh(scene, elements):
     ends = np.array([s.y1 for s in scene.segments])
     owner = [scene.segments[i] for i in np.minimum(np.searchsorted(ends, middle), len(ends) - 1)]
     return nodes, owner
+
+
+def _long_enough(nodes):
+    """Refuse Euler elements that would eat the digits: their stiffness grows with the inverse cube of their length, and the rest of the
+    shaft with it only by what is left of sixteen digits.  Shear bounds that growth in a Timoshenko element.
+
+    Measured on a uniform shaft with two marks this close: first bending is off by 2e-6 at 3e-4 of the length, 3e-4 at 3e-5.
+    """
+    gap = np.diff(nodes)
+    at = int(np.argmin(gap))
+    length = nodes[-1] - nodes[0]
+    if gap[at] < SHORTEST * length:
+        raise SolidgearError(
+            f"euler: the element at y = {nodes[at]:.9g} m is {gap[at]:.3g} m long, below {SHORTEST:g} of the shaft, and loses its digits; let marks (segment ends, "
+            "bearings, the port) that close coincide, ask for fewer elements, or use the timoshenko or harmonic model"
+        )
 
 
 class _Section:
