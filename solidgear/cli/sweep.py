@@ -1,0 +1,76 @@
+"""Command ``sweep``: one body, many bearing sets."""
+
+from __future__ import annotations
+
+import json
+import sys
+from pathlib import Path
+from typing import Annotated, Optional
+
+import typer
+
+from solidgear.cli.app import Fidelity, FidelityOption, JsonFlag, SceneFile, Settings, build_body, command, options
+
+
+@command
+def sweep(
+    scene: SceneFile,
+    vary: Annotated[
+        list[str],
+        typer.Option(
+            "--vary",
+            help="bearing.NAME.FIELD=VALUES, repeatable. FIELD: position (from y = 0), scale, or an entry such as kxx or kx_thz. "
+            'VALUES: FROM:TO:COUNT, log:FROM:TO:COUNT or A,B,C, such as "0.2 m:0.24 m:9".',
+        ),
+    ],
+    out: Annotated[Path, typer.Option("--out", "-o", help="Rows, as .csv or .parquet; run again to go on where it stopped.")] = Path("rows.csv"),
+    fidelity: FidelityOption = Fidelity.harmonic,
+    n: Annotated[Optional[int], typer.Option("-n", help="Number of elastic shapes; twins count twice.")] = None,
+    sample: Annotated[Optional[int], typer.Option("--sample", help="Draw so many points (Latin hypercube) instead of all combinations.")] = None,
+    seed: Annotated[int, typer.Option("--seed", help="Of the draw.")] = 0,
+    tolerance: Annotated[float, typer.Option("--tolerance", help="Relative error of frequencies; checked by a bound for every variant.")] = 1e-6,
+    jobs: Annotated[int, typer.Option("--jobs", "-j", help="Processes on this machine.")] = 1,
+    dask: Annotated[Optional[str], typer.Option("--dask", help="Address of a running Dask scheduler, such as tcp://host:8786.")] = None,
+    overwrite: Annotated[bool, typer.Option("--overwrite", help="Discard rows that are there.")] = False,
+    as_json: JsonFlag = False,
+    settings: Settings = None,
+) -> None:
+    """Stiffness and first modes of thousands of bearing sets on one body."""
+    from dataclasses import asdict
+
+    from rich.console import Console
+    from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
+
+    from solidgear.scene_file import load
+    from solidgear.sweep import sweep as run
+
+    loaded = load(scene)
+    terminal = Console(stderr=True, highlight=False)
+    bar = Progress(TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeRemainingColumn(), console=terminal, disable=as_json or not terminal.is_terminal)
+    reached = [0, 0]
+    try:
+        with bar:
+            line = bar.add_task("reading", total=None)
+
+            def show(done: int, total: int, text: str) -> None:
+                reached[:] = done, total
+                bar.update(line, completed=done, total=total, description=text)
+
+            found = run(
+                loaded, vary, out, fidelity=fidelity.value, options=options(settings), n=n, sample=sample, seed=seed, tolerance=tolerance, jobs=jobs,
+                dask=dask, overwrite=overwrite, build=lambda shaft, *_, **__: build_body(shaft, fidelity, settings), progress=show,
+            )  # fmt: skip
+    except KeyboardInterrupt:
+        if reached[0]:
+            print(f"solidgear: {reached[0]} of {reached[1]} rows are kept; the same command goes on from there", file=sys.stderr)
+        raise
+    if as_json:
+        print(json.dumps(asdict(found), default=str))
+        return
+    new = found.total - found.skipped
+    print(f"{found.path}: {found.total} rows, {found.skipped} of them there before.")
+    if new:
+        print(
+            f"{found.unknowns} unknowns with {found.seats} seats solved once in {found.seconds_once:.1f} s; {new} variants of up to {found.basis} unknowns, "
+            f"{1e3 * found.seconds_each:.1f} ms each; {found.refused} refused, {found.full} solved in full."
+        )
