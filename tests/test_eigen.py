@@ -38,13 +38,13 @@ def supported(body, scene, group=0):
 @pytest.mark.parametrize("fidelity", ["solid", "harmonic"])
 @pytest.mark.parametrize("bearings", [True, False])
 def test_lanczos_and_arpack_agree(scene, fidelity, bearings, request):
-    """Two algorithms on the same factor: eigenvalues to 1e-9, ten times what the factor's own rounding was seen to do."""
+    """Two algorithms on the same factor: Rayleigh quotients were seen to agree to 1e-11 and are held to ten times that."""
     body = request.getfixturevalue(fidelity)
     on = scene if bearings else ()
     a, b = (sg.modes(body, on, n=12, method=m) for m in ("lanczos", "arpack"))
     assert a.names == b.names
     assert a.multiplicity == b.multiplicity
-    np.testing.assert_allclose(a.frequency_hz, b.frequency_hz, rtol=1e-9)
+    np.testing.assert_allclose(a.frequency_hz, b.frequency_hz, rtol=1e-10)
     assert a.evidence["method"] == "lanczos" and b.evidence["method"] == "arpack"
     assert a.evidence["residual"] < 1e-6
     assert a.evidence["orthogonality"] < 1e-10

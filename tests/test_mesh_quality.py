@@ -9,7 +9,7 @@ from scipy.integrate import quad
 from skfem import MeshHex, MeshHex2, MeshQuad, MeshTet, MeshTet2
 
 from solidgear.errors import SolidgearError
-from solidgear.meshing.quality import MeshError, check_mesh, mass_properties, volume_of
+from solidgear.meshing.quality import MeshError, _bernstein, check_mesh, element_ratios, mass_properties, volume_of
 
 
 def box(kind, n=3):
@@ -81,6 +81,67 @@ def test_inversion_at_a_corner_only_is_seen(kind):
         check_mesh(bad)
     assert str(refused.value).startswith(f"{touched} of {mesh.t.shape[1]} elements")
     assert "inverted" in str(refused.value) and "det J -" in str(refused.value)
+
+
+def pressed(amount):
+    """One triquadratic cube with det J = 1 - amount z (1 - 8 (x - 1/4)^2): least, 1 - amount, at x = 1/4 on its top face."""
+    mesh = MeshHex2.from_mesh(right_handed(MeshHex.init_tensor(*3 * [np.array([0.0, 1.0])])))
+    x, y, z = mesh.doflocs
+    return replace(mesh, doflocs=np.array([x, y, z - amount * z**2 / 2 * (1 - 8 * (x - 0.25) ** 2)]))
+
+
+def bent():
+    """One curved tetrahedron with det J = (x - 0.37) (x - 0.48): negative in a slice of it that holds no node."""
+    mesh = MeshTet2.from_mesh(MeshTet.init_refdom())
+    x, y, z = mesh.doflocs
+    return replace(mesh, doflocs=np.array([x**2 / 2 - 0.37 * x, y * (x - 0.48), z]))
+
+
+@pytest.mark.parametrize("mesh, name", [(bent(), "tet10"), (pressed(1.1), "hex27")])
+def test_inversion_between_all_samples_is_seen(mesh, name):
+    from solidgear.fidelity.assembly import tabulate
+    from solidgear.fidelity.solid import _cell_rule
+    element, nodes = mesh.elem(), mesh.doflocs[:, mesh.dofs.element_dofs]
+    for points in (_cell_rule(name)[0], element.doflocs.T):             # where the stiffness is integrated, and the nodes
+        assert tabulate(element, nodes, element, points).det.min() > 0.0
+    assert element_ratios(mesh)[0] < 0.0
+    with pytest.raises(MeshError, match="1 of 1 elements is inverted"):
+        check_mesh(mesh)
+
+
+@pytest.mark.parametrize("amount", [0.85, 0.9, 0.97])
+def test_the_least_jacobian_is_that_of_the_polynomial(amount):
+    # greatest at x = 1, z = 1; the bound is good to 1e-3 of it where it matters, and no valid element is refused
+    quality = check_mesh(pressed(amount))
+    assert quality.max_det_j == pytest.approx(1.0 + 3.5 * amount, rel=1e-12)
+    assert quality.min_ratio == pytest.approx((1.0 - amount) / (1.0 + 3.5 * amount), abs=1.5e-3)
+
+
+@pytest.mark.parametrize("kind, name", [("tet2", "tet10"), ("hex2", "hex27")])
+def test_the_volume_of_any_curved_element_is_exact(kind, name):
+    from solidgear.fidelity.assembly import tabulate
+    from solidgear.fidelity.solid import _cell_rule
+    mesh = box(kind, 1)
+    # every node moved at random: det J has all the terms it can have, and the rule of the stiffness integrates them exactly
+    bad = replace(mesh, doflocs=mesh.doflocs + np.random.default_rng(3).uniform(-0.05, 0.05, mesh.doflocs.shape))
+    points, weights = _cell_rule(name)
+    det = tabulate(bad.elem(), bad.doflocs[:, bad.dofs.element_dofs], bad.elem(), points).det
+    assert check_mesh(bad).volume == pytest.approx((det @ weights).sum(), rel=1e-13)
+
+
+@pytest.mark.parametrize("kind", ["tet2", "hex2"])
+def test_every_piece_of_a_cut_element_is_the_same_polynomial(kind):
+    tet = kind == "tet2"
+    rule = _bernstein(tet, 3 if tet else 5)
+    x, y, z = rule.points
+    values = (x - 0.3) ** 2 + (y - 0.2) ** 2 + z**2 * x
+    # the mean of Bernstein coefficients is the mean of the polynomial, and the eight pieces share it equally
+    whole = rule.from_values @ values
+    pieces = rule.children @ whole
+    assert pieces.mean() == pytest.approx(whole.mean(), rel=1e-12)
+    # pieces lie inside the bound of the whole, and tighten it
+    assert whole.min() < pieces.min() < 0.0 and pieces.min() > 0.5 * whole.min()
+    assert pieces.max() <= whole.max() + 1e-12
 
 
 @pytest.mark.parametrize("kind", ["tet1", "hex1"])

@@ -44,7 +44,7 @@ class Flexibility:
     asymmetry : float
         Relative asymmetry of the computed matrix before it was symmetrised.
     residual : float
-        Relative change in the last refinement step; what is left is smaller by about ``SHIFT``.
+        Estimated relative error that refinement left: the square of what the displacements miss.
     backend : str
     """
 
@@ -128,8 +128,8 @@ def inertia_relief(solve, mass, rigid: np.ndarray):
 def flexibility(body: Body, tolerance: float = 1e-12, most: int = 12) -> Flexibility:
     """Flexibility of the free body at all its ports (inertia relief).
 
-    Solves ``(K + sigma M) u = f`` with one factor and refines on K itself: every step gains
-    ``sigma / lambda_1``, about three digits.
+    Solves ``(K + sigma M) u = f`` with one factor and refines on K itself: every step gains ``sigma / lambda_1``, about three
+    digits, in the displacements and twice as many in their energy, which is the flexibility.
     """
     if "flexibility" in body.memory:
         return body.memory["flexibility"]
@@ -149,19 +149,20 @@ def flexibility(body: Body, tolerance: float = 1e-12, most: int = 12) -> Flexibi
         balanced, relieved = inertia_relief(factor.solve, block.mass.__matmul__, block.rigid)
         load = balanced(block.ports.T.toarray() if sp.issparse(block.ports) else block.ports.T)
         u = relieved(load)
-        f_block = block.ports @ u
-        change = np.inf
+        step = 1.0
         for _ in range(most):
-            u = u + relieved(load - k @ u)
-            new = block.ports @ u
-            change, last = np.abs(new - f_block).max() / np.abs(new).max(), change
-            f_block = new
-            # Steps shrink by a constant factor, so what is left after this one is known.
-            if change < tolerance or (np.isfinite(last) and change * change / last < tolerance) or change > 0.5 * last:
+            correction = relieved(load - k @ u)
+            u = u + correction
+            step, last = np.abs(correction).max() / np.abs(u).max(), step
+            # Steps shrink by a constant factor; the energy below misses by the square of what the displacements still miss.
+            missing = (step * step / last) ** 2
+            if missing < tolerance or step > 0.5 * last:
                 break
+        # Clapeyron: 2 u'f - u'Ku is stationary at the solution.
+        f_block = u.T @ (2 * load - k @ u)
         size = np.sqrt(np.abs(np.diag(f_block)))
         asymmetry = max(asymmetry, float((np.abs(f_block - f_block.T) / np.outer(size, size)).max()))
-        residual = max(residual, float(change))
+        residual = max(residual, float(missing))
         out[np.ix_(rows, rows)] = (f_block + f_block.T) / 2
         backends.append(factor.backend)
     if not np.all(np.isfinite(out)):
