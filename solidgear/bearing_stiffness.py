@@ -95,6 +95,9 @@ def checked_matrix(value: Any) -> tuple[tuple[float, ...], ...]:
     eigenvalue, vector = np.linalg.eigh(K / np.outer(size, size))
     if eigenvalue[0] < -1e-9:
         a, b = sorted(np.argsort(-np.abs(vector[:, 0]), kind="stable")[:2])
+        if K[a, a] < 0 or K[b, b] < 0:
+            i = a if K[a, a] < 0 else b
+            raise SceneError(f"the stiffness in {DOF_NAMES[i]} is {K[i, i]:.6g}; it must not be negative")
         raise SceneError(
             f"the stiffness is indefinite in the pair ({DOF_NAMES[a]}, {DOF_NAMES[b]}): their entries are {K[a, a]:.6g} and {K[b, b]:.6g}, coupled by "
             f"{K[a, b]:.6g}, and the smallest eigenvalue, with the diagonal scaled to 1, is {eigenvalue[0]:.3g}; it must not be negative"

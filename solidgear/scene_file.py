@@ -218,9 +218,16 @@ def load(path: str | os.PathLike) -> Scene:
         raise error.located(raw, where=where) from None
 
 
+LARGEST = 4_000_000  # bytes; a scene takes some thousands
+
+
 def _parse(where: str) -> dict[str, Any]:
     try:
-        return tomllib.loads(Path(where).read_bytes().decode("utf-8-sig"))
+        with Path(where).open("rb") as file:
+            text = file.read(LARGEST + 1)
+        if len(text) > LARGEST:
+            raise SceneError(f"this is no scene: it is larger than {LARGEST // 10**6} MB", where=where)
+        return tomllib.loads(text.decode("utf-8-sig"))
     except FileNotFoundError:
         reason = "there is no such file"
     except IsADirectoryError:

@@ -105,7 +105,7 @@ def test_the_unspoilt_file_is_accepted(tmp_path):
         ("[[1, 0], [0, 1]]", "6 rows of 6"),
         ("[" + ", ".join(str([float(i == j) + 0.5 * (i == 0 and j == 4) for j in range(6)]) for i in range(6)) + "]", "(x, thy) is 0.5"),
         ("[" + ", ".join(str([float(i == j) for j in range(6)]) for i in range(5)) + ", [0, 0, 0, 0, 0, nan]]", "row 6, column 6"),
-        ("[" + ", ".join(str([float(i == j) * (-1) ** (i == 3) for j in range(6)]) for i in range(6)) + "]", "eigenvalue, with the diagonal scaled to 1, is -1"),
+        ("[" + ", ".join(str([float(i == j) * (-1) ** (i == 3) for j in range(6)]) for i in range(6)) + "]", "the stiffness in thx is -1; it must not be negative"),
     ],
 )  # fmt: skip
 def test_bad_matrix(matrix, says, tmp_path):

@@ -304,3 +304,16 @@ def test_bearings_of_very_different_stiffness(overhung, soft):
     on = [0, 1, 2, 3, 5]
     got = sg.condense(body, stiff, "pinion").compliance
     np.testing.assert_allclose(got[on, on], want[on, on], rtol=1e-12)
+
+
+def test_a_free_direction_between_the_axes_is_named_as_one():
+    """A bearing that resists all but (1, 0, 1): no component alone is free, and none has a zero row."""
+    v = np.array([1.0, 0.0, 1.0])
+    k = np.zeros((6, 6))
+    k[:3, :3] = 1e9 * np.eye(3) - 0.5e9 * np.outer(v, v)
+    k[3:, 3:] = 1e6 * np.eye(3)
+    scene = shipped("cylinder_free")
+    scene = scene.with_changes(bearings=(Bearing(name="1", y=scene.length / 2, seat_width=0.01, matrix=k),))
+    found = sg.condense(sg.build(scene, "timoshenko"), scene, scene.port.name)
+    assert found.free_names == ()
+    np.testing.assert_allclose(np.abs(found.oblique.T), [[1, 0, 1, 0, 0, 0]], atol=1e-9)

@@ -6,9 +6,12 @@ from solidgear.threads import pin
 
 pin()  # before anything imports numpy
 
+import os
 import sys
 
+from solidgear.cli import chart  # noqa: F401
 from solidgear.cli import solve  # noqa: F401  (registers its commands)
+from solidgear.cli import sweep  # noqa: F401
 from solidgear.cli.app import app
 from solidgear.errors import SolidgearError
 
@@ -20,6 +23,11 @@ def main() -> None:
     except SolidgearError as error:
         print(f"solidgear: {error}", file=sys.stderr)
         sys.exit(1)
+    except OSError as error:  # a full disk behind a redirected output, say; files of our own are guarded where they are written
+        if isinstance(error, BrokenPipeError):
+            os._exit(141)  # the reader has left; nothing to say, and no way to say it
+        print(f"solidgear: cannot write the output ({error.strerror or error})", file=sys.stderr)
+        os._exit(1)  # flushing at exit would fail again
     except MemoryError:
         print("solidgear: not enough memory for this model; use a coarser one (--set refinement=0.5) or the harmonic model", file=sys.stderr)
         sys.exit(1)

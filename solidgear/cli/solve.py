@@ -20,6 +20,7 @@ def compare(
     as_json: JsonFlag = False,
     renders: Annotated[bool, typer.Option("--renders/--no-renders", help="Draw the first bending mode of every model.")] = True,
     solid_element: Annotated[Optional[str], typer.Option("--solid-element", help="hex20, hex27, hex8, tet10 or tet4.")] = None,
+    chart: Annotated[bool, typer.Option("--chart", help="Also chart error against cost, as a section of the report (about four minutes more).")] = False,
 ) -> None:
     """Solve a scene with every model and write a report on which to trust."""
     from solidgear.comparison import check_models
@@ -35,6 +36,10 @@ def compare(
     with Progress(quiet=as_json) as progress:
         found = run(loaded, wanted, settings=settings, progress=progress)
         found.write_report(out, renders=renders and found.results["complete"], progress=progress)
+    if chart and found.results["complete"]:
+        from solidgear.cli.chart import run_chart
+
+        run_chart(loaded, out, quiet=as_json)
     if as_json:
         print(json.dumps(found.results, allow_nan=False))
     else:
@@ -85,6 +90,7 @@ def stiffness(
             "stiffness": plain(found.stiffness),
             "compliance": plain(found.compliance),
             "free": found.free_names,
+            "free_oblique": found.oblique.T.tolist(),
             "dofs": body.size,
             "evidence": found.evidence,
         }
@@ -98,6 +104,9 @@ def stiffness(
     terminal.print(matrix_table(found.compliance, "compliance"))
     if found.free_names:
         terminal.print(f"Free: {', '.join(found.free_names)} (stiffness exactly zero).")
+    for motion in found.oblique.T:
+        parts = ", ".join(f"{v:.4g} {n}" for v, n in zip(motion, DOF_NAMES) if abs(v) > 1e-9)
+        terminal.print(f"Free: the motion ({parts}), m and rad; a compliance does not exist.")
 
 
 @command

@@ -15,7 +15,7 @@ from pathlib import Path
 from typing import Any
 
 from solidgear.frames import DOF_NAMES
-from solidgear.report import charts
+from solidgear.report import charts, speed_accuracy
 from solidgear.report.lumped import lumped_tables
 from solidgear.report.table import Table
 from solidgear.report.terminal import (
@@ -89,7 +89,7 @@ def render_page(results: Mapping, folder: str | os.PathLike | None = None, image
         # The lumped model stands on the matrix of another model, shown there.
         matrices=[(model_name(k), [_matrix(r, k, m, kind) for kind in BLOCK_UNITS if m.get(kind)]) for k, m in r["models"].items() if k != "lumped"],
         frequencies=_frequencies(r), deviations=_deviations(r), causes=_causes(r), lumped=lumped_tables(r), attachments=_attachments(r), levels=_levels(r), orders=_orders(r),
-        algebra=_algebra(r), pairs=_pairs(r), cost=_cost(r), provenance=_provenance(r), environment=_pairs_of(r.get("environment"), "Environment of the run"),
+        algebra=_algebra(r), pairs=_pairs(r), cost=_cost(r), race=speed_accuracy.section(folder, r["scene"]), provenance=_provenance(r), environment=_pairs_of(r.get("environment"), "Environment of the run"),
         mesh=_mesh(r), total=seconds(r.get("seconds_total"), DASH),
     )  # fmt: skip
 

@@ -37,6 +37,8 @@ def write_all(comparison, out, *, renders: bool, progress) -> Path:
     folder = prepare(out)
     results = comparison.results
     try:
+        # A report of an earlier run must not stand beside the numbers of this one, should it end early.
+        (folder / "report.html").unlink(missing_ok=True)
         # Numbers first: whatever happens to pictures, they are there.
         _write_json(folder / "results.json", results)
         for model, rung in comparison.rungs.items():
@@ -122,7 +124,10 @@ def render_mode(scene, body, modes, name: str, path) -> Path:
     path = Path(path)
     job = _job(scene, body, modes, name, path)
     prepare(path.parent)
-    (done,) = render_modes([job])
+    try:
+        (done,) = render_modes([job])
+    except OSError as error:  # the drawing process is handed its shape in a temporary file
+        raise SolidgearError(f"--out {path}: drawing stopped ({error.strerror or error}); free some space there and in the folder for temporary files") from error
     if not done.ok:
         raise SolidgearError(done.reason)
     return done.path

@@ -102,7 +102,7 @@ class Pardiso:
             self.iparm[number - 1] = value
         self.definite = definite
         self.ia, self.ja = self.upper.indptr.astype(np.int32, copy=False), self.upper.indices.astype(np.int32, copy=False)
-        self._release = weakref.finalize(self, _release, self.pt, self.iparm, 2 if definite else -2, self.n)
+        self._release = weakref.finalize(self, _release, _mkl_pardiso(), self.pt, self.iparm, 2 if definite else -2, self.n)
         self._call(11)
         symbolic_peak, symbolic, numeric = (int(kb) for kb in self.iparm[14:17])
         self.estimate_mb = max(symbolic_peak, symbolic + numeric) / 1024 + _size_mb(self.upper)
@@ -140,11 +140,11 @@ class Pardiso:
         return np.ascontiguousarray(x)
 
 
-def _release(pt, iparm, mtype, n):
+def _release(pardiso, pt, iparm, mtype, n):
     """Give PARDISO's memory back."""
     nothing = np.zeros(1)
-    _mkl_pardiso()(_pointer(pt), _int(1), _int(1), _int(mtype), _int(-1), _int(n), _pointer(nothing), None, None, None, _int(1), _pointer(iparm), _int(0),
-                   _pointer(nothing), _pointer(nothing), _int(0))  # fmt: skip
+    pardiso(_pointer(pt), _int(1), _int(1), _int(mtype), _int(-1), _int(n), _pointer(nothing), None, None, None, _int(1), _pointer(iparm), _int(0),
+            _pointer(nothing), _pointer(nothing), _int(0))  # fmt: skip
 
 
 # --------------------------------------------------------------------------- CHOLMOD

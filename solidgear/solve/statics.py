@@ -82,7 +82,17 @@ class Condensed:
     @property
     def free_names(self) -> tuple[str, ...]:
         """Names of the components that are free by themselves."""
-        return tuple(n for n, row in zip(DOF_NAMES, self.compliance) if np.isnan(row).all())
+        return tuple(n for n, alone in zip(DOF_NAMES, self._alone()) if alone)
+
+    @property
+    def oblique(self) -> np.ndarray:
+        """(6, k) free motions that no single component describes, largest entry 1."""
+        rest = self.free[:, np.abs(self.free[~self._alone()]).max(axis=0, initial=0.0) > 1e-9 * np.abs(self.free).max(axis=0, initial=0.0)]
+        return rest / np.abs(rest).max(axis=0, initial=0.0)
+
+    def _alone(self) -> np.ndarray:
+        """Mask of the components whose unit motion nothing resists."""
+        return np.array([not np.any(row) for row in self.stiffness])
 
 
 def factors(body: Body) -> list[Factor]:

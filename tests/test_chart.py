@@ -1,0 +1,271 @@
+"""The chart on file, in the terminal and in the report."""
+
+from __future__ import annotations
+
+import csv
+import json
+import re
+import sys
+from dataclasses import asdict
+from pathlib import Path
+
+import pytest
+
+import solidgear as sg
+from solidgear import cli
+from solidgear.evidence import cases, pareto
+from solidgear.evidence.pareto import Race, Row, race
+from solidgear.report import speed_accuracy
+from solidgear.report.html import render_page, write_report
+from solidgear.report.speed_accuracy import MACHINE, PICTURE, ROWS, draw, error_text, figure, front_rows, left_out, read_race, records, section, write_rows
+
+ROOT = Path(__file__).parent.parent
+SCENE = ROOT / "geometry" / "shaft_stepped.toml"
+COARSE = {"order": 3, "layers": 0, "edge_layers": 0}
+SETUP = {"numpy and scipy": 0.5, "gmsh, first use": 0.1}
+
+
+def few(scene=None, full=False):
+    return [
+        Row("lumped", "lumped", 1, "lumped", {}),
+        Row("beam", "Timoshenko", 1, "timoshenko", {"elements": 1}),
+        Row("harmonic", "harmonic h uniform", 1, "harmonic", {"order": 2, "layers": 0, "edge_layers": 0, "refinement": 0.5}),
+        Row("harmonic", "harmonic p graded", 1, "harmonic", {"order": 99}),
+        Row("harmonic", "harmonic p graded", 2, "harmonic", COARSE),
+    ]
+
+
+@pytest.fixture(scope="module", autouse=True)
+def light():
+    """A small plan and a small reference, so that what is tested is the way of the numbers, not their size."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(cases, "plan", few)
+        patch.setattr(pareto, "REFERENCE", COARSE)
+        patch.setattr(pareto, "LIKE_FOR_LIKE", COARSE)
+        patch.setattr(cases, "setup_seconds", lambda: SETUP)
+        yield
+
+
+@pytest.fixture(scope="module")
+def raced():
+    return race(sg.load(SCENE), few(), runs=2, setup=SETUP)
+
+
+@pytest.fixture
+def run(monkeypatch, capsys, tmp_path):
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("COLUMNS", "100")
+
+    def call(*arguments):
+        monkeypatch.setattr(sys, "argv", ["solidgear", *map(str, arguments)])
+        capsys.readouterr()
+        code = 0
+        try:
+            cli.main()
+        except SystemExit as end:
+            code = end.code or 0
+        return code, *capsys.readouterr()
+
+    return call
+
+
+@pytest.fixture
+def undrawn(monkeypatch):
+    monkeypatch.setattr(speed_accuracy, "draw", lambda found, path: path)
+
+
+def marks(ax, marker):
+    return [line for line in ax.lines if line.get_marker() == marker]
+
+
+# ------------------------------------------------------------------------------------------------- files
+def test_what_is_written_is_what_is_read(raced, tmp_path):
+    write_rows(raced, tmp_path)
+    again = read_race(tmp_path)
+    assert [asdict(r) for r in again.rows] == [asdict(r) for r in raced.rows]
+    assert again == raced
+    assert not list(tmp_path.glob(".*"))
+
+
+def test_rows_hold_every_case_with_runs_times_errors_and_reasons(raced, tmp_path):
+    write_rows(raced, tmp_path)
+    with open(tmp_path / ROWS, newline="") as f:
+        lines = list(csv.DictReader(f))
+    assert len(lines) == 5
+    beam, bad = lines[1], lines[3]
+    assert (beam["status"], beam["runs"], beam["options"]) == ("ok", "2", "elements=1")
+    assert float(beam["seconds_min"]) <= float(beam["seconds_median"]) <= float(beam["seconds_max"])
+    assert len(beam["samples"].split()) == 2
+    value, reference = float(beam["C_zz"]), raced.reference["values"]["C_zz"]
+    assert float(beam["error_C_zz"]) == pytest.approx(abs(value / reference - 1))
+    assert float(beam["like_for_like_C_zz"]) > 0 and float(beam["error_C_6x6"]) > 0
+    assert bad["status"] == "failed" and "order 99" in bad["reason"] and bad["error_C_zz"] == "" and bad["front_C_zz"] == ""
+    # the last case is the reference itself, which is as good as it gets
+    assert lines[4]["resolved_C_zz"] == "no" and "seconds" in lines[4]["front_C_zz"]
+
+
+def test_machine_block_says_where_times_and_errors_come_from(raced, tmp_path):
+    write_rows(raced, tmp_path)
+    machine = json.loads((tmp_path / MACHINE).read_text())
+    assert machine["environment"]["numpy"] and machine["environment"]["cores"]
+    assert machine["reference"]["options"] == COARSE and machine["reference"]["bands"]["C_zz"] > 0
+    assert machine["setup"]["gmsh, first use"] == 0.1 and machine["runs"] == 2
+
+
+@pytest.mark.parametrize(("name", "text"), [(MACHINE, "{"), (MACHINE, "{}"), (MACHINE, "[]"), (ROWS, "a,b\n1,2\n")])
+def test_a_damaged_file_is_no_race_and_no_crash(raced, tmp_path, name, text):
+    write_rows(raced, tmp_path)
+    (tmp_path / name).write_text(text)
+    assert read_race(tmp_path) is None
+    assert section(tmp_path, raced.scene) is None
+
+
+# ------------------------------------------------------------------------------------------------- figure
+def test_figure_has_both_quantities_over_both_costs(raced):
+    axes = figure(raced).axes
+    assert len(axes) == 4
+    assert {ax.get_ylabel() for ax in axes} - {""} == {"error of port compliance C_zz", "error of first bending frequency"}
+    assert all(ax.get_xscale() == ax.get_yscale() == "log" for ax in axes)
+
+
+def test_failures_are_crosses_where_their_cost_is_known(raced):
+    over_seconds, over_unknowns = figure(raced).axes[:2]
+    (cross,) = marks(over_seconds, "x")
+    assert cross.get_xdata()[0] == raced.rows[3].samples[0]
+    assert not marks(over_unknowns, "x")
+
+
+def test_a_number_that_is_missing_is_a_cross_in_its_own_panels():
+    row = Row("hexahedra", "HEX8 uniform", 1, "solid", {}, "ok", "found no bending 1", 300, [0.5], {"C_zz": 1.01}, {"C_zz": 0.01})
+    reference = {"options": COARSE, "unknowns": 1, "seconds": 9.0, "values": {"C_zz": 1.0, "bending 1": 1.0}, "bands": {"C_zz": 1e-6, "bending 1": 1e-6}}
+    made = Race({}, reference, [row], {}, 1, 10, 1.0)
+    assert [len(marks(ax, "x")) for ax in figure(made).axes] == [0, 0, 1, 1]
+
+
+def test_points_below_the_band_stand_on_it(raced):
+    ax = figure(raced).axes[0]
+    band = raced.reference["bands"]["C_zz"]
+    heights = [line.get_ydata()[0] for line in marks(ax, "D")]
+    assert heights == [band]
+    assert all(line.get_ydata()[0] >= band for line in ax.lines if line.get_marker() not in ("", "None", None, "*") and len(line.get_ydata()))
+
+
+def test_beams_show_like_for_like_beside_their_own_error(raced):
+    ax = figure(raced).axes[0]
+    row = raced.rows[1]
+    assert [line.get_ydata()[0] for line in marks(ax, "s")] == [row.errors["C_zz"], row.like_for_like["C_zz"]]
+
+
+def test_picture_is_a_png(raced, tmp_path):
+    path = draw(raced, tmp_path / PICTURE)
+    assert path.read_bytes()[:4] == b"\x89PNG"
+
+
+def test_front_table_lists_the_front_over_time(raced):
+    names = {row.series for row, _ in front_rows(raced)}
+    assert names == {r.series for q in raced.reference["values"] for r in raced.front(q)}
+    assert error_text(raced, raced.rows[4], "C_zz").startswith("< ")
+    assert error_text(raced, raced.rows[3], "C_zz") == "-"
+
+
+def test_left_out_names_the_first_level_of_each_series(raced):
+    rows = [Row("hexahedra", "HEX20 graded", k, "solid", {}, "left out" if k > 1 else "ok") for k in (1, 2, 3)]
+    assert left_out(Race({}, raced.reference, rows, {}, 1, 10, 1.0)) == "HEX20 graded from level 2"
+
+
+# ------------------------------------------------------------------------------------------------- report
+def test_report_has_the_section_when_its_folder_has_a_race_of_the_scene(raced, tmp_path):
+    results = {"scene": raced.scene, "models": {}}
+    assert "data:image/png" not in render_page(results, tmp_path)
+    write_rows(raced, tmp_path)
+    draw(raced, tmp_path / PICTURE)
+    page = render_page(results, tmp_path)
+    assert "data:image/png;base64," in page and "The Pareto front over wall time" in page
+    assert "order 99" in page
+    other = {"scene": raced.scene | {"name": "another"}, "models": {}}
+    assert "data:image/png" not in render_page(other, tmp_path)
+    assert "data:image/png" not in render_page(results)
+
+
+def test_section_numbers_in_the_report_are_those_of_its_contents(raced):
+    page = render_page({"scene": raced.scene, "models": {}})
+    contents = re.findall(r'<a href="#(\w+)">(\d+)\.', page)
+    headings = re.findall(r'<h2 id="(\w+)">(\d+)\.', page)
+    assert contents == headings and len(contents) == 14
+
+
+# ------------------------------------------------------------------------------------------------- command
+def test_command_writes_everything_and_puts_the_chart_into_a_report(run, tmp_path):
+    scene = sg.load(SCENE)
+    out = tmp_path / "there"
+    results = {"scene": json.loads(json.dumps(scene.as_dict())), "models": {}}
+    out.mkdir()
+    (out / "results.json").write_text(json.dumps(results))
+    write_report(results, out)
+    before = (out / "report.html").read_text()
+    code, text, _ = run("chart", SCENE, "--out", out, "--runs", "1")
+    assert code == 0
+    assert {p.name for p in out.iterdir()} == {"results.json", "report.html", ROWS, MACHINE, PICTURE}
+    assert "Pareto front over wall time" in text and "failed: harmonic p graded, level 1" in text and "report.html" in text
+    assert "data:image/png" not in before and "data:image/png" in (out / "report.html").read_text()
+    assert json.loads((out / "results.json").read_text()) == results
+
+
+def test_command_leaves_the_report_of_another_scene_alone(run, tmp_path, undrawn):
+    (tmp_path / "results.json").write_text(json.dumps({"scene": {"name": "another"}, "models": {}}))
+    code, text, _ = run("chart", SCENE, "--out", tmp_path, "--runs", "1")
+    assert code == 0 and "report.html" not in text and not (tmp_path / "report.html").exists()
+
+
+def test_json_is_for_machines(run, tmp_path, undrawn):
+    code, text, err = run("chart", SCENE, "--out", tmp_path, "--runs", "1", "--json")
+    found = json.loads(text, parse_constant=lambda word: pytest.fail(word))
+    assert code == 0 and err == ""
+    assert found["complete"] is True and len(found["rows"]) == 5 and found["rows"][3]["error_C_zz"] is None
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [(("--runs", "0"), "--runs 0"), (("--runs", "-3"), "--runs -3"), (("--budget", "0"), "--budget 0"), (("--budget", "nan"), "--budget nan"), (("--budget", "inf"), "--budget inf")],
+)
+def test_command_refuses_bad_options_in_a_sentence_and_writes_nothing(run, tmp_path, arguments, said):
+    code, out, err = run("chart", SCENE, "--out", tmp_path / "new", *arguments)
+    assert code == 1 and out == "" and said in err and err.count("\n") == 1
+    assert not (tmp_path / "new").exists()
+
+
+def test_command_refuses_a_folder_that_cannot_be_written(run, tmp_path):
+    (tmp_path / "file").write_text("")
+    code, _, err = run("chart", SCENE, "--out", tmp_path / "file" / "inside")
+    assert code == 1 and "--out" in err
+
+
+def test_an_interrupt_leaves_rows_and_chart_of_what_there_was(run, tmp_path, monkeypatch):
+    real, seen = pareto._run, []
+
+    def interrupted(scene, row, *rest):
+        if len(seen) == 2:
+            raise KeyboardInterrupt
+        seen.append(row.series)
+        real(scene, row, *rest)
+
+    monkeypatch.setattr(pareto, "_run", interrupted)
+    code, _, _ = run("chart", SCENE, "--out", tmp_path)
+    assert code == 130
+    found = read_race(tmp_path)
+    assert not found.complete and sorted(len(r.samples) for r in found.rows) == [0, 0, 0, 1, 1]
+    assert (tmp_path / PICTURE).exists()
+    assert [r["reason"] for r in records(found)].count("interrupted") == 3
+
+
+def test_rows_are_written_as_they_come(run, tmp_path, monkeypatch, undrawn):
+    """A process that is killed leaves what it had measured."""
+    lengths, real = [], speed_accuracy.write_rows
+
+    def watch(found, folder):
+        real(found, folder)
+        lengths.append(sum(bool(r.samples) for r in read_race(folder).rows))
+
+    monkeypatch.setattr(speed_accuracy, "write_rows", watch)
+    run("chart", SCENE, "--out", tmp_path, "--runs", "1")
+    assert lengths[:5] == [1, 2, 3, 4, 5]

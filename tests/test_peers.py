@@ -1,0 +1,254 @@
+"""Peers of the race in validation/: what CalculiX is told is our problem, what it prints is read right, failures stay failures."""
+
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+ROOT = Path(__file__).parent.parent
+sys.path.insert(0, str(ROOT / "validation"))
+
+from peers import calculix, ours, ross_peer, sfepy_peer  # noqa: E402
+from peers import problem as peer_problem  # noqa: E402
+from peers.lanes import Figure, Lane, Sample, compliance_gap, frequency_gap, paired  # noqa: E402
+from peers.process import PeerError, run  # noqa: E402
+from peers.race import Race  # noqa: E402
+
+SCENE = ROOT / "geometry" / "pinion_overhung.toml"
+TET = {"element": "tet10", "size": 0.07, "graded_size": 0.06}
+HEX = {"element": "hex20", "size": 0.08, "around": 8, "layers": 0, "edge_layers": 0, "radial_layers": 0}
+# Pairs of corners whose middles the nodes after the corners are, from the user's manual.
+EDGES = {
+    "C3D10": ((1, 2), (2, 3), (3, 1), (1, 4), (2, 4), (3, 4)),
+    "C3D20": ((1, 2), (2, 3), (3, 4), (4, 1), (5, 6), (6, 7), (7, 8), (8, 5), (1, 5), (2, 6), (3, 7), (4, 8)),
+}
+
+
+@pytest.fixture(scope="module", params=[("rigid", TET, "C3D10"), ("average", HEX, "C3D20")], ids=["rigid tet", "average hex"])
+def case(request):
+    attachment, options, kind = request.param
+    scene = ours.held(SCENE, attachment)
+    done = ours.solve(scene, "solid", options)
+    problem = peer_problem.of(done.body, scene)
+    return scene, done, problem, kind, Deck(calculix.deck(problem, kind, modes=10, loads=True))
+
+
+class Deck:
+    """A deck read back, by its own small reader."""
+
+    def __init__(self, text):
+        self.node, self.element, self.equation, self.spring, self.step = {}, {}, [], {}, []
+        self.numbers = []
+        owner, card, held, stiff = {}, "", [], {}
+        for line in text.splitlines():
+            if line.startswith("*"):
+                card = line
+                held = []
+                if line == "*STEP":
+                    self.step.append([])
+                continue
+            fields = line.rstrip(",").split(",")
+            self.numbers += fields
+            if card.startswith("*NODE,") or card == "*NODE":
+                if len(fields) == 4:
+                    self.node[int(fields[0])] = np.array(fields[1:], float)
+            elif card.startswith("*ELEMENT, TYPE=C3D"):
+                held += [int(x) for x in fields]
+                if not line.endswith(","):
+                    self.element[held[0]] = held[1:]
+                    held = []
+            elif card.startswith("*ELEMENT, TYPE=SPRING1"):
+                owner[card.split("ELSET=")[1]] = int(fields[1])
+            elif card.startswith("*SPRING"):
+                stiff.setdefault(card.split("ELSET=")[1], []).append(float(fields[0]))
+            elif card == "*EQUATION":
+                if len(fields) == 1:
+                    self.equation.append((int(line), []))
+                else:
+                    self.equation[-1][1].extend((int(a), int(b) - 1, float(c)) for a, b, c in zip(fields[::3], fields[1::3], fields[2::3]))
+            elif card.startswith("*CLOAD"):
+                self.step[-1].append((int(fields[0]), int(fields[1]) - 1, float(fields[2])))
+        # The line after *SPRING names the degree of freedom, the next one the stiffness.
+        self.spring = {owner[name]: values for name, values in stiff.items()}
+
+
+def test_middle_nodes_lie_between_their_corners(case):
+    # The classic fault of written decks: two edge nodes swapped. An element is then wrong by its own length, not by its curvature.
+    *_, kind, deck = case
+    assert deck.element
+    for nodes in deck.element.values():
+        at = np.array([deck.node[i] for i in nodes])
+        corners = 4 if kind == "C3D10" else 8
+        for k, (a, b) in enumerate(EDGES[kind]):
+            chord = np.linalg.norm(at[a - 1] - at[b - 1])
+            assert np.linalg.norm(at[corners + k] - (at[a - 1] + at[b - 1]) / 2) < 0.25 * chord
+
+
+def test_elements_are_right_handed(case):
+    *_, kind, deck = case
+    third = 3 if kind == "C3D10" else 4
+    for nodes in deck.element.values():
+        a, b, c, d = (deck.node[nodes[k]] for k in ((0, 1, 2, 3) if third == 3 else (0, 1, 3, 4)))
+        assert np.linalg.det([b - a, c - a, d - a]) > 0
+
+
+def test_no_field_is_longer_than_calculix_reads(case):
+    assert max(len(x.strip()) for x in case[-1].numbers) <= 20
+
+
+def test_springs_store_the_energy_of_the_bearings_in_a_rigid_motion(case):
+    # A rigid motion must satisfy every equation of a seat, and what the springs then hold must be d' K d of the bearing's 6x6.
+    scene, _, problem, _, deck = case
+    d, th = np.array([1e-6, -2e-6, 3e-6]), np.array([2e-5, 1e-5, -3e-5])
+    u = {i: d + np.cross(th, at) for i, at in deck.node.items()}
+    extra = sorted(i for i in deck.node if i > len(problem.nodes))
+    # Of two nodes of a rigid seat at one place the second turns.
+    turning = {i for k, i in enumerate(extra) if i not in deck.spring and extra[k - 1] not in deck.spring and k and np.allclose(deck.node[i], deck.node[extra[k - 1]])}
+    for i in turning:
+        u[i] = th
+    for count, terms in deck.equation:
+        assert count == len(terms)
+        node, component, factor = terms[0]
+        value = -sum(a * u[i][c] for i, c, a in terms[1:]) / factor
+        if node in deck.spring:
+            u[node] = np.array([value, 0.0, 0.0])
+        else:
+            assert value == pytest.approx(u[node][component], abs=1e-15)
+    stored = sum(values[1] * u[i][0] ** 2 for i, values in deck.spring.items())
+    expected = 0.0
+    for bearing in scene.bearings:
+        motion = np.concatenate([d + np.cross(th, [0.0, bearing.y, 0.0]), th])
+        expected += motion @ bearing.stiffness @ motion
+    assert stored == pytest.approx(expected, rel=1e-9)  # printed digits
+
+
+def test_nodal_forces_are_unit_wrenches_about_the_lumped_point(case):
+    scene, *_, deck = case
+    steps = [step for step in deck.step if step]
+    assert len(steps) == 6
+    about = np.array([0.0, scene.port.y, 0.0])
+    for k, step in enumerate(steps):
+        wrench = np.zeros(6)
+        for i, c, value in step:
+            force = np.zeros(3)
+            force[c] = value
+            wrench += np.concatenate([force, np.cross(deck.node[i] - about, force)])
+        # Forces of a unit moment are some 1/radius large and cancel in the sum.
+        np.testing.assert_allclose(wrench, np.eye(6)[k], atol=1e-8)
+
+
+@pytest.mark.skipif(bool(calculix.present()), reason="CalculiX is not installed")
+def test_calculix_gives_our_frequencies_and_compliance(case):
+    _, done, problem, kind, _ = case
+    answer = calculix.solve(problem, kind, modes=6, loads=True, limit=120, threads=1)
+    # Quadrature on elements as large as the shaft: 4 points (C3D10) or 27 (C3D20) against exact.
+    assert frequency_gap(answer.frequency_hz, done.modes) < 5e-3
+    assert compliance_gap(answer.compliance, done.compliance) < 5e-3
+
+
+def test_dat_file_is_read():
+    text = """
+     E I G E N V A L U E   O U T P U T
+
+ MODE NO    EIGENVALUE                       FREQUENCY
+                                     REAL PART            IMAGINARY PART
+                           (RAD/TIME)      (CYCLES/TIME     (RAD/TIME)
+
+      1   0.7590855E+08   0.8712551E+04   0.1386646E+04   0.0000000E+00
+      2  -0.9403403E-02   0.0000000E+00   0.1543344E+04   0.9697115E-01
+
+     P A R T I C I P A T I O N   F A C T O R S
+
+      1   0.1000000E+01   0.2000000E+01   0.3000000E+01   0.4000000E+01
+
+ displacements (vx,vy,vz) for set LOADED and time  0.1000000E+01
+
+         2  1.000000E-10 -2.000000E-10  3.000000E-10
+
+ displacements (vx,vy,vz) for set LOADED and time  0.2000000E+01
+
+         1  4.000000E-10  5.000000E-10  6.000000E-10
+"""
+    np.testing.assert_allclose(calculix.frequencies(text), [1386.646, 1543.344])
+    first, second = calculix.displacements(text, 2)
+    np.testing.assert_allclose(first, [[0, 0, 0], [1e-10, -2e-10, 3e-10]])
+    np.testing.assert_allclose(second, [[4e-10, 5e-10, 6e-10], [0, 0, 0]])
+
+
+def test_a_deck_of_the_wrong_element_is_refused(case):
+    _, _, problem, kind, _ = case
+    with pytest.raises(ValueError, match="does not fit"):
+        calculix.deck(problem, "C3D20" if kind == "C3D10" else "C3D10")
+
+
+def test_a_peer_that_takes_too_long_is_ended_with_its_children(tmp_path):
+    code = "import subprocess, sys; p = subprocess.Popen(['sleep', '60']); open('pid', 'w').write(str(p.pid)); p.wait()"
+    with pytest.raises(PeerError, match="was ended after"):
+        run([sys.executable, "-c", code], tmp_path, limit=3)
+    child = Path("/proc") / (tmp_path / "pid").read_text()
+    state = (child / "stat").read_text().split()[2] if child.exists() else "gone"
+    assert state in ("gone", "Z")
+
+
+def test_a_peer_that_fails_says_its_last_words(tmp_path):
+    with pytest.raises(PeerError, match="returned 3.*no licence"):
+        run([sys.executable, "-c", "import sys; print('no licence'); sys.exit(3)"], tmp_path, limit=60)
+
+
+def test_pairs_are_compared_as_pairs():
+    np.testing.assert_allclose(paired([1.0, 2.0, 4.0, 7.0], [1, 2]), [1.0, np.sqrt(10.0)])
+    # a pair cut in half by the number asked for is left out
+    np.testing.assert_allclose(paired([1.0, 2.0], [1, 2]), [1.0])
+
+
+def test_times_are_not_compared_unless_answers_agree(tmp_path):
+    race = Race(tmp_path, quick=False, limit=1.0)
+
+    def wrong():
+        race.check("frequencies", 2e-3, 1e-3, "a reason")
+
+    fast = race.add(Lane("h", "ours", lambda: Sample({"mesh": 9.0, "modes": 1.0}, 0.0), counted=("modes",)))
+    slow = race.add(Lane("h", "theirs", wrong))
+    race.run(2)
+    assert Figure("ratio", slow, fast, 4.0).row()["measured"] is None
+    assert "differ from ours" in Figure("ratio", slow, fast, 4.0).row()["met"]
+    right = Lane("h", "theirs", lambda: Sample({"whole": 5.0}, 0.0), samples=[Sample({"whole": 5.0}, 0.0)] * 2)
+    assert Figure("ratio", [slow, right], fast, 4.0).row() == {"ratio": "ratio", "asked": 4.0, "measured": 5.0, "over rounds": "5 to 5", "met": "yes"}
+    assert Figure("ratio", right, fast, 6.0).row()["met"] == "NO"
+    fast.samples.append(Sample({"mesh": 9.0, "modes": 100.0}, 0.0))
+    fast.samples.append(fast.samples[-1])
+    assert Figure("ratio", right, fast).row()["measured"] == 5.0  # rounds the other did not run in do not count
+    assert (tmp_path / "rows.csv").read_text().count("\n") == 3
+
+
+def test_rotor_for_ross_has_our_sections_and_bearings():
+    import solidgear as sg
+
+    scene = ross_peer.tiltless(ours.held(SCENE, "average"))
+    body = sg.build(scene, "timoshenko")
+    data = ross_peer.rotor(scene, body)
+    volume = sum(length * np.pi / 12 * (a * a + a * b + b * b) for length, _, a, _, b, *_ in data["elements"])
+    assert volume * 7850 == pytest.approx(body.mass_matrix()[0, 0], rel=1e-9)
+    assert [k[1:] for k in data["bearings"]] == [[b.stiffness[c, c] for c in range(3)] for b in scene.bearings]
+    assert all(abs(body.geometry[k[0]] - b.y) < 1e-12 for k, b in zip(data["bearings"], scene.bearings))
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(bool(ross_peer.present()), reason="ROSS is not installed")
+def test_ross_agrees():
+    import solidgear as sg
+
+    scene = ross_peer.tiltless(ours.held(SCENE, "average"))
+    body = sg.build(scene, "timoshenko", kappa="cowper")
+    answer = ross_peer.solve(ross_peer.rotor(scene, body))
+    assert frequency_gap(np.array(answer["frequency_hz"]), sg.modes(body, scene, n=10)) < 1e-3
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(bool(sfepy_peer.present()), reason="sfepy is not installed")
+def test_sfepy_agrees():
+    scene = ours.held(SCENE, "average")
+    body = ours.solve(scene, "solid", TET, free=True).body
+    answer = sfepy_peer.solve(body, scene, 6)
+    assert frequency_gap(np.array(answer["frequency_hz"]), ours.free(sfepy_peer.straightened(body, scene), 6)) < 1e-6

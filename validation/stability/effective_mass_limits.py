@@ -1,0 +1,87 @@
+"""Problem: effective masses of the overhung pinion's first bending mode, with the lumped point moved along the shaft from the toe to the far end.
+Reference: the Timoshenko beam they are made from.
+
+Models: the published pair of equations (energy and determinant), mode-matched, Guyan, total mass.
+
+    python validation/stability/effective_mass_limits.py [--quick]
+"""
+
+from __future__ import annotations
+
+from frame import ROOT, Finding, main
+
+import numpy as np  # noqa: E402
+
+import solidgear as sg  # noqa: E402
+from solidgear.lumped.effective_mass import METHODS, synthesise  # noqa: E402
+
+STATUS = ("first", "second", "negative", "no real pair", "none")
+
+
+def status(s) -> str:
+    """What a lumped model came to, in a word."""
+    if s.feasible:
+        return "first" if s.first else "second"
+    if s.mass is not None:
+        return "negative"
+    return "no real pair" if s.numbers.get("discriminant", 0.0) < 0 else "none"
+
+
+def measure(quick: bool = False) -> Finding:
+    """Every synthesis over the position of the lumped point."""
+    scene = sg.load(ROOT / "geometry" / "pinion_overhung.toml")
+    rows = []
+    for y in np.linspace(0.0, scene.length, 14 if quick else 80):
+        here = scene.with_port(y=float(y))
+        body = sg.build(here, "timoshenko")
+        point, found = synthesise(body, here, here.port.name)
+        row = {"y mm": float(1e3 * y), "energy share of the static shape": point.static_share, "discriminant": found["thesis"].numbers["discriminant"]}
+        for name in METHODS:
+            s = found[name]
+            row |= {name: status(s), f"{name} f1 error": s.frequency_error}
+        matched = found["mode-matched"]
+        chosen = matched if matched.feasible and matched.first else found["guyan"]
+        own = point.omega / (2 * np.pi)
+        row |= {"mass kg": float(matched.mass[0, 0]), "inertia kg m2": float(matched.mass[1, 1]), "chosen": chosen.method, "chosen f1 error": chosen.frequency_error,
+                "chosen kinetic error": chosen.kinetic_error, "chosen holds to / f1": chosen.valid_to_hz / own}  # fmt: skip
+        rows.append(row)
+    count = {word: sum(r["mode-matched"] == word for r in rows) for word in STATUS}
+    thesis = {word: sum(r["thesis"] == word for r in rows) for word in STATUS}
+    # Kept frequency, lost energy: the frequency is exact while the lumped masses carry a fraction of the mode's.
+    hollow = [r for r in rows if r["chosen"] == "mode-matched" and r["energy share of the static shape"] < 0.8]
+    good = [r["y mm"] for r in rows if r["mode-matched"] == "first" and r["energy share of the static shape"] >= 0.95]
+    least = min(hollow, key=lambda r: r["energy share of the static shape"])
+    poor = max(rows, key=lambda r: abs(r["chosen f1 error"]))
+    front = [r["y mm"] for r in rows if r["mode-matched"] == "negative"]
+    return Finding(
+        "effective_mass_limits",
+        "Effective mass and inertia",
+        "An effective mass and inertia need a first mode that is nearly the static shape of the lumped point: elsewhere the published equations have no real pair, the mode-matched one is negative or holds the mode as its second, "
+        "or keeps the frequency with a fraction of the mode's energy.",
+        f"Of {len(rows)} positions along the overhung pinion the published equations are met at {thesis['first']} ({thesis['no real pair']} have no real root); mode-matched is first at {count['first']}, second at {count['second']}, negative at "
+        f"{count['negative']} (from y = {min(front):.0f} mm); only from {min(good):.0f} to {max(good):.0f} mm does the static shape hold 95 % of the energy, and at {least['y mm']:.0f} mm the program's choice keeps f1 exactly with "
+        f"{100 * least['energy share of the static shape']:.0f} % of it, its receptance right to {least['chosen holds to / f1']:.2f} f1; where it falls back to Guyan f1 is up to {100 * poor['chosen f1 error']:.0f} % off.",
+        "`solidgear compare` says why the published equations have no solution, falls back from mode-matched to Guyan where it is negative or second, and reports kinetic error and range of validity; "
+        "a first bending out of tolerance rules the lumped model out, a missing share of energy does not.",
+        "tests/test_effective_mass.py::test_mode_matched_can_be_second_or_negative",
+        rows,
+    )
+
+
+def draw(finding: Finding, axes) -> None:
+    """Energy share, discriminant and frequency errors along the shaft."""
+    y = [r["y mm"] for r in finding.rows]
+    axes.plot(y, [r["energy share of the static shape"] for r in finding.rows], "-", color="#0072b2", label="energy share of the static shape")
+    axes.plot(y, [r["discriminant"] for r in finding.rows], "--", color="#888888", label="discriminant of the published equations")
+    axes.plot(y, [r["guyan f1 error"] for r in finding.rows], "-", color="#00805e", lw=1.0, label="Guyan, error of f1")
+    axes.plot(y, [r["chosen holds to / f1"] for r in finding.rows], ":", color="#c4541c", label="receptance of the chosen one holds to, over f1")
+    for word, colour in (("first", "#0072b2"), ("second", "#e0a030"), ("negative", "#aa2222")):
+        at = [r["y mm"] for r in finding.rows if r["mode-matched"] == word]
+        axes.plot(at, [-0.45] * len(at), "s", color=colour, ms=4, label=f"mode-matched: {word}")
+    axes.axhline(0.95, color="#aa2222", lw=0.8, ls=":")
+    axes.set(xlabel="lumped point from the toe, mm", ylabel="share, error, ratio", title=finding.method, ylim=(-0.6, 1.6))
+    axes.legend(fontsize=7, ncols=2)
+
+
+if __name__ == "__main__":
+    main(measure, draw)

@@ -1,0 +1,119 @@
+"""Problem: a shaft clamped by its thick part and loaded at its thin end.  Reference: the harmonic solid, tied by section means at both ends as a beam is.
+
+Model: Timoshenko beam.  A pure moment loads a section tie with the stresses of beam theory, so all of the gap in tilt comes from the
+shoulder: stress cannot fill the thick part right behind it.  It is told as a missing length of thin shaft, and as the
+angle of the cone (from the axis) that the thick part may be thought to start with.
+
+    python validation/stability/shoulder_step.py [--quick]
+"""
+
+from __future__ import annotations
+
+from frame import Finding, crossing, main
+
+import numpy as np  # noqa: E402
+
+import solidgear as sg  # noqa: E402
+from solidgear.scene import STEEL, Bearing, Port, Scene, Segment  # noqa: E402
+
+THIN = 0.1  # diameter, m
+RATIOS = (1.02, 1.05, 1.1, 1.2, 1.3, 1.5, 1.75, 2.0, 2.5, 3.0)
+FEW = (1.05, 1.2, 1.5, 2.0, 3.0)
+REACH = (1.0, 2.0)  # lengths of the thin shaft in its diameters
+LEVELS = (0.01, 0.05)
+
+
+def shaft(ratio: float, reach: float, angle: float | None = None) -> Scene:
+    """Thin shaft, then a thick one held by an immovable section; the thick one may start with a cone."""
+    step, end = reach * THIN, reach * THIN + 1.5 * ratio * THIN
+    thick = ratio * THIN
+    segments = [Segment.cylinder("thin", length=step, diameter=THIN)]
+    y = step
+    if angle is not None:
+        y = step + (thick - THIN) / 2 / np.tan(angle)
+        segments.append(Segment.cone("cone", y0=step, length=y - step, start_diameter=THIN, end_diameter=thick))
+    segments.append(Segment.cylinder("thick", y0=segments[-1].y1, length=end - y, diameter=thick))
+    width = 2e-4 * THIN  # what lies beyond a tie is strained along and stiffens: 0.002 d in tilt at a stub of 0.01 d
+    clamp = Bearing(name="clamp", y=end - width / 2, seat_width=width, matrix=np.diag([1e24] * 6), attachment="section")
+    return Scene.from_parts(segments, bearings=[clamp], port=Port(y=0.0, lo=0.0, hi=width, attachment="section"))
+
+
+def compliance(model: str, scene: Scene, **options) -> tuple[float, float]:
+    """Deflection under a unit force and tilt under a unit moment at the thin end."""
+    c = sg.condense(sg.build(scene, model, **options), scene, port="port").compliance
+    return c[2, 2], c[3, 3]
+
+
+def cone_angle(extra: float, ratio: float) -> float:
+    """Angle (rad) of the cone whose extra tilt under a unit moment, over a cylinder of the thick radius, is ``extra``."""
+    a, b = THIN / 2, ratio * THIN / 2
+    # int dy / (E I) along the cone less along the cylinder, with dy = dr cot(angle)
+    per_cot = ((a**-3 - b**-3) / 3 - (b - a) / b**4) / (STEEL.E * np.pi / 4)
+    return float(np.arctan(per_cot / extra))
+
+
+def measure(quick: bool = False) -> Finding:
+    """Gap over the step ratio."""
+    rows = []
+    stiff = STEEL.E * np.pi / 64 * THIN**4
+    for ratio in FEW if quick else RATIOS:
+        row = {"ratio": ratio}
+        for reach in REACH:
+            scene = shaft(ratio, reach)
+            options = dict(edge_layers=0, size=THIN / 2)
+            solid = compliance("harmonic", scene, order=4 if quick else 6, layers=2 if quick else 4, **options)
+            beam = compliance("timoshenko", scene)
+            row |= {f"C_zz, {reach:g} d": beam[0] / solid[0] - 1, f"C_thx, {reach:g} d": beam[1] / solid[1] - 1}
+            row[f"missing length / d, {reach:g} d"] = (solid[1] - beam[1]) * stiff / THIN
+        extra = solid[1] - beam[1]
+        row["cone angle, deg"] = np.degrees(cone_angle(extra, ratio))
+        row["C_zz with that cone"] = compliance("timoshenko", shaft(ratio, reach, cone_angle(extra, ratio)))[0] / solid[0] - 1
+        row["C_zz with 45 deg"] = compliance("timoshenko", shaft(ratio, reach, np.pi / 4))[0] / solid[0] - 1
+        row["C_zz with a hinge"] = (beam[0] + extra * (reach * THIN) ** 2) / solid[0] - 1
+        rows.append(row)
+    at = [r["ratio"] for r in rows]
+
+    def passed(name, level):
+        x = crossing(at, [abs(r[name]) for r in rows], level)
+        return f"{level:.0%} at {x:.2f}" if np.isfinite(x) else f"{level:.0%} never"
+
+    last = rows[-1]
+    cone, hinge = (max(abs(r[f"C_zz with {what}"]) for r in rows) for what in ("that cone", "a hinge"))
+    return Finding(
+        "shoulder_step",
+        "Beam at a shoulder",
+        "A beam is too stiff at a sharp shoulder: it fills the thick section with stress at once, the solid needs a cone of length to do so.",
+        f"Ratio of diameters at which the deflection of an overhang of one diameter is too small by {passed('C_zz, 1 d', 0.01)}, {passed('C_zz, 1 d', 0.05)} "
+        f"(overhang of two: {passed('C_zz, 2 d', 0.01)}, {passed('C_zz, 2 d', 0.05)}); the shoulder is worth up to {last['missing length / d, 1 d']:.3f} d of thin shaft at "
+        f"ratio {last['ratio']:g}; "
+        f"a cone of {min(r['cone angle, deg'] for r in rows):.0f} to {max(r['cone angle, deg'] for r in rows):.0f} degrees from the axis gives the same tilt and the "
+        f"deflection to {100 * cone:.1f} % "
+        f"(45 degrees leaves {100 * max(abs(r['C_zz with 45 deg']) for r in rows):.1f} %), a hinge of that length of thin shaft to {100 * hinge:.1f} %.",
+        "`solidgear check` cautions for every shoulder with the length it is worth; `solidgear compare` shows the shoulder's share in its table of causes.",
+        "tests/test_check_guards.py",
+        rows,
+    )
+
+
+def draw(finding: Finding, axes) -> None:
+    """Errors and cone angle over the ratio."""
+    at = [r["ratio"] for r in finding.rows]
+    for name, colour, marker, words in (
+        ("C_zz, 1 d", "#c4541c", "o", "deflection, overhang 1 d"),
+        ("C_zz, 2 d", "#0072b2", "s", "deflection, overhang 2 d"),
+        ("C_thx, 1 d", "#c98a00", "v", "tilt, overhang 1 d"),
+        ("C_zz with that cone", "#00805e", "D", "deflection, 2 d, with the cone"),
+        ("C_zz with a hinge", "#111111", "^", "deflection, 2 d, with a hinge"),
+    ):
+        axes.plot(at, [100 * r[name] for r in finding.rows], marker + "-", color=colour, ms=5, lw=1.3, label=words)
+    axes.set(xlabel="ratio of diameters", ylabel="beam against solid, %", title=finding.method, ylim=(-22, 22))
+    axes.legend(loc="upper left", ncols=2)
+    other = axes.twinx()
+    other.plot(at, [r["cone angle, deg"] for r in finding.rows], ":", color="#5a3e8c", lw=1.6)
+    other.set(ylabel="angle of the equivalent cone, degrees (dotted)", ylim=(0, 90))
+    other.spines["right"].set_visible(True)
+    other.grid(visible=False)
+
+
+if __name__ == "__main__":
+    main(measure, draw)
