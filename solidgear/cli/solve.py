@@ -172,8 +172,8 @@ def check(
     as_json: JsonFlag = False,
     settings: Settings = None,
 ) -> None:
-    """Say what will be modelled and what will not hold, before anything is solved."""
-    from solidgear.check import check_scene
+    """Say what will be modelled and what will not hold; nothing heavier than a light mesh is solved."""
+    from solidgear.check import VERDICTS, check_scene
     from solidgear.scene_file import load
 
     loaded = load(scene)
@@ -182,11 +182,14 @@ def check(
     if as_json:
         print(json.dumps(found, default=float))
     else:
-        for line in found["facts"]:
-            print(line)
-        for line in found["cautions"]:
-            print(f"caution: {line}")
-        for line in found["faults"]:
-            print(f"fault: {line}")
+        words = {"caution": "caution", "avoid": "caution", "fault": "fault"}
+        for level in ("fact", "caution", "avoid", "fault"):
+            for record in (r for r in found["records"] if r["level"] == level):
+                about = f" ({', '.join(record['models'])})" if record["models"] else ""
+                print(f"{words[level]}{about}: {record['sentence']}" if level in words else record["sentence"])
+        for verdict in dict.fromkeys(VERDICTS.values()):
+            models = [f"{m} ({', '.join(v['guards']).replace('_', ' ')})" if v["guards"] else m for m, v in found["verdicts"].items() if v["verdict"] == verdict]
+            if models:
+                print(f"{verdict.capitalize()}: {', '.join(models)}.")
     if found["faults"]:
         raise typer.Exit(1)

@@ -101,6 +101,9 @@ class Pardiso:
         for number, value in {**self.SETTINGS, **({} if definite else self.INDEFINITE)}.items():
             self.iparm[number - 1] = value
         self.definite = definite
+        self.order = _node_order(matrix)
+        if self.order is not None:
+            self.iparm[4] = 1
         self.ia, self.ja = self.upper.indptr.astype(np.int32, copy=False), self.upper.indices.astype(np.int32, copy=False)
         self._release = weakref.finalize(self, _release, _mkl_pardiso(), self.pt, self.iparm, 2 if definite else -2, self.n)
         self._call(11)
@@ -108,13 +111,10 @@ class Pardiso:
         self.estimate_mb = max(symbolic_peak, symbolic + numeric) / 1024 + _size_mb(self.upper)
 
     def _call(self, phase, rhs=np.zeros(1), x=np.zeros(1), columns=1):
-        error = ctypes.c_int32(0)
-        _mkl_pardiso()(
-            _pointer(self.pt), _int(1), _int(1), _int(2 if self.definite else -2), _int(phase), _int(self.n), _pointer(self.upper.data), _pointer(self.ia),
-            _pointer(self.ja), None, _int(columns), _pointer(self.iparm), _int(0), _pointer(rhs), _pointer(x), ctypes.byref(error),
-        )  # fmt: skip
-        if error.value:
-            raise FactorError(f"PARDISO failed on the system matrix: {self.ERRORS.get(error.value, f'error {error.value}')}")
+        mtype = 2 if self.definite else -2
+        error = _pardiso_phase(phase, self.pt, self.iparm, mtype, self.n, self.upper.data, self.ia, self.ja, self.order, rhs, x, columns)
+        if error:
+            raise FactorError(f"PARDISO failed on the system matrix: {self.ERRORS.get(error, f'error {error}')}")
 
     def factor(self):
         self._call(22)
@@ -138,6 +138,43 @@ class Pardiso:
         if not np.isfinite(x).all():
             raise FactorError("PARDISO returned NaN: the system matrix is not positive definite")
         return np.ascontiguousarray(x)
+
+
+def _pardiso_phase(phase, pt, iparm, mtype, n, data, ia, ja, order=None, rhs=np.zeros(1), x=np.zeros(1), columns=1) -> int:
+    error = ctypes.c_int32(0)
+    _mkl_pardiso()(
+        _pointer(pt), _int(1), _int(1), _int(mtype), _int(phase), _int(n), _pointer(data), _pointer(ia), _pointer(ja), None if order is None else _pointer(order),
+        _int(columns), _pointer(iparm), _int(0), _pointer(rhs), _pointer(x), ctypes.byref(error),
+    )  # fmt: skip
+    return error.value
+
+
+def _node_order(matrix, components: int = 3) -> np.ndarray | None:
+    """Fill-reducing order of a solid from the graph of its nodes, or None if unknowns do not come in threes.
+
+    The three motions of a node have the same neighbours: ordering nodes gives the same fill for a ninth of the graph, and the analysis takes
+    0.3 s instead of 1.0 s on 93,000 unknowns.  Only the cost depends on it, so the test may be a loose one.
+    """
+    n, rest = divmod(matrix.shape[0], components)
+    if rest or n < 1000:
+        return None
+    length = np.diff(matrix.indptr).reshape(n, components)
+    # entries that happen to be zero may be missing
+    if np.mean(length.min(axis=1) > 0.3 * length.max(axis=1)) < 0.9:
+        return None
+    rows = matrix[::components]
+    graph = sp.csr_matrix((np.ones(rows.nnz), rows.indices // components, rows.indptr), shape=(n, n))
+    graph.sum_duplicates()
+    graph.data[:] = -1.0
+    upper = sp.triu(graph + graph.T + sp.diags(2.0 * np.asarray(abs(graph).sum(axis=1)).ravel() + 2.0), format="csr")
+    pt, iparm, order = np.zeros(64, np.int64), np.zeros(64, np.int32), np.zeros(n, np.int32)
+    for number, value in {**Pardiso.SETTINGS, 5: 2}.items():
+        iparm[number - 1] = value
+    error = _pardiso_phase(11, pt, iparm, 2, n, upper.data, upper.indptr.astype(np.int32), upper.indices.astype(np.int32), order)
+    _release(_mkl_pardiso(), pt, iparm, 2, n)
+    if error or not np.array_equal(np.sort(order), np.arange(n)):
+        return None
+    return (components * order[:, None] + np.arange(components)).ravel().astype(np.int32)
 
 
 def _release(pardiso, pt, iparm, mtype, n):

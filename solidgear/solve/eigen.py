@@ -24,7 +24,7 @@ METHODS = ("lanczos", "arpack", "dense")
 # SuperLU solves eight right-hand sides no faster than eight times one, and ARPACK needs fewer: measured 0.3 s against 0.6 s on a meridian.
 SINGLE = ("superlu",)
 WIDTH = 8
-TOLERANCE = 1e-8
+TOLERANCE = 1e-7  # of shapes; frequencies are good to its square
 SOFT = 30.0  # shifts
 
 
@@ -145,7 +145,7 @@ def _arpack(supported: Supported, wanted: int):
             sigma=-shift,
             OPinv=spla.LinearOperator(shape, matvec=supported.inverse, dtype=float),
             v0=supported.inverse(np.random.default_rng(0).standard_normal(total)),
-            ncv=min(total - 1, max(2 * wanted + 10, 30)),
+            ncv=min(total - 1, max(2 * wanted + 6, 20)),
             tol=1e-12,
         )
     except spla.ArpackNoConvergence as error:
@@ -178,14 +178,16 @@ def _soft_modes(u, rigid, supported: Supported):
     keep = w > 1e-18  # a remainder below 1e-9 of the shape is rounding
     rest = rest @ (v[:, keep] / np.sqrt(w[keep]))
     basis = np.hstack([rigid, rest])
-    small = np.zeros((basis.shape[1],) * 2)
-    k = rigid.shape[1]
-    small[k:, k:] = rest.T @ supported.elastic(rest)
-    held = supported.load.T @ basis
-    small = small + held.T @ held
-    value, vector = np.linalg.eigh((small + small.T) / 2)
+    energy = rest.T @ supported.elastic(rest)
+    w, v = np.linalg.eigh((energy + energy.T) / 2)
+    elastic = np.zeros((len(w), basis.shape[1]))
+    elastic[:, rigid.shape[1] :] = (v * np.sqrt(np.maximum(w, 0.0))).T
+    # Singular values of a root keep twice the digits of a soft direction that eigenvalues of its Gram matrix would.
+    root = np.vstack([supported.load.T @ basis, elastic])
+    s, vt = np.linalg.svd(root)[1:]
+    value = np.concatenate([s**2, np.zeros(basis.shape[1] - len(s))])[::-1]
     count = u.shape[1]
-    return value[:count], basis @ vector[:, :count]
+    return value[:count], basis @ vt[::-1][:count].T
 
 
 @dataclass(frozen=True)
@@ -207,8 +209,8 @@ class Count:
     backend: str
 
 
-def count_below(supported: Supported, solved: Solved, n: int) -> Count | None:
-    """Sylvester's law of inertia: how many modes lie below the widest gap at the end of what was found.
+def count_below(supported: Supported, solved: Solved, reach: float) -> Count | None:
+    """Sylvester's law of inertia: how many modes lie below the first gap behind ``reach``.
 
     With bearings ``L L'`` kept outside the factor (Haynsworth's additivity on the bordered matrix),
     ``neg(K + L L' - mu M) = neg(K - mu M) - neg(I + L' (K - mu M)^-1 L)``.
@@ -217,8 +219,8 @@ def count_below(supported: Supported, solved: Solved, n: int) -> Count | None:
     ----------
     supported : Supported
     solved : Solved
-    n : int
-        Modes that were asked for; the bound is put behind as many where the spectrum has a gap there.
+    reach : float
+        Highest eigenvalue that is used, rad^2/s^2.
 
     Returns
     -------
@@ -228,11 +230,11 @@ def count_below(supported: Supported, solved: Solved, n: int) -> Count | None:
     value = np.array([r.value for r in solved.elastic])
     if len(value) < 2:
         return None
-    first = max(0, min(n, len(value) - 1) - 3)
-    gap = np.log(value[first + 1 :]) - np.log(value[first:-1])
-    at = first + int(np.argmax(gap))
-    # Nearer to the lower end: there the factor is farther from the many eigenvalues above.
-    below = float(value[at] ** 0.6 * value[at + 1] ** 0.4)
+    start = np.maximum(value[:-1], reach)
+    clear = np.flatnonzero(value[1:] > 1.001 * start)
+    # A factor of K - mu M is sound only at a distance from the spectrum, so a bound inside a cluster is no use.
+    at = int(clear[0]) if len(clear) else int(np.argmax(np.diff(np.log(value))))
+    below = float((start[at] if len(clear) else value[at]) ** 0.6 * value[at + 1] ** 0.4)
     negative = 0
     load, inner = supported.load, np.eye(supported.load.shape[1])
     backends = set()

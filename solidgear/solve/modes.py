@@ -13,7 +13,7 @@ import numpy as np
 
 from solidgear.body import Body, as_supports, component_rows
 from solidgear.errors import SolidgearError
-from solidgear.solve.eigen import Raw, count_below, lowest
+from solidgear.solve.eigen import Raw, Solved, count_below, lowest
 from solidgear.solve.statics import SHIFT, factors
 from solidgear.solve.supported import Supported, decoupled, groups
 
@@ -127,49 +127,79 @@ def modes(
         raise SolidgearError(f"modes: n = {n} is not a number of modes; ask for 1 or more")
     supports = as_supports(supports)
     spring, bound = decoupled(body, supports, coupling_tolerance)
-    raw, rigid, orthogonality, used, counted = [], [], 0.0, {}, []
-    done: list[tuple[list[int], list[Raw], list[Raw]]] = []
-    for group in groups(body, supports, spring):
-        twin = _twin_of(body, supports, spring, group, done)
-        if twin is not None:
-            elastic, free = ([Raw(r.value, {group[0]: next(iter(r.vectors.values()))}, r.residual) for r in part] for part in twin)
-        else:
-            supported = Supported(body, supports, spring, group)
-            solved = lowest(supported, n, method)
-            if count:
-                solved, verdict = _complete(supported, solved, n, method)
-                counted.append(verdict)
-            elastic, free = solved.elastic, solved.free
-            orthogonality = max(orthogonality, solved.orthogonality)
-            used[solved.method] = None
-        done.append((group, elastic, free))
-        raw += elastic
-        rigid += free
+    parts, reach = _solved_parts(body, supports, spring, n, method)
+    counted = []
+    if count:
+        for part in parts:
+            part.solved, verdict = _complete(part, reach, method)
+            counted.append(verdict)
+    raw = [r for part in parts for r in part.everywhere(part.solved.elastic)]
+    rigid = [r for part in parts for r in part.everywhere(part.solved.free)]
     raw.sort(key=lambda r: r.value)
     stations = np.linspace(0.0, body.length, STATIONS)
     project = _Projection(body, stations)
     found = _named(body, project, raw, rigid, n, max_frequency)
     evidence = {
         "residual": max((r.residual for r in raw[: n + 2]), default=0.0),
-        "orthogonality": orthogonality,
+        "orthogonality": max(part.solved.orthogonality for part in parts),
         "rigid_modes": len(rigid),
         "shift_rad2": -SHIFT * body.scale,
         "coupling_bound": bound,
         "backend": "+".join(sorted({f.backend for f in factors(body)})),
-        "method": "+".join(used),
+        "method": "+".join(dict.fromkeys(part.solved.method for part in parts)),
     }
     if count:
         evidence["count"] = counted
     return ModeSet(body.fidelity, found, stations, project.gram, evidence)
 
 
-def _complete(supported: Supported, solved, n: int, method: str | None):
+@dataclass
+class _Part:
+    """Blocks that belong together, what was asked of them and found; ``twins`` are lone blocks that repeat it in the other plane."""
+
+    supported: Supported
+    ask: int
+    solved: Solved | None = None
+    twins: list[int] = field(default_factory=list)
+
+    def everywhere(self, found: list[Raw]) -> list[Raw]:
+        """Eigenpairs of the group and of its twins."""
+        return found + [Raw(r.value, {twin: next(iter(r.vectors.values()))}, r.residual) for twin in self.twins for r in found]
+
+
+def _solved_parts(body, supports, spring, n: int, method: str | None) -> tuple[list[_Part], float]:
+    """Eigenpairs of all groups, each searched only as far as the ``n`` lowest of all reach, and the highest of those."""
+    parts: list[_Part] = []
+    for group in groups(body, supports, spring):
+        original = next((p for p in parts if _is_twin(body, supports, spring, group, p.supported.group)), None)
+        if original is not None:
+            original.twins.append(group[0])
+        else:
+            parts.append(_Part(Supported(body, supports, spring, group), n))
+    if len(parts) > 1:
+        # Bending pairs make most of a spectrum; whoever is asked for too little is asked again.
+        for part in parts:
+            part.ask = n // 3 + 1 if part.twins else n // 4 + 1
+    waiting = parts
+    while waiting:
+        for part in waiting:
+            part.solved = lowest(part.supported, part.ask, method)
+        values = sorted(r.value for part in parts for r in part.everywhere(part.solved.elastic))
+        reach = values[n - 1] if len(values) >= n else np.inf
+        waiting = [p for p in parts if p.ask < n and p.solved.elastic and p.solved.elastic[-1].value <= 1.01 * reach]
+        for part in waiting:
+            part.ask = min(2 * part.ask, n)
+    return parts, min(reach, values[-1]) if values else 0.0
+
+
+def _complete(part: _Part, reach: float, method: str | None) -> tuple[Solved, dict]:
     """A result with no mode missed, and what the count says; a second search with more vectors where one was."""
-    seen = count_below(supported, solved, n)
+    supported, solved, n = part.supported, part.solved, part.ask
+    seen = count_below(supported, solved, reach)
     if seen is not None and seen.counted != seen.found:
         missed = seen.counted - seen.found
         solved = lowest(supported, n + 4 + 2 * abs(missed), "arpack" if solved.method == "lanczos" else "lanczos")
-        seen = count_below(supported, solved, n)
+        seen = count_below(supported, solved, reach)
         if seen is not None and seen.counted != seen.found:
             raise SolidgearError(
                 f"modes: {seen.found} modes were found below {np.sqrt(seen.below) / (2 * np.pi):.6g} Hz but the factor counts {seen.counted}; ask for more modes (n = {n})"
@@ -179,19 +209,17 @@ def _complete(supported: Supported, solved, n: int, method: str | None):
     return solved, {"checked": True, "below_hz": float(np.sqrt(seen.below) / (2 * np.pi)), "modes": seen.counted, "backend": seen.backend}
 
 
-def _twin_of(body, supports, spring, group, done):
-    """Earlier result that a lone mirrored block shares, if its springs are mirrored too."""
+def _is_twin(body, supports, spring, group: list[int], other: list[int]) -> bool:
+    """Whether a lone block mirrors another one, springs included."""
     block = body.blocks[group[0]]
-    if len(group) != 1 or block.mirror is None:
-        return None
+    if len(group) != 1 or block.mirror is None or other != [block.mirror[0]]:
+        return False
     index, signs = block.mirror
     m = len(supports.ports)
     mine, theirs = (component_rows(range(m), b.components) for b in (block, body.blocks[index]))
     sign = np.tile(signs, m)
     a, b = spring[np.ix_(mine, mine)], spring[np.ix_(theirs, theirs)] * np.outer(sign, sign)
-    if np.abs(a - b).max(initial=0.0) > 1e-14 * np.abs(b).max(initial=0.0):
-        return None
-    return next(((elastic, free) for other, elastic, free in done if other == [index]), None)
+    return bool(np.abs(a - b).max(initial=0.0) <= 1e-14 * np.abs(b).max(initial=0.0))
 
 
 class _Projection:

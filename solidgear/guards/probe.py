@@ -1,0 +1,146 @@
+"""Quick solutions that the guards of a scene share: both beams, a light harmonic solid, lumped models.
+
+Everything is solved when a guard first asks for it, and once.
+"""
+
+from __future__ import annotations
+
+from functools import cache, cached_property
+from inspect import signature
+
+import numpy as np
+import scipy.linalg as sla
+import scipy.sparse.linalg as spla
+
+from solidgear.body import Body, Supports, as_supports
+from solidgear.errors import SolidgearError
+from solidgear.evidence.quantities import change, measure
+from solidgear.fidelity import build
+from solidgear.lumped.effective_mass import LumpedPoint, Synthesis, synthesise
+from solidgear.scene import TOUCH
+from solidgear.solve.modes import ModeSet, modes
+from solidgear.solve.statics import condense
+from solidgear.verdict import JUDGED
+
+#: modes enough for the first bending pair, the first axial one and the rigid ones between them
+FEW = 8
+#: a clamp this much stiffer than the shaft on its bearings moves a frequency by about the inverse
+CLAMP = 1e6
+#: unknowns of the default HEX20 mesh per cell around and ring, and entries of its matrix per unknown: within 4 and 8 % on every shipped scene
+UNKNOWNS, ENTRIES = 13.0, 165.0
+
+
+class Probe:
+    """Quick solutions of one scene.
+
+    Parameters
+    ----------
+    scene : Scene
+    body : Body
+        The body the user asked for; it is read, not solved.
+    """
+
+    def __init__(self, scene, body: Body):
+        self.scene, self.body, self.supports = scene, body, as_supports(scene)
+        self.beam, self.tied, self.gaps = cache(self._beam), cache(self._tied), cache(self._gaps)
+
+    def diameter(self, y: float) -> float:
+        """Outer diameter of the shaft at y, the larger one at a step, m."""
+        return 2 * max(s.radius_at(y)[1] for s in self.scene.segments if s.y0 - TOUCH <= y <= s.y1 + TOUCH)
+
+    def light(self, scene, **options) -> Body:
+        """Harmonic solid of order 3 on a mesh graded towards shoulders: within 0.2 % of the default one on every shipped scene, in 0.2 s."""
+        # Cells no smaller than a part of the whole: a scene of extreme proportions must not cost more than another.
+        coarse = max(scene.length / 40, max(max(s.outer0, s.outer1) for s in scene.segments) / 20)
+        size = max(coarse, min(min(s.outer0, s.outer1) for s in scene.segments))
+        return build(scene, "harmonic", order=3, layers=2, edge_layers=0, size=size, **options)
+
+    def _beam(self, model: str) -> tuple[Body, ModeSet, dict[str, float]]:
+        return self._solved(build(self.scene, model))
+
+    def _tied(self, attachment: str | None) -> dict[str, float]:
+        """Numbers of the light harmonic solid with one attachment at all ports, or as the scene has it."""
+        return self._solved(self.light(self.scene.with_attachment(attachment) if attachment else self.scene))[2]
+
+    def _solved(self, body: Body) -> tuple[Body, ModeSet, dict[str, float]]:
+        found = modes(body, self.supports, FEW)
+        return body, found, measure(condense(body, self.supports, self.scene.port.name), found)
+
+    def _gaps(self, model: str) -> list[tuple[float, str, str]]:
+        """Distances of a beam from the light solid, like for like and as the scene is tied, the largest first: (relative, quantity, how tied)."""
+        mine, given = self.beam(model)[2], {s.attachment for s in self.scene.stations}
+        ways = {"as section means": "section"}
+        if given != {"section"}:
+            ways["as in the scene"] = given.pop() if len(given) == 1 else None
+        found = [(change(mine, self.tied(attachment), name), name, how) for how, attachment in ways.items() for name in JUDGED]
+        return sorted((g for g in found if g[0] is not None), key=lambda g: -abs(g[0]))
+
+    @property
+    def first_bending(self) -> float | None:
+        """First bending of the Timoshenko beam on its bearings, Hz."""
+        return self.beam("timoshenko")[2].get("bending 1")
+
+    @cached_property
+    def lumped(self) -> tuple[LumpedPoint, dict[str, Synthesis]]:
+        """Lumped point and lumped models of the Timoshenko beam; SolidgearError where there is nothing to lump."""
+        body, found, _ = self.beam("timoshenko")
+        try:
+            with np.errstate(divide="raise", invalid="raise"):
+                return synthesise(body, self.supports, self.scene.port.name, found)
+        except FloatingPointError:
+            raise SolidgearError("first bending leaves the lumped point at rest in the z plane, in which masses are lumped; bearings differ in x and z") from None
+
+    @cached_property
+    def fixed_interface(self) -> float | None:
+        """First bending (Hz) of the Timoshenko beam on its bearings with the lumped point held; None without a lumped model."""
+        body, _, _ = self.beam("timoshenko")
+        try:
+            point, _ = self.lumped
+        except SolidgearError:
+            return None
+        clamp = CLAMP * np.diag([point.stiffness[0, 0], 0.0, point.stiffness[0, 0], point.stiffness[1, 1], 0.0, point.stiffness[1, 1]])
+        held = Supports((*self.supports.ports, self.scene.port.name), sla.block_diag(self.supports.stiffness, clamp))
+        return next((m.frequency_hz for m in modes(body, held, FEW).modes if m.family == "bending" and m.frequency_hz > 0), None)
+
+    @cached_property
+    def ovalising(self) -> dict[int, float]:
+        """Lowest frequency (Hz) of two and of three waves around; bearings do not enter."""
+        blocks = self.light(self.scene, ovalising=(2, 3)).blocks[-2:]
+        lowest = [spla.eigsh(b.stiffness.tocsc(), 1, b.mass.tocsc(), sigma=0.0, return_eigenvectors=False)[0] for b in blocks]
+        return {n: float(np.sqrt(w2) / (2 * np.pi)) for n, w2 in zip((2, 3), lowest)}
+
+    @cached_property
+    def split(self) -> float:
+        """Relative distance of the two first bending frequencies of the Timoshenko beam; 0 where bearings keep the pair."""
+        found = [m for m in self.beam("timoshenko")[1].modes if m.family == "bending" and m.frequency_hz > 0]
+        if len(found) < 2 or found[0].multiplicity == 2:
+            return 0.0
+        return found[1].frequency_hz / found[0].frequency_hz - 1
+
+    @cached_property
+    def cells_around(self) -> int:
+        """Cells around of a 3D solid of hexahedra (of tetrahedra, an upper bound)."""
+        x, _, z = self.body.geometry.mesh.p
+        r = np.hypot(x, z)
+        rim = r > (1 - 1e-6) * r.max()
+        return len(np.unique(np.round(np.arctan2(x[rim], z[rim]) % (2 * np.pi), 6)))
+
+    @cached_property
+    def solid_unknowns(self) -> tuple[int, int]:
+        """Unknowns and matrix entries of the 3D solid: of the body if it is one, else estimated for the default HEX20 mesh."""
+        if self.body.fidelity == "solid":
+            matrix = self.body.blocks[0].stiffness
+            return matrix.shape[0], matrix.nnz
+        from solidgear.fidelity.solid import solid
+        from solidgear.meshing.layout import layout
+
+        usual = {name: p.default for name, p in signature(solid).parameters.items()}
+        thin = min(min(s.outer0, s.outer1) for s in self.scene.segments)
+        plan = layout(
+            self.scene, size=0.6 * thin, layers=usual["layers"], edge_layers=usual["edge_layers"], radial_layers=usual["radial_layers"], ratio=usual["ratio"],
+            reach=0.7 * thin, radial_reach=thin / 2, core=True,
+        )  # fmt: skip
+        rings = np.array([sum(len(plan.fractions[k]) - 1 for k in range(*bands)) for bands in plan.bands])
+        elements = usual["around"] * rings[plan.segment].sum()
+        return int(UNKNOWNS * elements), int(ENTRIES * UNKNOWNS * elements)
+
