@@ -5,9 +5,11 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import scipy.linalg as sla
 
 import solidgear as sg
 from solidgear.body import as_supports
+from solidgear.scene import STEEL, Material, Scene, Segment
 from solidgear.solve import eigen, modes
 from solidgear.solve.eigen import count_below, lowest
 from solidgear.solve.supported import Supported, decoupled, groups
@@ -125,3 +127,20 @@ def test_a_mode_lost_twice_ends_in_a_sentence(scene, solid, monkeypatch):
     monkeypatch.setattr(modes, "lowest", lambda *a: (lambda s: replace(s, elastic=s.elastic[1:]))(real(*a)))
     with pytest.raises(sg.SolidgearError, match=r"modes were found below .* Hz but the factor counts"):
         sg.modes(solid, scene, n=8, count=True)
+
+
+def test_elastic_modes_below_the_soft_limit_of_a_free_shaft():
+    """A soft segment puts the first elastic mode where soft springs are looked for; with no spring there is no rigid motion to mix in."""
+    lead = Material(E=16e9, nu=0.44, density=11340.0)
+    steel = STEEL
+    parts = [Segment.cylinder("a", length=0.04, diameter=0.09, material=steel), Segment.cylinder("b", length=0.054, diameter=0.07, y0=0.04, material=lead),
+             Segment.cylinder("c", length=0.03, diameter=0.1, y0=0.094, material=steel)]  # fmt: skip
+    scene = Scene.from_parts(parts)
+    body = sg.build(scene, "timoshenko")
+    found = sg.modes(body, (), n=4)
+    assert found.evidence["orthogonality"] < 1e-9
+    assert found.evidence["rigid_modes"] == 6
+    k, m = (getattr(body.blocks[0], name).toarray() for name in ("stiffness", "mass"))
+    exact = np.sqrt(sla.eigh(k, m, eigvals_only=True)[2]) / (2 * np.pi)
+    assert (2 * np.pi * exact) ** 2 < 30 * 1e-3 * body.scale  # or it would prove nothing
+    assert found.named("bending 1").frequency_hz == pytest.approx(exact, rel=1e-7)

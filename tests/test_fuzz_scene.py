@@ -35,10 +35,10 @@ def nothing_found(fuzz, cases, seed):
 
 
 def test_spoilt_scenes_are_refused_or_solved(fuzz):
-    outcomes, sentences = nothing_found(fuzz, 1000, seed=1)
+    outcomes, sentences = nothing_found(fuzz, 600, seed=1)
     # a fuzz that never gets past the parser, or never meets a refusal, tests nothing
-    assert outcomes["accepted", "euler"] > 100 and outcomes["accepted", "harmonic"] > 5
-    assert len(sentences) > 40
+    assert outcomes["accepted", "euler"] > 60 and outcomes["accepted", "harmonic"] > 3
+    assert len(sentences) > 30
 
 
 @pytest.mark.slow

@@ -39,7 +39,7 @@ from solidgear.scene_file import load  # noqa: E402
 from solidgear.solve.modes import modes  # noqa: E402
 from solidgear.solve.statics import condense  # noqa: E402
 
-LIMIT = 2.0  # s of processor time: wall time would blame the program for a busy machine
+LIMIT = 5.0  # s of processor time, check of a thin tube included: wall time would blame the program for a busy machine
 STUCK = 60.0  # s of wall time, for what waits without computing
 ROOM = 3 << 30  # bytes a case may add to the process
 
@@ -262,7 +262,7 @@ class Outcome:
 
 
 def use(path: Path, harmonic: bool = False) -> Outcome:
-    """Load a file and put the scene to use: check, 6x6 and modes of the Euler beam, on request of a light harmonic solid too."""
+    """Load a file and put the scene to use: 6x6 and modes of the Euler beam; on request the check and a light harmonic solid too."""
     stage = "load"
     try:
         with watched():
@@ -274,7 +274,7 @@ def use(path: Path, harmonic: bool = False) -> Outcome:
                 values = modes(body, scene, n=scene.ask.modes).frequency_hz
                 if not (np.isfinite(found.stiffness).all() and np.isfinite(values).all()):
                     return Outcome("finding", stage, "a result is not finite")
-                json.dumps({"scene": scene.as_dict(), "check": check_scene(scene, body), "frequencies": values.tolist()}, allow_nan=False)
+                json.dumps({"scene": scene.as_dict(), "check": check_scene(scene, body) if harmonic else None, "frequencies": values.tolist()}, allow_nan=False)
     except SolidgearError as error:
         return _judged(error, path, stage)
     except Overrun:

@@ -182,11 +182,12 @@ def check(
     if as_json:
         print(json.dumps(found, default=float))
     else:
-        words = {"caution": "caution", "avoid": "caution", "fault": "fault"}
-        for level in ("fact", "caution", "avoid", "fault"):
-            for record in (r for r in found["records"] if r["level"] == level):
-                about = f" ({', '.join(record['models'])})" if record["models"] else ""
-                print(f"{words[level]}{about}: {record['sentence']}" if level in words else record["sentence"])
+        for line in found["facts"]:
+            print(line)
+        for record in (r for level in ("caution", "avoid") for r in found["records"] if r["level"] == level):
+            print(": ".join(filter(None, ("caution", ", ".join(record["models"]), record["sentence"]))))
+        for line in found["faults"]:
+            print(f"fault: {line}")
         for verdict in dict.fromkeys(VERDICTS.values()):
             models = [f"{m} ({', '.join(v['guards']).replace('_', ' ')})" if v["guards"] else m for m, v in found["verdicts"].items() if v["verdict"] == verdict]
             if models:

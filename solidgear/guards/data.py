@@ -38,7 +38,9 @@ def units(probe: Probe) -> Notices:
     first = [("first bending in Hz", probe.first_bending, "the Timoshenko beam")] if probe.first_bending else []
     # What is wrong early moves all that comes after it.
     for found in (materials, bearings, first):
-        out = [f"{name} of {where} is {value:.3g}, outside {SOUND[name][0]:g} to {SOUND[name][1]:g}" for name, value, where in found if not SOUND[name][0] <= value <= SOUND[name][1]]
+        out = [
+            f"{name} of {where} is {value:.3g}, outside {SOUND[name][0]:g} to {SOUND[name][1]:g}" for name, value, where in found if not SOUND[name][0] <= value <= SOUND[name][1]
+        ]
         if out:
             yield Notice("caution", (), f"probably a slip in units: {'; '.join(out)}{' (d: mean diameter)' * (found is bearings)}; write the unit beside the number")
             return
@@ -72,8 +74,9 @@ def stiffness_range(probe: Probe) -> Notices:
         yield Notice(
             "avoid" if stiff > LOST * soft else "caution",
             MODELS,
-            f"bearing {over!r} in {high} is {stiff / soft:.0e} times as stiff as bearing {under!r} in {low} (tilts over the length squared): beyond {RANGE:.0e} the lowest mode loses "
-            f"digits, beyond {LOST:.0e} it is 10 % off or lost, while the stiffness at the lumped point stays exact; write 0 for what is free, and no more than 1e15 N/m for what is rigid",
+            f"bearing {over!r} in {high} is {stiff / soft:.0e} times as stiff as bearing {under!r} in {low} (tilts over the length squared): beyond {RANGE:.0e} the lowest mode "
+            f"loses digits, beyond {LOST:.0e} it is 10 % off or lost, while the stiffness at the lumped point stays exact; write 0 for what is free, and no more than 1e15 N/m "
+            "for what is rigid",
         )
 
 
@@ -94,8 +97,8 @@ def oblique_softness(probe: Probe) -> Notices:
             yield Notice(
                 "caution",
                 (),
-                f"the couplings of bearing {b.name!r} all but cancel its stiffness in one oblique direction, which {what}: below {FOUR_DIGITS:g} it hangs on the fourth digit of the entries; "
-                "check their signs and give more digits",
+                f"the couplings of bearing {b.name!r} all but cancel its stiffness in one oblique direction, which {what}: below {FOUR_DIGITS:g} it hangs on the fourth digit of "
+                "the entries; check their signs and give more digits",
             )
 
 
@@ -113,6 +116,10 @@ def split_pair(probe: Probe) -> Notices:
     text = f"bearings that differ in x and z split the first bending pair by {split:.1e} (Timoshenko)"
     if blind:
         limit = max(twins[m] for m in blind)
-        yield Notice("caution", blind, f"{text}, less than the {limit:.0e} from which the model tells twins apart: other models call the twin 'bending 2'; compare by shape, or make the bearings alike")
+        yield Notice(
+            "caution",
+            blind,
+            f"{text}, less than the {limit:.0e} from which the model tells twins apart: other models call the twin 'bending 2'; compare by shape, or make the bearings alike",
+        )
     else:
         yield Notice("fact", (), f"{text}: 'bending 2' is the twin of 'bending 1'")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from importlib.util import find_spec
 from types import SimpleNamespace
 
@@ -13,10 +14,11 @@ from solidgear.evidence.quantities import change
 from solidgear.guards.notice import MODELS, SOLIDS, Notice, Notices, beyond
 from solidgear.guards.probe import Probe
 from solidgear.memory import available_mb
-from solidgear.solve.backends import INSTALL, law, missing
+from solidgear.solve.backends import BACKENDS, INSTALL, law, missing
 from solidgear.solve.factor import FASTEST, SMALL
 
-# Softer than half a diameter wide, on odd_geometry.py's shaft: 5 % in C_zz at a bearing, 1.2 % in C_thx at the lumped point; then 1 to 2 % more at each halving, without limit (ties.py)
+# odd_geometry.py's shaft, softer than a seat of half the diameter: 5 % in C_zz at a bearing, 1.2 % in C_thx at the lumped point; then 1 to 2 % more
+# at each halving, without limit (ties.py)
 NARROW, NARROW_POINT = (0.1, 5.0), (0.02, 1.2)
 
 
@@ -29,8 +31,8 @@ def narrow_seat(probe: Probe) -> Notices:
             yield Notice(
                 "caution",
                 SOLIDS,
-                f"the seat of {s.name!r} is {width:.2g} diameters of the shaft wide: below {limit:g} it ties like a line, {softer:g} % softer than a seat of 0.5, and softer without limit as it "
-                'narrows; give the real width, or attachment = "section"',
+                f"the seat of {s.name!r} is {width:.2g} diameters of the shaft wide: below {limit:g} it ties like a line, {softer:g} % softer than a seat of 0.5, and softer "
+                'without limit as it narrows; give the real width, or attachment = "section"',
             )
 
 
@@ -50,7 +52,11 @@ def rigid_seats(probe: Probe) -> Notices:
     if not chosen:
         yield Notice("fact", SOLIDS, f"how seats are tied: rigid rings at all of them would move {words} against averaged seats")
     elif max(map(abs, moved.values()), default=0.0) > 0.01:
-        yield Notice("caution", SOLIDS, f'rigid seats at {", ".join(chosen)}: rigid rings at all seats move {words} against averaged ones, limit 1 %; they are a stiff bound, use attachment = "average"')
+        yield Notice(
+            "caution",
+            SOLIDS,
+            f'rigid seats at {", ".join(chosen)}: rigid rings at all seats move {words} against averaged ones, limit 1 %; they are a stiff bound, use attachment = "average"',
+        )
 
 
 # linear_elements.py: error in first bending over that of the quadratic element of the same shape at 9000 unknowns
@@ -93,7 +99,8 @@ def nearly_incompressible(probe: Probe) -> Notices:
                 yield Notice(
                     beyond(error, probe.scene.ask.tolerance),
                     (model,),
-                    f"nu = {nu:g} of segment {s.name!r}: element {element} locks and is about {100 * error:.2g} % too stiff in bending, limit {100 * LOCKED:g} %; use the harmonic solid of order 3 or more",
+                    f"nu = {nu:g} of segment {s.name!r}: element {element} locks and is about {100 * error:.2g} % too stiff in bending, limit {100 * LOCKED:g} %; use the "
+                    "harmonic solid of order 3 or more",
                 )
 
 
@@ -104,7 +111,8 @@ def uniform_at_shoulder(probe: Probe) -> Notices:
         yield Notice(
             "caution",
             ("harmonic",),
-            f"layers = 0 at a corner of {np.degrees(angle):.0f} degrees: the mesh converges with order {2 * exponent:.2f} whatever the order of its elements; use layers = 2 or more",
+            f"layers = 0 at a corner of {np.degrees(angle):.0f} degrees: the mesh converges with order {2 * exponent:.2f} whatever the order of its elements; use layers = 2 or "
+            "more",
         )
 
 
@@ -116,15 +124,17 @@ GOOD_TO = 1.5  # of the laws, whose estimate over measured is 0.68 to 1.41
 def memory(probe: Probe) -> Notices:
     """What will factor the 3D solid, and whether it will fit."""
     size, entries = probe.solid_unknowns
-    absent, name = [], "superlu"
-    for name in FASTEST if size > SMALL else ("superlu",):
+    absent, forced = [], os.environ.get("SOLIDGEAR_BACKEND")
+    for name in (forced,) if forced in BACKENDS else FASTEST if size > SMALL else ("superlu",):
         if not (why := missing(name)):
             break
         absent.append(f"{why}; {INSTALL[name]}")
     matrix = SimpleNamespace(shape=(size, size), nnz=entries)
     need, free = OVER_LAW.get(name, 1.0) * law("cholmod" if name in OVER_LAW else "superlu", matrix, False), available_mb()
     which = "the" if probe.body.fidelity == "solid" else "the default"
-    yield Notice("fact", ("solid",), f"{which} 3D solid, about {size} unknowns, is factored by {name} in about {need:.0f} MB" + "".join(f"; faster but absent: {why}" for why in absent))
+    yield Notice(
+        "fact", ("solid",), f"{which} 3D solid, about {size} unknowns, is factored by {name} in about {need:.0f} MB" + "".join(f"; faster but absent: {why}" for why in absent)
+    )
     if free is not None and GOOD_TO * need > free:
         yield Notice(
             "avoid" if need > free else "caution",

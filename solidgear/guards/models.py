@@ -34,7 +34,10 @@ def slenderness(probe: Probe) -> Notices:
     """Length over mean diameter against what uniform shafts need."""
     scene = probe.scene
     ratio = scene.length**2 / sum(s.length * (s.outer0 + s.outer1) for s in scene.segments)
-    for name, (one, five), models, better in (("Euler-Bernoulli", EULER, ("euler",), "the Timoshenko beam or a solid"), ("Timoshenko", TIMOSHENKO, ("timoshenko", "lumped"), "the harmonic solid")):
+    for name, (one, five), models, better in (
+        ("Euler-Bernoulli", EULER, ("euler",), "the Timoshenko beam or a solid"),
+        ("Timoshenko", TIMOSHENKO, ("timoshenko", "lumped"), "the harmonic solid"),
+    ):
         if ratio < one:
             yield Notice("caution", models, f"length over mean diameter is {ratio:.2f}: on uniform shafts {name} needs {one:g} for 1 % and {five:g} for 5 %; use {better}")
 
@@ -58,7 +61,8 @@ def shoulder(probe: Probe) -> Notices:
             "caution",
             BEAMS,
             f"shoulder between {a.name!r} and {b.name!r} at y = {1e3 * b.y0:.6g} mm (sharpest corner {degrees:.0f} degrees), ratio of diameters {thick / thin:.2f}: a beam lacks "
-            f"{2e3 * thin * missing:.2g} mm of thin shaft, {100 * lacking:.1f} % of the deflection of an overhang of one diameter; 1 % is passed at {STEP:g}, 5 % at {STEEP:g}; use the harmonic solid",
+            f"{2e3 * thin * missing:.2g} mm of thin shaft, {100 * lacking:.1f} % of the deflection of an overhang of one diameter; 1 % is passed at {STEP:g}, 5 % at {STEEP:g}; "
+            "use the harmonic solid",
         )
 
 
@@ -78,8 +82,8 @@ def disc_head(probe: Probe) -> Notices:
         yield Notice(
             "caution",
             BEAMS,
-            f"the head with {scene.port.name!r}, y = {1e3 * low:.6g} to {1e3 * high:.6g} mm, is {ratio:.2g} of its diameter long: below {DISC:g} it bends in itself, and a beam's tilt "
-            "compliance misses 10 % and more; use the harmonic solid",
+            f"the head with {scene.port.name!r}, y = {1e3 * low:.6g} to {1e3 * high:.6g} mm, is {ratio:.2g} of its diameter long: below {DISC:g} it bends in itself, and a "
+            "beam's tilt compliance misses 10 % and more; use the harmonic solid",
         )
 
 
@@ -95,8 +99,8 @@ def thin_joint(probe: Probe) -> Notices:
             yield Notice(
                 "caution",
                 BEAMS,
-                f"{a.name!r} and {b.name!r} share a ring of {1e3 * ring:.3g} mm at y = {1e3 * b.y0:.6g} mm, {share:.2g} of the thinner wall: below {JOINT:g} a beam's tilt compliance "
-                "misses 5 %, below 0.3 12 %; use the harmonic solid",
+                f"{a.name!r} and {b.name!r} share a ring of {1e3 * ring:.3g} mm at y = {1e3 * b.y0:.6g} mm, {share:.2g} of the thinner wall: below {JOINT:g} a beam's tilt "
+                "compliance misses 5 %, below 0.3 12 %; use the harmonic solid",
             )
 
 
@@ -111,8 +115,8 @@ def point_beyond_surface(probe: Probe) -> Notices:
         yield Notice(
             "caution",
             MODELS,
-            f"the lumped point {port.name!r} lies {off:.2f} diameters of the shaft beyond its surface ({1e3 * port.lo:.6g} to {1e3 * port.hi:.6g} mm): from {BEYOND:g} on beams and solids "
-            "answer different questions (7 % in tilt at 0.1); move the point, or give it the surface it stands for",
+            f"the lumped point {port.name!r} lies {off:.2f} diameters of the shaft beyond its surface ({1e3 * port.lo:.6g} to {1e3 * port.hi:.6g} mm): from {BEYOND:g} on beams "
+            "and solids answer different questions (7 % in tilt at 0.1); move the point, or give it the surface it stands for",
         )
 
 
@@ -135,9 +139,17 @@ def ovalising(probe: Probe) -> Notices:
     where = f"{NEAR:g} times first bending, {first:.4g} Hz" if limit == NEAR * first else f"the {limit:g} Hz asked for"
     blocks = {b.name for b in probe.body.blocks}
     without = BEAMS if {"ovalising_2", "ovalising_3"} <= blocks else (*BEAMS, "harmonic")
-    yield Notice("avoid" if low < first else "caution", without, f"sections lose their shape below {where}: {what}, and the model leaves that out; use the harmonic solid with --set ovalising=2,3")
+    yield Notice(
+        "avoid" if low < first else "caution",
+        without,
+        f"sections lose their shape below {where}: {what}, and the model leaves that out; use the harmonic solid with --set ovalising=2,3",
+    )
     if probe.body.fidelity != "solid" or probe.cells_around < COARSE:
-        yield Notice("caution", ("solid",), f"sections lose their shape below {where}: {what}; 12 cells around put n = 2 of a thin wall 25 % too high, {COARSE} 2.3 %, 32 0.9 %; use --set around=32")
+        yield Notice(
+            "caution",
+            ("solid",),
+            f"sections lose their shape below {where}: {what}; 12 cells around put n = 2 of a thin wall 25 % too high, {COARSE} 2.3 %, 32 0.9 %; use --set around=32",
+        )
 
 
 def _two_waves(s) -> float:
@@ -166,13 +178,17 @@ def effective_mass(probe: Probe) -> Notices:
     if not (matched.feasible and matched.first):
         error = found["guyan"].frequency_error
         why = "holds the mode as its second one" if matched.feasible else "has a negative entry"
-        yield Notice(beyond(error, probe.scene.ask.tolerance), ("lumped",), f"the mode-matched pair of masses {why}: Guyan's stands in, with first bending {100 * error:+.3g} % off its beam; use the beam")
+        yield Notice(
+            beyond(error, probe.scene.ask.tolerance),
+            ("lumped",),
+            f"the mode-matched pair of masses {why}: Guyan's stands in, with first bending {100 * error:+.3g} % off its beam; use the beam",
+        )
     if point.static_share < ENERGY:
         yield Notice(
             "caution",
             ("lumped",),
-            f"the static shape of {probe.scene.port.name!r} holds {100 * point.static_share:.0f} % of the energy of first bending, less than {100 * ENERGY:g} %: the mode lives elsewhere, and a "
-            "lumped model is good for stiffness only; use the beam",
+            f"the static shape of {probe.scene.port.name!r} holds {100 * point.static_share:.0f} % of the energy of first bending, less than {100 * ENERGY:g} %: the mode lives "
+            "elsewhere, and a lumped model is good for stiffness only; use the beam",
         )
 
 
@@ -186,6 +202,6 @@ def frequency_range(probe: Probe) -> Notices:
         yield Notice(
             "avoid" if asked > pole else "caution",
             ("lumped",),
-            f"{asked:g} Hz are asked for, and with the lumped point held the shaft has a mode at {pole:.4g} Hz that no condensed model has: Guyan's is off by 1 % of the stiffness from "
-            f"{HOLDS * pole:.4g} Hz, by 10 % from {DRIFTS * pole:.4g} Hz; use a beam or a solid above",
+            f"{asked:g} Hz are asked for, and with the lumped point held the shaft has a mode at {pole:.4g} Hz that no condensed model has: Guyan's is off by 1 % of the "
+            f"stiffness from {HOLDS * pole:.4g} Hz, by 10 % from {DRIFTS * pole:.4g} Hz; use a beam or a solid above",
         )

@@ -5,6 +5,7 @@ Everything is solved when a guard first asks for it, and once.
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import cache, cached_property
 from inspect import signature
 
@@ -28,6 +29,9 @@ FEW = 8
 CLAMP = 1e6
 #: unknowns of the default HEX20 mesh per cell around and ring, and entries of its matrix per unknown: within 4 and 8 % on every shipped scene
 UNKNOWNS, ENTRIES = 13.0, 165.0
+
+#: components of the two bending planes, and the signs by which one matrix is the other
+X, Z, SIGNS = [0, 5], [2, 3], np.array([[1.0, -1.0], [-1.0, 1.0]])
 
 
 class Probe:
@@ -58,13 +62,20 @@ class Probe:
     def _beam(self, model: str) -> tuple[Body, ModeSet, dict[str, float]]:
         return self._solved(build(self.scene, model))
 
+    @cached_property
+    def _means(self) -> Body:
+        return self.light(self.scene, attachments=("average", "section"))
+
     def _tied(self, attachment: str | None) -> dict[str, float]:
-        """Numbers of the light harmonic solid with one attachment at all ports, or as the scene has it."""
+        """Numbers of the light harmonic solid with one attachment at all ports, or as the scene has it (None)."""
+        if attachment in ("average", "section"):  # both are rows on one mesh
+            return self._solved(self._means, attachment)[2]
         return self._solved(self.light(self.scene.with_attachment(attachment) if attachment else self.scene))[2]
 
-    def _solved(self, body: Body) -> tuple[Body, ModeSet, dict[str, float]]:
-        found = modes(body, self.supports, FEW)
-        return body, found, measure(condense(body, self.supports, self.scene.port.name), found)
+    def _solved(self, body: Body, attachment: str | None = None) -> tuple[Body, ModeSet, dict[str, float]]:
+        supports = self.supports.with_attachment(attachment)
+        found = modes(body, supports, FEW)
+        return body, found, measure(condense(body, supports, self.scene.port.name, attachment), found)
 
     def _gaps(self, model: str) -> list[tuple[float, str, str]]:
         """Distances of a beam from the light solid, like for like and as the scene is tied, the largest first: (relative, quantity, how tied)."""
@@ -106,21 +117,25 @@ class Probe:
     def ovalising(self) -> dict[int, float]:
         """Lowest frequency (Hz) of two and of three waves around; bearings do not enter."""
         blocks = self.light(self.scene, ovalising=(2, 3)).blocks[-2:]
-        lowest = [spla.eigsh(b.stiffness.tocsc(), 1, b.mass.tocsc(), sigma=0.0, return_eigenvectors=False)[0] for b in blocks]
+        lowest = [spla.eigsh(b.stiffness.tocsc(), 1, b.mass.tocsc(), sigma=0.0, v0=np.ones(b.size), return_eigenvectors=False)[0] for b in blocks]
         return {n: float(np.sqrt(w2) / (2 * np.pi)) for n, w2 in zip((2, 3), lowest)}
 
     @cached_property
     def split(self) -> float:
-        """Relative distance of the two first bending frequencies of the Timoshenko beam; 0 where bearings keep the pair."""
-        found = [m for m in self.beam("timoshenko")[1].modes if m.family == "bending" and m.frequency_hz > 0]
-        if len(found) < 2 or found[0].multiplicity == 2:
+        """Relative distance of the two first bending frequencies of the Timoshenko beam; 0 where every bearing is alike in x and z."""
+        turned = [b.stiffness[np.ix_(X, X)] * SIGNS - b.stiffness[np.ix_(Z, Z)] for b in self.scene.bearings]
+        if not any(t.any() for t in turned):
             return 0.0
-        return found[1].frequency_hz / found[0].frequency_hz - 1
+        body, _, _ = self.beam("timoshenko")
+        apart = replace(body, mesh=body.mesh | {"pair_tolerance": 0.0})
+        found = [m.frequency_hz for m in modes(apart, self.supports, FEW).modes if m.family == "bending" and m.frequency_hz > 0 for _ in range(m.multiplicity)]
+        return found[1] / found[0] - 1 if len(found) > 1 else 0.0
 
     @cached_property
     def cells_around(self) -> int:
         """Cells around of a 3D solid of hexahedra (of tetrahedra, an upper bound)."""
-        x, _, z = self.body.geometry.mesh.p
+        mesh = self.body.geometry.mesh
+        x, _, z = mesh.p[:, np.unique(mesh.t[:8])]
         r = np.hypot(x, z)
         rim = r > (1 - 1e-6) * r.max()
         return len(np.unique(np.round(np.arctan2(x[rim], z[rim]) % (2 * np.pi), 6)))
@@ -143,4 +158,3 @@ class Probe:
         rings = np.array([sum(len(plan.fractions[k]) - 1 for k in range(*bands)) for bands in plan.bands])
         elements = usual["around"] * rings[plan.segment].sum()
         return int(UNKNOWNS * elements), int(ENTRIES * UNKNOWNS * elements)
-

@@ -353,8 +353,16 @@ def _orders(r: Mapping) -> Table:
 
 def _algebra(r: Mapping) -> Table:
     names = {"asymmetry": "asymmetry of the flexibility", "rigid_residual": "rigid motion, residual", "modal_residual": "modes, residual", "orthogonality": "modes, M-orthogonality", "rigid_modes": "rigid modes found"}
-    rows = [[_capital(model_name(k)), *(_small(e.get(n)) for n in names)] for k, m in r["models"].items() if (e := m.get("evidence"))]
-    return Table("Algebraic checks of this run (relative; the smaller the better, but for the count)", ["model", *names.values()], rows)
+    rows = [[_capital(model_name(k)), *(_small(e.get(n)) for n in names), *_counted(e)] for k, m in r["models"].items() if (e := m.get("evidence"))]
+    return Table("Algebraic checks of this run (relative; the smaller the better, but for the counts)", ["model", *names.values(), "eigensolver", "no mode missed below, Hz"], rows,
+                 "No mode missed: as many eigenvalues lie below as were found, by the inertia of a second factor (Sylvester).")
+
+
+def _counted(e: Mapping) -> list:
+    """Eigensolver, and the frequency up to which the inertia of a factor confirms that every mode was found."""
+    parts = e.get("mode_count") or []
+    sure = parts and all(p.get("checked") for p in parts)
+    return [(str(e.get("eigensolver") or DASH), "text"), f"{min(p['below_hz'] for p in parts):.0f}" if sure else "not counted"]
 
 
 def _pairs(r: Mapping) -> list[Table]:

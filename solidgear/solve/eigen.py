@@ -94,6 +94,7 @@ def lowest(supported: Supported, n: int, method: str | None = None) -> Solved:
     soft = value < SOFT * shift
     whole = supported.rigid_motions()
     if soft.any() and whole.shape[1]:
+        whole = whole / np.sqrt(np.einsum("ij,ij->j", whole, mass(whole)))
         value[soft], u[:, soft] = _soft_modes(u[:, soft], supported.purge(whole), supported)
     residual = residual * np.where(soft, 1.0, 1.0 + shift / np.maximum(value, 1e-3 * shift))
     orthogonality = float(np.abs(u.T @ mass(u) - np.eye(len(theta))).max(initial=0.0))
@@ -165,12 +166,12 @@ def _soft_modes(u, rigid, supported: Supported):
     u : (n, k) ndarray
         Mass-orthonormal shapes with inaccurate eigenvalues.
     rigid : (n, r) ndarray
-        Rigid motions that springs resist, perhaps linearly dependent.
+        Rigid motions of unit mass norm less what no spring resists, which may leave little or nothing of them.
     supported : Supported
     """
     mass = supported.mass
     w, v = np.linalg.eigh(rigid.T @ mass(rigid))
-    keep = w > 1e-10 * w.max()
+    keep = w > 1e-10
     rigid = rigid @ (v[:, keep] / np.sqrt(w[keep]))
     rest = u - rigid @ (rigid.T @ mass(u))
     rest = rest - rigid @ (rigid.T @ mass(rest))
