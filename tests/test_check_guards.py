@@ -129,9 +129,6 @@ CASES = {
     "assumed bearing": Case("doubtful_data", "bearing 'b0' (assumed)", (), "caution",
         scene().with_changes(bearings=[b.with_changes(status="assumed") for b in scene().bearings]), scene()),
     "no axial stiffness": Case("free_motions", "leave 2 rigid motions free", (), "caution", scene(matrices=[stiff(y=0.0)] * 2), scene(matrices=[stiff(y=0.0), stiff(y=1e-3)])),
-    "bearings 2e12 apart": Case("stiffness_range", "2e+12 times", MODELS, "caution", scene(matrices=[stiff(z=1e18), stiff(z=5e5, x=5e5)]), scene(matrices=[stiff(z=4e17),
-        stiff(z=5e5, x=5e5)])),
-    "bearings 2e15 apart": Case("stiffness_range", "2e+15 times", MODELS, "avoid", scene(matrices=[stiff(z=1e21), stiff(z=5e5, x=5e5)]), None),
     "coupling near its bound": Case("oblique_softness", "bearing 'b0'", (), "caution", scene(matrices=[coupled(0.9995), stiff()]), scene(matrices=[coupled(0.998), stiff()])),
     "coupling at its bound": Case("oblique_softness", "taken as free", (), "caution", scene(matrices=[coupled(1.0), stiff()]), scene(matrices=[coupled(1 - 1e-9), stiff()])),
     "pair split by 1e-8": Case("split_pair", "'bending 2'", ("euler", "timoshenko", "solid"), "caution", scene(matrices=[stiff(x=1e9 * (1 + 1e-7)), stiff()]),
@@ -152,6 +149,7 @@ CASES = {
     "tube, n = 2 just above bending": Case("ovalising", "the model leaves that out", (*BEAMS, "harmonic"), "caution", tube(0.28, 3), tube(0.4, 3)),
     "range asked for": Case("ovalising", "the model leaves that out", (*BEAMS, "harmonic"), "caution", scene(((0.3, D, 0.036),), (), max_frequency=20e3), scene(((0.3,
         D, 0.036),), (), max_frequency=10e3)),
+    "disc warps": Case("ovalising", "the model leaves that out", (*BEAMS, "harmonic"), "avoid", scene(((0.01, 0.2), (0.1, 0.04)), ()), scene(((0.06, 0.2), (0.1, 0.04)), ())),
     "tube, computed": Case("ovalising", "the model leaves that out", BEAMS, "avoid", tube(0.2, 3), tube(0.4, 3), "harmonic", {**LIGHT, "ovalising": (2, 3)}, LIGHT),
     "tube, 12 cells around": Case("ovalising", "around=32", ("solid",), "caution", tube(0.2, 3), tube(0.2, 3), "solid", {"layers": 0, "radial_layers": 0, "size": 0.06},
         {"layers": 0, "radial_layers": 0, "size": 0.06, "around": 24}),
@@ -308,8 +306,8 @@ def test_records_are_plain_data(shipped):
         assert sorted(found["facts"] + found["cautions"] + found["faults"]) == sorted(r["sentence"] for r in found["records"])
 
 
-@pytest.mark.parametrize("ratio", (0.5, 0.1))
-def test_ring_in_closed_form_is_never_far_below_the_solution(ratio):
-    # the screen solves from 1.5 times the limit down, so a ring must not be more than 1.5 times too high
-    here = tube(ratio, 3)
-    assert models._two_waves(here.segments[0]) < models.SUSPECT * Probe(here, sg.build(here, "euler")).ovalising[2]
+@pytest.mark.parametrize("here", (tube(0.5, 3), tube(0.1, 3), scene(((0.01, 0.2), (0.1, 0.04)), ())), ids=("thick tube", "thin tube", "disc"))
+def test_two_waves_in_closed_form_are_never_far_above_the_solution(here):
+    # the screen lets pass what is 1.5 times above the limit; a disc on a stub and a short tube are stiffer than the closed form
+    probe = Probe(here, sg.build(here, "euler"))
+    assert probe.ovalising[2] / 2 < models._two_waves(probe) < models.SUSPECT * probe.ovalising[2]

@@ -21,7 +21,6 @@ GUARDS: dict[str, Callable[[Probe], Notices]] = {
         data.units,
         data.doubtful_data,
         data.free_motions,
-        data.stiffness_range,
         data.oblique_softness,
         data.split_pair,
         models.beam_against_solid,

@@ -61,25 +61,6 @@ def free_motions(probe: Probe) -> Notices:
         yield Notice("caution", (), f"bearings leave {free} rigid motions free; only torsion is meant to be: give the missing entries a stiffness")
 
 
-# Two bearings on a uniform shaft: the lowest mode is off by up to 2e-4 at 1e12, 1e-3 at 1e13, 10 % at 1e15 and lost from 1e16; statics stay exact to 1e-15.
-RANGE, LOST = 1e12, 1e15
-
-
-def stiffness_range(probe: Probe) -> Notices:
-    """Entries of bearings so far apart that the softest drowns in the rounding of the stiffest."""
-    size = np.array([1.0, 1.0, 1.0, probe.scene.length, probe.scene.length, probe.scene.length])
-    found = [(float(k), b.name, n) for b in probe.scene.bearings for k, n in zip(np.diag(b.stiffness) / size**2, DOF_NAMES) if k > 0]
-    if found and max(found)[0] > RANGE * min(found)[0]:
-        (soft, under, low), (stiff, over, high) = min(found), max(found)
-        yield Notice(
-            "avoid" if stiff > LOST * soft else "caution",
-            MODELS,
-            f"bearing {over!r} in {high} is {stiff / soft:.0e} times as stiff as bearing {under!r} in {low} (tilts over the length squared): beyond {RANGE:.0e} the lowest mode "
-            f"loses digits, beyond {LOST:.0e} it is 10 % off or lost, while the stiffness at the lumped point stays exact; write 0 for what is free, and no more than 1e15 N/m "
-            "for what is rigid",
-        )
-
-
 # strong_coupling.py: below 1e-12 of the diagonal a direction is taken as free; a coupling written with four digits tells no less than 1e-3
 FREE, FOUR_DIGITS = 1e-12, 1e-3
 

@@ -8,7 +8,6 @@ from solidgear.errors import SolidgearError
 from solidgear.evidence.converge import sharpest_corner
 from solidgear.guards.notice import BEAMS, MODELS, Notice, Notices, beyond
 from solidgear.guards.probe import Probe
-from solidgear.scene import TOUCH
 
 
 def beam_against_solid(probe: Probe) -> Notices:
@@ -71,19 +70,16 @@ DISC = 0.2  # odd_geometry.py: the tilt compliance of a beam is 10 % further off
 
 def disc_head(probe: Probe) -> Notices:
     """A head so short that it bends in itself."""
-    scene = probe.scene
-    middle = (scene.port.lo + scene.port.hi) / 2
-    low = max((y for y in scene.steps if y < middle), default=0.0)
-    high = min((y for y in scene.steps if y > middle), default=scene.length)
-    beside = [s.outer1 for s in scene.segments if abs(s.y1 - low) < TOUCH] + [s.outer0 for s in scene.segments if abs(s.y0 - high) < TOUCH]
-    widest = max(max(s.outer0, s.outer1) for s in scene.segments if s.y0 > low - TOUCH and s.y1 < high + TOUCH)
-    ratio = (high - low) / (2 * widest)
-    if beside and max(beside) < widest and ratio < DISC:
+    port, parts = probe.scene.port, probe.parts
+    at = next(i for i, (low, high, _) in enumerate(parts) if low <= (port.lo + port.hi) / 2 <= high)
+    low, high, widest = parts[at]
+    beside = [wide for i, (_, _, wide) in enumerate(parts) if abs(i - at) == 1]
+    if beside and max(beside) < widest and high - low < DISC * widest:
         yield Notice(
             "caution",
             BEAMS,
-            f"the head with {scene.port.name!r}, y = {1e3 * low:.6g} to {1e3 * high:.6g} mm, is {ratio:.2g} of its diameter long: below {DISC:g} it bends in itself, and a "
-            "beam's tilt compliance misses 10 % and more; use the harmonic solid",
+            f"the head with {port.name!r}, y = {1e3 * low:.6g} to {1e3 * high:.6g} mm, is {(high - low) / widest:.2g} of its diameter long: below {DISC:g} it bends in itself, and "
+            "a beam's tilt compliance misses 10 % and more; use the harmonic solid",
         )
 
 
@@ -129,7 +125,7 @@ def ovalising(probe: Probe) -> Notices:
     """Modes of two and three waves around (a tube ovalises, a disc warps), near or below first bending or within the range asked for."""
     scene, first = probe.scene, probe.first_bending or 0.0
     limit = max(NEAR * first, scene.ask.max_frequency or 0.0)
-    if min(map(_two_waves, scene.segments)) > SUSPECT * limit:
+    if _two_waves(probe) > SUSPECT * limit:
         return
     inside = {n: f for n, f in probe.ovalising.items() if f < limit}
     if not inside:
@@ -152,14 +148,14 @@ def ovalising(probe: Probe) -> Notices:
         )
 
 
-def _two_waves(s) -> float:
-    """n = 2 in closed form, Hz: the lower of a long inextensional ring (Love, sec. 293) and of a free disc (Leissa, Vibration of Plates, table 2.3)."""
-    speed = np.sqrt(s.material.E / (1 - s.material.nu**2) / s.material.density)
-    found = [5.36 / np.sqrt(12) * s.length / max(s.outer0, s.outer1) ** 2]
-    for outer, inner in ((s.outer0, s.inner0), (s.outer1, s.inner1)):
-        if inner:
-            found.append(np.sqrt(0.6) * (outer - inner) / ((outer + inner) / 2) ** 2)
-    return float(min(found) * speed / (2 * np.pi))
+def _two_waves(probe: Probe) -> float:
+    """n = 2 in closed form, Hz: the lowest of every part as a free disc (Leissa, Vibration of Plates, table 2.3) and of every wall as a long ring (Love, sec. 293)."""
+    segments = probe.scene.segments
+    speed = min(np.sqrt(s.material.E / (1 - s.material.nu**2) / s.material.density) for s in segments)
+    discs = [5.36 / np.sqrt(12) * (high - low) / (wide / 2) ** 2 for low, high, wide in probe.parts]
+    walls = [(outer, inner) for s in segments for outer, inner in ((s.outer0, s.inner0), (s.outer1, s.inner1)) if inner]
+    rings = [np.sqrt(0.6) * (outer - inner) / ((outer + inner) / 2) ** 2 for outer, inner in walls]
+    return float(min(discs + rings) * speed / (2 * np.pi))
 
 
 ENERGY = 0.95  # effective_mass_limits.py: held along the head of the overhung pinion; at 7 % the receptance is right to 0.24 of first bending only

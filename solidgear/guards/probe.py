@@ -8,6 +8,7 @@ from __future__ import annotations
 from dataclasses import replace
 from functools import cache, cached_property
 from inspect import signature
+from itertools import pairwise
 
 import numpy as np
 import scipy.linalg as sla
@@ -52,10 +53,16 @@ class Probe:
         """Outer diameter of the shaft at y, the larger one at a step, m."""
         return 2 * max(s.radius_at(y)[1] for s in self.scene.segments if s.y0 - TOUCH <= y <= s.y1 + TOUCH)
 
+    @cached_property
+    def parts(self) -> list[tuple[float, float, float]]:
+        """Shaft between its steps: (first y, last y, greatest outer diameter) of every part, m."""
+        ends = (0.0, *self.scene.steps, self.scene.length)
+        return [(a, b, 2 * max(max(s.outer0, s.outer1) for s in self.scene.segments if s.y0 > a - TOUCH and s.y1 < b + TOUCH)) for a, b in pairwise(ends)]
+
     def light(self, scene, **options) -> Body:
         """Harmonic solid of order 3 on a mesh graded towards shoulders: within 0.2 % of the default one on every shipped scene, in 0.2 s."""
         # Cells no smaller than a part of the whole: a scene of extreme proportions must not cost more than another.
-        coarse = max(scene.length / 40, max(max(s.outer0, s.outer1) for s in scene.segments) / 20)
+        coarse = max(scene.length / 12, max(max(s.outer0, s.outer1) for s in scene.segments) / 3)
         size = max(coarse, min(min(s.outer0, s.outer1) for s in scene.segments))
         return build(scene, "harmonic", order=3, layers=2, edge_layers=0, size=size, **options)
 
