@@ -53,6 +53,11 @@ class Meter:
             stop.set()
             watcher.join()
 
+    def move(self, source: str, target: str, seconds: float) -> None:
+        """Book some seconds of one stage under another name."""
+        self.seconds[source] -= seconds
+        self.seconds[target] = self.seconds.get(target, 0.0) + seconds
+
     def total(self) -> dict[str, float]:
         """Seconds per stage and their sum."""
         return {**self.seconds, "total": sum(self.seconds.values())}

@@ -128,11 +128,10 @@ def lumped_point(body: Body, supports, port: str, found: ModeSet | None = None) 
     if np.linalg.eigvalsh(k)[0] <= 0:
         raise SolidgearError(f"the stiffness at port {port!r} is indefinite in bending: {k.tolist()}; check the bearings")
     found = found if found is not None and found.named("bending 1") else modes(body, supports, 12)
-    mode = found.named("bending 1")
-    if mode is None:
-        raise SolidgearError(f"no bending mode among the first 12 of the {body.fidelity} body; effective masses need one")
     index = body.port_index(port)
-    motion = _in_plane(np.array([_port_motion(body, v, index) for v in mode.vectors]))
+    mode, motion = _first_in_plane(body, found, index)
+    if mode is None:
+        raise SolidgearError(f"no bending mode in the z plane among the first 12 of the {body.fidelity} body; effective masses need one")
     inertia = body.mass_matrix()
     y = body.ports[index].y
     about = inertia[3, 3] - 2 * y * inertia[2, 3] + y * y * inertia[2, 2]
@@ -148,6 +147,19 @@ def _port_motion(body: Body, vectors: dict[int, np.ndarray], index: int) -> np.n
         if n:
             out[list(block.components)] += block.ports[index * n : (index + 1) * n] @ vector
     return out
+
+
+def _first_in_plane(body: Body, found: ModeSet, index: int):
+    """First bending mode that moves the port in the z plane, and its (z, thx) there: unequal bearings may put one of the x plane before it."""
+    for mode in found.modes:
+        if mode.family != "bending" or mode.frequency_hz == 0:
+            continue
+        motions = np.array([_port_motion(body, v, index) for v in mode.vectors])
+        size = np.array([1.0, body.length])  # a rotation counts by what it moves at the other end
+        z, x = (np.linalg.norm(motions[:, c] * size) for c in (list(PLANE), [0, 5]))
+        if z >= 0.5 * x:
+            return mode, _in_plane(motions)
+    return None, None
 
 
 def _in_plane(motions: np.ndarray) -> np.ndarray:
