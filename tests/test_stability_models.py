@@ -1,6 +1,7 @@
 """Where beams, elements and ties fail: the physics that the scripts of validation/stability claim, in their quick form."""
 
 import importlib.util
+import re
 from pathlib import Path
 
 import numpy as np
@@ -88,3 +89,11 @@ def test_a_failed_script_does_not_stop_the_others(script, monkeypatch):
     assert list(done) == ["good"] and failed == {"bad": "ValueError: no"}
     text = module.report(done, failed)
     assert "| [a \\| b](#demo) | At 1. | It warns. |" in text and "`bad` could not be measured: ValueError: no" in text
+
+
+def test_every_guard_named_exists():
+    """The report of the folder names a test for each edge; a renamed test would leave it pointing nowhere."""
+    for path in sorted(FOLDER.glob("*.py")):
+        for file, test in re.findall(r"(tests/test_\w+\.py)::(test_\w+)", path.read_text()):
+            if "test_x" not in file:
+                assert f"def {test}(" in (FOLDER.parent.parent / file).read_text(), f"{path.name}: {file}::{test}"

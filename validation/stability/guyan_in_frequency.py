@@ -80,8 +80,8 @@ def measure(quick: bool = False) -> Finding:
         "Guyan condensation over frequency",
         "Static condensation holds the rest of the shaft to its static shape: the dynamic stiffness it leaves drifts from the exact one with frequency and knows nothing of the pole at the first mode with the lumped point held.",
         f"In fractions of that fixed-interface frequency, 1 % and 10 % of the static stiffness are passed at: {'; '.join(told(name) for name in SCENES)}.",
-        "`solidgear compare` reports for every lumped model the frequency to which its receptance stays within 5 % (`valid_to_hz`) and holds its first bending against the body it came from.",
-        "tests/test_effective_mass.py::test_guyan_bounds_from_above",
+        "`solidgear compare` reports for every lumped model the frequency to which its receptance stays within 5 % (`valid_to_hz`) and holds its first bending against the body it came from; `solidgear check` cautions where the range asked for passes 0.39 of the fixed-interface frequency.",
+        "tests/test_check_guards.py::test_guard[lumped to 5 kHz]",
         rows,
     )
 

@@ -154,8 +154,8 @@ def measure(quick: bool = False) -> list[Finding]:
             f"Gaps of more than {100 * LIMIT:.0f} % in excess of the sound scene's, or no first bending at all, come without a caution for: {'; '.join(silent.values()) or 'none'}"
             + (f". Told by `check`: {'; '.join(told)}" if told else "")
             + (f". Refused: {'; '.join(f'{what} at {v[0]:g}' for what, v in ends.items() if v)}." if any(ends.values()) else "."),
-            "`solidgear compare` shows each gap between beam and solid and calls the beam out of tolerance; `solidgear check` tells what is listed, and a scene is refused where a part is a millionth of the shaft.",
-            "",
+            "`solidgear compare` shows each gap between beam and solid and calls the beam out of tolerance; `solidgear check` cautions on discs, thin joints, narrow seats and lumped points off their surface, and a scene is refused where a part is a millionth of the shaft.",
+            "tests/test_check_guards.py::test_guard[disc]",
             rows,
         ),
         Finding(

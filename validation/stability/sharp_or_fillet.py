@@ -122,8 +122,8 @@ def measure(quick: bool = False) -> Finding:
         f"{softer[-1]['tilt over sharp']:+.1%}.",
         "All solid rungs grade their meshes towards shoulders; `solidgear compare` prints the expected order beside the observed one and widens its band by a factor of 3 "
         "when they do not agree; "
-        "`solidgear check` cautions for every sharp shoulder.",
-        "tests/test_check_guards.py",
+        "`solidgear check` cautions where a mesh is not graded towards one.",
+        "tests/test_check_guards.py::test_guard[uniform mesh]",
         rows,
     )
 

@@ -89,8 +89,8 @@ def measure(quick: bool = False) -> Finding:
         f"a cone of {min(r['cone angle, deg'] for r in rows):.0f} to {max(r['cone angle, deg'] for r in rows):.0f} degrees from the axis gives the same tilt and the "
         f"deflection to {100 * cone:.1f} % "
         f"(45 degrees leaves {100 * max(abs(r['C_zz with 45 deg']) for r in rows):.1f} %), a hinge of that length of thin shaft to {100 * hinge:.1f} %.",
-        "`solidgear check` cautions for every shoulder with the length it is worth; `solidgear compare` shows the shoulder's share in its table of causes.",
-        "tests/test_check_guards.py",
+        "`solidgear check` cautions for every shoulder from 1 % on with the length it is worth, and measures the beam against a light harmonic solid on the scene itself; `solidgear compare` shows the shoulder's share in its table of causes.",
+        "tests/test_check_guards.py::test_guard[shoulder]",
         rows,
     )
 

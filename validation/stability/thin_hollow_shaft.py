@@ -87,8 +87,8 @@ def measure(quick: bool = False) -> Finding:
         f"{thin['long tube, n = 2']:+.0e} from the closed form of a "
         f"long ring and {thin['hoop, n = 2']:+.0e} from that of a hoop; at wall 0.1 the 3D solid is {solid[0]['n = 2']:+.0%} in n = 2 with 12 cells around and "
         f"{solid[-1]['n = 2']:+.1%} with {solid[-1]['3D solid, cells around']}.",
-        '`solidgear check` cautions when the closed form of a ring falls below first bending; `build(scene, "harmonic", ovalising=(2, 3))` and `solidgear modes --set ovalising=2,3` compute these modes.',
-        "tests/test_check_guards.py",
+        '`solidgear check` solves n = 2 and 3 where a wall is thin enough and says when they lie below or near first bending or the range asked for; `build(scene, "harmonic", ovalising=(2, 3))` and `solidgear modes --set ovalising=2,3` compute these modes.',
+        "tests/test_check_guards.py::test_guard[tube, n = 2 below bending]",
         rows + limits + solid,
     )
 

@@ -92,7 +92,7 @@ def measure(quick: bool = False) -> Finding:
         f"{points[-1]['point'] / points[-1]['section, same mesh']:.1f} times as soft at h = R/{1 / points[-1]['h / R']:.0f}; the last halving moves the patch by "
         f"{last['patch']:.0e}, the rigid ring by {last['rigid ring']:.0e}, the section by {last['section']:.0e}.",
         "No command ties anything to a node or a line: attachments are `average`, `rigid` or `section`, and a scene that asks for another is refused.",
-        "tests/test_bad_scenes.py",
+        "tests/test_bad_scenes.py::test_refused_in_one_line[unknown attachment]",
         [r | {"ring line gains": b["ring line"] - a["ring line"] if a else None} for a, r, b in zip([None, *rows], rows, rows)] + points,
     )
 

@@ -125,8 +125,8 @@ def measure(quick: bool = False) -> Finding:
         + f" catch in every scene: {', '.join(only)}; only some of: {', '.join(part) or 'none'}; false alarms on sound scenes: {len(false)} (sound ones span "
         + ", ".join(f"{name} {low:.2g} to {high:.2g}" for name, (low, high) in span.items())
         + ").",
-        "A scene longer than 20 m, shorter than 1 mm or thicker than 10 m in radius is refused by every command as probably in wrong units; material and bearings are taken as they come.",
-        "tests/test_bad_scenes.py::test_refused_in_one_line",
+        "A scene longer than 20 m, shorter than 1 mm or thicker than 10 m in radius is refused by every command as probably in wrong units; `solidgear check` cautions on every criterion above.",
+        "tests/test_check_guards.py::test_guard[E in GPa read as Pa]",
         rows,
     )
 
