@@ -9,9 +9,11 @@ pin()  # before anything imports numpy
 import os
 import sys
 
+# fmt: off
+from solidgear.cli import solve  # noqa: F401  (each registers its commands, in the order of the help)
 from solidgear.cli import chart  # noqa: F401
-from solidgear.cli import solve  # noqa: F401  (registers its commands)
 from solidgear.cli import sweep  # noqa: F401
+# fmt: on
 from solidgear.cli.app import app
 from solidgear.errors import SolidgearError
 
