@@ -304,6 +304,8 @@ def _results(scene, rungs: dict[str, Rung], failed: dict[str, str], causes, lump
             models = {"lumped": record, **models}
             _add_lumped(verdict, record, lumped, reference, best)
     warnings = [f"{m}: {what}: {why}" for m, r in rungs.items() for what, why in r.failed.items()]
+    torn = [(m, *pair) for m, r in rungs.items() for pair in r.modes.evidence.get("torn_pairs", ())]
+    warnings += [f"{m}: {one} and {other} are twins that the mesh has split by {gap:.1e}: refine it, or use hexahedra" for m, one, other, gap in torn]
     free = list(next(iter(rungs.values())).condensed.free_names) if rungs else []
     from solidgear.environment import environment
 

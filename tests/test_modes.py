@@ -277,3 +277,15 @@ def test_very_soft_springs_keep_their_digits(fidelity, options, radial):
     scene = on_two_springs(radial, 3 * radial)
     found = every_shape(sg.modes(sg.build(scene, fidelity, **options), scene, n=5))
     assert found[1:] == pytest.approx(rigid_frequencies(scene, radial, 3 * radial), rel=1e-6)
+
+
+def test_a_pair_torn_by_the_mesh_is_told(overhung):
+    """Coarse linear tetrahedra: 'bending 2' is the twin of 'bending 1'. Bearings that differ in x and z split pairs for good reason."""
+    coarse = sg.build(overhung, "solid", element="tet4", size=0.04)
+    assert sg.modes(coarse, overhung, n=6).evidence["torn_pairs"][0][:2] == ("bending 1", "bending 2")
+    beam = sg.build(overhung, "timoshenko")
+    assert "torn_pairs" not in sg.modes(beam, overhung, n=6).evidence
+    weight = np.diag([0.995, 1, 1, 1, 1, 0.995])
+    unequal = overhung.with_changes(bearings=tuple(b.with_changes(matrix=weight @ np.array(b.matrix) @ weight) for b in overhung.bearings))
+    found = sg.modes(beam, unequal, n=6)
+    assert found.modes[2].multiplicity == 1 and "torn_pairs" not in found.evidence

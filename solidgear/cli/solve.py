@@ -139,6 +139,8 @@ def modes(
     terminal.print(modes_table(rows))
     e = found.evidence
     terminal.print(f"Residual {e['residual']:.1e}, orthogonality {e['orthogonality']:.1e}, rigid modes {e['rigid_modes']}, {e['method']} on {e['backend']}.")
+    for one, other, gap in e.get("torn_pairs", []):
+        terminal.print(f"caution: {one} and {other} are twins that the mesh has split by {gap:.1e}: refine it, or use hexahedra or the harmonic model.")
     if count:
         bad = [part["why"] for part in e["count"] if not part["checked"]]
         below = min((part["below_hz"] for part in e["count"] if part["checked"]), default=0.0)

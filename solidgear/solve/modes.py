@@ -14,6 +14,7 @@ import numpy as np
 
 from solidgear.body import Body, as_supports, component_rows
 from solidgear.errors import SolidgearError
+from solidgear.frames import rotation
 from solidgear.solve.eigen import Raw, Solved, count_below, lowest
 from solidgear.solve.statics import SHIFT, factors
 from solidgear.solve.supported import Supported, decoupled, groups
@@ -57,7 +58,8 @@ class ModeSet:
 
     ``evidence`` holds ``residual`` (largest ``|A^-1 M u - theta u| / theta`` in the mass norm, brought back from the shifted to
     the true eigenvalue: a bound on its relative error), ``orthogonality`` (largest entry of ``U'MU - I``),
-    ``rigid_modes``, ``shift_rad2``, ``coupling_bound``, ``backend``, ``method`` and, where asked for, ``count`` and ``count_seconds``.
+    ``rigid_modes``, ``shift_rad2``, ``coupling_bound``, ``backend``, ``method`` and, where
+    asked for, ``count`` and ``count_seconds``; ``torn_pairs`` where the mesh has split twins too far apart to be taken for one pair.
     """
 
     fidelity: str
@@ -152,6 +154,9 @@ def modes(
     }
     if count:
         evidence |= {"count": counted, "count_seconds": spent}
+    torn = _torn_pairs(found, supports)
+    if torn:
+        evidence["torn_pairs"] = torn
     return ModeSet(body.fidelity, found, stations, project.gram, evidence)
 
 
@@ -222,6 +227,20 @@ def _is_twin(body, supports, spring, group: list[int], other: list[int]) -> bool
     sign = np.tile(signs, m)
     a, b = spring[np.ix_(mine, mine)], spring[np.ix_(theirs, theirs)] * np.outer(sign, sign)
     return bool(np.abs(a - b).max(initial=0.0) <= 1e-14 * np.abs(b).max(initial=0.0))
+
+
+TORN = 0.01  # relative; coarse tetrahedra were seen to split pairs by 5e-3, equal bearings split none
+
+
+def _torn_pairs(found: tuple[Mode, ...], supports: Supports) -> list[tuple[str, str, float]]:
+    """Neighbouring bending modes that differ by more than the bearings differ in x and z, and by less than modes do: twins that the mesh has split."""
+    turn = np.kron(np.eye(len(supports.ports)), rotation(1, np.pi / 2))
+    size = np.sqrt(np.abs(np.diag(supports.stiffness)))
+    change = np.abs(turn @ supports.stiffness @ turn.T - supports.stiffness)
+    unequal = (change / np.where(size > 0, size, np.inf) / np.where(size > 0, size, np.inf)[:, None]).max(initial=0.0)
+    bending = [m for m in found if m.family == "bending" and m.frequency_hz > 0]
+    gaps = [(a, b, b.frequency_hz / a.frequency_hz - 1) for a, b in zip(bending, bending[1:]) if a.multiplicity == b.multiplicity == 1]
+    return [(a.name, b.name, float(gap)) for a, b, gap in gaps if unequal < gap < TORN]
 
 
 class _Projection:

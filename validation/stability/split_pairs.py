@@ -108,7 +108,7 @@ def measure(quick: bool = False) -> Finding:
         + f"; the program takes a pair apart from {', '.join(f'{a:g} ({n})' for n, a in apart.items() if a > 0)}"
         + (f"; torn on isotropic bearings: {', '.join(f'{n} (bending 2 said to be {size[n][1]:.0f} Hz, {good:.0f} by the beam)' for n in wrong)}" if wrong else "")
         + ".",
-        "`solidgear modes` groups twins within a tolerance of the body: 1e-9 harmonic, 1e-7 beams, 1e-6 hexahedra, 2e-3 tetrahedra; `solidgear check` cautions where bearings split a pair by less than that; a coarse tetrahedral mesh splits equal pairs by more, without a word; `solidgear compare` pairs modes by subspace MAC.",
+        "`solidgear modes` groups twins within a tolerance of the body: 1e-9 harmonic, 1e-7 beams, 1e-6 hexahedra, 2e-3 tetrahedra; `solidgear check` cautions where bearings split a pair by less than that; where bearings are alike in x and z and a coarse mesh still splits a pair, `modes` and `compare` say so; `solidgear compare` pairs modes by subspace MAC.",
         "tests/test_check_guards.py::test_guard[pair split by 1e-8]",
         rows,
     )
