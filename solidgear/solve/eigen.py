@@ -106,12 +106,12 @@ def lowest(supported: Supported, n: int, method: str | None = None) -> Solved:
 def _rayleigh(u, value, residual, supported: Supported):
     """Rayleigh quotients in place of ``1 / theta - shift``, which carries the rounding of the factor: 1e-8 on a fine meridian, against 1e-11.
 
-    Not for soft modes, where the stiffness of the free body would have to cancel, nor where the two differ by more than the residual or the
-    rounding of a factor (which the residual, taken with the same factor, does not show) explains: very stiff springs make noise there.
+    Not for soft modes, where the stiffness of the free body would have to cancel, nor where the two differ by more than the residual
+    explains: the energy of very stiff springs is noise (8e-8 of an eigenvalue was seen).
     """
     held = supported.load.T @ u
     quotient = np.einsum("ij,ij->j", u, supported.elastic(u)) + np.einsum("ij,ij->j", held, held)
-    sound = (value > SOFT * supported.shift) & (np.abs(quotient - value) <= np.maximum(10 * residual, 1e-6) * (value + supported.shift))
+    sound = (value > SOFT * supported.shift) & (np.abs(quotient - value) <= 10 * residual * (value + supported.shift))
     return np.where(sound, quotient, value)
 
 
