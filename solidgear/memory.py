@@ -6,6 +6,7 @@ import os
 from collections.abc import Iterator
 from pathlib import Path
 
+from solidgear.control_groups import control_groups, text_of
 from solidgear.errors import SolidgearError
 
 # cgroup v1 writes "no limit" as the largest multiple of a page; anything above an exabyte is none.
@@ -42,38 +43,19 @@ def available_mb(root: str | Path = "/") -> float | None:
 
 
 def _machine(root: Path) -> Iterator[float]:
-    for line in _text(root / "proc/meminfo").splitlines():
+    for line in text_of(root / "proc/meminfo").splitlines():
         if line.startswith("MemAvailable:"):
             yield int(line.split()[1]) / 1024
 
 
 def _groups(root: Path) -> Iterator[float]:
-    """Room in every control group from that of this process up to the root: each may carry the limit."""
-    for line in _text(root / "proc/self/cgroup").splitlines():
-        _, kinds, path = line.split(":", 2)
-        if kinds == "":
-            top, limit, used, cache = root / "sys/fs/cgroup", "memory.max", "memory.current", "inactive_file"
-        elif "memory" in kinds.split(","):
-            top, limit, used, cache = root / "sys/fs/cgroup/memory", "memory.limit_in_bytes", "memory.usage_in_bytes", "total_inactive_file"
-        else:
-            continue
-        group = top / path.lstrip("/")
-        # Inside a container the path is that of the host and need not exist here: its own group is then mounted at the top.
-        for place in [group, *group.parents] if group.is_dir() else [top]:
-            ceiling, taken = _text(place / limit).strip(), _text(place / used).strip()
-            if ceiling.isdigit() and taken.isdigit() and int(ceiling) < UNLIMITED:
-                # Cached files count as used but are given back on demand.
-                yield max(0, int(ceiling) - int(taken) + _field(_text(place / "memory.stat"), cache)) / 2**20
-            if place == top:
-                break
+    for place, unified in control_groups(root, "memory"):
+        names = ("memory.max", "memory.current", "inactive_file") if unified else ("memory.limit_in_bytes", "memory.usage_in_bytes", "total_inactive_file")
+        ceiling, taken = (text_of(place / name).strip() for name in names[:2])
+        if ceiling.isdigit() and taken.isdigit() and int(ceiling) < UNLIMITED:
+            # Cached files count as used but are given back on demand.
+            yield max(0, int(ceiling) - int(taken) + _field(text_of(place / "memory.stat"), names[2])) / 2**20
 
 
 def _field(text: str, name: str) -> int:
     return next((int(line.split()[1]) for line in text.splitlines() if line.startswith(name + " ")), 0)
-
-
-def _text(path: Path) -> str:
-    try:
-        return path.read_text()
-    except OSError:
-        return ""

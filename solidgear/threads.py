@@ -26,6 +26,8 @@ import os
 import sys
 from pathlib import Path
 
+from solidgear.control_groups import control_groups, text_of
+
 
 def pin() -> bool:
     """Give OpenBLAS one thread and MKL no more than the processors granted; False if OpenBLAS could not be told.
@@ -67,26 +69,8 @@ def _affinity() -> int:
 
 
 def _shares(root: Path):
-    """Processors granted by every control group from that of this process up to the root."""
-    for line in _text(root / "proc/self/cgroup").splitlines():
-        _, kinds, path = line.split(":", 2)
-        if kinds == "":
-            top = root / "sys/fs/cgroup"
-        elif "cpu" in kinds.split(","):
-            top = root / "sys/fs/cgroup/cpu"
-        else:
-            continue
-        group = top / path.lstrip("/")
-        for place in [group, *group.parents] if group.is_dir() else [top]:
-            both = _text(place / "cpu.max").split() if kinds == "" else [_text(place / f"cpu.cfs_{name}_us").strip() for name in ("quota", "period")]
-            if len(both) == 2 and all(part.isdigit() for part in both) and int(both[1]) > 0:  # "max" or -1: no limit
-                yield int(both[0]) / int(both[1])
-            if place == top:
-                break
-
-
-def _text(path: Path) -> str:
-    try:
-        return path.read_text()
-    except OSError:
-        return ""
+    """Processors granted by every control group of this process."""
+    for place, unified in control_groups(root, "cpu"):
+        both = text_of(place / "cpu.max").split() if unified else [text_of(place / f"cpu.cfs_{name}_us").strip() for name in ("quota", "period")]
+        if len(both) == 2 and all(part.isdigit() for part in both) and int(both[1]) > 0:  # "max" or -1: no limit
+            yield int(both[0]) / int(both[1])

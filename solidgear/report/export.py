@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Iterable
 from itertools import islice
 from pathlib import Path
@@ -10,6 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from solidgear.report.fields import mesh_unknowns, surface
+from solidgear.whole_file import whole
 
 #: solid element -> (meshio's cell type, VTK's class of cell)
 CELLS = {
@@ -61,13 +61,8 @@ def write_vtu(scene, body, modes, path: str | Path, *, most: int | None = None) 
         cells = [(kind, at) for kind, at in (("quad", still.faces), ("triangle", still.triangles)) if len(at)]
         data = {name: surface(scene, body, vectors).displacement for name, vectors in shapes.items()}
     path.parent.mkdir(parents=True, exist_ok=True)
-    # A rename within a folder is all or nothing.
-    partial = path.with_name(f".{path.name}.{os.getpid()}.part")
-    try:
+    with whole(path) as partial:
         meshio.write(partial, meshio.Mesh(points, cells, point_data=data), file_format="vtu")
-        os.replace(partial, path)
-    finally:
-        partial.unlink(missing_ok=True)
     return path
 
 

@@ -22,6 +22,7 @@ from solidgear.report.terminal import (
     BEAMS, BLOCK_UNITS, MODEL_NAMES, answer_seconds, engineering, entry, first_mode, headline, hertz, is_number, is_resolved, model_name, percent, plain,
     reference_of, seconds,
 )  # fmt: skip
+from solidgear.whole_file import whole
 
 log = logging.getLogger(__name__)
 DASH = "–"
@@ -50,12 +51,8 @@ def write_report(results: Mapping, folder: str | os.PathLike, images: Mapping[st
     folder = Path(folder)
     folder.mkdir(parents=True, exist_ok=True)
     target = folder / "report.html"
-    temporary = folder / f".report.html.{os.getpid()}.tmp"
-    try:
-        temporary.write_text(render_page(results, folder, images), encoding="utf-8")
-        os.replace(temporary, target)
-    finally:
-        temporary.unlink(missing_ok=True)
+    with whole(target) as partial:
+        partial.write_text(render_page(results, folder, images), encoding="utf-8")
     return target
 
 

@@ -137,18 +137,17 @@ def _child(room: Path, window: str | None, seconds: float) -> str:
 
 def _collect(room: Path, index: int, path: Path, end: str, works: bool, timeout: float) -> RenderResult:
     """Move a finished picture to its place, or say why there is none."""
+    from solidgear.whole_file import whole
+
     drawn, said = room / f"{index}.png", room / f"{index}.txt"
     if said.exists():
         return RenderResult(False, path, f"the picture {path.name} could not be drawn: {said.read_text(encoding='utf-8')}")
     if drawn.exists():
-        # Copied under another name first: a rename within a folder is all or nothing.
-        partial = path.with_name(f".{path.name}.{os.getpid()}.part")
         try:
             path.parent.mkdir(parents=True, exist_ok=True)
-            shutil.copyfile(drawn, partial)
-            os.replace(partial, path)
+            with whole(path) as partial:
+                shutil.copyfile(drawn, partial)
         except OSError as error:
-            partial.unlink(missing_ok=True)
             return RenderResult(False, path, f"the picture {path} could not be written: {error.strerror or error}")
         return RenderResult(True, path)
     if end == "timeout":

@@ -7,7 +7,6 @@ import csv
 import io
 import json
 import logging
-import os
 import textwrap
 from collections.abc import Mapping
 from dataclasses import asdict, fields
@@ -17,6 +16,7 @@ from solidgear.evidence.pareto import CHARTED, Race, Row
 from solidgear.report.charts import STYLE
 from solidgear.report.table import Table
 from solidgear.report.terminal import count, is_number, percent, seconds
+from solidgear.whole_file import whole
 
 log = logging.getLogger(__name__)
 
@@ -122,12 +122,8 @@ def _value(text: str):
 
 
 def _replace(path: Path, data: bytes) -> None:
-    partial = path.with_name(f".{path.name}.{os.getpid()}.part")
-    try:
+    with whole(path) as partial:
         partial.write_bytes(data)
-        os.replace(partial, path)
-    finally:
-        partial.unlink(missing_ok=True)
 
 
 # ------------------------------------------------------------------------------------------------- figure

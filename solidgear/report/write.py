@@ -7,6 +7,7 @@ import os
 from pathlib import Path
 
 from solidgear.errors import SolidgearError
+from solidgear.whole_file import whole
 
 MODE = "bending 1"
 
@@ -55,12 +56,8 @@ def write_all(comparison, out, *, renders: bool, progress) -> Path:
 
 
 def _write_json(path: Path, data: dict) -> None:
-    partial = path.with_name(f".{path.name}.{os.getpid()}.part")
-    try:
+    with whole(path) as partial:
         partial.write_text(json.dumps(data, indent=1, allow_nan=False) + "\n", encoding="utf-8")
-        os.replace(partial, path)
-    finally:
-        partial.unlink(missing_ok=True)
 
 
 def _try(results: dict, what: str, action, *arguments) -> None:

@@ -15,6 +15,7 @@ from pathlib import Path
 from typing import Any
 
 from solidgear.errors import SolidgearError
+from solidgear.whole_file import whole
 
 
 class RowFile:
@@ -80,28 +81,23 @@ class RowFile:
             self.done = set(_pyarrow().parquet.read_table(self.path, columns=["variant"])["variant"].to_pylist())
             return
         text = self.work.read_bytes()
-        whole = text[: text.rfind(b"\n") + 1]
-        lines = list(csv.reader(whole.decode("utf-8").splitlines()))
+        intact = text[: text.rfind(b"\n") + 1]
+        lines = list(csv.reader(intact.decode("utf-8").splitlines()))
         if not lines or lines[0] != list(self.columns):
             self._begin()
             return
-        if len(whole) < len(text):  # the last row was cut off in the middle
-            os.truncate(self.work, len(whole))
+        if len(intact) < len(text):  # the last row was cut off in the middle
+            os.truncate(self.work, len(intact))
         self.done = {int(line[0]) for line in lines[1:]}
 
     def _begin(self) -> None:
         for old in {self.path, self.work}:
             old.unlink(missing_ok=True)
         digest = hashlib.sha256(json.dumps(self._plan, sort_keys=True).encode()).hexdigest()
-        self._replace(self._record, json.dumps({"fingerprint": digest, "plan": self._plan}, indent=1).encode())
+        with whole(self._record) as partial:
+            partial.write_text(json.dumps({"fingerprint": digest, "plan": self._plan}, indent=1), encoding="utf-8")
         with self.work.open("w", newline="", encoding="utf-8") as f:
             csv.writer(f, lineterminator="\n").writerow(self.columns)
-
-    @staticmethod
-    def _replace(path: Path, data: bytes) -> None:
-        new = path.with_name(path.name + ".new")
-        new.write_bytes(data)
-        os.replace(new, path)
 
     def append(self, rows: Iterable[Mapping[str, Any]]) -> None:
         """Add rows; they are in the file when this returns."""
@@ -120,9 +116,8 @@ class RowFile:
             table = sorted(csv.DictReader(f), key=lambda row: int(row["variant"]))
         kinds = {int: arrow.int64(), float: arrow.float64(), str: arrow.string()}
         data = {name: arrow.array([kind(row[name]) if row[name] else None for row in table], kinds[kind]) for name, kind in self.columns.items()}
-        new = self.path.with_name(self.path.name + ".new")
-        arrow.parquet.write_table(arrow.table(data), new)
-        os.replace(new, self.path)
+        with whole(self.path) as partial:
+            arrow.parquet.write_table(arrow.table(data), partial)
         self.work.unlink()
         self._complete = True
 

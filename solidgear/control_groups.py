@@ -1,0 +1,40 @@
+"""Linux control groups of this process, which may grant it less than the machine has."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+
+
+def control_groups(root: Path, controller: str) -> Iterator[tuple[Path, bool]]:
+    """Folders of every group from that of this process up to the root, for each may carry the limit; and whether it is of version 2.
+
+    Parameters
+    ----------
+    root : path
+        Where ``proc`` and ``sys`` are looked for.
+    controller : str
+        ``cpu`` or ``memory``; version 1 has a tree for each.
+    """
+    for line in text_of(root / "proc/self/cgroup").splitlines():
+        _, kinds, path = line.split(":", 2)
+        if kinds == "":
+            top = root / "sys/fs/cgroup"
+        elif controller in kinds.split(","):
+            top = root / "sys/fs/cgroup" / controller
+        else:
+            continue
+        group = top / path.lstrip("/")
+        # Inside a container the path is that of the host and need not exist here: its own group is then mounted at the top.
+        for place in [group, *group.parents] if group.is_dir() else [top]:
+            yield place, kinds == ""
+            if place == top:
+                break
+
+
+def text_of(path: Path) -> str:
+    """Text of a file, empty where it cannot be read."""
+    try:
+        return path.read_text()
+    except OSError:
+        return ""
