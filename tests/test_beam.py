@@ -112,8 +112,8 @@ def cantilever(segments, spring=1e24, **options):
     the Euler beam four digits.
     """
     length = segments[-1].y1
-    clamp = Bearing(name="clamp", y=HELD, seat_width=2 * HELD, matrix=np.eye(6) * spring)
-    tip = Port(name="tip", y=length, lo=length - 0.002, hi=length)
+    clamp = Bearing(name="clamp", y=HELD, seat_width=2 * HELD, matrix=np.eye(6) * spring, attachment="section")
+    tip = Port(name="tip", y=length, lo=length - 0.002, hi=length, attachment="section")
     scene = Scene.from_parts(segments, bearings=[clamp], port=tip)
     fidelity = options.pop("fidelity", "timoshenko")
     return sg.condense(sg.build(scene, fidelity, **options), scene, "tip").compliance, length - HELD

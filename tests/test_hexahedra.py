@@ -12,7 +12,7 @@ from shafts import NASTY
 
 import solidgear as sg
 from solidgear.meshing.hexahedra import hexahedra
-from solidgear.meshing.layout import layout
+from solidgear.meshing.layout import Grading, layout
 from solidgear.meshing.quality import MeshError
 from solidgear.scene import Scene, Segment
 
@@ -42,7 +42,7 @@ SCENES = {name: (lambda n=name: sg.load(GEOMETRY / f"{n}.toml")) for name in ("p
 def case(request):
     name, around = request.param
     scene = SCENES[name]()
-    mesh, segment = hexahedra(scene, layout(scene, **PLAN), around)
+    mesh, segment = hexahedra(scene, layout(scene, Grading(**PLAN)), around)
     return scene, around, mesh, segment
 
 
@@ -144,12 +144,12 @@ def test_all_nodes_lie_inside_the_inflated_shaft_and_surface_nodes_on_it(case):
 def test_numbers_around_that_fit_no_grid_are_refused(around):
     scene = shaft((0.1, 0.03, 0.03, 0.0, 0.0))
     with pytest.raises(MeshError, match="multiple of 4, at least 8"):
-        hexahedra(scene, layout(scene, **PLAN), around)
+        hexahedra(scene, layout(scene, Grading(**PLAN)), around)
 
 
 @pytest.mark.parametrize("bore", [(0.02, 0.0), (0.0, 0.02)])
 def test_bore_that_closes_to_a_point_is_refused(bore):
     scene = shaft((0.1, 0.03, 0.03, *bore))
     with pytest.raises(MeshError) as caught:
-        hexahedra(scene, layout(scene, **PLAN), 8)
+        hexahedra(scene, layout(scene, Grading(**PLAN)), 8)
     assert "'s0'" in str(caught.value) and "closes to a point" in str(caught.value) and "tet10" in str(caught.value)

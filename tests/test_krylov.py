@@ -324,7 +324,7 @@ def bending_z(scene, **options):
 
 
 def test_stepped_shaft_against_elements():
-    scene = sg.load(GEOMETRY / "shaft_stepped.toml")
+    scene = sg.load(GEOMETRY / "shaft_stepped.toml").with_attachment("section")
     modes = krylov(*from_scene(scene), 4)
     # Few elements err by (k l)^4 / 720, 2e-7 at the fourth mode.  Many err by rounding: their stiffness grows with the cube
     # of their number against the lowest eigenvalue (1e-6 at 200 and 6e-6 at 300 were seen).
@@ -341,7 +341,7 @@ def test_coupled_springs_against_elements():
 
 @pytest.mark.parametrize("name", ["pinion_overhung", "shaft_hollow"])
 def test_cones_converge_to_tapered_elements(name):
-    scene = sg.load(GEOMETRY / f"{name}.toml")
+    scene = sg.load(GEOMETRY / f"{name}.toml").with_attachment("section")
     reference = bending_z(scene, elements=60)[:3]
     error = np.array([krylov(*from_scene(scene, pieces=p), 3).frequency_hz / reference - 1 for p in (4, 8, 16)])
     # Means over a piece are of second order; Richardson of the last two leaves the fourth order and the elements' own error.

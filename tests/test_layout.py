@@ -11,7 +11,7 @@ from shafts import NASTY
 
 import solidgear as sg
 from solidgear.errors import SolidgearError
-from solidgear.meshing.layout import graded, layout
+from solidgear.meshing.layout import Grading, first_of_run, graded, layout
 from solidgear.meshing.meridian import meridian
 from solidgear.scene import Bearing, Port, Scene, Segment
 
@@ -117,7 +117,7 @@ def test_very_many_layers_still_end_where_they_should():
 
 # --------------------------------------------------------------------------- layout
 def test_axial_lines_mark_everything_that_matters(scene):
-    plan = layout(scene, **PLAN)
+    plan = layout(scene, Grading(**PLAN))
     assert plan.y[0] == 0.0 and np.all(np.diff(plan.y) > 0) and len(plan.segment) == len(plan.y) - 1
     marks = {scene.length, *(s.y0 for s in scene.segments)} | {y for s in scene.stations for y in (s.y, s.lo, s.hi)}
     for mark in marks:
@@ -130,22 +130,62 @@ def test_axial_lines_mark_everything_that_matters(scene):
 
 @pytest.mark.parametrize("core", [False, True])
 def test_refinement_multiplies_the_cells(scene, core):
-    once, thrice = (layout(scene, **PLAN, refinement=r, core=core) for r in (1.0, 3.0))
+    once, thrice = (layout(scene, Grading(**PLAN, refinement=r, core=core)) for r in (1.0, 3.0))
     assert len(thrice.segment) == 3 * len(once.segment)
     assert thrice.bands == once.bands
-    on_axis = {b[0] for b, low, high in zip(once.bands, once.left, once.right) if low[0] == high[0] == 0.0}
-    for band, lines in once.fractions.items():
+    for (band, first), lines in once.fractions.items():
         cells = len(lines) - 1
+        lowest = {k: b[0] for k, b in enumerate(once.bands) if first_of_run(once.bands, band, k) == first and b[0] <= band < b[1]}
+        on_axis = any(low == band and once.left[k][0] == once.right[k][0] == 0.0 for k, low in lowest.items())
         # the core of an O-grid is one cell of half the band whatever the refinement
-        want = 1 + 3 * (cells - 1) if core and band in on_axis else 3 * cells
-        assert len(thrice.fractions[band]) - 1 == want
+        want = 1 + 3 * (cells - 1) if core and on_axis else 3 * cells
+        assert len(thrice.fractions[band, first]) - 1 == want
         assert lines[0] == 0.0 and lines[-1] == 1.0 and np.all(np.diff(lines) > 0)
-        if core and band in on_axis:
+        if core and on_axis:
             assert lines[1] == 0.5
 
 
+def test_a_flange_keeps_its_rings_to_itself():
+    # two flanges of different height on a bar: neither passes its rings on to the other, nor to the bar
+    apart = layout(shaft((0.1, 0.02, 0.02, 0, 0), (0.02, 0.06, 0.06, 0, 0), (0.1, 0.02, 0.02, 0, 0), (0.02, 0.03, 0.03, 0, 0)), Grading(layers=2))
+    bar, high, again, low = (len(apart.ring_numbers(k)) - 1 for k in range(4))
+    assert bar == again < low
+    assert bar < high
+    numbers = [apart.ring_numbers(k) for k in range(4)]
+    assert set(numbers[0]) < set(numbers[1]) and np.array_equal(numbers[0], numbers[2])
+    assert max(map(max, numbers)) < apart.ring_lines
+
+
+def test_a_small_step_is_a_layer_of_its_own_and_is_not_filled_with_more():
+    # a step of 0.1 mm on a bar of 40 mm has no room for layers that begin at 5 mm; one of 20 mm has
+    def across(outer):
+        plan = layout(shaft((0.1, 0.02, 0.02, 0, 0), (0.1, outer, outer, 0, 0)), Grading(layers=2, ratio=0.2))
+        return [len(lines) - 1 for lines in plan.divided(1)]
+
+    assert across(0.0201)[1] == 1 < across(0.04)[1]
+    assert across(0.0201)[0] == across(0.04)[0]
+
+
+def test_cells_follow_the_local_radius():
+    # a thin journal does not refine the thick rotor beside it
+    thin, thick = (layout(shaft((0.1, r, r, 0, 0), (0.4, 0.08, 0.08, 0, 0)), Grading(layers=0, edge_layers=0)) for r in (0.01, 0.04))
+    cells = [np.diff(plan.y[plan.y > 0.1 - 1e-12]) for plan in (thin, thick)]
+    assert len(cells[0]) == len(cells[1])
+    assert np.diff(thin.y).min() <= 0.01 < cells[0].min()
+
+
+def test_section_planes_and_rigid_ends_are_graded():
+    scene = shaft((0.4, 0.02, 0.02, 0, 0), port=Port(y=0.2, lo=0.1, hi=0.3))
+    cells = {tie: layout(scene, Grading(layers=2, edge_layers=0), (tie,)).y for tie in ("average", "section", "rigid")}
+    assert np.diff(cells["average"]).min() > 0.009
+    for tie, place in (("section", 0.2), ("rigid", 0.1), ("rigid", 0.3)):
+        y = cells[tie]
+        at = int(np.argmin(abs(y - place)))
+        assert y[at] == pytest.approx(place, abs=1e-12) and max(np.diff(y)[at - 1 : at + 1]) < 0.002
+
+
 def test_neighbours_share_the_radii_of_their_common_face(scene):
-    plan = layout(scene, **PLAN)
+    plan = layout(scene, Grading(**PLAN))
     for i, (a, b) in enumerate(pairwise(scene.segments)):
         low, high = (f(x, y) for f, x, y in zip((max, min), plan.bands[i], plan.bands[i + 1]))
         assert low < high
@@ -158,7 +198,7 @@ def test_neighbours_share_the_radii_of_their_common_face(scene):
 
 
 def test_bands_fill_every_segment_from_bore_to_surface(scene):
-    plan = layout(scene, **PLAN)
+    plan = layout(scene, Grading(**PLAN))
     for s, (low, high), left, right in zip(scene.segments, plan.bands, plan.left, plan.right):
         assert len(left) == len(right) == high - low + 1
         assert np.all(np.diff(left) > 0) and np.all(np.diff(right) > 0)
@@ -192,7 +232,7 @@ def polygon(r, y):
 
 @pytest.mark.parametrize("refinement", [0.35, 1.0, 1.4])
 def test_meridian_conforms(scene, refinement):
-    flat = meridian(scene, layout(scene, **PLAN, refinement=refinement))
+    flat = meridian(scene, layout(scene, Grading(**PLAN, refinement=refinement)))
     count = edges(flat.cells)
     assert set(count.values()) == {1, 2}
     # Edges of one cell only are the outline and nothing else: at a hanging node the long edge and its two halves would be counted too.
@@ -207,7 +247,7 @@ def test_meridian_conforms(scene, refinement):
 
 
 def test_meridian_has_the_area_and_the_volume_of_the_shaft(scene):
-    flat = meridian(scene, layout(scene, **PLAN))
+    flat = meridian(scene, layout(scene, Grading(**PLAN)))
     area, moment = polygon(*flat.points[:, flat.cells])
     # numbered inner-low, outer-low, outer-high, inner-high: counter-clockwise in (r, y), none folded
     assert area.min() > 0
@@ -222,7 +262,7 @@ def test_meridian_has_the_area_and_the_volume_of_the_shaft(scene):
 
 
 def test_cells_know_their_surfaces_and_run_outwards(scene):
-    flat = meridian(scene, layout(scene, **PLAN))
+    flat = meridian(scene, layout(scene, Grading(**PLAN)))
     r, y = flat.points[:, flat.cells]
     # first local coordinate outwards, second along the shaft
     assert np.all(r[1] > r[0]) and np.all(r[2] > r[3])
@@ -242,4 +282,4 @@ def test_segments_that_do_not_touch_are_refused():
     # a rod of 20 mm radius followed by a tube of 25 mm inner radius
     with pytest.raises(SolidgearError):
         broken = shaft((0.1, 0.02, 0.02, 0.0, 0.0), (0.1, 0.04, 0.04, 0.025, 0.025))
-        meridian(broken, layout(broken, **PLAN))
+        meridian(broken, layout(broken, Grading(**PLAN)))

@@ -28,7 +28,7 @@ def overhung():
 
 @pytest.fixture(scope="module")
 def light(overhung):
-    return sg.build(overhung, "solid", element="hex27", refinement=0.5)
+    return sg.build(overhung, "solid", element="hex27", layers=3, radial_layers=3, edge_layers=0, relative_size=0.6, around=8)
 
 
 # --------------------------------------------------------------------------- mass

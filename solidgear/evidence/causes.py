@@ -35,7 +35,8 @@ def _row(cause, text, model, new, old) -> Cause:
 
 
 def beam_causes(scene) -> list[Cause]:
-    """Assumptions inside the beam model."""
+    """Assumptions inside the beam model, with the beam's own nodes for ports."""
+    scene = scene.with_attachment("section")
     plain = _solve(scene, "euler")
     sheared = _solve(scene, "timoshenko", rotary_inertia=False)
     full = _solve(scene, "timoshenko")

@@ -12,6 +12,10 @@ from dataclasses import asdict, dataclass
 import numpy as np
 from scipy.optimize import brentq
 
+from solidgear.meshing.corners import corner_exponent, sharpest_corner
+
+__all__ = ["Convergence", "corner_exponent", "gci", "sharpest_corner"]
+
 
 @dataclass(frozen=True)
 class Convergence:
@@ -58,52 +62,6 @@ class Convergence:
     def as_dict(self) -> dict:
         """Plain data for results.json."""
         return asdict(self)
-
-
-def corner_exponent(angle: float) -> float:
-    """Exponent of displacement at a traction-free corner, smaller of the symmetric and antisymmetric modes.
-
-    Williams (1952), J. Appl. Mech. 19, 526: ``sin(l w) = +- l sin(w)`` for a material angle w; 0.5445 at 270 degrees.
-
-    Parameters
-    ----------
-    angle : float
-        Material angle, rad, above pi for a re-entrant corner.
-
-    Returns
-    -------
-    float
-        1.0 for corners that are not re-entrant.
-    """
-    if angle <= np.pi * (1 + 1e-9):
-        return 1.0
-    roots = []
-    for sign in (1.0, -1.0):
-        grid = np.linspace(0.3, 0.9999, 400)
-        f = np.sin(grid * angle) + sign * grid * np.sin(angle)
-        for i in np.flatnonzero(f[:-1] * f[1:] < 0):
-            roots.append(brentq(lambda x, s=sign: np.sin(x * angle) + s * x * np.sin(angle), grid[i], grid[i + 1]))
-    return min(roots, default=1.0)
-
-
-def sharpest_corner(scene) -> tuple[float, float]:
-    """Largest material angle (rad) at a shoulder of a scene and its exponent; (pi, 1) when there is none."""
-    worst = np.pi
-    for a, b in zip(scene.segments, scene.segments[1:]):
-        for r_a, r_b, s_a, s_b, side in (
-            (a.outer1, b.outer0, (a.outer1 - a.outer0) / a.length, (b.outer1 - b.outer0) / b.length, 1.0),
-            (a.inner1, b.inner0, (a.inner1 - a.inner0) / a.length, (b.inner1 - b.inner0) / b.length, -1.0),
-        ):
-            step = side * (r_b - r_a)
-            slope_a, slope_b = np.arctan(side * s_a), np.arctan(side * s_b)
-            if abs(step) < 1e-9 * a.length:
-                angle = np.pi + (slope_b - slope_a)
-            elif step < 0:  # the face of the larger segment is vertical, the smaller one's surface leaves it
-                angle = 1.5 * np.pi + slope_b
-            else:
-                angle = 1.5 * np.pi - slope_a
-            worst = max(worst, angle)
-    return worst, corner_exponent(worst)
 
 
 def gci(values: Sequence[float], sizes: Sequence[float], expected: float, highest: float, cap: float = 2.0) -> Convergence:

@@ -5,9 +5,17 @@ flexibility of the element clamped at one end, integrated over the true section;
 is consistent with the displacement field of that static problem.  A uniform element is
 the textbook one.  Nothing here is shared with the solid builders: that
 independence is what makes a comparison worth having.
+
+A port is tied to the beam as the scene says.  ``section`` is the beam's own node.  ``average`` is the
+area-weighted least-squares rigid motion of the seat's surface, which a beam moves section by section: with
+deflection w, turn th and radius r the port motion (d, ph) minimises, over the seat,
+``int [2 pi (w - d - ph (y - y0))^2 + pi r^2 (th - ph)^2] r ds``.  What a beam lacks against a solid is then the
+distortion of sections and not the width of the seat.  ``rigid`` lets the beam move as one piece along the seat.
 """
 
 from __future__ import annotations
+
+from dataclasses import dataclass
 
 import numpy as np
 import scipy.linalg as sla
@@ -15,6 +23,7 @@ import scipy.sparse as sp
 
 from solidgear.body import Block, Body, Port
 from solidgear.errors import SolidgearError
+from solidgear.fidelity.attachment import tie_rigidly
 from solidgear.fidelity.options import number
 from solidgear.fidelity.scale import elastic_scale
 
@@ -56,6 +65,7 @@ def beam(
     mass: str = "consistent",
     kappa: str = "hutchinson",
     elements: int | None = None,
+    attachments: tuple[str, ...] | None = None,
 ) -> Body:
     """Free beam model of a scene.
 
@@ -73,11 +83,13 @@ def beam(
         Shear coefficient; Cowper's for comparison with older work, solid sections only.
     elements : int, optional
         Least number of elements along the shaft; by default eight to a diameter.
+    attachments : tuple of str, optional
+        Attachments to build for every station, the first being the default one; by default what the scene says.
 
     Returns
     -------
     Body
-        Four blocks (axial, torsion and the two bending planes); ports are nodes.
+        Four blocks (axial, torsion and the two bending planes).
     """
     number("beam", "elements", elements, least=1, whole=True)
     if head not in ("cone", "mean"):
@@ -88,7 +100,11 @@ def beam(
         raise SolidgearError(f"kappa: {kappa!r} is unknown; use 'hutchinson' or 'cowper'")
     if kappa == "cowper" and any(s.inner0 or s.inner1 for s in scene.segments):
         raise SolidgearError("kappa: 'cowper' is given for solid sections only; use 'hutchinson' for a hollow shaft")
-    nodes, owner = _mesh(scene, elements)
+    wanted = [(s, a) for s in scene.stations for a in (attachments or (s.attachment,))]
+    for _, attachment in wanted:
+        if attachment not in ("average", "rigid", "section"):
+            raise SolidgearError(f"attachment {attachment!r} is unknown; use 'average', 'rigid' or 'section'")
+    nodes, owner = _mesh(scene, elements, wanted)
     n = len(nodes)
     if not shear:
         _long_enough(nodes)
@@ -96,17 +112,19 @@ def beam(
     inner = 1 + rotary_inertia if shear and mass == "consistent" else 0
     size = {"bending": 2 * n + inner * (n - 1), "axial": n, "torsion": n}
     entries = {name: ([], [], [], []) for name in size}
+    fields: list[_Fields] = []
     for e, segment in enumerate(owner):
         left, right = nodes[e], nodes[e + 1]
         section = _Section(segment, left, right, head, kappa)
-        parts = {
-            "bending": (
-                *_bending(section, shear, rotary_inertia, mass),
-                np.concatenate([np.arange(2 * e, 2 * e + 4), 2 * n + inner * e + np.arange(inner)]),
-            ),
-            "axial": (*_rod(section, section.stretch, section.mass, mass), np.array([e, e + 1])),
-            "torsion": (*_rod(section, section.twist, section.polar, mass), np.array([e, e + 1])),
-        }
+        bend, stretch, twist = (
+            _bending(section, shear, rotary_inertia, mass),
+            _rod(section, section.stretch, section.mass, mass),
+            _rod(section, section.twist, section.polar, mass),
+        )
+        ends = np.array([e, e + 1])
+        both = np.concatenate([np.arange(2 * e, 2 * e + 4), 2 * n + inner * e + np.arange(inner)])
+        fields.append(_Fields(segment, left, right, (both, bend[2]), (ends, stretch[2]), (ends, twist[2])))
+        parts = {"bending": (*bend[:2], both), "axial": (*stretch[:2], ends), "torsion": (*twist[:2], ends)}
         for name, (ke, me, at) in parts.items():
             for store, values in zip(entries[name], (np.repeat(at, len(at)), np.tile(at, len(at)), ke.ravel(), me.ravel())):
                 store.append(values)
@@ -115,20 +133,24 @@ def beam(
         row, col, stiff, heavy = (np.concatenate(p) for p in parts)
         k[name] = sp.csr_matrix((stiff, (row, col)), shape=(size[name],) * 2)
         m[name] = sp.csr_matrix((heavy, (row, col)), shape=(size[name],) * 2)
-    places = [int(np.argmin(abs(nodes - s.y))) for s in scene.stations]
-    ports = tuple(Port(s.name, s.y, "node") for s in scene.stations)
+    ports = tuple(Port(s.name, s.y, a) for s, a in wanted)
     one, zero = np.ones(n), np.zeros(n)
     lift = np.column_stack([np.column_stack([one, zero]).ravel(), np.column_stack([nodes, one]).ravel()])
-    pick2 = _pick([2 * p + c for p in places for c in (0, 1)], size["bending"])
-    pick1 = _pick(places, n)
     lift = np.vstack([lift, np.zeros((size["bending"] - 2 * n, 2))])
     y2 = np.concatenate([np.repeat(nodes, 2), np.full(size["bending"] - 2 * n, np.nan)])
-    bending = Block("bending_z", (2, 3), k["bending"], m["bending"], lift, y2, pick2)
+    rows = [_port_rows(station, attachment, nodes, fields, size) for station, attachment in wanted]
+    stacked = {name: sp.csr_matrix(np.vstack([r[name] for r in rows])) for name in size}
+    rigid = [(i, s) for i, (s, a) in enumerate(wanted) if a == "rigid"]
+
+    def tied(block: Block, per_node: int) -> Block:
+        return tie_rigidly(block, [(i, s.y, _seat_mask(s, nodes, per_node, block.size)) for i, s in rigid])
+
+    bending = tied(Block("bending_z", (2, 3), k["bending"], m["bending"], lift, y2, stacked["bending"]), 2)
     blocks = (
         bending,
         bending.mirrored("bending_x", (0, 5), 0, (1.0, -1.0)),
-        Block("axial", (1,), k["axial"], m["axial"], one[:, None], nodes, pick1),
-        Block("torsion", (4,), k["torsion"], m["torsion"], one[:, None], nodes, pick1),
+        tied(Block("axial", (1,), k["axial"], m["axial"], one[:, None], nodes, stacked["axial"]), 1),
+        tied(Block("torsion", (4,), k["torsion"], m["torsion"], one[:, None], nodes, stacked["torsion"]), 1),
     )
     facts = {"element": "timoshenko" if shear else "euler", "elements": n - 1, "rotary_inertia": rotary_inertia, "head": head}
     facts["mass"] = mass
@@ -137,9 +159,10 @@ def beam(
     )
 
 
-def _mesh(scene, elements):
-    """Nodes at segment ends and ports, filled in evenly; and the segment of every element."""
+def _mesh(scene, elements, wanted):
+    """Nodes at segment ends, ports and ends of rigid seats, filled in evenly; and the segment of every element."""
     marks = {s.y0 for s in scene.segments} | {scene.segments[-1].y1} | {s.y for s in scene.stations}
+    marks |= {y for s, a in wanted if a == "rigid" for y in (max(s.lo, 0.0), min(s.hi, scene.length))}
     marks = np.array(sorted(marks))
     # Marks that differ by rounding only would make an element of no length.
     marks = marks[np.concatenate([[True], np.diff(marks) > 1e-9 * scene.length])]
@@ -206,7 +229,7 @@ class _Section:
 
 
 def _bending(c: _Section, shear: bool, rotary: bool, mass: str):
-    """Stiffness and mass of one bending element on ``(z, thx)`` at both ends, then internal unknowns.
+    """Stiffness, mass and fields of one bending element on ``(z, thx)`` at both ends, then internal unknowns.
 
     With shear the static field has constant shear in an element, which alone converges with the square of its
     length.  Two internal fields, those of a clamped element under a uniform force and a uniform moment, lift
@@ -239,7 +262,7 @@ def _bending(c: _Section, shear: bool, rotary: bool, mass: str):
     if mass == "lumped":
         left = s < L / 2
         ends = [(w * i)[part].sum() for part in (left, ~left) for i in inertia]
-        return k, np.diag(ends)
+        return k, np.diag(ends), shape
     if shear:
         spread = spread[:, :, : 1 + rotary]
         clamped = spread - tip @ (resist @ energy(tip, spread))
@@ -249,11 +272,11 @@ def _bending(c: _Section, shear: bool, rotary: bool, mass: str):
         k = sla.block_diag(k, energy(clamped, clamped))
         shape = np.concatenate([shape, field(clamped)], axis=2)
     m = np.einsum("kqi,kq,kqj->ij", shape, w * inertia, shape)
-    return k, m
+    return k, m, shape
 
 
 def _rod(c: _Section, rigidity, inertia, mass: str):
-    """Stiffness and mass (2, 2) of a tapered bar in stretch or twist."""
+    """Stiffness and mass (2, 2) of a tapered bar in stretch or twist, and its field (q, 2)."""
     compliance = (c.w / rigidity).sum()
     k = np.array([[1.0, -1.0], [-1.0, 1.0]]) / compliance
     right = c.integral @ (1 / rigidity) / compliance
@@ -261,8 +284,70 @@ def _rod(c: _Section, rigidity, inertia, mass: str):
     m = shape.T @ ((c.w * inertia)[:, None] * shape)
     if mass == "lumped":
         m = np.diag(m.sum(axis=1))
-    return k, m
+    return k, m, shape
 
 
-def _pick(at, n):
-    return sp.csr_matrix((np.ones(len(at)), (np.arange(len(at)), at)), shape=(len(at), n))
+@dataclass(frozen=True)
+class _Fields:
+    """Displacement fields of one element: unknowns and their shapes at the Gauss points of the element.
+
+    ``bend`` has deflection and turn, (2, q, unknowns); ``stretch`` and ``twist`` one field each, (q, unknowns).
+    """
+
+    segment: object
+    left: float
+    right: float
+    bend: tuple[np.ndarray, np.ndarray]
+    stretch: tuple[np.ndarray, np.ndarray]
+    twist: tuple[np.ndarray, np.ndarray]
+
+    def part(self, lo: float, hi: float):
+        """Places y, radii, length weights on the surface from lo to hi, and the interpolation (q, q) from the Gauss points."""
+        x, w = _GAUSS
+        middle, half = (lo + hi) / 2, (hi - lo) / 2
+        y = middle + half * x
+        local = (2 * y - self.left - self.right) / (self.right - self.left)
+        lagrange = np.vander(local, len(x), increasing=True) @ np.linalg.inv(np.vander(x, increasing=True))
+        segment = self.segment
+        slope = (segment.outer1 - segment.outer0) / segment.length
+        r = segment.outer0 + slope * (y - segment.y0)
+        return y, r, w * half * np.hypot(1.0, slope), lagrange
+
+
+def _port_rows(station, attachment: str, nodes, fields: list[_Fields], size: dict[str, int]) -> dict[str, np.ndarray]:
+    """Motions of a port as rows on the unknowns of bending (d, ph), axial and torsion; zeros where the tie is rigid."""
+    out = {name: np.zeros((2 if name == "bending" else 1, n)) for name, n in size.items()}
+    if attachment == "section":
+        at = int(np.argmin(abs(nodes - station.y)))
+        out["bending"][[0, 1], [2 * at, 2 * at + 1]] = 1.0
+        out["axial"][0, at] = out["torsion"][0, at] = 1.0
+    if attachment != "average":
+        return out
+    gram, area, polar = np.zeros((2, 2)), 0.0, 0.0
+    for field in fields:
+        lo, hi = max(field.left, station.lo), min(field.right, station.hi)
+        if hi <= lo:
+            continue
+        y, r, ds, lagrange = field.part(lo, hi)
+        h, w = y - station.y, 2 * np.pi * r * ds
+        unknowns, shape = field.bend
+        deflection, turn = (lagrange @ part for part in shape)
+        out["bending"][0, unknowns] += w @ deflection
+        out["bending"][1, unknowns] += (w * h) @ deflection + (w * r**2 / 2) @ turn
+        gram += np.array([[w.sum(), w @ h], [w @ h, w @ (h * h + r**2 / 2)]])
+        for name, (at, along), weight in (("axial", field.stretch, w), ("torsion", field.twist, w * r**2)):
+            out[name][0, at] += weight @ lagrange @ along
+        area, polar = area + w.sum(), polar + (w * r**2).sum()
+    out["bending"] = np.linalg.solve(gram, out["bending"])
+    out["axial"] /= area
+    out["torsion"] /= polar
+    return out
+
+
+def _seat_mask(station, nodes, per_node: int, size: int) -> np.ndarray:
+    """Unknowns that a rigid seat takes along: those of its nodes, and the internal ones of its elements."""
+    tol = 1e-9 * nodes[-1]
+    inside = (nodes > station.lo - tol) & (nodes < station.hi + tol)
+    within = inside[1:] & inside[:-1]
+    internal = (size - per_node * len(nodes)) // len(within)
+    return np.concatenate([np.repeat(inside, per_node), np.repeat(within, internal)])

@@ -24,7 +24,7 @@ from solidgear.fidelity.assembly import Pattern, Tabulation, batches, reference,
 from solidgear.fidelity.attachment import tie_rigidly
 from solidgear.fidelity.options import harmonics, number
 from solidgear.fidelity.scale import elastic_scale
-from solidgear.meshing.layout import layout
+from solidgear.meshing.layout import Grading, layout
 from solidgear.meshing.meridian import Meridian, meridian
 
 
@@ -48,6 +48,7 @@ def harmonic(
     layers: int = 3,
     edge_layers: int = 1,
     ratio: float = 0.2,
+    relative_size: float = 1.0,
     size: float | None = None,
     refinement: float = 1.0,
     attachments: tuple[str, ...] | None = None,
@@ -62,9 +63,12 @@ def harmonic(
         Polynomial order of the quadrilaterals, 1 to 12.  The defaults are the reference setting, good to 1e-4 on the
         overhung pinion; order 8 with 4 layers and 2 edge layers gives about 1e-6.
     layers, edge_layers, ratio : int, int, float
-        Geometric layers towards shoulders and towards seat ends, and the size of each relative to the last.
+        Geometric layers towards shoulders (also the ends of rigid seats) and towards the ends of averaged seats, and the
+        size of each relative to the last.
+    relative_size : float
+        Cell size away from them in local outer radii (in a thin wall beside them, in decay lengths of the shell).
     size : float, optional
-        Cell size away from them, m; by default the smallest outer radius.
+        The same for the whole shaft, m.
     refinement : float
         Multiplies the number of cells for convergence studies.
     attachments : tuple of str, optional
@@ -88,11 +92,12 @@ def harmonic(
     number("harmonic", "layers", layers, least=0, whole=True)
     number("harmonic", "edge_layers", edge_layers, least=0, whole=True)
     number("harmonic", "ratio", ratio, above=0, below=1)
+    number("harmonic", "relative_size", relative_size, above=0)
     number("harmonic", "size", size, above=0)
     number("harmonic", "refinement", refinement, above=0)
     ovalising = harmonics("harmonic", ovalising)
-    size = size or min(min(s.outer0, s.outer1) for s in scene.segments)
-    plan = layout(scene, size=size, layers=layers, edge_layers=edge_layers, ratio=ratio, refinement=refinement)
+    grading = Grading(layers, edge_layers, None, ratio, relative_size, size, refinement=refinement)
+    plan = layout(scene, grading, attachments)
     flat = meridian(scene, plan)
     mesh = MeshQuad1(flat.points, flat.cells, sort_t=False)
     element = _element(order)
@@ -114,6 +119,7 @@ def harmonic(
         "layers": layers,
         "edge_layers": edge_layers,
         "ratio": ratio,
+        "relative_size": relative_size,
         "refinement": refinement,
         "representative_size": float(np.sqrt(work.area / flat.cells.shape[1])),
         "pair_tolerance": 1e-9,

@@ -153,15 +153,11 @@ class Probe:
         if self.body.fidelity == "solid":
             matrix = self.body.blocks[0].stiffness
             return matrix.shape[0], matrix.nnz
-        from solidgear.fidelity.solid import solid
+        from solidgear.fidelity.solid import hexahedral_grading, solid
         from solidgear.meshing.layout import layout
 
-        usual = {name: p.default for name, p in signature(solid).parameters.items()}
-        thin = min(min(s.outer0, s.outer1) for s in self.scene.segments)
-        plan = layout(
-            self.scene, size=0.6 * thin, layers=usual["layers"], edge_layers=usual["edge_layers"], radial_layers=usual["radial_layers"], ratio=usual["ratio"],
-            reach=0.7 * thin, radial_reach=thin / 2, core=True,
-        )  # fmt: skip
-        rings = np.array([sum(len(plan.fractions[k]) - 1 for k in range(*bands)) for bands in plan.bands])
+        usual = {name: p.default for name, p in signature(solid).parameters.items() if name != "scene"}
+        plan = layout(self.scene, hexahedral_grading(**usual))
+        rings = np.array([len(plan.ring_numbers(k)) - 1 for k in range(len(plan.bands))])
         elements = usual["around"] * rings[plan.segment].sum()
         return int(UNKNOWNS * elements), int(ENTRIES * UNKNOWNS * elements)

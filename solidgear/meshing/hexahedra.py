@@ -59,13 +59,13 @@ def hexahedra(scene, plan: Layout, around: int = 8) -> tuple[MeshHex2, np.ndarra
         solid = np.all(radii[:, 0] == 0.0)
         if not solid and np.any(radii[:, 0] == 0.0):
             raise MeshError(f"segment {segment.name!r}: its bore closes to a point, which an O-grid cannot mesh; use element 'tet10'")
-        first = plan.first_ring(seg)
+        number = plan.ring_numbers(seg)
         if solid:
             # cells of the core: local axes (z, x, y) are right-handed
             fine = offsets[None] + 2 * np.column_stack([i, j, np.zeros_like(i)])[:, None]
             xy = core[fine[..., 0], fine[..., 1]] * radii[fine[..., 2], 1][..., None]
             nodes.append(np.stack([xy[..., 1], ys[fine[..., 2]], xy[..., 0]], axis=-1))
-            keys.append(_core_key(fine[:, :8] // 2, row, first + 1, k, n_lines, around))
+            keys.append(_core_key(fine[:, :8] // 2, row, number[1], k, n_lines, around))
             owner.append(np.full(len(i), seg))
         for ring in range(1 if solid else 0, radii.shape[1] - 1):
             fine = offsets[None] + np.stack([0 * a, 2 * a, 0 * a], axis=-1)[:, None]
@@ -75,7 +75,7 @@ def hexahedra(scene, plan: Layout, around: int = 8) -> tuple[MeshHex2, np.ndarra
             r = inner + (outer - inner) * fine[..., 0] / 2
             nodes.append(np.stack([r * np.sin(angle[turn]), ys[fine[..., 2]], r * np.cos(angle[turn])], axis=-1))
             corner = fine[:, :8] // 2
-            keys.append(_ring_key(row + corner[..., 2], first + ring + corner[..., 0], corner[..., 1], n_lines, around))
+            keys.append(_ring_key(row + corner[..., 2], number[ring + corner[..., 0]], corner[..., 1], n_lines, around))
             owner.append(np.full(around, seg))
     nodes, keys = np.concatenate(nodes), np.concatenate(keys)
     _, where, t = np.unique(keys, return_index=True, return_inverse=True)

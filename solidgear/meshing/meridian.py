@@ -37,25 +37,24 @@ class Meridian:
 def meridian(scene, plan: Layout) -> Meridian:
     """Mesh the meridian of a scene along a layout."""
     points: list[tuple[float, float]] = []
-    index: dict[tuple[int, int, int], int] = {}
+    index: dict[tuple[int, int], int] = {}
     cells, owner, outer, inner = [], [], [], []
     for row, seg in enumerate(plan.segment):
         segment = scene.segments[seg]
         rings = [plan.rings(seg, (segment.y0, segment.y1), y) for y in (plan.y[row], plan.y[row + 1])]
-        first = plan.first_ring(seg)
-        last = first + len(rings[0]) - 1
+        number = plan.ring_numbers(seg)
 
         def node(line, ring):
-            key = (line, ring)
+            key = (line, number[ring])
             if key not in index:
                 index[key] = len(points)
-                points.append((rings[line - row][ring - first], plan.y[line]))
+                points.append((rings[line - row][ring], plan.y[line]))
             return index[key]
 
-        for ring in range(first, last):
-            if ring == first:
+        for ring in range(len(number) - 1):
+            if ring == 0:
                 inner.append(len(cells))
-            if ring == last - 1:
+            if ring == len(number) - 2:
                 outer.append(len(cells))
             cells.append((node(row, ring), node(row, ring + 1), node(row + 1, ring + 1), node(row + 1, ring)))
             owner.append(seg)

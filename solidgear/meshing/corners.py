@@ -1,0 +1,77 @@
+"""Corners of the outline of a shaft and how singular stress is there.
+
+At a corner displacement behaves like ``distance ** exponent``; the smaller the exponent, the more
+layers a mesh needs towards the corner.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from scipy.optimize import brentq
+
+# Exponent of a right-angled shoulder, against which layers are counted.
+SHOULDER = 0.5445
+
+
+def corner_exponent(angle: float) -> float:
+    """Exponent of displacement at a traction-free corner, smaller of the symmetric and antisymmetric modes.
+
+    Williams (1952), J. Appl. Mech. 19, 526: ``sin(l w) = +- l sin(w)`` for a material angle w; 0.5445 at 270 degrees.
+
+    Parameters
+    ----------
+    angle : float
+        Material angle, rad, above pi for a re-entrant corner.
+
+    Returns
+    -------
+    float
+        1.0 for corners that are not re-entrant.
+    """
+    if angle <= np.pi * (1 + 1e-9):
+        return 1.0
+    roots = []
+    for sign in (1.0, -1.0):
+        grid = np.linspace(0.3, 0.9999, 400)
+        f = np.sin(grid * angle) + sign * grid * np.sin(angle)
+        for i in np.flatnonzero(f[:-1] * f[1:] < 0):
+            roots.append(brentq(lambda x, s=sign: np.sin(x * angle) + s * x * np.sin(angle), grid[i], grid[i + 1]))
+    return min(roots, default=1.0)
+
+
+def corner_angle(a, b) -> float:
+    """Largest material angle (rad) of the outline where segment ``b`` follows ``a``, outside or in the bore; pi at least."""
+    worst = np.pi
+    for r_a, r_b, s_a, s_b, side in (
+        (a.outer1, b.outer0, (a.outer1 - a.outer0) / a.length, (b.outer1 - b.outer0) / b.length, 1.0),
+        (a.inner1, b.inner0, (a.inner1 - a.inner0) / a.length, (b.inner1 - b.inner0) / b.length, -1.0),
+    ):
+        step = side * (r_b - r_a)
+        slope_a, slope_b = np.arctan(side * s_a), np.arctan(side * s_b)
+        if abs(step) < 1e-9 * a.length:
+            angle = np.pi + (slope_b - slope_a)
+        elif step < 0:  # the face of the larger segment is vertical, the smaller one's surface leaves it
+            angle = 1.5 * np.pi + slope_b
+        else:
+            angle = 1.5 * np.pi - slope_a
+        worst = max(worst, float(angle))
+    return worst
+
+
+def sharpest_corner(scene) -> tuple[float, float]:
+    """Largest material angle (rad) at a shoulder of a scene and its exponent; (pi, 1) when there is none."""
+    pairs = zip(scene.segments, scene.segments[1:])
+    worst = max((corner_angle(a, b) for a, b in pairs), default=np.pi)
+    return worst, corner_exponent(worst)
+
+
+def corner_layers(a, b, layers: int) -> int:
+    """Geometric layers that the corner between two segments needs where a right-angled shoulder needs ``layers``.
+
+    Layers of one ratio shrink the error by ``ratio ** (2 exponent)`` each, and what they have to shrink
+    grows with ``1 - exponent``, which is zero on a smooth outline.  A change of material counts as a shoulder.
+    """
+    if a.material != b.material:
+        return layers
+    lacking = (1.0 - corner_exponent(corner_angle(a, b))) / (1.0 - SHOULDER)
+    return min(layers, int(np.ceil(layers * lacking - 0.05)))
