@@ -8,13 +8,20 @@ import numpy as np
 
 from solidgear.body import Body
 from solidgear.errors import SolidgearError
+from solidgear.evidence.study import Rung
 from solidgear.guards import GUARDS, LEVELS, MODELS, Notice, Probe
 from solidgear.meshing.quality import mass_properties
 
 # Closure of mass and inertia that each discretisation owes to the closed form.
 MASS_TOLERANCE = {"euler": 1e-9, "timoshenko": 1e-9, "harmonic": 1e-9, "solid": 1e-3}
 #: what a model is worth after the worst that was said of it
-VERDICTS = {"fact": "holds", "caution": "holds with caution", "avoid": "will not hold", "fault": "will not hold"}
+VERDICTS = {"fact": "holds", "caution": "holds with caution", "open": "uncertain", "avoid": "will not hold", "fault": "will not hold"}
+#: what a comparison finds out by itself, or what is no matter of the models
+NOT_IN_COMPARISONS = ("beam_against_solid", "rigid_seats", "memory", "renderer")
+#: what is about other models than a body, or about the machine
+NOT_HEARD_ALONE = ("rigid_seats", "memory", "renderer", "effective_mass", "frequency_range", "doubtful_data")
+#: what depends on the mesh of one solid
+OF_A_MESH = ("linear_elements", "nearly_incompressible", "uniform_at_shoulder")
 
 
 def check_scene(scene, body: Body) -> dict:
@@ -35,15 +42,58 @@ def check_scene(scene, body: Body) -> dict:
     """
     probe = Probe(scene, body)
     said = [("body", notice) for notice in _of_the_body(scene, body)]
-    for name, guard in GUARDS.items():
-        try:
-            said += [(name, notice) for notice in guard(probe)]
-        except (SolidgearError, ArithmeticError, RuntimeError, MemoryError, np.linalg.LinAlgError) as error:
-            # A guard that cannot be run must not hide what the others have to say.
-            said.append((name, Notice("caution", (), f"not checked ({name.replace('_', ' ')}): {error}")))
+    for name in GUARDS:
+        said += [(name, notice) for notice in _heard(name, probe)]
     records = [{"guard": name, "level": n.level, "models": list(n.models), "sentence": n.sentence} for name, n in said]
-    out = {kind: [n.sentence for _, n in said if n.level in levels] for kind, levels in (("facts", ("fact",)), ("cautions", ("caution", "avoid")), ("faults", ("fault",)))}
+    out = {kind: [n.sentence for _, n in said if n.level in levels] for kind, levels in (("facts", ("fact",)), ("cautions", ("caution", "open", "avoid")), ("faults", ("fault",)))}
     return out | {"records": records, "verdicts": {model: _verdict(model, records) for model in MODELS}}
+
+
+def notices(scene, rungs: dict[str, Rung], names: tuple[str, ...] | None = None) -> list[dict]:
+    """What the guards have to say of models that are solved, facts left out.
+
+    Parameters
+    ----------
+    scene : Scene
+    rungs : dict of str to Rung
+    names : tuple of str, optional
+        Guards to ask; by default all that a comparison does not answer by itself.
+
+    Returns
+    -------
+    list of dict
+        ``guard``, ``level``, ``models`` (those that are solved; empty where it is about the data) and ``sentence``.
+    """
+    probes = [Probe(scene, r.body, rungs) for r in rungs.values()]
+    solved = {*rungs, "lumped"}
+    out: dict[str, dict] = {}
+    for name in names or tuple(n for n in GUARDS if n not in NOT_IN_COMPARISONS):
+        for probe in probes if name in OF_A_MESH else probes[-1:]:
+            for notice in _heard(name, probe):
+                about = [m for m in notice.models if m in solved]
+                mine = name not in OF_A_MESH or probe.body.fidelity in notice.models
+                if notice.level != "fact" and mine and (about or not notice.models):
+                    out.setdefault(notice.sentence, {"guard": name, "level": notice.level, "models": about, "sentence": notice.sentence})
+    return list(out.values())
+
+
+def cautions(scene, body: Body) -> list[str]:
+    """What the guards have to say before the numbers of one body are used, in sentences; facts and what concerns other models left out."""
+    probe, out = Probe(scene, body), []
+    about_beams = ("beam_against_solid",) if body.fidelity not in ("euler", "timoshenko") else ()
+    for name in GUARDS:
+        if name in (*about_beams, *NOT_HEARD_ALONE):
+            continue
+        out += [n.sentence for n in _heard(name, probe) if n.level != "fact" and (not n.models or body.fidelity in n.models)]
+    return list(dict.fromkeys(out))
+
+
+def _heard(name: str, probe: Probe) -> list[Notice]:
+    """What a guard says; one that cannot be run must not hide what the others have to say."""
+    try:
+        return list(GUARDS[name](probe))
+    except (SolidgearError, ArithmeticError, RuntimeError, MemoryError, np.linalg.LinAlgError) as error:
+        return [Notice("caution", (), f"not checked ({name.replace('_', ' ')}): {error}")]
 
 
 def _verdict(model: str, records: list[dict]) -> dict:

@@ -200,12 +200,20 @@ class Port(Model):
     attachment: Attachment = "average"
 
 
+#: what a model can be judged by: compliance and stiffness at the lumped point, first modes
+Quantity = Literal["C_zz", "C_z,thx", "C_thx", "C_yy", "K_zz", "K_z,thx", "K_thx", "K_yy", "bending 1", "bending 2", "axial 1", "torsion 1"]
+
+
 class Ask(Model):
-    """The questions: how many modes, up to what frequency (Hz; None is no limit), to what relative tolerance."""
+    """The questions: how many modes, up to what frequency (Hz; None is no limit), to what relative tolerance.
+
+    `quantities` names what models are judged by; empty is the usual set, compliances with first bending and first axial mode.
+    """
 
     modes: Annotated[int, Field(strict=True, ge=1)] = 10
     max_frequency: Frequency | None = None
     tolerance: Tolerance = 0.05
+    quantities: tuple[Quantity, ...] = ()
 
 
 # ------------------------------------------------------------------------------------------------- the scene

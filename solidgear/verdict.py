@@ -1,132 +1,245 @@
-"""Deviations between rungs, and in words which to trust and which is the cheapest that will do."""
+"""Deviations between rungs, and in words which to trust and which is the cheapest that will do.
+
+A rung is judged twice by the reference: as the scene is tied, and like for like with section means at every station.  A gap counts
+with the bands of both sides: within the tolerance even at their far end it is *within*, beyond it even at their near end it is
+*beyond*, else the question is *open*.  Without a band of the reference there is no judgement.
+"""
 
 from __future__ import annotations
 
-from solidgear.evidence.quantities import QUANTITIES, change, measure
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+from solidgear.evidence.partners import Partners
+from solidgear.evidence.quantities import JUDGED, QUANTITIES, change
+from solidgear.evidence.study import SCENE, SECTION, Rung
 from solidgear.fidelity import FIDELITIES
 
-# Compliances and the frequencies a gear designer reads; stiffnesses follow from compliances and are shown, not judged:
-# inverting spreads a small change of one entry over all of them.
-JUDGED = ("C_zz", "C_thx", "C_yy", "bending 1", "axial 1")
+WITHIN, OPEN, BEYOND = "within", "open", "beyond"
+NAMES = {"lumped": "lumped model", "euler": "Euler beam", "timoshenko": "Timoshenko beam", "harmonic": "harmonic solid", "solid": "3D solid"}
+TIES = {SCENE: "with the attachments of the scene", SECTION: "like for like (section means everywhere)"}
 
 
-def deviations(rungs: dict, reference: str) -> list[dict]:
+@dataclass(frozen=True)
+class Judgement:
+    """What a rung is worth: ``valid`` only if nothing speaks against it, ``open`` if that cannot be told."""
+
+    valid: bool
+    why_not: str | None = None
+    open: bool = False
+
+
+def gap_verdict(gap: float, band: float, tolerance: float) -> str:
+    """``within``, ``open`` or ``beyond`` a tolerance, for a gap known to within a band."""
+    if abs(gap) + band <= tolerance:
+        return WITHIN
+    return BEYOND if abs(gap) - band > tolerance else OPEN
+
+
+def deviations(rungs: dict[str, Rung], reference: str) -> list[dict]:
     """Relative deviations from the reference, once with the attachments of the scene and once like for like.
 
-    A beam node moves like the mean of a cross-section, so the fair partner of a beam is the solid with
-    section-mean attachments.  A gap inside the sum of both bands is "not resolved", which is not agreement.
+    Couplings are related to the geometric mean of their diagonal entries, frequencies are those of the modes with the same shape.
+    A gap inside the sum of both bands is "not resolved", which is not agreement.
     """
-    base = rungs[reference]
-    out = []
+    base, out = rungs[reference], []
     for model, rung in rungs.items():
         if model == reference:
             continue
-        pairs = [("as scene", rung.quantities, base.quantities)]
-        if "section" in base.variants and base.condensed.attachment != "section":
-            theirs = measure(*base.variants["section"])
-            mine = measure(*rung.variants["section"]) if "section" in rung.variants else rung.quantities
-            if "section" in rung.variants or model in ("euler", "timoshenko"):
-                pairs.append(("section", mine, theirs))
-        for attachment, mine, theirs in pairs:
-            for name, (_, _, unit) in QUANTITIES.items():
-                relative = change(mine, theirs, name)
-                if relative is None:
-                    continue
-                bands = [r.bands[name]["gci"] for r in (base, rung) if name in r.bands]
-                band = sum(bands) if bands else None
-                resolved = "resolved" if band is not None and abs(relative) > band else "not resolved" if band is not None else "no band"
-                out.append(
-                    {
-                        "model": model,
-                        "reference": reference,
-                        "attachment": attachment,
-                        "quantity": name,
-                        "unit": unit,
-                        "value": mine[name],
-                        "reference_value": theirs[name],
-                        "relative": relative,
-                        "band": band,
-                        "verdict": resolved,
-                    }
-                )
+        for tie in (SCENE, SECTION):
+            if tie not in rung.ties or tie not in base.ties or (tie == SECTION and rung.ties[SECTION] is rung.ties[SCENE]):
+                continue
+            out += _deviations(model, reference, tie, rung, base)
     return out
 
 
-def judge(scene, rungs: dict, reference: str | None, gaps: list[dict]) -> tuple[dict, dict[str, tuple[bool, str | None]]]:
+def _deviations(model: str, reference: str, tie: str, rung: Rung, base: Rung) -> Iterable[dict]:
+    mine, theirs = rung.ties[tie], base.ties[tie]
+    partners = Partners(mine.modes, theirs.modes)
+    for name, (kind, place, unit) in QUANTITIES.items():
+        value, how = mine.quantities.get(name), ""
+        if kind == "frequency":
+            value, how = partners.frequency(place)
+        if value is None or name not in theirs.quantities:
+            continue
+        relative = change({**mine.quantities, name: value}, theirs.quantities, name)
+        if relative is None:
+            continue
+        bands = [r.bands[tie][name].gci for r in (base, rung) if name in r.bands.get(tie, {})]
+        band = sum(bands) if bands else None
+        resolved = "no band" if band is None else "resolved" if abs(relative) > band else "not resolved"
+        yield {
+            "model": model,
+            "reference": reference,
+            "attachment": tie,
+            "quantity": name,
+            "unit": unit,
+            "value": value,
+            "reference_value": theirs.quantities[name],
+            "relative": relative,
+            "band": band,
+            "verdict": resolved,
+            "pairing": how,
+        }
+
+
+def trusted(rungs: dict[str, Rung], tolerance: float) -> tuple[str | None, str]:
+    """The rung that may judge the others, and why there is none: a solid whose bands are inside the tolerance."""
+    why = "no solid was run, and a beam cannot judge itself"
+    for model in ("harmonic", "solid"):
+        if model not in rungs:
+            continue
+        worst = rungs[model].worst_band()
+        if worst is None:
+            why = f"the {NAMES[model]} has no band of its own ({_reason(rungs[model])})"
+        elif worst > tolerance:
+            why = f"the {NAMES[model]} is sure of itself to no better than {percent(worst)}, more than the {percent(tolerance)} asked for"
+        else:
+            return model, ""
+    return None, why
+
+
+def _reason(rung: Rung) -> str:
+    return "; ".join(dict.fromkeys(rung.failed.values())) or "it was solved on one mesh only"
+
+
+def judge(scene, rungs: dict[str, Rung], gaps: list[dict], notices: Iterable[dict] = ()) -> tuple[dict, dict[str, Judgement]]:
     """Validity of every rung and the verdict in sentences.
 
-    A rung is valid when, with the attachments of the scene and like for like, none of the judged numbers is further from
-    the reference than the tolerance asked for; agreement in one of the two alone can be a cancellation.
+    Parameters
+    ----------
+    scene : Scene
+    rungs : dict of str to Rung
+    gaps : list of dict
+        From :func:`deviations`, against the rung that :func:`trusted` names or, where there is none, the best there is.
+    notices : iterable of dict
+        What the guards say: ``level``, ``models``, ``sentence``.
     """
     tolerance = scene.ask.tolerance
-    validity: dict[str, tuple[bool, str | None]] = {}
-    for model, rung in rungs.items():
-        validity[model] = (True, None)
-        if model == reference:
-            continue
-        worst = max(
-            (g for g in gaps if g["model"] == model and g["quantity"] in JUDGED), key=lambda g: abs(g["relative"]), default=None
-        )
-        if worst and abs(worst["relative"]) > tolerance:
-            how = "with the attachments of the scene" if worst["attachment"] == "as scene" else "like for like (section means)"
-            why = (
-                f"{worst['quantity']} is {100 * abs(worst['relative']):.1f} % {_side(worst)} against the {reference} model {how}, "
-                f"more than the {100 * tolerance:g} % asked for"
-            )
-            validity[model] = (False, why)
+    judged = scene.ask.quantities or JUDGED
+    reference, why = trusted(rungs, tolerance)
+    notices = list(notices)
+    validity = {m: _judged(m, rungs, reference, why, gaps, judged, tolerance, notices) for m in rungs}
+    cheapest = next((m for m in FIDELITIES if m in rungs and validity[m].valid), None)
+    sentences = []
+    if not rungs:
+        sentences = ["No model could be solved."]
+    elif reference is None:
+        sentences = [f"Not judged: {why}."]
+    else:
+        sentences = [*_trust(rungs, reference, gaps, judged), *_cheapest(rungs, cheapest, tolerance), *_beams(rungs, gaps, judged, tolerance)]
+    verdict = {"trust": reference, "reference": reference, "cheapest": cheapest, "tolerance": tolerance, "judged": list(judged), "sentences": sentences}
+    return verdict, validity
+
+
+def _judged(model, rungs, reference, why, gaps, judged, tolerance, notices) -> Judgement:
+    against = [n["sentence"] for n in notices if model in n["models"] and n["level"] in ("avoid", "fault")]
     if reference is None:
-        return {"trust": None, "reference": None, "cheapest": None, "tolerance": tolerance, "sentences": ["No model could be solved."]}, validity
-    cheapest = next((m for m in FIDELITIES if m in rungs and validity[m][0]), None)
-    sentences = [*_trust(rungs, reference, gaps), *_cheapest(rungs, reference, cheapest, tolerance, gaps)]
-    return {"trust": reference, "reference": reference, "cheapest": cheapest, "tolerance": tolerance, "sentences": sentences}, validity
+        return Judgement(False, f"not judged: {why}", open=True)
+    if against:
+        return Judgement(False, against[0])
+    rung = rungs[model]
+    if model in ("harmonic", "solid"):
+        worst = rung.worst_band(judged)
+        if worst is None or worst > tolerance:
+            text = "it has no band of its own" if worst is None else f"it is sure of itself to no better than {percent(worst)}"
+            return Judgement(False, f"{text}, and {percent(tolerance)} is asked for ({_reason(rung)})", open=True)
+    if model == reference:
+        return Judgement(True)
+    mine = [g for g in gaps if g["model"] == model and g["quantity"] in judged]
+    missing = [q for q in judged if q in rungs[reference].quantities and not any(g["quantity"] == q for g in mine)]
+    if missing:
+        return Judgement(False, f"nothing in it corresponds to {' and '.join(missing)} of the {NAMES[reference]}", open=True)
+    worst_first = sorted(mine, key=lambda g: -(abs(g["relative"]) + (g["band"] or 0.0)))
+    for kind in (BEYOND, OPEN):
+        for gap in worst_first:
+            if gap_verdict(gap["relative"], gap["band"] or 0.0, tolerance) == kind:
+                return Judgement(False, _why(gap, reference, kind, tolerance), open=kind == OPEN)
+    return Judgement(True)
+
+
+def _why(gap: dict, reference: str, kind: str, tolerance: float) -> str:
+    text = f"{gap['quantity']} is {percent(abs(gap['relative']))} {_side(gap)} against the {NAMES[reference]} {TIES[gap['attachment']]}"
+    if gap["pairing"]:
+        text += f" ({gap['pairing']})"
+    if kind == BEYOND:
+        return f"{text}, more than the {percent(tolerance)} asked for"
+    return f"{text}, which with a band of {percent(gap['band'])} may or may not be within the {percent(tolerance)} asked for"
 
 
 def _side(gap: dict) -> str:
     """What the sign of a gap means to an engineer."""
+    if gap["quantity"] in ("C_z,thx", "K_z,thx"):
+        return "off (of the geometric mean of the two diagonal entries)"
     if gap["quantity"].startswith("C_"):
         return "too small (too stiff)" if gap["relative"] < 0 else "too large (too soft)"
     return "too high" if gap["relative"] > 0 else "too low"
 
 
-def _percent(x: float) -> str:
-    return f"{100 * x:.2g} %"
+def percent(x: float) -> str:
+    """A share in per cent to two figures."""
+    return f"{100 * x:.2g} %" if abs(x) < 0.995 else f"{100 * x:.0f} %"
 
 
-def _trust(rungs, reference, gaps) -> list[str]:
+def _trust(rungs, reference, gaps, judged) -> list[str]:
     base = rungs[reference]
-    if not base.bands:
-        return [f"The {reference} model is the best one that was run, but it has no band of its own: run a solid rung to judge it."]
-    c = max((v["gci"] for k, v in base.bands.items() if k.startswith("C_")), default=None)
-    f = base.bands.get("bending 1", {}).get("gci")
-    size = [f"{_percent(v)} in {what}" for v, what in ((c, "compliance"), (f, "first bending")) if v is not None]
-    band = " and ".join(size) or "on the numbers it has"
+    own = base.bands[SCENE]
+    size = []
+    c = max((own[q].gci for q in judged if q.startswith("C_") and q in own), default=None)
+    f = own["bending 1"].gci if "bending 1" in own else None
+    if c is not None:
+        size.append(f"{percent(c)} in compliance")
+    if f is not None:
+        size.append(f"{percent(f)} in first bending")
     kind = "exact 3D elasticity of a body of revolution" if reference == "harmonic" else "full 3D elasticity"
-    out = [f"Trust the {reference} solid: {kind}, sure of itself to {band} (three refinements)."]
-    mine = [g for g in gaps if g["model"] == "solid" and g["attachment"] == "as scene" and g["quantity"] in JUDGED]
+    band = " and ".join(size) or "the numbers it has"
+    out = [f"Trust the {NAMES[reference]}: {kind}, sure of itself to {band} ({len(base.levels)} meshes)."]
+    if reference == "solid" or "solid" not in rungs:
+        return out
+    mine = [g for g in gaps if g["model"] == "solid" and g["attachment"] == SCENE and g["quantity"] in judged]
     if mine:
         worst = max(mine, key=lambda g: abs(g["relative"]))
-        open_ones = [g for g in mine if g["verdict"] == "resolved"]
-        text = f"The full 3D solid, another mesh and another formulation, is within {_percent(abs(worst['relative']))} of it in every judged number"
-        text += "; all gaps lie inside the bands (not resolved)." if not open_ones else f", beyond the bands in {', '.join(g['quantity'] for g in open_ones)}."
+        beyond = [g["quantity"] for g in mine if g["verdict"] == "resolved"]
+        text = f"The full 3D solid, another mesh and another formulation, is within {percent(abs(worst['relative']))} of it in every judged number"
+        text += f", beyond the bands in {', '.join(beyond)}." if beyond else "; all gaps lie inside the bands (not resolved)."
         out.append(text)
     return out
 
 
-def _cheapest(rungs, reference, cheapest, tolerance, gaps) -> list[str]:
+def _cheapest(rungs, cheapest, tolerance) -> list[str]:
+    if not cheapest:
+        return [f"No model is known to be within {percent(tolerance)}."]
+    return [f"Cheapest model within {percent(tolerance)}: {NAMES[cheapest]} ({_cost(rungs[cheapest])})."]
+
+
+def _beams(rungs, gaps, judged, tolerance) -> list[str]:
+    """Where a beam fails on a seat it does not know, and not on its own theory: the tie, not the beam."""
     out = []
-    if cheapest:
-        out.append(f"Cheapest model within {100 * tolerance:g} %: {cheapest} ({_cost(rungs[cheapest])}).")
-    if "timoshenko" in rungs and reference != "timoshenko":
-        here = {g["attachment"]: g["relative"] for g in gaps if g["model"] == "timoshenko" and g["quantity"] == "bending 1"}
-        if len(here) == 2 and abs(here["as scene"]) < 0.5 * abs(here["section"]):
+    for model in ("euler", "timoshenko"):
+        if model not in rungs:
+            continue
+        worst = {}
+        for tie in (SCENE, SECTION):
+            mine = [g for g in gaps if g["model"] == model and g["attachment"] == tie and g["quantity"] in judged]
+            worst[tie] = max(mine, key=lambda g: abs(g["relative"]), default=None)
+        scene, like = worst[SCENE], worst[SECTION]
+        if scene is None or like is None:
+            continue
+        here, fair = abs(scene["relative"]), abs(like["relative"])
+        if here > tolerance >= fair:
             out.append(
-                f"Timoshenko's first bending looks {_percent(abs(here['as scene']))} off with the scene's seats but is {_percent(abs(here['section']))} off "
-                "like for like: seat flexibility, which a beam has not, hides part of its excess stiffness."
+                f"What puts the {NAMES[model]} out is the tie, not the beam: {scene['quantity']} is {percent(here)} off at the scene's seats, which "
+                f"distort sections, and nothing is more than {percent(fair)} off like for like."
+            )
+        elif here <= tolerance < fair:
+            out.append(
+                f"The {NAMES[model]} looks within {percent(here)} at the scene's seats but is {percent(fair)} off in {like['quantity']} like for like: "
+                "seat flexibility, which a beam has not, hides part of its excess stiffness."
             )
     return out
 
 
-def _cost(rung) -> str:
+def _cost(rung: Rung) -> str:
     # The price of an answer is building and solving it; bands and variants are evidence on top.
     seconds = sum(rung.meter.seconds.get(k, 0.0) for k in ("build", "statics", "modes"))
     return f"{rung.body.size} unknowns, {seconds:.2g} s"

@@ -50,6 +50,17 @@ def options(pairs: list[str] | None) -> dict:
     return out
 
 
+def options_by_model(pairs: list[str] | None, models) -> dict[str, dict]:
+    """Builder options per model from ``MODEL.key=value`` texts."""
+    out: dict[str, dict] = {}
+    for pair in pairs or []:
+        model, dot, rest = pair.partition(".")
+        if not dot or model not in models:
+            raise SolidgearError(f"--set {pair}: write MODEL.key=value, such as --set solid.around=32; models: {', '.join(models)}")
+        out.setdefault(model, {}).update(options([rest]))
+    return out
+
+
 def _value(text: str):
     for kind in (int, float):
         try:

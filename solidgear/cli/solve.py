@@ -8,7 +8,7 @@ from typing import Annotated, Optional
 
 import typer
 
-from solidgear.cli.app import Fidelity, FidelityOption, JsonFlag, Progress, SceneFile, Settings, build_body, command, console
+from solidgear.cli.app import Fidelity, FidelityOption, JsonFlag, Progress, SceneFile, Settings, build_body, command, console, options_by_model
 from solidgear.errors import SolidgearError
 
 
@@ -20,11 +20,16 @@ def compare(
     as_json: JsonFlag = False,
     renders: Annotated[bool, typer.Option("--renders/--no-renders", help="Draw the first bending mode of every model.")] = True,
     solid_element: Annotated[Optional[str], typer.Option("--solid-element", help="hex20, hex27, hex8, tet10 or tet4.")] = None,
+    settings: Annotated[
+        Optional[list[str]],
+        typer.Option("--set", help="Builder option of one model as MODEL.key=value, repeatable: solid.around=32, harmonic.order=8. One that speaks of the mesh fixes it."),
+    ] = None,
     chart: Annotated[bool, typer.Option("--chart", help="Also chart error against cost, as a section of the report (about four minutes more).")] = False,
 ) -> None:
     """Solve a scene with every model and write a report on which to trust."""
     from solidgear.comparison import check_models
     from solidgear.comparison import compare as run
+    from solidgear.fidelity import FIDELITIES
     from solidgear.report.write import prepare
     from solidgear.scene_file import load
 
@@ -32,9 +37,11 @@ def compare(
     wanted = tuple(m.strip() for m in models.split(",") if m.strip())
     check_models(wanted)
     prepare(out)
-    settings = {"solid": {"element": solid_element}} if solid_element else None
+    chosen = options_by_model(settings, FIDELITIES)
+    if solid_element:
+        chosen.setdefault("solid", {})["element"] = solid_element
     with Progress(quiet=as_json) as progress:
-        found = run(loaded, wanted, settings=settings, progress=progress)
+        found = run(loaded, wanted, settings=chosen, progress=progress)
         found.write_report(out, renders=renders and found.results["complete"], progress=progress)
     if chart and found.results["complete"]:
         from solidgear.cli.chart import run_chart
@@ -43,11 +50,13 @@ def compare(
     if as_json:
         print(json.dumps(found.results, allow_nan=False))
     else:
-        from solidgear.report.terminal import final_table, verdict_text
+        from solidgear.report.terminal import closing_lines, final_table, verdict_text
 
         terminal = console()
         terminal.print(final_table(found.results))
         terminal.print(verdict_text(found.results), markup=False)
+        for line in closing_lines(found.results):
+            terminal.print(line, markup=False, soft_wrap=True)
         terminal.print(f"Report: {out / 'report.html'}", markup=False, soft_wrap=True)
     if not found.results["complete"]:
         raise typer.Exit(130)
@@ -66,6 +75,7 @@ def stiffness(
     """6x6 stiffness and compliance at the lumped point, bearings included."""
     import numpy as np
 
+    from solidgear.check import cautions
     from solidgear.frames import DOF_NAMES
     from solidgear.scene_file import load
     from solidgear.solve.statics import condense
@@ -75,6 +85,7 @@ def stiffness(
         loaded = loaded.with_attachment(attachment)
     body = build_body(loaded, fidelity, settings)
     found = condense(body, loaded, loaded.port.name)
+    said = cautions(loaded, body)
 
     if as_json:
 
@@ -93,6 +104,7 @@ def stiffness(
             "free_oblique": found.oblique.T.tolist(),
             "dofs": body.size,
             "evidence": found.evidence,
+            "cautions": said,
         }
         print(json.dumps(record))
         return
@@ -107,6 +119,8 @@ def stiffness(
     for motion in found.oblique.T:
         parts = ", ".join(f"{v:.4g} {n}" for v, n in zip(motion, DOF_NAMES) if abs(v) > 1e-9)
         terminal.print(f"Free: the motion ({parts}), m and rad; a compliance does not exist.")
+    for sentence in said:
+        terminal.print(f"caution: {sentence}", markup=False)
 
 
 @command
@@ -120,6 +134,7 @@ def modes(
     settings: Settings = None,
 ) -> None:
     """Natural frequencies on the bearings, with the evidence for them."""
+    from solidgear.check import cautions
     from solidgear.scene_file import load
     from solidgear.solve.modes import modes as solve
 
@@ -128,9 +143,10 @@ def modes(
     if max_frequency is not None and not max_frequency > 0:
         raise SolidgearError(f"--max-frequency {max_frequency:g}: must be greater than zero, in Hz")
     found = solve(body, loaded, loaded.ask.modes if n is None else n, max_frequency=max_frequency or loaded.ask.max_frequency, count=count)
+    said = cautions(loaded, body)
     rows = [{"name": m.name, "family": m.family, "frequency_hz": m.frequency_hz, "multiplicity": m.multiplicity} for m in found.modes]
     if as_json:
-        print(json.dumps({"scene": loaded.name, "fidelity": fidelity.value, "dofs": body.size, "modes": rows, "evidence": found.evidence}, default=float))
+        print(json.dumps({"scene": loaded.name, "fidelity": fidelity.value, "dofs": body.size, "modes": rows, "evidence": found.evidence, "cautions": said}, default=float))
         return
     from solidgear.report.terminal import modes_table
 
@@ -145,6 +161,8 @@ def modes(
         bad = [part["why"] for part in e["count"] if not part["checked"]]
         below = min((part["below_hz"] for part in e["count"] if part["checked"]), default=0.0)
         terminal.print(f"Not counted: {bad[0]}." if bad else f"No mode missed below {below:.6g} Hz (counted by the inertia of a second factor).")
+    for sentence in said:
+        terminal.print(f"caution: {sentence}", markup=False)
 
 
 @command
@@ -186,7 +204,7 @@ def check(
     else:
         for line in found["facts"]:
             print(line)
-        for record in (r for level in ("caution", "avoid") for r in found["records"] if r["level"] == level):
+        for record in (r for level in ("caution", "open", "avoid") for r in found["records"] if r["level"] == level):
             print(": ".join(filter(None, ("caution", ", ".join(record["models"]), record["sentence"]))))
         for line in found["faults"]:
             print(f"fault: {line}")

@@ -98,3 +98,22 @@ def correlate(model: ModeSet, reference: ModeSet) -> Correlation:
 
 def _rows(mode: Mode) -> np.ndarray:
     return mode.motions.reshape(len(mode.motions), -1)
+
+
+@dataclass(frozen=True)
+class Pairing:
+    """A mode of the reference and the mode of the model with its shape."""
+
+    reference: Mode
+    mode: Mode | None
+    mac: float
+    certain: bool
+
+
+def pair_modes(model: ModeSet, reference: ModeSet) -> tuple[Pairing, ...]:
+    out = []
+    for r in reference.modes:
+        if r.frequency_hz > 0:
+            m = model.named(r.name)
+            out.append(Pairing(r, m, 1.0, m is not None))
+    return tuple(out)

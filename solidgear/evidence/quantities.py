@@ -24,6 +24,14 @@ QUANTITIES = {
 }
 
 
+#: a coupling passes through zero where symmetry wants it to: it is told against the geometric mean of these two
+COUPLINGS = {"C_z,thx": ("C_zz", "C_thx"), "K_z,thx": ("K_zz", "K_thx")}
+
+#: What models are judged by: compliances and the frequencies a gear designer reads.  Stiffnesses follow from compliances and are
+#: shown, not judged: inverting spreads a small change of one entry over all of them.
+JUDGED = ("C_zz", "C_z,thx", "C_thx", "C_yy", "bending 1", "axial 1")
+
+
 def measure(condensed: Condensed, modes: ModeSet) -> dict[str, float]:
     """The compared numbers of one solution; those that do not exist (free motions, missing modes) are left out."""
     out = {}
@@ -33,14 +41,24 @@ def measure(condensed: Condensed, modes: ModeSet) -> dict[str, float]:
             value = mode.frequency_hz if mode else np.nan
         else:
             value = getattr(condensed, kind)[place]
-        if np.isfinite(value) and value != 0.0:
+        if np.isfinite(value) and (value != 0.0 or name in COUPLINGS):
             out[name] = float(value)
     return out
 
 
 def change(new: dict[str, float], old: dict[str, float], name: str) -> float | None:
-    """Relative change of one quantity, or None where either lacks it; rounding (below 1e-11) counts as none."""
-    if name in new and name in old:
-        relative = new[name] / old[name] - 1
-        return relative if abs(relative) > 1e-11 else 0.0
-    return None
+    """Relative change of one quantity, or None where either lacks it; rounding (below 1e-11) counts as none.
+
+    Couplings are related to the geometric mean of their diagonal entries (`COUPLINGS`), all else to the old value.
+    """
+    if name not in new or name not in old:
+        return None
+    scale = abs(old[name])
+    if name in COUPLINGS:
+        one, two = COUPLINGS[name]
+        if one in old and two in old:
+            scale = (old[one] * old[two]) ** 0.5
+    if scale == 0.0:
+        return 0.0 if new[name] == 0.0 else None
+    relative = (new[name] - old[name]) / scale
+    return relative if abs(relative) > 1e-11 else 0.0

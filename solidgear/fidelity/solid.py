@@ -251,7 +251,9 @@ def _tets(scene, wanted, element, size, graded_size, refinement, around):
     graded_size = (graded_size / refinement) if graded_size else size / 4
     planes = sorted({s.y for s, a in wanted if a == "section"})
     circles = sorted({y for s, a in wanted if a != "section" for y in (s.lo, s.hi)})
-    made = tetrahedra(scene.segments, planes, circles, size=size, graded_size=None if graded_size >= size else graded_size, around=max(16, around))
+    # Meshes of one sequence are similar only if the circumference is refined with the rest.
+    turns = max(8, int(round(max(16, around) * refinement)))
+    made = tetrahedra(scene.segments, planes, circles, size=size, graded_size=None if graded_size >= size else graded_size, around=turns)
     if element == "tet10":
         return made.mesh, made.segment, made.quality
     from skfem import MeshTet1

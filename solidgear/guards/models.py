@@ -8,19 +8,28 @@ from solidgear.errors import SolidgearError
 from solidgear.evidence.converge import sharpest_corner
 from solidgear.guards.notice import BEAMS, MODELS, Notice, Notices, beyond
 from solidgear.guards.probe import Probe
+from solidgear.verdict import BEYOND, OPEN, TIES, WITHIN, gap_verdict
+
+
+#: bands of a light solid rest on two meshes only
+CAUTIOUS = 2.0
 
 
 def beam_against_solid(probe: Probe) -> Notices:
-    """Both beams held against a light harmonic solid of the same scene, tied like a beam and as in the scene."""
+    """Both beams held against a light harmonic solid of the same scene, tied as in the scene and by section means."""
     tolerance = probe.scene.ask.tolerance
     for model, concerned in (("euler", ("euler",)), ("timoshenko", ("timoshenko", "lumped"))):
         if not (gaps := probe.gaps(model)):
             continue
-        gap, name, how = gaps[0]
+        found = {kind: [g for g in gaps if gap_verdict(g["relative"], CAUTIOUS * (g["band"] or 0.0), tolerance) == kind] for kind in (BEYOND, OPEN, WITHIN)}
+        kind, worst = next((kind, rows[0]) for kind, rows in found.items() if rows)
+        name, gap = worst["quantity"], worst["relative"]
         side = ("larger" if gap > 0 else "smaller") if name.startswith("C_") else "higher" if gap > 0 else "lower"
-        text = f"{name} of the {model} beam is {100 * abs(gap):.3g} % {side} than that of a light harmonic solid with seats tied {how}"
-        if abs(gap) > tolerance:
+        text = f"{name} of the {model} beam is {100 * abs(gap):.3g} % {side} than that of a light harmonic solid {TIES[worst['attachment']]}"
+        if kind == BEYOND:
             yield Notice("avoid", concerned, f"{text}, more than the {100 * tolerance:g} % asked for; use the harmonic solid")
+        elif kind == OPEN:
+            yield Notice("open", concerned, f"{text}, and the light solid is too coarse to tell whether that is within the {100 * tolerance:g} % asked for; compare tells")
         else:
             yield Notice("fact", concerned, f"{text}, the largest gap of what is compared")
 

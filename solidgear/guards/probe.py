@@ -16,13 +16,14 @@ import scipy.sparse.linalg as spla
 
 from solidgear.body import Body, Supports, as_supports
 from solidgear.errors import SolidgearError
-from solidgear.evidence.quantities import change, measure
+from solidgear.evidence.levels import HARMONIC
+from solidgear.evidence.quantities import JUDGED
+from solidgear.evidence.study import Rung, rigid_seats, study
 from solidgear.fidelity import build
 from solidgear.lumped.effective_mass import LumpedPoint, Synthesis, synthesise
 from solidgear.scene import TOUCH
 from solidgear.solve.modes import ModeSet, modes
-from solidgear.solve.statics import condense
-from solidgear.verdict import JUDGED
+from solidgear.verdict import deviations
 
 #: modes enough for the first bending pair, the first axial one and the rigid ones between them
 FEW = 8
@@ -43,11 +44,14 @@ class Probe:
     scene : Scene
     body : Body
         The body the user asked for; it is read, not solved.
+    rungs : dict of str to Rung, optional
+        What is solved already.
     """
 
-    def __init__(self, scene, body: Body):
+    def __init__(self, scene, body: Body, rungs: dict[str, Rung] | None = None):
         self.scene, self.body, self.supports = scene, body, as_supports(scene)
-        self.beam, self.tied, self.gaps = cache(self._beam), cache(self._tied), cache(self._gaps)
+        self.rungs = dict(rungs or {})
+        self.tied, self.gaps = cache(self._tied), cache(self._gaps)
 
     def diameter(self, y: float) -> float:
         """Outer diameter of the shaft at y, the larger one at a step, m."""
@@ -59,39 +63,31 @@ class Probe:
         ends = (0.0, *self.scene.steps, self.scene.length)
         return [(a, b, 2 * max(max(s.outer0, s.outer1) for s in self.scene.segments if s.y0 > a - TOUCH and s.y1 < b + TOUCH)) for a, b in pairwise(ends)]
 
-    def light(self, scene, **options) -> Body:
-        """Harmonic solid of order 3 on a mesh graded towards shoulders: within 0.2 % of the default one on every shipped scene, in 0.2 s."""
-        # Cells no smaller than a part of the whole: a scene of extreme proportions must not cost more than another.
-        coarse = max(scene.length / 12, max(max(s.outer0, s.outer1) for s in scene.segments) / 3)
-        size = max(coarse, min(min(s.outer0, s.outer1) for s in scene.segments))
-        return build(scene, "harmonic", order=3, layers=2, edge_layers=0, size=size, **options)
+    def rung(self, model: str) -> Rung:
+        """A beam, or the harmonic solid on its two coarsest meshes."""
+        if model not in self.rungs:
+            self.rungs[model] = study(self.scene, model, most=2, evidence=False)
+        return self.rungs[model]
 
-    def _beam(self, model: str) -> tuple[Body, ModeSet, dict[str, float]]:
-        return self._solved(build(self.scene, model))
-
-    @cached_property
-    def _means(self) -> Body:
-        return self.light(self.scene, attachments=("average", "section"))
+    def beam(self, model: str) -> tuple[Body, ModeSet, dict[str, float]]:
+        """A beam tied as in the scene: body, modes and compared numbers."""
+        rung = self.rung(model)
+        return rung.body, rung.modes, rung.quantities
 
     def _tied(self, attachment: str | None) -> dict[str, float]:
-        """Numbers of the light harmonic solid with one attachment at all ports, or as the scene has it (None)."""
-        if attachment in ("average", "section"):  # both are rows on one mesh
-            return self._solved(self._means, attachment)[2]
-        return self._solved(self.light(self.scene.with_attachment(attachment) if attachment else self.scene))[2]
+        """Numbers of the light harmonic solid with one attachment (``rigid``: at the bearings), or as the scene has it (None)."""
+        given = {s.attachment for s in self.scene.stations}
+        if attachment is None or given == {attachment}:
+            return self.rung("harmonic").quantities
+        scene = rigid_seats(self.scene) if attachment == "rigid" else self.scene.with_attachment(attachment)
+        return study(scene, "harmonic", most=2, evidence=False).quantities
 
-    def _solved(self, body: Body, attachment: str | None = None) -> tuple[Body, ModeSet, dict[str, float]]:
-        supports = self.supports.with_attachment(attachment)
-        found = modes(body, supports, FEW)
-        return body, found, measure(condense(body, supports, self.scene.port.name, attachment), found)
-
-    def _gaps(self, model: str) -> list[tuple[float, str, str]]:
-        """Distances of a beam from the light solid, like for like and as the scene is tied, the largest first: (relative, quantity, how tied)."""
-        mine, given = self.beam(model)[2], {s.attachment for s in self.scene.stations}
-        ways = {"as section means": "section"}
-        if given != {"section"}:
-            ways["as in the scene"] = given.pop() if len(given) == 1 else None
-        found = [(change(mine, self.tied(attachment), name), name, how) for how, attachment in ways.items() for name in JUDGED]
-        return sorted((g for g in found if g[0] is not None), key=lambda g: -abs(g[0]))
+    def _gaps(self, model: str) -> list[dict]:
+        """Deviations of a beam from the light solid in what is judged, the largest first."""
+        rungs = {model: self.rung(model), "harmonic": self.rung("harmonic")}
+        judged = self.scene.ask.quantities or JUDGED
+        found = [g for g in deviations(rungs, "harmonic") if g["quantity"] in judged]
+        return sorted(found, key=lambda g: -abs(g["relative"]))
 
     @property
     def first_bending(self) -> float | None:
@@ -123,7 +119,7 @@ class Probe:
     @cached_property
     def ovalising(self) -> dict[int, float]:
         """Lowest frequency (Hz) of two and of three waves around; bearings do not enter."""
-        blocks = self.light(self.scene, ovalising=(2, 3)).blocks[-2:]
+        blocks = build(self.scene, "harmonic", **HARMONIC[1], ovalising=(2, 3)).blocks[-2:]
         lowest = [spla.eigsh(b.stiffness.tocsc(), 1, b.mass.tocsc(), sigma=0.0, v0=np.ones(b.size), return_eigenvectors=False)[0] for b in blocks]
         return {n: float(np.sqrt(w2) / (2 * np.pi)) for n, w2 in zip((2, 3), lowest)}
 

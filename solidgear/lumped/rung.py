@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 
 from solidgear.errors import SolidgearError
 from solidgear.lumped.effective_mass import Synthesis, synthesise
@@ -74,7 +74,9 @@ def representative(lumped: dict) -> tuple[str, str] | None:
     return None
 
 
-def model_record(lumped: dict, models: dict, reference_hz: float | None, tolerance: float) -> dict | None:
+def model_record(
+    lumped: dict, models: dict, reference_hz: float | None, tolerance: float, band: float | None, notices: Iterable[dict] = ()
+) -> dict | None:
     """Record of the lumped rung among the models; its stiffness is its source's.
 
     Parameters
@@ -86,21 +88,31 @@ def model_record(lumped: dict, models: dict, reference_hz: float | None, toleran
     reference_hz : float or None
         First bending of the reference model.
     tolerance : float
+    band : float or None
+        Of the reference's first bending; None where nothing may judge.
+    notices : iterable of dict
+        What the guards say: ``level``, ``models``, ``sentence``.
     """
     chosen = representative(lumped)
     if chosen is None:
         return None
     source, variant = chosen
     base, own = models[source], lumped[source]["variants"][variant]
-    why_not = None
+    why_not, undecided = None, False
+    against = [n["sentence"] for n in notices if "lumped" in n["models"] and n["level"] in ("avoid", "fault")]
     if not base["valid"]:
-        why_not = f"its stiffness is that of the {source} model, which is out: {base['why_not']}"
-    elif reference_hz and abs(own["frequency_hz"] / reference_hz - 1) > tolerance:
+        why_not, undecided = f"its stiffness is that of the {source} model, which is out: {base['why_not']}", base["open"]
+    elif against:
+        why_not = against[0]
+    elif not reference_hz or band is None:
+        why_not, undecided = "not judged: there is no first bending of a trusted model to hold it against", True
+    elif abs(own["frequency_hz"] / reference_hz - 1) + band > tolerance:
         why_not = f"its first bending is {100 * (own['frequency_hz'] / reference_hz - 1):+.1f} % off, more than the {100 * tolerance:g} % asked for"
     # The price of its source comes first: there is no lumped model without a body to condense.
     seconds = {k: base["seconds"].get(k, 0.0) for k in ("build", "statics", "modes")} | {"synthesis": lumped[source]["seconds"]}
     return {
         "valid": why_not is None,
+        "open": undecided,
         "why_not": why_not,
         "source": source,
         "variant": variant,

@@ -152,7 +152,7 @@ class Grading:
         if self.size is not None:
             return self.size, self.size
         far = self.relative_size * min(segment.outer0, segment.outer1)
-        return min(far, self.relative_size * local_length(segment)), far
+        return min(self.relative_size, 1.0) * local_length(segment), far
 
 
 def local_length(segment) -> float:
@@ -160,6 +160,11 @@ def local_length(segment) -> float:
     wall = min(segment.outer0 - segment.inner0, segment.outer1 - segment.inner1)
     radius = min(segment.outer0, segment.outer1)
     return min(radius, SHELL * float(np.sqrt(radius * wall)))
+
+
+def corner_length(segment) -> float:
+    """Length (m) over which stress at a corner is singular: the wall, or the radius of a solid shaft."""
+    return min(segment.outer0 - segment.inner0, segment.outer1 - segment.inner1, segment.outer0, segment.outer1)
 
 
 def layout(scene, grading: Grading, attachments: tuple[str, ...] | None = None) -> Layout:
@@ -180,7 +185,7 @@ def layout(scene, grading: Grading, attachments: tuple[str, ...] | None = None) 
     lines = [np.array([0.0])]
     for a, b in zip(marks, marks[1:]):
         owner = next(s for s in segments if (a.y + b.y) / 2 < s.y1 + tol)
-        reach = [grading.reach * min(local_length(s) for s in segments if s.y0 < m.y + tol and m.y < s.y1 + tol) for m in (a, b)]
+        reach = [grading.reach * min(corner_length(s) for s in segments if s.y0 < m.y + tol and m.y < s.y1 + tol) for m in (a, b)]
         lines.append(a.y + graded(b.y - a.y, grading.cell(owner), grading.ratio, reach, grading.refinement, a.layers, b.layers)[1:])
     y = np.concatenate(lines)
     middle = (y[1:] + y[:-1]) / 2
@@ -257,7 +262,7 @@ def _radial_needs(scene, grading: Grading, attachments, bands) -> dict[tuple[int
 
     for i, (a, b) in enumerate(zip(segments, segments[1:])):
         layers = corner_layers(a, b, grading.across)
-        reach = grading.radial_reach * min(local_length(a), local_length(b))
+        reach = grading.radial_reach * min(corner_length(a), corner_length(b))
         # A band boundary meets a shoulder where it is the surface of the smaller neighbour.
         for boundary in (min(bands[i][1], bands[i + 1][1]), max(bands[i][0], bands[i + 1][0])):
             for k in (i, i + 1):
@@ -267,7 +272,7 @@ def _radial_needs(scene, grading: Grading, attachments, bands) -> dict[tuple[int
         for i, s in enumerate(segments):
             if s.y0 < station.hi - TOUCH and station.lo + TOUCH < s.y1:
                 layers = grading.across if held else min(grading.edge, grading.across)
-                add(bands[i][1], i, layers, grading.radial_reach * local_length(s))
+                add(bands[i][1], i, layers, grading.radial_reach * corner_length(s))
     return needs
 
 
@@ -275,7 +280,8 @@ def graded(length, size, ratio, reach, refinement, low: int, high: int) -> np.nd
     """Positions 0 .. length of mesh lines with geometric layers towards the two ends.
 
     Layers stand at ``reach ratio^k`` from their end, k = 0 .. layers, as far as there is room: a short interval between two
-    singular points is a layer itself and is not filled with more.  Cells grow away from the ends as fast as the distance.
+    singular points is a layer itself and is not filled with more.  Beyond ``reach`` cells go on growing by the same ratio up to the
+    smaller size, from there with the distance.
     The density is that of refinement 1; other refinements sample it with proportionally more cells, which keeps meshes similar.
 
     Parameters
@@ -297,7 +303,8 @@ def graded(length, size, ratio, reach, refinement, low: int, high: int) -> np.nd
     lines = {0.0, float(length)}
     for layers, start, place in ((low, first, lambda d: d), (high, last, lambda d: length - d)):
         if layers:
-            lines |= {float(place(d)) for d in start * ratio ** np.arange(layers + 1) if d < room}
+            beyond = max(0, int(np.ceil(np.log(near / start / (1 - ratio)) / -np.log(ratio) - 1e-6)))
+            lines |= {float(place(d)) for d in start * ratio ** np.arange(-beyond, layers + 1) if d < room}
     lines = np.array(_distinct(sorted(lines), 1e-9 * length))
     lines[-1] = length  # a last layer thinner than that must not move the end
     filled = [lines[:1]]
@@ -310,12 +317,12 @@ def graded(length, size, ratio, reach, refinement, low: int, high: int) -> np.nd
 
 
 def _filled(a: float, b: float, length: float, near: float, far: float) -> np.ndarray:
-    """Lines from a to b no further apart than the local cell size, ``near`` plus the distance to the nearer end up to ``far``."""
+    """Lines from a to b no further apart than the local cell size: ``near``, or the distance to the nearer end where that is more, up to ``far``."""
     if near >= far:
         n = max(1, int(np.ceil((b - a) / far - 1e-6)))
         return np.linspace(a, b, n + 1)
     x = np.linspace(a, b, 257)
-    size = np.minimum(near + np.minimum(x, length - x), far)
+    size = np.minimum(np.maximum(near, np.minimum(x, length - x)), far)
     cells = np.concatenate([[0.0], np.cumsum(np.diff(x) * (1 / size[1:] + 1 / size[:-1]) / 2)])
     n = max(1, int(np.ceil(cells[-1] - 1e-6)))
     lines = np.interp(np.linspace(0, cells[-1], n + 1), cells, x)

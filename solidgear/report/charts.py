@@ -199,7 +199,7 @@ def convergence_chart(results):
             low, high = min(low, band / 3), max(high, band * 2)
             ax.axhspan(low, band, color=_colour(key), alpha=0.12, lw=0)
             ax.axhline(band, color=_colour(key), lw=0.8, ls="--")
-            ax.annotate(f"GCI {percent(band, signed=False)}, factor {estimate.get('factor')}", (0.01, band), xycoords=("axes fraction", "data"), xytext=(0, 2),
+            ax.annotate(f"band {percent(band, signed=False)}, factor {estimate.get('factor')}", (0.01, band), xycoords=("axes fraction", "data"), xytext=(0, 2),
                         textcoords="offset points", ha="left", va="bottom", fontsize=8)  # fmt: skip
         expected = estimate.get("expected_order")
         if is_number(expected) and along != "dofs":

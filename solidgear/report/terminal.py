@@ -150,6 +150,24 @@ def answer_seconds(model: Mapping) -> float | None:
     return sum(stages) if all(is_number(s) for s in stages) else times.get("total")
 
 
+#: how the worth of a model is told in a narrow column
+VALID = {"yes": "yes", "no": "NO", "open": "?", "unknown": "?"}
+
+
+def validity(model: Mapping) -> str:
+    """``yes``, ``no``, ``open`` (not judged, or not to be told) or ``unknown`` where the record says nothing."""
+    if model.get("valid") is True:
+        return "yes"
+    if model.get("open"):
+        return "open"
+    return "no" if model.get("valid") is False else "unknown"
+
+
+def band_percent(value: float | None, nothing: str = NOTHING) -> str:
+    """A band in per cent; one beyond 100 % says nothing but that."""
+    return "> 100 %" if is_number(value) and value > 1 else percent(value, signed=False, nothing=nothing)
+
+
 def reference_of(results: Mapping) -> str | None:
     """The key of the model that the others are measured against."""
     return (results.get("verdict") or {}).get("reference") or (results.get("mac") or {}).get("reference")
@@ -191,16 +209,18 @@ def final_table(results: Mapping) -> RenderableType:
         bending = first_mode(model, "bending") or {}
         table.add_row(
             Text({"euler": "Euler", "timoshenko": "Timoshenko", "harmonic": "harmonic"}.get(key, model_name(key))[:10]),
-            {True: "yes", False: "NO"}.get(model.get("valid"), "?"),
+            VALID[validity(model)],
             engineering(entry(model, "stiffness", 2, 2), 4), engineering(entry(model, "compliance", 2, 2), 4), hertz(bending.get("frequency_hz")),
-            *cells, percent((model.get("band") or {}).get("compliance"), signed=False),
+            *cells, band_percent((model.get("band") or {}).get("compliance")),
             count(model.get("dofs")), seconds(answer_seconds(model)),
         )  # fmt: skip
-        if model.get("valid") is False:
-            reasons.append(Text(f"NO  {model_name(key)}: {model.get('why_not') or 'not valid for this scene'}"))
+        if validity(model) in ("no", "open"):
+            reasons.append(Text(f"{VALID[validity(model)]:<4}{model_name(key)}: {model.get('why_not') or 'not valid for this scene'}"))
     notes = []
     if reference:
         notes.append(Text(f"d: difference from the {model_name(reference)} (ref.); a beam's is taken with section ties on both sides"))
+    if any(validity(m) == "open" for m in (results.get("models") or {}).values()):
+        notes.append(Text("?: not judged, or too close to the tolerance to tell"))
     if unresolved:
         notes.append(Text("n.r.: not resolved, the difference lies inside the bands of the two models"))
     if table.row_count:
@@ -208,6 +228,29 @@ def final_table(results: Mapping) -> RenderableType:
     if results.get("complete") is False:
         notes.append(Text("INCOMPLETE: the run was interrupted; what is missing shows as a dash"))
     return Group(table, *notes, *reasons)
+
+
+def closing_lines(results: Mapping) -> list[str]:
+    """What else a reader must know: cautions, which modes were counted, seconds and peak memory (plain text)."""
+    results = plain(results)
+    lines = [f"caution: {w}" for w in results.get("warnings") or ()]
+    trusted = (results.get("verdict") or {}).get("trust")
+    claim = families_claim(((results.get("models") or {}).get(trusted) or {}).get("evidence") or {})
+    if claim:
+        lines.append(f"Modes of the {model_name(trusted)}: {claim}")
+    if is_number(results.get("seconds_total")):
+        peak = f", peak memory {results['peak_mb']:.0f} MB" if is_number(results.get("peak_mb")) else ""
+        lines.append(f"Solved in {seconds(results['seconds_total'])} s{peak}.")
+    return lines
+
+
+def families_claim(evidence: Mapping) -> str:
+    """Below which frequency no mode was missed, and in which families; empty where nothing was counted."""
+    parts = [p for p in evidence.get("mode_count") or evidence.get("count") or () if p.get("checked")]
+    if not parts:
+        return ""
+    below = min(p["below_hz"] for p in parts)
+    return f"no mode missed below {below:.6g} Hz (counted by the inertia of a second factor)."
 
 
 def verdict_text(results: Mapping) -> str:

@@ -1,0 +1,172 @@
+"""How sure a solid is of its own numbers: one band a quantity, from the same solid on ever finer meshes.
+
+**Layered** sequences (harmonic solid, graded hexahedra) raise order or size and layers together.  One layer of ratio q towards a
+corner of exponent a leaves the share ``q^(2a)`` of what the corner costs: 0.17 at a right-angled shoulder for q = 0.2, 0.32 for
+q = 0.35.  Every level then errs by a nearly fixed share of its distance from the one before, and the band is a factor times that
+distance.  The factors are measured, by ``validation/attack/bands.py`` on random shafts (see `LAYERED`); they are no theorem.
+
+**Other** sequences (tetrahedra, linear elements, meshes that were asked for by refinement) use the grid convergence index of
+:mod:`solidgear.evidence.converge`.
+
+A change that is small by accident, since a quantity passes through an extremum on its way, is not believed: the change before
+it, and for couplings the changes of both diagonal entries, set a floor.  Displacement elements are too stiff, so the error of the
+compliance is a positive semidefinite matrix and that of a coupling no larger than the geometric mean of its diagonal entries'.
+What the solver leaves (residuals of statics and modes) is added, and of hexahedra what the cells around leave, which layers do not
+touch: it is measured on the coarsest level with half as many cells around again.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict, dataclass
+
+from solidgear.evidence.converge import gci
+from solidgear.evidence.quantities import COUPLINGS, QUANTITIES, change
+
+#: band over the last change: harmonic solid (measured 0.10 to 0.19), graded hexahedra
+LAYERED = {"harmonic": 0.25, "solid": 0.8}
+#: the last change counts for at least this share of the one before it, and a coupling's of its diagonal entries'
+EARLIER, DIAGONAL = 0.03, 0.2
+#: share of the last change by which a layered sequence is still expected to go on
+AHEAD = {"harmonic": 0.12, "solid": 0.4}
+#: safety on what the cells around leave
+SURE_AROUND = 1.5
+#: rounding, below which nothing is told apart
+LEAST = 1e-10
+
+
+@dataclass(frozen=True)
+class Band:
+    """Band of one quantity.
+
+    Attributes
+    ----------
+    values : tuple of float
+        Coarse to fine.
+    gci : float
+        The band, relative to the finest value (couplings: to the geometric mean of their diagonal entries).
+    change : float
+        Last change, relative.
+    reduction : float or None
+        Last change over the one before.
+    factor : float
+        Band over the change it rests on, or the safety factor of the grid convergence index.
+    solver : float
+        Share of the solver in the band.
+    extrapolated : float
+    observed_order, expected_order, used_order : float or None
+        Of the grid convergence index.
+    method : str
+        ``layers`` or ``grid convergence index``.
+    """
+
+    values: tuple[float, ...]
+    gci: float
+    change: float
+    reduction: float | None
+    factor: float
+    solver: float
+    extrapolated: float
+    observed_order: float | None = None
+    expected_order: float | None = None
+    used_order: float | None = None
+    method: str = "layers"
+
+    def as_dict(self) -> dict:
+        """Plain data for results.json."""
+        return asdict(self)
+
+
+Values = Mapping[str, float]
+
+
+def layered_bands(levels: Sequence[Values], solver: Values, model: str, around: Values | None = None) -> dict[str, Band]:
+    """Bands of the finest of two or more levels of a layered sequence.
+
+    Parameters
+    ----------
+    levels : sequence of mappings
+        Quantity to value (see :func:`solidgear.evidence.quantities.measure`), coarse to fine.
+    solver : mapping
+        Relative error the solver may have left in each quantity of the finest level.
+    model : {'harmonic', 'solid'}
+    around : mapping, optional
+        Relative error that the cells around leave in each quantity.
+    """
+    around = around or {}
+    factor, out = LAYERED[model], {}
+    finest, before = levels[-1], levels[-2]
+    for name in QUANTITIES:
+        if any(name not in level for level in levels[-2:]):
+            continue
+        last = abs(change(before, finest, name) or 0.0)
+        earlier = None
+        if len(levels) > 2 and name in levels[-3]:
+            earlier = abs((change(levels[-3], finest, name) or 0.0) - (change(before, finest, name) or 0.0))
+        rests_on = max(last, EARLIER * (earlier or 0.0))
+        if name in COUPLINGS:
+            own = [abs(change(before, finest, d) or 0.0) for d in COUPLINGS[name] if d in before and d in finest]
+            if len(own) == 2:
+                rests_on = max(rests_on, DIAGONAL * (own[0] * own[1]) ** 0.5)
+        left = solver.get(name, 0.0)
+        out[name] = Band(
+            values=tuple(float(level[name]) for level in levels if name in level),
+            gci=float(factor * rests_on + SURE_AROUND * around.get(name, 0.0) + left + LEAST),
+            change=float(last),
+            reduction=float(last / earlier) if earlier else None,
+            factor=factor,
+            solver=float(left),
+            extrapolated=float(finest[name] + AHEAD[model] * (finest[name] - before[name])),
+        )
+    return out
+
+
+def refined_bands(levels: Sequence[Values], solver: Values, sizes: Sequence[float], exponent: float, singular: bool) -> dict[str, Band]:
+    """Bands of the finest of three levels of plain refinement.
+
+    Parameters
+    ----------
+    levels, solver
+        As for :func:`layered_bands`.
+    sizes : sequence of three floats
+        Representative cell sizes, descending.
+    exponent : float
+        Of the sharpest corner or rigid seat end.
+    singular : bool
+        Whether nothing lifts the meshes above the order of that corner (tetrahedra).
+
+    Raises
+    ------
+    ValueError
+        If there are not three results, or sizes do not descend.
+    """
+    expected = 2 * exponent
+    out = {}
+    for name in QUANTITIES:
+        if any(name not in level for level in levels[-3:]):
+            continue
+        v = [float(level[name]) for level in levels[-3:]]
+        if name in COUPLINGS:  # relative to the scale of a coupling: an offset that leaves differences alone
+            scale = _scale(levels[-1], name)
+            v = [1.0 + x / scale - v[-1] / scale for x in v]
+        found = gci(v, sizes[-3:], expected, 4.0, expected if singular else 2.0)
+        left = solver.get(name, 0.0)
+        out[name] = Band(
+            values=tuple(float(level[name]) for level in levels[-3:]),
+            gci=float(found.gci + left + LEAST),
+            change=abs(v[2] - v[1]),
+            reduction=abs((v[2] - v[1]) / (v[1] - v[0])) if v[1] != v[0] else None,
+            factor=found.factor,
+            solver=float(left),
+            extrapolated=float(levels[-1][name] if name in COUPLINGS else found.extrapolated),
+            observed_order=found.observed_order,
+            expected_order=found.expected_order,
+            used_order=found.used_order,
+            method="grid convergence index",
+        )
+    return out
+
+
+def _scale(values: Values, name: str) -> float:
+    one, two = COUPLINGS[name]
+    return (values[one] * values[two]) ** 0.5 if one in values and two in values else abs(values[name]) or 1.0

@@ -1,0 +1,138 @@
+"""Which meshes a solid is solved on, coarse to fine, until its band meets a target.
+
+Every level raises all that limits it at once: the order of the harmonic elements (or the size of 3D ones) and the layers towards
+shoulders and seat ends.  Errors then shrink by a nearly constant factor from level to level, which is what a band can be made of;
+raising one alone runs into what the other leaves (two levels that differ only in layers are one mesh on a shaft without shoulders).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+Options = dict[str, Any]
+
+
+def _harmonic(order: int, layers: int, edge_layers: int, relative_size: float) -> Options:
+    return {"order": order, "layers": layers, "edge_layers": edge_layers, "relative_size": relative_size}
+
+
+def _hexahedra(layers: int, edge_layers: int, relative_size: float) -> Options:
+    return {"layers": layers, "radial_layers": layers, "edge_layers": edge_layers, "relative_size": relative_size}
+
+
+HARMONIC = (
+    _harmonic(2, 0, 0, 4.0),
+    _harmonic(3, 1, 1, 4.0),
+    _harmonic(4, 2, 2, 4.0),
+    _harmonic(5, 3, 2, 4.0),
+    _harmonic(6, 4, 3, 4.0),
+    _harmonic(7, 5, 3, 2.0),
+)
+HEXAHEDRA = (
+    _hexahedra(0, 0, 1.5),
+    _hexahedra(1, 1, 1.0),
+    _hexahedra(2, 1, 0.7),
+    _hexahedra(3, 2, 0.5),
+    _hexahedra(4, 2, 0.35),
+)
+TETRAHEDRA = tuple({"refinement": r} for r in (0.45, 0.65, 0.95, 1.4, 2.0))
+LINEAR = tuple({"refinement": r} for r in (0.6, 0.9, 1.35, 2.0))
+
+# What leaves the choice of meshes to the program although it is given.
+FREE = ("element", "around", "ovalising", "attachments")
+#: cells around of hexahedra that bend as a whole: eight are good to some 6e-4, and the error falls with the fourth power
+AROUND, ORDER_AROUND = 8, 4
+#: a solid that judges the others is wanted this much better than the tolerance, one that is judged this much
+JUDGE, JUDGED = 20.0, 2.0
+
+
+@dataclass(frozen=True)
+class Sequence:
+    """Meshes of one solid, coarse to fine.
+
+    Attributes
+    ----------
+    levels : tuple of dict
+        Builder options of each.
+    fixed : bool
+        All are solved, the last being the one that was asked for; otherwise the program climbs until a band is met.
+    layered : bool
+        Whether every level adds layers towards singular points (see :mod:`solidgear.evidence.bands`).
+    turned : dict or None
+        The coarsest level with half as many cells around again: what they leave is measured there, where it is cheap.
+    """
+
+    levels: tuple[Options, ...]
+    fixed: bool
+    layered: bool
+    turned: Options | None = None
+
+    @property
+    def left_around(self) -> float:
+        """Error of the cells around, as a multiple of the change from the coarsest level to the turned one."""
+        if self.turned is None:
+            return 0.0
+        ratio = self.levels[0]["around"] / self.turned["around"]
+        return 1 / (1 - ratio**ORDER_AROUND)
+
+
+def _turned(level: Options) -> Options:
+    return {**level, "around": 4 * -(-3 * level["around"] // 8)}
+
+
+def sequence(model: str, options: Mapping[str, Any]) -> Sequence:
+    """Meshes on which to solve a solid.
+
+    Parameters
+    ----------
+    model : {'harmonic', 'solid'}
+    options : mapping
+        Builder options that were asked for.  Where they speak of the mesh, they are the finest of three levels.
+    """
+    element = str(options.get("element", "hex20"))
+    layered = model == "harmonic" or element in ("hex20", "hex27")
+    if not set(options) - set(FREE):
+        if model == "harmonic":
+            known = HARMONIC
+        elif layered:
+            around = {"around": AROUND, **options}
+            levels = tuple({**level, **around} for level in HEXAHEDRA)
+            return Sequence(levels, False, True, _turned(levels[0]))
+        else:
+            known = TETRAHEDRA if element == "tet10" else LINEAR
+        return Sequence(tuple({**level, **options} for level in known), False, layered)
+    if model == "harmonic":
+        return _below_harmonic(dict(options))
+    if layered and "refinement" not in options:
+        return _below_hexahedra(dict(options))
+    return _refinements(dict(options))
+
+
+def _below_harmonic(options: Options) -> Sequence:
+    finest = {"order": 5, "layers": 3, "edge_layers": 1, **options}
+    order = finest["order"]
+    if not isinstance(order, int) or order < 4:
+        return _refinements(dict(options))
+    coarser = [
+        {**finest, "order": order - k, "layers": max(finest["layers"] - k, 0), "edge_layers": max(finest["edge_layers"] - k, 0)} for k in (2, 1)
+    ]
+    return Sequence((*coarser, finest), True, True)
+
+
+def _below_hexahedra(options: Options) -> Sequence:
+    finest = {"layers": 4, "radial_layers": 4, "edge_layers": 1, "relative_size": 0.4, "around": 12, **options}
+    coarser = []
+    for k in (2, 1):
+        fewer = {name: max(finest[name] - k, 0) for name in ("layers", "radial_layers", "edge_layers")}
+        larger = {"relative_size": finest["relative_size"] * 1.5**k}
+        if finest.get("size"):
+            larger = {"size": finest["size"] * 1.5**k}
+        coarser.append({**finest, **fewer, **larger})
+    return Sequence((*coarser, finest), True, True, _turned(coarser[0]))
+
+
+def _refinements(options: Options) -> Sequence:
+    given = options.get("refinement", 1.0)
+    return Sequence(tuple({**options, "refinement": given * s} for s in (0.4, 0.65, 1.0)), True, False)

@@ -1,0 +1,302 @@
+"""One model of one scene, solved with the ties of the scene and like for like, with the band of a solid.
+
+The *ties of the scene* are what its bearings and its port say.  *Like for like* means mean motions of cross-sections at every
+station: what a beam knows of a solid.  A solid is solved on ever finer meshes (:mod:`solidgear.evidence.levels`) until its bands
+(:mod:`solidgear.evidence.bands`) meet what is asked for.
+"""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+from solidgear.body import Body, Supports, as_supports
+from solidgear.errors import SolidgearError
+from solidgear.evidence.bands import Band, layered_bands, refined_bands
+from solidgear.evidence.levels import JUDGE, Sequence, sequence
+from solidgear.evidence.levels import JUDGED as JUDGED_SHARE
+from solidgear.evidence.quantities import JUDGED, QUANTITIES, change, measure
+from solidgear.fidelity import build
+from solidgear.meshing.corners import sharpest_corner
+from solidgear.meter import Meter
+from solidgear.solve.modes import ModeSet, modes
+from solidgear.solve.statics import Condensed, condense
+
+log = logging.getLogger(__name__)
+Progress = Callable[[str], None]
+
+SOLIDS = ("harmonic", "solid")
+SCENE, SECTION = "as scene", "section"
+#: exponent at the end of a rigid seat, a clamp on a smooth surface (Williams 1952, clamped-free at 180 degrees)
+RIGID_EDGE = 0.5
+#: modes that hold the first bending pair and the first axial mode of anything that looks like a shaft
+ENOUGH = 10
+
+
+@dataclass
+class Tied:
+    """One body on its bearings, tied in one way."""
+
+    condensed: Condensed
+    modes: ModeSet
+    quantities: dict[str, float]
+
+    @property
+    def solver(self) -> dict[str, float]:
+        """Relative error that the solver may have left in every quantity."""
+        out = {}
+        for name, (kind, place, _) in QUANTITIES.items():
+            mode = self.modes.named(place) if kind == "frequency" else None
+            out[name] = getattr(mode, "error", 0.0) if kind == "frequency" else self.condensed.evidence["residual"]
+        return out
+
+
+@dataclass
+class Rung:
+    """One model, solved.
+
+    Attributes
+    ----------
+    body : Body
+        The finest, tied as in the scene.
+    ties : dict of str to Tied
+        ``as scene`` and ``section``, as far as they could be solved.
+    bands : dict of str to dict of str to Band
+        The same keys; empty for a model without a band of its own.
+    variants : dict of str to Tied
+        The scene with each attachment everywhere: ``average``, ``rigid`` (bearing seats only), ``section``.
+    levels : list of dict
+        Facts about every mesh, coarse to fine.
+    failed : dict of str to str
+        What was left out, and why.
+    """
+
+    model: str
+    body: Body
+    ties: dict[str, Tied]
+    meter: Meter
+    bands: dict[str, dict[str, Band]] = field(default_factory=dict)
+    variants: dict[str, Tied] = field(default_factory=dict)
+    levels: list[dict] = field(default_factory=list)
+    failed: dict[str, str] = field(default_factory=dict)
+    options: dict[str, Any] = field(default_factory=dict)
+
+    @property
+    def condensed(self) -> Condensed:
+        """Statics with the ties of the scene."""
+        return self.ties[SCENE].condensed
+
+    @property
+    def modes(self) -> ModeSet:
+        """Modes with the ties of the scene."""
+        return self.ties[SCENE].modes
+
+    @property
+    def quantities(self) -> dict[str, float]:
+        """Compared numbers with the ties of the scene."""
+        return self.ties[SCENE].quantities
+
+    def worst_band(self, names=JUDGED) -> float | None:
+        """Largest band with the ties of the scene over some quantities; None where there is none."""
+        own = self.bands.get(SCENE, {})
+        return max((own[n].gci for n in names if n in own), default=None)
+
+
+def study(
+    scene,
+    model: str,
+    options: Mapping[str, Any] | None = None,
+    *,
+    share: float | None = None,
+    most: int | None = None,
+    evidence: bool = True,
+    progress: Progress = lambda _: None,
+) -> Rung:
+    """Solve one model of a scene, a solid on as many meshes as its bands need.
+
+    Parameters
+    ----------
+    scene : Scene
+    model : str
+        A fidelity.
+    options : mapping, optional
+        Builder options; where they speak of the mesh, that mesh and two coarser ones are solved.
+    share : float, optional
+        Bands of the judged quantities are wanted below the tolerance of the scene divided by this; by default 20 for the
+        harmonic solid, which judges, and 2 for the 3D solid.
+    most : int, optional
+        Levels to stop at.
+    evidence : bool
+        Count the modes, and solve the other attachments.
+    progress : callable
+        Told in words what is going on.
+
+    Raises
+    ------
+    SolidgearError
+        If the first mesh cannot be solved; later ones that cannot are told in ``failed``.
+    """
+    options = dict(options or {})
+    meter = Meter()
+    if model not in SOLIDS:
+        progress(f"{model}: build, statics, modes")
+        body, ties = _solved(scene, model, options, meter, count=evidence)
+        rung = Rung(model, body, ties, meter, options=options)
+    else:
+        share = share or (JUDGE if model == "harmonic" else JUDGED_SHARE)
+        rung = _climbed(scene, model, options, meter, scene.ask.tolerance / share, most, evidence, progress)
+    if evidence:
+        _add_variants(scene, rung, progress)
+    return rung
+
+
+def _climbed(scene, model, options, meter, target, most, evidence, progress) -> Rung:
+    """The finest of the levels that were needed, or that could be had."""
+    plan: Sequence = sequence(model, options)
+    levels = plan.levels[:most] if not plan.fixed else plan.levels
+    solved: list[dict[str, Tied]] = []
+    rung: Rung | None = None
+    facts: list[dict] = []
+    around: dict[str, dict[str, float]] = {}
+    for k, level in enumerate(levels):
+        last = plan.fixed and k == len(levels) - 1
+        progress(f"{model}: mesh {k + 1}")
+        # What a user gets is the last level: it is counted, and what it costs is the answer's price; the others are evidence.
+        before = dict(meter.seconds)
+        try:
+            body, ties = _solved(scene, model, level, meter, count=evidence and (last or not plan.fixed and k > 0))
+        except (SolidgearError, MemoryError) as error:
+            if rung is None:
+                raise
+            rung.failed["finer mesh"] = str(error) or "not enough memory"
+            break
+        if rung is not None:
+            meter.seconds["band"] = meter.seconds.get("band", 0.0) + sum(before.values()) - before.get("band", 0.0)
+            for stage in ("build", "statics", "modes", "count"):
+                meter.seconds[stage] = meter.seconds.get(stage, 0.0) - before.get(stage, 0.0)
+            rung.body.memory.clear()
+        solved.append(ties)
+        if k == 0 and plan.turned is not None:
+            progress(f"{model}: mesh 1 with more cells around")
+            around = _around(scene, model, plan, ties, meter)
+        facts.append(_facts(body, ties[SCENE]))
+        failed = rung.failed if rung is not None else {}
+        rung = Rung(model, body, ties, meter, levels=facts, options=dict(level), failed=failed)
+        rung.bands = _bands(scene, model, plan, solved, facts, around)
+        worst = rung.worst_band()
+        if not plan.fixed and k >= 2 and worst is not None and worst <= target:
+            break
+    assert rung is not None
+    return rung
+
+
+def _facts(body: Body, tied: Tied) -> dict:
+    order = body.mesh.get("order")
+    return {
+        "dofs": body.size,
+        "h": None if order else body.mesh.get("representative_size"),
+        "order": order,
+        "c_zz": tied.quantities.get("C_zz"),
+        "bending_1_hz": tied.quantities.get("bending 1"),
+        "mesh": body.mesh,
+    }
+
+
+def _around(scene, model: str, plan: Sequence, ties: dict[str, Tied], meter: Meter) -> dict[str, dict[str, float]]:
+    """Relative error that the cells around leave, per way of tying and quantity."""
+    spare = Meter()
+    with meter.stage("band"):
+        _, turned = _solved(scene, model, plan.turned or {}, spare, count=False)
+    out = {}
+    for tie in set(ties) & set(turned):
+        finer = turned[tie].quantities
+        changes = {q: change(ties[tie].quantities, finer, q) for q in finer}
+        out[tie] = {q: plan.left_around * abs(c) for q, c in changes.items() if c is not None}
+    return out
+
+
+def _bands(scene, model: str, plan: Sequence, solved: list[dict[str, Tied]], facts: list[dict], around) -> dict[str, dict[str, Band]]:
+    """Bands of the finest level for every way of tying that all of the last levels have."""
+    out = {}
+    for tie in (SCENE, SECTION):
+        known = [s for s in solved if tie in s]
+        if len(known) < 2 or tie not in solved[-1]:
+            continue
+        values, solver = [s[tie].quantities for s in known], known[-1][tie].solver
+        if plan.layered:
+            out[tie] = layered_bands(values, solver, model, around.get(tie))
+        elif len(known) > 2:
+            sizes = [f["mesh"]["representative_size"] for f in facts[-3:]]
+            held = any(s.attachment == "rigid" for s in scene.stations)
+            exponent = min(sharpest_corner(scene)[1], RIGID_EDGE if held else 1.0)
+            if sizes[0] > sizes[1] > sizes[2]:
+                out[tie] = refined_bands(values, solver, sizes, exponent, singular=model == "solid")
+    return out
+
+
+def _solved(scene, model: str, options: Mapping[str, Any], meter: Meter, count: bool) -> tuple[Body, dict[str, Tied]]:
+    """A body and what it answers, tied as in the scene and by section means."""
+    given = {s.attachment for s in scene.stations}
+    # Means over seats and over sections are only rows on the same matrices; a rigid seat is another matrix.
+    together = "rigid" not in given
+    kinds = tuple(dict.fromkeys((*sorted(given), "section"))) if together else None
+    extra = {"attachments": kinds} if together else {}
+    with meter.stage("build"):
+        body = build(scene, model, **{**options, **extra})
+    supports = as_supports(scene)
+    if together:
+        supports = replace(supports, attachments=tuple(b.attachment for b in scene.bearings))
+    ties = {SCENE: _tied(scene, body, supports, scene.port.attachment if together else None, meter, count)}
+    if given == {"section"}:
+        ties[SECTION] = ties[SCENE]
+    elif together:
+        ties[SECTION] = _tied(scene, body, supports.with_attachment("section"), "section", meter, False)
+    elif model != "solid":
+        plain = scene.with_attachment("section")
+        with meter.stage("build"):
+            other = build(plain, model, **options)
+        ties[SECTION] = _tied(plain, other, as_supports(plain), None, meter, False)
+    return body, ties
+
+
+def _tied(scene, body: Body, supports: Supports, attachment: str | None, meter: Meter, count: bool) -> Tied:
+    ask = scene.ask
+    with meter.stage("statics"):
+        condensed = condense(body, supports, scene.port.name, attachment)
+    with meter.stage("modes"):
+        found = modes(body, supports, max(ask.modes, ENOUGH), max_frequency=ask.max_frequency, count=count)
+    # Evidence, not part of the answer: kept apart from what the modes cost.
+    meter.move("modes", "count", found.evidence.get("count_seconds", 0.0))
+    return Tied(condensed, found, measure(condensed, found))
+
+
+def _add_variants(scene, rung: Rung, progress: Progress) -> None:
+    """The same scene with each attachment everywhere; a 3D solid only with those its mesh carries."""
+    given = {s.attachment for s in scene.stations}
+    spare = Meter()
+    progress(f"{rung.model}: attachments")
+    with rung.meter.stage("attachments"):
+        for attachment in ("average", "rigid", "section"):
+            try:
+                if given == {attachment}:
+                    rung.variants[attachment] = rung.ties[SCENE]
+                elif attachment == "section" and SECTION in rung.ties:
+                    rung.variants[attachment] = rung.ties[SECTION]
+                elif rung.model != "solid":
+                    changed = rigid_seats(scene) if attachment == "rigid" else scene.with_attachment(attachment)
+                    body = build(changed, rung.model, **rung.options)
+                    rung.variants[attachment] = _tied(changed, body, as_supports(changed), None, spare, False)
+            except SolidgearError as error:
+                log.info("%s: attachment %s left out: %s", rung.model, attachment, error)
+
+
+def rigid_seats(scene):
+    """The scene with rigid bearing seats; a lumped point that was rigid becomes averaged, any other keeps its attachment.
+
+    Only seats are compared in the literature on RBE2 against RBE3; a rigid head would be another model.
+    """
+    bearings = tuple(b.with_changes(attachment="rigid") for b in scene.bearings)
+    port = scene.port.with_changes(attachment="average") if scene.port.attachment == "rigid" else scene.port
+    return scene.with_changes(bearings=bearings, port=port)
