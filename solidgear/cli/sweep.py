@@ -23,7 +23,15 @@ def sweep(
             'VALUES: FROM:TO:COUNT, log:FROM:TO:COUNT or A,B,C, such as "0.2 m:0.24 m:9".',
         ),
     ],
-    out: Annotated[Path, typer.Option("--out", "-o", help="Rows, as .csv or .parquet; run again to go on where it stopped.")] = Path("rows.csv"),
+    out: Annotated[
+        Path,
+        typer.Option(
+            "--out",
+            "-o",
+            help="Rows, as .csv or .parquet; run again to go on where it stopped. They are kept in a database beside "
+            "it (rows.csv.sqlite), from which the file is written in one step.",
+        ),
+    ] = Path("rows.csv"),
     fidelity: FidelityOption = Fidelity.harmonic,
     n: Annotated[Optional[int], typer.Option("-n", help="Number of elastic shapes; twins count twice.")] = None,
     sample: Annotated[Optional[int], typer.Option("--sample", help="Draw so many points (Latin hypercube) instead of all combinations.")] = None,
@@ -56,9 +64,12 @@ def sweep(
                 reached[:] = done, total
                 bar.update(line, completed=done, total=total, description=text)
 
+            def tell(text: str) -> None:
+                terminal.print(f"solidgear: {text}", markup=False, emoji=False, soft_wrap=True)
+
             found = run(
                 loaded, vary, out, fidelity=fidelity.value, options=options(settings), n=n, sample=sample, seed=seed, tolerance=tolerance, jobs=jobs,
-                dask=dask, overwrite=overwrite, build=lambda shaft, *_, **__: build_body(shaft, fidelity, settings), progress=show,
+                dask=dask, overwrite=overwrite, build=lambda shaft, *_, **__: build_body(shaft, fidelity, settings), progress=show, tell=tell,
             )  # fmt: skip
     except KeyboardInterrupt:
         if reached[0]:
