@@ -79,7 +79,8 @@ def sweep(
         print(json.dumps(asdict(found), default=str))
         return
     new = found.total - found.skipped
-    print(f"{found.path}: {found.total} rows, {found.skipped} of them there before.")
+    path = str(found.path).encode("utf-8", "backslashreplace").decode()  # bytes that are no text
+    print(f"{path}: {found.total} rows, {found.skipped} of them there before.")
     if new:
         print(
             f"{found.unknowns} unknowns with {found.seats} seats solved once in {found.seconds_once:.1f} s; {new} variants of up to {found.basis} unknowns, "

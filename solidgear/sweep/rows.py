@@ -112,7 +112,7 @@ class RowFile:
     @property
     def _written_as(self) -> list[str]:
         """Digests of the file: of the last one written, before it of one that may have stayed."""
-        return self._store.facts.get("written as", [])
+        return self._store.facts.get("file", {}).get("digests", [])
 
     def __enter__(self) -> RowFile:
         return self
@@ -137,7 +137,9 @@ class RowFile:
         if self._store.repaired:
             self._tell(self._store.repaired)
         exported, found = self._written_as, _digest(self.path)
-        self._behind = not exported or found != exported[-1]
+        self._written = self._store.facts.get("file", {}).get("rows", 0)
+        up_to_date = exported and found == exported[-1] and self._written == len(self.done)
+        self._behind = not up_to_date
         if found and found not in exported and not self.done:
             raise self._unknown(self._store.path)
         missing = exported and not found
@@ -175,18 +177,16 @@ class RowFile:
         with self._writing():
             self._store.append((row["variant"], self._line(row)) for row in rows)
             self._behind = True
+            # at every doubling, so that a sweep of any length writes each row about twice
             if not self._parquet and len(self.done) >= 2 * self._written:
-                self._export()
+                with suppress(OSError):  # such as a spreadsheet that has it open; it is tried again
+                    self._export()
 
     def finish(self) -> None:
         """All rows are there: make the file unless it is up to date."""
         if self._behind:
             with self._writing():
                 self._export()
-
-    #: Rows in the file; they are written again when there are twice as many, so that a sweep of
-    #: any length writes each row about twice.
-    _written = 0
 
     def _export(self) -> None:
         before = self._set_aside()
@@ -196,8 +196,8 @@ class RowFile:
             else:
                 self._write_csv(partial)
             # If the process is killed here, either file may be found.
-            after = _digest(partial)
-            self._store.note("written as", [before, after] if before else [after])
+            digests = [digest for digest in (before, _digest(partial)) if digest]
+            self._store.note("file", {"digests": digests, "rows": len(self.done)})
         self._written, self._behind = len(self.done), False
 
     def _write_csv(self, partial: Path) -> None:
