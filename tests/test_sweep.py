@@ -124,7 +124,7 @@ def test_the_basis_grows_when_it_must_and_the_rest_is_solved_in_full(tmp_path, m
 
 
 def test_a_row_does_not_depend_on_those_solved_before_it(tmp_path, monkeypatch):
-    """A variant in the middle needs a larger basis; those after it are the same when the sweep was stopped there."""
+    """One variant needs a larger basis; those after it are the same if the sweep stopped there."""
     monkeypatch.setattr(runner, "PROBES", 2)  # variants 0 and 4 of 8
     vary = ["bearing.1.scale=0.01,0.011,0.012,100,0.013,0.014,0.015,0.016"]
     light(tmp_path / "loose.csv", vary=vary)
@@ -159,7 +159,10 @@ def test_an_interrupted_sweep_goes_on_where_it_stopped(suffix, tmp_path, finishe
     kept = numbers_in_store(out)
     assert 9 <= len(kept) < 36
     # a CSV file has them as well, a Parquet file is made when all are there
-    assert [int(row["variant"]) for row in read(out)] == kept if suffix == "csv" else not out.exists()
+    if suffix == "csv":
+        assert [int(row["variant"]) for row in read(out)] == kept
+    else:
+        assert not out.exists()
     with out.open("a") as f:
         f.write("35,0.24")  # a row cut off in the middle
     solved = []
@@ -304,8 +307,10 @@ def test_the_command_keeps_what_is_done_when_interrupted(tmp_path, monkeypatch):
 
 
 def test_bad_options_of_the_command_end_in_a_sentence(tmp_path):
-    for arguments in (("--set", "colour=red"), ("--jobs", "0"), ("--sample", "0"), ("--tolerance", "2"), ("-n", "0"),
-                      ("-n", "1000000000"), ("--jobs", "1000000"), ("--set", "attachments=5")):  # fmt: skip
+    for arguments in (
+        ("--set", "colour=red"), ("--set", "attachments=5"), ("--sample", "0"),
+        ("--tolerance", "2"), ("--jobs", "0"), ("--jobs", "1000000"), ("-n", "0"), ("-n", "1000000000"),
+    ):  # fmt: skip
         failed = call("--vary", "bearing.1.scale=1,2", "--out", str(tmp_path / "rows.csv"), *arguments)
         assert failed.exit_code == 1 and isinstance(failed.exception, SolidgearError), arguments
     # nothing is left that would be in the way of the right command

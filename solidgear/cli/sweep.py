@@ -28,8 +28,8 @@ def sweep(
         typer.Option(
             "--out",
             "-o",
-            help="Rows, as .csv or .parquet; run again to go on where it stopped. They are kept in a database beside "
-            "it (rows.csv.sqlite), from which the file is written in one step.",
+            help="Rows, as .csv or .parquet; run again to go on where it stopped. They are kept in "
+            "a database beside it (rows.csv.sqlite), from which the file is written in one step.",
         ),
     ] = Path("rows.csv"),
     fidelity: FidelityOption = Fidelity.harmonic,
@@ -69,7 +69,8 @@ def sweep(
 
             found = run(
                 loaded, vary, out, fidelity=fidelity.value, options=options(settings), n=n, sample=sample, seed=seed, tolerance=tolerance, jobs=jobs,
-                dask=dask, overwrite=overwrite, build=lambda shaft, *_, **__: build_body(shaft, fidelity, settings), progress=show, tell=tell,
+                dask=dask, overwrite=overwrite, build=lambda shaft, *_, **__: build_body(shaft, fidelity, settings), progress=show,
+                tell=tell,
             )  # fmt: skip
     except KeyboardInterrupt:
         if reached[0]:

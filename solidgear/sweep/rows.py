@@ -18,14 +18,13 @@ import io
 import logging
 import math
 import os
-import sqlite3
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager, nullcontext, suppress
 from pathlib import Path
 from typing import Any
 
 from solidgear.errors import SolidgearError
-from solidgear.sweep.store import Store
+from solidgear.sweep.store import Store, StoreError
 from solidgear.whole_file import whole
 
 tell_in_log: Callable[[str], None] = logging.getLogger(__name__).warning
@@ -151,12 +150,12 @@ class RowFile:
 
     def _unknown(self, beside: Path) -> SolidgearError:
         return SolidgearError(
-            f"{self.path}: is there already, and nothing beside it says that it came from this sweep "
-            f"(no rows in {beside.name}); choose another --out, or add --overwrite"
+            f"{self.path}: is there already, and nothing beside it says that it came from this "
+            f"sweep (no rows in {beside.name}); choose another --out, or add --overwrite"
         )
 
     def _set_aside(self) -> str | None:
-        """Digest of the file as it was written last; if somebody changed it, it gets another name."""
+        """Digest of the file as it was written last; one that was changed gets another name."""
         found = _digest(self.path)
         if not found or found in self._written_as:
             return found
@@ -222,7 +221,7 @@ class RowFile:
     def _writing(self) -> Iterator[None]:
         try:
             yield
-        except (OSError, sqlite3.Error) as error:
+        except (OSError, StoreError) as error:
             reason = getattr(error, "strerror", None) or error
             kept = ""
             if self.done:

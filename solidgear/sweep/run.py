@@ -123,7 +123,8 @@ def sweep(
         file could not describe is no error: its row says why.
     """
     options = dict(options or {})
-    n = number("sweep", "n", scene.ask.modes if n is None else n, least=1, below=MOST_SHAPES + 1, whole=True)
+    n = scene.ask.modes if n is None else n
+    number("sweep", "n", n, least=1, below=MOST_SHAPES + 1, whole=True)
     number("sweep", "jobs", jobs, least=1, whole=True)
     number("sweep", "tolerance", tolerance, above=0, below=1)
     variants = variants_of(scene, vary_texts, sample, seed)

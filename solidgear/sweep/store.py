@@ -24,8 +24,6 @@ from __future__ import annotations
 
 import hashlib
 import json
-import os
-import sqlite3
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import closing, suppress
 from pathlib import Path
@@ -33,6 +31,15 @@ from typing import Any
 
 from solidgear.errors import SolidgearError
 
+try:
+    import sqlite3
+except ImportError:  # left out of some builds of Python
+    raise SolidgearError(
+        "a sweep keeps its rows in SQLite, which this Python was built without; use one that has it"
+    ) from None
+
+#: What is raised where a store cannot be written.
+StoreError = sqlite3.Error
 #: Of the tables below; a database of another one is refused.
 SCHEMA = 1
 #: Marks a database as ours ("gear" in ASCII).
@@ -178,7 +185,7 @@ class Store:
         return False
 
     def _facts_there(self) -> tuple[Any, dict[str, Any], bool]:
-        """Key of the sweep that is there, None if damaged; facts that are intact; whether all are."""
+        """Key of the sweep that is there, or None; facts that are intact; whether all of it is."""
         key, facts, sound = None, {}, True
         try:
             with closing(self._db.execute("SELECT name, value, checksum FROM facts")) as found:

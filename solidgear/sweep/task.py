@@ -75,7 +75,9 @@ class Task:
             row = self._row(index, basis, seats)
         return row
 
-    def _row(self, index: int, basis: Reduced, seats: dict[tuple[int, ...], Seats]) -> dict[str, Any]:
+    def _row(
+        self, index: int, basis: Reduced, seats: dict[tuple[int, ...], Seats]
+    ) -> dict[str, Any]:
         row: dict[str, Any] = {"variant": index} | {a.label: float(v) for a, v in zip(self.variants.axes, self.variants.values[index])}
         frame = basis.frame
         try:

@@ -36,7 +36,9 @@ def _here(task, parts):
 def _joblib(jobs: int) -> Workers:
     most = 8 * offered()
     if jobs > most:
-        raise SolidgearError(f"--jobs {jobs}: give a whole number up to {most}, eight for each processor offered here")
+        raise SolidgearError(
+            f"--jobs {jobs}: give a whole number up to {most}, eight for each processor here"
+        )
     try:
         from joblib import Parallel, delayed
     except ImportError:
