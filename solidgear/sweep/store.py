@@ -200,6 +200,7 @@ class Store:
                         sound = False
         except sqlite3.DatabaseError:
             sound = False
+        key = key if isinstance(key, dict) else None
         return key, facts, sound and key is not None
 
     def _is_other(self, key: Mapping[str, Any]) -> bool:
