@@ -2,6 +2,8 @@
 
 import csv
 import json
+import sqlite3
+from contextlib import closing
 
 import numpy as np
 import pytest
@@ -121,6 +123,23 @@ def test_the_basis_grows_when_it_must_and_the_rest_is_solved_in_full(tmp_path, m
     assert read(tmp_path / "late.csv") == read(tmp_path / "grown.csv")
 
 
+def test_a_row_does_not_depend_on_those_solved_before_it(tmp_path, monkeypatch):
+    """One variant needs a larger basis; those after it are the same if the sweep stopped there."""
+    monkeypatch.setattr(runner, "PROBES", 2)  # variants 0 and 4 of 8
+    vary = ["bearing.1.scale=0.01,0.011,0.012,100,0.013,0.014,0.015,0.016"]
+    light(tmp_path / "loose.csv", vary=vary)
+    bounds = [row["error_bound"] for row in read(tmp_path / "loose.csv")]
+    stiff = bounds.pop(3)
+    tolerance = (max(bounds) * stiff) ** 0.5
+    assert max(bounds) < tolerance / 3 < tolerance < stiff / 3  # clear of rounding
+    whole = light(tmp_path / "whole.csv", vary=vary, tolerance=tolerance)
+    with pytest.raises(KeyboardInterrupt):
+        light(tmp_path / "stopped.csv", vary=vary, tolerance=tolerance, progress=stop_after(4))
+    rest = light(tmp_path / "stopped.csv", vary=vary, tolerance=tolerance)
+    assert 4 <= rest.skipped < 8 and rest.basis < whole.basis and whole.full == 0
+    assert (tmp_path / "stopped.csv").read_bytes() == (tmp_path / "whole.csv").read_bytes()
+
+
 # ------------------------------------------------------------------------------------------------- the file
 def stop_after(rows):
     def progress(done, total, text):
@@ -137,27 +156,37 @@ def test_an_interrupted_sweep_goes_on_where_it_stopped(suffix, tmp_path, finishe
     out = tmp_path / f"rows.{suffix}"
     with pytest.raises(KeyboardInterrupt):
         light(out, progress=stop_after(9))
-    work = out if suffix == "csv" else tmp_path / "rows.parquet.part.csv"
-    kept = read(work)
-    assert 9 <= len(kept) < 36 and (suffix == "csv" or not out.exists())
-    with work.open("a") as f:
+    kept = numbers_in_store(out)
+    assert 9 <= len(kept) < 36
+    # a CSV file has them as well, a Parquet file is made when all are there
+    if suffix == "csv":
+        assert [int(row["variant"]) for row in read(out)] == kept
+    else:
+        assert not out.exists()
+    with out.open("a") as f:
         f.write("35,0.24")  # a row cut off in the middle
     solved = []
     monkeypatch.setattr(runner.Task, "rows", _counting(runner.Task.rows, solved))
     summary = light(out)
-    assert summary.skipped == len(kept) and not {int(row["variant"]) for row in kept} & set(solved)
+    assert summary.skipped == len(kept) and not set(kept) & set(solved)
+    assert len(summary.repairs) == 1 and "rows." + suffix + ".changed" in summary.repairs[0]
     if suffix == "csv":
         assert read(out) == read(finished[0])
     else:
         import pyarrow.parquet as pq
 
         table = pq.read_table(out)
-        assert not work.exists() and table.num_rows == 36
+        assert table.num_rows == 36
         for got, row in zip(table.to_pylist(), read(finished[0])):
             assert {k: "" if v is None else v for k, v in got.items()} == row
     # there is nothing left to do, and nothing is built for it
     monkeypatch.setattr(runner, "reduce", None)
     assert light(out).skipped == 36
+
+
+def numbers_in_store(out):
+    with closing(sqlite3.connect(f"{out}.sqlite")) as db:
+        return [number for (number,) in db.execute("SELECT variant FROM rows ORDER BY variant")]
 
 
 def _counting(rows, solved):
@@ -186,7 +215,7 @@ def test_rows_of_another_sweep_are_never_mixed(finished, tmp_path):
         sweep(moved, ["bearing.1.scale=1,2"], out, fidelity="timoshenko", options=LIGHT["timoshenko"], n=6)
     light(out, vary=["bearing.1.scale=1,3,4"], overwrite=True)
     assert len(read(out)) == 3
-    (tmp_path / "rows.csv.json").unlink()
+    (tmp_path / "rows.csv.sqlite").unlink()
     with pytest.raises(SolidgearError, match="nothing beside it says"):
         light(out, vary=["bearing.1.scale=1,3,4"])
 
@@ -278,6 +307,11 @@ def test_the_command_keeps_what_is_done_when_interrupted(tmp_path, monkeypatch):
 
 
 def test_bad_options_of_the_command_end_in_a_sentence(tmp_path):
-    for arguments in (("--set", "colour=red"), ("--jobs", "0"), ("--sample", "0"), ("--tolerance", "2"), ("-n", "0")):
+    for arguments in (
+        ("--set", "colour=red"), ("--set", "attachments=5"), ("--sample", "0"),
+        ("--tolerance", "2"), ("--jobs", "0"), ("--jobs", "1000000"), ("-n", "0"), ("-n", "1000000000"),
+    ):  # fmt: skip
         failed = call("--vary", "bearing.1.scale=1,2", "--out", str(tmp_path / "rows.csv"), *arguments)
         assert failed.exit_code == 1 and isinstance(failed.exception, SolidgearError), arguments
+    # nothing is left that would be in the way of the right command
+    assert not list(tmp_path.iterdir())

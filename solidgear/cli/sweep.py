@@ -23,7 +23,15 @@ def sweep(
             'VALUES: FROM:TO:COUNT, log:FROM:TO:COUNT or A,B,C, such as "0.2 m:0.24 m:9".',
         ),
     ],
-    out: Annotated[Path, typer.Option("--out", "-o", help="Rows, as .csv or .parquet; run again to go on where it stopped.")] = Path("rows.csv"),
+    out: Annotated[
+        Path,
+        typer.Option(
+            "--out",
+            "-o",
+            help="Rows, as .csv or .parquet; run again to go on where it stopped. They are kept in "
+            "a database beside it (rows.csv.sqlite), from which the file is written in one step.",
+        ),
+    ] = Path("rows.csv"),
     fidelity: FidelityOption = Fidelity.harmonic,
     n: Annotated[Optional[int], typer.Option("-n", help="Number of elastic shapes; twins count twice.")] = None,
     sample: Annotated[Optional[int], typer.Option("--sample", help="Draw so many points (Latin hypercube) instead of all combinations.")] = None,
@@ -56,9 +64,13 @@ def sweep(
                 reached[:] = done, total
                 bar.update(line, completed=done, total=total, description=text)
 
+            def tell(text: str) -> None:
+                terminal.print(f"solidgear: {text}", markup=False, emoji=False, soft_wrap=True)
+
             found = run(
                 loaded, vary, out, fidelity=fidelity.value, options=options(settings), n=n, sample=sample, seed=seed, tolerance=tolerance, jobs=jobs,
                 dask=dask, overwrite=overwrite, build=lambda shaft, *_, **__: build_body(shaft, fidelity, settings), progress=show,
+                tell=tell,
             )  # fmt: skip
     except KeyboardInterrupt:
         if reached[0]:
@@ -68,7 +80,8 @@ def sweep(
         print(json.dumps(asdict(found), default=str))
         return
     new = found.total - found.skipped
-    print(f"{found.path}: {found.total} rows, {found.skipped} of them there before.")
+    path = str(found.path).encode("utf-8", "backslashreplace").decode()  # bytes that are no text
+    print(f"{path}: {found.total} rows, {found.skipped} of them there before.")
     if new:
         print(
             f"{found.unknowns} unknowns with {found.seats} seats solved once in {found.seconds_once:.1f} s; {new} variants of up to {found.basis} unknowns, "

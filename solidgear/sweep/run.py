@@ -14,8 +14,8 @@ from solidgear.fidelity import build as build_any
 from solidgear.fidelity.options import number
 from solidgear.scene import Scene
 from solidgear.sweep import vary
-from solidgear.sweep.reduced import LEVELS, reduce
-from solidgear.sweep.rows import RowFile
+from solidgear.sweep.reduced import LEVELS, Reduced, reduce
+from solidgear.sweep.rows import RowFile, tell_in_log
 from solidgear.sweep.task import Task, columns
 from solidgear.sweep.variants import SeatedShaft, Variants
 from solidgear.sweep.workers import workers
@@ -23,6 +23,8 @@ from solidgear.sweep.workers import workers
 #: Most seats one body carries.  Every seat end is a mesh line, so the mesh grows with their number; beams grow by a node.  Measured on the overhung
 #: pinion at these numbers: harmonic 590k unknowns, 2.8 GB, a minute of one core; solid 120k unknowns, 2.4 GB, as long; a beam less than seconds.
 MOST_SEATS = {"euler": 200, "timoshenko": 200, "harmonic": 60, "solid": 12}
+#: Most elastic shapes of a row, two columns each; a basis that holds as many is no small problem.
+MOST_SHAPES = 1000
 #: Variants that the basis is tried on before the run.
 PROBES = 24
 
@@ -40,6 +42,8 @@ class Summary:
         Of the body; seats on it; unknowns of the largest small problem. Zero if there was nothing left to do.
     seconds_once, seconds_each : float
         Wall seconds for body and reduction, and per variant of this run.
+    repairs : tuple of str
+        What was found damaged in the files and how it was mended, a sentence each.
     """
 
     path: Path
@@ -52,6 +56,7 @@ class Summary:
     basis: int = 0
     seconds_once: float = 0.0
     seconds_each: float = 0.0
+    repairs: tuple[str, ...] = ()
 
 
 def sweep(
@@ -70,6 +75,7 @@ def sweep(
     overwrite: bool = False,
     build: Callable[..., Body] = build_any,
     progress: Callable[[int, int, str], None] = lambda done, total, text: None,
+    tell: Callable[[str], None] = tell_in_log,
 ) -> Summary:
     """Statics and first modes of many bearing sets on one body, as rows of a file.
 
@@ -79,7 +85,9 @@ def sweep(
     vary_texts : iterable of str
         See :mod:`solidgear.sweep.vary`.
     out : path
-        ``.csv`` or ``.parquet``. Rows already there from the same sweep are kept and not solved again.
+        ``.csv`` or ``.parquet``. Rows already there from the same sweep are kept and not solved
+        again; they are in a database beside the file (``rows.csv.sqlite``), from which the file is
+        written in one step, see :mod:`solidgear.sweep.rows`.
     fidelity, options
         As for :func:`solidgear.fidelity.build`.
     n : int, optional
@@ -90,7 +98,7 @@ def sweep(
         Relative error of frequencies against the same body solved in full. A variant whose bound exceeds it makes the basis
         larger, and where that does not do it is solved in full.
     jobs : int
-        Processes on this machine (joblib).
+        Processes on this machine (joblib), at most eight for each processor.
     dask : str, optional
         Address of a Dask scheduler, whose workers have solidgear installed.
     overwrite : bool
@@ -99,6 +107,9 @@ def sweep(
         Makes the body from a :class:`solidgear.sweep.variants.SeatedShaft`, a fidelity and options.
     progress : callable
         Called with rows that are there, rows in all, and what is being done.
+    tell : callable
+        Called with a sentence for every damage to the files that was found and mended; by default
+        a warning of the logger.
 
     Returns
     -------
@@ -107,29 +118,52 @@ def sweep(
     Raises
     ------
     SolidgearError
-        A text that cannot be read, too many seats, or a file that belongs to another sweep. A variant that a scene file could not
-        describe is no error: its row says why.
+        A text that cannot be read, too many seats, or a file that belongs to another sweep, is
+        being written by one, cannot be written, or is damaged beyond repair. A variant that a scene
+        file could not describe is no error: its row says why.
     """
     options = dict(options or {})
-    n = scene.ask.modes if n is None else number("sweep", "n", n, least=1, whole=True)
+    n = scene.ask.modes if n is None else n
+    number("sweep", "n", n, least=1, below=MOST_SHAPES + 1, whole=True)
     number("sweep", "jobs", jobs, least=1, whole=True)
     number("sweep", "tolerance", tolerance, above=0, below=1)
     variants = variants_of(scene, vary_texts, sample, seed)
     team = workers(jobs, dask)
-    file = RowFile(Path(out), columns(variants, n), _plan(variants, sample, seed, fidelity, options, n, tolerance), overwrite)
-    total, skipped = len(variants), len(file.done)
-    todo = [i for i in range(total) if i not in file.done]
-    if not todo:
+    plan = _plan(variants, sample, seed, fidelity, options, n, tolerance)
+    repairs: list[str] = []
+
+    def mended(text: str) -> None:
+        repairs.append(text)
+        tell(text)
+
+    def body() -> tuple[Body, int]:
+        shaft = variants.shaft()
+        _check_seats(shaft, scene, fidelity, options)
+        seats = len(shaft.stations) - 1
+        progress(len(file.done), total, f"body with {seats} seats")
+        return build(shaft, fidelity, **options), seats
+
+    total = len(variants)
+    with RowFile(Path(out), columns(variants, n), plan, total, overwrite, mended) as file:
+        skipped = len(file.done)
+        todo = [i for i in range(total) if i not in file.done]
+        found = Summary(file.path, total, skipped)
+        if todo:
+            found = _solve(found, file, variants, body, n, tolerance, todo, team, jobs, progress)
         file.finish()
-        return Summary(file.path, total, skipped)
-    start = time.perf_counter()
-    shaft = variants.shaft()
-    _check_seats(shaft, scene, fidelity, options)
-    progress(skipped, total, f"body with {len(shaft.stations) - 1} seats")
-    body = build(shaft, fidelity, **options)
-    progress(skipped, total, f"reducing {body.size} unknowns")
-    solver = _Solver(body, Task(variants, reduce(body, n), n, tolerance))
-    solver.settle(todo[:: max(1, len(todo) // PROBES)])
+    return replace(found, repairs=tuple(repairs))
+
+
+def _solve(found, file, variants, body, n, tolerance, todo, team, jobs, progress) -> Summary:
+    """Solve some variants and append their rows."""
+    total, start = found.total, time.perf_counter()
+    body, seats = body()
+    progress(found.skipped, total, f"reducing {body.size} unknowns")
+    solver = _Solver(body, Task(variants, reduce(body, n, file.basis or 0), n, tolerance))
+    if file.basis is None:
+        # Of all variants, whatever is left of them: the basis is the same after an interruption.
+        solver.settle(range(total)[:: max(1, total // PROBES)])
+        file.basis = solver.task.reduced.level
     once, start = time.perf_counter() - start, time.perf_counter()
     refused = full = 0
     size = max(1, min(50, len(todo) // (4 * jobs)))
@@ -139,9 +173,16 @@ def sweep(
         refused += sum(row["status"] != "ok" for row in rows)
         full += sum(row["how"] == "full" for row in rows)
         progress(len(file.done), total, "solving")
-    file.finish()
-    each = (time.perf_counter() - start) / len(todo)
-    return Summary(file.path, total, skipped, refused, full, body.size, len(shaft.stations) - 1, solver.task.reduced.size, once, each)
+    return replace(
+        found,
+        refused=refused,
+        full=full,
+        unknowns=body.size,
+        seats=seats,
+        basis=solver.task.largest.size,
+        seconds_once=once,
+        seconds_each=(time.perf_counter() - start) / len(todo),
+    )
 
 
 def variants_of(scene: Scene, texts: Iterable[str], sample: int | None = None, seed: int = 0) -> Variants:
@@ -151,31 +192,34 @@ def variants_of(scene: Scene, texts: Iterable[str], sample: int | None = None, s
 
 
 class _Solver:
-    """A body, and the task with the smallest basis that has done so far."""
+    """A body, and the task with the bases that were needed so far."""
 
     def __init__(self, body: Body, task: Task):
         self.body, self.task = body, task
 
     def grow(self) -> bool:
-        """Enlarge the basis, once for all; False if it is as large as it gets."""
-        level = self.task.reduced.level + 1
-        if level == len(LEVELS):
-            return False
-        self.task = replace(self.task, reduced=reduce(self.body, self.task.n, level))
-        return True
+        """Have a larger basis for variants that need it; False if there is none."""
+        basis = self._next()
+        if basis:
+            self.task = replace(self.task, larger=(*self.task.larger, basis))
+        return basis is not None
 
     def settle(self, probes: Sequence[int]) -> None:
-        """Enlarge the basis until it does for some variants, or stays as it is."""
-        while any(map(self.task.weak, self.task.rows(probes))) and self.grow():
-            pass
+        """Begin with a basis that does for some variants, or with the largest."""
+        while any(map(self.task.weak, self.task.rows(probes))) and (basis := self._next()):
+            self.task = replace(self.task, reduced=basis)
 
     def repaired(self, row: dict[str, Any]) -> dict[str, Any]:
         """A row within the tolerance."""
         if self.task.weak(row):
-            row = self._again(row)  # the basis may have grown since
+            row = self._again(row)  # there may be a larger basis by now
         while self.task.weak(row) and self.grow():
             row = self._again(row)
         return self.task.in_full(row, self.body) if self.task.weak(row) else row
+
+    def _next(self) -> Reduced | None:
+        level = self.task.largest.level + 1
+        return reduce(self.body, self.task.n, level) if level < len(LEVELS) else None
 
     def _again(self, row: dict[str, Any]) -> dict[str, Any]:
         return self.task.rows([row["variant"]])[0]
@@ -188,7 +232,8 @@ def _check_seats(shaft: SeatedShaft, scene: Scene, fidelity: str, options: Mappi
             f"{seats} different seats are more than the {most} one {fidelity} body carries; vary fewer positions, sweep them in parts, or use a cheaper model"
         )
     asked = options.get("attachments") or ()
-    if "rigid" in ((asked,) if isinstance(asked, str) else asked) and seats > len(scene.bearings):
+    kinds = asked if isinstance(asked, (tuple, list)) else (asked,)
+    if "rigid" in kinds and seats > len(scene.bearings):
         raise SolidgearError("attachments: a rigid seat stiffens the shaft wherever it is meshed, so seats cannot be rigid in a sweep of positions")
 
 

@@ -7,6 +7,7 @@ from typing import Any
 
 from solidgear.errors import SolidgearError
 from solidgear.sweep.task import Task
+from solidgear.threads import offered
 
 Rows = list[dict[str, Any]]
 #: Takes a function that gives the current task, and lists of variants; yields their rows in order.
@@ -19,7 +20,8 @@ def workers(jobs: int = 1, dask: str | None = None) -> Workers:
     Raises
     ------
     SolidgearError
-        If the package it takes is not installed, or there is no cluster at that address.
+        If the package it takes is not installed, there is no cluster at that address, or so many
+        processes would only stand in each other's way.
     """
     if dask:
         return _dask(dask)
@@ -32,6 +34,11 @@ def _here(task, parts):
 
 
 def _joblib(jobs: int) -> Workers:
+    most = 8 * offered()
+    if jobs > most:
+        raise SolidgearError(
+            f"--jobs {jobs}: give a whole number up to {most}, eight for each processor here"
+        )
     try:
         from joblib import Parallel, delayed
     except ImportError:
