@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import logging
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -124,7 +125,8 @@ def _run(scene, models, options, found: _Found, progress: Progress) -> None:
 
     for model in (m for m in FIDELITIES if m in models):
         try:
-            rung = study(scene, model, _circumference(scene, model, options[model], found), progress=progress)
+            chosen = _circumference(scene, model, options[model], found)
+            rung = study(scene, model, chosen, progress=progress, keep=functools.partial(found.rungs.__setitem__, model))
         except (SolidgearError, MemoryError) as error:
             found.failed[model] = str(error) or "not enough memory"
             log.warning("%s failed: %s", model, found.failed[model])

@@ -55,7 +55,7 @@ class Meter:
 
     def move(self, source: str, target: str, seconds: float) -> None:
         """Book some seconds of one stage under another name."""
-        self.seconds[source] -= seconds
+        self.seconds[source] = self.seconds.get(source, 0.0) - seconds
         self.seconds[target] = self.seconds.get(target, 0.0) + seconds
 
     def total(self) -> dict[str, float]:

@@ -84,11 +84,6 @@ def seat(width: float, **more) -> Scene:
     return scene(seats=((0.13, width * D), (0.26, 0.03)), **more)
 
 
-def touching(gap: float) -> Scene:
-    """Two rigid seats so far apart."""
-    return scene(seats=((0.13, 0.03), (0.16 + gap, 0.03)), attachment="rigid")
-
-
 def rubber(nu: float) -> Scene:
     """The shaft in a material of that Poisson ratio."""
     return scene(material=STEEL.with_changes(nu=nu))
@@ -134,10 +129,10 @@ CASES = {
     "pair split by 1e-8": Case("split_pair", "'bending 2'", ("euler", "timoshenko", "solid"), "caution", scene(matrices=[stiff(x=1e9 * (1 + 1e-7)), stiff()]),
         scene(matrices=[stiff(x=1.01e9), stiff()])),
     "Euler beam, pinion": Case("beam_against_solid", "of the euler beam is", ("euler",), "avoid", OVERHUNG, uniform(16)),
-    "Timoshenko beam, pinion": Case("beam_against_solid", "C_thx of the timoshenko beam is 10.", ("timoshenko", "lumped"), "avoid", OVERHUNG, uniform(5)),
+    "Timoshenko beam, pinion": Case("beam_against_solid", "C_thx of the timoshenko beam is 14.", ("timoshenko", "lumped"), "avoid", OVERHUNG, uniform(5)),
     "seats as in the scene": Case("beam_against_solid", "of the timoshenko beam is", ("timoshenko", "lumped"), "avoid",
-        sg.load(ROOT / "geometry" / "shaft_hollow.toml").with_attachment("rigid"), sg.load(ROOT / "geometry" / "shaft_hollow.toml")),
-    "tolerance": Case("beam_against_solid", "1 % asked for", ("euler",), "avoid", uniform(16, tolerance=0.01), uniform(19, tolerance=0.01)),
+        sg.load(ROOT / "geometry" / "gear_shaft.toml"), sg.load(ROOT / "geometry" / "shaft_hollow.toml")),
+    "tolerance": Case("beam_against_solid", "1 % asked for", ("euler",), "avoid", uniform(16, tolerance=0.01), uniform(25, tolerance=0.01)),
     "Euler, L/D 17.9": Case("slenderness", "17.90", ("euler",), "caution", uniform(17.9), uniform(18.1)),
     "Timoshenko, L/D 1.1": Case("slenderness", "Timoshenko needs 1.12", ("timoshenko", "lumped"), "caution", uniform(1.1, seats=False), uniform(1.15, seats=False)),
     "shoulder": Case("shoulder", "ratio of diameters 1.18", BEAMS, "caution", head(1.18), head(1.16)),
@@ -163,7 +158,6 @@ CASES = {
     "narrow lumped point": Case("narrow_seat", "'p' is 0.019 diameters", SOLIDS, "caution", scene(port=(0.04, 0.04, 0.04 + 0.019 * 0.084)),
         scene(port=(0.04, 0.04, 0.04 + 0.021 * 0.084))),
     "rigid seats": Case("rigid_seats", "rigid seats at 'p', 'b0', 'b1'", SOLIDS, "caution", scene(attachment="rigid"), scene()),
-    "rigid seats that touch": Case("rigid_seats", "will refuse", SOLIDS, "avoid", touching(0.0), touching(0.005)),
     "hex8": Case("linear_elements", "element = hex8", ("solid",), "caution", scene(), scene(), "solid", {**COARSE, "element": "hex8"}, COARSE),
     "order 1": Case("linear_elements", "order = 1", ("harmonic",), "caution", scene(), scene(), "harmonic", {**LIGHT, "order": 1}, LIGHT),
     "hex20 locks": Case("nearly_incompressible", "element hex20", ("solid",), "caution", rubber(0.498), rubber(0.49)),
@@ -207,16 +201,16 @@ def test_memory(monkeypatch, allowed, level):
     body = sg.build(OVERHUNG, "timoshenko")
     found = list(elements.memory(Probe(OVERHUNG, body)))
     assert [n.level for n in found] == ["fact", level][: 1 if level == "fact" else 2]
-    # the analysis of PARDISO says 460 MB for this mesh of 41 004 unknowns
+    # the analysis of PARDISO says 407 MB for this mesh of 37 128 unknowns
     size, need = (float(found[0].sentence.split()[i]) for i in (5, -2))
-    assert size == pytest.approx(41004, rel=0.05) and need == pytest.approx(460, rel=0.1)
+    assert size == pytest.approx(37128, rel=0.05) and need == pytest.approx(407, rel=0.1)
 
 
 def test_back_ends_that_are_missing_are_named(monkeypatch):
     monkeypatch.setattr(elements, "missing", lambda name: "" if name == "superlu" else f"{name} is not usable (ImportError)")
     fact = next(elements.memory(Probe(OVERHUNG, sg.build(OVERHUNG, "timoshenko")))).sentence
     assert "by superlu" in fact and "pardiso is not usable" in fact and "mumps is not usable" in fact
-    assert float(fact.split(" MB")[0].split()[-1]) > 600  # fill of SuperLU
+    assert float(fact.split(" MB")[0].split()[-1]) > 500  # fill of SuperLU
 
 
 def test_no_renderer_is_told(monkeypatch):

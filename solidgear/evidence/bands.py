@@ -23,10 +23,14 @@ from dataclasses import asdict, dataclass
 from solidgear.evidence.converge import gci
 from solidgear.evidence.quantities import COUPLINGS, QUANTITIES, change
 
-#: band over the last change: harmonic solid (measured 0.10 to 0.19), graded hexahedra
-LAYERED = {"harmonic": 0.25, "solid": 0.8}
+#: band over the last change: harmonic solid, graded hexahedra
+LAYERED = {"harmonic": 0.33, "solid": 1.3}
+#: the same where seats are rigid: their ends are singular like a crack, and a layer of ratio q leaves the share q
+RIGID = {"harmonic": 0.42, "solid": 1.8}
+#: safety on the observed reduction of two regular steps, where that is the worse news
+OBSERVED, SLOWEST = 1.5, 0.7
 #: the last change counts for at least this share of the one before it, and a coupling's of its diagonal entries'
-EARLIER, DIAGONAL = 0.03, 0.2
+EARLIER, DIAGONAL = {"harmonic": 0.03, "solid": 0.15}, 0.2
 #: share of the last change by which a layered sequence is still expected to go on
 AHEAD = {"harmonic": 0.12, "solid": 0.4}
 #: safety on what the cells around leave
@@ -80,7 +84,7 @@ class Band:
 Values = Mapping[str, float]
 
 
-def layered_bands(levels: Sequence[Values], solver: Values, model: str, around: Values | None = None) -> dict[str, Band]:
+def layered_bands(levels: Sequence[Values], solver: Values, model: str, *, rigid: bool = False, around: Values | None = None) -> dict[str, Band]:
     """Bands of the finest of two or more levels of a layered sequence.
 
     Parameters
@@ -90,11 +94,13 @@ def layered_bands(levels: Sequence[Values], solver: Values, model: str, around: 
     solver : mapping
         Relative error the solver may have left in each quantity of the finest level.
     model : {'harmonic', 'solid'}
+    rigid : bool
+        Whether a seat is rigid.
     around : mapping, optional
         Relative error that the cells around leave in each quantity.
     """
     around = around or {}
-    factor, out = LAYERED[model], {}
+    usual, out = (RIGID if rigid else LAYERED)[model], {}
     finest, before = levels[-1], levels[-2]
     for name in QUANTITIES:
         if any(name not in level for level in levels[-2:]):
@@ -103,7 +109,11 @@ def layered_bands(levels: Sequence[Values], solver: Values, model: str, around: 
         earlier = None
         if len(levels) > 2 and name in levels[-3]:
             earlier = abs((change(levels[-3], finest, name) or 0.0) - (change(before, finest, name) or 0.0))
-        rests_on = max(last, EARLIER * (earlier or 0.0))
+        rests_on = max(last, EARLIER[model] * (earlier or 0.0))
+        factor = usual
+        if earlier and len(levels) > 3:  # the step off the coarsest mesh is no regular one
+            ratio = min(last / earlier, SLOWEST)
+            factor = max(usual, OBSERVED * ratio / (1 - ratio))
         if name in COUPLINGS:
             own = [abs(change(before, finest, d) or 0.0) for d in COUPLINGS[name] if d in before and d in finest]
             if len(own) == 2:

@@ -33,9 +33,9 @@ HARMONIC = (
 HEXAHEDRA = (
     _hexahedra(0, 0, 1.5),
     _hexahedra(1, 1, 1.0),
-    _hexahedra(2, 1, 0.7),
-    _hexahedra(3, 2, 0.5),
-    _hexahedra(4, 2, 0.35),
+    _hexahedra(2, 2, 0.7),
+    _hexahedra(3, 3, 0.5),
+    _hexahedra(4, 4, 0.35),
 )
 TETRAHEDRA = tuple({"refinement": r} for r in (0.45, 0.65, 0.95, 1.4, 2.0))
 LINEAR = tuple({"refinement": r} for r in (0.6, 0.9, 1.35, 2.0))

@@ -43,7 +43,8 @@ def measure(condensed: Condensed, modes: ModeSet) -> dict[str, float]:
             value = getattr(condensed, kind)[place]
         if np.isfinite(value) and (value != 0.0 or name in COUPLINGS):
             out[name] = float(value)
-    return out
+    # a coupling of motions that nothing resists is no number
+    return {name: v for name, v in out.items() if all(d in out for d in COUPLINGS.get(name, ()))}
 
 
 def change(new: dict[str, float], old: dict[str, float], name: str) -> float | None:

@@ -113,6 +113,7 @@ def study(
     most: int | None = None,
     evidence: bool = True,
     progress: Progress = lambda _: None,
+    keep: Callable[[Rung], None] = lambda _: None,
 ) -> Rung:
     """Solve one model of a scene, a solid on as many meshes as its bands need.
 
@@ -132,6 +133,8 @@ def study(
         Count the modes, and solve the other attachments.
     progress : callable
         Told in words what is going on.
+    keep : callable
+        Given what there is after every mesh, for an interrupt to leave it.
 
     Raises
     ------
@@ -144,52 +147,63 @@ def study(
         progress(f"{model}: build, statics, modes")
         body, ties = _solved(scene, model, options, meter, count=evidence)
         rung = Rung(model, body, ties, meter, options=options)
+        keep(rung)
     else:
         share = share or (JUDGE if model == "harmonic" else JUDGED_SHARE)
-        rung = _climbed(scene, model, options, meter, scene.ask.tolerance / share, most, evidence, progress)
+        rung = _climbed(scene, model, options, meter, scene.ask.tolerance / share, most, evidence, progress, keep)
     if evidence:
         _add_variants(scene, rung, progress)
     return rung
 
 
-def _climbed(scene, model, options, meter, target, most, evidence, progress) -> Rung:
+def _climbed(scene, model, options, meter, target, most, evidence, progress, keep) -> Rung:
     """The finest of the levels that were needed, or that could be had."""
     plan: Sequence = sequence(model, options)
-    levels = plan.levels[:most] if not plan.fixed else plan.levels
-    solved: list[dict[str, Tied]] = []
+    levels = plan.levels if plan.fixed else plan.levels[:most]
     rung: Rung | None = None
+    solved: list[dict[str, Tied]] = []
     facts: list[dict] = []
+    failed: dict[str, str] = {}
     around: dict[str, dict[str, float]] = {}
     for k, level in enumerate(levels):
-        last = plan.fixed and k == len(levels) - 1
         progress(f"{model}: mesh {k + 1}")
-        # What a user gets is the last level: it is counted, and what it costs is the answer's price; the others are evidence.
         before = dict(meter.seconds)
+        # What a user gets is the last level, and where the program chooses that may be any from the third on.
+        count = evidence and (k == len(levels) - 1 if plan.fixed else k >= 2)
         try:
-            body, ties = _solved(scene, model, level, meter, count=evidence and (last or not plan.fixed and k > 0))
+            body, ties = _solved(scene, model, level, meter, count)
         except (SolidgearError, MemoryError) as error:
-            if rung is None:
+            why = str(error) or "not enough memory"
+            if plan.fixed and k < len(levels) - 1:
+                failed["band"] = why
+                continue
+            if plan.fixed or rung is None:
                 raise
-            rung.failed["finer mesh"] = str(error) or "not enough memory"
+            failed["finer mesh"] = why
             break
         if rung is not None:
-            meter.seconds["band"] = meter.seconds.get("band", 0.0) + sum(before.values()) - before.get("band", 0.0)
-            for stage in ("build", "statics", "modes", "count"):
-                meter.seconds[stage] = meter.seconds.get(stage, 0.0) - before.get(stage, 0.0)
+            _book_as_evidence(meter, before)
             rung.body.memory.clear()
         solved.append(ties)
-        if k == 0 and plan.turned is not None:
-            progress(f"{model}: mesh 1 with more cells around")
-            around = _around(scene, model, plan, ties, meter)
         facts.append(_facts(body, ties[SCENE]))
-        failed = rung.failed if rung is not None else {}
-        rung = Rung(model, body, ties, meter, levels=facts, options=dict(level), failed=failed)
+        if plan.turned is not None and not around:
+            progress(f"{model}: mesh {k + 1} with more cells around")
+            around = _around(scene, model, plan, solved[0], meter)
+        rung = Rung(model, body, ties, meter, levels=facts, failed=failed, options=dict(level))
         rung.bands = _bands(scene, model, plan, solved, facts, around)
+        keep(rung)
         worst = rung.worst_band()
         if not plan.fixed and k >= 2 and worst is not None and worst <= target:
             break
     assert rung is not None
     return rung
+
+
+def _book_as_evidence(meter: Meter, before: dict[str, float]) -> None:
+    """What coarser levels cost is evidence; the price of the answer is that of the last level."""
+    earlier = {stage: before.get(stage, 0.0) for stage in ("build", "statics", "modes", "count")}
+    for stage, seconds in earlier.items():
+        meter.move(stage, "band", seconds)
 
 
 def _facts(body: Body, tied: Tied) -> dict:
@@ -226,7 +240,8 @@ def _bands(scene, model: str, plan: Sequence, solved: list[dict[str, Tied]], fac
             continue
         values, solver = [s[tie].quantities for s in known], known[-1][tie].solver
         if plan.layered:
-            out[tie] = layered_bands(values, solver, model, around.get(tie))
+            held = tie == SCENE and any(s.attachment == "rigid" for s in scene.stations)
+            out[tie] = layered_bands(values, solver, model, rigid=held, around=around.get(tie))
         elif len(known) > 2:
             sizes = [f["mesh"]["representative_size"] for f in facts[-3:]]
             held = any(s.attachment == "rigid" for s in scene.stations)

@@ -8,7 +8,8 @@ from solidgear.errors import SolidgearError
 from solidgear.evidence.converge import sharpest_corner
 from solidgear.guards.notice import BEAMS, MODELS, Notice, Notices, beyond
 from solidgear.guards.probe import Probe
-from solidgear.verdict import BEYOND, OPEN, TIES, WITHIN, gap_verdict
+from solidgear import verdict
+from solidgear.verdict import TIES, gap_verdict
 
 
 #: bands of a light solid rest on two meshes only
@@ -21,14 +22,14 @@ def beam_against_solid(probe: Probe) -> Notices:
     for model, concerned in (("euler", ("euler",)), ("timoshenko", ("timoshenko", "lumped"))):
         if not (gaps := probe.gaps(model)):
             continue
-        found = {kind: [g for g in gaps if gap_verdict(g["relative"], CAUTIOUS * (g["band"] or 0.0), tolerance) == kind] for kind in (BEYOND, OPEN, WITHIN)}
+        found = {kind: [g for g in gaps if gap_verdict(g["relative"], CAUTIOUS * (g["band"] or 0.0), tolerance) == kind] for kind in (verdict.BEYOND, verdict.OPEN, verdict.WITHIN)}
         kind, worst = next((kind, rows[0]) for kind, rows in found.items() if rows)
         name, gap = worst["quantity"], worst["relative"]
         side = ("larger" if gap > 0 else "smaller") if name.startswith("C_") else "higher" if gap > 0 else "lower"
         text = f"{name} of the {model} beam is {100 * abs(gap):.3g} % {side} than that of a light harmonic solid {TIES[worst['attachment']]}"
-        if kind == BEYOND:
+        if kind == verdict.BEYOND:
             yield Notice("avoid", concerned, f"{text}, more than the {100 * tolerance:g} % asked for; use the harmonic solid")
-        elif kind == OPEN:
+        elif kind == verdict.OPEN:
             yield Notice("open", concerned, f"{text}, and the light solid is too coarse to tell whether that is within the {100 * tolerance:g} % asked for; compare tells")
         else:
             yield Notice("fact", concerned, f"{text}, the largest gap of what is compared")
