@@ -145,6 +145,8 @@ def modes(
     found = _named(body, project, raw, rigid, n, max_frequency)
     evidence = {
         "residual": max((r.residual for r in raw[: n + 2]), default=0.0),
+        "error": max((r.error / 2 for r in raw[:n]), default=0.0),
+        "steps": max(part.solved.steps for part in parts),
         "orthogonality": max(part.solved.orthogonality for part in parts),
         "rigid_modes": len(rigid),
         "shift_rad2": -SHIFT * body.scale,
@@ -171,7 +173,7 @@ class _Part:
 
     def everywhere(self, found: list[Raw]) -> list[Raw]:
         """Eigenpairs of the group and of its twins."""
-        return found + [Raw(r.value, {twin: next(iter(r.vectors.values()))}, r.residual) for twin in self.twins for r in found]
+        return found + [Raw(r.value, {twin: next(iter(r.vectors.values()))}, r.residual, r.error) for twin in self.twins for r in found]
 
 
 def _solved_parts(body, supports, spring, n: int, method: str | None) -> tuple[list[_Part], float]:
