@@ -10,7 +10,7 @@ import scipy.linalg as sla
 import solidgear as sg
 from solidgear.body import as_supports
 from solidgear.scene import STEEL, Material, Scene, Segment
-from solidgear.solve import eigen, modes
+from solidgear.solve import eigen, parts
 from solidgear.solve.eigen import count_below, lowest
 from solidgear.solve.refine import SOFT
 from solidgear.solve.supported import Supported, decoupled, groups
@@ -108,7 +108,7 @@ def test_count_notices_a_lost_mode(scene, solid, lost):
 
 
 def test_a_lost_mode_is_searched_again(scene, solid, monkeypatch):
-    real = modes.lowest
+    real = parts.lowest
     calls = []
 
     def forgetful(on, n, method=None):
@@ -116,7 +116,7 @@ def test_a_lost_mode_is_searched_again(scene, solid, monkeypatch):
         solved = real(on, n, method)
         return replace(solved, elastic=solved.elastic[:1] + solved.elastic[2:]) if len(calls) == 1 else solved
 
-    monkeypatch.setattr(modes, "lowest", forgetful)
+    monkeypatch.setattr(parts, "lowest", forgetful)
     found = sg.modes(solid, scene, n=8, count=True)
     assert len(calls) == 2
     monkeypatch.undo()
@@ -124,8 +124,8 @@ def test_a_lost_mode_is_searched_again(scene, solid, monkeypatch):
 
 
 def test_a_mode_lost_twice_ends_in_a_sentence(scene, solid, monkeypatch):
-    real = modes.lowest
-    monkeypatch.setattr(modes, "lowest", lambda *a: (lambda s: replace(s, elastic=s.elastic[1:]))(real(*a)))
+    real = parts.lowest
+    monkeypatch.setattr(parts, "lowest", lambda *a: (lambda s: replace(s, elastic=s.elastic[1:]))(real(*a)))
     with pytest.raises(sg.SolidgearError, match=r"modes were found below .* Hz but the factor counts"):
         sg.modes(solid, scene, n=8, count=True)
 

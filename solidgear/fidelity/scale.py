@@ -98,22 +98,26 @@ def _second_tridiagonal(between, inertia) -> float:
 
 
 def _flanges(segments):
-    """Eigenvalues of what overhangs a thinner neighbour: plates clamped at its radius, of the stiffest material there and the lightest.
+    """Eigenvalues of what overhangs a thinner neighbour: plates clamped at its radius, of the quickest material there.
 
     A strip of length b and thickness h: bending ``12.4 E h^2 / (12 rho b^4)``, shear ``(pi / 2 b)^2 k G / rho``, in series.
     """
+    for base, run in overhangs(segments):
+        overhang, speed = max(r for r, _, _ in run) - base, max(c for _, _, c in run)
+        thickness = sum(length for _, length, _ in run)
+        if thickness <= 2 * overhang:
+            bending = speed * thickness**2 / overhang**4
+            shear = speed * 0.3 * (np.pi / 2 / overhang) ** 2
+            yield bending * shear / (bending + shear)
+
+
+def overhangs(segments):
+    """Neighbours that together stick out over a radius: yields (that radius, list of (outer radius, length, E / rho)), for every radius there is."""
     parts = [(max(s.outer0, s.outer1), s.length, s.material.E / s.material.density) for s in segments]
     levels = sorted({0.0} | {r for s in segments for r in (s.outer0, s.outer1)})
     levels = levels[:: 1 + len(levels) // LEVELS] + levels[-1:]
     for base in levels[:-1]:
-        for run in _runs(parts, base):
-            height, thickness = max(r for r, _, _ in run), sum(length for _, length, _ in run)
-            overhang, speed = height - base, max(c for _, _, c in run)
-            if thickness > 2 * overhang:
-                continue
-            bending = speed * thickness**2 / overhang**4
-            shear = speed * 0.3 * (np.pi / 2 / overhang) ** 2
-            yield bending * shear / (bending + shear)
+        yield from ((base, run) for run in _runs(parts, base))
 
 
 def _runs(parts, base: float):

@@ -161,12 +161,15 @@ class Count:
     found, counted : int
         Modes the eigensolver gave below it, and modes there are.
     backend : str
+    distance : float
+        Of the nearest eigenvalue from the bound, relative.
     """
 
     below: float
     found: int
     counted: int
     backend: str
+    distance: float
 
 
 def count_below(supported: Supported, solved: Solved, reach: float) -> Count | None:
@@ -211,4 +214,5 @@ def count_below(supported: Supported, solved: Solved, reach: float) -> Count | N
             inner = inner + part.T @ factor.solve(part)
     if load.shape[1]:
         negative -= int((np.linalg.eigvalsh((inner + inner.T) / 2) < 0).sum())
-    return Count(below, at + 1 + len(solved.free), negative, "+".join(sorted(backends)))
+    distance = float(np.abs(value / below - 1).min())
+    return Count(below, at + 1 + len(solved.free), negative, "+".join(sorted(backends)), distance)

@@ -163,6 +163,11 @@ class Supported:
         """(n,) diagonal of the stiffness of the free body."""
         return np.concatenate([b.stiffness.diagonal() for b in self.blocks])
 
+    @cached_property
+    def highest(self) -> float:
+        """Highest eigenvalue of the free body, from below and within a factor of ten, rad^2/s^2."""
+        return max(float((b.stiffness.diagonal() / b.mass.diagonal()).max()) for b in self.blocks)
+
     def stretch(self, u, loads) -> np.ndarray:
         """Stretch ``L'u`` of the springs, the root of their energy.
 
