@@ -81,7 +81,7 @@ class Probe:
 
     def _solved(self, body: Body, attachment: str | None = None) -> tuple[Body, ModeSet, dict[str, float]]:
         supports = self.supports.with_attachment(attachment)
-        found = modes(body, supports, FEW)
+        found = modes(body, supports, FEW, ovalising=False)
         return body, found, measure(condense(body, supports, self.scene.port.name, attachment), found)
 
     def _gaps(self, model: str) -> list[tuple[float, str, str]]:
