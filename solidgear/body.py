@@ -19,6 +19,9 @@ from solidgear.errors import SolidgearError
 from solidgear.frames import DOF_NAMES, shift
 from solidgear.mass import ScalarMass
 
+#: Index of the block of n waves around the axis is this plus n, where it is not among the blocks of a body.
+FURTHER = 1000
+
 
 @dataclass(frozen=True)
 class Port:
@@ -160,6 +163,9 @@ class Body:
         Facts about the discretisation, for the record.
     geometry : object or None
         What a renderer needs to draw the body (fidelity specific), or None.
+    further : object or None
+        Builder of further circumferential families, such as :class:`solidgear.fidelity.circumferential.Families`; None where the blocks are all
+        that the fidelity knows.
     """
 
     fidelity: str
@@ -169,6 +175,7 @@ class Body:
     length: float
     mesh: dict[str, Any] = field(default_factory=dict)
     geometry: Any = None
+    further: Any = None
     # Factorisations and flexibilities are kept with the body they belong to, so that they die with it.
     memory: dict[str, Any] = field(default_factory=dict, repr=False)
 
@@ -176,6 +183,26 @@ class Body:
     def size(self) -> int:
         """Number of unknowns, twins counted twice."""
         return sum(block.size for block in self.blocks)
+
+    def block(self, index: int) -> Block:
+        """A block by its index; from ``FURTHER`` on, that of a further circumferential family, built when first asked for."""
+        return self.blocks[index] if index < FURTHER else self.family(index - FURTHER).blocks[0]
+
+    def family(self, n: int) -> Body:
+        """The motions of ``n`` waves around the axis (at least 2), as a body of one block without port motions; kept once built.
+
+        Raises
+        ------
+        SolidgearError
+            If the fidelity has no such families.
+        """
+        if self.further is None:
+            raise SolidgearError(f"the {self.fidelity} body has no motions of {n} waves around its axis")
+        kept = self.memory.setdefault("families", {})
+        if n not in kept:
+            scale = (2 * np.pi * self.further.light(n)) ** 2
+            kept[n] = Body(self.fidelity, (self.further.block(n),), (), scale, self.length, self.mesh)
+        return kept[n]
 
     def port_index(self, name: str, attachment: str | None = None) -> int:
         """Index of the port called ``name``; the first one unless an attachment is asked for.

@@ -152,7 +152,7 @@ def test_in_the_solid_one_block_holds_everything():
         found, direct = small(reduced, body, supports, 6), sg.modes(body, supports, 6)
         frequency, names = shapes(direct)
         assert found.error_bound < 1e-5
-        np.testing.assert_allclose(found.frequency_hz, frequency[:6], rtol=found.error_bound + direct.evidence["residual"])
+        np.testing.assert_allclose(found.frequency_hz, frequency[:6], rtol=found.error_bound + 1e-9)  # and what the free shapes of the basis miss
         assert list(found.names) == names[:6]
 
 

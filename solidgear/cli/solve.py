@@ -144,7 +144,7 @@ def modes(
         raise SolidgearError(f"--max-frequency {max_frequency:g}: must be greater than zero, in Hz")
     found = solve(body, loaded, loaded.ask.modes if n is None else n, max_frequency=max_frequency or loaded.ask.max_frequency, count=count)
     said = cautions(loaded, body)
-    rows = [{"name": m.name, "family": m.family, "frequency_hz": m.frequency_hz, "multiplicity": m.multiplicity} for m in found.modes]
+    rows = [{"name": m.name, "family": m.family, "frequency_hz": m.frequency_hz, "multiplicity": m.multiplicity, "error": m.error} for m in found.modes]
     if as_json:
         print(json.dumps({"scene": loaded.name, "fidelity": fidelity.value, "dofs": body.size, "modes": rows, "evidence": found.evidence, "cautions": said}, default=float))
         return
@@ -157,10 +157,12 @@ def modes(
     terminal.print(f"Residual {e['residual']:.1e}, orthogonality {e['orthogonality']:.1e}, rigid modes {e['rigid_modes']}, {e['method']} on {e['backend']}.")
     for one, other, gap in e.get("torn_pairs", []):
         terminal.print(f"caution: {one} and {other} are twins that the mesh has split by {gap:.1e}: refine it, or use hexahedra or the harmonic model.")
+    if e["error"] > 1e-6:
+        terminal.print(f"caution: rounding leaves frequencies good to {e['error']:.0e} only: the smallest cells are that stiff beside the shaft; a coarser mesh has less of it.")
     if count:
-        bad = [part["why"] for part in e["count"] if not part["checked"]]
-        below = min((part["below_hz"] for part in e["count"] if part["checked"]), default=0.0)
-        terminal.print(f"Not counted: {bad[0]}." if bad else f"No mode missed below {below:.6g} Hz (counted by the inertia of a second factor).")
+        from solidgear.evidence.completeness import completeness
+
+        terminal.print(completeness(e, fidelity.value), markup=False)
     for sentence in said:
         terminal.print(f"caution: {sentence}", markup=False)
 

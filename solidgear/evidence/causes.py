@@ -27,7 +27,7 @@ class Cause:
 def _solve(scene, fidelity, **options):
     body = build(scene, fidelity, **options)
     # Ten shapes hold the first bending pair of anything that looks like a shaft.
-    return measure(condense(body, scene, scene.port.name), modes(body, scene, 10))
+    return measure(condense(body, scene, scene.port.name), modes(body, scene, 10, ovalising=False))
 
 
 def _row(cause, text, model, new, old) -> Cause:

@@ -270,7 +270,7 @@ def answer(scene, model: str, options: dict, n: int):
     supports = as_supports(scene)
     body = build(scene, source, **options)
     condensed = condense(body, supports, scene.port.name)
-    shapes = modes(body, supports, n)
+    shapes = modes(body, supports, n, ovalising=False)
     values = measure(condensed, shapes)
     if model == "lumped":
         made = synthesise_all(scene, {source: SimpleNamespace(body=body, modes=shapes)})

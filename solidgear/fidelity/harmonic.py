@@ -22,6 +22,7 @@ from solidgear.body import Block, Body, Port
 from solidgear.errors import SolidgearError
 from solidgear.fidelity.assembly import Pattern, Tabulation, batches, reference, tabulate, unknowns
 from solidgear.fidelity.attachment import tie_rigidly
+from solidgear.fidelity.circumferential import Families
 from solidgear.fidelity.options import harmonics, number
 from solidgear.fidelity.scale import elastic_scale
 from solidgear.meshing.layout import Grading, layout
@@ -75,7 +76,7 @@ def harmonic(
         Attachments to build for every station, the first being the default one; by
         default what the scene says.
     ovalising : tuple of int
-        Further harmonics n >= 2; they carry no port motion.
+        Further harmonics n >= 2 to build at once; they carry no port motion.  Others are built when modes need them.
 
     Returns
     -------
@@ -124,8 +125,9 @@ def harmonic(
         "representative_size": float(np.sqrt(work.area / flat.cells.shape[1])),
         "pair_tolerance": 1e-9,
     }
+    further = Families(scene, lambda n: _Work(scene, mesh, element, dofs, flat, order).bending_block(f"ovalising_{n}", (), n, ()))
     return Body(
-        "harmonic", tuple(blocks), tuple(ports), elastic_scale(scene), scene.length, facts, HarmonicMesh(mesh, element, dofs, flat)
+        "harmonic", tuple(blocks), tuple(ports), elastic_scale(scene), scene.length, facts, HarmonicMesh(mesh, element, dofs, flat), further
     )
 
 

@@ -1,16 +1,133 @@
-"""Where the spectrum of a free shaft begins, roughly."""
+"""Where the spectrum of a free shaft begins, roughly.
+
+The shaft is cut into slices: bending, stretch and twist of the chain of slices are solved as small banded eigenproblems over the true
+distribution of stiffness and mass, and what sticks out of it (flanges, thin discs) is judged as a plate that overhangs.  The least of all is
+within about a factor of three of the lowest elastic eigenvalue of the harmonic solid's own families on every shaft tried.
+"""
 
 from __future__ import annotations
 
 import numpy as np
+import scipy.linalg as sla
+
+SLICES = 120
+LEVELS = 60  # radii at which overhangs are looked for
 
 
 def elastic_scale(scene) -> float:
-    """Rough lowest elastic eigenvalue of the free shaft, rad^2/s^2 (Euler free-free or axial, the lower).
+    """Lowest elastic eigenvalue of the free shaft, rad^2/s^2, by a chain of slices and overhanging plates.
 
-    Used only to place spectral shifts; an error of a factor of ten is harmless.
+    Parameters
+    ----------
+    scene : Scene
+
+    Notes
+    -----
+    It places spectral shifts; an error of a factor of ten is harmless.
     """
-    material = scene.segments[0].material
-    c2 = material.E / material.density
-    mean = np.sqrt(sum(s.length * (s.outer0**2 + s.outer1**2 + s.inner0**2 + s.inner1**2) / 8 for s in scene.segments) / scene.length)
-    return min(500.0 * c2 * mean**2 / scene.length**4, np.pi**2 * c2 / scene.length**2)
+    chain = _Chain(scene.segments)
+    return min(chain.bending(), chain.rod(chain.stretch, chain.mass), chain.rod(chain.twist, chain.polar), *_flanges(scene.segments))
+
+
+class _Chain:
+    """Slices of a shaft: length, mass, and the stiffness of each in bending, shear, stretch and twist."""
+
+    def __init__(self, segments):
+        ends = np.array([0.0, *(s.y1 for s in segments)])
+        grid = np.linspace(0.0, ends[-1], SLICES + 1)
+        # Pieces within one segment and one slice; slices collect them, springs in series and masses in sum.
+        edges = np.unique(np.concatenate([grid, ends]))
+        middle, piece = (edges[1:] + edges[:-1]) / 2, np.diff(edges)
+        owner = np.searchsorted(ends, middle) - 1
+        first = np.searchsorted(edges, grid[:-1])
+
+        def of(name):
+            return np.array([getattr(s, name) for s in segments])[owner]
+
+        modulus, shear, density = np.array([(s.material.E, s.material.shear_modulus, s.material.density) for s in segments])[owner].T
+        t = (middle - of("y0")) / (of("y1") - of("y0"))
+        outer = of("outer0") + t * (of("outer1") - of("outer0"))
+        inner = of("inner0") + t * (of("inner1") - of("inner0"))
+        area, second = np.pi * (outer**2 - inner**2), np.pi / 4 * (outer**4 - inner**4)
+
+        def summed(values):
+            return np.add.reduceat(values * piece, first)
+
+        self.length = summed(1.0)
+        self.mass = summed(density * area)
+        self.polar = summed(2 * density * second)
+        self.tilt = self.polar / 2 + self.mass * self.length**2 / 12
+        self.stretch = 1 / summed(1 / (modulus * area))
+        self.twist = 1 / summed(1 / (2 * shear * second))
+        self.bend = 1 / summed(1 / (modulus * second))
+        # A third to a half of a section carries shear; a rough value will do.
+        self.shear = 1 / summed(1 / (0.6 * shear * area))
+
+    def rod(self, stiffness, inertia) -> float:
+        """Lowest elastic eigenvalue of inertias joined by springs in a row, each half of two slices."""
+        between = 2 / (1 / stiffness[1:] + 1 / stiffness[:-1])
+        return _second_tridiagonal(between, inertia)
+
+    def bending(self) -> float:
+        """Lowest elastic eigenvalue of rigid slices joined by springs in bending and shear at their borders."""
+        n = len(self.mass)
+        bend = 2 / (1 / self.bend[1:] + 1 / self.bend[:-1])
+        shear = 2 / (1 / self.shear[1:] + 1 / self.shear[:-1])
+        # Slices deflect and turn; a joint sees the turn between its neighbours, and the gap between their ends.
+        left, right = self.length[:-1] / 2, self.length[1:] / 2
+        turn = np.zeros((n - 1, 4))
+        turn[:, 1], turn[:, 3] = -1.0, 1.0
+        gap = np.column_stack([-np.ones(n - 1), -left, np.ones(n - 1), -right])
+        each = bend[:, None, None] * turn[:, :, None] * turn[:, None] + shear[:, None, None] * gap[:, :, None] * gap[:, None]
+        size = np.sqrt(np.column_stack([self.mass, self.tilt]).ravel())
+        band = np.zeros((4, 2 * n))
+        for i in range(4):
+            for j in range(i + 1):
+                np.add.at(band[i - j], 2 * np.arange(n - 1) + j, each[:, i, j])
+        for k in range(4):
+            band[k, : 2 * n - k] /= size[: 2 * n - k] * size[k:]
+        values = sla.eig_banded(band, lower=True, eigvals_only=True, select="i", select_range=(2, 2))
+        return float(values[0])
+
+
+def _second_tridiagonal(between, inertia) -> float:
+    """Second eigenvalue of a free chain; the first one is its rigid motion."""
+    main = (np.append(between, 0.0) + np.append(0.0, between)) / inertia
+    off = -between / np.sqrt(inertia[1:] * inertia[:-1])
+    return float(sla.eigvalsh_tridiagonal(main, off, select="i", select_range=(1, 1))[0])
+
+
+def _flanges(segments):
+    """Eigenvalues of what overhangs a thinner neighbour: plates clamped at its radius, of the quickest material there.
+
+    A strip of length b and thickness h: bending ``12.4 E h^2 / (12 rho b^4)``, shear ``(pi / 2 b)^2 k G / rho``, in series.
+    """
+    for base, run in overhangs(segments):
+        overhang, speed = max(r for r, _, _ in run) - base, max(c for _, _, c in run)
+        thickness = sum(length for _, length, _ in run)
+        if thickness <= 2 * overhang:
+            bending = speed * thickness**2 / overhang**4
+            shear = speed * 0.3 * (np.pi / 2 / overhang) ** 2
+            yield bending * shear / (bending + shear)
+
+
+def overhangs(segments):
+    """Neighbours that together stick out over a radius: yields (that radius, list of (outer radius, length, E / rho)), for every radius there is."""
+    parts = [(max(s.outer0, s.outer1), s.length, s.material.E / s.material.density) for s in segments]
+    levels = sorted({0.0} | {r for s in segments for r in (s.outer0, s.outer1)})
+    levels = levels[:: 1 + len(levels) // LEVELS] + levels[-1:]
+    for base in levels[:-1]:
+        yield from ((base, run) for run in _runs(parts, base))
+
+
+def _runs(parts, base: float):
+    """Neighbouring parts that reach beyond a radius."""
+    run = []
+    for part in parts:
+        if part[0] > base * (1 + 1e-9):
+            run.append(part)
+        elif run:
+            yield run
+            run = []
+    if run:
+        yield run

@@ -142,7 +142,7 @@ def _port_motion(body: Body, vectors: dict[int, np.ndarray], index: int) -> np.n
     """(6,) motion of a port in a mode shape."""
     out = np.zeros(6)
     for b, vector in vectors.items():
-        block = body.blocks[b]
+        block = body.block(b)
         n = len(block.components)
         if n:
             out[list(block.components)] += block.ports[index * n : (index + 1) * n] @ vector
@@ -151,7 +151,7 @@ def _port_motion(body: Body, vectors: dict[int, np.ndarray], index: int) -> np.n
 
 def _first_in_plane(body: Body, found: ModeSet, index: int):
     """First bending mode that moves the port in the z plane, and its (z, thx) there: unequal bearings may put one of the x plane before it."""
-    for mode in found.modes:
+    for mode in (*found.modes, *found.beyond):
         if mode.family != "bending" or mode.frequency_hz == 0:
             continue
         motions = np.array([_port_motion(body, v, index) for v in mode.vectors])
@@ -183,7 +183,7 @@ def _static_shapes(body: Body, supports, index: int):
             supported = Supported(body, supports, spring, group)
             parts = []
             for b in group:
-                block = body.blocks[b]
+                block = body.block(b)
                 rows = np.zeros((2, block.size))
                 n = len(block.components)
                 for r, c in enumerate(PLANE):
@@ -296,7 +296,7 @@ def modal_receptance(body: Body, supports, port: str, found: ModeSet):
     index = body.port_index(port)
     static = condense(body, supports, port).compliance[2, 2]
     pairs = []
-    for mode in found.modes:
+    for mode in (*found.modes, *found.beyond):
         if mode.frequency_hz > 0:
             w2 = (2 * np.pi * mode.frequency_hz) ** 2
             pairs += [(w2, _port_motion(body, v, index)[2] ** 2) for v in mode.vectors]

@@ -87,7 +87,7 @@ def mesh_unknowns(body, vectors: Mapping[int, np.ndarray]) -> dict[str, np.ndarr
     """
     out = {}
     for index, vector in vectors.items():
-        block = body.blocks[index]
+        block = body.block(index)
         if np.shape(vector) != (block.size,):
             raise SolidgearError(f"a shape of block {block.name} has {block.size} values, not {np.shape(vector)}")
         out[block.name] = np.asarray(vector, float) if block.expand is None else block.expand @ vector

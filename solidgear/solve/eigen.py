@@ -15,6 +15,7 @@ import scipy.sparse.linalg as spla
 from solidgear.errors import SolidgearError
 from solidgear.solve.factor import FactorError, indefinite
 from solidgear.solve.lanczos import block_lanczos
+from solidgear.solve.refine import refine
 from solidgear.solve.supported import Supported
 
 log = logging.getLogger(__name__)
@@ -25,16 +26,26 @@ METHODS = ("lanczos", "arpack", "dense")
 SINGLE = ("superlu",)
 WIDTH = 8
 TOLERANCE = 1e-7  # of shapes; frequencies are good to its square
-SOFT = 30.0  # shifts
 
 
 @dataclass(frozen=True)
 class Raw:
-    """One eigenpair before it has a name: eigenvalue in rad^2/s^2, block index -> vector, and a bound on its relative error."""
+    """One eigenpair before it has a name.
+
+    Attributes
+    ----------
+    value : float
+        rad^2/s^2.
+    vectors : dict
+        Block index -> (n,) vector.
+    residual, error : float
+        See :class:`solidgear.solve.refine.Refined`; both relative, of the eigenvalue.
+    """
 
     value: float
     vectors: dict[int, np.ndarray]
     residual: float
+    error: float
 
 
 @dataclass(frozen=True)
@@ -49,12 +60,15 @@ class Solved:
         Largest entry of ``U' M U - I``.
     method : str
         ``lanczos``, ``arpack`` or ``dense``, with the reason where one stands in for another.
+    steps : int
+        Corrections by :func:`solidgear.solve.refine.refine`.
     """
 
     elastic: list[Raw]
     free: list[Raw]
     orthogonality: float
     method: str
+    steps: int = 0
 
 
 def lowest(supported: Supported, n: int, method: str | None = None) -> Solved:
@@ -85,34 +99,13 @@ def lowest(supported: Supported, n: int, method: str | None = None) -> Solved:
         if total <= DENSE or wanted >= total - 2 - WIDTH:
             method = "dense"
         theta, u, method = {"dense": _dense, "arpack": _arpack, "lanczos": _lanczos}[method](supported, wanted)
-    shift, mass = supported.shift, supported.mass
-    value = 1.0 / theta - shift
-    back = supported.inverse(mass(u)) - u * theta if wanted > 0 else u
-    residual = np.sqrt(np.abs(np.einsum("ij,ij->j", back, mass(back)))) / np.where(theta > 0, theta, 1.0)
-    value = _rayleigh(u, value, residual, supported)
-    # Soft springs: what the shift leaves of a low eigenvalue is less than a direct Ritz step gives (1e-4 against 4e-10 at 1e3 N/m).
-    soft = value < SOFT * shift
-    whole = supported.rigid_motions()
-    if soft.any() and whole.shape[1]:
-        whole = whole / np.sqrt(np.einsum("ij,ij->j", whole, mass(whole)))
-        value[soft], u[:, soft] = _soft_modes(u[:, soft], supported.purge(whole), supported)
-    residual = residual * np.where(soft, 1.0, 1.0 + shift / np.maximum(value, 1e-3 * shift))
-    orthogonality = float(np.abs(u.T @ mass(u) - np.eye(len(theta))).max(initial=0.0))
-    elastic = [Raw(float(v), supported.split(u[:, i]), float(residual[i])) for i, v in enumerate(value)]
-    free = [Raw(0.0, supported.split(rigid[:, i]), 0.0) for i in range(rigid.shape[1])]
-    return Solved(elastic, free, orthogonality, method)
-
-
-def _rayleigh(u, value, residual, supported: Supported):
-    """Rayleigh quotients in place of ``1 / theta - shift``, which carries the rounding of the factor: 1e-8 on a fine meridian, against 1e-11.
-
-    Not for soft modes, where the stiffness of the free body would have to cancel, nor where the two differ by more than the residual
-    explains: the energy of very stiff springs is noise (8e-8 of an eigenvalue was seen).
-    """
-    held = supported.load.T @ u
-    quotient = np.einsum("ij,ij->j", u, supported.elastic(u)) + np.einsum("ij,ij->j", held, held)
-    sound = (value > SOFT * supported.shift) & (np.abs(quotient - value) <= 10 * residual * (value + supported.shift))
-    return np.where(sound, quotient, value)
+    value = 1.0 / theta - supported.shift
+    found = refine(supported, u, value, n)
+    u = found.vectors
+    orthogonality = float(np.abs(u.T @ supported.mass(u) - np.eye(len(theta))).max(initial=0.0))
+    elastic = [Raw(float(v), supported.split(u[:, i]), float(found.residual[i]), float(found.error[i])) for i, v in enumerate(found.value)]
+    free = [Raw(0.0, supported.split(rigid[:, i]), 0.0, 0.0) for i in range(rigid.shape[1])]
+    return Solved(elastic, free, orthogonality, method, found.steps)
 
 
 def _dense(supported: Supported, wanted: int):
@@ -157,41 +150,6 @@ def _arpack(supported: Supported, wanted: int):
     return theta[order], u[:, order], "arpack"
 
 
-def _soft_modes(u, rigid, supported: Supported):
-    """Ritz values and vectors of nearly rigid modes in the span of the rigid motions and of what is elastic in them.
-
-    Splitting the rigid part off exactly leaves no large stiffness to cancel: ``K`` sees the elastic remainder only.
-
-    Parameters
-    ----------
-    u : (n, k) ndarray
-        Mass-orthonormal shapes with inaccurate eigenvalues.
-    rigid : (n, r) ndarray
-        Rigid motions of unit mass norm less what no spring resists, which may leave little or nothing of them.
-    supported : Supported
-    """
-    mass = supported.mass
-    w, v = np.linalg.eigh(rigid.T @ mass(rigid))
-    keep = w > 1e-10
-    rigid = rigid @ (v[:, keep] / np.sqrt(w[keep]))
-    rest = u - rigid @ (rigid.T @ mass(u))
-    rest = rest - rigid @ (rigid.T @ mass(rest))
-    w, v = np.linalg.eigh(rest.T @ mass(rest))
-    keep = w > 1e-18  # a remainder below 1e-9 of the shape is rounding
-    rest = rest @ (v[:, keep] / np.sqrt(w[keep]))
-    basis = np.hstack([rigid, rest])
-    energy = rest.T @ supported.elastic(rest)
-    w, v = np.linalg.eigh((energy + energy.T) / 2)
-    elastic = np.zeros((len(w), basis.shape[1]))
-    elastic[:, rigid.shape[1] :] = (v * np.sqrt(np.maximum(w, 0.0))).T
-    # Singular values of a root keep twice the digits of a soft direction that eigenvalues of its Gram matrix would.
-    root = np.vstack([supported.load.T @ basis, elastic])
-    s, vt = np.linalg.svd(root)[1:]
-    value = np.concatenate([s**2, np.zeros(basis.shape[1] - len(s))])[::-1]
-    count = u.shape[1]
-    return value[:count], basis @ vt[::-1][:count].T
-
-
 @dataclass(frozen=True)
 class Count:
     """Number of eigenvalues below a bound, from the inertia of a factor that shares nothing with the eigensolver.
@@ -203,12 +161,15 @@ class Count:
     found, counted : int
         Modes the eigensolver gave below it, and modes there are.
     backend : str
+    distance : float
+        Of the nearest eigenvalue from the bound, relative.
     """
 
     below: float
     found: int
     counted: int
     backend: str
+    distance: float
 
 
 def count_below(supported: Supported, solved: Solved, reach: float) -> Count | None:
@@ -253,4 +214,5 @@ def count_below(supported: Supported, solved: Solved, reach: float) -> Count | N
             inner = inner + part.T @ factor.solve(part)
     if load.shape[1]:
         negative -= int((np.linalg.eigvalsh((inner + inner.T) / 2) < 0).sum())
-    return Count(below, at + 1 + len(solved.free), negative, "+".join(sorted(backends)))
+    distance = float(np.abs(value / below - 1).min())
+    return Count(below, at + 1 + len(solved.free), negative, "+".join(sorted(backends)), distance)

@@ -27,10 +27,12 @@ from solidgear.body import Body, as_supports
 from solidgear.errors import SolidgearError
 from solidgear.frames import DOF_NAMES
 from solidgear.solve.factor import Factor, factorise
+from solidgear.solve.relief import elastic_fields
 
-# The shift costs one digit per factor of ten below the first elastic eigenvalue when rigid motions
-# are cancelled, and saves refinement steps in statics: 1e-3 balances the two.
-SHIFT = 1e-3
+# Of the lowest elastic eigenvalue.  Rounding in the factor is amplified by the highest eigenvalue of the mesh over the shift: 1e-3 left 5e-3 of the
+# frequencies of slender tubes wrong, 3e-2 leaves
+# what refinement can mend.  Statics takes a solve more for it.
+SHIFT = 0.03
 
 
 @dataclass(frozen=True)
@@ -107,40 +109,8 @@ def factors(body: Body) -> list[Factor]:
     return body.memory["factors"]
 
 
-def inertia_relief(solve, mass, rigid: np.ndarray):
-    """Two functions for a free body: loads balanced by its own inertia, and their elastic displacements.
-
-    Parameters
-    ----------
-    solve, mass : callable
-        ``(K + sigma M)^-1 f`` and ``M u``.
-    rigid : (n, r) ndarray
-        Rigid motions.
-
-    Returns
-    -------
-    balanced, relieved : callable
-        The load less the inertia forces of the rigid acceleration it causes; the solution less its rigid part in the mass norm.
-    """
-    heavy = mass(rigid)
-    gram = sla.cho_factor(rigid.T @ heavy)
-
-    def balanced(load):
-        return load - heavy @ sla.cho_solve(gram, rigid.T @ load)
-
-    def relieved(load):
-        u = solve(load)
-        return u - rigid @ sla.cho_solve(gram, heavy.T @ u)
-
-    return balanced, relieved
-
-
-def flexibility(body: Body, tolerance: float = 1e-12, most: int = 12) -> Flexibility:
-    """Flexibility of the free body at all its ports (inertia relief).
-
-    Solves ``(K + sigma M) u = f`` with one factor and refines on K itself: every step gains ``sigma / lambda_1``, about three
-    digits, in the displacements and twice as many in their energy, which is the flexibility.
-    """
+def flexibility(body: Body, tolerance: float = 1e-12) -> Flexibility:
+    """Flexibility of the free body at all its ports (inertia relief), by :func:`solidgear.solve.relief.elastic_fields`."""
     if "flexibility" in body.memory:
         return body.memory["flexibility"]
     n = 6 * len(body.ports)
@@ -156,20 +126,11 @@ def flexibility(body: Body, tolerance: float = 1e-12, most: int = 12) -> Flexibi
             out[np.ix_(rows, rows)] = out[np.ix_(original, original)] * np.outer(signs, signs)
             continue
         k = block.stiffness
-        balanced, relieved = inertia_relief(factor.solve, block.mass.__matmul__, block.rigid)
-        load = balanced(block.ports.T.toarray() if sp.issparse(block.ports) else block.ports.T)
-        u = relieved(load)
-        step = 1.0
-        for _ in range(most):
-            correction = relieved(load - k @ u)
-            u = u + correction
-            step, last = np.abs(correction).max() / np.abs(u).max(), step
-            # Steps shrink by a constant factor; the energy below misses by the square of what the displacements still miss.
-            missing = (step * step / last) ** 2
-            if missing < tolerance or step > 0.5 * last:
-                break
-        # Clapeyron: 2 u'f - u'Ku is stationary at the solution.
-        f_block = u.T @ (2 * load - k @ u)
+        load = block.ports.T.toarray() if sp.issparse(block.ports) else block.ports.T
+        load, u, missing = elastic_fields(factor.solve, block.mass.__matmul__, k.__matmul__, block.rigid, load, tolerance)
+        # Clapeyron: 2 u'f - u'Ku is stationary at the solution; each pair of loads misses the product of what both displacements miss.
+        work = u.T @ load
+        f_block = work + work.T - u.T @ (k @ u)
         size = np.sqrt(np.abs(np.diag(f_block)))
         asymmetry = max(asymmetry, float((np.abs(f_block - f_block.T) / np.outer(size, size)).max()))
         residual = max(residual, float(missing))

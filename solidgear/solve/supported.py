@@ -5,11 +5,17 @@ The factor of the free body does all the work; bearings enter by the Woodbury id
 
 from __future__ import annotations
 
+from functools import cached_property
+
 import numpy as np
 import scipy.linalg as sla
 
 from solidgear.body import Body, Supports, component_rows
-from solidgear.solve.statics import SHIFT, factors, inertia_relief
+from solidgear.solve.relief import elastic_fields
+from solidgear.solve.statics import SHIFT, factors
+
+# A sum of rounded terms that comes out below this part of their sizes has no digits left that matter.
+ROUNDED = 1e-12
 
 
 def decoupled(body: Body, supports: Supports, tolerance: float):
@@ -68,6 +74,8 @@ class Supported:
     Attributes
     ----------
     size : int
+    scale : float
+        Lowest elastic eigenvalue of the free body, roughly, rad^2/s^2.
     shift : float
         The operator inverted is ``K + springs + shift M``, rad^2/s^2.
     free : (n, k) ndarray
@@ -82,7 +90,7 @@ class Supported:
         self._factors = [factors(body)[b] for b in group]
         self._cuts = np.cumsum([0] + [b.size for b in self.blocks])
         self.size = int(self._cuts[-1])
-        self.shift = SHIFT * body.scale
+        self.scale, self.shift = body.scale, SHIFT * body.scale
         null = supports.unresisted(body)
         self.free = np.vstack([b.rigid @ null[list(b.components)] if b.components else np.zeros((b.size, null.shape[1])) for b in self.blocks])
         self.free = self.free[:, np.abs(self.free).max(axis=0, initial=0.0) > 0]
@@ -150,6 +158,34 @@ class Supported:
             y = y - self._through @ sla.cho_solve(self._inner, self._through.T @ x)
         return self.purge(y)
 
+    @cached_property
+    def diagonal(self) -> np.ndarray:
+        """(n,) diagonal of the stiffness of the free body."""
+        return np.concatenate([b.stiffness.diagonal() for b in self.blocks])
+
+    @cached_property
+    def highest(self) -> float:
+        """Highest eigenvalue of the free body, from below and within a factor of ten, rad^2/s^2."""
+        return max(float((b.stiffness.diagonal() / b.mass.diagonal()).max()) for b in self.blocks)
+
+    def stretch(self, u, loads) -> np.ndarray:
+        """Stretch ``L'u`` of the springs, the root of their energy.
+
+        Where the springs are so stiff that the motion of their seat is the rounding of ``u``, it comes from the load instead.
+
+        Parameters
+        ----------
+        u : (n, k) ndarray
+        loads : (n, k) ndarray
+            ``(K + springs + shift M) u``, roughly.
+        """
+        out = self.load.T @ u
+        if self.load.shape[1]:
+            lost = np.abs(out) < ROUNDED * (np.abs(self.load).T @ np.abs(u))
+            if lost.any():
+                out = np.where(lost, sla.cho_solve(self._inner, self._through.T @ loads), out)
+        return out
+
     def rigid_motions(self) -> np.ndarray:
         """All rigid motions of the group, one column per component, resisted or not."""
         return sla.block_diag(*(b.rigid for b in self.blocks))
@@ -183,14 +219,6 @@ class Supported:
         s = reached + sla.cho_solve(inner, held @ a)
         return self.purge(e_f - e_b @ s + rigid @ a)
 
-    def _relieved(self, load, rigid, tolerance: float = 1e-12, most: int = 12):
+    def _relieved(self, load, rigid, tolerance: float = 1e-24):
         """Elastic displacements of the free body under loads balanced by their own inertia."""
-        balanced, relieved = inertia_relief(self._free_inverse, self.mass, rigid)
-        load = balanced(load)
-        u = relieved(load)
-        for _ in range(most):
-            step = relieved(load - self.elastic(u))
-            u = u + step
-            if np.abs(step).max(initial=0.0) <= tolerance * np.abs(u).max(initial=0.0):
-                break
-        return u
+        return elastic_fields(self._free_inverse, self.mass, self.elastic, rigid, load, tolerance)[1]

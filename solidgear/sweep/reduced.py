@@ -23,7 +23,8 @@ import scipy.linalg as sla
 import scipy.sparse as sp
 
 from solidgear.body import Block, Body, Port
-from solidgear.solve.modes import FAMILIES, modes
+from solidgear.solve.modes import modes
+from solidgear.solve.naming import FAMILIES
 from solidgear.solve.statics import SHIFT, Flexibility, factors, flexibility
 
 
@@ -133,7 +134,7 @@ def reduce(body: Body, n: int, level: int = 0) -> Reduced:
 def _reduce_block(body: Body, index: int, count: int, steps: int) -> ReducedBlock:
     block, factor, shift = body.blocks[index], factors(body)[index], SHIFT * body.scale
     r = len(block.components)
-    alone = Body(body.fidelity, (replace(block, mirror=None),), body.ports, body.scale, body.length, body.mesh, memory={"factors": [factor]})
+    alone = Body(body.fidelity, (replace(block, mirror=None),), body.ports, body.scale, body.length, body.mesh, body.geometry, memory={"factors": [factor]})
     found = [(v[0], m.family) for m in modes(alone, (), n=min(count + 1, block.size)).modes if not m.name.startswith("rigid") for v in m.vectors]
     families = [_family((c,)) for c in block.components]
     lower = np.linalg.cholesky(block.rigid.T @ (block.mass @ block.rigid)) if r else np.zeros((0, 0))

@@ -28,6 +28,7 @@ import numpy as np
 import scipy.linalg as sla
 
 from solidgear.body import Supports, component_rows
+from solidgear.solve.naming import ALIKE, OVAL_TOLERANCE, alike
 from solidgear.solve.supported import decoupled, groups
 from solidgear.sweep.reduced import Reduced, ReducedBlock
 
@@ -187,7 +188,7 @@ def ritz_modes(reduced: Reduced, seats: Seats, supports: Supports, n: int, slack
     for k, part in enumerate(parts):
         bound = max(bound, _bound(part, int((which[order] == k).sum()), value[-1], reduced.shift, slack))
     family = [max(parts[k].share, key=lambda name: parts[k].share[name][j]) for k, j in zip(which[order], place[order])]
-    return RitzModes(np.sqrt(value) / (2 * np.pi), _names(value, family, reduced.pair_tolerance), float(bound))
+    return RitzModes(np.sqrt(value) / (2 * np.pi), _names(value, family, _tolerances(reduced, supports)), float(bound))
 
 
 def _twin(reduced, supports, spring, group):
@@ -258,14 +259,21 @@ def _bound(part: _Group, count: int, last: float, shift: float, slack: float) ->
     return float(np.max(np.sqrt(value / lower) - 1, initial=0.0))
 
 
-def _names(value, family, tolerance) -> tuple[str, ...]:
-    """Names as :mod:`solidgear.solve.modes` gives them."""
+def _tolerances(reduced: Reduced, supports: Supports) -> tuple[float, float]:
+    """How near eigenvalues of one pair lie, relative, for bending and for more waves around; as :meth:`solidgear.solve.naming.Names.pairs` has it."""
+    own, bearings = reduced.pair_tolerance, alike(supports)
+    whole = len(reduced.blocks) == 1
+    return 2 * max(own, bearings) if bearings <= ALIKE else -1.0, max(2 * own, OVAL_TOLERANCE) if whole else 2 * own
+
+
+def _names(value, family, tolerances) -> tuple[str, ...]:
+    """Names as :mod:`solidgear.solve.naming` gives them."""
     count: dict[str, int] = {}
     out: list[str] = []
     paired = False
     for k, name in enumerate(family):
-        pairs = name in ("bending", "local") or name.startswith("ovalising")
-        if k and pairs and not paired and family[k - 1] == name and value[k] - value[k - 1] <= 2 * tolerance * value[k - 1]:
+        tolerance = tolerances[0] if name == "bending" else tolerances[1] if name.startswith("ovalising") else -1.0
+        if k and not paired and family[k - 1] == name and value[k] - value[k - 1] <= tolerance * value[k - 1]:
             out.append(out[-1])
             paired = True
             continue

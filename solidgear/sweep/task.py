@@ -101,7 +101,7 @@ class Task:
     def in_full(self, row: dict[str, Any], body: Body) -> dict[str, Any]:
         """A row with its modes solved on the body itself."""
         _, supports = self.variants.supports(row["variant"])
-        found = modes(body, supports, self.n)
+        found = modes(body, supports, self.n, ovalising=False)
         shapes = [(m.frequency_hz, m.name) for m in found.modes if not m.name.startswith("rigid") for _ in range(m.multiplicity)][: self.n]
         # the residual bounds the error of an eigenvalue, twice that of a frequency
         return row | {"how": "full", "error_bound": found.evidence["residual"] / 2} | _modal(np.array([f for f, _ in shapes]), [name for _, name in shapes])

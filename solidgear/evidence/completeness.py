@@ -1,0 +1,65 @@
+"""What a count of modes proves, in a sentence: which families were counted, and where the others begin."""
+
+from __future__ import annotations
+
+BEAMS = ("euler", "timoshenko")
+
+
+def completeness(evidence: dict, fidelity: str) -> str:
+    """Claim about missed modes that the evidence of a :class:`~solidgear.solve.modes.ModeSet` carries.
+
+    Parameters
+    ----------
+    evidence : dict
+        With ``count``: modes must have been asked for with it.
+    fidelity : str
+        A beam has no other families than its own, and says so.
+    """
+    bad = [part["why"] for part in evidence["count"] if not part["checked"]]
+    if bad:
+        return f"Not counted: {bad[0]}."
+    rows = evidence["families"]
+    counted = [row for row in rows if row["counted"]]
+    text = f"No mode missed below {evidence['complete_below_hz']:.6g} Hz (counted by the inertia of a second factor): {_listed(counted)}"
+    if fidelity in BEAMS:
+        return f"{text}; a beam knows no others."
+    left = _left([row for row in rows if not row["counted"]])
+    return f"{text}; {left}." if left else f"{text}."
+
+
+def _listed(rows: list[dict]) -> str:
+    if any(row["n"] is None for row in rows):
+        return "all motions of the mesh"
+    names = [row["family"] for row in rows if row["n"] < 2]
+    waves = sorted(row["n"] for row in rows if row["n"] >= 2)
+    return ", ".join(names + _ranges(waves))
+
+
+def _ranges(numbers: list[int]) -> list[str]:
+    """``n = 2 to 4``, ``n = 7``."""
+    out: list[list[int]] = []
+    for n in numbers:
+        if out and n == out[-1][-1] + 1:
+            out[-1].append(n)
+        else:
+            out.append([n])
+    return [f"n = {run[0]}" + (f" to {run[-1]}" if len(run) > 1 else "") for run in out]
+
+
+def _left(rows: list[dict]) -> str:
+    """Families left alone; those at the end of the row are told as one."""
+    rows = sorted(rows, key=lambda row: row["n"])
+    last = [row for row in rows if row.get("above")]
+    if not last:
+        return ""
+    tail = [last[0]]
+    for row in reversed(rows[: rows.index(last[0])]):
+        if row["n"] == tail[0]["n"] - 1:
+            tail.insert(0, row)
+    parts = [f"n = {row['n']} begins above {_hertz(row['lowest_hz'])}" for row in rows if row not in tail]
+    parts.append(f"n = {tail[0]['n']} and above begin above {_hertz(min(row['lowest_hz'] for row in tail))}")
+    return ", ".join(parts)
+
+
+def _hertz(value: float) -> str:
+    return f"{value:.0f} Hz" if value < 1e3 else f"{value / 1e3:.3g} kHz"

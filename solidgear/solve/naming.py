@@ -1,0 +1,266 @@
+"""What a mode is called: its family by what the shape does around the axis, twins by symmetry, numbers by frequency.
+
+Families are ``axial``, ``breathing`` and ``torsion`` (nothing varies around the axis: n = 0), ``bending`` (n = 1) and ``ovalising n=2`` and so on.
+A body in blocks knows n by the block, whatever its sections do; a 3D mesh is asked by :mod:`solidgear.solve.circumference`.
+
+Two modes are one pair only where symmetry makes them so: the same profile over the meridian, a quarter of a wave further round, with bearings that
+a quarter turn leaves as they are, or with n >= 2, which bearings do not touch.  Twins that the mesh has split beyond its tolerance stay apart and are told.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.sparse.csgraph import connected_components
+
+from solidgear.body import Body, Supports
+from solidgear.frames import rotation
+from solidgear.solve.circumference import of_body
+
+FAMILIES = {"bending": (0, 2, 3, 5), "axial": (1,), "torsion": (4,)}
+#: Bearings that a quarter turn changes by no more than this, relative, split a pair by half of it at most.
+ALIKE = 1e-6
+#: Eigenvalues of twins of two and more waves that a 3D mesh has split by this much are still told as one pair.
+OVAL_TOLERANCE = 1e-2
+
+
+@dataclass
+class Shape:
+    """A shape before it has a name.
+
+    Attributes
+    ----------
+    family : str
+    waves : int
+        Around the axis.
+    motion : (stations, 6) ndarray
+        Section motions.
+    captured : float
+        Share of the modal mass they describe.
+    profile : object
+        What :meth:`Names.overlap` compares.
+    double : bool
+        Whether it stands for its twin as well, as a block of two waves and more does for its cosine and its sine form.
+    """
+
+    family: str
+    waves: int
+    motion: np.ndarray
+    captured: float
+    profile: object
+    double: bool = False
+
+
+class Projection:
+    """Mass-weighted projection of shapes onto section motions along the axis."""
+
+    def __init__(self, body: Body, stations: np.ndarray):
+        size = 6 * len(stations)
+        self.count = len(stations)
+        self.gram = np.zeros((size, size))
+        self.parts = []
+        for block in body.blocks:
+            fields, columns = block.station_fields(stations) if block.components else (np.zeros((block.size, 0)), [])
+            loaded = block.mass @ fields
+            columns = np.asarray(columns, int)
+            gram = fields.T @ loaded
+            self.gram[np.ix_(columns, columns)] += gram
+            self.parts.append((loaded, columns, np.linalg.pinv(gram, rcond=1e-12, hermitian=True)))
+
+    def __call__(self, vectors: dict[int, np.ndarray]) -> np.ndarray:
+        """(stations, 6) motions."""
+        out = np.zeros(6 * self.count)
+        for b, vector in vectors.items():
+            if b < len(self.parts):
+                loaded, columns, inverse = self.parts[b]
+                out[columns] += inverse @ (loaded.T @ vector)
+        return out.reshape(self.count, 6)
+
+    def shares(self, motion: np.ndarray) -> dict[str, float]:
+        """Modal mass described by each family of section motions."""
+        out = {}
+        for family, components in FAMILIES.items():
+            at = np.array([6 * s + c for s in range(self.count) for c in components])
+            part = motion.ravel()[at]
+            out[family] = float(part @ self.gram[np.ix_(at, at)] @ part)
+        return out
+
+
+def alike(supports: Supports) -> float:
+    """Bound on the relative change of any eigenvalue by a quarter turn of the bearings; infinite where it is not small.
+
+    If ``|v' D v| <= eps v' K v`` for the change D of the stiffness K, then no eigenvalue of the supported body moves by more than eps (Rayleigh).
+    """
+    k = supports.stiffness
+    if not supports.ports:
+        return 0.0
+    turn = np.kron(np.eye(len(supports.ports)), rotation(1, np.pi / 2))
+    change = turn @ k @ turn.T - k
+    size = np.sqrt(np.abs(np.diag(k)))
+    on = size > 0
+    scale = np.outer(size[on], size[on])
+    if np.abs(change[~on]).max(initial=0.0) > 1e-12 * np.abs(k).max(initial=0.0):
+        return np.inf
+    w, v = np.linalg.eigh(k[np.ix_(on, on)] / scale)
+    relative = change[np.ix_(on, on)] / scale
+    good = w > 1e-9
+    if np.abs(v[:, ~good].T @ relative).max(initial=0.0) > 1e-12:
+        return np.inf
+    half = v[:, good] / np.sqrt(w[good])
+    return float(np.abs(np.linalg.eigvalsh(half.T @ relative @ half)).max(initial=0.0))
+
+
+class Names:
+    """Families, twins and numbers of the shapes of one body on its bearings.
+
+    Parameters
+    ----------
+    body : Body
+        All blocks that shapes refer to.
+    supports : Supports
+    project : Projection
+    """
+
+    def __init__(self, body: Body, supports: Supports, project: Projection):
+        self.body, self.project = body, project
+        self.promised = alike(supports)
+        self._round = of_body(body)
+
+    def describe(self, vectors: dict[int, np.ndarray]) -> Shape:
+        """Family, waves around, section motions and profile of one shape."""
+        motion = self.project(vectors)
+        shares = self.project.shares(motion)
+        if self._round is not None:
+            energy, profile = self._around(vectors)
+        elif len(self.body.blocks) == 1 and len(self.body.blocks[0].components) == 6:
+            energy, profile = {(1 if name == "bending" else 0, name): share for name, share in shares.items()}, vectors
+        else:
+            energy, profile = self._by_block(vectors), vectors
+        waves, family = max(energy, key=energy.get)
+        if self._round is not None:
+            profile = profile[waves]
+        return Shape(family, waves, motion, sum(shares.values()), profile, self._round is None and waves > 1)
+
+    def _around(self, vectors):
+        fit, displacements = self._round
+        profile, share = fit(displacements(vectors[0]))
+        radial, tangential, axial = share[0]
+        energy = {(0, "torsion"): tangential, (0, "axial" if axial >= radial else "breathing"): axial + radial, (1, "bending"): share[1].sum()}
+        energy |= {(n, f"ovalising n={n}"): share[n].sum() for n in range(2, fit.waves + 1)}
+        return energy, profile
+
+    def _by_block(self, vectors):
+        energy: dict[tuple[int, str], float] = {}
+        for b, v in vectors.items():
+            block = self.body.block(b)
+            family = family_of(block)
+            if family == "axial" and self._radial_share(b, v) > 0.5:
+                family = "breathing"
+            key = (waves_of(block), family)
+            energy[key] = energy.get(key, 0.0) + float(v @ (block.mass @ v))
+        return energy
+
+    def _radial_share(self, b, v) -> float:
+        """Share of the modal mass of a block of n = 0 that moves radially: the mass couples no two directions, so they fall apart by themselves."""
+        block = self.body.block(b)
+        name = f"axial part {b}"
+        if name not in self.body.memory:
+            count, label = connected_components(block.mass, directed=False)
+            moving = np.unique(label[np.abs(block.rigid[:, 0]) > 0])
+            self.body.memory[name] = np.isin(label, moving)
+        radial = np.where(self.body.memory[name], 0.0, v)
+        return float(radial @ (block.mass @ radial)) / float(v @ (block.mass @ v))
+
+    def overlap(self, a: Shape, b: Shape) -> float:
+        """How much one shape, a quarter of a wave further round, is like another: 1 for twins, 0 for modes of other profiles (a MAC)."""
+        if a.family != b.family or a.waves < 1 or (self._round is None and len(self.body.blocks) == 1):
+            return 0.0
+        if self._round is not None:
+            size = np.vdot(a.profile, a.profile).real * np.vdot(b.profile, b.profile).real
+            return float(np.vdot(1j * a.profile, b.profile).real ** 2 / size)
+        return self._turned(a.profile, b.profile) ** 2 / (self._turned(a.profile, None) * self._turned(b.profile, None))
+
+    def _turned(self, a, b) -> float:
+        """Mass product of a shape in blocks that mirror each other, turned into the other plane, with another; with itself, not turned, for None."""
+        out = 0.0
+        for index, block in enumerate(self.body.blocks):
+            if block.mirror is None:
+                continue
+            planes = (block.mirror[0], index)
+            for p, q, sign in ((planes[0], planes[1], 1.0), (planes[1], planes[0], -1.0)):
+                if b is None:
+                    if p in a:
+                        out += float(a[p] @ (block.mass @ a[p]))
+                elif p in a and q in b:
+                    out += sign * float(a[p] @ (block.mass @ b[q]))
+        return out
+
+    def pairs(self, shapes: list[Shape], value: np.ndarray) -> tuple[list[tuple[int, ...]], list[tuple[int, int]]]:
+        """Which shapes belong together.
+
+        Parameters
+        ----------
+        shapes : list of Shape
+            In ascending order.
+        value : (k,) ndarray
+            Eigenvalues.
+
+        Returns
+        -------
+        groups : list of tuple of int
+            Pairs and single modes in ascending order of the first member.
+        torn : list of (int, int)
+            Twins that the mesh has split too far to be one.
+        """
+        own = self.body.mesh.get("pair_tolerance", 1e-7)
+        partner: dict[int, int] = {}
+        torn = []
+        for i, shape in enumerate(shapes):
+            double = shape.waves >= 1 and (shape.waves > 1 or self.promised <= ALIKE)
+            if not double or shape.double or i in partner:
+                continue
+            tolerance = 2 * max(own, self.promised) if shape.waves == 1 else max(2 * own, OVAL_TOLERANCE)
+            others = [j for j in range(i + 1, len(shapes)) if j not in partner and shapes[j].waves == shape.waves and shapes[j].family == shape.family]
+            like = {j: self.overlap(shape, shapes[j]) for j in others}
+            twin = max(like, key=like.get, default=None)
+            near = others and value[others[0]] - value[i] <= tolerance * abs(value[i])
+            if twin is None or like[twin] < 0.5:
+                # Shapes of a cluster mix: then the nearest is as good as any.
+                twin = others[0] if near else None
+            if twin is None:
+                continue
+            if value[twin] - value[i] <= tolerance * abs(value[i]):
+                partner[i] = partner[twin] = twin
+            elif like[twin] >= 0.5:
+                torn.append((i, twin))
+        groups = [(i, partner[i]) if i in partner else (i,) for i in range(len(shapes)) if partner.get(i) != i]
+        return groups, torn
+
+
+def waves_of(block) -> int:
+    """Waves around the axis of the motions of a block."""
+    if block.name.startswith("ovalising_"):
+        return int(block.name.removeprefix("ovalising_"))
+    return 1 if set(block.components) & set(FAMILIES["bending"]) else 0
+
+
+def family_of(block) -> str:
+    """Family of the motions of a block, ``all`` for one that holds every motion."""
+    if len(block.components) == 6:
+        return "all"
+    if block.name.startswith("ovalising_"):
+        return block.name.replace("_", " n=")
+    return next(name for name, own in FAMILIES.items() if set(block.components) <= set(own))
+
+
+def numbered(families: list[str]) -> list[str]:
+    """``bending 1``, ``bending 2``, ``axial 1`` ... in the order given."""
+    count: dict[str, int] = {}
+    out = []
+    for family in families:
+        count[family] = count.get(family, 0) + 1
+        out.append(f"{family} {count[family]}")
+    return out
+
+

@@ -1,0 +1,210 @@
+"""The groups of blocks a supported body falls into, each solved as far as the modes asked for reach, and counted.
+
+Symmetry and bearings decide which blocks belong together.  A body that can build further circumferential families (a harmonic solid) is asked for those
+that may begin below the highest mode wanted: by a closed form that no family undercuts and that grows with n, then by a light mesh.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from solidgear.body import FURTHER, Block, Body, Supports, component_rows
+from solidgear.errors import SolidgearError
+from solidgear.solve.eigen import Raw, Solved, count_below, lowest
+from solidgear.solve.naming import family_of, waves_of
+from solidgear.solve.supported import Supported, groups
+
+# validation/stability/circumferential_families.py: no family of its random shafts began below the closed form over 1.5, nor below a light mesh's over 1.5.
+MARGIN = 1.5
+LIGHT = 1.5
+MOST_WAVES = 100
+# Rounding in a factor moves eigenvalues by about eps times the highest one; nearer to the bound than a hundred times that, signs may turn.
+EPS, DOUBT = float(np.finfo(float).eps), 0.01
+
+
+@dataclass
+class Part:
+    """Blocks that belong together, what was asked of them and found.
+
+    Attributes
+    ----------
+    supported : Supported
+    ask : int
+    solved : Solved or None
+    twins : list of int
+        Lone blocks that repeat it in the other plane.
+    first : int
+        Added to block indices: that of a further circumferential family stands apart from those of the body's own.
+    verdict : dict or None
+        What the count says.
+    """
+
+    supported: Supported
+    ask: int
+    solved: Solved | None = None
+    twins: list[int] = field(default_factory=list)
+    first: int = 0
+    verdict: dict | None = None
+
+    @property
+    def blocks(self) -> list[Block]:
+        """The blocks themselves."""
+        return self.supported.blocks
+
+    @property
+    def copies(self) -> int:
+        """Shapes that every eigenpair stands for."""
+        return 2 if waves_of(self.blocks[0]) > 1 else 1 + len(self.twins)
+
+    def everywhere(self, found: list[Raw]) -> list[Raw]:
+        """Eigenpairs of the group and of its twins."""
+        own = [Raw(r.value, {self.first + b: v for b, v in r.vectors.items()}, r.residual, r.error) for r in found]
+        return own + [Raw(r.value, {twin: next(iter(r.vectors.values()))}, r.residual, r.error) for twin in self.twins for r in found]
+
+    def values(self) -> list[float]:
+        """Elastic eigenvalues with every shape counted."""
+        return [r.value for r in self.solved.elastic for _ in range(self.copies)]
+
+
+@dataclass(frozen=True)
+class Uncounted:
+    """A family that was left alone, and the frequency (Hz) above which it begins; the last one stands for all of more waves."""
+
+    n: int
+    begins_hz: float
+    and_above: bool = False
+
+
+def solved_parts(body: Body, supports: Supports, spring: np.ndarray, n: int, method: str | None) -> list[Part]:
+    """Eigenpairs of all groups of a body's own blocks, each searched only as far as the ``n`` lowest of all reach."""
+    parts: list[Part] = []
+    for group in groups(body, supports, spring):
+        original = next((p for p in parts if _is_twin(body, supports, spring, group, p.supported.group)), None)
+        if original is not None:
+            original.twins.append(group[0])
+        else:
+            parts.append(Part(Supported(body, supports, spring, group), n))
+    if len(parts) > 1:
+        # Bending pairs make most of a spectrum; whoever is asked for too little is asked again.
+        for part in parts:
+            part.ask = n // 3 + 1 if part.copies > 1 else n // 4 + 1
+    waiting = parts
+    while waiting:
+        for part in waiting:
+            part.solved = lowest(part.supported, part.ask, method)
+        values = sorted(v for part in parts for v in part.values())
+        reach = values[n - 1] if len(values) >= n else np.inf
+        waiting = [p for p in parts if p.ask < n and p.solved.elastic and p.solved.elastic[-1].value <= 1.01 * reach]
+        for part in waiting:
+            part.ask = min(2 * part.ask, n)
+    return parts
+
+
+def reach_of(parts: list[Part], n: int, highest: float = np.inf) -> float:
+    """Highest eigenvalue that is used: that of the last of ``n`` shapes, or the highest allowed."""
+    values = sorted(v for part in parts for v in part.values())
+    return min(values[min(n, len(values)) - 1], highest) if values else 0.0
+
+
+def further_parts(body: Body, parts: list[Part], n: int, highest: float, method: str | None) -> tuple[list[Part], list[Uncounted]]:
+    """Circumferential families of two waves and more that begin among the ``n`` lowest shapes.
+
+    Parameters
+    ----------
+    body : Body
+    parts : list of Part
+        The body's own, solved.
+    n : int
+    highest : float
+        Largest eigenvalue wanted, rad^2/s^2.
+    method : str, optional
+
+    Returns
+    -------
+    found : list of Part
+    left : list of Uncounted
+        The families that begin above, in ascending order of n.
+    """
+    have = {waves_of(b) for p in parts for b in p.blocks}
+    limit = reach_of(parts, n, highest)
+    light: dict[int, float] = {}
+    waves = 2
+    while waves < MOST_WAVES and body.further.bound(waves) <= MARGIN * _hz(limit):
+        if waves not in have:
+            light[waves] = body.further.light(waves)
+        waves += 1
+    left = [Uncounted(waves, body.further.bound(waves) / MARGIN, True)]
+    found: list[Part] = []
+    for waves in sorted(light, key=light.get):
+        limit = reach_of(parts + found, n, highest)
+        if light[waves] > 1.01 * LIGHT * _hz(limit):
+            left.append(Uncounted(waves, light[waves] / LIGHT))
+            continue
+        alone = body.family(waves)
+        part = Part(Supported(alone, Supports((), np.zeros((0, 0))), np.zeros((0, 0)), [0]), max(2, n // 8), first=FURTHER + waves)
+        while True:
+            part.solved = lowest(part.supported, part.ask, method)
+            # Two shapes for every value: half of n is all that can be told.
+            if part.solved.elastic[-1].value > 1.01 * limit or part.ask > n // 2 + 1:
+                break
+            part.ask = min(2 * part.ask, n // 2 + 2)
+        found.append(part)
+    return found, sorted(left, key=lambda u: u.n)
+
+
+def _hz(value: float) -> float:
+    return float(np.sqrt(max(value, 0.0)) / (2 * np.pi))
+
+
+def complete(part: Part, reach: float, method: str | None) -> None:
+    """Count the modes of a part, and search again with more vectors where one was missed.
+
+    Raises
+    ------
+    SolidgearError
+        If modes are still missing.
+    """
+    supported, n = part.supported, part.ask
+    seen = count_below(supported, part.solved, reach)
+    if seen is not None and seen.counted != seen.found:
+        missed = seen.counted - seen.found
+        part.solved = lowest(supported, n + 4 + 2 * abs(missed), "arpack" if part.solved.method == "lanczos" else "lanczos")
+        seen = count_below(supported, part.solved, reach)
+    if seen is not None and seen.counted != seen.found:
+        stiffest = supported.highest / seen.below
+        if EPS * stiffest > DOUBT * seen.distance:
+            part.verdict = {"checked": False, "why": f"the stiffest cell lies {stiffest:.0e} times above the modes, so that rounding turns signs of the factor"}
+            return
+        raise SolidgearError(
+            f"modes: {seen.found} modes were found below {_hz(seen.below):.6g} Hz but the factor counts {seen.counted}; ask for more modes (n = {n})"
+        )
+    if seen is None:
+        part.verdict = {"checked": False, "why": f"no inertia from {supported.backend}"}
+    else:
+        part.verdict = {"checked": True, "below_hz": _hz(seen.below), "modes": seen.counted, "backend": seen.backend}
+
+
+def families(parts: list[Part]) -> list[tuple[str, int | None, bool]]:
+    """(family, waves around or None for all, whether counted) of everything that was solved, lowest number of waves last among single ones."""
+    rows: dict[str, tuple[int | None, bool]] = {}
+    for part in parts:
+        for block in part.blocks:
+            name = family_of(block)
+            counted = bool(part.verdict and part.verdict["checked"]) and rows.get(name, (0, True))[1]
+            rows[name] = (None if name == "all" else waves_of(block), counted)
+    return [(name, *row) for name, row in rows.items()]
+
+
+def _is_twin(body, supports, spring, group: list[int], other: list[int]) -> bool:
+    """Whether a lone block mirrors another one, springs included."""
+    block = body.blocks[group[0]]
+    if len(group) != 1 or block.mirror is None or other != [block.mirror[0]]:
+        return False
+    index, signs = block.mirror
+    m = len(supports.ports)
+    mine, theirs = (component_rows(range(m), b.components) for b in (block, body.blocks[index]))
+    sign = np.tile(signs, m)
+    a, b = spring[np.ix_(mine, mine)], spring[np.ix_(theirs, theirs)] * np.outer(sign, sign)
+    return bool(np.abs(a - b).max(initial=0.0) <= 1e-14 * np.abs(b).max(initial=0.0))

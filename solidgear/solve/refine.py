@@ -1,0 +1,216 @@
+"""Ritz values on the stiffness itself, how wrong they can be, and the steps that mend them.
+
+An eigensolver that works with a computed inverse of ``A = K + L L' + sigma M`` finds the eigenpairs of what rounding has made of it.  Here
+nothing of a value comes from that inverse: energies are taken from K and from the springs L, with rigid motions split off first, so that no
+large stiffness has to cancel.  The residual ``r = K u + L L'u - lambda M u`` is measured where it bounds the error: with
+``rho = |A^-1 r|_A / |u|_A`` an eigenvalue of ``A, M`` lies within ``rho`` of ``mu = lambda + sigma``, relative, and within ``rho^2 / gap`` if no
+other comes nearer than ``gap`` (Temple; Kato 1949; Parlett 1998, section 11.7, for clusters).  Where that is not small enough, ``A^-1 r`` is the
+correction itself: it joins the basis and the best of both is taken (Knyazev 2001).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import scipy.linalg as sla
+
+#: Modes below this part of the lowest elastic eigenvalue are taken for nearly rigid ones on soft springs.
+SOFT = 0.03
+#: Relative error of an eigenvalue that is worth a further solve, and how many are tried.
+ENOUGH, STEPS = 1e-9, 8
+EPS = float(np.finfo(float).eps)
+
+
+@dataclass(frozen=True)
+class Refined:
+    """Eigenpairs in ascending order.
+
+    Attributes
+    ----------
+    value : (k,) ndarray
+        rad^2/s^2.
+    vectors : (n, k) ndarray
+        Mass-orthonormal.
+    residual : (k,) ndarray
+        ``|A^-1 r|_A / |u|_A``, brought from the shifted to the true eigenvalue.
+    error : (k,) ndarray
+        Bound on the relative error of each value: what the residual allows, and the rounding of its energy.
+    noise : (k,) ndarray
+        The second part of it.
+    steps : int
+        Corrections that were made.
+    """
+
+    value: np.ndarray
+    vectors: np.ndarray
+    residual: np.ndarray
+    error: np.ndarray
+    noise: np.ndarray
+    steps: int
+
+    def worst(self, needed: int) -> float:
+        """Largest error of the lowest pairs, rounding left out: no step would mend that."""
+        return float((self.error - self.noise)[:needed].max(initial=0.0))
+
+
+@dataclass
+class _Pairs:
+    """Ritz pairs with their residual forces, and the rounding of each energy."""
+
+    value: np.ndarray
+    u: np.ndarray
+    force: np.ndarray
+    rounding: np.ndarray
+
+
+def refine(supported, vectors: np.ndarray, value: np.ndarray, needed: int) -> Refined:
+    """Ritz pairs of a supported body in a space that is close to invariant, corrected until they are right.
+
+    Parameters
+    ----------
+    supported : Supported
+    vectors : (n, k) ndarray
+        Mass-orthonormal shapes.
+    value : (k,) ndarray
+        Their eigenvalues, roughly, ascending, rad^2/s^2.
+    needed : int
+        How many of the lowest must be right; the others are there to see gaps.
+    """
+    rigid = supported.rigid_motions()
+    rigid = _unit(rigid / np.sqrt(np.einsum("ij,ij->j", rigid, supported.mass(rigid))), supported.mass)
+    count = int(np.searchsorted(value, SOFT * supported.scale)) if rigid.shape[1] else 0
+    best, split = None, 0
+    correction = forces = np.zeros((len(vectors), 0))
+    for step in range(STEPS + 1):
+        soft = _soft_modes(supported, vectors[:, :count], value[:count], correction[:, :split], forces[:, :split], rigid)
+        hard = _modes(supported, vectors[:, count:], value[count:], correction[:, split:], forces[:, split:], soft.u, rigid)
+        value, vectors, forces = np.append(soft.value, hard.value), np.hstack([soft.u, hard.u]), np.hstack([soft.force, hard.force])
+        if best is not None and value.min() <= 0.5 * best.value.min():
+            return best  # a correction that is nothing but rounding
+        correction = supported.inverse(forces)
+        found = _judged(supported, value, vectors, forces, correction, np.append(soft.rounding, hard.rounding), step)
+        if best is not None and found.worst(needed) > 0.5 * best.worst(needed):
+            return min(found, best, key=lambda x: x.worst(needed))
+        best = found
+        wrong = found.error - found.noise >= ENOUGH
+        if not wrong[:needed].any():
+            break
+        split = int(wrong[:count].sum())
+        correction, forces = correction[:, wrong], forces[:, wrong]
+    return best
+
+
+def _unit(rigid, mass):
+    """Mass-orthonormal columns from rigid motions of about unit size; those that are the rounding of others are left out."""
+    if not rigid.shape[1]:
+        return rigid
+    w, v = np.linalg.eigh(rigid.T @ mass(rigid))
+    keep = w > 1e-10
+    return rigid @ (v[:, keep] / np.sqrt(w[keep]))
+
+
+def _modes(supported, u, value, correction, forces, below, rigid) -> _Pairs:
+    """Rayleigh and Ritz in the span of shapes and their corrections, of which the modes below are taken out."""
+    mass = supported.mass
+    count = u.shape[1]
+    heavy = mass(u)
+    basis, loads = u, heavy * (value + supported.shift)
+    if correction.shape[1]:
+        others = np.hstack([below, u])
+        fresh = correction - others @ (mass(others).T @ correction)
+        size = np.sqrt(np.einsum("ij,ij->j", fresh, mass(fresh)))
+        keep = size > 1e-12  # of a unit shape: what is left below is rounding
+        basis, loads = np.hstack([u, fresh[:, keep] / size[keep]]), np.hstack([loads, forces[:, keep] / size[keep]])
+        heavy = mass(basis)
+    gram = basis.T @ heavy
+    w, v = np.linalg.eigh((gram + gram.T) / 2)
+    good = w > 1e-10
+    turn = v[:, good] / np.sqrt(w[good])
+    rest = basis - rigid @ (rigid.T @ heavy)
+    rest = rest - rigid @ (mass(rigid).T @ rest) if rigid.shape[1] else rest
+    pull = supported.elastic(rest)
+    stretch = supported.stretch(basis, loads)
+    energy = turn.T @ (rest.T @ pull + stretch.T @ stretch) @ turn
+    w, v = np.linalg.eigh((energy + energy.T) / 2)
+    turn = turn @ v[:, :count]
+    value, u, rest, stretch = w[:count], basis @ turn, rest @ turn, stretch @ turn
+    force = pull @ turn + supported.load @ stretch - (heavy @ turn) * value
+    return _Pairs(value, u, force, _rounding(supported, u, rest, stretch))
+
+
+def _soft_modes(supported, u, value, correction, forces, rigid) -> _Pairs:
+    """Ritz pairs of nearly rigid modes in the span of the rigid motions and of what is elastic in them.
+
+    Splitting the rigid part off exactly leaves no large stiffness to cancel: ``K`` sees the elastic remainder only.
+    """
+    count = u.shape[1]
+    if not count:
+        return _Pairs(np.zeros(0), u, u, np.zeros(0))
+    mass = supported.mass
+    loads = np.hstack([mass(u) * (value + supported.shift), forces])
+    held = _unit(supported.purge(rigid), mass) if supported.free.shape[1] else rigid
+    rest = np.hstack([u, correction])
+    for _ in range(2):
+        rest = rest - rigid @ (mass(rigid).T @ rest)
+    size = np.sqrt(np.einsum("ij,ij->j", rest, mass(rest)))
+    keep = size > 1e-9 * np.append(np.ones(count), np.full(correction.shape[1], 1e-3))  # below that a remainder of a shape is rounding
+    rest = rest[:, keep] / size[keep]
+    w, v = np.linalg.eigh(rest.T @ mass(rest))
+    good = w > 1e-12
+    rest = rest @ (v[:, good] / np.sqrt(w[good]))
+    pull = supported.elastic(rest)
+    energy = rest.T @ pull
+    w, v = np.linalg.eigh((energy + energy.T) / 2)
+    r = held.shape[1]
+    elastic = np.zeros((len(w), r + len(w)))
+    elastic[:, r:] = (v * np.sqrt(np.maximum(w, 0.0))).T
+    basis = np.hstack([held, rest])
+    # Singular values of a root keep twice the digits of a soft direction that eigenvalues of its Gram matrix would.
+    root = np.vstack([supported.load.T @ basis, elastic])
+    s, vt = np.linalg.svd(root)[1:]
+    value = np.concatenate([s**2, np.zeros(basis.shape[1] - len(s))])[::-1][:count]
+    turn = vt[::-1][:count].T
+    u = basis @ turn
+    stretch = supported.load.T @ u
+    force = pull @ turn[r:] + supported.load @ stretch - mass(u) * value
+    return _Pairs(value, u, force, _rounding(supported, u, rest @ turn[r:], stretch))
+
+
+def _rounding(supported, u, rest, stretch):
+    """How far the rounding of products and of the matrix itself may move each energy, rad^2/s^2 (measured: see tests/test_refine.py)."""
+    own = np.linalg.norm(supported.diagonal[:, None] * rest**2, axis=0)
+    springs = np.linalg.norm(stretch * (np.abs(supported.load).T @ np.abs(u)), axis=0)
+    return EPS * (4 * own + 2 * springs)
+
+
+def _judged(supported, value, u, force, back, rounding, step) -> Refined:
+    """Error of each pair from the residuals of all, in the norm of the inverse."""
+    mu = value + supported.shift
+    rho = np.sqrt(np.maximum(np.einsum("ij,ij->j", force, back), 0.0) / mu)
+    back_to = np.divide(mu, value, out=np.full_like(mu, np.inf), where=value > 0)
+    noise = np.divide(rounding, value, out=np.full_like(mu, np.inf), where=value > 0)
+    error = np.minimum(rho, _quadratic(mu, rho)) * back_to
+    return Refined(value, u, rho * back_to, error + noise, noise, step)
+
+
+def _quadratic(mu, rho):
+    """``sum rho^2 / gap`` over the cluster around each value for which that is least; infinite where it would need to know what lies above."""
+    out = np.full(len(mu), np.inf)
+    for i in range(len(mu)):
+        a = b = i
+        total = rho[i] ** 2
+        while b + 1 < len(mu):
+            left, right = (mu[a] - mu[a - 1] if a else np.inf), mu[b + 1] - mu[b]
+            gap = min(left, right, mu[i]) / mu[i]
+            # Neighbours are known to within their own residual.
+            gap -= rho[b + 1] + (rho[a - 1] if a else 0.0)
+            if gap > 0:
+                out[i] = min(out[i], total / gap)
+            if left <= right:
+                a -= 1
+                total += rho[a] ** 2
+            else:
+                b += 1
+                total += rho[b] ** 2
+    return out
