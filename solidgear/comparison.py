@@ -144,8 +144,16 @@ def _run(scene, models, options, found: _Found, progress: Progress) -> None:
 
 
 def _circumference(scene, model: str, options: dict, found: _Found) -> dict:
-    """Options of a 3D solid with as many cells around as the modes of the harmonic one need."""
-    return options
+    """Options of a 3D solid with as many cells around as the modes need that the harmonic solid found in the range asked for."""
+    harmonic = found.rungs.get("harmonic")
+    if model != "solid" or harmonic is None or "around" in options:
+        return options
+    waves = max((r["n"] for r in harmonic.modes.evidence.get("families", []) if (r["n"] or 0) > 1 and r["modes_below"]), default=1)
+    if waves < 2:
+        return options
+    from solidgear.guards.models import cells_around
+
+    return {**options, "around": cells_around(scene, waves)}
 
 
 def check_models(models: tuple[str, ...]) -> None:

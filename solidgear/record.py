@@ -7,6 +7,7 @@ from dataclasses import asdict
 import numpy as np
 
 from solidgear.environment import environment
+from solidgear.evidence.completeness import completeness
 from solidgear.evidence.correlate import correlate
 from solidgear.evidence.quantities import measure
 from solidgear.evidence.study import SCENE, Rung, Tied
@@ -145,6 +146,7 @@ def _evidence(rung: Rung) -> dict:
         "eigensolver": found["method"],
         "mode_count": found.get("count", []),
         "families": found.get("families", []),
+        "complete": completeness(found, rung.model) if "count" in found else "",
         "rigid_modes": found["rigid_modes"],
         "coupling_bound": found["coupling_bound"],
         "shift_rad2": float(found["shift_rad2"]),

@@ -27,6 +27,8 @@ from solidgear.evidence.quantities import COUPLINGS, QUANTITIES, change
 LAYERED = {"harmonic": 0.33, "solid": 1.3}
 #: the same where seats are rigid: their ends are singular like a crack, and a layer of ratio q leaves the share q
 RIGID = {"harmonic": 0.42, "solid": 1.8}
+#: the same after two levels only, without and with rigid seats: the step off the coarsest mesh tells less
+FIRST = {"harmonic": (0.15, 0.42), "solid": (2.0, 4.5)}
 #: safety on the observed reduction of two regular steps, where that is the worse news
 OBSERVED, SLOWEST = 1.5, 0.7
 #: the last change counts for at least this share of the one before it, and a coupling's of its diagonal entries'
@@ -101,6 +103,8 @@ def layered_bands(levels: Sequence[Values], solver: Values, model: str, *, rigid
     """
     around = around or {}
     usual, out = (RIGID if rigid else LAYERED)[model], {}
+    if len(levels) == 2:
+        usual = FIRST[model][rigid]
     finest, before = levels[-1], levels[-2]
     for name in QUANTITIES:
         if any(name not in level for level in levels[-2:]):

@@ -45,7 +45,9 @@ FREE = ("element", "around", "ovalising", "attachments")
 #: cells around of hexahedra that bend as a whole: eight are good to some 6e-4, and the error falls with the fourth power
 AROUND, ORDER_AROUND = 8, 4
 #: a solid that judges the others is wanted this much better than the tolerance, one that is judged this much
-JUDGE, JUDGED = 20.0, 2.0
+JUDGE, JUDGED = 20.0, 1.0
+#: unknowns of the second level above which a third one, some three times as large, is solved only if the band needs it
+HEAVY = 15_000
 
 
 @dataclass(frozen=True)

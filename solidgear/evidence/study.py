@@ -15,7 +15,7 @@ from typing import Any
 from solidgear.body import Body, Supports, as_supports
 from solidgear.errors import SolidgearError
 from solidgear.evidence.bands import Band, layered_bands, refined_bands
-from solidgear.evidence.levels import JUDGE, Sequence, sequence
+from solidgear.evidence.levels import HEAVY, JUDGE, Sequence, sequence
 from solidgear.evidence.levels import JUDGED as JUDGED_SHARE
 from solidgear.evidence.quantities import JUDGED, QUANTITIES, change, measure
 from solidgear.fidelity import build
@@ -145,7 +145,7 @@ def study(
     meter = Meter()
     if model not in SOLIDS:
         progress(f"{model}: build, statics, modes")
-        body, ties = _solved(scene, model, options, meter, count=evidence)
+        body, ties = _solved(scene, model, options, meter, lambda _: evidence)
         rung = Rung(model, body, ties, meter, options=options)
         keep(rung)
     else:
@@ -168,10 +168,9 @@ def _climbed(scene, model, options, meter, target, most, evidence, progress, kee
     for k, level in enumerate(levels):
         progress(f"{model}: mesh {k + 1}")
         before = dict(meter.seconds)
-        # What a user gets is the last level, and where the program chooses that may be any from the third on.
-        count = evidence and (k == len(levels) - 1 if plan.fixed else k >= 2)
+        final = k == len(levels) - 1 if plan.fixed else k >= 2
         try:
-            body, ties = _solved(scene, model, level, meter, count)
+            body, ties = _solved(scene, model, level, meter, lambda size: evidence and (final or not plan.fixed and k == 1 and size > HEAVY))
         except (SolidgearError, MemoryError) as error:
             why = str(error) or "not enough memory"
             if plan.fixed and k < len(levels) - 1:
@@ -193,7 +192,7 @@ def _climbed(scene, model, options, meter, target, most, evidence, progress, kee
         rung.bands = _bands(scene, model, plan, solved, facts, around)
         keep(rung)
         worst = rung.worst_band()
-        if not plan.fixed and k >= 2 and worst is not None and worst <= target:
+        if not plan.fixed and (k >= 2 or k == 1 and body.size > HEAVY) and worst is not None and worst <= target:
             break
     assert rung is not None
     return rung
@@ -222,7 +221,7 @@ def _around(scene, model: str, plan: Sequence, ties: dict[str, Tied], meter: Met
     """Relative error that the cells around leave, per way of tying and quantity."""
     spare = Meter()
     with meter.stage("band"):
-        _, turned = _solved(scene, model, plan.turned or {}, spare, count=False)
+        _, turned = _solved(scene, model, plan.turned or {}, spare, lambda _: False)
     out = {}
     for tie in set(ties) & set(turned):
         finer = turned[tie].quantities
@@ -251,8 +250,8 @@ def _bands(scene, model: str, plan: Sequence, solved: list[dict[str, Tied]], fac
     return out
 
 
-def _solved(scene, model: str, options: Mapping[str, Any], meter: Meter, count: bool) -> tuple[Body, dict[str, Tied]]:
-    """A body and what it answers, tied as in the scene and by section means."""
+def _solved(scene, model: str, options: Mapping[str, Any], meter: Meter, counted: Callable[[int], bool]) -> tuple[Body, dict[str, Tied]]:
+    """A body and what it answers, tied as in the scene and by section means; modes are counted if the number of unknowns says so."""
     given = {s.attachment for s in scene.stations}
     # Means over seats and over sections are only rows on the same matrices; a rigid seat is another matrix.
     together = "rigid" not in given
@@ -260,7 +259,7 @@ def _solved(scene, model: str, options: Mapping[str, Any], meter: Meter, count: 
     extra = {"attachments": kinds} if together else {}
     with meter.stage("build"):
         body = build(scene, model, **{**options, **extra})
-    supports = as_supports(scene)
+    supports, count = as_supports(scene), counted(body.size)
     if together:
         supports = replace(supports, attachments=tuple(b.attachment for b in scene.bearings))
     ties = {SCENE: _tied(scene, body, supports, scene.port.attachment if together else None, meter, count)}
@@ -281,7 +280,8 @@ def _tied(scene, body: Body, supports: Supports, attachment: str | None, meter: 
     with meter.stage("statics"):
         condensed = condense(body, supports, scene.port.name, attachment)
     with meter.stage("modes"):
-        found = modes(body, supports, max(ask.modes, ENOUGH), max_frequency=ask.max_frequency, count=count)
+        # Families of two waves and more are told for the mesh that is told; bearings do not move them, nor do bands rest on them.
+        found = modes(body, supports, max(ask.modes, ENOUGH), max_frequency=ask.max_frequency, count=count, ovalising=count)
     # Evidence, not part of the answer: kept apart from what the modes cost.
     meter.move("modes", "count", found.evidence.get("count_seconds", 0.0))
     return Tied(condensed, found, measure(condensed, found))

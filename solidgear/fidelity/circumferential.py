@@ -17,7 +17,7 @@ from skfem import MeshQuad1
 from solidgear.body import Block
 from solidgear.fidelity.assembly import unknowns
 from solidgear.fidelity.scale import overhangs
-from solidgear.meshing.layout import layout
+from solidgear.meshing.layout import Grading, layout
 from solidgear.meshing.meridian import meridian
 
 
@@ -60,7 +60,7 @@ class Families:
         if self._work is None:
             s = self._scene
             thick = max(max(p.outer0, p.outer1) for p in s.segments)
-            flat = meridian(s, layout(s, size=max(s.length / 12, thick / 3), layers=0, edge_layers=0, ratio=0.2))
+            flat = meridian(s, layout(s, Grading(layers=0, edge_layers=0, size=max(s.length / 12, thick / 3))))
             mesh, element = MeshQuad1(flat.points, flat.cells, sort_t=False), _element(2)
             self._work = _Work(s, mesh, element, unknowns(mesh, element), flat, 2)
         return self._work

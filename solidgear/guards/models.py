@@ -128,7 +128,6 @@ def point_beyond_surface(probe: Probe) -> Notices:
 
 NEAR = 1.2
 SUSPECT = 1.5  # worth a solution: thin_hollow_shaft.py finds thick rings up to 13 % below the closed form
-COARSE = 24  # cells around: thin_hollow_shaft.py, n = 2 at wall 0.1 is 25 % too high with 12, 2.3 % with 24, 0.9 % with 32
 
 
 def ovalising(probe: Probe) -> Notices:
@@ -143,19 +142,34 @@ def ovalising(probe: Probe) -> Notices:
     low = min(inside.values())
     what = " and ".join(f"n = {n} at {f:.4g} Hz" for n, f in inside.items())
     where = f"{NEAR:g} times first bending, {first:.4g} Hz" if limit == NEAR * first else f"the {limit:g} Hz asked for"
-    blocks = {b.name for b in probe.body.blocks}
-    without = BEAMS if {"ovalising_2", "ovalising_3"} <= blocks else (*BEAMS, "harmonic")
     yield Notice(
         "avoid" if low < first else "caution",
-        without,
-        f"sections lose their shape below {where}: {what}, and the model leaves that out; use the harmonic solid with --set ovalising=2,3",
+        BEAMS,
+        f"sections lose their shape below {where}: {what}, which a beam cannot do; use the harmonic solid, which solves them",
     )
-    if probe.body.fidelity != "solid" or probe.cells_around < COARSE:
+    cells = probe.cells_around if probe.body.fidelity == "solid" else DEFAULT_AROUND
+    needed = max(cells_around(scene, n) for n in inside)
+    if cells < needed:
         yield Notice(
             "caution",
             ("solid",),
-            f"sections lose their shape below {where}: {what}; 12 cells around put n = 2 of a thin wall 25 % too high, {COARSE} 2.3 %, 32 0.9 %; use --set around=32",
+            f"sections lose their shape below {where}: {what}; with {cells} cells around hexahedra put such modes of a thin wall up to 25 % too high, with 24 2.3 %, "
+            f"with 32 0.9 %; use --set around={needed}",
         )
+
+
+#: cells around of the 3D solid unless told otherwise
+DEFAULT_AROUND = 12
+#: cells to a wave of a wall that is thin (below a quarter of the radius) or not: thin_hollow_shaft.py, n = 2 of a wall of 0.1 is 2.3 % too high with
+#: twelve; a thick disc needs half as many
+THIN, CELLS_THIN, CELLS_THICK, MOST_AROUND = 0.25, 12, 6, 48
+
+
+def cells_around(scene, waves: int) -> int:
+    """Cells around that hexahedra need for a shape of so many waves."""
+    wall = min(min(s.outer0 - s.inner0, s.outer1 - s.inner1) / max(s.outer0, s.outer1) for s in scene.segments)
+    each = CELLS_THIN if wall < THIN else CELLS_THICK
+    return min(MOST_AROUND, max(8, 4 * -(-each * waves // 4)))
 
 
 def _two_waves(probe: Probe) -> float:

@@ -118,7 +118,11 @@ class Probe:
 
     @cached_property
     def ovalising(self) -> dict[int, float]:
-        """Lowest frequency (Hz) of two and of three waves around; bearings do not enter."""
+        """Lowest frequency (Hz) of families of two waves around and more, as far as they are solved; bearings do not enter."""
+        harmonic = self.rungs.get("harmonic")
+        solved = [r for r in harmonic.modes.evidence.get("families", []) if (r["n"] or 0) > 1 and r["counted"]] if harmonic else []
+        if solved:
+            return {r["n"]: r["lowest_hz"] for r in solved if r["lowest_hz"]}
         blocks = build(self.scene, "harmonic", **HARMONIC[1], ovalising=(2, 3)).blocks[-2:]
         lowest = [spla.eigsh(b.stiffness.tocsc(), 1, b.mass.tocsc(), sigma=0.0, v0=np.ones(b.size), return_eigenvectors=False)[0] for b in blocks]
         return {n: float(np.sqrt(w2) / (2 * np.pi)) for n, w2 in zip((2, 3), lowest)}

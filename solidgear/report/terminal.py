@@ -235,22 +235,13 @@ def closing_lines(results: Mapping) -> list[str]:
     results = plain(results)
     lines = [f"caution: {w}" for w in results.get("warnings") or ()]
     trusted = (results.get("verdict") or {}).get("trust")
-    claim = families_claim(((results.get("models") or {}).get(trusted) or {}).get("evidence") or {})
-    if claim:
-        lines.append(f"Modes of the {model_name(trusted)}: {claim}")
+    evidence = ((results.get("models") or {}).get(trusted) or {}).get("evidence") or {}
+    if evidence.get("complete"):
+        lines.append(f"{model_name(trusted)[0].upper()}{model_name(trusted)[1:]}: {evidence['complete'][0].lower()}{evidence['complete'][1:]}")
     if is_number(results.get("seconds_total")):
         peak = f", peak memory {results['peak_mb']:.0f} MB" if is_number(results.get("peak_mb")) else ""
         lines.append(f"Solved in {seconds(results['seconds_total'])} s{peak}.")
     return lines
-
-
-def families_claim(evidence: Mapping) -> str:
-    """Below which frequency no mode was missed, and in which families; empty where nothing was counted."""
-    parts = [p for p in evidence.get("mode_count") or evidence.get("count") or () if p.get("checked")]
-    if not parts:
-        return ""
-    below = min(p["below_hz"] for p in parts)
-    return f"no mode missed below {below:.6g} Hz (counted by the inertia of a second factor)."
 
 
 def verdict_text(results: Mapping) -> str:
