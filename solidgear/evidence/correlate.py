@@ -1,12 +1,24 @@
-"""Mode correlation between fidelities: MAC on axis stations, subspace MAC for degenerate pairs."""
+"""Mode correlation between fidelities: MAC on axis stations, subspace MAC for degenerate pairs and clusters, and which mode is which."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import combinations
 
 import numpy as np
+from scipy.optimize import linear_sum_assignment
+from scipy.sparse.csgraph import connected_components
 
 from solidgear.solve.modes import Mode, ModeSet
+
+#: A partner is certain from this similarity on, if the next one is less alike by this much.
+SURE, LEAD = 0.75, 0.25
+#: Less alike than this is no partner at all; from this on, two modes have something of each other.
+FOREIGN, SHARED = 0.3, 0.05
+#: Relative width of a cluster in which shapes may mix without harm, and how alike the spaces of two clusters must be.
+CLOSE, SAME_SPACE = 0.05, 0.9
+#: Families without section motions are paired by rank; the partner is certain if frequencies are this near, relative.
+RANKED = 0.15
 
 
 @dataclass(frozen=True)
@@ -39,6 +51,174 @@ class Correlation:
     columns: tuple[str, ...]
     values: np.ndarray
     partners: tuple[Partner, ...]
+
+
+@dataclass(frozen=True)
+class Pairing:
+    """A reference mode and the mode of a model that is the same one.
+
+    Attributes
+    ----------
+    reference : Mode
+    mode : Mode or None
+        None where no mode of the model has this shape.
+    mac : float
+        Of the two shapes; 0 for families that are paired by rank, and without a partner.
+    certain : bool
+        Whether no other mode comes into question.
+    others : tuple of Mode
+        The rest of the partner, where the model has split a pair of the reference.
+    """
+
+    reference: Mode
+    mode: Mode | None
+    mac: float
+    certain: bool
+    others: tuple[Mode, ...] = ()
+
+    @property
+    def frequency_hz(self) -> float:
+        """Of the partner; the root mean square over its members where a pair is split, NaN without one."""
+        members = [m for m in (self.mode, *self.others) if m is not None]
+        if not members:
+            return float("nan")
+        return float(np.sqrt(np.average([m.frequency_hz**2 for m in members], weights=[m.multiplicity for m in members])))
+
+    @property
+    def relative(self) -> float:
+        """Frequency of the partner over that of the reference, less one."""
+        return self.frequency_hz / self.reference.frequency_hz - 1
+
+
+def pair_modes(model: ModeSet, reference: ModeSet) -> tuple[Pairing, ...]:
+    """Which mode of a model is which of the reference, by shape and not by name.
+
+    Every elastic mode of the reference gets the mode whose section motions are most like its own, all at once (an assignment), shapes of pairs
+    counted one by one, so that a pair may meet a split one.  Modes that come near each other mix their shapes: where the space of such a cluster is the same
+    in both models, it is paired by frequency.  Ovalising and breathing modes, which sections do not see, are paired by waves around and rank.
+
+    Parameters
+    ----------
+    model, reference : ModeSet
+        On the same stations.
+
+    Returns
+    -------
+    tuple of Pairing
+        One for every elastic mode of the reference, in its order.
+
+    Raises
+    ------
+    ValueError
+        If the sets were made on different stations.
+    """
+    if not np.allclose(model.stations, reference.stations):
+        raise ValueError("the two mode sets were projected on different stations")
+    theirs = [m for m in reference.modes if m.frequency_hz > 0]
+    mine = [m for m in (*model.modes, *model.beyond) if m.frequency_hz > 0]
+    out: dict[int, Pairing] = {}
+    for key in {_ranked(m) for m in theirs} - {None}:
+        at = [j for j, m in enumerate(theirs) if _ranked(m) == key]
+        found = _by_rank([m for m in mine if _ranked(m) == key], [theirs[j] for j in at])
+        out |= dict(zip(at, found))
+    at = [j for j, m in enumerate(theirs) if _ranked(m) is None]
+    out |= dict(zip(at, _by_shape([m for m in mine if _ranked(m) is None], [theirs[j] for j in at], reference.gram)))
+    return tuple(out[j] for j in range(len(theirs)))
+
+
+def _ranked(mode: Mode) -> tuple[int, str] | None:
+    """What modes must share to be paired by rank; None for those that section motions describe."""
+    return (mode.waves, mode.family) if mode.waves > 1 or mode.family == "breathing" else None
+
+
+def _by_rank(mine: list[Mode], theirs: list[Mode]) -> list[Pairing]:
+    """The lowest to the lowest and so on, shape by shape."""
+    shapes = [m for m in sorted(mine, key=lambda m: m.frequency_hz) for _ in range(m.multiplicity)]
+    out, start = [], 0
+    for mode in theirs:
+        members = list({id(m): m for m in shapes[start : start + mode.multiplicity]}.values())
+        start += mode.multiplicity
+        if not members:
+            out.append(Pairing(mode, None, 0.0, False))
+            continue
+        near = all(abs(m.frequency_hz / mode.frequency_hz - 1) < RANKED for m in members)
+        out.append(Pairing(mode, members[0], 0.0, near, tuple(members[1:])))
+    return out
+
+
+def _by_shape(mine: list[Mode], theirs: list[Mode], gram) -> list[Pairing]:
+    """An assignment by similarity, then what is certain, alone or as a cluster."""
+    if not mine or not theirs:
+        return [Pairing(m, None, 0.0, False) for m in theirs]
+    mac = np.array([[subspace_mac(_rows(a), _rows(b), gram) for b in theirs] for a in mine])
+    # Shapes of which sections tell a like part; sections that tell all of one shape and little of another say that they differ.
+    share_a, share_b = (np.array([max(min(m.captured, 1.0), 1e-3) for m in modes]) for modes in (mine, theirs))
+    like = mac * np.sqrt(np.minimum(share_a[:, None], share_b) / np.maximum(share_a[:, None], share_b))
+    apart = np.abs(np.log([[a.frequency_hz / b.frequency_hz for b in theirs] for a in mine]))
+    rows = np.repeat(np.arange(len(mine)), [m.multiplicity for m in mine])
+    columns = np.repeat(np.arange(len(theirs)), [m.multiplicity for m in theirs])
+    # Among equals the nearer frequency; it decides nothing else.
+    gain = like - 0.01 * np.minimum(apart, 1.0)
+    taken = [(int(rows[r]), int(columns[c])) for r, c in zip(*linear_sum_assignment(-gain[np.ix_(rows, columns)]))]
+    partners = {j: sorted({i for i, k in taken if k == j and like[i, j] >= FOREIGN}, key=lambda i: mine[i].frequency_hz) for j in range(len(theirs))}
+    clusters = _clusters(mine, theirs, like, gram)
+    out = []
+    for j, reference in enumerate(theirs):
+        members = partners[j]
+        if not members:
+            out.append(Pairing(reference, None, 0.0, False))
+            continue
+        value = subspace_mac(np.vstack([_rows(mine[i]) for i in members]), _rows(reference), gram)
+        rivals = [like[i, j] for i in range(len(mine)) if i not in members]
+        rivals += [like[i, k] for i in members for k in range(len(theirs)) if k != j and i not in partners[k]]
+        least = min(like[i, j] for i in members)
+        certain = least >= SURE and max(rivals, default=0.0) <= least - LEAD
+        if not certain and j in clusters:
+            members, value = clusters[j]
+            certain = True
+        out.append(Pairing(reference, mine[members[0]], float(value), bool(certain), tuple(mine[i] for i in members[1:])))
+    return out
+
+
+def _clusters(mine, theirs, like, gram) -> dict[int, tuple[list[int], float]]:
+    """Partners by frequency inside clusters of close modes that span the same space in both models: reference -> (members, subspace MAC)."""
+    links = like > SHARED
+    m = len(mine)
+    graph = np.block([[np.zeros((m, m)), links], [links.T, np.zeros((len(theirs),) * 2)]])
+    count, label = connected_components(graph, directed=False)
+    out: dict[int, tuple[list[int], float]] = {}
+    for c in range(count):
+        for left, right in _dense_groups(np.flatnonzero(label[:m] == c), np.flatnonzero(label[m:] == c), mine, theirs):
+            a, b = [mine[i] for i in left], [theirs[j] for j in right]
+            value = subspace_mac(np.vstack([_rows(x) for x in a]), np.vstack([_rows(x) for x in b]), gram)
+            if value < SAME_SPACE:
+                continue
+            shapes = [i for i in left for _ in range(mine[i].multiplicity)]
+            for j in right:
+                members, shapes = list(dict.fromkeys(shapes[: theirs[j].multiplicity])), shapes[theirs[j].multiplicity :]
+                out[int(j)] = ([int(i) for i in members], value)
+    return out
+
+
+def _dense_groups(left, right, mine, theirs):
+    """Runs of modes close in frequency, in both models, with as many shapes on either side: yields (indices, indices), the largest first."""
+    left = sorted(left, key=lambda i: mine[i].frequency_hz)
+    right = sorted(right, key=lambda j: theirs[j].frequency_hz)
+
+    def runs(order, modes):
+        frequency = [modes[k].frequency_hz for k in order]
+        for a, b in combinations(range(len(order) + 1), 2):
+            if b - a > 1 and frequency[b - 1] <= (1 + CLOSE) * frequency[a]:
+                yield order[a:b], sum(modes[k].multiplicity for k in order[a:b])
+
+    ours, used_left, used_right = list(runs(left, mine)), set(), set()
+    for others, shapes in sorted(runs(right, theirs), key=lambda x: -x[1]):
+        for group, count in ours:
+            if count == shapes and not used_left & set(group) and not used_right & set(others):
+                used_left |= set(group)
+                used_right |= set(others)
+                yield group, others
+                break
 
 
 def subspace_mac(a: np.ndarray, b: np.ndarray, gram: np.ndarray) -> float:
