@@ -105,7 +105,7 @@ def pair_modes(model: ModeSet, reference: ModeSet) -> tuple[Pairing, ...]:
     Returns
     -------
     tuple of Pairing
-        One for every elastic mode of the reference, in its order.
+        One for every elastic mode of the reference, in its order; those beyond the end of its list follow.
 
     Raises
     ------
@@ -114,7 +114,7 @@ def pair_modes(model: ModeSet, reference: ModeSet) -> tuple[Pairing, ...]:
     """
     if not np.allclose(model.stations, reference.stations):
         raise ValueError("the two mode sets were projected on different stations")
-    theirs = [m for m in reference.modes if m.frequency_hz > 0]
+    theirs = [m for m in (*reference.modes, *reference.beyond) if m.frequency_hz > 0]
     mine = [m for m in (*model.modes, *model.beyond) if m.frequency_hz > 0]
     out: dict[int, Pairing] = {}
     for key in {_ranked(m) for m in theirs} - {None}:
@@ -278,22 +278,3 @@ def correlate(model: ModeSet, reference: ModeSet) -> Correlation:
 
 def _rows(mode: Mode) -> np.ndarray:
     return mode.motions.reshape(len(mode.motions), -1)
-
-
-@dataclass(frozen=True)
-class Pairing:
-    """A mode of the reference and the mode of the model with its shape."""
-
-    reference: Mode
-    mode: Mode | None
-    mac: float
-    certain: bool
-
-
-def pair_modes(model: ModeSet, reference: ModeSet) -> tuple[Pairing, ...]:
-    out = []
-    for r in reference.modes:
-        if r.frequency_hz > 0:
-            m = model.named(r.name)
-            out.append(Pairing(r, m, 1.0, m is not None))
-    return tuple(out)

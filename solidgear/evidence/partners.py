@@ -40,4 +40,5 @@ class Partners:
 
 def _ladder(modes: ModeSet) -> np.ndarray:
     """Elastic frequencies in ascending order, each as often as it has shapes; families that only one model has left out."""
-    return np.array([m.frequency_hz for m in modes.modes if m.frequency_hz > 0 and not m.family.startswith("ovalising") for _ in range(m.multiplicity)])
+    own = sorted((*modes.modes, *modes.beyond), key=lambda m: m.frequency_hz)
+    return np.array([m.frequency_hz for m in own if m.frequency_hz > 0 and not m.family.startswith("ovalising") for _ in range(m.multiplicity)])
