@@ -10,6 +10,7 @@ from solidgear.body import Body
 from solidgear.errors import SolidgearError
 from solidgear.guards import GUARDS, LEVELS, MODELS, Notice, Probe
 from solidgear.meshing.quality import mass_properties
+from solidgear.threads import pinned
 
 # Closure of mass and inertia that each discretisation owes to the closed form.
 MASS_TOLERANCE = {"euler": 1e-9, "timoshenko": 1e-9, "harmonic": 1e-9, "solid": 1e-3}
@@ -17,6 +18,7 @@ MASS_TOLERANCE = {"euler": 1e-9, "timoshenko": 1e-9, "harmonic": 1e-9, "solid": 
 VERDICTS = {"fact": "holds", "caution": "holds with caution", "avoid": "will not hold", "fault": "will not hold"}
 
 
+@pinned
 def check_scene(scene, body: Body) -> dict:
     """Facts, cautions and faults of a scene, in sentences, and what each model is worth for it.
 

@@ -20,10 +20,10 @@ in its absence.  The command line sets it before that (:func:`pin`).  A program 
 first gets the limit for as long as it is inside this package (:func:`pinned`), and its own number
 back afterwards.  A variable ``OPENBLAS_NUM_THREADS`` that is set is never overruled.
 
-Measured on the shipped overhung pinion (two cores, busy with other work): with numpy imported
-first and two threads, body, compliance and ten modes took 3.2 and 2.4 times as long as pinned on the
-harmonic solid, with 4 times the processor time.  The loss comes from threads that wait for each
-other: on an idle machine it is smaller.
+Measured on the shipped overhung pinion (two cores, busy with other work, runs in turn): with numpy
+imported first and two threads, body, compliance and ten modes took 3.4 and 5.1 times as long as pinned on
+the harmonic solid, 1.7 on the 3D one.  The loss comes from threads that wait for each other: on an idle
+machine it is smaller.
 """
 
 from __future__ import annotations

@@ -18,6 +18,7 @@ from solidgear.frames import rotation
 from solidgear.solve.eigen import Raw, Solved, count_below, lowest
 from solidgear.solve.statics import SHIFT, factors
 from solidgear.solve.supported import Supported, decoupled, groups
+from solidgear.threads import pinned
 
 STATIONS = 13
 FAMILIES = {"bending": (0, 2, 3, 5), "axial": (1,), "torsion": (4,)}
@@ -88,6 +89,7 @@ class ModeSet:
         return next((m for m in self.modes if m.name == name), None)
 
 
+@pinned
 def modes(
     body: Body,
     supports=(),

@@ -27,6 +27,7 @@ from solidgear.body import Body, as_supports
 from solidgear.errors import SolidgearError
 from solidgear.frames import DOF_NAMES
 from solidgear.solve.factor import Factor, factorise
+from solidgear.threads import pinned
 
 # The shift costs one digit per factor of ten below the first elastic eigenvalue when rigid motions
 # are cancelled, and saves refinement steps in statics: 1e-3 balances the two.
@@ -182,6 +183,7 @@ def flexibility(body: Body, tolerance: float = 1e-12, most: int = 12) -> Flexibi
     return result
 
 
+@pinned
 def condense(body: Body, supports, port: str, attachment: str | None = None) -> Condensed:
     """Stiffness and compliance of the supported shaft at one port.
 

@@ -25,6 +25,7 @@ import scipy.sparse as sp
 from solidgear.body import Block, Body, Port
 from solidgear.solve.modes import FAMILIES, modes
 from solidgear.solve.statics import SHIFT, Flexibility, factors, flexibility
+from solidgear.threads import pinned
 
 
 @dataclass(frozen=True)
@@ -106,6 +107,7 @@ class Reduced:
 LEVELS = ((1.0, 1), (2.0, 1), (4.0, 2))
 
 
+@pinned
 def reduce(body: Body, n: int, level: int = 0) -> Reduced:
     """Reduce a body for sweeps that ask for ``n`` modes.
 

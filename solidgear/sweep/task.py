@@ -16,6 +16,7 @@ from solidgear.solve.statics import condense
 from solidgear.sweep.reduced import Reduced
 from solidgear.sweep.ritz import Seats, ritz_modes
 from solidgear.sweep.variants import Variants
+from solidgear.threads import pinned
 
 #: Entries of the stiffness and the compliance that a row holds.
 ENTRIES = {name: (i, i) for i, name in enumerate(2 * d if i < 3 else d for i, d in enumerate(DOF_NAMES))} | {"x_thz": (0, 5), "z_thx": (2, 3)}
@@ -50,6 +51,7 @@ class Task:
     n: int
     tolerance: float
 
+    @pinned
     def rows(self, indices: Iterable[int]) -> list[dict[str, Any]]:
         """Rows of some variants."""
         seats: dict[tuple[int, ...], Seats] = {}
