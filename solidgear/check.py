@@ -11,6 +11,7 @@ from solidgear.errors import SolidgearError
 from solidgear.evidence.study import Rung
 from solidgear.guards import GUARDS, LEVELS, MODELS, Notice, Probe
 from solidgear.meshing.quality import mass_properties
+from solidgear.threads import pinned
 
 # Closure of mass and inertia that each discretisation owes to the closed form.
 MASS_TOLERANCE = {"euler": 1e-9, "timoshenko": 1e-9, "harmonic": 1e-9, "solid": 1e-3}
@@ -24,6 +25,7 @@ NOT_HEARD_ALONE = ("rigid_seats", "memory", "renderer", "effective_mass", "frequ
 OF_A_MESH = ("linear_elements", "nearly_incompressible", "uniform_at_shoulder")
 
 
+@pinned
 def check_scene(scene, body: Body) -> dict:
     """Facts, cautions and faults of a scene, in sentences, and what each model is worth for it.
 

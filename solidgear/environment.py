@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-import os
 import platform
 from datetime import datetime, timezone
 from importlib.metadata import PackageNotFoundError, version
+
+from solidgear.threads import offered
 
 
 def environment() -> dict:
@@ -22,8 +23,8 @@ def environment() -> dict:
         out["solidgear"] = __version__
     out["platform"] = f"{platform.system()} {platform.machine()}"
     out["cpu"] = _cpu()
-    # cores this process may use, not those of the machine
-    out["cores"] = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count()
+    # those this process may use, not those of the machine
+    out["cores"] = offered()
     out["date"] = datetime.now(timezone.utc).strftime("%Y-%m-%d %H:%M UTC")
     return out
 

@@ -1,6 +1,6 @@
 """The scripts that drive numerics, solvers and operation to failure still find the failure, and the program still holds beyond it.
 
-Quick mode, the cheap ones only; what is asserted is physics and figures of rounding, never time.
+Quick mode, the cheap ones only; what is asserted is physics and what rounding cannot exceed, never noise itself and never time.
 """
 
 import math
@@ -38,8 +38,12 @@ def test_springs_from_nothing_to_a_clamp(measured):
     assert max(r["C_zz program"] for r in rows) < 1e-8
     assert max(r["f1 program"] for r in rows) < 1e-3
     softest, stiffest = rows[0], rows[-1]
-    # Adding the springs loses the soft ones altogether, and the shaft beside the stiff ones.
-    assert softest["C_zz naive"] > 0.1 and softest["f1 naive"] > 1 and stiffest["f1 naive"] > 1
+    # The sum of shaft and springs is rounded by more than its first eigenvalue, at either end: whoever adds them has lost the
+    # first frequency before solving anything.  What then comes out is noise, of which nothing can be asserted.
+    assert softest["rounding / lambda_1"] > 1 and stiffest["rounding / lambda_1"] > 1
+    # In between the sum holds it, and the naive solution is as good as the sum: 160 elements, times ten for the steps of the solver.
+    sound = [r for r in rows if r["rounding / lambda_1"] < 1e-3]
+    assert len(sound) >= 2 and all(r["f1 naive"] < 1600 * r["rounding / lambda_1"] + r["f1 program"] for r in sound)
     assert [r["C_zz program"] for r in finding.rows if r["k N/m"] == 0] == [0.0, 0.0]
 
 
@@ -60,9 +64,11 @@ def test_free_shaft_needs_no_luck(measured):
     for ours in (r for r in rows if r["solver"] == "program"):
         assert ours["zero modes"] == 6 and ours["rigid f / f1"] == 0 and ours["elastic missing"] == 0
         assert ours["elastic error"] < 1e-9
-    # A shift of 1e-12 of the first eigenvalue leaves a factor of rounding: some run must go wrong, or this case shows nothing.
-    tiny = [r for r in rows if r["shift / lambda_1"] == -1e-12]
-    assert sum(r["wrong runs"] + r["failed runs"] for r in tiny) > 0
+    # A shift of 1e-12 of the first eigenvalue is of the size by which the entries of K are rounded, so the factor is one of rounding;
+    # a thousandth, as the program takes, is far above.  Which runs then go wrong is luck, and not asserted.
+    naive = [r for r in rows if r["solver"] == "shift-invert"]
+    assert all(r["rounding / shift"] > 0.1 for r in naive if r["shift / lambda_1"] == -1e-12)
+    assert all(r["rounding / shift"] < 1e-6 for r in naive if r["shift / lambda_1"] == -1e-3)
 
 
 def test_a_shift_cannot_hit_an_eigenvalue(measured):
@@ -86,10 +92,11 @@ def test_krylov_duncan_loses_roots_where_it_should(measured):
     rows = measured("krylov_duncan")["krylov_duncan"].rows
     assert all(r["program error"] < 1e-13 and r["program roots counted"] == 1 for r in rows)
     for r in rows:
-        if r["kL"] < 30:  # the plain determinant is good to eps exp(kL) / kL
+        # The plain determinant is good to eps exp(kL) / kL, times ten for functions that are four units off in the last place.
+        if r["kL"] < 30:
             assert r["plain roots seen"] == 1 and r["plain error"] < 10 * r["estimate eps exp(kL) / kL"] + 1e-15
-        if r["kL"] > 60:
-            assert r["plain roots seen"] != 1
+        # Past 60 not a digit is left: how many roots it shows is up to chance.
+        assert (r["estimate eps exp(kL) / kL"] > 1) == (r["kL"] > 40)
 
 
 def test_guyan_drifts_with_the_fourth_power(measured):

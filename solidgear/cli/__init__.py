@@ -2,12 +2,26 @@
 
 from __future__ import annotations
 
+import os
+import signal
+import sys
+import threading
+
 from solidgear.threads import pin
 
 pin()  # before anything imports numpy
 
-import os
-import sys
+
+def _interrupted(*_) -> None:
+    """Ctrl-C while modules are read: nothing has begun."""
+    os.write(2, b"solidgear: interrupted\n")
+    os._exit(130)
+
+
+_main_thread = threading.current_thread() is threading.main_thread()
+_hears = _main_thread and signal.getsignal(signal.SIGINT) is signal.default_int_handler
+if _hears:
+    signal.signal(signal.SIGINT, _interrupted)
 
 # fmt: off
 from solidgear.cli import solve  # noqa: F401  (each registers its commands, in the order of the help)
@@ -16,12 +30,26 @@ from solidgear.cli import sweep  # noqa: F401
 # fmt: on
 from solidgear.cli.app import app
 from solidgear.errors import SolidgearError
+from solidgear.interruptible import leave
+
+if _hears:
+    signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
 def main() -> None:
     """Entry point: errors raised on purpose become one sentence and exit code 1."""
     try:
+        _run()
+    except SystemExit as end:
+        leave(end.code)
+
+
+def _run() -> None:
+    try:
         app()
+    except KeyboardInterrupt:  # before or after a command, which say more
+        print("solidgear: interrupted", file=sys.stderr)
+        sys.exit(130)
     except SolidgearError as error:
         print(f"solidgear: {error}", file=sys.stderr)
         sys.exit(1)

@@ -61,16 +61,16 @@ def run_chart(scene, out: Path, *, full: bool = False, runs: int = 5, budget: fl
     from solidgear.evidence.cases import plan, setup_seconds
     from solidgear.evidence.pareto import BUDGET, FULL_BUDGET, race
     from solidgear.report.speed_accuracy import PICTURE, draw, write_rows
-    from solidgear.report.write import prepare
+    from solidgear.report.folder import clear_halves, held
 
     if runs < 1:
         raise SolidgearError(f"--runs {runs}: give a whole number of at least 1")
     if budget is not None and not 0 < budget < float("inf"):
         raise SolidgearError(f"--budget {budget:g}: give seconds above 0")
     budget = budget or (FULL_BUDGET if full else BUDGET)
-    folder = prepare(out)
     try:
-        with Progress(quiet=quiet) as progress:
+        with held(out) as folder, Progress(quiet=quiet) as progress:
+            clear_halves(folder)
             progress("set-up costs, in a fresh interpreter")
             once = setup_seconds()
             found = race(scene, plan(scene, full), runs=runs, budget=budget, setup=once, progress=progress, keep=functools.partial(write_rows, folder=folder))

@@ -30,23 +30,23 @@ def compare(
     from solidgear.comparison import check_models
     from solidgear.comparison import compare as run
     from solidgear.fidelity import FIDELITIES
-    from solidgear.report.write import prepare
+    from solidgear.report.folder import held
     from solidgear.scene_file import load
 
     loaded = load(scene)
     wanted = tuple(m.strip() for m in models.split(",") if m.strip())
     check_models(wanted)
-    prepare(out)
     chosen = options_by_model(settings, FIDELITIES)
     if solid_element:
         chosen.setdefault("solid", {})["element"] = solid_element
-    with Progress(quiet=as_json) as progress:
-        found = run(loaded, wanted, settings=chosen, progress=progress)
-        found.write_report(out, renders=renders and found.results["complete"], progress=progress)
-    if chart and found.results["complete"]:
-        from solidgear.cli.chart import run_chart
+    with held(out):
+        with Progress(quiet=as_json) as progress:
+            found = run(loaded, wanted, settings=chosen, progress=progress)
+            found.write_report(out, renders=renders and found.results["complete"], progress=progress)
+        if chart and found.results["complete"]:
+            from solidgear.cli.chart import run_chart
 
-        run_chart(loaded, out, quiet=as_json)
+            run_chart(loaded, out, quiet=as_json)
     if as_json:
         print(json.dumps(found.results, allow_nan=False))
     else:
@@ -55,6 +55,8 @@ def compare(
         terminal = console()
         terminal.print(final_table(found.results))
         terminal.print(verdict_text(found.results), markup=False)
+        for sentence in found.results["left_out"]:
+            terminal.print(sentence[0].upper() + sentence[1:], markup=False, soft_wrap=True)
         for line in closing_lines(found.results):
             terminal.print(line, markup=False, soft_wrap=True)
         terminal.print(f"Report: {out / 'report.html'}", markup=False, soft_wrap=True)

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from solidgear.body import Body
 from solidgear.errors import SolidgearError
+from solidgear.threads import pinned
 
 FIDELITIES = ("euler", "timoshenko", "harmonic", "solid")
 
 
+@pinned
 def build(scene, fidelity: str, **options) -> Body:
     """Free body of a scene at one fidelity.
 

@@ -15,6 +15,7 @@ from typing import NamedTuple
 import numpy as np
 from skfem import MeshTet1, MeshTet2
 
+from solidgear.interruptible import abandoned, call
 from solidgear.meshing.quality import MeshError, MeshQuality, check_mesh, element_ratios, volume_of
 
 _APT = "apt-get install libglu1-mesa libgl1 libegl1 libegl-mesa0 libxft2 libxinerama1 libxcursor1 libgomp1"
@@ -86,7 +87,7 @@ def tetrahedra(segments, planes=(), circles=(), *, size, graded_size=None, reach
         try:
             for dimension, fraction in ((1, 0.05), (2, 0.1), (3, 0.3)):
                 report(fraction, f"meshing dimension {dimension}")
-                gmsh.model.mesh.generate(dimension)
+                call(gmsh.model.mesh.generate, dimension)
             mesh = _relaxed(_to_skfem(gmsh))
         except MeshError:
             raise
@@ -166,6 +167,8 @@ class _Session:
 
     def __exit__(self, *exception):
         gmsh = self.gmsh
+        if abandoned():
+            return  # gmsh is still meshing after Ctrl-C: what it works on must stay
         if self.ours:
             gmsh.finalize()
             return

@@ -3,55 +3,45 @@
 from __future__ import annotations
 
 import json
-import os
 from pathlib import Path
 
 from solidgear.errors import SolidgearError
+from solidgear.report.folder import clear, held, prepare
 from solidgear.whole_file import whole
 
 MODE = "bending 1"
 
 
-def prepare(out) -> Path:
-    """Make sure a folder can be written, before an hour is spent on what goes into it.
-
-    Raises
-    ------
-    SolidgearError
-        If it cannot.
-    """
-    folder = Path(out)
-    probe = folder / f".probe.{os.getpid()}"
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-        probe.touch()
-        probe.unlink()
-    except OSError as error:
-        raise SolidgearError(f"--out {out}: cannot write there ({error.strerror or error}); name a folder you may write") from None
-    return folder
-
-
 def write_all(comparison, out, *, renders: bool, progress) -> Path:
-    """Write results.json, renders, vtu files and the report; see :meth:`solidgear.comparison.Comparison.write_report`."""
+    """Write results.json, renders, vtu files and the report; see :meth:`solidgear.comparison.Comparison.write_report`.
+
+    ``results`` gains ``files``, what was written beside it, and ``left_out``, a sentence for what could not be drawn or written.
+    After an interrupt there are numbers and a report, and no shapes: who has pressed Ctrl-C does not want to wait for them.
+    """
     from solidgear.report.html import write_report
 
-    folder = prepare(out)
     results = comparison.results
-    try:
-        # A report of an earlier run must not stand beside the numbers of this one, should it end early.
-        (folder / "report.html").unlink(missing_ok=True)
-        # Numbers first: whatever happens to pictures, they are there.
-        _write_json(folder / "results.json", results)
-        for model, rung in comparison.rungs.items():
-            _try(results, f"vtu of {model}", _write_vtu, comparison.scene, rung, folder / f"modes_{model}.vtu")
-        if renders:
-            progress("renders")
-            _draw(comparison, folder)
-        progress("report")
-        _write_json(folder / "results.json", results)
-        write_report(results, folder)
-    except OSError as error:
-        raise SolidgearError(f"--out {out}: writing stopped ({error.strerror or error}); files already there are whole") from error
+    results["left_out"] = []
+    shapes = comparison.rungs if results["complete"] else {}
+    with held(out) as folder:
+        try:
+            # Nothing of an earlier run must stand beside the numbers of this one, should it end early.
+            clear(folder)
+            (folder / "report.html").unlink(missing_ok=True)
+            # Numbers first: whatever happens to pictures, they are there.  What is about to be written is listed before it is.
+            results["files"] = ["report.html", *(f"modes_{m}.vtu" for m in shapes), *(f"mode_{m}.png" for m in shapes if renders)]
+            _write_json(folder / "results.json", results)
+            for model, rung in shapes.items():
+                _try(results, f"vtu of {model}", _write_vtu, comparison.scene, rung, folder / f"modes_{model}.vtu")
+            if renders and shapes:
+                progress("renders")
+                _draw(comparison, folder)
+            progress("report")
+            results["files"] = [name for name in results["files"] if name == "report.html" or (folder / name).exists()]
+            _write_json(folder / "results.json", results)
+            write_report(results, folder)
+        except OSError as error:
+            raise SolidgearError(f"--out {out}: writing stopped ({error.strerror or error}); files already there are whole") from error
     return folder
 
 
@@ -67,7 +57,12 @@ def _try(results: dict, what: str, action, *arguments) -> None:
     except OSError:
         raise
     except Exception as error:
-        results["warnings"].append(f"{what} left out: {error}")
+        _leave_out(results, f"{what} left out: {error}")
+
+
+def _leave_out(results: dict, sentence: str) -> None:
+    results["left_out"].append(sentence)
+    results["warnings"].append(sentence)
 
 
 def _write_vtu(scene, rung, path: Path) -> None:
@@ -97,15 +92,16 @@ def _draw(comparison, folder: Path) -> None:
         if name is None:
             continue
         path = folder / f"mode_{model}.png"
-        path.unlink(missing_ok=True)  # a picture of an earlier run must not pass for this one's
+        path.unlink(missing_ok=True)  # whoever made it, it must not pass for this run's
         _try(results, f"render of {model}", lambda m=model, r=rung, n=name, p=path: jobs.update({m: _job(comparison.scene, r.body, r.modes, n, p)}))
-    reasons = []
+    reasons: dict[str, list[str]] = {}
     for model, done in zip(jobs, render_modes(jobs.values())):
         if done.ok:
             results["images"][model] = done.path.name
-        elif done.reason not in reasons:
-            reasons.append(done.reason)
-            results["warnings"].append(f"render of {model} left out: {done.reason}")
+        else:
+            reasons.setdefault(done.reason, []).append(model)
+    for reason, models in reasons.items():
+        _leave_out(results, f"render of {', '.join(models)} left out: {reason}")
 
 
 def render_mode(scene, body, modes, name: str, path) -> Path:

@@ -14,6 +14,7 @@ import numpy as np
 import scipy.linalg as sla
 import scipy.sparse as sp
 
+from solidgear.interruptible import call
 from solidgear.memory import available_mb
 from solidgear.solve.backends import BACKENDS, INSTALL, FactorError, missing
 
@@ -27,6 +28,8 @@ SMALL = 6_000
 # 0.65 to 1.3, MUMPS 1.4 to 1.8 with OpenBLAS; 2.7 and 5 with the reference BLAS (TET10, one run); SuperLU about 14 (HEX20, one run apart from these).
 FASTEST = ("pardiso", "cholmod", "mumps", "superlu")
 COUNTING = ("pardiso", "mumps", "superlu")
+# Unknowns from which on a call can take so long that Ctrl-C must be heard meanwhile; handing it over costs 0.1 ms.
+LONG = 5_000
 # Normwise backward error (Rigal and Gaches) of one solve.  Solids give 1e-17, since their solutions lie in the low modes; it must be far
 # below the ratio of the lowest eigenvalues to the norm, about 1e-9 there, for the signs of those to mean anything.
 SOUND = 1e-14
@@ -56,7 +59,7 @@ class Factor:
 
     def solve(self, rhs: np.ndarray) -> np.ndarray:
         """Solve for one (n,) or several (n, k) right-hand sides."""
-        return self._solve(rhs)
+        return _heard(len(rhs), self._solve, rhs)
 
 
 @dataclass
@@ -199,14 +202,20 @@ def _missing(name):
 def _factored(name, matrix, planar, definite):
     free = available_mb()
     options = {"planar": planar} if name in ("cholmod", "superlu") else {}
-    work = BACKENDS[name](matrix, definite=definite, **options)
+    n = matrix.shape[0]
+    work = _heard(n, BACKENDS[name], matrix, definite=definite, **options)
     if free is not None and work.estimate_mb > free:
         raise NoRoom(
             f"{matrix.shape[0]} unknowns need about {_mb(work.estimate_mb)} MB to factor by {name}, {_mb(free)} MB are free; "
             "use a coarser mesh, or the harmonic model, which needs far less"
         )
-    work.factor()
+    _heard(n, work.factor)
     return work
+
+
+def _heard(n, function, *arguments, **options):
+    """A call that Ctrl-C can end, if it is on enough unknowns to last."""
+    return call(function, *arguments, **options) if n >= LONG else function(*arguments, **options)
 
 
 def _mb(amount):

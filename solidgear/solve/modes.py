@@ -19,6 +19,7 @@ from solidgear.solve.naming import Names, Projection, numbered
 from solidgear.solve.parts import Part, Uncounted, complete, families, further_parts, reach_of, solved_parts
 from solidgear.solve.statics import SHIFT, factors
 from solidgear.solve.supported import decoupled
+from solidgear.threads import pinned
 
 STATIONS = 13
 #: Relative error of a frequency above which it is not told.
@@ -108,6 +109,7 @@ class ModeSet:
         return next((m for m in (*self.modes, *self.beyond) if m.name == name), None)
 
 
+@pinned
 def modes(
     body: Body,
     supports=(),

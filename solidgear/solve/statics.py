@@ -28,6 +28,7 @@ from solidgear.errors import SolidgearError
 from solidgear.frames import DOF_NAMES
 from solidgear.solve.factor import Factor, factorise
 from solidgear.solve.relief import elastic_fields
+from solidgear.threads import pinned
 
 # Of the lowest elastic eigenvalue.  Rounding in the factor is amplified by the highest eigenvalue of the mesh over the shift: 1e-3 left 5e-3 of the
 # frequencies of slender tubes wrong, 3e-2 leaves
@@ -143,6 +144,7 @@ def flexibility(body: Body, tolerance: float = 1e-12) -> Flexibility:
     return result
 
 
+@pinned
 def condense(body: Body, supports, port: str, attachment: str | None = None) -> Condensed:
     """Stiffness and compliance of the supported shaft at one port.
 

@@ -26,6 +26,7 @@ from solidgear.body import Block, Body, Port
 from solidgear.solve.modes import modes
 from solidgear.solve.naming import FAMILIES
 from solidgear.solve.statics import SHIFT, Flexibility, factors, flexibility
+from solidgear.threads import pinned
 
 
 @dataclass(frozen=True)
@@ -107,6 +108,7 @@ class Reduced:
 LEVELS = ((1.0, 1), (2.0, 1), (4.0, 2))
 
 
+@pinned
 def reduce(body: Body, n: int, level: int = 0) -> Reduced:
     """Reduce a body for sweeps that ask for ``n`` modes.
 

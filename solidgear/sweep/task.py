@@ -16,6 +16,7 @@ from solidgear.solve.statics import condense
 from solidgear.sweep.reduced import Reduced
 from solidgear.sweep.ritz import Seats, ritz_modes
 from solidgear.sweep.variants import Variants
+from solidgear.threads import pinned
 
 #: Entries of the stiffness and the compliance that a row holds.
 ENTRIES = {name: (i, i) for i, name in enumerate(2 * d if i < 3 else d for i, d in enumerate(DOF_NAMES))} | {"x_thz": (0, 5), "z_thx": (2, 3)}
@@ -53,6 +54,7 @@ class Task:
     tolerance: float
     larger: tuple[Reduced, ...] = ()
 
+    @pinned
     def rows(self, indices: Iterable[int]) -> list[dict[str, Any]]:
         """Rows of some variants.
 

@@ -1,0 +1,159 @@
+"""Long calls into C that Ctrl-C can end.
+
+Python hears a signal between two of its own instructions, in the main thread; one call into C that
+takes a minute is one instruction.  So the call runs in a second thread and the main thread waits,
+where it hears Ctrl-C at once.  The call itself cannot be ended: it is abandoned, runs on at the lowest
+priority, and what it makes is thrown away.  The command line then ends the process without waiting for
+it (:func:`leave`).
+
+This needs a callee that lets go of Python's lock.  MKL and gmsh (through ctypes), SciPy's SuperLU and
+sparse products and numpy's products do; scikit-sparse does not, nor does scipy.linalg, which this
+package calls for small dense matrices only.  In a thread that is not the main one, or where Ctrl-C is
+not heard by Python, the call is simply made.
+"""
+
+from __future__ import annotations
+
+import atexit
+import contextvars
+import os
+import queue
+import signal
+import sys
+import threading
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any, NoReturn
+
+
+def call(function: Callable, *arguments, **options) -> Any:
+    """Result of a function, or what it raises; Ctrl-C ends the wait for it.
+
+    Parameters
+    ----------
+    function : callable
+        After Ctrl-C it may still be running: what it works on must not be used again.
+
+    Raises
+    ------
+    KeyboardInterrupt
+        Or whatever else a signal handler raises meanwhile.
+    """
+    if threading.current_thread() is not threading.main_thread() or not callable(signal.getsignal(signal.SIGINT)):
+        return function(*arguments, **options)
+    job = _Job(lambda: function(*arguments, **options))
+    try:
+        _idle_worker().put(job)
+        # Not for ever at once: on Windows a wait without end is deaf.
+        while not job.done.wait(0.1):
+            pass
+    except BaseException:
+        _abandon(job)
+        raise
+    return job.result()
+
+
+def abandoned() -> bool:
+    """Whether a call that was interrupted is still running."""
+    _lost[:] = [job for job in _lost if not job.done.is_set()]
+    return bool(_lost)
+
+
+def leave(code: int | str | None) -> NoReturn:
+    """End the process as ``sys.exit`` does; at once if an abandoned call is still running, for it cannot be waited for.
+
+    Libraries that run C code at exit would free what that call works on.
+    """
+    if abandoned() and (code is None or isinstance(code, int)):
+        for stream in (sys.stdout, sys.stderr):
+            try:
+                stream.flush()
+            except (OSError, ValueError):  # closed, or nobody reads
+                pass
+        os._exit(code or 0)
+    sys.exit(code)
+
+
+class _Job:
+    """One call: made in the worker, its result or its exception handed over."""
+
+    def __init__(self, work: Callable[[], Any]):
+        self._work, self._context = work, contextvars.copy_context()
+        self.done = threading.Event()
+        self._value: Any = None
+        self._error: BaseException | None = None
+
+    def run(self) -> None:
+        try:
+            self._value = self._context.run(self._work)
+        except BaseException as error:  # it belongs to the caller, whatever it is
+            self._error = error
+        finally:
+            del self._work, self._context
+            self.done.set()
+
+    def result(self) -> Any:
+        try:
+            if self._error is not None:
+                raise self._error
+            return self._value
+        finally:
+            self._error = None  # the traceback refers to this frame: no cycle
+
+
+# One worker for all calls: OpenMP keeps a team of threads for every thread that ever called it.
+_worker: queue.SimpleQueue | None = None
+_thread: threading.Thread
+_lost: list[_Job] = []
+
+
+def _idle_worker() -> queue.SimpleQueue:
+    global _worker, _thread
+    if _worker is None:
+        _worker = queue.SimpleQueue()
+        _thread = threading.Thread(target=_serve, args=(_worker,), name="solidgear long calls", daemon=True)
+        _thread.start()
+    return _worker
+
+
+@atexit.register
+def _close() -> None:
+    """Let the idle worker end: what SciPy's SuperLU keeps for a thread is not freed in order otherwise, and Python complains."""
+    if _worker is not None:
+        _worker.put(None)
+        _thread.join(1.0)
+
+
+def _serve(jobs: queue.SimpleQueue) -> None:
+    while (job := jobs.get()) is not None:
+        job.run()
+        del job  # what it holds can be large
+
+
+def _abandon(job: _Job) -> None:
+    """Leave a call to itself: another worker takes the next one, and this one gets out of the way."""
+    global _worker
+    if job.done.is_set() or _worker is None:
+        return
+    _worker.put(None)  # its last one
+    _worker = None
+    _lost.append(job)
+    # Threads of its own, of MKL for instance, are not told apart: all but this one step back (Linux).
+    own = threading.get_native_id()
+    for place in Path("/proc/self/task").glob("*"):
+        if int(place.name) != own:
+            try:
+                os.setpriority(os.PRIO_PROCESS, int(place.name), 19)
+            except (OSError, AttributeError):  # it has just ended
+                pass
+
+
+def _forget() -> None:
+    """A forked child has only the thread that forked."""
+    global _worker
+    _worker = None
+    _lost.clear()
+
+
+if hasattr(os, "register_at_fork"):
+    os.register_at_fork(after_in_child=_forget)
