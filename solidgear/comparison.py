@@ -132,7 +132,8 @@ def _run(scene, models, options, found: _Found, progress: Progress) -> None:
             log.warning("%s failed: %s", model, found.failed[model])
             continue
         found.rungs[model] = rung
-        if "lumped" in models:
+        # A 3D solid's lumped models are those of the harmonic one within the bands, at ten times the price.
+        if "lumped" in models and not (model == "solid" and "harmonic" in found.lumped):
             progress(f"lumped: synthesis from {model}")
             found.lumped |= synthesise_all(scene, {model: rung}, log.info)
         # Factors are the largest thing a body holds, and nobody asks for another solution.

@@ -69,12 +69,17 @@ def record(scene, rungs: dict[str, Rung], failed: dict[str, str], causes: list, 
         "guards": guards,
         "environment": environment(),
         "images": {},
-        "warnings": _warnings(rungs, guards),
+        "warnings": _warnings(rungs, guards, models),
     }
 
 
-def _warnings(rungs: dict[str, Rung], guards: list[dict]) -> list[str]:
-    out = [n["sentence"] if not n["models"] else f"{', '.join(n['models'])}: {n['sentence']}" for n in guards if n["level"] in ("caution", "avoid", "fault")]
+def _warnings(rungs: dict[str, Rung], guards: list[dict], models: dict[str, dict]) -> list[str]:
+    out = []
+    for notice in guards:
+        # What speaks against a model that is out anyway is in the record, and nobody's concern.
+        about = [m for m in notice["models"] if models.get(m, {}).get("valid")]
+        if about or not notice["models"]:
+            out.append(f"{', '.join(about)}: {notice['sentence']}" if about else notice["sentence"])
     out += [f"{m}: {what}: {why}" for m, r in rungs.items() for what, why in r.failed.items()]
     for model, rung in rungs.items():
         for one, other, gap in rung.modes.evidence.get("torn_pairs", ()):

@@ -55,8 +55,6 @@ def compare(
         terminal = console()
         terminal.print(final_table(found.results))
         terminal.print(verdict_text(found.results), markup=False)
-        for sentence in found.results["left_out"]:
-            terminal.print(sentence[0].upper() + sentence[1:], markup=False, soft_wrap=True)
         for line in closing_lines(found.results):
             terminal.print(line, markup=False, soft_wrap=True)
         terminal.print(f"Report: {out / 'report.html'}", markup=False, soft_wrap=True)

@@ -15,7 +15,7 @@ from typing import Any
 from solidgear.body import Body, Supports, as_supports
 from solidgear.errors import SolidgearError
 from solidgear.evidence.bands import Band, layered_bands, refined_bands
-from solidgear.evidence.levels import HEAVY, JUDGE, Sequence, sequence
+from solidgear.evidence.levels import HEAVY, JUDGE, LIGHT_JUDGE, Sequence, sequence
 from solidgear.evidence.levels import JUDGED as JUDGED_SHARE
 from solidgear.evidence.quantities import JUDGED, QUANTITIES, change, measure
 from solidgear.fidelity import build
@@ -192,7 +192,8 @@ def _climbed(scene, model, options, meter, target, most, evidence, progress, kee
         rung.bands = _bands(scene, model, plan, solved, facts, around)
         keep(rung)
         worst = rung.worst_band()
-        if not plan.fixed and (k >= 2 or k == 1 and body.size > HEAVY) and worst is not None and worst <= target:
+        enough = target if k >= 2 else max(target, scene.ask.tolerance / LIGHT_JUDGE)
+        if not plan.fixed and (k >= 2 or k == 1 and body.size > HEAVY) and worst is not None and worst <= enough:
             break
     assert rung is not None
     return rung
@@ -255,7 +256,8 @@ def _solved(scene, model: str, options: Mapping[str, Any], meter: Meter, counted
     given = {s.attachment for s in scene.stations}
     # Means over seats and over sections are only rows on the same matrices; a rigid seat is another matrix.
     together = "rigid" not in given
-    kinds = tuple(dict.fromkeys((*sorted(given), "section"))) if together else None
+    wanted = sorted(given) if model == "solid" else (*sorted(given), "section")
+    kinds = tuple(dict.fromkeys(wanted)) if together else None
     extra = {"attachments": kinds} if together else {}
     with meter.stage("build"):
         body = build(scene, model, **{**options, **extra})
@@ -265,9 +267,11 @@ def _solved(scene, model: str, options: Mapping[str, Any], meter: Meter, counted
     ties = {SCENE: _tied(scene, body, supports, scene.port.attachment if together else None, meter, count)}
     if given == {"section"}:
         ties[SECTION] = ties[SCENE]
+    elif model == "solid":
+        pass  # planes of section ties would have to be graded; the harmonic solid judges like for like
     elif together:
         ties[SECTION] = _tied(scene, body, supports.with_attachment("section"), "section", meter, False)
-    elif model != "solid":
+    else:
         plain = scene.with_attachment("section")
         with meter.stage("build"):
             other = build(plain, model, **options)
