@@ -33,7 +33,11 @@ DIMENSIONS: dict[str, tuple[str, str, tuple[int, ...]]] = {
 #: no quantity of a scene is larger than this in SI, and no spring softer: squares and products of such numbers neither overflow nor vanish
 LARGEST, SOFTEST = 1e24, 1e-30
 
+#: letters of a quantity
+LONGEST = 200
+
 _TEXT = re.compile(r"\s*(?P<number>[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?|[+-]?(?:nan|inf)\b)\s*(?P<unit>.*?)\s*", re.S | re.I)
+_COMMA = re.compile(r"\s*[+-]?\d*,\d")
 _UNIT = re.compile(r"[^\W\d_][^\W\d]*|%|\d|[\s*/^().·-]", re.U)
 
 
@@ -78,6 +82,10 @@ def quantity(value: Any, dimension: str) -> float:
 def _read_text(text: str, dimension: str) -> float:
     si, example, powers = DIMENSIONS[dimension]
     value, name = show(text), dimension.replace("_", " ")
+    if len(text) > LONGEST:  # before any pattern looks at it: their time grows with the square
+        raise SceneError(f"an unknown unit, or no quantity at all: {len(text)} letters; write for example \"{example}\"", value=value)
+    if _COMMA.match(text):
+        raise SceneError(f"has a comma: decimals take a point, and thousands no mark, as in \"{example}\"", value=value)
     match = _TEXT.fullmatch(text)
     if match is None:
         raise SceneError(f"must be a number with a unit, such as \"{example}\"", value=value)
