@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import difflib
 import json
-import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from numbers import Integral
 from typing import Any
 
 #: problems of one file that are told; the rest are counted
@@ -124,11 +124,11 @@ def _pieces(value: Any, width: int) -> Iterator[str]:
         yield "]"
     elif value is None or isinstance(value, bool):
         yield {None: "null", True: "true", False: "false"}[value]
-    elif isinstance(value, int):
+    elif isinstance(value, Integral):
         # Python refuses to write thousands of digits in tens, not in sixteens.
-        yield repr(value) if value.bit_length() < 1000 else hex(value)
+        yield repr(int(value)) if int(value).bit_length() < 1000 else hex(int(value))
     elif isinstance(value, float):
-        yield repr(value) if math.isfinite(value) else str(float(value))
+        yield repr(float(value))
     else:
         yield _quoted(str(value), width)
 

@@ -15,7 +15,7 @@ import scipy.sparse as sp
 
 from solidgear.body import Block, Body, Port
 from solidgear.errors import SolidgearError
-from solidgear.fidelity.options import number
+from solidgear.fidelity.options import checked
 from solidgear.fidelity.scale import elastic_scale
 
 # Shortest Euler element over the length of the shaft.
@@ -79,16 +79,10 @@ def beam(
     Body
         Four blocks (axial, torsion and the two bending planes); ports are nodes.
     """
-    number("beam", "elements", elements, least=1, whole=True)
-    if head not in ("cone", "mean"):
-        raise SolidgearError(f"head: {head!r} is unknown; use 'cone' or 'mean'")
-    if mass not in ("consistent", "lumped"):
-        raise SolidgearError(f"mass: {mass!r} is unknown; use 'consistent' or 'lumped'")
-    if kappa not in ("hutchinson", "cowper"):
-        raise SolidgearError(f"kappa: {kappa!r} is unknown; use 'hutchinson' or 'cowper'")
+    checked("timoshenko" if shear else "euler", {"head": head, "mass": mass, "kappa": kappa, "elements": elements})
     if kappa == "cowper" and any(s.inner0 or s.inner1 for s in scene.segments):
         raise SolidgearError("kappa: 'cowper' is given for solid sections only; use 'hutchinson' for a hollow shaft")
-    nodes, owner = _mesh(scene, elements)
+    nodes, owner = mesh(scene, elements)
     n = len(nodes)
     if not shear:
         _long_enough(nodes)
@@ -137,7 +131,7 @@ def beam(
     )
 
 
-def _mesh(scene, elements):
+def mesh(scene, elements: int | None):
     """Nodes at segment ends and ports, filled in evenly; and the segment of every element."""
     marks = {s.y0 for s in scene.segments} | {scene.segments[-1].y1} | {s.y for s in scene.stations}
     marks = np.array(sorted(marks))

@@ -22,9 +22,9 @@ from solidgear.body import Block, Body, Port
 from solidgear.errors import SolidgearError
 from solidgear.fidelity.assembly import Pattern, Tabulation, batches, reference, tabulate, unknowns
 from solidgear.fidelity.attachment import tie_rigidly
-from solidgear.fidelity.options import harmonics, number
+from solidgear.fidelity.options import checked, countable
 from solidgear.fidelity.scale import elastic_scale
-from solidgear.meshing.layout import layout
+from solidgear.meshing.layout import Layout, layout
 from solidgear.meshing.meridian import Meridian, meridian
 
 
@@ -82,17 +82,10 @@ def harmonic(
     SolidgearError
         For an unknown order or attachment.
     """
-    number("harmonic", "order", order, least=1, whole=True)
-    if order > 12:
-        raise SolidgearError(f"harmonic: order {order} is not between 1 and 12")
-    number("harmonic", "layers", layers, least=0, whole=True)
-    number("harmonic", "edge_layers", edge_layers, least=0, whole=True)
-    number("harmonic", "ratio", ratio, above=0, below=1)
-    number("harmonic", "size", size, above=0)
-    number("harmonic", "refinement", refinement, above=0)
-    ovalising = harmonics("harmonic", ovalising)
-    size = size or min(min(s.outer0, s.outer1) for s in scene.segments)
-    plan = layout(scene, size=size, layers=layers, edge_layers=edge_layers, ratio=ratio, refinement=refinement)
+    grading = {"layers": layers, "edge_layers": edge_layers, "ratio": ratio, "size": size, "refinement": refinement}
+    given = checked("harmonic", {"order": order, **grading, "attachments": attachments, "ovalising": ovalising})
+    attachments, ovalising = given["attachments"], given["ovalising"]
+    plan = harmonic_layout(scene, **grading)
     flat = meridian(scene, plan)
     mesh = MeshQuad1(flat.points, flat.cells, sort_t=False)
     element = _element(order)
@@ -121,6 +114,12 @@ def harmonic(
     return Body(
         "harmonic", tuple(blocks), tuple(ports), elastic_scale(scene), scene.length, facts, HarmonicMesh(mesh, element, dofs, flat)
     )
+
+
+def harmonic_layout(scene, *, layers, edge_layers, ratio, size, refinement) -> Layout:
+    """Mesh lines of :func:`harmonic`, before anything is meshed; parameters as there."""
+    size = countable("harmonic", scene, size or min(min(s.outer0, s.outer1) for s in scene.segments), refinement)
+    return layout(scene, size=size, layers=layers, edge_layers=edge_layers, ratio=ratio, refinement=refinement)
 
 
 def _element(order):

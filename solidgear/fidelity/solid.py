@@ -19,7 +19,7 @@ from solidgear.body import Block, Body, Port
 from solidgear.errors import SolidgearError
 from solidgear.fidelity.assembly import Pattern, Tabulation, batches, inverted, reference, straight, tabulate, unknowns
 from solidgear.fidelity.attachment import tie_rigidly
-from solidgear.fidelity.options import number
+from solidgear.fidelity.options import checked, countable
 from solidgear.fidelity.scale import elastic_scale
 from solidgear.frames import cross_matrix
 from solidgear.mass import ScalarMass
@@ -155,25 +155,16 @@ def solid(
     SolidgearError
         Unknown element or attachment; MeshError where meshing fails or an element is inverted.
     """
-    if element not in ELEMENTS:
-        raise SolidgearError(f"solid: element {element!r} is unknown; use one of {', '.join(ELEMENTS)}")
-    for name, value in (("size", size), ("graded_size", graded_size), ("refinement", refinement)):
-        number("solid", name, value, above=0)
-    for name, value in (("layers", layers), ("edge_layers", edge_layers), ("radial_layers", radial_layers)):
-        number("solid", name, value, least=0, whole=True)
-    number("solid", "ratio", ratio, above=0, below=1)
-    number("solid", "around", around, least=8, whole=True)
+    grading = {"size": size, "layers": layers, "edge_layers": edge_layers, "radial_layers": radial_layers, "ratio": ratio, "around": around, "refinement": refinement}
+    attachments = checked("solid", {"element": element, **grading, "graded_size": graded_size, "attachments": attachments})["attachments"]
     if element.startswith("hex") and around % 4:
         raise SolidgearError(f"solid: around = {around} does not fit an O-grid; use a multiple of 4")
     wanted = [(s, a) for s in scene.stations for a in (attachments or (s.attachment,))]
-    for _, attachment in wanted:
-        if attachment not in ("average", "rigid", "section"):
-            raise SolidgearError(f"attachment {attachment!r} is unknown; use 'average', 'rigid' or 'section'")
     tet = element.startswith("tet")
     if tet:
         mesh, segment, quality = _tets(scene, wanted, element, size, graded_size, refinement, around)
     else:
-        mesh, segment, quality = _hexes(scene, size, (layers, edge_layers, radial_layers), ratio, around, refinement)
+        mesh, segment, quality = _hexes(scene, grading)
     body_mesh = _isoparametric(mesh, element, segment)
     k, m = _matrices(body_mesh, scene)
     n = body_mesh.nodes.shape[1]
@@ -215,25 +206,40 @@ def solid(
     return Body("solid", (tie_rigidly(block, ties),), ports, elastic_scale(scene), scene.length, facts, body_mesh)
 
 
-def _hexes(scene, size, layers, ratio, around, refinement):
-    from solidgear.meshing.hexahedra import hexahedra
+def hexahedra_layout(scene, *, size, layers, edge_layers, radial_layers, ratio, around, refinement):
+    """Mesh lines of :func:`solid` in hexahedra and cells around, before anything is meshed; parameters as there."""
     from solidgear.meshing.layout import layout
-    from solidgear.meshing.quality import check_mesh, volume_of
 
     smallest = min(min(s.outer0, s.outer1) for s in scene.segments)
     plan = layout(
         scene,
-        size=size or 0.6 * smallest,
-        layers=layers[0],
-        edge_layers=layers[1],
-        radial_layers=layers[2],
+        size=countable("solid", scene, size or 0.6 * smallest, refinement),
+        layers=layers,
+        edge_layers=edge_layers,
+        radial_layers=radial_layers,
         ratio=ratio,
         refinement=refinement,
         reach=0.7 * smallest,
         radial_reach=smallest / 2,
         core=True,
     )
-    turns = max(8, 4 * int(round(around * refinement / 4)))
+    return plan, max(8, 4 * int(round(around * refinement / 4)))
+
+
+def tetrahedra_plan(scene, wanted, *, size, graded_size, refinement, around) -> dict:
+    """Arguments of :func:`~solidgear.meshing.tetrahedra.tetrahedra` for the stations ``wanted`` with their attachments."""
+    size = countable("solid", scene, size or max(max(s.outer0, s.outer1) for s in scene.segments) / 3, refinement) / refinement
+    graded_size = (graded_size / refinement) if graded_size else size / 4
+    planes = sorted({s.y for s, a in wanted if a == "section"})
+    circles = sorted({y for s, a in wanted if a != "section" for y in (s.lo, s.hi)})
+    return {"planes": planes, "circles": circles, "size": size, "graded_size": None if graded_size >= size else graded_size, "around": max(16, around)}
+
+
+def _hexes(scene, grading):
+    from solidgear.meshing.hexahedra import hexahedra
+    from solidgear.meshing.quality import check_mesh, volume_of
+
+    plan, turns = hexahedra_layout(scene, **grading)
     mesh, segment = hexahedra(scene, plan, turns)
     return mesh, segment, check_mesh(mesh, volume=volume_of(scene.segments), rtol=1e-3)
 
@@ -242,11 +248,8 @@ def _tets(scene, wanted, element, size, graded_size, refinement, around):
     from solidgear.meshing.quality import check_mesh, volume_of
     from solidgear.meshing.tetrahedra import tetrahedra
 
-    size = (size or max(max(s.outer0, s.outer1) for s in scene.segments) / 3) / refinement
-    graded_size = (graded_size / refinement) if graded_size else size / 4
-    planes = sorted({s.y for s, a in wanted if a == "section"})
-    circles = sorted({y for s, a in wanted if a != "section" for y in (s.lo, s.hi)})
-    made = tetrahedra(scene.segments, planes, circles, size=size, graded_size=None if graded_size >= size else graded_size, around=max(16, around))
+    plan = tetrahedra_plan(scene, wanted, size=size, graded_size=graded_size, refinement=refinement, around=around)
+    made = tetrahedra(scene.segments, **plan)
     if element == "tet10":
         return made.mesh, made.segment, made.quality
     from skfem import MeshTet1
