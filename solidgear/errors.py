@@ -60,7 +60,7 @@ class SceneError(SolidgearError, ValueError):
     def sentence(self) -> str:
         """The first problem alone, in one line."""
         place = " = ".join(part for part in (self.field or ".".join(map(str, self.path)), self.value) if part)
-        return printable(": ".join(part for part in (self.where, place, self.reason) if part))
+        return printable(": ".join(part for part in (_file_name(self.where), place, self.reason) if part))
 
     def __str__(self) -> str:
         count = len(self.others)
@@ -68,7 +68,7 @@ class SceneError(SolidgearError, ValueError):
             return self.sentence
         if not self.where:  # a scene made in Python: whoever catches the error finds the rest in it
             return f"{self.sentence} (and {count} more problem{'s' * (count > 1)}: see its problems)"
-        lines = [f"{count + 1} problems in {printable(self.where)}", *("  " + one.sentence for one in self.problems[:TOLD])]
+        lines = [f"{count + 1} problems in {printable(_file_name(self.where))}", *("  " + one.sentence for one in self.problems[:TOLD])]
         if count + 1 > TOLD:
             lines.append(f"  and {count + 1 - TOLD} more")
         return "\n".join(lines)
@@ -90,6 +90,10 @@ class SceneError(SolidgearError, ValueError):
 def printable(text: str) -> str:
     """`text` in one line, with escapes for what would move a terminal's cursor or turn its writing round."""
     return _escaped(" ".join(text.split()))
+
+
+def _file_name(where: str) -> str:
+    return where if len(where) <= 300 else f"...{where[-200:]}"
 
 
 def _escaped(text: str) -> str:
@@ -186,6 +190,7 @@ def _plain_words(one: Mapping, data: Any) -> str:
     words = {
         "missing": "this key is missing",
         "string_type": "must be a text in quotes",
+        "string_unicode": "must be a text of plain letters",
         "int_type": "must be a whole number",
         "list_type": "must be a list in square brackets",
         "tuple_type": "must be a list in square brackets",

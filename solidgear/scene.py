@@ -20,7 +20,7 @@ from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationEr
 from solidgear.bearing_stiffness import checked_matrix, stiffness_entries
 from solidgear.errors import TOLD, SceneError, did_you_mean, near, scene_error, show
 from solidgear.frames import DOF_NAMES
-from solidgear.scene_rules import MOST_SPRINGS, TOUCH, shaft_problems, station_problems, steps
+from solidgear.scene_rules import MOST_MODES, MOST_SPRINGS, TOUCH, shaft_problems, station_problems, steps
 from solidgear.units import (
     POSITION_DECIMALS, SOFTEST, AxialSpring, Density, Frequency, Modulus, Poisson, Position, PositiveLength, Thickness, Tolerance, quantity,
 )  # fmt: skip
@@ -202,7 +202,7 @@ class Port(Model):
 class Ask(Model):
     """The questions: how many modes, up to what frequency (Hz; None is no limit), to what relative tolerance."""
 
-    modes: Annotated[int, Field(strict=True, ge=1)] = 10
+    modes: Annotated[int, Field(strict=True, ge=1, le=MOST_MODES)] = 10
     max_frequency: Frequency | None = None
     tolerance: Tolerance = 0.05
 

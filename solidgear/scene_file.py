@@ -392,6 +392,9 @@ def _file_path(path: tuple, table: _SceneTable, owner: list[int]) -> tuple:
             length = "face_width" if kind == "bevel_head" else "length"
             key = {"outer0": start, "outer1": end, "inner0": "bore", "inner1": "bore", "y1": length}.get(key, key)
             return ("segment", owner[index], key)
+        case ("segments", index, "material", key):
+            own = getattr(table.segment[owner[index]].material, key) is not None
+            return ("segment", owner[index], "material", key) if own else ("material", key)
         case ("bearings", index, key):
             return ("bearing", index, {"y": "position"}.get(key, key))
         case ("port", "y"):

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 from solidgear.errors import SceneError
 
 if TYPE_CHECKING:
-    from solidgear.scene import Bearing, Port, Segment
+    from solidgear.scene import Bearing, Material, Port, Segment
 
 #: m; two edges nearer than this are one edge
 TOUCH = 1e-9
@@ -20,8 +20,14 @@ TOUCH = 1e-9
 #: ask for meshes without end, or drown in rounding, and comes from a slip in the units
 SLIMMEST, SHORTEST, THINNEST = 1e-3, 1e-6, 1e-4
 
+#: moduli, densities or their quotients of two materials of one shaft; beyond, the residuals of frequencies rise above 1e-4 and searches do not end
+MOST_UNLIKE = 1e5
+
+#: elastic modes that can be asked for; of the last of them no mesh here has a digit
+MOST_MODES = 500
+
 #: every segment takes at least a line of cells, and every bearing six ports
-MOST_SEGMENTS, MOST_BEARINGS, MOST_SPRINGS = 200, 50, 20
+MOST_SEGMENTS, MOST_BEARINGS, MOST_SPRINGS = 100, 50, 20
 
 
 def steps(segments: Sequence[Segment]) -> tuple[float, ...]:
@@ -40,7 +46,8 @@ def shaft_problems(segments: Sequence[Segment]) -> list[SceneError]:
 
 def too_many(what: str, count: int, most: int) -> str:
     """The reason to refuse a list that no shaft has."""
-    return f"{count} {what} are more than the {most} a shaft may have; let pieces that are one be one, or a few cones stand for a curve"
+    hint = "; let pieces that are one be one segment, and a few cones stand for a curve" if what == "segments" else ""
+    return f"{count} {what} are more than the {most} a shaft may have{hint}"
 
 
 def _end_to_end(segments: Sequence[Segment]) -> Iterator[SceneError]:
@@ -82,9 +89,19 @@ def _proportioned(segments: Sequence[Segment]) -> Iterator[SceneError]:
             if outer - inner < THINNEST * outer:
                 reason = f"leaves a wall of {outer - inner:.3g} m at a radius of {outer:.6g} m, under one in ten thousand: probably wrong units"
                 yield SceneError(reason, path=("segments", i, "inner" + at))
+        yield from _unlike(segments[0].material, segment.material, i)
         if segment.length < SHORTEST * end:
             reason = f"a segment of {segment.length:.6g} m is under a millionth of the length of the shaft, {end:.6g} m: probably wrong units"
             yield SceneError(reason, path=("segments", i, "y1"))
+
+
+def _unlike(first: Material, here: Material, i: int) -> Iterator[SceneError]:
+    for key, what, unit, value in (("E", "modulus", "Pa", lambda m: m.E), ("density", "density", "kg/m^3", lambda m: m.density), ("E", "ratio of modulus to density", "m^2/s^2", lambda m: m.E / m.density)):
+        a, b = value(here), value(first)
+        if max(a, b) > MOST_UNLIKE * min(a, b):
+            reason = f"a {what} of {a:.3g} {unit} beside {b:.3g} in the first segment: unlike by more than {MOST_UNLIKE:g}, which costs digits; probably wrong units"
+            yield SceneError(reason, path=("segments", i, "material", key))
+            return
 
 
 def station_problems(segments: Sequence[Segment], port: Port | None, bearings: Mapping[int, Bearing]) -> Iterator[SceneError]:

@@ -157,7 +157,8 @@ PositiveLength = Annotated[Length, _POSITIVE]
 Thickness = Annotated[Length, _NOT_NEGATIVE]
 Angle = Annotated[float, _in("angle"), _must(lambda v: 0 < v < math.pi / 2, "must lie between 0 and 90 degrees (0 and 1.571 rad)")]
 Modulus = Annotated[float, _in("pressure"), _POSITIVE, _must(lambda v: v >= 1, "is below 1 Pa, softer than any solid: probably wrong units")]
-Density = Annotated[float, _in("density"), _POSITIVE, _must(lambda v: v >= 1e-6, "is below 1e-6 kg/m^3, lighter than any solid: probably wrong units")]
+Density = Annotated[float, _in("density"), _POSITIVE, _must(lambda v: v >= 1e-6, "is below 1e-6 kg/m^3, lighter than any solid: probably wrong units"),
+                    _must(lambda v: v <= 1e8, "is above 1e8 kg/m^3, denser than any solid (osmium has 22600): probably wrong units")]  # fmt: skip
 Poisson = Annotated[float, _in("dimensionless"), _must(lambda v: -1 < v < 0.5, "must lie between -1 and 0.5, both excluded; steel is 0.3")]
 AxialSpring = Annotated[float, _in("force_per_length"), _POSITIVE, _must(lambda v: v >= SOFTEST, f"is softer than {SOFTEST:g} N/m, which is no spring: leave it out")]
 Frequency = Annotated[float, _in("frequency"), _POSITIVE]

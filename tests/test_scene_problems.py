@@ -144,7 +144,7 @@ def test_double_brackets_where_there_is_one(table, tmp_path):
         (b"material = " + b"{a=" * 60 + b"1" + b"}" * 60, "material.a"),
         (b"[material]\nE = 0x" + b"f" * 5000, "material.E = 0xfff"),
         (b"[material]\nE = " + b"9" * 5000, "thousands of digits"),
-        (b"segment = [" + b"{}," * 201 + b"]", "201 segments are more than the 200"),
+        (b"segment = [" + b"{}," * 101 + b"]", "101 segments are more than the 100"),
         (b"bearing = [" + b"{}," * 51 + b"]", "51 bearings are more than the 50"),
         (b"a = 1\n" * 60_000, "larger than 300 kB"),
     ],

@@ -176,8 +176,8 @@ def _harmonic(scene, given: dict) -> Size:
         peak = max(peak, held + factor + ENTRY * nnz / MB)  # of the shifted matrix, for as long as it is factored
         held += factor
     solved = 16.0 * _ports(scene, given) * sum(motions * size for motions, (_, size, _) in zip((2, 1, 1), sizes)) / MB
-    lower = "lower order, refinement or layers" + " or the number of ovalising harmonics" * bool(given["ovalising"])
-    return Size(int(unknowns), int(entries), max(int(cells) * (order + 1) ** 4, sizes[0][2]), built, built + peak + solved, lower)
+    lower = "lower order, refinement or layers, or raise size" + ", or ask for fewer ovalising harmonics" * bool(given["ovalising"])
+    return Size(int(unknowns), int(entries), int(max(cells * (order + 1) ** 4, sizes[0][2])), float(built), float(built + peak + solved), lower)
 
 
 def _planar_factor_mb(components: int, unknowns: int, entries: int) -> float:
@@ -272,7 +272,7 @@ def _solid(scene, given: dict, unknowns: float, entries: float, cells: float, fi
     beside = max(ENTRY * entries, 8.0 * 150 * unknowns) / MB + 16.0 * 6 * _ports(scene, given) * unknowns / MB
     lower = "lower refinement" + (", or raise size and graded_size" if tets else ", around or the layers, or raise size") + ", or use the harmonic model"
     peak = built + beside + _solid_factor_mb(unknowns, entries, fill)
-    return Size(int(round(unknowns)), int(entries), int(max(entries, per_cell**2 * cells)), built, peak, lower)
+    return Size(int(round(unknowns)), int(entries), int(max(entries, per_cell**2 * cells)), float(built), float(peak), lower)
 
 
 def _solid_factor_mb(unknowns: float, entries: float, fill: float) -> float:
