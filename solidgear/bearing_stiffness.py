@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from solidgear.errors import SceneError, nearest, show
+from solidgear.errors import TOLD, SceneError, nearest, show
 from solidgear.frames import DOF_NAMES
 from solidgear.units import quantity
 
@@ -46,15 +46,19 @@ def stiffness_matrix(entries: Mapping[str, Any]) -> np.ndarray:
     SceneError
         Unknown name, or an entry that is not a quantity of its dimension.
     """
-    K = np.zeros((6, 6))
+    K, problems = np.zeros((6, 6)), []
     for name, value in entries.items():
         if name not in STIFFNESS_NAMES:
-            raise SceneError(f"unknown stiffness entry{nearest(name, STIFFNESS_NAMES)}; valid are {', '.join(STIFFNESS_NAMES)}", path=(name,))
+            near = nearest(name, STIFFNESS_NAMES) if len(problems) < TOLD else ""
+            problems.append(SceneError(f"unknown stiffness entry{near}; valid are {', '.join(STIFFNESS_NAMES)}", path=(name,)))
+            continue
         i, j, dimension = STIFFNESS_NAMES[name]
         try:
             K[i, j] = K[j, i] = quantity(value, dimension)
         except SceneError as error:
-            raise SceneError(error.reason, path=(name,), value=error.value) from None
+            problems.append(SceneError(error.reason, path=(name,), value=error.value))
+    if problems:
+        raise SceneError.of(problems)
     return K
 
 

@@ -1,11 +1,15 @@
-"""Errors a user can act on: one sentence, naming the place, the value as written and what would be right."""
+"""Errors a user can act on: one sentence for each problem, naming the place, the value as written and what would be right."""
 
 from __future__ import annotations
 
 import difflib
 import json
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from numbers import Integral
 from typing import Any
+
+#: problems of one file that are told; the rest are counted
+TOLD = 20
 
 
 class SolidgearError(Exception):
@@ -13,7 +17,7 @@ class SolidgearError(Exception):
 
 
 class SceneError(SolidgearError, ValueError):
-    """A scene that cannot be used as written.
+    """A scene that cannot be used as written: its first problem, and all others with it.
 
     Parameters
     ----------
@@ -27,36 +31,140 @@ class SceneError(SolidgearError, ValueError):
         `path` in readable form, such as ``bearing[2] "2".seat_width``; made by `located`.
     where : str
         The file (or scene) the entry is in.
+    others : sequence of SceneError
+        Further problems of the same scene.
+
+    Attributes
+    ----------
+    problems : tuple of SceneError
+        All of them, this one first. Each alone is one sentence; the whole of a file is a list of `TOLD` lines at most.
     """
 
-    def __init__(self, reason: str, *, path: tuple = (), value: str = "", field: str = "", where: str = ""):
+    def __init__(self, reason: str, *, path: tuple = (), value: str = "", field: str = "", where: str = "", others: Sequence[SceneError] = ()):
         super().__init__(reason)
         self.reason, self.path, self.value, self.field, self.where = reason, tuple(path), value, field, where
+        self.others = tuple(others)
+
+    @classmethod
+    def of(cls, problems: Iterable[SceneError]) -> SceneError:
+        """One error of several, each of which may be several."""
+        first, *rest = (one for error in problems for one in error.problems)
+        return first._changed(others=rest)
+
+    @property
+    def problems(self) -> tuple[SceneError, ...]:
+        """This problem alone, then the others."""
+        return (self._changed(others=()), *self.others) if self.others else (self,)
+
+    @property
+    def sentence(self) -> str:
+        """The first problem alone, in one line."""
+        place = " = ".join(part for part in (self.field or ".".join(map(str, self.path)), self.value) if part)
+        return printable(": ".join(part for part in (_file_name(self.where), place, self.reason) if part))
 
     def __str__(self) -> str:
-        place = " = ".join(part for part in (self.field or ".".join(map(str, self.path)), self.value) if part)
-        return " ".join(": ".join(part for part in (self.where, place, self.reason) if part).split())
+        count = len(self.others)
+        if not count:
+            return self.sentence
+        if not self.where:  # a scene made in Python: whoever catches the error finds the rest in it
+            return f"{self.sentence} (and {count} more problem{'s' * (count > 1)}: see its problems)"
+        lines = [f"{count + 1} problems in {printable(_file_name(self.where))}", *("  " + one.sentence for one in self.problems[:TOLD])]
+        if count + 1 > TOLD:
+            lines.append(f"  and {count + 1 - TOLD} more")
+        return "\n".join(lines)
 
     def located(self, data: Any, *, where: str = "", prefix: tuple = (), path: tuple | None = None) -> SceneError:
-        """The same error with its field named, and its value quoted, from the `data` the user wrote."""
-        path = (*prefix, *self.path) if path is None else path
+        """The same error with its fields named, and its values quoted, from the `data` the user wrote."""
+        return type(self).of(one._located(data, where, (*prefix, *one.path) if path is None else path) for one in self.problems)
+
+    def _located(self, data: Any, where: str, path: tuple) -> SceneError:
         field, found, known = _name_and_value(path, data)
-        value = show(found) if known else self.value
-        return type(self)(self.reason, path=path, value=value, field=field, where=where or self.where)
+        return self._changed(path=path, value=show(found) if known else self.value, field=field, where=where or self.where)
+
+    def _changed(self, **changes: Any) -> SceneError:
+        given = {name: getattr(self, name) for name in ("path", "value", "field", "where", "others")}
+        return type(self)(self.reason, **(given | changes))
+
+
+# ------------------------------------------------------------------------------------------------- texts
+def printable(text: str) -> str:
+    """`text` in one line, with escapes for what would move a terminal's cursor or turn its writing round."""
+    return _escaped(" ".join(text.split()))
+
+
+def _file_name(where: str) -> str:
+    return where if len(where) <= 300 else f"...{where[-200:]}"
+
+
+def _escaped(text: str) -> str:
+    if text.isprintable():
+        return text
+    return "".join(c if c.isprintable() else f"\\u{ord(c):04x}" if ord(c) < 0x10000 else f"\\U{ord(c):08x}" for c in text)
 
 
 def show(value: Any, width: int = 70) -> str:
-    """`value` as one would write it in TOML, in one line of at most `width` characters."""
-    try:
-        text = json.dumps(value, default=str, ensure_ascii=False)
-    except (TypeError, ValueError):
-        text = repr(value)
-    text = {"NaN": "nan", "Infinity": "inf", "-Infinity": "-inf"}.get(text, text)
-    return text if len(text) <= width else text[: width - 3] + "..."
+    """`value` as one would write it in TOML, in one line of at most `width` characters, however large or deep it is."""
+    text = ""
+    for piece in _pieces(value, width):
+        text += piece
+        if len(text) > width:
+            return text[: width - 3] + "..."
+    return text
 
 
-def first_problem(error: Any, data: Any, *, where: str = "") -> SceneError:
-    """Turn pydantic's ValidationError into the one-line `SceneError` of its first problem.
+def _pieces(value: Any, width: int) -> Iterator[str]:
+    """A value's text from left to right; a reader who stops after `width` characters has gone no deeper than that."""
+    if isinstance(value, Mapping):
+        yield "{"
+        for k, (key, entry) in enumerate(value.items()):
+            yield ", " * (k > 0) + _quoted(str(key), width) + ": "
+            yield from _pieces(entry, width)
+        yield "}"
+    elif isinstance(value, (list, tuple)):
+        yield "["
+        for k, entry in enumerate(value):
+            yield ", " * (k > 0)
+            yield from _pieces(entry, width)
+        yield "]"
+    elif value is None or isinstance(value, bool):
+        yield {None: "null", True: "true", False: "false"}[value]
+    elif isinstance(value, Integral):
+        # Python refuses to write thousands of digits in tens, not in sixteens.
+        yield repr(int(value)) if int(value).bit_length() < 1000 else hex(int(value))
+    elif isinstance(value, float):
+        yield repr(float(value))
+    else:
+        yield _quoted(str(value), width)
+
+
+def _quoted(text: str, width: int) -> str:
+    return _escaped(json.dumps(text[: width + 1], ensure_ascii=False))
+
+
+def nearest(word: Any, known: Iterable[str]) -> str:
+    """``'; did you mean "x"?'``, or nothing when no known word is near."""
+    return did_you_mean(near(word, known))
+
+
+def did_you_mean(word: str | None) -> str:
+    """What :func:`nearest` says of a known word."""
+    return f'; did you mean "{word}"?' if word else ""
+
+
+def near(word: Any, known: Iterable[str]) -> str:
+    """The known word that is nearest, or nothing."""
+    return next(iter(difflib.get_close_matches(str(word)[:60], list(known), 1)), "")
+
+
+def listed(words: Iterable[Any], most: int = 24) -> str:
+    """Words with commas between, the first `most` of them."""
+    words = [str(word) for word in words]
+    return ", ".join(words[:most]) + (f" and {len(words) - most} more" if len(words) > most else "")
+
+
+# ------------------------------------------------------------------------------------------------- pydantic
+def scene_error(error: Any, data: Any, *, where: str = "") -> SceneError:
+    """Turn pydantic's ValidationError into a `SceneError` of all its problems.
 
     Parameters
     ----------
@@ -66,19 +174,23 @@ def first_problem(error: Any, data: Any, *, where: str = "") -> SceneError:
     where : str
         File or scene name put in front.
     """
-    first = error.errors(include_url=False)[0]
-    path = (*first["loc"], "kind") if first["type"].startswith("union_tag") else first["loc"]
-    cause = first.get("ctx", {}).get("error")
+    return SceneError.of(_plain_error(one, data, where) for one in error.errors(include_url=False, include_input=False))
+
+
+def _plain_error(one: Mapping, data: Any, where: str) -> SceneError:
+    path = (*one["loc"], "kind") if one["type"].startswith("union_tag") else one["loc"]
+    cause = one.get("ctx", {}).get("error")
     if isinstance(cause, SceneError):
         return cause.located(data, where=where, prefix=path)
-    return SceneError(_plain_words(first)).located(data, where=where, path=path)
+    return SceneError(_plain_words(one, data)).located(data, where=where, path=path)
 
 
-def _plain_words(first: Mapping) -> str:
-    kind, ctx = first["type"], first.get("ctx", {})
+def _plain_words(one: Mapping, data: Any) -> str:
+    kind, ctx = one["type"], one.get("ctx", {})
     words = {
         "missing": "this key is missing",
         "string_type": "must be a text in quotes",
+        "string_unicode": "must be a text of plain letters",
         "int_type": "must be a whole number",
         "list_type": "must be a list in square brackets",
         "tuple_type": "must be a list in square brackets",
@@ -89,7 +201,11 @@ def _plain_words(first: Mapping) -> str:
         "union_tag_invalid": f"unknown kind; write one of {ctx.get('expected_tags')}",
         "literal_error": f"must be {ctx.get('expected')}",
     }
-    return words.get(kind) or first["msg"].replace("Input should be", "must be").replace("Value error, ", "")
+    if kind in ("model_type", "model_attributes_type") and isinstance(_name_and_value(one["loc"], data)[1], list):
+        return f"must be a table of keys, given once: write [{one['loc'][-1]}] with single brackets"
+    if kind == "list_type" and isinstance(_name_and_value(one["loc"], data)[1], Mapping):
+        return f"must be a list: write [[{one['loc'][-1]}]] with double brackets before each"
+    return words.get(kind) or one["msg"].replace("Input should be", "must be").replace("Value error, ", "")
 
 
 def _name_and_value(path: tuple, data: Any) -> tuple[str, Any, bool]:
@@ -102,8 +218,9 @@ def _name_and_value(path: tuple, data: Any) -> tuple[str, Any, bool]:
             named, name = _child(data, "name") if known else (False, None)
             field += f" {show(name, 40)}" if named and isinstance(name, str) else ""
         else:
-            text = key if str(key).replace("_", "").isalnum() else json.dumps(str(key))
-            field += f".{text}" if field else str(text)
+            plain = len(str(key)) <= 40 and str(key).replace("_", "").isalnum()
+            text = str(key) if plain else show(str(key), 40)
+            field += f".{text}" if field else text
     return field, data, known and bool(path)
 
 
@@ -114,9 +231,3 @@ def _child(data: Any, key: Any) -> tuple[bool, Any]:
         inside = isinstance(data, Sequence) and not isinstance(data, str) and key < len(data)
         return (True, data[key]) if inside else (False, None)
     return (True, getattr(data, key)) if hasattr(data, key) else (False, None)
-
-
-def nearest(word: Any, known: Iterable[str]) -> str:
-    """``'; did you mean "x"?'``, or nothing when no known word is near."""
-    close = difflib.get_close_matches(str(word), list(known), 1)
-    return f'; did you mean "{close[0]}"?' if close else ""

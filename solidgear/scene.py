@@ -11,54 +11,53 @@ order (x, y, z, thx, thy, thz); y runs along the shaft and is 0 at its first end
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping
 from typing import Annotated, Any, Literal, TypeVar
 
 import numpy as np
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationError, model_validator
 
 from solidgear.bearing_stiffness import checked_matrix, stiffness_entries
-from solidgear.errors import SceneError, first_problem, nearest, show
+from solidgear.errors import TOLD, SceneError, did_you_mean, near, scene_error, show
 from solidgear.frames import DOF_NAMES
+from solidgear.scene_rules import MOST_MODES, MOST_SPRINGS, TOUCH, shaft_problems, station_problems, steps
 from solidgear.units import (
     POSITION_DECIMALS, SOFTEST, AxialSpring, Density, Frequency, Modulus, Poisson, Position, PositiveLength, Thickness, Tolerance, quantity,
 )  # fmt: skip
 
-#: m; two edges nearer than this are one edge
-TOUCH = 1e-9
-
-#: least diameter and least length of a part over the length of the shaft, least wall over the radius; what is thinner would
-#: ask for meshes without end, or drown in rounding, and comes from a slip in the units
-SLIMMEST, SHORTEST, THINNEST = 1e-3, 1e-6, 1e-4
-
-
 Attachment = Literal["average", "rigid", "section"]
 Status = Literal["published", "identified", "assumed", "measured"]
+
+
+def _few_springs(springs: Any) -> Any:
+    if isinstance(springs, (list, tuple)) and len(springs) > MOST_SPRINGS:
+        raise SceneError(f"{len(springs)} springs in series are more than the {MOST_SPRINGS} there may be; write their sum: 1/k = 1/k1 + 1/k2 + ...")
+    return springs
+
+
+AxialSeries = Annotated[tuple[AxialSpring, ...], BeforeValidator(_few_springs)]
 
 _Self = TypeVar("_Self", bound="Model")
 
 
 class Model(BaseModel):
-    """Frozen, validated, and one sentence when it refuses."""
+    """Frozen, validated, and one sentence for each problem when it refuses."""
 
     model_config = ConfigDict(extra="forbid", frozen=True)
 
     def __init__(self, /, **data: Any):
+        known = [field.alias or name for name, field in type(self).model_fields.items()]
+        strange = [key for key in data if key not in known]
+        meant = {key: near(key, known) for key in strange[:TOLD]}
+        problems = [SceneError(f"unknown key{did_you_mean(meant.get(key)) or '; known here: ' + ', '.join(known)}", path=(key,)) for key in strange]
         try:
-            super().__init__(**data)
+            super().__init__(**{key: data[key] for key in data if key in known})
         except ValidationError as error:
-            raise first_problem(error, data) from None
-
-    @model_validator(mode="before")
-    @classmethod
-    def _known_keys_only(cls, data: Any) -> Any:
-        # before pydantic's own check, whose first complaint about a misspelt key is that the right one is missing
-        if isinstance(data, Mapping):
-            known = [field.alias or name for name, field in cls.model_fields.items()]
-            for key in data:
-                if key not in known:
-                    raise SceneError(f"unknown key{nearest(key, known) or '; known here: ' + ', '.join(known)}", path=(key,))
-        return data
+            # where a key is misspelt, it is not also missing
+            absent = {(name,) for name in meant.values() if name not in data}
+            problems += [one for one in scene_error(error, data).problems if one.path not in absent]
+        if problems:
+            raise SceneError.of(one.located(data) for one in problems) from None
 
     def with_changes(self: _Self, **changes: Any) -> _Self:
         """A validated copy with some fields replaced. Raises `SceneError` like the constructor."""
@@ -145,7 +144,7 @@ class Bearing(Model):
     y: Position
     seat_width: PositiveLength
     matrix: Annotated[tuple[tuple[float, ...], ...], BeforeValidator(checked_matrix)]
-    axial_series: tuple[AxialSpring, ...] = ()
+    axial_series: AxialSeries = ()
     attachment: Attachment = "average"
     status: Status = "assumed"
     note: str = ""
@@ -210,7 +209,7 @@ class Ask(Model):
     `quantities` names what models are judged by; empty is the usual set, compliances with first bending and first axial mode.
     """
 
-    modes: Annotated[int, Field(strict=True, ge=1)] = 10
+    modes: Annotated[int, Field(strict=True, ge=1, le=MOST_MODES)] = 10
     max_frequency: Frequency | None = None
     tolerance: Tolerance = 0.05
     quantities: tuple[Quantity, ...] = ()
@@ -236,8 +235,10 @@ class Scene(Model):
 
     @model_validator(mode="after")
     def _hangs_together(self) -> Scene:
-        _check_shaft(self.segments)
-        _check_stations(self)
+        # a station can be judged only on a shaft that is sound
+        bearings = dict(enumerate(self.bearings))
+        if problems := [*shaft_problems(self.segments)] or [*station_problems(self.segments, self.port, bearings)]:
+            raise SceneError.of(problems)
         return self
 
     @classmethod
@@ -280,8 +281,7 @@ class Scene(Model):
     @property
     def steps(self) -> tuple[float, ...]:
         """y (m) where the outer radius jumps, end faces left out."""
-        pairs = zip(self.segments, self.segments[1:])
-        return tuple(b.y0 for a, b in pairs if abs(a.outer1 - b.outer0) > 1e-9 * a.outer1)
+        return steps(self.segments)
 
     def with_changes(self, **changes: Any) -> Scene:
         """A validated copy with some fields replaced; a new `material` also replaces the old default in the segments."""
@@ -320,71 +320,3 @@ class Scene(Model):
         for row, bearing in zip(data["bearings"], self.bearings):
             row |= {"lo": bearing.lo, "hi": bearing.hi, "stiffness": bearing.stiffness.tolist(), "entries": stiffness_entries(row.pop("matrix"))}
         return data | {"length": self.length, "steps": list(self.steps)}
-
-
-def _check_shaft(segments: Sequence[Segment]) -> None:
-    if not segments:
-        raise SceneError("a scene needs at least one segment", path=("segments",))
-    end, names = 0.0, set()
-    for i, segment in enumerate(segments):
-        if abs(segment.y0 - end) > TOUCH:
-            raise SceneError(f"segments lie end to end from y = 0, so this must be {end:.6g}", path=("segments", i, "y0"))
-        if segment.name in names:
-            raise SceneError("another segment has this name; each needs its own", path=("segments", i, "name"))
-        if max(segment.outer0, segment.outer1) > 10.0:
-            radius = max(segment.outer0, segment.outer1)
-            raise SceneError(f"a radius of {radius:.6g} m is above 10 m: probably wrong units", path=("segments", i, "outer0"))
-        if i and not max(segments[i - 1].inner1, segment.inner0) < min(segments[i - 1].outer1, segment.outer0):
-            raise SceneError(
-                f'shares no end face with "{segments[i - 1].name}" (radii {segments[i - 1].inner1:.6g} to {segments[i - 1].outer1:.6g} m there, '
-                f"{segment.inner0:.6g} to {segment.outer0:.6g} m here); they must overlap",
-                path=("segments", i, "outer0"),
-            )
-        end = segment.y1
-        names.add(segment.name)
-    if not 1e-3 <= end <= 20.0:
-        i = max(range(len(segments)), key=lambda k: segments[k].length)
-        raise SceneError(f"the shaft is {end:.6g} m long, outside 1 mm to 20 m: probably wrong units", path=("segments", i, "y1"))
-
-
-    for i, segment in enumerate(segments):
-        for at in "01":
-            outer, inner = getattr(segment, "outer" + at), getattr(segment, "inner" + at)
-            if 2 * outer < SLIMMEST * end:
-                reason = f"a diameter of {2 * outer:.6g} m is under a thousandth of the length of the shaft, {end:.6g} m: probably wrong units"
-                raise SceneError(reason, path=("segments", i, "outer" + at))
-            if outer - inner < THINNEST * outer:
-                reason = f"leaves a wall of {outer - inner:.3g} m at a radius of {outer:.6g} m, under one in ten thousand: probably wrong units"
-                raise SceneError(reason, path=("segments", i, "inner" + at))
-        if segment.length < SHORTEST * end:
-            reason = f"a segment of {segment.length:.6g} m is under a millionth of the length of the shaft, {end:.6g} m: probably wrong units"
-            raise SceneError(reason, path=("segments", i, "y1"))
-
-
-def _check_stations(scene: Scene) -> None:
-    """Ports and seats lie on the shaft, on one smooth surface each, and seats do not share any of it."""
-    length, steps = scene.length, scene.steps
-    if not -TOUCH <= scene.port.y <= length + TOUCH:
-        raise SceneError(f"the port is at y = {scene.port.y:.6g} m, outside the shaft (0 to {length:.6g} m)", path=("port", "y"))
-    if scene.port.hi <= scene.port.lo:
-        raise SceneError(f"the span must end beyond its start at {scene.port.lo:.6g} m", path=("port", "hi"))
-    places = [(("port", "hi"), scene.port, "attached span")]
-    places += [(("bearings", i, "seat_width"), bearing, "seat") for i, bearing in enumerate(scene.bearings)]
-    names = set()
-    for k, (path, here, what) in enumerate(places):
-        if here.name in names:
-            raise SceneError("the port or another bearing has this name; each needs its own", path=(*path[:-1], "name"))
-        names.add(here.name)
-        reach = f"the {what} reaches from {here.lo:.6g} to {here.hi:.6g} m"
-        if here.lo < -TOUCH or here.hi > length + TOUCH:
-            raise SceneError(f"{reach}, which must lie inside the shaft (0 to {length:.6g} m)", path=path)
-        if here.hi - here.lo < SHORTEST * length:
-            raise SceneError(f"{reach}, under a millionth of the length of the shaft, {length:.6g} m: probably wrong units", path=path)
-        for step in steps:
-            if here.lo + TOUCH < step < here.hi - TOUCH:
-                raise SceneError(f"{reach}, across the step of the outer radius at {step:.6g} m; it must end there", path=path)
-        for _, other, other_what in places[:k]:
-            # the port may share a seat's surface, unless both hold it rigid: that would weld the two points together
-            both = other_what == what or other.attachment == here.attachment == "rigid"
-            if both and min(here.hi, other.hi) - max(here.lo, other.lo) > TOUCH:
-                raise SceneError(f'{reach} and overlaps that of "{other.name}" ({other.lo:.6g} to {other.hi:.6g} m)', path=path)

@@ -1,21 +1,24 @@
 """From a TOML file to a `Scene`: datums and gear heads resolved, errors named by the keys of the file.
 
-The format is documented by the files in ``geometry``.
+The format is documented by the files in ``geometry``. Every problem of a file is told at once: of all tables on their own, of all names that
+they use of each other, and of the places of all that is sound so far.
 """
 
 from __future__ import annotations
 
 import math
 import os
-import tomllib
+from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
 from pydantic import AfterValidator, Field, model_validator
 
 from solidgear.bearing_stiffness import stiffness_matrix
-from solidgear.errors import SceneError, nearest
-from solidgear.scene import Ask, Attachment, Bearing, Material, Model, Port, Scene, Segment, Status
+from solidgear.errors import SceneError, listed, nearest
+from solidgear.scene import Ask, Attachment, AxialSeries, Bearing, Material, Model, Port, Scene, Segment, Status
+from solidgear.scene_rules import MOST_BEARINGS, MOST_SEGMENTS, shaft_problems, station_problems, too_many
+from solidgear.toml_file import parse
 from solidgear.units import Angle, AxialSpring, Density, Length, Modulus, Poisson, PositiveLength, Thickness
 
 _WORDS = ("start", "end", "bearing")  # first words of datums, so no segment may be called that
@@ -125,7 +128,7 @@ class _BearingTable(Model):
     seat_width: PositiveLength
     stiffness: Annotated[dict[str, Any], AfterValidator(_entries)] | None = None
     matrix: list[Any] | None = None
-    axial_series: tuple[AxialSpring, ...] = ()
+    axial_series: AxialSeries = ()
     attachment: Attachment | None = None
     status: Status = "assumed"
     note: str = ""
@@ -177,118 +180,189 @@ class _SceneTable(Model):
     ask: Ask = Ask()
 
 
+class _SoundTables(_SceneTable):
+    """What is left of a file without the tables that cannot be used."""
+
+    port: _PortTable | None = None
+
+
 def _drop_tag(loc: tuple) -> tuple:
     """pydantic puts the kind of a segment into its location; the file has no such key."""
     return (*loc[:2], *loc[3:]) if loc[:1] == ("segment",) and loc[2:3] and loc[2] in _KINDS else loc
 
 
-class _Datums:
-    """Positions along y that a file can measure from, by name."""
-
-    def __init__(self, length: float):
-        self.y = {"start": 0.0, "end": length}
-
-    def segment(self, name: str, lo: float, hi: float) -> None:
-        self.y |= {f"{name}.start": lo, f"{name}.end": hi, f"{name}.middle": (lo + hi) / 2}
-
-    def find(self, text: str, path: tuple) -> float:
-        if text not in self.y:
-            raise SceneError(f"unknown datum{nearest(text, self.y)}; known here: {', '.join(self.y)}", path=path)
-        return self.y[text]
-
-
+# ------------------------------------------------------------------------------------------------- reading
 def load(path: str | os.PathLike) -> Scene:
     """Read and resolve a scene file.
 
     Raises
     ------
     SceneError
-        One line: the file, the key (``bearing[2] "2".seat_width``, counted from one), the value as written, what would be right.
+        The file, the key (``bearing[2] "2".seat_width``, counted from one), the value as written, what would be right: one line for each
+        problem, in the order of the file.
     """
     where = os.fspath(path)
-    raw = _parse(where)
+    raw = parse(where)
     try:
-        try:
-            table = _SceneTable(**raw)
-        except SceneError as error:
-            error.path = _drop_tag(error.path)
-            raise
-        return _resolve(table, Path(where).stem)
+        return _read(raw, Path(where).stem)
     except SceneError as error:
-        raise error.located(raw, where=where) from None
+        problems = {(one.path, one.reason): one for one in error.problems}  # both ends of a cylinder are one diameter
+        order = _FileOrder(raw)
+        ordered = sorted(problems.values(), key=lambda one: order.of(one.path))
+        raise SceneError.of(ordered).located(raw, where=where) from None
 
 
-LARGEST = 4_000_000  # bytes; a scene takes some thousands
+def _read(raw: dict[str, Any], name: str) -> Scene:
+    for what, most in (("segment", MOST_SEGMENTS), ("bearing", MOST_BEARINGS)):
+        if isinstance(raw.get(what), list) and len(raw[what]) > most:
+            raise SceneError(too_many(f"{what}s", len(raw[what]), most), path=(what,))
+    problems: list[SceneError] = []
+    table, numbers = _tables(raw, problems)
+    problems += _unknown_names(raw)
+    if table is None:
+        raise SceneError.of(problems)
+    return _resolve(table, numbers, name, problems)
 
 
-def _parse(where: str) -> dict[str, Any]:
+def _tables(raw: dict[str, Any], problems: list[SceneError]) -> tuple[_SceneTable | None, list[int]]:
+    """The tables that are sound each by itself, and which bearings of the file are among them; None without a whole shaft."""
+    count = len(raw["bearing"]) if isinstance(raw.get("bearing"), list) else 0
     try:
-        with Path(where).open("rb") as file:
-            text = file.read(LARGEST + 1)
-        if len(text) > LARGEST:
-            raise SceneError(f"this is no scene: it is larger than {LARGEST // 10**6} MB", where=where)
-        return tomllib.loads(text.decode("utf-8-sig"))
-    except FileNotFoundError:
-        reason = "there is no such file"
-    except IsADirectoryError:
-        reason = "this is a folder; give the TOML file in it"
-    except UnicodeDecodeError as error:
-        reason = f"not UTF-8 text (byte {error.start}); save the file as UTF-8"
-    except tomllib.TOMLDecodeError as error:
-        reason = f"not valid TOML: {error}"
-    except RecursionError:
-        reason = "not a scene: its tables are nested too deeply"
-    except (OSError, ValueError) as error:
-        reason = f"cannot be read: {getattr(error, 'strerror', None) or error}"
-    raise SceneError(reason, where=where)
+        return _SceneTable(**raw), list(range(count))
+    except SceneError as error:
+        found = [one.located(raw, path=_drop_tag(one.path)) for one in error.problems]
+    problems += found
+    spoilt = {one.path[: 2 if one.path[0] in ("segment", "bearing") else 1] for one in found}
+    if ("bearing",) in spoilt or any(place[0] in ("segment", "material") for place in spoilt):
+        return None, []
+    numbers = [k for k in range(count) if ("bearing", k) not in spoilt]
+    sound = {key: raw[key] for key in ("material", "segment", "attachment", "port") if key in raw and (key,) not in spoilt}
+    return _SoundTables(**sound, bearing=[raw["bearing"][k] for k in numbers]), numbers
 
 
-def _resolve(table: _SceneTable, name: str) -> Scene:
+class _FileOrder:
+    """Where entries stand in a file."""
+
+    def __init__(self, raw: Mapping):
+        self.raw = raw
+        self.places: dict[int, dict] = {}
+
+    def of(self, path: tuple) -> list[int]:
+        """Places of the keys of a path in their tables, the last one for a key that is missing."""
+        out, here = [], self.raw
+        for key in path:
+            if id(here) not in self.places:
+                keys = here if isinstance(here, Mapping) else range(len(here)) if isinstance(here, list) else ()
+                self.places[id(here)] = {key: place for place, key in enumerate(keys)}
+            places = self.places[id(here)]
+            if key not in places:
+                return [*out, len(places)]
+            out.append(places[key])
+            here = here[key]
+        return out
+
+
+# ------------------------------------------------------------------------------------------------- names
+_PIECES = {"bevel_head": ("start", "end", "middle", "mid_face")}
+_EVERY_PIECE = ("start", "end", "middle")
+
+
+def _unknown_names(raw: dict[str, Any]) -> Iterator[SceneError]:
+    """Names of segments that are taken twice, and datums and segments that are asked for but are not there.
+
+    Read from the file as it stands, since a segment of a wrong length still has its name.
+    """
+    pieces, bearings, port = _list_of_tables(raw.get("segment")), _list_of_tables(raw.get("bearing", [])), raw.get("port")
+    if pieces is None or not all(isinstance(piece.get("name"), str) for piece in pieces):
+        return  # what is meant by a name cannot be told
+    known, segments = ["start", "end"], []
+    for i, piece in enumerate(pieces):
+        if piece["name"] in segments:
+            yield SceneError("another segment has this name; each needs its own", path=("segment", i, "name"))
+        segments.append(piece["name"])
+        known += [f"{piece['name']}.{part}" for part in _PIECES.get(str(piece.get("kind")), _EVERY_PIECE)]
+    for i, bearing in enumerate(bearings or ()):
+        yield from _unknown_datum(bearing.get("from"), known, ("bearing", i, "from"))
+        known.append(f"bearing.{bearing.get('name')}")
+    if isinstance(port, Mapping) and bearings is not None:
+        for key in ("at", "from"):
+            yield from _unknown_datum(port.get(key), known, ("port", key))
+        carrier = port.get("attach_to")
+        if isinstance(carrier, str) and carrier not in segments:
+            yield SceneError(f"unknown segment{nearest(carrier, segments)}; known here: {listed(segments)}", path=("port", "attach_to"))
+
+
+def _list_of_tables(value: Any) -> list[Mapping] | None:
+    return value if isinstance(value, list) and all(isinstance(entry, Mapping) for entry in value) else None
+
+
+def _unknown_datum(text: Any, known: list[str], path: tuple) -> Iterable[SceneError]:
+    if isinstance(text, str) and text not in known:
+        yield SceneError(f"unknown datum{nearest(text, known)}; known here: {listed(known)}", path=path)
+
+
+# ------------------------------------------------------------------------------------------------- places
+def _resolve(table: _SceneTable, numbers: list[int], name: str, problems: list[SceneError]) -> Scene:
+    """The scene, if nothing is wrong with the places of its parts nor was before."""
     if not table.segment:
-        raise SceneError("a scene needs at least one [[segment]]", path=("segment",))
-    segments, owner, frusta, ends = _lay_out(table)
-    datums = _Datums(segments[-1].y1)
-    for index, (piece, (lo, hi)) in enumerate(zip(table.segment, ends)):
-        if f"{piece.name}.start" in datums.y:
-            raise SceneError("another segment has this name; each needs its own", path=("segment", index, "name"))
-        datums.segment(piece.name, lo, hi)
-        if piece.kind == "bevel_head":
-            frustum = frusta[piece.name]
-            datums.y[f"{piece.name}.mid_face"] = (frustum[0] + frustum[1]) / 2
-    bearings = [_bearing(item, index, table.attachment, datums) for index, item in enumerate(table.bearing)]
-    port = _port(table.port, table.attachment, datums, frusta)
-    housing = table.housing.axial if table.housing else None
+        raise SceneError.of([*problems, SceneError("a scene needs at least one [[segment]]", path=("segment",))])
+    segments, owner, surface, datums = _lay_out(table, problems)
+    if segments is not None:
+        shaft = shaft_problems(segments)
+        problems += [one.located(None, path=_file_path(one.path, table, owner)) for one in shaft]
+        segments = None if shaft else segments
+    if segments is None:
+        raise SceneError.of(problems)
+    bearings = {}
+    for index, item in zip(numbers, table.bearing):
+        if item.from_ in datums:  # else said before, or measured from a bearing that was refused
+            try:
+                bearings[index] = _bearing(item, index, table.attachment, datums)
+            except SceneError as error:
+                problems.append(error)
+    port = None
     try:
-        return Scene.from_parts(segments, table.material, bearings, port, title=table.title, name=name, source=table.source,
-                                housing_axial=housing, ask=table.ask)  # fmt: skip
+        port = _port(table.port, table.attachment, datums, surface) if table.port else None
     except SceneError as error:
-        error.path = _file_path(error.path, table, owner)
-        raise
+        problems.append(error)
+    problems += [one.located(None, path=_file_path(one.path, table, owner)) for one in station_problems(segments, port, bearings)]
+    if problems:
+        raise SceneError.of(problems)
+    return Scene.from_parts(segments, table.material, bearings.values(), port, title=table.title, name=name, source=table.source,
+                            housing_axial=table.housing.axial if table.housing else None, ask=table.ask)  # fmt: skip
 
 
-def _lay_out(table: _SceneTable):
-    """Segments end to end; which [[segment]] each came from; surface a port may take, and both ends, of each [[segment]]."""
-    segments, owner, surface, ends, y = [], [], {}, [], 0.0
+def _lay_out(table: _SceneTable, problems: list[SceneError]):
+    """Segments end to end (None if one cannot be); which [[segment]] each came from; the surface of each by name; and all datums."""
+    segments, owner, surface, datums, y = [], [], {}, {"start": 0.0}, 0.0
     for index, piece in enumerate(table.segment):
         material = table.material.with_changes(**piece.material.model_dump(exclude_none=True))
         start = y
         for name, part, length, outer0, outer1 in piece.pieces():
             if length <= 1e-9:
                 key = {"frustum": "face_width", "backcone": "backcone", "shaft": "length"}[part]
-                raise SceneError("is less than a nanometre along the shaft: probably wrong units", path=("segment", index, key))
+                problems.append(SceneError("is less than a nanometre along the shaft: probably wrong units", path=("segment", index, key)))
+                continue
             inner = piece.bore / 2
-            segments.append(Segment(name=name, y0=y, y1=y + length, outer0=outer0, outer1=outer1, inner0=inner, inner1=inner,
-                                    material=material, part=part))  # fmt: skip
+            try:
+                segments.append(Segment(name=name, y0=y, y1=y + length, outer0=outer0, outer1=outer1, inner0=inner, inner1=inner,
+                                        material=material, part=part))  # fmt: skip
+            except SceneError as error:
+                problems.append(error.located(None, path=_file_path(("segments", index, error.path[0]), table, range(index + 1))))
+                continue
             owner.append(index)
             y = segments[-1].y1
             if part != "backcone":
                 surface[piece.name] = (segments[-1].y0, y)
-        ends.append((start, y))
-    return segments, owner, surface, ends
+                if piece.kind == "bevel_head":
+                    datums[f"{piece.name}.mid_face"] = (segments[-1].y0 + y) / 2
+        datums |= {f"{piece.name}.start": start, f"{piece.name}.end": y, f"{piece.name}.middle": (start + y) / 2}
+    whole = len(segments) == sum(len(piece.pieces()) for piece in table.segment)
+    return segments if whole else None, owner, surface, datums | {"end": y}
 
 
-def _bearing(item: _BearingTable, index: int, attachment: str, datums: _Datums) -> Bearing:
-    y = item.position + datums.find(item.from_, ("bearing", index, "from"))
+def _bearing(item: _BearingTable, index: int, attachment: str, datums: dict[str, float]) -> Bearing:
+    y = item.position + datums[item.from_]
     given = item.stiffness if item.matrix is None else item.matrix
     try:
         bearing = Bearing(name=item.name, y=y, seat_width=item.seat_width, stiffness=given, axial_series=item.axial_series,
@@ -296,22 +370,17 @@ def _bearing(item: _BearingTable, index: int, attachment: str, datums: _Datums) 
     except SceneError as error:
         key = "stiffness" if item.matrix is None else "matrix"
         raise SceneError(error.reason, path=("bearing", index, key), value=error.value) from None
-    datums.y[f"bearing.{item.name}"] = bearing.y
+    datums[f"bearing.{item.name}"] = bearing.y
     return bearing
 
 
-def _port(item: _PortTable, attachment: str, datums: _Datums, surface: dict[str, tuple[float, float]]) -> Port:
-    if item.at is not None:
-        y = datums.find(item.at, ("port", "at"))
-    else:
-        y = item.position + datums.find(item.from_ or "start", ("port", "from"))
-    if item.span is not None:
-        lo, hi = item.span
-    elif item.attach_to in surface:
-        lo, hi = surface[item.attach_to]
-    else:
-        raise SceneError(f"unknown segment{nearest(item.attach_to, surface)}; known here: {', '.join(surface)}", path=("port", "attach_to"))
-    return Port(name=item.name, y=y, lo=lo, hi=hi, attachment=item.attachment or attachment)
+def _port(item: _PortTable, attachment: str, datums: dict[str, float], surface: dict[str, tuple[float, float]]) -> Port | None:
+    """The port, or None where it names what is not there."""
+    datum = item.at or item.from_ or "start"
+    if datum not in datums or not (item.span or item.attach_to in surface):
+        return None
+    lo, hi = item.span or surface[item.attach_to]
+    return Port(name=item.name, y=datums[datum] + (item.position or 0.0), lo=lo, hi=hi, attachment=item.attachment or attachment)
 
 
 def _file_path(path: tuple, table: _SceneTable, owner: list[int]) -> tuple:
@@ -323,6 +392,9 @@ def _file_path(path: tuple, table: _SceneTable, owner: list[int]) -> tuple:
             length = "face_width" if kind == "bevel_head" else "length"
             key = {"outer0": start, "outer1": end, "inner0": "bore", "inner1": "bore", "y1": length}.get(key, key)
             return ("segment", owner[index], key)
+        case ("segments", index, "material", key):
+            own = getattr(table.segment[owner[index]].material, key) is not None
+            return ("segment", owner[index], "material", key) if own else ("material", key)
         case ("bearings", index, key):
             return ("bearing", index, {"y": "position"}.get(key, key))
         case ("port", "y"):

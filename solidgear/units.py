@@ -33,7 +33,11 @@ DIMENSIONS: dict[str, tuple[str, str, tuple[int, ...]]] = {
 #: no quantity of a scene is larger than this in SI, and no spring softer: squares and products of such numbers neither overflow nor vanish
 LARGEST, SOFTEST = 1e24, 1e-30
 
+#: letters of a quantity
+LONGEST = 200
+
 _TEXT = re.compile(r"\s*(?P<number>[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?|[+-]?(?:nan|inf)\b)\s*(?P<unit>.*?)\s*", re.S | re.I)
+_COMMA = re.compile(r"\s*[+-]?\d*,\d")
 _UNIT = re.compile(r"[^\W\d_][^\W\d]*|%|\d|[\s*/^().·-]", re.U)
 
 
@@ -78,6 +82,10 @@ def quantity(value: Any, dimension: str) -> float:
 def _read_text(text: str, dimension: str) -> float:
     si, example, powers = DIMENSIONS[dimension]
     value, name = show(text), dimension.replace("_", " ")
+    if len(text) > LONGEST:  # before any pattern looks at it: their time grows with the square
+        raise SceneError(f"an unknown unit, or no quantity at all: {len(text)} letters; write for example \"{example}\"", value=value)
+    if _COMMA.match(text):
+        raise SceneError(f"has a comma: decimals take a point, and thousands no mark, as in \"{example}\"", value=value)
     match = _TEXT.fullmatch(text)
     if match is None:
         raise SceneError(f"must be a number with a unit, such as \"{example}\"", value=value)
@@ -149,7 +157,8 @@ PositiveLength = Annotated[Length, _POSITIVE]
 Thickness = Annotated[Length, _NOT_NEGATIVE]
 Angle = Annotated[float, _in("angle"), _must(lambda v: 0 < v < math.pi / 2, "must lie between 0 and 90 degrees (0 and 1.571 rad)")]
 Modulus = Annotated[float, _in("pressure"), _POSITIVE, _must(lambda v: v >= 1, "is below 1 Pa, softer than any solid: probably wrong units")]
-Density = Annotated[float, _in("density"), _POSITIVE, _must(lambda v: v >= 1e-6, "is below 1e-6 kg/m^3, lighter than any solid: probably wrong units")]
+Density = Annotated[float, _in("density"), _POSITIVE, _must(lambda v: v >= 1e-6, "is below 1e-6 kg/m^3, lighter than any solid: probably wrong units"),
+                    _must(lambda v: v <= 1e8, "is above 1e8 kg/m^3, denser than any solid (osmium has 22600): probably wrong units")]  # fmt: skip
 Poisson = Annotated[float, _in("dimensionless"), _must(lambda v: -1 < v < 0.5, "must lie between -1 and 0.5, both excluded; steel is 0.3")]
 AxialSpring = Annotated[float, _in("force_per_length"), _POSITIVE, _must(lambda v: v >= SOFTEST, f"is softer than {SOFTEST:g} N/m, which is no spring: leave it out")]
 Frequency = Annotated[float, _in("frequency"), _POSITIVE]

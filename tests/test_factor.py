@@ -112,9 +112,9 @@ def test_large_matrices_take_the_fastest_there_and_say_what_is_missing(monkeypat
     absent = {"pardiso": "pypardiso is not usable (ImportError)", "cholmod": "", "mumps": ""}
     monkeypatch.setattr(factor, "missing", lambda name: absent.get(name, ""))
     matrix = sp.identity(SMALL + 1, format="csr")
-    assert factor._choice(matrix, None, False)[0] == "cholmod"
+    assert factor.choice(matrix, None, False)[0] == "cholmod"
     absent["cholmod"] = "scikit-sparse is not usable (ImportError)"
-    assert factor._choice(matrix, None, False)[0] == "mumps"
+    assert factor.choice(matrix, None, False)[0] == "mumps"
     absent["mumps"] = "python-mumps is not usable (ImportError)"
     found = factorise(matrix)
     assert found.backend == "superlu" and str(SMALL) in found.reason
@@ -123,10 +123,10 @@ def test_large_matrices_take_the_fastest_there_and_say_what_is_missing(monkeypat
     with pytest.raises(FactorError, match=r"pardiso was asked for but pypardiso is not usable"):
         factorise(sp.identity(3, format="csr"), "pardiso")
     absent.clear()
-    assert factor._choice(matrix, None, False) == ("pardiso", f"{SMALL + 1} unknowns are above {SMALL}")
+    assert factor.choice(matrix, None, False) == ("pardiso", f"{SMALL + 1} unknowns are above {SMALL}")
     # planar matrices too large for SuperLU's indices are treated like solids
     monkeypatch.setattr(factor, "LARGE_PLANAR", SMALL)
-    assert factor._choice(matrix, None, True)[0] == "pardiso"
+    assert factor.choice(matrix, None, True)[0] == "pardiso"
 
 
 def test_environment_forces_a_backend(monkeypatch, plane):

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from solidgear.errors import SceneError
+from solidgear.errors import SceneError, SolidgearError
 from solidgear.scene import Bearing, Material, Port, Scene, Segment
 from solidgear.scene_file import load
 
@@ -59,7 +59,7 @@ def test_a_case_follows_from_its_number(fuzz):
         (lambda path: __import__("warnings").warn("overflow", RuntimeWarning), "RuntimeWarning"),
         (lambda path: (_ for _ in ()).throw(SceneError("two\u2028lines", where=path.name)), ""),
         (lambda path: (_ for _ in ()).throw(SceneError("of no file")), "does not name the file"),
-        (lambda path: (_ for _ in ()).throw(SceneError("rings \x07 the bell", where=path.name)), "not fit for a terminal"),
+        (lambda path: (_ for _ in ()).throw(SolidgearError(f"{path.name} rings \x07 the bell")), "not fit for a terminal"),
     ],
 )
 def test_what_the_fuzz_calls_a_finding(fuzz, broken, says, monkeypatch, tmp_path):

@@ -29,7 +29,7 @@ from solidgear.cli import chart  # noqa: F401
 from solidgear.cli import sweep  # noqa: F401
 # fmt: on
 from solidgear.cli.app import app
-from solidgear.errors import SolidgearError
+from solidgear.errors import SceneError, SolidgearError, printable
 from solidgear.interruptible import leave
 
 if _hears:
@@ -37,7 +37,7 @@ if _hears:
 
 
 def main() -> None:
-    """Entry point: errors raised on purpose become one sentence and exit code 1."""
+    """Entry point: errors raised on purpose become one sentence (a scene's, one for each problem) and exit code 1."""
     try:
         _run()
     except SystemExit as end:
@@ -51,7 +51,8 @@ def _run() -> None:
         print("solidgear: interrupted", file=sys.stderr)
         sys.exit(130)
     except SolidgearError as error:
-        print(f"solidgear: {error}", file=sys.stderr)
+        # The problems of a scene are lines of their own; whatever else is quoted in a message must not break it into several.
+        print(f"solidgear: {error if isinstance(error, SceneError) else printable(str(error))}", file=sys.stderr)
         sys.exit(1)
     except OSError as error:  # a full disk behind a redirected output, say; files of our own are guarded where they are written
         if isinstance(error, BrokenPipeError):

@@ -10,7 +10,7 @@ from typing import Annotated, Optional
 
 import typer
 
-from solidgear.errors import SolidgearError
+from solidgear.errors import SolidgearError, show
 
 app = typer.Typer(
     no_args_is_help=True,
@@ -40,12 +40,14 @@ Settings = Annotated[
 
 
 def options(pairs: list[str] | None) -> dict:
-    """Builder options from ``key=value`` texts; numbers as numbers."""
+    """Builder options from ``key=value`` texts; numbers as numbers, a list with commas as a tuple."""
     out: dict = {}
     for pair in pairs or []:
         key, sep, text = pair.partition("=")
         if not sep or not key.isidentifier():
-            raise SolidgearError(f"--set {pair}: write key=value, such as --set order=8")
+            raise SolidgearError(f"--set {show(pair)}: write key=value, such as --set order=8")
+        if key in out:
+            raise SolidgearError(f"--set {show(pair)}: {key} is set twice; set it once, lists with commas such as ovalising=2,3")
         out[key] = tuple(_value(part) for part in text.split(",")) if "," in text else _value(text)
     return out
 
@@ -73,14 +75,10 @@ def _value(text: str):
 def build_body(scene, fidelity: Fidelity, pairs):
     """Body of a scene at one fidelity, with ``--set`` options."""
     from solidgear.fidelity import build
+    from solidgear.fidelity.options import checked
 
-    try:
-        return build(scene, fidelity.value, **options(pairs))
-    except TypeError as error:
-        if "unexpected keyword" in str(error):
-            word = str(error).rsplit("'", 2)[-2]
-            raise SolidgearError(f"--set {word}: the {fidelity.value} model has no such option; its docstring lists them") from None
-        raise
+    # Checked here too: an option called scene or fidelity would be taken for an argument of `build`.
+    return build(scene, fidelity.value, **checked(fidelity.value, options(pairs)))
 
 
 def console():

@@ -9,7 +9,7 @@ from typing import Annotated, Optional
 import typer
 
 from solidgear.cli.app import Fidelity, FidelityOption, JsonFlag, Progress, SceneFile, Settings, build_body, command, console, options_by_model
-from solidgear.errors import SolidgearError
+from solidgear.errors import SolidgearError, show
 
 
 @command
@@ -136,12 +136,15 @@ def modes(
     """Natural frequencies on the bearings, with the evidence for them."""
     from solidgear.check import cautions
     from solidgear.scene_file import load
+    from solidgear.scene_rules import MOST_MODES
     from solidgear.solve.modes import modes as solve
 
-    loaded = load(scene)
-    body = build_body(loaded, fidelity, settings)
     if max_frequency is not None and not max_frequency > 0:
         raise SolidgearError(f"--max-frequency {max_frequency:g}: must be greater than zero, in Hz")
+    if n is not None and not 1 <= n <= MOST_MODES:
+        raise SolidgearError(f"-n {show(n)} is not a number of modes that can be asked for; give 1 to {MOST_MODES}")
+    loaded = load(scene)
+    body = build_body(loaded, fidelity, settings)
     found = solve(body, loaded, loaded.ask.modes if n is None else n, max_frequency=max_frequency or loaded.ask.max_frequency, count=count)
     said = cautions(loaded, body)
     rows = [{"name": m.name, "family": m.family, "frequency_hz": m.frequency_hz, "multiplicity": m.multiplicity, "error": m.error} for m in found.modes]

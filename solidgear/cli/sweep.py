@@ -49,10 +49,12 @@ def sweep(
     from rich.console import Console
     from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
 
+    from solidgear.fidelity.options import checked
     from solidgear.scene_file import load
     from solidgear.sweep import sweep as run
 
     loaded = load(scene)
+    given = checked(fidelity.value, options(settings))  # before a file of rows is begun
     terminal = Console(stderr=True, highlight=False)
     bar = Progress(TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeRemainingColumn(), console=terminal, disable=as_json or not terminal.is_terminal)
     reached = [0, 0]
@@ -68,7 +70,7 @@ def sweep(
                 terminal.print(f"solidgear: {text}", markup=False, emoji=False, soft_wrap=True)
 
             found = run(
-                loaded, vary, out, fidelity=fidelity.value, options=options(settings), n=n, sample=sample, seed=seed, tolerance=tolerance, jobs=jobs,
+                loaded, vary, out, fidelity=fidelity.value, options=given, n=n, sample=sample, seed=seed, tolerance=tolerance, jobs=jobs,
                 dask=dask, overwrite=overwrite, build=lambda shaft, *_, **__: build_body(shaft, fidelity, settings), progress=show,
                 tell=tell,
             )  # fmt: skip

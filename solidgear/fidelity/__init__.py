@@ -24,8 +24,15 @@ def build(scene, fidelity: str, **options) -> Body:
     Raises
     ------
     SolidgearError
-        For an unknown fidelity.
+        For an unknown fidelity, an option it does not have or cannot use (:data:`solidgear.fidelity.options.OPTIONS`), or a model that
+        will not fit into memory.
     """
+    if fidelity in FIDELITIES:
+        from solidgear.fidelity.options import checked
+        from solidgear.fidelity.size import refuse_too_large
+
+        options = checked(fidelity, options)
+        refuse_too_large(scene, fidelity, options)
     if fidelity == "euler":
         from solidgear.fidelity.beam import beam
 

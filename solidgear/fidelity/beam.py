@@ -24,7 +24,7 @@ import scipy.sparse as sp
 from solidgear.body import Block, Body, Port
 from solidgear.errors import SolidgearError
 from solidgear.fidelity.attachment import tie_rigidly
-from solidgear.fidelity.options import number
+from solidgear.fidelity.options import checked
 from solidgear.fidelity.scale import elastic_scale
 
 # Shortest Euler element over the length of the shaft.
@@ -91,20 +91,11 @@ def beam(
     Body
         Four blocks (axial, torsion and the two bending planes).
     """
-    number("beam", "elements", elements, least=1, whole=True)
-    if head not in ("cone", "mean"):
-        raise SolidgearError(f"head: {head!r} is unknown; use 'cone' or 'mean'")
-    if mass not in ("consistent", "lumped"):
-        raise SolidgearError(f"mass: {mass!r} is unknown; use 'consistent' or 'lumped'")
-    if kappa not in ("hutchinson", "cowper"):
-        raise SolidgearError(f"kappa: {kappa!r} is unknown; use 'hutchinson' or 'cowper'")
+    checked("timoshenko" if shear else "euler", {"head": head, "mass": mass, "kappa": kappa, "elements": elements, "attachments": attachments})
     if kappa == "cowper" and any(s.inner0 or s.inner1 for s in scene.segments):
         raise SolidgearError("kappa: 'cowper' is given for solid sections only; use 'hutchinson' for a hollow shaft")
     wanted = [(s, a) for s in scene.stations for a in (attachments or (s.attachment,))]
-    for _, attachment in wanted:
-        if attachment not in ("average", "rigid", "section"):
-            raise SolidgearError(f"attachment {attachment!r} is unknown; use 'average', 'rigid' or 'section'")
-    nodes, owner = _mesh(scene, elements, wanted)
+    nodes, owner = mesh(scene, elements, wanted)
     n = len(nodes)
     if not shear:
         _long_enough(nodes)
@@ -159,8 +150,11 @@ def beam(
     )
 
 
-def _mesh(scene, elements, wanted):
-    """Nodes at segment ends, ports and ends of rigid seats, filled in evenly; and the segment of every element."""
+def mesh(scene, elements: int | None, wanted=()):
+    """Nodes at segment ends, ports and ends of rigid seats, filled in evenly; and the segment of every element.
+
+    ``wanted`` lists stations with their attachments.
+    """
     marks = {s.y0 for s in scene.segments} | {scene.segments[-1].y1} | {s.y for s in scene.stations}
     marks |= {y for s, a in wanted if a == "rigid" for y in (max(s.lo, 0.0), min(s.hi, scene.length))}
     marks = np.array(sorted(marks))

@@ -23,9 +23,9 @@ from solidgear.errors import SolidgearError
 from solidgear.fidelity.assembly import Pattern, Tabulation, batches, reference, tabulate, unknowns
 from solidgear.fidelity.attachment import tie_rigidly
 from solidgear.fidelity.circumferential import Families
-from solidgear.fidelity.options import harmonics, number
+from solidgear.fidelity.options import checked, countable
 from solidgear.fidelity.scale import elastic_scale
-from solidgear.meshing.layout import Grading, layout
+from solidgear.meshing.layout import Grading, Layout, layout
 from solidgear.meshing.meridian import Meridian, meridian
 
 
@@ -87,18 +87,10 @@ def harmonic(
     SolidgearError
         For an unknown order or attachment.
     """
-    number("harmonic", "order", order, least=1, whole=True)
-    if order > 12:
-        raise SolidgearError(f"harmonic: order {order} is not between 1 and 12")
-    number("harmonic", "layers", layers, least=0, whole=True)
-    number("harmonic", "edge_layers", edge_layers, least=0, whole=True)
-    number("harmonic", "ratio", ratio, above=0, below=1)
-    number("harmonic", "relative_size", relative_size, above=0)
-    number("harmonic", "size", size, above=0)
-    number("harmonic", "refinement", refinement, above=0)
-    ovalising = harmonics("harmonic", ovalising)
-    grading = Grading(layers, edge_layers, None, ratio, relative_size, size, refinement=refinement)
-    plan = layout(scene, grading, attachments)
+    grading = {"layers": layers, "edge_layers": edge_layers, "ratio": ratio, "relative_size": relative_size, "size": size, "refinement": refinement}
+    given = checked("harmonic", {"order": order, **grading, "attachments": attachments, "ovalising": ovalising})
+    attachments, ovalising = given["attachments"], given["ovalising"]
+    plan = harmonic_layout(scene, attachments, **grading)
     flat = meridian(scene, plan)
     mesh = MeshQuad1(flat.points, flat.cells, sort_t=False)
     element = _element(order)
@@ -129,6 +121,12 @@ def harmonic(
     return Body(
         "harmonic", tuple(blocks), tuple(ports), elastic_scale(scene), scene.length, facts, HarmonicMesh(mesh, element, dofs, flat), further
     )
+
+
+def harmonic_layout(scene, attachments=None, *, layers, edge_layers, ratio, relative_size, size, refinement) -> Layout:
+    """Mesh lines of :func:`harmonic`, before anything is meshed; parameters as there."""
+    countable("harmonic", scene, size or relative_size * min(min(s.outer0, s.outer1) for s in scene.segments), refinement)
+    return layout(scene, Grading(layers, edge_layers, None, ratio, relative_size, size, refinement=refinement), attachments)
 
 
 def _element(order):

@@ -19,7 +19,7 @@ from solidgear.body import Block, Body, Port
 from solidgear.errors import SolidgearError
 from solidgear.fidelity.assembly import Pattern, Tabulation, batches, inverted, reference, straight, tabulate, unknowns
 from solidgear.fidelity.attachment import tie_rigidly
-from solidgear.fidelity.options import number
+from solidgear.fidelity.options import checked, countable
 from solidgear.fidelity.scale import elastic_scale
 from solidgear.frames import cross_matrix
 from solidgear.mass import ScalarMass
@@ -160,28 +160,19 @@ def solid(
     SolidgearError
         Unknown element or attachment; MeshError where meshing fails or an element is inverted.
     """
-    if element not in ELEMENTS:
-        raise SolidgearError(f"solid: element {element!r} is unknown; use one of {', '.join(ELEMENTS)}")
-    for name, value in (("relative_size", relative_size), ("size", size), ("graded_size", graded_size), ("refinement", refinement)):
-        number("solid", name, value, above=0)
-    for name, value in (("layers", layers), ("edge_layers", edge_layers), ("radial_layers", radial_layers)):
-        number("solid", name, value, least=0, whole=True)
-    number("solid", "ratio", ratio, above=0, below=1)
-    number("solid", "around", around, least=8, whole=True)
+    grading = {
+        "relative_size": relative_size, "size": size, "layers": layers, "edge_layers": edge_layers, "radial_layers": radial_layers, "ratio": ratio, "around": around,
+        "refinement": refinement,
+    }  # fmt: skip
+    attachments = checked("solid", {"element": element, **grading, "graded_size": graded_size, "attachments": attachments})["attachments"]
     if element.startswith("hex") and around % 4:
         raise SolidgearError(f"solid: around = {around} does not fit an O-grid; use a multiple of 4")
     wanted = [(s, a) for s in scene.stations for a in (attachments or (s.attachment,))]
-    for _, attachment in wanted:
-        if attachment not in ("average", "rigid", "section"):
-            raise SolidgearError(f"attachment {attachment!r} is unknown; use 'average', 'rigid' or 'section'")
     tet = element.startswith("tet")
     if tet:
         mesh, segment, quality = _tets(scene, wanted, element, size, graded_size, refinement, around)
     else:
-        grading = hexahedral_grading(
-            relative_size=relative_size, size=size, layers=layers, edge_layers=edge_layers, radial_layers=radial_layers, ratio=ratio, refinement=refinement
-        )
-        mesh, segment, quality = _hexes(scene, wanted, grading, around)
+        mesh, segment, quality = _hexes(scene, wanted, grading)
     body_mesh = _isoparametric(mesh, element, segment)
     k, m = _matrices(body_mesh, scene)
     n = body_mesh.nodes.shape[1]
@@ -223,22 +214,31 @@ def solid(
     return Body("solid", (tie_rigidly(block, ties),), ports, elastic_scale(scene), scene.length, facts, body_mesh)
 
 
-def hexahedral_grading(
-    *, relative_size=0.4, size=None, layers=4, edge_layers=1, radial_layers=4, ratio=0.35, refinement=1.0, **_
-) -> Grading:
-    """Grading of the hexahedra of :func:`solid` with these options."""
-    return Grading(
-        layers, edge_layers, radial_layers, ratio, relative_size, size, reach=0.7, radial_reach=0.5, refinement=refinement, core=True
-    )
-
-
-def _hexes(scene, wanted, grading: Grading, around: int):
-    from solidgear.meshing.hexahedra import hexahedra
+def hexahedra_layout(scene, attachments=None, *, relative_size, size, layers, edge_layers, radial_layers, ratio, around, refinement):
+    """Mesh lines of :func:`solid` in hexahedra and cells around, before anything is meshed; parameters as there."""
     from solidgear.meshing.layout import layout
+
+    countable("solid", scene, size or relative_size * min(min(s.outer0, s.outer1) for s in scene.segments), refinement)
+    grading = Grading(layers, edge_layers, radial_layers, ratio, relative_size, size, reach=0.7, radial_reach=0.5, refinement=refinement, core=True)
+    return layout(scene, grading, attachments), max(8, 4 * int(round(around * refinement / 4)))
+
+
+def tetrahedra_plan(scene, wanted, *, size, graded_size, refinement, around) -> dict:
+    """Arguments of :func:`~solidgear.meshing.tetrahedra.tetrahedra` for the stations ``wanted`` with their attachments."""
+    size = countable("solid", scene, size or max(max(s.outer0, s.outer1) for s in scene.segments) / 3, refinement) / refinement
+    graded_size = (graded_size / refinement) if graded_size else size / 4
+    planes = sorted({s.y for s, a in wanted if a == "section"})
+    circles = sorted({y for s, a in wanted if a != "section" for y in (s.lo, s.hi)})
+    # Meshes of one sequence are similar only if the circumference is refined with the rest.
+    turns = max(8, int(round(max(16, around) * refinement)))
+    return {"planes": planes, "circles": circles, "size": size, "graded_size": None if graded_size >= size else graded_size, "around": turns}
+
+
+def _hexes(scene, wanted, grading):
+    from solidgear.meshing.hexahedra import hexahedra
     from solidgear.meshing.quality import check_mesh, volume_of
 
-    plan = layout(scene, grading, tuple(dict.fromkeys(a for _, a in wanted)))
-    turns = max(8, 4 * int(round(around * grading.refinement / 4)))
+    plan, turns = hexahedra_layout(scene, tuple(dict.fromkeys(a for _, a in wanted)), **grading)
     mesh, segment = hexahedra(scene, plan, turns)
     return mesh, segment, check_mesh(mesh, volume=volume_of(scene.segments), rtol=1e-3)
 
@@ -247,13 +247,8 @@ def _tets(scene, wanted, element, size, graded_size, refinement, around):
     from solidgear.meshing.quality import check_mesh, volume_of
     from solidgear.meshing.tetrahedra import tetrahedra
 
-    size = (size or max(max(s.outer0, s.outer1) for s in scene.segments) / 3) / refinement
-    graded_size = (graded_size / refinement) if graded_size else size / 4
-    planes = sorted({s.y for s, a in wanted if a == "section"})
-    circles = sorted({y for s, a in wanted if a != "section" for y in (s.lo, s.hi)})
-    # Meshes of one sequence are similar only if the circumference is refined with the rest.
-    turns = max(8, int(round(max(16, around) * refinement)))
-    made = tetrahedra(scene.segments, planes, circles, size=size, graded_size=None if graded_size >= size else graded_size, around=turns)
+    plan = tetrahedra_plan(scene, wanted, size=size, graded_size=graded_size, refinement=refinement, around=around)
+    made = tetrahedra(scene.segments, **plan)
     if element == "tet10":
         return made.mesh, made.segment, made.quality
     from skfem import MeshTet1

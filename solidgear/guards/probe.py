@@ -7,7 +7,6 @@ from __future__ import annotations
 
 from dataclasses import replace
 from functools import cache, cached_property
-from inspect import signature
 from itertools import pairwise
 
 import numpy as np
@@ -29,8 +28,6 @@ from solidgear.verdict import deviations
 FEW = 8
 #: a clamp this much stiffer than the shaft on its bearings moves a frequency by about the inverse
 CLAMP = 1e6
-#: unknowns of the default HEX20 mesh per cell around and ring, and entries of its matrix per unknown: within 4 and 8 % on every shipped scene
-UNKNOWNS, ENTRIES = 13.0, 165.0
 
 #: components of the two bending planes, and the signs by which one matrix is the other
 X, Z, SIGNS = [0, 5], [2, 3], np.array([[1.0, -1.0], [-1.0, 1.0]])
@@ -153,11 +150,7 @@ class Probe:
         if self.body.fidelity == "solid":
             matrix = self.body.blocks[0].stiffness
             return matrix.shape[0], matrix.nnz
-        from solidgear.fidelity.solid import hexahedral_grading, solid
-        from solidgear.meshing.layout import layout
+        from solidgear.fidelity.size import estimated_size
 
-        usual = {name: p.default for name, p in signature(solid).parameters.items() if name != "scene"}
-        plan = layout(self.scene, hexahedral_grading(**usual))
-        rings = np.array([len(plan.ring_numbers(k)) - 1 for k in range(len(plan.bands))])
-        elements = usual["around"] * rings[plan.segment].sum()
-        return int(UNKNOWNS * elements), int(ENTRIES * UNKNOWNS * elements)
+        size = estimated_size(self.scene, "solid")
+        return size.unknowns, size.entries

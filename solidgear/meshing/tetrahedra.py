@@ -218,7 +218,6 @@ def _revolve(gmsh, segments, planes, circles):
     occ = gmsh.model.occ
     tolerance = _tolerance(segments)
     points, lines, faces = {}, {}, []
-    corners = []
 
     def point(r, y):
         for (r0, y0), tag in points.items():
@@ -241,9 +240,7 @@ def _revolve(gmsh, segments, planes, circles):
         # an end of a slab carries the radii of its neighbour too, where they fall inside its own
         bottom = _between(inner0, outer0, (below[3], below[5]) if below else ())
         top = _between(inner1, outer1, (above[2], above[4]) if above else ())
-        cuts = sorted(y for y in circles if y0 + tolerance < y < y1 - tolerance)
-        side = [(outer0 + (outer1 - outer0) * (y - y0) / (y1 - y0), y) for y in cuts]
-        corners += [(y, r) for r, y in side]
+        side = _cuts(slabs[i], circles, tolerance)
         loop = ([(r, y0) for r in bottom] + side + [(r, y1) for r in reversed(top)])
         tags = []
         for r, y in loop:
@@ -256,8 +253,87 @@ def _revolve(gmsh, segments, planes, circles):
     occ.remove(faces, recursive=True)
     occ.synchronize()
     _embed_tips(gmsh, tolerance)
+    return _corners(slabs, circles, tolerance)
+
+
+def _cuts(slab, circles, tolerance):
+    """(radius, y) of the circles inside a slab, on its outer surface."""
+    y0, y1, outer0, outer1 = slab[:4]
+    cuts = sorted(y for y in circles if y0 + tolerance < y < y1 - tolerance)
+    return [(outer0 + (outer1 - outer0) * (y - y0) / (y1 - y0), y) for y in cuts]
+
+
+def _corners(slabs, circles, tolerance):
+    """(y, radius) to grade at: circles on the surface and kinks of the outline."""
+    corners = [(y, r) for slab in slabs for r, y in _cuts(slab, circles, tolerance)]
     on_station = [y for y in circles if not any(abs(y - c) <= tolerance for c, _ in corners)]
     return corners + _kinks(slabs, on_station, tolerance)
+
+
+def estimated_counts(segments, planes=(), circles=(), *, size, graded_size=None, reach=None, around=16):
+    """Vertices, edges, faces and cells of :func:`tetrahedra` for the same arguments, without meshing.
+
+    Volume, surface and the rims that are graded towards are filled with elements of the size asked for.  The constants were fitted to 21 meshes
+    of 2,000 to 70,000 cells in shafts and tubes, whose cells they give within 17 %.
+
+    Returns
+    -------
+    tuple of float
+    """
+    segments = [_Frustum(*(float(getattr(s, name)) for name in _Frustum._fields)) for s in segments]
+    tolerance = _tolerance(segments)
+    slabs = _slabs(segments, [float(y) for y in planes], tolerance)
+    corners = _corners(slabs, [float(y) for y in circles], tolerance)
+    # the mesher's own formulas, so that there is one truth
+    fields = [eval(f"lambda x, y, z: {f}".replace("^", "**"), _NUMPY) for f in _size_formulas(segments, corners, size, graded_size, reach, around)]
+    least = min(size, graded_size or size)
+
+    def edge(r, y):
+        h = np.full(np.broadcast_shapes(r.shape, y.shape), float(size))
+        for field in fields:
+            np.minimum(h, field(r, y, 0.0), out=h)
+        return h
+
+    marks = sorted({y for y, _ in corners} | {s.y0 for s in segments} | {segments[-1].y1})
+    volume = surface = 0.0
+    for s in segments:
+        inside = [y for y in marks if s.y0 + tolerance < y < s.y1 - tolerance]
+        for a, b in zip([s.y0, *inside], [*inside, s.y1]):
+            y, along = _graded_points(a, b, least)
+            t = (y - s.y0) / (s.y1 - s.y0)
+            bore, outer = ((1 - t) * r0 + t * r1 for r0, r1 in ((s.inner0, s.inner1), (s.outer0, s.outer1)))
+            part, across = _graded_points(0.0, 1.0, least / max(s.outer0, s.outer1))
+            r = bore[:, None] + (outer - bore)[:, None] * part
+            h = edge(r, y[:, None])
+            volume += (2 * pi * along[:, None] * (outer - bore)[:, None] * across * r / h**3).sum()
+            # the outermost and innermost points lie a hair from the surfaces
+            for at, radius in ((-1, outer), (0, bore)):
+                surface += (2 * pi * along * radius / h[:, at] ** 2).sum()
+    ends = [(s.y0, s.inner0, s.outer0, s.inner1, s.outer1, s.y1) for s in segments]
+    for below, above in zip([None, *ends], [*ends, None]):
+        rims = sorted({r for r in (*(below[3:5] if below else ()), *(above[1:3] if above else ()))})
+        for a, b in zip(rims, rims[1:]):
+            if (below is not None and below[3] <= a < below[4]) != (above is not None and above[1] <= a < above[2]):
+                r, across = _graded_points(a, b, least)
+                surface += (2 * pi * across * r / edge(r, np.array(below[5] if below else above[0])) ** 2).sum()
+    rim = sum(2 * pi * r / float(edge(np.array(r), np.array(y))) for y, r in set(corners))
+    return tuple(np.array(_FILL) @ (volume, surface, rim))
+
+
+_NUMPY = {"Sqrt": np.sqrt, "Max": np.maximum, "Min": np.minimum, "__builtins__": {}}
+# vertices, edges, faces and cells, per volume over h^3, per surface over h^2 and per length of rims over h
+_FILL = ((0.602, 0.931, 1.663), (4.288, 4.214, 8.013), (7.357, 5.397, 11.527), (3.670, 2.114, 5.178))
+
+
+def _graded_points(a, b, least):
+    """Points and weights for integrals from a to b of what varies within `least` of both ends."""
+    half = (b - a) / 2
+    steps = max(2, min(24, int(np.log(max(half / least, 1.0)) / np.log(2.5)) + 3))
+    ends = np.r_[0.0, half * 2.5 ** -np.arange(steps)[::-1]]
+    ends = np.r_[a + ends, (b - ends[:-1])[::-1]]
+    middle, width = (ends[1:] + ends[:-1]) / 2, np.diff(ends)
+    shift = width / np.sqrt(12)
+    return np.r_[middle - shift, middle + shift], np.r_[width, width] / 2
 
 
 def _embed_tips(gmsh, tolerance):

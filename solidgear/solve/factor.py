@@ -103,7 +103,7 @@ def factorise(matrix: sp.spmatrix, backend: str | None = None, planar: bool = Fa
     matrix = _canonical(matrix)
     if border:
         return _bordered(matrix, border, lambda inner: factorise(inner, backend, planar), _definite_corner)
-    name, reason = _choice(matrix, backend, planar)
+    name, reason = choice(matrix, backend, planar)
     work = _factored(name, matrix, planar, definite=True)
     return Factor(name, reason, work.solve, work.estimate_mb, work.nnz)
 
@@ -132,7 +132,7 @@ def indefinite(matrix: sp.spmatrix, backend: str | None = None, planar: bool = F
     matrix = _canonical(matrix)
     if border:
         return _bordered(matrix, border, lambda inner: indefinite(inner, backend, planar), _any_corner)
-    name, reason = _choice(matrix, backend, planar)
+    name, reason = choice(matrix, backend, planar)
     forced = reason == FORCED and name in COUNTING
     for name in [name] if forced else [name, *(other for other in COUNTING if other != name)]:
         if name not in COUNTING or missing(name):
@@ -173,8 +173,8 @@ def _canonical(matrix):
     return matrix
 
 
-def _choice(matrix, backend, planar):
-    """Name of the back end and the reason for it."""
+def choice(matrix, backend: str | None = None, planar: bool = False) -> tuple[str, str]:
+    """Name of the back end that will factor a matrix of such a shape and number of entries, and the reason for it."""
     backend = backend or os.environ.get("SOLIDGEAR_BACKEND") or None
     n = matrix.shape[0]
     if backend is not None:

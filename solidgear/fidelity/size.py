@@ -1,0 +1,295 @@
+"""How large a body will be, from the layout of its mesh alone: unknowns, matrix entries and peak memory, before anything large is made.
+
+Unknowns and entries of hexahedra and of harmonic solids are counted, not estimated: a mesh laid out by lines has as many vertices, edges,
+faces and cells as its lines say, and a pair of unknowns that meet in a cell makes one entry, whatever number of cells they share (cells
+less the inner faces between them, plus their inner edges, less their inner vertices, is one).  Tetrahedra fill volume and surface at the
+sizes asked of the mesher.
+
+Memory is that of mesh, assembly and factor together.  Its laws were fitted to peaks of resident memory, each in a process of its own.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from types import SimpleNamespace
+
+import numpy as np
+
+from solidgear.errors import SolidgearError
+from solidgear.fidelity.options import checked
+from solidgear.memory import available_mb
+
+MB = 2.0**20
+#: entries that 32-bit indices can number, less some for what is numbered beside them
+MOST_ENTRIES = 2_000_000_000
+#: bytes of a matrix entry
+ENTRY = 12.0
+#: what is not refused for want of memory, MB: a beam, or a coarse solid
+SMALL_MB = 25.0
+
+
+@dataclass(frozen=True)
+class Size:
+    """What a model takes.
+
+    Attributes
+    ----------
+    unknowns : int
+        Of all blocks, twins counted twice: the ``size`` of the body.
+    entries : int
+        Of all stiffness matrices, twins counted once.
+    largest : int
+        Entries of the largest list of element matrices or of one matrix, which 32-bit indices must number.
+    build_mb, peak_mb : float
+        Memory beyond what the process holds: of the body, and at the peak of building, factoring and first modes.
+    lower : str
+        What to lower, in words.
+    """
+
+    unknowns: int
+    entries: int
+    largest: int
+    build_mb: float
+    peak_mb: float
+    lower: str
+
+
+def estimated_unknowns(scene, model: str, options: dict | None = None) -> int:
+    """Unknowns of ``build(scene, model, **options)``, without building it.
+
+    Parameters
+    ----------
+    scene : Scene
+    model : {'euler', 'timoshenko', 'harmonic', 'solid'}
+    options : dict, optional
+        Builder options.
+
+    Returns
+    -------
+    int
+        Exact for beams, hexahedra and harmonic solids without rigid seats (each takes some hundreds away); tetrahedra within a quarter.
+    """
+    return estimated_size(scene, model, options).unknowns
+
+
+def estimated_size(scene, model: str, options: dict | None = None) -> Size:
+    """Unknowns, entries and memory of ``build(scene, model, **options)`` and what is solved on it; parameters as :func:`estimated_unknowns`."""
+    options = checked(model, options or {})
+    given = _defaults(model) | options
+    if model in ("euler", "timoshenko"):
+        return _beam(scene, model, given)
+    if model == "harmonic":
+        return _harmonic(scene, given)
+    return _tetrahedra(scene, given) if given["element"].startswith("tet") else _hexahedra(scene, given)
+
+
+def refuse_too_large(scene, model: str, options: dict | None = None) -> Size:
+    """The estimated size, if the machine can take it.
+
+    Raises
+    ------
+    SolidgearError
+        With the number of unknowns, the memory needed, the memory free and what to lower.
+    """
+    size = estimated_size(scene, model, options)
+    what = f"{model}: about {size.unknowns} unknowns"
+    if size.largest > MOST_ENTRIES:
+        raise SolidgearError(f"{what} make {size.largest:.2g} matrix entries, more than the {MOST_ENTRIES:.0e} that can be numbered; {size.lower}")
+    free = available_mb()
+    if free is not None and size.peak_mb > max(free, SMALL_MB):
+        raise SolidgearError(f"{what} need about {size.peak_mb:.0f} MB for mesh, matrices and factor, {free:.0f} MB are free; {size.lower}")
+    return size
+
+
+def _defaults(model: str) -> dict:
+    from inspect import signature
+
+    if model in ("euler", "timoshenko"):
+        from solidgear.fidelity.beam import beam as builder
+    elif model == "harmonic":
+        from solidgear.fidelity.harmonic import harmonic as builder
+    else:
+        from solidgear.fidelity.solid import solid as builder
+    found = {name: p.default for name, p in signature(builder).parameters.items() if p.default is not p.empty}
+    return found | ({"shear": False, "rotary_inertia": False} if model == "euler" else {})
+
+
+def _ports(scene, given: dict) -> int:
+    return len(scene.stations) * len(given.get("attachments") or (None,))
+
+
+# ------------------------------------------------------------------------------------------------- beams
+def _beam(scene, model: str, given: dict) -> Size:
+    from solidgear.fidelity.beam import mesh
+
+    n = len(mesh(scene, given["elements"])[0])
+    inner = 1 + given["rotary_inertia"] if given["shear"] and given["mass"] == "consistent" else 0
+    bending = 2 * n + inner * (n - 1)
+    unknowns, entries = 2 * bending + 2 * n, (4 + inner) ** 2 * (n - 1) + 6 * n
+    # narrow bands: the factor is no larger than the matrix, and Python's lists of element matrices outweigh both
+    memory = (3e3 * n + 16.0 * 6 * _ports(scene, given) * unknowns) / MB
+    return Size(unknowns, entries, entries, memory, 2 * memory, "give fewer elements")
+
+
+# ------------------------------------------------------------------------------------------------- laid out by lines
+@dataclass(frozen=True)
+class _Lines:
+    """First and last ring line of every row of cells and of every mesh line between rows; where there is material up to the axis."""
+
+    rows: np.ndarray
+    lines: np.ndarray
+    solid_rows: np.ndarray
+    solid_lines: np.ndarray
+
+
+def _lines(scene, plan) -> _Lines:
+    numbers = [set(plan.ring_numbers(k)) for k in range(len(scene.segments))]
+    full = np.array([s.inner0 == s.inner1 == 0.0 for s in scene.segments])[plan.segment]
+    count = np.array([len(numbers[k]) - 1 for k in plan.segment])
+    # Where two segments meet, a mesh line has the rings of both.
+    meet = [len(numbers[a] | numbers[b]) - 1 for a, b in zip(plan.segment, plan.segment[1:])]
+    across = np.array([count[0], *meet, count[-1]])
+    rows, lines = (np.column_stack([np.zeros_like(c), c]) for c in (count, across))
+    return _Lines(rows, lines, full, np.r_[full[:1], full] | np.r_[full, full[-1:]])
+
+
+def _harmonic(scene, given: dict) -> Size:
+    from solidgear.fidelity.harmonic import harmonic_layout
+
+    order = given["order"]
+    names = ("layers", "edge_layers", "ratio", "relative_size", "size", "refinement")
+    plan = _lines(scene, harmonic_layout(scene, given["attachments"], **{k: given[k] for k in names}))
+    across_rows, across_lines = (np.diff(part).sum() for part in (plan.rows, plan.lines))
+    vertices, edges, cells = across_lines + len(plan.lines), across_lines + across_rows + len(plan.rows), across_rows
+    n = int(vertices + edges * (order - 1) + cells * (order - 1) ** 2)
+    inner_edges = 4 * cells - edges
+    inner_vertices = vertices - (edges - inner_edges)
+    pairs = int(cells * (order + 1) ** 4 - inner_edges * (order + 1) ** 2 + inner_vertices)
+    axis = order * int(plan.solid_rows.sum()) + int((np.diff(np.r_[0, plan.solid_rows]) > 0).sum())
+    # components, conditions on the axis; bending, axial motion, torsion and all further waves
+    blocks = [(3, 2), (2, 1), (1, 0)] + [(3, 3)] * len(given["ovalising"])
+    sizes = [(c, c * n - on_axis * axis, c * c * pairs) for c, on_axis in blocks]
+    unknowns, entries = sizes[0][1] + sum(size for _, size, _ in sizes), sum(nnz for *_, nnz in sizes)
+    built = (18.2 * entries + 300.0 * unknowns) / MB + min(35.0, 12.0 * entries / MB)
+    held = peak = 0.0
+    for c, size, nnz in sizes:
+        factor = _planar_factor_mb(c, size, nnz)
+        peak = max(peak, held + factor + ENTRY * nnz / MB)  # of the shifted matrix, for as long as it is factored
+        held += factor
+    solved = 16.0 * _ports(scene, given) * sum(motions * size for motions, (_, size, _) in zip((2, 1, 1), sizes)) / MB
+    lower = "lower order, refinement or layers, or raise size" + ", or ask for fewer ovalising harmonics" * bool(given["ovalising"])
+    return Size(int(unknowns), int(entries), int(max(cells * (order + 1) ** 4, sizes[0][2])), float(built), float(built + peak + solved), lower)
+
+
+def _planar_factor_mb(components: int, unknowns: int, entries: int) -> float:
+    """Peak memory of factoring a block on a meridian.
+
+    SuperLU's factor of 24 blocks of order 1 to 8 within 8 %: nodes times their degree, and a logarithm for the dissection of the plane.
+    PARDISO, which takes over the largest ones, by its own estimate for orders 8 and 12.
+    """
+    from solidgear.solve.factor import LARGE_PLANAR
+
+    if entries >= LARGE_PLANAR:
+        return 33.0 * entries / MB
+    n, pairs = unknowns / components, entries / components**2
+    return 12.6 * components**2 * n * max(0.585 * pairs / n + 7.37 * np.log2(n) - 52, pairs / n) / MB
+
+
+# ------------------------------------------------------------------------------------------------- solids
+@dataclass(frozen=True)
+class _Kind:
+    """Nodes of an element type: on vertices, edges, faces and inside; of an element, a face and an edge with all that bounds it."""
+
+    on: tuple[int, int, int, int]
+    cell: int
+    face: int
+    edge: int
+
+
+_KINDS = {
+    "hex8": _Kind((1, 0, 0, 0), 8, 4, 2),
+    "hex20": _Kind((1, 1, 0, 0), 20, 8, 3),
+    "hex27": _Kind((1, 1, 1, 1), 27, 9, 3),
+    "tet4": _Kind((1, 0, 0, 0), 4, 3, 2),
+    "tet10": _Kind((1, 1, 0, 0), 10, 6, 3),
+}
+
+
+def _hexahedra(scene, given: dict) -> Size:
+    from solidgear.fidelity.solid import hexahedra_layout
+
+    names = ("relative_size", "size", "layers", "edge_layers", "radial_layers", "ratio", "around", "refinement")
+    layout, around = hexahedra_layout(scene, given["attachments"], **{k: given[k] for k in names})
+    plan = _lines(scene, layout)
+    rows = _sections(plan.rows, plan.solid_rows, around)
+    lines = _sections(plan.lines, plan.solid_lines, around)
+    # a section drawn out along the shaft makes edges of its vertices, faces of its edges and cells of its faces
+    counts = (lines[0], lines[1] + rows[0], lines[2] + rows[1], rows[2])
+    unknowns, entries = _nodes(given["element"], counts, 4)
+    bubbles = 3 * counts[3] if given["element"] == "hex27" else 0
+    # fill grows with the whole and, as a shaft is long, with its cross-section: 30 meshes of 2,000 to 165,000 unknowns within 20 %
+    width = unknowns / (2 * len(plan.rows))
+    fill = np.exp(1.448) * (unknowns - bubbles) ** 1.233 * (entries / unknowns) ** 0.165 * width**0.305
+    return _solid(scene, given, unknowns, entries, counts[3], fill)
+
+
+def _sections(rings: np.ndarray, full: np.ndarray, around: int) -> tuple[float, float, float]:
+    """Vertices, edges and faces of all sections: rings of cells, and a square core in place of the first where the shaft is full."""
+    count, k = np.diff(rings)[:, 0] - full, around // 4
+    vertices = around * (count + 1) + full * (k - 1) ** 2
+    edges = around * (2 * count + 1) + full * 2 * k * (k - 1)
+    return float(vertices.sum()), float(edges.sum()), float((around * count + full * k * k).sum())
+
+
+def _tetrahedra(scene, given: dict) -> Size:
+    from solidgear.fidelity.solid import tetrahedra_plan
+    from solidgear.meshing.tetrahedra import estimated_counts
+
+    wanted = [(s, a) for s in scene.stations for a in (given["attachments"] or (s.attachment,))]
+    counts = estimated_counts(scene.segments, **tetrahedra_plan(scene, wanted, **{k: given[k] for k in ("size", "graded_size", "refinement", "around")}))
+    unknowns, entries = _nodes(given["element"], counts, 3)
+    # 21 meshes of 11,000 to 140,000 unknowns within 30 %
+    fill = np.exp(0.519) * unknowns**1.313 * (entries / unknowns) ** 0.448
+    return _solid(scene, given, unknowns, entries, counts[3], fill)
+
+
+def _nodes(element: str, counts: tuple[float, float, float, float], sides: int) -> tuple[float, float]:
+    """Unknowns and matrix entries of a mesh of so many vertices, edges, faces and cells, whose faces have so many sides."""
+    kind, (vertices, edges, faces, cells) = _KINDS[element], counts
+    inner_faces = (6 if sides == 4 else 4) * cells - faces
+    # every edge of the surface bounds two of its faces, and Euler's formula gives its vertices
+    surface = faces - inner_faces
+    inner_edges, inner_vertices = edges - sides / 2 * surface, vertices - (sides / 2 - 1) * surface
+    pairs = kind.cell**2 * cells - kind.face**2 * inner_faces + kind.edge**2 * inner_edges - inner_vertices
+    return 3 * float(np.dot(kind.on, counts)), 9 * pairs
+
+
+def _solid(scene, given: dict, unknowns: float, entries: float, cells: float, fill: float) -> Size:
+    per_cell = _KINDS[given["element"]].cell
+    tets = given["element"].startswith("tet")
+    # matrices; mesh, its numbering and its quality; gmsh itself
+    built = (1.11 * ENTRY * entries + 380.0 * per_cell * cells) / MB + 20 * tets
+    # the shifted matrix while it is factored, and afterwards the vectors of the search for modes
+    beside = max(ENTRY * entries, 8.0 * 150 * unknowns) / MB + 16.0 * 6 * _ports(scene, given) * unknowns / MB
+    lower = "lower refinement" + (", or raise size and graded_size" if tets else ", around or the layers, or raise size") + ", or use the harmonic model"
+    peak = built + beside + _solid_factor_mb(unknowns, entries, fill)
+    return Size(int(round(unknowns)), int(entries), int(max(entries, per_cell**2 * cells)), float(built), float(peak), lower)
+
+
+def _solid_factor_mb(unknowns: float, entries: float, fill: float) -> float:
+    """Peak memory of factoring the matrix of a solid by the back end that will be taken.
+
+    PARDISO needs its factor, its copy of the matrix and work by the entry: its own estimate for 47 meshes within 1 % where the fill is known.
+    """
+    from solidgear.solve.backends import law
+    from solidgear.solve.factor import FactorError, choice
+
+    matrix = SimpleNamespace(shape=(unknowns, unknowns), nnz=entries)
+    try:
+        name, _ = choice(matrix)
+    except FactorError:
+        name = "superlu"  # said where it is factored
+    if name == "pardiso":
+        return (8.0 * 1.05 * fill + 24.5 * entries) / MB + 20
+    # MUMPS's own estimate was 1.46 to 1.84 times this law on four shafts
+    return 1.8 * law("cholmod", matrix, False) if name == "mumps" else law(name, matrix, False)

@@ -1,0 +1,152 @@
+"""What makes segments one shaft, and where ports and seats may lie on it: every problem in a sentence of its own.
+
+Numbers in m. Paths of problems are those of a `Scene`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from typing import TYPE_CHECKING
+
+from solidgear.errors import SceneError
+
+if TYPE_CHECKING:
+    from solidgear.scene import Bearing, Material, Port, Segment
+
+#: m; two edges nearer than this are one edge
+TOUCH = 1e-9
+
+#: least diameter and least length of a part over the length of the shaft, least wall over the radius; what is thinner would
+#: ask for meshes without end, or drown in rounding, and comes from a slip in the units
+SLIMMEST, SHORTEST, THINNEST = 1e-3, 1e-6, 1e-4
+
+#: moduli, densities or their quotients of two materials of one shaft; beyond, the residuals of frequencies rise above 1e-4 and searches do not end
+MOST_UNLIKE = 1e5
+
+#: elastic modes that can be asked for; of the last of them no mesh here has a digit
+MOST_MODES = 500
+
+#: every segment takes at least a line of cells, and every bearing six ports
+MOST_SEGMENTS, MOST_BEARINGS, MOST_SPRINGS = 100, 50, 20
+
+
+def steps(segments: Sequence[Segment]) -> tuple[float, ...]:
+    """y (m) where the outer radius jumps, end faces left out."""
+    return tuple(b.y0 for a, b in zip(segments, segments[1:]) if abs(a.outer1 - b.outer0) > 1e-9 * a.outer1)
+
+
+def shaft_problems(segments: Sequence[Segment]) -> list[SceneError]:
+    """What is wrong with segments as one shaft; their proportions are judged once they hang together."""
+    if not segments:
+        return [SceneError("a scene needs at least one segment", path=("segments",))]
+    if len(segments) > MOST_SEGMENTS:
+        return [SceneError(too_many("segments", len(segments), MOST_SEGMENTS), path=("segments",))]
+    return [*_end_to_end(segments)] or [*_sized(segments)] or [*_proportioned(segments)]
+
+
+def too_many(what: str, count: int, most: int) -> str:
+    """The reason to refuse a list that no shaft has."""
+    hint = "; let pieces that are one be one segment, and a few cones stand for a curve" if what == "segments" else ""
+    return f"{count} {what} are more than the {most} a shaft may have{hint}"
+
+
+def _end_to_end(segments: Sequence[Segment]) -> Iterator[SceneError]:
+    end, names = 0.0, set()
+    for i, segment in enumerate(segments):
+        if abs(segment.y0 - end) > TOUCH:
+            yield SceneError(f"segments lie end to end from y = 0, so this must be {end:.6g}", path=("segments", i, "y0"))
+        if segment.name in names:
+            yield SceneError("another segment has this name; each needs its own", path=("segments", i, "name"))
+        end = segment.y1
+        names.add(segment.name)
+
+
+def _sized(segments: Sequence[Segment]) -> Iterator[SceneError]:
+    end = segments[-1].y1
+    for i, segment in enumerate(segments):
+        radius = max(segment.outer0, segment.outer1)
+        if radius > 10.0:
+            yield SceneError(f"a radius of {radius:.6g} m is above 10 m: probably wrong units", path=("segments", i, "outer0"))
+    if not 1e-3 <= end <= 20.0:
+        i = max(range(len(segments)), key=lambda k: segments[k].length)
+        yield SceneError(f"the shaft is {end:.6g} m long, outside 1 mm to 20 m: probably wrong units", path=("segments", i, "y1"))
+
+
+def _proportioned(segments: Sequence[Segment]) -> Iterator[SceneError]:
+    end = segments[-1].y1
+    for i, segment in enumerate(segments):
+        if i and not max(segments[i - 1].inner1, segment.inner0) < min(segments[i - 1].outer1, segment.outer0):
+            reason = (
+                f'shares no end face with "{segments[i - 1].name}" (radii {segments[i - 1].inner1:.6g} to {segments[i - 1].outer1:.6g} m there, '
+                f"{segment.inner0:.6g} to {segment.outer0:.6g} m here); they must overlap"
+            )
+            yield SceneError(reason, path=("segments", i, "outer0"))
+        for at in "01":
+            outer, inner = getattr(segment, "outer" + at), getattr(segment, "inner" + at)
+            if 2 * outer < SLIMMEST * end:
+                reason = f"a diameter of {2 * outer:.6g} m is under a thousandth of the length of the shaft, {end:.6g} m: probably wrong units"
+                yield SceneError(reason, path=("segments", i, "outer" + at))
+            if outer - inner < THINNEST * outer:
+                reason = f"leaves a wall of {outer - inner:.3g} m at a radius of {outer:.6g} m, under one in ten thousand: probably wrong units"
+                yield SceneError(reason, path=("segments", i, "inner" + at))
+        yield from _unlike(segments[0].material, segment.material, i)
+        if segment.length < SHORTEST * end:
+            reason = f"a segment of {segment.length:.6g} m is under a millionth of the length of the shaft, {end:.6g} m: probably wrong units"
+            yield SceneError(reason, path=("segments", i, "y1"))
+
+
+def _unlike(first: Material, here: Material, i: int) -> Iterator[SceneError]:
+    for key, what, unit, value in (("E", "modulus", "Pa", lambda m: m.E), ("density", "density", "kg/m^3", lambda m: m.density), ("E", "ratio of modulus to density", "m^2/s^2", lambda m: m.E / m.density)):
+        a, b = value(here), value(first)
+        if max(a, b) > MOST_UNLIKE * min(a, b):
+            reason = f"a {what} of {a:.3g} {unit} beside {b:.3g} in the first segment: unlike by more than {MOST_UNLIKE:g}, which costs digits; probably wrong units"
+            yield SceneError(reason, path=("segments", i, "material", key))
+            return
+
+
+def station_problems(segments: Sequence[Segment], port: Port | None, bearings: Mapping[int, Bearing]) -> Iterator[SceneError]:
+    """Ports and seats lie on the shaft, on one smooth surface each, and seats do not share any of it.
+
+    Parameters
+    ----------
+    segments : sequence of Segment
+    port : Port or None
+    bearings : mapping of int to Bearing
+        By their place in the scene; those that cannot be used for another reason may be left out, and so may the port.
+    """
+    length, jumps = segments[-1].y1, steps(segments)
+    if len(bearings) > MOST_BEARINGS:
+        yield SceneError(too_many("bearings", len(bearings), MOST_BEARINGS), path=("bearings",))
+        return
+    places = [(("bearings", i, "seat_width"), bearing, "seat") for i, bearing in bearings.items()]
+    if port is not None:
+        if not -TOUCH <= port.y <= length + TOUCH:
+            yield SceneError(f"the port is at y = {port.y:.6g} m, outside the shaft (0 to {length:.6g} m)", path=("port", "y"))
+        places.insert(0, (("port", "hi"), port, "attached span"))
+    names = set()
+    for k, (path, here, what) in enumerate(places):
+        if here.name in names:
+            yield SceneError("the port or another bearing has this name; each needs its own", path=(*path[:-1], "name"))
+        names.add(here.name)
+        if reason := _misplaced(here, what, places[:k], length, jumps):
+            yield SceneError(reason, path=path)
+
+
+def _misplaced(here: Port | Bearing, what: str, before: Sequence[tuple], length: float, jumps: Sequence[float]) -> str:
+    """Why a station cannot be where it is, or nothing: the first reason, of which others may be a consequence."""
+    if here.hi <= here.lo:
+        return f"the span must end beyond its start at {here.lo:.6g} m"
+    reach = f"the {what} reaches from {here.lo:.6g} to {here.hi:.6g} m"
+    if here.lo < -TOUCH or here.hi > length + TOUCH:
+        return f"{reach}, which must lie inside the shaft (0 to {length:.6g} m)"
+    if here.hi - here.lo < SHORTEST * length:
+        return f"{reach}, under a millionth of the length of the shaft, {length:.6g} m: probably wrong units"
+    for step in jumps:
+        if here.lo + TOUCH < step < here.hi - TOUCH:
+            return f"{reach}, across the step of the outer radius at {step:.6g} m; it must end there"
+    for _, other, other_what in before:
+        # the port may share a seat's surface, unless both hold it rigid: that would weld the two points together
+        both = other_what == what or other.attachment == here.attachment == "rigid"
+        if both and min(here.hi, other.hi) - max(here.lo, other.lo) > TOUCH:
+            return f'{reach} and overlaps that of "{other.name}" ({other.lo:.6g} to {other.hi:.6g} m)'
+    return ""

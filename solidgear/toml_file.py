@@ -1,0 +1,121 @@
+"""A TOML file as plain tables, or one sentence that says where it is wrong and what would be right."""
+
+from __future__ import annotations
+
+import os
+import re
+import stat
+import tomllib
+from pathlib import Path
+from typing import Any
+
+from solidgear.errors import SceneError, printable
+
+#: bytes; a shipped scene takes some thousands, the largest shaft and bearings there may be some ten thousands
+LARGEST = 300_000
+#: full stops in one line: a 6x6 matrix has 36. The parser's time grows with the cube of the parts of a key
+MOST_DOTS = 100
+
+
+def parse(where: str) -> dict[str, Any]:
+    """Tables of a TOML file.
+
+    Raises
+    ------
+    SceneError
+        No such file, no plain file, too large, no UTF-8 text or no TOML.
+    """
+    try:
+        text = _text(where)
+        return tomllib.loads(text)
+    except FileNotFoundError:
+        reason = "there is no such file"
+    except UnicodeDecodeError as error:
+        reason = f"not UTF-8 text (byte {error.start}); save the file as UTF-8"
+    except tomllib.TOMLDecodeError as error:
+        reason = _what_is_wrong(text, str(error))
+    except RecursionError:
+        reason = "not a scene: its tables are nested too deeply"
+    except SceneError as error:
+        reason = error.reason
+    except (OSError, ValueError) as error:
+        long = "digits" in str(error)
+        reason = "not a scene: a number in it has thousands of digits" if long else f"cannot be read: {getattr(error, 'strerror', None) or error}"
+    raise SceneError(reason, where=where)
+
+
+def _text(where: str) -> str:
+    kind = Path(where).stat().st_mode
+    if stat.S_ISDIR(kind):
+        raise SceneError("this is a folder; give the TOML file in it")
+    if not stat.S_ISREG(kind):
+        # a pipe would be waited for, and a device may never end
+        raise SceneError("this is a pipe or a device, not a file; write the scene into a file and give that")
+    with Path(where).open("rb") as file:
+        data = file.read(LARGEST + 1)
+    if len(data) > LARGEST:
+        raise SceneError(f"this is no scene: it is larger than {LARGEST // 1000} kB")
+    if data.startswith((b"\xff\xfe", b"\xfe\xff")) or b"\0" in data:
+        raise SceneError(f"not UTF-8 text (byte {max(data.find(0), 0)}): it is UTF-16 or no text at all; save the file as UTF-8")
+    text = data.decode("utf-8-sig")
+    for number, line in enumerate(text.split("\n"), start=1):
+        if line.count(".") > MOST_DOTS:
+            raise SceneError(f"not a scene: line {number} has more than {MOST_DOTS} full stops, and no key or matrix that many parts")
+    return text
+
+
+# ------------------------------------------------------------------------------------------------- plain words
+_NUMBER = r"[+-]?\d[\d_]*"
+#: what people write, by the line the parser stopped in, the more telling first: pattern and plain words, with groups of the pattern
+_HABITS = (
+    (re.compile(rf"=\s*({_NUMBER}),(\d+)\s*([^\s\d,\]#]*)$"), "a decimal comma; decimals take a point, and a unit quotes, such as 3.5 or \"3.5 mm\""),
+    (re.compile(rf"=\s*{_NUMBER}(\.\d+)?([eE][+-]?\d+)?\s*[^\W\d_][^=#\"']*$"), "a quantity with a unit is a text in quotes, such as \"90 mm\""),
+    (re.compile(r"=\s*(True|False|TRUE|FALSE|yes|no|on|off)\b"), "a truth value is written true or false"),
+    (re.compile(r"=\s*[A-Za-z][^=#\"']*$"), "a text is written in quotes, such as \"head.end\""),
+    (re.compile(r"=\s*$"), "there is no value behind the ="),
+    (re.compile(r"^\s*\[+[^\]]*$"), "the ] is missing"),
+    (re.compile(r"^\s*[\w.-]+\s*:"), "a value is written behind =, not behind :"),
+)  # fmt: skip
+_TWICE = re.compile(r"(?:Cannot declare|Cannot mutate immutable namespace|Cannot redefine namespace) \((.*)\)")
+_LISTS = ("segment", "bearing")
+_PARSER = {
+    "Cannot overwrite a value": "a key is given twice in its table, or as a value and as a table",
+    "Unterminated string": "a text is not closed: its last quotes are missing",
+    "Unclosed array": "a list is not closed: its ] is missing",
+    "Unclosed inline table": "a table in one line is not closed, or a comma is missing in it",
+    "Unescaped '\\' in a string": "a \\ in quotes starts a code; write it twice, or use single quotes",
+    "Illegal character '\\n'": "a text is not closed: its last quotes are missing",
+    "Illegal character '\\r'": "lines end in a lone carriage return; save the file with the line ends of Unix or Windows",
+    "Invalid date or datetime": "a date that is none",
+    "Expected '=' after a key in a key/value pair": "a key is followed by = and its value",
+    "Invalid statement": "a line is a [table], a key = value or a # comment",
+    "Expected newline or end of document after a statement": "one key = value a line, and nothing behind it",
+}
+
+
+def _what_is_wrong(text: str, message: str) -> str:
+    """The parser's message in plain words, with the line it stopped in."""
+    words, _, place = message.partition(" (at ")
+    found = re.match(r"line (\d+)", place)
+    lines = text.split("\n")
+    number = int(found[1]) if found else len(lines)
+    line = lines[min(number, len(lines)) - 1].strip()
+    quoted = f", {printable(line[:70])}" if line else ""
+    return f"not valid TOML in line {number}{quoted}: {_plain_words(words, line)}"
+
+
+def _plain_words(words: str, line: str) -> str:
+    if twice := _TWICE.match(words):
+        keys = re.findall(r"'([^']*)'", twice[1])
+        name = ".".join(keys)
+        if len(keys) == 1 and keys[0] in _LISTS:
+            return f"there is a second [{name}]; each is written with double brackets, [[{name}]]"
+        owner = keys[0] if keys and keys[0] in _LISTS else "scene"
+        return f"there is a second [{name}]; a {owner} has one, so put all of its keys into the first"
+    if words.startswith("Duplicate inline table key"):
+        return "a key is given twice in its table"
+    bare = re.sub(r"\s*#.*$", "", line[:300])
+    for pattern, plain in _HABITS:
+        if pattern.search(bare):
+            return plain
+    return next((plain for start, plain in _PARSER.items() if words.startswith(start)), words[:1].lower() + words[1:])
