@@ -43,8 +43,14 @@ CAPTION = (
 
 # ------------------------------------------------------------------------------------------------- files
 def write_rows(race: Race, folder: Path) -> None:
-    """Write ``rows.csv`` and ``machine.json`` into a folder, each in one step."""
+    """Write ``rows.csv`` and ``machine.json`` into a folder, each in one step.
+
+    What an earlier race left goes first: its record and its picture must not stand beside these rows, should the run be killed.
+    """
     record = {f.name: getattr(race, f.name) for f in fields(race) if f.name != "rows"}
+    if sum(len(row.samples) for row in race.rows) <= 1:
+        for name in (MACHINE, PICTURE):
+            (folder / name).unlink(missing_ok=True)
     _replace(folder / ROWS, _csv(race).encode())
     _replace(folder / MACHINE, (json.dumps(record, indent=1, allow_nan=False) + "\n").encode())
 
