@@ -15,8 +15,8 @@ from dataclasses import dataclass
 import numpy as np
 import scipy.linalg as sla
 
-#: Modes below this part of the lowest elastic eigenvalue are taken for nearly rigid ones on soft springs.
-SOFT = 0.03
+#: Modes with no more than this part of their mass in elastic motion are nearly rigid ones on soft springs.
+SOFT = 1e-3
 #: Relative error of an eigenvalue that is worth a further solve, and how many are tried.
 ENOUGH, STEPS = 1e-9, 8
 EPS = float(np.finfo(float).eps)
@@ -77,49 +77,44 @@ def refine(supported, vectors: np.ndarray, value: np.ndarray, needed: int) -> Re
     needed : int
         How many of the lowest must be right; the others are there to see gaps.
     """
-    rigid = supported.rigid_motions()
-    rigid = _unit(rigid / np.sqrt(np.einsum("ij,ij->j", rigid, supported.mass(rigid))), supported.mass)
-    count = int(np.searchsorted(value, SOFT * supported.scale)) if rigid.shape[1] else 0
-    best, split = None, 0
-    correction = forces = np.zeros((len(vectors), 0))
+    carried = supported.mass_rigid.T @ vectors
+    soft = _columns(carried, carried) > 1 - SOFT
+    best = None
+    wrong = np.zeros(len(value), bool)
+    correction = forces = np.zeros_like(vectors)
     for step in range(STEPS + 1):
-        soft = _soft_modes(supported, vectors[:, :count], value[:count], correction[:, :split], forces[:, :split], rigid)
-        hard = _modes(supported, vectors[:, count:], value[count:], correction[:, split:], forces[:, split:], soft.u, rigid)
-        value, vectors, forces = np.append(soft.value, hard.value), np.hstack([soft.u, hard.u]), np.hstack([soft.force, hard.force])
-        if best is not None and value.min() <= 0.5 * best.value.min():
+        low, high = soft & wrong, ~soft & wrong
+        slow = _soft_modes(supported, vectors[:, soft], value[soft], correction[:, low], forces[:, low])
+        quick = _modes(supported, vectors[:, ~soft], value[~soft], correction[:, high], forces[:, high], slow.u)
+        value, rounding = np.append(slow.value, quick.value), np.append(slow.rounding, quick.rounding)
+        if best is not None and value.min() <= 0.5 * best.value[0] * max(0.0, 1 - 2 * best.error[0]):
             return best  # a correction that is nothing but rounding
+        order = np.argsort(value, kind="stable")
+        soft = (np.arange(len(value)) < len(slow.value))[order]
+        value, vectors, forces = value[order], np.hstack([slow.u, quick.u])[:, order], np.hstack([slow.force, quick.force])[:, order]
         correction = supported.inverse(forces)
-        found = _judged(supported, value, vectors, forces, correction, np.append(soft.rounding, hard.rounding), step)
+        found = _judged(supported, value, vectors, forces, correction, rounding[order], step)
         if best is not None and found.worst(needed) > 0.5 * best.worst(needed):
             return min(found, best, key=lambda x: x.worst(needed))
         best = found
         wrong = found.error - found.noise >= ENOUGH
         if not wrong[:needed].any():
             break
-        split = int(wrong[:count].sum())
-        correction, forces = correction[:, wrong], forces[:, wrong]
     return best
 
 
-def _unit(rigid, mass):
-    """Mass-orthonormal columns from rigid motions of about unit size; those that are the rounding of others are left out."""
-    if not rigid.shape[1]:
-        return rigid
-    w, v = np.linalg.eigh(rigid.T @ mass(rigid))
-    keep = w > 1e-10
-    return rigid @ (v[:, keep] / np.sqrt(w[keep]))
-
-
-def _modes(supported, u, value, correction, forces, below, rigid) -> _Pairs:
+def _modes(supported, u, value, correction, forces, below) -> _Pairs:
     """Rayleigh and Ritz in the span of shapes and their corrections, of which the modes below are taken out."""
     mass = supported.mass
     count = u.shape[1]
+    if not count:
+        return _Pairs(np.zeros(0), u, u, np.zeros(0))
     heavy = mass(u)
     basis, loads = u, heavy * (value + supported.shift)
     if correction.shape[1]:
         others = np.hstack([below, u])
         fresh = correction - others @ (mass(others).T @ correction)
-        size = np.sqrt(np.einsum("ij,ij->j", fresh, mass(fresh)))
+        size = np.sqrt(_columns(fresh, mass(fresh)))
         keep = size > 1e-12  # of a unit shape: what is left below is rounding
         basis, loads = np.hstack([u, fresh[:, keep] / size[keep]]), np.hstack([loads, forces[:, keep] / size[keep]])
         heavy = mass(basis)
@@ -127,19 +122,20 @@ def _modes(supported, u, value, correction, forces, below, rigid) -> _Pairs:
     w, v = np.linalg.eigh((gram + gram.T) / 2)
     good = w > 1e-10
     turn = v[:, good] / np.sqrt(w[good])
-    rest = basis - rigid @ (rigid.T @ heavy)
-    rest = rest - rigid @ (mass(rigid).T @ rest) if rigid.shape[1] else rest
+    rest = supported.without_rigid(supported.without_rigid(basis))
     pull = supported.elastic(rest)
     stretch = supported.stretch(basis, loads)
     energy = turn.T @ (rest.T @ pull + stretch.T @ stretch) @ turn
     w, v = np.linalg.eigh((energy + energy.T) / 2)
     turn = turn @ v[:, :count]
-    value, u, rest, stretch = w[:count], basis @ turn, rest @ turn, stretch @ turn
-    force = pull @ turn + supported.load @ stretch - (heavy @ turn) * value
+    u, rest, pull, stretch, heavy = basis @ turn, rest @ turn, pull @ turn, stretch @ turn, heavy @ turn
+    # The small problem knows its eigenvalues to the rounding of the largest; quotients know each to its own.
+    value = (_columns(rest, pull) + _columns(stretch, stretch)) / _columns(u, heavy)
+    force = pull + supported.load @ stretch - heavy * value
     return _Pairs(value, u, force, _rounding(supported, u, rest, stretch))
 
 
-def _soft_modes(supported, u, value, correction, forces, rigid) -> _Pairs:
+def _soft_modes(supported, u, value, correction, forces) -> _Pairs:
     """Ritz pairs of nearly rigid modes in the span of the rigid motions and of what is elastic in them.
 
     Splitting the rigid part off exactly leaves no large stiffness to cancel: ``K`` sees the elastic remainder only.
@@ -148,12 +144,13 @@ def _soft_modes(supported, u, value, correction, forces, rigid) -> _Pairs:
     if not count:
         return _Pairs(np.zeros(0), u, u, np.zeros(0))
     mass = supported.mass
-    loads = np.hstack([mass(u) * (value + supported.shift), forces])
-    held = _unit(supported.purge(rigid), mass) if supported.free.shape[1] else rigid
-    rest = np.hstack([u, correction])
-    for _ in range(2):
-        rest = rest - rigid @ (mass(rigid).T @ rest)
-    size = np.sqrt(np.einsum("ij,ij->j", rest, mass(rest)))
+    held = supported.rigid
+    if supported.free.shape[1]:
+        held = supported.purge(held)
+        w, v = np.linalg.eigh(held.T @ mass(held))
+        held = held @ (v[:, w > 1e-10] / np.sqrt(w[w > 1e-10]))
+    rest = supported.without_rigid(supported.without_rigid(np.hstack([u, correction])))
+    size = np.sqrt(_columns(rest, mass(rest)))
     keep = size > 1e-9 * np.append(np.ones(count), np.full(correction.shape[1], 1e-3))  # below that a remainder of a shape is rounding
     rest = rest[:, keep] / size[keep]
     w, v = np.linalg.eigh(rest.T @ mass(rest))
@@ -177,6 +174,10 @@ def _soft_modes(supported, u, value, correction, forces, rigid) -> _Pairs:
     return _Pairs(value, u, force, _rounding(supported, u, rest @ turn[r:], stretch))
 
 
+def _columns(a, b):
+    return np.einsum("ij,ij->j", a, b)
+
+
 def _rounding(supported, u, rest, stretch):
     """How far the rounding of products and of the matrix itself may move each energy, rad^2/s^2 (measured: see tests/test_refine.py)."""
     own = np.linalg.norm(supported.diagonal[:, None] * rest**2, axis=0)
@@ -187,7 +188,7 @@ def _rounding(supported, u, rest, stretch):
 def _judged(supported, value, u, force, back, rounding, step) -> Refined:
     """Error of each pair from the residuals of all, in the norm of the inverse."""
     mu = value + supported.shift
-    rho = np.sqrt(np.maximum(np.einsum("ij,ij->j", force, back), 0.0) / mu)
+    rho = np.sqrt(np.maximum(_columns(force, back), 0.0) / mu)
     back_to = np.divide(mu, value, out=np.full_like(mu, np.inf), where=value > 0)
     noise = np.divide(rounding, value, out=np.full_like(mu, np.inf), where=value > 0)
     error = np.minimum(rho, _quadratic(mu, rho)) * back_to
