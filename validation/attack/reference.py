@@ -18,6 +18,7 @@ from __future__ import annotations
 import hashlib
 import json
 import time
+from collections.abc import Mapping
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 
@@ -25,7 +26,7 @@ import numpy as np
 
 from solidgear.body import as_supports
 from solidgear.evidence.quantities import QUANTITIES, measure
-from solidgear.scene import Scene
+from solidgear.scene import Ask, Scene
 from solidgear.solve.modes import modes
 from solidgear.solve.statics import condense
 from solidgear.whole_file import whole
@@ -61,8 +62,6 @@ class Reference:
     unknowns : int
     seconds : float
         Of processor time, for all solutions.
-    reached : bool
-        Whether the asked uncertainty was reached.
     """
 
     values: dict
@@ -72,29 +71,46 @@ class Reference:
     setting: list
     unknowns: int
     seconds: float
-    reached: bool
+
+    def meets(self, goal: float | Mapping[str, float]) -> bool:
+        """Whether every quantity is known as well as asked."""
+        wanted = goal if isinstance(goal, Mapping) else dict.fromkeys(self.uncertainty, goal)
+        return all(self.uncertainty[q] <= g for q, g in wanted.items() if q in self.uncertainty)
 
 
-def reference(scene: Scene, goal: float = 1e-6, limit: int = MOST_UNKNOWNS, folder: Path | None = FOLDER) -> Reference | None:
+def reference(scene: Scene, goal: float | Mapping[str, float] = 1e-6, limit: int = MOST_UNKNOWNS, folder: Path | None = FOLDER) -> Reference | None:
     """The compared numbers of a scene, to a relative uncertainty of `goal` where the limit on unknowns allows.
 
-    Returns None where not even the lightest level is within the limit. Results are kept in `folder`.
+    Parameters
+    ----------
+    scene : Scene
+    goal : float, or mapping of quantities to floats
+        Relative uncertainty asked for; quantities that are not named may have any.
+    limit : int
+        Unknowns of the bending block.
+    folder : Path or None
+        Where results are kept; None keeps none.
+
+    Returns
+    -------
+    Reference or None
+        None where not even the lightest level is within the limit.
     """
-    key = _key(scene, goal, limit)
-    kept = _read(folder, key)
-    if kept is not None:
-        return Reference(**kept) if kept else None
-    found, start = None, time.process_time()
-    for order, layers in LEVELS:
+    kept = _read(folder, scene)
+    found = Reference(**kept["found"]) if kept and kept["found"] else None
+    first = kept["level"] + 1 if kept else 0
+    if found is not None and found.meets(goal):
+        return found
+    start = time.process_time()
+    for level in range(first, len(LEVELS)):
+        order, layers = LEVELS[level]
         mesh = corner_mesh(scene, layers, SIZE, RATIO)
         if 3 * len(mesh.cells) * (order + 2) ** 2 > limit:
             break
-        found = _level(scene, mesh, order, layers)
-        reached = max(found.uncertainty.values(), default=0.0) <= goal
-        found = replace(found, seconds=time.process_time() - start, reached=reached)
-        if reached:
+        found = replace(_level(scene, mesh, order, layers), seconds=time.process_time() - start)
+        _write(folder, scene, {"level": level, "found": asdict(found)})
+        if found.meets(goal):
             break
-    _write(folder, key, asdict(found) if found else {})
     return found
 
 
@@ -108,7 +124,7 @@ def _level(scene: Scene, mesh, order: int, layers: int) -> Reference:
         if all(name in r["values"] for r in (*runs, shallow)):
             four = [r["values"][name] for r in (*runs, shallow)]
             values[name], uncertainty[name] = settle(*four, coupling_scale(runs[-1]["values"], name), noise)
-    return Reference(values, uncertainty, _spectrum(runs, shallow, noise), runs[-1]["gram"], [order + 2, layers], runs[-1]["unknowns"], 0.0, False)
+    return Reference(values, uncertainty, _spectrum(runs, shallow, noise), runs[-1]["gram"], [order + 2, layers], runs[-1]["unknowns"], 0.0)
 
 
 def settle(a: float, b: float, c: float, shallow: float, scale: float, noise: float = 0.0) -> tuple[float, float]:
@@ -190,21 +206,22 @@ def _solve(scene: Scene, mesh, order: int) -> dict:
 
 
 # ------------------------------------------------------------------------------------------------- kept results
-def _key(scene: Scene, goal: float, limit: int) -> str:
-    told = json.dumps([scene.as_dict(), goal, limit, LEVELS, RATIO, SIZE, 2], sort_keys=True, default=str)
-    return hashlib.sha256(told.encode()).hexdigest()[:24]
+def _file(folder: Path, scene: Scene) -> Path:
+    # title and questions do not change what is true
+    told = json.dumps([scene.with_changes(name="", title="", ask=Ask(modes=scene.ask.modes)).as_dict(), LEVELS, RATIO, SIZE, 3], sort_keys=True, default=str)
+    return folder / f"{hashlib.sha256(told.encode()).hexdigest()[:24]}.json"
 
 
-def _read(folder: Path | None, key: str) -> dict | None:
-    if folder is None or not (folder / f"{key}.json").exists():
+def _read(folder: Path | None, scene: Scene) -> dict | None:
+    if folder is None or not _file(folder, scene).exists():
         return None
-    return json.loads((folder / f"{key}.json").read_text())
+    return json.loads(_file(folder, scene).read_text())
 
 
-def _write(folder: Path | None, key: str, content: dict) -> None:
+def _write(folder: Path | None, scene: Scene, content: dict) -> None:
     if folder is not None:
         folder.mkdir(parents=True, exist_ok=True)
-        with whole(folder / f"{key}.json") as partial:
+        with whole(_file(folder, scene)) as partial:
             partial.write_text(json.dumps(content))
 
 
