@@ -74,6 +74,7 @@ class _Work:
         self.corner = mesh.points[mesh.cells]  # (cells, 4, 2)
         self.dofs = self._numbering()
         self.n = int(self.dofs.max()) + 1
+        self.pattern = None
         self.place = np.zeros((self.n, 2))
         a, b = np.meshgrid(self.nodes, self.nodes, indexing="ij")
         self.place[self.dofs] = _bilinear(self.corner, a.ravel(), b.ravel())[0]
@@ -108,7 +109,7 @@ class _Work:
         return np.unique(flat, return_inverse=True)[1].reshape(flat.shape)
 
     def _batches(self):
-        """Yields (cells, material, values (nb, nq), gradients (m, 2, nb, nq), r (m, nq), weights (m, nq))."""
+        """Yields (cells, material, values (nb, nq), gradients in r and in y (m, nb, nq), r (m, nq), weights (m, nq))."""
         a, b = (g.ravel() for g in np.meshgrid(self.x, self.x, indexing="ij"))
         value = np.einsum("ix,jy->ijxy", self.value, self.value).reshape(-1, len(a))
         along = np.einsum("ix,jy->ijxy", self.slope, self.value).reshape(-1, len(a))
@@ -116,38 +117,43 @@ class _Work:
         weight = np.outer(self.w, self.w).ravel()
         for index, segment in enumerate(self.scene.segments):
             mine = np.flatnonzero(self.mesh.segment == index)
-            for part in np.array_split(mine, max(1, len(mine) // 24)):
+            for part in np.array_split(mine, max(1, len(mine) // 16)):
                 x, jac = _bilinear(self.corner[part], a, b)
                 det = jac[..., 0, 0] * jac[..., 1, 1] - jac[..., 0, 1] * jac[..., 1, 0]
-                # rows of the inverse: derivatives of the reference coordinates in r and in y
                 gr = (jac[..., 1, 1] / det)[:, None] * along - (jac[..., 1, 0] / det)[:, None] * across
                 gy = -(jac[..., 0, 1] / det)[:, None] * along + (jac[..., 0, 0] / det)[:, None] * across
                 yield part, segment.material, value, gr, gy, x[..., 0], det * weight
 
+    def _pattern(self):
+        """(row starts, columns, place of every entry of every element matrix) of the nodes' connectivity."""
+        if self.pattern is None:
+            nb = self.dofs.shape[1]
+            key = np.repeat(self.dofs, nb, axis=1).ravel() * self.n + np.tile(self.dofs, (1, nb)).ravel()
+            there, place = np.unique(key, return_inverse=True)
+            starts = np.searchsorted(there // self.n, np.arange(self.n + 1))
+            self.pattern = starts, there % self.n, place
+        return self.pattern
+
+    def _assembled(self, values: np.ndarray) -> sp.csr_matrix:
+        """Matrix of (c, c, cells, nb, nb) element matrices, unknowns grouped by node."""
+        starts, columns, place = self._pattern()
+        c = len(values)
+        data = np.array([[np.bincount(place, weights=v.ravel(), minlength=len(columns)) for v in row] for row in values])
+        return sp.bsr_matrix((data.transpose(2, 0, 1), columns, starts), shape=(self.n * c, self.n * c)).tocsr()
+
     def block(self, name: str, components: tuple[int, ...], n: int) -> Block:
         """Harmonic 1, 0 (axial) or, as -1, torsion."""
-        c = {1: 3, 0: 2, -1: 1}[n]
-        nb = self.dofs.shape[1]
-        rows, columns, stiff, heavy = [], [], [], []
+        share = {1: (2.0, 2.0, 1.0), 0: (1.0, 1.0), -1: (1.0,)}[n]
+        c, nb = len(share), self.dofs.shape[1]
+        stiff, heavy = np.empty((c, c, len(self.dofs), nb, nb)), np.empty((len(self.dofs), nb, nb))
         for part, material, value, gr, gy, r, dv in self._batches():
-            strains, moduli = _strains(n, value, gr, gy, r, material)
-            w = (np.pi if n == 1 else 2 * np.pi) * dv * r
-            k = np.zeros((len(part), c * nb, c * nb))
-            for strain, modulus in zip(strains, moduli):
-                f = strain.reshape(len(part), c * nb, -1) * np.sqrt(modulus * w)[:, None]
-                k += f @ f.transpose(0, 2, 1)
-            share = {1: (2.0, 2.0, 1.0), 0: (1.0, 1.0), -1: (1.0,)}[n]
-            m = np.einsum("iq,eq,jq->eij", value, material.density * w * (r**2 if n == -1 else 1.0), value, optimize=True)
-            whole = np.zeros_like(k).reshape(len(part), c, nb, c, nb)
-            for i in range(c):
-                whole[:, i, :, i] = share[i] * m
-            at = (self.dofs[part][:, None, :] * c + np.arange(c)[:, None]).reshape(len(part), -1)
-            rows.append(np.repeat(at, c * nb, axis=1).ravel())
-            columns.append(np.tile(at, (1, c * nb)).ravel())
-            stiff.append(k.ravel())
-            heavy.append(whole.ravel())
-        shape, at = (self.n * c, self.n * c), (np.concatenate(rows), np.concatenate(columns))
-        stiffness, mass = (sp.csr_matrix((np.concatenate(v), at), shape=shape) for v in (stiff, heavy))
+            w = (np.pi if n == 1 else 2 * np.pi) * dv * (r**3 if n == -1 else r)
+            root = np.sqrt(w)[:, None]
+            f = np.stack([value * root / r[:, None], gr * root, gy * root], axis=1).reshape(len(part), 3 * nb, -1)
+            gram = (f @ f.transpose(0, 2, 1)).reshape(-1, 3, nb, 3, nb)
+            stiff[:, :, part] = np.einsum("ikjl,ekalb->ijeab", _energy(n, material), gram, optimize=True)
+            heavy[part] = (value * (material.density * w)[:, None]) @ value.T
+        stiffness, mass = self._assembled(stiff), self._assembled(heavy[None, None] * np.diag(share)[:, :, None, None, None])
         keep = np.ones((self.n, c), bool)
         axis = self.place[:, 0] == 0
         if n == 1:
@@ -255,21 +261,23 @@ def _bilinear(corner: np.ndarray, a: np.ndarray, b: np.ndarray) -> tuple[np.ndar
     return np.einsum("mkd,kq->mqd", corner, shape), jac
 
 
-def _strains(n: int, value, gr, gy, r, material):
-    """Strain functions (m, c, nb, nq) and their moduli: the trace with lambda, normal strains with 2 mu, shear with mu."""
-    over = value / r[:, None]
-    zero = np.zeros_like(gr)
+def _energy(n: int, material) -> np.ndarray:
+    """(c, 3, c, 3) coefficients of twice the strain energy: unknown i by function k, unknown j by function l.
+
+    Functions are ``phi / r``, ``phi,r`` and ``phi,y``; for torsion the weight holds ``r^2``.
+    """
     lame = material.E * material.nu / ((1 + material.nu) * (1 - 2 * material.nu))
     mu = material.E / (2 * (1 + material.nu))
+    over, dr, dy = np.eye(3)
+    none = np.zeros(3)
     if n == -1:
-        reach = r[:, None]
-        return [np.stack([reach * gr], 1), np.stack([reach * gy], 1)], [mu, mu]
-    if n == 0:
-        normal = [(gr, zero), (over, zero), (zero, gy)]
-        shear = [(gy, gr)]
+        normal, shear = [], [(dr,), (dy,)]
+    elif n == 0:
+        normal, shear = [(dr, none), (over, none), (none, dy)], [(dy, dr)]
     else:
-        normal = [(gr, gr, zero), (zero, 2 * over, zero), (zero, zero, gy)]
-        shear = [(-gr, gr - 2 * over, zero), (-gy, gy, -over), (gy, gy, gr)]
-    trace = tuple(sum(parts) for parts in zip(*normal))
-    strains = [np.stack(s, 1) for s in (trace, *normal, *shear)]
-    return strains, [lame] + [2 * mu] * len(normal) + [mu] * len(shear)
+        normal = [(dr, dr, none), (none, 2 * over, none), (none, none, dy)]
+        shear = [(-dr, dr - 2 * over, none), (-dy, dy, -over), (dy, dy, dr)]
+    strains = [(2 * mu, np.array(e)) for e in normal] + [(mu, np.array(g)) for g in shear]
+    if normal:
+        strains.append((lame, sum(np.array(e) for e in normal)))
+    return sum(modulus * np.multiply.outer(e, e) for modulus, e in strains)
