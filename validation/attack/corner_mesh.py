@@ -9,6 +9,7 @@ The mesh of the product is taken at its coarsest; all refinement is made here. T
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -39,7 +40,7 @@ def corner_mesh(scene: Scene, layers: int, size: float, ratio: float) -> CornerM
     scene : Scene
     layers : int
     size : float
-        Longest edge of a cell in least outer radii of the shaft.
+        Longest edge of a cell in outer radii of the shaft where it lies.
     ratio : float
         Size of a copy relative to the cell it is cut from.
     """
@@ -49,7 +50,11 @@ def corner_mesh(scene: Scene, layers: int, size: float, ratio: float) -> CornerM
     flat = coarse.geometry.meridian
     mesh = CornerMesh(flat.points.T.copy(), flat.cells.T.copy(), flat.segment.copy())
     corners = _vertices(mesh.points, singular_points(scene), 1e-7 * least)
-    mesh = _spread(mesh, corners, size * least)
+
+    def longest(y: float) -> float:
+        return size * max(_radii(scene, y, below)[1] for below in (True, False))
+
+    mesh = _spread(mesh, corners, longest)
     for _ in range(layers):
         mesh = _cut(mesh, corners, ratio)
     return mesh
@@ -93,7 +98,7 @@ def _vertices(points, wanted, tol) -> np.ndarray:
 
 
 # ------------------------------------------------------------------------------------------------- chords
-def _spread(mesh: CornerMesh, corners: np.ndarray, longest: float) -> CornerMesh:
+def _spread(mesh: CornerMesh, corners: np.ndarray, longest: Callable[[float], float]) -> CornerMesh:
     """Split chords until cells are small enough, have one singular vertex at most, and are not too slender there."""
     special = set(corners.tolist())
     for _ in range(10_000):
@@ -104,7 +109,7 @@ def _spread(mesh: CornerMesh, corners: np.ndarray, longest: float) -> CornerMesh
     raise ValueError("the mesh of the meridian does not settle")
 
 
-def _worst_edge(mesh: CornerMesh, special: set[int], longest: float) -> tuple[int, int, float] | None:
+def _worst_edge(mesh: CornerMesh, special: set[int], longest: Callable[[float], float]) -> tuple[int, int, float] | None:
     """(start, end, fraction) of an edge whose chord is to be split, or None."""
     points, cells = mesh.points, mesh.cells
     shortest: dict[int, float] = {}
@@ -120,7 +125,7 @@ def _worst_edge(mesh: CornerMesh, special: set[int], longest: float) -> tuple[in
     for (a, b), (d, _) in sorted(edges.items(), key=lambda e: -e[1][0]):
         if a in special and b in special:
             return a, b, 0.5
-        if d > 1.0001 * longest:
+        if d > 1.0001 * longest((points[a, 1] + points[b, 1]) / 2):
             return a, b, 0.5
         if a in special and d > 1.5 * STRETCH * shortest[a]:
             return a, b, max(STRETCH * shortest[a] / d, 0.15)

@@ -12,8 +12,8 @@ from validation.attack.reference import Reference, coupling_scale
 
 #: errors below this are rounding and are not judged
 SMALL = 1e-7
-#: shapes are taken for the same from this MAC on
-ALIKE = 0.8
+#: a partner has at least this MAC, and at least this share of the best; stations that a coarse mesh does not know spoil a MAC
+LEAST, NEAR_BEST = 0.3, 0.7
 #: a frequency further off than this is not looked at as a partner
 REACH = 0.5
 JUDGED = ("C_zz", "C_thx", "C_yy", "C_z,thx", "bending 1", "axial 1")
@@ -55,9 +55,10 @@ def partner_of(mode: dict, reference: Reference) -> tuple[dict | None, str]:
     near = [m for m in elastic if abs(m["frequency_hz"] / mode["frequency_hz"] - 1) < REACH]
     gram = np.array(reference.gram)
     shape = _rows(mode)
-    alike = [m for m in near if subspace_mac(shape, _rows(m), gram) >= ALIKE]
-    if not alike:
+    mac = [subspace_mac(shape, _rows(m), gram) for m in near]
+    if max(mac, default=0.0) < LEAST:
         return None, "no mode of that shape"
+    alike = [m for m, value in zip(near, mac) if value >= max(LEAST, NEAR_BEST * max(mac))]
     best = min(alike, key=lambda m: abs(np.log(m["frequency_hz"] / mode["frequency_hz"])))
     return best, "by shape" if best["name"] == mode["name"] else f"by shape, there called {best['name']}"
 

@@ -34,7 +34,7 @@ def random_springs(rng: np.random.Generator, diameter: float, unequal: bool, cou
     # a floating bearing does not hold along the shaft
     axial = radial * rng.uniform(0.1, 2.0) if rng.random() < 0.8 else 0.0
     size = np.sqrt([radial * factors[0], axial, radial * factors[1], tilt * factors[1], 0.0, tilt * factors[0]])
-    return size[:, None] * _correlation(rng, coupled, unequal) * size
+    return np.outer(size, size) * _correlation(rng, coupled, unequal)
 
 
 def _correlation(rng, coupled: str, unequal: bool) -> np.ndarray:

@@ -38,6 +38,7 @@ class Worker:
                 return {"crash": f"timeout after {self.seconds:g} s"}
             return self.pipe.recv()
         except (EOFError, ConnectionResetError):
+            self.process.join(5.0)
             code = self.process.exitcode
             self.close()
             return {"crash": f"died, exit code {code}"}
