@@ -1,4 +1,6 @@
-"""Random scenes against an over-refined reference: the generator, the reference's own elements, and the judges' arithmetic."""
+"""Random scenes against an over-refined reference: the generator, the reference's own elements,
+and the judges' arithmetic.
+"""
 
 import math
 import os
@@ -33,7 +35,8 @@ from validation.attack.verdicts import VerdictTable  # noqa: E402
 from validation.attack.worker import Worker  # noqa: E402
 
 
-# ------------------------------------------------------------------------------------------------- scenes
+# ------------------------------------------------------------------------------------------------
+# - scenes
 def test_a_seed_gives_one_scene():
     assert random_scene(5).as_dict() == random_scene(5).as_dict()
     assert random_scene(5).as_dict() != random_scene(6).as_dict()
@@ -67,12 +70,18 @@ def test_springs_hold_and_never_push(coupled):
         assert not k[4].any()
 
 
-# ------------------------------------------------------------------------------------------------- mesh
+# ------------------------------------------------------------------------------------------------
+# - mesh
 def _stepped(attachment="average"):
-    segments = [Segment.cylinder("thin", length=0.1, diameter=0.04, bore=0.01), Segment.cylinder("thick", length=0.06, diameter=0.06, bore=0.01, y0=0.1)]
+    segments = [
+        Segment.cylinder("thin", length=0.1, diameter=0.04, bore=0.01),
+        Segment.cylinder("thick", length=0.06, diameter=0.06, bore=0.01, y0=0.1),
+    ]
     matrix = np.diag([1e8, 5e7, 1e8, 1e4, 2e3, 1e4])
     bearing = Bearing(name="1", y=0.03, seat_width=0.02, matrix=matrix, attachment=attachment)
-    return Scene.from_parts(segments, bearings=[bearing], port=Port(y=0.13, lo=0.1, hi=0.16, attachment=attachment))
+    return Scene.from_parts(
+        segments, bearings=[bearing], port=Port(y=0.13, lo=0.1, hi=0.16, attachment=attachment)
+    )
 
 
 def test_corner_cuts_keep_the_mesh_whole():
@@ -84,7 +93,9 @@ def test_corner_cuts_keep_the_mesh_whole():
     assert area.min() > 0
     # the meridian without its bore, in closed form
     assert area.sum() == pytest.approx(0.1 * 0.015 + 0.06 * 0.025, rel=1e-12)
-    edges = np.sort(np.stack([mesh.cells, np.roll(mesh.cells, -1, axis=1)], axis=2), axis=2).reshape(-1, 2)
+    edges = np.sort(
+        np.stack([mesh.cells, np.roll(mesh.cells, -1, axis=1)], axis=2), axis=2
+    ).reshape(-1, 2)
     pairs, count = np.unique(edges, axis=0, return_counts=True)
     assert count.max() == 2
     # no hanging nodes: the edges of one cell only close to the outline
@@ -105,12 +116,23 @@ def test_layers_shrink_by_the_ratio_at_every_corner():
     assert np.allclose(np.array(shortest[n:]) / shortest[:n], 0.2)
 
 
-# ------------------------------------------------------------------------------------------------- elements
+# ------------------------------------------------------------------------------------------------
+# - elements
 def test_own_elements_twist_a_bar_exactly():
-    """Between section means in a uniform bar, torsion is Saint-Venant's solution, linear along the shaft: 1/k + l / (G J)."""
+    """Between section means in a uniform bar, torsion is Saint-Venant's solution, linear along
+    the shaft: 1/k + l / (G J).
+    """
     bar = [Segment.cylinder("bar", length=0.3, diameter=0.05)]
-    bearing = Bearing(name="1", y=0.05, seat_width=0.02, matrix=np.diag([1e8, 1e8, 1e8, 1e4, 3e5, 1e4]), attachment="section")
-    scene = Scene.from_parts(bar, bearings=[bearing], port=Port(y=0.25, lo=0.2, hi=0.3, attachment="section"))
+    bearing = Bearing(
+        name="1",
+        y=0.05,
+        seat_width=0.02,
+        matrix=np.diag([1e8, 1e8, 1e8, 1e4, 3e5, 1e4]),
+        attachment="section",
+    )
+    scene = Scene.from_parts(
+        bar, bearings=[bearing], port=Port(y=0.25, lo=0.2, hi=0.3, attachment="section")
+    )
     body = spectral(scene, corner_mesh(scene, 2, 2.0, 0.2), 4)
     twist = condense(body, scene, "port").compliance[4, 4]
     exact = 1 / 3e5 + 0.2 / (scene.material.shear_modulus * math.pi / 2 * 0.025**4)
@@ -122,7 +144,14 @@ def test_own_elements_twist_a_bar_exactly():
 def test_own_elements_agree_with_the_product(attachment):
     scene = _stepped(attachment)
     mine = spectral(scene, corner_mesh(scene, 5, 2.0, 0.2), 4)
-    options = {"order": 4, "layers": 3, "edge_layers": 3, "ratio": 0.2, "size": 0.04, "refinement": 1.0}
+    options = {
+        "order": 4,
+        "layers": 3,
+        "edge_layers": 3,
+        "ratio": 0.2,
+        "size": 0.04,
+        "refinement": 1.0,
+    }
     theirs = build(scene, "harmonic", **options)
     exact = mass_properties(scene.segments)
     assert mine.mass_matrix()[0, 0] == pytest.approx(exact.mass, rel=1e-12)
@@ -130,12 +159,14 @@ def test_own_elements_agree_with_the_product(attachment):
     assert mine.rigid_residual() < 1e-13
     supports = as_supports(scene)
     a, b = (condense(body, supports, "port").compliance for body in (mine, theirs))
-    # three layers of the product at a rigid seat leave 2e-4; a wrong tie, sign or strain shows in per cents
+    # three layers of the product at a rigid seat leave 2e-4; a wrong tie, sign or strain shows in
+    # per cents
     assert np.allclose(np.diag(a), np.diag(b), rtol=5e-4)
     assert a[2, 3] == pytest.approx(b[2, 3], rel=5e-4)
 
 
-# ------------------------------------------------------------------------------------------------- reference
+# ------------------------------------------------------------------------------------------------
+# - reference
 def test_settling_extrapolates_what_falls_geometrically():
     a, b, c = (2.0 + 0.3**k for k in (3, 4, 5))
     value, doubt = settle(a, b, c, a, 2.0)
@@ -153,14 +184,17 @@ def test_settling_doubts_what_does_not():
 
 
 def test_the_reference_is_as_good_as_it_says(tmp_path, monkeypatch):
-    monkeypatch.setattr(finest, "LEVELS", ((2, 2), (3, 4)))
+    monkeypatch.setattr(finest, "LEVELS", ((2, 2), (3, 3)))
     scene = _stepped("rigid")
     light = reference(scene, 1.0, folder=tmp_path)
     fine = reference(scene, light.uncertainty["C_zz"] / 2, folder=tmp_path)
-    assert light.setting == [4, 2] and fine.setting == [5, 4]
+    assert light.setting == [4, 2] and fine.setting == [5, 3]
     for name, value in light.values.items():
         scale = finest.coupling_scale(fine.values, name)
-        assert abs(value - fine.values[name]) <= (light.uncertainty[name] + fine.uncertainty[name]) * scale, name
+        assert (
+            abs(value - fine.values[name])
+            <= (light.uncertainty[name] + fine.uncertainty[name]) * scale
+        ), name
     # kept: a finer one serves a coarser goal, without solving
     start = time.process_time()
     assert reference(scene, 1.0, folder=tmp_path).setting == fine.setting
@@ -168,11 +202,19 @@ def test_the_reference_is_as_good_as_it_says(tmp_path, monkeypatch):
     assert reference(scene, limit=1000, folder=None) is None
 
 
-# ------------------------------------------------------------------------------------------------- judges
+# ------------------------------------------------------------------------------------------------
+# - judges
 def _mode(name, hz, row):
     motions = np.zeros((1, 2, 6))
     motions[0, :, 2] = row
-    return {"name": name, "family": "bending", "frequency_hz": hz, "multiplicity": 1, "motions": motions.tolist(), "uncertainty": 1e-6}
+    return {
+        "name": name,
+        "family": "bending",
+        "frequency_hz": hz,
+        "multiplicity": 1,
+        "motions": motions.tolist(),
+        "uncertainty": 1e-6,
+    }
 
 
 def _reference(**changed):
@@ -186,7 +228,14 @@ def _reference(**changed):
 
 
 def _model(values, bands=None, modes=()):
-    return {"valid": True, "why_not": None, "values": values, "bands": bands or {}, "steps": {}, "modes": list(modes)}
+    return {
+        "valid": True,
+        "why_not": None,
+        "values": values,
+        "bands": bands or {},
+        "steps": {},
+        "modes": list(modes),
+    }
 
 
 def test_modes_are_paired_by_shape_whatever_their_names():
@@ -201,7 +250,10 @@ def test_modes_are_paired_by_shape_whatever_their_names():
 
 
 def test_bands_are_held_missed_or_left_alone():
-    model = _model({"C_zz": 1.01, "C_thx": 4.0 + 1e-9, "C_z,thx": 0.03}, {"C_zz": 0.02, "C_thx": 0.1, "C_z,thx": 0.01})
+    model = _model(
+        {"C_zz": 1.01, "C_thx": 4.0 + 1e-9, "C_z,thx": 0.03},
+        {"C_zz": 0.02, "C_thx": 0.1, "C_z,thx": 0.01},
+    )
     zz, tilt, cross = (band_of(q, model, _reference()) for q in ("C_zz", "C_thx", "C_z,thx"))
     assert zz.held and zz.judged and zz.error == pytest.approx(0.01 / 1.01)
     # an error of rounding's size says nothing of a band
@@ -221,15 +273,31 @@ def test_errors_at_the_edge_are_not_counted():
 
 @pytest.mark.parametrize(
     "valid, error, fair, sort",
-    [(True, 0.0, 0.0, "valid, true"), (True, 0.2, 0.0, "false valid"), (False, 0.2, 0.2, "not valid, true"),
-     (False, 0.0, 0.0, "false invalid"), (False, 0.0, 0.2, "not valid like for like only")],
-)  # fmt: skip
+    [
+        (True, 0.0, 0.0, "valid, true"),
+        (True, 0.2, 0.0, "false valid"),
+        (False, 0.2, 0.2, "not valid, true"),
+        (False, 0.0, 0.0, "false invalid"),
+        (False, 0.0, 0.2, "not valid like for like only"),
+    ],
+)
 def test_verdicts_are_sorted(valid, error, fair, sort):
     table = VerdictTable()
     model = _model({"C_zz": 1.0 + error}) | {"valid": valid, "why_not": "reason"}
-    row = {"seed": 1, "models": {"euler": model}, "check": {"euler": "holds" if valid else "will not hold", "lumped": "holds"}}
-    fair_reference = _reference(values={"C_zz": (1.0 + error) / (1.0 + fair), "C_thx": 4.0, "C_z,thx": 0.01})
-    table.add(row, {"tolerance": 0.05, "kind": "bar", "ties": "average", "l_over_d": 3.0}, _reference(), fair_reference)
+    row = {
+        "seed": 1,
+        "models": {"euler": model},
+        "check": {"euler": "holds" if valid else "will not hold", "lumped": "holds"},
+    }
+    fair_reference = _reference(
+        values={"C_zz": (1.0 + error) / (1.0 + fair), "C_thx": 4.0, "C_z,thx": 0.01}
+    )
+    table.add(
+        row,
+        {"tolerance": 0.05, "kind": "bar", "ties": "average", "l_over_d": 3.0},
+        _reference(),
+        fair_reference,
+    )
     assert table.total(sort) == 1
     assert len(table.cases) == ("false" in sort)
     assert table.counts["check", "euler", "agree"] == 1
@@ -240,23 +308,38 @@ def test_check_may_doubt_but_not_contradict():
     table = VerdictTable()
     for said in ("holds", "holds with caution", "will not hold"):
         row = {"seed": 1, "models": {"euler": _model({"C_zz": 1.0})}, "check": {"euler": said}}
-        table.add(row, {"tolerance": 0.05, "kind": "bar", "ties": "average", "l_over_d": 3.0}, _reference(), None)
-    assert [table.counts["check", "euler", k] for k in ("agree", "uncertain", "contradict")] == [1, 1, 1]
+        table.add(
+            row,
+            {"tolerance": 0.05, "kind": "bar", "ties": "average", "l_over_d": 3.0},
+            _reference(),
+            None,
+        )
+    assert [table.counts["check", "euler", k] for k in ("agree", "uncertain", "contradict")] == [
+        1,
+        1,
+        1,
+    ]
 
 
 def test_misses_are_explained_by_their_sequence():
     def told(values, error):
-        return explained(Band("C_zz", error, 1e-3, 0.0, "", True), {"steps": {"C_zz": {"values": values, "used_order": 4.0}}})
+        return explained(
+            Band("C_zz", error, 1e-3, 0.0, "", True),
+            {"steps": {"C_zz": {"values": values, "used_order": 4.0}}},
+        )[0]
 
     assert "turns" in told([1.0, 1.1, 1.05], 0.1)
     assert "changed sign" in told([1.0, 1.1, 1.15], 0.01)
     assert "grow" in told([1.0, 1.1, 1.3], -0.1)
-    assert "slowly" in told([1.0, 1.1, 1.15], -0.1)
+    assert "slower" in told([1.0, 1.1, 1.15], -0.1)
 
 
 def test_a_table_counts_only_what_was_judged():
     table = BandTable()
-    row = {"seed": 3, "models": {"harmonic": _model({"C_zz": 1.01, "C_thx": 4.0}, {"C_zz": 0.001, "C_thx": 0.1})}}
+    row = {
+        "seed": 3,
+        "models": {"harmonic": _model({"C_zz": 1.01, "C_thx": 4.0}, {"C_zz": 0.001, "C_thx": 0.1})},
+    }
     table.add(row, {"kind": "bar", "ties": "rigid", "l_over_d": 3.0}, _reference(), "harmonic")
     assert table.hits("harmonic") == (0, 1)
     assert "seed 3" in table.misses[0]
@@ -275,9 +358,18 @@ def test_a_worker_survives_what_it_runs():
 
 
 def test_one_scene_end_to_end():
-    """A coarse harmonic solid of a random bar has the bands and the verdict that its reference asks for."""
+    """A coarse harmonic solid of a random bar has the bands and the verdict that its reference
+    asks for.
+    """
     scene = random_scene(15, kind="bar", ties="average")
-    coarse = {"harmonic": {"order": 3, "layers": 1, "edge_layers": 0, "size": scene.segments[0].outer0 * 4}}
+    coarse = {
+        "harmonic": {
+            "order": 3,
+            "layers": 1,
+            "edge_layers": 0,
+            "size": scene.segments[0].outer0 * 4,
+        }
+    }
     found = outcome(scene, ("euler", "harmonic"), coarse, check=False)
     truth = reference(scene, 1e-3, folder=None)
     bands = [band_of(q, found["models"]["harmonic"], truth) for q in ("C_zz", "C_thx", "bending 1")]

@@ -1,14 +1,16 @@
-"""Do the bands of the solids hold the true errors? Hit rates, tightness, and every miss with what it looks like."""
+"""Do the bands of the solids hold the true errors? Hit rates, tightness, and every miss with what
+it looks like.
+"""
 
 from __future__ import annotations
 
-from collections import defaultdict
+from collections import Counter, defaultdict
 
 import numpy as np
 
 from solidgear.evidence.quantities import QUANTITIES
 
-from validation.attack.judge import Band, band_of, rate
+from validation.attack.judge import Band, band_of, called, rate
 
 
 def judge_bands(row: dict, reference, model: str) -> list[Band]:
@@ -18,26 +20,30 @@ def judge_bands(row: dict, reference, model: str) -> list[Band]:
     return [b for b in judged if b is not None]
 
 
-def explained(band: Band, model: dict) -> str:
-    """What a missed band looks like, from the sequence behind it."""
+def explained(band: Band, model: dict) -> tuple[str, str]:
+    """What a missed band looks like, from the sequence behind it: a class, and the figures."""
     found = model["steps"].get(band.quantity) or {}
     three = found.get("values") or ()
     if "there called" in band.how:
-        return f"the mode is another one by name ({band.how})"
+        return "another mode by name", band.how
     if len(three) < 3:
-        return "no sequence told"
+        return "no sequence told", ""
     first, second = three[-2] - three[-3], three[-1] - three[-2]
     size = abs(three[-1]) or 1.0
     steps = f"steps {first / size:.1e}, {second / size:.1e}"
     if first * second < 0:
-        return f"the sequence turns ({steps})"
+        return "the sequence turns", steps
     # a sequence that converges from one side has its error opposite to its steps
     if band.error * second > 0:
-        return f"the last value is beyond the truth already: the error has changed sign ({steps})"
+        return "the error has changed sign", f"the last value is beyond the truth; {steps}"
     if abs(second) > abs(first):
-        return f"steps grow ({steps})"
+        return "steps grow", steps
     left = abs(band.error) / (abs(second) / size) if second else np.inf
-    return f"converges more slowly than its {found.get('used_order') or 0:.2g}th order: the error is {left:.2g} times the last step ({steps})"
+    return (
+        "slower than the order used",
+        f"order {found.get('used_order') or 0:.2g}, "
+        f"yet the error is {left:.2g} times the last step; {steps}",
+    )
 
 
 class BandTable:
@@ -46,16 +52,19 @@ class BandTable:
     def __init__(self):
         self.bands: dict[tuple[str, str, str], list[Band]] = defaultdict(list)
         self.misses: list[str] = []
+        self.classes: Counter = Counter()
 
     def add(self, row: dict, traits: dict, reference, model: str, label: str | None = None) -> None:
         """All bands of one model in one outcome."""
         for band in judge_bands(row, reference, model):
             self.bands[label or model, band.quantity, traits["ties"]].append(band)
             if band.judged and not band.held:
-                why = explained(band, row["models"][model])
+                why, figures = explained(band, row["models"][model])
+                self.classes[label or model, traits["ties"], why] += 1
                 self.misses.append(
-                    f"seed {row['seed']} ({traits['kind']}, {traits['ties']}, L/D {traits['l_over_d']:.2f}), {label or model}, {band.quantity}: "
-                    f"band {band.band:.1e}, error {band.error:+.1e} +- {band.doubt:.0e}: {why}"
+                    f"{called(row['seed'], traits)}, {label or model}, {band.quantity}: "
+                    f"band {band.band:.1e}, error {band.error:+.1e} +- {band.doubt:.0e}: "
+                    f"{why} ({figures})"
                 )
 
     def lines(self) -> list[str]:
@@ -63,12 +72,32 @@ class BandTable:
         out = []
         for model in dict.fromkeys(key[0] for key in self.bands):
             mine = {key[1:]: value for key, value in self.bands.items() if key[0] == model}
-            out += ["", f"### {model}", "", "| quantity | held | median band / error | 5 % | 95 % | largest band | not judged |", "| --- | --- | --- | --- | --- | --- | --- |"]
+            out += [
+                "",
+                f"### {model}",
+                "",
+                "| quantity | held | band / error, median | 5 % | 95 % | largest band | left out |",
+                "| --- | --- | --- | --- | --- | --- | --- |",
+            ]
             names = [q for q in QUANTITIES if any(k[0] == q for k in mine)]
             out += [_line(q, [b for k, v in mine.items() if k[0] == q for b in v]) for q in names]
             out += [_line("**all**", [b for v in mine.values() for b in v])]
-            out += [_line(f"ties {t}", [b for k, v in mine.items() if k[1] == t for b in v]) for t in sorted({k[1] for k in mine})]
-        out += ["", f"### Misses: {len(self.misses)}", "", *(f"- {m}" for m in self.misses)]
+            out += [
+                _line(f"ties {t}", [b for k, v in mine.items() if k[1] == t for b in v])
+                for t in sorted({k[1] for k in mine})
+            ]
+        out += [
+            "",
+            f"### Misses: {len(self.misses)}",
+            "",
+            "| model | ties | what it looks like | misses |",
+            "| --- | --- | --- | --- |",
+        ]
+        out += [
+            f"| {model} | {ties} | {why} | {n} |"
+            for (model, ties, why), n in self.classes.most_common()
+        ]
+        out += ["", *(f"- {m}" for m in self.misses)]
         return out
 
     def hits(self, model: str) -> tuple[int, int]:
@@ -84,4 +113,6 @@ def _line(name: str, bands: list[Band]) -> str:
     ratio = [b.band / abs(b.error) for b in judged]
     low, middle, high = np.quantile(ratio, [0.05, 0.5, 0.95])
     held = rate(sum(b.held for b in judged), len(judged))
-    return f"| {name} | {held} | {middle:.3g} | {low:.3g} | {high:.3g} | {max(b.band for b in judged):.1e} | {len(bands) - len(judged)} |"
+    largest, left_out = max(b.band for b in judged), len(bands) - len(judged)
+    ratios = f"{middle:.3g} | {low:.3g} | {high:.3g}"
+    return f"| {name} | {held} | {ratios} | {largest:.1e} | {left_out} |"

@@ -1,4 +1,6 @@
-"""Scenes through `compare`, `check` and the reference, one line of JSON each: resumable, and kept apart by version of the product."""
+"""Scenes through `compare`, `check` and the reference, one line of JSON each: resumable, and kept
+apart by version of the product.
+"""
 
 from __future__ import annotations
 
@@ -40,10 +42,21 @@ def run(seed: int, tolerance: float | None, lane: str) -> dict:
 def scene_of(seed: int, tolerance: float | None) -> Scene:
     """The scene of a seed, with another tolerance if one is given."""
     scene = random_scene(seed)
-    return scene if tolerance is None else scene.with_changes(ask=scene.ask.with_changes(tolerance=tolerance))
+    return (
+        scene
+        if tolerance is None
+        else scene.with_changes(ask=scene.ask.with_changes(tolerance=tolerance))
+    )
 
 
-def collect(seeds, tolerance: float | None, lane: str, seconds: float, tell: Callable[[str], None], folder: Path = FOLDER.parent) -> list[dict]:
+def collect(
+    seeds,
+    tolerance: float | None,
+    lane: str,
+    seconds: float,
+    tell: Callable[[str], None],
+    folder: Path = FOLDER.parent,
+) -> list[dict]:
     """Outcomes of all seeds, from the file as far as they are there; Ctrl-C gives what there is."""
     path = folder / f"outcomes-{lane}-{tolerance or 'own'}-{stamp()}.jsonl"
     folder.mkdir(parents=True, exist_ok=True)
@@ -53,16 +66,25 @@ def collect(seeds, tolerance: float | None, lane: str, seconds: float, tell: Cal
         for k, seed in enumerate(seeds):
             if seed in done:
                 continue
-            done[seed] = {"seed": seed, "lane": lane, "tolerance": tolerance} | worker.run(seed, tolerance, lane)
+            done[seed] = {"seed": seed, "lane": lane, "tolerance": tolerance} | worker.run(
+                seed, tolerance, lane
+            )
             with path.open("a") as file:
                 file.write(json.dumps(done[seed]) + "\n")
-            problem = done[seed].get("crash") or done[seed].get("refused") or ""
-            tell(f"{lane}: {k + 1} of {len(seeds)}, seed {seed}, {done[seed].get('wall', seconds):.1f} s {problem.strip().splitlines()[-1] if problem else ''}")
+            problem = problem_of(done[seed])
+            spent = done[seed].get("wall", seconds)
+            tell(f"{lane}: {k + 1} of {len(seeds)}, seed {seed}, {spent:.1f} s {problem}")
     except KeyboardInterrupt:
         tell("interrupted; judging what there is")
     finally:
         worker.close()
     return [done[seed] for seed in seeds if seed in done]
+
+
+def problem_of(row: dict) -> str:
+    """Why an outcome cannot be judged, in a line; empty where it can."""
+    told = row.get("crash") or row.get("refused") or ""
+    return told.strip().splitlines()[-1] if told else ""
 
 
 def _rows(path: Path) -> Iterator[dict]:
@@ -74,9 +96,11 @@ def _rows(path: Path) -> Iterator[dict]:
 
 
 def truth_for(row: dict, ties: str = "scene") -> Reference | None:
-    """The reference of an outcome's scene, fine enough for its bands; with section ties everywhere if asked.
+    """The reference of an outcome's scene, fine enough for its bands; with section ties
+    everywhere if asked.
 
-    What is judged are bands of the solids, which ask for a tenth of each, and verdicts, for which a hundredth of the tolerance will do.
+    What is judged are bands of the solids, which ask for a tenth of each, and verdicts, for which
+    a hundredth of the tolerance will do.
     """
     scene = scene_of(row["seed"], row["tolerance"])
     goal = dict.fromkeys(judge.JUDGED, scene.ask.tolerance / 100)
@@ -85,7 +109,9 @@ def truth_for(row: dict, ties: str = "scene") -> Reference | None:
     for model in SOLIDS:
         found = row.get("models", {}).get(model, {})
         for name, band in found.get("bands", {}).items():
-            goal[name] = min(goal.get(name, 1.0), max(0.1 * band / coupling_scale(found["values"], name), FINEST))
+            goal[name] = min(
+                goal.get(name, 1.0), max(0.1 * band / coupling_scale(found["values"], name), FINEST)
+            )
     return reference(scene, goal)
 
 

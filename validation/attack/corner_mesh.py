@@ -1,10 +1,14 @@
 """Quadrilaterals of the meridian, cut geometrically into the corners where the stress is singular.
 
-The mesh of the product is taken at its coarsest; all refinement is made here. Two operations keep it conforming:
+The mesh of the product is taken at its coarsest; all refinement is made here. Two operations keep
+it conforming:
 
-- a *chord* is a strip of cells that share opposite edges, from boundary to boundary; splitting it splits all its cells;
-- a *corner cut* parts every cell around a vertex into a small copy at the vertex and two cells around that copy.
-  The edges away from the vertex stay whole, so that layers cost a few cells each and no lines through the shaft.
+- a *chord* is a strip of cells that share opposite edges, from boundary to boundary; splitting it
+  splits all its cells;
+- a *corner cut* parts every cell around a vertex into a small copy at the vertex and two cells
+  around that copy.
+  The edges away from the vertex stay whole, so that layers cost a few cells each and no lines
+  through the shaft.
 """
 
 from __future__ import annotations
@@ -25,7 +29,9 @@ ALONG = (((0, 1), (3, 2)), ((0, 3), (1, 2)))
 
 @dataclass
 class CornerMesh:
-    """``points`` (n, 2) with r and y in m, ``cells`` (m, 4) counterclockwise in the (r, y) plane, ``segment`` (m,)."""
+    """``points`` (n, 2) with r and y in m, ``cells`` (m, 4) counterclockwise in the (r, y) plane,
+    ``segment`` (m,).
+    """
 
     points: np.ndarray
     cells: np.ndarray
@@ -46,7 +52,17 @@ def corner_mesh(scene: Scene, layers: int, size: float, ratio: float) -> CornerM
     """
     least = min(min(s.outer0, s.outer1) for s in scene.segments)
     # one cell where one will do: all that is asked of this mesh is that it knows the outline
-    coarse = build(scene, "harmonic", order=1, layers=0, edge_layers=0, ratio=0.5, size=scene.length, refinement=1.0, ovalising=())
+    coarse = build(
+        scene,
+        "harmonic",
+        order=1,
+        layers=0,
+        edge_layers=0,
+        ratio=0.5,
+        size=scene.length,
+        refinement=1.0,
+        ovalising=(),
+    )
     flat = coarse.geometry.meridian
     mesh = CornerMesh(flat.points.T.copy(), flat.cells.T.copy(), flat.segment.copy())
     corners = _vertices(mesh.points, singular_points(scene), 1e-7 * least)
@@ -61,12 +77,13 @@ def corner_mesh(scene: Scene, layers: int, size: float, ratio: float) -> CornerM
 
 
 def singular_points(scene: Scene) -> np.ndarray:
-    """(k, 2) r and y of re-entrant corners, ends of seats, planes of section ties and places where the material changes."""
+    """(k, 2) r and y of re-entrant corners, ends of seats, planes of section ties and places
+    where the material changes.
+    """
     out = []
     for a, b in zip(scene.segments, scene.segments[1:]):
         tiny = 1e-9 * scene.length
-        kink = any(abs((getattr(a, w + "1") - getattr(a, w + "0")) / a.length - (getattr(b, w + "1") - getattr(b, w + "0")) / b.length) > 1e-6
-                   for w in ("outer", "inner"))  # fmt: skip
+        kink = any(abs(_slope(a, w) - _slope(b, w)) > 1e-6 for w in ("outer", "inner"))
         if kink or a.material != b.material or abs(a.outer1 - b.outer0) > tiny:
             out.append((min(a.outer1, b.outer0), b.y0))
         if kink or a.material != b.material or abs(a.inner1 - b.inner0) > tiny:
@@ -76,8 +93,16 @@ def singular_points(scene: Scene) -> np.ndarray:
             inner, outer = _radii(scene, station.y, below=True)
             out += [(inner, station.y), (outer, station.y)]
         else:
-            out += [(_radii(scene, station.lo, below=False)[1], station.lo), (_radii(scene, station.hi, below=True)[1], station.hi)]
+            out += [
+                (_radii(scene, station.lo, below=False)[1], station.lo),
+                (_radii(scene, station.hi, below=True)[1], station.hi),
+            ]
     return np.array([p for p in out if p[0] > 0])
+
+
+def _slope(segment, surface: str) -> float:
+    rise = getattr(segment, surface + "1") - getattr(segment, surface + "0")
+    return rise / segment.length
 
 
 def _radii(scene: Scene, y: float, below: bool) -> tuple[float, float]:
@@ -97,9 +122,12 @@ def _vertices(points, wanted, tol) -> np.ndarray:
     return np.unique(at)
 
 
-# ------------------------------------------------------------------------------------------------- chords
+# ------------------------------------------------------------------------------------------------
+# - chords
 def _spread(mesh: CornerMesh, corners: np.ndarray, longest: Callable[[float], float]) -> CornerMesh:
-    """Split chords until cells are small enough, have one singular vertex at most, and are not too slender there."""
+    """Split chords until cells are small enough, have one singular vertex at most, and are not
+    too slender there.
+    """
     special = set(corners.tolist())
     for _ in range(10_000):
         found = _worst_edge(mesh, special, longest)
@@ -109,14 +137,20 @@ def _spread(mesh: CornerMesh, corners: np.ndarray, longest: Callable[[float], fl
     raise ValueError("the mesh of the meridian does not settle")
 
 
-def _worst_edge(mesh: CornerMesh, special: set[int], longest: Callable[[float], float]) -> tuple[int, int, float] | None:
+def _worst_edge(
+    mesh: CornerMesh, special: set[int], longest: Callable[[float], float]
+) -> tuple[int, int, float] | None:
     """(start, end, fraction) of an edge whose chord is to be split, or None."""
     points, cells = mesh.points, mesh.cells
     shortest: dict[int, float] = {}
     edges: dict[tuple[int, int], tuple[float, int]] = {}
     for direction, pairs in enumerate(ALONG):
         for i, j in pairs:
-            for a, b, d in zip(cells[:, i], cells[:, j], np.linalg.norm(points[cells[:, i]] - points[cells[:, j]], axis=1)):
+            for a, b, d in zip(
+                cells[:, i],
+                cells[:, j],
+                np.linalg.norm(points[cells[:, i]] - points[cells[:, j]], axis=1),
+            ):
                 edges[int(a), int(b)] = float(d), direction
     for (a, b), (d, _) in edges.items():
         for v in (a, b):
@@ -139,7 +173,9 @@ def _worst_edge(mesh: CornerMesh, special: set[int], longest: Callable[[float], 
 
 
 def _split_chord(mesh: CornerMesh, start: int, end: int, fraction: float) -> CornerMesh:
-    """All cells across the chord of an edge parted at one fraction of their edges; start before end as cells number them."""
+    """All cells across the chord of an edge parted at one fraction of their edges; start before
+    end as cells number them.
+    """
     points, cells = mesh.points, mesh.cells
     beside: dict[tuple[int, int], list[tuple[int, int]]] = {}
     for k, cell in enumerate(cells):
@@ -175,7 +211,8 @@ def _split_chord(mesh: CornerMesh, start: int, end: int, fraction: float) -> Cor
     return CornerMesh(np.vstack([points, fresh]), np.array(new_cells), np.array(owner))
 
 
-# ------------------------------------------------------------------------------------------------- corners
+# ------------------------------------------------------------------------------------------------
+# - corners
 def _cut(mesh: CornerMesh, corners: np.ndarray, ratio: float) -> CornerMesh:
     """One layer at every corner: the cells around it parted in three."""
     points = [*mesh.points]

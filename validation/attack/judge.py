@@ -1,4 +1,6 @@
-"""Arithmetic of the judgements: pairs of modes by shape, errors against the reference, held or missed, true or false."""
+"""Arithmetic of the judgements: pairs of modes by shape, errors against the reference, held or
+missed, true or false.
+"""
 
 from __future__ import annotations
 
@@ -12,7 +14,8 @@ from validation.attack.reference import Reference, coupling_scale
 
 #: errors below this are rounding and are not judged
 SMALL = 1e-7
-#: a partner has at least this MAC, and at least this share of the best; stations that a coarse mesh does not know spoil a MAC
+#: a partner has at least this MAC, and at least this share of the best; stations that a coarse
+#: mesh does not know spoil a MAC
 LEAST, NEAR_BEST = 0.3, 0.7
 #: a frequency further off than this is not looked at as a partner
 REACH = 0.5
@@ -37,7 +40,10 @@ def truth_of(name: str, model: dict, reference: Reference) -> Truth | None:
     if name not in FREQUENCIES:
         if name not in reference.values:
             return None
-        return Truth(reference.values[name], reference.uncertainty[name] * coupling_scale(reference.values, name))
+        return Truth(
+            reference.values[name],
+            reference.uncertainty[name] * coupling_scale(reference.values, name),
+        )
     mode = next((m for m in model["modes"] if m["name"] == name), None)
     if mode is None:
         return None
@@ -48,7 +54,9 @@ def truth_of(name: str, model: dict, reference: Reference) -> Truth | None:
 
 
 def partner_of(mode: dict, reference: Reference) -> tuple[dict | None, str]:
-    """The reference's mode of the same shape: nearest in frequency of those alike; by name where there are no shapes."""
+    """The reference's mode of the same shape: nearest in frequency of those alike; by name where
+    there are no shapes.
+    """
     elastic = [m for m in reference.modes if m["frequency_hz"] > 0]
     if "motions" not in mode:
         return next((m for m in elastic if m["name"] == mode["name"]), None), "by name"
@@ -60,7 +68,9 @@ def partner_of(mode: dict, reference: Reference) -> tuple[dict | None, str]:
         return None, "no mode of that shape"
     alike = [m for m, value in zip(near, mac) if value >= max(LEAST, NEAR_BEST * max(mac))]
     best = min(alike, key=lambda m: abs(np.log(m["frequency_hz"] / mode["frequency_hz"])))
-    return best, "by shape" if best["name"] == mode["name"] else f"by shape, there called {best['name']}"
+    return best, "by shape" if best["name"] == mode[
+        "name"
+    ] else f"by shape, there called {best['name']}"
 
 
 def _rows(mode: dict) -> np.ndarray:
@@ -87,7 +97,8 @@ class Band:
 def band_of(name: str, model: dict, reference: Reference) -> Band | None:
     """One quantity's band, or None where there is no band or no truth.
 
-    Not judged are errors below `SMALL`, and those where the uncertainty of the truth could turn the answer.
+    Not judged are errors below `SMALL`, and those where the uncertainty of the truth could turn
+    the answer.
     """
     if name not in model["bands"]:
         return None
@@ -95,13 +106,19 @@ def band_of(name: str, model: dict, reference: Reference) -> Band | None:
     if truth is None:
         return None
     scale = coupling_scale(model["values"], name)
-    error, band, doubt = ((model["values"][name] - truth.value) / scale, model["bands"][name] / scale, truth.uncertainty / scale)
+    error, band, doubt = (
+        (model["values"][name] - truth.value) / scale,
+        model["bands"][name] / scale,
+        truth.uncertainty / scale,
+    )
     clear = abs(abs(error) - band) > doubt
     return Band(name, error, band, doubt, truth.how, abs(error) > SMALL and clear)
 
 
 def errors_of(model: dict, reference: Reference, names=JUDGED) -> dict[str, tuple[float, float]]:
-    """Relative error and doubt of a model's quantities, relative to the true size; those without a truth are left out."""
+    """Relative error and doubt of a model's quantities, relative to the true size; those without
+    a truth are left out.
+    """
     out = {}
     for name in names:
         if name not in model["values"]:
@@ -118,6 +135,12 @@ def within(errors: dict[str, tuple[float, float]], tolerance: float) -> bool | N
     if any(abs(e) - d > tolerance for e, d in errors.values()):
         return False
     return True if all(abs(e) + d <= tolerance for e, d in errors.values()) else None
+
+
+def called(seed: int, traits: dict) -> str:
+    """A scene in a few words."""
+    kind, ties = traits["kind"], traits["ties"]
+    return f"seed {seed} ({kind}, {ties}, L/D {traits['l_over_d']:.2f})"
 
 
 def rate(hits: int, of: int) -> str:

@@ -1,4 +1,6 @@
-"""What `compare` and `check` say of a scene, as plain data: the one place that knows how their results are built."""
+"""What `compare` and `check` say of a scene, as plain data: the one place that knows how their
+results are built.
+"""
 
 from __future__ import annotations
 
@@ -20,7 +22,9 @@ SOLIDS = ("harmonic", "solid")
 
 
 def stamp() -> str:
-    """Changes with the source of the product, so that results of another version are not taken for this one's."""
+    """Changes with the source of the product, so that results of another version are not taken
+    for this one's.
+    """
     told = hashlib.sha256()
     folder = Path(solidgear.__file__).parent
     for path in sorted(folder.rglob("*.py")):
@@ -28,27 +32,45 @@ def stamp() -> str:
     return told.hexdigest()[:10]
 
 
-def outcome(scene: Scene, models: tuple[str, ...], settings: dict | None = None, check: bool = True) -> dict:
+def outcome(
+    scene: Scene, models: tuple[str, ...], settings: dict | None = None, check: bool = True
+) -> dict:
     """Verdicts, values and bands of every model, and what `check` says.
 
     Returns
     -------
     dict
-        ``models``: by name ``values``, ``bands`` (absolute), ``steps`` (values of the sequence behind a band), ``modes``, ``gram``,
-        ``valid``, ``why_not``, ``seconds``, ``unknowns``; ``check``: by name what `check` says; ``warnings``.
+        ``models``: by name ``values``, ``bands`` (absolute), ``steps`` (values of the sequence
+        behind a band), ``modes``, ``gram``, ``valid``, ``why_not``, ``seconds``, ``unknowns``;
+        ``check``: by name what `check` says; ``warnings``.
     """
     comparison = compare(scene, models=models, settings=settings)
     results = comparison.results
-    out = {name: _model(record, comparison.rungs.get(name)) for name, record in results["models"].items()}
+    out = {
+        name: _model(record, comparison.rungs.get(name))
+        for name, record in results["models"].items()
+    }
     said = {}
     if check:
         found = check_scene(scene, build(scene, "timoshenko"))
         said = {name: verdict["verdict"] for name, verdict in found["verdicts"].items()}
-    return {"models": out, "check": said, "warnings": results["warnings"], "trust": results["verdict"].get("trust")}
+    return {
+        "models": out,
+        "check": said,
+        "warnings": results["warnings"],
+        "trust": results["verdict"].get("trust"),
+    }
 
 
 def _model(record: dict, rung) -> dict:
-    out = {"valid": record["valid"], "why_not": record["why_not"], "values": {}, "bands": {}, "steps": {}, "modes": []}
+    out = {
+        "valid": record["valid"],
+        "why_not": record["why_not"],
+        "values": {},
+        "bands": {},
+        "steps": {},
+        "modes": [],
+    }
     if "compliance" not in record:
         return out
     out["values"] = values(record)
@@ -59,18 +81,34 @@ def _model(record: dict, rung) -> dict:
     for name in out["bands"]:
         found = (record.get("convergence") or {}).get(name.replace(" ", "_").lower())
         if found:
-            out["steps"][name] = {k: found.get(k) for k in ("values", "observed_order", "used_order", "plausible", "factor")}
-    out["seconds"] = sum(v for v in record["seconds"].values() if isinstance(v, float)) if record.get("seconds") else None
+            out["steps"][name] = {
+                k: found.get(k)
+                for k in ("values", "observed_order", "used_order", "plausible", "factor")
+            }
+    out["seconds"] = (
+        sum(v for v in record["seconds"].values() if isinstance(v, float))
+        if record.get("seconds")
+        else None
+    )
     out["unknowns"] = record.get("dofs")
     if rung is not None:
-        out["modes"] = [
-            {"name": m.name, "family": m.family, "frequency_hz": float(m.frequency_hz), "multiplicity": m.multiplicity,
-             "motions": np.round(m.motions / max(np.abs(m.motions).max(), 1e-300), 9).tolist()}
-            for m in rung.modes.modes
-        ]  # fmt: skip
+        out["modes"] = [_shape(m) for m in rung.modes.modes]
     else:
-        out["modes"] = [{k: m[k] for k in ("name", "family", "frequency_hz", "multiplicity")} for m in record["modes"]]
+        out["modes"] = [
+            {k: m[k] for k in ("name", "family", "frequency_hz", "multiplicity")}
+            for m in record["modes"]
+        ]
     return out
+
+
+def _shape(mode) -> dict:
+    return {
+        "name": mode.name,
+        "family": mode.family,
+        "frequency_hz": float(mode.frequency_hz),
+        "multiplicity": mode.multiplicity,
+        "motions": np.round(mode.motions / max(np.abs(mode.motions).max(), 1e-300), 9).tolist(),
+    }
 
 
 def values(record: dict) -> dict[str, float]:

@@ -1,16 +1,18 @@
-"""What a scene's compared numbers really are: a harmonic solid of its own, refined until it stands still.
+"""What a scene's compared numbers really are: a harmonic solid of its own, refined until it
+stands still.
 
-A body of revolution is solved exactly by harmonics, so that only the meridian mesh is left to err, in two ways. *Layers*:
-the cells in a singular corner shrink geometrically and what the last one misses shrinks by ``ratio^(2 lambda)`` per layer,
-lambda at least 1/2. *Order*: on a geometric mesh the error falls exponentially with the polynomial order.
+A body of revolution is solved exactly by harmonics, so that only the meridian mesh is left to
+err, in two ways. *Layers*: the cells in a singular corner shrink geometrically and what the last
+one misses shrinks by ``ratio^(2 lambda)`` per layer, lambda at least 1/2. *Order*: on a geometric
+mesh the error falls exponentially with the polynomial order.
 
     value       = Aitken of three orders on the same mesh
     uncertainty = Aitken's own step (both steps where the three do not fall geometrically)
                   + what the layers beyond the last can add, from the step of the last two
                   + what the solver left
 
-Mesh and elements are `corner_mesh` and `spectral`; from the product come the outline of the coarsest mesh, the solvers and
-the definition of what is compared.
+Mesh and elements are `corner_mesh` and `spectral`; from the product come the outline of the
+coarsest mesh, the solvers and the definition of what is compared.
 """
 
 from __future__ import annotations
@@ -39,7 +41,8 @@ RATIO = 0.2
 SIZE = 2.0  # least outer radii
 #: (lowest of three orders, layers), from light to heavy
 LEVELS = ((3, 6), (5, 8), (7, 11))
-#: unknowns of the bending block above which a level is not tried: about 20 s on one core for all its solutions
+#: unknowns of the bending block above which a level is not tried: about 20 s on one core for all
+#: its solutions
 MOST_UNKNOWNS = 100_000
 #: below this relative step the sequence has reached rounding and is not extrapolated
 ROUNDING = 1e-10
@@ -48,13 +51,15 @@ EXTRA_MODES = 6
 
 @dataclass(frozen=True)
 class Reference:
-    """Values and uncertainties (relative) of the compared quantities, and the modes behind the frequencies.
+    """Values and uncertainties (relative) of the compared quantities, and the modes behind the
+    frequencies.
 
     Attributes
     ----------
     values, uncertainty : dict of str to float
     modes : list of dict
-        ``name``, ``frequency_hz``, ``multiplicity``, ``family``, ``uncertainty`` and ``motions`` (shapes, stations, 6).
+        ``name``, ``frequency_hz``, ``multiplicity``, ``family``, ``uncertainty`` and ``motions``
+        (shapes, stations, 6).
     gram : list of list
         Weights of the stations, for correlation.
     setting : list of int
@@ -78,8 +83,14 @@ class Reference:
         return all(self.uncertainty[q] <= g for q, g in wanted.items() if q in self.uncertainty)
 
 
-def reference(scene: Scene, goal: float | Mapping[str, float] = 1e-6, limit: int = MOST_UNKNOWNS, folder: Path | None = FOLDER) -> Reference | None:
-    """The compared numbers of a scene, to a relative uncertainty of `goal` where the limit on unknowns allows.
+def reference(
+    scene: Scene,
+    goal: float | Mapping[str, float] = 1e-6,
+    limit: int = MOST_UNKNOWNS,
+    folder: Path | None = FOLDER,
+) -> Reference | None:
+    """The compared numbers of a scene, to a relative uncertainty of `goal` where the limit on
+    unknowns allows.
 
     Parameters
     ----------
@@ -114,7 +125,8 @@ def reference(scene: Scene, goal: float | Mapping[str, float] = 1e-6, limit: int
     return found
 
 
-# ------------------------------------------------------------------------------------------------- one level
+# ------------------------------------------------------------------------------------------------
+# - one level
 def _level(scene: Scene, mesh, order: int, layers: int) -> Reference:
     runs = [_solve(scene, mesh, p) for p in (order, order + 1, order + 2)]
     shallow = _solve(scene, corner_mesh(scene, layers - 2, SIZE, RATIO), order)
@@ -123,12 +135,25 @@ def _level(scene: Scene, mesh, order: int, layers: int) -> Reference:
     for name in QUANTITIES:
         if all(name in r["values"] for r in (*runs, shallow)):
             four = [r["values"][name] for r in (*runs, shallow)]
-            values[name], uncertainty[name] = settle(*four, coupling_scale(runs[-1]["values"], name), noise)
-    return Reference(values, uncertainty, _spectrum(runs, shallow, noise), runs[-1]["gram"], [order + 2, layers], runs[-1]["unknowns"], 0.0)
+            values[name], uncertainty[name] = settle(
+                *four, coupling_scale(runs[-1]["values"], name), noise
+            )
+    return Reference(
+        values,
+        uncertainty,
+        _spectrum(runs, shallow, noise),
+        runs[-1]["gram"],
+        [order + 2, layers],
+        runs[-1]["unknowns"],
+        0.0,
+    )
 
 
-def settle(a: float, b: float, c: float, shallow: float, scale: float, noise: float = 0.0) -> tuple[float, float]:
-    """Value and relative uncertainty from three orders, and the lowest of them with two layers less.
+def settle(
+    a: float, b: float, c: float, shallow: float, scale: float, noise: float = 0.0
+) -> tuple[float, float]:
+    """Value and relative uncertainty from three orders, and the lowest of them with two layers
+    less.
 
     Parameters
     ----------
@@ -157,7 +182,9 @@ def settle(a: float, b: float, c: float, shallow: float, scale: float, noise: fl
 
 
 def coupling_scale(values: dict, name: str) -> float:
-    """What the errors of a quantity are relative to: a coupling has no size of its own, symmetry can make it zero."""
+    """What the errors of a quantity are relative to: a coupling has no size of its own, symmetry
+    can make it zero.
+    """
     for kind in "CK":
         direct = [values.get(f"{kind}_zz"), values.get(f"{kind}_thx")]
         if name == f"{kind}_z,thx" and None not in direct:
@@ -166,7 +193,9 @@ def coupling_scale(values: dict, name: str) -> float:
 
 
 def _spectrum(runs: list[dict], shallow: dict, noise: float) -> list[dict]:
-    """Modes of the finest run with extrapolated frequencies, as far as all runs have as many shapes at each place of the spectrum."""
+    """Modes of the finest run with extrapolated frequencies, as far as all runs have as many
+    shapes at each place of the spectrum.
+    """
     out = []
     for i, mode in enumerate(runs[-1]["modes"]):
         same = [r["modes"][i] if i < len(r["modes"]) else None for r in (*runs, shallow)]
@@ -205,10 +234,21 @@ def _solve(scene: Scene, mesh, order: int) -> dict:
     }
 
 
-# ------------------------------------------------------------------------------------------------- kept results
+# ------------------------------------------------------------------------------------------------
+# - kept results
 def _file(folder: Path, scene: Scene) -> Path:
     # title and questions do not change what is true
-    told = json.dumps([scene.with_changes(name="", title="", ask=Ask(modes=scene.ask.modes)).as_dict(), LEVELS, RATIO, SIZE, 3], sort_keys=True, default=str)
+    told = json.dumps(
+        [
+            scene.with_changes(name="", title="", ask=Ask(modes=scene.ask.modes)).as_dict(),
+            LEVELS,
+            RATIO,
+            SIZE,
+            3,
+        ],
+        sort_keys=True,
+        default=str,
+    )
     return folder / f"{hashlib.sha256(told.encode()).hexdigest()[:24]}.json"
 
 

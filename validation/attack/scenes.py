@@ -3,8 +3,8 @@
     scene = random_scene(7)                       # any kind
     scene = random_scene(7, kind="gearbox")
 
-A draw that the scene refuses is drawn again inside, so that every seed gives a valid scene. Lengths scale with one
-diameter per scene, 15 to 300 mm, so that nothing depends on the size.
+A draw that the scene refuses is drawn again inside, so that every seed gives a valid scene.
+Lengths scale with one diameter per scene, 15 to 300 mm, so that nothing depends on the size.
 """
 
 from __future__ import annotations
@@ -48,13 +48,17 @@ def random_scene(seed: int, kind: str | None = None, ties: str | None = None) ->
     Raises
     ------
     ValueError
-        For an unknown kind or sort of ties, or if no draw is valid, which is a fault of this module.
+        For an unknown kind or sort of ties, or if no draw is valid, which is a fault of this
+        module.
     """
     if kind is not None and kind not in KINDS or ties is not None and ties not in TIES:
-        raise ValueError(f"kind {kind!r}, ties {ties!r}: choose from {', '.join(KINDS)} and {', '.join(TIES)}")
+        raise ValueError(
+            f"kind {kind!r}, ties {ties!r}: choose from {', '.join(KINDS)} and {', '.join(TIES)}"
+        )
     first = np.random.default_rng(seed)
     chosen = kind or str(first.choice(list(KINDS)))
-    # outside of the draws that may be refused: two rigid seats share no surface, and would be drawn away
+    # outside of the draws that may be refused: two rigid seats share no surface, and would be
+    # drawn away
     ties = ties or str(first.choice(list(TIES), p=list(TIES.values())))
     for attempt in range(TRIES):
         rng = np.random.default_rng([seed, zlib.crc32(chosen.encode()), attempt])
@@ -76,17 +80,29 @@ def _draw(rng, name: str, kind: str, ties: str) -> Scene:
     segments = _end_to_end(pieces)
     material = MATERIALS[str(rng.choice(["steel"] * 7 + ["aluminium", "titanium", "cast iron"]))]
     seats = _seats(rng, segments, int(rng.choice([1, 2, 2, 2, 2, 3])))
-    unequal, coupled = rng.random() < 0.25, str(rng.choice(["none", "paired", "strong"], p=[0.5, 0.35, 0.15]))
+    unequal, coupled = (
+        rng.random() < 0.25,
+        str(rng.choice(["none", "paired", "strong"], p=[0.5, 0.35, 0.15])),
+    )
     bearings = []
     for i, (y, width, seat_diameter) in enumerate(seats):
         series = (between(rng, 1e6, 1e9),) if rng.random() < 0.1 else ()
         springs = random_springs(rng, seat_diameter, unequal, coupled)
         tie = str(rng.choice(ATTACHMENTS)) if ties == "mixed" else ties
-        bearings.append(Bearing(name=str(i + 1), y=y, seat_width=width, matrix=springs, axial_series=series, attachment=tie))
+        bearings.append(
+            Bearing(
+                name=str(i + 1),
+                y=y,
+                seat_width=width,
+                matrix=springs,
+                axial_series=series,
+                attachment=tie,
+            )
+        )
     port = _port(rng, segments, str(rng.choice(ATTACHMENTS)) if ties == "mixed" else ties)
     housing = between(rng, 1e7, 1e9) if rng.random() < 0.12 else None
-    return Scene.from_parts(segments, material, bearings, port, name=name, title=f"random {kind}", housing_axial=housing,
-                            ask=_ask(rng, segments, material))  # fmt: skip
+    told = {"name": name, "title": f"random {kind}", "ask": _ask(rng, segments, material)}
+    return Scene.from_parts(segments, material, bearings, port, housing_axial=housing, **told)
 
 
 def _ask(rng, segments, material) -> Ask:
@@ -95,12 +111,24 @@ def _ask(rng, segments, material) -> Ask:
         length, radius = segments[-1].y1, max(s.outer0 for s in segments)
         first = 3.56 * radius / 2 * math.sqrt(material.E / material.density) / length**2
         highest = first * between(rng, 2.0, 10.0)
-    return Ask(modes=int(rng.integers(6, 13)), max_frequency=highest, tolerance=float(rng.choice([0.01, 0.05, 0.1])))
+    return Ask(
+        modes=int(rng.integers(6, 13)),
+        max_frequency=highest,
+        tolerance=float(rng.choice([0.01, 0.05, 0.1])),
+    )
 
 
-# ------------------------------------------------------------------------------------------------- shafts
+# ------------------------------------------------------------------------------------------------
+# - shafts
 def _piece(length, start, end=None, bore=0.0, material=None, part="shaft") -> dict:
-    return {"length": length, "start": start, "end": start if end is None else end, "bore": bore, "material": material, "part": part}
+    return {
+        "length": length,
+        "start": start,
+        "end": start if end is None else end,
+        "bore": bore,
+        "material": material,
+        "part": part,
+    }
 
 
 def _end_to_end(pieces: list[dict]) -> list[Segment]:
@@ -109,8 +137,17 @@ def _end_to_end(pieces: list[dict]) -> list[Segment]:
         given = {} if p["material"] is None else {"material": p["material"]}
         length = round(p["length"], 6)
         out.append(
-            Segment(name=f"s{i + 1}", y0=y, y1=y + length, outer0=p["start"] / 2, outer1=p["end"] / 2,
-                    inner0=p["bore"] / 2, inner1=p["bore"] / 2, part=p["part"], **given)  # fmt: skip
+            Segment(
+                name=f"s{i + 1}",
+                y0=y,
+                y1=y + length,
+                outer0=p["start"] / 2,
+                outer1=p["end"] / 2,
+                inner0=p["bore"] / 2,
+                inner1=p["bore"] / 2,
+                part=p["part"],
+                **given,
+            )  # fmt: skip
         )
         y += length
     return out
@@ -149,7 +186,10 @@ def _gearbox(rng, d) -> list[dict]:
     """Up to eight diameters; shoulders of 1 to 2 mm between most."""
     count = int(rng.integers(2, 9))
     top = int(rng.integers(0, count))
-    steps = [rng.uniform(0.002, 0.004) if rng.random() < 0.65 else d * rng.uniform(0.08, 0.5) for _ in range(count)]
+    steps = [
+        rng.uniform(0.002, 0.004) if rng.random() < 0.65 else d * rng.uniform(0.08, 0.5)
+        for _ in range(count)
+    ]
     diameters = [d] * count
     for i in range(top - 1, -1, -1):
         diameters[i] = max(diameters[i + 1] - steps[i], 0.4 * d)
@@ -157,11 +197,15 @@ def _gearbox(rng, d) -> list[dict]:
         diameters[i] = max(diameters[i - 1] - steps[i], 0.4 * d)
     shares = rng.uniform(0.3, 1.7, count)
     length = d * between(rng, 2.5, 25.0)
-    return _bores(rng, [_piece(length * w / shares.sum(), k) for w, k in zip(shares, diameters)], 0.35)
+    return _bores(
+        rng, [_piece(length * w / shares.sum(), k) for w, k in zip(shares, diameters)], 0.35
+    )
 
 
 def _pinion(rng, d) -> list[dict]:
-    """A bevel head on a stem, overhung or with a pilot stub; the stem may have a shoulder or a cone."""
+    """A bevel head on a stem, overhung or with a pilot stub; the stem may have a shoulder or a
+    cone.
+    """
     small, large = d * rng.uniform(1.1, 1.5), d * rng.uniform(1.6, 2.4)
     head = [_piece(d * rng.uniform(0.5, 1.2), small, large, part="frustum")]
     if rng.random() < 0.7:
@@ -178,17 +222,30 @@ def _pinion(rng, d) -> list[dict]:
 
 
 def _rotor(rng, d) -> list[dict]:
-    """A motor rotor: thick stack of laminations, or a pressed-on copper or plastic body, between two journals."""
-    inner = _piece(d * between(rng, 1.0, 10.0), d * rng.uniform(1.8, 4.5), material=MATERIALS[str(rng.choice(["stack", "stack", "aluminium", "rubbery"]))])
-    left = [_piece(d * between(rng, 0.5, 5.0), 0.8 * d)] + ([_piece(d * rng.uniform(0.3, 1.0), d)] if rng.random() < 0.7 else [])
-    right = ([_piece(d * rng.uniform(0.3, 1.0), d)] if rng.random() < 0.7 else []) + [_piece(d * between(rng, 0.5, 5.0), 0.8 * d)]
+    """A motor rotor: thick stack of laminations, or a pressed-on copper or plastic body, between
+    two journals.
+    """
+    inner = _piece(
+        d * between(rng, 1.0, 10.0),
+        d * rng.uniform(1.8, 4.5),
+        material=MATERIALS[str(rng.choice(["stack", "stack", "aluminium", "rubbery"]))],
+    )
+    left = [_piece(d * between(rng, 0.5, 5.0), 0.8 * d)] + (
+        [_piece(d * rng.uniform(0.3, 1.0), d)] if rng.random() < 0.7 else []
+    )
+    right = ([_piece(d * rng.uniform(0.3, 1.0), d)] if rng.random() < 0.7 else []) + [
+        _piece(d * between(rng, 0.5, 5.0), 0.8 * d)
+    ]
     return _bores(rng, [*left, inner, *right], 0.25)
 
 
 def _flange(rng, d) -> list[dict]:
     """A shaft with a flange at its end or within."""
     flange = _piece(d * rng.uniform(0.08, 0.4), d * rng.uniform(1.6, 3.5))
-    a, b = _piece(d * between(rng, 0.8, 12.0), d), _piece(d * between(rng, 0.5, 6.0), d * rng.uniform(0.6, 1.0))
+    a, b = (
+        _piece(d * between(rng, 0.8, 12.0), d),
+        _piece(d * between(rng, 0.5, 6.0), d * rng.uniform(0.6, 1.0)),
+    )
     return _bores(rng, [a, flange] if rng.random() < 0.5 else [a, flange, b], 0.35)
 
 
@@ -198,7 +255,11 @@ def _disc(rng, d) -> list[dict]:
         bore = d * rng.uniform(0.2, 0.6) if rng.random() < 0.5 else 0.0
         return [_piece(d * between(rng, 0.3, 0.8), d, bore=bore)]
     stub = d * rng.uniform(0.25, 0.5)
-    parts = [_piece(d * rng.uniform(0.15, 0.6), stub), _piece(d * rng.uniform(0.08, 0.3), d), _piece(d * rng.uniform(0.15, 0.6), stub)]
+    parts = [
+        _piece(d * rng.uniform(0.15, 0.6), stub),
+        _piece(d * rng.uniform(0.08, 0.3), d),
+        _piece(d * rng.uniform(0.15, 0.6), stub),
+    ]
     return _bores(rng, parts, 0.4)
 
 
@@ -214,9 +275,12 @@ KINDS = {
 }
 
 
-# ------------------------------------------------------------------------------------------------- stations
+# ------------------------------------------------------------------------------------------------
+# - stations
 def _seats(rng, segments: list[Segment], count: int) -> list[tuple[float, float, float]]:
-    """(middle, width, diameter) of `count` seats on cylinders, 0.1 to 1 diameters wide and apart from each other."""
+    """(middle, width, diameter) of `count` seats on cylinders, 0.1 to 1 diameters wide and apart
+    from each other.
+    """
     length = segments[-1].y1
     places = [s for s in segments if s.outer0 == s.outer1]
     if not places:
@@ -226,7 +290,10 @@ def _seats(rng, segments: list[Segment], count: int) -> list[tuple[float, float,
     for _ in range(60):
         segment = places[int(rng.choice(len(places), p=share))]
         diameter = 2 * segment.outer0
-        width = round(min(diameter * between(rng, 0.1, 1.0), segment.length * float(rng.choice([1.0, 0.6]))), 7)
+        width = round(
+            min(diameter * between(rng, 0.1, 1.0), segment.length * float(rng.choice([1.0, 0.6]))),
+            7,
+        )
         at_end = rng.random() < 0.25
         lo = segment.y0 if at_end else rng.uniform(segment.y0, max(segment.y1 - width, segment.y0))
         y = round(lo + width / 2, 7)
@@ -255,9 +322,12 @@ def _port(rng, segments: list[Segment], tie: str) -> Port:
     return Port(y=round(y, 7), lo=lo, hi=hi, attachment=tie)
 
 
-# ------------------------------------------------------------------------------------------------- what was drawn
+# ------------------------------------------------------------------------------------------------
+# - what was drawn
 def traits(scene: Scene) -> dict:
-    """What tells scenes apart: kind, L/D, steps, least wall over radius, ties, bearings, couplings."""
+    """What tells scenes apart: kind, L/D, steps, least wall over radius, ties, bearings,
+    couplings.
+    """
     sorts = {s.attachment for s in scene.stations}
     matrices = [np.array(b.matrix) for b in scene.bearings]
     return {
@@ -280,14 +350,36 @@ def distribution(scenes: list[Scene]) -> list[tuple[str, str]]:
     """Rows of a table: what was drawn, and how often or between which limits."""
     rows = [traits(s) for s in scenes]
     out = []
-    for name in ("kind", "ties", "bearings", "segments", "steps", "coupled", "unequal", "tolerance"):
+    for name in (
+        "kind",
+        "ties",
+        "bearings",
+        "segments",
+        "steps",
+        "coupled",
+        "unequal",
+        "tolerance",
+    ):
         found = Counter(r[name] for r in rows)
-        out.append((name, ", ".join(f"{k} {n}" for k, n in sorted(found.items(), key=lambda kn: str(kn[0])))))
+        out.append(
+            (
+                name,
+                ", ".join(f"{k} {n}" for k, n in sorted(found.items(), key=lambda kn: str(kn[0]))),
+            )
+        )
     for name in ("l_over_d", "wall_over_radius", "stiffest"):
-        low, first, middle, third, high = np.quantile([r[name] for r in rows], [0, 0.25, 0.5, 0.75, 1])
-        out.append((name, f"{low:.3g} to {high:.3g}, median {middle:.3g}, half of all {first:.3g} to {third:.3g}"))
+        low, first, middle, third, high = np.quantile(
+            [r[name] for r in rows], [0, 0.25, 0.5, 0.75, 1]
+        )
+        half = f"half of all {first:.3g} to {third:.3g}"
+        out.append((name, f"{low:.3g} to {high:.3g}, median {middle:.3g}, {half}"))
     widths = [b.seat_width / (2 * _radius(s, b.y)) for s in scenes for b in s.bearings]
-    out.append(("seat width / diameter", f"{min(widths):.3g} to {max(widths):.3g}, median {np.median(widths):.3g}"))
+    out.append(
+        (
+            "seat width / diameter",
+            f"{min(widths):.3g} to {max(widths):.3g}, median {np.median(widths):.3g}",
+        )
+    )
     return out
 
 

@@ -1,4 +1,6 @@
-"""Random bearing stiffness: soft to stiff, with and without tilt, couplings that keep it positive."""
+"""Random bearing stiffness: soft to stiff, with and without tilt, couplings that keep it
+positive.
+"""
 
 from __future__ import annotations
 
@@ -9,7 +11,9 @@ import numpy as np
 SOFT, STIFF = 1e6, 1e10  # N/m
 
 
-def random_springs(rng: np.random.Generator, diameter: float, unequal: bool, coupled: str) -> np.ndarray:
+def random_springs(
+    rng: np.random.Generator, diameter: float, unequal: bool, coupled: str
+) -> np.ndarray:
     """A symmetric positive semidefinite 6x6, in SI.
 
     Parameters
@@ -20,7 +24,8 @@ def random_springs(rng: np.random.Generator, diameter: float, unequal: bool, cou
     unequal : bool
         Whether x and z differ.
     coupled : {'none', 'paired', 'strong'}
-        No couplings; force with moment in each plane as a row of inclined rollers has; or every motion with every other.
+        No couplings; force with moment in each plane as a row of inclined rollers has; or every
+        motion with every other.
 
     Returns
     -------
@@ -30,10 +35,16 @@ def random_springs(rng: np.random.Generator, diameter: float, unequal: bool, cou
     radial = math.exp(rng.uniform(math.log(SOFT), math.log(STIFF)))
     factors = rng.uniform(0.3, 3.0, 2) if unequal else np.ones(2)
     tilted = rng.random() < 0.7 or coupled != "none"
-    tilt = radial * diameter**2 * math.exp(rng.uniform(math.log(1e-3), math.log(0.3))) if tilted else 0.0
+    tilt = (
+        radial * diameter**2 * math.exp(rng.uniform(math.log(1e-3), math.log(0.3)))
+        if tilted
+        else 0.0
+    )
     # a floating bearing does not hold along the shaft
     axial = radial * rng.uniform(0.1, 2.0) if rng.random() < 0.8 else 0.0
-    size = np.sqrt([radial * factors[0], axial, radial * factors[1], tilt * factors[1], 0.0, tilt * factors[0]])
+    size = np.sqrt(
+        [radial * factors[0], axial, radial * factors[1], tilt * factors[1], 0.0, tilt * factors[0]]
+    )
     return np.outer(size, size) * _correlation(rng, coupled, unequal)
 
 

@@ -1,4 +1,6 @@
-"""Jobs in a process of their own, with limits on time and memory: what hangs or grows is an outcome, not the end of the run."""
+"""Jobs in a process of their own, with limits on time and memory: what hangs or grows is an
+outcome, not the end of the run.
+"""
 
 from __future__ import annotations
 
