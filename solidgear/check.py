@@ -79,14 +79,24 @@ def notices(scene, rungs: dict[str, Rung], names: tuple[str, ...] | None = None)
     return list(out.values())
 
 
-def cautions(scene, body: Body) -> list[str]:
-    """What the guards have to say before the numbers of one body are used, in sentences; facts and what concerns other models left out."""
+def cautions(scene, body: Body, fidelity: str | None = None) -> list[str]:
+    """What the guards have to say before the numbers of one model are used, in sentences; facts and what concerns other models left out.
+
+    Parameters
+    ----------
+    scene : Scene
+    body : Body
+    fidelity : str, optional
+        Another model than that of ``body``, whose mesh is then not judged.
+    """
+    model = fidelity or body.fidelity
     probe, out = Probe(scene, body), []
-    about_beams = ("beam_against_solid",) if body.fidelity not in ("euler", "timoshenko") else ()
+    silent = set(NOT_HEARD_ALONE)
+    silent |= set() if model in ("euler", "timoshenko") else {"beam_against_solid"}
+    silent |= set(OF_A_MESH) if model != body.fidelity else set()
     for name in GUARDS:
-        if name in (*about_beams, *NOT_HEARD_ALONE):
-            continue
-        out += [n.sentence for n in _heard(name, probe) if n.level != "fact" and (not n.models or body.fidelity in n.models)]
+        if name not in silent:
+            out += [n.sentence for n in _heard(name, probe) if n.level != "fact" and (not n.models or model in n.models)]
     return list(dict.fromkeys(out))
 
 

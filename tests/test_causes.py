@@ -158,4 +158,4 @@ def test_plain_shaft_that_cannot_be_made_is_told():
     )
     said = []
     assert shoulder_cause(scene, {"C_zz": -0.1}, {}, said.append) is None
-    assert len(said) == 1 and said[0].startswith("shoulder share left out: ") and "bore" in said[0]
+    assert len(said) == 1 and said[0].startswith("the share of the shoulders is left out: ") and "bore" in said[0]

@@ -49,6 +49,8 @@ def sweep(
     from rich.console import Console
     from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
 
+    from solidgear.check import cautions
+    from solidgear.fidelity import build
     from solidgear.fidelity.options import checked
     from solidgear.scene_file import load
     from solidgear.sweep import sweep as run
@@ -81,6 +83,8 @@ def sweep(
     if as_json:
         print(json.dumps(asdict(found), default=str))
         return
+    for sentence in cautions(loaded, build(loaded, "timoshenko"), fidelity.value):
+        print(f"caution: {sentence}", file=sys.stderr)
     new = found.total - found.skipped
     path = str(found.path).encode("utf-8", "backslashreplace").decode()  # bytes that are no text
     print(f"{path}: {found.total} rows, {found.skipped} of them there before.")

@@ -88,8 +88,8 @@ def shoulder_cause(scene, beam_gap: dict[str, float | None], options: dict, tell
         plain = scene.with_changes(
             segments=tuple(s.with_changes(outer0=radius, outer1=radius) for s in scene.segments)
         ).with_attachment("section")
-    except SolidgearError as error:
-        tell(f"shoulder share left out: {error}")
+    except SolidgearError:
+        tell("the share of the shoulders is left out: the shaft at its smallest diameter would be thinner than one of its bores")
         return None
     beam, solid = _solve(plain, "timoshenko"), _solve(plain, "harmonic", **options)
 
