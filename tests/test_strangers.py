@@ -1,0 +1,114 @@
+"""Scenes that strangers wrote, on each of which a sentence or a number was once wrong.
+
+`tests/scenes` holds them as they came.  What must hold is stated here in words of the physics; the long runs are marked slow.
+"""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import solidgear as sg
+from solidgear.check import check_scene
+from solidgear.comparison import compare
+from solidgear.evidence.completeness import completeness
+from solidgear.evidence.levels import HARMONIC, HEXAHEDRA
+from solidgear.evidence.study import SCENE, study
+from solidgear.fidelity.size import estimated_size
+
+SCENES = Path(__file__).parent / "scenes"
+COARSE = HARMONIC[1]
+
+
+def scene_of(name):
+    return sg.load(SCENES / f"{name}.toml")
+
+
+def found(name, n=None, **options):
+    scene = scene_of(name)
+    return sg.modes(sg.build(scene, "harmonic", **(options or COARSE)), scene, n or scene.ask.modes, max_frequency=scene.ask.max_frequency, count=True)
+
+
+# --------------------------------------------------------------------------- modes
+def test_a_thin_tube_ovalises_below_its_bending():
+    modes = found("thin_tube_ovalising")
+    # pairs that the families n = 2 and 3 have on a fine mesh: 848, 884, 2244 (n = 2 alone has two below 1 kHz) and 2391 Hz; a coarse mesh is above
+    waves = sorted(m.frequency_hz for m in modes.modes if m.waves > 1)
+    for truth in (848.0, 884.0, 2391.0):
+        assert min(abs(f / truth - 1) for f in waves) < 5e-3, truth
+    assert waves[0] < modes.named("bending 1").frequency_hz
+    # and what is said to be complete names the families that were counted
+    sentence = completeness(modes.evidence, "harmonic")
+    assert sentence.startswith("No mode missed below") and "n = 2" in sentence
+
+
+def test_a_flange_warps_below_the_range_asked_for():
+    modes = found("hypoid_pinion")
+    assert any(m.waves == 2 and m.frequency_hz == pytest.approx(5333, rel=5e-3) for m in modes.modes)
+
+
+def test_two_materials_in_a_slender_thin_tube():
+    scene = scene_of("inaccurate_thin_tube")
+    modes = sg.modes(sg.build(scene, "harmonic", **COARSE), scene, 10, ovalising=False)
+    beam = sg.modes(sg.build(scene, "timoshenko"), scene, 10)
+    # 58.9 Hz; 76.1 came of a shift that knew the first segment's material only
+    axial = min((m.frequency_hz for m in modes.modes if m.family == "axial" and m.frequency_hz > 0), default=np.nan)
+    assert axial == pytest.approx(58.9, rel=2e-3)
+    # a tube of this slenderness is a beam: its lower frequencies agree with one
+    ours, theirs = (sorted(m.frequency_hz for m in s.modes if m.frequency_hz > 0)[:6] for s in (modes, beam))
+    assert np.allclose(ours, theirs, rtol=0.02)
+    # what rounding leaves is told, and cannot move the fourth digit
+    assert modes.evidence["error"] < 1e-4
+
+
+def test_modes_of_other_shapes_are_not_compared():
+    gaps = compare(scene_of("mispaired_axial"), ("timoshenko", "harmonic")).results["deviations"]
+    frequencies = [g["relative"] for g in gaps if g["unit"] == "Hz"]
+    # 2476 % was the distance of two different modes; on a cone of this stoutness a beam is off by some tens of per cent
+    assert frequencies and max(map(abs, frequencies)) < 0.6
+
+
+# --------------------------------------------------------------------------- verdicts
+def test_euler_is_not_valid_behind_ties_that_differ():
+    results = compare(scene_of("false_valid_port_section"), ("euler", "harmonic")).results
+    assert results["verdict"]["trust"] == "harmonic" and not results["models"]["euler"]["valid"]
+    assert {g["attachment"] for g in results["deviations"]} == {"as scene", "section"}
+
+
+def test_check_does_not_condemn_a_rigid_seat():
+    scene = scene_of("check_rigid_seat")
+    verdicts = check_scene(scene, sg.build(scene, "timoshenko"))["verdicts"]
+    assert all(not verdicts[m]["verdict"].startswith("will not") for m in ("harmonic", "solid"))
+
+
+@pytest.mark.parametrize("name", ["symmetric_shaft", "false_valid_port_section", "check_rigid_seat"])
+def test_check_is_never_the_opposite_of_compare(name):
+    scene = scene_of(name)
+    said = check_scene(scene, sg.build(scene, "timoshenko"))["verdicts"]
+    models = compare(scene, ("euler", "timoshenko", "harmonic")).results["models"]
+    for model, record in models.items():
+        verdict = said[model]["verdict"]
+        assert not (record["valid"] and verdict == "will not hold"), model
+        assert not (verdict.startswith("holds") and not record["valid"] and not record["open"]), model
+
+
+# --------------------------------------------------------------------------- cost
+@pytest.mark.parametrize("name", ["input_shaft", "motor_rotor", "hypoid_pinion"])
+def test_an_ordinary_shaft_needs_no_large_mesh(name):
+    scene = scene_of(name)
+    # 189,000 to 309,000 unknowns of either solid, and 7 to 16 GB, were what small shoulders once cost
+    judge = study(scene, "harmonic", evidence=False)
+    assert judge.worst_band() <= scene.ask.tolerance / 3 and judge.body.size < 65_000
+    third = estimated_size(scene, "solid", {**HEXAHEDRA[2], "around": 8})
+    assert third.unknowns < 75_000 and third.peak_mb < 1500
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", ["input_shaft", "motor_rotor", "hypoid_pinion"])
+def test_both_solids_meet_the_tolerance_and_each_other(name):
+    scene = scene_of(name)
+    harmonic, solid = (study(scene, model, evidence=False) for model in ("harmonic", "solid"))
+    for q in ("C_zz", "C_thx", "C_yy", "bending 1"):
+        gap = abs(solid.quantities[q] / harmonic.quantities[q] - 1)
+        band = solid.bands[SCENE][q].gci + harmonic.bands[SCENE][q].gci
+        assert gap <= band <= 2 * scene.ask.tolerance, q
