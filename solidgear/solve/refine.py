@@ -20,6 +20,10 @@ SOFT = 1e-3
 #: Relative error of an eigenvalue that is worth a further solve, and how many are tried.
 ENOUGH, STEPS = 1e-9, 8
 EPS = float(np.finfo(float).eps)
+#: Rounding of an energy from which on it is worth products in extended precision, where the processor has it.
+COARSE, EXTENDED = 1e-7, np.finfo(np.longdouble).eps < EPS
+#: Largest product of two shapes that are told as orthogonal.
+ASKEW = 1e-5
 
 
 @dataclass(frozen=True)
@@ -78,64 +82,91 @@ def refine(supported, vectors: np.ndarray, value: np.ndarray, needed: int) -> Re
         How many of the lowest must be right; the others are there to see gaps.
     """
     carried = supported.mass_rigid.T @ vectors
-    soft = _columns(carried, carried) > 1 - SOFT
-    best = None
+    elastic = np.append(_columns(carried, carried) <= 1 - SOFT, True)
+    # The lowest, as far as they are nearly rigid: the shift may drown their eigenvalues.  One above an elastic mode is not in that danger.
+    count = int(np.argmax(elastic))
+    found = _corrected(supported, vectors, value, needed, count)
+    if count and np.abs(found.vectors[:, :count].T @ supported.mass(found.vectors[:, count:])).max(initial=0.0) > ASKEW:
+        found = _corrected(supported, vectors, value, needed, 0)
+    return found
+
+
+def _corrected(supported, vectors, value, needed: int, count: int) -> Refined:
+    """Ritz pairs, the first ``count`` of them as nearly rigid modes, with corrections until they are right or rounding is all that is left."""
+    best, last, fine = None, None, False
     wrong = np.zeros(len(value), bool)
     correction = forces = np.zeros_like(vectors)
     for step in range(STEPS + 1):
-        low, high = soft & wrong, ~soft & wrong
-        slow = _soft_modes(supported, vectors[:, soft], value[soft], correction[:, low], forces[:, low])
-        quick = _modes(supported, vectors[:, ~soft], value[~soft], correction[:, high], forces[:, high], slow.u)
+        low, high = (wrong & own for own in (np.arange(len(value)) < count, np.arange(len(value)) >= count))
+        stiffness = supported.elastic_extended if fine else supported.elastic
+        slow = _soft_modes(supported, stiffness, vectors[:, :count], correction[:, low])
+        quick = _modes(supported, stiffness, vectors[:, count:], value[count:], correction[:, high], forces[:, high], slow.u)
         value, rounding = np.append(slow.value, quick.value), np.append(slow.rounding, quick.rounding)
         if best is not None and value.min() <= 0.5 * best.value[0] * max(0.0, 1 - 2 * best.error[0]):
             return best  # a correction that is nothing but rounding
-        order = np.argsort(value, kind="stable")
-        soft = (np.arange(len(value)) < len(slow.value))[order]
-        value, vectors, forces = value[order], np.hstack([slow.u, quick.u])[:, order], np.hstack([slow.force, quick.force])[:, order]
+        vectors, forces = np.hstack([slow.u, quick.u]), np.hstack([slow.force, quick.force])
         correction = supported.inverse(forces)
-        found = _judged(supported, value, vectors, forces, correction, rounding[order], step)
-        if best is not None and found.worst(needed) > 0.5 * best.worst(needed):
+        found = _judged(supported, value, vectors, forces, correction, rounding, step)
+        coarse = EXTENDED and not fine and found.noise[:needed].max(initial=0.0) > COARSE
+        if best is not None and not coarse and found.worst(needed) > 0.5 * best.worst(needed):
             return min(found, best, key=lambda x: x.worst(needed))
         best = found
         wrong = found.error - found.noise >= ENOUGH
-        if not wrong[:needed].any():
+        if not coarse and not wrong[:needed].any():
             break
-    return best
+        if coarse:
+            fine, last, best = True, best, None  # values of the two precisions are not compared
+    return best if best is not None else last
 
 
-def _modes(supported, u, value, correction, forces, below) -> _Pairs:
+def _modes(supported, stiffness, u, value, correction, forces, below) -> _Pairs:
     """Rayleigh and Ritz in the span of shapes and their corrections, of which the modes below are taken out."""
     mass = supported.mass
     count = u.shape[1]
     if not count:
         return _Pairs(np.zeros(0), u, u, np.zeros(0))
-    heavy = mass(u)
-    basis, loads = u, heavy * (value + supported.shift)
+    basis, loads = u, mass(u) * (value + supported.shift)
     if correction.shape[1]:
-        others = np.hstack([below, u])
-        fresh = correction - others @ (mass(others).T @ correction)
-        size = np.sqrt(_columns(fresh, mass(fresh)))
-        keep = size > 1e-12  # of a unit shape: what is left below is rounding
-        basis, loads = np.hstack([u, fresh[:, keep] / size[keep]]), np.hstack([loads, forces[:, keep] / size[keep]])
-        heavy = mass(basis)
+        fresh, turn = _outside(correction, np.hstack([below, u]), mass)
+        basis, loads = np.hstack([u, fresh]), np.hstack([loads, forces @ turn])
+    heavy = mass(basis)
     gram = basis.T @ heavy
     w, v = np.linalg.eigh((gram + gram.T) / 2)
-    good = w > 1e-10
-    turn = v[:, good] / np.sqrt(w[good])
+    turn = v / np.sqrt(w)
     rest = supported.without_rigid(supported.without_rigid(basis))
-    pull = supported.elastic(rest)
+    pull = stiffness(rest)
     stretch = supported.stretch(basis, loads)
-    energy = turn.T @ (rest.T @ pull + stretch.T @ stretch) @ turn
+    energy = (turn.T @ (rest.T @ pull + stretch.T @ stretch) @ turn).astype(float)
     w, v = np.linalg.eigh((energy + energy.T) / 2)
     turn = turn @ v[:, :count]
     u, rest, pull, stretch, heavy = basis @ turn, rest @ turn, pull @ turn, stretch @ turn, heavy @ turn
     # The small problem knows its eigenvalues to the rounding of the largest; quotients know each to its own.
     value = (_columns(rest, pull) + _columns(stretch, stretch)) / _columns(u, heavy)
     force = pull + supported.load @ stretch - heavy * value
-    return _Pairs(value, u, force, _rounding(supported, u, rest, stretch))
+    return _Pairs(value.astype(float), u, force.astype(float), _rounding(supported, u, rest, stretch))
 
 
-def _soft_modes(supported, u, value, correction, forces) -> _Pairs:
+def _outside(x, known, mass):
+    """Mass-orthonormal columns of what of ``x`` lies outside mass-orthonormal ones, and the coefficients of ``x`` in them, roughly.
+
+    Columns that are the rounding of what they lost are left out.
+    """
+    heavy = mass(known)
+    before = np.sqrt(_columns(x, mass(x)))
+    out, scale = x, np.ones(x.shape[1])
+    for _ in range(3):
+        out = out - known @ (heavy.T @ out)
+        size = np.sqrt(_columns(out, mass(out)))
+        scale = scale * np.where(size > 0, size, np.inf)
+        out = out / np.where(size > 0, size, np.inf)
+    keep = scale > 1e-8 * before
+    w, v = np.linalg.eigh(out[:, keep].T @ mass(out[:, keep]))
+    turn = np.zeros((x.shape[1], int((w > 1e-6).sum())))
+    turn[keep] = v[:, w > 1e-6] / np.sqrt(w[w > 1e-6]) / scale[keep, None]
+    return out @ (turn * scale[:, None]) if keep.any() else out[:, :0], turn
+
+
+def _soft_modes(supported, stiffness, u, correction) -> _Pairs:
     """Ritz pairs of nearly rigid modes in the span of the rigid motions and of what is elastic in them.
 
     Splitting the rigid part off exactly leaves no large stiffness to cancel: ``K`` sees the elastic remainder only.
@@ -156,8 +187,8 @@ def _soft_modes(supported, u, value, correction, forces) -> _Pairs:
     w, v = np.linalg.eigh(rest.T @ mass(rest))
     good = w > 1e-12
     rest = rest @ (v[:, good] / np.sqrt(w[good]))
-    pull = supported.elastic(rest)
-    energy = rest.T @ pull
+    pull = stiffness(rest)
+    energy = (rest.T @ pull).astype(float)
     w, v = np.linalg.eigh((energy + energy.T) / 2)
     r = held.shape[1]
     elastic = np.zeros((len(w), r + len(w)))
@@ -171,7 +202,7 @@ def _soft_modes(supported, u, value, correction, forces) -> _Pairs:
     u = basis @ turn
     stretch = supported.load.T @ u
     force = pull @ turn[r:] + supported.load @ stretch - mass(u) * value
-    return _Pairs(value, u, force, _rounding(supported, u, rest @ turn[r:], stretch))
+    return _Pairs(value, u, force.astype(float), _rounding(supported, u, rest @ turn[r:], stretch))
 
 
 def _columns(a, b):

@@ -159,6 +159,10 @@ class Supported:
         """``K x`` of the free body."""
         return self._per_block(lambda i, part: self.blocks[i].stiffness @ part, x)
 
+    def elastic_extended(self, x):
+        """The same in extended precision, for shapes whose energy is small beside what its terms are."""
+        return self._per_block(lambda i, part: self.blocks[i].stiffness.astype(np.longdouble) @ part.astype(np.longdouble), x)
+
     def purge(self, x):
         """Take unresisted rigid motions out of displacements."""
         return x - self.free @ (self._mass_free.T @ x) if self.free.shape[1] else x

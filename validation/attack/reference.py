@@ -98,7 +98,7 @@ def reference(
     goal : float, or mapping of quantities to floats
         Relative uncertainty asked for; quantities that are not named may have any.
     limit : int
-        Unknowns of the bending block.
+        Unknowns of the bending block at the lightest level; half of it at the others.
     folder : Path or None
         Where results are kept; None keeps none.
 
@@ -116,7 +116,8 @@ def reference(
     for level in range(first, len(LEVELS)):
         order, layers = LEVELS[level]
         mesh = corner_mesh(scene, layers, SIZE, RATIO)
-        if 3 * len(mesh.cells) * (order + 2) ** 2 > limit:
+        # without the lightest level there is nothing to judge by; the others are worth less
+        if 3 * len(mesh.cells) * (order + 2) ** 2 > (limit if level == 0 else limit // 2):
             break
         found = replace(_level(scene, mesh, order, layers), seconds=time.process_time() - start)
         _write(folder, scene, {"level": level, "found": asdict(found)})
