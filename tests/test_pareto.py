@@ -173,15 +173,16 @@ def test_like_for_like_is_against_section_ties(scene, raced):
     reference = sg.build(tied, "harmonic", **pareto.LIKE_FOR_LIKE)
     c = sg.condense(reference, tied, scene.port.name).compliance[2, 2]
     beam = raced.rows[0]
-    assert beam.like_for_like["C_zz"] == pytest.approx(abs(beam.values["C_zz"] / c - 1), rel=1e-9)
+    own = sg.condense(sg.build(tied, beam.model, **beam.options), tied, scene.port.name).compliance[2, 2]
+    assert beam.like_for_like["C_zz"] == pytest.approx(abs(own / c - 1), rel=1e-9)
     assert raced.rows[2].like_for_like == {}  # a solid is tied as the scene says
-    # on this slender shaft ties are what a beam gets wrong most, so the two columns cannot be the same number
-    assert beam.like_for_like["C_zz"] != pytest.approx(beam.errors["C_zz"], rel=0.1)
+    # seats that distort add to what a beam gets wrong, so the two columns cannot be the same number
+    assert beam.like_for_like["C_zz"] != pytest.approx(beam.errors["C_zz"], rel=0.01)
 
 
 def test_every_model_is_attached_as_the_scene_says(scene):
     rigid = scene.with_attachment("rigid")
-    for model, options, wanted in (("harmonic", COARSE, "rigid"), ("timoshenko", {}, "node")):
+    for model, options, wanted in (("harmonic", COARSE, "rigid"), ("timoshenko", {}, "rigid")):
         body, _, _ = answer(rigid, model, options, 10)
         assert {port.attachment for port in body.ports} == {wanted}
 

@@ -22,7 +22,8 @@ def plan(scene, full: bool = False) -> list[Row]:
         More levels, up to solids of several hundred thousand unknowns.
     """
     size = max(max(s.outer0, s.outer1) for s in scene.segments) / 3
-    flat, even = {"layers": 0, "edge_layers": 0}, {"size": size, "graded_size": size}
+    least = min(min(s.outer0, s.outer1) for s in scene.segments)
+    flat, even = {"layers": 0, "edge_layers": 0, "size": least}, {"size": size, "graded_size": size}
     orders, more = range(1, 7), (7, 8)
     hexes = {"hex8": ((0.65, 1.0, 1.5), (2.0, 2.6)), "hex20": ((0.35, 0.65, 1.0), (1.4, 1.9)), "hex27": ((0.35, 0.65, 0.85), (1.0, 1.4))}
     even_hexes = {"hex8": ((1.0, 1.5, 2.2), (3.0, 3.8)), "hex20": ((0.5, 1.0, 1.5), (2.0, 2.8)), "hex27": ((0.5, 1.0, 1.3), (1.6, 2.2))}
@@ -43,7 +44,7 @@ def plan(scene, full: bool = False) -> list[Row]:
     ]
     for grading, extra, steps in (("uniform", even, even_tets), ("graded", {}, tets)):
         series += [("tetrahedra", f"{e.upper()} {grading}", "solid", [{"element": e, **extra, "refinement": s} for s in levels(pair)]) for e, pair in steps.items()]
-    for grading, extra, steps in (("uniform", {**flat, "radial_layers": 0}, even_hexes), ("graded", {}, hexes)):
+    for grading, extra, steps in (("uniform", {**flat, "size": 0.6 * least, "radial_layers": 0}, even_hexes), ("graded", {}, hexes)):
         series += [("hexahedra", f"{e.upper()} {grading}", "solid", [{"element": e, **extra, "refinement": s} for s in levels(pair)]) for e, pair in steps.items()]
     rows = [Row(family, name, k, model, options) for family, name, model, all_options in series for k, options in enumerate(all_options, start=1)]
     return sorted(rows, key=lambda row: row.level)

@@ -341,7 +341,8 @@ def _run(scene, row: Row, n: int, against: dict, compliance: np.ndarray) -> None
     row.values = {q: values[q] for q in against["values"] if q in values}
     row.errors = {q: abs(v / against["values"][q] - 1) for q, v in row.values.items()}
     if row.family in ("lumped", "beam"):
-        row.like_for_like = {q: abs(v / against["like_for_like"][q] - 1) for q, v in row.values.items() if q in against["like_for_like"]}
+        _, _, like = answer(scene.with_attachment("section"), row.model, row.options, n)
+        row.like_for_like = {q: abs(like[q] / v - 1) for q, v in against["like_for_like"].items() if q in like}
     missing = [q for q in against["values"] if q not in values]
     if missing:
         _note(row, f"found no {' and no '.join(missing)}")
