@@ -16,7 +16,7 @@ from solidgear.frames import DOF_NAMES
 from solidgear.meshing.quality import MeshError
 
 GEOMETRY = Path(__file__).parent.parent / "geometry"
-LIGHT = {"solid": {"refinement": 0.35}, "harmonic": {"order": 3, "layers": 1}}
+LIGHT = {"solid": {"refinement": 0.35}, "harmonic": {"order": 4, "layers": 1}}
 LIGHTER = {"solid": {"refinement": 0.35}}
 ORDER = ["x", "y", "z", "thx", "thy", "thz"]
 
@@ -298,7 +298,7 @@ def test_band_that_cannot_be_made_is_a_warning(overhung, monkeypatch):
         return build(scene, fidelity, **options)
 
     monkeypatch.setattr("solidgear.evidence.study.build", broken)
-    found = compare(overhung, ("harmonic",), settings={"harmonic": {"order": 3, "layers": 0}}).results
+    found = compare(overhung, ("harmonic",), settings={"harmonic": {"order": 2, "layers": 0}}).results
     assert found["models"]["harmonic"]["band"] is None
     assert "harmonic: band: too coarse to mesh" in found["warnings"]
     assert "no band of its own (too coarse to mesh)" in found["verdict"]["sentences"][0]

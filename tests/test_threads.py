@@ -41,12 +41,13 @@ scene = sg.load("geometry/pinion_overhung.toml")
 seen = []
 import solidgear.fidelity.beam as beam
 real = beam.beam
-beam.beam = lambda *a, **k: (seen.append(numbers()), real(*a, **k))[1]
+import functools
+beam.beam = functools.wraps(real)(lambda *a, **k: (seen.append(numbers()), real(*a, **k))[1])
 body = sg.build(scene, "timoshenko")
 print(seen[0], numbers())
 import solidgear.solve.modes as solve
-real_parts = solve._solved_parts
-solve._solved_parts = lambda *a, **k: (seen.append(numbers()), real_parts(*a, **k))[1]
+real_parts = solve.solved_parts
+solve.solved_parts = lambda *a, **k: (seen.append(numbers()), real_parts(*a, **k))[1]
 sg.modes(body, scene, n=2)
 print(seen[1], numbers())
 try:

@@ -93,7 +93,7 @@ def sequence(model: str, options: Mapping[str, Any]) -> Sequence:
     ----------
     model : {'harmonic', 'solid'}
     options : mapping
-        Builder options that were asked for.  Where they speak of the mesh, they are the finest of three levels.
+        Builder options that were asked for.  Where they speak of the mesh, they are the finest of three levels (of two, for order 3).
     """
     element = str(options.get("element", "hex20"))
     layered = model == "harmonic" or element in ("hex20", "hex27")
@@ -117,10 +117,11 @@ def sequence(model: str, options: Mapping[str, Any]) -> Sequence:
 def _below_harmonic(options: Options) -> Sequence:
     finest = {"order": 5, "layers": 3, "edge_layers": 1, **options}
     order = finest["order"]
-    if not isinstance(order, int) or order < 4:
+    if not isinstance(order, int) or order < 3:
         return _refinements(dict(options))
+    steps = (2, 1) if order > 3 else (1,)
     coarser = [
-        {**finest, "order": order - k, "layers": max(finest["layers"] - k, 0), "edge_layers": max(finest["edge_layers"] - k, 0)} for k in (2, 1)
+        {**finest, "order": order - k, "layers": max(finest["layers"] - k, 0), "edge_layers": max(finest["edge_layers"] - k, 0)} for k in steps
     ]
     return Sequence((*coarser, finest), True, True)
 
