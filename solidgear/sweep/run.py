@@ -12,6 +12,7 @@ from solidgear.body import Body
 from solidgear.errors import SolidgearError
 from solidgear.fidelity import build as build_any
 from solidgear.fidelity.options import number
+from solidgear.fidelity.size import refuse_too_large
 from solidgear.scene import Scene
 from solidgear.sweep import vary
 from solidgear.sweep.reduced import LEVELS, reduce
@@ -116,6 +117,9 @@ def sweep(
     number("sweep", "tolerance", tolerance, above=0, below=1)
     variants = variants_of(scene, vary_texts, sample, seed)
     team = workers(jobs, dask)
+    shaft = variants.shaft()
+    _check_seats(shaft, scene, fidelity, options)
+    refuse_too_large(shaft, fidelity, options)  # before a file of rows is begun
     file = RowFile(Path(out), columns(variants, n), _plan(variants, sample, seed, fidelity, options, n, tolerance), overwrite)
     total, skipped = len(variants), len(file.done)
     todo = [i for i in range(total) if i not in file.done]
@@ -123,8 +127,6 @@ def sweep(
         file.finish()
         return Summary(file.path, total, skipped)
     start = time.perf_counter()
-    shaft = variants.shaft()
-    _check_seats(shaft, scene, fidelity, options)
     progress(skipped, total, f"body with {len(shaft.stations) - 1} seats")
     body = build(shaft, fidelity, **options)
     progress(skipped, total, f"reducing {body.size} unknowns")
