@@ -10,6 +10,8 @@ from typing import Any
 
 #: problems of one file that are told; the rest are counted
 TOLD = 20
+#: letters of a line on a terminal
+LONGEST = 1000
 
 
 class SolidgearError(Exception):
@@ -90,6 +92,14 @@ class SceneError(SolidgearError, ValueError):
 def printable(text: str) -> str:
     """`text` in one line, with escapes for what would move a terminal's cursor or turn its writing round."""
     return _escaped(" ".join(text.split()))
+
+
+def for_terminal(error: Exception) -> str:
+    """What a terminal shows of an error: a line, or those of a `SceneError`; what a line quotes must not fill the screen."""
+    if isinstance(error, SceneError):
+        return str(error)
+    line = printable(str(error))
+    return line if len(line) <= LONGEST else f"{line[: LONGEST - 100]} ... {line[-90:]}"
 
 
 def _file_name(where: str) -> str:

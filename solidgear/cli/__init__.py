@@ -29,7 +29,7 @@ from solidgear.cli import chart  # noqa: F401
 from solidgear.cli import sweep  # noqa: F401
 # fmt: on
 from solidgear.cli.app import app
-from solidgear.errors import SceneError, SolidgearError, printable
+from solidgear.errors import SolidgearError, for_terminal
 from solidgear.interruptible import leave
 
 if _hears:
@@ -51,8 +51,7 @@ def _run() -> None:
         print("solidgear: interrupted", file=sys.stderr)
         sys.exit(130)
     except SolidgearError as error:
-        # The problems of a scene are lines of their own; whatever else is quoted in a message must not break it into several.
-        print(f"solidgear: {error if isinstance(error, SceneError) else printable(str(error))}", file=sys.stderr)
+        print(f"solidgear: {for_terminal(error)}", file=sys.stderr)
         sys.exit(1)
     except OSError as error:  # a full disk behind a redirected output, say; files of our own are guarded where they are written
         if isinstance(error, BrokenPipeError):

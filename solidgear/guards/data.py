@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from solidgear.frames import DOF_NAMES
-from solidgear.guards.notice import MODELS, Notice, Notices
+from solidgear.guards.notice import Notice, Notices
 from solidgear.guards.probe import Probe
 
 # wrong_units.py: a slip of a factor of 1000 leaves at least one of these in every shipped scene
@@ -83,24 +83,8 @@ def oblique_softness(probe: Probe) -> Notices:
             )
 
 
-# split_pairs.py: how near two frequencies are one pair, by the body's pair_tolerance; tetrahedra take 2e-3
-TWINS = {"euler": 1e-7, "timoshenko": 1e-7, "lumped": 0.0, "harmonic": 1e-9, "solid": 1e-6}
-
-
 def split_pair(probe: Probe) -> Notices:
     """A bending pair that the bearings split."""
     split = probe.split
-    if split < 1e-9:
-        return
-    twins = TWINS | ({probe.body.fidelity: probe.body.mesh["pair_tolerance"]} if "pair_tolerance" in probe.body.mesh else {})
-    blind = tuple(m for m in MODELS if twins[m] > split)
-    text = f"bearings that differ in x and z split the first bending pair by {split:.1e} (Timoshenko)"
-    if blind:
-        limit = max(twins[m] for m in blind)
-        yield Notice(
-            "caution",
-            blind,
-            f"{text}, less than the {limit:.0e} from which the model tells twins apart: other models call the twin 'bending 2'; compare by shape, or make the bearings alike",
-        )
-    else:
-        yield Notice("fact", (), f"{text}: 'bending 2' is the twin of 'bending 1'")
+    if split >= 1e-9:
+        yield Notice("fact", (), f"bearings that differ in x and z split the first bending pair by {split:.1e} (Timoshenko): 'bending 2' is the twin of 'bending 1'")

@@ -109,11 +109,21 @@ def lowest(supported: Supported, n: int, method: str | None = None) -> Solved:
 
 
 def _dense(supported: Supported, wanted: int):
-    chol = np.linalg.cholesky(supported.mass(np.eye(supported.size)))
-    small = chol.T @ supported.inverse(chol)
+    heavy = supported.mass(np.eye(supported.size))
+    try:
+        root = np.linalg.cholesky(heavy)
+    except np.linalg.LinAlgError:  # unknowns without mass, such as the turns of a lumped beam without rotary inertia
+        w, v = np.linalg.eigh((heavy + heavy.T) / 2)
+        keep = w > 1e-14 * w[-1]
+        root = v[:, keep] * np.sqrt(w[keep])
+    moved = supported.inverse(root)
+    small = root.T @ moved
     theta, w = np.linalg.eigh((small + small.T) / 2)
     theta, w = theta[::-1][:wanted], w[:, ::-1][:, :wanted]
-    return theta, sla.solve_triangular(chol.T, w, lower=False), "dense"
+    if root.shape[0] == root.shape[1]:
+        return theta, sla.solve_triangular(root.T, w, lower=False), "dense"
+    full = theta > 1e-14 * theta[0]  # no more modes than there are masses, less those of free rigid motions
+    return theta[full], moved @ (w[:, full] / theta[full]), "dense"
 
 
 def _lanczos(supported: Supported, wanted: int):

@@ -12,6 +12,7 @@ from solidgear.body import Body
 from solidgear.errors import SolidgearError
 from solidgear.fidelity import build as build_any
 from solidgear.fidelity.options import number
+from solidgear.fidelity.size import refuse_too_large
 from solidgear.scene import Scene
 from solidgear.sweep import vary
 from solidgear.sweep.reduced import LEVELS, Reduced, reduce
@@ -129,6 +130,7 @@ def sweep(
     number("sweep", "tolerance", tolerance, above=0, below=1)
     variants = variants_of(scene, vary_texts, sample, seed)
     team = workers(jobs, dask)
+    refuse_too_large(variants.shaft(), fidelity, options)  # before a file of rows is begun
     plan = _plan(variants, sample, seed, fidelity, options, n, tolerance)
     repairs: list[str] = []
 

@@ -26,8 +26,8 @@ ELEMENTS = (10, 160)
 
 def shaft(k: float) -> Scene:
     """Lumped point at the free end, radial and axial springs behind it."""
-    bearings = [Bearing(name=str(i + 1), y=y, seat_width=0.02, matrix=np.diag([k, k, k, 0, 0, 0])) for i, y in enumerate(AT)]
-    port = Port(name="end", y=0.0, lo=0.0, hi=0.02)
+    bearings = [Bearing(name=str(i + 1), y=y, seat_width=0.02, matrix=np.diag([k, k, k, 0, 0, 0]), attachment="section") for i, y in enumerate(AT)]
+    port = Port(name="end", y=0.0, lo=0.0, hi=0.02, attachment="section")
     return Scene.from_parts([Segment.cylinder("shaft", length=LENGTH, diameter=DIAMETER)], bearings=bearings, port=port)
 
 

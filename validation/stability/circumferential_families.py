@@ -17,7 +17,7 @@ from skfem import MeshQuad1  # noqa: E402
 from solidgear.fidelity.assembly import unknowns  # noqa: E402
 from solidgear.fidelity.circumferential import Families  # noqa: E402
 from solidgear.fidelity.harmonic import _element, _Work  # noqa: E402
-from solidgear.meshing.layout import layout  # noqa: E402
+from solidgear.meshing.layout import Grading, layout  # noqa: E402
 from solidgear.meshing.meridian import meridian  # noqa: E402
 from solidgear.scene import STEEL, Material, Scene, Segment  # noqa: E402
 from solidgear.solve.parts import LIGHT, MARGIN  # noqa: E402
@@ -89,7 +89,7 @@ def _cones(rng):
 def lowest(scene: Scene, waves, order: int = 4) -> np.ndarray:
     """Lowest frequency (Hz) of each family by its own block, on a mesh fine enough for a per cent."""
     thick = max(max(s.outer0, s.outer1) for s in scene.segments)
-    flat = meridian(scene, layout(scene, size=max(scene.length / 30, thick / 6), layers=1, edge_layers=0, ratio=0.2))
+    flat = meridian(scene, layout(scene, Grading(layers=1, edge_layers=0, size=max(scene.length / 30, thick / 6))))
     mesh, element = MeshQuad1(flat.points, flat.cells, sort_t=False), _element(order)
     work = _Work(scene, mesh, element, unknowns(mesh, element), flat, order)
     out = []

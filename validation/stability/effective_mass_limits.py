@@ -29,7 +29,7 @@ def status(s) -> str:
 
 def measure(quick: bool = False) -> Finding:
     """Every synthesis over the position of the lumped point."""
-    scene = sg.load(ROOT / "geometry" / "pinion_overhung.toml")
+    scene = sg.load(ROOT / "geometry" / "pinion_overhung.toml").with_attachment("section")
     rows = []
     for y in np.linspace(0.0, scene.length, 14 if quick else 80):
         here = scene.with_port(y=float(y))

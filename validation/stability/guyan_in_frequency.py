@@ -54,7 +54,7 @@ def measure(quick: bool = False) -> Finding:
     rows, edges, first = [], {}, {}
     ratios = np.geomspace(0.03, 2.0, 30 if quick else 160)
     for name in SCENES:
-        scene = sg.load(ROOT / "geometry" / f"{name}.toml")
+        scene = sg.load(ROOT / "geometry" / f"{name}.toml").with_attachment("section")
         exact = Exact(scene)
         point, _ = lumped_point(exact.body, scene, scene.port.name)
         mass = {"static": np.zeros((2, 2)), "total mass": np.diag([point.total_mass, point.total_inertia]), "Guyan": point.guyan}
