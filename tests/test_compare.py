@@ -65,7 +65,8 @@ def test_record_has_its_parts(results, overhung):
     # what guards have to say of the data and of slenderness, and nothing else
     assert results["complete"] is True
     assert {g["guard"] for g in results["guards"]} == {"frequency_range", "slenderness", "shoulder"}
-    assert len(results["warnings"]) == len(results["guards"])
+    # and what concerns beams that are out anyway is in the record only
+    assert results["warnings"] == []
     assert results["scene"] == overhung.as_dict()
     assert results["port"]["name"] == "pinion" and results["port"]["order"] == ORDER and results["port"]["free"] == ["thy"]
     assert list(results["models"]) == list(FIDELITIES)
@@ -142,9 +143,9 @@ def test_band_holds_the_true_error(results, model):
 def test_attachments_from_soft_to_stiff(results):
     assert set(results["attachments"]) == set(FIDELITIES)
     for model, variants in results["attachments"].items():
-        # a 3D solid is solved with the ties that are rows on one mesh
-        assert set(variants) == (set(ATTACHMENTS) if model != "solid" else {"average", "section"})
-        if model in ("euler", "timoshenko"):
+        # a 3D solid is solved as the scene is tied
+        assert set(variants) == (set(ATTACHMENTS) if model != "solid" else {"average"})
+        if model != "harmonic":
             continue  # a beam's mean over a seat is a mean of sections, which may lie on either side
         # constraints only stiffen: a mean over the section lets more go than one over the seat, a rigid seat nothing
         assert variants["section"]["c_zz"] > variants["average"]["c_zz"]
@@ -153,13 +154,13 @@ def test_attachments_from_soft_to_stiff(results):
             assert variants["average"]["c_zz"] > variants["rigid"]["c_zz"] and variants["average"]["bending_1_hz"] < variants["rigid"]["bending_1_hz"]
         # the scene's own attachment is the run itself
         assert variants["average"]["stiffness"] == results["models"][model]["stiffness"]
-    for name in ("average", "section"):
+    for name in ("average",):
         pair = [results["attachments"][m][name]["bending_1_hz"] for m in ("harmonic", "solid")]
         # two discretisations of one boundary value problem: measured 0.3 % on a coarse mesh
         assert pair[0] == pytest.approx(pair[1], rel=0.02)
 
 
-@pytest.mark.parametrize("model", ["harmonic", "solid"])
+@pytest.mark.parametrize("model", ["harmonic"])
 def test_shared_factors_change_no_attachment(results, overhung, model):
     # the run takes section means as more rows on the bodies it has; here the scene itself asks for them
     other = overhung.with_attachment("section")
@@ -198,8 +199,8 @@ def test_deviations_can_be_recomputed(results):
         assert row["band"] == pytest.approx(sum(b["each"][row["quantity"]] for b in each.values() if b), rel=1e-12)  # a sum
         if row["attachment"] == "as scene" and row["quantity"] == "K_zz":
             assert row["value"] == results["models"][row["model"]]["stiffness"][2][2]
-    # three models, two ways, every quantity (none of them absent here)
-    assert len(rows) == 3 * 2 * len(QUANTITIES)
+    # beams two ways, the 3D solid as tied, every quantity (none of them absent here)
+    assert len(rows) == (2 + 2 + 1) * len(QUANTITIES)
     # two solids at light settings: closer than the bands of the coarser one, which is not the same as agreement
     assert all(r["verdict"] == "not resolved" for r in rows if r["model"] == "solid" and r["quantity"].startswith("C_"))
     assert all(r["verdict"] == "resolved" for r in rows if r["model"] == "euler" and r["quantity"] in ("C_zz", "bending 1"))
@@ -208,7 +209,7 @@ def test_deviations_can_be_recomputed(results):
 def test_causes_and_verdict(results):
     causes = [(c["cause"], c["model"]) for c in results["causes"]]
     assert {c for c, _ in causes} == {"shear", "rotary inertia", "shear coefficient", "head smearing", "mass lumping", "attachment", "shoulder"}
-    assert causes.count(("attachment", "harmonic")) == 2 and causes.count(("attachment", "solid")) == 1
+    assert causes.count(("attachment", "harmonic")) == 2 and causes.count(("attachment", "solid")) == 0
     assert all(set(c) == {"cause", "change", "model", "c_zz", "k_zz", "bending_1"} for c in results["causes"])
     verdict = results["verdict"]
     assert verdict["trust"] == "harmonic" and verdict["cheapest"] == "harmonic" and verdict["tolerance"] == 0.05
@@ -238,7 +239,7 @@ def test_subset_of_models(overhung):
 def test_solid_alone_is_its_own_reference(overhung):
     found = compare(overhung, ("solid",)).results
     assert found["verdict"]["reference"] == "solid" and found["deviations"] == [] and found["mac"]["models"] == {}
-    assert found["models"]["solid"]["valid"] and {c["cause"] for c in found["causes"]} == {"attachment"}
+    assert found["models"]["solid"]["valid"] and found["causes"] == []
 
 
 @pytest.mark.parametrize(("models", "word"), [(("banana",), "banana"), (("euler", "rigid"), "rigid"), ((), "none given"), (("Euler",), "Euler")])

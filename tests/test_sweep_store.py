@@ -241,7 +241,7 @@ def test_the_command_tells_what_it_mended(tmp_path):
     again = call(out)
     assert again.exit_code == 0, again.output
     assert out.read_bytes() == right and "11 of them there before" in again.stdout
-    told = again.stderr.splitlines()
+    told = [line for line in again.stderr.splitlines() if not line.startswith("caution: ")]
     assert told[0] == (
         f"solidgear: {out}.sqlite was damaged: "
         "11 of its rows are intact and kept, the others are solved again"
