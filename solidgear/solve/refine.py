@@ -210,7 +210,7 @@ def _columns(a, b):
 
 
 def _rounding(supported, u, rest, stretch):
-    """How far the rounding of products and of the matrix itself may move each energy, rad^2/s^2 (measured: see tests/test_refine.py)."""
+    """How far the rounding of products and of the matrix itself may move each energy, rad^2/s^2 (held to dense solutions by validation/attack/modes.py)."""
     own = np.linalg.norm(supported.diagonal[:, None] * rest**2, axis=0)
     springs = np.linalg.norm(stretch * (np.abs(supported.load).T @ np.abs(u)), axis=0)
     return EPS * (4 * own + 2 * springs)
