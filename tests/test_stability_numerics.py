@@ -177,8 +177,8 @@ def test_odd_drawings_part_beam_and_solid(measured):
     rows = {r["odd"]: r for r in found["odd_geometry"].rows}
     # A disc of a hundredth of its diameter tilts by its own bending, of which a beam knows nothing.
     assert rows["head length over its diameter"]["C_thx"] > 10
-    # A lumped point one diameter beyond its surface hangs on a rigid arm in the solid and on the shaft in the beam.
-    assert rows["lumped point beyond its surface, over the diameter"]["C_zz"] > 0.5
+    # A lumped point one diameter beyond its surface hangs on a rigid arm in both; what distorts at the surface is levered up in the solid only.
+    assert rows["lumped point beyond its surface, over the diameter"]["C_zz"] > 0.2
     assert rows["ring shared by hollow head and shaft, over the radius"]["C_thx"] > 0.2
     plain = {r["odd"]: r for r in found["impossible_geometry"].rows}
     for name in ("lumped point off the shaft", "span across the step", "seat over the end", "seat across the step", "seats overlap"):

@@ -15,6 +15,7 @@ from solidgear.evidence.completeness import completeness
 from solidgear.evidence.levels import HARMONIC, HEXAHEDRA
 from solidgear.evidence.study import SCENE, study
 from solidgear.fidelity.size import estimated_size
+from solidgear.scene import Scene, Segment
 
 SCENES = Path(__file__).parent / "scenes"
 COARSE = HARMONIC[1]
@@ -59,6 +60,14 @@ def test_two_materials_in_a_slender_thin_tube():
     assert np.allclose(ours, theirs, rtol=0.02)
     # what rounding leaves is told, and cannot move the fourth digit
     assert modes.evidence["error"] < 1e-4
+
+
+def test_no_twin_is_lost_on_a_small_solid():
+    # a free stub: bending pairs and axial modes close together, at the very end of what is asked for
+    stub = Scene.from_parts([Segment.cylinder("stub", length=0.0719, diameter=0.1168)])
+    body = sg.build(stub, "solid", layers=0, radial_layers=0, edge_layers=0, relative_size=1.5, around=8)
+    few, many = (sorted(m.frequency_hz for m in sg.modes(body, (), n).modes for _ in range(m.multiplicity))[6:] for n in (8, 16))
+    assert np.allclose(few[:8], many[:8], rtol=1e-7)
 
 
 def test_modes_of_other_shapes_are_not_compared():
