@@ -20,6 +20,9 @@ from solidgear.fidelity.scale import overhangs
 from solidgear.meshing.layout import Grading, layout
 from solidgear.meshing.meridian import meridian
 
+#: What carries a disc is no clamp: part of the stiffness of a clamped strip that it gets.
+HELD = 0.25
+
 
 class Families:
     """Motions of n >= 2 waves around the axis.
@@ -67,17 +70,19 @@ class Families:
 
 
 def _parts(segments) -> np.ndarray:
-    """Walls that may ovalise: rows of (outer radius, thickness, overhang over what carries it or infinity, E / rho).
+    """Walls that may ovalise: rows of (largest radius, thickness, overhang over what carries it or infinity, E / rho).
 
-    A segment is a wall as thick as it is radially.  Neighbours that together stick out over a radius are a disc as thick as they are long.
+    A segment is a wall as thick as it is radially.  Neighbours that together stick out over a radius, or into the bore of others, are a disc as thick as they
+    are long.
     """
-    rows = []
-    for s in segments:
-        wall = min(s.outer0 - s.inner0, s.outer1 - s.inner1)
-        rows.append((max(s.outer0, s.outer1), wall, np.inf, s.material.E / s.material.density))
-    for base, run in overhangs(segments):
+    rows = [(max(s.outer0, s.outer1), min(s.outer0 - s.inner0, s.outer1 - s.inner1), np.inf, s.material.E / s.material.density) for s in segments]
+    for base, run in overhangs([(max(s.outer0, s.outer1), s.length, s.material.E / s.material.density) for s in segments], 0.0):
         height = max(r for r, _, _ in run)
         rows.append((height, sum(length for _, length, _ in run), height - base if base else np.inf, min(c for _, _, c in run)))
+    # inwards: the same with radii counted from a bore to the axis
+    for base, run in overhangs([(-min(s.inner0, s.inner1), s.length, s.material.E / s.material.density) for s in segments]):
+        depth = max(r for r, _, _ in run)
+        rows.append((-base, sum(length for _, length, _ in run), depth - base, min(c for _, _, c in run)))
     return np.array(rows)
 
 
@@ -85,7 +90,7 @@ def _rings(parts, n: int) -> np.ndarray:
     """(k,) least circular frequency of each part, rad/s."""
     radius, thickness, overhang, speed2 = parts.T
     ring = speed2 * thickness**2 / 12 * (n * (n * n - 1)) ** 2 / (n * n + 1) / radius**4
-    held = speed2 * thickness**2 * 12.4 / 12 / overhang**4
+    held = HELD * speed2 * thickness**2 * 12.4 / 12 / overhang**4
     # Rayleigh waves run at 0.57 of sqrt(E / rho) and more, whatever Poisson's ratio below 1/2.
     shear = speed2 * (0.53 * n / radius) ** 2
     return 1 / np.sqrt(1 / (ring + held) + 1 / shear)

@@ -102,7 +102,7 @@ def _flanges(segments):
 
     A strip of length b and thickness h: bending ``12.4 E h^2 / (12 rho b^4)``, shear ``(pi / 2 b)^2 k G / rho``, in series.
     """
-    for base, run in overhangs(segments):
+    for base, run in overhangs([(max(s.outer0, s.outer1), s.length, s.material.E / s.material.density) for s in segments], 0.0):
         overhang, speed = max(r for r, _, _ in run) - base, max(c for _, _, c in run)
         thickness = sum(length for _, length, _ in run)
         if thickness <= 2 * overhang:
@@ -111,10 +111,15 @@ def _flanges(segments):
             yield bending * shear / (bending + shear)
 
 
-def overhangs(segments):
-    """Neighbours that together stick out over a radius: yields (that radius, list of (outer radius, length, E / rho)), for every radius there is."""
-    parts = [(max(s.outer0, s.outer1), s.length, s.material.E / s.material.density) for s in segments]
-    levels = sorted({0.0} | {r for s in segments for r in (s.outer0, s.outer1)})
+def overhangs(parts, *bases: float):
+    """Neighbours that together reach beyond a radius: yields (that radius, list of parts) for every radius that a part ends at, and for ``bases``.
+
+    Parameters
+    ----------
+    parts : list of (radius, length, E / rho)
+        Along the shaft.
+    """
+    levels = sorted({*bases, *(part[0] for part in parts)})
     levels = levels[:: 1 + len(levels) // LEVELS] + levels[-1:]
     for base in levels[:-1]:
         yield from ((base, run) for run in _runs(parts, base))
@@ -124,7 +129,7 @@ def _runs(parts, base: float):
     """Neighbouring parts that reach beyond a radius."""
     run = []
     for part in parts:
-        if part[0] > base * (1 + 1e-9):
+        if part[0] > base + 1e-9 * abs(base):
             run.append(part)
         elif run:
             yield run
