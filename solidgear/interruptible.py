@@ -21,6 +21,7 @@ import queue
 import signal
 import sys
 import threading
+import weakref
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any, NoReturn
@@ -72,6 +73,36 @@ def leave(code: int | str | None) -> NoReturn:
                 pass
         os._exit(code or 0)
     sys.exit(code)
+
+
+class Made:
+    """Something that only the thread that made it can free, such as a factor of SciPy's SuperLU, which keeps its books by thread.
+
+    Parameters
+    ----------
+    value : object
+        Just made, in the thread that asks.
+
+    Notes
+    -----
+    Where that thread is the worker of :func:`call`, the worker is sent the value when this holder dies.  Nothing else may refer to it then.
+    """
+
+    def __init__(self, value: object):
+        self._box = [value]
+        weakref.finalize(self, _free, self._box, threading.current_thread()).atexit = False
+
+    @property
+    def value(self) -> Any:
+        """What was made."""
+        return self._box[0]
+
+
+def _free(box: list, maker: threading.Thread) -> None:
+    if _worker is not None and maker is _thread and maker is not threading.current_thread():
+        _worker.put(_Job(box.clear))
+    else:
+        box.clear()
 
 
 class _Job:

@@ -78,10 +78,9 @@ def environment(**more):
 
 def started(code, *arguments, **more):
     """A child that hears Ctrl-C even where this process was told not to."""
-    return subprocess.Popen(
-        [sys.executable, "-c", code, *map(str, arguments)], env=environment(**more), text=True, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
-        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),
-    )  # fmt: skip
+    hear = "import signal\nsignal.signal(signal.SIGINT, signal.default_int_handler)\n"
+    command = [sys.executable, "-c", hear + code, *map(str, arguments)]
+    return subprocess.Popen(command, env=environment(**more), text=True, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
 
 
 # --------------------------------------------------------------------------- Ctrl-C

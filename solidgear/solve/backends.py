@@ -26,6 +26,7 @@ import scipy.sparse as sp
 import scipy.sparse.linalg as spla
 
 from solidgear.errors import SolidgearError
+from solidgear.interruptible import Made
 from solidgear.threads import offered
 
 
@@ -297,12 +298,12 @@ class SuperLU:
     def factor(self):
         n = self.matrix.shape[0]
         try:
-            self.lu = spla.splu(self.matrix, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
+            self._lu = Made(spla.splu(self.matrix, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True}))
         except RuntimeError as error:
             raise FactorError(f"SuperLU could not factor the system matrix ({error})") from error
         except MemoryError:
             raise FactorError(f"SuperLU ran out of memory or of 32-bit indices on {n} unknowns; install the extra 'fast', or use a coarser model") from None
-        self.nnz, self.solve = int(self.lu.nnz), self.lu.solve
+        self.nnz = int(self._lu.value.nnz)
         del self.matrix
         # SuperLU does not mind an indefinite matrix, and one off-diagonal pivot is proof of a vanishing diagonal.
         if self.checked and self.negative != 0:
@@ -311,9 +312,13 @@ class SuperLU:
     @property
     def negative(self) -> int | None:
         """Negative pivots; None where a row was exchanged, so that the signs say nothing.  Copies the factor."""
-        if not np.array_equal(self.lu.perm_r, self.lu.perm_c):
+        lu = self._lu.value
+        if not np.array_equal(lu.perm_r, lu.perm_c):
             return None
-        return int(np.count_nonzero(self.lu.U.diagonal() < 0))
+        return int(np.count_nonzero(lu.U.diagonal() < 0))
+
+    def solve(self, rhs):
+        return self._lu.value.solve(rhs)
 
 
 # --------------------------------------------------------------------------- what is there
