@@ -8,7 +8,7 @@ Bearings are never part of a body: they are :class:`Supports` that act on ports.
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any
 
@@ -18,6 +18,7 @@ import scipy.sparse as sp
 from solidgear.errors import SolidgearError
 from solidgear.frames import DOF_NAMES, shift
 from solidgear.mass import ScalarMass
+from solidgear.sections import Sections, from_points, signed
 
 #: Index of the block of n waves around the axis is this plus n, where it is not among the blocks of a body.
 FURTHER = 1000
@@ -72,6 +73,8 @@ class Block:
         Whether the matrix comes from a 1D or 2D mesh, for which a light factorisation is best.
     expand : (n_mesh, n) sparse, optional
         The unknowns of the mesh from those of a block with rigidly tied seats; None where they are the same.
+    sections : callable, optional
+        See :mod:`solidgear.sections`; None where all unknowns are values at points, ``y``.
     """
 
     name: str
@@ -85,6 +88,7 @@ class Block:
     planar: bool = True
     border: int = 0
     expand: sp.csr_matrix | None = None
+    sections: Sections | None = None
 
     def mirrored(self, name: str, components: tuple[int, ...], index: int, signs: tuple[float, ...]) -> Block:
         """The same block in the other bending plane.
@@ -103,46 +107,39 @@ class Block:
         count = self.ports.shape[0] // len(signs)
         ports = sp.diags(np.tile(signs, count)) @ self.ports
         rigid = self.rigid * np.asarray(signs)
-        return Block(name, components, self.stiffness, self.mass, rigid, self.y, ports.tocsr(), (index, signs), self.planar, self.border, self.expand)
+        return replace(
+            self,
+            name=name,
+            components=components,
+            rigid=rigid,
+            ports=ports.tocsr(),
+            mirror=(index, signs),
+            sections=self.sections and signed(self.sections, signs),
+        )
 
     @property
     def size(self) -> int:
         """Number of unknowns."""
         return self.stiffness.shape[0]
 
-    def station_fields(self, stations: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Piecewise linear section motions along the axis, as vectors of unknowns.
-
-        Each field is a hat function of y times the rigid motion of a section about its own centre.
+    def section_loads(self, stations: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """What gives the section motions of shapes; see :mod:`solidgear.sections`.
 
         Parameters
         ----------
         stations : (s,) ndarray
-            Axial positions, ascending, m.
+            Axial positions, ascending, m; the first and the last at the ends of the shaft.
 
         Returns
         -------
-        fields : (n, s * c) ndarray
+        loads : (n, s * c) ndarray
+        gram : (s * c, s * c) ndarray
         columns : (s * c,) ndarray of int
             Index ``6 * station + component`` of every column.
         """
-        # A rigid tilt about the origin is a section tilt plus y times a translation:
-        # subtracting the latter leaves what a section does about its own centre.
-        local = self.rigid.copy()
-        place = {c: k for k, c in enumerate(self.components)}
-        y = np.nan_to_num(self.y)
-        for tilt, translation, sign in ((3, 2, 1.0), (5, 0, -1.0)):
-            if tilt in place and translation in place:
-                local[:, place[tilt]] -= sign * y * self.rigid[:, place[translation]]
-        known = ~np.isnan(self.y)
-        out, columns = [], []
-        for k in range(len(stations)):
-            unit = np.zeros(len(stations))
-            unit[k] = 1.0
-            hat = np.where(known, np.interp(y, stations, unit), 0.0)
-            out.append(hat[:, None] * local)
-            columns += [6 * k + c for c in self.components]
-        return np.hstack(out), np.array(columns, int)
+        columns = [6 * s + c for s in range(len(stations)) for c in self.components]
+        loads, gram = (self.sections or from_points(self.mass, self.rigid, self.y, self.components))(stations)
+        return loads, gram, np.array(columns, int)
 
 
 @dataclass(frozen=True, eq=False)

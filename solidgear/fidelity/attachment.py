@@ -7,6 +7,7 @@ import scipy.sparse as sp
 
 from solidgear.body import Block
 from solidgear.errors import SolidgearError
+from solidgear.sections import from_points, through
 
 
 def tie_rigidly(block: Block, ties) -> Block:
@@ -67,6 +68,7 @@ def tie_rigidly(block: Block, ties) -> Block:
         planar=block.planar,
         border=c * len(ties),
         expand=t,
+        sections=through(block.sections or from_points(block.mass, block.rigid, block.y, block.components), t),
     )
 
 

@@ -23,10 +23,12 @@ from solidgear.errors import SolidgearError
 from solidgear.fidelity.assembly import Pattern, Tabulation, batches, reference, tabulate, unknowns
 from solidgear.fidelity.attachment import tie_rigidly
 from solidgear.fidelity.circumferential import Families
+from solidgear.fidelity.meridian_sections import AXIAL, BENDING, TORSION, from_cells
 from solidgear.fidelity.options import checked, countable
 from solidgear.fidelity.scale import elastic_scale
 from solidgear.meshing.layout import Grading, Layout, layout
 from solidgear.meshing.meridian import Meridian, meridian
+from solidgear.sections import Sections, through
 
 
 _CORNERS = ElementQuad1()
@@ -166,7 +168,7 @@ class _Work:
     """Tabulated basis, materials and surface integrals shared by the blocks of one body."""
 
     def __init__(self, scene, mesh, element, dofs, flat, order):
-        self.scene, self.mesh, self.element, self.dofs, self.flat = scene, mesh, element, dofs, flat
+        self.scene, self.mesh, self.element, self.dofs, self.flat, self.order = scene, mesh, element, dofs, flat, order
         x, w = np.polynomial.legendre.leggauss(order + 2)
         self.g, self.gw = (x + 1) / 2, w / 2
         a, b = np.meshgrid(self.g, self.g, indexing="ij")
@@ -272,7 +274,8 @@ class _Work:
             else:
                 rows.append(self._mean(n, station, attachment)[:, keep])
         ports = sp.csr_matrix(np.vstack(rows))
-        return tie_rigidly(Block(name, components, k, m, rigid, y, ports), ties)
+        sections = self._sections(BENDING if n else AXIAL, c, keep)
+        return tie_rigidly(Block(name, components, k, m, rigid, y, ports, sections=sections), ties)
 
     def torsion_block(self, wanted) -> Block:
         """Block of torsion in the unknown ``u_t / r``; no condition on the axis."""
@@ -298,8 +301,15 @@ class _Work:
                 w = weight * r**3
                 np.add.at(row, dofs.T, np.einsum("bq,eq->eb", value, w))
                 rows.append(row[None] / w.sum())
-        block = Block("torsion", (4,), k, m, rigid, self.y, sp.csr_matrix(np.vstack(rows)))
+        sections = self._sections(TORSION, 1, np.ones(self.n, bool))
+        block = Block("torsion", (4,), k, m, rigid, self.y, sp.csr_matrix(np.vstack(rows)), sections=sections)
         return tie_rigidly(block, ties)
+
+    def _sections(self, parts, unknowns: int, keep: np.ndarray) -> Sections:
+        """Section motions of a block of which ``keep`` are the unknowns left."""
+        density = np.array([s.material.density for s in self.scene.segments])[self.flat.segment]
+        every = from_cells(self.flat, self.dofs, _CORNERS, self.element, self.order, density, parts, unknowns)
+        return through(every, sp.identity(len(keep), format="csc")[:, keep].tocsr())
 
     def _seat_cells(self, station):
         """Cells with their outer edge on the seat."""

@@ -61,10 +61,10 @@ class Projection:
         self.gram = np.zeros((size, size))
         self.parts = []
         for block in body.blocks:
-            fields, columns = block.station_fields(stations) if block.components else (np.zeros((block.size, 0)), [])
-            loaded = block.mass @ fields
-            columns = np.asarray(columns, int)
-            gram = fields.T @ loaded
+            if not block.components:
+                self.parts.append((np.zeros((block.size, 0)), np.zeros(0, int), np.zeros((0, 0))))
+                continue
+            loaded, gram, columns = block.section_loads(stations)
             self.gram[np.ix_(columns, columns)] += gram
             self.parts.append((loaded, columns, np.linalg.pinv(gram, rcond=1e-12, hermitian=True)))
 

@@ -1,0 +1,85 @@
+"""Section motions of a harmonic solid, by quadrature on its cells: they may be far longer than the distance of two stations."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import scipy.sparse as sp
+
+from solidgear.fidelity.assembly import Tabulation, batches
+from solidgear.sections import Sections, hats
+
+
+@dataclass(frozen=True)
+class Part:
+    """Part of a displacement that a component of section motion moves: ``u = sign r^power`` in one unknown, under the mass ``factor rho r^weight``."""
+
+    unknown: int
+    factor: float
+    weight: int
+    sign: float = 1.0
+    power: int = 0
+
+
+#: Families, by their unknowns: (u_r, u_y) axially, u_t / r in torsion, (p, q, w) in bending with translation and tilt.
+AXIAL = (Part(1, 2 * np.pi, 1),)
+TORSION = (Part(0, 2 * np.pi, 3),)
+BENDING = (Part(0, 2 * np.pi, 1), Part(2, np.pi, 1, -1.0, 1))
+
+
+def from_cells(flat, dofs: np.ndarray, geometry, element, order: int, density: np.ndarray, parts: tuple[Part, ...], unknowns: int) -> Sections:
+    """Sections of a block on meridian cells.
+
+    Parameters
+    ----------
+    flat : Meridian
+    dofs : (nb, ne) ndarray of int
+    geometry, element : scikit-fem elements
+        Of the mapping and of the unknowns, of this ``order``.
+    density : (ne,) ndarray
+        kg/m3.
+    parts : tuple of Part
+        One per component.
+    unknowns : int
+        At each scalar degree of freedom, numbered together.
+    """
+    n = int(dofs.max()) + 1
+    x, w = np.polynomial.legendre.leggauss(order + 2)
+    x, w = (x + 1) / 2, w / 2
+    nodes = flat.points[:, flat.cells]
+    reach = np.ptp(nodes[1], axis=0)
+
+    def sections(stations):
+        loads = np.zeros((n, unknowns, len(stations), len(parts)))
+        gram = np.zeros((len(stations), len(parts), len(stations), len(parts)))
+        # a cell is cut along the axis until no piece is longer than from station to station
+        pieces = np.ceil(reach / np.diff(stations).min() - 1e-9).astype(int).clip(1)
+        for count in np.unique(pieces):
+            along = ((np.arange(count)[:, None] + x) / count).ravel()
+            a, b = np.meshgrid(x, along, indexing="ij")
+            weight = np.outer(w, np.tile(w / count, count)).ravel()
+            basis = Tabulation(geometry, element, np.array([a.ravel(), b.ravel()]))
+            for some in batches(np.flatnonzero(pieces == count), 8 * 12 * len(weight)):
+                t = basis.on(nodes[:, :, some])
+                r, dm = t.x[0].ravel(), (t.det * weight * density[some, None]).ravel()
+                hat = hats(np.clip(t.x[1].ravel(), stations[0], stations[-1]), stations)
+                value = _at_points(t.value, dofs[:, some], n)
+                for k, part in enumerate(parts):
+                    mass = part.factor * dm * r**part.weight
+                    field = part.sign * r**part.power
+                    loads[:, part.unknown, :, k] += (value.T @ hat.multiply((mass * field)[:, None])).toarray()
+                    gram[:, k, :, k] += (hat.T @ hat.multiply((mass * field**2)[:, None])).toarray()
+        size = len(stations) * len(parts)
+        return loads.reshape(n * unknowns, size), gram.reshape(size, size)
+
+    return sections
+
+
+def _at_points(value: np.ndarray, dofs: np.ndarray, n: int) -> sp.csr_matrix:
+    """(cells * points, n) values of the basis at the points of every cell."""
+    nb, nq = value.shape
+    cells = dofs.shape[1]
+    data = np.broadcast_to(value.T, (cells, nq, nb)).ravel()
+    columns = np.broadcast_to(dofs.T[:, None], (cells, nq, nb)).ravel()
+    return sp.csr_matrix((data, columns, np.arange(0, cells * nq * nb + 1, nb)), shape=(cells * nq, n))

@@ -1,0 +1,91 @@
+"""What cross-sections do in a shape: least squares, weighted by mass, over motions that are linear between stations along the axis.
+
+A shape u of a body is described by section motions q at stations s as ``u = sum_s h_s(y) R(x, z) q_s``, with hat functions h_s and the rigid motions R of
+a section about its own centre.  The normal equations are ``G q = b`` with ``G_st = int rho h_s h_t R'R`` and the loads ``b_s = int rho h_s R'u``, which
+are linear in the unknowns of u.  Both are integrals over the material: no mesh has to be fine enough to hold a hat function.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import scipy.sparse as sp
+
+#: Stations (s,) to loads (n, s c), one column per station and component, and the matrix G (s c, s c).
+Sections = Callable[[np.ndarray], tuple[np.ndarray, np.ndarray]]
+
+
+def hats(y: np.ndarray, stations: np.ndarray) -> sp.csr_matrix:
+    """Hat functions at some places.
+
+    Parameters
+    ----------
+    y : (p,) ndarray
+        Not beyond the outer stations.
+    stations : (s,) ndarray
+        Ascending.
+
+    Returns
+    -------
+    (p, s) sparse
+    """
+    left = np.clip(np.searchsorted(stations, y, side="right") - 1, 0, len(stations) - 2)
+    t = (y - stations[left]) / (stations[left + 1] - stations[left])
+    values, columns = np.column_stack([1 - t, t]), np.column_stack([left, left + 1])
+    return sp.csr_matrix((values.ravel(), columns.ravel(), np.arange(0, 2 * len(y) + 1, 2)), shape=(len(y), len(stations)))
+
+
+def from_points(mass: Any, rigid: np.ndarray, y: np.ndarray, components: tuple[int, ...]) -> Sections:
+    """Sections of a body whose unknowns are values at points, closer to each other than the stations.
+
+    Parameters
+    ----------
+    mass : (n, n) sparse or ScalarMass
+    rigid : (n, c) ndarray
+        Rigid motions about the origin, one column per component.
+    y : (n,) ndarray
+        Axial position of each unknown; NaN for one that is no value at a point, which then takes no part in the fields.
+    components : tuple of int
+    """
+    known = ~np.isnan(y)
+    place = np.where(known, y, 0.0)
+    # A rigid tilt about the origin is a section tilt plus y times a translation: without the latter it is what a section does about its own centre.
+    local = np.where(known[:, None], rigid, 0.0)
+    at = {c: k for k, c in enumerate(components)}
+    for tilt, translation, sign in ((3, 2, 1.0), (5, 0, -1.0)):
+        if tilt in at and translation in at:
+            local[:, at[tilt]] -= sign * place * local[:, at[translation]]
+
+    def sections(stations):
+        count = len(components)
+        fields = np.zeros((len(y), len(stations), count))
+        hat = hats(np.clip(place, stations[0], stations[-1]), stations).tocoo()
+        fields[hat.row, hat.col] = hat.data[:, None] * local[hat.row]
+        fields = fields.reshape(len(y), -1)
+        loads = mass @ fields
+        return loads, fields.T @ loads
+
+    return sections
+
+
+def through(sections: Sections, reduction: sp.csr_matrix) -> Sections:
+    """Sections in fewer unknowns v, where ``u = reduction v``."""
+
+    def reduced(stations):
+        loads, gram = sections(stations)
+        return reduction.T @ loads, gram
+
+    return reduced
+
+
+def signed(sections: Sections, signs: tuple[float, ...]) -> Sections:
+    """Sections with the sign of components changed, as in the other bending plane."""
+
+    def other(stations):
+        loads, gram = sections(stations)
+        sign = np.tile(signs, len(stations))
+        return loads * sign, gram * np.outer(sign, sign)
+
+    return other

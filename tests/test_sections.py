@@ -1,0 +1,70 @@
+"""Section motions of shapes: exact for motions of sections, and the same on every mesh."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import solidgear as sg
+from solidgear.sections import hats
+
+STATIONS = 13
+GEOMETRY = Path(__file__).parent.parent / "geometry"
+
+
+def shipped(name):
+    return sg.load(GEOMETRY / f"{name}.toml")
+
+
+def motions(body):
+    """Section motions of the six rigid motions of a body: (6 motions, stations, 6)."""
+    stations = np.linspace(0.0, body.length, STATIONS)
+    out = np.zeros((6, STATIONS * 6))
+    for block in body.blocks:
+        loads, gram, columns = block.section_loads(stations)
+        out[np.ix_(block.components, columns)] = np.linalg.solve(gram, loads.T @ block.rigid).T
+    return out.reshape(6, STATIONS, 6)
+
+
+@pytest.mark.parametrize("attachment", ["average", "rigid"])
+@pytest.mark.parametrize(
+    "fidelity, options",
+    [
+        ("euler", {}),
+        ("timoshenko", {}),
+        ("harmonic", {"order": 2}),
+        # cells of four radii: fewer along the shaft than stations
+        ("harmonic", {"order": 6, "relative_size": 4.0, "layers": 0, "edge_layers": 0}),
+        ("solid", {"refinement": 0.5}),
+        ("solid", {"element": "tet10", "refinement": 0.7}),
+    ],
+)
+def test_a_rigid_motion_moves_every_section_as_it_should(fidelity, options, attachment):
+    scene = shipped("pinion_overhung").with_attachment(attachment)
+    body = sg.build(scene, fidelity, **options)
+    y = np.linspace(0.0, body.length, STATIONS)
+    expected = np.zeros((6, STATIONS, 6))
+    for c in range(6):
+        expected[c, :, c] = 1.0
+    expected[3, :, 2], expected[5, :, 0] = y, -y
+    assert np.abs(motions(body) - expected).max() < 1e-6  # a mean over tetrahedra is off the axis by 1e-7 or so; the rest is rounding
+
+
+def test_one_mode_is_the_same_on_long_cells_and_on_short_ones():
+    scene = shipped("shaft_stepped")
+    found = [sg.modes(sg.build(scene, "harmonic", **o), scene, n=12) for o in ({"order": 8, "relative_size": 6.0, "layers": 1, "edge_layers": 0}, {})]
+    gram = found[1].gram
+    for a, b in zip(*(f.modes for f in found)):
+        assert a.name == b.name
+        x, y = a.motions[0].ravel(), b.motions[0].ravel()
+        # a shape at these settings is good to 1e-3, and a MAC is off by its square
+        assert (x @ gram @ y) ** 2 / (x @ gram @ x) / (y @ gram @ y) > 1 - 1e-4
+
+
+
+def test_hats_sum_to_one_and_interpolate():
+    stations = np.array([0.0, 0.1, 0.4, 1.0])
+    y = np.array([0.0, 0.05, 0.1, 0.25, 1.0])
+    hat = hats(y, stations)
+    assert hat @ np.ones(4) == pytest.approx(np.ones(5))
+    assert hat @ stations == pytest.approx(y)
