@@ -20,7 +20,8 @@ from solidgear.fidelity.scale import overhangs
 from solidgear.meshing.layout import Grading, layout
 from solidgear.meshing.meridian import meridian
 
-#: What carries a disc is no clamp: part of the stiffness of a clamped strip that it gets.
+#: What carries a disc is no clamp: part of the stiffness of a clamped strip that it gets.  On 72 random shafts the closed form reached 1.27 of the truth
+#: with a clamp (flanges on hollow shafts), 0.92 with this; on cones it reaches 1.17 for another reason.
 HELD = 0.25
 
 

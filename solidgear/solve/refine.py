@@ -15,6 +15,8 @@ from dataclasses import dataclass
 import numpy as np
 import scipy.linalg as sla
 
+from solidgear.solve.supported import ROUNDED
+
 #: Modes with no more than this part of their mass in elastic motion are nearly rigid ones on soft springs.
 SOFT = 1e-3
 #: Relative error of an eigenvalue that is worth a further solve, and how many are tried.
@@ -212,8 +214,9 @@ def _columns(a, b):
 def _rounding(supported, u, rest, stretch):
     """How far the rounding of products and of the matrix itself may move each energy, rad^2/s^2 (held to dense solutions by validation/attack/modes.py)."""
     own = np.linalg.norm(supported.diagonal[:, None] * rest**2, axis=0)
-    springs = np.linalg.norm(stretch * (np.abs(supported.load).T @ np.abs(u)), axis=0)
-    return EPS * (4 * own + 2 * springs)
+    # A stretch that came from the load (see Supported.stretch) is good to the digits that the motion of its seat would have had at the least.
+    lost = np.minimum(EPS * supported.spread(u), EPS / ROUNDED * np.abs(stretch))
+    return EPS * 4 * own + 2 * np.linalg.norm(stretch * lost, axis=0)
 
 
 def _judged(supported, value, u, force, back, rounding, step) -> Refined:

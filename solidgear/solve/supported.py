@@ -14,7 +14,7 @@ from solidgear.body import Body, Supports, component_rows
 from solidgear.solve.relief import elastic_fields
 from solidgear.solve.statics import SHIFT, factors
 
-# A sum of rounded terms that comes out below this part of their sizes has no digits left that matter.
+# The motion of a seat that comes out below this part of the largest one has no digits left that matter.
 ROUNDED = 1e-12
 # Relative error of an inverse from which on it is refined.
 REFINED = 1e-7
@@ -206,7 +206,8 @@ class Supported:
     @cached_property
     def highest(self) -> float:
         """Highest eigenvalue of the free body, from below and within a factor of ten, rad^2/s^2."""
-        return max(float((b.stiffness.diagonal() / b.mass.diagonal()).max()) for b in self.blocks)
+        stiff, heavy = (np.concatenate([getattr(b, name).diagonal() for b in self.blocks]) for name in ("stiffness", "mass"))
+        return float((stiff[heavy > 0] / heavy[heavy > 0]).max())
 
     def stretch(self, u, loads) -> np.ndarray:
         """Stretch ``L'u`` of the springs, the root of their energy.
@@ -221,10 +222,17 @@ class Supported:
         """
         out = self.load.T @ u
         if self.load.shape[1]:
-            lost = np.abs(out) < ROUNDED * (np.abs(self.load).T @ np.abs(u))
+            lost = np.abs(out) < ROUNDED * self.spread(u)
             if lost.any():
                 out = np.where(lost, sla.cho_solve(self._inner, self._through.T @ loads), out)
         return out
+
+    def spread(self, u) -> np.ndarray:
+        """(r, k) stretch of the springs by motions as large as the largest of each shape: what rounding of ``u`` is to be compared with.
+
+        The motion of a seat that is held fast is small, but it was computed beside large ones and carries their rounding.
+        """
+        return np.abs(self.load).sum(axis=0)[:, None] * np.abs(u).max(axis=0, initial=0.0)
 
     def rigid_motions(self) -> np.ndarray:
         """All rigid motions of the group, one column per component, resisted or not."""
