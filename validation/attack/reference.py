@@ -7,7 +7,7 @@ one misses shrinks by ``ratio^(2 lambda)`` per layer, lambda at least 1/2. *Orde
 mesh the error falls exponentially with the polynomial order.
 
     value       = Aitken of three orders on the same mesh
-    uncertainty = Aitken's own step (both steps where the three do not fall geometrically)
+    uncertainty = three times Aitken's own step (both steps where the three do not fall geometrically)
                   + what the layers beyond the last can add, from the step of the last two
                   + what the solver left
 
@@ -47,6 +47,8 @@ MOST_UNKNOWNS = 100_000
 #: below this relative step the sequence has reached rounding and is not extrapolated
 ROUNDING = 1e-10
 EXTRA_MODES = 6
+#: on Aitken's own step: of 135 figures on 18 scenes the next level moved 12 by more than it, and one by more than three times it
+SURE = 3.0
 
 
 @dataclass(frozen=True)
@@ -179,7 +181,7 @@ def settle(
         doubt = abs(tail)
     else:
         tail, doubt = 0.0, abs(first) + abs(second)
-    return c + tail, (doubt + deeper) / scale + noise
+    return c + tail, (SURE * doubt + deeper) / scale + noise
 
 
 def coupling_scale(values: dict, name: str) -> float:
@@ -245,7 +247,7 @@ def _file(folder: Path, scene: Scene) -> Path:
             LEVELS,
             RATIO,
             SIZE,
-            3,
+            4,
         ],
         sort_keys=True,
         default=str,
