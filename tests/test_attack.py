@@ -27,7 +27,7 @@ from validation.attack.bands import BandTable, explained  # noqa: E402
 from validation.attack.corner_mesh import corner_mesh, singular_points  # noqa: E402
 from validation.attack.judge import Band, band_of, errors_of, partner_of, within  # noqa: E402
 from validation.attack.outcome import outcome  # noqa: E402
-from validation.attack.reference import Reference, reference, settle  # noqa: E402
+from validation.attack.reference import SURE, Reference, reference, settle  # noqa: E402
 from validation.attack.scenes import KINDS, TIES, distribution, random_scene, traits  # noqa: E402
 from validation.attack.spectral import spectral  # noqa: E402
 from validation.attack.springs import random_springs  # noqa: E402
@@ -172,12 +172,12 @@ def test_settling_extrapolates_what_falls_geometrically():
     value, doubt = settle(a, b, c, a, 2.0)
     assert value == pytest.approx(2.0, rel=1e-12)
     # Aitken's own step is what the last value lacks
-    assert doubt == pytest.approx(0.3**5 / 2.0, rel=1e-9)
+    assert doubt == pytest.approx(SURE * 0.3**5 / 2.0, rel=1e-9)
 
 
 def test_settling_doubts_what_does_not():
     value, doubt = settle(1.0, 1.1, 0.9, 1.0, 1.0)
-    assert value == 0.9 and doubt == pytest.approx(0.3)
+    assert value == 0.9 and doubt == pytest.approx(SURE * 0.3)
     # two layers less that move a value by 0.1 leave at most 0.2^2 of it for the layers not there
     assert settle(1.0, 1.0, 1.0, 1.1, 1.0)[1] == pytest.approx(0.1 * 0.04 / 0.96)
     assert settle(1.0, 1.0, 1.0, 1.0, 1.0, noise=1e-5) == (1.0, 1e-5)
