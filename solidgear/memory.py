@@ -4,10 +4,14 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterator
+from contextlib import contextmanager
+from contextvars import ContextVar
 from pathlib import Path
 
 from solidgear.control_groups import control_groups, text_of
 from solidgear.errors import SolidgearError
+
+_base: ContextVar[float | None] = ContextVar("memory held when a run began", default=None)
 
 # cgroup v1 writes "no limit" as the largest multiple of a page; anything above an exabyte is none.
 UNLIMITED = 2**60
@@ -17,7 +21,7 @@ def available_mb(root: str | Path = "/") -> float | None:
     """Memory (MB of 2**20 bytes) that can still be taken; None where the system does not tell.
 
     The least of ``MemAvailable``, the room below the limit of every control group (v1 and v2) this process is in, and the environment
-    variable ``SOLIDGEAR_MEMORY_MB``, which can only lower it.
+    variable ``SOLIDGEAR_MEMORY_MB``, which can only lower it (see :func:`one_run`).
 
     Parameters
     ----------
@@ -38,8 +42,31 @@ def available_mb(root: str | Path = "/") -> float | None:
             allowed = 0.0
         if not 0 < allowed < float("inf"):
             raise SolidgearError(f"SOLIDGEAR_MEMORY_MB = {text!r}: must be a number of megabytes above zero")
-        found.append(allowed)
+        base = _base.get()
+        held = 0.0 if base is None else max(0.0, (resident_mb() or base) - base)
+        found.append(max(0.0, allowed - held))
     return min(found, default=None)
+
+
+@contextmanager
+def one_run() -> Iterator[None]:
+    """Within it, ``SOLIDGEAR_MEMORY_MB`` limits what is taken from here on in all, not what each body may take by itself."""
+    token = _base.set(resident_mb() if _base.get() is None else _base.get())
+    try:
+        yield
+    finally:
+        _base.reset(token)
+
+
+def resident_mb() -> float | None:
+    """Resident memory of this process, MB; None where the system does not tell."""
+    try:
+        pages = int(Path("/proc/self/statm").read_text().split()[1])
+    except OSError:
+        return None
+    import resource
+
+    return pages * resource.getpagesize() / 2**20
 
 
 def _machine(root: Path) -> Iterator[float]:

@@ -6,28 +6,31 @@ import threading
 import time
 from contextlib import contextmanager
 
-
-def _resident_mb() -> float | None:
-    """Resident memory of this process, MB; None where the system does not tell."""
-    try:
-        with open("/proc/self/statm") as f:
-            pages = int(f.read().split()[1])
-    except OSError:
-        return None
-    import resource
-
-    return pages * resource.getpagesize() / 2**20
+from solidgear.memory import resident_mb
 
 
 class Meter:
     """Collects ``seconds`` per stage and the peak resident memory over all of them.
 
     Memory is sampled every 20 ms: what is shown is the size of the whole process while the stage ran.
+
+    Attributes
+    ----------
+    seconds : dict of str to float
+    peak_mb, expected_mb : float or None
+        Seen, and estimated beforehand (see :meth:`expect`).
     """
 
     def __init__(self):
         self.seconds: dict[str, float] = {}
         self.peak_mb: float | None = None
+        self.expected_mb: float | None = None
+
+    def expect(self, more_mb: float) -> None:
+        """Note that so much memory (MB) will be taken beyond what the process holds now."""
+        now = resident_mb()
+        if now is not None:
+            self.expected_mb = max(self.expected_mb or 0.0, now + more_mb)
 
     @contextmanager
     def stage(self, name: str):
@@ -36,7 +39,7 @@ class Meter:
 
         def watch():
             while True:
-                now = _resident_mb()
+                now = resident_mb()
                 if now is None:
                     return
                 self.peak_mb = max(self.peak_mb or 0.0, now)

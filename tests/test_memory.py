@@ -4,7 +4,7 @@ import pytest
 
 from solidgear import threads
 from solidgear.errors import SolidgearError
-from solidgear.memory import available_mb
+from solidgear.memory import available_mb, one_run
 
 MB = 2**20
 
@@ -62,6 +62,16 @@ def test_the_user_can_only_lower_it(root, monkeypatch):
     assert available_mb(root()) == 500
     monkeypatch.setenv("SOLIDGEAR_MEMORY_MB", "1e9")
     assert available_mb(root()) == 8000
+
+
+def test_one_run_shares_the_limit_of_the_user(root, monkeypatch):
+    monkeypatch.setenv("SOLIDGEAR_MEMORY_MB", "500")
+    held = iter([100.0, 100.0, 350.0, 80.0])
+    monkeypatch.setattr("solidgear.memory.resident_mb", lambda: next(held))
+    with one_run():
+        # what has been taken since is no longer free; what was given back does not make more than was allowed
+        assert [available_mb(root()) for _ in range(3)] == [500, 250, 500]
+    assert available_mb(root()) == 500
 
 
 @pytest.mark.parametrize("text", ["lots", "-1", "0", "nan", "inf"])

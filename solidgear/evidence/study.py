@@ -19,6 +19,7 @@ from solidgear.evidence.levels import HEAVY, JUDGE, LIGHT_JUDGE, Sequence, seque
 from solidgear.evidence.levels import JUDGED as JUDGED_SHARE
 from solidgear.evidence.quantities import JUDGED, QUANTITIES, change, measure
 from solidgear.fidelity import build
+from solidgear.fidelity.size import estimated_size
 from solidgear.meshing.corners import sharpest_corner
 from solidgear.meter import Meter
 from solidgear.solve.modes import ModeSet, modes
@@ -112,6 +113,7 @@ def study(
     share: float | None = None,
     most: int | None = None,
     evidence: bool = True,
+    counted: bool = True,
     progress: Progress = lambda _: None,
     keep: Callable[[Rung], None] = lambda _: None,
 ) -> Rung:
@@ -131,6 +133,8 @@ def study(
         Levels to stop at.
     evidence : bool
         Count the modes, and solve the other attachments.
+    counted : bool
+        Whether modes are counted as part of it.
     progress : callable
         Told in words what is going on.
     keep : callable
@@ -145,18 +149,18 @@ def study(
     meter = Meter()
     if model not in SOLIDS:
         progress(f"{model}: build, statics, modes")
-        body, ties = _solved(scene, model, options, meter, lambda _: evidence)
+        body, ties = _solved(scene, model, options, meter, lambda _: evidence and counted)
         rung = Rung(model, body, ties, meter, options=options)
         keep(rung)
     else:
         share = share or (JUDGE if model == "harmonic" else JUDGED_SHARE)
-        rung = _climbed(scene, model, options, meter, scene.ask.tolerance / share, most, evidence, progress, keep)
+        rung = _climbed(scene, model, options, meter, scene.ask.tolerance / share, most, evidence and counted, progress, keep)
     if evidence:
         _add_variants(scene, rung, progress)
     return rung
 
 
-def _climbed(scene, model, options, meter, target, most, evidence, progress, keep) -> Rung:
+def _climbed(scene, model, options, meter, target, most, counted, progress, keep) -> Rung:
     """The finest of the levels that were needed, or that could be had."""
     plan: Sequence = sequence(model, options)
     levels = plan.levels if plan.fixed else plan.levels[:most]
@@ -170,7 +174,7 @@ def _climbed(scene, model, options, meter, target, most, evidence, progress, kee
         before = dict(meter.seconds)
         final = k == len(levels) - 1 if plan.fixed else k >= 2
         try:
-            body, ties = _solved(scene, model, level, meter, lambda size: evidence and (final or not plan.fixed and k == 1 and size > HEAVY))
+            body, ties = _solved(scene, model, level, meter, lambda size: counted and (final or not plan.fixed and k == 1 and size > HEAVY))
         except (SolidgearError, MemoryError) as error:
             why = str(error) or "not enough memory"
             if plan.fixed and k < len(levels) - 1:
@@ -259,8 +263,7 @@ def _solved(scene, model: str, options: Mapping[str, Any], meter: Meter, counted
     wanted = sorted(given) if model == "solid" else (*sorted(given), "section")
     kinds = tuple(dict.fromkeys(wanted)) if together else None
     extra = {"attachments": kinds} if together else {}
-    with meter.stage("build"):
-        body = build(scene, model, **{**options, **extra})
+    body = _built(scene, model, {**options, **extra}, meter)
     supports, count = as_supports(scene), counted(body.size)
     if together:
         supports = replace(supports, attachments=tuple(b.attachment for b in scene.bearings))
@@ -273,10 +276,15 @@ def _solved(scene, model: str, options: Mapping[str, Any], meter: Meter, counted
         ties[SECTION] = _tied(scene, body, supports.with_attachment("section"), "section", meter, False)
     else:
         plain = scene.with_attachment("section")
-        with meter.stage("build"):
-            other = build(plain, model, **options)
+        other = _built(plain, model, options, meter)
         ties[SECTION] = _tied(plain, other, as_supports(plain), None, meter, False)
     return body, ties
+
+
+def _built(scene, model: str, options: Mapping[str, Any], meter: Meter) -> Body:
+    meter.expect(estimated_size(scene, model, dict(options)).peak_mb)
+    with meter.stage("build"):
+        return build(scene, model, **options)
 
 
 def _tied(scene, body: Body, supports: Supports, attachment: str | None, meter: Meter, count: bool) -> Tied:
@@ -305,6 +313,7 @@ def _add_variants(scene, rung: Rung, progress: Progress) -> None:
                     rung.variants[attachment] = rung.ties[SECTION]
                 elif rung.model != "solid":
                     changed = rigid_seats(scene) if attachment == "rigid" else scene.with_attachment(attachment)
+                    rung.meter.expect(estimated_size(changed, rung.model, rung.options).peak_mb)
                     body = build(changed, rung.model, **rung.options)
                     rung.variants[attachment] = _tied(changed, body, as_supports(changed), None, spare, False)
             except SolidgearError as error:

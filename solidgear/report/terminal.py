@@ -240,6 +240,8 @@ def closing_lines(results: Mapping) -> list[str]:
         lines.append(f"{model_name(trusted)[0].upper()}{model_name(trusted)[1:]}: {evidence['complete'][0].lower()}{evidence['complete'][1:]}")
     if is_number(results.get("seconds_total")):
         peak = f", peak memory {results['peak_mb']:.0f} MB" if is_number(results.get("peak_mb")) else ""
+        if peak and is_number(results.get("expected_peak_mb")):
+            peak += f" ({results['expected_peak_mb']:.0f} MB estimated)"
         lines.append(f"Solved in {seconds(results['seconds_total'])} s{peak}.")
     return lines
 
