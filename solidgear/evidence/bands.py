@@ -24,19 +24,20 @@ from solidgear.evidence.converge import gci
 from solidgear.evidence.quantities import COUPLINGS, QUANTITIES, change
 
 #: band over the last change: harmonic solid, graded hexahedra
-LAYERED = {"harmonic": 0.33, "solid": 1.3}
+LAYERED = {"harmonic": 0.33, "solid": 0.8}
 #: the same where seats are rigid: their ends are singular like a crack, and a layer of ratio q leaves the share q
-RIGID = {"harmonic": 0.42, "solid": 1.8}
-#: the same after two levels only, without and with rigid seats: the step off the coarsest mesh tells less
-FIRST = {"harmonic": (0.15, 0.42), "solid": (2.0, 4.5)}
+RIGID = {"harmonic": 0.42, "solid": 1.3}
+#: the same after two levels only, without and with rigid seats: the step off the coarsest mesh tells less where it is small, perhaps by accident,
+#: and more where it is large.  Factor of small steps, the band they reach at most before the factor of large steps takes over, and that factor.
+FIRST = {"harmonic": ((0.15, 0.0, 0.15), (0.42, 0.0, 0.42)), "solid": ((1.8, 0.009, 0.6), (1.8, 0.036, 0.8))}
 #: safety on the observed reduction of two regular steps, where that is the worse news
 OBSERVED, SLOWEST = 1.5, 0.7
 #: the last change counts for at least this share of the one before it, and a coupling's of its diagonal entries'
 EARLIER, DIAGONAL = {"harmonic": 0.03, "solid": 0.15}, 0.2
 #: share of the last change by which a layered sequence is still expected to go on
 AHEAD = {"harmonic": 0.12, "solid": 0.4}
-#: safety on what the cells around leave
-SURE_AROUND = 1.5
+#: safety on what the cells around leave: in thin walls the coarsest mesh, where it is measured, shows half of it
+SURE_AROUND = 2.5
 #: rounding, below which nothing is told apart
 LEAST = 1e-10
 
@@ -103,8 +104,6 @@ def layered_bands(levels: Sequence[Values], solver: Values, model: str, *, rigid
     """
     around = around or {}
     usual, out = (RIGID if rigid else LAYERED)[model], {}
-    if len(levels) == 2:
-        usual = FIRST[model][rigid]
     finest, before = levels[-1], levels[-2]
     for name in QUANTITIES:
         if any(name not in level for level in levels[-2:]):
@@ -114,7 +113,7 @@ def layered_bands(levels: Sequence[Values], solver: Values, model: str, *, rigid
         if len(levels) > 2 and name in levels[-3]:
             earlier = abs((change(levels[-3], finest, name) or 0.0) - (change(before, finest, name) or 0.0))
         rests_on = max(last, EARLIER[model] * (earlier or 0.0))
-        factor = usual
+        factor = usual if len(levels) > 2 else _first(FIRST[model][rigid], rests_on)
         if earlier and len(levels) > 3:  # the step off the coarsest mesh is no regular one
             ratio = min(last / earlier, SLOWEST)
             factor = max(usual, OBSERVED * ratio / (1 - ratio))
@@ -125,7 +124,7 @@ def layered_bands(levels: Sequence[Values], solver: Values, model: str, *, rigid
         left = solver.get(name, 0.0)
         out[name] = Band(
             values=tuple(float(level[name]) for level in levels if name in level),
-            gci=float(factor * rests_on + SURE_AROUND * around.get(name, 0.0) + left + LEAST),
+            gci=float(factor * rests_on + SURE_AROUND * _left_around(around, name) + left + LEAST),
             change=float(last),
             reduction=float(last / earlier) if earlier else None,
             factor=factor,
@@ -133,6 +132,20 @@ def layered_bands(levels: Sequence[Values], solver: Values, model: str, *, rigid
             extrapolated=float(finest[name] + AHEAD[model] * (finest[name] - before[name])),
         )
     return out
+
+
+def _first(rule: tuple[float, float, float], step: float) -> float:
+    """Band over the change after two levels."""
+    small, reach, large = rule
+    return max(large, min(small, reach / step)) if step else small
+
+
+def _left_around(around: Values, name: str) -> float:
+    """What the cells around leave in a quantity; in a coupling as much as in its diagonal entries, in one that was not measured as much as in the worst."""
+    if name in COUPLINGS:
+        own = [around[d] for d in COUPLINGS[name] if d in around]
+        return max([around.get(name, 0.0), (own[0] * own[1]) ** 0.5 if len(own) == 2 else 0.0])
+    return around.get(name, max(around.values(), default=0.0))
 
 
 def refined_bands(levels: Sequence[Values], solver: Values, sizes: Sequence[float], exponent: float, singular: bool) -> dict[str, Band]:
