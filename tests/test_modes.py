@@ -7,6 +7,7 @@ import pytest
 import scipy.linalg as sla
 
 import solidgear as sg
+from solidgear.errors import SolidgearError
 from solidgear.meshing.quality import volume_of
 from solidgear.scene import STEEL, Bearing, Port, Scene, Segment
 
@@ -289,3 +290,35 @@ def test_a_pair_torn_by_the_mesh_is_told(overhung):
     unequal = overhung.with_changes(bearings=tuple(b.with_changes(matrix=weight @ np.array(b.matrix) @ weight) for b in overhung.bearings))
     found = sg.modes(beam, unequal, n=6)
     assert found.modes[2].multiplicity == 1 and "torn_pairs" not in found.evidence
+
+
+# --------------------------------------------------------------------------- springs whose digits are used up
+def on_a_skewed_spring(soft):
+    """A cylinder on a bearing that is stiff in every entry of its matrix and resists one combination of motion and tilt by ``soft`` (N/m) only."""
+    rod = Segment.cylinder("rod", length=0.3, diameter=0.06)
+    stiff, arm = 1e12, 0.05
+    couple = np.zeros((6, 6))
+    for move, tilt, sign in ((2, 3, 1.0), (0, 5, -1.0)):
+        along = np.zeros(6)
+        along[[move, tilt]] = 1.0, sign * arm
+        across = np.zeros(6)
+        across[move] = 1.0
+        couple += stiff * np.outer(along, along) + soft * np.outer(across, across)
+    couple[1, 1] = 1e8
+    bearing = Bearing(name="a", y=0.15, seat_width=0.02, matrix=couple)
+    return Scene.from_parts([rod], bearings=[bearing], port=Port(y=0.15, lo=0.1, hi=0.2))
+
+
+def test_the_rounding_of_coupled_springs_is_in_the_error():
+    scene = on_a_skewed_spring(1e2)
+    found = sg.modes(sg.build(scene, "timoshenko"), scene, n=6)
+    first = found.named("bending 1")
+    # 1e2 beside 1e12: ten of the sixteen digits are gone; the others have them all
+    assert 1e-8 < first.error < 1e-4
+    assert found.named("bending 2").error < 1e-10
+
+
+def test_springs_without_a_digit_left_are_named_as_the_cause():
+    scene = on_a_skewed_spring(1e-2)
+    with pytest.raises(SolidgearError, match="bearings resist it by the difference of far larger stiffnesses"):
+        sg.modes(sg.build(scene, "timoshenko"), scene, n=6)

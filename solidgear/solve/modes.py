@@ -249,12 +249,27 @@ def _named(body, names: Names, parts: list[Part], n: int, max_frequency: float |
 def _sound(body, mode: Mode, parts: list[Part]) -> Mode:
     """The mode, unless rounding leaves too little of its frequency."""
     if mode.error > WRONG:
+        told = f"modes: rounding may move {mode.name} ({mode.frequency_hz:.6g} Hz) by {100 * mode.error:.2g} %"
+        if _by_springs(mode, parts) > mode.error / 2:
+            raise SolidgearError(
+                f"{told}: bearings resist it by the difference of far larger stiffnesses that couple, and its sixteen digits are not enough; give the bearing a "
+                "stiffness that is clearly positive in every direction, or zero"
+            )
         highest = max(part.supported.highest for part in parts) / (2 * np.pi * mode.frequency_hz) ** 2
         raise SolidgearError(
-            f"modes: rounding may move {mode.name} ({mode.frequency_hz:.6g} Hz) by {100 * mode.error:.2g} %: the smallest cell of the {body.fidelity} body is so stiff that the "
+            f"{told}: the smallest cell of the {body.fidelity} body is so stiff that the "
             f"eigenvalues span {np.log10(highest):.0f} digits of the 16 there are; use a coarser mesh (lower order, fewer layers), or a beam for a shaft as slender as this"
         )
     return mode
+
+
+def _by_springs(mode: Mode, parts: list[Part]) -> float:
+    """Share of the relative error of a frequency that comes from the rounding of the bearings' stiffness."""
+    value, lost = (2 * np.pi * mode.frequency_hz) ** 2, 0.0
+    for part, vectors in ((p, v) for p in parts for v in mode.vectors if set(v) & set(p.supported.group)):
+        u = np.concatenate([vectors.get(b, np.zeros(block.size)) for b, block in zip(part.supported.group, part.supported.blocks)])
+        lost = max(lost, float(part.supported.spring_rounding(u[:, None])[0]))
+    return lost / (2 * value)
 
 
 def _families(parts: list[Part], left: list[Uncounted], found: list[tuple[str, float, int]]) -> list[dict]:

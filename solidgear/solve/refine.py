@@ -216,7 +216,7 @@ def _rounding(supported, u, rest, stretch):
     own = np.linalg.norm(supported.diagonal[:, None] * rest**2, axis=0)
     # A stretch that came from the load (see Supported.stretch) is good to the digits that the motion of its seat would have had at the least.
     lost = np.minimum(EPS * supported.spread(u), EPS / ROUNDED * np.abs(stretch))
-    return EPS * 4 * own + 2 * np.linalg.norm(stretch * lost, axis=0)
+    return EPS * 4 * own + 2 * np.linalg.norm(stretch * lost, axis=0) + supported.spring_rounding(u)
 
 
 def _judged(supported, value, u, force, back, rounding, step) -> Refined:

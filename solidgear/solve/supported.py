@@ -115,17 +115,30 @@ class Supported:
         m = len(supports.ports)
         components = [list(b.components) for b in self.blocks]
         place = np.concatenate([component_rows(range(m), cs) for cs in components])
+        self._spring, self._seats = spring[np.ix_(place, place)], []
         if not place.size:
             return np.zeros((self.size, 0))
-        root = Supports(supports.ports, spring[np.ix_(place, place)]).root
+        root = Supports(supports.ports, self._spring).root
         wanted = supports.attachments or (None,) * m
         index = [body.port_index(name, a) for name, a in zip(supports.ports, wanted)]
         parts, start = [], 0
         for block, cs in zip(self.blocks, components):
             at = np.array([len(cs) * p + i for p in index for i in range(len(cs))], int)
-            parts.append(block.ports[at].T @ root[start : start + len(at)])
+            self._seats.append(block.ports[at])
+            parts.append(self._seats[-1].T @ root[start : start + len(at)])
             start += len(at)
         return np.vstack(parts)
+
+    def spring_rounding(self, u) -> np.ndarray:
+        """(k,) energy of shapes that the last digit of the stiffness entries of the springs stands for, N m.
+
+        A coupled bearing may be far softer in one direction than any of its entries: what it resists there is a difference of large numbers.
+        """
+        if not self._seats:
+            return np.zeros(u.shape[1])
+        motion = np.abs(np.vstack([seats @ part for seats, part in zip(self._seats, self.parts(u))]))
+        # as large a multiple as condensing springs in series and taking the root of the matrix may make of it
+        return 8 * EPS * np.einsum("ik,ij,jk->k", motion, np.abs(self._spring), motion)
 
     @property
     def backend(self) -> str:
