@@ -8,22 +8,41 @@ import pytest
 ROOT = Path(__file__).parent.parent
 sys.path.insert(0, str(ROOT / "validation"))
 
-from mutations import MUTATIONS, caught, healthy  # noqa: E402
+from mutations import MUTATIONS, Mutation, caught, healthy, place  # noqa: E402
 
 IDS = [m.name.replace(" ", "_") for m in MUTATIONS]
 
 
 def test_there_are_enough_and_each_has_its_own_line():
     assert len(MUTATIONS) >= 20
-    assert len({(m.file, m.old, m.new) for m in MUTATIONS}) == len(MUTATIONS)
+    assert len({(m.file, m.where, m.old, m.new) for m in MUTATIONS}) == len(MUTATIONS)
 
 
 @pytest.mark.parametrize("mutation", MUTATIONS, ids=IDS)
 def test_mutation_still_applies(mutation):
-    """A mutation whose text has gone from the source would be reported as caught by nobody."""
-    assert (ROOT / mutation.file).read_text().count(mutation.old) == 1
+    """A mutation whose expression has gone from the source would be reported as caught by nobody."""
+    first, last = place(mutation, (ROOT / mutation.file).read_text())
+    assert first < last
     path, _, name = mutation.test.partition("::")
     assert f"def {name.partition('[')[0]}(" in (ROOT / path).read_text()
+
+
+def test_layout_does_not_matter():
+    mutation = Mutation("", "", "Beam.bend", "a * (b + c)", "a * b", "")
+    text = "class Beam:\n    def bend(self):\n        é = 1; return f(a * (\n            b + c))  # here\n"
+    first, last = place(mutation, text)
+    assert text[:first] + mutation.new + text[last:] == text.replace(
+        "a * (\n            b + c)", "a * b"
+    )
+
+
+@pytest.mark.parametrize(
+    "where, old", [("bend", "a + b"), ("other", "a * b"), ("bend", "a"), ("Beam.bend", "a * b")]
+)
+def test_what_is_not_there_exactly_once_is_refused(where, old):
+    text = "def bend():\n    return a * b + a\n"
+    with pytest.raises(ValueError):
+        place(Mutation("", "", where, old, "", ""), text)
 
 
 @pytest.mark.slow

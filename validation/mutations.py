@@ -1,6 +1,8 @@
-"""Break the physics on purpose, one line at a time, and see a named test go red.
+"""Break the physics on purpose, one expression at a time, and see a named test go red.
 
-Every mutation is one text replaced in a copy of the source; its test must pass before and fail after.
+Every mutation is one expression or statement of one function, found by the syntax tree, so that
+neither layout nor what stands around it matters.  It is replaced in a copy of the source; its test
+must pass before and fail after.
 
     python validation/mutations.py [--only WORD] [--jobs 2]
 """
@@ -8,6 +10,7 @@ Every mutation is one text replaced in a copy of the source; its test must pass 
 from __future__ import annotations
 
 import argparse
+import ast
 import os
 import shutil
 import subprocess
@@ -24,75 +27,358 @@ PARTS = ("solidgear", "geometry", "tests", "validation", "pyproject.toml")
 
 @dataclass(frozen=True)
 class Mutation:
-    """One wrong line of physics and the test that must notice it.
+    """One wrong expression of physics and the test that must notice it.
 
-    ``old`` must occur exactly once in ``file``.
+    Attributes
+    ----------
+    name : str
+    file : str
+    where : str
+        Function, or class and method, such as ``Body.ports``.
+    old, new : str
+        Expression or statement that occurs there exactly once, and what replaces it.
+    test : str
     """
 
     name: str
     file: str
+    where: str
     old: str
     new: str
     test: str
 
 
 MUTATIONS = (
-    Mutation("Young's modulus 1 % high in the beam", "solidgear/fidelity/beam.py", "self.bend = mat.E * second", "self.bend = 1.01 * mat.E * second", "tests/test_beam.py::test_uniform_cantilever"),
-    Mutation("Young's modulus 1 % high in the harmonic solid", "solidgear/fidelity/harmonic.py", "stiffness.add(part, (lame * trace + mu * (2 * normal + shear)) @ gram)", "stiffness.add(part, 1.01 * (lame * trace + mu * (2 * normal + shear)) @ gram)", "tests/test_harmonic.py::test_bending_wave_of_a_cylinder_between_sliding_ends"),
-    Mutation("shear coefficient of a rectangle, 5/6", "solidgear/fidelity/beam.py", "self.shear = factor * g * area", "self.shear = 5 / 6 * g * area", "tests/test_beam.py::test_free_free_timoshenko"),
-    Mutation("shear stiffness with E for G", "solidgear/fidelity/beam.py", "g = mat.E / (2 * (1 + mat.nu))", "g = mat.E / 2", "tests/test_beam.py::test_free_free_rod"),
-    Mutation("rotary inertia missing", "solidgear/fidelity/beam.py", "c.rotary if rotary else np.zeros_like(s)", "np.zeros_like(s)", "tests/test_beam.py::test_free_free_timoshenko"),
-    Mutation("lumped for consistent mass in the rod", "solidgear/fidelity/beam.py", "    m = shape.T @ ((c.w * inertia)[:, None] * shape)\n", "    m = np.diag((shape.T @ (c.w * inertia)))\n", "tests/test_beam.py::test_free_free_rod"),
-    Mutation("taper ignored: cone as the cylinder at its start", "solidgear/fidelity/beam.py", "a = segment.outer0 + t * (segment.outer1 - segment.outer0)", "a = segment.outer0 + 0 * t", "tests/test_beam.py::test_tapered_cantilever_against_the_unit_load_integral"),
-    Mutation("sign of the tilt in the x plane", "solidgear/fidelity/beam.py", 'bending.mirrored("bending_x", (0, 5), 0, (1.0, -1.0))', 'bending.mirrored("bending_x", (0, 5), 0, (1.0, 1.0))', "tests/test_ports.py::test_ports_follow_rigid_motions"),
-    Mutation("sign of a lever in the shift of a reference point", "solidgear/frames.py", "out[:3, 3:] = -cross_matrix(", "out[:3, 3:] = cross_matrix(", "tests/test_frames.py::test_shifted_motion_is_that_of_a_rigid_body"),
-    Mutation("axis condition of bending dropped", "solidgear/fidelity/harmonic.py", "keep[self.on_axis, 1:] = False", "keep[self.on_axis, 2:] = False", "tests/test_harmonic.py::test_bending_wave_of_a_cylinder_between_sliding_ends"),
-    Mutation("one sign in the strain of the first harmonic", "solidgear/fidelity/harmonic.py", "ty[2, 0], ty[2, 1], ty[0, 2] = -1.0, 1.0, -n", "ty[2, 0], ty[2, 1], ty[0, 2] = -1.0, 1.0, n", "tests/test_harmonic.py::test_bending_wave_of_a_cylinder_between_sliding_ends"),
-    Mutation("mass of p and q taken like that of w", "solidgear/fidelity/harmonic.py", "np.array([2.0, 2.0, 1.0])", "np.array([1.0, 1.0, 1.0])", "tests/test_harmonic.py::test_mass_matrix_of_shipped_scenes"),
-    Mutation("torsion with r squared for r cubed", "solidgear/fidelity/harmonic.py", "w = 2 * np.pi * dv * t.x[0] ** 3", "w = 2 * np.pi * dv * t.x[0] ** 2", "tests/test_harmonic.py::test_mass_matrix_of_shipped_scenes"),
-    Mutation("Lame's lambda of plane stress", "solidgear/fidelity/harmonic.py", "lame = 2 * mu * material.nu / (1 - 2 * material.nu)", "lame = 2 * mu * material.nu / (1 - material.nu)", "tests/test_harmonic.py::test_bending_wave_of_a_cylinder_between_sliding_ends"),
-    Mutation("seat mean without the weight of the radius", "solidgear/fidelity/harmonic.py", "out[1, :, 2] = scatter(-np.pi * w * r * r)", "out[1, :, 2] = scatter(-np.pi * w * r)", "tests/test_ports.py::test_ports_follow_rigid_motions"),
-    Mutation("sign of a rigid rotation of the solid", "solidgear/fidelity/solid.py", "np.column_stack([zero, -z, y])", "np.column_stack([zero, z, y])", "tests/test_solid.py::test_rigid_motions_cost_no_energy"),
-    Mutation("housing spring left out", "solidgear/body.py", "(e @ ke + housing)", "(e @ ke + 1e30)", "tests/test_condense.py::test_axial_chain_of_bearings_and_housing"),
-    Mutation("sign of a bearing's coupling", "solidgear/body.py", "k[6 * i : 6 * i + 6, 6 * i : 6 * i + 6] = bearing.stiffness", "k[6 * i : 6 * i + 6, 6 * i : 6 * i + 6] = bearing.stiffness * np.where(np.eye(6) > 0, 1, -1)", "tests/test_condense.py::test_against_a_direct_dense_solution"),
-    Mutation("series spring beside the bearing instead of behind it", "solidgear/scene.py", "K -= np.outer(K[:, 1], K[1, :]) / (K[1, 1] + spring)", "K[1, 1] += spring", "tests/test_scene.py::test_series_springs_are_a_harmonic_sum_when_y_is_alone"),
-    Mutation("lumped point 1 mm off", "solidgear/scene_file.py", "(segments[-1].y0 + y) / 2", "(segments[-1].y0 + y) / 2 + 1e-3", "tests/test_scene.py::test_overhung_pinion_is_the_shaft_of_the_reference_numbers"),
-    Mutation("shift not refined away in statics", "solidgear/solve/relief.py", "if missing < tolerance or share > 0.5 * last:", "if True:", "tests/test_condense.py::test_against_a_direct_dense_solution"),
-    Mutation("rigid motions of the load port forgotten", "solidgear/solve/statics.py", "x = (p_l @ held - reach.T @ rigid).T", "x = (p_l @ held).T", "tests/test_condense.py::test_against_a_direct_dense_solution"),
-    Mutation("springs forgotten in the energy of a mode", "solidgear/solve/refine.py", "value = (_columns(rest, pull) + _columns(stretch, stretch)) / _columns(u, heavy)", "value = _columns(rest, pull) / _columns(u, heavy)", "tests/test_modes.py::test_against_dense_eigenvalues"),
-    Mutation("springs missing from the modes", "solidgear/solve/supported.py", "y = y - self._through @ sla.cho_solve(self._inner, self._through.T @ x)", "pass", "tests/test_modes.py::test_against_dense_eigenvalues"),
-    Mutation("a mode dropped by the eigensolver", "solidgear/solve/eigen.py", "for i, v in enumerate(found.value)]", "for i, v in enumerate(found.value) if i != 1]", "tests/test_modes.py::test_against_dense_eigenvalues"),
-    Mutation("Lame's lambda of plane stress in the 3D solid", "solidgear/fidelity/solid.py", "lame = 2 * mu * nu / (1 - 2 * nu)", "lame = 2 * mu * nu / (1 - nu)", "tests/test_solid.py::test_light_hexahedra_bend_near_the_reference"),
-    Mutation("flexibility one per cent high", "solidgear/solve/statics.py", "f_block = work + work.T - u.T @ (k @ u)", "f_block = 1.01 * work", "tests/test_condense.py::test_against_a_direct_dense_solution"),
-    Mutation("inertia of the bearings left out of the count", "solidgear/solve/eigen.py", "negative -= int((np.linalg.eigvalsh((inner + inner.T) / 2) < 0).sum())", "pass", "tests/test_eigen.py::test_count_confirms_complete_results"),
-    Mutation("sign of a lumped mass in the exact beam", "solidgear/fidelity/krylov.py", "b[2:] - self.mass[:, None, None] * omega**2 * b[:2]", "b[2:] + self.mass[:, None, None] * omega**2 * b[:2]", "tests/test_krylov.py::test_overhung_shaft_of_the_thesis"),
-    Mutation("Guyan mass on compliance shapes instead of unit motions", "solidgear/lumped/effective_mass.py", "shapes = fields @ np.linalg.inv(compliance)", "shapes = fields @ np.diag(1 / np.diag(compliance))", "tests/test_effective_mass.py::test_guyan_of_a_nearly_rigid_shaft_is_the_rigid_body"),
-    Mutation("hand of the spiral swapped", "solidgear/drivetrain/gear_mesh.py", 's = _SPIRAL[_word("hand", hand, _SPIRAL)]', 's = -_SPIRAL[_word("hand", hand, _SPIRAL)]', "tests/test_gear_mesh.py::test_components_are_the_textbook_ones"),
+    Mutation(
+        "Young's modulus 1 % high in the beam",
+        "solidgear/fidelity/beam.py",
+        "_Section.__init__",
+        "self.bend = mat.E * second",
+        "self.bend = 1.01 * mat.E * second",
+        "tests/test_beam.py::test_uniform_cantilever",
+    ),
+    Mutation(
+        "Young's modulus 1 % high in the harmonic solid",
+        "solidgear/fidelity/harmonic.py",
+        "_Work.bending_block",
+        "stiffness.add(part, (lame * trace + mu * (2 * normal + shear)) @ gram)",
+        "stiffness.add(part, 1.01 * (lame * trace + mu * (2 * normal + shear)) @ gram)",
+        "tests/test_harmonic.py::test_bending_wave_of_a_cylinder_between_sliding_ends",
+    ),
+    Mutation(
+        "shear coefficient of a rectangle, 5/6",
+        "solidgear/fidelity/beam.py",
+        "_Section.__init__",
+        "self.shear = factor * g * area",
+        "self.shear = 5 / 6 * g * area",
+        "tests/test_beam.py::test_free_free_timoshenko",
+    ),
+    Mutation(
+        "shear stiffness with E for G",
+        "solidgear/fidelity/beam.py",
+        "_Section.__init__",
+        "g = mat.E / (2 * (1 + mat.nu))",
+        "g = mat.E / 2",
+        "tests/test_beam.py::test_free_free_rod",
+    ),
+    Mutation(
+        "rotary inertia missing",
+        "solidgear/fidelity/beam.py",
+        "_bending",
+        "c.rotary if rotary else np.zeros_like(s)",
+        "np.zeros_like(s)",
+        "tests/test_beam.py::test_free_free_timoshenko",
+    ),
+    Mutation(
+        "lumped for consistent mass in the rod",
+        "solidgear/fidelity/beam.py",
+        "_rod",
+        "m = shape.T @ ((c.w * inertia)[:, None] * shape)",
+        "m = np.diag((shape.T @ (c.w * inertia)))",
+        "tests/test_beam.py::test_free_free_rod",
+    ),
+    Mutation(
+        "taper ignored: cone as the cylinder at its start",
+        "solidgear/fidelity/beam.py",
+        "_Section.__init__",
+        "a = segment.outer0 + t * (segment.outer1 - segment.outer0)",
+        "a = segment.outer0 + 0 * t",
+        "tests/test_beam.py::test_tapered_cantilever_against_the_unit_load_integral",
+    ),
+    Mutation(
+        "sign of the tilt in the x plane",
+        "solidgear/fidelity/beam.py",
+        "beam",
+        'bending.mirrored("bending_x", (0, 5), 0, (1.0, -1.0))',
+        'bending.mirrored("bending_x", (0, 5), 0, (1.0, 1.0))',
+        "tests/test_ports.py::test_ports_follow_rigid_motions",
+    ),
+    Mutation(
+        "sign of a lever in the shift of a reference point",
+        "solidgear/frames.py",
+        "shift",
+        "-cross_matrix(np.asarray(offset, float))",
+        "cross_matrix(np.asarray(offset, float))",
+        "tests/test_frames.py::test_shifted_motion_is_that_of_a_rigid_body",
+    ),
+    Mutation(
+        "axis condition of bending dropped",
+        "solidgear/fidelity/harmonic.py",
+        "_Work.bending_block",
+        "keep[self.on_axis, 1:] = False",
+        "keep[self.on_axis, 2:] = False",
+        "tests/test_harmonic.py::test_bending_wave_of_a_cylinder_between_sliding_ends",
+    ),
+    Mutation(
+        "one sign in the strain of the first harmonic",
+        "solidgear/fidelity/harmonic.py",
+        "_energy",
+        "ty[2, 0], ty[2, 1], ty[0, 2] = -1.0, 1.0, -n",
+        "ty[2, 0], ty[2, 1], ty[0, 2] = -1.0, 1.0, n",
+        "tests/test_harmonic.py::test_bending_wave_of_a_cylinder_between_sliding_ends",
+    ),
+    Mutation(
+        "mass of p and q taken like that of w",
+        "solidgear/fidelity/harmonic.py",
+        "_Work.bending_block",
+        "np.array([2.0, 2.0, 1.0])",
+        "np.array([1.0, 1.0, 1.0])",
+        "tests/test_harmonic.py::test_mass_matrix_of_shipped_scenes",
+    ),
+    Mutation(
+        "torsion with r squared for r cubed",
+        "solidgear/fidelity/harmonic.py",
+        "_Work.torsion_block",
+        "w = 2 * np.pi * dv * t.x[0] ** 3",
+        "w = 2 * np.pi * dv * t.x[0] ** 2",
+        "tests/test_harmonic.py::test_mass_matrix_of_shipped_scenes",
+    ),
+    Mutation(
+        "Lame's lambda of plane stress",
+        "solidgear/fidelity/harmonic.py",
+        "_Work.bending_block",
+        "lame = 2 * mu * material.nu / (1 - 2 * material.nu)",
+        "lame = 2 * mu * material.nu / (1 - material.nu)",
+        "tests/test_harmonic.py::test_bending_wave_of_a_cylinder_between_sliding_ends",
+    ),
+    Mutation(
+        "seat mean without the weight of the radius",
+        "solidgear/fidelity/harmonic.py",
+        "_Work._mean",
+        "out[1, :, 2] = scatter(-np.pi * w * r * r)",
+        "out[1, :, 2] = scatter(-np.pi * w * r)",
+        "tests/test_ports.py::test_ports_follow_rigid_motions",
+    ),
+    Mutation(
+        "sign of a rigid rotation of the solid",
+        "solidgear/fidelity/solid.py",
+        "solid",
+        "np.column_stack([zero, -z, y])",
+        "np.column_stack([zero, z, y])",
+        "tests/test_solid.py::test_rigid_motions_cost_no_energy",
+    ),
+    Mutation(
+        "housing spring left out",
+        "solidgear/body.py",
+        "as_supports",
+        "(e @ ke + housing)",
+        "(e @ ke + 1e30)",
+        "tests/test_condense.py::test_axial_chain_of_bearings_and_housing",
+    ),
+    Mutation(
+        "sign of a bearing's coupling",
+        "solidgear/body.py",
+        "as_supports",
+        "k[6 * i : 6 * i + 6, 6 * i : 6 * i + 6] = bearing.stiffness",
+        "k[6 * i : 6 * i + 6, 6 * i : 6 * i + 6] = bearing.stiffness * np.where(np.eye(6) > 0, 1, -1)",
+        "tests/test_condense.py::test_against_a_direct_dense_solution",
+    ),
+    Mutation(
+        "series spring beside the bearing instead of behind it",
+        "solidgear/scene.py",
+        "Bearing.stiffness",
+        "K -= np.outer(K[:, 1], K[1, :]) / (K[1, 1] + spring)",
+        "K[1, 1] += spring",
+        "tests/test_scene.py::test_series_springs_are_a_harmonic_sum_when_y_is_alone",
+    ),
+    Mutation(
+        "lumped point 1 mm off",
+        "solidgear/scene_file.py",
+        "_lay_out",
+        "(segments[-1].y0 + y) / 2",
+        "(segments[-1].y0 + y) / 2 + 1e-3",
+        "tests/test_scene.py::test_overhung_pinion_is_the_shaft_of_the_reference_numbers",
+    ),
+    Mutation(
+        "shift not refined away in statics",
+        "solidgear/solve/relief.py",
+        "elastic_fields",
+        "missing < tolerance or share > 0.5 * last",
+        "True",
+        "tests/test_condense.py::test_against_a_direct_dense_solution",
+    ),
+    Mutation(
+        "rigid motions of the load port forgotten",
+        "solidgear/solve/statics.py",
+        "condense",
+        "x = (p_l @ held - reach.T @ rigid).T",
+        "x = (p_l @ held).T",
+        "tests/test_condense.py::test_against_a_direct_dense_solution",
+    ),
+    Mutation(
+        "springs forgotten in the energy of a mode",
+        "solidgear/solve/refine.py",
+        "_modes",
+        "value = (_columns(rest, pull) + _columns(stretch, stretch)) / _columns(u, heavy)",
+        "value = _columns(rest, pull) / _columns(u, heavy)",
+        "tests/test_modes.py::test_against_dense_eigenvalues",
+    ),
+    Mutation(
+        "springs missing from the modes",
+        "solidgear/solve/supported.py",
+        "Supported._quick_inverse",
+        "y = y - self._through @ sla.cho_solve(self._inner, self._through.T @ x)",
+        "pass",
+        "tests/test_modes.py::test_against_dense_eigenvalues",
+    ),
+    Mutation(
+        "a mode dropped by the eigensolver",
+        "solidgear/solve/eigen.py",
+        "lowest",
+        "enumerate(found.value)",
+        "((i, v) for i, v in enumerate(found.value) if i != 1)",
+        "tests/test_modes.py::test_against_dense_eigenvalues",
+    ),
+    Mutation(
+        "Lame's lambda of plane stress in the 3D solid",
+        "solidgear/fidelity/solid.py",
+        "_matrices",
+        "lame = 2 * mu * nu / (1 - 2 * nu)",
+        "lame = 2 * mu * nu / (1 - nu)",
+        "tests/test_solid.py::test_light_hexahedra_bend_near_the_reference",
+    ),
+    Mutation(
+        "flexibility one per cent high",
+        "solidgear/solve/statics.py",
+        "flexibility",
+        "f_block = work + work.T - u.T @ (k @ u)",
+        "f_block = 1.01 * work",
+        "tests/test_condense.py::test_against_a_direct_dense_solution",
+    ),
+    Mutation(
+        "inertia of the bearings left out of the count",
+        "solidgear/solve/eigen.py",
+        "count_below",
+        "negative -= int((np.linalg.eigvalsh((inner + inner.T) / 2) < 0).sum())",
+        "pass",
+        "tests/test_eigen.py::test_count_confirms_complete_results",
+    ),
+    Mutation(
+        "sign of a lumped mass in the exact beam",
+        "solidgear/fidelity/krylov.py",
+        "_Joint.act",
+        "b[2:] - self.mass[:, None, None] * omega**2 * b[:2]",
+        "b[2:] + self.mass[:, None, None] * omega**2 * b[:2]",
+        "tests/test_krylov.py::test_overhung_shaft_of_the_thesis",
+    ),
+    Mutation(
+        "Guyan mass on compliance shapes instead of unit motions",
+        "solidgear/lumped/effective_mass.py",
+        "_guyan",
+        "shapes = fields @ np.linalg.inv(compliance)",
+        "shapes = fields @ np.diag(1 / np.diag(compliance))",
+        "tests/test_effective_mass.py::test_guyan_of_a_nearly_rigid_shaft_is_the_rigid_body",
+    ),
+    Mutation(
+        "hand of the spiral swapped",
+        "solidgear/drivetrain/gear_mesh.py",
+        "line_of_action",
+        's = _SPIRAL[_word("hand", hand, _SPIRAL)]',
+        's = -_SPIRAL[_word("hand", hand, _SPIRAL)]',
+        "tests/test_gear_mesh.py::test_components_are_the_textbook_ones",
+    ),
 )
 
 
-def apply(mutation: Mutation, root: Path) -> None:
-    """Write the mutated file.
+def place(mutation: Mutation, text: str) -> tuple[int, int]:
+    """First and last offset of what is replaced in the text of a file.
 
     Raises
     ------
     ValueError
-        If the text to replace does not occur exactly once.
+        If there is no such function, or the expression does not occur there exactly once.
     """
+    found = [n for n in ast.walk(_function(mutation, text)) if _same(n, mutation.old)]
+    # a statement that is an expression holds that expression, in the same place
+    spans = {_span(n, text) for n in found}
+    if len(spans) != 1:
+        raise ValueError(
+            f"{mutation.name}: {mutation.old!r} occurs {len(spans)} times in {mutation.where} "
+            f"of {mutation.file}"
+        )
+    return spans.pop()
+
+
+def _function(mutation: Mutation, text: str) -> ast.AST:
+    node: ast.AST = ast.parse(text)
+    for name in mutation.where.split("."):
+        inside = [n for n in ast.walk(node) if getattr(n, "name", None) == name and n is not node]
+        if len(inside) != 1:
+            raise ValueError(
+                f"{mutation.name}: {mutation.file} has no {mutation.where}, or several"
+            )
+        node = inside[0]
+    return node
+
+
+def _same(node: ast.AST, told: str) -> bool:
+    wanted: ast.AST = ast.parse(told).body[0]
+    if isinstance(wanted, ast.Expr):
+        wanted = wanted.value
+    return type(node) is type(wanted) and ast.dump(node) == ast.dump(wanted)
+
+
+def _span(node: ast.AST, text: str) -> tuple[int, int]:
+    lines = text.encode().splitlines(keepends=True)
+
+    def offset(line: int, column: int) -> int:
+        return len((b"".join(lines[: line - 1]) + lines[line - 1][:column]).decode())
+
+    first = offset(node.lineno, node.col_offset)
+    return first, offset(node.end_lineno, node.end_col_offset)
+
+
+def apply(mutation: Mutation, root: Path) -> None:
+    """Write the mutated file; `ValueError` as for :func:`place`."""
     path = root / mutation.file
     text = path.read_text()
-    if text.count(mutation.old) != 1:
-        raise ValueError(f"{mutation.name}: {mutation.old!r} occurs {text.count(mutation.old)} times in {mutation.file}")
-    path.write_text(text.replace(mutation.old, mutation.new))
+    first, last = place(mutation, text)
+    path.write_text(text[:first] + mutation.new + text[last:])
 
 
 def passes(test: str, root: Path) -> bool:
     """Whether a test passes on the source under ``root``."""
     # One test process per mutation, side by side: two MKL threads each would only get into each other's way.
-    env = {**os.environ, "PYTHONPATH": str(root), "PYTHONDONTWRITEBYTECODE": "1", "MKL_NUM_THREADS": "1"}
-    done = subprocess.run([sys.executable, "-m", "pytest", "-q", "-x", "-p", "no:cacheprovider", test], cwd=root, env=env, capture_output=True, text=True)
-    if done.returncode not in (0, 1):  # 1: tests failed; others: no such test, or a broken collection
-        raise RuntimeError(f"{test}: pytest ended with {done.returncode}\n{done.stdout[-2000:]}{done.stderr[-2000:]}")
+    env = {
+        **os.environ,
+        "PYTHONPATH": str(root),
+        "PYTHONDONTWRITEBYTECODE": "1",
+        "MKL_NUM_THREADS": "1",
+    }
+    done = subprocess.run(
+        [sys.executable, "-m", "pytest", "-q", "-x", "-n0", "-p", "no:cacheprovider", test],
+        cwd=root,
+        env=env,
+        capture_output=True,
+        text=True,
+    )
+    if done.returncode not in (
+        0,
+        1,
+    ):  # 1: tests failed; others: no such test, or a broken collection
+        raise RuntimeError(
+            f"{test}: pytest ended with {done.returncode}\n{done.stdout[-2000:]}{done.stderr[-2000:]}"
+        )
     return done.returncode == 0
 
 
@@ -101,7 +387,9 @@ def copy(root: Path) -> None:
     for part in PARTS:
         source = ROOT / part
         if source.is_dir():
-            shutil.copytree(source, root / part, ignore=shutil.ignore_patterns("__pycache__", "results"))
+            shutil.copytree(
+                source, root / part, ignore=shutil.ignore_patterns("__pycache__", "results")
+            )
         else:
             shutil.copy(source, root / part)
 
@@ -123,7 +411,9 @@ def healthy(test: str) -> bool:
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--only", default="", help="run only mutations with this word in their name")
+    parser.add_argument(
+        "--only", default="", help="run only mutations with this word in their name"
+    )
     parser.add_argument("--jobs", type=int, default=2)
     arguments = parser.parse_args()
     wanted = [m for m in MUTATIONS if arguments.only in m.name]
@@ -132,7 +422,14 @@ def main() -> None:
         sick = [t for t, ok in zip(tests, pool.map(healthy, tests)) if not ok]
         rows = []
         for mutation, red in zip(wanted, pool.map(caught, wanted)):
-            rows.append({"mutation": mutation.name, "file": mutation.file, "test": mutation.test, "caught": "yes" if red else "NO"})
+            rows.append(
+                {
+                    "mutation": mutation.name,
+                    "file": mutation.file,
+                    "test": mutation.test,
+                    "caught": "yes" if red else "NO",
+                }
+            )
             print(f"{'caught' if red else 'MISSED'}  {mutation.name}", flush=True)
     show(f"{len(rows)} mutations, {sum(r['caught'] == 'yes' for r in rows)} caught", rows)
     write_rows(results_folder("mutations") / "rows.csv", rows)
