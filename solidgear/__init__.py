@@ -27,7 +27,17 @@ _WHERE = {
     "SolidgearError": "solidgear.errors",
     "SceneError": "solidgear.errors",
 }
-__all__ = ["__version__", *_WHERE]
+__all__ = [
+    "Scene",
+    "SceneError",
+    "SolidgearError",
+    "__version__",
+    "build",
+    "compare",
+    "condense",
+    "load",
+    "modes",
+]
 
 if TYPE_CHECKING:
     from solidgear.comparison import compare

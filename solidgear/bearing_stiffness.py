@@ -50,7 +50,12 @@ def stiffness_matrix(entries: Mapping[str, Any]) -> np.ndarray:
     for name, value in entries.items():
         if name not in STIFFNESS_NAMES:
             near = nearest(name, STIFFNESS_NAMES) if len(problems) < TOLD else ""
-            problems.append(SceneError(f"unknown stiffness entry{near}; valid are {', '.join(STIFFNESS_NAMES)}", path=(name,)))
+            problems.append(
+                SceneError(
+                    f"unknown stiffness entry{near}; valid are {', '.join(STIFFNESS_NAMES)}",
+                    path=(name,),
+                )
+            )
             continue
         i, j, dimension = STIFFNESS_NAMES[name]
         try:
@@ -74,20 +79,30 @@ def checked_matrix(value: Any) -> tuple[tuple[float, ...], ...]:
         K = stiffness_matrix(value)
     else:
         rows = value.tolist() if isinstance(value, np.ndarray) else value
-        if not (isinstance(rows, Sequence) and len(rows) == 6 and all(isinstance(r, Sequence) and len(r) == 6 for r in rows)):
+        if not (
+            isinstance(rows, Sequence)
+            and len(rows) == 6
+            and all(isinstance(r, Sequence) and len(r) == 6 for r in rows)
+        ):
             raise SceneError("must be 6 rows of 6 numbers, order x y z thx thy thz")
         K = np.zeros((6, 6))
         for i, row in enumerate(rows):
             for j, entry in enumerate(row):
                 try:
-                    K[i, j] = quantity(entry if not isinstance(entry, str) else None, "dimensionless")
+                    K[i, j] = quantity(
+                        entry if not isinstance(entry, str) else None, "dimensionless"
+                    )
                 except SceneError:
-                    raise SceneError(f"row {i + 1}, column {j + 1} must be a number in SI, finite and at most 1e24, not {show(entry)}") from None
+                    raise SceneError(
+                        f"row {i + 1}, column {j + 1} must be a number in SI, finite and at most 1e24, not {show(entry)}"
+                    ) from None
     size = np.sqrt(np.abs(np.diag(K)))
     bound = 1e-9 * np.maximum(np.maximum(np.abs(K), np.abs(K.T)), np.outer(size, size))
     if np.any(np.abs(K - K.T) > bound):
         i, j = np.unravel_index(np.argmax(np.abs(K - K.T) - bound), (6, 6))
-        raise SceneError(f"the stiffness is not symmetric: ({DOF_NAMES[i]}, {DOF_NAMES[j]}) is {K[i, j]:.6g} and ({DOF_NAMES[j]}, {DOF_NAMES[i]}) is {K[j, i]:.6g}")
+        raise SceneError(
+            f"the stiffness is not symmetric: ({DOF_NAMES[i]}, {DOF_NAMES[j]}) is {K[i, j]:.6g} and ({DOF_NAMES[j]}, {DOF_NAMES[i]}) is {K[j, i]:.6g}"
+        )
     K = (K + K.T) / 2
     # a matrix turned by a rotation couples what has no stiffness of its own by rounding only
     bare = np.diag(K) == 0
@@ -101,7 +116,9 @@ def checked_matrix(value: Any) -> tuple[tuple[float, ...], ...]:
         a, b = sorted(np.argsort(-np.abs(vector[:, 0]), kind="stable")[:2])
         if K[a, a] < 0 or K[b, b] < 0:
             i = a if K[a, a] < 0 else b
-            raise SceneError(f"the stiffness in {DOF_NAMES[i]} is {K[i, i]:.6g}; it must not be negative")
+            raise SceneError(
+                f"the stiffness in {DOF_NAMES[i]} is {K[i, i]:.6g}; it must not be negative"
+            )
         raise SceneError(
             f"the stiffness is indefinite in the pair ({DOF_NAMES[a]}, {DOF_NAMES[b]}): their entries are {K[a, a]:.6g} and {K[b, b]:.6g}, coupled by "
             f"{K[a, b]:.6g}, and the smallest eigenvalue, with the diagonal scaled to 1, is {eigenvalue[0]:.3g}; it must not be negative"

@@ -90,7 +90,9 @@ class Block:
     expand: sp.csr_matrix | None = None
     sections: Sections | None = None
 
-    def mirrored(self, name: str, components: tuple[int, ...], index: int, signs: tuple[float, ...]) -> Block:
+    def mirrored(
+        self, name: str, components: tuple[int, ...], index: int, signs: tuple[float, ...]
+    ) -> Block:
         """The same block in the other bending plane.
 
         In the x plane the matrices of the z plane act on ``(u_x, -thz)``: same matrices, signs on the components.
@@ -138,7 +140,9 @@ class Block:
             Index ``6 * station + component`` of every column.
         """
         columns = [6 * s + c for s in range(len(stations)) for c in self.components]
-        loads, gram = (self.sections or from_points(self.mass, self.rigid, self.y, self.components))(stations)
+        loads, gram = (
+            self.sections or from_points(self.mass, self.rigid, self.y, self.components)
+        )(stations)
         return loads, gram, np.array(columns, int)
 
 
@@ -194,11 +198,15 @@ class Body:
             If the fidelity has no such families.
         """
         if self.further is None:
-            raise SolidgearError(f"the {self.fidelity} body has no motions of {n} waves around its axis")
+            raise SolidgearError(
+                f"the {self.fidelity} body has no motions of {n} waves around its axis"
+            )
         kept = self.memory.setdefault("families", {})
         if n not in kept:
             scale = (2 * np.pi * self.further.light(n)) ** 2
-            kept[n] = Body(self.fidelity, (self.further.block(n),), (), scale, self.length, self.mesh)
+            kept[n] = Body(
+                self.fidelity, (self.further.block(n),), (), scale, self.length, self.mesh
+            )
         return kept[n]
 
     def port_index(self, name: str, attachment: str | None = None) -> int:
@@ -240,7 +248,9 @@ class Body:
             if not block.components:
                 continue
             scale = abs(block.stiffness) @ abs(block.rigid)
-            worst = max(worst, float((abs(block.stiffness @ block.rigid) / scale.max(axis=0)).max()))
+            worst = max(
+                worst, float((abs(block.stiffness @ block.rigid) / scale.max(axis=0)).max())
+            )
         return worst
 
 

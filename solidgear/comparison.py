@@ -104,10 +104,15 @@ def compare(
         except KeyboardInterrupt:
             complete = False
             progress("interrupted; keeping what is there")
-    results = record(scene, found.rungs, found.failed, found.causes, found.lumped, found.guards, complete)
+    results = record(
+        scene, found.rungs, found.failed, found.causes, found.lumped, found.guards, complete
+    )
     results["seconds_total"] = overall.seconds["all"]
     results["peak_mb"] = overall.peak_mb
-    results["expected_peak_mb"] = max((r.meter.expected_mb for r in found.rungs.values() if r.meter.expected_mb is not None), default=None)
+    results["expected_peak_mb"] = max(
+        (r.meter.expected_mb for r in found.rungs.values() if r.meter.expected_mb is not None),
+        default=None,
+    )
     return Comparison(scene, results, found.rungs)
 
 
@@ -130,7 +135,14 @@ def _run(scene, models, options, found: _Found, progress: Progress) -> None:
             chosen = _circumference(scene, model, options[model], found)
             # A count takes a second factor.  One by the harmonic solid counts for the 3D one, whose modes are paired with its own.
             counted = model != "solid" or "harmonic" not in found.rungs
-            rung = study(scene, model, chosen, counted=counted, progress=progress, keep=functools.partial(found.rungs.__setitem__, model))
+            rung = study(
+                scene,
+                model,
+                chosen,
+                counted=counted,
+                progress=progress,
+                keep=functools.partial(found.rungs.__setitem__, model),
+            )
         except (SolidgearError, MemoryError) as error:
             found.failed[model] = str(error) or "not enough memory"
             log.warning("%s failed: %s", model, found.failed[model])
@@ -153,7 +165,14 @@ def _circumference(scene, model: str, options: dict, found: _Found) -> dict:
     harmonic = found.rungs.get("harmonic")
     if model != "solid" or harmonic is None or "around" in options:
         return options
-    waves = max((r["n"] for r in harmonic.modes.evidence.get("families", []) if (r["n"] or 0) > 1 and r["modes_below"]), default=1)
+    waves = max(
+        (
+            r["n"]
+            for r in harmonic.modes.evidence.get("families", [])
+            if (r["n"] or 0) > 1 and r["modes_below"]
+        ),
+        default=1,
+    )
     if waves < 2:
         return options
     from solidgear.guards.models import cells_around
@@ -165,7 +184,9 @@ def check_models(models: tuple[str, ...]) -> None:
     """Refuse unknown models, and the lumped one alone, in one sentence."""
     unknown = [m for m in models if m not in MODELS]
     if unknown or not set(models) & set(FIDELITIES):
-        raise SolidgearError(f"models: {', '.join(unknown or models) or 'none given'}; choose from {', '.join(MODELS)}, lumped not alone")
+        raise SolidgearError(
+            f"models: {', '.join(unknown or models) or 'none given'}; choose from {', '.join(MODELS)}, lumped not alone"
+        )
 
 
 def _causes(scene, rungs: dict[str, Rung], options, progress: Progress) -> list:
@@ -176,12 +197,18 @@ def _causes(scene, rungs: dict[str, Rung], options, progress: Progress) -> list:
             out += beam_causes(scene)
         for model in SOLIDS:
             if model in rungs:
-                out += attachment_causes({a: v.quantities for a, v in rungs[model].variants.items()}, model)
+                out += attachment_causes(
+                    {a: v.quantities for a, v in rungs[model].variants.items()}, model
+                )
         harmonic, beam = rungs.get("harmonic"), rungs.get("timoshenko")
         if harmonic and beam and SECTION in harmonic.ties and SECTION in beam.ties:
             section, own = harmonic.ties[SECTION].quantities, beam.ties[SECTION].quantities
             gap = {name: change(own, section, name) for name in ("C_zz", "K_zz", "bending 1")}
-            mesh = {k: v for k, v in harmonic.options.items() if k not in FREE} if options["harmonic"] else HARMONIC[2]
+            mesh = (
+                {k: v for k, v in harmonic.options.items() if k not in FREE}
+                if options["harmonic"]
+                else HARMONIC[2]
+            )
             found = shoulder_cause(scene, gap, mesh, progress)
             out += [found] if found else []
     except SolidgearError as error:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import platform
-from datetime import datetime, timezone
+from datetime import UTC, datetime
 from importlib.metadata import PackageNotFoundError, version
 
 from solidgear.threads import offered
@@ -25,7 +25,7 @@ def environment() -> dict:
     out["cpu"] = _cpu()
     # those this process may use, not those of the machine
     out["cores"] = offered()
-    out["date"] = datetime.now(timezone.utc).strftime("%Y-%m-%d %H:%M UTC")
+    out["date"] = datetime.now(UTC).strftime("%Y-%m-%d %H:%M UTC")
     return out
 
 

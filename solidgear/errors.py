@@ -42,9 +42,24 @@ class SceneError(SolidgearError, ValueError):
         All of them, this one first. Each alone is one sentence; the whole of a file is a list of `TOLD` lines at most.
     """
 
-    def __init__(self, reason: str, *, path: tuple = (), value: str = "", field: str = "", where: str = "", others: Sequence[SceneError] = ()):
+    def __init__(
+        self,
+        reason: str,
+        *,
+        path: tuple = (),
+        value: str = "",
+        field: str = "",
+        where: str = "",
+        others: Sequence[SceneError] = (),
+    ):
         super().__init__(reason)
-        self.reason, self.path, self.value, self.field, self.where = reason, tuple(path), value, field, where
+        self.reason, self.path, self.value, self.field, self.where = (
+            reason,
+            tuple(path),
+            value,
+            field,
+            where,
+        )
         self.others = tuple(others)
 
     @classmethod
@@ -61,30 +76,51 @@ class SceneError(SolidgearError, ValueError):
     @property
     def sentence(self) -> str:
         """The first problem alone, in one line."""
-        place = " = ".join(part for part in (self.field or ".".join(map(str, self.path)), self.value) if part)
-        return printable(": ".join(part for part in (_file_name(self.where), place, self.reason) if part))
+        place = " = ".join(
+            part for part in (self.field or ".".join(map(str, self.path)), self.value) if part
+        )
+        return printable(
+            ": ".join(part for part in (_file_name(self.where), place, self.reason) if part)
+        )
 
     def __str__(self) -> str:
         count = len(self.others)
         if not count:
             return self.sentence
         if not self.where:  # a scene made in Python: whoever catches the error finds the rest in it
-            return f"{self.sentence} (and {count} more problem{'s' * (count > 1)}: see its problems)"
-        lines = [f"{count + 1} problems in {printable(_file_name(self.where))}", *("  " + one.sentence for one in self.problems[:TOLD])]
+            return (
+                f"{self.sentence} (and {count} more problem{'s' * (count > 1)}: see its problems)"
+            )
+        lines = [
+            f"{count + 1} problems in {printable(_file_name(self.where))}",
+            *("  " + one.sentence for one in self.problems[:TOLD]),
+        ]
         if count + 1 > TOLD:
             lines.append(f"  and {count + 1 - TOLD} more")
         return "\n".join(lines)
 
-    def located(self, data: Any, *, where: str = "", prefix: tuple = (), path: tuple | None = None) -> SceneError:
+    def located(
+        self, data: Any, *, where: str = "", prefix: tuple = (), path: tuple | None = None
+    ) -> SceneError:
         """The same error with its fields named, and its values quoted, from the `data` the user wrote."""
-        return type(self).of(one._located(data, where, (*prefix, *one.path) if path is None else path) for one in self.problems)
+        return type(self).of(
+            one._located(data, where, (*prefix, *one.path) if path is None else path)
+            for one in self.problems
+        )
 
     def _located(self, data: Any, where: str, path: tuple) -> SceneError:
         field, found, known = _name_and_value(path, data)
-        return self._changed(path=path, value=show(found) if known else self.value, field=field, where=where or self.where)
+        return self._changed(
+            path=path,
+            value=show(found) if known else self.value,
+            field=field,
+            where=where or self.where,
+        )
 
     def _changed(self, **changes: Any) -> SceneError:
-        given = {name: getattr(self, name) for name in ("path", "value", "field", "where", "others")}
+        given = {
+            name: getattr(self, name) for name in ("path", "value", "field", "where", "others")
+        }
         return type(self)(self.reason, **(given | changes))
 
 
@@ -109,7 +145,10 @@ def _file_name(where: str) -> str:
 def _escaped(text: str) -> str:
     if text.isprintable():
         return text
-    return "".join(c if c.isprintable() else f"\\u{ord(c):04x}" if ord(c) < 0x10000 else f"\\U{ord(c):08x}" for c in text)
+    return "".join(
+        c if c.isprintable() else f"\\u{ord(c):04x}" if ord(c) < 0x10000 else f"\\U{ord(c):08x}"
+        for c in text
+    )
 
 
 def show(value: Any, width: int = 70) -> str:
@@ -184,7 +223,10 @@ def scene_error(error: Any, data: Any, *, where: str = "") -> SceneError:
     where : str
         File or scene name put in front.
     """
-    return SceneError.of(_plain_error(one, data, where) for one in error.errors(include_url=False, include_input=False))
+    return SceneError.of(
+        _plain_error(one, data, where)
+        for one in error.errors(include_url=False, include_input=False)
+    )
 
 
 def _plain_error(one: Mapping, data: Any, where: str) -> SceneError:
@@ -211,11 +253,15 @@ def _plain_words(one: Mapping, data: Any) -> str:
         "union_tag_invalid": f"unknown kind; write one of {ctx.get('expected_tags')}",
         "literal_error": f"must be {ctx.get('expected')}",
     }
-    if kind in ("model_type", "model_attributes_type") and isinstance(_name_and_value(one["loc"], data)[1], list):
+    if kind in ("model_type", "model_attributes_type") and isinstance(
+        _name_and_value(one["loc"], data)[1], list
+    ):
         return f"must be a table of keys, given once: write [{one['loc'][-1]}] with single brackets"
     if kind == "list_type" and isinstance(_name_and_value(one["loc"], data)[1], Mapping):
         return f"must be a list: write [[{one['loc'][-1]}]] with double brackets before each"
-    return words.get(kind) or one["msg"].replace("Input should be", "must be").replace("Value error, ", "")
+    return words.get(kind) or one["msg"].replace("Input should be", "must be").replace(
+        "Value error, ", ""
+    )
 
 
 def _name_and_value(path: tuple, data: Any) -> tuple[str, Any, bool]:

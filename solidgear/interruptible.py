@@ -40,7 +40,9 @@ def call(function: Callable, *arguments, **options) -> Any:
     KeyboardInterrupt
         Or whatever else a signal handler raises meanwhile.
     """
-    if threading.current_thread() is not threading.main_thread() or not callable(signal.getsignal(signal.SIGINT)):
+    if threading.current_thread() is not threading.main_thread() or not callable(
+        signal.getsignal(signal.SIGINT)
+    ):
         return function(*arguments, **options)
     job = _Job(lambda: function(*arguments, **options))
     try:
@@ -142,7 +144,9 @@ def _idle_worker() -> queue.SimpleQueue:
     global _worker, _thread
     if _worker is None:
         _worker = queue.SimpleQueue()
-        _thread = threading.Thread(target=_serve, args=(_worker,), name="solidgear long calls", daemon=True)
+        _thread = threading.Thread(
+            target=_serve, args=(_worker,), name="solidgear long calls", daemon=True
+        )
         _thread.start()
     return _worker
 

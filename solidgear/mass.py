@@ -61,7 +61,9 @@ class ScalarMass:
         other = np.asarray(other)
         if other.ndim not in (1, 2) or len(other) != self.shape[1]:
             raise ValueError(f"matmul: dimension mismatch, {self.shape} by {other.shape}")
-        columns = other.reshape(self.scalar.shape[1], -1)  # all components and columns of a node side by side
+        columns = other.reshape(
+            self.scalar.shape[1], -1
+        )  # all components and columns of a node side by side
         return (self.scalar @ columns).reshape(other.shape)
 
     def __rmatmul__(self, other):

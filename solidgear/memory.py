@@ -41,7 +41,9 @@ def available_mb(root: str | Path = "/") -> float | None:
         except ValueError:
             allowed = 0.0
         if not 0 < allowed < float("inf"):
-            raise SolidgearError(f"SOLIDGEAR_MEMORY_MB = {text!r}: must be a number of megabytes above zero")
+            raise SolidgearError(
+                f"SOLIDGEAR_MEMORY_MB = {text!r}: must be a number of megabytes above zero"
+            )
         base = _base.get()
         held = 0.0 if base is None else max(0.0, (resident_mb() or base) - base)
         found.append(max(0.0, allowed - held))
@@ -77,12 +79,21 @@ def _machine(root: Path) -> Iterator[float]:
 
 def _groups(root: Path) -> Iterator[float]:
     for place, unified in control_groups(root, "memory"):
-        names = ("memory.max", "memory.current", "inactive_file") if unified else ("memory.limit_in_bytes", "memory.usage_in_bytes", "total_inactive_file")
+        names = (
+            ("memory.max", "memory.current", "inactive_file")
+            if unified
+            else ("memory.limit_in_bytes", "memory.usage_in_bytes", "total_inactive_file")
+        )
         ceiling, taken = (text_of(place / name).strip() for name in names[:2])
         if ceiling.isdigit() and taken.isdigit() and int(ceiling) < UNLIMITED:
             # Cached files count as used but are given back on demand.
-            yield max(0, int(ceiling) - int(taken) + _field(text_of(place / "memory.stat"), names[2])) / 2**20
+            yield (
+                max(0, int(ceiling) - int(taken) + _field(text_of(place / "memory.stat"), names[2]))
+                / 2**20
+            )
 
 
 def _field(text: str, name: str) -> int:
-    return next((int(line.split()[1]) for line in text.splitlines() if line.startswith(name + " ")), 0)
+    return next(
+        (int(line.split()[1]) for line in text.splitlines() if line.startswith(name + " ")), 0
+    )

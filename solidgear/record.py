@@ -17,7 +17,15 @@ from solidgear.lumped.rung import model_record as lumped_record
 from solidgear.verdict import NAMES, Judgement, deviations, judge, percent, trusted
 
 
-def record(scene, rungs: dict[str, Rung], failed: dict[str, str], causes: list, lumped: dict, guards: list[dict], complete: bool) -> dict:
+def record(
+    scene,
+    rungs: dict[str, Rung],
+    failed: dict[str, str],
+    causes: list,
+    lumped: dict,
+    guards: list[dict],
+    complete: bool,
+) -> dict:
     """Results of a comparison as plain data.
 
     Parameters
@@ -36,7 +44,9 @@ def record(scene, rungs: dict[str, Rung], failed: dict[str, str], causes: list, 
     """
     trust, _ = trusted(rungs, scene.ask.tolerance)
     # Where nothing may judge, the distances are still told; they are no judgement.
-    reference = trust or next((m for m in ("harmonic", "solid", "timoshenko", "euler") if m in rungs), None)
+    reference = trust or next(
+        (m for m in ("harmonic", "solid", "timoshenko", "euler") if m in rungs), None
+    )
     gaps = deviations(rungs, reference) if reference else []
     verdict, validity = judge(scene, rungs, gaps, guards)
     verdict["reference"] = reference
@@ -49,7 +59,9 @@ def record(scene, rungs: dict[str, Rung], failed: dict[str, str], causes: list, 
     if lumped and reference:
         best = rungs[reference].quantities.get("bending 1")
         band = rungs[reference].bands.get(SCENE, {}).get("bending 1")
-        own = lumped_record(lumped, models, best, scene.ask.tolerance, band.gci if band else None, guards)
+        own = lumped_record(
+            lumped, models, best, scene.ask.tolerance, band.gci if band else None, guards
+        )
         if own:
             models = {"lumped": own, **models}
             _add_lumped(verdict, own, lumped, reference)
@@ -58,9 +70,19 @@ def record(scene, rungs: dict[str, Rung], failed: dict[str, str], causes: list, 
         "schema": 2,
         "complete": complete,
         "scene": scene.as_dict(),
-        "port": {"name": scene.port.name, "y": scene.port.y, "attachment": scene.port.attachment, "order": list(DOF_NAMES), "free": free},
+        "port": {
+            "name": scene.port.name,
+            "y": scene.port.y,
+            "attachment": scene.port.attachment,
+            "order": list(DOF_NAMES),
+            "free": free,
+        },
         "models": models,
-        "attachments": {m: {a: _variant_record(v) for a, v in r.variants.items()} for m, r in rungs.items() if r.variants},
+        "attachments": {
+            m: {a: _variant_record(v) for a, v in r.variants.items()}
+            for m, r in rungs.items()
+            if r.variants
+        },
         "mac": _mac(rungs, reference),
         "deviations": gaps,
         "causes": [asdict(c) for c in causes],
@@ -83,7 +105,9 @@ def _warnings(rungs: dict[str, Rung], guards: list[dict], models: dict[str, dict
     out += [f"{m}: {what}: {why}" for m, r in rungs.items() for what, why in r.failed.items()]
     for model, rung in rungs.items():
         for one, other, gap in rung.modes.evidence.get("torn_pairs", ()):
-            out.append(f"{model}: {one} and {other} are twins that the mesh has split by {gap:.1e}: refine it, or use hexahedra")
+            out.append(
+                f"{model}: {one} and {other} are twins that the mesh has split by {gap:.1e}: refine it, or use hexahedra"
+            )
     return out
 
 
@@ -91,17 +115,27 @@ def _add_lumped(verdict: dict, own: dict, lumped: dict, reference: str) -> None:
     """What the lumped models are worth, in the verdict."""
     if own["valid"]:
         verdict["cheapest"] = "lumped"
-        verdict["sentences"] = [s for s in verdict["sentences"] if not s.startswith("Cheapest model")]
+        verdict["sentences"] = [
+            s for s in verdict["sentences"] if not s.startswith("Cheapest model")
+        ]
         verdict["sentences"].append(
             f"Cheapest model within {percent(verdict['tolerance'])}: lumped ({own['variant']} masses on the {own['source']} stiffness), for first bending and below only."
         )
     made = lumped.get(reference, {}).get("variants", {})
     if not made or verdict["trust"] is None:
         return
-    errors = [f"{n} {_error(v['frequency_error'])}" for n, v in made.items() if v["feasible"] and v["frequency_error"] is not None]
-    verdict["sentences"].append(f"First bending of lumped models made from the {NAMES[reference]} itself: {', '.join(errors)}.")
+    errors = [
+        f"{n} {_error(v['frequency_error'])}"
+        for n, v in made.items()
+        if v["feasible"] and v["frequency_error"] is not None
+    ]
+    verdict["sentences"].append(
+        f"First bending of lumped models made from the {NAMES[reference]} itself: {', '.join(errors)}."
+    )
     if not made["thesis"]["feasible"]:
-        verdict["sentences"].append(f"The thesis's equations 52 and 53 have no usable solution here: {made['thesis']['verdict']}.")
+        verdict["sentences"].append(
+            f"The thesis's equations 52 and 53 have no usable solution here: {made['thesis']['verdict']}."
+        )
 
 
 def _error(relative: float) -> str:
@@ -120,8 +154,20 @@ def _model_record(rung: Rung, judgement: Judgement) -> dict:
     band = None
     if each:
         method = next(iter(own.values())).method
-        band = {"compliance": max(compliance, default=None), "bending_1": each.get("bending 1"), "method": f"{method}, {len(rung.levels)} meshes", "each": each}
-    convergence = {"levels": rung.levels, **{k.replace(" ", "_").lower(): v.as_dict() for k, v in own.items()}} if own else None
+        band = {
+            "compliance": max(compliance, default=None),
+            "bending_1": each.get("bending 1"),
+            "method": f"{method}, {len(rung.levels)} meshes",
+            "each": each,
+        }
+    convergence = (
+        {
+            "levels": rung.levels,
+            **{k.replace(" ", "_").lower(): v.as_dict() for k, v in own.items()},
+        }
+        if own
+        else None
+    )
     return {
         "valid": judgement.valid,
         "open": judgement.open,
@@ -159,7 +205,14 @@ def _evidence(rung: Rung) -> dict:
 
 
 def _mode_record(m) -> dict:
-    return {"name": m.name, "family": m.family, "frequency_hz": m.frequency_hz, "multiplicity": m.multiplicity, "captured": m.captured, "error": getattr(m, "error", 0.0)}
+    return {
+        "name": m.name,
+        "family": m.family,
+        "frequency_hz": m.frequency_hz,
+        "multiplicity": m.multiplicity,
+        "captured": m.captured,
+        "error": getattr(m, "error", 0.0),
+    }
 
 
 def _variant_record(tied: Tied) -> dict:

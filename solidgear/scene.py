@@ -20,10 +20,28 @@ from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationEr
 from solidgear.bearing_stiffness import checked_matrix, stiffness_entries
 from solidgear.errors import TOLD, SceneError, did_you_mean, near, scene_error, show
 from solidgear.frames import DOF_NAMES
-from solidgear.scene_rules import MOST_MODES, MOST_SPRINGS, TOUCH, shaft_problems, station_problems, steps
+from solidgear.scene_rules import (
+    MOST_MODES,
+    MOST_SPRINGS,
+    TOUCH,
+    shaft_problems,
+    station_problems,
+    steps,
+)
 from solidgear.units import (
-    POSITION_DECIMALS, SOFTEST, AxialSpring, Density, Frequency, Modulus, Poisson, Position, PositiveLength, Thickness, Tolerance, quantity,
-)  # fmt: skip
+    POSITION_DECIMALS,
+    SOFTEST,
+    AxialSpring,
+    Density,
+    Frequency,
+    Modulus,
+    Poisson,
+    Position,
+    PositiveLength,
+    Thickness,
+    Tolerance,
+    quantity,
+)
 
 Attachment = Literal["average", "rigid", "section"]
 Status = Literal["published", "identified", "assumed", "measured"]
@@ -31,7 +49,9 @@ Status = Literal["published", "identified", "assumed", "measured"]
 
 def _few_springs(springs: Any) -> Any:
     if isinstance(springs, (list, tuple)) and len(springs) > MOST_SPRINGS:
-        raise SceneError(f"{len(springs)} springs in series are more than the {MOST_SPRINGS} there may be; write their sum: 1/k = 1/k1 + 1/k2 + ...")
+        raise SceneError(
+            f"{len(springs)} springs in series are more than the {MOST_SPRINGS} there may be; write their sum: 1/k = 1/k1 + 1/k2 + ..."
+        )
     return springs
 
 
@@ -49,7 +69,13 @@ class Model(BaseModel):
         known = [field.alias or name for name, field in type(self).model_fields.items()]
         strange = [key for key in data if key not in known]
         meant = {key: near(key, known) for key in strange[:TOLD]}
-        problems = [SceneError(f"unknown key{did_you_mean(meant.get(key)) or '; known here: ' + ', '.join(known)}", path=(key,)) for key in strange]
+        problems = [
+            SceneError(
+                f"unknown key{did_you_mean(meant.get(key)) or '; known here: ' + ', '.join(known)}",
+                path=(key,),
+            )
+            for key in strange
+        ]
         try:
             super().__init__(**{key: data[key] for key in data if key in known})
         except ValidationError as error:
@@ -61,9 +87,13 @@ class Model(BaseModel):
 
     def with_changes(self: _Self, **changes: Any) -> _Self:
         """A validated copy with some fields replaced. Raises `SceneError` like the constructor."""
-        return type(self)(**{name: getattr(self, name) for name in type(self).model_fields} | changes)
+        return type(self)(
+            **{name: getattr(self, name) for name in type(self).model_fields} | changes
+        )
 
-    def model_copy(self: _Self, *, update: Mapping[str, Any] | None = None, deep: bool = False) -> _Self:
+    def model_copy(
+        self: _Self, *, update: Mapping[str, Any] | None = None, deep: bool = False
+    ) -> _Self:
         """As `with_changes`: pydantic's own copy would skip validation."""
         return self.with_changes(**(update or {}))
 
@@ -104,21 +134,61 @@ class Segment(Model):
             raise SceneError("must lie beyond y0", path=("y1",))
         for end in "01":
             if getattr(self, "inner" + end) >= getattr(self, "outer" + end):
-                raise SceneError(f"the bore must be smaller than the outer radius {getattr(self, 'outer' + end):.6g} m", path=("inner" + end,))
+                raise SceneError(
+                    f"the bore must be smaller than the outer radius {getattr(self, 'outer' + end):.6g} m",
+                    path=("inner" + end,),
+                )
         return self
 
     @classmethod
-    def cylinder(cls, name: str, *, length: Any, diameter: Any, bore: Any = 0.0, y0: float = 0.0, material: Material | None = None) -> Segment:
+    def cylinder(
+        cls,
+        name: str,
+        *,
+        length: Any,
+        diameter: Any,
+        bore: Any = 0.0,
+        y0: float = 0.0,
+        material: Material | None = None,
+    ) -> Segment:
         """A cylinder from `y0` on; without `material` it takes that of the scene it is put into."""
-        return cls.cone(name, length=length, start_diameter=diameter, end_diameter=diameter, bore=bore, y0=y0, material=material)
+        return cls.cone(
+            name,
+            length=length,
+            start_diameter=diameter,
+            end_diameter=diameter,
+            bore=bore,
+            y0=y0,
+            material=material,
+        )
 
     @classmethod
-    def cone(cls, name: str, *, length: Any, start_diameter: Any, end_diameter: Any, bore: Any = 0.0, y0: float = 0.0,
-             material: Material | None = None) -> Segment:  # fmt: skip
+    def cone(
+        cls,
+        name: str,
+        *,
+        length: Any,
+        start_diameter: Any,
+        end_diameter: Any,
+        bore: Any = 0.0,
+        y0: float = 0.0,
+        material: Material | None = None,
+    ) -> Segment:
         """A cone with a constant bore from `y0` on; `cylinder` says the rest."""
-        outer0, outer1, inner = (quantity(d, "length") / 2 for d in (start_diameter, end_diameter, bore))
+        outer0, outer1, inner = (
+            quantity(d, "length") / 2 for d in (start_diameter, end_diameter, bore)
+        )
         given = {} if material is None else {"material": material}
-        return cls(name=name, y0=y0, y1=y0 + quantity(length, "length"), outer0=outer0, outer1=outer1, inner0=inner, inner1=inner, **given)
+        return cls(
+            name=name,
+            y0=y0,
+            y1=y0 + quantity(length, "length"),
+            outer0=outer0,
+            outer1=outer1,
+            inner0=inner,
+            inner1=inner,
+            **given,
+        )
 
     @property
     def length(self) -> float:
@@ -128,7 +198,9 @@ class Segment(Model):
     def radius_at(self, y: float) -> tuple[float, float]:
         """(inner, outer) radius in m at `y`; ValueError outside the segment."""
         if not self.y0 - TOUCH <= y <= self.y1 + TOUCH:
-            raise ValueError(f'y = {y} m is outside segment "{self.name}" ({self.y0} to {self.y1} m)')
+            raise ValueError(
+                f'y = {y} m is outside segment "{self.name}" ({self.y0} to {self.y1} m)'
+            )
         t = min(max((y - self.y0) / self.length, 0.0), 1.0)
         return (1 - t) * self.inner0 + t * self.inner1, (1 - t) * self.outer0 + t * self.outer1
 
@@ -158,7 +230,10 @@ class Bearing(Model):
     def _springs_or_none(self) -> Bearing:
         for name, k in zip(DOF_NAMES, np.diag(self.matrix)):
             if 0 < k < SOFTEST:
-                raise SceneError(f"the stiffness in {name} is {k:.6g}, below {SOFTEST:g} in SI, which is no spring: write 0", path=("matrix",))
+                raise SceneError(
+                    f"the stiffness in {name} is {k:.6g}, below {SOFTEST:g} in SI, which is no spring: write 0",
+                    path=("matrix",),
+                )
         return self
 
     @property
@@ -186,7 +261,10 @@ class Bearing(Model):
         """The same bearing with every stiffness, series springs included, times `factor` > 0."""
         if not factor > 0:
             raise SceneError("must be greater than zero", field="factor", value=show(factor))
-        return self.with_changes(matrix=np.array(self.matrix) * factor, axial_series=tuple(k * factor for k in self.axial_series))
+        return self.with_changes(
+            matrix=np.array(self.matrix) * factor,
+            axial_series=tuple(k * factor for k in self.axial_series),
+        )
 
 
 class Port(Model):
@@ -200,7 +278,20 @@ class Port(Model):
 
 
 #: what a model can be judged by: compliance and stiffness at the lumped point, first modes
-Quantity = Literal["C_zz", "C_z,thx", "C_thx", "C_yy", "K_zz", "K_z,thx", "K_thx", "K_yy", "bending 1", "bending 2", "axial 1", "torsion 1"]
+Quantity = Literal[
+    "C_zz",
+    "C_z,thx",
+    "C_thx",
+    "C_yy",
+    "K_zz",
+    "K_z,thx",
+    "K_thx",
+    "K_yy",
+    "bending 1",
+    "bending 2",
+    "axial 1",
+    "torsion 1",
+]
 
 
 class Ask(Model):
@@ -237,13 +328,21 @@ class Scene(Model):
     def _hangs_together(self) -> Scene:
         # a station can be judged only on a shaft that is sound
         bearings = dict(enumerate(self.bearings))
-        if problems := [*shaft_problems(self.segments)] or [*station_problems(self.segments, self.port, bearings)]:
+        if problems := [*shaft_problems(self.segments)] or [
+            *station_problems(self.segments, self.port, bearings)
+        ]:
             raise SceneError.of(problems)
         return self
 
     @classmethod
-    def from_parts(cls, segments: Iterable[Segment], material: Material = STEEL, bearings: Iterable[Bearing] = (),
-                   port: Port | None = None, **rest: Any) -> Scene:  # fmt: skip
+    def from_parts(
+        cls,
+        segments: Iterable[Segment],
+        material: Material = STEEL,
+        bearings: Iterable[Bearing] = (),
+        port: Port | None = None,
+        **rest: Any,
+    ) -> Scene:
         """A scene made in Python.
 
         Parameters
@@ -261,7 +360,10 @@ class Scene(Model):
         ------
         SceneError
         """
-        segments = tuple(s if "material" in s.model_fields_set else s.with_changes(material=material) for s in segments)
+        segments = tuple(
+            s if "material" in s.model_fields_set else s.with_changes(material=material)
+            for s in segments
+        )
         if port is None and segments:
             longest = max(segments, key=lambda s: s.length)
             port = Port(y=(longest.y0 + longest.y1) / 2, lo=longest.y0, hi=longest.y1)
@@ -287,21 +389,29 @@ class Scene(Model):
         """A validated copy with some fields replaced; a new `material` also replaces the old default in the segments."""
         if "material" in changes and "segments" not in changes:
             swap = {self.material: changes["material"]}
-            changes["segments"] = tuple(s.with_changes(material=swap.get(s.material, s.material)) for s in self.segments)
+            changes["segments"] = tuple(
+                s.with_changes(material=swap.get(s.material, s.material)) for s in self.segments
+            )
         return super().with_changes(**changes)
 
     def with_attachment(self, attachment: str) -> Scene:
         """The same scene with the port and every bearing attached by 'average', 'rigid' or 'section'."""
         bearings = tuple(b.with_changes(attachment=attachment) for b in self.bearings)
-        return self.with_changes(bearings=bearings, port=self.port.with_changes(attachment=attachment))
+        return self.with_changes(
+            bearings=bearings, port=self.port.with_changes(attachment=attachment)
+        )
 
     def with_seat_width(self, width: float | str) -> Scene:
         """The same scene with every bearing seat `width` wide."""
-        return self.with_changes(bearings=tuple(b.with_changes(seat_width=width) for b in self.bearings))
+        return self.with_changes(
+            bearings=tuple(b.with_changes(seat_width=width) for b in self.bearings)
+        )
 
     def with_material(self, **changes: Any) -> Scene:
         """The same scene with `E`, `nu` or `density` replaced in the default material and in every segment."""
-        segments = tuple(s.with_changes(material=s.material.with_changes(**changes)) for s in self.segments)
+        segments = tuple(
+            s.with_changes(material=s.material.with_changes(**changes)) for s in self.segments
+        )
         return self.with_changes(material=self.material.with_changes(**changes), segments=segments)
 
     def with_bearing_scale(self, factor: float) -> Scene:
@@ -318,5 +428,10 @@ class Scene(Model):
         for row, segment in zip(data["segments"], self.segments):
             row["length"] = segment.length
         for row, bearing in zip(data["bearings"], self.bearings):
-            row |= {"lo": bearing.lo, "hi": bearing.hi, "stiffness": bearing.stiffness.tolist(), "entries": stiffness_entries(row.pop("matrix"))}
+            row |= {
+                "lo": bearing.lo,
+                "hi": bearing.hi,
+                "stiffness": bearing.stiffness.tolist(),
+                "entries": stiffness_entries(row.pop("matrix")),
+            }
         return data | {"length": self.length, "steps": list(self.steps)}

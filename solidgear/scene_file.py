@@ -16,10 +16,36 @@ from pydantic import AfterValidator, Field, model_validator
 
 from solidgear.bearing_stiffness import stiffness_matrix
 from solidgear.errors import SceneError, listed, nearest
-from solidgear.scene import Ask, Attachment, AxialSeries, Bearing, Material, Model, Port, Scene, Segment, Status
-from solidgear.scene_rules import MOST_BEARINGS, MOST_SEGMENTS, shaft_problems, station_problems, too_many
+from solidgear.scene import (
+    Ask,
+    Attachment,
+    AxialSeries,
+    Bearing,
+    Material,
+    Model,
+    Port,
+    Scene,
+    Segment,
+    Status,
+)
+from solidgear.scene_rules import (
+    MOST_BEARINGS,
+    MOST_SEGMENTS,
+    shaft_problems,
+    station_problems,
+    too_many,
+)
 from solidgear.toml_file import parse
-from solidgear.units import Angle, AxialSpring, Density, Length, Modulus, Poisson, PositiveLength, Thickness
+from solidgear.units import (
+    Angle,
+    AxialSpring,
+    Density,
+    Length,
+    Modulus,
+    Poisson,
+    PositiveLength,
+    Thickness,
+)
 
 _WORDS = ("start", "end", "bearing")  # first words of datums, so no segment may be called that
 _KINDS = ("cylinder", "cone", "bevel_head")
@@ -60,7 +86,9 @@ class _Piece(Model):
     def _check_bore(self, *keys: str) -> None:
         for key in keys:
             if self.bore >= getattr(self, key):
-                raise SceneError(f"must be smaller than {key} ({getattr(self, key):.6g} m)", path=("bore",))
+                raise SceneError(
+                    f"must be smaller than {key} ({getattr(self, key):.6g} m)", path=("bore",)
+                )
 
 
 class _Cylinder(_Piece):
@@ -108,17 +136,35 @@ class _BevelHead(_Piece):
     def _wall(self):
         if self.small_radius <= 0:
             longest = self.pitch_radius / math.sin(self.pitch_angle)
-            raise SceneError(f"passes the apex of the pitch cone; it must be shorter than the cone distance {longest:.6g} m", path=("face_width",))
+            raise SceneError(
+                f"passes the apex of the pitch cone; it must be shorter than the cone distance {longest:.6g} m",
+                path=("face_width",),
+            )
         if self.bore >= 2 * self.small_radius:
-            raise SceneError(f"must be smaller than the small end of the head (diameter {2 * self.small_radius:.6g} m)", path=("bore",))
+            raise SceneError(
+                f"must be smaller than the small end of the head (diameter {2 * self.small_radius:.6g} m)",
+                path=("bore",),
+            )
         return self
 
     def pieces(self):
         axial = self.face_width * math.cos(self.pitch_angle)
         rows = [(self.name, "frustum", axial, self.small_radius, self.pitch_radius)]
         if self.backcone > 0:
-            rows.append((f"{self.name}.backcone", "backcone", self.backcone, self.pitch_radius, self.pitch_radius))
-        return rows if self.toe == "start" else [(n, p, a, r1, r0) for n, p, a, r0, r1 in reversed(rows)]
+            rows.append(
+                (
+                    f"{self.name}.backcone",
+                    "backcone",
+                    self.backcone,
+                    self.pitch_radius,
+                    self.pitch_radius,
+                )
+            )
+        return (
+            rows
+            if self.toe == "start"
+            else [(n, p, a, r1, r0) for n, p, a, r0, r1 in reversed(rows)]
+        )
 
 
 class _BearingTable(Model):
@@ -136,7 +182,10 @@ class _BearingTable(Model):
     @model_validator(mode="after")
     def _one_stiffness(self):
         if self.stiffness is None and self.matrix is None:
-            raise SceneError("this key is missing; write stiffness = {kxx = ...} or matrix = 6 rows of 6 numbers", path=("stiffness",))
+            raise SceneError(
+                "this key is missing; write stiffness = {kxx = ...} or matrix = 6 rows of 6 numbers",
+                path=("stiffness",),
+            )
         if self.stiffness is not None and self.matrix is not None:
             raise SceneError("give either stiffness or matrix, not both", path=("matrix",))
         return self
@@ -158,11 +207,17 @@ class _PortTable(Model):
     @model_validator(mode="after")
     def _one_place_one_surface(self):
         if self.at is None and self.position is None:
-            raise SceneError('this key is missing; write at = "<segment>.middle", or position with from', path=("at",))
+            raise SceneError(
+                'this key is missing; write at = "<segment>.middle", or position with from',
+                path=("at",),
+            )
         if self.at is not None and (self.position is not None or self.from_ is not None):
             raise SceneError("give either at, or position with from, not both", path=("at",))
         if self.attach_to is None and self.span is None:
-            raise SceneError('this key is missing; name the segment whose surface carries the port, or write span = ["0 mm", "58 mm"]', path=("attach_to",))
+            raise SceneError(
+                'this key is missing; name the segment whose surface carries the port, or write span = ["0 mm", "58 mm"]',
+                path=("attach_to",),
+            )
         if self.attach_to is not None and self.span is not None:
             raise SceneError("give either attach_to or span, not both", path=("span",))
         return self
@@ -188,7 +243,9 @@ class _SoundTables(_SceneTable):
 
 def _drop_tag(loc: tuple) -> tuple:
     """pydantic puts the kind of a segment into its location; the file has no such key."""
-    return (*loc[:2], *loc[3:]) if loc[:1] == ("segment",) and loc[2:3] and loc[2] in _KINDS else loc
+    return (
+        (*loc[:2], *loc[3:]) if loc[:1] == ("segment",) and loc[2:3] and loc[2] in _KINDS else loc
+    )
 
 
 # ------------------------------------------------------------------------------------------------- reading
@@ -206,7 +263,9 @@ def load(path: str | os.PathLike) -> Scene:
     try:
         return _read(raw, Path(where).stem)
     except SceneError as error:
-        problems = {(one.path, one.reason): one for one in error.problems}  # both ends of a cylinder are one diameter
+        problems = {
+            (one.path, one.reason): one for one in error.problems
+        }  # both ends of a cylinder are one diameter
         order = _FileOrder(raw)
         ordered = sorted(problems.values(), key=lambda one: order.of(one.path))
         raise SceneError.of(ordered).located(raw, where=where) from None
@@ -224,7 +283,9 @@ def _read(raw: dict[str, Any], name: str) -> Scene:
     return _resolve(table, numbers, name, problems)
 
 
-def _tables(raw: dict[str, Any], problems: list[SceneError]) -> tuple[_SceneTable | None, list[int]]:
+def _tables(
+    raw: dict[str, Any], problems: list[SceneError]
+) -> tuple[_SceneTable | None, list[int]]:
     """The tables that are sound each by itself, and which bearings of the file are among them; None without a whole shaft."""
     count = len(raw["bearing"]) if isinstance(raw.get("bearing"), list) else 0
     try:
@@ -236,7 +297,11 @@ def _tables(raw: dict[str, Any], problems: list[SceneError]) -> tuple[_SceneTabl
     if ("bearing",) in spoilt or any(place[0] in ("segment", "material") for place in spoilt):
         return None, []
     numbers = [k for k in range(count) if ("bearing", k) not in spoilt]
-    sound = {key: raw[key] for key in ("material", "segment", "attachment", "port") if key in raw and (key,) not in spoilt}
+    sound = {
+        key: raw[key]
+        for key in ("material", "segment", "attachment", "port")
+        if key in raw and (key,) not in spoilt
+    }
     return _SoundTables(**sound, bearing=[raw["bearing"][k] for k in numbers]), numbers
 
 
@@ -252,7 +317,13 @@ class _FileOrder:
         out, here = [], self.raw
         for key in path:
             if id(here) not in self.places:
-                keys = here if isinstance(here, Mapping) else range(len(here)) if isinstance(here, list) else ()
+                keys = (
+                    here
+                    if isinstance(here, Mapping)
+                    else range(len(here))
+                    if isinstance(here, list)
+                    else ()
+                )
                 self.places[id(here)] = {key: place for place, key in enumerate(keys)}
             places = self.places[id(here)]
             if key not in places:
@@ -272,15 +343,23 @@ def _unknown_names(raw: dict[str, Any]) -> Iterator[SceneError]:
 
     Read from the file as it stands, since a segment of a wrong length still has its name.
     """
-    pieces, bearings, port = _list_of_tables(raw.get("segment")), _list_of_tables(raw.get("bearing", [])), raw.get("port")
+    pieces, bearings, port = (
+        _list_of_tables(raw.get("segment")),
+        _list_of_tables(raw.get("bearing", [])),
+        raw.get("port"),
+    )
     if pieces is None or not all(isinstance(piece.get("name"), str) for piece in pieces):
         return  # what is meant by a name cannot be told
     known, segments = ["start", "end"], []
     for i, piece in enumerate(pieces):
         if piece["name"] in segments:
-            yield SceneError("another segment has this name; each needs its own", path=("segment", i, "name"))
+            yield SceneError(
+                "another segment has this name; each needs its own", path=("segment", i, "name")
+            )
         segments.append(piece["name"])
-        known += [f"{piece['name']}.{part}" for part in _PIECES.get(str(piece.get("kind")), _EVERY_PIECE)]
+        known += [
+            f"{piece['name']}.{part}" for part in _PIECES.get(str(piece.get("kind")), _EVERY_PIECE)
+        ]
     for i, bearing in enumerate(bearings or ()):
         yield from _unknown_datum(bearing.get("from"), known, ("bearing", i, "from"))
         known.append(f"bearing.{bearing.get('name')}")
@@ -289,23 +368,36 @@ def _unknown_names(raw: dict[str, Any]) -> Iterator[SceneError]:
             yield from _unknown_datum(port.get(key), known, ("port", key))
         carrier = port.get("attach_to")
         if isinstance(carrier, str) and carrier not in segments:
-            yield SceneError(f"unknown segment{nearest(carrier, segments)}; known here: {listed(segments)}", path=("port", "attach_to"))
+            yield SceneError(
+                f"unknown segment{nearest(carrier, segments)}; known here: {listed(segments)}",
+                path=("port", "attach_to"),
+            )
 
 
 def _list_of_tables(value: Any) -> list[Mapping] | None:
-    return value if isinstance(value, list) and all(isinstance(entry, Mapping) for entry in value) else None
+    return (
+        value
+        if isinstance(value, list) and all(isinstance(entry, Mapping) for entry in value)
+        else None
+    )
 
 
 def _unknown_datum(text: Any, known: list[str], path: tuple) -> Iterable[SceneError]:
     if isinstance(text, str) and text not in known:
-        yield SceneError(f"unknown datum{nearest(text, known)}; known here: {listed(known)}", path=path)
+        yield SceneError(
+            f"unknown datum{nearest(text, known)}; known here: {listed(known)}", path=path
+        )
 
 
 # ------------------------------------------------------------------------------------------------- places
-def _resolve(table: _SceneTable, numbers: list[int], name: str, problems: list[SceneError]) -> Scene:
+def _resolve(
+    table: _SceneTable, numbers: list[int], name: str, problems: list[SceneError]
+) -> Scene:
     """The scene, if nothing is wrong with the places of its parts nor was before."""
     if not table.segment:
-        raise SceneError.of([*problems, SceneError("a scene needs at least one [[segment]]", path=("segment",))])
+        raise SceneError.of(
+            [*problems, SceneError("a scene needs at least one [[segment]]", path=("segment",))]
+        )
     segments, owner, surface, datums = _lay_out(table, problems)
     if segments is not None:
         shaft = shaft_problems(segments)
@@ -325,11 +417,23 @@ def _resolve(table: _SceneTable, numbers: list[int], name: str, problems: list[S
         port = _port(table.port, table.attachment, datums, surface) if table.port else None
     except SceneError as error:
         problems.append(error)
-    problems += [one.located(None, path=_file_path(one.path, table, owner)) for one in station_problems(segments, port, bearings)]
+    problems += [
+        one.located(None, path=_file_path(one.path, table, owner))
+        for one in station_problems(segments, port, bearings)
+    ]
     if problems:
         raise SceneError.of(problems)
-    return Scene.from_parts(segments, table.material, bearings.values(), port, title=table.title, name=name, source=table.source,
-                            housing_axial=table.housing.axial if table.housing else None, ask=table.ask)  # fmt: skip
+    return Scene.from_parts(
+        segments,
+        table.material,
+        bearings.values(),
+        port,
+        title=table.title,
+        name=name,
+        source=table.source,
+        housing_axial=table.housing.axial if table.housing else None,
+        ask=table.ask,
+    )
 
 
 def _lay_out(table: _SceneTable, problems: list[SceneError]):
@@ -341,14 +445,37 @@ def _lay_out(table: _SceneTable, problems: list[SceneError]):
         for name, part, length, outer0, outer1 in piece.pieces():
             if length <= 1e-9:
                 key = {"frustum": "face_width", "backcone": "backcone", "shaft": "length"}[part]
-                problems.append(SceneError("is less than a nanometre along the shaft: probably wrong units", path=("segment", index, key)))
+                problems.append(
+                    SceneError(
+                        "is less than a nanometre along the shaft: probably wrong units",
+                        path=("segment", index, key),
+                    )
+                )
                 continue
             inner = piece.bore / 2
             try:
-                segments.append(Segment(name=name, y0=y, y1=y + length, outer0=outer0, outer1=outer1, inner0=inner, inner1=inner,
-                                        material=material, part=part))  # fmt: skip
+                segments.append(
+                    Segment(
+                        name=name,
+                        y0=y,
+                        y1=y + length,
+                        outer0=outer0,
+                        outer1=outer1,
+                        inner0=inner,
+                        inner1=inner,
+                        material=material,
+                        part=part,
+                    )
+                )
             except SceneError as error:
-                problems.append(error.located(None, path=_file_path(("segments", index, error.path[0]), table, range(index + 1))))
+                problems.append(
+                    error.located(
+                        None,
+                        path=_file_path(
+                            ("segments", index, error.path[0]), table, range(index + 1)
+                        ),
+                    )
+                )
                 continue
             owner.append(index)
             y = segments[-1].y1
@@ -356,7 +483,11 @@ def _lay_out(table: _SceneTable, problems: list[SceneError]):
                 surface[piece.name] = (segments[-1].y0, y)
                 if piece.kind == "bevel_head":
                     datums[f"{piece.name}.mid_face"] = (segments[-1].y0 + y) / 2
-        datums |= {f"{piece.name}.start": start, f"{piece.name}.end": y, f"{piece.name}.middle": (start + y) / 2}
+        datums |= {
+            f"{piece.name}.start": start,
+            f"{piece.name}.end": y,
+            f"{piece.name}.middle": (start + y) / 2,
+        }
     whole = len(segments) == sum(len(piece.pieces()) for piece in table.segment)
     return segments if whole else None, owner, surface, datums | {"end": y}
 
@@ -365,8 +496,16 @@ def _bearing(item: _BearingTable, index: int, attachment: str, datums: dict[str,
     y = item.position + datums[item.from_]
     given = item.stiffness if item.matrix is None else item.matrix
     try:
-        bearing = Bearing(name=item.name, y=y, seat_width=item.seat_width, stiffness=given, axial_series=item.axial_series,
-                          attachment=item.attachment or attachment, status=item.status, note=item.note)  # fmt: skip
+        bearing = Bearing(
+            name=item.name,
+            y=y,
+            seat_width=item.seat_width,
+            stiffness=given,
+            axial_series=item.axial_series,
+            attachment=item.attachment or attachment,
+            status=item.status,
+            note=item.note,
+        )
     except SceneError as error:
         key = "stiffness" if item.matrix is None else "matrix"
         raise SceneError(error.reason, path=("bearing", index, key), value=error.value) from None
@@ -374,13 +513,24 @@ def _bearing(item: _BearingTable, index: int, attachment: str, datums: dict[str,
     return bearing
 
 
-def _port(item: _PortTable, attachment: str, datums: dict[str, float], surface: dict[str, tuple[float, float]]) -> Port | None:
+def _port(
+    item: _PortTable,
+    attachment: str,
+    datums: dict[str, float],
+    surface: dict[str, tuple[float, float]],
+) -> Port | None:
     """The port, or None where it names what is not there."""
     datum = item.at or item.from_ or "start"
     if datum not in datums or not (item.span or item.attach_to in surface):
         return None
     lo, hi = item.span or surface[item.attach_to]
-    return Port(name=item.name, y=datums[datum] + (item.position or 0.0), lo=lo, hi=hi, attachment=item.attachment or attachment)
+    return Port(
+        name=item.name,
+        y=datums[datum] + (item.position or 0.0),
+        lo=lo,
+        hi=hi,
+        attachment=item.attachment or attachment,
+    )
 
 
 def _file_path(path: tuple, table: _SceneTable, owner: list[int]) -> tuple:
@@ -388,9 +538,19 @@ def _file_path(path: tuple, table: _SceneTable, owner: list[int]) -> tuple:
     match path:
         case ("segments", index, key):
             kind = table.segment[owner[index]].kind
-            start, end = {"cylinder": ("diameter",) * 2, "cone": ("start_diameter", "end_diameter"), "bevel_head": ("pitch_radius",) * 2}[kind]
+            start, end = {
+                "cylinder": ("diameter",) * 2,
+                "cone": ("start_diameter", "end_diameter"),
+                "bevel_head": ("pitch_radius",) * 2,
+            }[kind]
             length = "face_width" if kind == "bevel_head" else "length"
-            key = {"outer0": start, "outer1": end, "inner0": "bore", "inner1": "bore", "y1": length}.get(key, key)
+            key = {
+                "outer0": start,
+                "outer1": end,
+                "inner0": "bore",
+                "inner1": "bore",
+                "y1": length,
+            }.get(key, key)
             return ("segment", owner[index], key)
         case ("segments", index, "material", key):
             own = getattr(table.segment[owner[index]].material, key) is not None

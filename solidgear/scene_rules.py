@@ -32,7 +32,9 @@ MOST_SEGMENTS, MOST_BEARINGS, MOST_SPRINGS = 100, 50, 20
 
 def steps(segments: Sequence[Segment]) -> tuple[float, ...]:
     """y (m) where the outer radius jumps, end faces left out."""
-    return tuple(b.y0 for a, b in zip(segments, segments[1:]) if abs(a.outer1 - b.outer0) > 1e-9 * a.outer1)
+    return tuple(
+        b.y0 for a, b in zip(segments, segments[1:]) if abs(a.outer1 - b.outer0) > 1e-9 * a.outer1
+    )
 
 
 def shaft_problems(segments: Sequence[Segment]) -> list[SceneError]:
@@ -46,7 +48,11 @@ def shaft_problems(segments: Sequence[Segment]) -> list[SceneError]:
 
 def too_many(what: str, count: int, most: int) -> str:
     """The reason to refuse a list that no shaft has."""
-    hint = "; let pieces that are one be one segment, and a few cones stand for a curve" if what == "segments" else ""
+    hint = (
+        "; let pieces that are one be one segment, and a few cones stand for a curve"
+        if what == "segments"
+        else ""
+    )
     return f"{count} {what} are more than the {most} a shaft may have{hint}"
 
 
@@ -54,9 +60,14 @@ def _end_to_end(segments: Sequence[Segment]) -> Iterator[SceneError]:
     end, names = 0.0, set()
     for i, segment in enumerate(segments):
         if abs(segment.y0 - end) > TOUCH:
-            yield SceneError(f"segments lie end to end from y = 0, so this must be {end:.6g}", path=("segments", i, "y0"))
+            yield SceneError(
+                f"segments lie end to end from y = 0, so this must be {end:.6g}",
+                path=("segments", i, "y0"),
+            )
         if segment.name in names:
-            yield SceneError("another segment has this name; each needs its own", path=("segments", i, "name"))
+            yield SceneError(
+                "another segment has this name; each needs its own", path=("segments", i, "name")
+            )
         end = segment.y1
         names.add(segment.name)
 
@@ -66,16 +77,24 @@ def _sized(segments: Sequence[Segment]) -> Iterator[SceneError]:
     for i, segment in enumerate(segments):
         radius = max(segment.outer0, segment.outer1)
         if radius > 10.0:
-            yield SceneError(f"a radius of {radius:.6g} m is above 10 m: probably wrong units", path=("segments", i, "outer0"))
+            yield SceneError(
+                f"a radius of {radius:.6g} m is above 10 m: probably wrong units",
+                path=("segments", i, "outer0"),
+            )
     if not 1e-3 <= end <= 20.0:
         i = max(range(len(segments)), key=lambda k: segments[k].length)
-        yield SceneError(f"the shaft is {end:.6g} m long, outside 1 mm to 20 m: probably wrong units", path=("segments", i, "y1"))
+        yield SceneError(
+            f"the shaft is {end:.6g} m long, outside 1 mm to 20 m: probably wrong units",
+            path=("segments", i, "y1"),
+        )
 
 
 def _proportioned(segments: Sequence[Segment]) -> Iterator[SceneError]:
     end = segments[-1].y1
     for i, segment in enumerate(segments):
-        if i and not max(segments[i - 1].inner1, segment.inner0) < min(segments[i - 1].outer1, segment.outer0):
+        if i and not max(segments[i - 1].inner1, segment.inner0) < min(
+            segments[i - 1].outer1, segment.outer0
+        ):
             reason = (
                 f'shares no end face with "{segments[i - 1].name}" (radii {segments[i - 1].inner1:.6g} to {segments[i - 1].outer1:.6g} m there, '
                 f"{segment.inner0:.6g} to {segment.outer0:.6g} m here); they must overlap"
@@ -96,7 +115,11 @@ def _proportioned(segments: Sequence[Segment]) -> Iterator[SceneError]:
 
 
 def _unlike(first: Material, here: Material, i: int) -> Iterator[SceneError]:
-    for key, what, unit, value in (("E", "modulus", "Pa", lambda m: m.E), ("density", "density", "kg/m^3", lambda m: m.density), ("E", "ratio of modulus to density", "m^2/s^2", lambda m: m.E / m.density)):
+    for key, what, unit, value in (
+        ("E", "modulus", "Pa", lambda m: m.E),
+        ("density", "density", "kg/m^3", lambda m: m.density),
+        ("E", "ratio of modulus to density", "m^2/s^2", lambda m: m.E / m.density),
+    ):
         a, b = value(here), value(first)
         if max(a, b) > MOST_UNLIKE * min(a, b):
             reason = f"a {what} of {a:.3g} {unit} beside {b:.3g} in the first segment: unlike by more than {MOST_UNLIKE:g}, which costs digits; probably wrong units"
@@ -104,7 +127,9 @@ def _unlike(first: Material, here: Material, i: int) -> Iterator[SceneError]:
             return
 
 
-def station_problems(segments: Sequence[Segment], port: Port | None, bearings: Mapping[int, Bearing]) -> Iterator[SceneError]:
+def station_problems(
+    segments: Sequence[Segment], port: Port | None, bearings: Mapping[int, Bearing]
+) -> Iterator[SceneError]:
     """Ports and seats lie on the shaft, on one smooth surface each, and seats do not share any of it.
 
     Parameters
@@ -121,18 +146,26 @@ def station_problems(segments: Sequence[Segment], port: Port | None, bearings: M
     places = [(("bearings", i, "seat_width"), bearing, "seat") for i, bearing in bearings.items()]
     if port is not None:
         if not -TOUCH <= port.y <= length + TOUCH:
-            yield SceneError(f"the port is at y = {port.y:.6g} m, outside the shaft (0 to {length:.6g} m)", path=("port", "y"))
+            yield SceneError(
+                f"the port is at y = {port.y:.6g} m, outside the shaft (0 to {length:.6g} m)",
+                path=("port", "y"),
+            )
         places.insert(0, (("port", "hi"), port, "attached span"))
     names = set()
     for k, (path, here, what) in enumerate(places):
         if here.name in names:
-            yield SceneError("the port or another bearing has this name; each needs its own", path=(*path[:-1], "name"))
+            yield SceneError(
+                "the port or another bearing has this name; each needs its own",
+                path=(*path[:-1], "name"),
+            )
         names.add(here.name)
         if reason := _misplaced(here, what, places[:k], length, jumps):
             yield SceneError(reason, path=path)
 
 
-def _misplaced(here: Port | Bearing, what: str, before: Sequence[tuple], length: float, jumps: Sequence[float]) -> str:
+def _misplaced(
+    here: Port | Bearing, what: str, before: Sequence[tuple], length: float, jumps: Sequence[float]
+) -> str:
     """Why a station cannot be where it is, or nothing: the first reason, of which others may be a consequence."""
     if here.hi <= here.lo:
         return f"the span must end beyond its start at {here.lo:.6g} m"
@@ -143,10 +176,14 @@ def _misplaced(here: Port | Bearing, what: str, before: Sequence[tuple], length:
         return f"{reach}, under a millionth of the length of the shaft, {length:.6g} m: probably wrong units"
     for step in jumps:
         if here.lo + TOUCH < step < here.hi - TOUCH:
-            return f"{reach}, across the step of the outer radius at {step:.6g} m; it must end there"
+            return (
+                f"{reach}, across the step of the outer radius at {step:.6g} m; it must end there"
+            )
     for _, other, other_what in before:
         # the port may share a seat's surface, unless both hold it rigid: that would weld the two points together
         both = other_what == what or other.attachment == here.attachment == "rigid"
         if both and min(here.hi, other.hi) - max(here.lo, other.lo) > TOUCH:
-            return f'{reach} and overlaps that of "{other.name}" ({other.lo:.6g} to {other.hi:.6g} m)'
+            return (
+                f'{reach} and overlaps that of "{other.name}" ({other.lo:.6g} to {other.hi:.6g} m)'
+            )
     return ""

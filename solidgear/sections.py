@@ -34,10 +34,15 @@ def hats(y: np.ndarray, stations: np.ndarray) -> sp.csr_matrix:
     left = np.clip(np.searchsorted(stations, y, side="right") - 1, 0, len(stations) - 2)
     t = (y - stations[left]) / (stations[left + 1] - stations[left])
     values, columns = np.column_stack([1 - t, t]), np.column_stack([left, left + 1])
-    return sp.csr_matrix((values.ravel(), columns.ravel(), np.arange(0, 2 * len(y) + 1, 2)), shape=(len(y), len(stations)))
+    return sp.csr_matrix(
+        (values.ravel(), columns.ravel(), np.arange(0, 2 * len(y) + 1, 2)),
+        shape=(len(y), len(stations)),
+    )
 
 
-def from_points(mass: Any, rigid: np.ndarray, y: np.ndarray, components: tuple[int, ...]) -> Sections:
+def from_points(
+    mass: Any, rigid: np.ndarray, y: np.ndarray, components: tuple[int, ...]
+) -> Sections:
     """Sections of a body whose unknowns are values at points, closer to each other than the stations.
 
     Parameters

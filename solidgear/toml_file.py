@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import re
 import stat
 import tomllib
@@ -40,7 +39,11 @@ def parse(where: str) -> dict[str, Any]:
         reason = error.reason
     except (OSError, ValueError) as error:
         long = "digits" in str(error)
-        reason = "not a scene: a number in it has thousands of digits" if long else f"cannot be read: {getattr(error, 'strerror', None) or error}"
+        reason = (
+            "not a scene: a number in it has thousands of digits"
+            if long
+            else f"cannot be read: {getattr(error, 'strerror', None) or error}"
+        )
     raise SceneError(reason, where=where)
 
 
@@ -50,17 +53,23 @@ def _text(where: str) -> str:
         raise SceneError("this is a folder; give the TOML file in it")
     if not stat.S_ISREG(kind):
         # a pipe would be waited for, and a device may never end
-        raise SceneError("this is a pipe or a device, not a file; write the scene into a file and give that")
+        raise SceneError(
+            "this is a pipe or a device, not a file; write the scene into a file and give that"
+        )
     with Path(where).open("rb") as file:
         data = file.read(LARGEST + 1)
     if len(data) > LARGEST:
         raise SceneError(f"this is no scene: it is larger than {LARGEST // 1000} kB")
     if data.startswith((b"\xff\xfe", b"\xfe\xff")) or b"\0" in data:
-        raise SceneError(f"not UTF-8 text (byte {max(data.find(0), 0)}): it is UTF-16 or no text at all; save the file as UTF-8")
+        raise SceneError(
+            f"not UTF-8 text (byte {max(data.find(0), 0)}): it is UTF-16 or no text at all; save the file as UTF-8"
+        )
     text = data.decode("utf-8-sig")
     for number, line in enumerate(text.split("\n"), start=1):
         if line.count(".") > MOST_DOTS:
-            raise SceneError(f"not a scene: line {number} has more than {MOST_DOTS} full stops, and no key or matrix that many parts")
+            raise SceneError(
+                f"not a scene: line {number} has more than {MOST_DOTS} full stops, and no key or matrix that many parts"
+            )
     return text
 
 
@@ -68,15 +77,26 @@ def _text(where: str) -> str:
 _NUMBER = r"[+-]?\d[\d_]*"
 #: what people write, by the line the parser stopped in, the more telling first: pattern and plain words, with groups of the pattern
 _HABITS = (
-    (re.compile(rf"=\s*({_NUMBER}),(\d+)\s*([^\s\d,\]#]*)$"), "a decimal comma; decimals take a point, and a unit quotes, such as 3.5 or \"3.5 mm\""),
-    (re.compile(rf"=\s*{_NUMBER}(\.\d+)?([eE][+-]?\d+)?\s*[^\W\d_][^=#\"']*$"), "a quantity with a unit is a text in quotes, such as \"90 mm\""),
-    (re.compile(r"=\s*(True|False|TRUE|FALSE|yes|no|on|off)\b"), "a truth value is written true or false"),
-    (re.compile(r"=\s*[A-Za-z][^=#\"']*$"), "a text is written in quotes, such as \"head.end\""),
+    (
+        re.compile(rf"=\s*({_NUMBER}),(\d+)\s*([^\s\d,\]#]*)$"),
+        'a decimal comma; decimals take a point, and a unit quotes, such as 3.5 or "3.5 mm"',
+    ),
+    (
+        re.compile(rf"=\s*{_NUMBER}(\.\d+)?([eE][+-]?\d+)?\s*[^\W\d_][^=#\"']*$"),
+        'a quantity with a unit is a text in quotes, such as "90 mm"',
+    ),
+    (
+        re.compile(r"=\s*(True|False|TRUE|FALSE|yes|no|on|off)\b"),
+        "a truth value is written true or false",
+    ),
+    (re.compile(r"=\s*[A-Za-z][^=#\"']*$"), 'a text is written in quotes, such as "head.end"'),
     (re.compile(r"=\s*$"), "there is no value behind the ="),
     (re.compile(r"^\s*\[+[^\]]*$"), "the ] is missing"),
     (re.compile(r"^\s*[\w.-]+\s*:"), "a value is written behind =, not behind :"),
-)  # fmt: skip
-_TWICE = re.compile(r"(?:Cannot declare|Cannot mutate immutable namespace|Cannot redefine namespace) \((.*)\)")
+)
+_TWICE = re.compile(
+    r"(?:Cannot declare|Cannot mutate immutable namespace|Cannot redefine namespace) \((.*)\)"
+)
 _LISTS = ("segment", "bearing")
 _PARSER = {
     "Cannot overwrite a value": "a key is given twice in its table, or as a value and as a table",
@@ -111,11 +131,16 @@ def _plain_words(words: str, line: str) -> str:
         if len(keys) == 1 and keys[0] in _LISTS:
             return f"there is a second [{name}]; each is written with double brackets, [[{name}]]"
         owner = keys[0] if keys and keys[0] in _LISTS else "scene"
-        return f"there is a second [{name}]; a {owner} has one, so put all of its keys into the first"
+        return (
+            f"there is a second [{name}]; a {owner} has one, so put all of its keys into the first"
+        )
     if words.startswith("Duplicate inline table key"):
         return "a key is given twice in its table"
     bare = re.sub(r"\s*#.*$", "", line[:300])
     for pattern, plain in _HABITS:
         if pattern.search(bare):
             return plain
-    return next((plain for start, plain in _PARSER.items() if words.startswith(start)), words[:1].lower() + words[1:])
+    return next(
+        (plain for start, plain in _PARSER.items() if words.startswith(start)),
+        words[:1].lower() + words[1:],
+    )

@@ -36,7 +36,10 @@ LARGEST, SOFTEST = 1e24, 1e-30
 #: letters of a quantity
 LONGEST = 200
 
-_TEXT = re.compile(r"\s*(?P<number>[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?|[+-]?(?:nan|inf)\b)\s*(?P<unit>.*?)\s*", re.S | re.I)
+_TEXT = re.compile(
+    r"\s*(?P<number>[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?|[+-]?(?:nan|inf)\b)\s*(?P<unit>.*?)\s*",
+    re.S | re.I,
+)
 _COMMA = re.compile(r"\s*[+-]?\d*,\d")
 _UNIT = re.compile(r"[^\W\d_][^\W\d]*|%|\d|[\s*/^().·-]", re.U)
 
@@ -71,11 +74,17 @@ def quantity(value: Any, dimension: str) -> float:
         except OverflowError:
             number = math.inf
     else:
-        raise SceneError(f"must be a number{f' in {si}' if si else ''} or a text such as \"{example}\"", value=show(value))
+        raise SceneError(
+            f'must be a number{f" in {si}" if si else ""} or a text such as "{example}"',
+            value=show(value),
+        )
     if not math.isfinite(number):
-        raise SceneError(f"must be a finite number, for example \"{example}\"", value=show(value))
+        raise SceneError(f'must be a finite number, for example "{example}"', value=show(value))
     if abs(number) > LARGEST:
-        raise SceneError(f"is larger than {LARGEST:g}{f' {si}' if si else ''}, beyond anything physical; write for example \"{example}\"", value=show(value))
+        raise SceneError(
+            f'is larger than {LARGEST:g}{f" {si}" if si else ""}, beyond anything physical; write for example "{example}"',
+            value=show(value),
+        )
     return number
 
 
@@ -83,33 +92,48 @@ def _read_text(text: str, dimension: str) -> float:
     si, example, powers = DIMENSIONS[dimension]
     value, name = show(text), dimension.replace("_", " ")
     if len(text) > LONGEST:  # before any pattern looks at it: their time grows with the square
-        raise SceneError(f"an unknown unit, or no quantity at all: {len(text)} letters; write for example \"{example}\"", value=value)
+        raise SceneError(
+            f'an unknown unit, or no quantity at all: {len(text)} letters; write for example "{example}"',
+            value=value,
+        )
     if _COMMA.match(text):
-        raise SceneError(f"has a comma: decimals take a point, and thousands no mark, as in \"{example}\"", value=value)
+        raise SceneError(
+            f'has a comma: decimals take a point, and thousands no mark, as in "{example}"',
+            value=value,
+        )
     match = _TEXT.fullmatch(text)
     if match is None:
-        raise SceneError(f"must be a number with a unit, such as \"{example}\"", value=value)
+        raise SceneError(f'must be a number with a unit, such as "{example}"', value=value)
     number, unit = float(match["number"]), match["unit"]
     if not unit:
         if si:
-            raise SceneError(f"has no unit: write a plain number (without quotes) for SI ({si}), or add a unit as in \"{example}\"", value=value)
+            raise SceneError(
+                f'has no unit: write a plain number (without quotes) for SI ({si}), or add a unit as in "{example}"',
+                value=value,
+            )
         return number
     known = _si_factor(unit)
     if known is None:
-        raise SceneError(f"unknown unit {show(unit)}; write for example \"{example}\"", value=value)
+        raise SceneError(f'unknown unit {show(unit)}; write for example "{example}"', value=value)
     factor, radians, dimensionality = known
     if dimensionality != (_si_factor(si)[2] if si else "dimensionless") or radians not in powers:
         wrong = f"not a unit of {name}" if si else "a unit, but this is a plain ratio"
-        raise SceneError(f"{show(unit)} is {wrong}; write for example \"{example}\"", value=value)
+        raise SceneError(f'{show(unit)} is {wrong}; write for example "{example}"', value=value)
     # dividing by 1000 is exact where multiplying by 0.001 is not: "208 mm" must be the same float as 0.208
-    return number / round(1 / factor) if factor < 1 and (1 / factor).is_integer() else number * factor
+    return (
+        number / round(1 / factor) if factor < 1 and (1 / factor).is_integer() else number * factor
+    )
 
 
 @functools.lru_cache(maxsize=256)
 def _si_factor(unit: str) -> tuple[float, float, str] | None:
     """(SI units in one `unit`, power of the radian in it, its dimensionality), or None when pint does not know it."""
     # pint evaluates exponents as it parses; a chain such as m**9**9**9 would never return
-    if len(unit) > 60 or re.search(r"\d{3}|(\*\*|\^).*(\*\*|\^).*(\*\*|\^)", unit) or _UNIT.sub("", unit):
+    if (
+        len(unit) > 60
+        or re.search(r"\d{3}|(\*\*|\^).*(\*\*|\^).*(\*\*|\^)", unit)
+        or _UNIT.sub("", unit)
+    ):
         return None
     registry = _registry()
     try:
@@ -117,7 +141,11 @@ def _si_factor(unit: str) -> tuple[float, float, str] | None:
         one = registry.get_root_units(parsed)
         factor, radians = float(one[0]), float(dict(one[1]._units).get("radian", 0))
         mass = float(dict(one[1]._units).get("gram", 0))
-        return float(f"{factor * 1e-3**mass:.15g}"), radians, str(parsed.dimensionality)  # pint's root of mass is the gram
+        return (
+            float(f"{factor * 1e-3**mass:.15g}"),
+            radians,
+            str(parsed.dimensionality),
+        )  # pint's root of mass is the gram
     except Exception:  # pint raises a dozen kinds, some its own, some of the tokenizer underneath
         return None
 
@@ -152,14 +180,50 @@ _POSITIVE = _must(lambda v: v > 0, "must be greater than zero")
 _NOT_NEGATIVE = _must(lambda v: v >= 0, "must not be negative")
 
 Length = Annotated[float, _in("length")]
-Position = Annotated[float, _in("length"), AfterValidator(lambda v: round(v, POSITION_DECIMALS) + 0.0)]
+Position = Annotated[
+    float, _in("length"), AfterValidator(lambda v: round(v, POSITION_DECIMALS) + 0.0)
+]
 PositiveLength = Annotated[Length, _POSITIVE]
 Thickness = Annotated[Length, _NOT_NEGATIVE]
-Angle = Annotated[float, _in("angle"), _must(lambda v: 0 < v < math.pi / 2, "must lie between 0 and 90 degrees (0 and 1.571 rad)")]
-Modulus = Annotated[float, _in("pressure"), _POSITIVE, _must(lambda v: v >= 1, "is below 1 Pa, softer than any solid: probably wrong units")]
-Density = Annotated[float, _in("density"), _POSITIVE, _must(lambda v: v >= 1e-6, "is below 1e-6 kg/m^3, lighter than any solid: probably wrong units"),
-                    _must(lambda v: v <= 1e8, "is above 1e8 kg/m^3, denser than any solid (osmium has 22600): probably wrong units")]  # fmt: skip
-Poisson = Annotated[float, _in("dimensionless"), _must(lambda v: -1 < v < 0.5, "must lie between -1 and 0.5, both excluded; steel is 0.3")]
-AxialSpring = Annotated[float, _in("force_per_length"), _POSITIVE, _must(lambda v: v >= SOFTEST, f"is softer than {SOFTEST:g} N/m, which is no spring: leave it out")]
+Angle = Annotated[
+    float,
+    _in("angle"),
+    _must(lambda v: 0 < v < math.pi / 2, "must lie between 0 and 90 degrees (0 and 1.571 rad)"),
+]
+Modulus = Annotated[
+    float,
+    _in("pressure"),
+    _POSITIVE,
+    _must(lambda v: v >= 1, "is below 1 Pa, softer than any solid: probably wrong units"),
+]
+Density = Annotated[
+    float,
+    _in("density"),
+    _POSITIVE,
+    _must(
+        lambda v: v >= 1e-6, "is below 1e-6 kg/m^3, lighter than any solid: probably wrong units"
+    ),
+    _must(
+        lambda v: v <= 1e8,
+        "is above 1e8 kg/m^3, denser than any solid (osmium has 22600): probably wrong units",
+    ),
+]
+Poisson = Annotated[
+    float,
+    _in("dimensionless"),
+    _must(lambda v: -1 < v < 0.5, "must lie between -1 and 0.5, both excluded; steel is 0.3"),
+]
+AxialSpring = Annotated[
+    float,
+    _in("force_per_length"),
+    _POSITIVE,
+    _must(
+        lambda v: v >= SOFTEST, f"is softer than {SOFTEST:g} N/m, which is no spring: leave it out"
+    ),
+]
 Frequency = Annotated[float, _in("frequency"), _POSITIVE]
-Tolerance = Annotated[float, _in("dimensionless"), _must(lambda v: 0 < v < 1, "must lie between 0 and 1; 0.05 is five per cent")]
+Tolerance = Annotated[
+    float,
+    _in("dimensionless"),
+    _must(lambda v: 0 < v < 1, "must lie between 0 and 1; 0.05 is five per cent"),
+]

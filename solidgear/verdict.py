@@ -16,8 +16,17 @@ from solidgear.evidence.study import SCENE, SECTION, Rung
 from solidgear.fidelity import FIDELITIES
 
 WITHIN, OPEN, BEYOND = "within", "open", "beyond"
-NAMES = {"lumped": "lumped model", "euler": "Euler beam", "timoshenko": "Timoshenko beam", "harmonic": "harmonic solid", "solid": "3D solid"}
-TIES = {SCENE: "with the attachments of the scene", SECTION: "like for like (section means everywhere)"}
+NAMES = {
+    "lumped": "lumped model",
+    "euler": "Euler beam",
+    "timoshenko": "Timoshenko beam",
+    "harmonic": "harmonic solid",
+    "solid": "3D solid",
+}
+TIES = {
+    SCENE: "with the attachments of the scene",
+    SECTION: "like for like (section means everywhere)",
+}
 
 
 @dataclass(frozen=True)
@@ -47,7 +56,11 @@ def deviations(rungs: dict[str, Rung], reference: str) -> list[dict]:
         if model == reference:
             continue
         for tie in (SCENE, SECTION):
-            if tie not in rung.ties or tie not in base.ties or (tie == SECTION and rung.ties[SECTION] is rung.ties[SCENE]):
+            if (
+                tie not in rung.ties
+                or tie not in base.ties
+                or (tie == SECTION and rung.ties[SECTION] is rung.ties[SCENE])
+            ):
                 continue
             out += _deviations(model, reference, tie, rung, base)
     return out
@@ -67,7 +80,9 @@ def _deviations(model: str, reference: str, tie: str, rung: Rung, base: Rung) ->
             continue
         bands = [r.bands[tie][name].gci for r in (base, rung) if name in r.bands.get(tie, {})]
         band = sum(bands) if bands else None
-        resolved = "no band" if band is None else "resolved" if abs(relative) > band else "not resolved"
+        resolved = (
+            "no band" if band is None else "resolved" if abs(relative) > band else "not resolved"
+        )
         yield {
             "model": model,
             "reference": reference,
@@ -103,7 +118,9 @@ def _reason(rung: Rung) -> str:
     return "; ".join(dict.fromkeys(rung.failed.values())) or "it was solved on one mesh only"
 
 
-def judge(scene, rungs: dict[str, Rung], gaps: list[dict], notices: Iterable[dict] = ()) -> tuple[dict, dict[str, Judgement]]:
+def judge(
+    scene, rungs: dict[str, Rung], gaps: list[dict], notices: Iterable[dict] = ()
+) -> tuple[dict, dict[str, Judgement]]:
     """Validity of every rung and the verdict in sentences.
 
     Parameters
@@ -119,7 +136,9 @@ def judge(scene, rungs: dict[str, Rung], gaps: list[dict], notices: Iterable[dic
     judged = scene.ask.quantities or JUDGED
     reference, why = trusted(rungs, tolerance)
     notices = list(notices)
-    validity = {m: _judged(m, rungs, reference, why, gaps, judged, tolerance, notices) for m in rungs}
+    validity = {
+        m: _judged(m, rungs, reference, why, gaps, judged, tolerance, notices) for m in rungs
+    }
     cheapest = next((m for m in FIDELITIES if m in rungs and validity[m].valid), None)
     sentences = []
     if not rungs:
@@ -127,13 +146,26 @@ def judge(scene, rungs: dict[str, Rung], gaps: list[dict], notices: Iterable[dic
     elif reference is None:
         sentences = [f"Not judged: {why}."]
     else:
-        sentences = [*_trust(rungs, reference, gaps, judged), *_cheapest(rungs, cheapest, tolerance), *_beams(rungs, gaps, judged, tolerance)]
-    verdict = {"trust": reference, "reference": reference, "cheapest": cheapest, "tolerance": tolerance, "judged": list(judged), "sentences": sentences}
+        sentences = [
+            *_trust(rungs, reference, gaps, judged),
+            *_cheapest(rungs, cheapest, tolerance),
+            *_beams(rungs, gaps, judged, tolerance),
+        ]
+    verdict = {
+        "trust": reference,
+        "reference": reference,
+        "cheapest": cheapest,
+        "tolerance": tolerance,
+        "judged": list(judged),
+        "sentences": sentences,
+    }
     return verdict, validity
 
 
 def _judged(model, rungs, reference, why, gaps, judged, tolerance, notices) -> Judgement:
-    against = [n["sentence"] for n in notices if model in n["models"] and n["level"] in ("avoid", "fault")]
+    against = [
+        n["sentence"] for n in notices if model in n["models"] and n["level"] in ("avoid", "fault")
+    ]
     if reference is None:
         return Judgement(False, f"not judged: {why}", open=True)
     if against:
@@ -142,14 +174,28 @@ def _judged(model, rungs, reference, why, gaps, judged, tolerance, notices) -> J
     if model in ("harmonic", "solid"):
         worst = rung.worst_band(judged)
         if worst is None or worst > tolerance:
-            text = "it has no band of its own" if worst is None else f"it is sure of itself to no better than {percent(worst)}"
-            return Judgement(False, f"{text}, and {percent(tolerance)} is asked for ({_reason(rung)})", open=True)
+            text = (
+                "it has no band of its own"
+                if worst is None
+                else f"it is sure of itself to no better than {percent(worst)}"
+            )
+            return Judgement(
+                False, f"{text}, and {percent(tolerance)} is asked for ({_reason(rung)})", open=True
+            )
     if model == reference:
         return Judgement(True)
     mine = [g for g in gaps if g["model"] == model and g["quantity"] in judged]
-    missing = [q for q in judged if q in rungs[reference].quantities and not any(g["quantity"] == q for g in mine)]
+    missing = [
+        q
+        for q in judged
+        if q in rungs[reference].quantities and not any(g["quantity"] == q for g in mine)
+    ]
     if missing:
-        return Judgement(False, f"nothing in it corresponds to {' and '.join(missing)} of the {NAMES[reference]}", open=True)
+        return Judgement(
+            False,
+            f"nothing in it corresponds to {' and '.join(missing)} of the {NAMES[reference]}",
+            open=True,
+        )
     worst_first = sorted(mine, key=lambda g: -(abs(g["relative"]) + (g["band"] or 0.0)))
     for kind in (BEYOND, OPEN):
         for gap in worst_first:
@@ -191,17 +237,31 @@ def _trust(rungs, reference, gaps, judged) -> list[str]:
         size.append(f"{percent(c)} in compliance")
     if f is not None:
         size.append(f"{percent(f)} in first bending")
-    kind = "exact 3D elasticity of a body of revolution" if reference == "harmonic" else "full 3D elasticity"
+    kind = (
+        "exact 3D elasticity of a body of revolution"
+        if reference == "harmonic"
+        else "full 3D elasticity"
+    )
     band = " and ".join(size) or "the numbers it has"
-    out = [f"Trust the {NAMES[reference]}: {kind}, sure of itself to {band} ({len(base.levels)} meshes)."]
+    out = [
+        f"Trust the {NAMES[reference]}: {kind}, sure of itself to {band} ({len(base.levels)} meshes)."
+    ]
     if reference == "solid" or "solid" not in rungs:
         return out
-    mine = [g for g in gaps if g["model"] == "solid" and g["attachment"] == SCENE and g["quantity"] in judged]
+    mine = [
+        g
+        for g in gaps
+        if g["model"] == "solid" and g["attachment"] == SCENE and g["quantity"] in judged
+    ]
     if mine:
         worst = max(mine, key=lambda g: abs(g["relative"]))
         beyond = [g["quantity"] for g in mine if g["verdict"] == "resolved"]
         text = f"The full 3D solid, another mesh and another formulation, is within {percent(abs(worst['relative']))} of it in every judged number"
-        text += f", beyond the bands in {', '.join(beyond)}." if beyond else "; all gaps lie inside the bands (not resolved)."
+        text += (
+            f", beyond the bands in {', '.join(beyond)}."
+            if beyond
+            else "; all gaps lie inside the bands (not resolved)."
+        )
         out.append(text)
     return out
 
@@ -209,7 +269,9 @@ def _trust(rungs, reference, gaps, judged) -> list[str]:
 def _cheapest(rungs, cheapest, tolerance) -> list[str]:
     if not cheapest:
         return [f"No model is known to be within {percent(tolerance)}."]
-    return [f"Cheapest model within {percent(tolerance)}: {NAMES[cheapest]} ({_cost(rungs[cheapest])})."]
+    return [
+        f"Cheapest model within {percent(tolerance)}: {NAMES[cheapest]} ({_cost(rungs[cheapest])})."
+    ]
 
 
 def _beams(rungs, gaps, judged, tolerance) -> list[str]:
@@ -220,7 +282,11 @@ def _beams(rungs, gaps, judged, tolerance) -> list[str]:
             continue
         worst = {}
         for tie in (SCENE, SECTION):
-            mine = [g for g in gaps if g["model"] == model and g["attachment"] == tie and g["quantity"] in judged]
+            mine = [
+                g
+                for g in gaps
+                if g["model"] == model and g["attachment"] == tie and g["quantity"] in judged
+            ]
             worst[tie] = max(mine, key=lambda g: abs(g["relative"]), default=None)
         scene, like = worst[SCENE], worst[SECTION]
         if scene is None or like is None:

@@ -34,14 +34,43 @@ def shafts(draw, most=6):
     for k in range(draw(st.integers(1, most))):
         material = MATERIALS[draw(st.sampled_from((0, 0, 0, 1, 2, 3)))]
         kind = draw(st.sampled_from(("cylinder", "cylinder", "cone", "bevel_head")))
-        length, one, two = _drawn(draw, 0.02, 0.12), _drawn(draw, 0.04, 0.12), _drawn(draw, 0.04, 0.12)
+        length, one, two = (
+            _drawn(draw, 0.02, 0.12),
+            _drawn(draw, 0.04, 0.12),
+            _drawn(draw, 0.04, 0.12),
+        )
         if kind == "bevel_head":
-            rows = [(f"{k}.frustum", "frustum", length, min(one, two), max(one, two)), (f"{k}.backcone", "backcone", _drawn(draw, 0.005, 0.02), max(one, two), max(one, two))]
-            rows = rows if draw(st.booleans()) else [(n, p, l, b, a) for n, p, l, a, b in reversed(rows)]
+            rows = [
+                (f"{k}.frustum", "frustum", length, min(one, two), max(one, two)),
+                (
+                    f"{k}.backcone",
+                    "backcone",
+                    _drawn(draw, 0.005, 0.02),
+                    max(one, two),
+                    max(one, two),
+                ),
+            ]
+            rows = (
+                rows
+                if draw(st.booleans())
+                else [(name, part, long, b, a) for name, part, long, a, b in reversed(rows)]
+            )
         else:
             rows = [(f"{k}.{kind}", "shaft", length, one, two if kind == "cone" else one)]
         for name, part, axial, d0, d1 in rows:
-            segments.append(Segment(name=name, y0=y, y1=y + axial, outer0=d0 / 2, outer1=d1 / 2, inner0=bore / 2, inner1=bore / 2, material=material, part=part))
+            segments.append(
+                Segment(
+                    name=name,
+                    y0=y,
+                    y1=y + axial,
+                    outer0=d0 / 2,
+                    outer1=d1 / 2,
+                    inner0=bore / 2,
+                    inner1=bore / 2,
+                    material=material,
+                    part=part,
+                )
+            )
             y = segments[-1].y1
     return tuple(segments)
 
@@ -50,8 +79,14 @@ def shafts(draw, most=6):
 def stiffnesses(draw, least=0):
     """(6, 6) positive semidefinite stiffness of a random rank, zero included; couplings as strong as definiteness allows."""
     rank = draw(st.integers(least, 6))
-    root = np.array(draw(st.lists(st.integers(-9, 9), min_size=6 * rank, max_size=6 * rank)), float).reshape(6, rank)
-    held = np.array(draw(st.lists(st.booleans(), min_size=6, max_size=6)), float) if draw(st.booleans()) else np.ones(6)
+    root = np.array(
+        draw(st.lists(st.integers(-9, 9), min_size=6 * rank, max_size=6 * rank)), float
+    ).reshape(6, rank)
+    held = (
+        np.array(draw(st.lists(st.booleans(), min_size=6, max_size=6)), float)
+        if draw(st.booleans())
+        else np.ones(6)
+    )
     lever = np.repeat((1.0, LEVER), 3)
     size = 10 ** _drawn(draw, *map(math.log10, STIFFNESS))
     root = held[:, None] * lever[:, None] * root / 9
@@ -65,7 +100,14 @@ def bearings(draw, name, free, least=0):
     width = _drawn(draw, 0.3, 0.8) * (hi - lo)
     series = tuple(10 ** _drawn(draw, 7, 10) for _ in range(draw(st.integers(0, 2))))
     attachment = draw(st.sampled_from(("average", "average", "rigid", "section")))
-    return Bearing(name=name, y=(lo + hi) / 2, seat_width=width, stiffness=draw(stiffnesses(least)), axial_series=series, attachment=attachment)
+    return Bearing(
+        name=name,
+        y=(lo + hi) / 2,
+        seat_width=width,
+        stiffness=draw(stiffnesses(least)),
+        axial_series=series,
+        attachment=attachment,
+    )
 
 
 @st.composite

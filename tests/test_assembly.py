@@ -43,7 +43,15 @@ def frustum():
     other = Material(E=7e10, nu=0.33, density=2700.0)
     segments = (
         Segment.cylinder("disc", length=0.03, diameter=0.08),
-        Segment.cone("cone", length=0.04, start_diameter=0.05, end_diameter=0.07, bore=0.02, y0=0.03, material=other),
+        Segment.cone(
+            "cone",
+            length=0.04,
+            start_diameter=0.05,
+            end_diameter=0.07,
+            bore=0.02,
+            y0=0.03,
+            material=other,
+        ),
     )
     return Scene.from_parts(segments, material=STEEL)
 
@@ -53,14 +61,29 @@ def small_solid(element):
     if element.startswith("tet"):
         body = sg.build(scene, "solid", element=element, size=0.04, graded_size=0.04)
     else:
-        body = sg.build(scene, "solid", element=element, size=0.04, layers=0, edge_layers=0, radial_layers=0, around=8)
+        body = sg.build(
+            scene,
+            "solid",
+            element=element,
+            size=0.04,
+            layers=0,
+            edge_layers=0,
+            radial_layers=0,
+            around=8,
+        )
     return scene, body
 
 
 def own_mesh(geometry):
     """The library's isoparametric mesh as a scikit-fem mesh with the same geometry."""
     t = geometry.mesh.t
-    kind = {"tet4": MeshTet1, "tet10": MeshTet2, "hex8": MeshHex1, "hex20": MeshHex20, "hex27": MeshHex2}[geometry.name]
+    kind = {
+        "tet4": MeshTet1,
+        "tet10": MeshTet2,
+        "hex8": MeshHex1,
+        "hex20": MeshHex20,
+        "hex27": MeshHex2,
+    }[geometry.name]
     return kind(geometry.nodes, t)
 
 
@@ -69,12 +92,17 @@ def skfem_elasticity(geometry, materials, quadrature=None, intorder=None):
     mesh = own_mesh(geometry)
     options = {"quadrature": quadrature} if quadrature is not None else {"intorder": intorder}
     basis = Basis(mesh, ElementVector(geometry.element), **options)
-    e, nu, rho = (np.array([getattr(m, k) for m in materials])[geometry.segment][:, None] for k in ("E", "nu", "density"))
+    e, nu, rho = (
+        np.array([getattr(m, k) for m in materials])[geometry.segment][:, None]
+        for k in ("E", "nu", "density")
+    )
     lame, mu = e * nu / (1 + nu) / (1 - 2 * nu), e / 2 / (1 + nu)
 
     @BilinearForm
     def stiffness(u, v, w):
-        return lame * trace(sym_grad(u)) * trace(sym_grad(v)) + 2 * mu * ddot(sym_grad(u), sym_grad(v))
+        return lame * trace(sym_grad(u)) * trace(sym_grad(v)) + 2 * mu * ddot(
+            sym_grad(u), sym_grad(v)
+        )
 
     @BilinearForm
     def mass(u, v, w):
@@ -87,7 +115,9 @@ def skfem_elasticity(geometry, materials, quadrature=None, intorder=None):
 def test_curved_solid_matches_skfem_with_the_same_quadrature(element):
     scene, body = small_solid(element)
     rule = solid_module._cell_rule(element)
-    stiffness, mass = skfem_elasticity(body.geometry, [s.material for s in scene.segments], quadrature=rule)
+    stiffness, mass = skfem_elasticity(
+        body.geometry, [s.material for s in scene.segments], quadrature=rule
+    )
     assert relative_difference(body.blocks[0].stiffness, stiffness) < SAME_SUM
     assert relative_difference(body.blocks[0].mass, mass) < SAME_SUM
 
@@ -129,7 +159,9 @@ def move(p, size, amount, rng):
 def assembled_box(element, curved=False):
     mesh = box(element, curved=curved)
     geometry = solid_module._isoparametric(mesh, element, np.zeros(mesh.t.shape[1], int))
-    k, m = solid_module._matrices(geometry, SimpleNamespace(segments=(SimpleNamespace(material=STEEL),)))
+    k, m = solid_module._matrices(
+        geometry, SimpleNamespace(segments=(SimpleNamespace(material=STEEL),))
+    )
     return geometry, k, m
 
 
@@ -142,11 +174,17 @@ def test_distorted_solid_matches_skfem_with_its_own_quadrature(element):
     assert relative_difference(m, mass) < SAME_SUM
     if element.startswith("tet"):
         assert relative_difference(k, stiffness) < SAME_SUM
-    if element in ("hex20", "hex27"):  # order 7 is the four Gauss points a direction that the library means to use
+    if element in (
+        "hex20",
+        "hex27",
+    ):  # order 7 is the four Gauss points a direction that the library means to use
         assert relative_difference(k, stiffness) < SAME_SUM
 
 
-@pytest.mark.parametrize("element, curved", [(e, c) for e in SOLID for c in (False, True) if not (c and e in ("tet4", "hex8"))])
+@pytest.mark.parametrize(
+    "element, curved",
+    [(e, c) for e in SOLID for c in (False, True) if not (c and e in ("tet4", "hex8"))],
+)
 def test_patch_of_constant_stress(element, curved):
     geometry, k, _ = assembled_box(element, curved)
     rng = np.random.default_rng(11)
@@ -154,7 +192,9 @@ def test_patch_of_constant_stress(element, curved):
     u = (gradient @ geometry.nodes).T.ravel()
     force = (k @ u).reshape(-1, 3)
     size = np.array([1.0, 2.0, 3.0])
-    interior = np.all((geometry.nodes > 1e-9) & (geometry.nodes < (1 - 1e-9) * size[:, None]), axis=0)
+    interior = np.all(
+        (geometry.nodes > 1e-9) & (geometry.nodes < (1 - 1e-9) * size[:, None]), axis=0
+    )
     assert interior.sum() >= 8
     # The rules integrate grad N det J exactly on these elements (degree at most 6 a direction for curved bricks,
     # 4 Gauss points do 7), so nothing but rounding of the products K_ij u_j is left: 4e-16 and a margin.
@@ -162,7 +202,10 @@ def test_patch_of_constant_stress(element, curved):
     assert np.abs(force[interior]).max() / scale < 1e-14
     # ... and the faces carry the stress of Hooke's law times their area
     strain = (gradient + gradient.T) / 2
-    lame, mu = STEEL.E * STEEL.nu / (1 + STEEL.nu) / (1 - 2 * STEEL.nu), STEEL.E / 2 / (1 + STEEL.nu)
+    lame, mu = (
+        STEEL.E * STEEL.nu / (1 + STEEL.nu) / (1 - 2 * STEEL.nu),
+        STEEL.E / 2 / (1 + STEEL.nu),
+    )
     stress = lame * np.trace(strain) * np.eye(3) + 2 * mu * strain
     # shear on the side faces shares the edge nodes, so look at the virial: sum of x f = volume times stress
     virial = force.T @ geometry.nodes.T
@@ -176,7 +219,9 @@ def test_patch_test_can_fail():
     soft[0] = 1
     geometry = solid_module._isoparametric(mesh, "hex27", soft)
     softer = Material(E=STEEL.E * (1 - 1e-6), nu=STEEL.nu, density=STEEL.density)
-    scene = SimpleNamespace(segments=(SimpleNamespace(material=STEEL), SimpleNamespace(material=softer)))
+    scene = SimpleNamespace(
+        segments=(SimpleNamespace(material=STEEL), SimpleNamespace(material=softer))
+    )
     k, _ = solid_module._matrices(geometry, scene)
     u = (np.diag([1e-3, 0, 0]) @ geometry.nodes).T.ravel()
     size = np.array([1.0, 2.0, 3.0])[:, None]
@@ -189,7 +234,10 @@ def bent_box(element, amount, every=3):
     """A box of straight elements of two materials with one mid node of every third element moved, by a share of the element's size."""
     mesh = box(element)
     geometry = solid_module._isoparametric(mesh, element, np.arange(mesh.t.shape[1]) % 2)
-    touched = geometry.dofs[-1 if element == "hex27" else geometry.mesh.p.shape[0] + 1 if element == "tet10" else 8, ::every]
+    touched = geometry.dofs[
+        -1 if element == "hex27" else geometry.mesh.p.shape[0] + 1 if element == "tet10" else 8,
+        ::every,
+    ]
     size = np.ptp(geometry.nodes[:, geometry.dofs], axis=1).min()
     geometry.nodes[:, touched] += amount * size * np.array([[0.6], [0.0], [0.8]])
     bent = np.isin(geometry.dofs, touched).any(axis=0)
@@ -211,7 +259,9 @@ def test_bends_large_and_small_match_skfem(amount):
     if amount >= 1e-11:
         assert not found[bent].any()
     k, m = solid_module._matrices(geometry, TWO)
-    stiffness, mass = skfem_elasticity(geometry, [STEEL, SOFT], quadrature=solid_module._cell_rule("tet10"))
+    stiffness, mass = skfem_elasticity(
+        geometry, [STEEL, SOFT], quadrature=solid_module._cell_rule("tet10")
+    )
     # whatever is taken for straight may change entries by less than this
     assert relative_difference(k, stiffness) < 1e-12
     assert relative_difference(m, mass) < 1e-12
@@ -244,11 +294,15 @@ def cubes():
 def test_parallelepipeds_match_skfem(element):
     # affine bricks take the reference integrals, as straight tetrahedra do
     mesh = cubes()
-    mesh = replace(mesh, doflocs=np.array([[1.0, 0.3, 0.1], [0.0, 1.2, -0.2], [0.1, 0.0, 0.7]]) @ mesh.doflocs)
+    mesh = replace(
+        mesh, doflocs=np.array([[1.0, 0.3, 0.1], [0.0, 1.2, -0.2], [0.1, 0.0, 0.7]]) @ mesh.doflocs
+    )
     geometry = solid_module._isoparametric(mesh, element, np.arange(8) % 2)
     assert straight(geometry.element, geometry.nodes[:, geometry.dofs])[0].all()
     k, m = solid_module._matrices(geometry, TWO)
-    stiffness, mass = skfem_elasticity(geometry, [STEEL, SOFT], quadrature=solid_module._cell_rule(element))
+    stiffness, mass = skfem_elasticity(
+        geometry, [STEEL, SOFT], quadrature=solid_module._cell_rule(element)
+    )
     assert relative_difference(k, stiffness) < SAME_SUM
     assert relative_difference(m, mass) < SAME_SUM
 
@@ -261,7 +315,9 @@ def test_one_bent_brick_among_straight_ones(element):
     found, _ = straight(geometry.element, geometry.nodes[:, geometry.dofs])
     assert 0 < found.sum() < 8
     k, m = solid_module._matrices(geometry, TWO)
-    stiffness, mass = skfem_elasticity(geometry, [STEEL, SOFT], quadrature=solid_module._cell_rule(element))
+    stiffness, mass = skfem_elasticity(
+        geometry, [STEEL, SOFT], quadrature=solid_module._cell_rule(element)
+    )
     assert relative_difference(k, stiffness) < SAME_SUM
     assert relative_difference(m, mass) < SAME_SUM
 
@@ -300,9 +356,16 @@ def test_scatter_of_unsymmetric_element_matrices_is_the_sum_one_by_one(component
 def stepped(bore=0.0):
     segments = (
         Segment.cylinder("a", length=0.05, diameter=0.06, bore=bore),
-        Segment.cone("b", length=0.03, start_diameter=0.09, end_diameter=0.07, bore=bore, y0=0.05,
-                     material=Material(E=7e10, nu=0.33, density=2700.0)),
-    )  # fmt: skip
+        Segment.cone(
+            "b",
+            length=0.03,
+            start_diameter=0.09,
+            end_diameter=0.07,
+            bore=bore,
+            y0=0.05,
+            material=Material(E=7e10, nu=0.33, density=2700.0),
+        ),
+    )
     return Scene.from_parts(segments, material=STEEL)
 
 
@@ -314,7 +377,9 @@ def harmonic_by_skfem(scene, body, order, n):
     basis = Basis(mesh, ElementVector(element, dim=c), quadrature=rule)
     of = body.geometry.meridian.segment
     mats = [s.material for s in scene.segments]
-    e, nu, rho = (np.array([getattr(m, k) for m in mats])[of][:, None] for k in ("E", "nu", "density"))
+    e, nu, rho = (
+        np.array([getattr(m, k) for m in mats])[of][:, None] for k in ("E", "nu", "density")
+    )
     lame, mu = e * nu / (1 + nu) / (1 - 2 * nu), e / 2 / (1 + nu)
 
     def strain(u, r):
@@ -323,7 +388,14 @@ def harmonic_by_skfem(scene, body, order, n):
             return g[0, 0], d[0] / r, g[1, 1], 0 * r, 0 * r, g[0, 1] + g[1, 0]
         U, V, W = d[0] + d[1], d[0] - d[1], d[2]
         dU, dV, dW = g[0] + g[1], g[0] - g[1], g[2]
-        return dU[0], (U - n * V) / r, dW[1], -n * U / r - dV[0] + V / r, -dV[1] - n * W / r, dU[1] + dW[0]
+        return (
+            dU[0],
+            (U - n * V) / r,
+            dW[1],
+            -n * U / r - dV[0] + V / r,
+            -dV[1] - n * W / r,
+            dU[1] + dW[0],
+        )
 
     around = 2 * np.pi if n == 0 else np.pi
 
@@ -359,7 +431,9 @@ def harmonic_by_skfem(scene, body, order, n):
 def test_harmonic_blocks_match_skfem(order, bore):
     scene = stepped(bore)
     further = (2, 3) if order < 6 else ()  # scikit-fem's own vector forms take seconds at order 6
-    body = sg.build(scene, "harmonic", order=order, layers=1 if order < 4 else 0, size=0.05, ovalising=further)
+    body = sg.build(
+        scene, "harmonic", order=order, layers=1 if order < 4 else 0, size=0.05, ovalising=further
+    )
     names = {"bending_z": 1, "axial": 0} | {f"ovalising_{n}": n for n in further}
     seen = set()
     for block in body.blocks:
@@ -376,11 +450,17 @@ def test_harmonic_blocks_match_skfem(order, bore):
 def test_torsion_block_matches_skfem(order, bore):
     scene = stepped(bore)
     body = sg.build(scene, "harmonic", order=order, layers=1)
-    basis = Basis(body.geometry.mesh, body.geometry.element, quadrature=get_quadrature(RefQuad, 2 * (order + 2) - 1))
+    basis = Basis(
+        body.geometry.mesh,
+        body.geometry.element,
+        quadrature=get_quadrature(RefQuad, 2 * (order + 2) - 1),
+    )
     of = body.geometry.meridian.segment
     shear = np.array([s.material.shear_modulus for s in scene.segments])[of][:, None]
     rho = np.array([s.material.density for s in scene.segments])[of][:, None]
-    k = BilinearForm(lambda u, v, w: 2 * np.pi * w.x[0] ** 3 * shear * dot(u.grad, v.grad)).assemble(basis)
+    k = BilinearForm(
+        lambda u, v, w: 2 * np.pi * w.x[0] ** 3 * shear * dot(u.grad, v.grad)
+    ).assemble(basis)
     m = BilinearForm(lambda u, v, w: 2 * np.pi * w.x[0] ** 3 * rho * u * v).assemble(basis)
     assert relative_difference(body.blocks[3].stiffness, k) < SAME_SUM
     assert relative_difference(body.blocks[3].mass, m) < SAME_SUM
@@ -426,7 +506,11 @@ def test_uniform_axial_stretch_with_poisson_contraction_is_in_equilibrium(order,
     ends = np.zeros(len(u), bool)
     basis = Basis(body.geometry.mesh, body.geometry.element)
     for face in (0.0, 0.2):
-        ends[basis.get_dofs(body.geometry.mesh.facets_satisfying(lambda x: abs(x[1] - face) < 1e-9)).all()] = True
+        ends[
+            basis.get_dofs(
+                body.geometry.mesh.facets_satisfying(lambda x, at=face: abs(x[1] - at) < 1e-9)
+            ).all()
+        ] = True
     keep = np.ones_like(u, bool)
     if bore == 0.0:
         axis = body.geometry.mesh.facets_satisfying(lambda x: x[0] < 1e-9)
@@ -438,7 +522,9 @@ def test_uniform_axial_stretch_with_poisson_contraction_is_in_equilibrium(order,
     area = np.pi * (0.03**2 - bore**2 / 4)
     y = np.repeat(nodal_field(body, lambda r, y: (y,), 1)[:, 0], 2)[keep.ravel()]
     total = force[end_axial & (y > 0.1)].sum()
-    if order <= 2:  # Lagrange functions sum to one over a face; hierarchical ones do so over vertices only
+    if (
+        order <= 2
+    ):  # Lagrange functions sum to one over a face; hierarchical ones do so over vertices only
         assert total == pytest.approx(STEEL.E * e * area, rel=1e-10)
     # energy: 1/2 E e^2 A L whatever the basis; rounding of a sum over the mesh
     assert u[keep] @ force == pytest.approx(STEEL.E * e**2 * area * 0.2, rel=1e-11)

@@ -4,7 +4,6 @@ and the judges' arithmetic.
 
 import math
 import os
-import sys
 import time
 from pathlib import Path
 
@@ -16,23 +15,21 @@ from solidgear.fidelity import build
 from solidgear.meshing.quality import mass_properties
 from solidgear.scene import Bearing, Port, Scene, Segment
 from solidgear.solve.statics import condense
+from validation.attack import __main__ as command
+from validation.attack import campaign
+from validation.attack import reference as finest
+from validation.attack.bands import BandTable, explained
+from validation.attack.corner_mesh import corner_mesh, singular_points
+from validation.attack.judge import Band, band_of, errors_of, partner_of, within
+from validation.attack.outcome import outcome
+from validation.attack.reference import SURE, Reference, reference, settle
+from validation.attack.scenes import KINDS, TIES, distribution, random_scene, traits
+from validation.attack.spectral import spectral
+from validation.attack.springs import random_springs
+from validation.attack.verdicts import VerdictTable
+from validation.attack.worker import Worker
 
 ROOT = Path(__file__).resolve().parent.parent
-sys.path.insert(0, str(ROOT))
-
-from validation.attack import __main__ as command  # noqa: E402
-from validation.attack import campaign  # noqa: E402
-from validation.attack import reference as finest  # noqa: E402
-from validation.attack.bands import BandTable, explained  # noqa: E402
-from validation.attack.corner_mesh import corner_mesh, singular_points  # noqa: E402
-from validation.attack.judge import Band, band_of, errors_of, partner_of, within  # noqa: E402
-from validation.attack.outcome import outcome  # noqa: E402
-from validation.attack.reference import SURE, Reference, reference, settle  # noqa: E402
-from validation.attack.scenes import KINDS, TIES, distribution, random_scene, traits  # noqa: E402
-from validation.attack.spectral import spectral  # noqa: E402
-from validation.attack.springs import random_springs  # noqa: E402
-from validation.attack.verdicts import VerdictTable  # noqa: E402
-from validation.attack.worker import Worker  # noqa: E402
 
 
 # ------------------------------------------------------------------------------------------------
@@ -222,8 +219,11 @@ def _reference(**changed):
         "values": {"C_zz": 1.0, "C_thx": 4.0, "C_z,thx": 0.01},
         "uncertainty": dict.fromkeys(("C_zz", "C_thx", "C_z,thx"), 1e-6),
         "modes": [_mode("bending 1", 100.0, [1, 1]), _mode("bending 2", 110.0, [1, -1])],
-        "gram": np.eye(12).tolist(), "setting": [5, 6], "unknowns": 1, "seconds": 0.0,
-    }  # fmt: skip
+        "gram": np.eye(12).tolist(),
+        "setting": [5, 6],
+        "unknowns": 1,
+        "seconds": 0.0,
+    }
     return Reference(**(content | changed))
 
 

@@ -42,7 +42,9 @@ def reference():
 
 @pytest.mark.parametrize("backend", OTHERS)
 @pytest.mark.parametrize("fidelity", list(BODIES))
-def test_flexibility_and_frequencies_do_not_depend_on_the_back_end(reference, fidelity, backend, monkeypatch):
+def test_flexibility_and_frequencies_do_not_depend_on_the_back_end(
+    reference, fidelity, backend, monkeypatch
+):
     matrix, frequency = solved(fidelity, backend, monkeypatch)
     expected, expected_hz = reference[fidelity]
     # the flexibility is refined on K itself, a frequency is accurate to the square of its vector: both are below 1e-9 though the factors round apart
@@ -64,7 +66,9 @@ def check(matrix, found, expected, backend):
     rhs = np.random.default_rng(3).standard_normal((matrix.shape[0], 2))
     x = found.solve(rhs)
     # a sound factorisation leaves a backward error of rounding size
-    assert np.linalg.norm(matrix @ x - rhs) < 1e-10 * (sp.linalg.norm(matrix) * np.linalg.norm(x) + np.linalg.norm(rhs))
+    assert np.linalg.norm(matrix @ x - rhs) < 1e-10 * (
+        sp.linalg.norm(matrix) * np.linalg.norm(x) + np.linalg.norm(rhs)
+    )
 
 
 @pytest.mark.parametrize("backend", COUNTING)
@@ -120,7 +124,11 @@ def test_unsound_factor_is_passed_over(monkeypatch):
     monkeypatch.setattr(factor.BACKENDS["superlu"], "factor", wrong)
     assert indefinite(matrix, "superlu") is None
     found = indefinite(matrix)
-    assert found is None if missing("pardiso") and missing("mumps") else found.negative == 1 and "no sound factor by superlu" in found.reason
+    assert (
+        found is None
+        if missing("pardiso") and missing("mumps")
+        else found.negative == 1 and "no sound factor by superlu" in found.reason
+    )
 
 
 @pytest.mark.skipif(bool(missing("cholmod")), reason="no CHOLMOD")
@@ -132,15 +140,22 @@ def test_cholmod_hands_the_count_on(monkeypatch):
 
 # --------------------------------------------------------------------------- plumbing
 def test_upper_triangle_is_that_of_scipy():
-    matrix = sp.random(40, 40, 0.1, random_state=1, format="csr")  # some rows are empty above the diagonal
+    matrix = sp.random(
+        40, 40, 0.1, random_state=1, format="csr"
+    )  # some rows are empty above the diagonal
     matrix.sort_indices()
     assert (upper_triangle(matrix) != sp.triu(matrix, format="csr")).nnz == 0
 
 
 @pytest.mark.parametrize("backend", [pytest.param(name, marks=needs(name)) for name in NAMES])
 def test_order_of_entries_does_not_matter_and_is_left_alone(backend):
-    given = sp.csr_matrix((np.array([2.0, 4.0, 5.0, 1.0, 1.0]), np.array([1, 0, 1, 0, 0]), np.array([0, 2, 5])), shape=(2, 2))
+    given = sp.csr_matrix(
+        (np.array([2.0, 4.0, 5.0, 1.0, 1.0]), np.array([1, 0, 1, 0, 0]), np.array([0, 2, 5])),
+        shape=(2, 2),
+    )
     before = given.indices.copy()
     x = factorise(given, backend).solve(np.array([6.0, 7.0]))
-    np.testing.assert_allclose(x, [1, 1], rtol=1e-14)  # [[4, 2], [2, 5]], two entries given in parts
+    np.testing.assert_allclose(
+        x, [1, 1], rtol=1e-14
+    )  # [[4, 2], [2, 5]], two entries given in parts
     assert np.array_equal(given.indices, before)

@@ -29,14 +29,19 @@ def test_a_step_that_is_small_by_accident_is_not_believed():
 @pytest.mark.parametrize("rigid", [False, True])
 def test_after_two_levels_of_hexahedra_larger_steps_give_larger_bands_and_lesser_shares(rigid):
     steps = np.geomspace(1e-5, 0.3, 60)
-    bands = np.array([layered_bands(levels(s), {}, "solid", rigid=rigid)["C_zz"].gci for s in steps])
+    bands = np.array(
+        [layered_bands(levels(s), {}, "solid", rigid=rigid)["C_zz"].gci for s in steps]
+    )
     assert (np.diff(bands) > -1e-15).all()
     shares = bands / steps
     assert (np.diff(shares) < 1e-4).all() and shares[0] > 2 * shares[-1]
 
 
 def test_a_rigid_seat_costs_more():
-    free, rigid = (layered_bands(levels(0.05, 0.02), {}, model, rigid=held)["C_zz"].gci for model, held in (("solid", False), ("solid", True)))
+    free, rigid = (
+        layered_bands(levels(0.05, 0.02), {}, model, rigid=held)["C_zz"].gci
+        for model, held in (("solid", False), ("solid", True))
+    )
     assert rigid > free
 
 
@@ -51,8 +56,17 @@ def test_a_coupling_is_no_surer_than_its_diagonal_entries():
 
 def test_cells_around_and_the_solver_are_added():
     plain = layered_bands(levels(0.05, 0.01), {}, "solid")
-    full = layered_bands(levels(0.05, 0.01), {"C_zz": 1e-4}, "solid", around={"C_zz": 1e-3, "C_thx": 4e-3, "C_z,thx": 0.0})
+    full = layered_bands(
+        levels(0.05, 0.01),
+        {"C_zz": 1e-4},
+        "solid",
+        around={"C_zz": 1e-3, "C_thx": 4e-3, "C_z,thx": 0.0},
+    )
     added = {q: full[q].gci - plain[q].gci for q in FINEST}
     assert added["C_zz"] == pytest.approx(SURE_AROUND * 1e-3 + 1e-4)
-    assert added["C_z,thx"] == pytest.approx(SURE_AROUND * 2e-3)  # as much as in the diagonal entries
-    assert added["bending 1"] == pytest.approx(SURE_AROUND * 4e-3)  # not measured: as much as in the worst
+    assert added["C_z,thx"] == pytest.approx(
+        SURE_AROUND * 2e-3
+    )  # as much as in the diagonal entries
+    assert added["bending 1"] == pytest.approx(
+        SURE_AROUND * 4e-3
+    )  # not measured: as much as in the worst

@@ -16,7 +16,20 @@ import solidgear as sg
 from solidgear.frames import DOF_NAMES
 
 HERE = Path(__file__).parent
-REQUIRED = ("name", "scene", "fidelity", "options", "quantity", "value", "unit", "kind", "source", "uncertainty", "rtol", "why")
+REQUIRED = (
+    "name",
+    "scene",
+    "fidelity",
+    "options",
+    "quantity",
+    "value",
+    "unit",
+    "kind",
+    "source",
+    "uncertainty",
+    "rtol",
+    "why",
+)
 OPTIONAL = ("changes", "atol")
 KINDS = ("closed_form", "literature", "cross_model", "golden")
 
@@ -32,17 +45,27 @@ def check_entry(entry):
             raise ValueError(f"baseline {entry['name']!r}: unknown key {key!r}")
     for key in ("name", "source", "uncertainty", "why", "unit"):
         if not isinstance(entry[key], str) or not entry[key].strip():
-            raise ValueError(f"baseline {entry['name']!r}: {key!r} must be a text that says something")
+            raise ValueError(
+                f"baseline {entry['name']!r}: {key!r} must be a text that says something"
+            )
     if entry["kind"] not in KINDS:
-        raise ValueError(f"baseline {entry['name']!r}: kind {entry['kind']!r} is not one of {', '.join(KINDS)}")
+        raise ValueError(
+            f"baseline {entry['name']!r}: kind {entry['kind']!r} is not one of {', '.join(KINDS)}"
+        )
     if not (isinstance(entry["rtol"], (int, float)) and 0 <= entry["rtol"] <= 0.05):
-        raise ValueError(f"baseline {entry['name']!r}: rtol {entry['rtol']!r} would accept anything")
+        raise ValueError(
+            f"baseline {entry['name']!r}: rtol {entry['rtol']!r} would accept anything"
+        )
     if entry["rtol"] == 0 and not entry.get("atol", 0) > 0:
         raise ValueError(f"baseline {entry['name']!r} has no tolerance at all")
 
 
 def load_entries():
-    entries = [e for path in sorted((HERE / "baselines").glob("*.json")) for e in json.loads(path.read_text())]
+    entries = [
+        e
+        for path in sorted((HERE / "baselines").glob("*.json"))
+        for e in json.loads(path.read_text())
+    ]
     for entry in entries:
         check_entry(entry)
     return entries
@@ -69,11 +92,16 @@ class Cache:
         self.made = {}
 
     def body(self, scene, fidelity, options):
-        return self._once(("body", scene, fidelity, json.dumps(options, sort_keys=True)), lambda: sg.build(scene, fidelity, **options))
+        return self._once(
+            ("body", scene, fidelity, json.dumps(options, sort_keys=True)),
+            lambda: sg.build(scene, fidelity, **options),
+        )
 
     def condensed(self, scene, fidelity, options):
         body = self.body(scene, fidelity, options)
-        return self._once(("condensed", id(body)), lambda: sg.condense(body, scene, scene.port.name))
+        return self._once(
+            ("condensed", id(body)), lambda: sg.condense(body, scene, scene.port.name)
+        )
 
     def modes(self, scene, fidelity, options, n=8):
         body = self.body(scene, fidelity, options)
@@ -101,10 +129,16 @@ def evaluate(entry, scene=None, cache=SHARED):
         found = cache.modes(scene, fidelity, options, n=12).frequency_hz
         return found[found > 0][: int(match[1])]
     if quantity == "bending 1, rigid over averaged bearings":
-        rigid = scene.with_changes(bearings=tuple(b.with_changes(attachment="rigid") for b in scene.bearings))
-        a, b = (cache.modes(s, fidelity, options).named("bending 1").frequency_hz for s in (rigid, scene))
+        rigid = scene.with_changes(
+            bearings=tuple(b.with_changes(attachment="rigid") for b in scene.bearings)
+        )
+        a, b = (
+            cache.modes(s, fidelity, options).named("bending 1").frequency_hz
+            for s in (rigid, scene)
+        )
         return 100 * (a / b - 1)
     if match := re.fullmatch(r"timoshenko over harmonic, (.+)", quantity):
+
         def of(kind):
             o = options if kind == "harmonic" else {}
             if match[1] == "bending 1":
@@ -119,17 +153,25 @@ def misses(entry, scene=None, cache=SHARED):
     """How far the value found lies outside the tolerance, in tolerances; at most 1 is a pass."""
     found, value = np.atleast_1d(evaluate(entry, scene, cache)), np.atleast_1d(entry["value"])
     assert found.shape == value.shape, entry["name"]
-    return float((np.abs(found - value) / (entry["rtol"] * np.abs(value) + entry.get("atol", 0.0))).max())
+    return float(
+        (np.abs(found - value) / (entry["rtol"] * np.abs(value) + entry.get("atol", 0.0))).max()
+    )
 
 
 @pytest.mark.parametrize("entry", ENTRIES, ids=lambda e: e["name"])
 def test_baseline(entry):
-    assert misses(entry) <= 1.0, f"{entry['name']}: found {evaluate(entry)} instead of {entry['value']} {entry['unit']} ({entry['source']})"
+    assert misses(entry) <= 1.0, (
+        f"{entry['name']}: found {evaluate(entry)} instead of {entry['value']} {entry['unit']} ({entry['source']})"
+    )
 
 
 def test_baselines_cover_what_they_must():
     names = {p.stem for p in (HERE.parent / "geometry").glob("*.toml")}
-    golden = {(e["scene"], e["fidelity"]) for e in ENTRIES if e["kind"] == "golden" and "frequencies" in e["quantity"]}
+    golden = {
+        (e["scene"], e["fidelity"])
+        for e in ENTRIES
+        if e["kind"] == "golden" and "frequencies" in e["quantity"]
+    }
     assert {(n, f) for n in names for f in ("timoshenko", "harmonic")} <= golden
     assert {e["kind"] for e in ENTRIES} >= {"golden", "cross_model", "closed_form", "literature"}
     assert len({e["name"] for e in ENTRIES}) == len(ENTRIES)
@@ -143,15 +185,18 @@ def test_entry_without_a_field_is_refused(key):
         check_entry(entry)
 
 
-@pytest.mark.parametrize("change, message", [
-    ({"source": " "}, "source"),
-    ({"why": ""}, "why"),
-    ({"uncertainty": ""}, "uncertainty"),
-    ({"kind": "guess"}, "kind"),
-    ({"rtol": 1e5}, "anything"),
-    ({"rtol": 0.0}, "no tolerance"),
-    ({"remark": "x"}, "unknown key"),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    "change, message",
+    [
+        ({"source": " "}, "source"),
+        ({"why": ""}, "why"),
+        ({"uncertainty": ""}, "uncertainty"),
+        ({"kind": "guess"}, "kind"),
+        ({"rtol": 1e5}, "anything"),
+        ({"rtol": 0.0}, "no tolerance"),
+        ({"remark": "x"}, "unknown key"),
+    ],
+)
 def test_entry_that_says_nothing_is_refused(change, message):
     with pytest.raises(ValueError, match=message):
         check_entry({k: v for k, v in ENTRIES[0].items() if k != "atol"} | change)
@@ -177,20 +222,38 @@ MUTATIONS = {
     "density up by 1 %": lambda s: s.with_material(density=1.01 * s.material.density),
 }
 #: which entries each mutation must turn red
-SEEN_BY = {"E": ("stiffness", "frequen"), "tilt": ("stiffness", "frequen"), "port": ("stiffness",), "density": ("frequen",)}
+SEEN_BY = {
+    "E": ("stiffness", "frequen"),
+    "tilt": ("stiffness", "frequen"),
+    "port": ("stiffness",),
+    "density": ("frequen",),
+}
 
 
 def red(entries, mutation):
     cache = Cache()
     scene = MUTATIONS[mutation](scene_of(entries[0]))
     wanted = SEEN_BY[mutation.split()[0]]
-    watched = [e for e in entries if e["quantity"].startswith(wanted) or e["quantity"].startswith("first") and "frequen" in wanted]
+    watched = [
+        e
+        for e in entries
+        if e["quantity"].startswith(wanted)
+        or e["quantity"].startswith("first")
+        and "frequen" in wanted
+    ]
     assert watched
     return {e["name"]: misses(e, scene, cache) for e in watched}
 
 
 def of_pinion(kind, fidelity):
-    return [e for e in ENTRIES if e["scene"] == "pinion_overhung" and e["kind"] == kind and e["fidelity"] == fidelity and "changes" not in e]
+    return [
+        e
+        for e in ENTRIES
+        if e["scene"] == "pinion_overhung"
+        and e["kind"] == kind
+        and e["fidelity"] == fidelity
+        and "changes" not in e
+    ]
 
 
 @pytest.mark.parametrize("mutation", MUTATIONS)
@@ -204,7 +267,9 @@ def test_golden_values_notice(fidelity, mutation):
 @pytest.mark.parametrize("mutation", MUTATIONS)
 def test_reference_values_notice(mutation):
     result = red(of_pinion("cross_model", "harmonic"), mutation)
-    assert max(result.values()) > 2, result  # beside the margin of the discretisation, 80 % of the tolerance at worst
+    assert max(result.values()) > 2, (
+        result
+    )  # beside the margin of the discretisation, 80 % of the tolerance at worst
 
 
 # --------------------------------------------------------------------------- what kappa does to the beam-solid gap
@@ -221,7 +286,10 @@ def test_gap_of_the_beam_with_cowpers_coefficient():
     # Hutchinson's larger coefficient makes the beam stiffer: that difference is the whole of the difference to the baselines.
     scene, cache = section_scene(), Cache()
     cowper = {"kappa": "cowper"}
-    beam, ring = cache.condensed(scene, "timoshenko", cowper), SHARED.condensed(scene, "harmonic", FINE)
+    beam, ring = (
+        cache.condensed(scene, "timoshenko", cowper),
+        SHARED.condensed(scene, "harmonic", FINE),
+    )
     frequency = cache.modes(scene, "timoshenko", cowper).named("bending 1").frequency_hz
     exact = SHARED.modes(scene, "harmonic", FINE).named("bending 1").frequency_hz
     # figures given to a tenth of a per cent, the harmonic solid within another tenth

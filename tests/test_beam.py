@@ -22,7 +22,9 @@ G = E / (2 * (1 + NU))
 
 
 def rod(bore=0.0, length=LENGTH):
-    return Scene.from_parts([Segment.cylinder("rod", length=length, diameter=2 * RADIUS, bore=bore)])
+    return Scene.from_parts(
+        [Segment.cylinder("rod", length=length, diameter=2 * RADIUS, bore=bore)]
+    )
 
 
 def kappa_solid(nu=NU):
@@ -46,7 +48,11 @@ def free_free_timoshenko(count, kappa, length=LENGTH, a=RADIUS, b=0.0):
     unit = np.sqrt(stiff / (RHO * area)) / length**2
     grid = np.linspace(2.0, 400.0, 800) * unit
     values = [determinant(w) for w in grid]
-    roots = [brentq(determinant, x, y, xtol=1e-9 * unit, rtol=1e-14) for x, y, f, g in zip(grid, grid[1:], values, values[1:]) if f * g < 0]
+    roots = [
+        brentq(determinant, x, y, xtol=1e-9 * unit, rtol=1e-14)
+        for x, y, f, g in zip(grid, grid[1:], values, values[1:])
+        if f * g < 0
+    ]
     assert len(roots) >= count
     return np.array(roots[:count])
 
@@ -58,8 +64,15 @@ def bending(modeset, count):
 
 @pytest.mark.parametrize("bore, kappa", [(0.0, kappa_solid()), (0.03, None)])
 def test_free_free_timoshenko(bore, kappa):
-    if kappa is None:  # Hutchinson (2001) for a tube of radii a and a/2, worked out by hand with a = 2, b = 1
-        kappa = 6 * (1 + NU) ** 2 * 25 / (7 * 16 + 34 * 4 + 7 + NU * (12 * 16 + 48 * 4 + 12) + NU**2 * (4 * 16 + 16 * 4 + 4))
+    if (
+        kappa is None
+    ):  # Hutchinson (2001) for a tube of radii a and a/2, worked out by hand with a = 2, b = 1
+        kappa = (
+            6
+            * (1 + NU) ** 2
+            * 25
+            / (7 * 16 + 34 * 4 + 7 + NU * (12 * 16 + 48 * 4 + 12) + NU**2 * (4 * 16 + 16 * 4 + 4))
+        )
     body = sg.build(rod(bore), "timoshenko", elements=40)
     found = bending(sg.modes(body, n=12), 3)
     exact = free_free_timoshenko(3, kappa, b=bore / 2)
@@ -70,13 +83,19 @@ def test_free_free_timoshenko(bore, kappa):
 
 def test_free_free_timoshenko_converges_with_fourth_order():
     exact = free_free_timoshenko(2, kappa_solid())[1]
-    errors = [bending(sg.modes(sg.build(rod(), "timoshenko", elements=n), n=10), 2)[1] / exact - 1 for n in (10, 20)]
+    errors = [
+        bending(sg.modes(sg.build(rod(), "timoshenko", elements=n), n=10), 2)[1] / exact - 1
+        for n in (10, 20)
+    ]
     # a factor of 16 when h is halved, up to the next order; without the internal fields it is 4
     assert errors[0] / errors[1] == pytest.approx(16, rel=0.05)
 
 
 def test_free_free_euler():
-    roots = [brentq(lambda x: np.cos(x) - 1 / np.cosh(x), x - 0.5, x + 0.5, xtol=1e-14) for x in (4.73, 7.853, 10.996)]
+    roots = [
+        brentq(lambda x: np.cos(x) - 1 / np.cosh(x), x - 0.5, x + 0.5, xtol=1e-14)
+        for x in (4.73, 7.853, 10.996)
+    ]
     assert roots[0] == pytest.approx(4.73004074, abs=1e-8)  # Blevins' table
     exact = np.array(roots) ** 2 * np.sqrt(E * RADIUS**2 / 4 / RHO) / LENGTH**2
     found = bending(sg.modes(sg.build(rod(), "euler", elements=40), n=12), 3)
@@ -93,15 +112,23 @@ def discrete_rod(speed, n, elements, length=LENGTH):
     return np.sqrt(6 * speed**2 / h**2 * (1 - c) / (2 + c))
 
 
-@pytest.mark.parametrize("family, speed", [("axial", np.sqrt(E / RHO)), ("torsion", np.sqrt(G / RHO))])
+@pytest.mark.parametrize(
+    "family, speed", [("axial", np.sqrt(E / RHO)), ("torsion", np.sqrt(G / RHO))]
+)
 def test_free_free_rod(family, speed):
     body = sg.build(rod(), "timoshenko", elements=40)
-    found = [2 * np.pi * m.frequency_hz for m in sg.modes(body, n=20).modes if m.family == family and m.frequency_hz > 0]
+    found = [
+        2 * np.pi * m.frequency_hz
+        for m in sg.modes(body, n=20).modes
+        if m.family == family and m.frequency_hz > 0
+    ]
     for n in (1, 2):
         # the shift of 1e-3 of the first eigenvalue costs three digits of rounding
         assert found[n - 1] == pytest.approx(discrete_rod(speed, n, 40), rel=1e-9)
         # ... and the discrete rod is within (n pi / 40)^2 / 24 of the continuous one
-        assert found[n - 1] / (n * np.pi * speed / LENGTH) - 1 == pytest.approx((n * np.pi / 40) ** 2 / 24, rel=0.01)
+        assert found[n - 1] / (n * np.pi * speed / LENGTH) - 1 == pytest.approx(
+            (n * np.pi / 40) ** 2 / 24, rel=0.01
+        )
 
 
 # --------------------------------------------------------------------------- cantilevers
@@ -112,7 +139,9 @@ def cantilever(segments, spring=1e24, **options):
     the Euler beam four digits.
     """
     length = segments[-1].y1
-    clamp = Bearing(name="clamp", y=HELD, seat_width=2 * HELD, matrix=np.eye(6) * spring, attachment="section")
+    clamp = Bearing(
+        name="clamp", y=HELD, seat_width=2 * HELD, matrix=np.eye(6) * spring, attachment="section"
+    )
     tip = Port(name="tip", y=length, lo=length - 0.002, hi=length, attachment="section")
     scene = Scene.from_parts(segments, bearings=[clamp], port=tip)
     fidelity = options.pop("fidelity", "timoshenko")
@@ -157,7 +186,9 @@ def test_soft_clamp_adds_its_own_compliance():
 @pytest.mark.parametrize("bore", [0.0, 0.02])
 def test_tapered_cantilever_against_the_unit_load_integral(bore):
     a0, a1, length = 0.05, 0.02, 0.4
-    cone = Segment.cone("cone", length=length, start_diameter=2 * a0, end_diameter=2 * a1, bore=bore)
+    cone = Segment.cone(
+        "cone", length=length, start_diameter=2 * a0, end_diameter=2 * a1, bore=bore
+    )
     c, span = cantilever([cone], elements=4)
     radius = lambda y: a0 + (a1 - a0) * y / length  # noqa: E731
     area = lambda y: np.pi * (radius(y) ** 2 - bore**2 / 4)  # noqa: E731
@@ -166,7 +197,11 @@ def test_tapered_cantilever_against_the_unit_load_integral(bore):
     def kappa(y):
         a, b = radius(y) ** 2, bore**2 / 4
         return (6 * (1 + NU) ** 2 * (a + b) ** 2) / (
-            7 * a**2 + 34 * a * b + 7 * b**2 + NU * (12 * a**2 + 48 * a * b + 12 * b**2) + NU**2 * (4 * a**2 + 16 * a * b + 4 * b**2)
+            7 * a**2
+            + 34 * a * b
+            + 7 * b**2
+            + NU * (12 * a**2 + 48 * a * b + 12 * b**2)
+            + NU**2 * (4 * a**2 + 16 * a * b + 4 * b**2)
         )
 
     def integral(f):
@@ -189,7 +224,9 @@ def test_mean_head_is_the_cylinder_of_mean_radius():
     cone = Segment.cone("cone", length=0.4, start_diameter=0.1, end_diameter=0.04)
     mean, length = cantilever([cone], head="mean")
     second = np.pi / 4 * 0.035**4
-    assert mean[3, 3] == pytest.approx(length / (E * second), rel=1e-10)  # as for the uniform cantilever, more elements
+    assert mean[3, 3] == pytest.approx(
+        length / (E * second), rel=1e-10
+    )  # as for the uniform cantilever, more elements
 
 
 # --------------------------------------------------------------------------- shear coefficient
@@ -207,7 +244,9 @@ def test_shear_coefficient_of_a_thin_tube(nu):
 
 
 def test_shear_coefficient_does_not_depend_on_size():
-    assert shear_coefficient(0.3, 0.4, 0.1) == pytest.approx(shear_coefficient(0.3, 0.04, 0.01), rel=1e-14)
+    assert shear_coefficient(0.3, 0.4, 0.1) == pytest.approx(
+        shear_coefficient(0.3, 0.04, 0.01), rel=1e-14
+    )
 
 
 # --------------------------------------------------------------------------- mass
@@ -224,7 +263,12 @@ def test_beam_mass_is_that_of_the_cone(mass):
     assert m[4, 4] == pytest.approx(polar, rel=1e-12)
     if mass == "consistent":
         first = quad(lambda y: RHO * np.pi * radius(y) ** 2 * y, 0, length, epsrel=1e-13)[0]
-        cross = quad(lambda y: RHO * np.pi * (radius(y) ** 2 * y**2 + radius(y) ** 4 / 4), 0, length, epsrel=1e-13)[0]
+        cross = quad(
+            lambda y: RHO * np.pi * (radius(y) ** 2 * y**2 + radius(y) ** 4 / 4),
+            0,
+            length,
+            epsrel=1e-13,
+        )[0]
         assert m[2, 3] == pytest.approx(first, rel=1e-12)
         assert m[0, 5] == pytest.approx(-first, rel=1e-12)
         assert m[3, 3] == pytest.approx(cross, rel=1e-12)
@@ -234,9 +278,13 @@ def test_beam_mass_is_that_of_the_cone(mass):
 def test_euler_elements_too_short_to_keep_digits_are_refused(gap, refused):
     """Two marks 1e-8 m apart once gave frequencies 59 % wrong without a word; Timoshenko does not mind them."""
     bearing = Bearing(name="1", y=0.1, seat_width=0.02, matrix=1e8 * np.eye(6))
-    scene = Scene.from_parts(rod().segments, bearings=[bearing], port=Port(y=0.1 + gap * LENGTH, lo=0.05, hi=0.15))
+    scene = Scene.from_parts(
+        rod().segments, bearings=[bearing], port=Port(y=0.1 + gap * LENGTH, lo=0.05, hi=0.15)
+    )
     if refused:
-        with pytest.raises(SolidgearError, match=r"euler: the element at y = 0\.1 m is .* loses its digits"):
+        with pytest.raises(
+            SolidgearError, match=r"euler: the element at y = 0\.1 m is .* loses its digits"
+        ):
             sg.build(scene, "euler")
     else:
         sg.build(scene, "euler")

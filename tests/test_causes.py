@@ -30,7 +30,13 @@ def quantities(scene, fidelity, **options):
 
 # --------------------------------------------------------------------------- inside the beam
 def test_overhung_pinion_has_every_cause(table):
-    assert list(table) == ["shear", "rotary inertia", "shear coefficient", "head smearing", "mass lumping"]
+    assert list(table) == [
+        "shear",
+        "rotary inertia",
+        "shear coefficient",
+        "head smearing",
+        "mass lumping",
+    ]
 
 
 def test_shear_makes_a_shaft_softer(table):
@@ -70,7 +76,9 @@ def test_rows_add_up_to_the_gap_between_the_beams(overhung, table):
     section = overhung.with_attachment("section")
     euler, timoshenko = quantities(section, "euler"), quantities(section, "timoshenko")
     for name, field in (("C_zz", "c_zz"), ("K_zz", "k_zz"), ("bending 1", "bending_1")):
-        product = (1 + getattr(table["shear"], field)) * (1 + getattr(table["rotary inertia"], field))
+        product = (1 + getattr(table["shear"], field)) * (
+            1 + getattr(table["rotary inertia"], field)
+        )
         # the two switches in a row lead from one beam to the other: rounding of solvers
         assert product == pytest.approx(timoshenko[name] / euler[name], rel=1e-8)
 
@@ -93,15 +101,30 @@ def test_free_cylinder_has_frequencies_only():
 
 # --------------------------------------------------------------------------- attachment
 def test_attachment_rows_are_relative_to_average():
-    values = {"average": {"C_zz": 2.0, "bending 1": 100.0}, "rigid": {"C_zz": 1.0, "bending 1": 110.0}, "section": {"C_zz": 3.0}}
+    values = {
+        "average": {"C_zz": 2.0, "bending 1": 100.0},
+        "rigid": {"C_zz": 1.0, "bending 1": 110.0},
+        "section": {"C_zz": 3.0},
+    }
     rigid, section = attachment_causes(values, "harmonic")
-    assert rigid == Cause("attachment", "average -> rigid seats", "harmonic", -0.5, None, pytest.approx(0.1, rel=1e-12))  # arithmetic
-    assert section == Cause("attachment", "average -> section mean everywhere", "harmonic", 0.5, None, None)
+    assert rigid == Cause(
+        "attachment",
+        "average -> rigid seats",
+        "harmonic",
+        -0.5,
+        None,
+        pytest.approx(0.1, rel=1e-12),
+    )  # arithmetic
+    assert section == Cause(
+        "attachment", "average -> section mean everywhere", "harmonic", 0.5, None, None
+    )
 
 
 def test_attachment_rows_need_average():
     assert attachment_causes({"rigid": {"C_zz": 1.0}}, "solid") == []
-    assert [c.change for c in attachment_causes({"average": {}, "section": {}}, "solid")] == ["average -> section mean everywhere"]
+    assert [c.change for c in attachment_causes({"average": {}, "section": {}}, "solid")] == [
+        "average -> section mean everywhere"
+    ]
 
 
 # --------------------------------------------------------------------------- shoulder
@@ -121,9 +144,15 @@ def test_shoulder_explains_the_beams_gap_in_compliance(overhung):
 
 
 def test_share_is_the_gap_less_that_of_the_plain_shaft(overhung):
-    one = shoulder_cause(overhung, {"C_zz": -0.05, "K_zz": 0.1, "bending 1": 0.0}, {"order": 2, "layers": 0})
-    two = shoulder_cause(overhung, {"C_zz": -0.02, "K_zz": None, "bending 1": 0.0}, {"order": 2, "layers": 0})
-    assert two.c_zz - one.c_zz == pytest.approx(0.03, abs=1e-9)  # arithmetic on the same two solutions
+    one = shoulder_cause(
+        overhung, {"C_zz": -0.05, "K_zz": 0.1, "bending 1": 0.0}, {"order": 2, "layers": 0}
+    )
+    two = shoulder_cause(
+        overhung, {"C_zz": -0.02, "K_zz": None, "bending 1": 0.0}, {"order": 2, "layers": 0}
+    )
+    assert two.c_zz - one.c_zz == pytest.approx(
+        0.03, abs=1e-9
+    )  # arithmetic on the same two solutions
     assert one.k_zz is not None and two.k_zz is None
     # its own gap does not go into the plain shaft's
     assert two.bending_1 == pytest.approx(one.bending_1, abs=1e-9)
@@ -133,7 +162,9 @@ def test_what_is_taken_off_is_the_gap_of_the_plain_shaft(overhung):
     options = {"order": 2, "layers": 0}
     found = shoulder_cause(overhung, {"C_zz": 0.0, "K_zz": 0.0, "bending 1": 0.0}, options)
     least = min(min(s.outer0, s.outer1) for s in overhung.segments)
-    plain = overhung.with_changes(segments=tuple(s.with_changes(outer0=least, outer1=least) for s in overhung.segments)).with_attachment("section")
+    plain = overhung.with_changes(
+        segments=tuple(s.with_changes(outer0=least, outer1=least) for s in overhung.segments)
+    ).with_attachment("section")
     beam, solid = quantities(plain, "timoshenko"), quantities(plain, "harmonic", **options)
     for name, value in (("C_zz", found.c_zz), ("K_zz", found.k_zz), ("bending 1", found.bending_1)):
         # the same two solutions again: rounding
@@ -144,7 +175,9 @@ def test_what_is_taken_off_is_the_gap_of_the_plain_shaft(overhung):
 
 @pytest.mark.parametrize("name", ["cylinder_free", "shaft_hollow"])
 def test_no_shoulder_cause_without_steps(name, monkeypatch):
-    monkeypatch.setattr("solidgear.evidence.causes.build", lambda *a, **k: pytest.fail("nothing is to be built"))
+    monkeypatch.setattr(
+        "solidgear.evidence.causes.build", lambda *a, **k: pytest.fail("nothing is to be built")
+    )
     assert shoulder_cause(sg.load(GEOMETRY / f"{name}.toml"), {"C_zz": -0.1}, {}) is None
 
 
@@ -152,10 +185,18 @@ def test_plain_shaft_that_cannot_be_made_is_told():
     # turned down to the thin neck, the flared sleeve would have no wall left
     scene = Scene.from_parts(
         [
-            Segment(name="neck", y0=0.0, y1=0.1, outer0=0.02, outer1=0.02, inner0=0.01, inner1=0.01),
-            Segment(name="sleeve", y0=0.1, y1=0.2, outer0=0.06, outer1=0.06, inner0=0.01, inner1=0.03),
+            Segment(
+                name="neck", y0=0.0, y1=0.1, outer0=0.02, outer1=0.02, inner0=0.01, inner1=0.01
+            ),
+            Segment(
+                name="sleeve", y0=0.1, y1=0.2, outer0=0.06, outer1=0.06, inner0=0.01, inner1=0.03
+            ),
         ]
     )
     said = []
     assert shoulder_cause(scene, {"C_zz": -0.1}, {}, said.append) is None
-    assert len(said) == 1 and said[0].startswith("the share of the shoulders is left out: ") and "bore" in said[0]
+    assert (
+        len(said) == 1
+        and said[0].startswith("the share of the shoulders is left out: ")
+        and "bore" in said[0]
+    )

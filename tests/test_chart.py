@@ -17,7 +17,20 @@ from solidgear.evidence import cases, pareto
 from solidgear.evidence.pareto import Race, Row, race
 from solidgear.report import speed_accuracy
 from solidgear.report.html import render_page, write_report
-from solidgear.report.speed_accuracy import MACHINE, PICTURE, ROWS, draw, error_text, figure, front_rows, left_out, read_race, records, section, write_rows
+from solidgear.report.speed_accuracy import (
+    MACHINE,
+    PICTURE,
+    ROWS,
+    draw,
+    error_text,
+    figure,
+    front_rows,
+    left_out,
+    read_race,
+    records,
+    section,
+    write_rows,
+)
 
 ROOT = Path(__file__).parent.parent
 SCENE = ROOT / "geometry" / "shaft_stepped.toml"
@@ -29,7 +42,13 @@ def few(scene=None, full=False):
     return [
         Row("lumped", "lumped", 1, "lumped", {}),
         Row("beam", "Timoshenko", 1, "timoshenko", {"elements": 1}),
-        Row("harmonic", "harmonic h uniform", 1, "harmonic", {"order": 2, "layers": 0, "edge_layers": 0, "refinement": 0.5}),
+        Row(
+            "harmonic",
+            "harmonic h uniform",
+            1,
+            "harmonic",
+            {"order": 2, "layers": 0, "edge_layers": 0, "refinement": 0.5},
+        ),
         Row("harmonic", "harmonic p graded", 1, "harmonic", {"order": 99}),
         Row("harmonic", "harmonic p graded", 2, "harmonic", COARSE),
     ]
@@ -99,7 +118,12 @@ def test_rows_hold_every_case_with_runs_times_errors_and_reasons(raced, tmp_path
     value, reference = float(beam["C_zz"]), raced.reference["values"]["C_zz"]
     assert float(beam["error_C_zz"]) == pytest.approx(abs(value / reference - 1))
     assert float(beam["like_for_like_C_zz"]) > 0 and float(beam["error_C_6x6"]) > 0
-    assert bad["status"] == "failed" and "order 99" in bad["reason"] and bad["error_C_zz"] == "" and bad["front_C_zz"] == ""
+    assert (
+        bad["status"] == "failed"
+        and "order 99" in bad["reason"]
+        and bad["error_C_zz"] == ""
+        and bad["front_C_zz"] == ""
+    )
     # the last case is the reference itself, which is as good as it gets
     assert lines[4]["resolved_C_zz"] == "no" and "seconds" in lines[4]["front_C_zz"]
 
@@ -112,7 +136,9 @@ def test_machine_block_says_where_times_and_errors_come_from(raced, tmp_path):
     assert machine["setup"]["gmsh, first use"] == 0.1 and machine["runs"] == 2
 
 
-@pytest.mark.parametrize(("name", "text"), [(MACHINE, "{"), (MACHINE, "{}"), (MACHINE, "[]"), (ROWS, "a,b\n1,2\n")])
+@pytest.mark.parametrize(
+    ("name", "text"), [(MACHINE, "{"), (MACHINE, "{}"), (MACHINE, "[]"), (ROWS, "a,b\n1,2\n")]
+)
 def test_a_damaged_file_is_no_race_and_no_crash(raced, tmp_path, name, text):
     write_rows(raced, tmp_path)
     (tmp_path / name).write_text(text)
@@ -124,7 +150,10 @@ def test_a_damaged_file_is_no_race_and_no_crash(raced, tmp_path, name, text):
 def test_figure_has_both_quantities_over_both_costs(raced):
     axes = figure(raced).axes
     assert len(axes) == 4
-    assert {ax.get_ylabel() for ax in axes} - {""} == {"error of port compliance C_zz", "error of first bending frequency"}
+    assert {ax.get_ylabel() for ax in axes} - {""} == {
+        "error of port compliance C_zz",
+        "error of first bending frequency",
+    }
     assert all(ax.get_xscale() == ax.get_yscale() == "log" for ax in axes)
 
 
@@ -136,8 +165,26 @@ def test_failures_are_crosses_where_their_cost_is_known(raced):
 
 
 def test_a_number_that_is_missing_is_a_cross_in_its_own_panels():
-    row = Row("hexahedra", "HEX8 uniform", 1, "solid", {}, "ok", "found no bending 1", 300, [0.5], {"C_zz": 1.01}, {"C_zz": 0.01})
-    reference = {"options": COARSE, "unknowns": 1, "seconds": 9.0, "values": {"C_zz": 1.0, "bending 1": 1.0}, "bands": {"C_zz": 1e-6, "bending 1": 1e-6}}
+    row = Row(
+        "hexahedra",
+        "HEX8 uniform",
+        1,
+        "solid",
+        {},
+        "ok",
+        "found no bending 1",
+        300,
+        [0.5],
+        {"C_zz": 1.01},
+        {"C_zz": 0.01},
+    )
+    reference = {
+        "options": COARSE,
+        "unknowns": 1,
+        "seconds": 9.0,
+        "values": {"C_zz": 1.0, "bending 1": 1.0},
+        "bands": {"C_zz": 1e-6, "bending 1": 1e-6},
+    }
     made = Race({}, reference, [row], {}, 1, 10, 1.0)
     assert [len(marks(ax, "x")) for ax in figure(made).axes] == [0, 0, 1, 1]
 
@@ -147,13 +194,20 @@ def test_points_below_the_band_stand_on_it(raced):
     band = raced.reference["bands"]["C_zz"]
     heights = [line.get_ydata()[0] for line in marks(ax, "D")]
     assert heights == [band]
-    assert all(line.get_ydata()[0] >= band for line in ax.lines if line.get_marker() not in ("", "None", None, "*") and len(line.get_ydata()))
+    assert all(
+        line.get_ydata()[0] >= band
+        for line in ax.lines
+        if line.get_marker() not in ("", "None", None, "*") and len(line.get_ydata())
+    )
 
 
 def test_beams_show_like_for_like_beside_their_own_error(raced):
     ax = figure(raced).axes[0]
     row = raced.rows[1]
-    assert [line.get_ydata()[0] for line in marks(ax, "s")] == [row.errors["C_zz"], row.like_for_like["C_zz"]]
+    assert [line.get_ydata()[0] for line in marks(ax, "s")] == [
+        row.errors["C_zz"],
+        row.like_for_like["C_zz"],
+    ]
 
 
 def test_picture_is_a_png(raced, tmp_path):
@@ -169,7 +223,10 @@ def test_front_table_lists_the_front_over_time(raced):
 
 
 def test_left_out_names_the_first_level_of_each_series(raced):
-    rows = [Row("hexahedra", "HEX20 graded", k, "solid", {}, "left out" if k > 1 else "ok") for k in (1, 2, 3)]
+    rows = [
+        Row("hexahedra", "HEX20 graded", k, "solid", {}, "left out" if k > 1 else "ok")
+        for k in (1, 2, 3)
+    ]
     assert left_out(Race({}, raced.reference, rows, {}, 1, 10, 1.0)) == "HEX20 graded from level 2"
 
 
@@ -205,8 +262,18 @@ def test_command_writes_everything_and_puts_the_chart_into_a_report(run, tmp_pat
     before = (out / "report.html").read_text()
     code, text, _ = run("chart", SCENE, "--out", out, "--runs", "1")
     assert code == 0
-    assert {p.name for p in out.iterdir()} == {"results.json", "report.html", ROWS, MACHINE, PICTURE}
-    assert "Pareto front over wall time" in text and "failed: harmonic p graded, level 1" in text and "report.html" in text
+    assert {p.name for p in out.iterdir()} == {
+        "results.json",
+        "report.html",
+        ROWS,
+        MACHINE,
+        PICTURE,
+    }
+    assert (
+        "Pareto front over wall time" in text
+        and "failed: harmonic p graded, level 1" in text
+        and "report.html" in text
+    )
     assert "data:image/png" not in before and "data:image/png" in (out / "report.html").read_text()
     assert json.loads((out / "results.json").read_text()) == results
 
@@ -221,14 +288,26 @@ def test_json_is_for_machines(run, tmp_path, undrawn):
     code, text, err = run("chart", SCENE, "--out", tmp_path, "--runs", "1", "--json")
     found = json.loads(text, parse_constant=lambda word: pytest.fail(word))
     assert code == 0 and err == ""
-    assert found["complete"] is True and len(found["rows"]) == 5 and found["rows"][3]["error_C_zz"] is None
+    assert (
+        found["complete"] is True
+        and len(found["rows"]) == 5
+        and found["rows"][3]["error_C_zz"] is None
+    )
 
 
 @pytest.mark.parametrize(
     ("arguments", "said"),
-    [(("--runs", "0"), "--runs 0"), (("--runs", "-3"), "--runs -3"), (("--budget", "0"), "--budget 0"), (("--budget", "nan"), "--budget nan"), (("--budget", "inf"), "--budget inf")],
+    [
+        (("--runs", "0"), "--runs 0"),
+        (("--runs", "-3"), "--runs -3"),
+        (("--budget", "0"), "--budget 0"),
+        (("--budget", "nan"), "--budget nan"),
+        (("--budget", "inf"), "--budget inf"),
+    ],
 )
-def test_command_refuses_bad_options_in_a_sentence_and_writes_nothing(run, tmp_path, arguments, said):
+def test_command_refuses_bad_options_in_a_sentence_and_writes_nothing(
+    run, tmp_path, arguments, said
+):
     code, out, err = run("chart", SCENE, "--out", tmp_path / "new", *arguments)
     assert code == 1 and out == "" and said in err and err.count("\n") == 1
     assert not (tmp_path / "new").exists()

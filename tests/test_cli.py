@@ -63,7 +63,14 @@ def environment(**more):
 
 
 def python(*arguments, cwd=None, **more):
-    return subprocess.run([sys.executable, *arguments], capture_output=True, text=True, cwd=cwd, env=environment(**more), timeout=120)
+    return subprocess.run(
+        [sys.executable, *arguments],
+        capture_output=True,
+        text=True,
+        cwd=cwd,
+        env=environment(**more),
+        timeout=120,
+    )
 
 
 # --------------------------------------------------------------------------- answers
@@ -72,12 +79,19 @@ def test_stiffness_as_json(run, fidelity):
     done = run("stiffness", SCENE, "--fidelity", fidelity, "--json", *LIGHT[fidelity])
     assert done.code == 0 and done.err == ""
     found = strict(done.out)
-    assert found["fidelity"] == fidelity and found["port"] == "pinion" and found["order"] == ORDER and found["free"] == ["thy"]
+    assert (
+        found["fidelity"] == fidelity
+        and found["port"] == "pinion"
+        and found["order"] == ORDER
+        and found["free"] == ["thy"]
+    )
     assert [len(row) for row in found["stiffness"]] == [6] * 6
     assert found["stiffness"][4] == [0.0] * 6 and found["compliance"][4] == [None] * 6
     # Between the beams and the solids K_zz spreads from 4.7e9 to 8.5e9; the converged solid has 4.71e9, and what these light
     # settings leave is 0.2 % (harmonic) and 1 % (solid).
-    low, high = {"euler": (8.3e9, 8.6e9), "timoshenko": (5.4e9, 5.6e9)}.get(fidelity, (4.71e9 * 0.97, 4.71e9 * 1.03))
+    low, high = {"euler": (8.3e9, 8.6e9), "timoshenko": (5.4e9, 5.6e9)}.get(
+        fidelity, (4.71e9 * 0.97, 4.71e9 * 1.03)
+    )
     assert low < found["stiffness"][2][2] < high
 
 
@@ -111,14 +125,20 @@ def test_check_as_json(run, fidelity):
 
 
 def test_check_of_a_mesh_that_is_off_fails(run, monkeypatch):
-    monkeypatch.setitem(__import__("solidgear.check", fromlist=["x"]).MASS_TOLERANCE, "timoshenko", -1.0)
+    monkeypatch.setitem(
+        __import__("solidgear.check", fromlist=["x"]).MASS_TOLERANCE, "timoshenko", -1.0
+    )
     done = run("check", SCENE, "-f", "timoshenko")
     assert done.code == 1 and "fault: mass of the timoshenko mesh" in done.out
 
 
 def test_tables_for_people(run):
     done = run("stiffness", SCENE, "-f", "timoshenko")
-    assert done.code == 0 and re.search(r"pinion_overhung: timoshenko, \d+ unknowns", done.out) and "Free: thy" in done.out
+    assert (
+        done.code == 0
+        and re.search(r"pinion_overhung: timoshenko, \d+ unknowns", done.out)
+        and "Free: thy" in done.out
+    )
     done = run("modes", SCENE, "-f", "timoshenko")
     assert done.code == 0 and "bending 1" in done.out and "Residual" in done.out
     done = run("check", SCENE, "-f", "timoshenko")
@@ -128,36 +148,88 @@ def test_tables_for_people(run):
 
 def test_free_body_has_no_compliance_but_json(run):
     found = strict(run("stiffness", FREE, "-f", "euler", "--json").out)
-    assert found["free"] == ORDER and found["compliance"] == [[None] * 6] * 6 and found["stiffness"] == [[0.0] * 6] * 6
+    assert (
+        found["free"] == ORDER
+        and found["compliance"] == [[None] * 6] * 6
+        and found["stiffness"] == [[0.0] * 6] * 6
+    )
     assert strict(run("modes", FREE, "-f", "euler", "--json").out)["evidence"]["rigid_modes"] == 6
 
 
 def test_attachment_for_every_port(run):
-    found = {a: strict(run("stiffness", SCENE, *LIGHT["harmonic"], "--attachment", a, "--json").out) for a in ("average", "rigid", "section")}
+    found = {
+        a: strict(run("stiffness", SCENE, *LIGHT["harmonic"], "--attachment", a, "--json").out)
+        for a in ("average", "rigid", "section")
+    }
     assert all(f["attachment"] == a for a, f in found.items())
     c = {a: f["compliance"][2][2] for a, f in found.items()}
     assert c["section"] > c["average"] > c["rigid"]
 
 
 def test_builder_options(run):
-    sizes = {order: strict(run("stiffness", SCENE, "--set", f"order={order}", "--json").out)["dofs"] for order in (2, 3)}
+    sizes = {
+        order: strict(run("stiffness", SCENE, "--set", f"order={order}", "--json").out)["dofs"]
+        for order in (2, 3)
+    }
     assert sizes[3] > sizes[2]
     # words, whole numbers, fractions and truth values
-    found = strict(run("stiffness", SCENE, "-f", "timoshenko", "--set", "head=mean", "--set", "elements=30", "--set", "shear=false", "--json").out)
-    same = strict(run("stiffness", SCENE, "-f", "euler", "--set", "head=mean", "--set", "elements=30", "--json").out)
+    found = strict(
+        run(
+            "stiffness",
+            SCENE,
+            "-f",
+            "timoshenko",
+            "--set",
+            "head=mean",
+            "--set",
+            "elements=30",
+            "--set",
+            "shear=false",
+            "--json",
+        ).out
+    )
+    same = strict(
+        run(
+            "stiffness",
+            SCENE,
+            "-f",
+            "euler",
+            "--set",
+            "head=mean",
+            "--set",
+            "elements=30",
+            "--json",
+        ).out
+    )
     other = strict(run("stiffness", SCENE, "-f", "euler", "--set", "elements=30", "--json").out)
     # one stiffness matrix, two mass matrices behind its regularisation (measured 1e-13); the head as a cone is 5 % away
-    assert found["dofs"] == same["dofs"] and found["stiffness"][2][2] == pytest.approx(same["stiffness"][2][2], rel=1e-9)
+    assert found["dofs"] == same["dofs"] and found["stiffness"][2][2] == pytest.approx(
+        same["stiffness"][2][2], rel=1e-9
+    )
     assert found["stiffness"][2][2] != pytest.approx(other["stiffness"][2][2], rel=0.01)
 
 
 def test_compare_writes_a_folder_and_prints_json_alone(run, tmp_path):
-    done = run("compare", SCENE, "--models", "euler, timoshenko", "--no-renders", "--json", "--out", "deep/out")
+    done = run(
+        "compare",
+        SCENE,
+        "--models",
+        "euler, timoshenko",
+        "--no-renders",
+        "--json",
+        "--out",
+        "deep/out",
+    )
     assert done.code == 0 and done.err == ""
     found = strict(done.out)
     assert list(found["models"]) == ["euler", "timoshenko"] and found["complete"]
     out = tmp_path / "deep" / "out"
-    assert {p.name for p in out.iterdir()} == {"results.json", "report.html", "modes_euler.vtu", "modes_timoshenko.vtu"}
+    assert {p.name for p in out.iterdir()} == {
+        "results.json",
+        "report.html",
+        "modes_euler.vtu",
+        "modes_timoshenko.vtu",
+    }
     assert strict((out / "results.json").read_text()) == found
 
 
@@ -195,7 +267,9 @@ def test_interrupt_elsewhere_is_a_sentence(run, monkeypatch, tmp_path):
 def test_render_or_a_sentence_that_helps(run, monkeypatch, tmp_path):
     done = run("render", SCENE, "-f", "timoshenko", "--mode", "axial 1", "--out", "mode.png")
     if done.code == 0:
-        assert done.out.strip() == "mode.png" and (tmp_path / "mode.png").read_bytes().startswith(b"\x89PNG")
+        assert done.out.strip() == "mode.png" and (tmp_path / "mode.png").read_bytes().startswith(
+            b"\x89PNG"
+        )
     else:
         assert "libgl1" in done.err and list(tmp_path.iterdir()) == []
     (tmp_path / "mode.png").unlink(missing_ok=True)
@@ -215,31 +289,61 @@ def refused(done, folder, *words, code=1):
 
 
 REFUSED = {
-    "option without a value": (["stiffness", SCENE, "--set", "nonsense"], ["nonsense", "key=value"]),
+    "option without a value": (
+        ["stiffness", SCENE, "--set", "nonsense"],
+        ["nonsense", "key=value"],
+    ),
     "value without an option": (["stiffness", SCENE, "--set", "=3"], ["key=value"]),
-    "option of no builder": (["stiffness", SCENE, "--set", "banana=3"], ["banana", "harmonic", "no such option"]),
-    "option of another builder": (["modes", SCENE, "-f", "euler", "--set", "order=3"], ["order", "euler", "no such option"]),
+    "option of no builder": (
+        ["stiffness", SCENE, "--set", "banana=3"],
+        ["banana", "harmonic", "no such option"],
+    ),
+    "option of another builder": (
+        ["modes", SCENE, "-f", "euler", "--set", "order=3"],
+        ["order", "euler", "no such option"],
+    ),
     "order out of range": (["modes", SCENE, "--set", "order=13"], ["order 13", "1 and 12"]),
-    "unknown element": (["check", SCENE, "-f", "solid", "--set", "element=tet7"], ["tet7", "tet10"]),
+    "unknown element": (
+        ["check", SCENE, "-f", "solid", "--set", "element=tet7"],
+        ["tet7", "tet10"],
+    ),
     "unknown attachment": (["stiffness", SCENE, "--attachment", "glued"], ["glued", "rigid"]),
     "negative number of modes": (["modes", SCENE, "-f", "euler", "-n", "-2"], ["-2"]),
     "missing file": (["stiffness", "nowhere.toml"], ["nowhere.toml", "no such file"]),
     "folder for a file": (["check", str(ROOT / "geometry")], ["geometry", "folder"]),
     "missing file to compare": (["compare", "nowhere.toml", "--out", "out"], ["nowhere.toml"]),
-    "unknown mode": (["render", SCENE, "-f", "euler", "--mode", "banana 7", "--out", "x.png"], ["banana 7", "bending 1"]),
+    "unknown mode": (
+        ["render", SCENE, "-f", "euler", "--mode", "banana 7", "--out", "x.png"],
+        ["banana 7", "bending 1"],
+    ),
     "not a number": (["stiffness", SCENE, "--set", "order=abc"], ["order"]),
     "broken order": (["stiffness", SCENE, "--set", "order=2.5"], ["order"]),
     "NaN": (["stiffness", SCENE, "--set", "refinement=nan"], ["refinement"]),
     "no refinement": (["stiffness", SCENE, "--set", "refinement=0"], ["refinement"]),
-    "negative refinement": (["stiffness", SCENE, "-f", "solid", "--set", "refinement=-1"], ["refinement"]),
+    "negative refinement": (
+        ["stiffness", SCENE, "-f", "solid", "--set", "refinement=-1"],
+        ["refinement"],
+    ),
     "negative size": (["stiffness", SCENE, "--set", "size=-1"], ["size"]),
     "layers that grow": (["stiffness", SCENE, "--set", "ratio=2"], ["ratio"]),
-    "harmonic that carries ports": (["stiffness", SCENE, "--set", "order=2", "--set", "ovalising=1"], ["ovalising", "at least 2"]),
-    "negative elements": (["stiffness", SCENE, "-f", "euler", "--set", "elements=-4"], ["elements"]),
+    "harmonic that carries ports": (
+        ["stiffness", SCENE, "--set", "order=2", "--set", "ovalising=1"],
+        ["ovalising", "at least 2"],
+    ),
+    "negative elements": (
+        ["stiffness", SCENE, "-f", "euler", "--set", "elements=-4"],
+        ["elements"],
+    ),
     "no modes": (["modes", SCENE, "-f", "euler", "-n", "0"], ["0"]),
     "negative frequency": (["modes", SCENE, "-f", "euler", "--max-frequency", "-5"], ["-5"]),
-    "unknown model to compare": (["compare", SCENE, "--models", "banana", "--out", "out"], ["banana", "timoshenko"]),
-    "unknown mode in a new folder": (["render", SCENE, "-f", "euler", "--mode", "banana 7", "--out", "new/x.png"], ["banana 7"]),
+    "unknown model to compare": (
+        ["compare", SCENE, "--models", "banana", "--out", "out"],
+        ["banana", "timoshenko"],
+    ),
+    "unknown mode in a new folder": (
+        ["render", SCENE, "-f", "euler", "--mode", "banana 7", "--out", "new/x.png"],
+        ["banana 7"],
+    ),
 }
 
 
@@ -251,7 +355,12 @@ def test_refused_in_one_sentence(run, tmp_path, name):
 
 def test_bad_scene_is_refused_by_every_command(run, tmp_path):
     bad = tmp_path / "bad.toml"
-    bad.write_text(Path(SCENE).read_text(encoding="utf-8").replace('diameter = "90 mm"', 'diameter = "-90 mm"'), encoding="utf-8")
+    bad.write_text(
+        Path(SCENE)
+        .read_text(encoding="utf-8")
+        .replace('diameter = "90 mm"', 'diameter = "-90 mm"'),
+        encoding="utf-8",
+    )
     for command in (["stiffness"], ["modes"], ["check"], ["render"], ["compare", "--out", "out"]):
         done = run(command[0], bad, *command[1:])
         assert done.code == 1 and done.out == "" and done.err.count("\n") == 1
@@ -262,7 +371,9 @@ def test_bad_scene_is_refused_by_every_command(run, tmp_path):
 @pytest.mark.parametrize("out", ["occupied", "occupied/deeper"])
 def test_unwritable_folder_is_found_before_the_work(run, tmp_path, monkeypatch, out):
     (tmp_path / "occupied").write_text("a file")
-    monkeypatch.setattr("solidgear.comparison.compare", lambda *_, **__: pytest.fail("solved first"))
+    monkeypatch.setattr(
+        "solidgear.comparison.compare", lambda *_, **__: pytest.fail("solved first")
+    )
     done = run("compare", SCENE, "--models", "euler", "--out", out)
     assert done.code == 1 and done.out == "" and done.err.count("\n") == 1
     assert done.err.startswith(f"solidgear: --out {out}: cannot write there")
@@ -272,10 +383,22 @@ def test_unwritable_folder_is_found_before_the_work(run, tmp_path, monkeypatch, 
 def test_unwritable_picture(run, tmp_path):
     (tmp_path / "occupied").write_text("a file")
     done = run("render", SCENE, "-f", "euler", "--out", "occupied/x.png")
-    assert done.code == 1 and done.err.startswith("solidgear: --out occupied: cannot write there") and done.err.count("\n") == 1
+    assert (
+        done.code == 1
+        and done.err.startswith("solidgear: --out occupied: cannot write there")
+        and done.err.count("\n") == 1
+    )
 
 
-@pytest.mark.parametrize("arguments", [["stiffness", SCENE, "-f", "banana"], ["stiffness"], ["stiffness", SCENE, "--banana"], ["banana"]])
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        ["stiffness", SCENE, "-f", "banana"],
+        ["stiffness"],
+        ["stiffness", SCENE, "--banana"],
+        ["banana"],
+    ],
+)
 def test_wrong_usage_is_explained(run, tmp_path, arguments):
     done = run(*arguments)
     assert done.code == 2 and done.out == "" and "Traceback" not in done.err
@@ -323,7 +446,11 @@ def test_module_runs_as_a_program(tmp_path):
     assert done.returncode == 0 and done.stderr == ""
     assert strict(done.stdout)["fidelity"] == "euler"
     done = python("-m", "solidgear.cli", "stiffness", "nowhere.toml", cwd=tmp_path)
-    assert done.returncode == 1 and done.stdout == "" and done.stderr == "solidgear: nowhere.toml: there is no such file\n"
+    assert (
+        done.returncode == 1
+        and done.stdout == ""
+        and done.stderr == "solidgear: nowhere.toml: there is no such file\n"
+    )
     assert list(tmp_path.iterdir()) == []
 
 

@@ -27,29 +27,68 @@ def run(monkeypatch, capsys, tmp_path):
     return call
 
 
-@pytest.mark.parametrize("command", [["stiffness"], ["modes"], ["check"], ["render"], ["compare", "--out", "out"], ["chart", "--out", "out"], ["sweep", "--vary", "bearing.1.scale=1,2"]])
+@pytest.mark.parametrize(
+    "command",
+    [
+        ["stiffness"],
+        ["modes"],
+        ["check"],
+        ["render"],
+        ["compare", "--out", "out"],
+        ["chart", "--out", "out"],
+        ["sweep", "--vary", "bearing.1.scale=1,2"],
+    ],
+)
 def test_every_problem_by_every_command(run, tmp_path, command):
     text = SCENE.read_text(encoding="utf-8")
-    (tmp_path / "bad.toml").write_text(text.replace('diameter = "90 mm"', 'diameter = "-90 mm"').replace("nu = 0.3 ", "nu = 3 ").replace("modes = 10", "modes = 10000"), encoding="utf-8")
+    (tmp_path / "bad.toml").write_text(
+        text.replace('diameter = "90 mm"', 'diameter = "-90 mm"')
+        .replace("nu = 0.3 ", "nu = 3 ")
+        .replace("modes = 10", "modes = 10000"),
+        encoding="utf-8",
+    )
     code, out, err = run(command[0], "bad.toml", *command[1:])
     lines = err.splitlines()
-    assert code == 1 and out == "" and len(lines) == 4 and lines[0] == "solidgear: 3 problems in bad.toml"
-    for field, line in zip(("material.nu = 3: ", 'segment[2] "shaft".diameter = "-90 mm": ', "ask.modes = 10000: "), lines[1:]):
+    assert (
+        code == 1
+        and out == ""
+        and len(lines) == 4
+        and lines[0] == "solidgear: 3 problems in bad.toml"
+    )
+    for field, line in zip(
+        ("material.nu = 3: ", 'segment[2] "shaft".diameter = "-90 mm": ', "ask.modes = 10000: "),
+        lines[1:],
+    ):
         assert line.startswith(f"  bad.toml: {field}")
     assert [path.name for path in tmp_path.iterdir()] == ["bad.toml"]
 
 
 REFUSED = {
     "modes without end": (["modes", SCENE, "-n", "1000000000"], "give 1 to 500"),
-    "an argument for an option": (["stiffness", SCENE, "--set", "scene=1"], 'no such option as "scene"'),
-    "an option twice": (["stiffness", SCENE, "--set", "order=2", "--set", "order=3"], "order is set twice"),
+    "an argument for an option": (
+        ["stiffness", SCENE, "--set", "scene=1"],
+        'no such option as "scene"',
+    ),
+    "an option twice": (
+        ["stiffness", SCENE, "--set", "order=2", "--set", "order=3"],
+        "order is set twice",
+    ),
     "a file name of a page": (["stiffness", "x" * 5000], "File name too long"),
-    "an option of a page": (["stiffness", SCENE, "--set", "element=" + "x" * 5000, "-f", "solid"], "element"),
+    "an option of a page": (
+        ["stiffness", SCENE, "--set", "element=" + "x" * 5000, "-f", "solid"],
+        "element",
+    ),
     "a model of a page": (["compare", SCENE, "--models", "x" * 5000], "models"),
     "a bell": (["stiffness", SCENE, "--attachment", "\x07\x1b[2J"], "\\u0007"),
-    "an option that no sweep knows": (["sweep", SCENE, "-f", "euler", "--vary", "bearing.1.scale=1,2", "--set", "order=3"], "no such option"),
-    "a sweep that will not fit": (["sweep", SCENE, "-f", "solid", "--vary", "bearing.1.scale=1,2", "--set", "refinement=9"], "lower refinement"),
-}  # fmt: skip
+    "an option that no sweep knows": (
+        ["sweep", SCENE, "-f", "euler", "--vary", "bearing.1.scale=1,2", "--set", "order=3"],
+        "no such option",
+    ),
+    "a sweep that will not fit": (
+        ["sweep", SCENE, "-f", "solid", "--vary", "bearing.1.scale=1,2", "--set", "refinement=9"],
+        "lower refinement",
+    ),
+}
 
 
 @pytest.mark.parametrize("kind", REFUSED)

@@ -60,7 +60,19 @@ def results(found):
 
 # --------------------------------------------------------------------------- the record
 def test_record_has_its_parts(results, overhung):
-    parts = {"scene", "port", "models", "attachments", "mac", "deviations", "causes", "verdict", "environment", "warnings", "complete"}
+    parts = {
+        "scene",
+        "port",
+        "models",
+        "attachments",
+        "mac",
+        "deviations",
+        "causes",
+        "verdict",
+        "environment",
+        "warnings",
+        "complete",
+    }
     assert parts <= set(results)
     # what guards have to say of the data and of slenderness, and nothing else
     assert results["complete"] is True
@@ -68,7 +80,11 @@ def test_record_has_its_parts(results, overhung):
     # and what concerns beams that are out anyway is in the record only
     assert results["warnings"] == []
     assert results["scene"] == overhung.as_dict()
-    assert results["port"]["name"] == "pinion" and results["port"]["order"] == ORDER and results["port"]["free"] == ["thy"]
+    assert (
+        results["port"]["name"] == "pinion"
+        and results["port"]["order"] == ORDER
+        and results["port"]["free"] == ["thy"]
+    )
     assert list(results["models"]) == list(FIDELITIES)
     assert {"numpy", "scipy", "solidgear", "platform"} <= set(results["environment"])
     assert results["seconds_total"] > 0
@@ -79,11 +95,17 @@ def test_model_record(results, found, model):
     record = results["models"][model]
     assert record["dofs"] == found.rungs[model].body.size
     assert record["backend"] in ("superlu", "pardiso", "cholmod", "mumps")
-    assert all(count["checked"] for count in record["evidence"]["mode_count"])  # no mode missed, by the inertia of a second factor
-    stages = {"build", "statics", "modes", "count", "attachments"} | ({"band"} if model in ("harmonic", "solid") else set())
+    assert all(
+        count["checked"] for count in record["evidence"]["mode_count"]
+    )  # no mode missed, by the inertia of a second factor
+    stages = {"build", "statics", "modes", "count", "attachments"} | (
+        {"band"} if model in ("harmonic", "solid") else set()
+    )
     assert set(record["seconds"]) == stages | {"total"}
     # a sum of a few floats
-    assert record["seconds"]["total"] == pytest.approx(sum(record["seconds"][s] for s in stages), rel=1e-12)
+    assert record["seconds"]["total"] == pytest.approx(
+        sum(record["seconds"][s] for s in stages), rel=1e-12
+    )
     assert record["peak_mb"] is None or record["peak_mb"] > 10
     assert isinstance(record["valid"], bool) and (record["why_not"] is None) is record["valid"]
     stiffness = np.array(record["stiffness"], float)
@@ -93,7 +115,9 @@ def test_model_record(results, found, model):
     assert np.all(np.isnan(compliance[4])) and np.all(np.isnan(compliance[:, 4]))
     held = [0, 1, 2, 3, 5]
     product = stiffness[np.ix_(held, held)] @ compliance[np.ix_(held, held)]
-    size = np.array([1, 1, 1, 0.1, 0.1])  # rotations times a tenth of a metre, so that units do not hide anything
+    size = np.array(
+        [1, 1, 1, 0.1, 0.1]
+    )  # rotations times a tenth of a metre, so that units do not hide anything
     # inverses of each other: condition about 1e3 of rounding and of a refinement to 1e-12
     assert np.allclose(size[:, None] ** -1 * product * size, np.eye(5), atol=1e-8)
     # x and z are alike in the body, and in these bearings up to couplings of 1e-8
@@ -105,7 +129,11 @@ def test_model_record(results, found, model):
 def test_modes_in_the_record(results, model):
     modes = results["models"][model]["modes"]
     frequencies = [m["frequency_hz"] for m in modes]
-    assert frequencies == sorted(frequencies) and frequencies[0] == 0.0 and modes[0]["name"] == "rigid torsion"
+    assert (
+        frequencies == sorted(frequencies)
+        and frequencies[0] == 0.0
+        and modes[0]["name"] == "rigid torsion"
+    )
     multiplicity = {m["name"]: m["multiplicity"] for m in modes}
     assert multiplicity["bending 1"] == multiplicity["bending 2"] == 2
     assert multiplicity["axial 1"] == multiplicity["torsion 1"] == 1
@@ -115,7 +143,10 @@ def test_modes_in_the_record(results, model):
 
 def test_bands_belong_to_the_solids(results):
     for model in ("euler", "timoshenko"):
-        assert results["models"][model]["band"] is None and results["models"][model]["convergence"] is None
+        assert (
+            results["models"][model]["band"] is None
+            and results["models"][model]["convergence"] is None
+        )
     for model in ("harmonic", "solid"):
         record = results["models"][model]
         band = record["band"]
@@ -151,7 +182,10 @@ def test_attachments_from_soft_to_stiff(results):
         assert variants["section"]["c_zz"] > variants["average"]["c_zz"]
         assert variants["section"]["bending_1_hz"] < variants["average"]["bending_1_hz"]
         if "rigid" in variants:
-            assert variants["average"]["c_zz"] > variants["rigid"]["c_zz"] and variants["average"]["bending_1_hz"] < variants["rigid"]["bending_1_hz"]
+            assert (
+                variants["average"]["c_zz"] > variants["rigid"]["c_zz"]
+                and variants["average"]["bending_1_hz"] < variants["rigid"]["bending_1_hz"]
+            )
         # the scene's own attachment is the run itself
         assert variants["average"]["stiffness"] == results["models"][model]["stiffness"]
     for name in ("average",):
@@ -167,8 +201,12 @@ def test_shared_factors_change_no_attachment(results, overhung, model):
     body = sg.build(other, model, **LIGHT[model])
     record = results["attachments"][model]["section"]
     # same matrices, same ties: solver's rounding
-    assert record["c_zz"] == pytest.approx(sg.condense(body, other, "pinion").compliance[2, 2], rel=1e-9)
-    assert record["bending_1_hz"] == pytest.approx(sg.modes(body, other, 10).named("bending 1").frequency_hz, rel=1e-9)
+    assert record["c_zz"] == pytest.approx(
+        sg.condense(body, other, "pinion").compliance[2, 2], rel=1e-9
+    )
+    assert record["bending_1_hz"] == pytest.approx(
+        sg.modes(body, other, 10).named("bending 1").frequency_hz, rel=1e-9
+    )
 
 
 def test_modes_are_recognised_across_models(results):
@@ -190,29 +228,60 @@ def test_deviations_can_be_recomputed(results):
     for row in rows:
         # one division and one subtraction
         if row["quantity"] not in COUPLINGS:
-            assert row["relative"] == pytest.approx(row["value"] / row["reference_value"] - 1, abs=1e-14)
+            assert row["relative"] == pytest.approx(
+                row["value"] / row["reference_value"] - 1, abs=1e-14
+            )
         assert row["reference"] == "harmonic" and row["model"] != "harmonic"
-        assert row["verdict"] == ("resolved" if abs(row["relative"]) > row["band"] else "not resolved")
+        assert row["verdict"] == (
+            "resolved" if abs(row["relative"]) > row["band"] else "not resolved"
+        )
         if row["attachment"] == "section":
             continue  # its bands are not in the record
         each = {m: results["models"][m]["band"] for m in (row["model"], "harmonic")}
-        assert row["band"] == pytest.approx(sum(b["each"][row["quantity"]] for b in each.values() if b), rel=1e-12)  # a sum
+        assert row["band"] == pytest.approx(
+            sum(b["each"][row["quantity"]] for b in each.values() if b), rel=1e-12
+        )  # a sum
         if row["attachment"] == "as scene" and row["quantity"] == "K_zz":
             assert row["value"] == results["models"][row["model"]]["stiffness"][2][2]
     # beams two ways, the 3D solid as tied, every quantity (none of them absent here)
     assert len(rows) == (2 + 2 + 1) * len(QUANTITIES)
     # two solids at light settings: closer than the bands of the coarser one, which is not the same as agreement
-    assert all(r["verdict"] == "not resolved" for r in rows if r["model"] == "solid" and r["quantity"].startswith("C_"))
-    assert all(r["verdict"] == "resolved" for r in rows if r["model"] == "euler" and r["quantity"] in ("C_zz", "bending 1"))
+    assert all(
+        r["verdict"] == "not resolved"
+        for r in rows
+        if r["model"] == "solid" and r["quantity"].startswith("C_")
+    )
+    assert all(
+        r["verdict"] == "resolved"
+        for r in rows
+        if r["model"] == "euler" and r["quantity"] in ("C_zz", "bending 1")
+    )
 
 
 def test_causes_and_verdict(results):
     causes = [(c["cause"], c["model"]) for c in results["causes"]]
-    assert {c for c, _ in causes} == {"shear", "rotary inertia", "shear coefficient", "head smearing", "mass lumping", "attachment", "shoulder"}
-    assert causes.count(("attachment", "harmonic")) == 2 and causes.count(("attachment", "solid")) == 0
-    assert all(set(c) == {"cause", "change", "model", "c_zz", "k_zz", "bending_1"} for c in results["causes"])
+    assert {c for c, _ in causes} == {
+        "shear",
+        "rotary inertia",
+        "shear coefficient",
+        "head smearing",
+        "mass lumping",
+        "attachment",
+        "shoulder",
+    }
+    assert (
+        causes.count(("attachment", "harmonic")) == 2 and causes.count(("attachment", "solid")) == 0
+    )
+    assert all(
+        set(c) == {"cause", "change", "model", "c_zz", "k_zz", "bending_1"}
+        for c in results["causes"]
+    )
     verdict = results["verdict"]
-    assert verdict["trust"] == "harmonic" and verdict["cheapest"] == "harmonic" and verdict["tolerance"] == 0.05
+    assert (
+        verdict["trust"] == "harmonic"
+        and verdict["cheapest"] == "harmonic"
+        and verdict["tolerance"] == 0.05
+    )
     # at the 5 % this scene asks for both beams are out: measured -26 % and -10 %
     assert [results["models"][m]["valid"] for m in FIDELITIES][:3] == [False, False, True]
 
@@ -229,8 +298,12 @@ def test_subset_of_models(overhung):
     # cheapest first whatever the order asked for
     assert list(found["models"]) == ["euler", "timoshenko"]
     assert found["mac"]["reference"] == "timoshenko"
-    assert found["verdict"]["trust"] is None and found["verdict"]["sentences"] == ["Not judged: no solid was run, and a beam cannot judge itself."]
-    assert not any(m["valid"] for m in found["models"].values()) and all(m["open"] for m in found["models"].values())
+    assert found["verdict"]["trust"] is None and found["verdict"]["sentences"] == [
+        "Not judged: no solid was run, and a beam cannot judge itself."
+    ]
+    assert not any(m["valid"] for m in found["models"].values()) and all(
+        m["open"] for m in found["models"].values()
+    )
     assert {c["cause"] for c in found["causes"]} >= {"shear", "mass lumping"}
     assert all(row["verdict"] == "no band" and row["band"] is None for row in found["deviations"])
     json.dumps(found, allow_nan=False)
@@ -238,18 +311,34 @@ def test_subset_of_models(overhung):
 
 def test_solid_alone_is_its_own_reference(overhung):
     found = compare(overhung, ("solid",)).results
-    assert found["verdict"]["reference"] == "solid" and found["deviations"] == [] and found["mac"]["models"] == {}
+    assert (
+        found["verdict"]["reference"] == "solid"
+        and found["deviations"] == []
+        and found["mac"]["models"] == {}
+    )
     assert found["models"]["solid"]["valid"] and found["causes"] == []
 
 
-@pytest.mark.parametrize(("models", "word"), [(("banana",), "banana"), (("euler", "rigid"), "rigid"), ((), "none given"), (("Euler",), "Euler")])
+@pytest.mark.parametrize(
+    ("models", "word"),
+    [
+        (("banana",), "banana"),
+        (("euler", "rigid"), "rigid"),
+        ((), "none given"),
+        (("Euler",), "Euler"),
+    ],
+)
 def test_unknown_models_are_refused_before_any_work(overhung, models, word):
-    with pytest.raises(SolidgearError, match=f"{word}.*choose from .*euler, timoshenko, harmonic, solid"):
+    with pytest.raises(
+        SolidgearError, match=f"{word}.*choose from .*euler, timoshenko, harmonic, solid"
+    ):
         compare(overhung, models, progress=lambda text: pytest.fail(text))
 
 
 def test_settings_reach_the_builder_and_its_relatives(overhung):
-    found = compare(overhung, ("harmonic",), settings={"harmonic": {"order": 4, "layers": 0}}).results["models"]["harmonic"]
+    found = compare(
+        overhung, ("harmonic",), settings={"harmonic": {"order": 4, "layers": 0}}
+    ).results["models"]["harmonic"]
     assert found["mesh"]["order"] == 4 and found["mesh"]["layers"] == 0
     assert [x["order"] for x in found["convergence"]["levels"]] == [2, 3, 4]
     assert all(x["mesh"]["layers"] == 0 for x in found["convergence"]["levels"])
@@ -267,18 +356,37 @@ def failing(monkeypatch, model, error):
     monkeypatch.setattr("solidgear.evidence.study.build", broken)
 
 
-@pytest.mark.parametrize(("error", "why"), [(MeshError("12 of 420 elements are inverted"), "12 of 420 elements are inverted"), (MemoryError(), "not enough memory")])
-def test_a_model_that_fails_is_reported_and_the_others_go_on(overhung, monkeypatch, tmp_path, error, why):
+@pytest.mark.parametrize(
+    ("error", "why"),
+    [
+        (MeshError("12 of 420 elements are inverted"), "12 of 420 elements are inverted"),
+        (MemoryError(), "not enough memory"),
+    ],
+)
+def test_a_model_that_fails_is_reported_and_the_others_go_on(
+    overhung, monkeypatch, tmp_path, error, why
+):
     failing(monkeypatch, "solid", error)
     found = compare(overhung, FIDELITIES, settings=LIGHTER)
     models = found.results["models"]
-    assert models["solid"]["valid"] is False and models["solid"]["why_not"] == why and models["solid"]["modes"] == []
-    assert list(found.rungs) == ["euler", "timoshenko", "harmonic"] and found.results["complete"] is True
+    assert (
+        models["solid"]["valid"] is False
+        and models["solid"]["why_not"] == why
+        and models["solid"]["modes"] == []
+    )
+    assert (
+        list(found.rungs) == ["euler", "timoshenko", "harmonic"]
+        and found.results["complete"] is True
+    )
     assert {r["model"] for r in found.results["deviations"]} == {"euler", "timoshenko"}
-    assert found.results["verdict"]["trust"] == "harmonic" and "shoulder" in {c["cause"] for c in found.results["causes"]}
+    assert found.results["verdict"]["trust"] == "harmonic" and "shoulder" in {
+        c["cause"] for c in found.results["causes"]
+    }
     found.write_report(tmp_path / "out", renders=False)
     assert why in (tmp_path / "out" / "report.html").read_text(encoding="utf-8")
-    assert strict((tmp_path / "out" / "results.json").read_text())["models"]["solid"]["why_not"] == why
+    assert (
+        strict((tmp_path / "out" / "results.json").read_text())["models"]["solid"]["why_not"] == why
+    )
     assert not (tmp_path / "out" / "modes_solid.vtu").exists()
 
 
@@ -299,7 +407,9 @@ def test_band_that_cannot_be_made_is_a_warning(overhung, monkeypatch):
         return build(scene, fidelity, **options)
 
     monkeypatch.setattr("solidgear.evidence.study.build", broken)
-    found = compare(overhung, ("harmonic",), settings={"harmonic": {"order": 2, "layers": 0}}).results
+    found = compare(
+        overhung, ("harmonic",), settings={"harmonic": {"order": 2, "layers": 0}}
+    ).results
     assert found["models"]["harmonic"]["band"] is None
     assert "harmonic: band: too coarse to mesh" in found["warnings"]
     assert "no band of its own (too coarse to mesh)" in found["verdict"]["sentences"][0]
@@ -340,14 +450,20 @@ def test_interrupt_between_meshes_keeps_the_coarser_one(overhung):
 
 def test_interrupt_before_the_first_result(overhung, tmp_path):
     found = compare(overhung, ("euler",), progress=Interrupt("euler: build"))
-    assert found.results["complete"] is False and found.rungs == {} and found.results["models"] == {}
+    assert (
+        found.results["complete"] is False and found.rungs == {} and found.results["models"] == {}
+    )
     found.write_report(tmp_path, renders=False)
     assert strict((tmp_path / "results.json").read_text())["complete"] is False
 
 
 def test_interrupt_in_the_causes_keeps_every_model(overhung):
     found = compare(overhung, ("euler", "timoshenko"), progress=Interrupt("causes"))
-    assert found.results["complete"] is False and list(found.rungs) == ["euler", "timoshenko"] and found.results["causes"] == []
+    assert (
+        found.results["complete"] is False
+        and list(found.rungs) == ["euler", "timoshenko"]
+        and found.results["causes"] == []
+    )
 
 
 # --------------------------------------------------------------------------- the folder
@@ -376,7 +492,11 @@ def test_without_a_renderer_numbers_and_report_are_there(folder, found):
 
 
 def test_only_whole_files_are_left(folder):
-    assert {p.name for p in folder.iterdir()} == {"results.json", "report.html", *(f"modes_{m}.vtu" for m in FIDELITIES)}
+    assert {p.name for p in folder.iterdir()} == {
+        "results.json",
+        "report.html",
+        *(f"modes_{m}.vtu" for m in FIDELITIES),
+    }
 
 
 def test_vtu_holds_the_modes(folder, found):
@@ -385,7 +505,10 @@ def test_vtu_holds_the_modes(folder, found):
     for model in FIDELITIES:
         mesh = meshio.read(folder / f"modes_{model}.vtu")
         bending = found.rungs[model].modes.named("bending 1").frequency_hz
-        assert f"bending 1a ({bending:.2f} Hz)" in mesh.point_data and f"bending 1b ({bending:.2f} Hz)" in mesh.point_data
+        assert (
+            f"bending 1a ({bending:.2f} Hz)" in mesh.point_data
+            and f"bending 1b ({bending:.2f} Hz)" in mesh.point_data
+        )
 
 
 def test_pictures_of_an_earlier_run_do_not_stay(overhung, tmp_path, monkeypatch):
@@ -393,7 +516,9 @@ def test_pictures_of_an_earlier_run_do_not_stay(overhung, tmp_path, monkeypatch)
     (tmp_path / "mode_euler.png").write_bytes(b"old")
     (tmp_path / "keep.txt").write_text("mine")
     compare(overhung, ("euler",)).write_report(tmp_path)
-    assert not (tmp_path / "mode_euler.png").exists() and (tmp_path / "keep.txt").read_text() == "mine"
+    assert (
+        not (tmp_path / "mode_euler.png").exists() and (tmp_path / "keep.txt").read_text() == "mine"
+    )
 
 
 def test_disk_that_fills_up_is_a_sentence_and_leaves_no_halves(overhung, tmp_path, monkeypatch):
@@ -426,21 +551,34 @@ BEAMS_AND_HARMONIC = ("euler", "timoshenko", "harmonic")
 def test_free_cylinder(tmp_path):
     found = compare(scene_of("cylinder_free"), BEAMS_AND_HARMONIC, settings=LIGHT)
     results = strict(json.dumps(found.results, allow_nan=False))
-    assert results["port"]["free"] == ORDER and {g["guard"] for g in results["guards"]} <= {"free_motions", "slenderness", "effective_mass"}
+    assert results["port"]["free"] == ORDER and {g["guard"] for g in results["guards"]} <= {
+        "free_motions",
+        "slenderness",
+        "effective_mass",
+    }
     for record in results["models"].values():
         assert np.all(np.array(record["stiffness"]) == 0)  # nothing holds it: exactly
         assert all(v is None for row in record["compliance"] for v in row)
         assert sum(m["multiplicity"] for m in record["modes"] if m["frequency_hz"] == 0) == 6
     band = results["models"]["harmonic"]["band"]
     assert band["compliance"] is None and 0 < band["bending_1"] < 1e-3
-    assert {r["quantity"] for r in results["deviations"]} <= {"bending 1", "bending 2", "axial 1", "torsion 1"}
+    assert {r["quantity"] for r in results["deviations"]} <= {
+        "bending 1",
+        "bending 2",
+        "axial 1",
+        "torsion 1",
+    }
     # five diameters long: Euler is 11 % too high, Timoshenko right to a fraction of a per cent (measured 0.02 %)
     gaps = {(r["model"], r["quantity"]): r["relative"] for r in results["deviations"]}
     assert 0.08 < gaps[("euler", "bending 1")] < 0.14
     assert abs(gaps[("timoshenko", "bending 1")]) < 0.002
     assert results["verdict"]["cheapest"] == "timoshenko"
     # torsion of a cylinder is exact in all: n c / 2 L; two-node rods and cubics are left 1e-3 of error
-    torsion = next(m["frequency_hz"] for m in results["models"]["harmonic"]["modes"] if m["name"] == "torsion 1")
+    torsion = next(
+        m["frequency_hz"]
+        for m in results["models"]["harmonic"]["modes"]
+        if m["name"] == "torsion 1"
+    )
     assert torsion == pytest.approx(math.sqrt(2.07e11 / 2.6 / 7850) / 0.6, rel=1e-3)
     found.write_report(tmp_path, renders=False)
     assert (tmp_path / "report.html").exists()
@@ -452,7 +590,11 @@ def test_hollow_shaft():
     assert results["complete"] and results["verdict"]["trust"] == "harmonic"
     assert results["port"]["free"] == ["thy"]
     causes = {c["cause"] for c in results["causes"]}
-    assert "shoulder" not in causes and "shear coefficient" not in causes and {"shear", "attachment"} <= causes
+    assert (
+        "shoulder" not in causes
+        and "shear coefficient" not in causes
+        and {"shear", "attachment"} <= causes
+    )
     # slender enough for Timoshenko at the 5 % of the default question, with seats as they are
     assert results["models"]["harmonic"]["valid"]
 
@@ -475,12 +617,18 @@ def test_names_of_components_are_those_of_the_frames():
 def test_lumped_rung_rests_on_a_body(overhung):
     found = compare(overhung, ("lumped", "timoshenko", "harmonic"), settings=LIGHT).results
     record = found["models"]["lumped"]
-    assert list(found["models"])[0] == "lumped" and record["source"] == "timoshenko" and record["variant"] == "mode-matched"
+    assert (
+        list(found["models"])[0] == "lumped"
+        and record["source"] == "timoshenko"
+        and record["variant"] == "mode-matched"
+    )
     assert record["stiffness"] == found["models"]["timoshenko"]["stiffness"]
     beam = next(m for m in found["models"]["timoshenko"]["modes"] if m["name"] == "bending 1")
     # mode-matched masses keep the body's first bending; 1e-8 is what the synthesis promises
     assert record["modes"][0]["frequency_hz"] == pytest.approx(beam["frequency_hz"], rel=1e-8)
-    assert not record["valid"] and "timoshenko" in record["why_not"]  # it inherits what is wrong with its stiffness
+    assert (
+        not record["valid"] and "timoshenko" in record["why_not"]
+    )  # it inherits what is wrong with its stiffness
     variants = found["lumped"]["harmonic"]["variants"]
     assert list(variants) == ["old", "thesis", "mode-matched", "guyan"]
     assert not variants["thesis"]["feasible"] and variants["guyan"]["frequency_error"] > 0
@@ -496,4 +644,7 @@ def test_lumped_alone_has_nothing_to_rest_on(overhung):
 def test_a_free_shaft_has_no_lumped_rung():
     free = scene_of("cylinder_free")
     found = compare(free, ("lumped", "timoshenko")).results
-    assert "lumped" not in found["models"] and "leave it free" in found["lumped"]["timoshenko"]["why_not"]
+    assert (
+        "lumped" not in found["models"]
+        and "leave it free" in found["lumped"]["timoshenko"]["why_not"]
+    )

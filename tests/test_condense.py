@@ -13,7 +13,11 @@ from solidgear.scene import Bearing, Port, Scene, Segment
 from solidgear.solve.statics import flexibility
 
 GEOMETRY = Path(__file__).parent.parent / "geometry"
-OPTIONS = {"timoshenko": {}, "harmonic": {"order": 2}, "solid": {"element": "hex8", "refinement": 0.5}}
+OPTIONS = {
+    "timoshenko": {},
+    "harmonic": {"order": 2},
+    "solid": {"element": "hex8", "refinement": 0.5},
+}
 PINIONS = ("pinion_overhung", "pinion_straddle", "gear_shaft")
 
 
@@ -239,7 +243,9 @@ def test_one_spring_leaves_its_own_motion_only():
     c = sg.condense(sg.build(scene, "timoshenko"), scene, "port")
     expected = np.zeros((6, 6))
     expected[2, 2] = 1e7
-    assert np.abs(c.stiffness - expected).max() < 1e-9 * 1e7  # port and spring share a node: no elasticity in between
+    assert (
+        np.abs(c.stiffness - expected).max() < 1e-9 * 1e7
+    )  # port and spring share a node: no elasticity in between
 
 
 # --------------------------------------------------------------------------- housing
@@ -258,7 +264,10 @@ def test_axial_chain_of_bearings_and_housing(fidelity):
 def test_housing_spring_has_the_limits_it_must_have():
     scene = shipped("pinion_straddle")
     body = sg.build(scene, "timoshenko")
-    k = {h: sg.condense(body, scene.with_changes(housing_axial=h), "pinion").stiffness for h in (None, 1e24, 7.71e9)}
+    k = {
+        h: sg.condense(body, scene.with_changes(housing_axial=h), "pinion").stiffness
+        for h in (None, 1e24, 7.71e9)
+    }
     assert relative(k[1e24], k[None]) < 1e-12  # a rigid housing is none
     assert k[7.71e9][1, 1] < k[None][1, 1] * 0.95  # K_hb takes 15 % of this chain
     # the housing is axial: radial stiffness feels it through the weak couplings only (1e2 of 1e9 N/m, squared)
@@ -269,7 +278,10 @@ def test_housing_spring_has_the_limits_it_must_have():
 def decimal_solve(a, b):
     """Gauss elimination with row pivoting in sixty digits."""
     with localcontext(Context(prec=60)):
-        rows = [[Decimal(float(v)) if not isinstance(v, Decimal) else v for v in (*ra, *rb)] for ra, rb in zip(a, b)]
+        rows = [
+            [Decimal(float(v)) if not isinstance(v, Decimal) else v for v in (*ra, *rb)]
+            for ra, rb in zip(a, b)
+        ]
         n = len(rows)
         for i in range(n):
             p = max(range(i, n), key=lambda r: abs(rows[r][i]))
@@ -285,18 +297,29 @@ def decimal_solve(a, b):
 def test_bearings_of_very_different_stiffness(overhung, soft):
     """Equilibrium of bearing forces and rigid motion in sixty digits, from the same flexibility: what is left is the condensation's own rounding."""
     body = sg.build(overhung, "timoshenko")
-    stiff = Supports(as_supports(overhung).ports, sla.block_diag(np.diag([5e8, 5e8, 5e8, 0, 0, 0]), np.diag([soft, 0, soft, 0, 0, 0])))
+    stiff = Supports(
+        as_supports(overhung).ports,
+        sla.block_diag(np.diag([5e8, 5e8, 5e8, 0, 0, 0]), np.diag([soft, 0, soft, 0, 0, 0])),
+    )
     here, there = 6 * body.port_index("pinion") + np.arange(6), stiff.rows(body)
     f, p, k = flexibility(body).matrix, body.rigid_ports, stiff.stiffness
     exact = [[Decimal(float(v)) for v in row] for row in k]
 
     def times(x):
-        return [[sum(a * Decimal(float(v)) for a, v in zip(row, column)) for column in x.T] for row in exact]
+        return [
+            [sum(a * Decimal(float(v)) for a, v in zip(row, column)) for column in x.T]
+            for row in exact
+        ]
 
     with localcontext(Context(prec=60)):
         m = len(there)
-        top = [[Decimal(int(i == j)) + v for j, v in enumerate(row)] for i, row in enumerate(times(f[np.ix_(there, there)]))]
-        matrix = [a + b for a, b in zip(top, times(p[there]))] + [[*p[there][:, j], *(float(i == j == 4) for i in range(6))] for j in range(6)]
+        top = [
+            [Decimal(int(i == j)) + v for j, v in enumerate(row)]
+            for i, row in enumerate(times(f[np.ix_(there, there)]))
+        ]
+        matrix = [a + b for a, b in zip(top, times(p[there]))] + [
+            [*p[there][:, j], *(float(i == j == 4) for i in range(6))] for j in range(6)
+        ]
         load = [[-v for v in row] for row in times(f[np.ix_(there, here)])] + (-p[here].T).tolist()
         found = decimal_solve(matrix, load)
         force, rigid = np.array(found[:m], float), np.array(found[m:], float)
@@ -313,7 +336,9 @@ def test_a_free_direction_between_the_axes_is_named_as_one():
     k[:3, :3] = 1e9 * np.eye(3) - 0.5e9 * np.outer(v, v)
     k[3:, 3:] = 1e6 * np.eye(3)
     scene = shipped("cylinder_free")
-    scene = scene.with_changes(bearings=(Bearing(name="1", y=scene.length / 2, seat_width=0.01, matrix=k),))
+    scene = scene.with_changes(
+        bearings=(Bearing(name="1", y=scene.length / 2, seat_width=0.01, matrix=k),)
+    )
     found = sg.condense(sg.build(scene, "timoshenko"), scene, scene.port.name)
     assert found.free_names == ()
     np.testing.assert_allclose(np.abs(found.oblique.T), [[1, 0, 1, 0, 0, 0]], atol=1e-9)

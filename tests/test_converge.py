@@ -85,7 +85,9 @@ def test_cap_widens_the_band(order, sizes):
     assert capped.used_order == 2.0 and capped.factor == 1.25
     # by definition: the same change, divided by r^2 - 1 instead of r^p - 1
     r = sizes[1] / sizes[2]
-    assert capped.gci == pytest.approx(1.25 * abs(values[2] - values[1]) / abs(values[2]) / (r**2 - 1), rel=1e-12)
+    assert capped.gci == pytest.approx(
+        1.25 * abs(values[2] - values[1]) / abs(values[2]) / (r**2 - 1), rel=1e-12
+    )
     assert capped.gci > free.gci > abs(values[2] - LIMIT) / values[2]
 
 
@@ -98,20 +100,34 @@ def test_cap_never_lies_below_the_expected_order():
 @pytest.mark.parametrize(
     ("order", "expected", "highest"),
     [(0.7, 1.09, 4.0), (0.5, 1.09, 4.0), (5.0, 1.09, 4.0), (1.3, 2.0, 4.0)],
-    ids=["slower than the corner", "far slower", "faster than the element", "slower than a smooth case"],
+    ids=[
+        "slower than the corner",
+        "far slower",
+        "faster than the element",
+        "slower than a smooth case",
+    ],
 )
 def test_implausible_order_falls_back_with_the_larger_factor(order, expected, highest):
     sizes = (4.0, 2.0, 1.0)
     values = manufactured(order, sizes)
     found = gci(values, sizes, expected=expected, highest=highest)
     assert found.observed_order == pytest.approx(order, abs=1e-9)
-    assert not found.plausible and found.factor == 3.0 and found.used_order == expected and found.asymptotic is None
+    assert (
+        not found.plausible
+        and found.factor == 3.0
+        and found.used_order == expected
+        and found.asymptotic is None
+    )
     # Roache's definition with factor 3 and the expected order
-    assert found.gci == pytest.approx(3 * abs(values[2] - values[1]) / values[2] / (2**expected - 1), rel=1e-12)
+    assert found.gci == pytest.approx(
+        3 * abs(values[2] - values[1]) / values[2] / (2**expected - 1), rel=1e-12
+    )
     assert found.gci > abs(values[2] - LIMIT) / values[2]
 
 
-@pytest.mark.parametrize(("order", "plausible"), [(0.75, False), (0.78, True), (4.45, True), (4.6, False)])
+@pytest.mark.parametrize(
+    ("order", "plausible"), [(0.75, False), (0.78, True), (4.45, True), (4.6, False)]
+)
 def test_edges_of_plausible(order, plausible):
     sizes = (4.0, 2.0, 1.0)
     # 0.7 * 1.09 = 0.763 below, 4 + 0.5 above
@@ -122,7 +138,12 @@ def test_edges_of_plausible(order, plausible):
 def test_oscillation_has_no_order_and_a_band_from_the_larger_change(sizes):
     values = [LIMIT * (1 + s * 0.05 * (h / sizes[0])) for s, h in zip((1, -1, 1), sizes)]
     found = gci(values, sizes, expected=1.0, highest=4.0)
-    assert found.observed_order is None and not found.plausible and found.factor == 3.0 and found.asymptotic is None
+    assert (
+        found.observed_order is None
+        and not found.plausible
+        and found.factor == 3.0
+        and found.asymptotic is None
+    )
     larger = max(abs(values[1] - values[0]), abs(values[2] - values[1]))
     # definition, with the larger of both changes
     assert found.gci == pytest.approx(3 * larger / values[2] / (sizes[1] / sizes[2] - 1), rel=1e-12)
@@ -153,7 +174,12 @@ def test_stalled_sequence_keeps_the_change_it_saw():
 
 def test_exact_sequence_has_no_band_to_speak_of():
     found = gci((LIMIT, LIMIT, LIMIT), (4.0, 2.0, 1.0), expected=1.09, highest=4.0)
-    assert found.gci == 0.0 and found.extrapolated == LIMIT and found.observed_order is None and found.plausible
+    assert (
+        found.gci == 0.0
+        and found.extrapolated == LIMIT
+        and found.observed_order is None
+        and found.plausible
+    )
     assert gci((0.0, 0.0, 0.0), (4.0, 2.0, 1.0), expected=1.09, highest=4.0).gci == 0.0
 
 
@@ -176,13 +202,24 @@ def test_other_than_three_ever_finer_meshes_is_refused(values, sizes):
 
 def test_record_is_plain_data():
     record = gci((1.0, 1.1, 1.12), (4.0, 2.0, 1.0), expected=1.09, highest=4.0).as_dict()
-    assert {"observed_order", "expected_order", "gci", "factor", "extrapolated", "asymptotic", "values", "sizes"} <= set(record)
+    assert {
+        "observed_order",
+        "expected_order",
+        "gci",
+        "factor",
+        "extrapolated",
+        "asymptotic",
+        "values",
+        "sizes",
+    } <= set(record)
     assert all(type(v) in (float, bool, tuple) for v in record.values())
 
 
 def test_middle_value_of_zero():
     # a coupling term may pass through zero between two meshes; the band itself is well defined: 1.25 * 1 / (2^p - 1), p = log2 3
-    assert gci((3.0, 0.0, -1.0), (4.0, 2.0, 1.0), expected=1.09, highest=4.0).gci == pytest.approx(0.625, rel=1e-9)
+    assert gci((3.0, 0.0, -1.0), (4.0, 2.0, 1.0), expected=1.09, highest=4.0).gci == pytest.approx(
+        0.625, rel=1e-9
+    )
 
 
 # --------------------------------------------------------------------------- corners
@@ -225,7 +262,11 @@ def chain(*parts):
     segments, y = [], 0.0
     for k, (length, a, b, *bore) in enumerate(parts):
         i, j = bore or (0.0, 0.0)
-        segments.append(Segment(name=f"s{k}", y0=y, y1=round(y + length, 9), outer0=a, outer1=b, inner0=i, inner1=j))
+        segments.append(
+            Segment(
+                name=f"s{k}", y0=y, y1=round(y + length, 9), outer0=a, outer1=b, inner0=i, inner1=j
+            )
+        )
         y = segments[-1].y1
     return Scene.from_parts(segments)
 
@@ -245,14 +286,35 @@ CORNERS = {
     "cone narrows after a cylinder": ([(0.1, 0.05, 0.05), (0.1, 0.05, 0.03)], math.pi),
     "waist of two cones": ([(0.1, 0.05, 0.03), (0.1, 0.03, 0.05)], math.pi + 2 * SLOPE),
     "step down to a widening cone": ([(0.1, 0.08, 0.08), (0.1, 0.03, 0.05)], 1.5 * math.pi + SLOPE),
-    "step down to a narrowing cone": ([(0.1, 0.08, 0.08), (0.1, 0.05, 0.03)], 1.5 * math.pi - SLOPE),
-    "step in the bore": ([(0.1, 0.08, 0.08, 0.02, 0.02), (0.1, 0.08, 0.08, 0.04, 0.04)], 1.5 * math.pi),
-    "bore that narrows after a cylinder": ([(0.1, 0.08, 0.08, 0.04, 0.04), (0.1, 0.08, 0.08, 0.04, 0.02)], math.pi + SLOPE),
-    "bore that widens after a cylinder": ([(0.1, 0.08, 0.08, 0.02, 0.02), (0.1, 0.08, 0.08, 0.02, 0.04)], math.pi),
-    "blind bore that widens to its bottom": ([(0.1, 0.08, 0.08, 0.02, 0.04), (0.1, 0.08, 0.08)], 1.5 * math.pi + SLOPE),
-    "blind bore that narrows to its bottom": ([(0.1, 0.08, 0.08, 0.04, 0.02), (0.1, 0.08, 0.08)], 1.5 * math.pi - SLOPE),
-    "shoulder and waist": ([(0.1, 0.05, 0.05), (0.1, 0.03, 0.03), (0.1, 0.03, 0.05)], 1.5 * math.pi),
-}  # fmt: skip
+    "step down to a narrowing cone": (
+        [(0.1, 0.08, 0.08), (0.1, 0.05, 0.03)],
+        1.5 * math.pi - SLOPE,
+    ),
+    "step in the bore": (
+        [(0.1, 0.08, 0.08, 0.02, 0.02), (0.1, 0.08, 0.08, 0.04, 0.04)],
+        1.5 * math.pi,
+    ),
+    "bore that narrows after a cylinder": (
+        [(0.1, 0.08, 0.08, 0.04, 0.04), (0.1, 0.08, 0.08, 0.04, 0.02)],
+        math.pi + SLOPE,
+    ),
+    "bore that widens after a cylinder": (
+        [(0.1, 0.08, 0.08, 0.02, 0.02), (0.1, 0.08, 0.08, 0.02, 0.04)],
+        math.pi,
+    ),
+    "blind bore that widens to its bottom": (
+        [(0.1, 0.08, 0.08, 0.02, 0.04), (0.1, 0.08, 0.08)],
+        1.5 * math.pi + SLOPE,
+    ),
+    "blind bore that narrows to its bottom": (
+        [(0.1, 0.08, 0.08, 0.04, 0.02), (0.1, 0.08, 0.08)],
+        1.5 * math.pi - SLOPE,
+    ),
+    "shoulder and waist": (
+        [(0.1, 0.05, 0.05), (0.1, 0.03, 0.03), (0.1, 0.03, 0.05)],
+        1.5 * math.pi,
+    ),
+}
 
 
 @pytest.mark.parametrize("flip", [False, True], ids=["", "mirrored"])

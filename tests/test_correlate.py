@@ -30,7 +30,9 @@ def test_rotated_pair_is_the_same_pair(angle):
     # same plane, other basis: rounding
     assert subspace_mac(pair, rotation(angle) @ pair, g) == pytest.approx(1.0, abs=1e-12)
     # also a basis that is neither orthogonal nor normalised
-    assert subspace_mac(pair, np.array([[2.0, 1.0], [0.1, -3.0]]) @ pair, g) == pytest.approx(1.0, abs=1e-12)
+    assert subspace_mac(pair, np.array([[2.0, 1.0], [0.1, -3.0]]) @ pair, g) == pytest.approx(
+        1.0, abs=1e-12
+    )
 
 
 def test_orthogonal_in_the_inner_product_is_zero():
@@ -60,8 +62,12 @@ def test_mean_of_squared_cosines():
     angle = 0.7
     other = np.array([[1, 0, 0, 0], [0, np.cos(angle), np.sin(angle), 0]])
     # (1 + cos^2) / 2 by definition, rounding
-    assert subspace_mac(basis[:2], other, np.eye(4)) == pytest.approx((1 + np.cos(angle) ** 2) / 2, abs=1e-14)
-    assert subspace_mac(other, basis[:2], np.eye(4)) == pytest.approx((1 + np.cos(angle) ** 2) / 2, abs=1e-14)
+    assert subspace_mac(basis[:2], other, np.eye(4)) == pytest.approx(
+        (1 + np.cos(angle) ** 2) / 2, abs=1e-14
+    )
+    assert subspace_mac(other, basis[:2], np.eye(4)) == pytest.approx(
+        (1 + np.cos(angle) ** 2) / 2, abs=1e-14
+    )
 
 
 def test_member_of_a_pair_against_the_pair():
@@ -86,7 +92,9 @@ def overhung():
 
 @pytest.fixture(scope="module")
 def coarse_and_fine(overhung):
-    return tuple(sg.modes(sg.build(overhung, "timoshenko", elements=n), overhung, 10) for n in (20, 60))
+    return tuple(
+        sg.modes(sg.build(overhung, "timoshenko", elements=n), overhung, 10) for n in (20, 60)
+    )
 
 
 def test_refinements_of_one_beam_agree(coarse_and_fine):
@@ -121,18 +129,26 @@ def test_twins_may_come_in_any_orientation(coarse_and_fine, angle):
     coarse, fine = coarse_and_fine
     assert sum(m.multiplicity == 2 for m in fine.modes) >= 3
     # the planes are the same: rounding of a 2x2 rotation
-    assert np.allclose(correlate(turned(fine, angle), fine).values, correlate(fine, fine).values, atol=1e-10)
-    assert np.allclose(correlate(coarse, turned(fine, angle)).values, correlate(coarse, fine).values, atol=1e-10)
+    assert np.allclose(
+        correlate(turned(fine, angle), fine).values, correlate(fine, fine).values, atol=1e-10
+    )
+    assert np.allclose(
+        correlate(coarse, turned(fine, angle)).values, correlate(coarse, fine).values, atol=1e-10
+    )
     pair = fine.named("bending 1").motions.reshape(2, -1)
     mixed = turned(fine, angle).named("bending 1").motions.reshape(2, -1)
     # single MACs of the members do mean nothing: they fall with the square of the cosine, rounding
-    assert subspace_mac(mixed[:1], pair[:1], fine.gram) == pytest.approx(np.cos(angle) ** 2, abs=1e-9)
+    assert subspace_mac(mixed[:1], pair[:1], fine.gram) == pytest.approx(
+        np.cos(angle) ** 2, abs=1e-9
+    )
 
 
 def test_order_of_modes_does_not_matter(coarse_and_fine):
     coarse, fine = coarse_and_fine
     backwards = replace(fine, modes=fine.modes[::-1])
-    assert [p.partner for p in correlate(coarse, backwards).partners] == [p.partner for p in correlate(coarse, fine).partners]
+    assert [p.partner for p in correlate(coarse, backwards).partners] == [
+        p.partner for p in correlate(coarse, fine).partners
+    ]
 
 
 def test_nothing_to_correlate_with(coarse_and_fine):

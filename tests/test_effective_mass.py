@@ -1,6 +1,6 @@
 """Lumped synthesis: the published stiffness, and what can be said of a first bending mode with two numbers."""
 
-from functools import lru_cache
+from functools import cache
 from pathlib import Path
 
 import numpy as np
@@ -9,7 +9,13 @@ import scipy.linalg as sla
 
 import solidgear as sg
 from solidgear.body import as_supports
-from solidgear.lumped.effective_mass import LumpedPoint, effective_masses, lumped_point, modal_receptance, synthesise
+from solidgear.lumped.effective_mass import (
+    LumpedPoint,
+    effective_masses,
+    lumped_point,
+    modal_receptance,
+    synthesise,
+)
 
 GEOMETRY = Path(__file__).parent.parent / "geometry"
 PINIONS = ("pinion_overhung", "pinion_straddle", "thesis_overhung", "thesis_straddle")
@@ -17,7 +23,7 @@ HELD = (*PINIONS, "gear_shaft", "shaft_stepped", "shaft_hollow")
 BODIES = {"euler": {}, "timoshenko": {}, "harmonic": {"order": 2, "layers": 2}}
 
 
-@lru_cache(maxsize=None)
+@cache
 def solved(name, fidelity):
     scene = sg.load(GEOMETRY / f"{name}.toml")
     body = sg.build(scene, fidelity, **BODIES[fidelity])
@@ -31,8 +37,24 @@ every_body = pytest.mark.parametrize("fidelity", BODIES)
 # --------------------------------------------------------------------------- published stiffness
 # Hua (2010): x, y, thx and |x,thz| of the condensed stiffness at the pinion's lumped point, as in its tables
 PUBLISHED = {
-    "thesis_overhung": {(0, 0): 8.644e9, (2, 2): 8.644e9, (1, 1): 1.013e9, (3, 3): 2.843e7, (5, 5): 2.843e7, (0, 5): 4.140e8, (2, 3): 4.140e8},
-    "thesis_straddle": {(0, 0): 1.585e10, (2, 2): 1.585e10, (1, 1): 1.015e9, (3, 3): 5.140e7, (5, 5): 5.140e7, (0, 5): 7.294e7, (2, 3): 7.294e7},
+    "thesis_overhung": {
+        (0, 0): 8.644e9,
+        (2, 2): 8.644e9,
+        (1, 1): 1.013e9,
+        (3, 3): 2.843e7,
+        (5, 5): 2.843e7,
+        (0, 5): 4.140e8,
+        (2, 3): 4.140e8,
+    },
+    "thesis_straddle": {
+        (0, 0): 1.585e10,
+        (2, 2): 1.585e10,
+        (1, 1): 1.015e9,
+        (3, 3): 5.140e7,
+        (5, 5): 5.140e7,
+        (0, 5): 7.294e7,
+        (2, 3): 7.294e7,
+    },
 }
 
 
@@ -101,7 +123,9 @@ def test_equations_52_and_53_accept_a_static_shape():
     # the double root of the quadratic loses half of the digits
     assert found["thesis"].mass == pytest.approx(mass, rel=1e-6)
     for s in found.values():
-        assert s.frequency_error == pytest.approx(0, abs=1e-7)  # all four agree when the body is its lumped model
+        assert s.frequency_error == pytest.approx(
+            0, abs=1e-7
+        )  # all four agree when the body is its lumped model
         assert s.kinetic_error == pytest.approx(0, abs=1e-7)
 
 
@@ -133,7 +157,10 @@ def test_mode_matched_keeps_frequency_and_slope(name, fidelity):
 
 def test_mode_matched_can_be_second_or_negative():
     # On the straddled pinion the pair is positive but its mode the second one; on soft bearings the inertia is negative.
-    straddle, stepped = solved("pinion_straddle", "timoshenko")[3], solved("shaft_stepped", "timoshenko")[3]
+    straddle, stepped = (
+        solved("pinion_straddle", "timoshenko")[3],
+        solved("shaft_stepped", "timoshenko")[3],
+    )
     assert straddle["mode-matched"].feasible and not straddle["mode-matched"].first
     assert not stepped["mode-matched"].feasible
 
@@ -162,7 +189,9 @@ def test_guyan_of_a_nearly_rigid_shaft_is_the_rigid_body():
 def test_old_is_total_mass():
     scene, body, _, found = solved("pinion_overhung", "timoshenko")
     assert found["old"].mass[0, 0] == pytest.approx(body.mass_matrix()[2, 2], rel=1e-12)
-    assert found["old"].frequency_error < -0.5  # an overhung head does not carry the mass of its shaft
+    assert (
+        found["old"].frequency_error < -0.5
+    )  # an overhung head does not carry the mass of its shaft
 
 
 # --------------------------------------------------------------------------- receptance and other bodies
@@ -205,7 +234,10 @@ def test_unequal_bearings_keep_the_model_in_its_plane(soft):
     scene = sg.load(Path(__file__).parent.parent / "geometry" / "pinion_overhung.toml")
     weight = np.ones(6)
     weight[{"kxx": 0, "kzz": 2}[soft]] = 0.9
-    bearings = tuple(b.with_changes(matrix=np.diag(weight) @ np.array(b.matrix) @ np.diag(weight)) for b in scene.bearings)
+    bearings = tuple(
+        b.with_changes(matrix=np.diag(weight) @ np.array(b.matrix) @ np.diag(weight))
+        for b in scene.bearings
+    )
     scene = scene.with_changes(bearings=bearings)
     point, made = synthesise(sg.build(scene, "timoshenko"), scene, scene.port.name)
     assert abs(point.motion[0]) > 0.1

@@ -34,7 +34,9 @@ def harmonic(scene):
 
 def supported(body, scene, group=0):
     spring, _ = decoupled(body, as_supports(scene), 1e-6)
-    return Supported(body, as_supports(scene), spring, groups(body, as_supports(scene), spring)[group])
+    return Supported(
+        body, as_supports(scene), spring, groups(body, as_supports(scene), spring)[group]
+    )
 
 
 @pytest.mark.parametrize("fidelity", ["solid", "harmonic"])
@@ -48,7 +50,9 @@ def test_lanczos_and_arpack_agree(scene, fidelity, bearings, request):
     assert a.multiplicity == b.multiplicity
     # Entries of K u are rounded by eps |K| |u|, so an eigenvalue by eps times the largest one, which is about three times that of a
     # single unknown; two quotients differ by twice that, their frequencies by half.
-    largest = 3 * max((block.stiffness.diagonal() / block.mass.tocsr().diagonal()).max() for block in body.blocks)
+    largest = 3 * max(
+        (block.stiffness.diagonal() / block.mass.tocsr().diagonal()).max() for block in body.blocks
+    )
     squared = (2 * np.pi * b.frequency_hz) ** 2
     rounding = np.finfo(float).eps * largest / np.where(squared > 0, squared, np.inf)
     assert np.all(np.abs(a.frequency_hz - b.frequency_hz) <= b.frequency_hz * (1e-11 + rounding))
@@ -67,7 +71,9 @@ def test_dense_is_the_oracle(scene):
     for method in ("lanczos", "arpack"):
         if supported(fine, scene).size > eigen.DENSE:
             found = lowest(supported(fine, scene), 6, method)
-            np.testing.assert_allclose([r.value for r in found.elastic], [r.value for r in exact.elastic], rtol=1e-6)
+            np.testing.assert_allclose(
+                [r.value for r in found.elastic], [r.value for r in exact.elastic], rtol=1e-6
+            )
 
 
 def test_unknown_method_is_refused(scene, harmonic):
@@ -80,7 +86,9 @@ def test_arpack_takes_over_where_lanczos_gives_up(scene, solid, monkeypatch):
     monkeypatch.setattr(eigen, "block_lanczos", lambda *a, **k: real(*a, **{**k, "most": 8}))
     found = sg.modes(solid, scene, n=6, method="lanczos")
     assert "did not converge" in found.evidence["method"]
-    np.testing.assert_allclose(found.frequency_hz, sg.modes(solid, scene, n=6, method="arpack").frequency_hz, rtol=1e-9)
+    np.testing.assert_allclose(
+        found.frequency_hz, sg.modes(solid, scene, n=6, method="arpack").frequency_hz, rtol=1e-9
+    )
 
 
 @pytest.mark.parametrize("fidelity", ["solid", "harmonic"])
@@ -97,7 +105,9 @@ def test_count_of_a_free_body_includes_its_rigid_motions(solid):
     count = body_modes.evidence["count"][0]
     below = sum(m.multiplicity for m in body_modes.modes if m.frequency_hz < count["below_hz"])
     assert count["modes"] >= 6 + 3
-    assert below <= count["modes"] <= below + 2  # two shapes more than asked for are found, and counted where the gap is behind them
+    assert (
+        below <= count["modes"] <= below + 2
+    )  # two shapes more than asked for are found, and counted where the gap is behind them
 
 
 @pytest.mark.parametrize("lost", [0, 1, 5])
@@ -119,19 +129,29 @@ def test_a_lost_mode_is_searched_again(scene, solid, monkeypatch):
     def forgetful(on, n, method=None):
         calls.append(method)
         solved = real(on, n, method)
-        return replace(solved, elastic=solved.elastic[:1] + solved.elastic[2:]) if len(calls) == 1 else solved
+        return (
+            replace(solved, elastic=solved.elastic[:1] + solved.elastic[2:])
+            if len(calls) == 1
+            else solved
+        )
 
     monkeypatch.setattr(parts, "lowest", forgetful)
     found = sg.modes(solid, scene, n=8, count=True)
     assert len(calls) == 2
     monkeypatch.undo()
-    np.testing.assert_allclose(found.frequency_hz[:5], sg.modes(solid, scene, n=8).frequency_hz[:5], rtol=1e-9)
+    np.testing.assert_allclose(
+        found.frequency_hz[:5], sg.modes(solid, scene, n=8).frequency_hz[:5], rtol=1e-9
+    )
 
 
 def test_a_mode_lost_twice_ends_in_a_sentence(scene, solid, monkeypatch):
     real = parts.lowest
-    monkeypatch.setattr(parts, "lowest", lambda *a: (lambda s: replace(s, elastic=s.elastic[1:]))(real(*a)))
-    with pytest.raises(sg.SolidgearError, match=r"modes were found below .* Hz but the factor counts"):
+    monkeypatch.setattr(
+        parts, "lowest", lambda *a: (lambda s: replace(s, elastic=s.elastic[1:]))(real(*a))
+    )
+    with pytest.raises(
+        sg.SolidgearError, match=r"modes were found below .* Hz but the factor counts"
+    ):
         sg.modes(solid, scene, n=8, count=True)
 
 
@@ -140,8 +160,11 @@ def test_elastic_modes_below_the_soft_limit_of_a_free_shaft():
     rigid motion to mix in."""
     lead = Material(E=16e9, nu=0.44, density=11340.0)
     steel = STEEL
-    parts = [Segment.cylinder("a", length=0.04, diameter=0.09, material=steel), Segment.cylinder("b", length=0.054, diameter=0.07, y0=0.04, material=lead),
-             Segment.cylinder("c", length=0.03, diameter=0.1, y0=0.094, material=steel)]  # fmt: skip
+    parts = [
+        Segment.cylinder("a", length=0.04, diameter=0.09, material=steel),
+        Segment.cylinder("b", length=0.054, diameter=0.07, y0=0.04, material=lead),
+        Segment.cylinder("c", length=0.03, diameter=0.1, y0=0.094, material=steel),
+    ]
     scene = Scene.from_parts(parts)
     body = sg.build(scene, "timoshenko")
     body = replace(body, scale=200 * body.scale)
@@ -158,7 +181,10 @@ def test_elastic_modes_below_the_soft_limit_of_a_free_shaft():
 def test_unknowns_without_mass(model):
     # lumped masses without rotary inertia leave the turns of a beam massless; the mass matrix is then no metric
     scene = sg.load(Path(__file__).parents[1] / "geometry" / "shaft_stepped.toml")
-    lumped, consistent = (sg.modes(sg.build(scene, model, mass=mass, rotary_inertia=False), scene, n=6) for mass in ("lumped", "consistent"))
+    lumped, consistent = (
+        sg.modes(sg.build(scene, model, mass=mass, rotary_inertia=False), scene, n=6)
+        for mass in ("lumped", "consistent")
+    )
     assert lumped.names[:6] == consistent.names[:6]
     # lumping costs the square of the element over the wave: 40 elements, 1e-3 and less
     assert lumped.frequency_hz[:6] == pytest.approx(consistent.frequency_hz[:6], rel=3e-3)

@@ -20,7 +20,9 @@ def needs(name):
     return pytest.mark.skipif(bool(missing(name)), reason=missing(name) or "-")
 
 
-BACKENDS = [pytest.param(name, marks=needs(name)) for name in ("superlu", "pardiso", "cholmod", "mumps")]
+BACKENDS = [
+    pytest.param(name, marks=needs(name)) for name in ("superlu", "pardiso", "cholmod", "mumps")
+]
 
 
 @pytest.fixture(autouse=True)
@@ -123,7 +125,10 @@ def test_large_matrices_take_the_fastest_there_and_say_what_is_missing(monkeypat
     with pytest.raises(FactorError, match=r"pardiso was asked for but pypardiso is not usable"):
         factorise(sp.identity(3, format="csr"), "pardiso")
     absent.clear()
-    assert factor.choice(matrix, None, False) == ("pardiso", f"{SMALL + 1} unknowns are above {SMALL}")
+    assert factor.choice(matrix, None, False) == (
+        "pardiso",
+        f"{SMALL + 1} unknowns are above {SMALL}",
+    )
     # planar matrices too large for SuperLU's indices are treated like solids
     monkeypatch.setattr(factor, "LARGE_PLANAR", SMALL)
     assert factor.choice(matrix, None, True)[0] == "pardiso"
@@ -135,7 +140,10 @@ def test_environment_forces_a_backend(monkeypatch, plane):
     monkeypatch.setenv("SOLIDGEAR_BACKEND", "")
     assert factorise(plane).backend == "superlu"  # empty is the same as unset
     monkeypatch.setenv("SOLIDGEAR_BACKEND", "umfpack")
-    with pytest.raises(FactorError, match="unknown back end 'umfpack'; use 'pardiso', 'cholmod', 'mumps', 'superlu'"):
+    with pytest.raises(
+        FactorError,
+        match="unknown back end 'umfpack'; use 'pardiso', 'cholmod', 'mumps', 'superlu'",
+    ):
         factorise(plane)
     # what the caller asks for comes first
     assert factorise(plane, "superlu").backend == "superlu"
@@ -167,13 +175,17 @@ def with_a_loose_unknown():
     return sp.diags(d).tocsr()
 
 
-@pytest.mark.parametrize("matrix", [chain(), with_a_loose_unknown()], ids=["floating chain", "loose unknown"])
+@pytest.mark.parametrize(
+    "matrix", [chain(), with_a_loose_unknown()], ids=["floating chain", "loose unknown"]
+)
 @pytest.mark.parametrize("backend", BACKENDS)
 def test_singular_matrix_is_refused_in_a_sentence(matrix, backend):
     with pytest.raises(FactorError) as caught:
         factorise(matrix, backend)
     text = str(caught.value)
-    assert isinstance(caught.value, SolidgearError) and ("could not factor" in text or "failed on the system matrix" in text)
+    assert isinstance(caught.value, SolidgearError) and (
+        "could not factor" in text or "failed on the system matrix" in text
+    )
     assert "\n" not in text and text[0].isupper()
 
 
@@ -187,7 +199,9 @@ def test_indefinite_border_is_refused(backend):
 @pytest.mark.parametrize("backend", BACKENDS)
 def test_indefinite_matrix_is_refused(backend):
     # every diagonal entry positive, one eigenvalue negative: 1 + 2 cos(pi k / 21)
-    matrix = sp.diags([np.ones(20), np.ones(19), np.ones(19)], [0, 1, -1]).tocsr() + 0.5 * sp.identity(20)
+    matrix = sp.diags(
+        [np.ones(20), np.ones(19), np.ones(19)], [0, 1, -1]
+    ).tocsr() + 0.5 * sp.identity(20)
     assert matrix.diagonal().min() > 0 and np.linalg.eigvalsh(matrix.toarray())[0] < -0.4
     with pytest.raises(FactorError, match="not positive definite"):
         factorise(matrix, backend)
@@ -197,9 +211,14 @@ def test_indefinite_matrix_is_refused(backend):
 @pytest.mark.parametrize("planar", [False, True])
 @pytest.mark.parametrize("backend", BACKENDS)
 def test_what_will_not_fit_is_refused_before_it_is_factored(plane, backend, planar, monkeypatch):
-    monkeypatch.setattr(factor.BACKENDS[backend], "factor", lambda self: pytest.fail("the numbers were begun"))
+    monkeypatch.setattr(
+        factor.BACKENDS[backend], "factor", lambda self: pytest.fail("the numbers were begun")
+    )
     monkeypatch.setenv("SOLIDGEAR_MEMORY_MB", "0.5")
-    with pytest.raises(FactorError, match=rf"^{plane.shape[0]} unknowns need about [\d.]+ MB to factor by {backend}, 0.5 MB are free; use a coarser"):
+    with pytest.raises(
+        FactorError,
+        match=rf"^{plane.shape[0]} unknowns need about [\d.]+ MB to factor by {backend}, 0.5 MB are free; use a coarser",
+    ):
         factorise(plane, backend, planar=planar)
 
 

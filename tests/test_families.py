@@ -1,13 +1,8 @@
 """Families of two waves around and more: the rule that stops their search leaves out none that lies below what is asked for."""
 
-import sys
-from pathlib import Path
-
 import pytest
 
-sys.path.insert(0, str(Path(__file__).parent.parent / "validation" / "stability"))
-
-import circumferential_families as families  # noqa: E402
+from validation.stability import circumferential_families as families
 
 
 @pytest.mark.parametrize("kind", families.KINDS)

@@ -58,11 +58,17 @@ def test_power_does_not_depend_on_the_reference_point(rng):
     offset = rng.standard_normal(3)
     motion, load_new = rng.standard_normal((2, 6))
     t = shift(offset)
-    assert (t @ motion) @ load_new == pytest.approx(motion @ (t.T @ load_new), rel=1e-13)  # two sums of a dozen products
+    assert (t @ motion) @ load_new == pytest.approx(
+        motion @ (t.T @ load_new), rel=1e-13
+    )  # two sums of a dozen products
 
 
 def test_energy_does_not_depend_on_the_reference_point(rng):
-    offset, stiffness, motion = rng.standard_normal(3), random_stiffness(rng), rng.standard_normal(6)
+    offset, stiffness, motion = (
+        rng.standard_normal(3),
+        random_stiffness(rng),
+        rng.standard_normal(6),
+    )
     there = shift(offset) @ motion
     moved = move_stiffness(stiffness, offset)
     # quadratic forms of a well conditioned 6x6: a few hundred roundings
@@ -90,7 +96,9 @@ def test_radial_spring_seen_from_a_distance():
 def test_moving_there_and_back_changes_nothing(rng):
     offset, stiffness = rng.standard_normal(3), random_stiffness(rng)
     back = move_stiffness(move_stiffness(stiffness, offset), -offset)
-    assert np.allclose(back, stiffness, rtol=0, atol=1e-12)  # four products, entries up to a hundred
+    assert np.allclose(
+        back, stiffness, rtol=0, atol=1e-12
+    )  # four products, entries up to a hundred
 
 
 @pytest.mark.parametrize("axis", [0, 1, 2])
@@ -105,8 +113,12 @@ def test_rotation_is_right_handed(axis):
 
 @pytest.mark.parametrize("axis", [0, 1, 2])
 def test_rotation_is_orthogonal_and_adds_up(axis):
-    assert np.allclose(rotation(axis, 0.4) @ rotation(axis, 0.4).T, np.eye(6), rtol=0, atol=ROUNDING)
-    assert np.allclose(rotation(axis, 0.4) @ rotation(axis, 0.5), rotation(axis, 0.9), rtol=0, atol=ROUNDING)
+    assert np.allclose(
+        rotation(axis, 0.4) @ rotation(axis, 0.4).T, np.eye(6), rtol=0, atol=ROUNDING
+    )
+    assert np.allclose(
+        rotation(axis, 0.4) @ rotation(axis, 0.5), rotation(axis, 0.9), rtol=0, atol=ROUNDING
+    )
 
 
 def test_rotating_and_shifting_exchange(rng):

@@ -1,6 +1,5 @@
 """Scene files and command lines spoilt at random: refused in plain sentences or answered, never a traceback, a hang or half an output."""
 
-import importlib.util
 import sys
 from collections import Counter
 from pathlib import Path
@@ -14,24 +13,29 @@ from solidgear.scene_file import load
 ROOT = Path(__file__).parents[1]
 GOOD = (ROOT / "geometry" / "pinion_overhung.toml").read_text(encoding="utf-8")
 
-pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="the watchdog of the fuzz needs POSIX signals")
+pytestmark = pytest.mark.skipif(
+    sys.platform == "win32", reason="the watchdog of the fuzz needs POSIX signals"
+)
 
 
 @pytest.fixture(scope="module")
 def fuzz():
-    spec = importlib.util.spec_from_file_location("fuzz_scenes", ROOT / "validation" / "fuzz_scenes.py")
-    module = importlib.util.module_from_spec(spec)
-    sys.modules["fuzz_scenes"] = module  # dataclasses look their module up
-    spec.loader.exec_module(module)
-    yield module
-    del sys.modules["fuzz_scenes"]
+    from validation import fuzz_scenes
+
+    return fuzz_scenes
 
 
 def nothing_found(fuzz, cases, seed, **more):
     rows = fuzz.run(cases, seed, **more)
-    found = [f"case {r['case']} of seed {seed} ({r['what']}) at {r['stage']}: {r['sentence']}" for r in rows if r["outcome"] == "finding"]
+    found = [
+        f"case {r['case']} of seed {seed} ({r['what']}) at {r['stage']}: {r['sentence']}"
+        for r in rows
+        if r["outcome"] == "finding"
+    ]
     assert not found, "\n".join(found)
-    return Counter((r["outcome"], r["stage"]) for r in rows), Counter(r["detail"] for r in rows if r["outcome"] == "refused")
+    return Counter((r["outcome"], r["stage"]) for r in rows), Counter(
+        r["detail"] for r in rows if r["outcome"] == "refused"
+    )
 
 
 def test_spoilt_scenes_are_refused_or_solved(fuzz):
@@ -49,7 +53,7 @@ def test_command_lines_are_refused_or_answered(fuzz):
 
 @pytest.mark.slow
 def test_a_thousand_files_and_command_lines(fuzz):
-    # ten thousand take a quarter of an hour: `python validation/fuzz_scenes.py`
+    # ten thousand take a quarter of an hour: `python -m validation.fuzz_scenes`
     nothing_found(fuzz, 1_000, seed=1, commands=0.4)
 
 
@@ -67,7 +71,10 @@ def test_a_case_follows_from_its_number(fuzz):
         (lambda path: __import__("warnings").warn("overflow", RuntimeWarning), "RuntimeWarning"),
         (lambda path: (_ for _ in ()).throw(SceneError("two\u2028lines", where=path.name)), ""),
         (lambda path: (_ for _ in ()).throw(SceneError("of no file")), "does not name the file"),
-        (lambda path: (_ for _ in ()).throw(SolidgearError(f"{path.name} rings \x07 the bell")), "not fit for a terminal"),
+        (
+            lambda path: (_ for _ in ()).throw(SolidgearError(f"{path.name} rings \x07 the bell")),
+            "not fit for a terminal",
+        ),
     ],
 )
 def test_what_the_fuzz_calls_a_finding(fuzz, broken, says, monkeypatch, tmp_path):
@@ -79,7 +86,18 @@ def test_what_the_fuzz_calls_a_finding(fuzz, broken, says, monkeypatch, tmp_path
     assert says in outcome.sentence
 
 
-@pytest.mark.parametrize("fault", ["leaves a file", "leaves a torn table", "leaves an empty folder", "prints half", "exits with another code", "prints a traceback", "says nothing"])
+@pytest.mark.parametrize(
+    "fault",
+    [
+        "leaves a file",
+        "leaves a torn table",
+        "leaves an empty folder",
+        "prints half",
+        "exits with another code",
+        "prints a traceback",
+        "says nothing",
+    ],
+)
 def test_what_the_fuzz_calls_a_bad_command(fuzz, fault, monkeypatch, tmp_path):
     import solidgear.cli
 
@@ -108,18 +126,68 @@ def test_what_the_fuzz_calls_a_bad_command(fuzz, fault, monkeypatch, tmp_path):
 # ------------------------------------------------------------------------------------------------- what it found
 #: numbers that are valid TOML, pass the sign checks, and led to overflow, endless meshes or singular matrices
 ABSURD = {
-    "stiffness that overflows when squared": ('kxx = "8.823e9 N/m"', 'kxx = "1e160 N/m"', 'bearing[1] "1".stiffness.kxx', "larger than 1e+24"),
-    "stiffness that vanishes when squared": ('kyy = "8.887e8 N/m"', "kyy = 1e-200\nkthy = 1e-200", 'bearing[1] "1".stiffness', ""),
-    "series spring whose inverse overflows": ('axial_series = ["4.1e8 N/m"]', "axial_series = [5e-324]", 'bearing[2] "2".axial_series[1]', "no spring"),
+    "stiffness that overflows when squared": (
+        'kxx = "8.823e9 N/m"',
+        'kxx = "1e160 N/m"',
+        'bearing[1] "1".stiffness.kxx',
+        "larger than 1e+24",
+    ),
+    "stiffness that vanishes when squared": (
+        'kyy = "8.887e8 N/m"',
+        "kyy = 1e-200\nkthy = 1e-200",
+        'bearing[1] "1".stiffness',
+        "",
+    ),
+    "series spring whose inverse overflows": (
+        'axial_series = ["4.1e8 N/m"]',
+        "axial_series = [5e-324]",
+        'bearing[2] "2".axial_series[1]',
+        "no spring",
+    ),
     "modulus that vanishes": ('E = "207 GPa"', 'E = "5e-324 GPa"', "material.E", "below 1 Pa"),
     "modulus that is next to nothing": ('E = "207 GPa"', "E = 1e-300", "material.E", "below 1 Pa"),
-    "density that is next to nothing": ('"7850 kg/m^3"', '"7850e-99 kg/m^3"', "material.density", "below 1e-6 kg/m^3"),
-    "hair of a shaft": ('diameter = "90 mm"', 'diameter = "90e-30 mm"', 'segment[2] "shaft".diameter', "under a thousandth"),
-    "foil of a wall": ('diameter = "90 mm"', 'diameter = "90 mm"\nbore = "89.9999999 mm"', 'segment[2] "shaft".bore', "wall"),
-    "segment of a micrometre fraction": ('backcone = "10 mm"', 'backcone = "1e-5 mm"', 'segment[1] "head"', "under a millionth"),
-    "seat of an atom": ('seat_width = "40 mm"', 'seat_width = "8e-8 mm"', 'bearing[1] "1".seat_width', "under a millionth"),
-    "length of the universe": ('position = "28 mm"', "position = 1e300", 'bearing[1] "1".position', "larger than 1e+24 m"),
-    "unit without end": ('"7850 kg/m^3"', '"7850 kg/m^' + "9" * 4000 + '"', "material.density", "unknown unit"),
+    "density that is next to nothing": (
+        '"7850 kg/m^3"',
+        '"7850e-99 kg/m^3"',
+        "material.density",
+        "below 1e-6 kg/m^3",
+    ),
+    "hair of a shaft": (
+        'diameter = "90 mm"',
+        'diameter = "90e-30 mm"',
+        'segment[2] "shaft".diameter',
+        "under a thousandth",
+    ),
+    "foil of a wall": (
+        'diameter = "90 mm"',
+        'diameter = "90 mm"\nbore = "89.9999999 mm"',
+        'segment[2] "shaft".bore',
+        "wall",
+    ),
+    "segment of a micrometre fraction": (
+        'backcone = "10 mm"',
+        'backcone = "1e-5 mm"',
+        'segment[1] "head"',
+        "under a millionth",
+    ),
+    "seat of an atom": (
+        'seat_width = "40 mm"',
+        'seat_width = "8e-8 mm"',
+        'bearing[1] "1".seat_width',
+        "under a millionth",
+    ),
+    "length of the universe": (
+        'position = "28 mm"',
+        "position = 1e300",
+        'bearing[1] "1".position',
+        "larger than 1e+24 m",
+    ),
+    "unit without end": (
+        '"7850 kg/m^3"',
+        '"7850 kg/m^' + "9" * 4000 + '"',
+        "material.density",
+        "unknown unit",
+    ),
 }
 
 
@@ -137,16 +205,23 @@ def test_absurd_numbers_are_refused(kind, tmp_path):
 
 
 def test_both_ends_of_a_cone_are_named_as_in_the_file(tmp_path):
-    text = GOOD.replace('kind = "cylinder"\nname = "shaft"', 'kind = "cone"\nname = "shaft"').replace('diameter = "90 mm"', 'start_diameter = "90 mm"\nend_diameter = "1 um"')
+    text = GOOD.replace(
+        'kind = "cylinder"\nname = "shaft"', 'kind = "cone"\nname = "shaft"'
+    ).replace('diameter = "90 mm"', 'start_diameter = "90 mm"\nend_diameter = "1 um"')
     path = tmp_path / "spoilt.toml"
     path.write_text(text, encoding="utf-8")
-    with pytest.raises(SceneError, match=r'segment\[2\] "shaft".end_diameter = "1 um": a diameter of 1e-06 m is under a thousandth'):
+    with pytest.raises(
+        SceneError,
+        match=r'segment\[2\] "shaft".end_diameter = "1 um": a diameter of 1e-06 m is under a thousandth',
+    ):
         load(path)
 
 
 def test_scenes_made_in_python_are_refused_alike():
     rod = Segment.cylinder("rod", length=0.3, diameter=0.06)
-    with pytest.raises(SceneError, match="stiffness in thz is 1e-40, below 1e-30 in SI, which is no spring"):
+    with pytest.raises(
+        SceneError, match="stiffness in thz is 1e-40, below 1e-30 in SI, which is no spring"
+    ):
         Bearing(name="1", y=0.1, seat_width=0.01, stiffness={"kxx": 1e8, "kthz": 1e-40})
     with pytest.raises(SceneError, match="below 1 Pa"):
         Material(E=1e-3, nu=0.3, density=7850)

@@ -5,7 +5,13 @@ import itertools
 import numpy as np
 import pytest
 
-from solidgear.drivetrain.gear_mesh import MeshVector, line_of_action, mean_radius, mesh_point, to_gear_frame
+from solidgear.drivetrain.gear_mesh import (
+    MeshVector,
+    line_of_action,
+    mean_radius,
+    mesh_point,
+    to_gear_frame,
+)
 from solidgear.errors import SolidgearError
 
 # A dozen products of numbers of order one.
@@ -40,21 +46,29 @@ def test_components_are_the_textbook_ones(hand, side, member):
     axial, inward, tangential = parts(n, member)
     sign = 1 if side == "concave" else -1
     tan, sin, cos = np.tan(PRESSURE), np.sin(PITCH), np.cos(PITCH)
-    assert axial / abs(tangential) == pytest.approx((tan * sin + sign * np.sin(SPIRAL) * cos) / np.cos(SPIRAL), rel=1e-13)
-    assert inward / abs(tangential) == pytest.approx((tan * cos - sign * np.sin(SPIRAL) * sin) / np.cos(SPIRAL), rel=1e-13)
+    assert axial / abs(tangential) == pytest.approx(
+        (tan * sin + sign * np.sin(SPIRAL) * cos) / np.cos(SPIRAL), rel=1e-13
+    )
+    assert inward / abs(tangential) == pytest.approx(
+        (tan * cos - sign * np.sin(SPIRAL) * sin) / np.cos(SPIRAL), rel=1e-13
+    )
     assert (tangential > 0) == ((hand, side) in {("left", "concave"), ("right", "convex")})
 
 
 @pytest.mark.parametrize("hand, side, member", ALL)
 def test_no_spiral_is_a_straight_bevel_gear(hand, side, member):
-    axial, inward, tangential = parts(line_of_action(PITCH, 0.0, PRESSURE, hand, side, member), member)
+    axial, inward, tangential = parts(
+        line_of_action(PITCH, 0.0, PRESSURE, hand, side, member), member
+    )
     assert axial == pytest.approx(np.sin(PRESSURE) * np.sin(PITCH), abs=ROUNDING)
     assert inward == pytest.approx(np.sin(PRESSURE) * np.cos(PITCH), abs=ROUNDING)
     assert abs(tangential) == pytest.approx(np.cos(PRESSURE), abs=ROUNDING)
 
 
 def test_no_pitch_angle_is_a_helical_gear():
-    axial, inward, tangential = parts(line_of_action(0.0, SPIRAL, PRESSURE, "left", "concave"), "pinion")
+    axial, inward, tangential = parts(
+        line_of_action(0.0, SPIRAL, PRESSURE, "left", "concave"), "pinion"
+    )
     assert axial == pytest.approx(np.cos(PRESSURE) * np.sin(SPIRAL), abs=ROUNDING)
     assert inward == pytest.approx(np.sin(PRESSURE), abs=ROUNDING)
     assert tangential == pytest.approx(np.cos(PRESSURE) * np.cos(SPIRAL), abs=ROUNDING)
@@ -104,7 +118,9 @@ def test_mesh_vector_is_the_rows_of_equation_22():
 
 def test_moving_the_mesh_point_along_the_line_of_action_changes_nothing():
     n, r = np.array([2.0, 3.0, 6.0]) / 7, np.array([0.1, 0.2, 0.3])
-    assert np.allclose(MeshVector(n, r).vector, MeshVector(n, r + 5 * n).vector, rtol=0, atol=ROUNDING)
+    assert np.allclose(
+        MeshVector(n, r).vector, MeshVector(n, r + 5 * n).vector, rtol=0, atol=ROUNDING
+    )
 
 
 def test_mean_radius():
@@ -126,10 +142,16 @@ def test_a_mesh_vector_cannot_be_changed_afterwards():
         (lambda: MeshVector("up", [0, 0, 0]), "three numbers"),
         (lambda: line_of_action(2.0, 0.4, 0.4, "left", "concave"), "pitch_angle is 2.0 rad"),
         (lambda: line_of_action(0.4, -0.4, 0.4, "left", "concave"), "spiral_angle is -0.4 rad"),
-        (lambda: line_of_action(0.4, 0.4, float("nan"), "left", "concave"), "pressure_angle is nan rad"),
+        (
+            lambda: line_of_action(0.4, 0.4, float("nan"), "left", "concave"),
+            "pressure_angle is nan rad",
+        ),
         (lambda: line_of_action(0.4, 0.4, 0.4, "Left", "concave"), "write 'right' or 'left'"),
         (lambda: line_of_action(0.4, 0.4, 0.4, "left", "drive"), "write 'concave' or 'convex'"),
-        (lambda: line_of_action(0.4, 0.4, 0.4, "left", "concave", "wheel"), "write 'pinion' or 'gear'"),
+        (
+            lambda: line_of_action(0.4, 0.4, 0.4, "left", "concave", "wheel"),
+            "write 'pinion' or 'gear'",
+        ),
         (lambda: mesh_point(0.0), "mean_radius > |height|"),
         (lambda: mesh_point(0.05, height=0.05), "mean_radius > |height|"),
         (lambda: mesh_point(0.05, axial=float("inf")), "finite length"),

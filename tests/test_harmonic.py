@@ -30,7 +30,11 @@ def rod(bore=0.0, length=LENGTH, radius=RADIUS):
 @pytest.mark.parametrize("bore", [0.0, 0.02])
 def test_free_free_torsion(bore):
     body = sg.build(rod(bore), "harmonic", order=7, layers=1, edge_layers=1)
-    found = [m.frequency_hz for m in sg.modes(body, n=16).modes if m.family == "torsion" and m.frequency_hz > 0]
+    found = [
+        m.frequency_hz
+        for m in sg.modes(body, n=16).modes
+        if m.family == "torsion" and m.frequency_hz > 0
+    ]
     exact = SHEAR / (2 * LENGTH) * np.arange(1, 3)
     # sin(pi y / L) by polynomials of degree 7 on cells of a tenth of the length: the discretisation error is far below
     # rounding, which the shift of 1e-3 of the first eigenvalue amplifies to about 1e-13; a hundred times that
@@ -43,7 +47,9 @@ def test_mass_matrix_of_shipped_scenes(path):
     scene = sg.load(path)
     m = sg.build(scene, "harmonic", order=2).mass_matrix()
     p = mass_properties(scene.segments)
-    expected = np.diag([p.mass, p.mass, p.mass, p.ixx + p.mass * p.centre**2, p.iyy, p.ixx + p.mass * p.centre**2])
+    expected = np.diag(
+        [p.mass, p.mass, p.mass, p.ixx + p.mass * p.centre**2, p.iyy, p.ixx + p.mass * p.centre**2]
+    )
     expected[2, 3] = expected[3, 2] = p.mass * p.centre
     expected[0, 5] = expected[5, 0] = -p.mass * p.centre
     # r^5 on straight-sided cells is a polynomial within the degree of the rule: rounding only
@@ -56,13 +62,18 @@ def test_mass_matrix_of_the_hollow_shaft_by_quadrature():
     outer = lambda y: 0.040 if y < 0.4 else 0.040 + (y - 0.4) / 0.06 * 0.020  # noqa: E731
 
     def integral(f):
-        return sum(quad(lambda y: 7850 * f(outer(y), 0.025, y), a, b, epsrel=1e-13)[0] for a, b in ((0, 0.4), (0.4, 0.46)))
+        return sum(
+            quad(lambda y: 7850 * f(outer(y), 0.025, y), a, b, epsrel=1e-13)[0]
+            for a, b in ((0, 0.4), (0.4, 0.46))
+        )
 
     mass = integral(lambda a, b, y: np.pi * (a**2 - b**2))
     first = integral(lambda a, b, y: np.pi * (a**2 - b**2) * y)
     polar = integral(lambda a, b, y: np.pi / 2 * (a**4 - b**4))
     cross = integral(lambda a, b, y: np.pi * (a**2 - b**2) * y**2 + np.pi / 4 * (a**4 - b**4))
-    m = sg.build(sg.load(next(p for p in SCENES if p.stem == "shaft_hollow")), "harmonic", order=2).mass_matrix()
+    m = sg.build(
+        sg.load(next(p for p in SCENES if p.stem == "shaft_hollow")), "harmonic", order=2
+    ).mass_matrix()
     # both sides are polynomials integrated exactly
     assert [m[0, 0], m[1, 1], m[2, 3], -m[0, 5], m[4, 4], m[3, 3], m[5, 5]] == pytest.approx(
         [mass, mass, first, first, polar, cross, cross], rel=1e-11
@@ -114,7 +125,13 @@ def pochhammer_root(k, low, high, n=1):
     assert np.abs((values * phase).imag).max() < 1e-6 * np.abs(real).max()
     for x, y, f, g in zip(grid, grid[1:], real, real[1:]):
         if f * g < 0:
-            return brentq(lambda w: (pochhammer_determinant(w, k, n) * phase).real, x, y, xtol=1e-9, rtol=1e-15)
+            return brentq(
+                lambda w: (pochhammer_determinant(w, k, n) * phase).real,
+                x,
+                y,
+                xtol=1e-9,
+                rtol=1e-15,
+            )
     raise AssertionError("no root in the bracket")
 
 
@@ -175,7 +192,10 @@ def transfer_frequency(length, a, b, kappa):
     shear = stiff / (kappa * G * area * length**2)
 
     def determinant(w):
-        inertia, rotary = RHO * area * w**2 * length**4 / stiff, RHO * second * w**2 * length**2 / stiff
+        inertia, rotary = (
+            RHO * area * w**2 * length**4 / stiff,
+            RHO * second * w**2 * length**2 / stiff,
+        )
         t = np.array([[0, 1, 0, shear], [0, 0, 1, 0], [0, -rotary, 0, -1], [-inertia, 0, 0, 0]])
         return np.linalg.det(expm(t)[2:, :2]) / w**4
 
@@ -192,22 +212,39 @@ def test_hutchinson_coefficient_fits_the_exact_solid(ratio, limit):
     b = ratio * a
     r2, r4 = ratio**2, ratio**4
     top = 6 * (1 + NU) ** 2 * (1 + r2) ** 2
-    kappa = top / (7 + 34 * r2 + 7 * r4 + NU * (12 + 48 * r2 + 12 * r4) + NU**2 * (4 + 16 * r2 + 4 * r4))
-    found = sg.modes(sg.build(rod(2 * b, length, a), "harmonic", order=4), n=6).named("bending 1").frequency_hz
+    kappa = top / (
+        7 + 34 * r2 + 7 * r4 + NU * (12 + 48 * r2 + 12 * r4) + NU**2 * (4 + 16 * r2 + 4 * r4)
+    )
+    found = (
+        sg.modes(sg.build(rod(2 * b, length, a), "harmonic", order=4), n=6)
+        .named("bending 1")
+        .frequency_hz
+    )
     gap = abs(transfer_frequency(length, a, b, kappa) / found - 1)
     assert gap < limit
     cowper = 6 * (1 + NU) * (1 + r2) ** 2 / ((7 + 6 * NU) * (1 + r2) ** 2 + (20 + 12 * NU) * r2)
     assert abs(transfer_frequency(length, a, b, cowper) / found - 1) > 5 * gap
     # ... and the library's own coefficient is this one: the same beam, built, lands where the reference does.
     # 300 elements leave a discretisation error of 1e-5.
-    beam = sg.modes(sg.build(rod(2 * b, length, a), "timoshenko", elements=300), n=6).named("bending 1").frequency_hz
+    beam = (
+        sg.modes(sg.build(rod(2 * b, length, a), "timoshenko", elements=300), n=6)
+        .named("bending 1")
+        .frequency_hz
+    )
     assert beam == pytest.approx(transfer_frequency(length, a, b, kappa), rel=2e-5)
 
 
 # --------------------------------------------------------------------------- order
 def test_order_and_grading_converge_from_above():
     scene = sg.load(SCENES[0].parent / "pinion_overhung.toml")
-    stiffness = [sg.condense(sg.build(scene, "harmonic", order=p, layers=2, edge_layers=2), scene, "pinion").stiffness[2, 2] for p in (1, 2, 4)]
+    stiffness = [
+        sg.condense(
+            sg.build(scene, "harmonic", order=p, layers=2, edge_layers=2), scene, "pinion"
+        ).stiffness[2, 2]
+        for p in (1, 2, 4)
+    ]
     # Richer spaces on the same mesh: the averaged port makes the body softer, and the sequence contracts (about 20 each).
     assert stiffness[0] > stiffness[1] > stiffness[2] > 4.70996e9 * (1 - 1e-5)
-    assert stiffness[2] == pytest.approx(4.70996e9, rel=2e-4)  # order 4 with two layers is good to 1e-4
+    assert stiffness[2] == pytest.approx(
+        4.70996e9, rel=2e-4
+    )  # order 4 with two layers is good to 1e-4

@@ -6,9 +6,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 from scipy.spatial import cKDTree
-from skfem.quadrature import get_quadrature
-
 from shafts import NASTY
+from skfem.quadrature import get_quadrature
 
 import solidgear as sg
 from solidgear.meshing.hexahedra import hexahedra
@@ -24,7 +23,11 @@ def shaft(*parts):
     """A scene of (length, outer0, outer1, inner0, inner1) parts."""
     segments, y = [], 0.0
     for k, (length, a, b, i, j) in enumerate(parts):
-        segments.append(Segment(name=f"s{k}", y0=y, y1=round(y + length, 9), outer0=a, outer1=b, inner0=i, inner1=j))
+        segments.append(
+            Segment(
+                name=f"s{k}", y0=y, y1=round(y + length, 9), outer0=a, outer1=b, inner0=i, inner1=j
+            )
+        )
         y = segments[-1].y1
     return Scene.from_parts(segments)
 
@@ -35,10 +38,17 @@ def nasty():
     )
 
 
-SCENES = {name: (lambda n=name: sg.load(GEOMETRY / f"{n}.toml")) for name in ("pinion_overhung", "shaft_hollow", "gear_shaft")} | {"nasty": nasty}
+SCENES = {
+    name: (lambda n=name: sg.load(GEOMETRY / f"{n}.toml"))
+    for name in ("pinion_overhung", "shaft_hollow", "gear_shaft")
+} | {"nasty": nasty}
 
 
-@pytest.fixture(scope="module", params=[(name, around) for name in SCENES for around in (8, 12, 16)], ids=lambda p: f"{p[0]}-{p[1]}")
+@pytest.fixture(
+    scope="module",
+    params=[(name, around) for name in SCENES for around in (8, 12, 16)],
+    ids=lambda p: f"{p[0]}-{p[1]}",
+)
 def case(request):
     name, around = request.param
     scene = SCENES[name]()
@@ -48,7 +58,9 @@ def case(request):
 
 def integrals(mesh):
     """Jacobian determinants, volumes and polar second moments of volume of all elements."""
-    points, weights = get_quadrature(mesh.refdom, 9)  # det J r^2 of triquadratic hexahedra: degree 5 + 4 in each direction
+    points, weights = get_quadrature(
+        mesh.refdom, 9
+    )  # det J r^2 of triquadratic hexahedra: degree 5 + 4 in each direction
     mapping = mesh.mapping()
     det = mapping.detDF(points)
     x = mapping.F(points)
@@ -58,16 +70,31 @@ def integrals(mesh):
 def frustum(s, power):
     """Integral of r^power over the length, closed form, bore taken off."""
     n = power
-    return s.length / (n + 1) * sum(
-        sign * sum(a ** (n - k) * b**k for k in range(n + 1)) for sign, a, b in ((1, s.outer0, s.outer1), (-1, s.inner0, s.inner1))
-    )  # fmt: skip
+    return (
+        s.length
+        / (n + 1)
+        * sum(
+            sign * sum(a ** (n - k) * b**k for k in range(n + 1))
+            for sign, a, b in ((1, s.outer0, s.outer1), (-1, s.inner0, s.inner1))
+        )
+    )
 
 
 def test_right_handed(case):
     _, _, mesh, _ = case
     det, _, _ = integrals(mesh)
     assert det.min() > 0
-    assert mesh.mapping().detDF(np.array([[0, 1, 0, 1, 0, 1, 0, 1], [0, 0, 1, 1, 0, 0, 1, 1], [0, 0, 0, 0, 1, 1, 1, 1]], float)).min() > 0
+    assert (
+        mesh.mapping()
+        .detDF(
+            np.array(
+                [[0, 1, 0, 1, 0, 1, 0, 1], [0, 0, 1, 1, 0, 0, 1, 1], [0, 0, 0, 0, 1, 1, 1, 1]],
+                float,
+            )
+        )
+        .min()
+        > 0
+    )
 
 
 def test_volume_is_exact_segment_by_segment(case):
@@ -107,7 +134,11 @@ def facet_area(mesh, facets):
     a, b, c, d = np.moveaxis(mesh.p[:, mesh.facets[:, facets]], 1, 0)
     # corners of facets are sorted, so any two may be opposite: the area of the hull of four points in a plane is the largest of
     # the three quadrilaterals' cross products
-    pairs = (np.cross(c - a, d - b, axis=0), np.cross(b - a, d - c, axis=0), np.cross(d - a, c - b, axis=0))
+    pairs = (
+        np.cross(c - a, d - b, axis=0),
+        np.cross(b - a, d - c, axis=0),
+        np.cross(d - a, c - b, axis=0),
+    )
     return np.max([np.linalg.norm(p, axis=0) for p in pairs], axis=0) / 2
 
 
@@ -152,4 +183,8 @@ def test_bore_that_closes_to_a_point_is_refused(bore):
     scene = shaft((0.1, 0.03, 0.03, *bore))
     with pytest.raises(MeshError) as caught:
         hexahedra(scene, layout(scene, Grading(**PLAN)), 8)
-    assert "'s0'" in str(caught.value) and "closes to a point" in str(caught.value) and "tet10" in str(caught.value)
+    assert (
+        "'s0'" in str(caught.value)
+        and "closes to a point" in str(caught.value)
+        and "tet10" in str(caught.value)
+    )

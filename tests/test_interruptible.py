@@ -20,7 +20,11 @@ main = threading.main_thread()
 
 def child(code):
     return subprocess.run(
-        [sys.executable, "-c", code], env={**os.environ, "PYTHONPATH": str(ROOT)}, capture_output=True, text=True, timeout=120
+        [sys.executable, "-c", code],
+        env={**os.environ, "PYTHONPATH": str(ROOT)},
+        capture_output=True,
+        text=True,
+        timeout=120,
     )
 
 
@@ -64,7 +68,9 @@ def test_calls_use_one_thread():
 
 def test_in_another_thread_the_call_is_simply_made():
     seen = []
-    thread = threading.Thread(target=lambda: seen.append(call(threading.get_ident) == threading.get_ident()))
+    thread = threading.Thread(
+        target=lambda: seen.append(call(threading.get_ident) == threading.get_ident())
+    )
     thread.start()
     thread.join()
     assert seen == [True]
@@ -131,7 +137,10 @@ except KeyboardInterrupt:
 leave(130)
 """
     done = child(code)
-    assert (done.returncode, done.stderr) == (130, "") and done.stdout == f"19 {os.getpriority(os.PRIO_PROCESS, 0)}\n"
+    assert (done.returncode, done.stderr) == (
+        130,
+        "",
+    ) and done.stdout == f"19 {os.getpriority(os.PRIO_PROCESS, 0)}\n"
 
 
 @pytest.mark.parametrize("code", [None, 0, 3, "a sentence"])

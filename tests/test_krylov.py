@@ -29,13 +29,17 @@ def kl(modes):
 
 
 def roots_near(equation, guesses, width):
-    return np.array([brentq(equation, g - width, g + width, xtol=1e-14, rtol=1e-15) for g in guesses])
+    return np.array(
+        [brentq(equation, g - width, g + width, xtol=1e-14, rtol=1e-15) for g in guesses]
+    )
 
 
 def points(modes):
     """Gauss points and weights between all joints: shapes are smooth there."""
     size = np.diff(modes.y)
-    return (modes.y[:-1, None] + size[:, None] * (GAUSS[0] + 1) / 2).ravel(), (size[:, None] * GAUSS[1] / 2).ravel()
+    return (modes.y[:-1, None] + size[:, None] * (GAUSS[0] + 1) / 2).ravel(), (
+        size[:, None] * GAUSS[1] / 2
+    ).ravel()
 
 
 def counted(modes):
@@ -60,7 +64,15 @@ CANTILEVER = roots_near(lambda x: np.cos(x) + 1 / np.cosh(x), (np.arange(20) + 0
         (held(0, STIFF), held(1, STIFF), 0, np.pi * np.arange(1, 21)),
         (held(0, 0, STIFF), held(1, STIFF), 0, np.pi * (np.arange(1, 21) - 0.5)),
     ],
-    ids=["free-free", "clamped", "cantilever", "propped", "pinned-free", "simply supported", "guided-pinned"],
+    ids=[
+        "free-free",
+        "clamped",
+        "cantilever",
+        "propped",
+        "pinned-free",
+        "simply supported",
+        "guided-pinned",
+    ],
 )
 def test_uniform_beams(left, right, rigid, reference):
     modes = krylov([UNIT], [left, right], 20 + rigid)
@@ -75,7 +87,9 @@ def test_all_modes_up_to_kl_200():
     top = 200.0**2 / (2 * np.pi)
     modes = krylov([UNIT], [held(0, STIFF), held(1, STIFF)], None, max_frequency=top)
     assert len(modes.frequency_hz) == 63  # 63 pi = 197.9, 64 pi = 201.1
-    assert 0 < np.diff(modes.y).min() and np.diff(modes.y).max() * 63 * np.pi < 2 + 1e-9  # no piece has clamped roots of its own
+    assert (
+        0 < np.diff(modes.y).min() and np.diff(modes.y).max() * 63 * np.pi < 2 + 1e-9
+    )  # no piece has clamped roots of its own
     np.testing.assert_allclose(kl(modes), np.pi * np.arange(1, 64), rtol=1e-13)  # 1e-15 was seen
     # sin(n pi y) with unit modal mass; the shape inherits the error of the root times n pi, below 1e-12.
     y = np.linspace(0, 1, 777)
@@ -113,9 +127,15 @@ def test_overhung_shaft_of_the_thesis(mass, inertia):
         rows = np.array([[*z1, 0, 0], [*z2, v3 / k**3, 0], [*m2, t3 / k, 0], [*shear2, s3, 1.0]])
         return np.linalg.det(rows / np.abs(rows).max(axis=1, keepdims=True))
 
-    grid = np.linspace(0.05, 14.0, 2000)  # exp(14 * 1.4) costs eight of sixteen digits at the upper end
+    grid = np.linspace(
+        0.05, 14.0, 2000
+    )  # exp(14 * 1.4) costs eight of sixteen digits at the upper end
     values = [determinant(k) for k in grid]
-    found = [brentq(determinant, x, y, xtol=1e-14, rtol=1e-14) for x, y, f, g in zip(grid, grid[1:], values, values[1:]) if f * g < 0][:4]
+    found = [
+        brentq(determinant, x, y, xtol=1e-14, rtol=1e-14)
+        for x, y, f, g in zip(grid, grid[1:], values, values[1:])
+        if f * g < 0
+    ][:4]
     end = Station(0.0, mass=mass, inertia=inertia)
     modes = krylov([Span(c + b, 1.0, 1.0)], [held(c, STIFF), held(c + b, STIFF), end], 4)
     # At the fourth root k L is near 12: the plain determinant is good to eps exp(12) / 12, about 3e-12.
@@ -146,14 +166,20 @@ HELD = [
 
 def test_splitting_changes_nothing():
     whole = krylov(STEPPED, HELD, 8)
-    parts = [Span(s.length / 50, s.bending_stiffness, s.mass_per_length) for s in STEPPED for _ in range(50)]
+    parts = [
+        Span(s.length / 50, s.bending_stiffness, s.mass_per_length)
+        for s in STEPPED
+        for _ in range(50)
+    ]
     split = krylov(parts, HELD, 8)
     # Rounding of 150 transfers instead of a dozen.
     np.testing.assert_allclose(split.frequency_hz, whole.frequency_hz, rtol=1e-12)
     y = np.linspace(0, 1, 301)[:-1]
     for k in range(8):
         for a, b in zip(split.shape(k, y), whole.shape(k, y)):
-            keep = np.abs(y[:, None] - [0.1, 0.3, 0.5, 0.55, 0.8]).min(axis=1) > 1e-6  # forces jump there
+            keep = (
+                np.abs(y[:, None] - [0.1, 0.3, 0.5, 0.55, 0.8]).min(axis=1) > 1e-6
+            )  # forces jump there
             np.testing.assert_allclose(a[keep], b[keep], atol=1e-10 * np.abs(b).max())
 
 
@@ -196,9 +222,14 @@ def test_frequencies_rise_with_the_spring_from_nothing_to_a_clamp():
 def test_a_clamp_across_a_soft_spring_keeps_the_soft_one(y):
     # A rigid rod on 1e-8: pinned, it swings about y; guided, it slides; the elastic share is of the order of 1e-8.
     soft = 1e-8
-    for spring, inertia in ([[STIFF, 0], [0, soft]], ((1 - y) ** 3 + y**3) / 3), ([[soft, 0], [0, STIFF]], 1.0):
+    for spring, inertia in (
+        ([[STIFF, 0], [0, soft]], ((1 - y) ** 3 + y**3) / 3),
+        ([[soft, 0], [0, STIFF]], 1.0),
+    ):
         modes = krylov([UNIT], [Station(y, spring)], 1)
-        np.testing.assert_allclose((2 * np.pi * modes.frequency_hz[0]) ** 2, soft / inertia, rtol=1e-7)
+        np.testing.assert_allclose(
+            (2 * np.pi * modes.frequency_hz[0]) ** 2, soft / inertia, rtol=1e-7
+        )
 
 
 def test_a_clamp_against_tilt_in_mid_span():
@@ -211,7 +242,12 @@ def test_a_clamp_against_tilt_in_mid_span():
 def test_stations_at_one_place_add_up():
     apart = [held(0.4, 50.0), held(0.4, 0, 7.0, mass=0.2), held(0.4, 20.0, 1.0, inertia=0.1)]
     together = [held(0.4, 70.0, 8.0, mass=0.2, inertia=0.1)]
-    np.testing.assert_allclose(krylov([UNIT], apart, 5).frequency_hz, krylov([UNIT], together, 5).frequency_hz, rtol=1e-12, atol=1e-12)
+    np.testing.assert_allclose(
+        krylov([UNIT], apart, 5).frequency_hz,
+        krylov([UNIT], together, 5).frequency_hz,
+        rtol=1e-12,
+        atol=1e-12,
+    )
 
 
 @pytest.mark.parametrize("reach", [0.1, 0.25, 0.3, 0.7, -0.15, 3.0])
@@ -226,8 +262,18 @@ def test_one_coupled_spring_leaves_one_rigid_motion(reach):
     np.testing.assert_allclose([m, q], 0, atol=1e-9)
     # A second one whose arm ends at the same point leaves that rotation free, one that ends elsewhere does not.
     other = np.array([1.0, reach - 0.4])
-    assert krylov([UNIT], [Station(0.2, np.outer(arm, arm)), Station(0.6, np.outer(other, other))], 3).rigid == 1
-    assert krylov([UNIT], [Station(0.2, np.outer(arm, arm)), Station(0.6, np.outer(arm, arm))], 3).rigid == 0
+    assert (
+        krylov(
+            [UNIT], [Station(0.2, np.outer(arm, arm)), Station(0.6, np.outer(other, other))], 3
+        ).rigid
+        == 1
+    )
+    assert (
+        krylov(
+            [UNIT], [Station(0.2, np.outer(arm, arm)), Station(0.6, np.outer(arm, arm))], 3
+        ).rigid
+        == 0
+    )
 
 
 def test_modes_that_stand_still_at_every_support():
@@ -248,7 +294,11 @@ def test_modes_that_stand_still_at_every_support():
 @pytest.mark.parametrize("tilt", [1e5, 1e8, 1e11])
 def test_nearly_equal_frequencies_keep_orthogonal_shapes(tilt):
     # Three spans that feel each other through nearly rigid walls: gaps of about 1 / tilt, relatively.
-    modes = krylov([Span(1.0, 1.0, 1.0)] * 3, [held(y, STIFF, STIFF if y in (0, 3) else tilt) for y in range(4)], 6)
+    modes = krylov(
+        [Span(1.0, 1.0, 1.0)] * 3,
+        [held(y, STIFF, STIFF if y in (0, 3) else tilt) for y in range(4)],
+        6,
+    )
     assert counted(modes) or tilt > 1e8  # closer than the 1e-8 by which the counts stand off
     y, w = points(modes)
     z = np.array([modes.shape(k, y)[0] for k in range(6)])
@@ -260,7 +310,9 @@ def test_nearly_equal_frequencies_keep_orthogonal_shapes(tilt):
 
 def test_a_mode_that_lives_far_from_one_end():
     # Two clamped beams, lengths apart by 1 part in 3: each mode must be zero in the other, whichever side it is on.
-    modes = krylov([Span(1.0, 1, 1), Span(1.3, 1, 1)], [held(y, STIFF, STIFF) for y in (0, 1, 2.3)], 4)
+    modes = krylov(
+        [Span(1.0, 1, 1), Span(1.3, 1, 1)], [held(y, STIFF, STIFF) for y in (0, 1, 2.3)], 4
+    )
     reference = np.sort(np.concatenate([CLAMPED[:4], CLAMPED[:4] / 1.3]))[:4]
     np.testing.assert_allclose(kl(modes), reference, rtol=1e-12)
     for k, right in enumerate([True, False, True, False]):
@@ -275,7 +327,10 @@ def test_orthogonality_and_energy_with_lumped_masses():
     z, phi, m, _ = (np.array(f) for f in zip(*(modes.shape(k, y) for k in range(8))))
     ends = np.cumsum([s.length for s in STEPPED])
     owner = [STEPPED[i] for i in np.minimum(np.searchsorted(ends, y), 2)]
-    heavy, stiff = (np.array([getattr(s, name) for s in owner]) for name in ("mass_per_length", "bending_stiffness"))
+    heavy, stiff = (
+        np.array([getattr(s, name) for s in owner])
+        for name in ("mass_per_length", "bending_stiffness")
+    )
     mass, energy = (z * w * heavy) @ z.T, (m * w / stiff) @ m.T
     np.testing.assert_allclose(np.diag(mass), modes.distributed, rtol=1e-10)
     for station in HELD:
@@ -308,7 +363,9 @@ def test_derivatives_and_jumps(k):
         near = modes.shape(k, station.y - 1e-12) if station.y else (z, phi, 0.0, 0.0)
         force = (station.spring - w2 * np.diag([station.mass, station.inertia])) @ [z, phi]
         # The limit from the left is taken 1e-12 short of the station; forces change by about k times that.
-        np.testing.assert_allclose([q - near[3], m - near[2]], force, atol=1e-8 * np.abs([q, m, *force]).max())
+        np.testing.assert_allclose(
+            [q - near[3], m - near[2]], force, atol=1e-8 * np.abs([q, m, *force]).max()
+        )
     z, phi, m, q = modes.shape(k, 1.0)
     scale = np.abs(modes.shape(k, np.linspace(0, 1, 99))[2]).max()
     np.testing.assert_allclose([m, q], 0, atol=1e-10 * scale * 40)  # a free end; Q is of order k M
@@ -336,14 +393,18 @@ def test_coupled_springs_against_elements():
     # Bearings that couple z and thx: the sign of the coupling matters by several per cent.
     # Their weak couplings out of the plane (1e-9 of the main entries) are left out.
     scene = sg.load(GEOMETRY / "thesis_overhung.toml")
-    np.testing.assert_allclose(krylov(*from_scene(scene), 3).frequency_hz, bending_z(scene, elements=60)[:3], rtol=1e-6)
+    np.testing.assert_allclose(
+        krylov(*from_scene(scene), 3).frequency_hz, bending_z(scene, elements=60)[:3], rtol=1e-6
+    )
 
 
 @pytest.mark.parametrize("name", ["pinion_overhung", "shaft_hollow"])
 def test_cones_converge_to_tapered_elements(name):
     scene = sg.load(GEOMETRY / f"{name}.toml").with_attachment("section")
     reference = bending_z(scene, elements=60)[:3]
-    error = np.array([krylov(*from_scene(scene, pieces=p), 3).frequency_hz / reference - 1 for p in (4, 8, 16)])
+    error = np.array(
+        [krylov(*from_scene(scene, pieces=p), 3).frequency_hz / reference - 1 for p in (4, 8, 16)]
+    )
     # Means over a piece are of second order; Richardson of the last two leaves the fourth order and the elements' own error.
     assert np.all(np.abs(error[0] / error[1] - 4) < 0.2), error
     assert np.all(np.abs(error[2] - (error[1] - error[2]) / 3) < 3e-6), error

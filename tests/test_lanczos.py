@@ -89,5 +89,7 @@ def test_against_scipy_on_a_general_pair():
     rng = np.random.default_rng(5)
     a, m = (x @ x.T + 60 * np.eye(60) for x in rng.standard_normal((2, 60, 60)))
     exact = sla.eigh(a, m, eigvals_only=True)[:6]
-    found = block_lanczos(lambda f: np.linalg.solve(a, f), lambda x: m @ x, rng.standard_normal((60, 3)), 6)
+    found = block_lanczos(
+        lambda f: np.linalg.solve(a, f), lambda x: m @ x, rng.standard_normal((60, 3)), 6
+    )
     np.testing.assert_allclose(1 / found.theta, exact, rtol=1e-12)

@@ -6,7 +6,6 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-
 from shafts import NASTY
 
 import solidgear as sg
@@ -24,7 +23,11 @@ def shaft(*parts, **rest):
     """A scene of (length, outer0, outer1, inner0, inner1) parts."""
     segments, y = [], 0.0
     for k, (length, a, b, i, j) in enumerate(parts):
-        segments.append(Segment(name=f"s{k}", y0=y, y1=round(y + length, 9), outer0=a, outer1=b, inner0=i, inner1=j))
+        segments.append(
+            Segment(
+                name=f"s{k}", y0=y, y1=round(y + length, 9), outer0=a, outer1=b, inner0=i, inner1=j
+            )
+        )
         y = segments[-1].y1
     if "port" not in rest:
         return Scene.from_parts(segments, **rest)
@@ -34,7 +37,10 @@ def shaft(*parts, **rest):
 def nasty():
     return shaft(
         *NASTY,
-        bearings=[Bearing(name=n, y=y, seat_width=0.02, stiffness={"kxx": 1e8}) for n, y in (("A", 0.02), ("B", 0.135))],
+        bearings=[
+            Bearing(name=n, y=y, seat_width=0.02, stiffness={"kxx": 1e8})
+            for n, y in (("A", 0.02), ("B", 0.135))
+        ],
         port=Port(y=0.08, lo=0.07, hi=0.09),
     )
 
@@ -47,15 +53,25 @@ def staircase():
 
 def telescope():
     """Bore and outer surface step at the same places, against each other."""
-    return shaft((0.05, 0.05, 0.05, 0.04, 0.04), (0.05, 0.06, 0.06, 0.02, 0.02), (0.05, 0.045, 0.045, 0.03, 0.03), (0.05, 0.07, 0.05, 0.0, 0.0), (0.05, 0.05, 0.05, 0.045, 0.03))
+    return shaft(
+        (0.05, 0.05, 0.05, 0.04, 0.04),
+        (0.05, 0.06, 0.06, 0.02, 0.02),
+        (0.05, 0.045, 0.045, 0.03, 0.03),
+        (0.05, 0.07, 0.05, 0.0, 0.0),
+        (0.05, 0.05, 0.05, 0.045, 0.03),
+    )
 
 
 SCENES = {name: (lambda n=name: sg.load(GEOMETRY / f"{n}.toml")) for name in SHIPPED} | {
     "nasty": nasty,
-    "nasty mirrored": lambda: shaft(*((s.length, s.outer1, s.outer0, s.inner1, s.inner0) for s in reversed(nasty().segments))),
+    "nasty mirrored": lambda: shaft(
+        *((s.length, s.outer1, s.outer0, s.inner1, s.inner0) for s in reversed(nasty().segments))
+    ),
     "staircase": staircase,
     "telescope": telescope,
-    "bore that closes to a point": lambda: shaft((0.05, 0.04, 0.04, 0.02, 0.02), (0.05, 0.04, 0.04, 0.02, 0.0), (0.05, 0.04, 0.04, 0.0, 0.0)),
+    "bore that closes to a point": lambda: shaft(
+        (0.05, 0.04, 0.04, 0.02, 0.02), (0.05, 0.04, 0.04, 0.02, 0.0), (0.05, 0.04, 0.04, 0.0, 0.0)
+    ),
 }
 
 
@@ -119,10 +135,15 @@ def test_very_many_layers_still_end_where_they_should():
 def test_axial_lines_mark_everything_that_matters(scene):
     plan = layout(scene, Grading(**PLAN))
     assert plan.y[0] == 0.0 and np.all(np.diff(plan.y) > 0) and len(plan.segment) == len(plan.y) - 1
-    marks = {scene.length, *(s.y0 for s in scene.segments)} | {y for s in scene.stations for y in (s.y, s.lo, s.hi)}
+    marks = {scene.length, *(s.y0 for s in scene.segments)} | {
+        y for s in scene.stations for y in (s.y, s.lo, s.hi)
+    }
     for mark in marks:
         # lines are sums of segment-wise positions: a few roundings of the length
-        assert np.abs(plan.y - mark).min() < 1e-14 * max(1.0, scene.length) + 1e-9 * scene.length * 1e-3
+        assert (
+            np.abs(plan.y - mark).min()
+            < 1e-14 * max(1.0, scene.length) + 1e-9 * scene.length * 1e-3
+        )
     for cell, owner in zip(pairwise(plan.y), plan.segment):
         s = scene.segments[owner]
         assert s.y0 - 1e-12 <= cell[0] and cell[1] <= s.y1 + 1e-12  # rounding
@@ -135,8 +156,14 @@ def test_refinement_multiplies_the_cells(scene, core):
     assert thrice.bands == once.bands
     for (band, first), lines in once.fractions.items():
         cells = len(lines) - 1
-        lowest = {k: b[0] for k, b in enumerate(once.bands) if first_of_run(once.bands, band, k) == first and b[0] <= band < b[1]}
-        on_axis = any(low == band and once.left[k][0] == once.right[k][0] == 0.0 for k, low in lowest.items())
+        lowest = {
+            k: b[0]
+            for k, b in enumerate(once.bands)
+            if first_of_run(once.bands, band, k) == first and b[0] <= band < b[1]
+        }
+        on_axis = any(
+            low == band and once.left[k][0] == once.right[k][0] == 0.0 for k, low in lowest.items()
+        )
         # the core of an O-grid is one cell of half the band whatever the refinement
         want = 1 + 3 * (cells - 1) if core and on_axis else 3 * cells
         assert len(thrice.fractions[band, first]) - 1 == want
@@ -147,7 +174,15 @@ def test_refinement_multiplies_the_cells(scene, core):
 
 def test_a_flange_keeps_its_rings_to_itself():
     # two flanges of different height on a bar: neither passes its rings on to the other, nor to the bar
-    apart = layout(shaft((0.1, 0.02, 0.02, 0, 0), (0.02, 0.06, 0.06, 0, 0), (0.1, 0.02, 0.02, 0, 0), (0.02, 0.03, 0.03, 0, 0)), Grading(layers=2))
+    apart = layout(
+        shaft(
+            (0.1, 0.02, 0.02, 0, 0),
+            (0.02, 0.06, 0.06, 0, 0),
+            (0.1, 0.02, 0.02, 0, 0),
+            (0.02, 0.03, 0.03, 0, 0),
+        ),
+        Grading(layers=2),
+    )
     bar, high, again, low = (len(apart.ring_numbers(k)) - 1 for k in range(4))
     assert bar == again < low
     assert bar < high
@@ -159,7 +194,9 @@ def test_a_flange_keeps_its_rings_to_itself():
 def test_a_small_step_is_a_layer_of_its_own_and_is_not_filled_with_more():
     # a step of 0.1 mm on a bar of 40 mm has no room for layers that begin at 5 mm; one of 20 mm has
     def across(outer):
-        plan = layout(shaft((0.1, 0.02, 0.02, 0, 0), (0.1, outer, outer, 0, 0)), Grading(layers=2, ratio=0.2))
+        plan = layout(
+            shaft((0.1, 0.02, 0.02, 0, 0), (0.1, outer, outer, 0, 0)), Grading(layers=2, ratio=0.2)
+        )
         return [len(lines) - 1 for lines in plan.divided(1)]
 
     assert across(0.0201)[1] == 1 < across(0.04)[1]
@@ -168,7 +205,10 @@ def test_a_small_step_is_a_layer_of_its_own_and_is_not_filled_with_more():
 
 def test_cells_follow_the_local_radius():
     # a thin journal does not refine the thick rotor beside it
-    thin, thick = (layout(shaft((0.1, r, r, 0, 0), (0.4, 0.08, 0.08, 0, 0)), Grading(layers=0, edge_layers=0)) for r in (0.01, 0.04))
+    thin, thick = (
+        layout(shaft((0.1, r, r, 0, 0), (0.4, 0.08, 0.08, 0, 0)), Grading(layers=0, edge_layers=0))
+        for r in (0.01, 0.04)
+    )
     cells = [np.diff(plan.y[plan.y > 0.1 - 1e-12]) for plan in (thin, thick)]
     assert len(cells[0]) == len(cells[1])
     assert np.diff(thin.y).min() <= 0.01 < cells[0].min()
@@ -176,7 +216,10 @@ def test_cells_follow_the_local_radius():
 
 def test_section_planes_and_rigid_ends_are_graded():
     scene = shaft((0.4, 0.02, 0.02, 0, 0), port=Port(y=0.2, lo=0.1, hi=0.3))
-    cells = {tie: layout(scene, Grading(layers=2, edge_layers=0), (tie,)).y for tie in ("average", "section", "rigid")}
+    cells = {
+        tie: layout(scene, Grading(layers=2, edge_layers=0), (tie,)).y
+        for tie in ("average", "section", "rigid")
+    }
     assert np.diff(cells["average"]).min() > 0.009
     for tie, place in (("section", 0.2), ("rigid", 0.1), ("rigid", 0.3)):
         y = cells[tie]
@@ -203,7 +246,12 @@ def test_bands_fill_every_segment_from_bore_to_surface(scene):
         assert len(left) == len(right) == high - low + 1
         assert np.all(np.diff(left) > 0) and np.all(np.diff(right) > 0)
         # rounding
-        assert np.allclose([left[0], left[-1], right[0], right[-1]], [s.inner0, s.outer0, s.inner1, s.outer1], rtol=0, atol=1e-15)
+        assert np.allclose(
+            [left[0], left[-1], right[0], right[-1]],
+            [s.inner0, s.outer0, s.inner1, s.outer1],
+            rtol=0,
+            atol=1e-15,
+        )
 
 
 # --------------------------------------------------------------------------- meridian
@@ -254,10 +302,18 @@ def test_meridian_has_the_area_and_the_volume_of_the_shaft(scene):
     for k, s in enumerate(scene.segments):
         mine = flat.segment == k
         # straight edges follow cylinders and cones exactly: rounding
-        assert area[mine].sum() == pytest.approx(s.length * (s.outer0 + s.outer1 - s.inner0 - s.inner1) / 2, rel=1e-12)
-        volume = np.pi * s.length / 3 * sum(
-            sign * (a * a + a * b + b * b) for sign, a, b in ((1, s.outer0, s.outer1), (-1, s.inner0, s.inner1))
-        )  # fmt: skip
+        assert area[mine].sum() == pytest.approx(
+            s.length * (s.outer0 + s.outer1 - s.inner0 - s.inner1) / 2, rel=1e-12
+        )
+        volume = (
+            np.pi
+            * s.length
+            / 3
+            * sum(
+                sign * (a * a + a * b + b * b)
+                for sign, a, b in ((1, s.outer0, s.outer1), (-1, s.inner0, s.inner1))
+            )
+        )
         assert 2 * np.pi * moment[mine].sum() == pytest.approx(volume, rel=1e-12)
 
 
@@ -272,7 +328,9 @@ def test_cells_know_their_surfaces_and_run_outwards(scene):
             s = scene.segments[flat.segment[cell]]
             for corner in corners:
                 # rounding
-                assert r[corner, cell] == pytest.approx(s.radius_at(y[corner, cell])[which], abs=1e-15 + 1e-12 * s.outer0)
+                assert r[corner, cell] == pytest.approx(
+                    s.radius_at(y[corner, cell])[which], abs=1e-15 + 1e-12 * s.outer0
+                )
     # one outer and one inner cell to every row
     rows = len(np.unique(y[0]))
     assert len(flat.outer) == len(flat.inner) == rows

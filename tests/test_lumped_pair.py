@@ -1,6 +1,5 @@
 """The 14-DOF pair against answers one can work out by hand, its invariances, and identification on made-up data."""
 
-import importlib.util
 import re
 from dataclasses import fields, replace
 from pathlib import Path
@@ -10,8 +9,18 @@ import pytest
 
 from solidgear.drivetrain.gear_mesh import MeshVector, line_of_action, mesh_point, to_gear_frame
 from solidgear.drivetrain.identify import Unknown, identify, torsion_springs
-from solidgear.drivetrain.lumped_pair import COMPONENTS, ENGINE, GEAR, LOAD, PINION, LumpedPair
-from solidgear.drivetrain.lumped_pair import consistency, diagonal_mass, rayleigh_bound, shaft_stiffness
+from solidgear.drivetrain.lumped_pair import (
+    COMPONENTS,
+    ENGINE,
+    GEAR,
+    LOAD,
+    PINION,
+    LumpedPair,
+    consistency,
+    diagonal_mass,
+    rayleigh_bound,
+    shaft_stiffness,
+)
 from solidgear.errors import SolidgearError
 from solidgear.frames import move_stiffness
 
@@ -56,21 +65,31 @@ def test_two_inertia_chains_without_mesh(pair):
 
 def test_single_mass_on_its_support(pair):
     # Axial: one mass on one spring. Bending: the quadratic of (x, thz), twice, for the two planes.
-    alone = replace(pair, mesh_stiffness=0.0, pinion_torsion=0.0, gear_torsion=0.0, gear_support=NOTHING)
+    alone = replace(
+        pair, mesh_stiffness=0.0, pinion_torsion=0.0, gear_torsion=0.0, gear_support=NOTHING
+    )
     modes = alone.solve()
     k, t, c, m, i = 8.644e9, 2.843e7, -4.14e8, 24.8, 0.454
     half, product = (k / m + t / i) / 2, (k * t - c**2) / (m * i)
     root = np.sqrt(half**2 - product)
-    want = np.sort(hertz(product / (half + root), product / (half + root), half + root, half + root, 1.013e9 / m))
+    want = np.sort(
+        hertz(
+            product / (half + root), product / (half + root), half + root, half + root, 1.013e9 / m
+        )
+    )
     assert modes.rigid == 9
     assert np.allclose(modes.frequency_hz[9:], want, rtol=1e-10)
 
 
 def test_two_masses_joined_by_the_mesh_spring(pair):
-    loose = replace(pair, pinion_torsion=0.0, gear_torsion=0.0, pinion_support=NOTHING, gear_support=NOTHING)
+    loose = replace(
+        pair, pinion_torsion=0.0, gear_torsion=0.0, pinion_support=NOTHING, gear_support=NOTHING
+    )
     modes = replace(loose, pinion_mesh=AXIAL, gear_mesh=AXIAL).solve()
     assert modes.rigid == 13
-    assert modes.frequency_hz[13] == pytest.approx(hertz(8.6e8 * (1 / 24.8 + 1 / 122.69)), rel=1e-13)
+    assert modes.frequency_hz[13] == pytest.approx(
+        hertz(8.6e8 * (1 / 24.8 + 1 / 122.69)), rel=1e-13
+    )
     assert np.array_equal(modes.energy[13], np.eye(7)[6])
 
 
@@ -160,21 +179,36 @@ def test_energy_is_that_of_the_springs(pair):
         want = {
             "pinion rotation": pair.pinion_torsion * (u[0] - u[5]) ** 2,
             "gear rotation": pair.gear_torsion * (u[11] - u[13]) ** 2,
-            "mesh": pair.mesh_stiffness * (pair.pinion_mesh.vector @ u[PINION] - pair.gear_mesh.vector @ u[GEAR]) ** 2,
+            "mesh": pair.mesh_stiffness
+            * (pair.pinion_mesh.vector @ u[PINION] - pair.gear_mesh.vector @ u[GEAR]) ** 2,
         }
         total = (2 * np.pi * modes.frequency_hz[j]) ** 2
         for name, energy in want.items():
-            assert modes.energy[j, COMPONENTS.index(name)] == pytest.approx(energy / total, abs=1e-11)
-        for body, place, k in (("pinion", PINION, pair.pinion_support), ("gear", GEAR, pair.gear_support)):
-            both = modes.energy[j, COMPONENTS.index(f"{body} translation")] + modes.energy[j, COMPONENTS.index(f"{body} bending")]
+            assert modes.energy[j, COMPONENTS.index(name)] == pytest.approx(
+                energy / total, abs=1e-11
+            )
+        for body, place, k in (
+            ("pinion", PINION, pair.pinion_support),
+            ("gear", GEAR, pair.gear_support),
+        ):
+            both = (
+                modes.energy[j, COMPONENTS.index(f"{body} translation")]
+                + modes.energy[j, COMPONENTS.index(f"{body} bending")]
+            )
             assert both == pytest.approx(u[place] @ k @ u[place] / total, abs=1e-11)
 
 
 # -- invariances -------------------------------------------------------------------------------------------------------------
 def test_transmission_error_ignores_a_common_rigid_motion(pair):
     # Pinion and gear carried together, each in its own frame about a common apex, keep their teeth as they were.
-    n, apex_p, apex_g = pair.pinion_mesh.normal, np.array([-0.055, 0.18, 0.0]), to_gear_frame([-0.055, 0.18, 0.0])
-    held = replace(pair, pinion_mesh=MeshVector(n, apex_p), gear_mesh=MeshVector(to_gear_frame(n), apex_g))
+    n, apex_p, apex_g = (
+        pair.pinion_mesh.normal,
+        np.array([-0.055, 0.18, 0.0]),
+        to_gear_frame([-0.055, 0.18, 0.0]),
+    )
+    held = replace(
+        pair, pinion_mesh=MeshVector(n, apex_p), gear_mesh=MeshVector(to_gear_frame(n), apex_g)
+    )
     for motion in np.eye(6):
         q = np.zeros(14)
         q[PINION] = motion
@@ -188,7 +222,9 @@ def test_moving_a_lumped_point_changes_no_frequency(pair):
     offset = np.array([0.0, 0.07, 0.0])
     moved = replace(
         pair,
-        pinion_mass=move_stiffness(pair.pinion_mass, offset),  # a mass matrix moves as a stiffness does
+        pinion_mass=move_stiffness(
+            pair.pinion_mass, offset
+        ),  # a mass matrix moves as a stiffness does
         pinion_support=move_stiffness(pair.pinion_support, offset),
         pinion_mesh=MeshVector(pair.pinion_mesh.normal, pair.pinion_mesh.point - offset),
     )
@@ -200,7 +236,9 @@ def test_moving_a_lumped_point_changes_no_frequency(pair):
 
 def test_swapping_pinion_and_gear_changes_no_frequency(pair):
     other = {"engine": "load", "load": "engine", "pinion": "gear", "gear": "pinion"}
-    swap = {f.name: f.name.replace(w := f.name.split("_")[0], other.get(w, w), 1) for f in fields(pair)}
+    swap = {
+        f.name: f.name.replace(w := f.name.split("_")[0], other.get(w, w), 1) for f in fields(pair)
+    }
     swapped = LumpedPair(**{name: getattr(pair, source) for name, source in swap.items()})
     assert swapped.engine_inertia == pair.load_inertia and swapped.gear_mesh is pair.pinion_mesh
     assert np.allclose(swapped.solve().frequency_hz, pair.solve().frequency_hz, rtol=CLOSE, atol=0)
@@ -209,10 +247,22 @@ def test_swapping_pinion_and_gear_changes_no_frequency(pair):
 def test_units_change_no_frequency(pair):
     # Tonne, mm, s instead of kg, m, s.
     length = np.array([1.0, 1, 1, 1e3, 1e3, 1e3])
-    scale = {"inertia": 1e3, "torsion": 1e3, "stiffness": 1e-3, "mass": 1e-3 * np.outer(length, length)}
+    scale = {
+        "inertia": 1e3,
+        "torsion": 1e3,
+        "stiffness": 1e-3,
+        "mass": 1e-3 * np.outer(length, length),
+    }
     scale["support"] = scale["mass"]
-    given = {f.name: getattr(pair, f.name) * scale[f.name.split("_")[1]] for f in fields(pair) if not f.name.endswith("mesh")}
-    vectors = {n: MeshVector(getattr(pair, n).normal, getattr(pair, n).point * 1e3) for n in ("pinion_mesh", "gear_mesh")}
+    given = {
+        f.name: getattr(pair, f.name) * scale[f.name.split("_")[1]]
+        for f in fields(pair)
+        if not f.name.endswith("mesh")
+    }
+    vectors = {
+        n: MeshVector(getattr(pair, n).normal, getattr(pair, n).point * 1e3)
+        for n in ("pinion_mesh", "gear_mesh")
+    }
     other = LumpedPair(**given, **vectors)
     assert np.allclose(other.solve().frequency_hz, pair.solve().frequency_hz, rtol=CLOSE, atol=0)
 
@@ -222,7 +272,9 @@ def test_rayleigh_bound_is_below_the_highest_frequency(pair):
     k, m = pair.matrices()
     bound, top = rayleigh_bound(k, m), pair.solve().frequency_hz[-1]
     assert 0.5 * top < bound <= top
-    assert rayleigh_bound([[4.0, 0], [0, 1]], np.eye(2)) == pytest.approx(2 / (2 * np.pi), rel=1e-15)
+    assert rayleigh_bound([[4.0, 0], [0, 1]], np.eye(2)) == pytest.approx(
+        2 / (2 * np.pi), rel=1e-15
+    )
 
 
 def test_published_masses_contradict_published_frequencies():
@@ -243,7 +295,13 @@ def test_torsion_springs_give_back_their_frequencies():
     assert np.allclose(pairs, [(1.159e4, 8.044e4), (1.059e4, 8.810e4)], rtol=5e-4)
     j = np.diag([2.734, 0.0587 + 1.92 / RATIO**2, 5.25 / RATIO**2])
     for k1, k2 in pairs:
-        k = np.array([[k1, -k1, 0], [-k1, k1 + k2 / RATIO**2, -k2 / RATIO**2], [0, -k2 / RATIO**2, k2 / RATIO**2]])
+        k = np.array(
+            [
+                [k1, -k1, 0],
+                [-k1, k1 + k2 / RATIO**2, -k2 / RATIO**2],
+                [0, -k2 / RATIO**2, k2 / RATIO**2],
+            ]
+        )
         found = np.sqrt(np.sort(np.linalg.eigvals(np.linalg.solve(j, k)).real)[1:]) / (2 * np.pi)
         assert np.allclose(found, [16.3, 47.3], rtol=1e-10)
 
@@ -252,7 +310,10 @@ def test_torsion_springs_agree_with_the_pair_of_a_stiff_mesh(pair):
     # With a mesh and supports that do not give, the 14-DOF model must come to the same two frequencies; the compliance left over
     # (1e6 times as stiff) is of that relative size.
     for k1, k2 in torsion_springs(2.734, 0.0587, 1.92, 5.25, RATIO, 16.3, 47.3):
-        springs = {name: getattr(pair, name) * 1e6 for name in ("mesh_stiffness", "pinion_support", "gear_support")}
+        springs = {
+            name: getattr(pair, name) * 1e6
+            for name in ("mesh_stiffness", "pinion_support", "gear_support")
+        }
         stiff = replace(pair, pinion_torsion=k1, gear_torsion=k2, **springs)
         assert np.allclose(stiff.solve().frequency_hz[1:3], [16.3, 47.3], rtol=1e-6)
 
@@ -290,7 +351,11 @@ def test_a_bound_is_reported():
 
 def test_what_the_data_do_not_fix_is_reported():
     # Only the ratio of k and m shows.
-    found = identify(lambda v: np.sqrt([v["k"] / v["m"], 2 * v["k"] / v["m"]]), [Unknown("k", 1, 9), Unknown("m", 1, 9)], [1.0, 1.5])
+    found = identify(
+        lambda v: np.sqrt([v["k"] / v["m"], 2 * v["k"] / v["m"]]),
+        [Unknown("k", 1, 9), Unknown("m", 1, 9)],
+        [1.0, 1.5],
+    )
     assert found.condition > 1e6
     assert all(q.spread == np.inf for q in found.quantities)
 
@@ -298,10 +363,9 @@ def test_what_the_data_do_not_fix_is_reported():
 # -- the thesis --------------------------------------------------------------------------------------------------------------
 @pytest.fixture(scope="module")
 def thesis():
-    spec = importlib.util.spec_from_file_location("thesis_pair", ROOT / "validation" / "thesis" / "pair.py")
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module
+    from validation.thesis import pair
+
+    return pair
 
 
 def thesis_errors(thesis, values):
@@ -366,15 +430,27 @@ def test_bad_pair_is_one_sentence(pair, name, value, words):
         (lambda: consistency([1.0], [0.0], 3.0), "positive"),
         (lambda: consistency([1.0], [1.0], float("nan")), "is nan"),
         (lambda: torsion_springs(1, 1, 1, 1, 1, 10.0, 10.1), "no torsional springs"),
-        (lambda: torsion_springs(-1, 1, 1, 1, 1, 10.0, 20.0), "engine of the torsional chain is -1"),
+        (
+            lambda: torsion_springs(-1, 1, 1, 1, 1, 10.0, 20.0),
+            "engine of the torsional chain is -1",
+        ),
         (lambda: Unknown("k", 2.0, 1.0), "ascending"),
         (lambda: Unknown("k", 0.0, 1.0), "positive lower bound"),
         (lambda: identify(lambda v: [1.0], [Unknown("k", 1, 2)], [0.0]), "leave out the zero"),
-        (lambda: identify(lambda v: [1.0], [Unknown("k", 1, 2), Unknown("k", 1, 2)], [1.0]), "different names"),
-        (lambda: identify(lambda v: [1.0], [Unknown("k", 1, 2), Unknown("m", 1, 2)], [1.0]), "cannot be identified from 1"),
+        (
+            lambda: identify(lambda v: [1.0], [Unknown("k", 1, 2), Unknown("k", 1, 2)], [1.0]),
+            "different names",
+        ),
+        (
+            lambda: identify(lambda v: [1.0], [Unknown("k", 1, 2), Unknown("m", 1, 2)], [1.0]),
+            "cannot be identified from 1",
+        ),
         (lambda: identify(lambda v: [1.0, 2.0], [Unknown("k", 1, 2)], [1.0]), "shape (2,)"),
         (lambda: identify(lambda v: [0.0], [Unknown("k", 1, 2)], [1.0]), "rigid modes"),
-        (lambda: identify(lambda v: [1.0], [Unknown("k", 1, 2)], [1.0], starts=0), "at least one starting point"),
+        (
+            lambda: identify(lambda v: [1.0], [Unknown("k", 1, 2)], [1.0], starts=0),
+            "at least one starting point",
+        ),
     ],
 )
 def test_bad_arguments_are_one_sentence(make, words):
@@ -392,6 +468,8 @@ def test_a_mesh_that_turns_nothing_is_said_so(pair):
 
 
 def test_no_springs_at_all(pair):
-    loose = replace(pair, pinion_torsion=0.0, gear_torsion=0.0, pinion_support=NOTHING, gear_support=NOTHING)
+    loose = replace(
+        pair, pinion_torsion=0.0, gear_torsion=0.0, pinion_support=NOTHING, gear_support=NOTHING
+    )
     modes = replace(loose, mesh_stiffness=0.0).solve()
     assert modes.rigid == 14 and not modes.energy.any()

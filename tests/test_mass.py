@@ -74,10 +74,19 @@ def test_wrong_sizes_are_refused(pair):
 
 def test_solid_carries_it_where_exact():
     scene = sg.load(GEOMETRY / "pinion_overhung.toml")
-    options = {"element": "hex20", "size": 0.04, "layers": 0, "edge_layers": 0, "radial_layers": 0, "around": 8}
+    options = {
+        "element": "hex20",
+        "size": 0.04,
+        "layers": 0,
+        "edge_layers": 0,
+        "radial_layers": 0,
+        "around": 8,
+    }
     free = sg.build(scene, "solid", **options)
     assert isinstance(free.blocks[0].mass, ScalarMass)
     rigid = sg.build(scene, "solid", attachments=("rigid",), **options)
     assert sp.issparse(rigid.blocks[0].mass)  # unknowns of seats are gone
     # both are the same body: rigid motions do not feel the ties
-    assert rigid.mass_matrix() == pytest.approx(free.mass_matrix(), rel=1e-9, abs=1e-9 * free.mass_matrix().max())
+    assert rigid.mass_matrix() == pytest.approx(
+        free.mass_matrix(), rel=1e-9, abs=1e-9 * free.mass_matrix().max()
+    )

@@ -36,24 +36,28 @@ def test_unknown_system(tmp_path):
 
 
 def test_cgroup_v2_limits_at_any_level(root):
-    at = root(**{
-        "proc__self__cgroup": "0::/a/b\n",
-        "sys__fs__cgroup__a__memory_DOT_max": f"{1000 * MB}\n",
-        "sys__fs__cgroup__a__memory_DOT_current": f"{400 * MB}\n",
-        "sys__fs__cgroup__a__memory_DOT_stat": f"anon 5\ninactive_file {100 * MB}\n",
-        "sys__fs__cgroup__a__b__memory_DOT_max": "max\n",
-        "sys__fs__cgroup__a__b__memory_DOT_current": f"{400 * MB}\n",
-    })  # fmt: skip
+    at = root(
+        **{
+            "proc__self__cgroup": "0::/a/b\n",
+            "sys__fs__cgroup__a__memory_DOT_max": f"{1000 * MB}\n",
+            "sys__fs__cgroup__a__memory_DOT_current": f"{400 * MB}\n",
+            "sys__fs__cgroup__a__memory_DOT_stat": f"anon 5\ninactive_file {100 * MB}\n",
+            "sys__fs__cgroup__a__b__memory_DOT_max": "max\n",
+            "sys__fs__cgroup__a__b__memory_DOT_current": f"{400 * MB}\n",
+        }
+    )
     assert available_mb(at) == 700  # cached files are given back
 
 
 @pytest.mark.parametrize("limit, expected", [(1000 * MB, 400), (2**63 - 4096, 8000), (100 * MB, 0)])
 def test_cgroup_v1_in_a_container(root, limit, expected):
-    at = root(**{
-        "proc__self__cgroup": "4:memory:/docker/of-the-host\n1:cpu:/\n",
-        "sys__fs__cgroup__memory__memory_DOT_limit_in_bytes": str(limit),
-        "sys__fs__cgroup__memory__memory_DOT_usage_in_bytes": str(600 * MB),
-    })  # fmt: skip
+    at = root(
+        **{
+            "proc__self__cgroup": "4:memory:/docker/of-the-host\n1:cpu:/\n",
+            "sys__fs__cgroup__memory__memory_DOT_limit_in_bytes": str(limit),
+            "sys__fs__cgroup__memory__memory_DOT_usage_in_bytes": str(600 * MB),
+        }
+    )
     assert available_mb(at) == expected
 
 
@@ -81,7 +85,10 @@ def test_bad_limit_is_refused(root, monkeypatch, text):
         available_mb(root())
 
 
-@pytest.mark.parametrize("quota, expected", [("150000 100000", 2), ("max 100000", 8), ("50000 100000", 1), ("9900000 100000", 8)])
+@pytest.mark.parametrize(
+    "quota, expected",
+    [("150000 100000", 2), ("max 100000", 8), ("50000 100000", 1), ("9900000 100000", 8)],
+)
 def test_processors_of_cgroup_v2(root, monkeypatch, quota, expected):
     monkeypatch.setattr(threads, "_affinity", lambda: 8)
     at = root(**{"proc__self__cgroup": "0::/\n", "sys__fs__cgroup__cpu_DOT_max": quota})
@@ -90,7 +97,11 @@ def test_processors_of_cgroup_v2(root, monkeypatch, quota, expected):
 
 def test_processors_of_cgroup_v1(root, monkeypatch):
     monkeypatch.setattr(threads, "_affinity", lambda: 8)
-    at = root(proc__self__cgroup="1:cpu,cpuacct:/x\n", sys__fs__cgroup__cpu__cpu_DOT_cfs_quota_us="300000", sys__fs__cgroup__cpu__cpu_DOT_cfs_period_us="100000")
+    at = root(
+        proc__self__cgroup="1:cpu,cpuacct:/x\n",
+        sys__fs__cgroup__cpu__cpu_DOT_cfs_quota_us="300000",
+        sys__fs__cgroup__cpu__cpu_DOT_cfs_period_us="100000",
+    )
     assert threads.offered(at) == 3
     root(sys__fs__cgroup__cpu__cpu_DOT_cfs_quota_us="-1")
     assert threads.offered(at) == 8

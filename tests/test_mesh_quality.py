@@ -9,7 +9,14 @@ from scipy.integrate import quad
 from skfem import MeshHex, MeshHex2, MeshQuad, MeshTet, MeshTet2
 
 from solidgear.errors import SolidgearError
-from solidgear.meshing.quality import MeshError, _bernstein, check_mesh, element_ratios, mass_properties, volume_of
+from solidgear.meshing.quality import (
+    MeshError,
+    _bernstein,
+    check_mesh,
+    element_ratios,
+    mass_properties,
+    volume_of,
+)
 
 
 def box(kind, n=3):
@@ -50,7 +57,9 @@ def test_a_bulged_hexahedron_has_the_volume_of_its_bulge():
     x, y, z = mesh.doflocs
     doflocs[0] = x * (1.0 + 0.4 * y * (1.0 - y) * 4.0 * z * (1.0 - z) * 4.0)
     # int (1 + 0.4 * 4y(1-y) * 4z(1-z)) = 1 + 0.4 * 4/9; the biquadratic bulge is in the element's space, so exact
-    assert check_mesh(replace(mesh, doflocs=doflocs)).volume == pytest.approx(1.0 + 0.4 * 4.0 / 9.0, rel=1e-13)
+    assert check_mesh(replace(mesh, doflocs=doflocs)).volume == pytest.approx(
+        1.0 + 0.4 * 4.0 / 9.0, rel=1e-13
+    )
 
 
 def test_the_ratio_is_that_of_a_known_bend():
@@ -75,6 +84,7 @@ def test_inversion_at_a_corner_only_is_seen(kind):
     doflocs[:, mesh.dofs.edge_dofs[0, edge]] = 0.76 * doflocs[:, a] + 0.24 * doflocs[:, b]
     bad = replace(mesh, doflocs=doflocs)
     from skfem import Basis
+
     assert np.all(bad.mapping().detDF(Basis(bad, bad.elem(), intorder=3).X) > 0.0)
     touched = int((mesh.t2e == edge).any(axis=0).sum())
     with pytest.raises(MeshError) as refused:
@@ -87,7 +97,9 @@ def pressed(amount):
     """One triquadratic cube with det J = 1 - amount z (1 - 8 (x - 1/4)^2): least, 1 - amount, at x = 1/4 on its top face."""
     mesh = MeshHex2.from_mesh(right_handed(MeshHex.init_tensor(*3 * [np.array([0.0, 1.0])])))
     x, y, z = mesh.doflocs
-    return replace(mesh, doflocs=np.array([x, y, z - amount * z**2 / 2 * (1 - 8 * (x - 0.25) ** 2)]))
+    return replace(
+        mesh, doflocs=np.array([x, y, z - amount * z**2 / 2 * (1 - 8 * (x - 0.25) ** 2)])
+    )
 
 
 def bent():
@@ -101,8 +113,12 @@ def bent():
 def test_inversion_between_all_samples_is_seen(mesh, name):
     from solidgear.fidelity.assembly import tabulate
     from solidgear.fidelity.solid import _cell_rule
+
     element, nodes = mesh.elem(), mesh.doflocs[:, mesh.dofs.element_dofs]
-    for points in (_cell_rule(name)[0], element.doflocs.T):             # where the stiffness is integrated, and the nodes
+    for points in (
+        _cell_rule(name)[0],
+        element.doflocs.T,
+    ):  # where the stiffness is integrated, and the nodes
         assert tabulate(element, nodes, element, points).det.min() > 0.0
     assert element_ratios(mesh)[0] < 0.0
     with pytest.raises(MeshError, match="1 of 1 elements is inverted"):
@@ -121,9 +137,13 @@ def test_the_least_jacobian_is_that_of_the_polynomial(amount):
 def test_the_volume_of_any_curved_element_is_exact(kind, name):
     from solidgear.fidelity.assembly import tabulate
     from solidgear.fidelity.solid import _cell_rule
+
     mesh = box(kind, 1)
     # every node moved at random: det J has all the terms it can have, and the rule of the stiffness integrates them exactly
-    bad = replace(mesh, doflocs=mesh.doflocs + np.random.default_rng(3).uniform(-0.05, 0.05, mesh.doflocs.shape))
+    bad = replace(
+        mesh,
+        doflocs=mesh.doflocs + np.random.default_rng(3).uniform(-0.05, 0.05, mesh.doflocs.shape),
+    )
     points, weights = _cell_rule(name)
     det = tabulate(bad.elem(), bad.doflocs[:, bad.dofs.element_dofs], bad.elem(), points).det
     assert check_mesh(bad).volume == pytest.approx((det @ weights).sum(), rel=1e-13)
@@ -177,7 +197,9 @@ def test_a_nearly_folded_element_is_refused():
     mesh = MeshTet2.from_mesh(MeshTet.init_refdom())
     doflocs = mesh.doflocs.copy()
     edge = np.flatnonzero((mesh.edges.min(axis=0) == 0) & (mesh.edges.max(axis=0) == 1))[0]
-    doflocs[0, mesh.dofs.edge_dofs[0, edge]] += 0.24995          # det J from 2e-4 to 2: positive, but 1e-4 in ratio
+    doflocs[0, mesh.dofs.edge_dofs[0, edge]] += (
+        0.24995  # det J from 2e-4 to 2: positive, but 1e-4 in ratio
+    )
     bad = replace(mesh, doflocs=doflocs)
     with pytest.raises(MeshError, match="nearly folded"):
         check_mesh(bad)
@@ -195,20 +217,35 @@ def test_nan_and_flat_meshes_are_refused():
 
 
 def piece(y0, y1, outer0, outer1, inner0=0.0, inner1=0.0, density=7850.0):
-    return SimpleNamespace(y0=y0, y1=y1, outer0=outer0, outer1=outer1, inner0=inner0, inner1=inner1,
-                           material=SimpleNamespace(density=density))
+    return SimpleNamespace(
+        y0=y0,
+        y1=y1,
+        outer0=outer0,
+        outer1=outer1,
+        inner0=inner0,
+        inner1=inner1,
+        material=SimpleNamespace(density=density),
+    )
 
 
 def test_volume_and_inertia_against_quadrature():
-    shaft = [piece(-0.2, 0.1, 0.03, 0.05, 0.01, 0.02), piece(0.1, 0.3, 0.02, 0.02, 0.0, 0.015, 2700.0)]
+    shaft = [
+        piece(-0.2, 0.1, 0.03, 0.05, 0.01, 0.02),
+        piece(0.1, 0.3, 0.02, 0.02, 0.0, 0.015, 2700.0),
+    ]
 
     def integral(function):
         def one(s):
             def at(y):
                 u = (y - s.y0) / (s.y1 - s.y0)
-                outer, inner = s.outer0 + u * (s.outer1 - s.outer0), s.inner0 + u * (s.inner1 - s.inner0)
+                outer, inner = (
+                    s.outer0 + u * (s.outer1 - s.outer0),
+                    s.inner0 + u * (s.inner1 - s.inner0),
+                )
                 return function(y, outer, inner, s.material.density)
+
             return quad(at, s.y0, s.y1, epsrel=1e-13)[0]
+
         return sum(one(s) for s in shaft)
 
     def ring(r):
@@ -217,12 +254,26 @@ def test_volume_and_inertia_against_quadrature():
     exact = mass_properties(shaft)
     # polynomials on both sides: rounding only
     tight = dict(rel=1e-12)
-    assert volume_of(shaft) == pytest.approx(integral(lambda y, a, b, d: ring(a) - ring(b)), **tight)
-    assert exact.mass == pytest.approx(integral(lambda y, a, b, d: d * (ring(a) - ring(b))), **tight)
-    assert exact.centre == pytest.approx(integral(lambda y, a, b, d: d * y * (ring(a) - ring(b))) / exact.mass, **tight)
-    assert exact.iyy == pytest.approx(integral(lambda y, a, b, d: d * np.pi / 2 * (a**4 - b**4)), **tight)
-    assert exact.ixx == pytest.approx(integral(
-        lambda y, a, b, d: d * (np.pi / 4 * (a**4 - b**4) + (ring(a) - ring(b)) * (y - exact.centre)**2)), **tight)
+    assert volume_of(shaft) == pytest.approx(
+        integral(lambda y, a, b, d: ring(a) - ring(b)), **tight
+    )
+    assert exact.mass == pytest.approx(
+        integral(lambda y, a, b, d: d * (ring(a) - ring(b))), **tight
+    )
+    assert exact.centre == pytest.approx(
+        integral(lambda y, a, b, d: d * y * (ring(a) - ring(b))) / exact.mass, **tight
+    )
+    assert exact.iyy == pytest.approx(
+        integral(lambda y, a, b, d: d * np.pi / 2 * (a**4 - b**4)), **tight
+    )
+    assert exact.ixx == pytest.approx(
+        integral(
+            lambda y, a, b, d: (
+                d * (np.pi / 4 * (a**4 - b**4) + (ring(a) - ring(b)) * (y - exact.centre) ** 2)
+            )
+        ),
+        **tight,
+    )
 
 
 def test_a_cylinder_is_the_textbooks():

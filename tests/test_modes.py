@@ -47,10 +47,14 @@ def dense_system(body, scene):
                 g[6 * p + component, start : start + b.size] = rows[p * len(b.components) + i]
         start += b.size
     n = len(scene.bearings)
-    springs = sla.block_diag(*[bearing_by_hand(b) for b in scene.bearings]) if n else np.zeros((0, 0))
+    springs = (
+        sla.block_diag(*[bearing_by_hand(b) for b in scene.bearings]) if n else np.zeros((0, 0))
+    )
     if scene.housing_axial:
         e = np.tile([0.0, 1, 0, 0, 0, 0], n)
-        springs = springs - np.outer(springs @ e, springs @ e) / (e @ springs @ e + scene.housing_axial)
+        springs = springs - np.outer(springs @ e, springs @ e) / (
+            e @ springs @ e + scene.housing_axial
+        )
     at = g[6 : 6 + 6 * n]
     return k + at.T @ springs @ at, m
 
@@ -91,10 +95,19 @@ def test_small_and_large_solvers_agree(name):
     body = sg.build(scene, "timoshenko", elements=260)
     assert max(b.size for b in body.blocks) > 400
     found = every_shape(sg.modes(body, scene, n=6))
-    assert found[1:] == pytest.approx(dense_frequencies(body, scene)[1 : len(found)], rel=2e-7)  # dense: more eps, see above
+    assert found[1:] == pytest.approx(
+        dense_frequencies(body, scene)[1 : len(found)], rel=2e-7
+    )  # dense: more eps, see above
 
 
-@pytest.mark.parametrize("fidelity, options", [("timoshenko", {}), ("harmonic", {"order": 2}), ("solid", {"element": "hex8", "refinement": 0.5})])
+@pytest.mark.parametrize(
+    "fidelity, options",
+    [
+        ("timoshenko", {}),
+        ("harmonic", {"order": 2}),
+        ("solid", {"element": "hex8", "refinement": 0.5}),
+    ],
+)
 def test_evidence_is_small(overhung, fidelity, options):
     found = sg.modes(sg.build(overhung, fidelity, **options), overhung, n=10)
     # the solver asks Lanczos for 1e-12; 1e-6 relative in the eigenvalue is what the product promises
@@ -125,7 +138,14 @@ def test_shapes_solve_the_eigenproblem(overhung):
 
 
 # --------------------------------------------------------------------------- pairs and couplings
-@pytest.mark.parametrize("fidelity, options", [("timoshenko", {}), ("harmonic", {"order": 2}), ("solid", {"element": "hex8", "refinement": 0.5})])
+@pytest.mark.parametrize(
+    "fidelity, options",
+    [
+        ("timoshenko", {}),
+        ("harmonic", {"order": 2}),
+        ("solid", {"element": "hex8", "refinement": 0.5}),
+    ],
+)
 def test_bending_comes_in_pairs(overhung, fidelity, options):
     found = sg.modes(sg.build(overhung, fidelity, **options), overhung, n=8)
     for mode in found.modes:
@@ -150,7 +170,9 @@ def test_anisotropic_bearings_split_pairs(overhung, factor):
     found = sg.modes(body, scene, n=8)
     assert all(m.multiplicity == 1 for m in found.modes)
     shapes = every_shape(found)
-    assert shapes[1:] == pytest.approx(dense_frequencies(body, scene)[1 : len(shapes)], rel=1e-7)  # as above
+    assert shapes[1:] == pytest.approx(
+        dense_frequencies(body, scene)[1 : len(shapes)], rel=1e-7
+    )  # as above
     low, high = (m.frequency_hz for m in found.modes if m.name in ("bending 1", "bending 2"))
     assert low < high
     # a softer plane can only be lower: compare with the isotropic pair, which the stiffer plane keeps
@@ -193,7 +215,15 @@ def test_shipped_couplings_are_negligible(name):
 
 
 # --------------------------------------------------------------------------- rigid modes
-@pytest.mark.parametrize("fidelity, options", [("euler", {}), ("timoshenko", {}), ("harmonic", {"order": 4}), ("solid", {"element": "hex20", "refinement": 0.5})])
+@pytest.mark.parametrize(
+    "fidelity, options",
+    [
+        ("euler", {}),
+        ("timoshenko", {}),
+        ("harmonic", {"order": 4}),
+        ("solid", {"element": "hex20", "refinement": 0.5}),
+    ],
+)
 def test_free_cylinder_has_six_rigid_modes(fidelity, options):
     scene = shipped("cylinder_free")
     found = sg.modes(sg.build(scene, fidelity, **options), scene, n=4)
@@ -221,15 +251,27 @@ def test_highest_frequency_cuts_the_list(overhung):
     body = sg.build(overhung, "timoshenko")
     everything = sg.modes(body, overhung, n=12).frequency_hz
     cut = (everything[3] + everything[4]) / 2
-    assert list(sg.modes(body, overhung, n=12, max_frequency=cut).frequency_hz) == list(everything[:4])
+    assert list(sg.modes(body, overhung, n=12, max_frequency=cut).frequency_hz) == list(
+        everything[:4]
+    )
 
 
 def test_count_does_not_tear_pairs(overhung):
     body = sg.build(overhung, "timoshenko")
     # axial 1, then the pair bending 1: asking for two shapes gives all three, and four gives the second pair whole
-    assert [(m.name, m.multiplicity) for m in sg.modes(body, overhung, n=2).modes[1:]] == [("axial 1", 1), ("bending 1", 2)]
-    assert [(m.name, m.multiplicity) for m in sg.modes(body, overhung, n=3).modes[1:]] == [("axial 1", 1), ("bending 1", 2)]
-    assert [m.name for m in sg.modes(body, overhung, n=4).modes[1:]] == ["axial 1", "bending 1", "bending 2"]
+    assert [(m.name, m.multiplicity) for m in sg.modes(body, overhung, n=2).modes[1:]] == [
+        ("axial 1", 1),
+        ("bending 1", 2),
+    ]
+    assert [(m.name, m.multiplicity) for m in sg.modes(body, overhung, n=3).modes[1:]] == [
+        ("axial 1", 1),
+        ("bending 1", 2),
+    ]
+    assert [m.name for m in sg.modes(body, overhung, n=4).modes[1:]] == [
+        "axial 1",
+        "bending 1",
+        "bending 2",
+    ]
 
 
 # --------------------------------------------------------------------------- spring and mass
@@ -237,7 +279,9 @@ def on_two_springs(radial, axial, modulus=STEEL.E):
     """A cylinder on two equal bearings placed evenly about its middle."""
     rod = Segment.cylinder("rod", length=0.3, diameter=0.06)
     k = np.diag([radial, axial, radial, 0.0, 0.0, 0.0])
-    bearings = [Bearing(name=n, y=y, seat_width=0.02, matrix=k) for n, y in (("a", 0.07), ("b", 0.23))]
+    bearings = [
+        Bearing(name=n, y=y, seat_width=0.02, matrix=k) for n, y in (("a", 0.07), ("b", 0.23))
+    ]
     port = Port(y=0.15, lo=0.1, hi=0.2)
     return Scene.from_parts([rod], bearings=bearings, port=port).with_material(E=modulus)
 
@@ -251,7 +295,14 @@ def rigid_frequencies(scene, radial, axial):
     return np.sort(np.sqrt(values)) / (2 * np.pi)
 
 
-@pytest.mark.parametrize("fidelity, options", [("timoshenko", {}), ("harmonic", {"order": 4}), ("solid", {"element": "hex27", "refinement": 0.5})])
+@pytest.mark.parametrize(
+    "fidelity, options",
+    [
+        ("timoshenko", {}),
+        ("harmonic", {"order": 4}),
+        ("solid", {"element": "hex27", "refinement": 0.5}),
+    ],
+)
 def test_shaft_on_soft_springs_is_a_rigid_mass(fidelity, options):
     radial, axial = 1e4, 3e4
     scene = on_two_springs(radial, axial)
@@ -283,11 +334,18 @@ def test_very_soft_springs_keep_their_digits(fidelity, options, radial):
 def test_a_pair_torn_by_the_mesh_is_told(overhung):
     """Coarse linear tetrahedra: 'bending 2' is the twin of 'bending 1'. Bearings that differ in x and z split pairs for good reason."""
     coarse = sg.build(overhung, "solid", element="tet4", size=0.04)
-    assert sg.modes(coarse, overhung, n=6).evidence["torn_pairs"][0][:2] == ("bending 1", "bending 2")
+    assert sg.modes(coarse, overhung, n=6).evidence["torn_pairs"][0][:2] == (
+        "bending 1",
+        "bending 2",
+    )
     beam = sg.build(overhung, "timoshenko")
     assert "torn_pairs" not in sg.modes(beam, overhung, n=6).evidence
     weight = np.diag([0.995, 1, 1, 1, 1, 0.995])
-    unequal = overhung.with_changes(bearings=tuple(b.with_changes(matrix=weight @ np.array(b.matrix) @ weight) for b in overhung.bearings))
+    unequal = overhung.with_changes(
+        bearings=tuple(
+            b.with_changes(matrix=weight @ np.array(b.matrix) @ weight) for b in overhung.bearings
+        )
+    )
     found = sg.modes(beam, unequal, n=6)
     assert found.modes[2].multiplicity == 1 and "torn_pairs" not in found.evidence
 
@@ -320,5 +378,7 @@ def test_the_rounding_of_coupled_springs_is_in_the_error():
 
 def test_springs_without_a_digit_left_are_named_as_the_cause():
     scene = on_a_skewed_spring(2.0)
-    with pytest.raises(SolidgearError, match="bearings resist it by the difference of far larger stiffnesses"):
+    with pytest.raises(
+        SolidgearError, match="bearings resist it by the difference of far larger stiffnesses"
+    ):
         sg.modes(sg.build(scene, "timoshenko"), scene, n=6)

@@ -1,14 +1,12 @@
 """The mutation check of the suite: its list still fits the source (fast), and every mutation is caught (slow)."""
 
-import sys
 from pathlib import Path
 
 import pytest
 
-ROOT = Path(__file__).parent.parent
-sys.path.insert(0, str(ROOT / "validation"))
+from validation.mutations import MUTATIONS, Mutation, caught, healthy, place
 
-from mutations import MUTATIONS, Mutation, caught, healthy, place  # noqa: E402
+ROOT = Path(__file__).parent.parent
 
 IDS = [m.name.replace(" ", "_") for m in MUTATIONS]
 

@@ -68,7 +68,9 @@ def whole(path):
     data = path.read_bytes()
     if path.suffix == ".json":
         return bool(json.loads(data))
-    end = {".html": b"</html>", ".vtu": b"</VTKFile>", ".png": b"IEND\xaeB`\x82", ".csv": b"\n"}[path.suffix]
+    end = {".html": b"</html>", ".vtu": b"</VTKFile>", ".png": b"IEND\xaeB`\x82", ".csv": b"\n"}[
+        path.suffix
+    ]
     return data.rstrip(b"\n" if path.suffix != ".csv" else b"").endswith(end)
 
 
@@ -80,7 +82,9 @@ def started(code, *arguments, **more):
     """A child that hears Ctrl-C even where this process was told not to."""
     hear = "import signal\nsignal.signal(signal.SIGINT, signal.default_int_handler)\n"
     command = [sys.executable, "-c", hear + code, *map(str, arguments)]
-    return subprocess.Popen(command, env=environment(**more), text=True, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+    return subprocess.Popen(
+        command, env=environment(**more), text=True, stdout=subprocess.PIPE, stderr=subprocess.PIPE
+    )
 
 
 # --------------------------------------------------------------------------- Ctrl-C
@@ -94,7 +98,10 @@ COMMANDS = {
 
 
 @posix
-@pytest.mark.parametrize("name", [n if n in ("compare", "modes") else pytest.param(n, marks=pytest.mark.slow) for n in COMMANDS])
+@pytest.mark.parametrize(
+    "name",
+    [n if n in ("compare", "modes") else pytest.param(n, marks=pytest.mark.slow) for n in COMMANDS],
+)
 def test_ctrl_c_in_the_middle_of_a_factorisation(name, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     child = started(ENDLESS, *COMMANDS[name])
@@ -113,9 +120,14 @@ def test_ctrl_c_in_the_middle_of_a_factorisation(name, tmp_path, monkeypatch):
     assert "interrupted" in err and "Traceback" not in text
     left = {str(p.relative_to(tmp_path)) for p in tmp_path.rglob("*") if p.is_file()}
     if name == "compare":  # what was solved before is kept
-        assert left == {"out/results.json", "out/report.html"} and all(whole(tmp_path / p) for p in left)
+        assert left == {"out/results.json", "out/report.html"} and all(
+            whole(tmp_path / p) for p in left
+        )
         stored = json.loads((tmp_path / "out/results.json").read_text())
-        assert stored["complete"] is False and list(stored["models"]) in (["timoshenko"], ["timoshenko", "harmonic"])
+        assert stored["complete"] is False and list(stored["models"]) in (
+            ["timoshenko"],
+            ["timoshenko", "harmonic"],
+        )
         assert "interrupted" in out  # the table says so
     else:
         assert not {p for p in left if not p.startswith("rows.csv")}
@@ -169,7 +181,11 @@ def test_killed_while_files_are_written(at, tmp_path):
             assert (shown[name].read_bytes() != old[name]) == fresh, name
     # The next run finds neither a lock nor halves in its way, and leaves its own files only.
     found.write_report(tmp_path, renders=False)
-    assert {p.name for p in tmp_path.iterdir()} == {"results.json", "report.html", "modes_euler.vtu"}
+    assert {p.name for p in tmp_path.iterdir()} == {
+        "results.json",
+        "report.html",
+        "modes_euler.vtu",
+    }
 
 
 def test_a_chart_that_is_killed_leaves_no_picture_of_another(tmp_path):
@@ -177,7 +193,18 @@ def test_a_chart_that_is_killed_leaves_no_picture_of_another(tmp_path):
     from solidgear.report.speed_accuracy import MACHINE, PICTURE, ROWS, write_rows
 
     (tmp_path / PICTURE).write_bytes(b"of an earlier chart")
-    row = Row("beam", "Euler", 1, "euler", {}, "ok", unknowns=6, samples=[0.1], values={"C_zz": 1.0}, errors={"C_zz": 0.1})
+    row = Row(
+        "beam",
+        "Euler",
+        1,
+        "euler",
+        {},
+        "ok",
+        unknowns=6,
+        samples=[0.1],
+        values={"C_zz": 1.0},
+        errors={"C_zz": 0.1},
+    )
     reference = {"values": {"C_zz": 1.0}, "bands": {"C_zz": 0.01}}
     race = Race({}, reference, [row], {}, 1, 4, 1.0)
     write_rows(race, tmp_path)
@@ -199,16 +226,33 @@ def test_what_an_earlier_run_left_goes_and_nothing_else(tmp_path):
     foreign = ["mode_mine.png", "modes_mine.vtu", "notes.txt", "speed_accuracy.png"]
     for name in foreign:
         (tmp_path / name).write_text("mine")
-    stored["files"] += ["mode_harmonic.png", "mode_folder.png", "notes.txt", "../outside.txt", "speed_accuracy.png", 7, None]
+    stored["files"] += [
+        "mode_harmonic.png",
+        "mode_folder.png",
+        "notes.txt",
+        "../outside.txt",
+        "speed_accuracy.png",
+        7,
+        None,
+    ]
     (tmp_path / "results.json").write_text(json.dumps(stored))
     outside = tmp_path.parent / "outside.txt"
     outside.write_text("mine")
     compare(OTHER, ("euler",)).write_report(tmp_path, renders=False)
-    assert {p.name for p in tmp_path.iterdir()} == {"results.json", "report.html", "modes_euler.vtu", "mode_folder.png", *foreign}
+    assert {p.name for p in tmp_path.iterdir()} == {
+        "results.json",
+        "report.html",
+        "modes_euler.vtu",
+        "mode_folder.png",
+        *foreign,
+    }
     assert outside.exists()
 
 
-@pytest.mark.parametrize("text", ["", "{", "[]", "7", "{}", '{"files": 3}', '{"files": {"a": 1}}', '{"models": null}', "\udcff"])
+@pytest.mark.parametrize(
+    "text",
+    ["", "{", "[]", "7", "{}", '{"files": 3}', '{"files": {"a": 1}}', '{"models": null}', "\udcff"],
+)
 def test_results_that_are_not_ours_are_no_hindrance(text, tmp_path):
     (tmp_path / "results.json").write_bytes(text.encode("utf-8", "surrogateescape"))
     compare(OTHER, ("euler",)).write_report(tmp_path, renders=False)
@@ -246,18 +290,22 @@ def test_a_second_run_is_refused_until_the_first_is_dead(tmp_path, run):
 
 
 def test_the_same_process_may_enter_again(tmp_path):
-    with held(tmp_path) as folder, held(tmp_path / "." ) as again:
+    with held(tmp_path) as folder, held(tmp_path / ".") as again:
         assert folder.samefile(again)
     assert list(tmp_path.iterdir()) == []
 
 
 # --------------------------------------------------------------------------- without pictures
-def test_the_terminal_says_that_pictures_are_missing_and_what_brings_them(tmp_path, run, monkeypatch):
+def test_the_terminal_says_that_pictures_are_missing_and_what_brings_them(
+    tmp_path, run, monkeypatch
+):
     monkeypatch.setenv("SOLIDGEAR_RENDERER", "none")
     command = ["compare", SCENE, "--models", "euler,timoshenko", "--out", tmp_path]
     code, out, _ = run(*command)
     assert code == 0  # numbers are whole
     said = [line for line in out.splitlines() if "left out" in line]
-    assert len(said) == 1 and re.match(r"caution: render of euler, timoshenko left out: .*apt-get install .*libgl1", said[0])
+    assert len(said) == 1 and re.match(
+        r"caution: render of euler, timoshenko left out: .*apt-get install .*libgl1", said[0]
+    )
     # and not where none were asked for
     assert "left out" not in run(*command, "--no-renders")[1]

@@ -19,7 +19,11 @@ BUILDERS = {"euler": beam, "timoshenko": beam, "harmonic": harmonic, "solid": so
 
 @pytest.mark.parametrize("model", BUILDERS)
 def test_the_table_holds_what_builders_take(model):
-    taken = {name: p.default for name, p in inspect.signature(BUILDERS[model]).parameters.items() if name != "scene"}
+    taken = {
+        name: p.default
+        for name, p in inspect.signature(BUILDERS[model]).parameters.items()
+        if name != "scene"
+    }
     assert set(OPTIONS[model]) == set(taken)
     # every default lies within its own limits
     assert checked(model, {name: value for name, value in taken.items() if value is not None})
@@ -30,7 +34,10 @@ def test_the_table_holds_what_builders_take(model):
 def test_every_limit_has_a_reason():
     for table in OPTIONS.values():
         for name, option in table.items():
-            limited = any(limit is not None for limit in (option.least, option.most, option.above, option.below))
+            limited = any(
+                limit is not None
+                for limit in (option.least, option.most, option.above, option.below)
+            )
             assert option.meaning and (option.why or not limited or option.kind == "flag"), name
     assert set(OPTIONS["solid"]["element"].choices) == set(ELEMENTS)
 
@@ -38,17 +45,37 @@ def test_every_limit_has_a_reason():
 REFUSED = {
     "no end of cells": ("harmonic", {"refinement": 1e9}, "between 0.01 and 20"),
     "no end of cells in 3D": ("solid", {"refinement": 1e9}, "between 0.01 and 20"),
-    "cells of nothing": ("harmonic", {"size": 1e-9}, "lines of them, more than 20000; give size of at least"),
+    "cells of nothing": (
+        "harmonic",
+        {"size": 1e-9},
+        "lines of them, more than 20000; give size of at least",
+    ),
     "cells of nothing in 3D": ("solid", {"size": 1e-9}, "lines of them, more than 20000"),
-    "tetrahedra of nothing": ("solid", {"element": "tet10", "size": 1e-9}, "lines of them, more than 20000"),
+    "tetrahedra of nothing": (
+        "solid",
+        {"element": "tet10", "size": 1e-9},
+        "lines of them, more than 20000",
+    ),
     "layers without end": ("harmonic", {"layers": 100_000}, "between 0 and 20"),
     "waves without end": ("harmonic", {"ovalising": 1_000_000}, "at most 100"),
     "elements without end": ("euler", {"elements": 10**9}, "between 1 and 5000"),
     "cells around without end": ("solid", {"around": 10**9}, "between 8 and 720"),
-    "layers thinner than digits": ("harmonic", {"ratio": 0.01, "layers": 4}, "costs digits below 1e-06; give layers of at most 3"),
-    "layers across thinner than digits": ("solid", {"ratio": 0.01, "radial_layers": 4}, "give radial_layers of at most 3"),
+    "layers thinner than digits": (
+        "harmonic",
+        {"ratio": 0.01, "layers": 4},
+        "costs digits below 1e-06; give layers of at most 3",
+    ),
+    "layers across thinner than digits": (
+        "solid",
+        {"ratio": 0.01, "radial_layers": 4},
+        "give radial_layers of at most 3",
+    ),
     "misspelt": ("harmonic", {"ordr": 3}, 'did you mean "order"'),
-    "unknown": ("harmonic", {"nonsense": 1}, "no such option as \"nonsense\"; there are order, layers"),
+    "unknown": (
+        "harmonic",
+        {"nonsense": 1},
+        'no such option as "nonsense"; there are order, layers',
+    ),
     "of another model": ("euler", {"order": 3}, "no such option"),
     "None": ("harmonic", {"order": None}, "order null is not usable"),
     "a flag for a number": ("harmonic", {"order": True}, "order true is not usable"),
@@ -57,9 +84,13 @@ REFUSED = {
     "a wave twice": ("harmonic", {"ovalising": (2, 2)}, "each once"),
     "an array": ("harmonic", {"order": np.array([1, 2])}, "order"),
     "a huge number": ("harmonic", {"order": 10**6000}, "order 0x"),
-    "unknown tie": ("solid", {"attachments": ("welded",)}, "give one or more of average, rigid, section"),
+    "unknown tie": (
+        "solid",
+        {"attachments": ("welded",)},
+        "give one or more of average, rigid, section",
+    ),
     "no tie": ("harmonic", {"attachments": ()}, "attachments"),
-}  # fmt: skip
+}
 
 
 @pytest.mark.parametrize("kind", REFUSED)
@@ -91,14 +122,21 @@ def test_names_of_arguments_are_no_options(pair, model):
 
 def test_settings_of_the_command_line():
     assert options(["order=8", "ratio=0.3", "ovalising=2,3", "shear=false", "element=tet10"]) == {
-        "order": 8, "ratio": 0.3, "ovalising": (2, 3), "shear": False, "element": "tet10",
-    }  # fmt: skip
+        "order": 8,
+        "ratio": 0.3,
+        "ovalising": (2, 3),
+        "shear": False,
+        "element": "tet10",
+    }
     with pytest.raises(sg.SolidgearError, match="order is set twice"):
         options(["order=3", "order=5"])
 
 
 def test_a_single_name_or_number_is_a_list_of_one():
-    assert checked("harmonic", {"ovalising": 2, "attachments": "rigid"}) == {"ovalising": (2,), "attachments": ("rigid",)}
+    assert checked("harmonic", {"ovalising": 2, "attachments": "rigid"}) == {
+        "ovalising": (2,),
+        "attachments": ("rigid",),
+    }
 
 
 def test_the_thinnest_layer_still_has_digits():

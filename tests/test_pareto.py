@@ -27,14 +27,37 @@ def rows():
     return [
         Row("beam", "Timoshenko", 1, "timoshenko", {}),
         Row("harmonic", "harmonic p uniform", 1, "harmonic", {"order": 99}),
-        Row("harmonic", "harmonic h uniform", 1, "harmonic", {"order": 2, "layers": 0, "edge_layers": 0}),
+        Row(
+            "harmonic",
+            "harmonic h uniform",
+            1,
+            "harmonic",
+            {"order": 2, "layers": 0, "edge_layers": 0},
+        ),
     ]
 
 
 def made(points, band=1e-4, **more):
     """A race of (seconds, unknowns, error) by hand."""
-    table = [Row("harmonic", "harmonic h graded", k, "harmonic", {}, "ok", "", u, [s], {"C_zz": 1 + e}, {"C_zz": e}) for k, (s, u, e) in enumerate(points, start=1)]
-    return Race({}, {"values": {"C_zz": 1.0}, "bands": {"C_zz": band}, **more}, table, {}, 1, 10, 240.0)
+    table = [
+        Row(
+            "harmonic",
+            "harmonic h graded",
+            k,
+            "harmonic",
+            {},
+            "ok",
+            "",
+            u,
+            [s],
+            {"C_zz": 1 + e},
+            {"C_zz": e},
+        )
+        for k, (s, u, e) in enumerate(points, start=1)
+    ]
+    return Race(
+        {}, {"values": {"C_zz": 1.0}, "bands": {"C_zz": band}, **more}, table, {}, 1, 10, 240.0
+    )
 
 
 # ------------------------------------------------------------------------------------------------- front
@@ -62,7 +85,11 @@ def test_front_is_what_nothing_beats():
     rng = np.random.default_rng(0)
     cost, error = rng.integers(0, 12, (2, 60)).astype(float)
     found = set(zip(cost[f := front(cost, error)], error[f]))
-    best = {(c, e) for c, e in zip(cost, error) if not np.any((cost <= c) & (error <= e) & ((cost < c) | (error < e)))}
+    best = {
+        (c, e)
+        for c, e in zip(cost, error)
+        if not np.any((cost <= c) & (error <= e) & ((cost < c) | (error < e)))
+    }
     assert found == best
 
 
@@ -116,7 +143,9 @@ def test_scaled_error_sees_couplings_and_leaves_free_motions_out():
 def test_plan_has_every_family_uniform_and_graded_level_by_level(scene, full):
     names = {row.series for row in plan(scene, full)}
     assert names == {"lumped", "Euler", "Timoshenko"} | {
-        f"{kind} {grading}" for kind in ("harmonic h", "harmonic p", "TET4", "TET10", "HEX8", "HEX20", "HEX27") for grading in ("uniform", "graded")
+        f"{kind} {grading}"
+        for kind in ("harmonic h", "harmonic p", "TET4", "TET10", "HEX8", "HEX20", "HEX27")
+        for grading in ("uniform", "graded")
     }
     levels = [row.level for row in plan(scene, full)]
     assert levels == sorted(levels)
@@ -173,7 +202,9 @@ def test_like_for_like_is_against_section_ties(scene, raced):
     reference = sg.build(tied, "harmonic", **pareto.LIKE_FOR_LIKE)
     c = sg.condense(reference, tied, scene.port.name).compliance[2, 2]
     beam = raced.rows[0]
-    own = sg.condense(sg.build(tied, beam.model, **beam.options), tied, scene.port.name).compliance[2, 2]
+    own = sg.condense(sg.build(tied, beam.model, **beam.options), tied, scene.port.name).compliance[
+        2, 2
+    ]
     assert beam.like_for_like["C_zz"] == pytest.approx(abs(own / c - 1), rel=1e-9)
     assert raced.rows[2].like_for_like == {}  # a solid is tied as the scene says
     # seats that distort add to what a beam gets wrong, so the two columns cannot be the same number
@@ -217,10 +248,19 @@ class Stage:
         self.real = real
         monkeypatch.setattr(pareto.time, "perf_counter", lambda: self.now)
         monkeypatch.setattr(pareto, "answer", self.answer)
-        reference = {"options": COARSE, "unknowns": 1, "seconds": 1.0, "values": {"C_zz": 1e-9, "bending 1": 1e3}, "bands": {"C_zz": 1e-6, "bending 1": 1e-6}, "like_for_like": {}}
+        reference = {
+            "options": COARSE,
+            "unknowns": 1,
+            "seconds": 1.0,
+            "values": {"C_zz": 1e-9, "bending 1": 1e3},
+            "bands": {"C_zz": 1e-6, "bending 1": 1e-6},
+            "like_for_like": {},
+        }
         monkeypatch.setattr(pareto, "_reference", lambda *_: (reference, real[1].compliance))
         monkeypatch.setattr(pareto, "_warm_up", lambda *_: {})
-        monkeypatch.setattr(pareto.gc, "collect", lambda: 0)  # it walks through all that the suite has loaded
+        monkeypatch.setattr(
+            pareto.gc, "collect", lambda: 0
+        )  # it walks through all that the suite has loaded
 
     def answer(self, scene, model, options, n):
         self.calls.append(options["tag"])
@@ -246,7 +286,9 @@ def test_runs_go_in_turns(scene, monkeypatch):
 
 
 def test_budget_leaves_out_levels_that_would_not_fit_with_all_their_runs(scene, monkeypatch):
-    stage = Stage(monkeypatch, scene, {"a1": 1.0, "b1": 0.1, "a2": 4.0, "b2": 0.2, "a3": 1.0, "b3": 0.4})
+    stage = Stage(
+        monkeypatch, scene, {"a1": 1.0, "b1": 0.1, "a2": 4.0, "b2": 0.2, "a3": 1.0, "b3": 0.4}
+    )
     found = race(scene, tagged("a1", "b1", "a2", "b2", "a3", "b3"), runs=5, budget=60.0)
     status = {r.options["tag"]: r.status for r in found.rows}
     # a3 is guessed at 16 s from the growth of a1 to a2: three runs of it and what is owed to the others are above 60 s
@@ -257,9 +299,15 @@ def test_budget_leaves_out_levels_that_would_not_fit_with_all_their_runs(scene, 
     assert all(len(r.samples) == 5 for r in found.rows if r.status == "ok")
 
 
-def test_small_models_come_before_large_ones_and_the_warm_up_tells_which_are_large(scene, monkeypatch):
+def test_small_models_come_before_large_ones_and_the_warm_up_tells_which_are_large(
+    scene, monkeypatch
+):
     stage = Stage(monkeypatch, scene, {"a1": 30.0, "b1": 0.1, "b2": 0.2})
-    monkeypatch.setattr(pareto, "_warm_up", lambda *_: {("solid", None, False): 30.0, ("harmonic", None, False): 0.1})
+    monkeypatch.setattr(
+        pareto,
+        "_warm_up",
+        lambda *_: {("solid", None, False): 30.0, ("harmonic", None, False): 0.1},
+    )
     rows = tagged("a1", "b1", "b2")
     rows[0].model = "solid"
     found = race(scene, rows, runs=2, budget=20.0)
@@ -283,19 +331,38 @@ def test_a_budget_that_ends_early_leaves_fewer_runs_and_says_so(scene, monkeypat
 def test_an_interrupt_keeps_what_there_was(scene, monkeypatch):
     kept = []
     Stage(monkeypatch, scene, {"a1": 1.0, "b1": KeyboardInterrupt(), "c1": 1.0})
-    found = race(scene, tagged("a1", "b1", "c1"), runs=3, budget=1e6, keep=lambda r: kept.append([row.status for row in r.rows]))
+    found = race(
+        scene,
+        tagged("a1", "b1", "c1"),
+        runs=3,
+        budget=1e6,
+        keep=lambda r: kept.append([row.status for row in r.rows]),
+    )
     assert not found.complete
-    assert [(r.status, len(r.samples)) for r in found.rows] == [("ok", 1), ("left out", 0), ("left out", 0)]
+    assert [(r.status, len(r.samples)) for r in found.rows] == [
+        ("ok", 1),
+        ("left out", 0),
+        ("left out", 0),
+    ]
     assert found.rows[1].reason == "interrupted"
     assert kept[0] == ["ok", "waiting", "waiting"] and kept[-1] == ["ok", "left out", "left out"]
 
 
-@pytest.mark.parametrize("stopped", [MemoryError(), ValueError("bad shape"), SolidgearError("no mesh")])
+@pytest.mark.parametrize(
+    "stopped", [MemoryError(), ValueError("bad shape"), SolidgearError("no mesh")]
+)
 def test_whatever_stops_a_model_becomes_its_reason(scene, monkeypatch, stopped):
     Stage(monkeypatch, scene, {"a1": stopped, "b1": 1.0})
     found = race(scene, tagged("a1", "b1"), runs=2, budget=1e6)
     assert found.rows[0].status == "failed" and found.rows[1].status == "ok"
-    assert found.rows[0].reason == {"MemoryError": "not enough memory", "ValueError": "ValueError: bad shape", "SolidgearError": "no mesh"}[type(stopped).__name__]
+    assert (
+        found.rows[0].reason
+        == {
+            "MemoryError": "not enough memory",
+            "ValueError": "ValueError: bad shape",
+            "SolidgearError": "no mesh",
+        }[type(stopped).__name__]
+    )
 
 
 def test_a_missing_first_bending_is_said_and_costs_only_that_number(scene, monkeypatch):
@@ -308,7 +375,9 @@ def test_a_missing_first_bending_is_said_and_costs_only_that_number(scene, monke
     assert found.error(row, "bending 1") is None and found.error(row, "C_zz") > 0
 
 
-@pytest.mark.parametrize("wrong", [{"runs": 0}, {"budget": 0.0}, {"budget": float("nan")}, {"budget": float("inf")}])
+@pytest.mark.parametrize(
+    "wrong", [{"runs": 0}, {"budget": 0.0}, {"budget": float("nan")}, {"budget": float("inf")}]
+)
 def test_bad_settings_are_refused_before_anything_runs(scene, monkeypatch, wrong):
     monkeypatch.setattr(pareto, "_reference", lambda *_: pytest.fail("it ran"))
     with pytest.raises(SolidgearError, match=next(iter(wrong))):
@@ -325,7 +394,9 @@ def test_a_free_shaft_is_charted_by_its_frequency_alone():
 def test_the_band_of_the_reference_holds_its_error(scene, monkeypatch):
     """Against a solid with further layers and a higher order: a band that did not would be no floor."""
     monkeypatch.setattr(pareto, "LIKE_FOR_LIKE", COARSE)
-    record, _ = pareto._reference(scene, {"order": 4, "layers": 1, "edge_layers": 1}, 10, lambda _: None)
+    record, _ = pareto._reference(
+        scene, {"order": 4, "layers": 1, "edge_layers": 1}, 10, lambda _: None
+    )
     fine = sg.build(scene, "harmonic", order=5, layers=2, edge_layers=2)
     c = sg.condense(fine, scene, scene.port.name).compliance[2, 2]
     true = abs(record["values"]["C_zz"] / c - 1)

@@ -6,26 +6,49 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-ROOT = Path(__file__).parent.parent
-sys.path.insert(0, str(ROOT / "validation"))
+from validation.peers import calculix, ours, ross_peer, sfepy_peer
+from validation.peers import problem as peer_problem
+from validation.peers.lanes import Figure, Lane, Sample, compliance_gap, frequency_gap, paired
+from validation.peers.process import PeerError, run
+from validation.peers.race import Race
 
-from peers import calculix, ours, ross_peer, sfepy_peer  # noqa: E402
-from peers import problem as peer_problem  # noqa: E402
-from peers.lanes import Figure, Lane, Sample, compliance_gap, frequency_gap, paired  # noqa: E402
-from peers.process import PeerError, run  # noqa: E402
-from peers.race import Race  # noqa: E402
+ROOT = Path(__file__).parent.parent
 
 SCENE = ROOT / "geometry" / "pinion_overhung.toml"
 TET = {"element": "tet10", "size": 0.07, "graded_size": 0.06}
-HEX = {"element": "hex20", "size": 0.08, "around": 8, "layers": 0, "edge_layers": 0, "radial_layers": 0}
+HEX = {
+    "element": "hex20",
+    "size": 0.08,
+    "around": 8,
+    "layers": 0,
+    "edge_layers": 0,
+    "radial_layers": 0,
+}
 # Pairs of corners whose middles the nodes after the corners are, from the user's manual.
 EDGES = {
     "C3D10": ((1, 2), (2, 3), (3, 1), (1, 4), (2, 4), (3, 4)),
-    "C3D20": ((1, 2), (2, 3), (3, 4), (4, 1), (5, 6), (6, 7), (7, 8), (8, 5), (1, 5), (2, 6), (3, 7), (4, 8)),
+    "C3D20": (
+        (1, 2),
+        (2, 3),
+        (3, 4),
+        (4, 1),
+        (5, 6),
+        (6, 7),
+        (7, 8),
+        (8, 5),
+        (1, 5),
+        (2, 6),
+        (3, 7),
+        (4, 8),
+    ),
 }
 
 
-@pytest.fixture(scope="module", params=[("rigid", TET, "C3D10"), ("average", HEX, "C3D20")], ids=["rigid tet", "average hex"])
+@pytest.fixture(
+    scope="module",
+    params=[("rigid", TET, "C3D10"), ("average", HEX, "C3D20")],
+    ids=["rigid tet", "average hex"],
+)
 def case(request):
     attachment, options, kind = request.param
     scene = ours.held(SCENE, attachment)
@@ -66,7 +89,10 @@ class Deck:
                 if len(fields) == 1:
                     self.equation.append((int(line), []))
                 else:
-                    self.equation[-1][1].extend((int(a), int(b) - 1, float(c)) for a, b, c in zip(fields[::3], fields[1::3], fields[2::3]))
+                    self.equation[-1][1].extend(
+                        (int(a), int(b) - 1, float(c))
+                        for a, b, c in zip(fields[::3], fields[1::3], fields[2::3])
+                    )
             elif card.startswith("*CLOAD"):
                 self.step[-1].append((int(fields[0]), int(fields[1]) - 1, float(fields[2])))
         # The line after *SPRING names the degree of freedom, the next one the stiffness.
@@ -104,7 +130,14 @@ def test_springs_store_the_energy_of_the_bearings_in_a_rigid_motion(case):
     u = {i: d + np.cross(th, at) for i, at in deck.node.items()}
     extra = sorted(i for i in deck.node if i > len(problem.nodes))
     # Of two nodes of a rigid seat at one place the second turns.
-    turning = {i for k, i in enumerate(extra) if i not in deck.spring and extra[k - 1] not in deck.spring and k and np.allclose(deck.node[i], deck.node[extra[k - 1]])}
+    turning = {
+        i
+        for k, i in enumerate(extra)
+        if i not in deck.spring
+        and extra[k - 1] not in deck.spring
+        and k
+        and np.allclose(deck.node[i], deck.node[extra[k - 1]])
+    }
     for i in turning:
         u[i] = th
     for count, terms in deck.equation:
@@ -193,7 +226,11 @@ def test_a_peer_that_takes_too_long_is_ended_with_its_children(tmp_path):
 
 def test_a_peer_that_fails_says_its_last_words(tmp_path):
     with pytest.raises(PeerError, match="returned 3.*no licence"):
-        run([sys.executable, "-c", "import sys; print('no licence'); sys.exit(3)"], tmp_path, limit=60)
+        run(
+            [sys.executable, "-c", "import sys; print('no licence'); sys.exit(3)"],
+            tmp_path,
+            limit=60,
+        )
 
 
 def test_pairs_are_compared_as_pairs():
@@ -208,17 +245,32 @@ def test_times_are_not_compared_unless_answers_agree(tmp_path):
     def wrong():
         race.check("frequencies", 2e-3, 1e-3, "a reason")
 
-    fast = race.add(Lane("h", "ours", lambda: Sample({"mesh": 9.0, "modes": 1.0}, 0.0), counted=("modes",)))
+    fast = race.add(
+        Lane("h", "ours", lambda: Sample({"mesh": 9.0, "modes": 1.0}, 0.0), counted=("modes",))
+    )
     slow = race.add(Lane("h", "theirs", wrong))
     race.run(2)
     assert Figure("ratio", slow, fast, 4.0).row()["measured"] is None
     assert "differ from ours" in Figure("ratio", slow, fast, 4.0).row()["met"]
-    right = Lane("h", "theirs", lambda: Sample({"whole": 5.0}, 0.0), samples=[Sample({"whole": 5.0}, 0.0)] * 2)
-    assert Figure("ratio", [slow, right], fast, 4.0).row() == {"ratio": "ratio", "asked": 4.0, "measured": 5.0, "over rounds": "5 to 5", "met": "yes"}
+    right = Lane(
+        "h",
+        "theirs",
+        lambda: Sample({"whole": 5.0}, 0.0),
+        samples=[Sample({"whole": 5.0}, 0.0)] * 2,
+    )
+    assert Figure("ratio", [slow, right], fast, 4.0).row() == {
+        "ratio": "ratio",
+        "asked": 4.0,
+        "measured": 5.0,
+        "over rounds": "5 to 5",
+        "met": "yes",
+    }
     assert Figure("ratio", right, fast, 6.0).row()["met"] == "NO"
     fast.samples.append(Sample({"mesh": 9.0, "modes": 100.0}, 0.0))
     fast.samples.append(fast.samples[-1])
-    assert Figure("ratio", right, fast).row()["measured"] == 5.0  # rounds the other did not run in do not count
+    assert (
+        Figure("ratio", right, fast).row()["measured"] == 5.0
+    )  # rounds the other did not run in do not count
     assert (tmp_path / "rows.csv").read_text().count("\n") == 3
 
 
@@ -228,10 +280,16 @@ def test_rotor_for_ross_has_our_sections_and_bearings():
     scene = ross_peer.tiltless(ours.held(SCENE, "average"))
     body = sg.build(scene, "timoshenko")
     data = ross_peer.rotor(scene, body)
-    volume = sum(length * np.pi / 12 * (a * a + a * b + b * b) for length, _, a, _, b, *_ in data["elements"])
+    volume = sum(
+        length * np.pi / 12 * (a * a + a * b + b * b) for length, _, a, _, b, *_ in data["elements"]
+    )
     assert volume * 7850 == pytest.approx(body.mass_matrix()[0, 0], rel=1e-9)
-    assert [k[1:] for k in data["bearings"]] == [[b.stiffness[c, c] for c in range(3)] for b in scene.bearings]
-    assert all(abs(body.geometry[k[0]] - b.y) < 1e-12 for k, b in zip(data["bearings"], scene.bearings))
+    assert [k[1:] for k in data["bearings"]] == [
+        [b.stiffness[c, c] for c in range(3)] for b in scene.bearings
+    ]
+    assert all(
+        abs(body.geometry[k[0]] - b.y) < 1e-12 for k, b in zip(data["bearings"], scene.bearings)
+    )
 
 
 @pytest.mark.slow
@@ -251,4 +309,9 @@ def test_sfepy_agrees():
     scene = ours.held(SCENE, "average")
     body = ours.solve(scene, "solid", TET, free=True).body
     answer = sfepy_peer.solve(body, scene, 6)
-    assert frequency_gap(np.array(answer["frequency_hz"]), ours.free(sfepy_peer.straightened(body, scene), 6)) < 1e-6
+    assert (
+        frequency_gap(
+            np.array(answer["frequency_hz"]), ours.free(sfepy_peer.straightened(body, scene), 6)
+        )
+        < 1e-6
+    )

@@ -37,7 +37,9 @@ def test_ports_follow_rigid_motions(model, attachment):
         rows = block.ports @ block.rigid
         for p in range(len(body.ports)):
             for i, component in enumerate(block.components):
-                found[6 * p + component, list(block.components)] = rows[p * len(block.components) + i]
+                found[6 * p + component, list(block.components)] = rows[
+                    p * len(block.components) + i
+                ]
     expected = np.vstack([rigid_motion_at(s.y) for s in scene.stations])
     # partition of unity and weights that sum to one: rounding, with moment arms below 1 m
     assert np.abs(found - expected).max() < 1e-12
@@ -49,7 +51,10 @@ WIDTH, RADIUS, MIDDLE = 0.06, 0.04, 0.1
 
 def rod(attachment):
     rod = Segment.cylinder("rod", length=0.2, diameter=2 * RADIUS)
-    return Scene.from_parts([rod], port=Port(y=MIDDLE, lo=MIDDLE - WIDTH / 2, hi=MIDDLE + WIDTH / 2, attachment=attachment))
+    return Scene.from_parts(
+        [rod],
+        port=Port(y=MIDDLE, lo=MIDDLE - WIDTH / 2, hi=MIDDLE + WIDTH / 2, attachment=attachment),
+    )
 
 
 # Least squares on a cylinder of width w and radius r: minimise the integral of |u - (d + th x r)|^2 over the surface.
@@ -95,5 +100,9 @@ def test_section_is_the_mean_of_the_cross_section():
     stretch, lift = np.zeros((2, len(y), 3))
     stretch[:, 1] = -z
     lift[:, 2] = z**2
-    assert ports @ stretch.ravel() == pytest.approx([0, 0, 0, 1, 0, 0], abs=1e-12)  # a rigid motion of the section
-    assert (ports @ lift.ravel())[2] == pytest.approx(RADIUS**2 / 4, rel=1e-3)  # eight arcs, and z^2 by quadratics
+    assert ports @ stretch.ravel() == pytest.approx(
+        [0, 0, 0, 1, 0, 0], abs=1e-12
+    )  # a rigid motion of the section
+    assert (ports @ lift.ravel())[2] == pytest.approx(
+        RADIUS**2 / 4, rel=1e-3
+    )  # eight arcs, and z^2 by quadratics

@@ -19,8 +19,14 @@ from solidgear.solve.statics import condense, flexibility
 from solidgear.solve.supported import Supported
 
 # the same examples every time; a failing one is shown as found, since making it smaller takes minutes
-settings.register_profile("properties", derandomize=True, deadline=None, database=None, phases=[Phase.explicit, Phase.generate],
-                          suppress_health_check=list(HealthCheck))  # fmt: skip
+settings.register_profile(
+    "properties",
+    derandomize=True,
+    deadline=None,
+    database=None,
+    phases=[Phase.explicit, Phase.generate],
+    suppress_health_check=list(HealthCheck),
+)
 BEAMS = settings(settings.get_profile("properties"), max_examples=12)
 HARMONICS = settings(settings.get_profile("properties"), max_examples=3)
 SOLIDS = settings(settings.get_profile("properties"), max_examples=2)
@@ -61,8 +67,11 @@ def on_all_models(kind, **more):
             claim(scene, solid, **rest)
 
         few = scenes(**{"most_segments": 2} | kind)
-        tests = (BEAMS(given(scene=scenes(**kind), theory=theories, **more)(on_beams)), HARMONICS(given(scene=few, **more)(on_harmonic_solids)),
-                 pytest.mark.slow(SOLIDS(given(scene=few, **more)(on_solids))))  # fmt: skip
+        tests = (
+            BEAMS(given(scene=scenes(**kind), theory=theories, **more)(on_beams)),
+            HARMONICS(given(scene=few, **more)(on_harmonic_solids)),
+            pytest.mark.slow(SOLIDS(given(scene=few, **more)(on_solids))),
+        )
         for test in tests:
             name = f"test_{claim.__name__}_{test.__name__}"
             test.__name__ = test.__qualname__ = name
@@ -140,7 +149,10 @@ RTOL = STATIC = 1e-7
 
 def with_moduli(scene, factor):
     """The scene with every E times a factor."""
-    segments = tuple(s.with_changes(material=s.material.with_changes(E=s.material.E * factor)) for s in scene.segments)
+    segments = tuple(
+        s.with_changes(material=s.material.with_changes(E=s.material.E * factor))
+        for s in scene.segments
+    )
     return scene.with_changes(segments=segments)
 
 
@@ -148,18 +160,27 @@ def with_moduli(scene, factor):
 @on_all_models(HELD)
 def everything_stiffer_scales_exactly(scene, build):
     stiff = with_moduli(scene, 4.0).with_bearing_scale(4.0)
-    stiff = stiff.with_changes(housing_axial=4 * scene.housing_axial if scene.housing_axial else None)
+    stiff = stiff.with_changes(
+        housing_axial=4 * scene.housing_axial if scene.housing_axial else None
+    )
     soft_body, stiff_body = build(scene), build(stiff)
     # four is a power of two: not even rounding differs, up to iterations that stop elsewhere
     near(at_port(stiff_body, stiff).stiffness, 4 * at_port(soft_body, scene).stiffness, 1e-12)
-    same(frequencies(stiff_body, stiff), 2 * frequencies(soft_body, scene), floor(stiff_body), 1e-10)
+    same(
+        frequencies(stiff_body, stiff), 2 * frequencies(soft_body, scene), floor(stiff_body), 1e-10
+    )
 
 
 @on_all_models(HELD, factor=st.floats(1.01, 3.0))
 def a_stiffer_material_lowers_no_frequency(scene, build, factor):
     stiff = with_moduli(scene, factor)
     soft_body, stiff_body = build(scene), build(stiff)
-    never_falls(frequencies(soft_body, scene), frequencies(stiff_body, stiff), floor(stiff_body), told(stiff_body))
+    never_falls(
+        frequencies(soft_body, scene),
+        frequencies(stiff_body, stiff),
+        floor(stiff_body),
+        told(stiff_body),
+    )
     dominates(at_port(stiff_body, stiff).stiffness, at_port(soft_body, scene).stiffness, STATIC)
 
 
@@ -201,9 +222,24 @@ MIRROR = np.diag([1.0, -1.0, 1.0, -1.0, 1.0, -1.0])
 def mirrored(scene):
     """The shaft the other way round."""
     end = scene.length
-    segments = tuple(s.with_changes(y0=end - s.y1, y1=end - s.y0, outer0=s.outer1, outer1=s.outer0, inner0=s.inner1, inner1=s.inner0) for s in reversed(scene.segments))
-    bearings = tuple(b.with_changes(y=end - b.y, matrix=MIRROR @ np.array(b.matrix) @ MIRROR) for b in scene.bearings)
-    port = scene.port.with_changes(y=end - scene.port.y, lo=end - scene.port.hi, hi=end - scene.port.lo)
+    segments = tuple(
+        s.with_changes(
+            y0=end - s.y1,
+            y1=end - s.y0,
+            outer0=s.outer1,
+            outer1=s.outer0,
+            inner0=s.inner1,
+            inner1=s.inner0,
+        )
+        for s in reversed(scene.segments)
+    )
+    bearings = tuple(
+        b.with_changes(y=end - b.y, matrix=MIRROR @ np.array(b.matrix) @ MIRROR)
+        for b in scene.bearings
+    )
+    port = scene.port.with_changes(
+        y=end - scene.port.y, lo=end - scene.port.hi, hi=end - scene.port.lo
+    )
     return scene.with_changes(segments=segments, bearings=bearings, port=port)
 
 
@@ -217,7 +253,9 @@ def a_reversed_shaft_is_the_same_shaft(scene, build):
 
 def turned(scene, r):
     """The bearings turned about the shaft by a rotation (6, 6), and that."""
-    return scene.with_changes(bearings=tuple(b.with_changes(matrix=r @ np.array(b.matrix) @ r.T) for b in scene.bearings)), r
+    return scene.with_changes(
+        bearings=tuple(b.with_changes(matrix=r @ np.array(b.matrix) @ r.T) for b in scene.bearings)
+    ), r
 
 
 @on_all_models(HELD, quarters=st.integers(1, 3))
@@ -239,15 +277,27 @@ def test_no_angle_is_special_to_a_body_of_revolution(scene, theory, tenths):
 
 def magnified(scene, s):
     """Every length times s, every stress at equal strain the same."""
-    segments = tuple(p.with_changes(**{k: s * getattr(p, k) for k in ("y0", "y1", "outer0", "outer1", "inner0", "inner1")}) for p in scene.segments)
+    segments = tuple(
+        p.with_changes(
+            **{k: s * getattr(p, k) for k in ("y0", "y1", "outer0", "outer1", "inner0", "inner1")}
+        )
+        for p in scene.segments
+    )
     unit = np.sqrt(s) * np.repeat((1.0, s), 3)
     bearings = tuple(
-        b.with_changes(y=s * b.y, seat_width=s * b.seat_width, matrix=np.array(b.matrix) * np.outer(unit, unit), axial_series=tuple(s * k for k in b.axial_series))
+        b.with_changes(
+            y=s * b.y,
+            seat_width=s * b.seat_width,
+            matrix=np.array(b.matrix) * np.outer(unit, unit),
+            axial_series=tuple(s * k for k in b.axial_series),
+        )
         for b in scene.bearings
     )
     port = scene.port.with_changes(y=s * scene.port.y, lo=s * scene.port.lo, hi=s * scene.port.hi)
     housing = s * scene.housing_axial if scene.housing_axial else None
-    return scene.with_changes(segments=segments, bearings=bearings, port=port, housing_axial=housing), unit
+    return scene.with_changes(
+        segments=segments, bearings=bearings, port=port, housing_axial=housing
+    ), unit
 
 
 @on_all_models(HELD, s=st.sampled_from((4.0, 0.25, 0.1, 7.3)))
@@ -255,8 +305,17 @@ def no_unit_of_length_is_special(scene, build, s):
     other, unit = magnified(scene, s)
     here, there = build(scene), build(other)
     # by a power of four nothing is rounded anew; otherwise positions are, to a picometre
-    near(at_port(there, other).stiffness, np.outer(unit, unit) * at_port(here, scene).stiffness, 1e-12 if s in (4.0, 0.25) else STATIC)
-    same(s * frequencies(there, other), frequencies(here, scene), floor(here), 1e-10 if s in (4.0, 0.25) else RTOL)
+    near(
+        at_port(there, other).stiffness,
+        np.outer(unit, unit) * at_port(here, scene).stiffness,
+        1e-12 if s in (4.0, 0.25) else STATIC,
+    )
+    same(
+        s * frequencies(there, other),
+        frequencies(here, scene),
+        floor(here),
+        1e-10 if s in (4.0, 0.25) else RTOL,
+    )
 
 
 # ------------------------------------------------------------------------------------------------- energy
@@ -315,7 +374,9 @@ def halved(scene):
 @given(scenes(), theories)
 def test_refined_beams_converge_from_above(scene, theory):
     """One element between two marks: those of the halved shaft hold the fields of the whole one."""
-    scene = scene.with_attachment("section")  # point loads: what an averaged seat spreads over an element, its nodal fields follow to 1e-5 only
+    scene = scene.with_attachment(
+        "section"
+    )  # point loads: what an averaged seat spreads over an element, its nodal fields follow to 1e-5 only
     coarse, fine = (sg.build(s, theory, elements=1) for s in (scene, halved(scene)))
     # elements are exact in statics, but for the quadrature of steep cones
     near(at_port(fine, scene).stiffness, at_port(coarse, scene).stiffness, 1e-6)

@@ -51,7 +51,11 @@ def solved(pinion):
 
 
 def unit_motion(body, component):
-    return {i: b.rigid[:, b.components.index(component)] for i, b in enumerate(body.blocks) if component in b.components}
+    return {
+        i: b.rigid[:, b.components.index(component)]
+        for i, b in enumerate(body.blocks)
+        if component in b.components
+    }
 
 
 @pytest.mark.parametrize("name", ["pinion_overhung", "shaft_hollow", "shaft_stepped"])
@@ -74,18 +78,24 @@ def test_six_rigid_motions_and_a_closed_surface(name, fidelity, options):
     for component in range(6):
         s = surface(scene, body, unit_motion(body, component))
         axis = np.eye(3)[component % 3]
-        wanted = np.broadcast_to(axis, s.points.shape) if component < 3 else np.cross(axis, s.points)
+        wanted = (
+            np.broadcast_to(axis, s.points.shape) if component < 3 else np.cross(axis, s.points)
+        )
         np.testing.assert_allclose(s.displacement, wanted, rtol=0, atol=1e-14)
 
     # Every edge belongs to two faces that run along it in opposite senses, so the surface is closed and oriented.
-    sides = [s.faces[:, [i, (i + 1) % 4]] for i in range(4)] + [s.triangles[:, [i, (i + 1) % 3]] for i in range(3)]
+    sides = [s.faces[:, [i, (i + 1) % 4]] for i in range(4)] + [
+        s.triangles[:, [i, (i + 1) % 3]] for i in range(3)
+    ]
     count = Counter(map(tuple, np.concatenate(sides)))
     assert all(count[a, b] == count[b, a] == 1 for a, b in count)
     p = s.points
     three = np.concatenate([s.faces[:, :3], s.faces[:, [0, 2, 3]], s.triangles])
     volume = np.einsum("ij,ij->", p[three[:, 0]], np.cross(p[three[:, 1]], p[three[:, 2]])) / 6
     # 48 chords around enclose 0.29 % less than a circle; 8 straight elements 10 %
-    assert volume == pytest.approx(volume_of(scene.segments), rel=0.11 if options.get("element") == "hex8" else 0.01)
+    assert volume == pytest.approx(
+        volume_of(scene.segments), rel=0.11 if options.get("element") == "hex8" else 0.01
+    )
 
 
 def test_ovalising_shapes_move_as_their_harmonic(pinion):
@@ -108,7 +118,9 @@ def shapes(scene, body, modes, name="bending 1"):
     return [surface(scene, body, v) for v in modes.named(name).vectors]
 
 
-@pytest.mark.parametrize("fidelity, options, share", [("harmonic", FINE, 0.01), ("timoshenko", {}, 0.08)])
+@pytest.mark.parametrize(
+    "fidelity, options, share", [("harmonic", FINE, 0.01), ("timoshenko", {}, 0.08)]
+)
 def test_first_bending_moves_as_in_the_solid(pinion, solved, fidelity, options, share):
     pair = shapes(pinion, *solved(fidelity, **options))
     others = shapes(pinion, *solved("solid", **SOLID))
@@ -140,7 +152,9 @@ def drawing(pinion, solved, folder):
         body, modes = solved(fidelity, **options)
         mode = modes.named("bending 1")
         title = f"{fidelity} - {mode.name} - {mode.frequency_hz:.1f} Hz"
-        jobs.append(RenderJob(surface(pinion, body, mode.vectors[0]), title, folder / f"{fidelity}.png"))
+        jobs.append(
+            RenderJob(surface(pinion, body, mode.vectors[0]), title, folder / f"{fidelity}.png")
+        )
     return jobs
 
 
@@ -149,11 +163,15 @@ def test_pictures(pinion, solved, tmp_path):
 
     jobs = drawing(pinion, solved, tmp_path)
     still = jobs[0].surface
-    dead = RenderJob(type(still)(still.points, 0 * still.points, still.faces, still.triangles, still.lines), "still", tmp_path / "still.png")
+    dead = RenderJob(
+        type(still)(still.points, 0 * still.points, still.faces, still.triangles, still.lines),
+        "still",
+        tmp_path / "still.png",
+    )
     *results, refused = render_modes([*jobs, dead])
     if any(r.no_renderer for r in results):
         pytest.skip(results[0].reason)
-    for job, result in zip(jobs, results):
+    for result in results:
         assert result.ok, result.reason
         picture = (imread(result.path)[:, :, :3] * 255).round().astype(int)
         assert picture.shape == (700, 1200, 3)
@@ -178,8 +196,16 @@ def test_without_a_renderer_there_is_a_sentence_and_no_file(pinion, solved, tmp_
     assert not list(tmp_path.iterdir())
 
 
-@pytest.mark.parametrize("death, timeout", [("import os, signal; os.kill(os.getpid(), signal.SIGSEGV)", 60), ("import time; time.sleep(60)", 1)])
-def test_a_child_that_dies_or_hangs_is_survived(pinion, solved, tmp_path, monkeypatch, death, timeout):
+@pytest.mark.parametrize(
+    "death, timeout",
+    [
+        ("import os, signal; os.kill(os.getpid(), signal.SIGSEGV)", 60),
+        ("import time; time.sleep(60)", 1),
+    ],
+)
+def test_a_child_that_dies_or_hangs_is_survived(
+    pinion, solved, tmp_path, monkeypatch, death, timeout
+):
     fake = tmp_path / "python"
     fake.write_text(f"#!{sys.executable}\n{death}\n")
     fake.chmod(0o755)
@@ -194,8 +220,18 @@ def test_a_child_that_dies_or_hangs_is_survived(pinion, solved, tmp_path, monkey
 
 def test_the_child_starts_without_the_rest_of_the_package():
     code = "import sys, json, solidgear.report.render; print(json.dumps([m for m in sys.modules if m.startswith(('solidgear', 'scipy', 'skfem', 'pyvista'))]))"
-    out = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True, env={**os.environ, "PYTHONPATH": str(ROOT)})
-    assert set(json.loads(out.stdout)) == {"solidgear", "solidgear.report", "solidgear.report.render"}
+    out = subprocess.run(
+        [sys.executable, "-c", code],
+        capture_output=True,
+        text=True,
+        check=True,
+        env={**os.environ, "PYTHONPATH": str(ROOT)},
+    )
+    assert set(json.loads(out.stdout)) == {
+        "solidgear",
+        "solidgear.report",
+        "solidgear.report.render",
+    }
 
 
 def volumes(points, cells, vtk_name):
@@ -228,13 +264,18 @@ def volumes(points, cells, vtk_name):
 def test_a_solid_comes_back_from_its_file(pinion, tmp_path, element, kind, vtk_name, loss):
     options = SOLID if element.startswith("hex") else {"size": 0.06, "graded_size": 0.06}
     body = sg.build(pinion, "solid", element=element, **options)
-    made_up = [Mode(f"motion {c}", "", 1.5, 1, (unit_motion(body, c),), np.zeros((1, 1, 6)), 1.0) for c in range(6)]
+    made_up = [
+        Mode(f"motion {c}", "", 1.5, 1, (unit_motion(body, c),), np.zeros((1, 1, 6)), 1.0)
+        for c in range(6)
+    ]
     path = write_vtu(pinion, body, made_up, tmp_path / "new" / "body.vtu", most=4)
     assert [p.name for p in path.parent.iterdir()] == ["body.vtu"]
     back = meshio.read(path)
     assert [c.type for c in back.cells] == [kind]
     assert list(back.point_data) == [f"motion {c} (1.50 Hz)" for c in range(4)]
-    np.testing.assert_allclose(back.point_data["motion 3 (1.50 Hz)"], np.cross([1.0, 0.0, 0.0], back.points), atol=1e-14)
+    np.testing.assert_allclose(
+        back.point_data["motion 3 (1.50 Hz)"], np.cross([1.0, 0.0, 0.0], back.points), atol=1e-14
+    )
     # A wrong order of nodes would turn some of every cell inside out.
     volume, least = volumes(back.points, back.cells[0].data, vtk_name)
     assert least.min() > 0
@@ -254,5 +295,7 @@ def test_other_bodies_are_written_as_surfaces(pinion, solved, tmp_path, fidelity
     for letter, vectors in zip("ab", bending.vectors):
         s = surface(pinion, body, vectors)
         np.testing.assert_array_equal(back.points, s.points)
-        np.testing.assert_array_equal(back.point_data[f"bending 1{letter} ({bending.frequency_hz:.2f} Hz)"], s.displacement)
+        np.testing.assert_array_equal(
+            back.point_data[f"bending 1{letter} ({bending.frequency_hz:.2f} Hz)"], s.displacement
+        )
     assert len(back.point_data) == sum(len(m.vectors) for m in modes.modes)

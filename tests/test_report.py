@@ -13,7 +13,15 @@ from rich.console import Console
 
 from solidgear.report import charts
 from solidgear.report.html import render_page, write_report
-from solidgear.report.terminal import engineering, final_table, hertz, matrix_table, modes_table, percent, verdict_text
+from solidgear.report.terminal import (
+    engineering,
+    final_table,
+    hertz,
+    matrix_table,
+    modes_table,
+    percent,
+    verdict_text,
+)
 
 ORDER = ["x", "y", "z", "thx", "thy", "thz"]
 #: K_zz, K_yy, K_z,thx, K_thx
@@ -24,14 +32,53 @@ STIFFNESS = {
     "solid": (4.71542048e9, 1.13654552e9, 2.40524864e8, 1.90501559e7),
 }
 FREQUENCY = {
-    "euler": {"rigid torsion": 0.0, "axial 1": 1388.0674, "bending 1": 3343.8930, "bending 2": 4482.2185, "torsion 1": 4956.7916, "axial 2": 8790.0971},
-    "timoshenko": {"rigid torsion": 0.0, "axial 1": 1388.0674, "bending 1": 2782.7973, "bending 2": 4010.6014, "torsion 1": 4956.7916, "bending 3": 8369.6690, "axial 2": 8790.0971},
-    "harmonic": {"rigid torsion": 0.0, "axial 1": 1385.6329, "bending 1": 2758.0902, "bending 2": 4038.3145, "torsion 1": 4843.6107, "bending 3": 8148.8623, "axial 2": 8554.7405},
-    "solid": {"rigid torsion": 0.0, "axial 1": 1385.6497, "bending 1": 2759.0611, "bending 2": 4038.8256, "torsion 1": 4843.8043, "bending 3": 8152.6586, "axial 2": 8556.2716},
+    "euler": {
+        "rigid torsion": 0.0,
+        "axial 1": 1388.0674,
+        "bending 1": 3343.8930,
+        "bending 2": 4482.2185,
+        "torsion 1": 4956.7916,
+        "axial 2": 8790.0971,
+    },
+    "timoshenko": {
+        "rigid torsion": 0.0,
+        "axial 1": 1388.0674,
+        "bending 1": 2782.7973,
+        "bending 2": 4010.6014,
+        "torsion 1": 4956.7916,
+        "bending 3": 8369.6690,
+        "axial 2": 8790.0971,
+    },
+    "harmonic": {
+        "rigid torsion": 0.0,
+        "axial 1": 1385.6329,
+        "bending 1": 2758.0902,
+        "bending 2": 4038.3145,
+        "torsion 1": 4843.6107,
+        "bending 3": 8148.8623,
+        "axial 2": 8554.7405,
+    },
+    "solid": {
+        "rigid torsion": 0.0,
+        "axial 1": 1385.6497,
+        "bending 1": 2759.0611,
+        "bending 2": 4038.8256,
+        "torsion 1": 4843.8043,
+        "bending 3": 8152.6586,
+        "axial 2": 8556.2716,
+    },
 }
 TIES = {  # C_zz, K_zz, first bending
-    "harmonic": {"average": (5.96108061e-10, 4.71078133e9, 2758.0902), "rigid": (4.75605924e-10, 5.41550793e9, 3083.5360), "section": (6.36272457e-10, 3.83362651e9, 2700.0471)},
-    "solid": {"average": (5.9574025e-10, 4.71542048e9, 2759.0611), "rigid": (4.73333976e-10, 5.4323382e9, 3091.2683), "section": (6.35902625e-10, 3.83989742e9, 2700.8633)},
+    "harmonic": {
+        "average": (5.96108061e-10, 4.71078133e9, 2758.0902),
+        "rigid": (4.75605924e-10, 5.41550793e9, 3083.5360),
+        "section": (6.36272457e-10, 3.83362651e9, 2700.0471),
+    },
+    "solid": {
+        "average": (5.9574025e-10, 4.71542048e9, 2759.0611),
+        "rigid": (4.73333976e-10, 5.4323382e9, 3091.2683),
+        "section": (6.35902625e-10, 3.83989742e9, 2700.8633),
+    },
 }
 
 
@@ -51,51 +98,168 @@ def _scene():
     head, back, end = 0.05824528977, 0.06824528977, 0.27624528977
 
     def segment(name, part, y0, y1, outer0, outer1):
-        return {"name": name, "part": part, "y0": y0, "y1": y1, "length": y1 - y0, "outer0": outer0, "outer1": outer1, "inner0": 0.0, "inner1": 0.0, "material": steel}
+        return {
+            "name": name,
+            "part": part,
+            "y0": y0,
+            "y1": y1,
+            "length": y1 - y0,
+            "outer0": outer0,
+            "outer1": outer1,
+            "inner0": 0.0,
+            "inner1": 0.0,
+            "material": steel,
+        }
 
     def bearing(name, y, status, *k):
-        return {"name": name, "y": y, "lo": y - 0.02, "hi": y + 0.02, "seat_width": 0.04, "attachment": "average", "status": status, "note": "Seat width assumed.", "stiffness": _six(*k)[0]}
+        return {
+            "name": name,
+            "y": y,
+            "lo": y - 0.02,
+            "hi": y + 0.02,
+            "seat_width": 0.04,
+            "attachment": "average",
+            "status": status,
+            "note": "Seat width assumed.",
+            "stiffness": _six(*k)[0],
+        }
 
     return {
-        "name": "pinion_overhung", "title": "Overhung pinion on two bearings", "source": "Hua (2010), Table 1", "length": end, "steps": [back], "material": steel, "housing_axial": None,
-        "segments": [segment("head", "frustum", 0.0, head, 0.04298987256, 0.067), segment("head.backcone", "backcone", head, back, 0.067, 0.067), segment("shaft", "shaft", back, end, 0.045, 0.045)],
-        "bearings": [bearing("1", back + 0.028, "published", 8.823e9, 8.887e8, -1.452e8, 3.856e6), bearing("2", back + 0.178, "identified", 8.599e9, 3.311e8, 1.521e8, 3.6e6)],
+        "name": "pinion_overhung",
+        "title": "Overhung pinion on two bearings",
+        "source": "Hua (2010), Table 1",
+        "length": end,
+        "steps": [back],
+        "material": steel,
+        "housing_axial": None,
+        "segments": [
+            segment("head", "frustum", 0.0, head, 0.04298987256, 0.067),
+            segment("head.backcone", "backcone", head, back, 0.067, 0.067),
+            segment("shaft", "shaft", back, end, 0.045, 0.045),
+        ],
+        "bearings": [
+            bearing("1", back + 0.028, "published", 8.823e9, 8.887e8, -1.452e8, 3.856e6),
+            bearing("2", back + 0.178, "identified", 8.599e9, 3.311e8, 1.521e8, 3.6e6),
+        ],
         "port": {"name": "pinion", "y": head / 2, "lo": 0.0, "hi": head, "attachment": "average"},
         "ask": {"modes": 10, "max_frequency": 1e4, "tolerance": 0.05},
-    }  # fmt: skip
+    }
 
 
 def _estimate(levels, column, limit, gci, observed):
-    return {"observed_order": observed, "expected_order": 1.09, "ratio": [1.41, 1.40], "extrapolated": limit, "gci": gci, "factor": 1.25, "asymptotic": True}
+    return {
+        "observed_order": observed,
+        "expected_order": 1.09,
+        "ratio": [1.41, 1.40],
+        "extrapolated": limit,
+        "gci": gci,
+        "factor": 1.25,
+        "asymptotic": True,
+    }
 
 
 def fixture_results():
     """A made-up run: the size of its figures is right, but no test may take a figure from here for a result."""
     models = {}
-    facts = {"euler": (270, 0.31, 290.0), "timoshenko": (270, 0.26, 292.0), "harmonic": (21846, 4.1, 410.0), "solid": (138210, 35.3, 2610.0)}
+    facts = {
+        "euler": (270, 0.31, 290.0),
+        "timoshenko": (270, 0.26, 292.0),
+        "harmonic": (21846, 4.1, 410.0),
+        "solid": (138210, 35.3, 2610.0),
+    }
     for key, k in STIFFNESS.items():
         stiffness, compliance = _six(*k)
         beam = key in ("euler", "timoshenko")
         c = compliance[2][2]
-        levels = [] if beam else [{"dofs": int(facts[key][0] / r**2), "h": 0.004 * r, "c_zz": c * (1 + s * 4e-4 * r**1.9), "bending_1_hz": FREQUENCY[key]["bending 1"] * (1 + 2e-4 * r**1.9)} for r, s in ((1.97, -1), (1.4, -1), (1.0, -1))]
+        levels = (
+            []
+            if beam
+            else [
+                {
+                    "dofs": int(facts[key][0] / r**2),
+                    "h": 0.004 * r,
+                    "c_zz": c * (1 + s * 4e-4 * r**1.9),
+                    "bending_1_hz": FREQUENCY[key]["bending 1"] * (1 + 2e-4 * r**1.9),
+                }
+                for r, s in ((1.97, -1), (1.4, -1), (1.0, -1))
+            ]
+        )
         dofs, total, peak = facts[key]
         models[key] = {
-            "valid": key != "euler", "why_not": "shear: the shaft is stubby (overhang over diameter 1.1), and Euler leaves shear out" if key == "euler" else None,
-            "stiffness": stiffness, "compliance": compliance,
-            "modes": [{"name": n, "family": n.replace("rigid ", "").split()[0], "frequency_hz": f, "multiplicity": 2 if "bending" in n else 1} for n, f in FREQUENCY[key].items()],
-            "band": None if beam else {"compliance": 0.0012 if key == "solid" else 0.0007, "bending_1": 0.0005, "method": "GCI on three meshes"},
-            "convergence": None if beam else {"levels": levels, "c_zz": _estimate(levels, "c_zz", c * (1 + 1e-4), 0.0012, 1.92), "bending_1": _estimate(levels, "bending_1_hz", FREQUENCY[key]["bending 1"] * 0.9999, 0.0005, 1.87)},
-            "dofs": dofs, "seconds": {"build": 0.3 * total, "statics": 0.2 * total, "modes": 0.2 * total, "band": 0.3 * total, "total": total}, "peak_mb": peak, "backend": "superlu",
-            "mesh": {"elements": dofs // 6, "element": "beam" if beam else "HEX27", "min_detj_ratio": 0.31}, "evidence": {"asymmetry": 3.1e-14, "rigid_residual": 2.2e-12, "modal_residual": 4.4e-11, "orthogonality": 8.5e-13, "rigid_modes": 1},
-        }  # fmt: skip
+            "valid": key != "euler",
+            "why_not": "shear: the shaft is stubby (overhang over diameter 1.1), and Euler leaves shear out"
+            if key == "euler"
+            else None,
+            "stiffness": stiffness,
+            "compliance": compliance,
+            "modes": [
+                {
+                    "name": n,
+                    "family": n.replace("rigid ", "").split()[0],
+                    "frequency_hz": f,
+                    "multiplicity": 2 if "bending" in n else 1,
+                }
+                for n, f in FREQUENCY[key].items()
+            ],
+            "band": None
+            if beam
+            else {
+                "compliance": 0.0012 if key == "solid" else 0.0007,
+                "bending_1": 0.0005,
+                "method": "GCI on three meshes",
+            },
+            "convergence": None
+            if beam
+            else {
+                "levels": levels,
+                "c_zz": _estimate(levels, "c_zz", c * (1 + 1e-4), 0.0012, 1.92),
+                "bending_1": _estimate(
+                    levels, "bending_1_hz", FREQUENCY[key]["bending 1"] * 0.9999, 0.0005, 1.87
+                ),
+            },
+            "dofs": dofs,
+            "seconds": {
+                "build": 0.3 * total,
+                "statics": 0.2 * total,
+                "modes": 0.2 * total,
+                "band": 0.3 * total,
+                "total": total,
+            },
+            "peak_mb": peak,
+            "backend": "superlu",
+            "mesh": {
+                "elements": dofs // 6,
+                "element": "beam" if beam else "HEX27",
+                "min_detj_ratio": 0.31,
+            },
+            "evidence": {
+                "asymmetry": 3.1e-14,
+                "rigid_residual": 2.2e-12,
+                "modal_residual": 4.4e-11,
+                "orthogonality": 8.5e-13,
+                "rigid_modes": 1,
+            },
+        }
     deviations = []
 
     def deviate(model, attachment, band, mine, theirs):
         for quantity, unit, n in (("bending 1", "Hz", 2), ("C_zz", "m/N", 0), ("K_zz", "N/m", 1)):
             value, ref = mine[n], theirs[n]
             relative = value / ref - 1
-            deviations.append({"model": model, "reference": "harmonic", "attachment": attachment, "quantity": quantity, "unit": unit, "value": value, "reference_value": ref,
-                               "relative": relative, "band": band, "verdict": "resolved" if abs(relative) > band else "not resolved"})  # fmt: skip
+            deviations.append(
+                {
+                    "model": model,
+                    "reference": "harmonic",
+                    "attachment": attachment,
+                    "quantity": quantity,
+                    "unit": unit,
+                    "value": value,
+                    "reference_value": ref,
+                    "relative": relative,
+                    "band": band,
+                    "verdict": "resolved" if abs(relative) > band else "not resolved",
+                }
+            )
 
     average, section = TIES["harmonic"]["average"], TIES["harmonic"]["section"]
     for beam, c in (("euler", 4.71903934e-10), ("timoshenko", 5.94736655e-10)):
@@ -104,29 +268,110 @@ def fixture_results():
         deviate(beam, "section", 0.0007, mine, section)
     deviate("solid", "as scene", 0.0012, TIES["solid"]["average"], average)
     names = [n for n in FREQUENCY["harmonic"] if "rigid" not in n]
-    square = [[0.9993 if i == j else 0.002 + 0.03 * ((i * j) % 5) for j in range(len(names))] for i in range(len(names))]
+    square = [
+        [0.9993 if i == j else 0.002 + 0.03 * ((i * j) % 5) for j in range(len(names))]
+        for i in range(len(names))
+    ]
 
     def pairs(key):
-        both = [(n, FREQUENCY[key][n], FREQUENCY["harmonic"][n]) for n in names if n in FREQUENCY[key]]
-        return [{"mode": n, "partner": n, "mac": 0.9993, "frequency_hz": f, "reference_hz": ref, "relative": f / ref - 1} for n, f, ref in both]
+        both = [
+            (n, FREQUENCY[key][n], FREQUENCY["harmonic"][n]) for n in names if n in FREQUENCY[key]
+        ]
+        return [
+            {
+                "mode": n,
+                "partner": n,
+                "mac": 0.9993,
+                "frequency_hz": f,
+                "reference_hz": ref,
+                "relative": f / ref - 1,
+            }
+            for n, f, ref in both
+        ]
 
     return {
-        "schema": 1, "complete": True, "scene": _scene(), "models": models, "deviations": deviations,
-        "port": {"name": "pinion", "y": 0.0291226, "attachment": "average", "order": ORDER, "free": ["thy"]},
-        "attachments": {k: {t: {"c_zz": v[0], "k_zz": v[1], "bending_1_hz": v[2]} for t, v in ties.items()} for k, ties in TIES.items()},
-        "mac": {"reference": "harmonic", "stations": [0.0, 0.1, 0.2], "models": {k: {"rows": names, "columns": names, "values": square, "pairs": pairs(k)} for k in ("euler", "timoshenko", "solid")}},
+        "schema": 1,
+        "complete": True,
+        "scene": _scene(),
+        "models": models,
+        "deviations": deviations,
+        "port": {
+            "name": "pinion",
+            "y": 0.0291226,
+            "attachment": "average",
+            "order": ORDER,
+            "free": ["thy"],
+        },
+        "attachments": {
+            k: {t: {"c_zz": v[0], "k_zz": v[1], "bending_1_hz": v[2]} for t, v in ties.items()}
+            for k, ties in TIES.items()
+        },
+        "mac": {
+            "reference": "harmonic",
+            "stations": [0.0, 0.1, 0.2],
+            "models": {
+                k: {"rows": names, "columns": names, "values": square, "pairs": pairs(k)}
+                for k in ("euler", "timoshenko", "solid")
+            },
+        },
         "causes": [
-            {"cause": "shear", "change": "Euler -> Timoshenko", "model": "beam", "c_zz": 0.2603, "k_zz": -0.4315, "bending_1": -0.1678},
-            {"cause": "rotary inertia", "change": "off -> on", "model": "beam", "c_zz": 0.0, "k_zz": 0.0, "bending_1": -0.0312},
-            {"cause": "attachment", "change": "average -> section", "model": "harmonic", "c_zz": 0.0674, "k_zz": -0.1862, "bending_1": -0.0210},
-            {"cause": "shoulder flexibility", "change": "beam -> solid, section ties", "model": "harmonic", "c_zz": 0.0698, "k_zz": -0.0798, "bending_1": -0.0297},
+            {
+                "cause": "shear",
+                "change": "Euler -> Timoshenko",
+                "model": "beam",
+                "c_zz": 0.2603,
+                "k_zz": -0.4315,
+                "bending_1": -0.1678,
+            },
+            {
+                "cause": "rotary inertia",
+                "change": "off -> on",
+                "model": "beam",
+                "c_zz": 0.0,
+                "k_zz": 0.0,
+                "bending_1": -0.0312,
+            },
+            {
+                "cause": "attachment",
+                "change": "average -> section",
+                "model": "harmonic",
+                "c_zz": 0.0674,
+                "k_zz": -0.1862,
+                "bending_1": -0.0210,
+            },
+            {
+                "cause": "shoulder flexibility",
+                "change": "beam -> solid, section ties",
+                "model": "harmonic",
+                "c_zz": 0.0698,
+                "k_zz": -0.0798,
+                "bending_1": -0.0297,
+            },
         ],
-        "verdict": {"trust": "harmonic", "reference": "harmonic", "cheapest": None, "tolerance": 0.05,
-                    "sentences": ["The shaft is a body of revolution, so the harmonic solid solves the same elasticity as the 3D solid, at a tenth of the time.",
-                                  "The Timoshenko beam is 6.5 % too stiff in C_zz like for like: outside the 5 % asked for."]},
-        "environment": {"solidgear": "0.1.0", "python": "3.11.2", "numpy": "2.4.0", "scipy": "1.17.0", "platform": "Linux x86_64", "cpu": "test fixture", "cores": 2, "date": "2026-01-05"},
-        "images": {}, "warnings": ["made-up figures: a test fixture, not a run"], "seconds_total": 41.2,
-    }  # fmt: skip
+        "verdict": {
+            "trust": "harmonic",
+            "reference": "harmonic",
+            "cheapest": None,
+            "tolerance": 0.05,
+            "sentences": [
+                "The shaft is a body of revolution, so the harmonic solid solves the same elasticity as the 3D solid, at a tenth of the time.",
+                "The Timoshenko beam is 6.5 % too stiff in C_zz like for like: outside the 5 % asked for.",
+            ],
+        },
+        "environment": {
+            "solidgear": "0.1.0",
+            "python": "3.11.2",
+            "numpy": "2.4.0",
+            "scipy": "1.17.0",
+            "platform": "Linux x86_64",
+            "cpu": "test fixture",
+            "cores": 2,
+            "date": "2026-01-05",
+        },
+        "images": {},
+        "warnings": ["made-up figures: a test fixture, not a run"],
+        "seconds_total": 41.2,
+    }
 
 
 @pytest.fixture(scope="module")
@@ -166,9 +411,35 @@ def test_identifiers_of_the_charts_do_not_collide(page):
 
 @pytest.mark.parametrize(
     "figure",
-    ["4.7108e9", "7.3279e9", "1.1364e9", "240.13e6", "19.010e6", "2758.1", "3343.9", "1385.6", "138 210", "0.12 %", "35.3", "2610", "+26.0 %", "-43.1 %", "0.9993", "1.92", "1.09", "3.1e-14",
-     "29.1226", "58.2453", "5.4155e9", "published", "identified", "Seat width assumed.", "41.2", "2.4.0"],
-)  # fmt: skip
+    [
+        "4.7108e9",
+        "7.3279e9",
+        "1.1364e9",
+        "240.13e6",
+        "19.010e6",
+        "2758.1",
+        "3343.9",
+        "1385.6",
+        "138 210",
+        "0.12 %",
+        "35.3",
+        "2610",
+        "+26.0 %",
+        "-43.1 %",
+        "0.9993",
+        "1.92",
+        "1.09",
+        "3.1e-14",
+        "29.1226",
+        "58.2453",
+        "5.4155e9",
+        "published",
+        "identified",
+        "Seat width assumed.",
+        "41.2",
+        "2.4.0",
+    ],
+)
 def test_figures_of_the_run_are_on_the_page(page, figure):
     assert figure in text_of(page)
 
@@ -181,7 +452,7 @@ def test_every_matrix_names_its_units(page):
 
 
 def test_free_motion_is_a_dash_in_both_matrices(page):
-    table = page[page.index("Harmonic solid: stiffness"):]
+    table = page[page.index("Harmonic solid: stiffness") :]
     row = re.search(r'<th scope="row">thy</th>(.*?)</tr>', table).group(1)
     assert re.findall(r">([^<]+)</td>", row) == ["–"] * 6
 
@@ -192,7 +463,7 @@ def test_small_difference_is_called_not_resolved(page):
 
 
 def test_compliance_comes_first_among_differences(page):
-    part = page[page.index('id="deviations"'):page.index('id="causes"')]
+    part = page[page.index('id="deviations"') : page.index('id="causes"')]
     first = re.findall(r'<tbody>\s*<tr><th scope="row">(\S+?)</th>', part)
     assert len(first) == 5 and set(first) == {"C_zz"}
 
@@ -200,7 +471,9 @@ def test_compliance_comes_first_among_differences(page):
 def test_same_results_same_page_from_numpy_or_plain(page):
     results = fixture_results()
     for model in results["models"].values():
-        model["compliance"] = np.array([[np.nan if v is None else v for v in row] for row in model["compliance"]])
+        model["compliance"] = np.array(
+            [[np.nan if v is None else v for v in row] for row in model["compliance"]]
+        )
         model["dofs"] = np.int64(model["dofs"])
     assert render_page(results) == page
 
@@ -208,7 +481,12 @@ def test_same_results_same_page_from_numpy_or_plain(page):
 def test_names_from_a_scene_are_escaped():
     results = fixture_results()
     evil = '<script>alert("x")</script>$\\frac{'
-    for part in (results["scene"], results["scene"]["bearings"][0], results["scene"]["segments"][0], results["scene"]["port"]):
+    for part in (
+        results["scene"],
+        results["scene"]["bearings"][0],
+        results["scene"]["segments"][0],
+        results["scene"]["port"],
+    ):
         part["name"] = evil
     results["scene"] |= {"title": evil, "source": evil}
     results["scene"]["bearings"][1]["note"] = "<img src=http://x/>"
@@ -225,7 +503,11 @@ def test_interrupted_run_has_a_banner(page, no_charts):
     results = fixture_results() | {"complete": False}
     del results["models"]["solid"], results["verdict"]
     page = render_page(results)
-    assert "Interrupted run" in page and "models without results: 3D solid" in page and "No verdict" in page
+    assert (
+        "Interrupted run" in page
+        and "models without results: 3D solid" in page
+        and "No verdict" in page
+    )
 
 
 PARTS = [(key,) for key in fixture_results()] + [tuple(fixture_results())]
@@ -233,7 +515,10 @@ PARTS = [(key,) for key in fixture_results()] + [tuple(fixture_results())]
 
 @pytest.mark.parametrize("gone", PARTS, ids=lambda gone: "everything" if len(gone) > 1 else gone[0])
 def test_any_part_may_be_missing(no_charts, gone):
-    for results in (fixture_results() | dict.fromkeys(gone), {k: v for k, v in fixture_results().items() if k not in gone}):
+    for results in (
+        fixture_results() | dict.fromkeys(gone),
+        {k: v for k, v in fixture_results().items() if k not in gone},
+    ):
         assert "</html>" in render_page(results)
         shown(final_table(results))
         verdict_text(results)
@@ -250,9 +535,18 @@ def test_any_part_of_a_model_may_be_missing(no_charts, gone):
     assert "</html>" in render_page(results)
 
 
-@pytest.mark.parametrize("name, needs", [
-    ("sketch", "scene"), ("modes", "models"), ("mac", "mac"), ("convergence", "models"), ("causes", "causes"), ("cost", "models"), ("attachments", "attachments"),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    "name, needs",
+    [
+        ("sketch", "scene"),
+        ("modes", "models"),
+        ("mac", "mac"),
+        ("convergence", "models"),
+        ("causes", "causes"),
+        ("cost", "models"),
+        ("attachments", "attachments"),
+    ],
+)
 def test_chart_without_its_data_is_none(name, needs):
     assert charts.CHARTS[name](fixture_results() | {needs: None}) is None
     assert charts.CHARTS[name]({}) is None
@@ -260,7 +554,11 @@ def test_chart_without_its_data_is_none(name, needs):
 
 def test_charts_draw_what_is_left_of_a_broken_off_run():
     results = fixture_results() | {"verdict": None, "port": None}
-    del results["models"]["solid"], results["models"]["harmonic"]["band"], results["models"]["harmonic"]["convergence"]["bending_1"]
+    del (
+        results["models"]["solid"],
+        results["models"]["harmonic"]["band"],
+        results["models"]["harmonic"]["convergence"]["bending_1"],
+    )
     results["models"]["harmonic"]["convergence"]["levels"][0]["h"] = None
     results["scene"]["port"], results["scene"]["bearings"] = None, []
     results["causes"][0]["c_zz"] = None
@@ -272,7 +570,9 @@ def test_chart_that_fails_costs_only_itself(monkeypatch):
     def broken(results):
         raise ValueError("no pen")
 
-    monkeypatch.setattr(charts, "CHARTS", dict.fromkeys(charts.CHARTS, broken) | {"causes": charts.cause_chart})
+    monkeypatch.setattr(
+        charts, "CHARTS", dict.fromkeys(charts.CHARTS, broken) | {"causes": charts.cause_chart}
+    )
     page = render_page(fixture_results())
     assert "no pen" in page and page.count("<svg") == 1 and "</html>" in page
 
@@ -283,10 +583,17 @@ PNG = b"\x89PNG\r\n\x1a\n" + b"0" * 20
 
 def test_file_is_written_whole_with_its_pictures(tmp_path, no_charts):
     (tmp_path / "mode_solid.png").write_bytes(PNG)
-    path = write_report(fixture_results(), tmp_path / "out", {"harmonic": PNG, "solid": tmp_path / "mode_solid.png", "euler": tmp_path / "absent.png"})
+    path = write_report(
+        fixture_results(),
+        tmp_path / "out",
+        {"harmonic": PNG, "solid": tmp_path / "mode_solid.png", "euler": tmp_path / "absent.png"},
+    )
     page = path.read_text(encoding="utf-8")
     assert path == tmp_path / "out" / "report.html"
-    assert page.count('src="data:image/png;base64,') == 2 and page.count("could not be made or read") == 1
+    assert (
+        page.count('src="data:image/png;base64,') == 2
+        and page.count("could not be made or read") == 1
+    )
     assert [p.name for p in path.parent.iterdir()] == ["report.html"]
 
 
@@ -294,7 +601,10 @@ def test_pictures_named_by_the_results_come_from_the_folder_only(tmp_path, no_ch
     (tmp_path / "secret.png").write_bytes(PNG)
     (tmp_path / "out").mkdir()
     (tmp_path / "out" / "mode_solid.png").write_bytes(PNG)
-    page = write_report(fixture_results() | {"images": {"solid": "mode_solid.png", "euler": "../secret.png"}}, tmp_path / "out").read_text(encoding="utf-8")
+    page = write_report(
+        fixture_results() | {"images": {"solid": "mode_solid.png", "euler": "../secret.png"}},
+        tmp_path / "out",
+    ).read_text(encoding="utf-8")
     assert page.count('src="data:image/png;base64,') == 1
 
 
@@ -313,7 +623,18 @@ def test_final_table_fits_eighty_columns():
     assert max(len(line.rstrip()) for line in text.splitlines()[:8]) <= 80
     text = shown(final_table(fixture_results()), width=80)
     assert "…" not in text and "\x1b" not in text
-    for word in ("4.711e9", "596.1e-12", "2758.1", "138k", "0.12 %", "24.7", "n.r.", "not resolved", "ref.", "shear: the shaft is stubby"):
+    for word in (
+        "4.711e9",
+        "596.1e-12",
+        "2758.1",
+        "138k",
+        "0.12 %",
+        "24.7",
+        "n.r.",
+        "not resolved",
+        "ref.",
+        "shear: the shaft is stubby",
+    ):
         assert word in text
 
 
@@ -339,12 +660,35 @@ def test_modes_table_lists_pairs():
     assert "rigid torsion" in text and "2758.1" in text
 
 
-@pytest.mark.parametrize("value, text", [(4.71078133e9, "4.7108e9"), (-2.40131e8, "-240.13e6"), (9.999999e5, "1.0000e6"), (0.0, "0"), (None, "-"), (float("nan"), "-"), (53.93, "53.930"), (5.96e-10, "596.00e-12")])
+@pytest.mark.parametrize(
+    "value, text",
+    [
+        (4.71078133e9, "4.7108e9"),
+        (-2.40131e8, "-240.13e6"),
+        (9.999999e5, "1.0000e6"),
+        (0.0, "0"),
+        (None, "-"),
+        (float("nan"), "-"),
+        (53.93, "53.930"),
+        (5.96e-10, "596.00e-12"),
+    ],
+)
 def test_engineering(value, text):
     assert engineering(value) == text
 
 
-@pytest.mark.parametrize("value, text", [(0.2603, "+26.0 %"), (-0.0654, "-6.54 %"), (0.0012, "+0.12 %"), (3.2e-5, "+0.0032 %"), (0.0, "0 %"), (-4.7e-15, "<1e-6 %"), (None, "-")])
+@pytest.mark.parametrize(
+    "value, text",
+    [
+        (0.2603, "+26.0 %"),
+        (-0.0654, "-6.54 %"),
+        (0.0012, "+0.12 %"),
+        (3.2e-5, "+0.0032 %"),
+        (0.0, "0 %"),
+        (-4.7e-15, "<1e-6 %"),
+        (None, "-"),
+    ],
+)
 def test_percent(value, text):
     assert percent(value) == text
     assert hertz(2758.09) == "2758.1"

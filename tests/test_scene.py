@@ -9,8 +9,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from solidgear.errors import SceneError
 from solidgear.bearing_stiffness import STIFFNESS_NAMES, stiffness_entries, stiffness_matrix
+from solidgear.errors import SceneError
 from solidgear.scene import STEEL, Bearing, Material, Port, Scene, Segment
 from solidgear.scene_file import load
 from solidgear.units import quantity
@@ -30,22 +30,41 @@ def test_overhung_pinion_against_closed_forms(pinion):
     head, backcone, shaft = pinion.segments
     assert [s.part for s in pinion.segments] == ["frustum", "backcone", "shaft"]
     assert [s.name for s in pinion.segments] == ["head", "head.backcone", "shaft"]
-    assert (head.y0, head.y1, head.outer0, head.outer1) == pytest.approx((0, axial, small, 0.067), **NEAR)
-    assert (backcone.y0, backcone.y1, backcone.outer0, backcone.outer1) == pytest.approx((axial, back, 0.067, 0.067), **NEAR)
-    assert (shaft.y0, shaft.y1, shaft.outer0, shaft.inner0) == pytest.approx((back, back + 0.208, 0.045, 0), **NEAR)
+    assert (head.y0, head.y1, head.outer0, head.outer1) == pytest.approx(
+        (0, axial, small, 0.067), **NEAR
+    )
+    assert (backcone.y0, backcone.y1, backcone.outer0, backcone.outer1) == pytest.approx(
+        (axial, back, 0.067, 0.067), **NEAR
+    )
+    assert (shaft.y0, shaft.y1, shaft.outer0, shaft.inner0) == pytest.approx(
+        (back, back + 0.208, 0.045, 0), **NEAR
+    )
     one, two = pinion.bearings
     assert (one.y, two.y) == pytest.approx((back + 0.028, back + 0.178), **NEAR)
-    assert (one.lo, one.hi, two.lo, two.hi) == pytest.approx((back + 0.008, back + 0.048, back + 0.158, back + 0.198), **NEAR)
-    assert (pinion.port.y, pinion.port.lo, pinion.port.hi) == pytest.approx((axial / 2, 0, axial), **NEAR)
+    assert (one.lo, one.hi, two.lo, two.hi) == pytest.approx(
+        (back + 0.008, back + 0.048, back + 0.158, back + 0.198), **NEAR
+    )
+    assert (pinion.port.y, pinion.port.lo, pinion.port.hi) == pytest.approx(
+        (axial / 2, 0, axial), **NEAR
+    )
     assert pinion.steps == pytest.approx((back,), **NEAR)
     assert [s.name for s in pinion.stations] == ["pinion", "1", "2"]
-    assert (pinion.housing_axial, pinion.ask.modes, pinion.ask.max_frequency, pinion.ask.tolerance) == (None, 10, 10e3, 0.05)
+    assert (
+        pinion.housing_axial,
+        pinion.ask.modes,
+        pinion.ask.max_frequency,
+        pinion.ask.tolerance,
+    ) == (None, 10, 10e3, 0.05)
 
 
 def test_overhung_pinion_is_the_shaft_of_the_reference_numbers(pinion):
     # rounded as printed with them
     assert [round(b.y, 5) for b in pinion.bearings] == [0.09625, 0.24625]
-    assert (round(pinion.length, 5), round(pinion.port.y, 6), round(pinion.segments[0].outer0, 4)) == (0.27625, 0.029123, 0.0430)
+    assert (
+        round(pinion.length, 5),
+        round(pinion.port.y, 6),
+        round(pinion.segments[0].outer0, 4),
+    ) == (0.27625, 0.029123, 0.0430)
 
 
 def test_neighbours_meet_exactly(pinion):
@@ -56,8 +75,21 @@ def test_neighbours_meet_exactly(pinion):
 
 def test_published_bearing_one_is_the_published_matrix(pinion):
     expected = np.zeros((6, 6))
-    for i, j, value in [(0, 0, 8.823e9), (1, 1, 8.887e8), (2, 2, 8.823e9), (0, 5, 1.452e8), (2, 3, -1.452e8), (3, 3, 3.856e6), (5, 5, 3.856e6),
-                        (0, 1, 109.5), (0, 2, 12.77), (1, 2, -21.38), (0, 3, 0.246), (1, 3, -0.487), (1, 5, 1.681)]:  # fmt: skip
+    for i, j, value in [
+        (0, 0, 8.823e9),
+        (1, 1, 8.887e8),
+        (2, 2, 8.823e9),
+        (0, 5, 1.452e8),
+        (2, 3, -1.452e8),
+        (3, 3, 3.856e6),
+        (5, 5, 3.856e6),
+        (0, 1, 109.5),
+        (0, 2, 12.77),
+        (1, 2, -21.38),
+        (0, 3, 0.246),
+        (1, 3, -0.487),
+        (1, 5, 1.681),
+    ]:
         expected[i, j] = expected[j, i] = value
     np.testing.assert_allclose(pinion.bearings[0].stiffness, expected, rtol=1e-12)
 
@@ -75,11 +107,19 @@ def test_stiffness_names_and_matrix_are_inverse():
         i, j, _ = STIFFNESS_NAMES[name]
         assert K[i, j] == K[j, i] == 2.5 + row and np.count_nonzero(K) == (1 if i == j else 2)
         assert stiffness_entries(K) == {name: 2.5 + row}
-    assert [STIFFNESS_NAMES[n][:2] for n in ("kxx", "kyz", "kx_thz", "kz_thx", "kthy", "kthx_thz")] == [(0, 0), (1, 2), (0, 5), (2, 3), (4, 4), (3, 5)]
+    assert [
+        STIFFNESS_NAMES[n][:2] for n in ("kxx", "kyz", "kx_thz", "kz_thx", "kthy", "kthx_thz")
+    ] == [(0, 0), (1, 2), (0, 5), (2, 3), (4, 4), (3, 5)]
 
 
 def test_series_springs_are_a_harmonic_sum_when_y_is_alone():
-    bearing = Bearing(name="b", y=0.1, seat_width=0.02, stiffness={"kxx": 5e8, "kyy": 2e9, "kthz": 1e5}, axial_series=("4e8 N/m", 1e9))
+    bearing = Bearing(
+        name="b",
+        y=0.1,
+        seat_width=0.02,
+        stiffness={"kxx": 5e8, "kyy": 2e9, "kthz": 1e5},
+        axial_series=("4e8 N/m", 1e9),
+    )
     expected = np.diag([5e8, 1 / (1 / 2e9 + 1 / 4e8 + 1 / 1e9), 0, 0, 0, 1e5])
     np.testing.assert_allclose(bearing.stiffness, expected, rtol=1e-13)
 
@@ -100,18 +140,47 @@ def test_series_spring_condenses_the_couplings_of_y():
 @pytest.mark.parametrize(
     "text, dimension, value",
     [
-        ("90 mm", "length", 0.09), ("9cm", "length", 0.09), (90e-3, "length", 0.09), (f"{90 / 25.4!r} in", "length", 0.09),
-        ("22.4 deg", "angle", math.radians(22.4)), ("0.391 rad", "angle", 0.391), ("207 GPa", "pressure", 2.07e11),
-        ("7.85 g/cm^3", "density", 7850), ("8.6e9 N/m", "force_per_length", 8.6e9), ("8.6e6 N/mm", "force_per_length", 8.6e9),
-        ("145 MN/rad", "force", 1.45e8), ("1 N/deg", "force", 180 / math.pi), ("3.6e6 N*m/rad", "moment", 3.6e6),
-        ("3600 kN m", "moment", 3.6e6), ("10 kHz", "frequency", 1e4), ("5 %", "dimensionless", 0.05), (5, "length", 5.0),
+        ("90 mm", "length", 0.09),
+        ("9cm", "length", 0.09),
+        (90e-3, "length", 0.09),
+        (f"{90 / 25.4!r} in", "length", 0.09),
+        ("22.4 deg", "angle", math.radians(22.4)),
+        ("0.391 rad", "angle", 0.391),
+        ("207 GPa", "pressure", 2.07e11),
+        ("7.85 g/cm^3", "density", 7850),
+        ("8.6e9 N/m", "force_per_length", 8.6e9),
+        ("8.6e6 N/mm", "force_per_length", 8.6e9),
+        ("145 MN/rad", "force", 1.45e8),
+        ("1 N/deg", "force", 180 / math.pi),
+        ("3.6e6 N*m/rad", "moment", 3.6e6),
+        ("3600 kN m", "moment", 3.6e6),
+        ("10 kHz", "frequency", 1e4),
+        ("5 %", "dimensionless", 0.05),
+        (5, "length", 5.0),
     ],
-)  # fmt: skip
+)
 def test_quantities(text, dimension, value):
     assert quantity(text, dimension) == pytest.approx(value, rel=1e-14)
 
 
-@pytest.mark.parametrize("text", ["mm", "", "1 mm + 2 mm", "5 m**9**9**9**9", "1 (", "5 m*rad", "10 degC", "1e400 mm", "nan", True, None, [1], 10**400])
+@pytest.mark.parametrize(
+    "text",
+    [
+        "mm",
+        "",
+        "1 mm + 2 mm",
+        "5 m**9**9**9**9",
+        "1 (",
+        "5 m*rad",
+        "10 degC",
+        "1e400 mm",
+        "nan",
+        True,
+        None,
+        [1],
+        10**400,
+    ],
+)
 def test_not_a_length(text):
     with pytest.raises(SceneError):
         quantity(text, "length")
@@ -119,7 +188,13 @@ def test_not_a_length(text):
 
 def test_a_scene_does_not_depend_on_the_units_it_is_written_in(pinion, tmp_path):
     text = (GEOMETRY / "pinion_overhung.toml").read_text(encoding="utf-8")
-    for old, new in {'"90 mm"': f'"{90 / 25.4!r} in"', '"208 mm"': "0.208", '"28 mm"': '"2.8 cm"', '"207 GPa"': "2.07e11", '"10 kHz"': "10000"}.items():
+    for old, new in {
+        '"90 mm"': f'"{90 / 25.4!r} in"',
+        '"208 mm"': "0.208",
+        '"28 mm"': '"2.8 cm"',
+        '"207 GPa"': "2.07e11",
+        '"10 kHz"': "10000",
+    }.items():
         assert old in text
         text = text.replace(old, new)
     path = tmp_path / "pinion_overhung.toml"
@@ -131,7 +206,13 @@ def test_a_scene_does_not_depend_on_the_units_it_is_written_in(pinion, tmp_path)
 
 def test_plain_numbers_do_not_import_pint():
     code = "import sys; from solidgear.scene import *; Scene.from_parts([Segment.cylinder('rod', length=0.3, diameter=0.06)]); print('pint' in sys.modules)"
-    out = subprocess.run([sys.executable, "-c", code], cwd=GEOMETRY.parent, capture_output=True, text=True, check=True)
+    out = subprocess.run(
+        [sys.executable, "-c", code],
+        cwd=GEOMETRY.parent,
+        capture_output=True,
+        text=True,
+        check=True,
+    )
     assert out.stdout.strip() == "False"
 
 
@@ -156,10 +237,14 @@ def test_variants(pinion):
     assert {round(b.hi - b.lo, 9) for b in pinion.with_seat_width("20 mm").bearings} == {0.02}
     softer = pinion.with_material(E=1e11)
     assert {s.material.E for s in softer.segments} == {1e11} and softer.material.nu == 0.3
-    assert {s.material for s in pinion.with_changes(material=STEEL.with_changes(nu=0.2)).segments} == {STEEL.with_changes(nu=0.2)}
+    assert {
+        s.material for s in pinion.with_changes(material=STEEL.with_changes(nu=0.2)).segments
+    } == {STEEL.with_changes(nu=0.2)}
     for a, b in zip(pinion.bearings, pinion.with_bearing_scale(3.0).bearings):
         np.testing.assert_allclose(b.stiffness, 3 * a.stiffness, rtol=1e-13)
-    assert pinion.with_port(y=0.03).port == Port(name="pinion", y=0.03, lo=pinion.port.lo, hi=pinion.port.hi)
+    assert pinion.with_port(y=0.03).port == Port(
+        name="pinion", y=0.03, lo=pinion.port.lo, hi=pinion.port.hi
+    )
 
 
 @pytest.mark.parametrize(
@@ -193,20 +278,33 @@ def test_frozen(pinion):
 
 def test_a_seat_may_end_at_the_shoulder(pinion):
     one, two = pinion.bearings
-    scene = pinion.with_changes(bearings=(one.with_changes(y=pinion.steps[0] + one.seat_width / 2), two))
+    scene = pinion.with_changes(
+        bearings=(one.with_changes(y=pinion.steps[0] + one.seat_width / 2), two)
+    )
     assert scene.bearings[0].lo == scene.steps[0]
 
 
 def test_head_with_its_toe_to_the_end(tmp_path):
     text = (GEOMETRY / "cylinder_free.toml").read_text(encoding="utf-8")
     head = '[[segment]]\nkind = "bevel_head"\nname = "h"\npitch_radius = 0.1\npitch_angle = "30 deg"\nface_width = 0.08\nbackcone = 0.02\ntoe = "end"\n\n[port]'
-    text = text.replace("[port]", head).replace('"rod.middle"', '"h.mid_face"').replace('attach_to = "rod"', 'attach_to = "h"')
+    text = (
+        text.replace("[port]", head)
+        .replace('"rod.middle"', '"h.mid_face"')
+        .replace('attach_to = "rod"', 'attach_to = "h"')
+    )
     path = tmp_path / "toe.toml"
     path.write_text(text, encoding="utf-8")
     scene = load(path)
     _, backcone, frustum = scene.segments
-    assert (backcone.part, backcone.y0, backcone.y1, frustum.part) == ("backcone", 0.3, 0.32, "frustum")
-    assert (frustum.outer0, frustum.outer1, scene.length) == pytest.approx((0.1, 0.06, 0.32 + 0.08 * math.cos(math.pi / 6)))
+    assert (backcone.part, backcone.y0, backcone.y1, frustum.part) == (
+        "backcone",
+        0.3,
+        0.32,
+        "frustum",
+    )
+    assert (frustum.outer0, frustum.outer1, scene.length) == pytest.approx(
+        (0.1, 0.06, 0.32 + 0.08 * math.cos(math.pi / 6))
+    )
     assert scene.port.y == pytest.approx(0.32 + 0.04 * math.cos(math.pi / 6))
 
 
@@ -222,13 +320,24 @@ def test_shipped_scenes_load_and_are_json(path):
 
 
 def test_the_six_scenes_are_there():
-    assert {p.stem for p in GEOMETRY.glob("*.toml")} >= {"pinion_overhung", "pinion_straddle", "gear_shaft", "shaft_stepped", "cylinder_free", "shaft_hollow"}
+    assert {p.stem for p in GEOMETRY.glob("*.toml")} >= {
+        "pinion_overhung",
+        "pinion_straddle",
+        "gear_shaft",
+        "shaft_stepped",
+        "cylinder_free",
+        "shaft_hollow",
+    }
 
 
 def test_straddled_pinion():
     scene = load(GEOMETRY / "pinion_straddle.toml")
     back = scene.segments[2].y1
-    assert [b.y for b in scene.bearings] == pytest.approx([back - 0.1, back + 0.028, back + 0.143], **NEAR)
+    assert [b.y for b in scene.bearings] == pytest.approx(
+        [back - 0.1, back + 0.028, back + 0.143], **NEAR
+    )
     assert scene.housing_axial == 7.71e9
-    assert scene.bearings[2].stiffness[1, 1] == pytest.approx(1 / (1 / 1.721e9 + 1 / 4.1e8), rel=1e-9)
+    assert scene.bearings[2].stiffness[1, 1] == pytest.approx(
+        1 / (1 / 1.721e9 + 1 / 4.1e8), rel=1e-9
+    )
     assert scene.bearings[0].stiffness[1, 1] == 0.0

@@ -36,7 +36,9 @@ def sentences(text, tmp_path):
     mark = "spoilt.toml: "
     lines = str(error).splitlines()
     if len(error.problems) > 1:
-        assert lines[0].startswith(f"{len(error.problems)} problems in ") and lines[0].endswith("spoilt.toml")
+        assert lines[0].startswith(f"{len(error.problems)} problems in ") and lines[0].endswith(
+            "spoilt.toml"
+        )
         assert all(line.startswith("  ") for line in lines[1:])
         lines = lines[1:]
     assert all(mark in line for line in lines), lines
@@ -54,22 +56,62 @@ def test_every_problem_in_the_order_of_the_file(tmp_path):
         ("tolerance = 0.05", "tolerance = 5"),
     )
     found = sentences(text, tmp_path)
-    order = ["material.E", "segment[1]", "bearing[1]", "bearing[1]", "port.attach_to", "ask.tolerance"]
+    order = [
+        "material.E",
+        "segment[1]",
+        "bearing[1]",
+        "bearing[1]",
+        "port.attach_to",
+        "ask.tolerance",
+    ]
     # the file itself says in which order its tables stand
-    order.sort(key=lambda name: text.index({"material": "[material]", "segment": "[[segment]]", "bearing": "[[bearing]]", "port": "[port]", "ask": "[ask]"}[name.split("[")[0].split(".")[0]]))
-    assert [line[: len(name)] for line, name in zip(found, order)] == order and len(found) == len(order)
+    order.sort(
+        key=lambda name: text.index(
+            {
+                "material": "[material]",
+                "segment": "[[segment]]",
+                "bearing": "[[bearing]]",
+                "port": "[port]",
+                "ask": "[ask]",
+            }[name.split("[")[0].split(".")[0]]
+        )
+    )
+    assert [line[: len(name)] for line, name in zip(found, order)] == order and len(found) == len(
+        order
+    )
     assert any('did you mean "pitch_radius"' in line for line in found)
 
 
 def test_all_entries_of_a_stiffness(tmp_path):
-    found = sentences(spoilt(('kxx = "8.823e9 N/m"', "kxx = true\nkxq = 1"), ('kyy = "8.887e8 N/m"', 'kyy = "1 Hz"')), tmp_path)
-    assert [line.split(" = ")[0] for line in found] == ['bearing[1] "1".stiffness.kxx', 'bearing[1] "1".stiffness.kxq', 'bearing[1] "1".stiffness.kyy']
+    found = sentences(
+        spoilt(
+            ('kxx = "8.823e9 N/m"', "kxx = true\nkxq = 1"), ('kyy = "8.887e8 N/m"', 'kyy = "1 Hz"')
+        ),
+        tmp_path,
+    )
+    assert [line.split(" = ")[0] for line in found] == [
+        'bearing[1] "1".stiffness.kxx',
+        'bearing[1] "1".stiffness.kxq',
+        'bearing[1] "1".stiffness.kyy',
+    ]
 
 
 def test_places_are_judged_beside_a_bearing_that_is_refused(tmp_path):
-    found = sentences(spoilt(('seat_width = "40 mm"', 'seat_width = "40 mN"'), ('position = "150 mm"', 'position = "900 mm"'), ('at = "head.', 'position = "2 m" #')), tmp_path)
-    assert [line.split(" = ")[0] for line in found] == ['bearing[1] "1".seat_width', "port.position"]
-    assert "outside the shaft" in found[1]  # the second bearing hangs on the first, whose place is not known
+    found = sentences(
+        spoilt(
+            ('seat_width = "40 mm"', 'seat_width = "40 mN"'),
+            ('position = "150 mm"', 'position = "900 mm"'),
+            ('at = "head.', 'position = "2 m" #'),
+        ),
+        tmp_path,
+    )
+    assert [line.split(" = ")[0] for line in found] == [
+        'bearing[1] "1".seat_width',
+        "port.position",
+    ]
+    assert (
+        "outside the shaft" in found[1]
+    )  # the second bearing hangs on the first, whose place is not known
 
 
 def test_a_consequence_is_not_told(tmp_path):
@@ -80,14 +122,18 @@ def test_a_consequence_is_not_told(tmp_path):
 
 
 def test_a_long_list_is_cut(tmp_path):
-    error = refusal(spoilt(("[ask]", "[ask]\n" + "\n".join(f"x{k} = 1" for k in range(TOLD + 5)))), tmp_path)
+    error = refusal(
+        spoilt(("[ask]", "[ask]\n" + "\n".join(f"x{k} = 1" for k in range(TOLD + 5)))), tmp_path
+    )
     lines = str(error).splitlines()
     assert len(error.problems) == TOLD + 5 and len(lines) == TOLD + 2
     assert lines[0].startswith(f"{TOLD + 5} problems") and lines[-1] == "  and 5 more"
 
 
 def test_an_empty_file(tmp_path):
-    assert sentences("", tmp_path) == [f"{name}: this key is missing" for name in ("material", "segment", "port")]
+    assert sentences("", tmp_path) == [
+        f"{name}: this key is missing" for name in ("material", "segment", "port")
+    ]
 
 
 def test_one_problem_is_one_sentence(tmp_path):
@@ -101,23 +147,65 @@ def test_a_scene_made_in_python_keeps_its_problems():
     with pytest.raises(SceneError) as caught:
         Scene.from_parts([rod], port=Port(y=1.0, lo=0.2, hi=0.1))
     assert [one.path for one in caught.value.problems] == [("port", "y"), ("port", "hi")]
-    assert str(caught.value).endswith("(and 1 more problem: see its problems)") and "\n" not in str(caught.value)
+    assert str(caught.value).endswith("(and 1 more problem: see its problems)") and "\n" not in str(
+        caught.value
+    )
 
 
 # ------------------------------------------------------------------------------------------------- no TOML
 PLAIN = {
-    "a second port": ("[port]", '[port]\nname = "a"\n[port]', "line", "there is a second [port]; a scene has one"),
-    "single brackets": ("[[segment]]", '[segment]\nname = "a"\n[segment]', "line", "written with double brackets, [[segment]]"),
-    "second stiffness": ("[bearing.stiffness]", "[bearing.stiffness]\n[bearing.stiffness]", "line", "second [bearing.stiffness]; a bearing has one"),
-    "decimal comma": ('diameter = "90 mm"', "diameter = 0,09", "diameter = 0,09", "decimals take a point"),
-    "unquoted unit": ('diameter = "90 mm"', "diameter = 90 mm", "diameter = 90 mm", "is a text in quotes"),
-    "unquoted text": ('from = "head.end"', "from = head.end", "from = head.end", "a text is written in quotes"),
-    "key twice": ('diameter = "90 mm"', 'diameter = "90 mm"\ndiameter = "80 mm"', "diameter", "a key is given twice"),
+    "a second port": (
+        "[port]",
+        '[port]\nname = "a"\n[port]',
+        "line",
+        "there is a second [port]; a scene has one",
+    ),
+    "single brackets": (
+        "[[segment]]",
+        '[segment]\nname = "a"\n[segment]',
+        "line",
+        "written with double brackets, [[segment]]",
+    ),
+    "second stiffness": (
+        "[bearing.stiffness]",
+        "[bearing.stiffness]\n[bearing.stiffness]",
+        "line",
+        "second [bearing.stiffness]; a bearing has one",
+    ),
+    "decimal comma": (
+        'diameter = "90 mm"',
+        "diameter = 0,09",
+        "diameter = 0,09",
+        "decimals take a point",
+    ),
+    "unquoted unit": (
+        'diameter = "90 mm"',
+        "diameter = 90 mm",
+        "diameter = 90 mm",
+        "is a text in quotes",
+    ),
+    "unquoted text": (
+        'from = "head.end"',
+        "from = head.end",
+        "from = head.end",
+        "a text is written in quotes",
+    ),
+    "key twice": (
+        'diameter = "90 mm"',
+        'diameter = "90 mm"\ndiameter = "80 mm"',
+        "diameter",
+        "a key is given twice",
+    ),
     "no value": ('diameter = "90 mm"', "diameter =", "diameter =", "no value behind the ="),
-    "open quotes": ('diameter = "90 mm"', 'diameter = "90 mm', "diameter", "last quotes are missing"),
+    "open quotes": (
+        'diameter = "90 mm"',
+        'diameter = "90 mm',
+        "diameter",
+        "last quotes are missing",
+    ),
     "colon": ('diameter = "90 mm"', 'diameter: "90 mm"', "diameter:", "behind =, not behind :"),
     "Python's truth": ('diameter = "90 mm"', "diameter = True", "diameter = True", "true or false"),
-}  # fmt: skip
+}
 
 
 @pytest.mark.parametrize("kind", PLAIN)
@@ -177,7 +265,9 @@ def test_pipes_and_devices_are_not_waited_for(tmp_path):
         reader = threading.Thread(target=read, args=(path,), daemon=True)
         reader.start()
         reader.join(10.0)
-    assert len(found) == 3 and all("this is a pipe or a device, not a file" in message for message in found)
+    assert len(found) == 3 and all(
+        "this is a pipe or a device, not a file" in message for message in found
+    )
 
 
 # ------------------------------------------------------------------------------------------------- texts
@@ -187,7 +277,10 @@ def test_values_of_any_size_and_depth_are_shown():
         deep = {"a": deep}
     assert show(deep).startswith('{"a": {"a": ') and len(show(deep)) == 70
     assert show(10**6000).startswith("0x") and show([1.5] * 10**6, 20) == "[1.5, 1.5, 1.5, 1..."
-    assert show("\u202e\x1b[2J\n") == '"\\u202e\\u001b[2J\\n"' and show([None, True, float("nan"), -float("inf")]) == "[null, true, nan, -inf]"
+    assert (
+        show("\u202e\x1b[2J\n") == '"\\u202e\\u001b[2J\\n"'
+        and show([None, True, float("nan"), -float("inf")]) == "[null, true, nan, -inf]"
+    )
 
 
 TRAPS = {

@@ -47,19 +47,23 @@ def test_a_rigid_motion_moves_every_section_as_it_should(fidelity, options, atta
     for c in range(6):
         expected[c, :, c] = 1.0
     expected[3, :, 2], expected[5, :, 0] = y, -y
-    assert np.abs(motions(body) - expected).max() < 1e-6  # a mean over tetrahedra is off the axis by 1e-7 or so; the rest is rounding
+    assert (
+        np.abs(motions(body) - expected).max() < 1e-6
+    )  # a mean over tetrahedra is off the axis by 1e-7 or so; the rest is rounding
 
 
 def test_one_mode_is_the_same_on_long_cells_and_on_short_ones():
     scene = shipped("shaft_stepped")
-    found = [sg.modes(sg.build(scene, "harmonic", **o), scene, n=12) for o in ({"order": 8, "relative_size": 6.0, "layers": 1, "edge_layers": 0}, {})]
+    found = [
+        sg.modes(sg.build(scene, "harmonic", **o), scene, n=12)
+        for o in ({"order": 8, "relative_size": 6.0, "layers": 1, "edge_layers": 0}, {})
+    ]
     gram = found[1].gram
     for a, b in zip(*(f.modes for f in found)):
         assert a.name == b.name
         x, y = a.motions[0].ravel(), b.motions[0].ravel()
         # a shape at these settings is good to 1e-3, and a MAC is off by its square
         assert (x @ gram @ y) ** 2 / (x @ gram @ x) / (y @ gram @ y) > 1 - 1e-4
-
 
 
 def test_hats_sum_to_one_and_interpolate():

@@ -28,7 +28,16 @@ def overhung():
 
 @pytest.fixture(scope="module")
 def light(overhung):
-    return sg.build(overhung, "solid", element="hex27", layers=3, radial_layers=3, edge_layers=0, relative_size=0.6, around=8)
+    return sg.build(
+        overhung,
+        "solid",
+        element="hex27",
+        layers=3,
+        radial_layers=3,
+        edge_layers=0,
+        relative_size=0.6,
+        around=8,
+    )
 
 
 # --------------------------------------------------------------------------- mass
@@ -39,12 +48,14 @@ def frustum_moments(y0, y1, a, b, density):
     square = [a * a / (k + 1) + 2 * a * d / (k + 2) + d * d / (k + 3) for k in range(3)]
     fourth = sum(c * a ** (4 - i) * d**i / (i + 1) for i, c in enumerate((1, 4, 6, 4, 1)))
     m = density * np.pi * h
-    return np.array([
-        m * square[0],
-        m * (y0 * square[0] + h * square[1]),
-        m * (y0 * y0 * square[0] + 2 * y0 * h * square[1] + h * h * square[2]),
-        m / 2 * fourth,
-    ])  # fmt: skip
+    return np.array(
+        [
+            m * square[0],
+            m * (y0 * square[0] + h * square[1]),
+            m * (y0 * y0 * square[0] + 2 * y0 * h * square[1] + h * h * square[2]),
+            m / 2 * fourth,
+        ]
+    )
 
 
 def closed_form_mass(scene):
@@ -99,7 +110,9 @@ def test_free_cylinder_has_six_rigid_modes_and_no_spurious_one(element):
     assert [m.frequency_hz for m in found.modes[:6]] == [0.0] * 6
     assert found.evidence["rigid_modes"] == 6
     exact = sg.modes(sg.build(scene, "harmonic", order=6), scene, n=6)
-    elastic, wanted = ([(m.name, m.multiplicity, m.frequency_hz) for m in x.modes[6:]] for x in (found, exact))
+    elastic, wanted = (
+        [(m.name, m.multiplicity, m.frequency_hz) for m in x.modes[6:]] for x in (found, exact)
+    )
     # A spurious mode would stand between these.  Quadratic elements reach 0.3 % on these coarse meshes; linear ones are far
     # too stiff in bending, so that for them only the first is looked at: it must lie above the exact one.
     if element in ("tet4", "hex8"):
@@ -107,7 +120,9 @@ def test_free_cylinder_has_six_rigid_modes_and_no_spurious_one(element):
     else:
         assert [e[:2] for e in elastic] == [w[:2] for w in wanted]
         ratio = np.array([e[2] / w[2] for e, w in zip(elastic, wanted)])
-        assert np.all(ratio > 1 - 5e-5)  # from above, but for the mass and inertia of the polygonal circle
+        assert np.all(
+            ratio > 1 - 5e-5
+        )  # from above, but for the mass and inertia of the polygonal circle
         assert np.all(ratio < 1.005)
 
 
@@ -115,11 +130,17 @@ def test_smallest_eigenvalues_of_one_stiffness():
     # the raw matrix of a short cylinder: six zeros, then a gap; hourglass modes of an under-integrated element would fill it
     scene = Scene.from_parts([Segment.cylinder("disc", length=0.05, diameter=0.06)])
     for element in SMALL:
-        size = {"size": 0.02, "graded_size": 0.02} if element.startswith("tet") else {"size": 0.05, "layers": 0, "edge_layers": 0, "radial_layers": 0}
+        size = (
+            {"size": 0.02, "graded_size": 0.02}
+            if element.startswith("tet")
+            else {"size": 0.05, "layers": 0, "edge_layers": 0, "radial_layers": 0}
+        )
         block = sg.build(scene, "solid", element=element, **size).blocks[0]
         d = 1 / np.sqrt(block.stiffness.diagonal())
         values = np.linalg.eigvalsh((block.stiffness.toarray() * d[:, None]) * d)
-        assert np.abs(values[:6]).max() < 1e-12, element  # rounding of a matrix of norm of order ten
+        assert np.abs(values[:6]).max() < 1e-12, (
+            element
+        )  # rounding of a matrix of norm of order ten
         assert values[6] > 1e-3, element  # the softest strain of a few elements: 0.01 to 0.1
 
 
@@ -161,7 +182,10 @@ def test_light_hexahedra_bend_near_the_reference(overhung, light):
 
 def test_hexahedra_approach_the_reference_from_above(overhung):
     coarse, fine = (
-        sg.condense(sg.build(overhung, "solid", element="hex20", around=8, refinement=r), overhung, "pinion").stiffness[2, 2] for r in (0.5, 0.75)
+        sg.condense(
+            sg.build(overhung, "solid", element="hex20", around=8, refinement=r), overhung, "pinion"
+        ).stiffness[2, 2]
+        for r in (0.5, 0.75)
     )
     assert coarse > fine > K_ZZ
     # more layers towards the shoulder as well as more cells: 0.6 % becomes 0.24 %

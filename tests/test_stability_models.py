@@ -1,6 +1,6 @@
 """Where beams, elements and ties fail: the physics that the scripts of validation/stability claim, in their quick form."""
 
-import importlib.util
+import importlib
 import re
 from pathlib import Path
 
@@ -11,11 +11,9 @@ FOLDER = Path(__file__).resolve().parent.parent / "validation" / "stability"
 
 
 @pytest.fixture
-def script(monkeypatch):
+def script():
     """Import a script of the folder by name."""
-    monkeypatch.syspath_prepend(str(FOLDER.parent))
-    monkeypatch.syspath_prepend(str(FOLDER))
-    return importlib.import_module
+    return lambda name: importlib.import_module(f"validation.stability.{name}")
 
 
 def test_a_crossing_is_read_off_a_power_law(script):
@@ -33,7 +31,9 @@ def test_euler_needs_sixteen_diameters_and_timoshenko_one(script):
     assert slenderness.thresholds(timoshenko.rows)["free f1", 0.01] == pytest.approx(1.1, abs=0.1)
     for row in timoshenko.rows:
         # both are upper bounds of stiffness by Rayleigh's principle; Timoshenko never errs more
-        assert abs(row["free f1"]) <= next(e["free f1"] for e in euler.rows if e["L/D"] == row["L/D"])
+        assert abs(row["free f1"]) <= next(
+            e["free f1"] for e in euler.rows if e["L/D"] == row["L/D"]
+        )
 
 
 def test_a_shoulder_is_worth_a_length_of_thin_shaft_whatever_the_overhang(script):
@@ -41,7 +41,9 @@ def test_a_shoulder_is_worth_a_length_of_thin_shaft_whatever_the_overhang(script
     rows = {r["ratio"]: r for r in shoulder_step.measure(quick=True).rows}
     for row in rows.values():
         # a moment reaches the shoulder as beam stress, so what the shoulder gives way does not know where it comes from
-        assert row["missing length / d, 1 d"] == pytest.approx(row["missing length / d, 2 d"], abs=1e-6)
+        assert row["missing length / d, 1 d"] == pytest.approx(
+            row["missing length / d, 2 d"], abs=1e-6
+        )
     lengths = [rows[r]["missing length / d, 1 d"] for r in sorted(rows)]
     assert np.all(np.diff(lengths) > 0) and lengths[0] < 0.01 and 0.2 < lengths[-1] < 0.26
     assert abs(rows[2.0]["C_zz with a hinge"]) < 0.01 < abs(rows[2.0]["C_zz, 2 d"])
@@ -53,7 +55,9 @@ def test_a_ring_line_sinks_in_by_the_logarithm(script):
     lines = [r for r in rows if "ring line" in r]
     closed = np.log(2) * 1.3 * 1.7 / (2 * np.pi**2 * ties.RADIUS * ties.STEEL.E)
     # the half space of the closed form is a shaft here, felt less the finer the mesh
-    assert [r["ring line gains"] for r in lines[1:]] == pytest.approx([closed] * (len(lines) - 1), rel=0.02)
+    assert [r["ring line gains"] for r in lines[1:]] == pytest.approx(
+        [closed] * (len(lines) - 1), rel=0.02
+    )
     for tie in ("patch", "section"):
         steps = np.abs(np.diff([r[tie] for r in lines]))
         assert np.all(steps[1:] < 0.6 * steps[:-1])
@@ -69,10 +73,7 @@ def test_the_thin_tube_is_a_ring(script):
 
 
 def test_a_failed_script_does_not_stop_the_others(script, monkeypatch):
-    spec = importlib.util.spec_from_file_location("stability_all", FOLDER / "__main__.py")
-    script("frame")
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
+    module = script("__main__")
     finding = script("frame").Finding("demo", "a | b", "It fails.", "At 1.", "It warns.")
 
     class Good:
@@ -83,12 +84,19 @@ def test_a_failed_script_does_not_stop_the_others(script, monkeypatch):
         def measure(quick):
             raise ValueError("no")
 
-    monkeypatch.setattr(module.importlib, "import_module", {"good": Good, "bad": Bad}.__getitem__)
+    monkeypatch.setattr(
+        module.importlib,
+        "import_module",
+        {"validation.stability.good": Good, "validation.stability.bad": Bad}.__getitem__,
+    )
     monkeypatch.setattr(module, "publish", lambda finding, draw: None)
     done, failed = module.run(["bad", "good"])
     assert list(done) == ["good"] and failed == {"bad": "ValueError: no"}
     text = module.report(done, failed)
-    assert "| [a \\| b](#demo) | At 1. | It warns. |" in text and "`bad` could not be measured: ValueError: no" in text
+    assert (
+        "| [a \\| b](#demo) | At 1. | It warns. |" in text
+        and "`bad` could not be measured: ValueError: no" in text
+    )
 
 
 def test_every_guard_named_exists():
@@ -96,4 +104,6 @@ def test_every_guard_named_exists():
     for path in sorted(FOLDER.glob("*.py")):
         for file, test in re.findall(r"(tests/test_\w+\.py)::(test_\w+)", path.read_text()):
             if "test_x" not in file:
-                assert f"def {test}(" in (FOLDER.parent.parent / file).read_text(), f"{path.name}: {file}::{test}"
+                assert f"def {test}(" in (FOLDER.parent.parent / file).read_text(), (
+                    f"{path.name}: {file}::{test}"
+                )

@@ -4,7 +4,6 @@ Quick mode, the cheap ones only; what is asserted is physics and what rounding c
 """
 
 import math
-import sys
 from pathlib import Path
 
 import pytest
@@ -12,7 +11,6 @@ import pytest
 import solidgear as sg
 
 ROOT = Path(__file__).parent.parent
-sys.path.insert(0, str(ROOT / "validation" / "stability"))
 
 
 @pytest.fixture(scope="module")
@@ -24,7 +22,7 @@ def measured():
 
     def of(script):
         if script not in made:
-            found = importlib.import_module(script).measure(quick=True)
+            found = importlib.import_module(f"validation.stability.{script}").measure(quick=True)
             made[script] = {f.name: f for f in (found if isinstance(found, list) else [found])}
         return made[script]
 
@@ -43,26 +41,34 @@ def test_springs_from_nothing_to_a_clamp(measured):
     assert softest["rounding / lambda_1"] > 1 and stiffest["rounding / lambda_1"] > 1
     # In between the sum holds it, and the naive solution is as good as the sum: 160 elements, times ten for the steps of the solver.
     sound = [r for r in rows if r["rounding / lambda_1"] < 1e-3]
-    assert len(sound) >= 2 and all(r["f1 naive"] < 1600 * r["rounding / lambda_1"] + r["f1 program"] for r in sound)
+    assert len(sound) >= 2 and all(
+        r["f1 naive"] < 1600 * r["rounding / lambda_1"] + r["f1 program"] for r in sound
+    )
     assert [r["C_zz program"] for r in finding.rows if r["k N/m"] == 0] == [0.0, 0.0]
 
 
 def test_closed_form_of_the_overhang():
     """The reference itself, from a solution by other means: two springs and an overhang by the exact initial-parameter method at a very low frequency."""
-    import bearing_extremes as case
     from solidgear.fidelity.krylov import from_scene, krylov
+    from validation.stability import bearing_extremes as case
 
-    heavy = 1e9  # kg at the free end: the first frequency is that of one mass on the static stiffness
+    heavy = (
+        1e9  # kg at the free end: the first frequency is that of one mass on the static stiffness
+    )
     spans, (end, *bearings) = from_scene(case.shaft(1e7))
     end = type(end)(end.y, mass=heavy)
     first = krylov(spans, (end, *bearings), n=1).frequency_hz[0]
-    assert 1 / (heavy * (2 * math.pi * first) ** 2) == pytest.approx(case.exact_compliance(1e7), rel=1e-6)
+    assert 1 / (heavy * (2 * math.pi * first) ** 2) == pytest.approx(
+        case.exact_compliance(1e7), rel=1e-6
+    )
 
 
 def test_free_shaft_needs_no_luck(measured):
     rows = measured("free_body_shift")["free_body_shift"].rows
     for ours in (r for r in rows if r["solver"] == "program"):
-        assert ours["zero modes"] == 6 and ours["rigid f / f1"] == 0 and ours["elastic missing"] == 0
+        assert (
+            ours["zero modes"] == 6 and ours["rigid f / f1"] == 0 and ours["elastic missing"] == 0
+        )
         assert ours["elastic error"] < 1e-9
     # A shift of 1e-12 of the first eigenvalue is of the size by which the entries of K are rounded, so the factor is one of rounding;
     # a thousandth, as the program takes, is far above.  Which runs then go wrong is luck, and not asserted.
@@ -94,13 +100,20 @@ def test_krylov_duncan_loses_roots_where_it_should(measured):
     for r in rows:
         # The plain determinant is good to eps exp(kL) / kL, times ten for functions that are four units off in the last place.
         if r["kL"] < 30:
-            assert r["plain roots seen"] == 1 and r["plain error"] < 10 * r["estimate eps exp(kL) / kL"] + 1e-15
+            assert (
+                r["plain roots seen"] == 1
+                and r["plain error"] < 10 * r["estimate eps exp(kL) / kL"] + 1e-15
+            )
         # Past 60 not a digit is left: how many roots it shows is up to chance.
         assert (r["estimate eps exp(kL) / kL"] > 1) == (r["kL"] > 40)
 
 
 def test_guyan_drifts_with_the_fourth_power(measured):
-    rows = [r for r in measured("guyan_in_frequency")["guyan_in_frequency"].rows if r["scene"] == "pinion_overhung"]
+    rows = [
+        r
+        for r in measured("guyan_in_frequency")["guyan_in_frequency"].rows
+        if r["scene"] == "pinion_overhung"
+    ]
     low = [r for r in rows if 0.1 < r["w / w_fixed"] < 0.25]
     a, b = low[0], low[-1]
 
@@ -108,7 +121,9 @@ def test_guyan_drifts_with_the_fourth_power(measured):
         return math.log(b[model] / a[model]) / math.log(b["w / w_fixed"] / a["w / w_fixed"])
 
     # The stiffness left alone lacks the whole mass, Guyan's only what the shapes change with frequency.
-    assert slope("static") == pytest.approx(2, abs=0.1) and slope("Guyan") == pytest.approx(4, abs=0.2)
+    assert slope("static") == pytest.approx(2, abs=0.1) and slope("Guyan") == pytest.approx(
+        4, abs=0.2
+    )
     past = [r["Guyan"] for r in rows if 0.95 < r["w / w_fixed"] < 1.1]
     assert max(past) > 1  # the pole it does not know
 
@@ -118,19 +133,40 @@ def test_effective_mass_can_be_negative_second_or_hollow(measured):
     assert {"first", "second", "negative"} <= {r["mode-matched"] for r in rows}
     assert all(r["thesis"] != "first" for r in rows)
     for r in rows:
-        assert r["energy share of the static shape"] <= 1 + 1e-9  # of all shapes the static one stores least
+        assert (
+            r["energy share of the static shape"] <= 1 + 1e-9
+        )  # of all shapes the static one stores least
         assert r["guyan f1 error"] > -1e-9  # a constraint raises frequencies
         if r["chosen"] == "mode-matched":
             assert abs(r["chosen f1 error"]) < 1e-9
-    assert any(r["chosen"] == "mode-matched" and r["energy share of the static shape"] < 0.3 for r in rows)
+    assert any(
+        r["chosen"] == "mode-matched" and r["energy share of the static shape"] < 0.3 for r in rows
+    )
 
 
 def test_doubtful_matrices(measured):
     found = measured("doubtful_six_by_six")
     verdicts = {r["matrix"]: r for r in found["doubtful_six_by_six"].rows}
-    for name in ("negative diagonal", "coupling without diagonal", "radial-tilt coupling too strong", "unsymmetric by 1e-3", "NaN", "infinite"):
-        assert verdicts[name]["scene"] == "refused" and len(verdicts[name]["sentence"].splitlines()) == 1
-    free = {"sound, free to turn": 1, "no axial stiffness": 2, "no tilt stiffness": 1, "one direction only (rank one)": 4, "nothing at all": 6, "oblique null direction": 2}
+    for name in (
+        "negative diagonal",
+        "coupling without diagonal",
+        "radial-tilt coupling too strong",
+        "unsymmetric by 1e-3",
+        "NaN",
+        "infinite",
+    ):
+        assert (
+            verdicts[name]["scene"] == "refused"
+            and len(verdicts[name]["sentence"].splitlines()) == 1
+        )
+    free = {
+        "sound, free to turn": 1,
+        "no axial stiffness": 2,
+        "no tilt stiffness": 1,
+        "one direction only (rank one)": 4,
+        "nothing at all": 6,
+        "oblique null direction": 2,
+    }
     assert {name: verdicts[name]["free motions"] for name in free} == free
     # A turn about the axis changes no frequency; 1e-6 is what a difference of entries leaves of a stiffness at 1e-11 of them.
     same = [r for r in found["strong_coupling"].rows if r["1 - k_xz / k"] > 1e-11]
@@ -141,17 +177,31 @@ def test_a_torn_pair_takes_two_numbers(measured):
     rows = measured("split_pairs")["split_pairs"].rows
     beam = {r["anisotropy"]: r for r in rows if r["body"] == "timoshenko"}
     assert beam[0.0]["grouped as"] == "bending 1 x2" and beam[0.0]["split of f1"] < 1e-12
-    assert beam[1e-2]["grouped as"] == "bending 1 x1 + bending 2 x1" and 1e-3 < beam[1e-2]["split of f1"] < 1e-2
+    assert (
+        beam[1e-2]["grouped as"] == "bending 1 x1 + bending 2 x1"
+        and 1e-3 < beam[1e-2]["split of f1"] < 1e-2
+    )
     assert all(r["change when turned 30 deg"] < 1e-7 for r in rows if r["body"] == "timoshenko")
     mesh = next(r for r in rows if r["body"] == "tet4 coarse" and r["anisotropy"] == 0)
-    assert mesh["split of f1"] > mesh["pair_tolerance"]  # a mesh without symmetry splits an isotropic shaft
+    assert (
+        mesh["split of f1"] > mesh["pair_tolerance"]
+    )  # a mesh without symmetry splits an isotropic shaft
 
 
 def test_wrong_units_are_seen(measured):
     rows = measured("wrong_units")["wrong_units"].rows
     assert not [r for r in rows if r["slip"] == "sound" and (r["refused"] or r["fires"])]
     assert all(r["refused"] for r in rows if r["slip"] in ("mm read as m", "m read as mm"))
-    for slip in ("GPa read as Pa", "MPa read as Pa", "Pa read as MPa", "g/cm3 read as kg/m3", "kg/m3 read as g/cm3", "kN/mm read as N/m", "N/mm read as N/m", "N/m read as N/mm"):
+    for slip in (
+        "GPa read as Pa",
+        "MPa read as Pa",
+        "Pa read as MPa",
+        "g/cm3 read as kg/m3",
+        "kg/m3 read as g/cm3",
+        "kN/mm read as N/m",
+        "N/mm read as N/m",
+        "N/m read as N/mm",
+    ):
         assert all(r["refused"] or r["fires"] for r in rows if r["slip"] == slip), slip
 
 
@@ -181,7 +231,13 @@ def test_odd_drawings_part_beam_and_solid(measured):
     assert rows["lumped point beyond its surface, over the diameter"]["C_zz"] > 0.2
     assert rows["ring shared by hollow head and shaft, over the radius"]["C_thx"] > 0.2
     plain = {r["odd"]: r for r in found["impossible_geometry"].rows}
-    for name in ("lumped point off the shaft", "span across the step", "seat over the end", "seat across the step", "seats overlap"):
+    for name in (
+        "lumped point off the shaft",
+        "span across the step",
+        "seat over the end",
+        "seat across the step",
+        "seats overlap",
+    ):
         assert plain[name]["harmonic"] == plain[name]["timoshenko"] == "scene refused"
     assert plain["seats touch, rigid"]["harmonic"] == "model refused"
 
@@ -189,4 +245,8 @@ def test_odd_drawings_part_beam_and_solid(measured):
 @pytest.mark.slow
 def test_machine_that_fails_the_run(measured):
     faults = {r["what"]: r["fault"] for r in measured("operation")["operation"].rows}
-    assert not {what: fault for what, fault in faults.items() if fault and what != "disk: standard output full"}
+    assert not {
+        what: fault
+        for what, fault in faults.items()
+        if fault and what != "disk: standard output full"
+    }

@@ -27,7 +27,13 @@ def scene_of(name):
 
 def found(name, n=None, **options):
     scene = scene_of(name)
-    return sg.modes(sg.build(scene, "harmonic", **(options or COARSE)), scene, n or scene.ask.modes, max_frequency=scene.ask.max_frequency, count=True)
+    return sg.modes(
+        sg.build(scene, "harmonic", **(options or COARSE)),
+        scene,
+        n or scene.ask.modes,
+        max_frequency=scene.ask.max_frequency,
+        count=True,
+    )
 
 
 # --------------------------------------------------------------------------- modes
@@ -45,7 +51,9 @@ def test_a_thin_tube_ovalises_below_its_bending():
 
 def test_a_flange_warps_below_the_range_asked_for():
     modes = found("hypoid_pinion")
-    assert any(m.waves == 2 and m.frequency_hz == pytest.approx(5333, rel=5e-3) for m in modes.modes)
+    assert any(
+        m.waves == 2 and m.frequency_hz == pytest.approx(5333, rel=5e-3) for m in modes.modes
+    )
 
 
 def test_two_materials_in_a_slender_thin_tube():
@@ -53,10 +61,15 @@ def test_two_materials_in_a_slender_thin_tube():
     modes = sg.modes(sg.build(scene, "harmonic", **COARSE), scene, 10, ovalising=False)
     beam = sg.modes(sg.build(scene, "timoshenko"), scene, 10)
     # 58.9 Hz; 76.1 came of a shift that knew the first segment's material only
-    axial = min((m.frequency_hz for m in modes.modes if m.family == "axial" and m.frequency_hz > 0), default=np.nan)
+    axial = min(
+        (m.frequency_hz for m in modes.modes if m.family == "axial" and m.frequency_hz > 0),
+        default=np.nan,
+    )
     assert axial == pytest.approx(58.9, rel=2e-3)
     # a tube of this slenderness is a beam: its lower frequencies agree with one
-    ours, theirs = (sorted(m.frequency_hz for m in s.modes if m.frequency_hz > 0)[:6] for s in (modes, beam))
+    ours, theirs = (
+        sorted(m.frequency_hz for m in s.modes if m.frequency_hz > 0)[:6] for s in (modes, beam)
+    )
     assert np.allclose(ours, theirs, rtol=0.02)
     # what rounding leaves is told, and cannot move the fourth digit
     assert modes.evidence["error"] < 1e-4
@@ -65,8 +78,15 @@ def test_two_materials_in_a_slender_thin_tube():
 def test_no_twin_is_lost_on_a_small_solid():
     # a free stub: bending pairs and axial modes close together, at the very end of what is asked for
     stub = Scene.from_parts([Segment.cylinder("stub", length=0.0719, diameter=0.1168)])
-    body = sg.build(stub, "solid", layers=0, radial_layers=0, edge_layers=0, relative_size=1.5, around=8)
-    few, many = (sorted(m.frequency_hz for m in sg.modes(body, (), n).modes for _ in range(m.multiplicity))[6:] for n in (8, 16))
+    body = sg.build(
+        stub, "solid", layers=0, radial_layers=0, edge_layers=0, relative_size=1.5, around=8
+    )
+    few, many = (
+        sorted(m.frequency_hz for m in sg.modes(body, (), n).modes for _ in range(m.multiplicity))[
+            6:
+        ]
+        for n in (8, 16)
+    )
     assert np.allclose(few[:8], many[:8], rtol=1e-7)
 
 
@@ -90,7 +110,9 @@ def test_check_does_not_condemn_a_rigid_seat():
     assert all(not verdicts[m]["verdict"].startswith("will not") for m in ("harmonic", "solid"))
 
 
-@pytest.mark.parametrize("name", ["symmetric_shaft", "false_valid_port_section", "check_rigid_seat"])
+@pytest.mark.parametrize(
+    "name", ["symmetric_shaft", "false_valid_port_section", "check_rigid_seat"]
+)
 def test_check_is_never_the_opposite_of_compare(name):
     scene = scene_of(name)
     said = check_scene(scene, sg.build(scene, "timoshenko"))["verdicts"]
@@ -98,7 +120,9 @@ def test_check_is_never_the_opposite_of_compare(name):
     for model, record in models.items():
         verdict = said[model]["verdict"]
         assert not (record["valid"] and verdict == "will not hold"), model
-        assert not (verdict.startswith("holds") and not record["valid"] and not record["open"]), model
+        assert not (verdict.startswith("holds") and not record["valid"] and not record["open"]), (
+            model
+        )
 
 
 # --------------------------------------------------------------------------- cost

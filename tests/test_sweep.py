@@ -18,7 +18,11 @@ from solidgear.sweep.run import variants_of
 from solidgear.sweep.task import ENTRIES
 
 SCENE = sg.load("geometry/pinion_overhung.toml")
-VARY = ["bearing.2.position=0.21,0.2246,0.9,0.246", "bearing.1.kzz=log:8e9:1e11:3", "bearing.2.scale=0.1,1,-1"]
+VARY = [
+    "bearing.2.position=0.21,0.2246,0.9,0.246",
+    "bearing.1.kzz=log:8e9:1e11:3",
+    "bearing.2.scale=0.1,1,-1",
+]
 LIGHT = {"timoshenko": {"elements": 40}, "harmonic": {"order": 2, "layers": 1}}
 
 
@@ -35,7 +39,9 @@ def _plain(text):
 
 
 def light(out, fidelity="timoshenko", vary=VARY, **rest):
-    return sweep(SCENE, vary, out, fidelity=fidelity, options=LIGHT[fidelity], n=rest.pop("n", 6), **rest)
+    return sweep(
+        SCENE, vary, out, fidelity=fidelity, options=LIGHT[fidelity], n=rest.pop("n", 6), **rest
+    )
 
 
 @pytest.fixture(scope="module")
@@ -59,12 +65,27 @@ def test_every_row_is_what_a_separate_run_on_the_same_mesh_gives(fidelity, tmp_p
         for kind, matrix in (("K", static.stiffness), ("C", static.compliance)):
             for name, at in ENTRIES.items():
                 got = row[f"{kind}_{name}"]
-                assert got == "" if np.isnan(matrix[at]) else got == pytest.approx(matrix[at], rel=1e-9)
-        direct = [(m.frequency_hz, m.name) for m in modes.modes if m.frequency_hz > 0 for _ in range(m.multiplicity)][:6]
-        np.testing.assert_allclose([row[f"f{k}_hz"] for k in range(1, 7)], [f for f, _ in direct], rtol=row["error_bound"] + modes.evidence["residual"] + 1e-9)
+                assert (
+                    got == ""
+                    if np.isnan(matrix[at])
+                    else got == pytest.approx(matrix[at], rel=1e-9)
+                )
+        direct = [
+            (m.frequency_hz, m.name)
+            for m in modes.modes
+            if m.frequency_hz > 0
+            for _ in range(m.multiplicity)
+        ][:6]
+        np.testing.assert_allclose(
+            [row[f"f{k}_hz"] for k in range(1, 7)],
+            [f for f, _ in direct],
+            rtol=row["error_bound"] + modes.evidence["residual"] + 1e-9,
+        )
         assert [row[f"mode{k}"] for k in range(1, 7)] == [name for _, name in direct]
         assert row["rigid_modes"] == modes.evidence["rigid_modes"] == 1
-        assert row["K_z_thx"] == pytest.approx(static.stiffness[2, 3], rel=1e-9) and row["C_thz"] == pytest.approx(static.compliance[5, 5], rel=1e-9)
+        assert row["K_z_thx"] == pytest.approx(static.stiffness[2, 3], rel=1e-9) and row[
+            "C_thz"
+        ] == pytest.approx(static.compliance[5, 5], rel=1e-9)
         # and the scene is the one the row names
         assert scene.bearings[1].y == row["bearing.2.position"]
 
@@ -74,7 +95,11 @@ def test_a_seat_meshed_for_others_changes_little(tmp_path):
     light(tmp_path / "rows.csv", "harmonic", ["bearing.2.position=0.21,0.2246,0.246"])
     for row in read(tmp_path / "rows.csv"):
         scene = variants_of(SCENE, [f"bearing.2.position={row['bearing.2.position']!r}"]).of(0)
-        own = sg.modes(sg.build(scene, "harmonic", order=2, layers=1), scene, 6).named("bending 1").frequency_hz
+        own = (
+            sg.modes(sg.build(scene, "harmonic", order=2, layers=1), scene, 6)
+            .named("bending 1")
+            .frequency_hz
+        )
         swept = next(row[f"f{k}_hz"] for k in range(1, 7) if row[f"mode{k}"] == "bending 1")
         assert swept == pytest.approx(own, rel=1e-3)
 
@@ -93,7 +118,21 @@ def test_refused_variants_are_rows_that_say_why(finished):
 
 
 def test_bearings_of_no_stiffness_leave_the_shaft_free(tmp_path):
-    entries = ("kxx", "kyy", "kzz", "kthx", "kthz", "kx_thz", "kz_thx", "kxy", "kxz", "kyz", "kx_thx", "ky_thx", "ky_thz")
+    entries = (
+        "kxx",
+        "kyy",
+        "kzz",
+        "kthx",
+        "kthz",
+        "kx_thz",
+        "kz_thx",
+        "kxy",
+        "kxz",
+        "kyz",
+        "kx_thx",
+        "ky_thx",
+        "ky_thz",
+    )
     light(tmp_path / "rows.csv", vary=[f"bearing.{b}.{e}=0" for b in (1, 2) for e in entries])
     (row,) = read(tmp_path / "rows.csv")
     assert row["status"] == "ok" and row["rigid_modes"] == 6
@@ -111,7 +150,9 @@ def test_the_basis_grows_when_it_must_and_the_rest_is_solved_in_full(tmp_path, m
     assert loose.full == 0 and {row["how"] for row in rows} == {"full"}
     for a, b in zip(rows, read(tmp_path / "loose.csv")):
         assert [a[f"mode{k}"] for k in range(1, 7)] == [b[f"mode{k}"] for k in range(1, 7)]
-        np.testing.assert_allclose([a[f"f{k}_hz"] for k in range(1, 7)], [b[f"f{k}_hz"] for k in range(1, 7)], rtol=1e-7)
+        np.testing.assert_allclose(
+            [a[f"f{k}_hz"] for k in range(1, 7)], [b[f"f{k}_hz"] for k in range(1, 7)], rtol=1e-7
+        )
     monkeypatch.undo()
     bound = max(row["error_bound"] for row in read(tmp_path / "loose.csv"))
     grown = light(tmp_path / "grown.csv", "harmonic", vary, tolerance=bound / 10)
@@ -207,12 +248,21 @@ def test_rows_of_another_sweep_are_never_mixed(finished, tmp_path):
         ({"vary": ["bearing.1.scale=1,2"], "fidelity": "harmonic"}, "fidelity, set"),
         ({"vary": ["bearing.1.scale=1,2"], "sample": 2}, "sample"),
     ):
-        with pytest.raises(SolidgearError, match=rf"another sweep \(it differs in: {word}\).*--overwrite"):
+        with pytest.raises(
+            SolidgearError, match=rf"another sweep \(it differs in: {word}\).*--overwrite"
+        ):
             light(out, **other)
         assert out.read_text() == before
     moved = SCENE.with_changes(bearings=(SCENE.bearings[0].with_changes(y=0.1), SCENE.bearings[1]))
     with pytest.raises(SolidgearError, match="differs in: scene"):
-        sweep(moved, ["bearing.1.scale=1,2"], out, fidelity="timoshenko", options=LIGHT["timoshenko"], n=6)
+        sweep(
+            moved,
+            ["bearing.1.scale=1,2"],
+            out,
+            fidelity="timoshenko",
+            options=LIGHT["timoshenko"],
+            n=6,
+        )
     light(out, vary=["bearing.1.scale=1,3,4"], overwrite=True)
     assert len(read(out)) == 3
     (tmp_path / "rows.csv.sqlite").unlink()
@@ -233,7 +283,13 @@ def test_too_many_seats_are_refused_with_the_number(tmp_path):
     with pytest.raises(SolidgearError, match="different seats are more than the"):
         light(tmp_path / "rows.csv", vary=["bearing.2.position=0.2:0.246:400"])
     with pytest.raises(SolidgearError, match="cannot be rigid"):
-        sweep(SCENE, VARY, tmp_path / "r.csv", fidelity="harmonic", options={"attachments": ("rigid", "average")})
+        sweep(
+            SCENE,
+            VARY,
+            tmp_path / "r.csv",
+            fidelity="harmonic",
+            options={"attachments": ("rigid", "average")},
+        )
 
 
 # ------------------------------------------------------------------------------------------------- who works
@@ -258,7 +314,9 @@ def test_workers_get_the_small_operators_only(monkeypatch):
 @pytest.mark.slow
 def test_a_dask_cluster_gives_the_rows_of_one_process(finished, tmp_path):
     distributed = pytest.importorskip("distributed")
-    with distributed.LocalCluster(n_workers=1, threads_per_worker=1, processes=False, dashboard_address=None) as cluster:
+    with distributed.LocalCluster(
+        n_workers=1, threads_per_worker=1, processes=False, dashboard_address=None
+    ) as cluster:
         light(tmp_path / "rows.csv", dask=cluster.scheduler_address)
     assert (tmp_path / "rows.csv").read_text() == finished[0].read_text()
 
@@ -266,7 +324,11 @@ def test_a_dask_cluster_gives_the_rows_of_one_process(finished, tmp_path):
 def test_missing_packages_are_named(tmp_path, monkeypatch):
     import sys
 
-    for name, rest, word in (("joblib", {"jobs": 2}, "joblib"), ("distributed", {"dask": "tcp://127.0.0.1:1"}, "Dask"), ("pyarrow", {}, "pyarrow")):
+    for name, rest, word in (
+        ("joblib", {"jobs": 2}, "joblib"),
+        ("distributed", {"dask": "tcp://127.0.0.1:1"}, "Dask"),
+        ("pyarrow", {}, "pyarrow"),
+    ):
         monkeypatch.setitem(sys.modules, name, None)
         with pytest.raises(SolidgearError, match=f"{word}.*pip install 'solidgear"):
             light(tmp_path / "rows.parquet", **rest)
@@ -275,7 +337,20 @@ def test_missing_packages_are_named(tmp_path, monkeypatch):
 
 # ------------------------------------------------------------------------------------------------- the command
 def call(*arguments):
-    return CliRunner().invoke(app, ["sweep", "geometry/pinion_overhung.toml", "-f", "timoshenko", "--set", "elements=40", "-n", "6", *arguments])
+    return CliRunner().invoke(
+        app,
+        [
+            "sweep",
+            "geometry/pinion_overhung.toml",
+            "-f",
+            "timoshenko",
+            "--set",
+            "elements=40",
+            "-n",
+            "6",
+            *arguments,
+        ],
+    )
 
 
 def test_the_command(finished, tmp_path):
@@ -302,16 +377,26 @@ def test_the_command_keeps_what_is_done_when_interrupted(tmp_path, monkeypatch):
     assert stopped.exit_code == 130 and 0 < kept < 40
     assert f"{kept} of 40 rows are kept" in stopped.stderr
     monkeypatch.undo()
-    assert call("--vary", "bearing.1.scale=1:2:40", "--out", str(tmp_path / "rows.csv")).exit_code == 0
+    assert (
+        call("--vary", "bearing.1.scale=1:2:40", "--out", str(tmp_path / "rows.csv")).exit_code == 0
+    )
     assert [row["variant"] for row in read(tmp_path / "rows.csv")] == list(range(40))
 
 
 def test_bad_options_of_the_command_end_in_a_sentence(tmp_path):
     for arguments in (
-        ("--set", "colour=red"), ("--set", "attachments=5"), ("--sample", "0"),
-        ("--tolerance", "2"), ("--jobs", "0"), ("--jobs", "1000000"), ("-n", "0"), ("-n", "1000000000"),
-    ):  # fmt: skip
-        failed = call("--vary", "bearing.1.scale=1,2", "--out", str(tmp_path / "rows.csv"), *arguments)
+        ("--set", "colour=red"),
+        ("--set", "attachments=5"),
+        ("--sample", "0"),
+        ("--tolerance", "2"),
+        ("--jobs", "0"),
+        ("--jobs", "1000000"),
+        ("-n", "0"),
+        ("-n", "1000000000"),
+    ):
+        failed = call(
+            "--vary", "bearing.1.scale=1,2", "--out", str(tmp_path / "rows.csv"), *arguments
+        )
         assert failed.exit_code == 1 and isinstance(failed.exception, SolidgearError), arguments
     # nothing is left that would be in the way of the right command
     assert not list(tmp_path.iterdir())

@@ -34,7 +34,9 @@ def springs(kind, place):
             c = rng.standard_normal((6, 6))
             c = c @ c.T
             d = np.sqrt(np.diag(c))
-            k[i : i + 6, i : i + 6] = (0.5 * np.eye(6) + 0.5 * c / np.outer(d, d)) * np.outer(size[i : i + 6], size[i : i + 6])
+            k[i : i + 6, i : i + 6] = (0.5 * np.eye(6) + 0.5 * c / np.outer(d, d)) * np.outer(
+                size[i : i + 6], size[i : i + 6]
+            )
     elif kind == "uneven":  # the planes differ
         k[0, 0] *= 3
         k[6, 6] *= 0.8
@@ -56,15 +58,28 @@ def springs(kind, place):
 
 def shapes(found):
     """Elastic frequencies and names of `modes`, twins twice."""
-    rows = [(m.frequency_hz, m.name) for m in found.modes if not m.name.startswith("rigid") for _ in range(m.multiplicity)]
+    rows = [
+        (m.frequency_hz, m.name)
+        for m in found.modes
+        if not m.name.startswith("rigid")
+        for _ in range(m.multiplicity)
+    ]
     return np.array([f for f, _ in rows]), [n for _, n in rows]
 
 
 def small(reduced, body, supports, n, slack=1e-6):
-    return ritz_modes(reduced, Seats(reduced, tuple(body.port_index(p) for p in supports.ports)), supports, n, slack)
+    return ritz_modes(
+        reduced,
+        Seats(reduced, tuple(body.port_index(p) for p in supports.ports)),
+        supports,
+        n,
+        slack,
+    )
 
 
-@pytest.mark.parametrize("kind", ["plain", "coupled", "uneven", "free", "pin", "uneven_pin", "soft", "stiff", "mixed"])
+@pytest.mark.parametrize(
+    "kind", ["plain", "coupled", "uneven", "free", "pin", "uneven_pin", "soft", "stiff", "mixed"]
+)
 def test_modes_of_any_bearings_agree_with_those_of_the_body(body, kind):
     reduced = reduce(body, 10, level=1)
     for place in (0, 2):
@@ -74,21 +89,30 @@ def test_modes_of_any_bearings_agree_with_those_of_the_body(body, kind):
         assert found.error_bound < 1e-6
         # a mode of 1 Hz in a shaft of 4 kHz is defined to about 1e-7 by matrices in double precision
         rounding = 1e-7 if kind == "soft" else 1e-9
-        np.testing.assert_allclose(found.frequency_hz, frequency[:10], rtol=found.error_bound + direct.evidence["residual"] + rounding)
+        np.testing.assert_allclose(
+            found.frequency_hz,
+            frequency[:10],
+            rtol=found.error_bound + direct.evidence["residual"] + rounding,
+        )
         if kind != "coupled":  # families mix there, and the larger share may fall either way
             assert list(found.names) == names[:10]
 
 
 def dense(body, supports, n):
     """All eigenvalues of ``K + G' Kb G`` assembled in full, LAPACK's generalised solver: shares nothing with the package."""
-    k, m = sla.block_diag(*(b.stiffness.toarray() for b in body.blocks)), sla.block_diag(*(b.mass.toarray() for b in body.blocks))
+    k, m = (
+        sla.block_diag(*(b.stiffness.toarray() for b in body.blocks)),
+        sla.block_diag(*(b.mass.toarray() for b in body.blocks)),
+    )
     g = np.zeros((6 * len(body.ports), len(k)))
     start = 0
     for block in body.blocks:
         g[body.rows(block), start : start + block.size] = block.ports.toarray()
         start += block.size
     g = g[supports.rows(body)]
-    return sla.eigh(k + g.T @ supports.stiffness @ g, m, eigvals_only=True, subset_by_index=[0, n - 1])
+    return sla.eigh(
+        k + g.T @ supports.stiffness @ g, m, eigvals_only=True, subset_by_index=[0, n - 1]
+    )
 
 
 @pytest.mark.parametrize("kind", ["plain", "coupled", "uneven"])
@@ -107,7 +131,9 @@ def test_the_error_lies_below_its_bound_and_not_far(kind, more, monkeypatch):
         for n in (2, 4, 6, 10):
             found = small(reduced, body, supports, n)
             error = found.frequency_hz / exact[:n] - 1
-            assert error.min() > -1e-7  # rounding of the dense solution; couplings left out are below it
+            assert (
+                error.min() > -1e-7
+            )  # rounding of the dense solution; couplings left out are below it
             if np.isfinite(found.error_bound):
                 promised += 1
                 assert error.max() <= found.error_bound + 1e-7
@@ -132,27 +158,36 @@ def test_a_body_smaller_than_its_basis_is_solved_exactly():
     body = sg.build(VARIANTS.shaft(), "euler", elements=1)
     supports = springs("plain", 0)
     found = small(reduce(body, 10), body, supports, 6)
-    np.testing.assert_allclose(found.frequency_hz, shapes(sg.modes(body, supports, 6))[0][:6], rtol=1e-8)
+    np.testing.assert_allclose(
+        found.frequency_hz, shapes(sg.modes(body, supports, 6))[0][:6], rtol=1e-8
+    )
 
 
 def test_ovalising_modes_do_not_feel_bearings():
     body = sg.build(VARIANTS.shaft(), "harmonic", **LIGHT["harmonic"], ovalising=(2,))
     supports = springs("plain", 0)
-    found, (frequency, _) = small(reduce(body, 20), body, supports, 20), shapes(sg.modes(body, supports, 20))
+    found, (frequency, _) = (
+        small(reduce(body, 20), body, supports, 20),
+        shapes(sg.modes(body, supports, 20)),
+    )
     own = [f for f, name in zip(found.frequency_hz, found.names) if name.startswith("ovalising")]
     assert own and all(np.abs(frequency / f - 1).min() < 1e-8 for f in own)
 
 
 def test_in_the_solid_one_block_holds_everything():
     """A coarse 3D body; its pairs are exact by symmetry, so names and pairs are those of `modes`."""
-    body = sg.build(VARIANTS.shaft(), "solid", size=0.05, layers=0, edge_layers=0, radial_layers=0, around=8)
+    body = sg.build(
+        VARIANTS.shaft(), "solid", size=0.05, layers=0, edge_layers=0, radial_layers=0, around=8
+    )
     reduced = reduce(body, 6)
     for kind in ("plain", "uneven"):
         supports = springs(kind, 1)
         found, direct = small(reduced, body, supports, 6), sg.modes(body, supports, 6)
         frequency, names = shapes(direct)
         assert found.error_bound < 1e-5
-        np.testing.assert_allclose(found.frequency_hz, frequency[:6], rtol=found.error_bound + 1e-9)  # and what the free shapes of the basis miss
+        np.testing.assert_allclose(
+            found.frequency_hz, frequency[:6], rtol=found.error_bound + 1e-9
+        )  # and what the free shapes of the basis miss
         assert list(found.names) == names[:6]
 
 
@@ -161,7 +196,9 @@ def test_a_shaft_on_feathers_moves_as_a_rigid_body(body):
     plain = springs("plain", 0)
     supports = Supports(plain.ports, 1e-13 * plain.stiffness)
     p = body.rigid_ports[supports.rows(body)]
-    rigid = sla.eigh(p.T @ supports.stiffness @ p, body.mass_matrix(), eigvals_only=True)[1:]  # torsion is free
+    rigid = sla.eigh(p.T @ supports.stiffness @ p, body.mass_matrix(), eigvals_only=True)[
+        1:
+    ]  # torsion is free
     found = small(reduce(body, 6), body, supports, 6)
     np.testing.assert_allclose(found.frequency_hz[:5], np.sqrt(rigid) / (2 * np.pi), rtol=1e-7)
 

@@ -7,8 +7,19 @@ import sys
 from pathlib import Path
 
 import pytest
-from synthetic_sweep import COLUMNS, PLAN, TOTAL, call, light, one_sentence, row, stop, write
-from synthetic_sweep import right, tmp_path  # noqa: F401  (fixtures)
+from synthetic_sweep import (
+    COLUMNS,
+    PLAN,
+    TOTAL,
+    call,
+    light,
+    one_sentence,
+    right,
+    row,
+    stop,
+    tmp_path,
+    write,
+)
 
 from solidgear.errors import SolidgearError
 from solidgear.sweep.rows import RowFile

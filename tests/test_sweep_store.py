@@ -11,8 +11,7 @@ from contextlib import closing
 from pathlib import Path
 
 import pytest
-from synthetic_sweep import PLAN, TOTAL, call, one_sentence, row, stop, write
-from synthetic_sweep import right, tmp_path  # noqa: F401  (fixtures)
+from synthetic_sweep import PLAN, TOTAL, call, one_sentence, right, row, stop, tmp_path, write
 
 from solidgear.errors import SolidgearError
 

@@ -77,11 +77,21 @@ def test_the_same_quantity_twice_and_none_are_refused():
 
 def test_the_product_runs_its_last_axis_fastest():
     axes = vary.axes(SCENE, ["bearing.1.scale=1,2", "bearing.2.scale=3:5:3"])
-    np.testing.assert_array_equal(vary.product(axes), [[1, 3], [1, 4], [1, 5], [2, 3], [2, 4], [2, 5]])
+    np.testing.assert_array_equal(
+        vary.product(axes), [[1, 3], [1, 4], [1, 5], [2, 3], [2, 4], [2, 5]]
+    )
 
 
 def test_a_sample_is_a_latin_hypercube():
-    axes = vary.axes(SCENE, ["bearing.1.kxx=log:1e8:1e10:2", "bearing.2.scale=1:3:2", "bearing.2.position=0.22:0.24:3", "bearing.1.kyy=1e8,2e8"])
+    axes = vary.axes(
+        SCENE,
+        [
+            "bearing.1.kxx=log:1e8:1e10:2",
+            "bearing.2.scale=1:3:2",
+            "bearing.2.position=0.22:0.24:3",
+            "bearing.1.kyy=1e8,2e8",
+        ],
+    )
     points = vary.sample(axes, 60, seed=3)
     # one point in each of 60 equal strata of each range
     assert sorted((np.log10(points[:, 0] / 1e8) * 30).astype(int)) == list(range(60))
@@ -97,9 +107,21 @@ def test_a_sample_is_a_latin_hypercube():
 
 
 def test_a_variant_is_the_scene_a_file_would_give():
-    variants = variants_of(SCENE, ["bearing.2.position=0.23", "bearing.2.scale=3", "bearing.2.kxx=9e9", "bearing.1.kx_thz=1e8"])
+    variants = variants_of(
+        SCENE,
+        [
+            "bearing.2.position=0.23",
+            "bearing.2.scale=3",
+            "bearing.2.kxx=9e9",
+            "bearing.1.kx_thz=1e8",
+        ],
+    )
     got = variants.of(0)
-    second = SCENE.bearings[1].with_changes(y=0.23, matrix={**_entries(SCENE.bearings[1]), "kxx": 9e9}).scaled(3)
+    second = (
+        SCENE.bearings[1]
+        .with_changes(y=0.23, matrix={**_entries(SCENE.bearings[1]), "kxx": 9e9})
+        .scaled(3)
+    )
     assert got.bearings[1] == second and second.axial_series == (3 * 4.1e8,)
     assert got.bearings[0].matrix[0][5] == got.bearings[0].matrix[5][0] == 1e8
     assert got.with_changes(bearings=SCENE.bearings) == SCENE
@@ -115,7 +137,7 @@ def _entries(bearing):
     ("text", "word"),
     [
         ("bearing.2.position=0.9", "inside the shaft"),
-        ("bearing.2.position=0.12", "overlaps that of \"1\""),
+        ("bearing.2.position=0.12", 'overlaps that of "1"'),
         ("bearing.1.position=0.07", "across the step"),
         ("bearing.1.kxx=1e7", 'bearing "1": the stiffness is indefinite'),
         ("bearing.2.scale=0", "greater than zero"),
@@ -128,7 +150,14 @@ def test_what_a_scene_file_would_refuse_is_refused_as_a_variant(text, word):
 
 
 def test_one_shaft_carries_all_seats_once_each_however_they_overlap():
-    variants = variants_of(SCENE, ["bearing.2.position=0.10,0.20,0.22,0.9", "bearing.1.scale=1,2,3", "bearing.1.position=0.1,0.2"])
+    variants = variants_of(
+        SCENE,
+        [
+            "bearing.2.position=0.10,0.20,0.22,0.9",
+            "bearing.1.scale=1,2,3",
+            "bearing.1.position=0.1,0.2",
+        ],
+    )
     shaft = variants.shaft()
     # 0.1 and 0.2 are seats of either bearing, 0.9 of none
     assert [round(s.y, 6) for s in shaft.stations[1:]] == [0.1, 0.2, 0.22]

@@ -12,13 +12,23 @@ from solidgear.meshing.tetrahedra import tetrahedra
 
 
 def piece(y0, y1, outer0, outer1=None, inner0=0.0, inner1=None):
-    return SimpleNamespace(y0=y0, y1=y1, outer0=outer0, outer1=outer0 if outer1 is None else outer1,
-                           inner0=inner0, inner1=inner0 if inner1 is None else inner1,
-                           material=SimpleNamespace(density=7850.0))
+    return SimpleNamespace(
+        y0=y0,
+        y1=y1,
+        outer0=outer0,
+        outer1=outer0 if outer1 is None else outer1,
+        inner0=inner0,
+        inner1=inner0 if inner1 is None else inner1,
+        material=SimpleNamespace(density=7850.0),
+    )
 
 
 # a cone, a shoulder down to a solid neck, and a hollow end whose bore opens conically
-SHAFT = [piece(-0.05, 0.0, 0.03, 0.05), piece(0.0, 0.06, 0.03), piece(0.06, 0.11, 0.03, 0.03, 0.01, 0.015)]
+SHAFT = [
+    piece(-0.05, 0.0, 0.03, 0.05),
+    piece(0.0, 0.06, 0.03),
+    piece(0.06, 0.11, 0.03, 0.03, 0.01, 0.015),
+]
 PLANES = (-0.02, 0.03, 0.085)
 CIRCLES = (0.02, 0.045, 0.09)
 
@@ -39,6 +49,7 @@ def meshed():
 def element_volumes(mesh):
     """Volume and centre of each curved element, through scikit-fem's own mapping."""
     from skfem import Basis, ElementTetP2
+
     basis = Basis(mesh, ElementTetP2(), intorder=5)
     return basis.dx, basis.mapping.F(basis.X)
 
@@ -62,7 +73,7 @@ def test_curved_inertia_is_the_closed_form(meshed):
     centre = density * (y * dx).sum() / mass
     # inertia goes with the fourth power of the radius: about twice the loss of the volume, hence 2e-4
     assert density * ((x**2 + z**2) * dx).sum() == pytest.approx(exact.iyy, rel=2e-4)
-    assert density * (((y - centre)**2 + z**2) * dx).sum() == pytest.approx(exact.ixx, rel=2e-4)
+    assert density * (((y - centre) ** 2 + z**2) * dx).sum() == pytest.approx(exact.ixx, rel=2e-4)
     # a length of 0.16 m weighted with volumes that are each right to 1e-4
     assert centre == pytest.approx(exact.centre, abs=0.16e-4)
     # round about the axis: the centre lies on it to the same measure
@@ -74,8 +85,13 @@ def test_every_plane_and_interface_is_made_of_facets(meshed):
     for y in (*PLANES, 0.0, 0.06):
         on = np.all(np.abs(mesh.p[1][mesh.facets] - y) < 1e-9, axis=0)
         corners = mesh.p[:, mesh.facets[:, on]]
-        area = 0.5 * np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0], axis=0),
-                                    axis=0).sum()
+        area = (
+            0.5
+            * np.linalg.norm(
+                np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0], axis=0),
+                axis=0,
+            ).sum()
+        )
         below = next(s for s in SHAFT if s.y0 < y <= s.y1)
         above = next((s for s in SHAFT if s.y0 <= y < s.y1), below)
         # at an interface the face covers the material of both sides: out to the larger radius, in to the smaller bore
@@ -91,11 +107,13 @@ def rim_segments(mesh, y, radius):
     """Area between the circle and the chords the mesh has on it."""
     if radius == 0.0:
         return 0.0
-    on = np.isclose(np.hypot(mesh.p[0], mesh.p[2]), radius, rtol=1e-9) & (np.abs(mesh.p[1] - y) < 1e-9)
+    on = np.isclose(np.hypot(mesh.p[0], mesh.p[2]), radius, rtol=1e-9) & (
+        np.abs(mesh.p[1] - y) < 1e-9
+    )
     vertices = np.intersect1d(np.flatnonzero(on), mesh.t)
     angles = np.sort(np.arctan2(mesh.p[2][vertices], mesh.p[0][vertices]))
     steps = np.diff(np.append(angles, angles[0] + 2.0 * np.pi))
-    assert len(vertices) >= 16                                      # what `around` promises
+    assert len(vertices) >= 16  # what `around` promises
     return 0.5 * radius**2 * (steps - np.sin(steps)).sum()
 
 
@@ -107,7 +125,11 @@ def lateral_facets(mesh):
     for s in SHAFT:
         inside = np.all((y > s.y0 - 1e-9) & (y < s.y1 + 1e-9), axis=0)
         # not an annular face, whose vertices share one y
-        found |= inside & np.all(np.abs(r - outer_radius(s, y)) < 1e-9, axis=0) & (np.ptp(y, axis=0) > 1e-6)
+        found |= (
+            inside
+            & np.all(np.abs(r - outer_radius(s, y)) < 1e-9, axis=0)
+            & (np.ptp(y, axis=0) > 1e-6)
+        )
     return facets[:, found]
 
 
@@ -116,9 +138,15 @@ def test_no_lateral_facet_straddles_a_circle(meshed):
     y = meshed.mesh.p[1][facets]
     # the lateral area proves that the facets looked at are all there are; chords of 1/16 lose 1 % at most
     corners = meshed.mesh.p[:, facets]
-    area = 0.5 * np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0], axis=0),
-                                axis=0).sum()
-    exact = sum(np.pi * (s.outer0 + s.outer1) * np.hypot(s.y1 - s.y0, s.outer1 - s.outer0) for s in SHAFT)
+    area = (
+        0.5
+        * np.linalg.norm(
+            np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0], axis=0), axis=0
+        ).sum()
+    )
+    exact = sum(
+        np.pi * (s.outer0 + s.outer1) * np.hypot(s.y1 - s.y0, s.outer1 - s.outer0) for s in SHAFT
+    )
     assert area == pytest.approx(exact, rel=1e-2)
     for circle in CIRCLES:
         assert not np.any((y.min(axis=0) < circle - 1e-9) & (y.max(axis=0) > circle + 1e-9))
@@ -176,6 +204,7 @@ def test_grading_refines_where_it_was_asked(meshed):
 
 def test_a_callers_gmsh_is_left_alone():
     import gmsh
+
     gmsh.initialize(interruptible=False)
     try:
         gmsh.option.setNumber("General.Terminal", 0)
@@ -200,11 +229,19 @@ def test_nothing_is_printed_and_progress_is_told(capfd):
     assert told == sorted(told) and told[0] == 0.0 and told[-1] == 1.0
 
 
-@pytest.mark.parametrize("shaft", [
-    [piece(0.0, 0.05, 0.0, 0.03)],
-    [piece(-0.05, 0.0, 0.03, 0.03, 0.01), piece(0.0, 0.006, 0.03, 0.03, 0.01, 0.0), piece(0.006, 0.03, 0.03)],
-    [piece(-0.02, 0.02, 0.03, 0.03, 0.0295)],
-], ids=["tip", "drilled", "thin wall"])
+@pytest.mark.parametrize(
+    "shaft",
+    [
+        [piece(0.0, 0.05, 0.0, 0.03)],
+        [
+            piece(-0.05, 0.0, 0.03, 0.03, 0.01),
+            piece(0.0, 0.006, 0.03, 0.03, 0.01, 0.0),
+            piece(0.006, 0.03, 0.03),
+        ],
+        [piece(-0.02, 0.02, 0.03, 0.03, 0.0295)],
+    ],
+    ids=["tip", "drilled", "thin wall"],
+)
 def test_awkward_shapes(shaft):
     made = tetrahedra(shaft, size=0.015)
     # straightened tips cost less than what the arcs lose
@@ -213,14 +250,17 @@ def test_awkward_shapes(shaft):
     assert made.quality.min_ratio >= 0.05
 
 
-@pytest.mark.parametrize("shaft, planes, size, words", [
-    ([], (), 0.02, "no segment"),
-    ([piece(0.0, 0.1, 0.03), piece(0.11, 0.2, 0.03)], (), 0.02, "end to end"),
-    ([piece(0.0, 0.1, 0.02), piece(0.1, 0.2, 0.04, 0.04, 0.03)], (), 0.02, "share no material"),
-    ([piece(0.0, 0.1, 0.02, 0.02, 0.03)], (), 0.02, "no wall"),
-    ([piece(0.0, 0.1, 0.02)], (0.2,), 0.02, "outside the shaft"),
-    ([piece(0.0, 0.1, 0.02)], (), -1.0, "positive length"),
-])
+@pytest.mark.parametrize(
+    "shaft, planes, size, words",
+    [
+        ([], (), 0.02, "no segment"),
+        ([piece(0.0, 0.1, 0.03), piece(0.11, 0.2, 0.03)], (), 0.02, "end to end"),
+        ([piece(0.0, 0.1, 0.02), piece(0.1, 0.2, 0.04, 0.04, 0.03)], (), 0.02, "share no material"),
+        ([piece(0.0, 0.1, 0.02, 0.02, 0.03)], (), 0.02, "no wall"),
+        ([piece(0.0, 0.1, 0.02)], (0.2,), 0.02, "outside the shaft"),
+        ([piece(0.0, 0.1, 0.02)], (), -1.0, "positive length"),
+    ],
+)
 def test_bad_input_is_refused_in_a_sentence(shaft, planes, size, words):
     with pytest.raises(MeshError, match=words):
         tetrahedra(shaft, planes, size=size)
@@ -228,6 +268,7 @@ def test_bad_input_is_refused_in_a_sentence(shaft, planes, size, words):
 
 def test_a_missing_system_library_names_the_apt_line(monkeypatch):
     import builtins
+
     real = builtins.__import__
 
     def without_gmsh(name, *args, **kwargs):

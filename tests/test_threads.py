@@ -25,15 +25,23 @@ def set_all(n):
 
 def said(code, **variables):
     """What a fresh interpreter prints."""
-    env = {k: v for k, v in os.environ.items() if k not in VARIABLES} | variables | {"PYTHONPATH": str(ROOT)}
-    done = subprocess.run([sys.executable, "-c", code], env=env, capture_output=True, text=True, timeout=120)
+    env = (
+        {k: v for k, v in os.environ.items() if k not in VARIABLES}
+        | variables
+        | {"PYTHONPATH": str(ROOT)}
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", code], env=env, capture_output=True, text=True, timeout=120
+    )
     assert done.returncode == 0, done.stderr
     return done.stdout.split("\n")[:-1]
 
 
 def test_numpy_first_is_held_to_one_thread_inside_and_gets_its_own_back():
     """As in the README's example, in a shell that exports OMP_NUM_THREADS; the machine may have one processor, so two are asked for by hand."""
-    code = NUMBERS + """
+    code = (
+        NUMBERS
+        + """
 set_all(2)
 import solidgear as sg
 from solidgear import threads
@@ -55,11 +63,18 @@ try:
 except Exception:
     print(numbers())
 """
-    assert said(f"import os; os.chdir({str(ROOT)!r})" + code, OMP_NUM_THREADS="2") == ["[1] [2]", "[1] [2]", "[2]"]
+    )
+    assert said(f"import os; os.chdir({str(ROOT)!r})" + code, OMP_NUM_THREADS="2") == [
+        "[1] [2]",
+        "[1] [2]",
+        "[2]",
+    ]
 
 
 def test_a_number_that_was_chosen_is_kept():
-    code = NUMBERS + """
+    code = (
+        NUMBERS
+        + """
 set_all(2)
 from solidgear import threads
 with threads.single():
@@ -67,6 +82,7 @@ with threads.single():
 threads.pin()
 print(numbers())
 """
+    )
     assert said(code, OPENBLAS_NUM_THREADS="2") == ["[2]", "[2]"]
 
 
@@ -76,7 +92,9 @@ def test_the_command_line_has_one_thread_whatever_omp_says():
 
 
 def test_pin_tells_a_numpy_that_is_there_already():
-    assert said(NUMBERS + "set_all(2)\nfrom solidgear import threads\nthreads.pin()\nprint(numbers())") == ["[1]"]
+    assert said(
+        NUMBERS + "set_all(2)\nfrom solidgear import threads\nthreads.pin()\nprint(numbers())"
+    ) == ["[1]"]
 
 
 def test_calls_inside_calls_and_beside_them_restore_the_number_once(monkeypatch):
@@ -113,7 +131,9 @@ def test_calls_inside_calls_and_beside_them_restore_the_number_once(monkeypatch)
     assert library.number == 4
 
 
-@pytest.mark.skipif(bool(missing("pardiso")) or not hasattr(os, "sched_setaffinity"), reason="needs MKL and Linux")
+@pytest.mark.skipif(
+    bool(missing("pardiso")) or not hasattr(os, "sched_setaffinity"), reason="needs MKL and Linux"
+)
 def test_mkl_takes_no_more_threads_than_processors():
     """One processor granted, four threads asked for by the shell: a factorisation must start none beside its own."""
     code = """

@@ -31,9 +31,18 @@ def mode(name, frequency):
 
 
 def tied(c_zz=1.0, bending=100.0, **others):
-    modes = tuple(sorted((mode("bending 1", bending), mode("bending 2", 4 * bending)), key=lambda m: m.frequency_hz))
+    modes = tuple(
+        sorted(
+            (mode("bending 1", bending), mode("bending 2", 4 * bending)),
+            key=lambda m: m.frequency_hz,
+        )
+    )
     found = ModeSet("any", modes, STATIONS, np.eye(6 * len(STATIONS)))
-    return Tied(SimpleNamespace(attachment="average", evidence={"residual": 0.0}), found, {"C_zz": c_zz, "bending 1": bending, **others})
+    return Tied(
+        SimpleNamespace(attachment="average", evidence={"residual": 0.0}),
+        found,
+        {"C_zz": c_zz, "bending 1": bending, **others},
+    )
 
 
 def banded(size, names):
@@ -88,7 +97,10 @@ def test_a_gap_inside_the_summed_bands_is_not_resolved(relative, mine, theirs, v
 
 
 def test_every_model_is_held_as_the_scene_is_tied_and_like_for_like():
-    rungs = {"timoshenko": rung(0.99, 99.0, section=(1.08, 94.0)), "harmonic": rung(1.0, 100.0, band=1e-3, section=(1.1, 95.0))}
+    rungs = {
+        "timoshenko": rung(0.99, 99.0, section=(1.08, 94.0)),
+        "harmonic": rung(1.0, 100.0, band=1e-3, section=(1.1, 95.0)),
+    }
     gaps = deviations(rungs, "harmonic")
     found = {(g["attachment"], g["quantity"]): g["relative"] for g in gaps}
     # quotients of the numbers above
@@ -103,7 +115,10 @@ def test_every_model_is_held_as_the_scene_is_tied_and_like_for_like():
 
 def test_a_coupling_is_told_against_the_mean_of_its_diagonal_entries():
     values = {"C_thx": 4.0, "C_z,thx": 1e-17}
-    rungs = {"timoshenko": rung(**(values | {"C_z,thx": 0.02})), "harmonic": rung(band=1e-3, **values)}
+    rungs = {
+        "timoshenko": rung(**(values | {"C_z,thx": 0.02})),
+        "harmonic": rung(band=1e-3, **values),
+    }
     (gap,) = [g for g in deviations(rungs, "harmonic") if g["quantity"] == "C_z,thx"]
     # 0.02 over the root of 1 times 4: symmetry makes the coupling itself zero
     assert gap["relative"] == pytest.approx(0.01, rel=1e-12)
@@ -121,7 +136,10 @@ def test_a_gap_counts_with_its_band():
     assert gap_verdict(0.06, 0.009, 0.05) == BEYOND
 
 
-@pytest.mark.parametrize(("tolerance", "euler", "timoshenko"), [(0.01, False, False), (0.05, False, True), (0.25, True, True)])
+@pytest.mark.parametrize(
+    ("tolerance", "euler", "timoshenko"),
+    [(0.01, False, False), (0.05, False, True), (0.25, True, True)],
+)
 def test_tolerance_decides(tolerance, euler, timoshenko):
     rungs = {"euler": rung(0.8), "timoshenko": rung(0.97), "harmonic": rung(1.0, band=1e-3)}
     verdict, validity = judged(rungs, tolerance)
@@ -147,33 +165,57 @@ def test_what_the_bands_leave_open_is_not_valid():
 
 
 def test_cheapest_does_not_depend_on_the_order_of_the_rungs():
-    rungs = {"solid": rung(1.001, band=1e-3), "harmonic": rung(1.0, band=1e-3), "timoshenko": rung(0.99), "euler": rung(0.5)}
+    rungs = {
+        "solid": rung(1.001, band=1e-3),
+        "harmonic": rung(1.0, band=1e-3),
+        "timoshenko": rung(0.99),
+        "euler": rung(0.5),
+    }
     verdict, _ = judged(rungs, 0.05)
     assert verdict["cheapest"] == "timoshenko"
     # what it costs is building and solving it, not its evidence
-    assert any("Cheapest model within 5 %: Timoshenko beam (10 unknowns, 2 s)" in s for s in verdict["sentences"])
+    assert any(
+        "Cheapest model within 5 %: Timoshenko beam (10 unknowns, 2 s)" in s
+        for s in verdict["sentences"]
+    )
 
 
 def test_worst_of_the_judged_numbers_is_named():
     rungs = {"timoshenko": rung(0.93, 120.0), "harmonic": rung(band=1e-3)}
     why = judged(rungs, 0.05)[1]["timoshenko"].why_not
-    assert why.startswith("bending 1") and "20 %" in why and "with the attachments of the scene" in why
+    assert (
+        why.startswith("bending 1") and "20 %" in why and "with the attachments of the scene" in why
+    )
 
 
 def test_like_for_like_counts_too():
     # right with the scene's seats, wrong like for like: a cancellation
-    rungs = {"timoshenko": rung(1.0, 100.0, section=(1.0, 100.0)), "harmonic": rung(1.0, 100.0, band=1e-3, section=(1.2, 99.0))}
+    rungs = {
+        "timoshenko": rung(1.0, 100.0, section=(1.0, 100.0)),
+        "harmonic": rung(1.0, 100.0, band=1e-3, section=(1.2, 99.0)),
+    }
     verdict, validity = judged(rungs, 0.05)
-    assert not validity["timoshenko"].valid and "like for like (section means everywhere)" in validity["timoshenko"].why_not
-    assert any("seat flexibility" in s and "hides part of its excess stiffness" in s for s in verdict["sentences"])
+    assert (
+        not validity["timoshenko"].valid
+        and "like for like (section means everywhere)" in validity["timoshenko"].why_not
+    )
+    assert any(
+        "seat flexibility" in s and "hides part of its excess stiffness" in s
+        for s in verdict["sentences"]
+    )
 
 
 def test_the_tie_is_told_apart_from_the_beam():
     # 12 % off at seats that distort, 1 % like for like
-    rungs = {"timoshenko": rung(0.88, section=(0.99, 100.0)), "harmonic": rung(band=1e-3, section=(1.0, 100.0))}
+    rungs = {
+        "timoshenko": rung(0.88, section=(0.99, 100.0)),
+        "harmonic": rung(band=1e-3, section=(1.0, 100.0)),
+    }
     verdict, validity = judged(rungs, 0.05)
     assert not validity["timoshenko"].valid
-    assert any("the tie, not the beam" in s and "12 %" in s and "1 %" in s for s in verdict["sentences"])
+    assert any(
+        "the tie, not the beam" in s and "12 %" in s and "1 %" in s for s in verdict["sentences"]
+    )
 
 
 def test_only_what_is_asked_is_judged():
@@ -186,14 +228,20 @@ def test_only_what_is_asked_is_judged():
 def test_stiffnesses_are_shown_but_not_judged():
     rungs = {"timoshenko": rung(K_zz=2.0), "harmonic": rung(K_zz=1.0, band=1e-3)}
     assert "K_zz" not in JUDGED
-    assert any(g["quantity"] == "K_zz" and g["relative"] == 1.0 for g in deviations(rungs, "harmonic"))
+    assert any(
+        g["quantity"] == "K_zz" and g["relative"] == 1.0 for g in deviations(rungs, "harmonic")
+    )
     assert judged(rungs, 0.05)[1]["timoshenko"].valid
 
 
 def test_solid_inside_the_bands_is_said_to_be_not_resolved():
-    sentences = " ".join(judged({"harmonic": rung(band=1e-3), "solid": rung(1.001, band=1e-3)}, 0.05)[0]["sentences"])
+    sentences = " ".join(
+        judged({"harmonic": rung(band=1e-3), "solid": rung(1.001, band=1e-3)}, 0.05)[0]["sentences"]
+    )
     assert "not resolved" in sentences and "agree" not in sentences
-    sentences = " ".join(judged({"harmonic": rung(band=1e-3), "solid": rung(1.01, band=1e-3)}, 0.05)[0]["sentences"])
+    sentences = " ".join(
+        judged({"harmonic": rung(band=1e-3), "solid": rung(1.01, band=1e-3)}, 0.05)[0]["sentences"]
+    )
     assert "not resolved" not in sentences and "beyond the bands in C_zz" in sentences
 
 
@@ -202,7 +250,9 @@ def test_beams_alone_are_not_judged():
     for rungs in ({"euler": rung(0.9)}, {"euler": rung(0.9), "timoshenko": rung()}):
         verdict, validity = judged(rungs, 0.05)
         assert verdict["trust"] is verdict["cheapest"] is None
-        assert verdict["sentences"] == ["Not judged: no solid was run, and a beam cannot judge itself."]
+        assert verdict["sentences"] == [
+            "Not judged: no solid was run, and a beam cannot judge itself."
+        ]
         assert all(not v.valid and v.open for v in validity.values())
 
 
@@ -210,14 +260,24 @@ def test_a_solid_without_a_band_judges_nobody():
     lost = rung()
     lost.failed["finer mesh"] = "9 MB are free"
     verdict, validity = judged({"timoshenko": rung(), "harmonic": lost}, 0.05)
-    assert verdict["trust"] is None and "no band of its own (9 MB are free)" in verdict["sentences"][0]
-    assert not validity["timoshenko"].valid and validity["timoshenko"].open and not validity["harmonic"].valid
+    assert (
+        verdict["trust"] is None and "no band of its own (9 MB are free)" in verdict["sentences"][0]
+    )
+    assert (
+        not validity["timoshenko"].valid
+        and validity["timoshenko"].open
+        and not validity["harmonic"].valid
+    )
 
 
 @pytest.mark.parametrize("band", [0.06, 6.0])
 def test_a_band_above_the_tolerance_is_never_valid(band):
     verdict, validity = judged({"timoshenko": rung(), "harmonic": rung(band=band)}, 0.05)
-    assert verdict["trust"] is None and not validity["harmonic"].valid and not validity["timoshenko"].valid
+    assert (
+        verdict["trust"] is None
+        and not validity["harmonic"].valid
+        and not validity["timoshenko"].valid
+    )
     assert not any("Trust" in s for s in verdict["sentences"])
 
 
@@ -231,7 +291,10 @@ def test_a_guard_that_says_avoid_is_heard():
     notice = {"level": "avoid", "models": ["timoshenko"], "sentence": "sections lose their shape"}
     rungs = {"timoshenko": rung(), "harmonic": rung(band=1e-3)}
     verdict, validity = judged(rungs, 0.05, notices=[notice])
-    assert not validity["timoshenko"].valid and validity["timoshenko"].why_not == "sections lose their shape"
+    assert (
+        not validity["timoshenko"].valid
+        and validity["timoshenko"].why_not == "sections lose their shape"
+    )
     assert verdict["cheapest"] == "harmonic"
     # a caution is told and does not decide
     assert judged(rungs, 0.05, notices=[notice | {"level": "caution"}])[1]["timoshenko"].valid
@@ -239,22 +302,41 @@ def test_a_guard_that_says_avoid_is_heard():
 
 def test_nothing_solved():
     verdict, validity = judge(asking(0.05), {}, [])
-    assert verdict["trust"] is verdict["cheapest"] is None and verdict["sentences"] == ["No model could be solved."] and validity == {}
+    assert (
+        verdict["trust"] is verdict["cheapest"] is None
+        and verdict["sentences"] == ["No model could be solved."]
+        and validity == {}
+    )
 
 
 # --------------------------------------------------------------------------- on shafts
 def plain_shaft(**ask):
     """The simplest shaft there is: 300 x 40 mm on two equal bearings, the lumped point in the middle of all of its surface."""
-    bearings = [Bearing(name=n, y=y, seat_width=0.02, stiffness={"kxx": 3e8, "kzz": 3e8, **k}) for n, y, k in (("A", 0.03, {"kyy": 1e8}), ("B", 0.27, {}))]
-    return Scene.from_parts([Segment.cylinder("s", length=0.3, diameter=0.04)], bearings=bearings, ask=Ask(**ask))
+    bearings = [
+        Bearing(name=n, y=y, seat_width=0.02, stiffness={"kxx": 3e8, "kzz": 3e8, **k})
+        for n, y, k in (("A", 0.03, {"kyy": 1e8}), ("B", 0.27, {}))
+    ]
+    return Scene.from_parts(
+        [Segment.cylinder("s", length=0.3, diameter=0.04)], bearings=bearings, ask=Ask(**ask)
+    )
 
 
 def test_a_plain_symmetric_shaft_is_within_every_models_reach():
     found = compare(plain_shaft(), ("timoshenko", "harmonic")).results
-    models, gaps = found["models"], {(g["attachment"], g["quantity"]): g["relative"] for g in found["deviations"]}
-    assert found["verdict"]["trust"] == "harmonic" and models["harmonic"]["valid"] and models["timoshenko"]["valid"]
+    models, gaps = (
+        found["models"],
+        {(g["attachment"], g["quantity"]): g["relative"] for g in found["deviations"]},
+    )
+    assert (
+        found["verdict"]["trust"] == "harmonic"
+        and models["harmonic"]["valid"]
+        and models["timoshenko"]["valid"]
+    )
     # symmetry makes the coupling zero: its band and its gap are shares of what it could be
-    assert models["harmonic"]["band"]["each"]["C_z,thx"] < 1e-4 and abs(gaps[(SCENE, "C_z,thx")]) < 1e-4
+    assert (
+        models["harmonic"]["band"]["each"]["C_z,thx"] < 1e-4
+        and abs(gaps[(SCENE, "C_z,thx")]) < 1e-4
+    )
     assert models["harmonic"]["band"]["compliance"] < 0.05 / 20
     # a beam tied to a span of 300 mm as the solid is: 0.3 % in tilt, where its node alone was 650 % off
     assert abs(gaps[(SCENE, "C_thx")]) < 0.005 and abs(gaps[(SECTION, "C_thx")]) < 0.015
@@ -264,7 +346,9 @@ def test_like_for_like_means_every_station():
     # the port is tied by its section and a bearing rigidly: ties of the port alone would leave nothing to compare
     scene = plain_shaft(tolerance=0.01)
     scene = scene.with_port(attachment="section")
-    scene = scene.with_changes(bearings=(scene.bearings[0], scene.bearings[1].with_changes(attachment="rigid")))
+    scene = scene.with_changes(
+        bearings=(scene.bearings[0], scene.bearings[1].with_changes(attachment="rigid"))
+    )
     found = compare(scene, ("euler", "harmonic")).results
     assert {g["attachment"] for g in found["deviations"]} == {SCENE, SECTION}
     # Euler lacks the shear deflection, 12 (1 + nu) / kappa r^2 / L^2 of a span of 240 mm: about 5 %

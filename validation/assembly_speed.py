@@ -1,6 +1,6 @@
 """Assembly of stiffness and mass against scikit-fem's own vector forms: same mesh, same quadrature, one process, interleaved.
 
-    python validation/assembly_speed.py [--runs 3] [--only tet10]
+    python -m validation.assembly_speed [--runs 3] [--only tet10]
 
 Entries are compared before times.  Wall and processor seconds are medians; the processor's are the steadier on a busy machine.
 Asked for: K and M together at least 50 times faster for TET10 at about 94 thousand unknowns.
@@ -14,8 +14,6 @@ import time
 from dataclasses import dataclass
 from typing import NamedTuple
 
-from common import ROOT, results_folder, show, write_rows
-
 import numpy as np
 from skfem import Basis, BilinearForm, ElementVector, MeshHex2, MeshTet2
 from skfem.element import ElementHexS2
@@ -26,6 +24,7 @@ from skfem.refdom import RefQuad
 import solidgear as sg
 from solidgear.fidelity import harmonic as harmonic_module
 from solidgear.fidelity import solid as solid_module
+from validation.common import ROOT, results_folder, show, write_rows
 
 SCENE = ROOT / "geometry" / "pinion_overhung.toml"
 SOLIDS = {
@@ -56,22 +55,35 @@ class Case(NamedTuple):
 def moduli(scene, segment):
     """Lame constants and density, a column each."""
     materials = [s.material for s in scene.segments]
-    e, nu, rho = (np.array([getattr(m, k) for m in materials])[segment][:, None] for k in ("E", "nu", "density"))
+    e, nu, rho = (
+        np.array([getattr(m, k) for m in materials])[segment][:, None]
+        for k in ("E", "nu", "density")
+    )
     return e * nu / (1 + nu) / (1 - 2 * nu), e / 2 / (1 + nu), rho
 
 
 def solid_case(scene, element, options):
     """A 3D solid."""
     geometry = sg.build(scene, "solid", element=element, **options).geometry
-    mesh = {"tet10": MeshTet2, "hex20": MeshHex20, "hex27": MeshHex2}[element](geometry.nodes, geometry.mesh.t)
+    mesh = {"tet10": MeshTet2, "hex20": MeshHex20, "hex27": MeshHex2}[element](
+        geometry.nodes, geometry.mesh.t
+    )
     lame, mu, rho = moduli(scene, geometry.segment)
-    stiffness = BilinearForm(lambda u, v, w: lame * trace(sym_grad(u)) * trace(sym_grad(v)) + 2 * mu * ddot(sym_grad(u), sym_grad(v)))
+    stiffness = BilinearForm(
+        lambda u, v, w: (
+            lame * trace(sym_grad(u)) * trace(sym_grad(v)) + 2 * mu * ddot(sym_grad(u), sym_grad(v))
+        )
+    )
     mass = BilinearForm(lambda u, v, w: rho * dot(u, v))
 
     def basis():
-        return Basis(mesh, ElementVector(geometry.element), quadrature=solid_module._cell_rule(element))
+        return Basis(
+            mesh, ElementVector(geometry.element), quadrature=solid_module._cell_rule(element)
+        )
 
-    return Case(lambda: solid_module._matrices(geometry, scene), basis, stiffness, mass, slice(None))
+    return Case(
+        lambda: solid_module._matrices(geometry, scene), basis, stiffness, mass, slice(None)
+    )
 
 
 def harmonic_case(scene):
@@ -84,27 +96,45 @@ def harmonic_case(scene):
         g = u.grad
         radial, turning = u[0] + u[1], u[0] - u[1]
         dr, dt, dw = g[0] + g[1], g[0] - g[1], g[2]
-        return dr[0], 2 * u[1] / r, dw[1], -radial / r - dt[0] + turning / r, -dt[1] - u[2] / r, dr[1] + dw[0]
+        return (
+            dr[0],
+            2 * u[1] / r,
+            dw[1],
+            -radial / r - dt[0] + turning / r,
+            -dt[1] - u[2] / r,
+            dr[1] + dw[0],
+        )
 
     @BilinearForm
     def stiffness(u, v, w):
         r = w.x[0]
         a, b = strain(u, r), strain(v, r)
-        normal, shear = sum(x * y for x, y in zip(a[:3], b[:3])), sum(x * y for x, y in zip(a[3:], b[3:]))
+        normal, shear = (
+            sum(x * y for x, y in zip(a[:3], b[:3])),
+            sum(x * y for x, y in zip(a[3:], b[3:])),
+        )
         return np.pi * r * (lame * sum(a[:3]) * sum(b[:3]) + 2 * mu * normal + mu * shear)
 
-    mass = BilinearForm(lambda u, v, w: np.pi * w.x[0] * rho * (2 * u[0] * v[0] + 2 * u[1] * v[1] + u[2] * v[2]))
+    mass = BilinearForm(
+        lambda u, v, w: np.pi * w.x[0] * rho * (2 * u[0] * v[0] + 2 * u[1] * v[1] + u[2] * v[2])
+    )
     rule = get_quadrature(RefQuad, 2 * (order + 2) - 1)
 
     def basis():
         return Basis(mesh, ElementVector(element, dim=3), quadrature=rule)
 
     keep = np.ones((int(body.geometry.dofs.max()) + 1, 3), bool)
-    on_axis = Basis(mesh, element, quadrature=rule).get_dofs(mesh.facets_satisfying(lambda x: x[0] < 1e-9)).all()
+    on_axis = (
+        Basis(mesh, element, quadrature=rule)
+        .get_dofs(mesh.facets_satisfying(lambda x: x[0] < 1e-9))
+        .all()
+    )
     keep[on_axis, 1:] = False
 
     def ours():
-        work = harmonic_module._Work(scene, mesh, element, body.geometry.dofs, body.geometry.meridian, order)
+        work = harmonic_module._Work(
+            scene, mesh, element, body.geometry.dofs, body.geometry.meridian, order
+        )
         block = work.bending_block("bending_z", (2, 3), 1, [(scene.stations[0], "average")])
         return block.stiffness, block.mass
 
@@ -137,10 +167,15 @@ def race(case: Case, runs: int) -> dict:
     for i in range(runs):
         k, m = run("ours", case.ours)
         basis = run("basis", case.basis)
-        k_theirs = run("K", lambda: restricted(case.stiffness.assemble(basis), case.keep))
-        m_theirs = run("M", lambda: restricted(case.mass.assemble(basis), case.keep))
+        k_theirs = run(
+            "K", lambda basis=basis: restricted(case.stiffness.assemble(basis), case.keep)
+        )
+        m_theirs = run("M", lambda basis=basis: restricted(case.mass.assemble(basis), case.keep))
         if not i:
-            gap = {"K": abs(k - k_theirs).max() / abs(k_theirs).max(), "M": abs(m - m_theirs).max() / abs(m_theirs).max()}
+            gap = {
+                "K": abs(k - k_theirs).max() / abs(k_theirs).max(),
+                "M": abs(m - m_theirs).max() / abs(m_theirs).max(),
+            }
             if max(gap.values()) > AGREE:
                 raise SystemExit(f"entries differ by {gap}: times mean nothing")
         del basis, k_theirs, m_theirs
@@ -172,7 +207,10 @@ def main() -> None:
     for name in [args.only] if args.only else [*SOLIDS, "harmonic"]:
         case = harmonic_case(scene) if name == "harmonic" else solid_case(scene, name, SOLIDS[name])
         rows.append({"element": name, **race(case, args.runs)})
-    show(f"assembly, {args.runs} interleaved runs; ratios: scikit-fem over our K and M together", rows)
+    show(
+        f"assembly, {args.runs} interleaved runs; ratios: scikit-fem over our K and M together",
+        rows,
+    )
     write_rows(results_folder("assembly_speed") / "rows.csv", rows)
 
 

@@ -1,6 +1,6 @@
 """Seconds and peak memory of the main job and of the quickest useful answer, as whole processes.
 
-    python validation/benchmark.py [--runs 5]
+    python -m validation.benchmark [--runs 5]
 
 Figures asked for on two cores: compare within 60 s, harmonic stiffness within 3 s, start-up included.
 """
@@ -15,14 +15,20 @@ import sys
 import tempfile
 import time
 
-from common import ROOT, results_folder, show, write_rows
+from validation.common import ROOT, results_folder, show, write_rows
 
 SCENE = str(ROOT / "geometry" / "pinion_overhung.toml")
 JOBS = {
     "import numpy": ([sys.executable, "-c", "import numpy"], None),
     "solidgear --help": ([sys.executable, "-m", "solidgear.cli", "--help"], None),
-    "stiffness --fidelity timoshenko": ([sys.executable, "-m", "solidgear.cli", "stiffness", SCENE, "--fidelity", "timoshenko"], None),
-    "stiffness --fidelity harmonic": ([sys.executable, "-m", "solidgear.cli", "stiffness", SCENE, "--fidelity", "harmonic"], 3.0),
+    "stiffness --fidelity timoshenko": (
+        [sys.executable, "-m", "solidgear.cli", "stiffness", SCENE, "--fidelity", "timoshenko"],
+        None,
+    ),
+    "stiffness --fidelity harmonic": (
+        [sys.executable, "-m", "solidgear.cli", "stiffness", SCENE, "--fidelity", "harmonic"],
+        3.0,
+    ),
     "compare": ([sys.executable, "-m", "solidgear.cli", "compare", SCENE, "--out"], 60.0),
 }
 
@@ -34,7 +40,9 @@ def run(command: list[str]) -> float:
         if command[-1] == "--out":
             command = [*command, folder]
         start = time.perf_counter()
-        subprocess.run(command, env=env, check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        subprocess.run(
+            command, env=env, check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL
+        )
         return time.perf_counter() - start
 
 

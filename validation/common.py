@@ -3,14 +3,11 @@
 from __future__ import annotations
 
 import csv
-import sys
 from pathlib import Path
-
-ROOT = Path(__file__).resolve().parent.parent
-sys.path.insert(0, str(ROOT))
 
 from solidgear.threads import pin
 
+ROOT = Path(__file__).resolve().parent.parent
 pin()
 
 
@@ -38,7 +35,18 @@ def show(title: str, rows: list[dict]) -> None:
     table = Table(title=title, title_justify="left")
     columns = list(dict.fromkeys(key for row in rows for key in row))
     for column in columns:
-        table.add_column(column, justify="right" if column != columns[0] else "left", overflow="fold")
+        table.add_column(
+            column, justify="right" if column != columns[0] else "left", overflow="fold"
+        )
     for row in rows:
-        table.add_row(*("" if row.get(c) is None else f"{row[c]:.4g}" if isinstance(row[c], float) else str(row[c]) for c in columns))
+        table.add_row(
+            *(
+                ""
+                if row.get(c) is None
+                else f"{row[c]:.4g}"
+                if isinstance(row[c], float)
+                else str(row[c])
+                for c in columns
+            )
+        )
     Console(width=140).print(table)

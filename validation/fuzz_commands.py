@@ -9,7 +9,7 @@ import os
 import random
 from pathlib import Path
 
-from fuzz_mutations import SCENES, mutant
+from validation.fuzz_mutations import SCENES, mutant
 
 ENVIRONMENT = {"SOLIDGEAR_MEMORY_MB": "120"}
 
@@ -37,9 +37,60 @@ seat_width = "20 mm"
 stiffness = {kxx = 1e8, kzz = 1e8}
 """
 
-WILD = ("", " ", "0", "-0", "-1", "1", "2", "1e9", "1000000000", "-1e9", "1e-9", "1e400", "nan", "inf", "-inf", "true", "false", "None", "[]", "1,5", "1,2,3", ",", ",,", "a,b", "=", "==",
-        "0x10", "1_0", "9" * 400, "9" * 5000, "x" * 5000, "\u0663", "\U0001f600", "\u202e", "\x1b[2J", "\x07", "a\nb", "../..", "--json", "-n", "'", '"', "%s", "{}", "$HOME", "\udcff", "1e308",
-        "3.5 mm", "hex20", "average", "3.0", "2.5")  # fmt: skip
+WILD = (
+    "",
+    " ",
+    "0",
+    "-0",
+    "-1",
+    "1",
+    "2",
+    "1e9",
+    "1000000000",
+    "-1e9",
+    "1e-9",
+    "1e400",
+    "nan",
+    "inf",
+    "-inf",
+    "true",
+    "false",
+    "None",
+    "[]",
+    "1,5",
+    "1,2,3",
+    ",",
+    ",,",
+    "a,b",
+    "=",
+    "==",
+    "0x10",
+    "1_0",
+    "9" * 400,
+    "9" * 5000,
+    "x" * 5000,
+    "\u0663",
+    "\U0001f600",
+    "\u202e",
+    "\x1b[2J",
+    "\x07",
+    "a\nb",
+    "../..",
+    "--json",
+    "-n",
+    "'",
+    '"',
+    "%s",
+    "{}",
+    "$HOME",
+    "\udcff",
+    "1e308",
+    "3.5 mm",
+    "hex20",
+    "average",
+    "3.0",
+    "2.5",
+)
 #: right and nearly right values of builder options
 SETTINGS = {
     "order": ("1", "2", "3", "12", "13", "2.5", "-1"),
@@ -70,13 +121,53 @@ SETTINGS = {
 }
 _OF = {
     "euler": ("shear", "rotary_inertia", "head", "mass", "kappa", "elements"),
-    "harmonic": ("order", "layers", "edge_layers", "ratio", "size", "refinement", "attachments", "ovalising"),
-    "solid": ("element", "size", "layers", "edge_layers", "radial_layers", "ratio", "around", "graded_size", "refinement", "attachments"),
+    "harmonic": (
+        "order",
+        "layers",
+        "edge_layers",
+        "ratio",
+        "size",
+        "refinement",
+        "attachments",
+        "ovalising",
+    ),
+    "solid": (
+        "element",
+        "size",
+        "layers",
+        "edge_layers",
+        "radial_layers",
+        "ratio",
+        "around",
+        "graded_size",
+        "refinement",
+        "attachments",
+    ),
 }
 _OF["timoshenko"] = _OF["euler"]
-VARY = ("bearing.1.kxx=1e7:1e9:3", "bearing.1.scale=log:0.1:10:3", "bearing.2.position=0.25:0.26:2", "bearing.2.position=0:1:3", "bearing.1.kxx=log:1:0:3", "bearing.1.kxx=1:2:1e9",
-        "bearing.1.scale=log:0.1:10:100000000", "bearing.1.scale=0:1:2", "bearing.9.kxx=1:2:3", "bearing.1.kqq=1:2:3", "bearing.1.kxx=1,2,nan", "bearing.1.kxx=", "bearing.1.kxx", "=", "bearing",
-        "bearing.1.kxx=1e200:1e300:3", "bearing.1.kx_thz=1e9:1e10:2", "bearing.1.position=3,5 mm", "bearing.1.kxx=:::", "bearing.1.scale=-1,1", "bearing.1.kxx=1e8,1e8")  # fmt: skip
+VARY = (
+    "bearing.1.kxx=1e7:1e9:3",
+    "bearing.1.scale=log:0.1:10:3",
+    "bearing.2.position=0.25:0.26:2",
+    "bearing.2.position=0:1:3",
+    "bearing.1.kxx=log:1:0:3",
+    "bearing.1.kxx=1:2:1e9",
+    "bearing.1.scale=log:0.1:10:100000000",
+    "bearing.1.scale=0:1:2",
+    "bearing.9.kxx=1:2:3",
+    "bearing.1.kqq=1:2:3",
+    "bearing.1.kxx=1,2,nan",
+    "bearing.1.kxx=",
+    "bearing.1.kxx",
+    "=",
+    "bearing",
+    "bearing.1.kxx=1e200:1e300:3",
+    "bearing.1.kx_thz=1e9:1e10:2",
+    "bearing.1.position=3,5 mm",
+    "bearing.1.kxx=:::",
+    "bearing.1.scale=-1,1",
+    "bearing.1.kxx=1e8,1e8",
+)
 
 
 def _value(rng: random.Random, good: tuple[str, ...]) -> str:
@@ -86,8 +177,17 @@ def _value(rng: random.Random, good: tuple[str, ...]) -> str:
 def _settings(rng: random.Random, model: str) -> list[str]:
     out = []
     for _ in range(rng.choice((0, 0, 1, 1, 1, 2, 3))):
-        key = rng.choice(_OF.get(model, _OF["harmonic"])) if rng.random() < 0.93 else rng.choice((*SETTINGS, *WILD))
-        out += ["--set", f"{key}={_value(rng, SETTINGS.get(key, ('1',)))}" if rng.random() < 0.97 else rng.choice((key, *WILD))]
+        key = (
+            rng.choice(_OF.get(model, _OF["harmonic"]))
+            if rng.random() < 0.93
+            else rng.choice((*SETTINGS, *WILD))
+        )
+        out += [
+            "--set",
+            f"{key}={_value(rng, SETTINGS.get(key, ('1',)))}"
+            if rng.random() < 0.97
+            else rng.choice((key, *WILD)),
+        ]
     return out
 
 
@@ -106,37 +206,120 @@ def command_line(seed: int, number: int) -> tuple[list[str], dict[str, bytes]]:
     elif kind == "spoilt":
         files["spoilt.toml"] = mutant(seed, rng.randrange(10**9))[2]
     elif kind == "odd":
-        files |= {"empty.toml": b"", "marked.toml": b"\xef\xbb\xbf" + TINY, "wide.toml": TINY.decode().encode("utf-16"), "nul.toml": TINY + b"\0"}
-        files |= {"deep.toml": b"title" + b".a" * 90 + b" = 1\n" + TINY, "twice.toml": TINY + b"\n[port]\n", "large.toml": b"# " + b"x" * 400_000 + b"\n" + TINY}
-        scene = rng.choice((*list(files)[1:], "pipe", "folder", "missing.toml", "/dev/zero", "/dev/null", "/proc/self/mem", "/", "", ".", "x" * 300, "tiny.toml/x", *WILD))
-    model = rng.choices(("euler", "timoshenko", "harmonic", "solid", rng.choice(WILD)), (25, 40, 18, 14, 3))[0]
-    name = rng.choices(("stiffness", "modes", "check", "sweep", "render", "compare", "chart", rng.choice(WILD)), (34, 34, 14, 9, 3, 4, 1, 1))[0]
+        files |= {
+            "empty.toml": b"",
+            "marked.toml": b"\xef\xbb\xbf" + TINY,
+            "wide.toml": TINY.decode().encode("utf-16"),
+            "nul.toml": TINY + b"\0",
+        }
+        files |= {
+            "deep.toml": b"title" + b".a" * 90 + b" = 1\n" + TINY,
+            "twice.toml": TINY + b"\n[port]\n",
+            "large.toml": b"# " + b"x" * 400_000 + b"\n" + TINY,
+        }
+        scene = rng.choice(
+            (
+                *list(files)[1:],
+                "pipe",
+                "folder",
+                "missing.toml",
+                "/dev/zero",
+                "/dev/null",
+                "/proc/self/mem",
+                "/",
+                "",
+                ".",
+                "x" * 300,
+                "tiny.toml/x",
+                *WILD,
+            )
+        )
+    model = rng.choices(
+        ("euler", "timoshenko", "harmonic", "solid", rng.choice(WILD)), (25, 40, 18, 14, 3)
+    )[0]
+    name = rng.choices(
+        ("stiffness", "modes", "check", "sweep", "render", "compare", "chart", rng.choice(WILD)),
+        (34, 34, 14, 9, 3, 4, 1, 1),
+    )[0]
     arguments = [name, scene]
     if name in ("stiffness", "modes", "check", "sweep", "render"):
         arguments += ["-f", model, *_settings(rng, model)]
     if name in ("stiffness", "modes", "check", "sweep", "compare"):
         arguments += _maybe(rng, 0.3, "--json")
     if name == "stiffness":
-        arguments += _maybe(rng, 0.3, "--attachment", _value(rng, ("average", "rigid", "section", "welded")))
+        arguments += _maybe(
+            rng, 0.3, "--attachment", _value(rng, ("average", "rigid", "section", "welded"))
+        )
     elif name == "modes":
-        arguments += _maybe(rng, 0.5, "-n", _value(rng, ("1", "3", "12", "0", "500", "501"))) + _maybe(rng, 0.3, "--max-frequency", _value(rng, ("1000", "1e5", "0.1", "0"))) + _maybe(rng, 0.1, "--count")
+        arguments += (
+            _maybe(rng, 0.5, "-n", _value(rng, ("1", "3", "12", "0", "500", "501")))
+            + _maybe(rng, 0.3, "--max-frequency", _value(rng, ("1000", "1e5", "0.1", "0")))
+            + _maybe(rng, 0.1, "--count")
+        )
     elif name == "sweep":
         for _ in range(rng.choice((1, 1, 2))):
             arguments += ["--vary", _value(rng, VARY)]
-        arguments += _maybe(rng, 0.9, "--out", _value(rng, ("rows.csv", "rows.txt", "new/rows.csv", "tiny.toml", "folder", "/dev/full")))
-        arguments += _maybe(rng, 0.2, "--sample", _value(rng, ("1", "5", "0"))) + _maybe(rng, 0.2, "--seed", _value(rng, ("3", "-1"))) + _maybe(rng, 0.2, "-n", _value(rng, ("1", "4", "0")))
-        arguments += _maybe(rng, 0.2, "--tolerance", _value(rng, ("1e-3", "1", "0"))) + _maybe(rng, 0.1, "--jobs", rng.choice(("0", "-1", "x", "nan"))) + _maybe(rng, 0.05, "--overwrite")
+        arguments += _maybe(
+            rng,
+            0.9,
+            "--out",
+            _value(
+                rng, ("rows.csv", "rows.txt", "new/rows.csv", "tiny.toml", "folder", "/dev/full")
+            ),
+        )
+        arguments += (
+            _maybe(rng, 0.2, "--sample", _value(rng, ("1", "5", "0")))
+            + _maybe(rng, 0.2, "--seed", _value(rng, ("3", "-1")))
+            + _maybe(rng, 0.2, "-n", _value(rng, ("1", "4", "0")))
+        )
+        arguments += (
+            _maybe(rng, 0.2, "--tolerance", _value(rng, ("1e-3", "1", "0")))
+            + _maybe(rng, 0.1, "--jobs", rng.choice(("0", "-1", "x", "nan")))
+            + _maybe(rng, 0.05, "--overwrite")
+        )
     elif name == "render":  # what is right takes seconds to draw: only what is not
-        arguments += ["--mode", _value(rng, ("banana 7", "bending 99", "rigid", "")), *_maybe(rng, 0.5, "--out", rng.choice(("x.png", "tiny.toml/x.png", "folder", "")))]
+        arguments += [
+            "--mode",
+            _value(rng, ("banana 7", "bending 99", "rigid", "")),
+            *_maybe(rng, 0.5, "--out", rng.choice(("x.png", "tiny.toml/x.png", "folder", ""))),
+        ]
     elif name == "compare":
-        arguments += ["--no-renders", "--models", _value(rng, ("euler", "timoshenko", "lumped", "lumped,euler", "euler,banana", "euler,euler", "solid")), "--out", rng.choice(("out", "tiny.toml", "a/b", "/dev/null"))]
+        arguments += [
+            "--no-renders",
+            "--models",
+            _value(
+                rng,
+                (
+                    "euler",
+                    "timoshenko",
+                    "lumped",
+                    "lumped,euler",
+                    "euler,banana",
+                    "euler,euler",
+                    "solid",
+                ),
+            ),
+            "--out",
+            rng.choice(("out", "tiny.toml", "a/b", "/dev/null")),
+        ]
         arguments += _maybe(rng, 0.2, "--solid-element", _value(rng, ("hex20", "tet11")))
     elif name == "chart":
-        arguments += rng.choice((["--runs", "0"], ["--budget", "-1"], ["--budget", "nan"], ["--runs", "x"], ["--out", "tiny.toml"]))
+        arguments += rng.choice(
+            (
+                ["--runs", "0"],
+                ["--budget", "-1"],
+                ["--budget", "nan"],
+                ["--runs", "x"],
+                ["--out", "tiny.toml"],
+            )
+        )
     if rng.random() < 0.04:
         rng.shuffle(arguments)
     if rng.random() < 0.04:
-        arguments.insert(rng.randrange(len(arguments) + 1), rng.choice((*WILD, "--help", "-h", "--banana", "--set", "--json")))
+        arguments.insert(
+            rng.randrange(len(arguments) + 1),
+            rng.choice((*WILD, "--help", "-h", "--banana", "--set", "--json")),
+        )
     if rng.random() < 0.03:
         del arguments[rng.randrange(len(arguments))]
     # a null byte cannot be part of an argument, and a process of its own would get these bytes as surrogates

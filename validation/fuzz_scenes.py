@@ -1,6 +1,6 @@
 """Fuzz of scene files and command lines: each is refused in plain sentences or leads to finite numbers, and leaves nothing half done.
 
-    python validation/fuzz_scenes.py [--cases 10000] [--seed 1] [--commands 0.4]
+    python -m validation.fuzz_scenes [--cases 10000] [--seed 1] [--commands 0.4]
 
 A *finding* is anything else: an exception that is not raised on purpose (a user would see a traceback), a warning, a number that is not
 finite, a message that is not fit for a terminal or does not name the file, more time than `LIMIT` or `COMMAND_LIMIT`, or a command that
@@ -29,20 +29,17 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
-sys.path.insert(0, str(Path(__file__).resolve().parent))
+import numpy as np
 
-from common import ROOT, results_folder, show, write_rows  # noqa: E402  (first of all: it pins BLAS to one thread)
-
-import numpy as np  # noqa: E402
-from fuzz_commands import ENVIRONMENT, command_line, put  # noqa: E402
-from fuzz_mutations import mutant  # noqa: E402
-
-from solidgear.check import check_scene  # noqa: E402
-from solidgear.errors import TOLD, SceneError, SolidgearError  # noqa: E402
-from solidgear.fidelity import build  # noqa: E402
-from solidgear.scene_file import load  # noqa: E402
-from solidgear.solve.modes import modes  # noqa: E402
-from solidgear.solve.statics import condense  # noqa: E402
+from solidgear.check import check_scene
+from solidgear.errors import TOLD, SceneError, SolidgearError
+from solidgear.fidelity import build
+from solidgear.scene_file import load
+from solidgear.solve.modes import modes
+from solidgear.solve.statics import condense
+from validation.common import ROOT, results_folder, show, write_rows
+from validation.fuzz_commands import ENVIRONMENT, command_line, put
+from validation.fuzz_mutations import mutant
 
 # s of processor time, since wall time would blame the program for a busy machine; of a file, check of a thin tube included, and of a command line
 LIMIT, COMMAND_LIMIT = 5.0, 30.0
@@ -63,7 +60,11 @@ def watched(limit: float) -> Iterator[None]:
 
     old = {number: signal.signal(number, stop) for number in (signal.SIGPROF, signal.SIGALRM)}
     soft, hard = resource.getrlimit(resource.RLIMIT_AS)
-    held = int(Path("/proc/self/statm").read_text().split()[0]) * resource.getpagesize() if Path("/proc/self/statm").exists() else 0
+    held = (
+        int(Path("/proc/self/statm").read_text().split()[0]) * resource.getpagesize()
+        if Path("/proc/self/statm").exists()
+        else 0
+    )
     resource.setrlimit(resource.RLIMIT_AS, (held + ROOM if held else soft, hard))
     signal.setitimer(signal.ITIMER_PROF, limit)
     signal.setitimer(signal.ITIMER_REAL, max(STUCK, 2 * limit))
@@ -100,20 +101,31 @@ def use(path: Path, harmonic: bool = False) -> Outcome:
     try:
         with watched(LIMIT):
             scene = load(path)
-            for fidelity, options in (("euler", {}), ("harmonic", {"order": 2, "layers": 1}))[: 1 + harmonic]:
+            for fidelity, options in (("euler", {}), ("harmonic", {"order": 2, "layers": 1}))[
+                : 1 + harmonic
+            ]:
                 stage = fidelity
                 body = build(scene, fidelity, **options)
                 found = condense(body, scene, scene.port.name)
                 values = modes(body, scene, n=scene.ask.modes).frequency_hz
                 if not (np.isfinite(found.stiffness).all() and np.isfinite(values).all()):
                     return Outcome("finding", stage, "a result is not finite")
-                json.dumps({"scene": scene.as_dict(), "check": check_scene(scene, body) if harmonic else None, "frequencies": values.tolist()}, allow_nan=False)
+                json.dumps(
+                    {
+                        "scene": scene.as_dict(),
+                        "check": check_scene(scene, body) if harmonic else None,
+                        "frequencies": values.tolist(),
+                    },
+                    allow_nan=False,
+                )
     except SolidgearError as error:
         return _judged(error, path, stage)
     except Overrun:
         return Outcome("finding", stage, f"more than {LIMIT:g} s of processor time")
     except Exception as error:
-        return Outcome("finding", stage, f"{type(error).__name__}: {error}"[:300], traceback.format_exc())
+        return Outcome(
+            "finding", stage, f"{type(error).__name__}: {error}"[:300], traceback.format_exc()
+        )
     return Outcome("accepted", stage)
 
 
@@ -122,10 +134,15 @@ def _judged(error: SolidgearError, path: Path, stage: str) -> Outcome:
     lines = str(error).splitlines()
     count = len(error.problems) if isinstance(error, SceneError) and stage == "load" else 1
     faults = {
-        "is not one line for each problem": len(lines) != (1 if count == 1 else 1 + min(count, TOLD) + (count > TOLD)),
-        "does not name the file": stage == "load" and not all(path.name in line for line in lines[: 1 + TOLD]),
-        "is not fit for a terminal": any(not line.isprintable() or len(line) > 1000 for line in lines),
-        "speaks of the program's own parts": "pydantic" in str(error) or "Value error" in str(error),
+        "is not one line for each problem": len(lines)
+        != (1 if count == 1 else 1 + min(count, TOLD) + (count > TOLD)),
+        "does not name the file": stage == "load"
+        and not all(path.name in line for line in lines[: 1 + TOLD]),
+        "is not fit for a terminal": any(
+            not line.isprintable() or len(line) > 1000 for line in lines
+        ),
+        "speaks of the program's own parts": "pydantic" in str(error)
+        or "Value error" in str(error),
     }
     for fault, true in faults.items():
         if true:
@@ -142,7 +159,12 @@ def command(arguments: list[str], folder: Path) -> tuple[int, str, str, list[Pat
     old, before = sys.argv, set(folder.rglob("*"))
     sys.argv = ["solidgear", *arguments]
     try:
-        with watched(COMMAND_LIMIT), contextlib.redirect_stdout(out), contextlib.redirect_stderr(err), contextlib.chdir(folder):
+        with (
+            watched(COMMAND_LIMIT),
+            contextlib.redirect_stdout(out),
+            contextlib.redirect_stderr(err),
+            contextlib.chdir(folder),
+        ):
             main()
         code = 0
     except SystemExit as error:
@@ -162,7 +184,11 @@ def use_command(path: Path, expected: str) -> Outcome:
         if outcome.kind == "finding":
             return outcome
         if outcome.kind != expected:
-            return Outcome("finding", outcome.stage, f"{expected} by the library, {outcome.kind} by the command: {outcome.sentence!r}")
+            return Outcome(
+                "finding",
+                outcome.stage,
+                f"{expected} by the library, {outcome.kind} by the command: {outcome.sentence!r}",
+            )
     return Outcome(expected, f"command {runs[-1][0]}")
 
 
@@ -177,8 +203,17 @@ def use_arguments(arguments: list[str], folder: Path) -> Outcome:
     except Overrun:
         return Outcome("finding", stage, f"more than {COMMAND_LIMIT:g} s of processor time")
     except Exception as error:
-        return Outcome("finding", stage, f"{type(error).__name__}: {error}"[:300], traceback.format_exc())
-    return Outcome("refused" if code else "accepted", stage, err[:300] if code else "", _sort(err.removeprefix("solidgear: ").split(": ")[-1] if code == 1 else "usage" * (code == 2)))
+        return Outcome(
+            "finding", stage, f"{type(error).__name__}: {error}"[:300], traceback.format_exc()
+        )
+    return Outcome(
+        "refused" if code else "accepted",
+        stage,
+        err[:300] if code else "",
+        _sort(
+            err.removeprefix("solidgear: ").split(": ")[-1] if code == 1 else "usage" * (code == 2)
+        ),
+    )
 
 
 def _fault(arguments: list[str], code: int, out: str, err: str, left: list[Path]) -> str:
@@ -187,20 +222,41 @@ def _fault(arguments: list[str], code: int, out: str, err: str, left: list[Path]
     if broken := [f"{path.name}: {why}" for path in left if (why := _not_whole(path))]:
         return f"left half done: {', '.join(broken)}"
     if code == 2:
-        return "" if ("Usage: " in err or "─ Error ─" in err) and not out and not left else f"wrong usage, output {out[:60]!r}, error {err[:200]!r}, left {left}"
+        return (
+            ""
+            if ("Usage: " in err or "─ Error ─" in err) and not out and not left
+            else f"wrong usage, output {out[:60]!r}, error {err[:200]!r}, left {left}"
+        )
     # what was checked or compared may be answered in full and still end with 1: a fault of the mesh, or no model that could be solved
     answered = code == 0 or code == 1 and out and arguments[0] in ("check", "compare")
     if not answered:
         lines = err.splitlines()
         listed = re.match(r"solidgear: \d+ problems in ", err)
-        said = [line for line in lines if not re.match(r" *\d+\.\d s  ", line)]  # stages that were reached are told as they come
-        if code != 1 or out or not said or not said[0].startswith("solidgear: ") or len(said) != 1 and not listed:
+        said = [
+            line for line in lines if not re.match(r" *\d+\.\d s  ", line)
+        ]  # stages that were reached are told as they come
+        if (
+            code != 1
+            or out
+            or not said
+            or not said[0].startswith("solidgear: ")
+            or len(said) != 1
+            and not listed
+        ):
             return f"exit code {code}, output {out[:60]!r}, error {err[:200]!r}"
         if not all(line.isprintable() and len(line) < 1500 for line in said):
             return f"not fit for a terminal: {err[:200]!r}"
         return f"refused, and left {', '.join(p.name for p in left)}" if left else ""
-    if "--json" in arguments and "--help" not in arguments and "-h" not in arguments and arguments[0] != "render":
-        json.loads(out, parse_constant=lambda word: (_ for _ in ()).throw(ValueError(f"{word} in the JSON")))
+    if (
+        "--json" in arguments
+        and "--help" not in arguments
+        and "-h" not in arguments
+        and arguments[0] != "render"
+    ):
+        json.loads(
+            out,
+            parse_constant=lambda word: (_ for _ in ()).throw(ValueError(f"{word} in the JSON")),
+        )
     return "" if out.strip() else "no answer and no refusal"
 
 
@@ -218,7 +274,9 @@ def _not_whole(path: Path) -> str:
             rows = list(csv.reader(io.StringIO(text)))
             if not text.endswith("\n") or len({len(row) for row in rows}) > 1:
                 return "a torn row"
-        elif path.suffix == ".html" and not path.read_text(encoding="utf-8").rstrip().endswith("</html>"):
+        elif path.suffix == ".html" and not path.read_text(encoding="utf-8").rstrip().endswith(
+            "</html>"
+        ):
             return "a torn page"
     except ValueError as error:
         return f"{type(error).__name__}"
@@ -226,7 +284,15 @@ def _not_whole(path: Path) -> str:
 
 
 # ------------------------------------------------------------------------------------------------- a run
-def run(cases: int, seed: int, *, commands: float = 0.4, every_command: int = 20, every_harmonic: int = 20, progress: Callable[[str], None] | None = None) -> list[dict]:
+def run(
+    cases: int,
+    seed: int,
+    *,
+    commands: float = 0.4,
+    every_command: int = 20,
+    every_harmonic: int = 20,
+    progress: Callable[[str], None] | None = None,
+) -> list[dict]:
     """Rows of a whole run, one a case.
 
     Parameters
@@ -237,7 +303,9 @@ def run(cases: int, seed: int, *, commands: float = 0.4, every_command: int = 20
     every_command, every_harmonic : int
         Of the files, every so many-th also goes through the command line, or through the harmonic solid.
     """
-    load(ROOT / "geometry" / "pinion_overhung.toml")  # the first text with a unit imports pint, which is not the case's fault
+    load(
+        ROOT / "geometry" / "pinion_overhung.toml"
+    )  # the first text with a unit imports pint, which is not the case's fault
     rows: list[dict] = []
     lines = round(cases * commands)
     before = {key: os.environ.get(key) for key in ENVIRONMENT}
@@ -258,7 +326,9 @@ def run(cases: int, seed: int, *, commands: float = 0.4, every_command: int = 20
     return rows
 
 
-def _file_case(folder: Path, seed: int, number: int, every_command: int, every_harmonic: int) -> dict:
+def _file_case(
+    folder: Path, seed: int, number: int, every_command: int, every_harmonic: int
+) -> dict:
     scene, mutations, text = mutant(seed, number)
     path = folder / "spoilt.toml"
     path.write_bytes(text)
@@ -273,32 +343,70 @@ def _command_case(folder: Path, seed: int, number: int) -> dict:
     arguments, files = command_line(seed, number)
     put(files, folder)
     outcome = use_arguments(arguments, folder)
-    return _row(number, shlex.join(a if len(a) < 60 else a[:50] + "..." for a in arguments), outcome)
+    return _row(
+        number, shlex.join(a if len(a) < 60 else a[:50] + "..." for a in arguments), outcome
+    )
 
 
 def _row(number: int, what: str, outcome: Outcome) -> dict:
-    return {"case": number, "what": what, "outcome": outcome.kind, "stage": outcome.stage, "sentence": outcome.sentence, "detail": outcome.detail}
+    return {
+        "case": number,
+        "what": what,
+        "outcome": outcome.kind,
+        "stage": outcome.stage,
+        "sentence": outcome.sentence,
+        "detail": outcome.detail,
+    }
 
 
 def main() -> int:
     """Command line; the exit code is 1 if anything was found."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
     parser.add_argument("--cases", type=int, default=10_000)
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--commands", type=float, default=0.4)
     options = parser.parse_args()
-    rows = run(options.cases, options.seed, commands=options.commands, progress=lambda line: print(line, file=sys.stderr, flush=True))
+    rows = run(
+        options.cases,
+        options.seed,
+        commands=options.commands,
+        progress=lambda line: print(line, file=sys.stderr, flush=True),
+    )
     folder = results_folder("fuzz_scenes")
-    write_rows(folder / "rows.csv", [{key: str(value).encode("unicode_escape").decode() for key, value in row.items()} for row in rows])
-    kinds = Counter((r["outcome"], r["stage"], r["detail"] if r["outcome"] == "refused" else r["sentence"][:70]) for r in rows)
-    table = [{"outcome": a, "stage": b, "sentence": c, "cases": n} for (a, b, c), n in sorted(kinds.items(), key=lambda item: (item[0][0], -item[1]))]
+    write_rows(
+        folder / "rows.csv",
+        [
+            {key: str(value).encode("unicode_escape").decode() for key, value in row.items()}
+            for row in rows
+        ],
+    )
+    kinds = Counter(
+        (r["outcome"], r["stage"], r["detail"] if r["outcome"] == "refused" else r["sentence"][:70])
+        for r in rows
+    )
+    table = [
+        {"outcome": a, "stage": b, "sentence": c, "cases": n}
+        for (a, b, c), n in sorted(kinds.items(), key=lambda item: (item[0][0], -item[1]))
+    ]
     show(f"{options.cases} cases, seed {options.seed}", table)
     total = Counter(r["outcome"] for r in rows)
-    print(f"accepted {total['accepted']}, refused {total['refused']} in {sum(k[0] == 'refused' for k in kinds)} kinds of sentence, findings {total['finding']}")
+    print(
+        f"accepted {total['accepted']}, refused {total['refused']} in {sum(k[0] == 'refused' for k in kinds)} kinds of sentence, findings {total['finding']}"
+    )
     for row in (r for r in rows if r["outcome"] == "finding"):
-        if not row["stage"].startswith("command") or row["case"] < options.cases * (1 - options.commands):
-            (folder / f"finding_{options.seed}_{row['case']}.toml").write_bytes(mutant(options.seed, row["case"])[2])
-        print(f"case {row['case']}: {row['what']}: {row['sentence']}".encode("unicode_escape").decode())
+        if not row["stage"].startswith("command") or row["case"] < options.cases * (
+            1 - options.commands
+        ):
+            (folder / f"finding_{options.seed}_{row['case']}.toml").write_bytes(
+                mutant(options.seed, row["case"])[2]
+            )
+        print(
+            f"case {row['case']}: {row['what']}: {row['sentence']}".encode(
+                "unicode_escape"
+            ).decode()
+        )
     return 1 if total["finding"] else 0
 
 

@@ -4,7 +4,7 @@ Every mutation is one expression or statement of one function, found by the synt
 neither layout nor what stands around it matters.  It is replaced in a copy of the source; its test
 must pass before and fail after.
 
-    python validation/mutations.py [--only WORD] [--jobs 2]
+    python -m validation.mutations [--only WORD] [--jobs 2]
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from pathlib import Path
 
-from common import ROOT, results_folder, show, write_rows
+from validation.common import ROOT, results_folder, show, write_rows
 
 PARTS = ("solidgear", "geometry", "tests", "validation", "pyproject.toml")
 

@@ -3,7 +3,7 @@
 Models: harmonic solid at its reference setting and finer, 3D hexahedra and tetrahedra, Euler and Timoshenko beams.
 Prints and writes: error of every model against the reference, attachment variants, the like-for-like beam gap.
 
-    python validation/overhung_pinion.py [--fine]
+    python -m validation.overhung_pinion [--fine]
 """
 
 from __future__ import annotations
@@ -11,11 +11,10 @@ from __future__ import annotations
 import argparse
 import time
 
-from common import ROOT, results_folder, show, write_rows
-
 import solidgear as sg
 from solidgear.comparison import rigid_seats
 from solidgear.evidence.quantities import change, measure
+from validation.common import ROOT, results_folder, show, write_rows
 
 # Independent solution, polynomial order 10 on five graded layers, digits as published with it; |K_z,thx| is given.
 REFERENCE = {
@@ -67,7 +66,11 @@ def against_reference(scene, fine: bool) -> list[dict]:
     rows = []
     for fidelity, options in cases:
         values, dofs, seconds = solve(scene, fidelity, **options)
-        row = {"model": " ".join([fidelity, *(f"{k}={v}" for k, v in options.items())]), "dofs": dofs, "seconds": round(seconds, 2)}
+        row = {
+            "model": " ".join([fidelity, *(f"{k}={v}" for k, v in options.items())]),
+            "dofs": dofs,
+            "seconds": round(seconds, 2),
+        }
         for name, value in REFERENCE.items():
             if name in values:
                 row[name] = f"{abs(values[name]) / value - 1:+.1e}"
@@ -81,15 +84,27 @@ def attachments(scene) -> list[dict]:
     for width in (0.010, 0.020, 0.040):
         wide = scene.with_seat_width(width)
         mean, _, _ = solve(wide, "harmonic")
-        for what, other in (("seats", rigid_seats(wide)), ("seats and lumped point", wide.with_attachment("rigid"))):
+        for what, other in (
+            ("seats", rigid_seats(wide)),
+            ("seats and lumped point", wide.with_attachment("rigid")),
+        ):
             stiff, _, _ = solve(other, "harmonic")
             row = {"case": f"rigid {what} over average, seats {1e3 * width:.0f} mm"}
-            rows.append(row | {q: f"{100 * change(stiff, mean, q):+.2f} %" for q in ("bending 1", "K_zz", "C_zz")})
+            rows.append(
+                row
+                | {
+                    q: f"{100 * change(stiff, mean, q):+.2f} %"
+                    for q in ("bending 1", "K_zz", "C_zz")
+                }
+            )
     section, _, _ = solve(scene.with_attachment("section"), "harmonic")
     for kappa in ("hutchinson", "cowper"):
         beam, _, _ = solve(scene, "timoshenko", kappa=kappa)
         row = {"case": f"Timoshenko ({kappa}) over harmonic, section means"}
-        rows.append(row | {q: f"{100 * change(beam, section, q):+.2f} %" for q in ("bending 1", "K_zz", "C_zz")})
+        rows.append(
+            row
+            | {q: f"{100 * change(beam, section, q):+.2f} %" for q in ("bending 1", "K_zz", "C_zz")}
+        )
     return rows
 
 
@@ -99,7 +114,10 @@ def main() -> None:
     fine = parser.parse_args().fine
     scene = sg.load(ROOT / "geometry" / "pinion_overhung.toml")
     folder = results_folder("overhung_pinion")
-    for name, rows in (("against_reference", against_reference(scene, fine)), ("attachments", attachments(scene))):
+    for name, rows in (
+        ("against_reference", against_reference(scene, fine)),
+        ("attachments", attachments(scene)),
+    ):
         show(name.replace("_", " "), rows)
         write_rows(folder / f"{name}.csv", rows)
 

@@ -1,6 +1,6 @@
 """A race against what a user would pick instead, on the same mesh and at equal error: CalculiX and sfepy for the solid, ROSS for the beam.
 
-    python validation/speed_accuracy.py [--runs 3] [--quick] [--only mesh,error,sfepy,ross] [--limit 900]
+    python -m validation.speed_accuracy [--runs 3] [--quick] [--only mesh,error,sfepy,ross] [--limit 900]
 
 Lanes run in turns, so that a noisy spell of the machine hits all alike.  Answers are compared before times are: a peer whose answers do not
 agree gets no ratio.  Writes rows.csv, ratios.csv, answers.csv, seconds.png and summary.txt; Ctrl-C keeps what has been run so far.
@@ -15,15 +15,15 @@ from __future__ import annotations
 
 import argparse
 
-from common import ROOT, results_folder, show, write_rows
-from peers import calculix, ours, ross_peer, sfepy_peer
-from peers import problem as peer_problem
-from peers.lanes import Figure, Lane, Sample, compliance_gap, frequency_gap
-from peers.process import PeerError, cores
-from peers.race import Race
-
 import numpy as np
+
 from solidgear.environment import environment
+from validation.common import ROOT, results_folder, show, write_rows
+from validation.peers import calculix, ours, ross_peer, sfepy_peer
+from validation.peers import problem as peer_problem
+from validation.peers.lanes import Figure, Lane, Sample, compliance_gap, frequency_gap
+from validation.peers.process import PeerError, cores
+from validation.peers.race import Race
 
 SCENE = ROOT / "geometry" / "pinion_overhung.toml"
 COUNTED = ("factor", "loads", "modes")
@@ -57,21 +57,63 @@ REDUCED = (
 
 # Allowed differences of answers, and why.
 WHY = {
-    "C3D10": (1e-4, "C3D10 takes 4 points for stiffness and mass (1.4e-5 at the tenth mode), ours are exact; seven digits are printed"),
-    "C3D20": (5e-5, "27 points against our 64: the same on straight elements, not quite on curved ones; seven digits are printed"),
+    "C3D10": (
+        1e-4,
+        "C3D10 takes 4 points for stiffness and mass (1.4e-5 at the tenth mode), ours are exact; seven digits are printed",
+    ),
+    "C3D20": (
+        5e-5,
+        "27 points against our 64: the same on straight elements, not quite on curved ones; seven digits are printed",
+    ),
     "coarse": (2e-3, "quadrature of CalculiX on the coarse curved elements of a quick run"),
-    "sfepy": (1e-6, "the same straight tetrahedra, integrated exactly by both: what is left is the eigensolvers' tolerance"),
-    "ross": (1e-3, "ROSS's elements average a tapered section and lack our internal unknowns: an error that falls with the square of the element length"),
+    "sfepy": (
+        1e-6,
+        "the same straight tetrahedra, integrated exactly by both: what is left is the eigensolvers' tolerance",
+    ),
+    "ross": (
+        1e-3,
+        "ROSS's elements average a tapered section and lack our internal unknowns: an error that falls with the square of the element length",
+    ),
 }
 
 
 # ------------------------------------------------------------------------------------------------- heats
 def same_mesh(race: Race) -> None:
     """TET10 with rigid seats: factor, six loads and ten modes against CalculiX."""
-    heat, scene, options = "same mesh", ours.held(SCENE, "rigid"), COARSE if race.quick else TETRAHEDRA
-    fast = mine(race, heat, "solidgear", scene, "solid", options, counted=COUNTED, note="factor, six loads and ten modes count")
-    mine(race, heat, "solidgear, averaged seats", ours.held(SCENE, "average"), "solid", options, counted=COUNTED, note="the scene's own tie; the same stages count")
-    whole = process(race, heat, "solidgear, whole process", "rigid", "solid", options, note="with imports, mesh and assembly")
+    heat, scene, options = (
+        "same mesh",
+        ours.held(SCENE, "rigid"),
+        COARSE if race.quick else TETRAHEDRA,
+    )
+    fast = mine(
+        race,
+        heat,
+        "solidgear",
+        scene,
+        "solid",
+        options,
+        counted=COUNTED,
+        note="factor, six loads and ten modes count",
+    )
+    mine(
+        race,
+        heat,
+        "solidgear, averaged seats",
+        ours.held(SCENE, "average"),
+        "solid",
+        options,
+        counted=COUNTED,
+        note="the scene's own tie; the same stages count",
+    )
+    whole = process(
+        race,
+        heat,
+        "solidgear, whole process",
+        "rigid",
+        "solid",
+        options,
+        note="with imports, mesh and assembly",
+    )
     if missing := calculix.present():
         race.skip(f"CalculiX: {missing}")
         return
@@ -80,16 +122,34 @@ def same_mesh(race: Race) -> None:
 
     def verify(a):
         allowed = WHY["coarse" if race.quick else "C3D10"]
-        race.check("frequencies of CalculiX C3D10", frequency_gap(a.frequency_hz, first.modes), *allowed)
+        race.check(
+            "frequencies of CalculiX C3D10", frequency_gap(a.frequency_hz, first.modes), *allowed
+        )
         if a.compliance is not None:
-            race.check("6x6 compliance of CalculiX C3D10", compliance_gap(a.compliance, first.compliance), *allowed)
+            race.check(
+                "6x6 compliance of CalculiX C3D10",
+                compliance_gap(a.compliance, first.compliance),
+                *allowed,
+            )
 
     choose_threads(race, problem, "C3D10")
     modes = ccx(race, heat, "CalculiX C3D10, ten modes", problem, "C3D10", verify, loads=False)
-    loads = ccx(race, heat, "CalculiX C3D10, ten modes + six loads", problem, "C3D10", verify, loads=True)
+    loads = ccx(
+        race, heat, "CalculiX C3D10, ten modes + six loads", problem, "C3D10", verify, loads=True
+    )
     race.figures += [
-        Figure("same mesh: CalculiX's ten modes alone / our factor + six loads + ten modes", modes, fast, 4.0),
-        Figure("same mesh: CalculiX's modes and six loads / our factor + six loads + ten modes", loads, fast, 15.0),
+        Figure(
+            "same mesh: CalculiX's ten modes alone / our factor + six loads + ten modes",
+            modes,
+            fast,
+            4.0,
+        ),
+        Figure(
+            "same mesh: CalculiX's modes and six loads / our factor + six loads + ten modes",
+            loads,
+            fast,
+            15.0,
+        ),
         Figure("the same, with our assembly", loads, fast, None, ("assembly", *COUNTED)),
         Figure("the same, with our imports, mesh and assembly (whole process)", loads, whole),
     ]
@@ -97,31 +157,72 @@ def same_mesh(race: Race) -> None:
 
 def equal_error(race: Race) -> None:
     """From the scene to compliance and ten modes, within the target of the refined harmonic reference."""
-    heat, scene, target = "equal error", ours.held(SCENE, "average"), COARSE_TARGET if race.quick else TARGET
+    heat, scene, target = (
+        "equal error",
+        ours.held(SCENE, "average"),
+        COARSE_TARGET if race.quick else TARGET,
+    )
     reference = ours.solve(scene, "harmonic", {"order": 4} if race.quick else REFERENCE)
-    race.say(f"reference: C_zz {reference.compliance[2, 2]:.8e} m/N, first bending {_first(reference.modes):.4f} Hz; target {target:g}")
+    race.say(
+        f"reference: C_zz {reference.compliance[2, 2]:.8e} m/N, first bending {_first(reference.modes):.4f} Hz; target {target:g}"
+    )
 
     def errors(compliance, first):
-        ratio = {"C_zz": compliance[2, 2] / reference.compliance[2, 2], "K_zz": np.linalg.inv(compliance)[2, 2] / reference.stiffness[2, 2]}
-        return {k: float(v - 1) for k, v in {**ratio, "f1": first / _first(reference.modes)}.items()}
+        ratio = {
+            "C_zz": compliance[2, 2] / reference.compliance[2, 2],
+            "K_zz": np.linalg.inv(compliance)[2, 2] / reference.stiffness[2, 2],
+        }
+        return {
+            k: float(v - 1) for k, v in {**ratio, "f1": first / _first(reference.modes)}.items()
+        }
 
     def cheapest(fidelity, settings):
         able = []
         for options in settings:
             done = ours.solve(scene, fidelity, options)
             found, seconds = errors(done.compliance, _first(done.modes)), sum(done.stages.values())
-            race.say(f"  {_named(fidelity, options)}: {_told(found)}, {seconds:.2f} s{'' if _worst(found) <= target else ', above the target'}")
+            race.say(
+                f"  {_named(fidelity, options)}: {_told(found)}, {seconds:.2f} s{'' if _worst(found) <= target else ', above the target'}"
+            )
             able += [(seconds, options, done, found)] if _worst(found) <= target else []
         if not able:
             raise PeerError(f"no {fidelity} setting tried comes within {target:g} of the reference")
         return min(able, key=lambda x: x[0])[1:]
 
-    flat = cheapest("harmonic", ({"order": 2, "layers": 2, "edge_layers": 0},) if race.quick else HARMONIC)
+    flat = cheapest(
+        "harmonic", ({"order": 2, "layers": 2, "edge_layers": 0},) if race.quick else HARMONIC
+    )
     full = cheapest("solid", (COARSE_SOLID,) if race.quick else SOLID)
-    fast = mine(race, heat, f"solidgear, {_named('harmonic', flat[0])}", scene, "harmonic", flat[0], note=_told(flat[2]))
-    whole = process(race, heat, "solidgear harmonic, whole process", "average", "harmonic", flat[0], note="with imports")
-    best = mine(race, heat, f"solidgear, {_named('solid', full[0])}", scene, "solid", full[0], note=_told(full[2]))
-    race.figures.append(Figure("equal error: our best 3D / our harmonic, scene to answer", best, fast, 50.0))
+    fast = mine(
+        race,
+        heat,
+        f"solidgear, {_named('harmonic', flat[0])}",
+        scene,
+        "harmonic",
+        flat[0],
+        note=_told(flat[2]),
+    )
+    whole = process(
+        race,
+        heat,
+        "solidgear harmonic, whole process",
+        "average",
+        "harmonic",
+        flat[0],
+        note="with imports",
+    )
+    best = mine(
+        race,
+        heat,
+        f"solidgear, {_named('solid', full[0])}",
+        scene,
+        "solid",
+        full[0],
+        note=_told(full[2]),
+    )
+    race.figures.append(
+        Figure("equal error: our best 3D / our harmonic, scene to answer", best, fast, 50.0)
+    )
     if missing := calculix.present():
         race.skip(f"CalculiX at equal error: {missing}")
         return
@@ -135,23 +236,50 @@ def equal_error(race: Race) -> None:
         def verify(a):
             if kind == "C3D20":
                 allowed = WHY["coarse" if race.quick else "C3D20"]
-                race.check("frequencies of CalculiX C3D20", frequency_gap(a.frequency_hz, solved.modes), *allowed)
-                race.check("6x6 compliance of CalculiX C3D20", compliance_gap(a.compliance, solved.compliance), *allowed)
+                race.check(
+                    "frequencies of CalculiX C3D20",
+                    frequency_gap(a.frequency_hz, solved.modes),
+                    *allowed,
+                )
+                race.check(
+                    "6x6 compliance of CalculiX C3D20",
+                    compliance_gap(a.compliance, solved.compliance),
+                    *allowed,
+                )
             # Pairs do not split on this mesh, so the nearest frequency is the mode meant.
-            found = errors(a.compliance, min(a.frequency_hz, key=lambda f: abs(f - _first(solved.modes))))
+            found = errors(
+                a.compliance, min(a.frequency_hz, key=lambda f: abs(f - _first(solved.modes)))
+            )
             lane.note += f"; {_told(found)}"
             # The same element on the same mesh has our error; rounding of printed digits must not throw it out.
             if _worst(found) > 1.02 * target:
                 raise PeerError(f"above the target: {_told(found)}")
 
-        lane = ccx(race, heat, f"CalculiX {kind}, {3 * len(problem.nodes)} unknowns", problem, kind, verify, loads=True)
+        lane = ccx(
+            race,
+            heat,
+            f"CalculiX {kind}, {3 * len(problem.nodes)} unknowns",
+            problem,
+            kind,
+            verify,
+            loads=True,
+        )
         return lane
 
     same = enter(full[0] if full[0]["element"] == "hex20" else SOLID[2], "C3D20")
     reduced = [enter(options, "C3D20R") for options in ((COARSE_SOLID,) if race.quick else REDUCED)]
     race.figures += [
-        Figure("equal error: CalculiX (C3D20 on our 3D mesh) / our harmonic, scene to answer", same, fast, 200.0),
-        Figure("the same, CalculiX with reduced integration, the fastest mesh that will do", reduced, fast),
+        Figure(
+            "equal error: CalculiX (C3D20 on our 3D mesh) / our harmonic, scene to answer",
+            same,
+            fast,
+            200.0,
+        ),
+        Figure(
+            "the same, CalculiX with reduced integration, the fastest mesh that will do",
+            reduced,
+            fast,
+        ),
         Figure("the same (C3D20), our harmonic as a whole process with imports", same, whole),
     ]
 
@@ -161,7 +289,11 @@ def free_modes(race: Race) -> None:
     if missing := sfepy_peer.present():
         race.skip(f"sfepy: {missing}")
         return
-    heat, scene, options = "free modes", ours.held(SCENE, "average"), COARSE if race.quick else FEWER
+    heat, scene, options = (
+        "free modes",
+        ours.held(SCENE, "average"),
+        COARSE if race.quick else FEWER,
+    )
     first = ours.solve(scene, "solid", options, free=True)
     straight = sfepy_peer.straightened(first.body, scene)
     expected = ours.free(straight)
@@ -169,12 +301,28 @@ def free_modes(race: Race) -> None:
     def call():
         a = sfepy_peer.solve(first.body, scene, 10, limit=race.limit)
         race.versions["sfepy"] = a["version"]
-        race.check("frequencies of sfepy, straight sides", frequency_gap(a["frequency_hz"], expected), *WHY["sfepy"])
+        race.check(
+            "frequencies of sfepy, straight sides",
+            frequency_gap(a["frequency_hz"], expected),
+            *WHY["sfepy"],
+        )
         return Sample(a["seconds"], a["cpu"])
 
-    fast = mine(race, heat, "solidgear, TET10", scene, "solid", options, free=True, note="mesh included")
-    slow = race.add(Lane(heat, "sfepy, TET10 (eigsh on SuperLU)", call, first.body.size, note="wall seconds without imports and mesh"))
-    race.figures.append(Figure("free modes: sfepy's assembly and ten modes / ours with mesh", slow, fast))
+    fast = mine(
+        race, heat, "solidgear, TET10", scene, "solid", options, free=True, note="mesh included"
+    )
+    slow = race.add(
+        Lane(
+            heat,
+            "sfepy, TET10 (eigsh on SuperLU)",
+            call,
+            first.body.size,
+            note="wall seconds without imports and mesh",
+        )
+    )
+    race.figures.append(
+        Figure("free modes: sfepy's assembly and ten modes / ours with mesh", slow, fast)
+    )
 
 
 def beams(race: Race) -> None:
@@ -184,7 +332,11 @@ def beams(race: Race) -> None:
         return
     import solidgear as sg
 
-    heat, scene, options = "beam", ross_peer.tiltless(ours.held(SCENE, "average")), {"kappa": "cowper"}
+    heat, scene, options = (
+        "beam",
+        ross_peer.tiltless(ours.held(SCENE, "average")),
+        {"kappa": "cowper"},
+    )
     body = sg.build(scene, "timoshenko", **options)
     expected = sg.modes(body, scene, n=10)
     data = ross_peer.rotor(scene, body)
@@ -192,11 +344,32 @@ def beams(race: Race) -> None:
     def call():
         a = ross_peer.solve(data, limit=race.limit)
         race.versions["ROSS"] = a["version"]
-        race.check("frequencies of ROSS", frequency_gap(np.array(a["frequency_hz"]), expected), *WHY["ross"])
+        race.check(
+            "frequencies of ROSS",
+            frequency_gap(np.array(a["frequency_hz"]), expected),
+            *WHY["ross"],
+        )
         return Sample({"model and modes": a["seconds"]}, a["cpu"])
 
-    fast = mine(race, heat, "solidgear, Timoshenko beam", scene, "timoshenko", options, counted=("mesh", "assembly", "modes"), note="no loads on either side")
-    slow = race.add(Lane(heat, "ROSS, Timoshenko beam", call, 6 * len(body.geometry), note="best of three; wall seconds without imports"))
+    fast = mine(
+        race,
+        heat,
+        "solidgear, Timoshenko beam",
+        scene,
+        "timoshenko",
+        options,
+        counted=("mesh", "assembly", "modes"),
+        note="no loads on either side",
+    )
+    slow = race.add(
+        Lane(
+            heat,
+            "ROSS, Timoshenko beam",
+            call,
+            6 * len(body.geometry),
+            note="best of three; wall seconds without imports",
+        )
+    )
     race.figures.append(Figure("beam: ROSS / ours, model and modes", slow, fast))
 
 
@@ -226,13 +399,23 @@ def ccx(race, heat, who, problem, kind, verify, *, loads) -> Lane:
     """A lane of CalculiX: whole process, deck given."""
 
     def call():
-        a = calculix.solve(problem, kind, modes=10, loads=loads, limit=race.limit, threads=race.threads)
+        a = calculix.solve(
+            problem, kind, modes=10, loads=loads, limit=race.limit, threads=race.threads
+        )
         race.versions["CalculiX"] = a.version
         if not lane.samples:
             verify(a)
         return Sample({"whole process": a.seconds}, a.cpu)
 
-    lane = race.add(Lane(heat, who, call, 3 * len(problem.nodes), note=f"{race.threads} thread{'s' * (race.threads > 1)}"))
+    lane = race.add(
+        Lane(
+            heat,
+            who,
+            call,
+            3 * len(problem.nodes),
+            note=f"{race.threads} thread{'s' * (race.threads > 1)}",
+        )
+    )
     return lane
 
 
@@ -241,11 +424,17 @@ def choose_threads(race, problem, kind) -> None:
     seconds = {}
     for threads in sorted({1, cores()}):
         try:
-            seconds[threads] = calculix.solve(problem, kind, modes=10, limit=race.limit, threads=threads).seconds
+            seconds[threads] = calculix.solve(
+                problem, kind, modes=10, limit=race.limit, threads=threads
+            ).seconds
         except PeerError as error:
             race.say(f"CalculiX with {threads} threads: {error}")
     race.threads = min(seconds, key=seconds.get, default=1)
-    race.say("CalculiX, ten modes: " + ", ".join(f"{s:.1f} s with {t} thread{'s' * (t > 1)}" for t, s in seconds.items()) + f"; raced with {race.threads}")
+    race.say(
+        "CalculiX, ten modes: "
+        + ", ".join(f"{s:.1f} s with {t} thread{'s' * (t > 1)}" for t, s in seconds.items())
+        + f"; raced with {race.threads}"
+    )
 
 
 def _first(modes) -> float:
@@ -270,7 +459,11 @@ HEATS = {"mesh": same_mesh, "error": equal_error, "sfepy": free_modes, "ross": b
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--runs", type=int, default=3, help="rounds; every lane runs once a round")
-    parser.add_argument("--quick", action="store_true", help="small meshes and a wide target: does it work, not how fast")
+    parser.add_argument(
+        "--quick",
+        action="store_true",
+        help="small meshes and a wide target: does it work, not how fast",
+    )
     parser.add_argument("--only", default=",".join(HEATS), help=f"heats, of {', '.join(HEATS)}")
     parser.add_argument("--limit", type=float, default=900.0, help="seconds a peer may take")
     asked = parser.parse_args()

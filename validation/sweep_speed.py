@@ -1,6 +1,6 @@
 """Re-bearing sweep against separate runs: how much faster, and how far apart.
 
-    python validation/sweep_speed.py [--samples 20] [--models timoshenko,harmonic,solid] [--fine]
+    python -m validation.sweep_speed [--samples 20] [--models timoshenko,harmonic,solid] [--fine]
 
 A *separate run* is what a user would do instead, without start-up of Python: build the body with the seats of that variant alone, condense, solve modes.
 Its time is the median over a sample spread over the sweep and is multiplied by the number of variants.
@@ -17,13 +17,12 @@ import tempfile
 import time
 from pathlib import Path
 
-from common import ROOT, results_folder, show, write_rows
-
 import numpy as np
 
 import solidgear as sg
 from solidgear.sweep import sweep
 from solidgear.sweep.run import variants_of
+from validation.common import ROOT, results_folder, show, write_rows
 
 STIFFNESS = ["bearing.1.kzz=log:8e9:1e11:10", "bearing.2.scale=log:0.1:10:10"]
 PLACES = ["bearing.2.position=0.2102453:0.2462453:10"]
@@ -31,7 +30,11 @@ CASES = {
     "timoshenko": ("timoshenko", {}, PLACES + STIFFNESS),
     "harmonic": ("harmonic", {}, PLACES + STIFFNESS),
     "solid": ("solid", {}, ["bearing.1.kyy=log:1e8:1e10:10"] + STIFFNESS),
-    "harmonic order 8": ("harmonic", {"order": 8, "layers": 4, "edge_layers": 2}, ["bearing.2.position=0.2262453,0.2462453"] + STIFFNESS),
+    "harmonic order 8": (
+        "harmonic",
+        {"order": 8, "layers": 4, "edge_layers": 2},
+        ["bearing.2.position=0.2262453,0.2462453"] + STIFFNESS,
+    ),
 }
 MODES = 10
 
@@ -39,7 +42,9 @@ MODES = 10
 def solve(body, supports):
     """Compliances and frequencies, twins twice."""
     static, modes = sg.condense(body, supports, port="pinion"), sg.modes(body, supports, MODES)
-    shapes = [m.frequency_hz for m in modes.modes if m.frequency_hz > 0 for _ in range(m.multiplicity)]
+    shapes = [
+        m.frequency_hz for m in modes.modes if m.frequency_hz > 0 for _ in range(m.multiplicity)
+    ]
     return static, np.array(shapes[:MODES])
 
 
@@ -47,7 +52,9 @@ def apart(row, static, frequency):
     """Largest relative difference of compliances (diagonal) and of frequencies."""
     swept = np.array([float(row[f"C_{name}"]) for name in ("xx", "yy", "zz", "thx", "thz")])
     c = np.abs(swept / np.diag(static.compliance)[[0, 1, 2, 3, 5]] - 1).max()
-    return c, np.abs(np.array([float(row[f"f{k}_hz"]) for k in range(1, MODES + 1)]) / frequency - 1).max()
+    return c, np.abs(
+        np.array([float(row[f"f{k}_hz"]) for k in range(1, MODES + 1)]) / frequency - 1
+    ).max()
 
 
 def case(name: str, samples: int) -> dict:
@@ -61,7 +68,9 @@ def case(name: str, samples: int) -> dict:
         with path.open(newline="") as f:
             rows = [row for row in csv.DictReader(f) if row["status"] == "ok"]
     variants = variants_of(scene, axes)
-    picked = [rows[i] for i in np.unique(np.linspace(0, len(rows) - 1, samples).round().astype(int))]
+    picked = [
+        rows[i] for i in np.unique(np.linspace(0, len(rows) - 1, samples).round().astype(int))
+    ]
     shared = sg.build(variants.shaft(), fidelity, **options)
     seconds, same, own = [], [], []
     for row in picked:
@@ -99,9 +108,13 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--samples", type=int, default=20)
     parser.add_argument("--models", default="timoshenko,harmonic,solid")
-    parser.add_argument("--fine", action="store_true", help="the harmonic solid at order 8 too (minutes)")
+    parser.add_argument(
+        "--fine", action="store_true", help="the harmonic solid at order 8 too (minutes)"
+    )
     asked = parser.parse_args()
-    names = [m.strip() for m in asked.models.split(",") if m.strip()] + ["harmonic order 8"] * asked.fine
+    names = [m.strip() for m in asked.models.split(",") if m.strip()] + [
+        "harmonic order 8"
+    ] * asked.fine
     rows = []
     for name in names:
         rows.append(case(name, asked.samples))

@@ -23,11 +23,12 @@ _hears = _main_thread and signal.getsignal(signal.SIGINT) is signal.default_int_
 if _hears:
     signal.signal(signal.SIGINT, _interrupted)
 
-# fmt: off
-from solidgear.cli import solve  # noqa: F401  (each registers its commands, in the order of the help)
-from solidgear.cli import chart  # noqa: F401
-from solidgear.cli import sweep  # noqa: F401
-# fmt: on
+
+from solidgear.cli import (
+    chart,
+    solve,
+    sweep,
+)
 from solidgear.cli.app import app
 from solidgear.errors import SolidgearError, for_terminal
 from solidgear.interruptible import leave
@@ -59,5 +60,8 @@ def _run() -> None:
         print(f"solidgear: cannot write the output ({error.strerror or error})", file=sys.stderr)
         os._exit(1)  # flushing at exit would fail again
     except MemoryError:
-        print("solidgear: not enough memory for this model; use a coarser one (--set refinement=0.5) or the harmonic model", file=sys.stderr)
+        print(
+            "solidgear: not enough memory for this model; use a coarser one (--set refinement=0.5) or the harmonic model",
+            file=sys.stderr,
+        )
         sys.exit(1)

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import functools
 import sys
-from enum import Enum
+from enum import StrEnum
 from pathlib import Path
-from typing import Annotated, Optional
+from typing import Annotated
 
 import typer
 
@@ -21,7 +21,7 @@ app = typer.Typer(
 )
 
 
-class Fidelity(str, Enum):
+class Fidelity(StrEnum):
     """Models, cheapest first."""
 
     euler = "euler"
@@ -30,12 +30,19 @@ class Fidelity(str, Enum):
     solid = "solid"
 
 
-SceneFile = Annotated[Path, typer.Argument(help="Scene file (TOML), such as geometry/pinion_overhung.toml.")]
+SceneFile = Annotated[
+    Path, typer.Argument(help="Scene file (TOML), such as geometry/pinion_overhung.toml.")
+]
 FidelityOption = Annotated[Fidelity, typer.Option("--fidelity", "-f", help="Model to solve with.")]
-JsonFlag = Annotated[bool, typer.Option("--json", help="Print JSON for machines instead of tables.")]
+JsonFlag = Annotated[
+    bool, typer.Option("--json", help="Print JSON for machines instead of tables.")
+]
 Settings = Annotated[
-    Optional[list[str]],
-    typer.Option("--set", help="Builder option as key=value, repeatable: order=8, layers=4, element=tet10, refinement=1.5."),
+    list[str] | None,
+    typer.Option(
+        "--set",
+        help="Builder option as key=value, repeatable: order=8, layers=4, element=tet10, refinement=1.5.",
+    ),
 ]
 
 
@@ -47,7 +54,9 @@ def options(pairs: list[str] | None) -> dict:
         if not sep or not key.isidentifier():
             raise SolidgearError(f"--set {show(pair)}: write key=value, such as --set order=8")
         if key in out:
-            raise SolidgearError(f"--set {show(pair)}: {key} is set twice; set it once, lists with commas such as ovalising=2,3")
+            raise SolidgearError(
+                f"--set {show(pair)}: {key} is set twice; set it once, lists with commas such as ovalising=2,3"
+            )
         out[key] = tuple(_value(part) for part in text.split(",")) if "," in text else _value(text)
     return out
 
@@ -58,7 +67,9 @@ def options_by_model(pairs: list[str] | None, models) -> dict[str, dict]:
     for pair in pairs or []:
         model, dot, rest = pair.partition(".")
         if not dot or model not in models:
-            raise SolidgearError(f"--set {pair}: write MODEL.key=value, such as --set solid.around=32; models: {', '.join(models)}")
+            raise SolidgearError(
+                f"--set {pair}: write MODEL.key=value, such as --set solid.around=32; models: {', '.join(models)}"
+            )
         out.setdefault(model, {}).update(options([rest]))
     return out
 

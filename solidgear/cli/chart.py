@@ -5,7 +5,7 @@ from __future__ import annotations
 import functools
 import json
 from pathlib import Path
-from typing import Annotated, Optional
+from typing import Annotated
 
 import typer
 
@@ -16,34 +16,74 @@ from solidgear.errors import SolidgearError
 @command
 def chart(
     scene: SceneFile,
-    out: Annotated[Path, typer.Option("--out", "-o", help="Folder for rows.csv, machine.json and speed_accuracy.png; a report of `compare` there gets the section.")] = Path("out"),
-    full: Annotated[bool, typer.Option("--full", help="More levels and larger solids, up to an hour.")] = False,
-    runs: Annotated[int, typer.Option("--runs", help="Runs of each case; slow cases get fewer.")] = 5,
-    budget: Annotated[Optional[float], typer.Option("--budget", help="Seconds; levels that would not fit are left out and named. 240, or 3600 with --full.")] = None,
+    out: Annotated[
+        Path,
+        typer.Option(
+            "--out",
+            "-o",
+            help="Folder for rows.csv, machine.json and speed_accuracy.png; a report of `compare` there gets the section.",
+        ),
+    ] = Path("out"),
+    full: Annotated[
+        bool, typer.Option("--full", help="More levels and larger solids, up to an hour.")
+    ] = False,
+    runs: Annotated[
+        int, typer.Option("--runs", help="Runs of each case; slow cases get fewer.")
+    ] = 5,
+    budget: Annotated[
+        float | None,
+        typer.Option(
+            "--budget",
+            help="Seconds; levels that would not fit are left out and named. 240, or 3600 with --full.",
+        ),
+    ] = None,
     as_json: JsonFlag = False,
 ) -> None:
     """Chart error against cost: every model and element, uniform and graded, with the Pareto front."""
     from solidgear.report.speed_accuracy import PICTURE, front_table, left_out, records
     from solidgear.scene_file import load
 
-    found, reported = run_chart(load(scene), out, full=full, runs=runs, budget=budget, quiet=as_json)
+    found, reported = run_chart(
+        load(scene), out, full=full, runs=runs, budget=budget, quiet=as_json
+    )
     if as_json:
-        record = {"scene": found.scene["name"], "complete": found.complete, "reference": found.reference, "setup": found.setup, "seconds": found.seconds, "rows": records(found)}
+        record = {
+            "scene": found.scene["name"],
+            "complete": found.complete,
+            "reference": found.reference,
+            "setup": found.setup,
+            "seconds": found.seconds,
+            "rows": records(found),
+        }
         print(json.dumps(record, allow_nan=False))
     else:
         terminal = console()
         terminal.print(front_table(found))
         for row in found.rows:
             if row.status == "failed":
-                terminal.print(f"failed: {row.series}, level {row.level}: {row.reason}", markup=False)
+                terminal.print(
+                    f"failed: {row.series}, level {row.level}: {row.reason}", markup=False
+                )
         if left_out(found):
             terminal.print(f"left out: {left_out(found)}", markup=False)
-        terminal.print(f"Chart: {out / PICTURE}" + (f", and in {out / 'report.html'}" if reported else ""), markup=False, soft_wrap=True)
+        terminal.print(
+            f"Chart: {out / PICTURE}" + (f", and in {out / 'report.html'}" if reported else ""),
+            markup=False,
+            soft_wrap=True,
+        )
     if not found.complete:
         raise typer.Exit(130)
 
 
-def run_chart(scene, out: Path, *, full: bool = False, runs: int = 5, budget: float | None = None, quiet: bool = False):
+def run_chart(
+    scene,
+    out: Path,
+    *,
+    full: bool = False,
+    runs: int = 5,
+    budget: float | None = None,
+    quiet: bool = False,
+):
     """Run and write the chart of a scene, and put it into the report that an earlier comparison of it left there.
 
     Returns
@@ -60,8 +100,8 @@ def run_chart(scene, out: Path, *, full: bool = False, runs: int = 5, budget: fl
     """
     from solidgear.evidence.cases import plan, setup_seconds
     from solidgear.evidence.pareto import BUDGET, FULL_BUDGET, race
-    from solidgear.report.speed_accuracy import PICTURE, draw, write_rows
     from solidgear.report.folder import clear_halves, held
+    from solidgear.report.speed_accuracy import PICTURE, draw, write_rows
 
     if runs < 1:
         raise SolidgearError(f"--runs {runs}: give a whole number of at least 1")
@@ -73,12 +113,22 @@ def run_chart(scene, out: Path, *, full: bool = False, runs: int = 5, budget: fl
             clear_halves(folder)
             progress("set-up costs, in a fresh interpreter")
             once = setup_seconds()
-            found = race(scene, plan(scene, full), runs=runs, budget=budget, setup=once, progress=progress, keep=functools.partial(write_rows, folder=folder))
+            found = race(
+                scene,
+                plan(scene, full),
+                runs=runs,
+                budget=budget,
+                setup=once,
+                progress=progress,
+                keep=functools.partial(write_rows, folder=folder),
+            )
             progress("chart")
             draw(found, folder / PICTURE)
             return found, _refresh_report(folder, found.scene)
     except OSError as error:
-        raise SolidgearError(f"--out {out}: writing stopped ({error.strerror or error}); files already there are whole") from error
+        raise SolidgearError(
+            f"--out {out}: writing stopped ({error.strerror or error}); files already there are whole"
+        ) from error
 
 
 def _refresh_report(folder: Path, scene: dict) -> bool:

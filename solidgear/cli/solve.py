@@ -4,27 +4,60 @@ from __future__ import annotations
 
 import json
 from pathlib import Path
-from typing import Annotated, Optional
+from typing import Annotated
 
 import typer
 
-from solidgear.cli.app import Fidelity, FidelityOption, JsonFlag, Progress, SceneFile, Settings, build_body, command, console, options_by_model
+from solidgear.cli.app import (
+    Fidelity,
+    FidelityOption,
+    JsonFlag,
+    Progress,
+    SceneFile,
+    Settings,
+    build_body,
+    command,
+    console,
+    options_by_model,
+)
 from solidgear.errors import SolidgearError, show
 
 
 @command
 def compare(
     scene: SceneFile,
-    out: Annotated[Path, typer.Option("--out", "-o", help="Folder for results.json, report.html, renders and vtu files.")] = Path("out"),
-    models: Annotated[str, typer.Option("--models", help="Comma-separated: lumped,euler,timoshenko,harmonic,solid.")] = "lumped,euler,timoshenko,harmonic,solid",
+    out: Annotated[
+        Path,
+        typer.Option(
+            "--out", "-o", help="Folder for results.json, report.html, renders and vtu files."
+        ),
+    ] = Path("out"),
+    models: Annotated[
+        str,
+        typer.Option("--models", help="Comma-separated: lumped,euler,timoshenko,harmonic,solid."),
+    ] = "lumped,euler,timoshenko,harmonic,solid",
     as_json: JsonFlag = False,
-    renders: Annotated[bool, typer.Option("--renders/--no-renders", help="Draw the first bending mode of every model.")] = True,
-    solid_element: Annotated[Optional[str], typer.Option("--solid-element", help="hex20, hex27, hex8, tet10 or tet4.")] = None,
-    settings: Annotated[
-        Optional[list[str]],
-        typer.Option("--set", help="Builder option of one model as MODEL.key=value, repeatable: solid.around=32, harmonic.order=8. One that speaks of the mesh fixes it."),
+    renders: Annotated[
+        bool,
+        typer.Option("--renders/--no-renders", help="Draw the first bending mode of every model."),
+    ] = True,
+    solid_element: Annotated[
+        str | None, typer.Option("--solid-element", help="hex20, hex27, hex8, tet10 or tet4.")
     ] = None,
-    chart: Annotated[bool, typer.Option("--chart", help="Also chart error against cost, as a section of the report (about four minutes more).")] = False,
+    settings: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--set",
+            help="Builder option of one model as MODEL.key=value, repeatable: solid.around=32, harmonic.order=8. One that speaks of the mesh fixes it.",
+        ),
+    ] = None,
+    chart: Annotated[
+        bool,
+        typer.Option(
+            "--chart",
+            help="Also chart error against cost, as a section of the report (about four minutes more).",
+        ),
+    ] = False,
 ) -> None:
     """Solve a scene with every model and write a report on which to trust."""
     from solidgear.comparison import check_models
@@ -42,7 +75,9 @@ def compare(
     with held(out):
         with Progress(quiet=as_json) as progress:
             found = run(loaded, wanted, settings=chosen, progress=progress)
-            found.write_report(out, renders=renders and found.results["complete"], progress=progress)
+            found.write_report(
+                out, renders=renders and found.results["complete"], progress=progress
+            )
         if chart and found.results["complete"]:
             from solidgear.cli.chart import run_chart
 
@@ -68,7 +103,12 @@ def compare(
 def stiffness(
     scene: SceneFile,
     fidelity: FidelityOption = Fidelity.harmonic,
-    attachment: Annotated[Optional[str], typer.Option(help="average, rigid or section for every port; by default as the scene says.")] = None,
+    attachment: Annotated[
+        str | None,
+        typer.Option(
+            help="average, rigid or section for every port; by default as the scene says."
+        ),
+    ] = None,
     as_json: JsonFlag = False,
     settings: Settings = None,
 ) -> None:
@@ -111,7 +151,10 @@ def stiffness(
     from solidgear.report.terminal import matrix_table
 
     terminal = console()
-    terminal.print(f"{loaded.name}: {fidelity.value}, {body.size} unknowns, port {found.port!r} at y = {1e3 * loaded.port.y:.3f} mm ({found.attachment})", markup=False)
+    terminal.print(
+        f"{loaded.name}: {fidelity.value}, {body.size} unknowns, port {found.port!r} at y = {1e3 * loaded.port.y:.3f} mm ({found.attachment})",
+        markup=False,
+    )
     terminal.print(matrix_table(found.stiffness, "stiffness"))
     terminal.print(matrix_table(found.compliance, "compliance"))
     if found.free_names:
@@ -127,9 +170,16 @@ def stiffness(
 def modes(
     scene: SceneFile,
     fidelity: FidelityOption = Fidelity.harmonic,
-    n: Annotated[Optional[int], typer.Option("-n", help="Number of elastic shapes; twins count twice.")] = None,
-    max_frequency: Annotated[Optional[float], typer.Option(help="Hz; leave out modes above.")] = None,
-    count: Annotated[bool, typer.Option("--count", help="Prove by the inertia of a second factor that no mode was missed.")] = False,
+    n: Annotated[
+        int | None, typer.Option("-n", help="Number of elastic shapes; twins count twice.")
+    ] = None,
+    max_frequency: Annotated[float | None, typer.Option(help="Hz; leave out modes above.")] = None,
+    count: Annotated[
+        bool,
+        typer.Option(
+            "--count", help="Prove by the inertia of a second factor that no mode was missed."
+        ),
+    ] = False,
     as_json: JsonFlag = False,
     settings: Settings = None,
 ) -> None:
@@ -142,14 +192,43 @@ def modes(
     if max_frequency is not None and not max_frequency > 0:
         raise SolidgearError(f"--max-frequency {max_frequency:g}: must be greater than zero, in Hz")
     if n is not None and not 1 <= n <= MOST_MODES:
-        raise SolidgearError(f"-n {show(n)} is not a number of modes that can be asked for; give 1 to {MOST_MODES}")
+        raise SolidgearError(
+            f"-n {show(n)} is not a number of modes that can be asked for; give 1 to {MOST_MODES}"
+        )
     loaded = load(scene)
     body = build_body(loaded, fidelity, settings)
-    found = solve(body, loaded, loaded.ask.modes if n is None else n, max_frequency=max_frequency or loaded.ask.max_frequency, count=count)
+    found = solve(
+        body,
+        loaded,
+        loaded.ask.modes if n is None else n,
+        max_frequency=max_frequency or loaded.ask.max_frequency,
+        count=count,
+    )
     said = cautions(loaded, body)
-    rows = [{"name": m.name, "family": m.family, "frequency_hz": m.frequency_hz, "multiplicity": m.multiplicity, "error": m.error} for m in found.modes]
+    rows = [
+        {
+            "name": m.name,
+            "family": m.family,
+            "frequency_hz": m.frequency_hz,
+            "multiplicity": m.multiplicity,
+            "error": m.error,
+        }
+        for m in found.modes
+    ]
     if as_json:
-        print(json.dumps({"scene": loaded.name, "fidelity": fidelity.value, "dofs": body.size, "modes": rows, "evidence": found.evidence, "cautions": said}, default=float))
+        print(
+            json.dumps(
+                {
+                    "scene": loaded.name,
+                    "fidelity": fidelity.value,
+                    "dofs": body.size,
+                    "modes": rows,
+                    "evidence": found.evidence,
+                    "cautions": said,
+                },
+                default=float,
+            )
+        )
         return
     from solidgear.report.terminal import modes_table
 
@@ -157,11 +236,17 @@ def modes(
     terminal.print(f"{loaded.name}: {fidelity.value}, {body.size} unknowns", markup=False)
     terminal.print(modes_table(rows))
     e = found.evidence
-    terminal.print(f"Residual {e['residual']:.1e}, orthogonality {e['orthogonality']:.1e}, rigid modes {e['rigid_modes']}, {e['method']} on {e['backend']}.")
+    terminal.print(
+        f"Residual {e['residual']:.1e}, orthogonality {e['orthogonality']:.1e}, rigid modes {e['rigid_modes']}, {e['method']} on {e['backend']}."
+    )
     for one, other, gap in e.get("torn_pairs", []):
-        terminal.print(f"caution: {one} and {other} are twins that the mesh has split by {gap:.1e}: refine it, or use hexahedra or the harmonic model.")
+        terminal.print(
+            f"caution: {one} and {other} are twins that the mesh has split by {gap:.1e}: refine it, or use hexahedra or the harmonic model."
+        )
     if e["error"] > 1e-6:
-        terminal.print(f"caution: rounding leaves frequencies good to {e['error']:.0e} only: the smallest cells are that stiff beside the shaft; a coarser mesh has less of it.")
+        terminal.print(
+            f"caution: rounding leaves frequencies good to {e['error']:.0e} only: the smallest cells are that stiff beside the shaft; a coarser mesh has less of it."
+        )
     if count:
         from solidgear.evidence.completeness import completeness
 
@@ -175,7 +260,9 @@ def render(
     scene: SceneFile,
     out: Annotated[Path, typer.Option("--out", "-o", help="PNG file to write.")] = Path("mode.png"),
     fidelity: FidelityOption = Fidelity.harmonic,
-    mode: Annotated[str, typer.Option(help='Name of the mode, such as "bending 1" or "axial 1".')] = "bending 1",
+    mode: Annotated[
+        str, typer.Option(help='Name of the mode, such as "bending 1" or "axial 1".')
+    ] = "bending 1",
     settings: Settings = None,
 ) -> None:
     """Draw one mode shape off-screen."""
@@ -209,12 +296,25 @@ def check(
     else:
         for line in found["facts"]:
             print(line)
-        for record in (r for level in ("caution", "open", "avoid") for r in found["records"] if r["level"] == level):
-            print(": ".join(filter(None, ("caution", ", ".join(record["models"]), record["sentence"]))))
+        for record in (
+            r
+            for level in ("caution", "open", "avoid")
+            for r in found["records"]
+            if r["level"] == level
+        ):
+            print(
+                ": ".join(
+                    filter(None, ("caution", ", ".join(record["models"]), record["sentence"]))
+                )
+            )
         for line in found["faults"]:
             print(f"fault: {line}")
         for verdict in dict.fromkeys(VERDICTS.values()):
-            models = [f"{m} ({', '.join(v['guards']).replace('_', ' ')})" if v["guards"] else m for m, v in found["verdicts"].items() if v["verdict"] == verdict]
+            models = [
+                f"{m} ({', '.join(v['guards']).replace('_', ' ')})" if v["guards"] else m
+                for m, v in found["verdicts"].items()
+                if v["verdict"] == verdict
+            ]
             if models:
                 print(f"{verdict.capitalize()}: {', '.join(models)}.")
     if found["faults"]:

@@ -5,11 +5,20 @@ from __future__ import annotations
 import json
 import sys
 from pathlib import Path
-from typing import Annotated, Optional
+from typing import Annotated
 
 import typer
 
-from solidgear.cli.app import Fidelity, FidelityOption, JsonFlag, SceneFile, Settings, build_body, command, options
+from solidgear.cli.app import (
+    Fidelity,
+    FidelityOption,
+    JsonFlag,
+    SceneFile,
+    Settings,
+    build_body,
+    command,
+    options,
+)
 
 
 @command
@@ -33,13 +42,33 @@ def sweep(
         ),
     ] = Path("rows.csv"),
     fidelity: FidelityOption = Fidelity.harmonic,
-    n: Annotated[Optional[int], typer.Option("-n", help="Number of elastic shapes; twins count twice.")] = None,
-    sample: Annotated[Optional[int], typer.Option("--sample", help="Draw so many points (Latin hypercube) instead of all combinations.")] = None,
+    n: Annotated[
+        int | None, typer.Option("-n", help="Number of elastic shapes; twins count twice.")
+    ] = None,
+    sample: Annotated[
+        int | None,
+        typer.Option(
+            "--sample", help="Draw so many points (Latin hypercube) instead of all combinations."
+        ),
+    ] = None,
     seed: Annotated[int, typer.Option("--seed", help="Of the draw.")] = 0,
-    tolerance: Annotated[float, typer.Option("--tolerance", help="Relative error of frequencies; checked by a bound for every variant.")] = 1e-6,
+    tolerance: Annotated[
+        float,
+        typer.Option(
+            "--tolerance",
+            help="Relative error of frequencies; checked by a bound for every variant.",
+        ),
+    ] = 1e-6,
     jobs: Annotated[int, typer.Option("--jobs", "-j", help="Processes on this machine.")] = 1,
-    dask: Annotated[Optional[str], typer.Option("--dask", help="Address of a running Dask scheduler, such as tcp://host:8786.")] = None,
-    overwrite: Annotated[bool, typer.Option("--overwrite", help="Discard rows that are there.")] = False,
+    dask: Annotated[
+        str | None,
+        typer.Option(
+            "--dask", help="Address of a running Dask scheduler, such as tcp://host:8786."
+        ),
+    ] = None,
+    overwrite: Annotated[
+        bool, typer.Option("--overwrite", help="Discard rows that are there.")
+    ] = False,
     as_json: JsonFlag = False,
     settings: Settings = None,
 ) -> None:
@@ -47,7 +76,13 @@ def sweep(
     from dataclasses import asdict
 
     from rich.console import Console
-    from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
+    from rich.progress import (
+        BarColumn,
+        MofNCompleteColumn,
+        Progress,
+        TextColumn,
+        TimeRemainingColumn,
+    )
 
     from solidgear.check import cautions
     from solidgear.fidelity import build
@@ -58,7 +93,14 @@ def sweep(
     loaded = load(scene)
     given = checked(fidelity.value, options(settings))  # before a file of rows is begun
     terminal = Console(stderr=True, highlight=False)
-    bar = Progress(TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeRemainingColumn(), console=terminal, disable=as_json or not terminal.is_terminal)
+    bar = Progress(
+        TextColumn("{task.description}"),
+        BarColumn(),
+        MofNCompleteColumn(),
+        TimeRemainingColumn(),
+        console=terminal,
+        disable=as_json or not terminal.is_terminal,
+    )
     reached = [0, 0]
     try:
         with bar:
@@ -72,13 +114,28 @@ def sweep(
                 terminal.print(f"solidgear: {text}", markup=False, emoji=False, soft_wrap=True)
 
             found = run(
-                loaded, vary, out, fidelity=fidelity.value, options=given, n=n, sample=sample, seed=seed, tolerance=tolerance, jobs=jobs,
-                dask=dask, overwrite=overwrite, build=lambda shaft, *_, **__: build_body(shaft, fidelity, settings), progress=show,
+                loaded,
+                vary,
+                out,
+                fidelity=fidelity.value,
+                options=given,
+                n=n,
+                sample=sample,
+                seed=seed,
+                tolerance=tolerance,
+                jobs=jobs,
+                dask=dask,
+                overwrite=overwrite,
+                build=lambda shaft, *_, **__: build_body(shaft, fidelity, settings),
+                progress=show,
                 tell=tell,
-            )  # fmt: skip
+            )
     except KeyboardInterrupt:
         if reached[0]:
-            print(f"solidgear: {reached[0]} of {reached[1]} rows are kept; the same command goes on from there", file=sys.stderr)
+            print(
+                f"solidgear: {reached[0]} of {reached[1]} rows are kept; the same command goes on from there",
+                file=sys.stderr,
+            )
         raise
     if as_json:
         print(json.dumps(asdict(found), default=str))

@@ -109,7 +109,9 @@ def line_of_action(
     return np.array([-side * inward, axial, -side * tangential])
 
 
-def mesh_point(mean_radius: float, axial: float = 0.0, height: float = 0.0, member: str = "pinion") -> np.ndarray:
+def mesh_point(
+    mean_radius: float, axial: float = 0.0, height: float = 0.0, member: str = "pinion"
+) -> np.ndarray:
     """Mesh point relative to the lumped point, in the member's frame.
 
     Parameters
@@ -132,7 +134,9 @@ def mesh_point(mean_radius: float, axial: float = 0.0, height: float = 0.0, memb
         if not isfinite(value):
             raise SolidgearError(f"{name} of the mesh point is {value}; give a finite length in m")
     if mean_radius <= 0 or abs(height) >= mean_radius:
-        raise SolidgearError(f"the mesh point needs mean_radius > |height|, but mean_radius = {mean_radius} m and height = {height} m")
+        raise SolidgearError(
+            f"the mesh point needs mean_radius > |height|, but mean_radius = {mean_radius} m and height = {height} m"
+        )
     return np.array([side * sqrt(mean_radius**2 - height**2), axial, height])
 
 
@@ -140,7 +144,9 @@ def mean_radius(pitch_radius: float, pitch_angle: float, face_width: float) -> f
     """Pitch radius at the middle of the face, m, from the one at the heel."""
     out = pitch_radius - face_width / 2 * sin(pitch_angle)
     if not out > 0:
-        raise SolidgearError(f"a face of {face_width} m reaches past the apex of a pitch cone of {pitch_radius} m radius")
+        raise SolidgearError(
+            f"a face of {face_width} m reaches past the apex of a pitch cone of {pitch_radius} m radius"
+        )
     return out
 
 
@@ -179,16 +185,24 @@ class MeshVector:
             try:
                 value = np.array(getattr(self, name), float)
             except (TypeError, ValueError):
-                raise SolidgearError(f"the {name} of a mesh vector must be three numbers, not {getattr(self, name)!r}") from None
+                raise SolidgearError(
+                    f"the {name} of a mesh vector must be three numbers, not {getattr(self, name)!r}"
+                ) from None
             if value.shape != (3,):
-                raise SolidgearError(f"the {name} of a mesh vector has shape {value.shape}; it needs three components")
+                raise SolidgearError(
+                    f"the {name} of a mesh vector has shape {value.shape}; it needs three components"
+                )
             if not np.isfinite(value).all():
-                raise SolidgearError(f"the {name} of a mesh vector is {value.tolist()}; all components must be finite")
+                raise SolidgearError(
+                    f"the {name} of a mesh vector is {value.tolist()}; all components must be finite"
+                )
             value.setflags(write=False)
             object.__setattr__(self, name, value)
         length = float(np.linalg.norm(self.normal))
         if abs(length - 1) > UNIT_TOLERANCE:
-            raise SolidgearError(f"the line of action has length {length:.9g}; it must be a unit vector within {UNIT_TOLERANCE:g}")
+            raise SolidgearError(
+                f"the line of action has length {length:.9g}; it must be a unit vector within {UNIT_TOLERANCE:g}"
+            )
 
     @cached_property
     def vector(self) -> np.ndarray:
@@ -204,7 +218,9 @@ class MeshVector:
 def _angle(name: str, value: float, closed: bool = False) -> None:
     inside = isfinite(value) and 0 <= value and (value <= pi / 2 if closed else value < pi / 2)
     if not inside:
-        raise SolidgearError(f"{name} is {value} rad; it must be at least 0 and {'at most' if closed else 'below'} pi/2")
+        raise SolidgearError(
+            f"{name} is {value} rad; it must be at least 0 and {'at most' if closed else 'below'} pi/2"
+        )
 
 
 def _word(name: str, value: str, allowed) -> str:

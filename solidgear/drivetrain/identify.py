@@ -42,9 +42,13 @@ class Unknown:
 
     def __post_init__(self):
         if not (np.isfinite(self.lower) and np.isfinite(self.upper) and self.lower < self.upper):
-            raise SolidgearError(f"{self.name}: the bounds {self.lower} and {self.upper} must be finite and in ascending order")
+            raise SolidgearError(
+                f"{self.name}: the bounds {self.lower} and {self.upper} must be finite and in ascending order"
+            )
         if self.log and self.lower <= 0:
-            raise SolidgearError(f"{self.name}: a logarithmic scale needs a positive lower bound, not {self.lower}")
+            raise SolidgearError(
+                f"{self.name}: a logarithmic scale needs a positive lower bound, not {self.lower}"
+            )
 
     def at(self, t: float) -> float:
         """Value at the fraction t of the way between the bounds."""
@@ -54,7 +58,11 @@ class Unknown:
 
     def slope(self, t: float) -> float:
         """d value / d t."""
-        return self.at(t) * float(np.log(self.upper / self.lower)) if self.log else self.upper - self.lower
+        return (
+            self.at(t) * float(np.log(self.upper / self.lower))
+            if self.log
+            else self.upper - self.lower
+        )
 
 
 @dataclass(frozen=True, eq=False)
@@ -171,26 +179,50 @@ def identify(
     unknowns = tuple(unknowns)
     published = np.asarray(published_hz, float)
     names = [u.name for u in unknowns]
-    if published.ndim != 1 or published.size == 0 or not (np.isfinite(published).all() and (published > 0).all()):
-        raise SolidgearError("the published frequencies must be a list of finite, positive numbers of Hz; leave out the zero ones")
+    if (
+        published.ndim != 1
+        or published.size == 0
+        or not (np.isfinite(published).all() and (published > 0).all())
+    ):
+        raise SolidgearError(
+            "the published frequencies must be a list of finite, positive numbers of Hz; leave out the zero ones"
+        )
     if not names or len(set(names)) < len(names):
         raise SolidgearError(f"the unknowns need different names, at least one; got {names}")
     if len(names) > published.size:
-        raise SolidgearError(f"{len(names)} unknowns cannot be identified from {published.size} frequencies; fix some of them")
+        raise SolidgearError(
+            f"{len(names)} unknowns cannot be identified from {published.size} frequencies; fix some of them"
+        )
     if starts < 1:
         raise SolidgearError(f"starts is {starts}; at least one starting point is needed")
 
     def log_ratio(t):
         found = np.asarray(model({u.name: u.at(x) for u, x in zip(unknowns, t)}), float)
         if found.shape != published.shape:
-            raise SolidgearError(f"the model gives frequencies of shape {found.shape}, but {published.size} are published")
+            raise SolidgearError(
+                f"the model gives frequencies of shape {found.shape}, but {published.size} are published"
+            )
         if not (np.isfinite(found).all() and (found > 0).all()):
-            raise SolidgearError("the model gives frequencies that are not finite and positive; leave out its rigid modes")
+            raise SolidgearError(
+                "the model gives frequencies that are not finite and positive; leave out its rigid modes"
+            )
         return np.log(found / published)
 
     rng = np.random.default_rng(seed)
     points = [np.full(len(names), 0.5), *rng.uniform(0.1, 0.9, (starts - 1, len(names)))]
-    found = [least_squares(log_ratio, p, bounds=(0.0, 1.0), x_scale=0.1, xtol=1e-12, ftol=1e-12, gtol=1e-12, max_nfev=200) for p in points]
+    found = [
+        least_squares(
+            log_ratio,
+            p,
+            bounds=(0.0, 1.0),
+            x_scale=0.1,
+            xtol=1e-12,
+            ftol=1e-12,
+            gtol=1e-12,
+            max_nfev=200,
+        )
+        for p in points
+    ]
     best = min(found, key=lambda s: s.cost)
     # An exact fit leaves costs of rounding size, which differ by large factors: those agree as well.
     agreeing = sum(s.cost <= 1.01 * best.cost + 1e-18 for s in found)
@@ -212,16 +244,39 @@ def _report(log_ratio, unknowns, t, published, starts, agreeing) -> Identificati
     freedom = max(published.size - len(unknowns), 1)
     noise = float(ratio @ ratio) / freedom
     # Beyond this the inverse of the normal matrix is rounding.
-    covariance = noise * np.linalg.inv(per_value.T @ per_value) if condition < 1e6 else np.full((len(unknowns),) * 2, np.inf)
+    covariance = (
+        noise * np.linalg.inv(per_value.T @ per_value)
+        if condition < 1e6
+        else np.full((len(unknowns),) * 2, np.inf)
+    )
     for k, (u, x) in enumerate(zip(unknowns, t)):
         side = "lower" if x < ON_BOUND else "upper" if x > 1 - ON_BOUND else ""
         spread = float(np.sqrt(covariance[k, k]) / abs(values[k])) if values[k] else np.inf
-        quantities.append(Identified(u.name, u.unit, float(values[k]), u.lower, u.upper, side, per_value[:, k] * values[k], spread))
-    return Identification(tuple(quantities), published * np.exp(ratio), published, starts, agreeing, condition)
+        quantities.append(
+            Identified(
+                u.name,
+                u.unit,
+                float(values[k]),
+                u.lower,
+                u.upper,
+                side,
+                per_value[:, k] * values[k],
+                spread,
+            )
+        )
+    return Identification(
+        tuple(quantities), published * np.exp(ratio), published, starts, agreeing, condition
+    )
 
 
 def torsion_springs(
-    engine: float, pinion: float, gear: float, load: float, ratio: float, first_hz: float, second_hz: float
+    engine: float,
+    pinion: float,
+    gear: float,
+    load: float,
+    ratio: float,
+    first_hz: float,
+    second_hz: float,
 ) -> list[tuple[float, float]]:
     """Exact springs of the torsional chain with a rigid mesh, from its two frequencies.
 
@@ -262,7 +317,9 @@ def torsion_springs(
     }
     for name, value in given.items():
         if not (np.isfinite(value) and value > 0):
-            raise SolidgearError(f"{name} of the torsional chain is {value}; it must be finite and positive")
+            raise SolidgearError(
+                f"{name} of the torsional chain is {value}; it must be finite and positive"
+            )
     j1, j2, j3 = engine, pinion + gear / ratio**2, load / ratio**2
     w1, w2 = (2 * np.pi * first_hz) ** 2, (2 * np.pi * second_hz) ** 2
     a, b = 1 / j1 + 1 / j2, 1 / j2 + 1 / j3
@@ -270,7 +327,9 @@ def torsion_springs(
     # a k1 and b k2 are the roots of s^2 - (w1 + w2) s + a b product.
     discriminant = (w1 + w2) ** 2 - 4 * a * b * product
     if discriminant < 0:
-        raise SolidgearError(f"no torsional springs give both {first_hz:g} and {second_hz:g} Hz with these inertias")
+        raise SolidgearError(
+            f"no torsional springs give both {first_hz:g} and {second_hz:g} Hz with these inertias"
+        )
     root = np.sqrt(discriminant)
     big = (w1 + w2 + root) / 2
     small = a * b * product / big

@@ -28,7 +28,12 @@ from solidgear.frames import DOF_NAMES
 ENGINE, LOAD = 0, 13
 PINION, GEAR = slice(1, 7), slice(7, 13)
 PINION_THY, GEAR_THY = 5, 11
-NAMES = ("engine thy", *(f"pinion {d}" for d in DOF_NAMES), *(f"gear {d}" for d in DOF_NAMES), "load thy")
+NAMES = (
+    "engine thy",
+    *(f"pinion {d}" for d in DOF_NAMES),
+    *(f"gear {d}" for d in DOF_NAMES),
+    "load thy",
+)
 
 # Components of the strain energy in the order and words of Hua (2010), figure 3.8 (a).
 COMPONENTS = (
@@ -56,7 +61,11 @@ def diagonal_mass(mass: float, torsional: float, bending: float) -> np.ndarray:
     torsional, bending : float
         Moments of inertia about y, and about x and z, kg m^2.
     """
-    for name, value in (("mass", mass), ("torsional inertia", torsional), ("bending inertia", bending)):
+    for name, value in (
+        ("mass", mass),
+        ("torsional inertia", torsional),
+        ("bending inertia", bending),
+    ):
         _positive(name, value)
     return np.diag([mass, mass, mass, bending, torsional, bending]).astype(float)
 
@@ -167,7 +176,9 @@ class LumpedPair:
             elif name.endswith("support"):
                 object.__setattr__(self, field.name, _support(name, value))
             elif not (np.isscalar(value) and np.isfinite(value) and value >= 0):
-                raise SolidgearError(f"{name} is {value}; it must be a finite stiffness that is not negative")
+                raise SolidgearError(
+                    f"{name} is {value}; it must be a finite stiffness that is not negative"
+                )
 
     @cached_property
     def transmission(self) -> np.ndarray:
@@ -182,7 +193,9 @@ class LumpedPair:
         """(14,) rotation of the whole train that strains no spring, the faster side turning by 1 rad."""
         lever_p, lever_g = self.pinion_mesh.lever, self.gear_mesh.lever
         if lever_p == 0 and lever_g == 0:
-            raise SolidgearError("the line of action meets both shafts, so the mesh transmits no rotation; check the mesh vectors")
+            raise SolidgearError(
+                "the line of action meets both shafts, so the mesh transmits no rotation; check the mesh vectors"
+            )
         turn = np.zeros(14)
         size = max(abs(lever_p), abs(lever_g))
         turn[[ENGINE, PINION_THY]], turn[[GEAR_THY, LOAD]] = lever_g / size, lever_p / size
@@ -218,7 +231,10 @@ class LumpedPair:
         k[PINION, PINION], k[GEAR, GEAR] = self.pinion_support, self.gear_support
         m[PINION, PINION], m[GEAR, GEAR] = self.pinion_mass, self.gear_mass
         m[ENGINE, ENGINE], m[LOAD, LOAD] = self.engine_inertia, self.load_inertia
-        for i, j, spring in ((ENGINE, PINION_THY, self.pinion_torsion), (GEAR_THY, LOAD, self.gear_torsion)):
+        for i, j, spring in (
+            (ENGINE, PINION_THY, self.pinion_torsion),
+            (GEAR_THY, LOAD, self.gear_torsion),
+        ):
             k[np.ix_([i, j], [i, j])] += spring * np.array([[1.0, -1.0], [-1.0, 1.0]])
         return k + self.mesh_stiffness * np.outer(self.transmission, self.transmission), m
 
@@ -242,8 +258,12 @@ class LumpedPair:
         shapes *= np.where(np.take_along_axis(shapes, largest[None, :], 0)[0] < 0, -1.0, 1.0)
         scale = (np.abs(k) @ np.abs(shapes)).max(axis=0)
         miss = np.abs(k @ shapes - m @ shapes * omega**2).max(axis=0)
-        residual = float((miss / np.where(scale > 0, scale, 1.0)).max())  # a rigid motion may touch no spring at all
-        return PairModes(omega / (2 * np.pi), shapes, self._energy(shapes, omega, strain, where), residual)
+        residual = float(
+            (miss / np.where(scale > 0, scale, 1.0)).max()
+        )  # a rigid motion may touch no spring at all
+        return PairModes(
+            omega / (2 * np.pi), shapes, self._energy(shapes, omega, strain, where), residual
+        )
 
     def _energy(self, shapes, omega, strain, where) -> np.ndarray:
         """(14, 7) fractions; see `PairModes.energy`."""
@@ -305,7 +325,9 @@ def rayleigh_bound(stiffness, mass) -> float:
     stiffness, mass : (n, n) array_like
         Symmetric; only the diagonals enter.  Springs left out can only raise the highest frequency.
     """
-    return consistency(np.diag(np.asarray(stiffness, float)), np.diag(np.asarray(mass, float)), 0.0).bound_hz
+    return consistency(
+        np.diag(np.asarray(stiffness, float)), np.diag(np.asarray(mass, float)), 0.0
+    ).bound_hz
 
 
 def consistency(stiffness_diagonal, mass_diagonal, highest_hz: float) -> Consistency:
@@ -320,11 +342,17 @@ def consistency(stiffness_diagonal, mass_diagonal, highest_hz: float) -> Consist
     """
     k, m = np.asarray(stiffness_diagonal, float), np.asarray(mass_diagonal, float)
     if k.shape != m.shape or k.ndim != 1 or k.size == 0:
-        raise SolidgearError(f"stiffness and mass diagonals need the same length, but have shapes {k.shape} and {m.shape}")
+        raise SolidgearError(
+            f"stiffness and mass diagonals need the same length, but have shapes {k.shape} and {m.shape}"
+        )
     if not (np.isfinite(k).all() and np.isfinite(m).all() and (m > 0).all()):
-        raise SolidgearError("stiffness and mass diagonals must be finite, and every mass and inertia positive")
+        raise SolidgearError(
+            "stiffness and mass diagonals must be finite, and every mass and inertia positive"
+        )
     if not (np.isfinite(highest_hz) and highest_hz >= 0):
-        raise SolidgearError(f"the highest published frequency is {highest_hz}; it must be a finite number of Hz, not negative")
+        raise SolidgearError(
+            f"the highest published frequency is {highest_hz}; it must be a finite number of Hz, not negative"
+        )
     worst = int(np.argmax(k / m))
     bound = float(np.sqrt(max(k[worst], 0.0) / m[worst]) / (2 * np.pi))
     needed = float(k[worst] / (2 * np.pi * highest_hz) ** 2) if highest_hz > 0 else np.inf
@@ -342,7 +370,9 @@ def _square(name: str, value) -> np.ndarray:
     except (TypeError, ValueError):
         raise SolidgearError(f"{name} must be a 6x6 of numbers in SI") from None
     if out.shape != (6, 6):
-        raise SolidgearError(f"{name} has shape {out.shape}; it must be 6x6 in the order {' '.join(DOF_NAMES)}")
+        raise SolidgearError(
+            f"{name} has shape {out.shape}; it must be 6x6 in the order {' '.join(DOF_NAMES)}"
+        )
     if not np.isfinite(out).all():
         raise SolidgearError(f"{name} contains NaN or infinity; all entries must be finite")
     # Relative to the diagonals, since rows mix N/m with N m/rad.
@@ -359,20 +389,28 @@ def _mass(name: str, value) -> np.ndarray:
     d = np.diag(out)
     if (d <= 0).any():
         i = int(np.argmin(d))
-        raise SolidgearError(f"{name} has {d[i]:g} for {DOF_NAMES[i]}; every mass and inertia must be positive")
+        raise SolidgearError(
+            f"{name} has {d[i]:g} for {DOF_NAMES[i]}; every mass and inertia must be positive"
+        )
     if np.linalg.eigvalsh(out / np.sqrt(np.outer(d, d))).min() <= ROUNDING:
-        raise SolidgearError(f"{name} is not positive definite; its off-diagonal entries are too large for its diagonal")
+        raise SolidgearError(
+            f"{name} is not positive definite; its off-diagonal entries are too large for its diagonal"
+        )
     return out
 
 
 def _support(name: str, value) -> np.ndarray:
     out = _square(name, value)
     if out[4].any():
-        raise SolidgearError(f"{name} resists thy; its torsion row and column must be zero, torsion is the spring to the engine or load")
+        raise SolidgearError(
+            f"{name} resists thy; its torsion row and column must be zero, torsion is the spring to the engine or load"
+        )
     d = np.diag(out)
     safe = np.sqrt(np.where(d > 0, d, 1.0))
     if (d < 0).any() or np.linalg.eigvalsh(out / np.outer(safe, safe)).min() < -ROUNDING:
-        raise SolidgearError(f"{name} is indefinite; no shaft on bearings releases energy, check the signs of kx,thz and kz,thx")
+        raise SolidgearError(
+            f"{name} is indefinite; no shaft on bearings releases energy, check the signs of kx,thz and kz,thx"
+        )
     return out
 
 

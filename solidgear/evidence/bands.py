@@ -29,7 +29,10 @@ LAYERED = {"harmonic": 0.33, "solid": 0.8}
 RIGID = {"harmonic": 0.42, "solid": 1.3}
 #: the same after two levels only, without and with rigid seats: the step off the coarsest mesh tells less where it is small, perhaps by accident,
 #: and more where it is large.  Factor of small steps, the band they reach at most before the factor of large steps takes over, and that factor.
-FIRST = {"harmonic": ((0.15, 0.0, 0.15), (0.42, 0.0, 0.42)), "solid": ((1.8, 0.009, 0.6), (1.8, 0.036, 0.8))}
+FIRST = {
+    "harmonic": ((0.15, 0.0, 0.15), (0.42, 0.0, 0.42)),
+    "solid": ((1.8, 0.009, 0.6), (1.8, 0.036, 0.8)),
+}
 #: safety on the observed reduction of two regular steps, where that is the worse news
 OBSERVED, SLOWEST = 1.5, 0.7
 #: the last change counts for at least this share of the one before it, and a coupling's of its diagonal entries'
@@ -87,7 +90,14 @@ class Band:
 Values = Mapping[str, float]
 
 
-def layered_bands(levels: Sequence[Values], solver: Values, model: str, *, rigid: bool = False, around: Values | None = None) -> dict[str, Band]:
+def layered_bands(
+    levels: Sequence[Values],
+    solver: Values,
+    model: str,
+    *,
+    rigid: bool = False,
+    around: Values | None = None,
+) -> dict[str, Band]:
     """Bands of the finest of two or more levels of a layered sequence.
 
     Parameters
@@ -111,14 +121,20 @@ def layered_bands(levels: Sequence[Values], solver: Values, model: str, *, rigid
         last = abs(change(before, finest, name) or 0.0)
         earlier = None
         if len(levels) > 2 and name in levels[-3]:
-            earlier = abs((change(levels[-3], finest, name) or 0.0) - (change(before, finest, name) or 0.0))
+            earlier = abs(
+                (change(levels[-3], finest, name) or 0.0) - (change(before, finest, name) or 0.0)
+            )
         rests_on = max(last, EARLIER[model] * (earlier or 0.0))
         factor = usual if len(levels) > 2 else _first(FIRST[model][rigid], rests_on)
         if earlier and len(levels) > 3:  # the step off the coarsest mesh is no regular one
             ratio = min(last / earlier, SLOWEST)
             factor = max(usual, OBSERVED * ratio / (1 - ratio))
         if name in COUPLINGS:
-            own = [abs(change(before, finest, d) or 0.0) for d in COUPLINGS[name] if d in before and d in finest]
+            own = [
+                abs(change(before, finest, d) or 0.0)
+                for d in COUPLINGS[name]
+                if d in before and d in finest
+            ]
             if len(own) == 2:
                 rests_on = max(rests_on, DIAGONAL * (own[0] * own[1]) ** 0.5)
         left = solver.get(name, 0.0)
@@ -148,7 +164,13 @@ def _left_around(around: Values, name: str) -> float:
     return around.get(name, max(around.values(), default=0.0))
 
 
-def refined_bands(levels: Sequence[Values], solver: Values, sizes: Sequence[float], exponent: float, singular: bool) -> dict[str, Band]:
+def refined_bands(
+    levels: Sequence[Values],
+    solver: Values,
+    sizes: Sequence[float],
+    exponent: float,
+    singular: bool,
+) -> dict[str, Band]:
     """Bands of the finest of three levels of plain refinement.
 
     Parameters
@@ -173,7 +195,9 @@ def refined_bands(levels: Sequence[Values], solver: Values, sizes: Sequence[floa
         if any(name not in level for level in levels[-3:]):
             continue
         v = [float(level[name]) for level in levels[-3:]]
-        if name in COUPLINGS:  # relative to the scale of a coupling: an offset that leaves differences alone
+        if (
+            name in COUPLINGS
+        ):  # relative to the scale of a coupling: an offset that leaves differences alone
             scale = _scale(levels[-1], name)
             v = [1.0 + x / scale - v[-1] / scale for x in v]
         found = gci(v, sizes[-3:], expected, 4.0, expected if singular else 2.0)
@@ -196,4 +220,8 @@ def refined_bands(levels: Sequence[Values], solver: Values, sizes: Sequence[floa
 
 def _scale(values: Values, name: str) -> float:
     one, two = COUPLINGS[name]
-    return (values[one] * values[two]) ** 0.5 if one in values and two in values else abs(values[name]) or 1.0
+    return (
+        (values[one] * values[two]) ** 0.5
+        if one in values and two in values
+        else abs(values[name]) or 1.0
+    )

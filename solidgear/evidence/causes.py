@@ -31,7 +31,14 @@ def _solve(scene, fidelity, **options):
 
 
 def _row(cause, text, model, new, old) -> Cause:
-    return Cause(cause, text, model, change(new, old, "C_zz"), change(new, old, "K_zz"), change(new, old, "bending 1"))
+    return Cause(
+        cause,
+        text,
+        model,
+        change(new, old, "C_zz"),
+        change(new, old, "K_zz"),
+        change(new, old, "bending 1"),
+    )
 
 
 def beam_causes(scene) -> list[Cause]:
@@ -43,13 +50,28 @@ def beam_causes(scene) -> list[Cause]:
     out = [
         _row("shear", "Euler-Bernoulli -> with shear", "beam", sheared, plain),
         _row("rotary inertia", "without -> with", "timoshenko", full, sheared),
-        _row("mass lumping", "consistent -> lumped", "timoshenko", _solve(scene, "timoshenko", mass="lumped"), full),
+        _row(
+            "mass lumping",
+            "consistent -> lumped",
+            "timoshenko",
+            _solve(scene, "timoshenko", mass="lumped"),
+            full,
+        ),
     ]
     if not any(s.inner0 or s.inner1 for s in scene.segments):
         cowper = _solve(scene, "timoshenko", kappa="cowper")
         out.insert(2, _row("shear coefficient", "Hutchinson -> Cowper", "timoshenko", cowper, full))
     if any(s.outer0 != s.outer1 or s.inner0 != s.inner1 for s in scene.segments):
-        out.insert(-1, _row("head smearing", "cone -> mean cylinder", "timoshenko", _solve(scene, "timoshenko", head="mean"), full))
+        out.insert(
+            -1,
+            _row(
+                "head smearing",
+                "cone -> mean cylinder",
+                "timoshenko",
+                _solve(scene, "timoshenko", head="mean"),
+                full,
+            ),
+        )
     return out
 
 
@@ -62,7 +84,12 @@ def attachment_causes(variants: dict[str, dict[str, float]], model: str) -> list
     return [_row("attachment", words[a], model, variants[a], base) for a in words if a in variants]
 
 
-def shoulder_cause(scene, beam_gap: dict[str, float | None], options: dict, tell: Callable[[str], None] = lambda _: None) -> Cause | None:
+def shoulder_cause(
+    scene,
+    beam_gap: dict[str, float | None],
+    options: dict,
+    tell: Callable[[str], None] = lambda _: None,
+) -> Cause | None:
     """Share of the beam-to-solid gap that the steps of the shaft are to blame for.
 
     The gap (Timoshenko over harmonic, section mean everywhere) of the scene, less the gap of the same scene with every outer
@@ -89,7 +116,9 @@ def shoulder_cause(scene, beam_gap: dict[str, float | None], options: dict, tell
             segments=tuple(s.with_changes(outer0=radius, outer1=radius) for s in scene.segments)
         ).with_attachment("section")
     except SolidgearError:
-        tell("the share of the shoulders is left out: the shaft at its smallest diameter would be thinner than one of its bores")
+        tell(
+            "the share of the shoulders is left out: the shaft at its smallest diameter would be thinner than one of its bores"
+        )
         return None
     beam, solid = _solve(plain, "timoshenko"), _solve(plain, "harmonic", **options)
 
@@ -97,4 +126,11 @@ def shoulder_cause(scene, beam_gap: dict[str, float | None], options: dict, tell
         here, there = beam_gap.get(name), change(beam, solid, name)
         return None if here is None or there is None else here - there
 
-    return Cause("shoulder", "gap to the solid with steps, less without", "timoshenko", share("C_zz"), share("K_zz"), share("bending 1"))
+    return Cause(
+        "shoulder",
+        "gap to the solid with steps, less without",
+        "timoshenko",
+        share("C_zz"),
+        share("K_zz"),
+        share("bending 1"),
+    )

@@ -56,8 +56,12 @@ def _left(rows: list[dict]) -> str:
     for row in reversed(rows[: rows.index(last[0])]):
         if row["n"] == tail[0]["n"] - 1:
             tail.insert(0, row)
-    parts = [f"n = {row['n']} begins above {_hertz(row['lowest_hz'])}" for row in rows if row not in tail]
-    parts.append(f"n = {tail[0]['n']} and above begin above {_hertz(min(row['lowest_hz'] for row in tail))}")
+    parts = [
+        f"n = {row['n']} begins above {_hertz(row['lowest_hz'])}" for row in rows if row not in tail
+    ]
+    parts.append(
+        f"n = {tail[0]['n']} and above begin above {_hertz(min(row['lowest_hz'] for row in tail))}"
+    )
     return ", ".join(parts)
 
 

@@ -9,7 +9,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 
-import numpy as np
 from scipy.optimize import brentq
 
 from solidgear.meshing.corners import corner_exponent, sharpest_corner
@@ -64,7 +63,13 @@ class Convergence:
         return asdict(self)
 
 
-def gci(values: Sequence[float], sizes: Sequence[float], expected: float, highest: float, cap: float = 2.0) -> Convergence:
+def gci(
+    values: Sequence[float],
+    sizes: Sequence[float],
+    expected: float,
+    highest: float,
+    cap: float = 2.0,
+) -> Convergence:
     """Grid convergence index of the finest of three results.
 
     Parameters
@@ -89,7 +94,9 @@ def gci(values: Sequence[float], sizes: Sequence[float], expected: float, highes
         If there are not three results, or sizes do not descend.
     """
     if len(values) != 3 or len(sizes) != 3 or not sizes[0] > sizes[1] > sizes[2] > 0:
-        raise ValueError(f"three results on ever finer meshes are needed, got values {list(values)} at sizes {list(sizes)}")
+        raise ValueError(
+            f"three results on ever finer meshes are needed, got values {list(values)} at sizes {list(sizes)}"
+        )
     f1, f2, f3 = (float(v) for v in values)
     h1, h2, h3 = (float(s) for s in sizes)
     r21, r32 = h1 / h2, h2 / h3
@@ -99,7 +106,19 @@ def gci(values: Sequence[float], sizes: Sequence[float], expected: float, highes
     if abs(fine) <= 1e-13 * scale:
         # Nothing left to converge: the quantity is exact on these meshes.
         band = max(abs(coarse), abs(fine)) / scale
-        return Convergence((f1, f2, f3), (h1, h2, h3), None, expected, True, expected, 1.25, float(band), f3, None, (r21, r32))
+        return Convergence(
+            (f1, f2, f3),
+            (h1, h2, h3),
+            None,
+            expected,
+            True,
+            expected,
+            1.25,
+            float(band),
+            f3,
+            None,
+            (r21, r32),
+        )
     if coarse * fine > 0:
 
         def gap(p):
@@ -119,4 +138,16 @@ def gci(values: Sequence[float], sizes: Sequence[float], expected: float, highes
         # Relative to the finest value, like the band itself: the middle one may pass through zero.
         coarse_band = factor * abs(coarse) / scale / (r21**order - 1)
         asymptotic = float(coarse_band / (r32**order * band))
-    return Convergence((f1, f2, f3), (h1, h2, h3), observed, expected, plausible, float(order), factor, float(band), float(extrapolated), asymptotic, (r21, r32))
+    return Convergence(
+        (f1, f2, f3),
+        (h1, h2, h3),
+        observed,
+        expected,
+        plausible,
+        float(order),
+        factor,
+        float(band),
+        float(extrapolated),
+        asymptotic,
+        (r21, r32),
+    )

@@ -82,7 +82,13 @@ class Pairing:
         members = [m for m in (self.mode, *self.others) if m is not None]
         if not members:
             return float("nan")
-        return float(np.sqrt(np.average([m.frequency_hz**2 for m in members], weights=[m.multiplicity for m in members])))
+        return float(
+            np.sqrt(
+                np.average(
+                    [m.frequency_hz**2 for m in members], weights=[m.multiplicity for m in members]
+                )
+            )
+        )
 
     @property
     def relative(self) -> float:
@@ -122,7 +128,14 @@ def pair_modes(model: ModeSet, reference: ModeSet) -> tuple[Pairing, ...]:
         found = _by_rank([m for m in mine if _ranked(m) == key], [theirs[j] for j in at])
         out |= dict(zip(at, found))
     at = [j for j, m in enumerate(theirs) if _ranked(m) is None]
-    out |= dict(zip(at, _by_shape([m for m in mine if _ranked(m) is None], [theirs[j] for j in at], reference.gram)))
+    out |= dict(
+        zip(
+            at,
+            _by_shape(
+                [m for m in mine if _ranked(m) is None], [theirs[j] for j in at], reference.gram
+            ),
+        )
+    )
     return tuple(out[j] for j in range(len(theirs)))
 
 
@@ -152,15 +165,28 @@ def _by_shape(mine: list[Mode], theirs: list[Mode], gram) -> list[Pairing]:
         return [Pairing(m, None, 0.0, False) for m in theirs]
     mac = np.array([[subspace_mac(_rows(a), _rows(b), gram) for b in theirs] for a in mine])
     # Shapes of which sections tell a like part; sections that tell all of one shape and little of another say that they differ.
-    share_a, share_b = (np.array([max(min(m.captured, 1.0), 1e-3) for m in modes]) for modes in (mine, theirs))
-    like = mac * np.sqrt(np.minimum(share_a[:, None], share_b) / np.maximum(share_a[:, None], share_b))
+    share_a, share_b = (
+        np.array([max(min(m.captured, 1.0), 1e-3) for m in modes]) for modes in (mine, theirs)
+    )
+    like = mac * np.sqrt(
+        np.minimum(share_a[:, None], share_b) / np.maximum(share_a[:, None], share_b)
+    )
     apart = np.abs(np.log([[a.frequency_hz / b.frequency_hz for b in theirs] for a in mine]))
     rows = np.repeat(np.arange(len(mine)), [m.multiplicity for m in mine])
     columns = np.repeat(np.arange(len(theirs)), [m.multiplicity for m in theirs])
     # Among equals the nearer frequency; it decides nothing else.
     gain = like - 0.01 * np.minimum(apart, 1.0)
-    taken = [(int(rows[r]), int(columns[c])) for r, c in zip(*linear_sum_assignment(-gain[np.ix_(rows, columns)]))]
-    partners = {j: sorted({i for i, k in taken if k == j and like[i, j] >= FOREIGN}, key=lambda i: mine[i].frequency_hz) for j in range(len(theirs))}
+    taken = [
+        (int(rows[r]), int(columns[c]))
+        for r, c in zip(*linear_sum_assignment(-gain[np.ix_(rows, columns)]))
+    ]
+    partners = {
+        j: sorted(
+            {i for i, k in taken if k == j and like[i, j] >= FOREIGN},
+            key=lambda i: mine[i].frequency_hz,
+        )
+        for j in range(len(theirs))
+    }
     clusters = _clusters(mine, theirs, like, gram)
     out = []
     for j, reference in enumerate(theirs):
@@ -170,13 +196,26 @@ def _by_shape(mine: list[Mode], theirs: list[Mode], gram) -> list[Pairing]:
             continue
         value = subspace_mac(np.vstack([_rows(mine[i]) for i in members]), _rows(reference), gram)
         rivals = [like[i, j] for i in range(len(mine)) if i not in members]
-        rivals += [like[i, k] for i in members for k in range(len(theirs)) if k != j and i not in partners[k]]
+        rivals += [
+            like[i, k]
+            for i in members
+            for k in range(len(theirs))
+            if k != j and i not in partners[k]
+        ]
         least = min(like[i, j] for i in members)
         certain = least >= SURE and max(rivals, default=0.0) <= least - LEAD
         if not certain and j in clusters:
             members, value = clusters[j]
             certain = True
-        out.append(Pairing(reference, mine[members[0]], float(value), bool(certain), tuple(mine[i] for i in members[1:])))
+        out.append(
+            Pairing(
+                reference,
+                mine[members[0]],
+                float(value),
+                bool(certain),
+                tuple(mine[i] for i in members[1:]),
+            )
+        )
     return out
 
 
@@ -188,14 +227,21 @@ def _clusters(mine, theirs, like, gram) -> dict[int, tuple[list[int], float]]:
     count, label = connected_components(graph, directed=False)
     out: dict[int, tuple[list[int], float]] = {}
     for c in range(count):
-        for left, right in _dense_groups(np.flatnonzero(label[:m] == c), np.flatnonzero(label[m:] == c), mine, theirs):
+        for left, right in _dense_groups(
+            np.flatnonzero(label[:m] == c), np.flatnonzero(label[m:] == c), mine, theirs
+        ):
             a, b = [mine[i] for i in left], [theirs[j] for j in right]
-            value = subspace_mac(np.vstack([_rows(x) for x in a]), np.vstack([_rows(x) for x in b]), gram)
+            value = subspace_mac(
+                np.vstack([_rows(x) for x in a]), np.vstack([_rows(x) for x in b]), gram
+            )
             if value < SAME_SPACE:
                 continue
             shapes = [i for i in left for _ in range(mine[i].multiplicity)]
             for j in right:
-                members, shapes = list(dict.fromkeys(shapes[: theirs[j].multiplicity])), shapes[theirs[j].multiplicity :]
+                members, shapes = (
+                    list(dict.fromkeys(shapes[: theirs[j].multiplicity])),
+                    shapes[theirs[j].multiplicity :],
+                )
                 out[int(j)] = ([int(i) for i in members], value)
     return out
 
@@ -272,8 +318,19 @@ def correlate(model: ModeSet, reference: ModeSet) -> Correlation:
             break
         j = int(values[i].argmax())
         b = theirs[j]
-        partners.append(Partner(a.name, b.name, float(values[i, j]), a.frequency_hz, b.frequency_hz, a.frequency_hz / b.frequency_hz - 1))
-    return Correlation(tuple(a.name for a in mine), tuple(b.name for b in theirs), values, tuple(partners))
+        partners.append(
+            Partner(
+                a.name,
+                b.name,
+                float(values[i, j]),
+                a.frequency_hz,
+                b.frequency_hz,
+                a.frequency_hz / b.frequency_hz - 1,
+            )
+        )
+    return Correlation(
+        tuple(a.name for a in mine), tuple(b.name for b in theirs), values, tuple(partners)
+    )
 
 
 def _rows(mode: Mode) -> np.ndarray:

@@ -15,11 +15,21 @@ Options = dict[str, Any]
 
 
 def _harmonic(order: int, layers: int, edge_layers: int, relative_size: float) -> Options:
-    return {"order": order, "layers": layers, "edge_layers": edge_layers, "relative_size": relative_size}
+    return {
+        "order": order,
+        "layers": layers,
+        "edge_layers": edge_layers,
+        "relative_size": relative_size,
+    }
 
 
 def _hexahedra(layers: int, edge_layers: int, relative_size: float) -> Options:
-    return {"layers": layers, "radial_layers": layers, "edge_layers": edge_layers, "relative_size": relative_size}
+    return {
+        "layers": layers,
+        "radial_layers": layers,
+        "edge_layers": edge_layers,
+        "relative_size": relative_size,
+    }
 
 
 HARMONIC = (
@@ -121,16 +131,31 @@ def _below_harmonic(options: Options) -> Sequence:
         return _refinements(dict(options))
     steps = (2, 1) if order > 3 else (1,)
     coarser = [
-        {**finest, "order": order - k, "layers": max(finest["layers"] - k, 0), "edge_layers": max(finest["edge_layers"] - k, 0)} for k in steps
+        {
+            **finest,
+            "order": order - k,
+            "layers": max(finest["layers"] - k, 0),
+            "edge_layers": max(finest["edge_layers"] - k, 0),
+        }
+        for k in steps
     ]
     return Sequence((*coarser, finest), True, True)
 
 
 def _below_hexahedra(options: Options) -> Sequence:
-    finest = {"layers": 4, "radial_layers": 4, "edge_layers": 1, "relative_size": 0.4, "around": 12, **options}
+    finest = {
+        "layers": 4,
+        "radial_layers": 4,
+        "edge_layers": 1,
+        "relative_size": 0.4,
+        "around": 12,
+        **options,
+    }
     coarser = []
     for k in (2, 1):
-        fewer = {name: max(finest[name] - k, 0) for name in ("layers", "radial_layers", "edge_layers")}
+        fewer = {
+            name: max(finest[name] - k, 0) for name in ("layers", "radial_layers", "edge_layers")
+        }
         larger = {"relative_size": finest["relative_size"] * 1.5**k}
         if finest.get("size"):
             larger = {"size": finest["size"] * 1.5**k}
@@ -140,4 +165,6 @@ def _below_hexahedra(options: Options) -> Sequence:
 
 def _refinements(options: Options) -> Sequence:
     given = options.get("refinement", 1.0)
-    return Sequence(tuple({**options, "refinement": given * s} for s in (0.4, 0.65, 1.0)), True, False)
+    return Sequence(
+        tuple({**options, "refinement": given * s} for s in (0.4, 0.65, 1.0)), True, False
+    )

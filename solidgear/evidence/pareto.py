@@ -125,7 +125,11 @@ class Race:
     def error(self, row: Row, quantity: str) -> float | None:
         """Error of a row, never below the band of the reference; None where the row has none."""
         found = row.errors.get(quantity)
-        return None if row.status != "ok" or found is None else max(found, self.reference["bands"][quantity])
+        return (
+            None
+            if row.status != "ok" or found is None
+            else max(found, self.reference["bands"][quantity])
+        )
 
     def sure_error(self, row: Row, quantity: str) -> float | None:
         """The largest of the error a user makes, the one like for like, and those of finer levels of the series.
@@ -136,7 +140,11 @@ class Race:
         found = self.error(row, quantity)
         if found is None:
             return None
-        finer = [self.error(r, quantity) or 0.0 for r in self.rows if r.series == row.series and r.level > row.level]
+        finer = [
+            self.error(r, quantity) or 0.0
+            for r in self.rows
+            if r.series == row.series and r.level > row.level
+        ]
         return max(found, row.like_for_like.get(quantity, 0.0), *finer)
 
     def resolved(self, row: Row, quantity: str) -> bool:
@@ -145,7 +153,10 @@ class Race:
 
     def front(self, quantity: str, cost: str = "seconds") -> list[Row]:
         """Rows on the Pareto front of a quantity over ``seconds`` or ``unknowns``, cheapest first."""
-        places = front([getattr(row, cost) for row in self.rows], [self.sure_error(row, quantity) for row in self.rows])
+        places = front(
+            [getattr(row, cost) for row in self.rows],
+            [self.sure_error(row, quantity) for row in self.rows],
+        )
         return [self.rows[k] for k in places]
 
 
@@ -162,7 +173,11 @@ def front(cost: Sequence[float | None], error: Sequence[float | None]) -> list[i
     list of int
         In ascending order of cost.
     """
-    known = [k for k, (c, e) in enumerate(zip(cost, error)) if c is not None and e is not None and np.isfinite(c) and np.isfinite(e)]
+    known = [
+        k
+        for k, (c, e) in enumerate(zip(cost, error))
+        if c is not None and e is not None and np.isfinite(c) and np.isfinite(e)
+    ]
     out, best = [], np.inf
     for k in sorted(known, key=lambda k: (cost[k], error[k], k)):
         if error[k] < best:
@@ -219,7 +234,9 @@ def race(
     start = time.perf_counter()
     n = max(scene.ask.modes, 10)
     against, compliance = _reference(scene, against or REFERENCE, n, progress)
-    found = Race(json.loads(json.dumps(scene.as_dict())), against, rows, setup or {}, runs, n, budget)
+    found = Race(
+        json.loads(json.dumps(scene.as_dict())), against, rows, setup or {}, runs, n, budget
+    )
 
     def spent() -> float:
         found.seconds = time.perf_counter() - start
@@ -235,7 +252,14 @@ def race(
         first = _warm_up(scene, found.rows, n, progress)
         while waiting := [row for row in found.rows if row.status == "waiting"]:
             # Cheapest first, so that one large solid does not use up the budget of many small models.
-            row = min((r for r in waiting if not any(w.series == r.series and w.level < r.level for w in waiting)), key=lambda r: _guess(r, found, first))
+            row = min(
+                (
+                    r
+                    for r in waiting
+                    if not any(w.series == r.series and w.level < r.level for w in waiting)
+                ),
+                key=lambda r: _guess(r, found, first),
+            )
             _admit(row, found, first, spent())
             if row.status == "waiting":
                 timed(row, 0)
@@ -276,7 +300,10 @@ def answer(scene, model: str, options: dict, n: int):
         made = synthesise_all(scene, {source: SimpleNamespace(body=body, modes=shapes)})
         chosen = representative(made)
         if chosen is None:
-            raise SolidgearError(made[source].get("why_not") or "no lumped mass is positive and has the first bending mode as its first")
+            raise SolidgearError(
+                made[source].get("why_not")
+                or "no lumped mass is positive and has the first bending mode as its first"
+            )
         values["bending 1"] = made[source]["variants"][chosen[1]]["frequency_hz"]
     return body, condensed, values
 
@@ -304,10 +331,15 @@ def _reference(scene, options: dict, n: int, progress) -> tuple[dict, np.ndarray
         values.append(found)
     have = [q for q in CHARTED if all(q in v for v in values)]
     if not have:
-        raise SolidgearError(f"nothing to chart: the reference has neither {' nor '.join(CHARTED)} at port {scene.port.name!r} (bearings must resist z there)")
+        raise SolidgearError(
+            f"nothing to chart: the reference has neither {' nor '.join(CHARTED)} at port {scene.port.name!r} (bearings must resist z there)"
+        )
     # A p-sequence on a corner converges twice as fast as an h-sequence (Babuska and Suri 1987).
     expected = 4 * sharpest_corner(scene)[1]
-    bands = {q: gci([v[q] for v in values], [1 / p for p in orders], expected, 20.0, expected).gci for q in have}
+    bands = {
+        q: gci([v[q] for v in values], [1 / p for p in orders], expected, 20.0, expected).gci
+        for q in have
+    }
     progress("reference with section ties")
     _, _, like = answer(scene.with_attachment("section"), "harmonic", LIKE_FOR_LIKE, n)
     record = {
@@ -331,7 +363,13 @@ def _run(scene, row: Row, n: int, against: dict, compliance: np.ndarray) -> None
     except Exception as error:  # whatever stops a model is a finding about it, and the others go on
         row.samples = [time.perf_counter() - start]
         row.status, row.reason = "failed", _why(error)
-        log.info("%s, level %d: %s", row.series, row.level, row.reason, exc_info=not isinstance(error, SolidgearError))
+        log.info(
+            "%s, level %d: %s",
+            row.series,
+            row.level,
+            row.reason,
+            exc_info=not isinstance(error, SolidgearError),
+        )
         return
     row.samples.append(time.perf_counter() - start)
     if row.status == "ok":
@@ -342,7 +380,9 @@ def _run(scene, row: Row, n: int, against: dict, compliance: np.ndarray) -> None
     row.errors = {q: abs(v / against["values"][q] - 1) for q, v in row.values.items()}
     if row.family in ("lumped", "beam"):
         _, _, like = answer(scene.with_attachment("section"), row.model, row.options, n)
-        row.like_for_like = {q: abs(like[q] / v - 1) for q, v in against["like_for_like"].items() if q in like}
+        row.like_for_like = {
+            q: abs(like[q] / v - 1) for q, v in against["like_for_like"].items() if q in like
+        }
     missing = [q for q in against["values"] if q not in values]
     if missing:
         _note(row, f"found no {' and no '.join(missing)}")
@@ -354,7 +394,11 @@ def _run(scene, row: Row, n: int, against: dict, compliance: np.ndarray) -> None
 def _why(error: Exception) -> str:
     if isinstance(error, SolidgearError):
         return str(error)
-    return "not enough memory" if isinstance(error, MemoryError) else f"{type(error).__name__}: {error}"
+    return (
+        "not enough memory"
+        if isinstance(error, MemoryError)
+        else f"{type(error).__name__}: {error}"
+    )
 
 
 def _note(row: Row, text: str) -> None:
@@ -384,21 +428,33 @@ def _warm_up(scene, rows: list[Row], n: int, progress) -> dict[tuple, float]:
 
 def _guess(row: Row, found: Race, first: dict[tuple, float]) -> float:
     """Seconds of one run of a row, from the levels before it in its series; the first level costs what the warm-up of its kind did."""
-    times = [r.samples[0] for r in found.rows if r.series == row.series and r.level < row.level and r.status == "ok"]
+    times = [
+        r.samples[0]
+        for r in found.rows
+        if r.series == row.series and r.level < row.level and r.status == "ok"
+    ]
     growth = min(max(times[-1] / times[-2], 1.5), 10.0) if len(times) > 1 else GROWTH
     return times[-1] * growth if times else first.get(_kind(row), 0.0)
 
 
 def _admit(row: Row, found: Race, first: dict[tuple, float], spent: float) -> None:
     """Leave a row out if the budget would not hold all runs of all admitted rows and of this one."""
-    if any(r.status == "left out" for r in found.rows if r.series == row.series and r.level < row.level):
+    if any(
+        r.status == "left out" for r in found.rows if r.series == row.series and r.level < row.level
+    ):
         row.status, row.reason = "left out", "the level before it was left out"
         return
     guess = _guess(row, found, first)
-    owed = sum(r.samples[0] * (_most_runs(r.samples[0], found.runs) - len(r.samples)) for r in found.rows if r.status == "ok")
+    owed = sum(
+        r.samples[0] * (_most_runs(r.samples[0], found.runs) - len(r.samples))
+        for r in found.rows
+        if r.status == "ok"
+    )
     if spent + owed + guess * _most_runs(guess, found.runs) > found.budget:
         row.status = "left out"
-        row.reason = f"the budget of {found.budget:g} s would not hold it (about {guess:.2g} s a run)"
+        row.reason = (
+            f"the budget of {found.budget:g} s would not hold it (about {guess:.2g} s a run)"
+        )
 
 
 def _most_runs(seconds: float, runs: int) -> int:

@@ -30,15 +30,31 @@ class Partners:
         if pair is None:
             return None, ""
         if pair.certain and pair.mode is not None:
-            return pair.mode.frequency_hz, "" if pair.mode.name == name else f"paired by shape, MAC {pair.mac:.2f}: it calls the mode {pair.mode.name}"
-        place = int(np.searchsorted(_ladder(self.reference), pair.reference.frequency_hz * (1 - 1e-9)))
+            return (
+                pair.mode.frequency_hz,
+                ""
+                if pair.mode.name == name
+                else f"paired by shape, MAC {pair.mac:.2f}: it calls the mode {pair.mode.name}",
+            )
+        place = int(
+            np.searchsorted(_ladder(self.reference), pair.reference.frequency_hz * (1 - 1e-9))
+        )
         mine = _ladder(self.model)
         if place >= len(mine):
             return None, ""
-        return float(mine[place]), f"no shape is certainly the same, so number {place + 1} in ascending order is compared"
+        return float(
+            mine[place]
+        ), f"no shape is certainly the same, so number {place + 1} in ascending order is compared"
 
 
 def _ladder(modes: ModeSet) -> np.ndarray:
     """Elastic frequencies in ascending order, each as often as it has shapes; families that only one model has left out."""
     own = sorted((*modes.modes, *modes.beyond), key=lambda m: m.frequency_hz)
-    return np.array([m.frequency_hz for m in own if m.frequency_hz > 0 and not m.family.startswith("ovalising") for _ in range(m.multiplicity)])
+    return np.array(
+        [
+            m.frequency_hz
+            for m in own
+            if m.frequency_hz > 0 and not m.family.startswith("ovalising")
+            for _ in range(m.multiplicity)
+        ]
+    )

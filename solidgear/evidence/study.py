@@ -8,6 +8,7 @@ station: what a beam knows of a solid.  A solid is solved on ever finer meshes (
 from __future__ import annotations
 
 import logging
+import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from typing import Any
@@ -50,7 +51,11 @@ class Tied:
         out = {}
         for name, (kind, place, _) in QUANTITIES.items():
             mode = self.modes.named(place) if kind == "frequency" else None
-            out[name] = getattr(mode, "error", 0.0) if kind == "frequency" else self.condensed.evidence["residual"]
+            out[name] = (
+                getattr(mode, "error", 0.0)
+                if kind == "frequency"
+                else self.condensed.evidence["residual"]
+            )
         return out
 
 
@@ -149,12 +154,22 @@ def study(
     meter = Meter()
     if model not in SOLIDS:
         progress(f"{model}: build, statics, modes")
-        body, ties = _solved(scene, model, options, meter, lambda _: evidence and counted)
+        body, ties = _solved(scene, model, options, meter, 0 if evidence and counted else math.inf)
         rung = Rung(model, body, ties, meter, options=options)
         keep(rung)
     else:
         share = share or (JUDGE if model == "harmonic" else JUDGED_SHARE)
-        rung = _climbed(scene, model, options, meter, scene.ask.tolerance / share, most, evidence and counted, progress, keep)
+        rung = _climbed(
+            scene,
+            model,
+            options,
+            meter,
+            scene.ask.tolerance / share,
+            most,
+            evidence and counted,
+            progress,
+            keep,
+        )
     if evidence:
         _add_variants(scene, rung, progress)
     return rung
@@ -172,9 +187,11 @@ def _climbed(scene, model, options, meter, target, most, counted, progress, keep
     for k, level in enumerate(levels):
         progress(f"{model}: mesh {k + 1}")
         before = dict(meter.seconds)
-        final = k == len(levels) - 1 if plan.fixed else k >= 2
+        last = k == len(levels) - 1 if plan.fixed else k >= 2
+        # the second level is counted as well where a third one may be too dear to be solved
+        least = 0 if last else HEAVY + 1 if not plan.fixed and k == 1 else math.inf
         try:
-            body, ties = _solved(scene, model, level, meter, lambda size: counted and (final or not plan.fixed and k == 1 and size > HEAVY))
+            body, ties = _solved(scene, model, level, meter, least if counted else math.inf)
         except (SolidgearError, MemoryError) as error:
             why = str(error) or "not enough memory"
             if plan.fixed and k < len(levels) - 1:
@@ -197,7 +214,12 @@ def _climbed(scene, model, options, meter, target, most, counted, progress, keep
         keep(rung)
         worst = rung.worst_band()
         enough = target if k >= 2 else max(target, scene.ask.tolerance / LIGHT_JUDGE)
-        if not plan.fixed and (k >= 2 or k == 1 and body.size > HEAVY) and worst is not None and worst <= enough:
+        if (
+            not plan.fixed
+            and (k >= 2 or k == 1 and body.size > HEAVY)
+            and worst is not None
+            and worst <= enough
+        ):
             break
     assert rung is not None
     return rung
@@ -222,11 +244,13 @@ def _facts(body: Body, tied: Tied) -> dict:
     }
 
 
-def _around(scene, model: str, plan: Sequence, ties: dict[str, Tied], meter: Meter) -> dict[str, dict[str, float]]:
+def _around(
+    scene, model: str, plan: Sequence, ties: dict[str, Tied], meter: Meter
+) -> dict[str, dict[str, float]]:
     """Relative error that the cells around leave, per way of tying and quantity."""
     spare = Meter()
     with meter.stage("band"):
-        _, turned = _solved(scene, model, plan.turned or {}, spare, lambda _: False)
+        _, turned = _solved(scene, model, plan.turned or {}, spare)
     out = {}
     for tie in set(ties) & set(turned):
         finer = turned[tie].quantities
@@ -235,7 +259,9 @@ def _around(scene, model: str, plan: Sequence, ties: dict[str, Tied], meter: Met
     return out
 
 
-def _bands(scene, model: str, plan: Sequence, solved: list[dict[str, Tied]], facts: list[dict], around) -> dict[str, dict[str, Band]]:
+def _bands(
+    scene, model: str, plan: Sequence, solved: list[dict[str, Tied]], facts: list[dict], around
+) -> dict[str, dict[str, Band]]:
     """Bands of the finest level for every way of tying that all of the last levels have."""
     out = {}
     for tie in (SCENE, SECTION):
@@ -255,8 +281,10 @@ def _bands(scene, model: str, plan: Sequence, solved: list[dict[str, Tied]], fac
     return out
 
 
-def _solved(scene, model: str, options: Mapping[str, Any], meter: Meter, counted: Callable[[int], bool]) -> tuple[Body, dict[str, Tied]]:
-    """A body and what it answers, tied as in the scene and by section means; modes are counted if the number of unknowns says so."""
+def _solved(
+    scene, model: str, options: Mapping[str, Any], meter: Meter, counted_from: float = math.inf
+) -> tuple[Body, dict[str, Tied]]:
+    """A body and what it answers, tied as in the scene and by section means; modes are counted from so many unknowns on."""
     given = {s.attachment for s in scene.stations}
     # Means over seats and over sections are only rows on the same matrices; a rigid seat is another matrix.
     together = "rigid" not in given
@@ -264,16 +292,22 @@ def _solved(scene, model: str, options: Mapping[str, Any], meter: Meter, counted
     kinds = tuple(dict.fromkeys(wanted)) if together else None
     extra = {"attachments": kinds} if together else {}
     body = _built(scene, model, {**options, **extra}, meter)
-    supports, count = as_supports(scene), counted(body.size)
+    supports, count = as_supports(scene), body.size >= counted_from
     if together:
         supports = replace(supports, attachments=tuple(b.attachment for b in scene.bearings))
-    ties = {SCENE: _tied(scene, body, supports, scene.port.attachment if together else None, meter, count)}
+    ties = {
+        SCENE: _tied(
+            scene, body, supports, scene.port.attachment if together else None, meter, count
+        )
+    }
     if given == {"section"}:
         ties[SECTION] = ties[SCENE]
     elif model == "solid":
         pass  # planes of section ties would have to be graded; the harmonic solid judges like for like
     elif together:
-        ties[SECTION] = _tied(scene, body, supports.with_attachment("section"), "section", meter, False)
+        ties[SECTION] = _tied(
+            scene, body, supports.with_attachment("section"), "section", meter, False
+        )
     else:
         plain = scene.with_attachment("section")
         other = _built(plain, model, options, meter)
@@ -287,13 +321,22 @@ def _built(scene, model: str, options: Mapping[str, Any], meter: Meter) -> Body:
         return build(scene, model, **options)
 
 
-def _tied(scene, body: Body, supports: Supports, attachment: str | None, meter: Meter, count: bool) -> Tied:
+def _tied(
+    scene, body: Body, supports: Supports, attachment: str | None, meter: Meter, count: bool
+) -> Tied:
     ask = scene.ask
     with meter.stage("statics"):
         condensed = condense(body, supports, scene.port.name, attachment)
     with meter.stage("modes"):
         # Families of two waves and more are told for the mesh that is told; bearings do not move them, nor do bands rest on them.
-        found = modes(body, supports, max(ask.modes, ENOUGH), max_frequency=ask.max_frequency, count=count, ovalising=count)
+        found = modes(
+            body,
+            supports,
+            max(ask.modes, ENOUGH),
+            max_frequency=ask.max_frequency,
+            count=count,
+            ovalising=count,
+        )
     # Evidence, not part of the answer: kept apart from what the modes cost.
     meter.move("modes", "count", found.evidence.get("count_seconds", 0.0))
     return Tied(condensed, found, measure(condensed, found))
@@ -312,10 +355,16 @@ def _add_variants(scene, rung: Rung, progress: Progress) -> None:
                 elif attachment == "section" and SECTION in rung.ties:
                     rung.variants[attachment] = rung.ties[SECTION]
                 elif rung.model != "solid":
-                    changed = rigid_seats(scene) if attachment == "rigid" else scene.with_attachment(attachment)
+                    changed = (
+                        rigid_seats(scene)
+                        if attachment == "rigid"
+                        else scene.with_attachment(attachment)
+                    )
                     rung.meter.expect(estimated_size(changed, rung.model, rung.options).peak_mb)
                     body = build(changed, rung.model, **rung.options)
-                    rung.variants[attachment] = _tied(changed, body, as_supports(changed), None, spare, False)
+                    rung.variants[attachment] = _tied(
+                        changed, body, as_supports(changed), None, spare, False
+                    )
             except SolidgearError as error:
                 log.info("%s: attachment %s left out: %s", rung.model, attachment, error)
 
@@ -326,5 +375,9 @@ def rigid_seats(scene):
     Only seats are compared in the literature on RBE2 against RBE3; a rigid head would be another model.
     """
     bearings = tuple(b.with_changes(attachment="rigid") for b in scene.bearings)
-    port = scene.port.with_changes(attachment="average") if scene.port.attachment == "rigid" else scene.port
+    port = (
+        scene.port.with_changes(attachment="average")
+        if scene.port.attachment == "rigid"
+        else scene.port
+    )
     return scene.with_changes(bearings=bearings, port=port)

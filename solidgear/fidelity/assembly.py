@@ -79,13 +79,19 @@ class Tabulation:
 
     def __init__(self, geometry, element, points: np.ndarray):
         self._shape, self._dshape = reference(geometry, points)
-        self.value, self.slope = (self._shape, self._dshape) if geometry is element else reference(element, points)
+        self.value, self.slope = (
+            (self._shape, self._dshape) if geometry is element else reference(element, points)
+        )
 
     def on(self, nodes: np.ndarray) -> Tabulated:
         """Tabulate on elements with (dim, nn, ne) nodes of the mapping, m."""
         nn, dim, nq = self._dshape.shape
         nodes = np.ascontiguousarray(nodes.transpose(0, 2, 1))
-        jac = (nodes @ self._dshape.reshape(nn, dim * nq)).reshape(dim, -1, dim, nq).transpose(0, 2, 1, 3)
+        jac = (
+            (nodes @ self._dshape.reshape(nn, dim * nq))
+            .reshape(dim, -1, dim, nq)
+            .transpose(0, 2, 1, 3)
+        )
         inverse, det = inverted(jac)
         return Tabulated(self.value, self.slope, det, nodes @ self._shape, jac, inverse)
 
@@ -166,10 +172,14 @@ class Pattern:
         # Element entries row by row, each row being an unknown of an element.  A transposition is a counting sort by column that
         # leaves rows in order; the pattern is symmetric, so each entry carries the number of its mirror image.
         slots = np.arange(ne * nb, dtype=np.int32).reshape(ne, nb)
-        by_row = sp.csr_matrix((slots.ravel(), of.ravel(), np.arange(0, ne * nb + 1, nb)), shape=(ne, self.n)).tocsc()
+        by_row = sp.csr_matrix(
+            (slots.ravel(), of.ravel(), np.arange(0, ne * nb + 1, nb)), shape=(ne, self.n)
+        ).tocsc()
         element, a = by_row.indices, by_row.data % nb
         mirror = (element * (nb * nb) + a)[:, None] + np.arange(0, nb * nb, nb, dtype=np.int32)
-        entries = sp.csr_matrix((mirror.ravel(), of[element].ravel(), by_row.indptr * nb), shape=(self.n, self.n)).tocsc()
+        entries = sp.csr_matrix(
+            (mirror.ravel(), of[element].ravel(), by_row.indptr * nb), shape=(self.n, self.n)
+        ).tocsc()
         # A change of row opens a new entry.  So does a change of column: were the last row of column j the first of column j + 1,
         # symmetry and the diagonal would contradict it.
         first = np.ones(entries.nnz, bool)
@@ -211,7 +221,9 @@ class Sum:
         p, c = self.pattern, self.c
         if c == 1:
             return sp.csr_matrix((self.data, p.indices, p.indptr), shape=(p.n, p.n))
-        return sp.bsr_matrix((self.data.reshape(-1, c, c), p.indices, p.indptr), shape=(p.n * c, p.n * c)).tocsr()
+        return sp.bsr_matrix(
+            (self.data.reshape(-1, c, c), p.indices, p.indptr), shape=(p.n * c, p.n * c)
+        ).tocsr()
 
 
 def batches(elements: np.ndarray, bytes_each: float):

@@ -37,9 +37,13 @@ def tie_rigidly(block: Block, ties) -> Block:
     for _, _, mask in ties:
         tied += mask
     if tied.max() > 1:
-        raise SolidgearError("two rigid seats share points of the surface; separate them or use the attachment 'average'")
+        raise SolidgearError(
+            "two rigid seats share points of the surface; separate them or use the attachment 'average'"
+        )
     free = np.flatnonzero(tied == 0)
-    columns = [sp.csr_matrix((np.ones(len(free)), (free, np.arange(len(free)))), shape=(n, len(free)))]
+    columns = [
+        sp.csr_matrix((np.ones(len(free)), (free, np.arange(len(free)))), shape=(n, len(free)))
+    ]
     rigid, y = [block.rigid[free]], [block.y[free]]
     ports = block.ports.tolil()[:, free]
     extra = sp.lil_matrix((ports.shape[0], c * len(ties)))
@@ -68,7 +72,9 @@ def tie_rigidly(block: Block, ties) -> Block:
         planar=block.planar,
         border=c * len(ties),
         expand=t,
-        sections=through(block.sections or from_points(block.mass, block.rigid, block.y, block.components), t),
+        sections=through(
+            block.sections or from_points(block.mass, block.rigid, block.y, block.components), t
+        ),
     )
 
 

@@ -91,9 +91,20 @@ def beam(
     Body
         Four blocks (axial, torsion and the two bending planes).
     """
-    checked("timoshenko" if shear else "euler", {"head": head, "mass": mass, "kappa": kappa, "elements": elements, "attachments": attachments})
+    checked(
+        "timoshenko" if shear else "euler",
+        {
+            "head": head,
+            "mass": mass,
+            "kappa": kappa,
+            "elements": elements,
+            "attachments": attachments,
+        },
+    )
     if kappa == "cowper" and any(s.inner0 or s.inner1 for s in scene.segments):
-        raise SolidgearError("kappa: 'cowper' is given for solid sections only; use 'hutchinson' for a hollow shaft")
+        raise SolidgearError(
+            "kappa: 'cowper' is given for solid sections only; use 'hutchinson' for a hollow shaft"
+        )
     wanted = [(s, a) for s in scene.stations for a in (attachments or (s.attachment,))]
     nodes, owner = mesh(scene, elements, wanted)
     n = len(nodes)
@@ -114,10 +125,19 @@ def beam(
         )
         ends = np.array([e, e + 1])
         both = np.concatenate([np.arange(2 * e, 2 * e + 4), 2 * n + inner * e + np.arange(inner)])
-        fields.append(_Fields(segment, left, right, (both, bend[2]), (ends, stretch[2]), (ends, twist[2])))
-        parts = {"bending": (*bend[:2], both), "axial": (*stretch[:2], ends), "torsion": (*twist[:2], ends)}
+        fields.append(
+            _Fields(segment, left, right, (both, bend[2]), (ends, stretch[2]), (ends, twist[2]))
+        )
+        parts = {
+            "bending": (*bend[:2], both),
+            "axial": (*stretch[:2], ends),
+            "torsion": (*twist[:2], ends),
+        }
         for name, (ke, me, at) in parts.items():
-            for store, values in zip(entries[name], (np.repeat(at, len(at)), np.tile(at, len(at)), ke.ravel(), me.ravel())):
+            for store, values in zip(
+                entries[name],
+                (np.repeat(at, len(at)), np.tile(at, len(at)), ke.ravel(), me.ravel()),
+            ):
                 store.append(values)
     k, m = {}, {}
     for name, parts in entries.items():
@@ -126,7 +146,9 @@ def beam(
         m[name] = sp.csr_matrix((heavy, (row, col)), shape=(size[name],) * 2)
     ports = tuple(Port(s.name, s.y, a) for s, a in wanted)
     one, zero = np.ones(n), np.zeros(n)
-    lift = np.column_stack([np.column_stack([one, zero]).ravel(), np.column_stack([nodes, one]).ravel()])
+    lift = np.column_stack(
+        [np.column_stack([one, zero]).ravel(), np.column_stack([nodes, one]).ravel()]
+    )
     lift = np.vstack([lift, np.zeros((size["bending"] - 2 * n, 2))])
     y2 = np.concatenate([np.repeat(nodes, 2), np.full(size["bending"] - 2 * n, np.nan)])
     rows = [_port_rows(station, attachment, nodes, fields, size) for station, attachment in wanted]
@@ -134,19 +156,41 @@ def beam(
     rigid = [(i, s) for i, (s, a) in enumerate(wanted) if a == "rigid"]
 
     def tied(block: Block, per_node: int) -> Block:
-        return tie_rigidly(block, [(i, s.y, _seat_mask(s, nodes, per_node, block.size)) for i, s in rigid])
+        return tie_rigidly(
+            block, [(i, s.y, _seat_mask(s, nodes, per_node, block.size)) for i, s in rigid]
+        )
 
-    bending = tied(Block("bending_z", (2, 3), k["bending"], m["bending"], lift, y2, stacked["bending"]), 2)
+    bending = tied(
+        Block("bending_z", (2, 3), k["bending"], m["bending"], lift, y2, stacked["bending"]), 2
+    )
     blocks = (
         bending,
         bending.mirrored("bending_x", (0, 5), 0, (1.0, -1.0)),
-        tied(Block("axial", (1,), k["axial"], m["axial"], one[:, None], nodes, stacked["axial"]), 1),
-        tied(Block("torsion", (4,), k["torsion"], m["torsion"], one[:, None], nodes, stacked["torsion"]), 1),
+        tied(
+            Block("axial", (1,), k["axial"], m["axial"], one[:, None], nodes, stacked["axial"]), 1
+        ),
+        tied(
+            Block(
+                "torsion", (4,), k["torsion"], m["torsion"], one[:, None], nodes, stacked["torsion"]
+            ),
+            1,
+        ),
     )
-    facts = {"element": "timoshenko" if shear else "euler", "elements": n - 1, "rotary_inertia": rotary_inertia, "head": head}
+    facts = {
+        "element": "timoshenko" if shear else "euler",
+        "elements": n - 1,
+        "rotary_inertia": rotary_inertia,
+        "head": head,
+    }
     facts["mass"] = mass
     return Body(
-        "timoshenko" if shear else "euler", blocks, ports, elastic_scale(scene), scene.length, facts, geometry=nodes
+        "timoshenko" if shear else "euler",
+        blocks,
+        ports,
+        elastic_scale(scene),
+        scene.length,
+        facts,
+        geometry=nodes,
     )
 
 
@@ -156,7 +200,9 @@ def mesh(scene, elements: int | None, wanted=()):
     ``wanted`` lists stations with their attachments.
     """
     marks = {s.y0 for s in scene.segments} | {scene.segments[-1].y1} | {s.y for s in scene.stations}
-    marks |= {y for s, a in wanted if a == "rigid" for y in (max(s.lo, 0.0), min(s.hi, scene.length))}
+    marks |= {
+        y for s, a in wanted if a == "rigid" for y in (max(s.lo, 0.0), min(s.hi, scene.length))
+    }
     marks = np.array(sorted(marks))
     # Marks that differ by rounding only would make an element of no length.
     marks = marks[np.concatenate([[True], np.diff(marks) > 1e-9 * scene.length])]
@@ -209,7 +255,11 @@ class _Section:
         g = mat.E / (2 * (1 + mat.nu))
         self.bend = mat.E * second
         # Cowper (1966), J. Appl. Mech. 33, 335: 6 (1 + nu) / (7 + 6 nu)
-        factor = shear_coefficient(mat.nu, a, b) if kappa == "hutchinson" else 6 * (1 + mat.nu) / (7 + 6 * mat.nu)
+        factor = (
+            shear_coefficient(mat.nu, a, b)
+            if kappa == "hutchinson"
+            else 6 * (1 + mat.nu) / (7 + 6 * mat.nu)
+        )
         self.shear = factor * g * area
         self.stretch = mat.E * area
         self.twist = 2 * g * second
@@ -218,7 +268,9 @@ class _Section:
         self.polar = 2 * self.rotary
         # Integration from 0 to s at the Gauss points, exact for the polynomial through them.
         lagrange = np.linalg.inv(np.vander(x, increasing=True))
-        powers = np.array([[(xi ** (j + 1) - (-1.0) ** (j + 1)) / (j + 1) for j in range(len(x))] for xi in x])
+        powers = np.array(
+            [[(xi ** (j + 1) - (-1.0) ** (j + 1)) / (j + 1) for j in range(len(x))] for xi in x]
+        )
         self.integral = self.length / 2 * powers @ lagrange
 
 
@@ -233,8 +285,15 @@ def _bending(c: _Section, shear: bool, rotary: bool, mass: str):
     soft = np.stack([1 / c.bend, 1 / c.shear if shear else np.zeros_like(s)])
     # Clamped at the left.  With dz/dy = thx a tip force bends by L - s, a tip moment by 1, a uniform
     # force by (L - s)^2 / 2 and a uniform moment by L - s.  First row moments, second row shear forces.
-    tip = np.stack([np.column_stack([L - s, np.ones_like(s)]), np.column_stack([np.ones_like(s), np.zeros_like(s)])])
-    spread = np.stack([np.column_stack([(L - s) ** 2 / 2, L - s]), np.column_stack([L - s, np.zeros_like(s)])])
+    tip = np.stack(
+        [
+            np.column_stack([L - s, np.ones_like(s)]),
+            np.column_stack([np.ones_like(s), np.zeros_like(s)]),
+        ]
+    )
+    spread = np.stack(
+        [np.column_stack([(L - s) ** 2 / 2, L - s]), np.column_stack([L - s, np.zeros_like(s)])]
+    )
 
     def energy(a, b):
         return np.einsum("kqi,kq,kqj->ij", a, w * soft, b)
@@ -301,14 +360,18 @@ class _Fields:
         middle, half = (lo + hi) / 2, (hi - lo) / 2
         y = middle + half * x
         local = (2 * y - self.left - self.right) / (self.right - self.left)
-        lagrange = np.vander(local, len(x), increasing=True) @ np.linalg.inv(np.vander(x, increasing=True))
+        lagrange = np.vander(local, len(x), increasing=True) @ np.linalg.inv(
+            np.vander(x, increasing=True)
+        )
         segment = self.segment
         slope = (segment.outer1 - segment.outer0) / segment.length
         r = segment.outer0 + slope * (y - segment.y0)
         return y, r, w * half * np.hypot(1.0, slope), lagrange
 
 
-def _port_rows(station, attachment: str, nodes, fields: list[_Fields], size: dict[str, int]) -> dict[str, np.ndarray]:
+def _port_rows(
+    station, attachment: str, nodes, fields: list[_Fields], size: dict[str, int]
+) -> dict[str, np.ndarray]:
     """Motions of a port as rows on the unknowns of bending (d, ph), axial and torsion; zeros where the tie is rigid."""
     out = {name: np.zeros((2 if name == "bending" else 1, n)) for name, n in size.items()}
     if attachment == "section":
@@ -329,7 +392,10 @@ def _port_rows(station, attachment: str, nodes, fields: list[_Fields], size: dic
         out["bending"][0, unknowns] += w @ deflection
         out["bending"][1, unknowns] += (w * h) @ deflection + (w * r**2 / 2) @ turn
         gram += np.array([[w.sum(), w @ h], [w @ h, w @ (h * h + r**2 / 2)]])
-        for name, (at, along), weight in (("axial", field.stretch, w), ("torsion", field.twist, w * r**2)):
+        for name, (at, along), weight in (
+            ("axial", field.stretch, w),
+            ("torsion", field.twist, w * r**2),
+        ):
             out[name][0, at] += weight @ lagrange @ along
         area, polar = area + w.sum(), polar + (w * r**2).sum()
     out["bending"] = np.linalg.solve(gram, out["bending"])

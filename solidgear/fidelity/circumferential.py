@@ -54,17 +54,27 @@ class Families:
         """Lowest frequency (Hz) of n waves on a light mesh, somewhat too high."""
         if n not in self._found:
             block = self._light_work().bending_block(f"ovalising_{n}", (), n, ())
-            value = spla.eigsh(block.stiffness.tocsc(), 1, block.mass.tocsc(), sigma=0.0, v0=np.ones(block.size), return_eigenvectors=False, tol=1e-3)
+            value = spla.eigsh(
+                block.stiffness.tocsc(),
+                1,
+                block.mass.tocsc(),
+                sigma=0.0,
+                v0=np.ones(block.size),
+                return_eigenvectors=False,
+                tol=1e-3,
+            )
             self._found[n] = float(np.sqrt(value[0]) / (2 * np.pi))
         return self._found[n]
 
     def _light_work(self):
-        from solidgear.fidelity.harmonic import _Work, _element
+        from solidgear.fidelity.harmonic import _element, _Work
 
         if self._work is None:
             s = self._scene
             thick = max(max(p.outer0, p.outer1) for p in s.segments)
-            flat = meridian(s, layout(s, Grading(layers=0, edge_layers=0, size=max(s.length / 12, thick / 3))))
+            flat = meridian(
+                s, layout(s, Grading(layers=0, edge_layers=0, size=max(s.length / 12, thick / 3)))
+            )
             mesh, element = MeshQuad1(flat.points, flat.cells, sort_t=False), _element(2)
             self._work = _Work(s, mesh, element, unknowns(mesh, element), flat, 2)
         return self._work
@@ -76,14 +86,36 @@ def _parts(segments) -> np.ndarray:
     A segment is a wall as thick as it is radially.  Neighbours that together stick out over a radius, or into the bore of others, are a disc as thick as they
     are long.
     """
-    rows = [(max(s.outer0, s.outer1), min(s.outer0 - s.inner0, s.outer1 - s.inner1), np.inf, s.material.E / s.material.density) for s in segments]
-    for base, run in overhangs([(max(s.outer0, s.outer1), s.length, s.material.E / s.material.density) for s in segments], 0.0):
+    rows = [
+        (
+            max(s.outer0, s.outer1),
+            min(s.outer0 - s.inner0, s.outer1 - s.inner1),
+            np.inf,
+            s.material.E / s.material.density,
+        )
+        for s in segments
+    ]
+    for base, run in overhangs(
+        [(max(s.outer0, s.outer1), s.length, s.material.E / s.material.density) for s in segments],
+        0.0,
+    ):
         height = max(r for r, _, _ in run)
-        rows.append((height, sum(length for _, length, _ in run), height - base if base else np.inf, min(c for _, _, c in run)))
+        rows.append(
+            (
+                height,
+                sum(length for _, length, _ in run),
+                height - base if base else np.inf,
+                min(c for _, _, c in run),
+            )
+        )
     # inwards: the same with radii counted from a bore to the axis
-    for base, run in overhangs([(-min(s.inner0, s.inner1), s.length, s.material.E / s.material.density) for s in segments]):
+    for base, run in overhangs(
+        [(-min(s.inner0, s.inner1), s.length, s.material.E / s.material.density) for s in segments]
+    ):
         depth = max(r for r, _, _ in run)
-        rows.append((-base, sum(length for _, length, _ in run), depth - base, min(c for _, _, c in run)))
+        rows.append(
+            (-base, sum(length for _, length, _ in run), depth - base, min(c for _, _, c in run))
+        )
     return np.array(rows)
 
 

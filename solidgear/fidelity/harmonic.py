@@ -30,7 +30,6 @@ from solidgear.meshing.layout import Grading, Layout, layout
 from solidgear.meshing.meridian import Meridian, meridian
 from solidgear.sections import Sections, through
 
-
 _CORNERS = ElementQuad1()
 
 
@@ -89,8 +88,17 @@ def harmonic(
     SolidgearError
         For an unknown order or attachment.
     """
-    grading = {"layers": layers, "edge_layers": edge_layers, "ratio": ratio, "relative_size": relative_size, "size": size, "refinement": refinement}
-    given = checked("harmonic", {"order": order, **grading, "attachments": attachments, "ovalising": ovalising})
+    grading = {
+        "layers": layers,
+        "edge_layers": edge_layers,
+        "ratio": ratio,
+        "relative_size": relative_size,
+        "size": size,
+        "refinement": refinement,
+    }
+    given = checked(
+        "harmonic", {"order": order, **grading, "attachments": attachments, "ovalising": ovalising}
+    )
     attachments, ovalising = given["attachments"], given["ovalising"]
     plan = harmonic_layout(scene, attachments, **grading)
     flat = meridian(scene, plan)
@@ -105,7 +113,12 @@ def harmonic(
             wanted.append((station, attachment))
 
     bending = work.bending_block("bending_z", (2, 3), 1, wanted)
-    blocks = [bending, bending.mirrored("bending_x", (0, 5), 0, (1.0, -1.0)), work.bending_block("axial", (1,), 0, wanted), work.torsion_block(wanted)]
+    blocks = [
+        bending,
+        bending.mirrored("bending_x", (0, 5), 0, (1.0, -1.0)),
+        work.bending_block("axial", (1,), 0, wanted),
+        work.torsion_block(wanted),
+    ]
     blocks += [work.bending_block(f"ovalising_{n}", (), n, wanted) for n in ovalising]
     facts = {
         "element": f"Q{order}",
@@ -119,16 +132,39 @@ def harmonic(
         "representative_size": float(np.sqrt(work.area / flat.cells.shape[1])),
         "pair_tolerance": 1e-9,
     }
-    further = Families(scene, lambda n: _Work(scene, mesh, element, dofs, flat, order).bending_block(f"ovalising_{n}", (), n, ()))
+    further = Families(
+        scene,
+        lambda n: _Work(scene, mesh, element, dofs, flat, order).bending_block(
+            f"ovalising_{n}", (), n, ()
+        ),
+    )
     return Body(
-        "harmonic", tuple(blocks), tuple(ports), elastic_scale(scene), scene.length, facts, HarmonicMesh(mesh, element, dofs, flat), further
+        "harmonic",
+        tuple(blocks),
+        tuple(ports),
+        elastic_scale(scene),
+        scene.length,
+        facts,
+        HarmonicMesh(mesh, element, dofs, flat),
+        further,
     )
 
 
-def harmonic_layout(scene, attachments=None, *, layers, edge_layers, ratio, relative_size, size, refinement) -> Layout:
+def harmonic_layout(
+    scene, attachments=None, *, layers, edge_layers, ratio, relative_size, size, refinement
+) -> Layout:
     """Mesh lines of :func:`harmonic`, before anything is meshed; parameters as there."""
-    countable("harmonic", scene, size or relative_size * min(min(s.outer0, s.outer1) for s in scene.segments), refinement)
-    return layout(scene, Grading(layers, edge_layers, None, ratio, relative_size, size, refinement=refinement), attachments)
+    countable(
+        "harmonic",
+        scene,
+        size or relative_size * min(min(s.outer0, s.outer1) for s in scene.segments),
+        refinement,
+    )
+    return layout(
+        scene,
+        Grading(layers, edge_layers, None, ratio, relative_size, size, refinement=refinement),
+        attachments,
+    )
 
 
 def _element(order):
@@ -168,7 +204,14 @@ class _Work:
     """Tabulated basis, materials and surface integrals shared by the blocks of one body."""
 
     def __init__(self, scene, mesh, element, dofs, flat, order):
-        self.scene, self.mesh, self.element, self.dofs, self.flat, self.order = scene, mesh, element, dofs, flat, order
+        self.scene, self.mesh, self.element, self.dofs, self.flat, self.order = (
+            scene,
+            mesh,
+            element,
+            dofs,
+            flat,
+            order,
+        )
         x, w = np.polynomial.legendre.leggauss(order + 2)
         self.g, self.gw = (x + 1) / 2, w / 2
         a, b = np.meshgrid(self.g, self.g, indexing="ij")
@@ -178,12 +221,17 @@ class _Work:
         self.n = self.pattern.n
         self.basis = Tabulation(_CORNERS, element, self.points)
         # products of basis functions, of which every mass is a weighted sum
-        self.products = (self.basis.value[:, None] * self.basis.value).reshape(-1, len(self.weights)).T
+        self.products = (
+            (self.basis.value[:, None] * self.basis.value).reshape(-1, len(self.weights)).T
+        )
         # Vertex functions carry all rigid motions; higher ones are zero there in a hierarchical basis.
         self.r = np.zeros(self.n)
         self.y = np.full(self.n, np.nan)
         if order > 2:
-            self.r[dofs[:4]], self.y[dofs[:4]] = flat.points[0][flat.cells], flat.points[1][flat.cells]
+            self.r[dofs[:4]], self.y[dofs[:4]] = (
+                flat.points[0][flat.cells],
+                flat.points[1][flat.cells],
+            )
             self.point = ~np.isnan(self.y)
         else:
             at = np.nan_to_num(np.array([element.doflocs[:, 0], element.doflocs[:, 1]]))
@@ -231,8 +279,15 @@ class _Work:
             r = t.x[0]
             w = (2 * np.pi if n == 0 else np.pi) * dv * r
             root = np.sqrt(w)
-            f = np.concatenate([(t.value * (root / r)[:, None])[:, None], t.gradient(root)], axis=1).reshape(len(part), 3 * nb, -1)
-            gram = (f @ f.transpose(0, 2, 1)).reshape(-1, 3, nb, 3, nb).transpose(1, 3, 0, 2, 4).reshape(9, -1)
+            f = np.concatenate(
+                [(t.value * (root / r)[:, None])[:, None], t.gradient(root)], axis=1
+            ).reshape(len(part), 3 * nb, -1)
+            gram = (
+                (f @ f.transpose(0, 2, 1))
+                .reshape(-1, 3, nb, 3, nb)
+                .transpose(1, 3, 0, 2, 4)
+                .reshape(9, -1)
+            )
             mu = material.shear_modulus
             lame = 2 * mu * material.nu / (1 - 2 * material.nu)
             stiffness.add(part, (lame * trace + mu * (2 * normal + shear)) @ gram)
@@ -302,20 +357,26 @@ class _Work:
                 np.add.at(row, dofs.T, np.einsum("bq,eq->eb", value, w))
                 rows.append(row[None] / w.sum())
         sections = self._sections(TORSION, 1, np.ones(self.n, bool))
-        block = Block("torsion", (4,), k, m, rigid, self.y, sp.csr_matrix(np.vstack(rows)), sections=sections)
+        block = Block(
+            "torsion", (4,), k, m, rigid, self.y, sp.csr_matrix(np.vstack(rows)), sections=sections
+        )
         return tie_rigidly(block, ties)
 
     def _sections(self, parts, unknowns: int, keep: np.ndarray) -> Sections:
         """Section motions of a block of which ``keep`` are the unknowns left."""
         density = np.array([s.material.density for s in self.scene.segments])[self.flat.segment]
-        every = from_cells(self.flat, self.dofs, _CORNERS, self.element, self.order, density, parts, unknowns)
+        every = from_cells(
+            self.flat, self.dofs, _CORNERS, self.element, self.order, density, parts, unknowns
+        )
         return through(every, sp.identity(len(keep), format="csc")[:, keep].tocsr())
 
     def _seat_cells(self, station):
         """Cells with their outer edge on the seat."""
         y = self.flat.points[1][self.flat.cells[:, self.flat.outer]]
         tol = 1e-9 * self.scene.length
-        return self.flat.outer[(y.min(axis=0) >= station.lo - tol) & (y.max(axis=0) <= station.hi + tol)]
+        return self.flat.outer[
+            (y.min(axis=0) >= station.lo - tol) & (y.max(axis=0) <= station.hi + tol)
+        ]
 
     def _surface(self, station, attachment):
         """Basis values (nb, q), r, y - y0, length weights (e, q) and unknowns on a seat or a section."""
@@ -328,7 +389,9 @@ class _Work:
             if not len(cells):  # a section at the very start
                 cells, value = np.flatnonzero(np.abs(y[0] - station.y) < tol), 0.0
         else:
-            raise SolidgearError(f"attachment {attachment!r} is unknown; use 'average', 'rigid' or 'section'")
+            raise SolidgearError(
+                f"attachment {attachment!r} is unknown; use 'average', 'rigid' or 'section'"
+            )
         points = np.empty((2, len(self.g)))
         points[direction], points[1 - direction] = value, self.g
         t = tabulate(_CORNERS, self._nodes(cells), self.element, points)

@@ -27,7 +27,9 @@ from solidgear.fidelity.options import number
 #: greatest ``k l`` of a piece: below the first clamped root, 4.730, and a growth by exp(2) at most between orthonormalisations
 _REACH = 2.0
 #: series of the Krylov-Duncan functions in ``(k l)^4``; at ``k l = 2`` the first term left out is below 1e-20
-_SERIES = np.array([[1 / np.prod(np.arange(1.0, 4 * n + j + 1)) for n in range(7)] for j in range(4)])
+_SERIES = np.array(
+    [[1 / np.prod(np.arange(1.0, 4 * n + j + 1)) for n in range(7)] for j in range(4)]
+)
 #: Gauss points of a piece: products of two shapes are integrated to rounding
 _GAUSS = np.polynomial.legendre.leggauss(12)
 #: of the six numbers of a joint, those that start the piece beyond it
@@ -81,9 +83,13 @@ class Station:
             raise SolidgearError(f"{here} must be 2 rows of 2 finite numbers, on (z, thx)")
         bound = np.sqrt(abs(k[0, 0])) * np.sqrt(abs(k[1, 1]))  # of the coupling, in its own unit
         if abs(k[0, 1] - k[1, 0]) > 1e-9 * bound:
-            raise SolidgearError(f"{here} is not symmetric: {k[0, 1]:g} and {k[1, 0]:g} off the diagonal")
+            raise SolidgearError(
+                f"{here} is not symmetric: {k[0, 1]:g} and {k[1, 0]:g} off the diagonal"
+            )
         if min(k[0, 0], k[1, 1]) < 0 or abs(k[0, 1]) > (1 + 1e-9) * bound:
-            raise SolidgearError(f"{here} {k.tolist()} is indefinite; no motion may give energy back")
+            raise SolidgearError(
+                f"{here} {k.tolist()} is indefinite; no motion may give energy back"
+            )
         k.flags.writeable = False
         object.__setattr__(self, "spring", k)
 
@@ -114,7 +120,9 @@ class KrylovModes:
     defect: np.ndarray
     y: np.ndarray
     _pieces: tuple = field(repr=False)  # bending stiffness and mass per length of every piece
-    _states: np.ndarray = field(repr=False)  # (n, j, 6): z, thx, then Q, M before and Q, M after the joint
+    _states: np.ndarray = field(
+        repr=False
+    )  # (n, j, 6): z, thx, then Q, M before and Q, M after the joint
 
     def shape(self, k: int, y):
         """Field ``z, phi, M, Q`` of mode `k`, from zero, at `y` (m, on the shaft); at a station just beyond it, at the right end just before.
@@ -124,16 +132,26 @@ class KrylovModes:
         """
         y, end, omega = np.asarray(y, float), self.y[-1], 2 * np.pi * self.frequency_hz
         if not 0 <= k < len(omega):
-            raise SolidgearError(f"shape: there is no mode {k}; {len(omega)} were computed, counted from 0")
+            raise SolidgearError(
+                f"shape: there is no mode {k}; {len(omega)} were computed, counted from 0"
+            )
         if not np.all((y >= -1e-9 * end) & (y <= end * (1 + 1e-9))):
             raise SolidgearError(f"shape: y must lie on the shaft, from 0 to {end:g} m")
         i = np.clip(np.searchsorted(self.y, y, "right") - 1, 0, len(self.y) - 2)
-        t = _transfer(np.maximum(y - self.y[i], 0.0), self._pieces[0][i], self._pieces[1][i] * omega[k] ** 2)
+        t = _transfer(
+            np.maximum(y - self.y[i], 0.0), self._pieces[0][i], self._pieces[1][i] * omega[k] ** 2
+        )
         z, phi, q, m = _apply(t, np.moveaxis(self._states[k][i][..., _AFTER], -1, 0))
         return z, phi, m, q
 
 
-def krylov(spans: Sequence[Span], stations: Iterable[Station] = (), n: int | None = 4, *, max_frequency: float | None = None) -> KrylovModes:
+def krylov(
+    spans: Sequence[Span],
+    stations: Iterable[Station] = (),
+    n: int | None = 4,
+    *,
+    max_frequency: float | None = None,
+) -> KrylovModes:
     """Exact bending modes of a stepped shaft; `SolidgearError` for a station off the shaft.
 
     Parameters
@@ -152,7 +170,9 @@ def krylov(spans: Sequence[Span], stations: Iterable[Station] = (), n: int | Non
     if not len(spans):
         raise SolidgearError("krylov: a shaft needs at least one span")
     if n is None and max_frequency is None:
-        raise SolidgearError("krylov: give n, max_frequency or both; a shaft has infinitely many modes")
+        raise SolidgearError(
+            "krylov: give n, max_frequency or both; a shaft has infinitely many modes"
+        )
     shaft = _joined(tuple(spans), tuple(stations))
     rigid = min(free := shaft.rigid(), n or 2)
     omega = np.append(np.zeros(rigid), shaft.roots(rigid, n, 2 * np.pi * (max_frequency or np.inf)))
@@ -160,7 +180,17 @@ def krylov(spans: Sequence[Span], stations: Iterable[Station] = (), n: int | Non
     states, defect, distributed, lumped = cut.shapes(omega)
     counts = shaft.count((omega[:, None] * (1 + np.array([-1e-8, 1e-8]))).ravel()).reshape(-1, 2)
     counts[:rigid] = 0, free
-    return KrylovModes(omega / (2 * np.pi), rigid, counts, distributed, lumped, defect, cut.y, (cut.stiff, cut.heavy), states)
+    return KrylovModes(
+        omega / (2 * np.pi),
+        rigid,
+        counts,
+        distributed,
+        lumped,
+        defect,
+        cut.y,
+        (cut.stiff, cut.heavy),
+        states,
+    )
 
 
 def from_scene(scene, *, pieces: int = 1) -> tuple[tuple[Span, ...], tuple[Station, ...]]:
@@ -173,27 +203,46 @@ def from_scene(scene, *, pieces: int = 1) -> tuple[tuple[Span, ...], tuple[Stati
     number("krylov", "pieces", pieces, least=1, whole=True)
     spans = []
     for segment in scene.segments:
-        count = (pieces or 1) if (segment.outer0, segment.inner0) != (segment.outer1, segment.inner1) else 1
+        count = (
+            (pieces or 1)
+            if (segment.outer0, segment.inner0) != (segment.outer1, segment.inner1)
+            else 1
+        )
         t = (np.arange(count)[:, None] + (_GAUSS[0] + 1) / 2) / count
-        outer, inner = (a + t * (b - a) for a, b in ((segment.outer0, segment.outer1), (segment.inner0, segment.inner1)))
+        outer, inner = (
+            a + t * (b - a)
+            for a, b in ((segment.outer0, segment.outer1), (segment.inner0, segment.inner1))
+        )
         second = 1 / ((4 / np.pi / (outer**4 - inner**4)) @ _GAUSS[1] / 2)
         area = np.pi * (outer**2 - inner**2) @ _GAUSS[1] / 2
         of = segment.material
-        spans += [Span(segment.length / count, of.E * float(i), of.density * float(a)) for i, a in zip(second, area)]
-    return tuple(spans), (Station(scene.port.y), *(Station(b.y, b.stiffness[2:4, 2:4]) for b in scene.bearings))
+        spans += [
+            Span(segment.length / count, of.E * float(i), of.density * float(a))
+            for i, a in zip(second, area)
+        ]
+    return tuple(spans), (
+        Station(scene.port.y),
+        *(Station(b.y, b.stiffness[2:4, 2:4]) for b in scene.bearings),
+    )
 
 
 def _given(what, name, value, **limits):
-    number(what, name, np.nan if value is None else value, **limits)  # None, an option left out, would pass
+    number(
+        what, name, np.nan if value is None else value, **limits
+    )  # None, an option left out, would pass
 
 
 def _transfer(s, stiff, force):
     """(4, 4, ...) transfer of (z, phi, Q, M) over a length `s`; `force` is ``m w^2``, ``k^4`` times `stiff`."""
     k4 = force / stiff
     # All terms of the series are positive: nothing cancels, and w = 0 is no special case.
-    c0, c1, c2, c3 = (s**j * np.polynomial.polynomial.polyval(k4 * s**4, _SERIES[j]) for j in range(4))
+    c0, c1, c2, c3 = (
+        s**j * np.polynomial.polynomial.polyval(k4 * s**4, _SERIES[j]) for j in range(4)
+    )
     rows = [c0, c1, -c3 / stiff, c2 / stiff], [k4 * c3, c0, -c2 / stiff, c1 / stiff]
-    return np.array([*rows, [-force * c1, -force * c2, c0, -k4 * c3], [force * c2, force * c3, -c1, c0]])
+    return np.array(
+        [*rows, [-force * c1, -force * c2, c0, -k4 * c3], [force * c2, force * c3, -c1, c0]]
+    )
 
 
 def _apply(t, b):
@@ -208,13 +257,18 @@ class _Joint:
 
     def __init__(self, stations, length):
         k = sum((s.spring for s in stations), np.zeros((2, 2)))
-        self.mass = np.array([sum(s.mass for s in stations), sum(s.inertia for s in stations)], float)
+        self.mass = np.array(
+            [sum(s.mass for s in stations), sum(s.inertia for s in stations)], float
+        )
         self.p, q = p, q = (0, 1) if k[0, 0] * length**2 >= k[1, 1] else (1, 0)
         self.ell = k[p, q] / k[p, p] if k[p, p] else 0.0
         soft = k[q, q] - self.ell * k[p, q]
         # What is left of a spring of rank one is rounding.
         self.d = np.array([k[p, p], soft if soft > 1e-12 * k[q, q] else 0.0])
-        self.down, self.up = np.array([[1.0, 0.0], [-self.ell, 1.0]])[:, [p, q]], np.array([[1.0, self.ell], [0.0, 1.0]])[:, [p, q]]
+        self.down, self.up = (
+            np.array([[1.0, 0.0], [-self.ell, 1.0]])[:, [p, q]],
+            np.array([[1.0, self.ell], [0.0, 1.0]])[:, [p, q]],
+        )
 
     def act(self, b, omega):
         """The solutions `b` (4, 2, ...) just beyond the joint."""
@@ -239,7 +293,9 @@ def _joined(spans, stations):
     length, near, marks, held = ends[-1], 1e-9 * ends[-1], list(ends), [[] for _ in ends]
     for station in stations:
         if not -near <= station.y <= length + near:
-            raise SolidgearError(f"krylov: the station at y = {station.y:g} m is outside the shaft, 0 to {length:g} m")
+            raise SolidgearError(
+                f"krylov: the station at y = {station.y:g} m is outside the shaft, 0 to {length:g} m"
+            )
         at = int(np.argmin(abs(np.array(marks) - station.y)))
         if abs(marks[at] - station.y) > near:  # nearer than that, it is meant to be at the mark
             at = int(np.searchsorted(marks, station.y))
@@ -248,7 +304,9 @@ def _joined(spans, stations):
         held[at].append(station)
     y = np.array(marks)
     owner = np.clip(np.searchsorted(ends, (y[1:] + y[:-1]) / 2) - 1, 0, len(spans) - 1)
-    stiff, heavy = np.array([(spans[i].bending_stiffness, spans[i].mass_per_length) for i in owner], float).T
+    stiff, heavy = np.array(
+        [(spans[i].bending_stiffness, spans[i].mass_per_length) for i in owner], float
+    ).T
     return _Shaft(y, stiff, heavy, [_Joint(h, length) for h in held])
 
 
@@ -264,8 +322,13 @@ class _Shaft:
     def rigid(self):
         """Number of rigid motions that no spring resists; by rank, not by a small frequency."""
         motions = [np.array([[1.0, y / self.y[-1]], [0.0, 1 / self.y[-1]]]) for y in self.y]
-        rows = np.vstack([np.zeros((1, 2))] + [(joint.up @ r)[joint.d > 0] for joint, r in zip(self.joints, motions)])
-        rows /= np.maximum(np.linalg.norm(rows, axis=1, keepdims=True), 1e-300)  # how stiff a spring is does not matter
+        rows = np.vstack(
+            [np.zeros((1, 2))]
+            + [(joint.up @ r)[joint.d > 0] for joint, r in zip(self.joints, motions)]
+        )
+        rows /= np.maximum(
+            np.linalg.norm(rows, axis=1, keepdims=True), 1e-300
+        )  # how stiff a spring is does not matter
         return 2 - int(np.linalg.matrix_rank(rows, tol=1e-9))
 
     def weights(self, span, omega):
@@ -282,11 +345,15 @@ class _Shaft:
     def count(self, omega):
         """Number of modes below each frequency (rad/s, 1-d)."""
         total, sign = np.zeros(len(omega), int), np.ones(len(omega))
-        b = np.eye(4, 2)[:, :, None] + np.zeros(len(omega))  # the left end is free until its joint acts
+        b = np.eye(4, 2)[:, :, None] + np.zeros(
+            len(omega)
+        )  # the left end is free until its joint acts
         for i, parts in enumerate(self.parts(omega.max(initial=0.0))):
             w = self.weights(i, omega)
             b = _orthonormal(self.joints[i].act(b, omega), w)
-            t = _transfer((self.y[i + 1] - self.y[i]) / parts, self.stiff[i], self.heavy[i] * omega**2)
+            t = _transfer(
+                (self.y[i + 1] - self.y[i]) / parts, self.stiff[i], self.heavy[i] * omega**2
+            )
             # Forces at the left of the piece that move its right end by one; the determinant of `reach` is positive in a piece.
             reach = np.array([[t[1, 3], -t[0, 3]], [-t[1, 2], t[0, 2]]])
             for _ in range(parts):
@@ -301,7 +368,11 @@ class _Shaft:
 
     def roots(self, first, last, top):
         """Frequencies (rad/s) from number `first` to before `last` (None is all) below `top`, by bisection of the count."""
-        high = top if last is None else min(top, np.sqrt(self.stiff.mean() / self.heavy.mean()) / self.y[-1] ** 2)
+        high = (
+            top
+            if last is None
+            else min(top, np.sqrt(self.stiff.mean() / self.heavy.mean()) / self.y[-1] ** 2)
+        )
         while (below := self.count(np.array([high]))[0]) < (last or 0) and high < top:
             high = min(4 * high, top)
         order = np.arange(first, min(below, last or below)) + 1
@@ -320,8 +391,16 @@ class _Shaft:
         parts, joints = self.parts(omega), self.joints[:1]
         for count, joint in zip(parts, self.joints[1:]):
             joints += [_Joint((), self.y[-1])] * (count - 1) + [joint]
-        y = [np.linspace(a, b, count, endpoint=False) for a, b, count in zip(self.y, self.y[1:], parts)]
-        return _Shaft(np.append(np.concatenate(y), self.y[-1]), np.repeat(self.stiff, parts), np.repeat(self.heavy, parts), joints)
+        y = [
+            np.linspace(a, b, count, endpoint=False)
+            for a, b, count in zip(self.y, self.y[1:], parts)
+        ]
+        return _Shaft(
+            np.append(np.concatenate(y), self.y[-1]),
+            np.repeat(self.stiff, parts),
+            np.repeat(self.heavy, parts),
+            joints,
+        )
 
     def solutions(self, omega, many):
         """Solutions of all joint equations at once (multiple shooting), by inverse iteration on the normal equations.
@@ -334,11 +413,15 @@ class _Shaft:
             # In the factors of the spring, so that a stiff row does not hide the soft one.
             b[:2, :2] = joint.down * joint.mass * omega**2 - joint.d[:, None] * joint.up
             b[:2, 2:6] = np.hstack([-joint.down, joint.down])
-        block[:-1, 2:, _AFTER] = -np.moveaxis(_transfer(np.diff(self.y), self.stiff, self.heavy * omega**2), -1, 0)
+        block[:-1, 2:, _AFTER] = -np.moveaxis(
+            _transfer(np.diff(self.y), self.stiff, self.heavy * omega**2), -1, 0
+        )
         block[:-1, 2:, 6:10] = np.eye(4)
         block[-1, 2:4, 4:6] = np.eye(2)  # nothing pulls on the outer faces
         unit = self.weights(np.maximum(np.arange(nodes) - 1, 0), omega)[[0, 1, 2, 3, 2, 3]].T
-        block /= np.hstack([unit, np.roll(unit, -1, axis=0)])[:, None]  # the last joint has no neighbour, and no entry there
+        block /= np.hstack([unit, np.roll(unit, -1, axis=0)])[
+            :, None
+        ]  # the last joint has no neighbour, and no entry there
         block /= np.maximum(abs(block).max(axis=2, keepdims=True), 1e-300)
         i, row, column = np.nonzero(block)
         spots = np.append(6 * i + row + 2, [0, 1]), np.append(6 * i + column, [2, 3])
@@ -346,7 +429,9 @@ class _Shaft:
         v = np.random.default_rng(0).standard_normal((6 * nodes, many))
         try:
             lu = splu(a)
-        except RuntimeError:  # singular to the last bit: a step of a few bits away the solutions are the same
+        except (
+            RuntimeError
+        ):  # singular to the last bit: a step of a few bits away the solutions are the same
             lu = splu(sp.csc_matrix(a + 1e-15 * sp.identity(6 * nodes)))
         for _ in range(4):
             v = np.linalg.qr(lu.solve(v, trans="T"))[0]
@@ -355,14 +440,22 @@ class _Shaft:
 
     def shapes(self, omega):
         """(n, j, 6) motions, and forces before and after, at the joints, for unit modal mass; their defect; and the shares of the mass."""
-        states, (defect, distributed, lumped) = np.zeros((len(omega), len(self.y), 6)), np.zeros((3, len(omega)))
+        states, (defect, distributed, lumped) = (
+            np.zeros((len(omega), len(self.y), 6)),
+            np.zeros((3, len(omega))),
+        )
         # Frequencies nearer than this are one, with as many solutions.
         for g in _groups(omega, 1e-10):
             states[g], defect[g] = self.solutions(omega[g].mean(), len(g))
         size, stiff, heavy = np.diff(self.y)[:, None], self.stiff[:, None], self.heavy[:, None]
         inside, weight = size * (_GAUSS[0] + 1) / 2, (heavy * size * _GAUSS[1] / 2).ravel()
         start = np.moveaxis(states[:, :-1][:, :, _AFTER], 2, 0)[..., None]
-        z = np.array([_apply(_transfer(inside, stiff, heavy * w**2), start[:, k])[0].ravel() for k, w in enumerate(omega)])
+        z = np.array(
+            [
+                _apply(_transfer(inside, stiff, heavy * w**2), start[:, k])[0].ravel()
+                for k, w in enumerate(omega)
+            ]
+        )
         mass = np.array([j.mass for j in self.joints]).ravel()
         for g in _groups(omega, 1e-4):
             moved = states[g, :, :2].reshape(len(g), -1)
@@ -376,7 +469,13 @@ class _Shaft:
 
 def _groups(omega, gap):
     """Indices of ascending frequencies, split where neighbours differ by more than `gap`, relatively."""
-    return [g for g in np.split(np.arange(len(omega)), np.flatnonzero(np.diff(omega) > gap * omega[1:]) + 1) if len(g)]
+    return [
+        g
+        for g in np.split(
+            np.arange(len(omega)), np.flatnonzero(np.diff(omega) > gap * omega[1:]) + 1
+        )
+        if len(g)
+    ]
 
 
 def _negative(force, b, w, sign):

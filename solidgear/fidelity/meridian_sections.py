@@ -28,7 +28,16 @@ TORSION = (Part(0, 2 * np.pi, 3),)
 BENDING = (Part(0, 2 * np.pi, 1), Part(2, np.pi, 1, -1.0, 1))
 
 
-def from_cells(flat, dofs: np.ndarray, geometry, element, order: int, density: np.ndarray, parts: tuple[Part, ...], unknowns: int) -> Sections:
+def from_cells(
+    flat,
+    dofs: np.ndarray,
+    geometry,
+    element,
+    order: int,
+    density: np.ndarray,
+    parts: tuple[Part, ...],
+    unknowns: int,
+) -> Sections:
     """Sections of a block on meridian cells.
 
     Parameters
@@ -68,7 +77,9 @@ def from_cells(flat, dofs: np.ndarray, geometry, element, order: int, density: n
                 for k, part in enumerate(parts):
                     mass = part.factor * dm * r**part.weight
                     field = part.sign * r**part.power
-                    loads[:, part.unknown, :, k] += (value.T @ hat.multiply((mass * field)[:, None])).toarray()
+                    loads[:, part.unknown, :, k] += (
+                        value.T @ hat.multiply((mass * field)[:, None])
+                    ).toarray()
                     gram[:, k, :, k] += (hat.T @ hat.multiply((mass * field**2)[:, None])).toarray()
         size = len(stations) * len(parts)
         return loads.reshape(n * unknowns, size), gram.reshape(size, size)
@@ -82,4 +93,6 @@ def _at_points(value: np.ndarray, dofs: np.ndarray, n: int) -> sp.csr_matrix:
     cells = dofs.shape[1]
     data = np.broadcast_to(value.T, (cells, nq, nb)).ravel()
     columns = np.broadcast_to(dofs.T[:, None], (cells, nq, nb)).ravel()
-    return sp.csr_matrix((data, columns, np.arange(0, cells * nq * nb + 1, nb)), shape=(cells * nq, n))
+    return sp.csr_matrix(
+        (data, columns, np.arange(0, cells * nq * nb + 1, nb)), shape=(cells * nq, n)
+    )

@@ -47,34 +47,82 @@ THINNEST_LAYER = 1e-6
 #: lines of cells along the shaft, or across it; a mesh of so many has billions of unknowns in 3D
 MOST_LINES = 20_000
 
-_REFINEMENT = Option("multiplies the number of cells in every direction", least=0.01, most=20, why="20 makes 400 cells of one in the plane, 8000 in space")
-_TIES = Option("attachments to build at every station, the default one first", "attachments", choices=_ATTACHMENTS, optional=True)
-_SIZE = Option("size of cells away from shoulders and seats, m", above=0, most=100, optional=True, why="a shaft is at most 20 m long")
-_RELATIVE = Option("size of cells away from shoulders and seats, in local outer radii", least=0.01, most=100, why="a cell is no longer than a slender shaft")
-_RATIO = Option("size of a layer relative to the one before", least=1e-3, most=0.95, why="layers shrink, and none to a thousandth at once")
+_REFINEMENT = Option(
+    "multiplies the number of cells in every direction",
+    least=0.01,
+    most=20,
+    why="20 makes 400 cells of one in the plane, 8000 in space",
+)
+_TIES = Option(
+    "attachments to build at every station, the default one first",
+    "attachments",
+    choices=_ATTACHMENTS,
+    optional=True,
+)
+_SIZE = Option(
+    "size of cells away from shoulders and seats, m",
+    above=0,
+    most=100,
+    optional=True,
+    why="a shaft is at most 20 m long",
+)
+_RELATIVE = Option(
+    "size of cells away from shoulders and seats, in local outer radii",
+    least=0.01,
+    most=100,
+    why="a cell is no longer than a slender shaft",
+)
+_RATIO = Option(
+    "size of a layer relative to the one before",
+    least=1e-3,
+    most=0.95,
+    why="layers shrink, and none to a thousandth at once",
+)
 
 
 def _layers(where: str) -> Option:
-    return Option(f"geometric layers towards {where}", "whole", least=0, most=20, why="further ones are thinner than rounding allows")
+    return Option(
+        f"geometric layers towards {where}",
+        "whole",
+        least=0,
+        most=20,
+        why="further ones are thinner than rounding allows",
+    )
 
 
 _BEAM = {
     "shear": Option("Timoshenko if true, Euler-Bernoulli if not", "flag"),
     "rotary_inertia": Option("whether sections carry rotary inertia in bending", "flag"),
-    "head": Option("follow the taper of cones, or take the cylinder of their mean radii", "choice", choices=("cone", "mean")),
+    "head": Option(
+        "follow the taper of cones, or take the cylinder of their mean radii",
+        "choice",
+        choices=("cone", "mean"),
+    ),
     "mass": Option("mass of an element", "choice", choices=("consistent", "lumped")),
     "kappa": Option("shear coefficient", "choice", choices=("hutchinson", "cowper")),
-    "elements": Option("least number of elements along the shaft", "whole", least=1, most=5000, optional=True,
-                       why="frequencies of 100 elements have six digits, and more than 5000 add rounding only"),
+    "elements": Option(
+        "least number of elements along the shaft",
+        "whole",
+        least=1,
+        most=5000,
+        optional=True,
+        why="frequencies of 100 elements have six digits, and more than 5000 add rounding only",
+    ),
     "attachments": _TIES,
-}  # fmt: skip
+}
 
 #: options of every builder by the names of its keyword arguments
 OPTIONS: dict[str, dict[str, Option]] = {
     "euler": _BEAM,
     "timoshenko": _BEAM,
     "harmonic": {
-        "order": Option("polynomial order of the quadrilaterals", "whole", least=1, most=12, why="bases of higher order are ill-conditioned"),
+        "order": Option(
+            "polynomial order of the quadrilaterals",
+            "whole",
+            least=1,
+            most=12,
+            why="bases of higher order are ill-conditioned",
+        ),
         "layers": _layers("shoulders"),
         "edge_layers": _layers("seat ends"),
         "ratio": _RATIO,
@@ -82,23 +130,38 @@ OPTIONS: dict[str, dict[str, Option]] = {
         "size": _SIZE,
         "refinement": _REFINEMENT,
         "attachments": _TIES,
-        "ovalising": Option("further harmonics, that is waves around", "harmonics", least=2, most=100,
-                            why="the lowest modes of the thinnest and shortest tube a scene may have take fewer"),
+        "ovalising": Option(
+            "further harmonics, that is waves around",
+            "harmonics",
+            least=2,
+            most=100,
+            why="the lowest modes of the thinnest and shortest tube a scene may have take fewer",
+        ),
     },
     "solid": {
-        "element": Option("element type", "choice", choices=("hex20", "hex27", "hex8", "tet10", "tet4")),
+        "element": Option(
+            "element type", "choice", choices=("hex20", "hex27", "hex8", "tet10", "tet4")
+        ),
         "relative_size": _RELATIVE,
         "size": _SIZE,
         "layers": _layers("shoulders"),
         "edge_layers": _layers("seat ends"),
         "radial_layers": _layers("surfaces, across the shaft"),
         "ratio": _RATIO,
-        "around": Option("elements around the circumference", "whole", least=8, most=720, why="two to a degree"),
-        "graded_size": Option("size of tetrahedra at shoulders and seat ends, m", above=0, most=100, optional=True, why="a shaft is at most 20 m long"),
+        "around": Option(
+            "elements around the circumference", "whole", least=8, most=720, why="two to a degree"
+        ),
+        "graded_size": Option(
+            "size of tetrahedra at shoulders and seat ends, m",
+            above=0,
+            most=100,
+            optional=True,
+            why="a shaft is at most 20 m long",
+        ),
         "refinement": _REFINEMENT,
         "attachments": _TIES,
     },
-}  # fmt: skip
+}
 
 
 def checked(model: str, options: Mapping[str, Any]) -> dict[str, Any]:
@@ -124,8 +187,14 @@ def checked(model: str, options: Mapping[str, Any]) -> dict[str, Any]:
     out = {}
     for name, value in options.items():
         if name not in known:
-            raise SolidgearError(f"{model}: there is no such option as {show(name, 40)}{nearest(name, known)}; there are {listed(known)}")
-        out[name] = value if value is None and known[name].optional else _USABLE[known[name].kind](model, name, value, known[name])
+            raise SolidgearError(
+                f"{model}: there is no such option as {show(name, 40)}{nearest(name, known)}; there are {listed(known)}"
+            )
+        out[name] = (
+            value
+            if value is None and known[name].optional
+            else _USABLE[known[name].kind](model, name, value, known[name])
+        )
     _thick_enough(model, out)
     return out
 
@@ -148,22 +217,40 @@ def _limits(option: Option) -> str:
     if option.least is not None and option.most is not None:
         words = f"between {option.least:g} and {option.most:g}"
     else:
-        words = " and ".join(f"{word} {limit:g}" for word, limit in (("above", option.above), ("at least", option.least), ("at most", option.most)) if limit is not None)
+        words = " and ".join(
+            f"{word} {limit:g}"
+            for word, limit in (
+                ("above", option.above),
+                ("at least", option.least),
+                ("at most", option.most),
+            )
+            if limit is not None
+        )
     return words + f" ({option.why})" * bool(option.why)
 
 
 def _usable_number(model: str, name: str, value: Any, option: Option) -> Any:
     whole = option.kind == "whole"
-    if _is_number(value, whole) and _within(value, option.above, option.least, option.below, option.most):
+    if _is_number(value, whole) and _within(
+        value, option.above, option.least, option.below, option.most
+    ):
         return value
-    hint = "; decimals take a point" if isinstance(value, tuple) and len(value) == 2 and all(_is_number(v) for v in value) else ""
-    raise SolidgearError(f"{model}: {name} {show(value)} is not usable; give a {'whole ' if whole else ''}number {_limits(option)}{hint}")
+    hint = (
+        "; decimals take a point"
+        if isinstance(value, tuple) and len(value) == 2 and all(_is_number(v) for v in value)
+        else ""
+    )
+    raise SolidgearError(
+        f"{model}: {name} {show(value)} is not usable; give a {'whole ' if whole else ''}number {_limits(option)}{hint}"
+    )
 
 
 def _usable_choice(model: str, name: str, value: Any, option: Option) -> str:
     if isinstance(value, str) and value in option.choices:
         return value
-    raise SolidgearError(f"{model}: {name} {show(value)} is unknown{nearest(value, option.choices)}; use one of {', '.join(option.choices)}")
+    raise SolidgearError(
+        f"{model}: {name} {show(value)} is unknown{nearest(value, option.choices)}; use one of {', '.join(option.choices)}"
+    )
 
 
 def _usable_flag(model: str, name: str, value: Any, option: Option) -> bool:
@@ -174,7 +261,10 @@ def _usable_flag(model: str, name: str, value: Any, option: Option) -> bool:
 
 def _usable_harmonics(model: str, name: str, value: Any, option: Option) -> tuple[int, ...]:
     values = tuple(value) if isinstance(value, (tuple, list)) else (value,)
-    if all(_is_number(v, whole=True) and _within(v, least=option.least, most=option.most) for v in values) and len(set(values)) == len(values):
+    if all(
+        _is_number(v, whole=True) and _within(v, least=option.least, most=option.most)
+        for v in values
+    ) and len(set(values)) == len(values):
         return values
     raise SolidgearError(
         f"{model}: {name} {show(value)} is not usable; give whole numbers of at least {option.least:g} and at most {option.most:g} ({option.why}), each once, such as 2,3"
@@ -183,10 +273,16 @@ def _usable_harmonics(model: str, name: str, value: Any, option: Option) -> tupl
 
 def _usable_attachments(model: str, name: str, value: Any, option: Option) -> tuple[str, ...]:
     values = tuple(value) if isinstance(value, (tuple, list)) else (value,)
-    if values and all(isinstance(v, str) and v in option.choices for v in values) and len(set(values)) == len(values):
+    if (
+        values
+        and all(isinstance(v, str) and v in option.choices for v in values)
+        and len(set(values)) == len(values)
+    ):
         return values
     unknown = next((v for v in values if v not in option.choices), "")
-    raise SolidgearError(f"{model}: {name} {show(value)} is not usable{nearest(unknown, option.choices)}; give one or more of {', '.join(option.choices)}, each once")
+    raise SolidgearError(
+        f"{model}: {name} {show(value)} is not usable{nearest(unknown, option.choices)}; give one or more of {', '.join(option.choices)}, each once"
+    )
 
 
 _USABLE = {
@@ -200,14 +296,32 @@ _USABLE = {
 
 
 def _is_number(value: Any, whole: bool = False) -> bool:
-    return isinstance(value, Integral if whole else Real) and not isinstance(value, bool) and (isinstance(value, Integral) or math.isfinite(value))
+    return (
+        isinstance(value, Integral if whole else Real)
+        and not isinstance(value, bool)
+        and (isinstance(value, Integral) or math.isfinite(value))
+    )
 
 
 def _within(value, above=None, least=None, below=None, most=None) -> bool:
-    return (above is None or value > above) and (least is None or value >= least) and (below is None or value < below) and (most is None or value <= most)
+    return (
+        (above is None or value > above)
+        and (least is None or value >= least)
+        and (below is None or value < below)
+        and (most is None or value <= most)
+    )
 
 
-def number(model: str, name: str, value, *, above: float | None = None, least: float | None = None, below: float | None = None, whole: bool = False):
+def number(
+    model: str,
+    name: str,
+    value,
+    *,
+    above: float | None = None,
+    least: float | None = None,
+    below: float | None = None,
+    whole: bool = False,
+):
     """A number within limits, or one sentence.
 
     Parameters
@@ -227,8 +341,14 @@ def number(model: str, name: str, value, *, above: float | None = None, least: f
     """
     if value is None or _is_number(value, whole) and _within(value, above, least, below):
         return value
-    limits = [f"{word} {limit:g}" for word, limit in (("above", above), ("at least", least), ("below", below)) if limit is not None]
-    raise SolidgearError(f"{model}: {name} = {show(value)} is not usable; give a {'whole ' if whole else ''}number {' and '.join(limits)}")
+    limits = [
+        f"{word} {limit:g}"
+        for word, limit in (("above", above), ("at least", least), ("below", below))
+        if limit is not None
+    ]
+    raise SolidgearError(
+        f"{model}: {name} = {show(value)} is not usable; give a {'whole ' if whole else ''}number {' and '.join(limits)}"
+    )
 
 
 def countable(model: str, scene, size: float, refinement: float) -> float:

@@ -26,7 +26,12 @@ def elastic_scale(scene) -> float:
     It places spectral shifts; an error of a factor of ten is harmless.
     """
     chain = _Chain(scene.segments)
-    return min(chain.bending(), chain.rod(chain.stretch, chain.mass), chain.rod(chain.twist, chain.polar), *_flanges(scene.segments))
+    return min(
+        chain.bending(),
+        chain.rod(chain.stretch, chain.mass),
+        chain.rod(chain.twist, chain.polar),
+        *_flanges(scene.segments),
+    )
 
 
 class _Chain:
@@ -44,7 +49,9 @@ class _Chain:
         def of(name):
             return np.array([getattr(s, name) for s in segments])[owner]
 
-        modulus, shear, density = np.array([(s.material.E, s.material.shear_modulus, s.material.density) for s in segments])[owner].T
+        modulus, shear, density = np.array(
+            [(s.material.E, s.material.shear_modulus, s.material.density) for s in segments]
+        )[owner].T
         t = (middle - of("y0")) / (of("y1") - of("y0"))
         outer = of("outer0") + t * (of("outer1") - of("outer0"))
         inner = of("inner0") + t * (of("inner1") - of("inner0"))
@@ -78,7 +85,10 @@ class _Chain:
         turn = np.zeros((n - 1, 4))
         turn[:, 1], turn[:, 3] = -1.0, 1.0
         gap = np.column_stack([-np.ones(n - 1), -left, np.ones(n - 1), -right])
-        each = bend[:, None, None] * turn[:, :, None] * turn[:, None] + shear[:, None, None] * gap[:, :, None] * gap[:, None]
+        each = (
+            bend[:, None, None] * turn[:, :, None] * turn[:, None]
+            + shear[:, None, None] * gap[:, :, None] * gap[:, None]
+        )
         size = np.sqrt(np.column_stack([self.mass, self.tilt]).ravel())
         band = np.zeros((4, 2 * n))
         for i in range(4):
@@ -86,7 +96,9 @@ class _Chain:
                 np.add.at(band[i - j], 2 * np.arange(n - 1) + j, each[:, i, j])
         for k in range(4):
             band[k, : 2 * n - k] /= size[: 2 * n - k] * size[k:]
-        values = sla.eig_banded(band, lower=True, eigvals_only=True, select="i", select_range=(2, 2))
+        values = sla.eig_banded(
+            band, lower=True, eigvals_only=True, select="i", select_range=(2, 2)
+        )
         return float(values[0])
 
 
@@ -102,7 +114,10 @@ def _flanges(segments):
 
     A strip of length b and thickness h: bending ``12.4 E h^2 / (12 rho b^4)``, shear ``(pi / 2 b)^2 k G / rho``, in series.
     """
-    for base, run in overhangs([(max(s.outer0, s.outer1), s.length, s.material.E / s.material.density) for s in segments], 0.0):
+    for base, run in overhangs(
+        [(max(s.outer0, s.outer1), s.length, s.material.E / s.material.density) for s in segments],
+        0.0,
+    ):
         overhang, speed = max(r for r, _, _ in run) - base, max(c for _, _, c in run)
         thickness = sum(length for _, length, _ in run)
         if thickness <= 2 * overhang:

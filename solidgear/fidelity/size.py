@@ -80,7 +80,11 @@ def estimated_size(scene, model: str, options: dict | None = None) -> Size:
         return _beam(scene, model, given)
     if model == "harmonic":
         return _harmonic(scene, given)
-    return _tetrahedra(scene, given) if given["element"].startswith("tet") else _hexahedra(scene, given)
+    return (
+        _tetrahedra(scene, given)
+        if given["element"].startswith("tet")
+        else _hexahedra(scene, given)
+    )
 
 
 def refuse_too_large(scene, model: str, options: dict | None = None) -> Size:
@@ -94,10 +98,14 @@ def refuse_too_large(scene, model: str, options: dict | None = None) -> Size:
     size = estimated_size(scene, model, options)
     what = f"{model}: about {size.unknowns} unknowns"
     if size.largest > MOST_ENTRIES:
-        raise SolidgearError(f"{what} make {size.largest:.2g} matrix entries, more than the {MOST_ENTRIES:.0e} that can be numbered; {size.lower}")
+        raise SolidgearError(
+            f"{what} make {size.largest:.2g} matrix entries, more than the {MOST_ENTRIES:.0e} that can be numbered; {size.lower}"
+        )
     free = available_mb()
     if free is not None and size.peak_mb > max(free, SMALL_MB):
-        raise SolidgearError(f"{what} need about {size.peak_mb:.0f} MB for mesh, matrices and factor, {free:.0f} MB are free; {size.lower}")
+        raise SolidgearError(
+            f"{what} need about {size.peak_mb:.0f} MB for mesh, matrices and factor, {free:.0f} MB are free; {size.lower}"
+        )
     return size
 
 
@@ -110,7 +118,11 @@ def _defaults(model: str) -> dict:
         from solidgear.fidelity.harmonic import harmonic as builder
     else:
         from solidgear.fidelity.solid import solid as builder
-    found = {name: p.default for name, p in signature(builder).parameters.items() if p.default is not p.empty}
+    found = {
+        name: p.default
+        for name, p in signature(builder).parameters.items()
+        if p.default is not p.empty
+    }
     return found | ({"shear": False, "rotary_inertia": False} if model == "euler" else {})
 
 
@@ -158,9 +170,15 @@ def _harmonic(scene, given: dict) -> Size:
 
     order = given["order"]
     names = ("layers", "edge_layers", "ratio", "relative_size", "size", "refinement")
-    plan = _lines(scene, harmonic_layout(scene, given["attachments"], **{k: given[k] for k in names}))
+    plan = _lines(
+        scene, harmonic_layout(scene, given["attachments"], **{k: given[k] for k in names})
+    )
     across_rows, across_lines = (np.diff(part).sum() for part in (plan.rows, plan.lines))
-    vertices, edges, cells = across_lines + len(plan.lines), across_lines + across_rows + len(plan.rows), across_rows
+    vertices, edges, cells = (
+        across_lines + len(plan.lines),
+        across_lines + across_rows + len(plan.rows),
+        across_rows,
+    )
     n = int(vertices + edges * (order - 1) + cells * (order - 1) ** 2)
     inner_edges = 4 * cells - edges
     inner_vertices = vertices - (edges - inner_edges)
@@ -169,16 +187,36 @@ def _harmonic(scene, given: dict) -> Size:
     # components, conditions on the axis; bending, axial motion, torsion and all further waves
     blocks = [(3, 2), (2, 1), (1, 0)] + [(3, 3)] * len(given["ovalising"])
     sizes = [(c, c * n - on_axis * axis, c * c * pairs) for c, on_axis in blocks]
-    unknowns, entries = sizes[0][1] + sum(size for _, size, _ in sizes), sum(nnz for *_, nnz in sizes)
+    unknowns, entries = (
+        sizes[0][1] + sum(size for _, size, _ in sizes),
+        sum(nnz for *_, nnz in sizes),
+    )
     built = (18.2 * entries + 300.0 * unknowns) / MB + min(35.0, 12.0 * entries / MB)
     held = peak = 0.0
     for c, size, nnz in sizes:
         factor = _planar_factor_mb(c, size, nnz)
-        peak = max(peak, held + factor + ENTRY * nnz / MB)  # of the shifted matrix, for as long as it is factored
+        peak = max(
+            peak, held + factor + ENTRY * nnz / MB
+        )  # of the shifted matrix, for as long as it is factored
         held += factor
-    solved = 16.0 * _ports(scene, given) * sum(motions * size for motions, (_, size, _) in zip((2, 1, 1), sizes)) / MB
-    lower = "lower order, refinement or layers, or raise size" + ", or ask for fewer ovalising harmonics" * bool(given["ovalising"])
-    return Size(int(unknowns), int(entries), int(max(cells * (order + 1) ** 4, sizes[0][2])), float(built), float(built + peak + solved), lower)
+    solved = (
+        16.0
+        * _ports(scene, given)
+        * sum(motions * size for motions, (_, size, _) in zip((2, 1, 1), sizes))
+        / MB
+    )
+    lower = (
+        "lower order, refinement or layers, or raise size"
+        + ", or ask for fewer ovalising harmonics" * bool(given["ovalising"])
+    )
+    return Size(
+        int(unknowns),
+        int(entries),
+        int(max(cells * (order + 1) ** 4, sizes[0][2])),
+        float(built),
+        float(built + peak + solved),
+        lower,
+    )
 
 
 def _planar_factor_mb(components: int, unknowns: int, entries: int) -> float:
@@ -192,7 +230,9 @@ def _planar_factor_mb(components: int, unknowns: int, entries: int) -> float:
     if entries >= LARGE_PLANAR:
         return 33.0 * entries / MB
     n, pairs = unknowns / components, entries / components**2
-    return 12.6 * components**2 * n * max(0.585 * pairs / n + 7.37 * np.log2(n) - 52, pairs / n) / MB
+    return (
+        12.6 * components**2 * n * max(0.585 * pairs / n + 7.37 * np.log2(n) - 52, pairs / n) / MB
+    )
 
 
 # ------------------------------------------------------------------------------------------------- solids
@@ -218,7 +258,16 @@ _KINDS = {
 def _hexahedra(scene, given: dict) -> Size:
     from solidgear.fidelity.solid import hexahedra_layout
 
-    names = ("relative_size", "size", "layers", "edge_layers", "radial_layers", "ratio", "around", "refinement")
+    names = (
+        "relative_size",
+        "size",
+        "layers",
+        "edge_layers",
+        "radial_layers",
+        "ratio",
+        "around",
+        "refinement",
+    )
     layout, around = hexahedra_layout(scene, given["attachments"], **{k: given[k] for k in names})
     plan = _lines(scene, layout)
     rows = _sections(plan.rows, plan.solid_rows, around)
@@ -229,7 +278,9 @@ def _hexahedra(scene, given: dict) -> Size:
     bubbles = 3 * counts[3] if given["element"] == "hex27" else 0
     # fill grows with the whole and, as a shaft is long, with its cross-section: 30 meshes of 2,000 to 165,000 unknowns within 20 %
     width = unknowns / (2 * len(plan.rows))
-    fill = np.exp(1.448) * (unknowns - bubbles) ** 1.233 * (entries / unknowns) ** 0.165 * width**0.305
+    fill = (
+        np.exp(1.448) * (unknowns - bubbles) ** 1.233 * (entries / unknowns) ** 0.165 * width**0.305
+    )
     return _solid(scene, given, unknowns, entries, counts[3], fill)
 
 
@@ -246,21 +297,33 @@ def _tetrahedra(scene, given: dict) -> Size:
     from solidgear.meshing.tetrahedra import estimated_counts
 
     wanted = [(s, a) for s in scene.stations for a in (given["attachments"] or (s.attachment,))]
-    counts = estimated_counts(scene.segments, **tetrahedra_plan(scene, wanted, **{k: given[k] for k in ("size", "graded_size", "refinement", "around")}))
+    counts = estimated_counts(
+        scene.segments,
+        **tetrahedra_plan(
+            scene, wanted, **{k: given[k] for k in ("size", "graded_size", "refinement", "around")}
+        ),
+    )
     unknowns, entries = _nodes(given["element"], counts, 3)
     # 21 meshes of 11,000 to 140,000 unknowns within 30 %
     fill = np.exp(0.519) * unknowns**1.313 * (entries / unknowns) ** 0.448
     return _solid(scene, given, unknowns, entries, counts[3], fill)
 
 
-def _nodes(element: str, counts: tuple[float, float, float, float], sides: int) -> tuple[float, float]:
+def _nodes(
+    element: str, counts: tuple[float, float, float, float], sides: int
+) -> tuple[float, float]:
     """Unknowns and matrix entries of a mesh of so many vertices, edges, faces and cells, whose faces have so many sides."""
     kind, (vertices, edges, faces, cells) = _KINDS[element], counts
     inner_faces = (6 if sides == 4 else 4) * cells - faces
     # every edge of the surface bounds two of its faces, and Euler's formula gives its vertices
     surface = faces - inner_faces
     inner_edges, inner_vertices = edges - sides / 2 * surface, vertices - (sides / 2 - 1) * surface
-    pairs = kind.cell**2 * cells - kind.face**2 * inner_faces + kind.edge**2 * inner_edges - inner_vertices
+    pairs = (
+        kind.cell**2 * cells
+        - kind.face**2 * inner_faces
+        + kind.edge**2 * inner_edges
+        - inner_vertices
+    )
     return 3 * float(np.dot(kind.on, counts)), 9 * pairs
 
 
@@ -270,10 +333,24 @@ def _solid(scene, given: dict, unknowns: float, entries: float, cells: float, fi
     # matrices; mesh, its numbering and its quality; gmsh itself
     built = (1.11 * ENTRY * entries + 380.0 * per_cell * cells) / MB + 20 * tets
     # the shifted matrix while it is factored, and afterwards the vectors of the search for modes
-    beside = max(ENTRY * entries, 8.0 * 150 * unknowns) / MB + 16.0 * 6 * _ports(scene, given) * unknowns / MB
-    lower = "lower refinement" + (", or raise size and graded_size" if tets else ", around or the layers, or raise size") + ", or use the harmonic model"
+    beside = (
+        max(ENTRY * entries, 8.0 * 150 * unknowns) / MB
+        + 16.0 * 6 * _ports(scene, given) * unknowns / MB
+    )
+    lower = (
+        "lower refinement"
+        + (", or raise size and graded_size" if tets else ", around or the layers, or raise size")
+        + ", or use the harmonic model"
+    )
     peak = built + beside + _solid_factor_mb(unknowns, entries, fill)
-    return Size(int(round(unknowns)), int(entries), int(max(entries, per_cell**2 * cells)), float(built), float(peak), lower)
+    return Size(
+        int(round(unknowns)),
+        int(entries),
+        int(max(entries, per_cell**2 * cells)),
+        float(built),
+        float(peak),
+        lower,
+    )
 
 
 def _solid_factor_mb(unknowns: float, entries: float, fill: float) -> float:

@@ -17,7 +17,16 @@ from skfem.refdom import RefTet, RefTri
 
 from solidgear.body import Block, Body, Port
 from solidgear.errors import SolidgearError
-from solidgear.fidelity.assembly import Pattern, Tabulation, batches, inverted, reference, straight, tabulate, unknowns
+from solidgear.fidelity.assembly import (
+    Pattern,
+    Tabulation,
+    batches,
+    inverted,
+    reference,
+    straight,
+    tabulate,
+    unknowns,
+)
 from solidgear.fidelity.attachment import tie_rigidly
 from solidgear.fidelity.options import checked, countable
 from solidgear.fidelity.scale import elastic_scale
@@ -25,7 +34,13 @@ from solidgear.frames import cross_matrix
 from solidgear.mass import ScalarMass
 from solidgear.meshing.layout import Grading
 
-ELEMENTS = {"tet4": ElementTetP1, "tet10": ElementTetP2, "hex8": ElementHex1, "hex20": ElementHexS2, "hex27": ElementHex2}
+ELEMENTS = {
+    "tet4": ElementTetP1,
+    "tet10": ElementTetP2,
+    "hex8": ElementHex1,
+    "hex20": ElementHexS2,
+    "hex27": ElementHex2,
+}
 
 
 @dataclass(frozen=True, eq=False)
@@ -86,7 +101,11 @@ class SolidMesh:
         found = []
         for place, elements in self.local_facets(facets):
             corners = self.mesh.refdom.p[:, self.mesh.refdom.facets[place]]
-            points = corners[:, :1] + np.outer(corners[:, 1] - corners[:, 0], ref[0]) + np.outer(corners[:, -1] - corners[:, 0], ref[1])
+            points = (
+                corners[:, :1]
+                + np.outer(corners[:, 1] - corners[:, 0], ref[0])
+                + np.outer(corners[:, -1] - corners[:, 0], ref[1])
+            )
             alive = np.abs(reference(self.element, points)[0]).max(axis=1) > 1e-9
             found.append(self.dofs[alive][:, elements].ravel())
         return np.unique(np.concatenate(found))
@@ -161,16 +180,29 @@ def solid(
         Unknown element or attachment; MeshError where meshing fails or an element is inverted.
     """
     grading = {
-        "relative_size": relative_size, "size": size, "layers": layers, "edge_layers": edge_layers, "radial_layers": radial_layers, "ratio": ratio, "around": around,
+        "relative_size": relative_size,
+        "size": size,
+        "layers": layers,
+        "edge_layers": edge_layers,
+        "radial_layers": radial_layers,
+        "ratio": ratio,
+        "around": around,
         "refinement": refinement,
-    }  # fmt: skip
-    attachments = checked("solid", {"element": element, **grading, "graded_size": graded_size, "attachments": attachments})["attachments"]
+    }
+    attachments = checked(
+        "solid",
+        {"element": element, **grading, "graded_size": graded_size, "attachments": attachments},
+    )["attachments"]
     if element.startswith("hex") and around % 4:
-        raise SolidgearError(f"solid: around = {around} does not fit an O-grid; use a multiple of 4")
+        raise SolidgearError(
+            f"solid: around = {around} does not fit an O-grid; use a multiple of 4"
+        )
     wanted = [(s, a) for s in scene.stations for a in (attachments or (s.attachment,))]
     tet = element.startswith("tet")
     if tet:
-        mesh, segment, quality = _tets(scene, wanted, element, size, graded_size, refinement, around)
+        mesh, segment, quality = _tets(
+            scene, wanted, element, size, graded_size, refinement, around
+        )
     else:
         mesh, segment, quality = _hexes(scene, wanted, grading)
     body_mesh = _isoparametric(mesh, element, segment)
@@ -188,9 +220,15 @@ def solid(
     rows, ties = [], []
     tol = 1e-7 * scene.length
     for i, (station, attachment) in enumerate(wanted):
-        facets = body_mesh.section(station.y, tol) if attachment == "section" else body_mesh.seat(station, scene.segments, tol)
+        facets = (
+            body_mesh.section(station.y, tol)
+            if attachment == "section"
+            else body_mesh.seat(station, scene.segments, tol)
+        )
         if not len(facets):
-            raise SolidgearError(f"port {station.name!r}: no element faces lie on its {'section' if attachment == 'section' else 'seat'}")
+            raise SolidgearError(
+                f"port {station.name!r}: no element faces lie on its {'section' if attachment == 'section' else 'seat'}"
+            )
         if attachment == "rigid":
             mask = np.zeros((n, 3), bool)
             mask[body_mesh.facet_unknowns(facets)] = True
@@ -198,7 +236,9 @@ def solid(
             rows.append(sp.csr_matrix((6, 3 * n)))
         else:
             rows.append(_mean(body_mesh, facets, station.y, n))
-    block = Block("full", tuple(range(6)), k, m, rigid, np.repeat(y, 3), sp.vstack(rows).tocsr(), None, False)
+    block = Block(
+        "full", tuple(range(6)), k, m, rigid, np.repeat(y, 3), sp.vstack(rows).tocsr(), None, False
+    )
     facts = {
         "element": element,
         "elements": int(body_mesh.dofs.shape[1]),
@@ -211,27 +251,77 @@ def solid(
         "pair_tolerance": 2e-3 if tet else 1e-6,
     }
     ports = tuple(Port(s.name, s.y, a) for s, a in wanted)
-    return Body("solid", (tie_rigidly(block, ties),), ports, elastic_scale(scene), scene.length, facts, body_mesh)
+    return Body(
+        "solid",
+        (tie_rigidly(block, ties),),
+        ports,
+        elastic_scale(scene),
+        scene.length,
+        facts,
+        body_mesh,
+    )
 
 
-def hexahedra_layout(scene, attachments=None, *, relative_size, size, layers, edge_layers, radial_layers, ratio, around, refinement):
+def hexahedra_layout(
+    scene,
+    attachments=None,
+    *,
+    relative_size,
+    size,
+    layers,
+    edge_layers,
+    radial_layers,
+    ratio,
+    around,
+    refinement,
+):
     """Mesh lines of :func:`solid` in hexahedra and cells around, before anything is meshed; parameters as there."""
     from solidgear.meshing.layout import layout
 
-    countable("solid", scene, size or relative_size * min(min(s.outer0, s.outer1) for s in scene.segments), refinement)
-    grading = Grading(layers, edge_layers, radial_layers, ratio, relative_size, size, reach=0.7, radial_reach=0.5, refinement=refinement, core=True)
+    countable(
+        "solid",
+        scene,
+        size or relative_size * min(min(s.outer0, s.outer1) for s in scene.segments),
+        refinement,
+    )
+    grading = Grading(
+        layers,
+        edge_layers,
+        radial_layers,
+        ratio,
+        relative_size,
+        size,
+        reach=0.7,
+        radial_reach=0.5,
+        refinement=refinement,
+        core=True,
+    )
     return layout(scene, grading, attachments), max(8, 4 * int(round(around * refinement / 4)))
 
 
 def tetrahedra_plan(scene, wanted, *, size, graded_size, refinement, around) -> dict:
     """Arguments of :func:`~solidgear.meshing.tetrahedra.tetrahedra` for the stations ``wanted`` with their attachments."""
-    size = countable("solid", scene, size or max(max(s.outer0, s.outer1) for s in scene.segments) / 3, refinement) / refinement
+    size = (
+        countable(
+            "solid",
+            scene,
+            size or max(max(s.outer0, s.outer1) for s in scene.segments) / 3,
+            refinement,
+        )
+        / refinement
+    )
     graded_size = (graded_size / refinement) if graded_size else size / 4
     planes = sorted({s.y for s, a in wanted if a == "section"})
     circles = sorted({y for s, a in wanted if a != "section" for y in (s.lo, s.hi)})
     # Meshes of one sequence are similar only if the circumference is refined with the rest.
     turns = max(8, int(round(max(16, around) * refinement)))
-    return {"planes": planes, "circles": circles, "size": size, "graded_size": None if graded_size >= size else graded_size, "around": turns}
+    return {
+        "planes": planes,
+        "circles": circles,
+        "size": size,
+        "graded_size": None if graded_size >= size else graded_size,
+        "around": turns,
+    }
 
 
 def _hexes(scene, wanted, grading):
@@ -247,7 +337,9 @@ def _tets(scene, wanted, element, size, graded_size, refinement, around):
     from solidgear.meshing.quality import check_mesh, volume_of
     from solidgear.meshing.tetrahedra import tetrahedra
 
-    plan = tetrahedra_plan(scene, wanted, size=size, graded_size=graded_size, refinement=refinement, around=around)
+    plan = tetrahedra_plan(
+        scene, wanted, size=size, graded_size=graded_size, refinement=refinement, around=around
+    )
     made = tetrahedra(scene.segments, **plan)
     if element == "tet10":
         return made.mesh, made.segment, made.quality
@@ -278,7 +370,9 @@ def _matrices(m: SolidMesh, scene):
     stiffness, mass = pattern.sum(3), pattern.sum()
     # products of basis functions, and of reference gradients, of which straight elements take one multiple each
     products = (basis.value[:, None] * basis.value).reshape(nb * nb, nq).T
-    slopes = np.einsum("apq,brq,q->prab", basis.slope, basis.slope, weights, optimize=True).reshape(9, nb * nb)
+    slopes = np.einsum("apq,brq,q->prab", basis.slope, basis.slope, weights, optimize=True).reshape(
+        9, nb * nb
+    )
     is_straight, jac = straight(m.element, m.nodes[:, m.dofs])
     for index, segment in enumerate(scene.segments):
         nu, mu, rho = segment.material.nu, segment.material.shear_modulus, segment.material.density
@@ -334,7 +428,9 @@ _CROSS = np.stack([cross_matrix(e) for e in np.eye(3)], axis=-1)
 def _cell_rule(name):
     """Quadrature exact for stiffness and mass of affine elements, one order in reserve for curved ones."""
     if name.startswith("tet"):
-        return get_quadrature(RefTet, 7 if name == "tet10" else 2)  # both rules have positive weights only
+        return get_quadrature(
+            RefTet, 7 if name == "tet10" else 2
+        )  # both rules have positive weights only
     x, w = np.polynomial.legendre.leggauss(3 if name == "hex8" else 4)
     x, w = (x + 1) / 2, w / 2
     grid = np.array([g.ravel() for g in np.meshgrid(x, x, x, indexing="ij")])

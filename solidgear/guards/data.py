@@ -26,29 +26,54 @@ def units(probe: Probe) -> Notices:
     materials, bearings = [], []
     for s in {s.material: s for s in reversed(scene.segments)}.values():
         m = s.material
-        materials += [(name, value, f"segment {s.name!r}") for name, value in zip(SOUND, (m.E, m.density, np.sqrt(m.E / m.density)))]
+        materials += [
+            (name, value, f"segment {s.name!r}")
+            for name, value in zip(SOUND, (m.E, m.density, np.sqrt(m.E / m.density)))
+        ]
     for b in scene.bearings:
         k = np.diag(b.stiffness)
         for axis, tilt in ((0, 5), (2, 3)):
             if k[axis] > 0:
                 where = f"bearing {b.name!r} in {DOF_NAMES[axis]}"
-                bearings.append(("stiffness over E d", k[axis] / (scene.segments[0].material.E * mean), where))
+                bearings.append(
+                    ("stiffness over E d", k[axis] / (scene.segments[0].material.E * mean), where)
+                )
                 if k[tilt] > 0:
-                    bearings.append(("lever sqrt(tilt / radial stiffness) over d", np.sqrt(k[tilt] / k[axis]) / mean, where))
-    first = [("first bending in Hz", probe.first_bending, "the Timoshenko beam")] if probe.first_bending else []
+                    bearings.append(
+                        (
+                            "lever sqrt(tilt / radial stiffness) over d",
+                            np.sqrt(k[tilt] / k[axis]) / mean,
+                            where,
+                        )
+                    )
+    first = (
+        [("first bending in Hz", probe.first_bending, "the Timoshenko beam")]
+        if probe.first_bending
+        else []
+    )
     # What is wrong early moves all that comes after it.
     for found in (materials, bearings, first):
         out = [
-            f"{name} of {where} is {value:.3g}, outside {SOUND[name][0]:g} to {SOUND[name][1]:g}" for name, value, where in found if not SOUND[name][0] <= value <= SOUND[name][1]
+            f"{name} of {where} is {value:.3g}, outside {SOUND[name][0]:g} to {SOUND[name][1]:g}"
+            for name, value, where in found
+            if not SOUND[name][0] <= value <= SOUND[name][1]
         ]
         if out:
-            yield Notice("caution", (), f"probably a slip in units: {'; '.join(out)}{' (d: mean diameter)' * (found is bearings)}; write the unit beside the number")
+            yield Notice(
+                "caution",
+                (),
+                f"probably a slip in units: {'; '.join(out)}{' (d: mean diameter)' * (found is bearings)}; write the unit beside the number",
+            )
             return
 
 
 def doubtful_data(probe: Probe) -> Notices:
     """Bearings whose numbers were assumed or identified."""
-    doubtful = [f"bearing {b.name!r} ({b.status})" for b in probe.scene.bearings if b.status in ("identified", "assumed")]
+    doubtful = [
+        f"bearing {b.name!r} ({b.status})"
+        for b in probe.scene.bearings
+        if b.status in ("identified", "assumed")
+    ]
     if doubtful:
         yield Notice("caution", (), "data not measured or published: " + ", ".join(doubtful))
 
@@ -58,7 +83,11 @@ def free_motions(probe: Probe) -> Notices:
     free = probe.supports.unresisted(probe.body).shape[1]
     yield Notice("fact", (), f"rigid motions that no bearing resists: {free}")
     if free > 1 and probe.scene.bearings:
-        yield Notice("caution", (), f"bearings leave {free} rigid motions free; only torsion is meant to be: give the missing entries a stiffness")
+        yield Notice(
+            "caution",
+            (),
+            f"bearings leave {free} rigid motions free; only torsion is meant to be: give the missing entries a stiffness",
+        )
 
 
 # strong_coupling.py: below 1e-12 of the diagonal a direction is taken as free; a coupling written with four digits tells no less than 1e-3
@@ -87,4 +116,8 @@ def split_pair(probe: Probe) -> Notices:
     """A bending pair that the bearings split."""
     split = probe.split
     if split >= 1e-9:
-        yield Notice("fact", (), f"bearings that differ in x and z split the first bending pair by {split:.1e} (Timoshenko): 'bending 2' is the twin of 'bending 1'")
+        yield Notice(
+            "fact",
+            (),
+            f"bearings that differ in x and z split the first bending pair by {split:.1e} (Timoshenko): 'bending 2' is the twin of 'bending 1'",
+        )

@@ -43,12 +43,22 @@ def rigid_seats(probe: Probe) -> Notices:
     chosen = [repr(s.name) for s in probe.scene.stations if s.attachment == "rigid"]
     try:
         stiff = probe.tied("rigid")
-    except SolidgearError:  # seats of other bearings touch, and all of them rigid is not what the scene asks for
+    except (
+        SolidgearError
+    ):  # seats of other bearings touch, and all of them rigid is not what the scene asks for
         return
-    moved = {name: value for name in ("C_zz", "C_thx", "bending 1") if (value := change(stiff, probe.tied("average"), name)) is not None}
+    moved = {
+        name: value
+        for name in ("C_zz", "C_thx", "bending 1")
+        if (value := change(stiff, probe.tied("average"), name)) is not None
+    }
     words = ", ".join(f"{name} by {100 * value:+.3g} %" for name, value in moved.items())
     if not chosen:
-        yield Notice("fact", SOLIDS, f"how seats are tied: rigid rings at all of them would move {words} against averaged seats")
+        yield Notice(
+            "fact",
+            SOLIDS,
+            f"how seats are tied: rigid rings at all of them would move {words} against averaged seats",
+        )
     elif max(map(abs, moved.values()), default=0.0) > 0.01:
         yield Notice(
             "caution",
@@ -66,9 +76,17 @@ def linear_elements(probe: Probe) -> Notices:
     element = probe.body.mesh.get("element")
     if element in LINEAR:
         better, factor = LINEAR[element]
-        yield Notice("caution", ("solid",), f"element = {element} errs {factor} times as much in first bending as {better} at 9000 unknowns, more on longer cells; use {better}")
+        yield Notice(
+            "caution",
+            ("solid",),
+            f"element = {element} errs {factor} times as much in first bending as {better} at 9000 unknowns, more on longer cells; use {better}",
+        )
     elif element == "Q1":
-        yield Notice("caution", ("harmonic",), "order = 1 is 4 % too stiff in bending where order 2 is within 0.03 %; use order = 2 or more")
+        yield Notice(
+            "caution",
+            ("harmonic",),
+            "order = 1 is 4 % too stiff in bending where order 2 is within 0.03 %; use order = 2 or more",
+        )
 
 
 # nearly_incompressible.py: what the bending compliance lacks, over nu
@@ -86,13 +104,17 @@ LOCKED, SOFT = 0.01, 0.45
 
 def nearly_incompressible(probe: Probe) -> Notices:
     """Elements that lock as nu goes to 1/2; the harmonic solid from order 2 on does not."""
-    usual = {"solid": "hex20", "harmonic": "Q5"} | ({probe.body.fidelity: probe.body.mesh["element"]} if probe.body.fidelity in SOLIDS else {})
+    usual = {"solid": "hex20", "harmonic": "Q5"} | (
+        {probe.body.fidelity: probe.body.mesh["element"]} if probe.body.fidelity in SOLIDS else {}
+    )
     for s in {s.material: s for s in reversed(probe.scene.segments)}.values():
         nu = s.material.nu
         for model, element in usual.items():
             if nu < SOFT or element not in LOCKING:
                 continue
-            error = float(np.exp(np.interp(-np.log(0.5 - nu), -np.log(0.5 - NU), np.log(LOCKING[element]))))
+            error = float(
+                np.exp(np.interp(-np.log(0.5 - nu), -np.log(0.5 - NU), np.log(LOCKING[element])))
+            )
             if error > LOCKED:
                 yield Notice(
                     beyond(error, probe.scene.ask.tolerance),
@@ -128,10 +150,16 @@ def memory(probe: Probe) -> Notices:
             break
         absent.append(f"{why}; {INSTALL[name]}")
     matrix = SimpleNamespace(shape=(size, size), nnz=entries)
-    need, free = OVER_LAW.get(name, 1.0) * law("cholmod" if name in OVER_LAW else "superlu", matrix, False), available_mb()
+    need, free = (
+        OVER_LAW.get(name, 1.0) * law("cholmod" if name in OVER_LAW else "superlu", matrix, False),
+        available_mb(),
+    )
     which = "the" if probe.body.fidelity == "solid" else "the default"
     yield Notice(
-        "fact", ("solid",), f"{which} 3D solid, about {size} unknowns, is factored by {name} in about {need:.0f} MB" + "".join(f"; faster but absent: {why}" for why in absent)
+        "fact",
+        ("solid",),
+        f"{which} 3D solid, about {size} unknowns, is factored by {name} in about {need:.0f} MB"
+        + "".join(f"; faster but absent: {why}" for why in absent),
     )
     if free is not None and GOOD_TO * need > free:
         yield Notice(
@@ -144,4 +172,8 @@ def memory(probe: Probe) -> Notices:
 def renderer(probe: Probe) -> Notices:
     """Whether pictures can be drawn at all."""
     if find_spec("pyvista") is None:
-        yield Notice("fact", MODELS, "pyvista is not installed: no pictures will be drawn, and no number depends on it")
+        yield Notice(
+            "fact",
+            MODELS,
+            "pyvista is not installed: no pictures will be drawn, and no number depends on it",
+        )

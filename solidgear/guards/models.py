@@ -4,13 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 
+from solidgear import verdict
 from solidgear.errors import SolidgearError
 from solidgear.evidence.converge import sharpest_corner
 from solidgear.guards.notice import BEAMS, MODELS, Notice, Notices, beyond
 from solidgear.guards.probe import Probe
-from solidgear import verdict
 from solidgear.verdict import TIES, gap_verdict
-
 
 #: bands of a light solid rest on two meshes only
 CAUTIOUS = 2.0
@@ -22,15 +21,36 @@ def beam_against_solid(probe: Probe) -> Notices:
     for model, concerned in (("euler", ("euler",)), ("timoshenko", ("timoshenko", "lumped"))):
         if not (gaps := probe.gaps(model)):
             continue
-        found = {kind: [g for g in gaps if gap_verdict(g["relative"], CAUTIOUS * (g["band"] or 0.0), tolerance) == kind] for kind in (verdict.BEYOND, verdict.OPEN, verdict.WITHIN)}
+        found = {
+            kind: [
+                g
+                for g in gaps
+                if gap_verdict(g["relative"], CAUTIOUS * (g["band"] or 0.0), tolerance) == kind
+            ]
+            for kind in (verdict.BEYOND, verdict.OPEN, verdict.WITHIN)
+        }
         kind, worst = next((kind, rows[0]) for kind, rows in found.items() if rows)
         name, gap = worst["quantity"], worst["relative"]
-        side = ("larger" if gap > 0 else "smaller") if name.startswith("C_") else "higher" if gap > 0 else "lower"
+        side = (
+            ("larger" if gap > 0 else "smaller")
+            if name.startswith("C_")
+            else "higher"
+            if gap > 0
+            else "lower"
+        )
         text = f"{name} of the {model} beam is {100 * abs(gap):.3g} % {side} than that of a light harmonic solid {TIES[worst['attachment']]}"
         if kind == verdict.BEYOND:
-            yield Notice("avoid", concerned, f"{text}, more than the {100 * tolerance:g} % asked for; use the harmonic solid")
+            yield Notice(
+                "avoid",
+                concerned,
+                f"{text}, more than the {100 * tolerance:g} % asked for; use the harmonic solid",
+            )
         elif kind == verdict.OPEN:
-            yield Notice("open", concerned, f"{text}, and the light solid is too coarse to tell whether that is within the {100 * tolerance:g} % asked for; compare tells")
+            yield Notice(
+                "open",
+                concerned,
+                f"{text}, and the light solid is too coarse to tell whether that is within the {100 * tolerance:g} % asked for; compare tells",
+            )
         else:
             yield Notice("fact", concerned, f"{text}, the largest gap of what is compared")
 
@@ -48,12 +68,25 @@ def slenderness(probe: Probe) -> Notices:
         ("Timoshenko", TIMOSHENKO, ("timoshenko", "lumped"), "the harmonic solid"),
     ):
         if ratio < one:
-            yield Notice("caution", models, f"length over mean diameter is {ratio:.2f}: on uniform shafts {name} needs {one:g} for 1 % and {five:g} for 5 %; use {better}")
+            yield Notice(
+                "caution",
+                models,
+                f"length over mean diameter is {ratio:.2f}: on uniform shafts {name} needs {one:g} for 1 % and {five:g} for 5 %; use {better}",
+            )
 
 
 # shoulder_step.py: ratio of diameters, missing length of thin shaft over its diameter, what the deflection of an overhang of one diameter lacks
 STEPS = np.array(
-    [[1.0, 0.0, 0.0], [1.1, 0.022, 0.0049], [1.2, 0.055, 0.0132], [1.3, 0.086, 0.0238], [1.5, 0.134, 0.0473], [1.75, 0.173, 0.0766], [2.0, 0.197, 0.1036], [3.0, 0.234, 0.1836]]
+    [
+        [1.0, 0.0, 0.0],
+        [1.1, 0.022, 0.0049],
+        [1.2, 0.055, 0.0132],
+        [1.3, 0.086, 0.0238],
+        [1.5, 0.134, 0.0473],
+        [1.75, 0.173, 0.0766],
+        [2.0, 0.197, 0.1036],
+        [3.0, 0.234, 0.1836],
+    ]
 )
 STEP, STEEP = 1.17, 1.53
 
@@ -65,7 +98,9 @@ def shoulder(probe: Probe) -> Notices:
         thin, thick = sorted((a.outer1, b.outer0))
         if thick / thin < STEP:
             continue
-        missing, lacking = (float(np.interp(thick / thin, STEPS[:, 0], column)) for column in STEPS.T[1:])
+        missing, lacking = (
+            float(np.interp(thick / thin, STEPS[:, 0], column)) for column in STEPS.T[1:]
+        )
         yield Notice(
             "caution",
             BEAMS,
@@ -127,7 +162,9 @@ def point_beyond_surface(probe: Probe) -> Notices:
 
 
 NEAR = 1.2
-SUSPECT = 1.5  # worth a solution: thin_hollow_shaft.py finds thick rings up to 13 % below the closed form
+SUSPECT = (
+    1.5  # worth a solution: thin_hollow_shaft.py finds thick rings up to 13 % below the closed form
+)
 
 
 def ovalising(probe: Probe) -> Notices:
@@ -141,7 +178,11 @@ def ovalising(probe: Probe) -> Notices:
         return
     low = min(inside.values())
     what = " and ".join(f"n = {n} at {f:.4g} Hz" for n, f in inside.items())
-    where = f"{NEAR:g} times first bending, {first:.4g} Hz" if limit == NEAR * first else f"the {limit:g} Hz asked for"
+    where = (
+        f"{NEAR:g} times first bending, {first:.4g} Hz"
+        if limit == NEAR * first
+        else f"the {limit:g} Hz asked for"
+    )
     yield Notice(
         "avoid" if low < first else "caution",
         BEAMS,
@@ -167,7 +208,10 @@ THIN, CELLS_THIN, CELLS_THICK, MOST_AROUND = 0.25, 12, 6, 48
 
 def cells_around(scene, waves: int) -> int:
     """Cells around that hexahedra need for a shape of so many waves."""
-    wall = min(min(s.outer0 - s.inner0, s.outer1 - s.inner1) / max(s.outer0, s.outer1) for s in scene.segments)
+    wall = min(
+        min(s.outer0 - s.inner0, s.outer1 - s.inner1) / max(s.outer0, s.outer1)
+        for s in scene.segments
+    )
     each = CELLS_THIN if wall < THIN else CELLS_THICK
     return min(MOST_AROUND, max(8, 4 * -(-each * waves // 4)))
 
@@ -175,9 +219,16 @@ def cells_around(scene, waves: int) -> int:
 def _two_waves(probe: Probe) -> float:
     """n = 2 in closed form, Hz: the lowest of every part as a free disc (Leissa, Vibration of Plates, table 2.3) and of every wall as a long ring (Love, sec. 293)."""
     segments = probe.scene.segments
-    speed = min(np.sqrt(s.material.E / (1 - s.material.nu**2) / s.material.density) for s in segments)
+    speed = min(
+        np.sqrt(s.material.E / (1 - s.material.nu**2) / s.material.density) for s in segments
+    )
     discs = [5.36 / np.sqrt(12) * (high - low) / (wide / 2) ** 2 for low, high, wide in probe.parts]
-    walls = [(outer, inner) for s in segments for outer, inner in ((s.outer0, s.inner0), (s.outer1, s.inner1)) if inner]
+    walls = [
+        (outer, inner)
+        for s in segments
+        for outer, inner in ((s.outer0, s.inner0), (s.outer1, s.inner1))
+        if inner
+    ]
     rings = [np.sqrt(0.6) * (outer - inner) / ((outer + inner) / 2) ** 2 for outer, inner in walls]
     return float(min(discs + rings) * speed / (2 * np.pi))
 
@@ -193,7 +244,11 @@ def effective_mass(probe: Probe) -> Notices:
         yield Notice("avoid", ("lumped",), f"there is no lumped model: {error}")
         return
     if not found["thesis"].feasible:
-        yield Notice("fact", ("lumped",), f"the published equations of effective mass have no solution here ({found['thesis'].verdict})")
+        yield Notice(
+            "fact",
+            ("lumped",),
+            f"the published equations of effective mass have no solution here ({found['thesis'].verdict})",
+        )
     matched = found["mode-matched"]
     if not (matched.feasible and matched.first):
         error = found["guyan"].frequency_error
@@ -212,7 +267,10 @@ def effective_mass(probe: Probe) -> Notices:
         )
 
 
-HOLDS, DRIFTS = 0.39, 0.63  # guyan_in_frequency.py: off by 1 % and 10 % of the static stiffness, over the first frequency with the lumped point held
+HOLDS, DRIFTS = (
+    0.39,
+    0.63,
+)  # guyan_in_frequency.py: off by 1 % and 10 % of the static stiffness, over the first frequency with the lumped point held
 
 
 def frequency_range(probe: Probe) -> Notices:

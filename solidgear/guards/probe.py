@@ -52,13 +52,27 @@ class Probe:
 
     def diameter(self, y: float) -> float:
         """Outer diameter of the shaft at y, the larger one at a step, m."""
-        return 2 * max(s.radius_at(y)[1] for s in self.scene.segments if s.y0 - TOUCH <= y <= s.y1 + TOUCH)
+        return 2 * max(
+            s.radius_at(y)[1] for s in self.scene.segments if s.y0 - TOUCH <= y <= s.y1 + TOUCH
+        )
 
     @cached_property
     def parts(self) -> list[tuple[float, float, float]]:
         """Shaft between its steps: (first y, last y, greatest outer diameter) of every part, m."""
         ends = (0.0, *self.scene.steps, self.scene.length)
-        return [(a, b, 2 * max(max(s.outer0, s.outer1) for s in self.scene.segments if s.y0 > a - TOUCH and s.y1 < b + TOUCH)) for a, b in pairwise(ends)]
+        return [
+            (
+                a,
+                b,
+                2
+                * max(
+                    max(s.outer0, s.outer1)
+                    for s in self.scene.segments
+                    if s.y0 > a - TOUCH and s.y1 < b + TOUCH
+                ),
+            )
+            for a, b in pairwise(ends)
+        ]
 
     def rung(self, model: str) -> Rung:
         """A beam, or the harmonic solid on its two coarsest meshes."""
@@ -76,7 +90,11 @@ class Probe:
         given = {s.attachment for s in self.scene.stations}
         if attachment is None or given == {attachment}:
             return self.rung("harmonic").quantities
-        scene = rigid_seats(self.scene) if attachment == "rigid" else self.scene.with_attachment(attachment)
+        scene = (
+            rigid_seats(self.scene)
+            if attachment == "rigid"
+            else self.scene.with_attachment(attachment)
+        )
         return study(scene, "harmonic", most=2, evidence=False).quantities
 
     def _gaps(self, model: str) -> list[dict]:
@@ -99,7 +117,9 @@ class Probe:
             with np.errstate(divide="raise", invalid="raise"):
                 return synthesise(body, self.supports, self.scene.port.name, found)
         except FloatingPointError:
-            raise SolidgearError("first bending leaves the lumped point at rest in the z plane, in which masses are lumped; bearings differ in x and z") from None
+            raise SolidgearError(
+                "first bending leaves the lumped point at rest in the z plane, in which masses are lumped; bearings differ in x and z"
+            ) from None
 
     @cached_property
     def fixed_interface(self) -> float | None:
@@ -109,30 +129,75 @@ class Probe:
             point, _ = self.lumped
         except SolidgearError:
             return None
-        clamp = CLAMP * np.diag([point.stiffness[0, 0], 0.0, point.stiffness[0, 0], point.stiffness[1, 1], 0.0, point.stiffness[1, 1]])
-        held = Supports((*self.supports.ports, self.scene.port.name), sla.block_diag(self.supports.stiffness, clamp))
-        return next((m.frequency_hz for m in modes(body, held, FEW).modes if m.family == "bending" and m.frequency_hz > 0), None)
+        clamp = CLAMP * np.diag(
+            [
+                point.stiffness[0, 0],
+                0.0,
+                point.stiffness[0, 0],
+                point.stiffness[1, 1],
+                0.0,
+                point.stiffness[1, 1],
+            ]
+        )
+        held = Supports(
+            (*self.supports.ports, self.scene.port.name),
+            sla.block_diag(self.supports.stiffness, clamp),
+        )
+        return next(
+            (
+                m.frequency_hz
+                for m in modes(body, held, FEW).modes
+                if m.family == "bending" and m.frequency_hz > 0
+            ),
+            None,
+        )
 
     @cached_property
     def ovalising(self) -> dict[int, float]:
         """Lowest frequency (Hz) of families of two waves around and more, as far as they are solved; bearings do not enter."""
         harmonic = self.rungs.get("harmonic")
-        solved = [r for r in harmonic.modes.evidence.get("families", []) if (r["n"] or 0) > 1 and r["counted"]] if harmonic else []
+        solved = (
+            [
+                r
+                for r in harmonic.modes.evidence.get("families", [])
+                if (r["n"] or 0) > 1 and r["counted"]
+            ]
+            if harmonic
+            else []
+        )
         if solved:
             return {r["n"]: r["lowest_hz"] for r in solved if r["lowest_hz"]}
         blocks = build(self.scene, "harmonic", **HARMONIC[1], ovalising=(2, 3)).blocks[-2:]
-        lowest = [spla.eigsh(b.stiffness.tocsc(), 1, b.mass.tocsc(), sigma=0.0, v0=np.ones(b.size), return_eigenvectors=False)[0] for b in blocks]
+        lowest = [
+            spla.eigsh(
+                b.stiffness.tocsc(),
+                1,
+                b.mass.tocsc(),
+                sigma=0.0,
+                v0=np.ones(b.size),
+                return_eigenvectors=False,
+            )[0]
+            for b in blocks
+        ]
         return {n: float(np.sqrt(w2) / (2 * np.pi)) for n, w2 in zip((2, 3), lowest)}
 
     @cached_property
     def split(self) -> float:
         """Relative distance of the two first bending frequencies of the Timoshenko beam; 0 where every bearing is alike in x and z."""
-        turned = [b.stiffness[np.ix_(X, X)] * SIGNS - b.stiffness[np.ix_(Z, Z)] for b in self.scene.bearings]
+        turned = [
+            b.stiffness[np.ix_(X, X)] * SIGNS - b.stiffness[np.ix_(Z, Z)]
+            for b in self.scene.bearings
+        ]
         if not any(t.any() for t in turned):
             return 0.0
         body, _, _ = self.beam("timoshenko")
         apart = replace(body, mesh=body.mesh | {"pair_tolerance": 0.0})
-        found = [m.frequency_hz for m in modes(apart, self.supports, FEW).modes if m.family == "bending" and m.frequency_hz > 0 for _ in range(m.multiplicity)]
+        found = [
+            m.frequency_hz
+            for m in modes(apart, self.supports, FEW).modes
+            if m.family == "bending" and m.frequency_hz > 0
+            for _ in range(m.multiplicity)
+        ]
         return found[1] / found[0] - 1 if len(found) > 1 else 0.0
 
     @cached_property

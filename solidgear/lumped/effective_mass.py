@@ -111,7 +111,9 @@ class LumpedPoint:
         return float(self.motion @ self.stiffness @ self.motion) / self.omega**2
 
 
-def lumped_point(body: Body, supports, port: str, found: ModeSet | None = None) -> tuple[LumpedPoint, ModeSet]:
+def lumped_point(
+    body: Body, supports, port: str, found: ModeSet | None = None
+) -> tuple[LumpedPoint, ModeSet]:
     """Static stiffness, first bending motion and condensed mass of a body at its lumped point.
 
     Raises
@@ -123,19 +125,32 @@ def lumped_point(body: Body, supports, port: str, found: ModeSet | None = None) 
     condensed = condense(body, supports, port)
     c = condensed.compliance[np.ix_(PLANE, PLANE)]
     if not np.all(np.isfinite(c)):
-        raise SolidgearError(f"port {port!r} has no static stiffness in bending: bearings leave it free; support the shaft first")
+        raise SolidgearError(
+            f"port {port!r} has no static stiffness in bending: bearings leave it free; support the shaft first"
+        )
     k = np.linalg.inv(c)
     if np.linalg.eigvalsh(k)[0] <= 0:
-        raise SolidgearError(f"the stiffness at port {port!r} is indefinite in bending: {k.tolist()}; check the bearings")
+        raise SolidgearError(
+            f"the stiffness at port {port!r} is indefinite in bending: {k.tolist()}; check the bearings"
+        )
     found = found if found is not None and found.named("bending 1") else modes(body, supports, 12)
     index = body.port_index(port)
     mode, motion = _first_in_plane(body, found, index)
     if mode is None:
-        raise SolidgearError(f"no bending mode in the z plane among the first 12 of the {body.fidelity} body; effective masses need one")
+        raise SolidgearError(
+            f"no bending mode in the z plane among the first 12 of the {body.fidelity} body; effective masses need one"
+        )
     inertia = body.mass_matrix()
     y = body.ports[index].y
     about = inertia[3, 3] - 2 * y * inertia[2, 3] + y * y * inertia[2, 2]
-    return LumpedPoint(k, motion, 2 * np.pi * mode.frequency_hz, float(inertia[2, 2]), float(about), _guyan(body, supports, index, c)), found
+    return LumpedPoint(
+        k,
+        motion,
+        2 * np.pi * mode.frequency_hz,
+        float(inertia[2, 2]),
+        float(about),
+        _guyan(body, supports, index, c),
+    ), found
 
 
 def _port_motion(body: Body, vectors: dict[int, np.ndarray], index: int) -> np.ndarray:
@@ -188,7 +203,9 @@ def _static_shapes(body: Body, supports, index: int):
                 n = len(block.components)
                 for r, c in enumerate(PLANE):
                     if c in block.components:
-                        rows[r] = block.ports[index * n + block.components.index(c)].toarray().ravel()
+                        rows[r] = (
+                            block.ports[index * n + block.components.index(c)].toarray().ravel()
+                        )
                 parts.append(rows)
             return supported, supported.static(np.hstack(parts).T)
     raise SolidgearError(f"the {body.fidelity} body has no bending plane")
@@ -217,15 +234,31 @@ def effective_masses(point: LumpedPoint, receptance=None) -> dict[str, Synthesis
         In the order of ``METHODS``.
     """
     out = {}
-    out["old"] = _judge(point, "old", np.diag([point.total_mass, point.total_inertia]), receptance, "total mass and inertia")
+    out["old"] = _judge(
+        point,
+        "old",
+        np.diag([point.total_mass, point.total_inertia]),
+        receptance,
+        "total mass and inertia",
+    )
     out["thesis"] = _thesis(point, receptance)
     matched = point.stiffness @ point.motion / (point.omega**2 * point.motion)
     coupling = point.stiffness[0, 1] * point.motion[0] * point.motion[1]
-    text = "keeps first frequency and slope ratio exactly" if np.all(matched > 0) else "a negative entry: no physical mass"
+    text = (
+        "keeps first frequency and slope ratio exactly"
+        if np.all(matched > 0)
+        else "a negative entry: no physical mass"
+    )
     if np.all(matched > 0) and coupling > 0:
         text = "keeps the frequency and the slope ratio, but as the second mode of the lumped model"
     out["mode-matched"] = _judge(point, "mode-matched", np.diag(matched), receptance, text)
-    out["guyan"] = _judge(point, "guyan", point.guyan, receptance, "static condensation, always positive, first frequency from above")
+    out["guyan"] = _judge(
+        point,
+        "guyan",
+        point.guyan,
+        receptance,
+        "static condensation, always positive, first frequency from above",
+    )
     return out
 
 
@@ -238,20 +271,36 @@ def _thesis(point: LumpedPoint, receptance) -> Synthesis:
     numbers = {"discriminant": float(discriminant), "static_share": share}
     half = (a - b + 1) / 2
     root = np.sqrt(complex(discriminant)) / 2
-    numbers["mass_roots"] = [[float(((half + s * root) / z**2).real), float(((half + s * root) / z**2).imag)] for s in (1, -1)]
+    numbers["mass_roots"] = [
+        [float(((half + s * root) / z**2).real), float(((half + s * root) / z**2).imag)]
+        for s in (1, -1)
+    ]
     if abs(1 - share) <= STATIC_SHAPE:
         x = half  # the double root; the mode is a static shape
         mass = np.diag([x / z**2, (1 - x) / phi**2])
         if x > 0 and 1 - x > 0 and c <= 0:
-            return _judge(point, "thesis", mass, receptance, "equations 52 and 53 are met: the mode is a static shape", numbers)
-        return _none("thesis", "the mode is a static shape, but its pair is not positive or not the first", numbers)
+            return _judge(
+                point,
+                "thesis",
+                mass,
+                receptance,
+                "equations 52 and 53 are met: the mode is a static shape",
+                numbers,
+            )
+        return _none(
+            "thesis",
+            "the mode is a static shape, but its pair is not positive or not the first",
+            numbers,
+        )
     if discriminant < 0:
         text = f"no real pair: discriminant {discriminant:.3g} < 0"
     else:
         xs = [half + s * np.sqrt(discriminant) / 2 for s in (1, -1)]
         signs = "positive" if any(0 < x < 1 for x in xs) else "no positive pair"
         text = f"real roots ({signs}), but the frequency asked for is not the first of the model"
-    return _none("thesis", f"{text}; v'Kv is {share:.4f} of w1^2 u'Mu, and only 1 would do", numbers)
+    return _none(
+        "thesis", f"{text}; v'Kv is {share:.4f} of w1^2 u'Mu, and only 1 would do", numbers
+    )
 
 
 def _none(method, verdict, numbers) -> Synthesis:
@@ -264,7 +313,9 @@ def _judge(point: LumpedPoint, method, mass, receptance, verdict, numbers=None) 
     numbers = dict(numbers or {})
     kinetic = float(v @ mass @ v) - 1
     if np.linalg.eigvalsh(mass)[0] <= 0:
-        return Synthesis(method, mass, False, False, None, None, None, kinetic, None, verdict, numbers)
+        return Synthesis(
+            method, mass, False, False, None, None, None, kinetic, None, verdict, numbers
+        )
     w2, shapes = sla.eigh(k, mass)
     own = np.argmin(np.abs(np.sqrt(w2) / point.omega - 1))
     shape = shapes[:, 0]
@@ -272,8 +323,19 @@ def _judge(point: LumpedPoint, method, mass, receptance, verdict, numbers=None) 
     slope = (shape[1] / shape[0]) / (v[1] / v[0]) - 1 if shape[0] and v[0] and v[1] else None
     valid = _valid_to(k, mass, receptance, point.omega) if receptance else None
     first = method != "mode-matched" or own == 0
-    return Synthesis(method, mass, True, bool(first), float(frequency), float(np.sqrt(w2[0]) / point.omega - 1),
-                     None if slope is None else float(slope), kinetic, valid, verdict, numbers)  # fmt: skip
+    return Synthesis(
+        method,
+        mass,
+        True,
+        bool(first),
+        float(frequency),
+        float(np.sqrt(w2[0]) / point.omega - 1),
+        None if slope is None else float(slope),
+        kinetic,
+        valid,
+        verdict,
+        numbers,
+    )
 
 
 def _valid_to(k, mass, receptance, omega, tolerance: float = 0.05) -> float:
@@ -309,7 +371,11 @@ def modal_receptance(body: Body, supports, port: str, found: ModeSet):
     return receptance
 
 
-def synthesise(body: Body, supports, port: str, found: ModeSet | None = None) -> tuple[LumpedPoint, dict[str, Synthesis]]:
+def synthesise(
+    body: Body, supports, port: str, found: ModeSet | None = None
+) -> tuple[LumpedPoint, dict[str, Synthesis]]:
     """Lumped point and all four lumped models of a body, judged against the body itself."""
     point, found = lumped_point(body, supports, port, found)
-    return point, effective_masses(point, modal_receptance(body, as_supports(supports), port, found))
+    return point, effective_masses(
+        point, modal_receptance(body, as_supports(supports), port, found)
+    )

@@ -38,7 +38,9 @@ def synthesise_all(scene, rungs: dict, tell: Callable[[str], None] = lambda _: N
         out[model] = {
             "stiffness": point.stiffness.tolist(),
             "motion": point.motion.tolist(),
-            "first_bending_hz": rung.modes.named("bending 1").frequency_hz if rung.modes.named("bending 1") else point.omega / 6.283185307179586,
+            "first_bending_hz": rung.modes.named("bending 1").frequency_hz
+            if rung.modes.named("bending 1")
+            else point.omega / 6.283185307179586,
             "static_share": point.static_share,
             "total_mass": point.total_mass,
             "seconds": time.perf_counter() - start,
@@ -75,7 +77,12 @@ def representative(lumped: dict) -> tuple[str, str] | None:
 
 
 def model_record(
-    lumped: dict, models: dict, reference_hz: float | None, tolerance: float, band: float | None, notices: Iterable[dict] = ()
+    lumped: dict,
+    models: dict,
+    reference_hz: float | None,
+    tolerance: float,
+    band: float | None,
+    notices: Iterable[dict] = (),
 ) -> dict | None:
     """Record of the lumped rung among the models; its stiffness is its source's.
 
@@ -99,17 +106,29 @@ def model_record(
     source, variant = chosen
     base, own = models[source], lumped[source]["variants"][variant]
     why_not, undecided = None, False
-    against = [n["sentence"] for n in notices if "lumped" in n["models"] and n["level"] in ("avoid", "fault")]
+    against = [
+        n["sentence"]
+        for n in notices
+        if "lumped" in n["models"] and n["level"] in ("avoid", "fault")
+    ]
     if not base["valid"]:
-        why_not, undecided = f"its stiffness is that of the {source} model, which is out: {base['why_not']}", base["open"]
+        why_not, undecided = (
+            f"its stiffness is that of the {source} model, which is out: {base['why_not']}",
+            base["open"],
+        )
     elif against:
         why_not = against[0]
     elif not reference_hz or band is None:
-        why_not, undecided = "not judged: there is no first bending of a trusted model to hold it against", True
+        why_not, undecided = (
+            "not judged: there is no first bending of a trusted model to hold it against",
+            True,
+        )
     elif abs(own["frequency_hz"] / reference_hz - 1) + band > tolerance:
         why_not = f"its first bending is {100 * (own['frequency_hz'] / reference_hz - 1):+.1f} % off, more than the {100 * tolerance:g} % asked for"
     # The price of its source comes first: there is no lumped model without a body to condense.
-    seconds = {k: base["seconds"].get(k, 0.0) for k in ("build", "statics", "modes")} | {"synthesis": lumped[source]["seconds"]}
+    seconds = {k: base["seconds"].get(k, 0.0) for k in ("build", "statics", "modes")} | {
+        "synthesis": lumped[source]["seconds"]
+    }
     return {
         "valid": why_not is None,
         "open": undecided,
@@ -118,7 +137,15 @@ def model_record(
         "variant": variant,
         "compliance": base["compliance"],
         "stiffness": base["stiffness"],
-        "modes": [{"name": "bending 1", "family": "bending", "frequency_hz": own["frequency_hz"], "multiplicity": 2, "captured": None}],
+        "modes": [
+            {
+                "name": "bending 1",
+                "family": "bending",
+                "frequency_hz": own["frequency_hz"],
+                "multiplicity": 2,
+                "captured": None,
+            }
+        ],
         "band": None,
         "convergence": None,
         "dofs": 6,

@@ -35,7 +35,13 @@ def corner_exponent(angle: float) -> float:
         grid = np.linspace(0.3, 0.9999, 400)
         f = np.sin(grid * angle) + sign * grid * np.sin(angle)
         for i in np.flatnonzero(f[:-1] * f[1:] < 0):
-            roots.append(brentq(lambda x, s=sign: np.sin(x * angle) + s * x * np.sin(angle), grid[i], grid[i + 1]))
+            roots.append(
+                brentq(
+                    lambda x, s=sign: np.sin(x * angle) + s * x * np.sin(angle),
+                    grid[i],
+                    grid[i + 1],
+                )
+            )
     return min(roots, default=1.0)
 
 
@@ -43,14 +49,28 @@ def corner_angle(a, b) -> float:
     """Largest material angle (rad) of the outline where segment ``b`` follows ``a``, outside or in the bore; pi at least."""
     worst = np.pi
     for r_a, r_b, s_a, s_b, side in (
-        (a.outer1, b.outer0, (a.outer1 - a.outer0) / a.length, (b.outer1 - b.outer0) / b.length, 1.0),
-        (a.inner1, b.inner0, (a.inner1 - a.inner0) / a.length, (b.inner1 - b.inner0) / b.length, -1.0),
+        (
+            a.outer1,
+            b.outer0,
+            (a.outer1 - a.outer0) / a.length,
+            (b.outer1 - b.outer0) / b.length,
+            1.0,
+        ),
+        (
+            a.inner1,
+            b.inner0,
+            (a.inner1 - a.inner0) / a.length,
+            (b.inner1 - b.inner0) / b.length,
+            -1.0,
+        ),
     ):
         step = side * (r_b - r_a)
         slope_a, slope_b = np.arctan(side * s_a), np.arctan(side * s_b)
         if abs(step) < 1e-9 * a.length:
             angle = np.pi + (slope_b - slope_a)
-        elif step < 0:  # the face of the larger segment is vertical, the smaller one's surface leaves it
+        elif (
+            step < 0
+        ):  # the face of the larger segment is vertical, the smaller one's surface leaves it
             angle = 1.5 * np.pi + slope_b
         else:
             angle = 1.5 * np.pi - slope_a

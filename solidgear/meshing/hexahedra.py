@@ -40,7 +40,9 @@ def hexahedra(scene, plan: Layout, around: int = 8) -> tuple[MeshHex2, np.ndarra
         If ``around`` does not fit, or a bore closes to a point (use tetrahedra there).
     """
     if around % 4 or around < 8:
-        raise MeshError(f"hexahedra: {around} cells around do not fit an O-grid; use a multiple of 4, at least 8")
+        raise MeshError(
+            f"hexahedra: {around} cells around do not fit an O-grid; use a multiple of 4, at least 8"
+        )
     k = around // 4
     half = np.pi / around
     inflate = 1 / np.sqrt(np.sin(half) * (1 + (1 - np.cos(half)) / 3) / half)
@@ -58,7 +60,9 @@ def hexahedra(scene, plan: Layout, around: int = 8) -> tuple[MeshHex2, np.ndarra
         radii = np.array([plan.rings(seg, (segment.y0, segment.y1), y) for y in ys])
         solid = np.all(radii[:, 0] == 0.0)
         if not solid and np.any(radii[:, 0] == 0.0):
-            raise MeshError(f"segment {segment.name!r}: its bore closes to a point, which an O-grid cannot mesh; use element 'tet10'")
+            raise MeshError(
+                f"segment {segment.name!r}: its bore closes to a point, which an O-grid cannot mesh; use element 'tet10'"
+            )
         number = plan.ring_numbers(seg)
         if solid:
             # cells of the core: local axes (z, x, y) are right-handed
@@ -73,9 +77,21 @@ def hexahedra(scene, plan: Layout, around: int = 8) -> tuple[MeshHex2, np.ndarra
             inner = radii[fine[..., 2], ring] * (rim[turn] if solid and ring == 1 else inflate)
             outer = radii[fine[..., 2], ring + 1] * inflate
             r = inner + (outer - inner) * fine[..., 0] / 2
-            nodes.append(np.stack([r * np.sin(angle[turn]), ys[fine[..., 2]], r * np.cos(angle[turn])], axis=-1))
+            nodes.append(
+                np.stack(
+                    [r * np.sin(angle[turn]), ys[fine[..., 2]], r * np.cos(angle[turn])], axis=-1
+                )
+            )
             corner = fine[:, :8] // 2
-            keys.append(_ring_key(row + corner[..., 2], number[ring + corner[..., 0]], corner[..., 1], n_lines, around))
+            keys.append(
+                _ring_key(
+                    row + corner[..., 2],
+                    number[ring + corner[..., 0]],
+                    corner[..., 1],
+                    n_lines,
+                    around,
+                )
+            )
             owner.append(np.full(around, seg))
     nodes, keys = np.concatenate(nodes), np.concatenate(keys)
     _, where, t = np.unique(keys, return_index=True, return_inverse=True)
@@ -94,11 +110,21 @@ def _core(k: int) -> np.ndarray:
     square = np.cos(np.pi / 4) / np.maximum(abs(np.cos(t)), abs(np.sin(t)))
     r = (1 - SQUARENESS) + SQUARENESS * square
     edge = np.column_stack([r * np.cos(t), r * np.sin(t)])
-    low, right, high, left = edge[: n + 1], edge[n : 2 * n + 1], edge[2 * n : 3 * n + 1][::-1], np.roll(edge, -3 * n, axis=0)[: n + 1][::-1]
+    low, right, high, left = (
+        edge[: n + 1],
+        edge[n : 2 * n + 1],
+        edge[2 * n : 3 * n + 1][::-1],
+        np.roll(edge, -3 * n, axis=0)[: n + 1][::-1],
+    )
     s = np.linspace(0, 1, n + 1)
     u, v = s[:, None, None], s[None, :, None]
     patch = (1 - v) * low[:, None] + v * high[:, None] + (1 - u) * left[None] + u * right[None]
-    corners = (1 - u) * (1 - v) * low[0] + u * (1 - v) * low[-1] + u * v * high[-1] + (1 - u) * v * high[0]
+    corners = (
+        (1 - u) * (1 - v) * low[0]
+        + u * (1 - v) * low[-1]
+        + u * v * high[-1]
+        + (1 - u) * v * high[0]
+    )
     return patch - corners
 
 
@@ -118,4 +144,6 @@ def _core_key(corner, row, rim_line, k, n_lines, around):
     i, j, line = corner[..., 0], corner[..., 1], row + corner[..., 2]
     turn = np.select([j == 0, i == k, j == k, i == 0], [i, k + j, 3 * k - i, 4 * k - j], -1)
     inside = -1 - (line.astype(np.int64) * (k + 1) + i) * (k + 1) - j
-    return np.where(turn >= 0, _ring_key(line, np.full_like(line, rim_line), turn, n_lines, around), inside)
+    return np.where(
+        turn >= 0, _ring_key(line, np.full_like(line, rim_line), turn, n_lines, around), inside
+    )

@@ -50,7 +50,10 @@ class Layout:
     def divided(self, segment: int) -> list[np.ndarray]:
         """Subdivision of every band of a segment, from the inside."""
         lowest, end = self.bands[segment]
-        return [self.fractions[band, first_of_run(self.bands, band, segment)] for band in range(lowest, end)]
+        return [
+            self.fractions[band, first_of_run(self.bands, band, segment)]
+            for band in range(lowest, end)
+        ]
 
     @cached_property
     def _offsets(self) -> dict[int, int]:
@@ -73,13 +76,18 @@ class Layout:
     def ring_numbers(self, segment: int) -> np.ndarray:
         """Numbers of a segment's ring lines from the inside, the same as its neighbours' where they share a band."""
         lowest = self.bands[segment][0]
-        parts = [self._offsets[lowest + k] + np.arange(len(lines) - 1) for k, lines in enumerate(self.divided(segment))]
+        parts = [
+            self._offsets[lowest + k] + np.arange(len(lines) - 1)
+            for k, lines in enumerate(self.divided(segment))
+        ]
         return np.concatenate([*parts, [self._offsets[self.bands[segment][1]]]])
 
     def rings(self, segment: int, span: tuple[float, float], y: float) -> np.ndarray:
         """Radii of all ring lines of a segment at ``y``, from its bore (or the axis) outwards."""
         b = self.radii(segment, span, y)
-        parts = [b[k] + lines[1:] * (b[k + 1] - b[k]) for k, lines in enumerate(self.divided(segment))]
+        parts = [
+            b[k] + lines[1:] * (b[k + 1] - b[k]) for k, lines in enumerate(self.divided(segment))
+        ]
         return np.concatenate([b[:1], *parts])
 
 
@@ -164,7 +172,12 @@ def local_length(segment) -> float:
 
 def corner_length(segment) -> float:
     """Length (m) over which stress at a corner is singular: the wall, or the radius of a solid shaft."""
-    return min(segment.outer0 - segment.inner0, segment.outer1 - segment.inner1, segment.outer0, segment.outer1)
+    return min(
+        segment.outer0 - segment.inner0,
+        segment.outer1 - segment.inner1,
+        segment.outer0,
+        segment.outer1,
+    )
 
 
 def layout(scene, grading: Grading, attachments: tuple[str, ...] | None = None) -> Layout:
@@ -185,12 +198,29 @@ def layout(scene, grading: Grading, attachments: tuple[str, ...] | None = None) 
     lines = [np.array([0.0])]
     for a, b in zip(marks, marks[1:]):
         owner = next(s for s in segments if (a.y + b.y) / 2 < s.y1 + tol)
-        reach = [grading.reach * min(corner_length(s) for s in segments if s.y0 < m.y + tol and m.y < s.y1 + tol) for m in (a, b)]
-        lines.append(a.y + graded(b.y - a.y, grading.cell(owner), grading.ratio, reach, grading.refinement, a.layers, b.layers)[1:])
+        reach = [
+            grading.reach
+            * min(corner_length(s) for s in segments if s.y0 < m.y + tol and m.y < s.y1 + tol)
+            for m in (a, b)
+        ]
+        lines.append(
+            a.y
+            + graded(
+                b.y - a.y,
+                grading.cell(owner),
+                grading.ratio,
+                reach,
+                grading.refinement,
+                a.layers,
+                b.layers,
+            )[1:]
+        )
     y = np.concatenate(lines)
     middle = (y[1:] + y[:-1]) / 2
     segment = np.minimum(np.searchsorted([s.y1 for s in segments], middle), len(segments) - 1)
-    return Layout(y, segment, bands, left, right, _fractions(scene, grading, attachments, bands, left, right))
+    return Layout(
+        y, segment, bands, left, right, _fractions(scene, grading, attachments, bands, left, right)
+    )
 
 
 @dataclass(frozen=True)
@@ -224,7 +254,9 @@ def _marks(scene, grading: Grading, attachments) -> list[_Mark]:
     return [_Mark(m, max(w for y, w in weight.items() if abs(y - m) <= tol)) for m in distinct]
 
 
-def _fractions(scene, grading: Grading, attachments, bands, left, right) -> dict[tuple[int, int], np.ndarray]:
+def _fractions(
+    scene, grading: Grading, attachments, bands, left, right
+) -> dict[tuple[int, int], np.ndarray]:
     """Subdivision of every radial band, graded towards the surfaces that carry singular points."""
     segments = scene.segments
     needs = _radial_needs(scene, grading, attachments, bands)
@@ -234,12 +266,18 @@ def _fractions(scene, grading: Grading, attachments, bands, left, right) -> dict
         for first in sorted({first_of_run(bands, band, k) for k in having}):
             run = [k for k in having if first_of_run(bands, band, k) == first]
             place = {k: band - bands[k][0] for k in run}
-            thickness = max(float(max(np.diff(left[k])[i], np.diff(right[k])[i])) for k, i in place.items())
+            thickness = max(
+                float(max(np.diff(left[k])[i], np.diff(right[k])[i])) for k, i in place.items()
+            )
             # The axis is the only band boundary that is no surface anywhere.
-            on_axis = any(i == 0 and left[k][0] == 0.0 and right[k][0] == 0.0 for k, i in place.items())
+            on_axis = any(
+                i == 0 and left[k][0] == 0.0 and right[k][0] == 0.0 for k, i in place.items()
+            )
             sizes = [grading.cell(segments[k]) for k in run]
             cell = min(s[0] for s in sizes), min(s[1] for s in sizes)
-            ends = [max((needs.get((edge, k), (0, thickness)) for k in run)) for edge in (band, band + 1)]
+            ends = [
+                max(needs.get((edge, k), (0, thickness)) for k in run) for edge in (band, band + 1)
+            ]
             layers, reach = [n for n, _ in ends], [r for _, r in ends]
             if on_axis:
                 layers[0] = 0
@@ -251,14 +289,18 @@ def _fractions(scene, grading: Grading, attachments, bands, left, right) -> dict
     return fractions
 
 
-def _radial_needs(scene, grading: Grading, attachments, bands) -> dict[tuple[int, int], tuple[int, float]]:
+def _radial_needs(
+    scene, grading: Grading, attachments, bands
+) -> dict[tuple[int, int], tuple[int, float]]:
     """Layers and reach (m) that a band boundary needs in a segment."""
     segments = scene.segments
     needs: dict[tuple[int, int], tuple[int, float]] = {}
 
     def add(boundary: int, segment: int, layers: int, reach: float) -> None:
         if layers:
-            needs[boundary, segment] = max(needs.get((boundary, segment), (0, 0.0)), (layers, reach))
+            needs[boundary, segment] = max(
+                needs.get((boundary, segment), (0, 0.0)), (layers, reach)
+            )
 
     for i, (a, b) in enumerate(zip(segments, segments[1:])):
         layers = corner_layers(a, b, grading.across)
@@ -303,8 +345,12 @@ def graded(length, size, ratio, reach, refinement, low: int, high: int) -> np.nd
     lines = {0.0, float(length)}
     for layers, start, place in ((low, first, lambda d: d), (high, last, lambda d: length - d)):
         if layers:
-            beyond = max(0, int(np.ceil(np.log(near / start / (1 - ratio)) / -np.log(ratio) - 1e-6)))
-            lines |= {float(place(d)) for d in start * ratio ** np.arange(-beyond, layers + 1) if d < room}
+            beyond = max(
+                0, int(np.ceil(np.log(near / start / (1 - ratio)) / -np.log(ratio) - 1e-6))
+            )
+            lines |= {
+                float(place(d)) for d in start * ratio ** np.arange(-beyond, layers + 1) if d < room
+            }
     lines = np.array(_distinct(sorted(lines), 1e-9 * length))
     lines[-1] = length  # a last layer thinner than that must not move the end
     filled = [lines[:1]]
@@ -379,14 +425,20 @@ def _bands(segments):
         low, high = max(bottoms[i], bottoms[i + 1]), min(tops[i], tops[i + 1])
         common = {low: max(a.inner1, b.inner0), high: min(a.outer1, b.outer0)}
         right[i] = spread(*bands[i], {**common, bottoms[i]: a.inner1, tops[i]: a.outer1})
-        left[i + 1] = spread(*bands[i + 1], {**common, bottoms[i + 1]: b.inner0, tops[i + 1]: b.outer0})
+        left[i + 1] = spread(
+            *bands[i + 1], {**common, bottoms[i + 1]: b.inner0, tops[i + 1]: b.outer0}
+        )
     # A free end divides its radius as the far end of the same segment does.
     for i, s in enumerate(segments):
         if left[i] is None and right[i] is None:
             left[i] = np.linspace(s.inner0, s.outer0, tops[i] - bottoms[i] + 1)
             right[i] = np.linspace(s.inner1, s.outer1, tops[i] - bottoms[i] + 1)
         elif left[i] is None:
-            left[i] = s.inner0 + (right[i] - s.inner1) * (s.outer0 - s.inner0) / (s.outer1 - s.inner1)
+            left[i] = s.inner0 + (right[i] - s.inner1) * (s.outer0 - s.inner0) / (
+                s.outer1 - s.inner1
+            )
         elif right[i] is None:
-            right[i] = s.inner1 + (left[i] - s.inner0) * (s.outer1 - s.inner1) / (s.outer0 - s.inner0)
+            right[i] = s.inner1 + (left[i] - s.inner0) * (s.outer1 - s.inner1) / (
+                s.outer0 - s.inner0
+            )
     return bands, tuple(left), tuple(right)

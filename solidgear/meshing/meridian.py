@@ -41,10 +41,12 @@ def meridian(scene, plan: Layout) -> Meridian:
     cells, owner, outer, inner = [], [], [], []
     for row, seg in enumerate(plan.segment):
         segment = scene.segments[seg]
-        rings = [plan.rings(seg, (segment.y0, segment.y1), y) for y in (plan.y[row], plan.y[row + 1])]
+        rings = [
+            plan.rings(seg, (segment.y0, segment.y1), y) for y in (plan.y[row], plan.y[row + 1])
+        ]
         number = plan.ring_numbers(seg)
 
-        def node(line, ring):
+        def node(line, ring, row=row, rings=rings, number=number):
             key = (line, number[ring])
             if key not in index:
                 index[key] = len(points)
@@ -56,7 +58,9 @@ def meridian(scene, plan: Layout) -> Meridian:
                 inner.append(len(cells))
             if ring == len(number) - 2:
                 outer.append(len(cells))
-            cells.append((node(row, ring), node(row, ring + 1), node(row + 1, ring + 1), node(row + 1, ring)))
+            cells.append(
+                (node(row, ring), node(row, ring + 1), node(row + 1, ring + 1), node(row + 1, ring))
+            )
             owner.append(seg)
     return Meridian(
         np.array(points).T, np.array(cells).T, np.array(owner), np.array(outer), np.array(inner)

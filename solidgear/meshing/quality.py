@@ -6,7 +6,7 @@ volume is held against the closed form of the shaft.
 """
 
 from dataclasses import dataclass
-from functools import lru_cache
+from functools import cache
 from itertools import product
 from math import factorial
 
@@ -77,17 +77,28 @@ def check_mesh(mesh, *, volume=None, rtol=1e-3, min_ratio=1e-3):
     """
     quality, low, high, ratio = _measure(mesh)
     # written so that a NaN coordinate counts as bad
-    cure = ("move the mid-edge nodes back between their corners or order the corners right-handed, "
-            "or mesh finer where the surface curves")
+    cure = (
+        "move the mid-edge nodes back between their corners or order the corners right-handed, "
+        "or mesh finer where the surface curves"
+    )
     if (high < 0.0).all():
         cure = "the whole mesh is left-handed, so exchange two local axes of the elements or mirror the coordinates"
     _refuse(mesh, ~(low > 0.0), low, "inverted", "det J", "m^3", cure)
-    _refuse(mesh, ~(ratio >= min_ratio), ratio, "nearly folded", "min/max det J", f"(limit {min_ratio:g})",
-            "mesh finer where the surface curves, or straighten the edges of these elements")
+    _refuse(
+        mesh,
+        ~(ratio >= min_ratio),
+        ratio,
+        "nearly folded",
+        "min/max det J",
+        f"(limit {min_ratio:g})",
+        "mesh finer where the surface curves, or straighten the edges of these elements",
+    )
     if volume is not None and not abs(quality.volume - volume) <= rtol * abs(volume):
-        raise MeshError(f"the mesh has volume {quality.volume:.9g} m^3 instead of {volume:.9g} m^3 "
-                        f"({quality.volume / volume - 1.0:+.2e}, limit {rtol:g}): mesh finer around the "
-                        "circumference, use second-order curved elements, or look for a missing part")
+        raise MeshError(
+            f"the mesh has volume {quality.volume:.9g} m^3 instead of {volume:.9g} m^3 "
+            f"({quality.volume / volume - 1.0:+.2e}, limit {rtol:g}): mesh finer around the "
+            "circumference, use second-order curved elements, or look for a missing part"
+        )
     return quality
 
 
@@ -99,13 +110,17 @@ def element_ratios(mesh):
 def _measure(mesh):
     """Quality, and per element the least and greatest det J and their ratio."""
     if mesh.dim() != 3:
-        raise MeshError(f"a volume mesh is needed, but {type(mesh).__name__} has dimension {mesh.dim()}: "
-                        "give a tetrahedral or hexahedral mesh")
+        raise MeshError(
+            f"a volume mesh is needed, but {type(mesh).__name__} has dimension {mesh.dim()}: "
+            "give a tetrahedral or hexahedral mesh"
+        )
     if mesh.t.shape[1] == 0:
         raise MeshError("the mesh has no elements: check the geometry it was made from")
 
     parts = [slice(i, i + _BATCH) for i in range(0, mesh.t.shape[1], _BATCH)]
-    low, high, volumes = (np.concatenate(x) for x in zip(*(_extremes(mesh, part) for part in parts)))
+    low, high, volumes = (
+        np.concatenate(x) for x in zip(*(_extremes(mesh, part) for part in parts))
+    )
     ratio = np.divide(low, high, out=np.full_like(low, -1.0), where=high > 0.0)
     quality = MeshQuality(
         n_elements=int(mesh.t.shape[1]),
@@ -137,8 +152,12 @@ def _extremes(mesh, part):
     for _ in range(_CUTS):
         if not len(owner):
             break
-        pieces = np.einsum("kij,je->kei", rule.children, piece, optimize=True)          # (child, element, coefficient)
-        np.minimum.at(low, owner, pieces[:, :, rule.corners].min(axis=(0, 2)))          # at a corner a coefficient is the value
+        pieces = np.einsum(
+            "kij,je->kei", rule.children, piece, optimize=True
+        )  # (child, element, coefficient)
+        np.minimum.at(
+            low, owner, pieces[:, :, rule.corners].min(axis=(0, 2))
+        )  # at a corner a coefficient is the value
         open_ = (pieces.min(axis=2) < low[owner] - _TOLERANCE * high[owner]) & (low[owner] > 0.0)
         child, at = np.nonzero(open_)
         owner, piece = owner[at], pieces[child, at].T
@@ -149,14 +168,21 @@ def _extremes(mesh, part):
 def _determinants(mesh, element, points, part):
     """det J, shape (points, elements)."""
     # one small dense product instead of scikit-fem's cached loop over nine Jacobian entries
-    gradients = np.stack([np.broadcast_to(np.stack(np.broadcast_arrays(*element.lbasis(points, i)[1])),
-                                          points.shape)
-                          for i in range(element.doflocs.shape[0])])                    # (node, 3, point)
-    location = mesh.doflocs[:, mesh.dofs.element_dofs[:, part]]                         # (3, node, element)
-    a, b, c = np.einsum("njq,ine->jiqe", gradients, location, optimize=True)            # columns of J
-    return (a[0] * (b[1] * c[2] - b[2] * c[1])
-            - a[1] * (b[0] * c[2] - b[2] * c[0])
-            + a[2] * (b[0] * c[1] - b[1] * c[0]))
+    gradients = np.stack(
+        [
+            np.broadcast_to(
+                np.stack(np.broadcast_arrays(*element.lbasis(points, i)[1])), points.shape
+            )
+            for i in range(element.doflocs.shape[0])
+        ]
+    )  # (node, 3, point)
+    location = mesh.doflocs[:, mesh.dofs.element_dofs[:, part]]  # (3, node, element)
+    a, b, c = np.einsum("njq,ine->jiqe", gradients, location, optimize=True)  # columns of J
+    return (
+        a[0] * (b[1] * c[2] - b[2] * c[1])
+        - a[1] * (b[0] * c[2] - b[2] * c[0])
+        + a[2] * (b[0] * c[1] - b[1] * c[0])
+    )
 
 
 @dataclass(frozen=True)
@@ -173,13 +199,17 @@ class _Bernstein:
     corners: np.ndarray
 
 
-@lru_cache(maxsize=None)
+@cache
 def _bernstein(tet: bool, degree: int) -> _Bernstein:
     """On the tetrahedron of a total degree, on the cube of a degree in each coordinate."""
-    powers = np.array([p for p in product(range(degree + 1), repeat=3) if not tet or sum(p) <= degree])
+    powers = np.array(
+        [p for p in product(range(degree + 1), repeat=3) if not tet or sum(p) <= degree]
+    )
     if tet:
         powers = np.column_stack([degree - powers.sum(axis=1), powers])
-        many = np.array([factorial(degree) / np.prod([factorial(int(i)) for i in p]) for p in powers])
+        many = np.array(
+            [factorial(degree) / np.prod([factorial(int(i)) for i in p]) for p in powers]
+        )
         # the middles of the edges make four corner pieces and an octahedron of four more
         v = np.eye(4)
         m = {(i, j): (v[i] + v[j]) / 2 for i in range(4) for j in range(4)}
@@ -194,17 +224,28 @@ def _bernstein(tet: bool, degree: int) -> _Bernstein:
         places = [local @ np.array(p) for p in pieces]
         points = local[:, 1:].T
     else:
-        many = np.array([np.prod([factorial(degree) / factorial(int(i)) / factorial(degree - int(i)) for i in p]) for p in powers])
+        many = np.array(
+            [
+                np.prod(
+                    [factorial(degree) / factorial(int(i)) / factorial(degree - int(i)) for i in p]
+                )
+                for p in powers
+            ]
+        )
         local = powers / degree
 
         def basis(x):
-            return many * np.prod(x[:, None] ** powers * (1 - x[:, None]) ** (degree - powers), axis=2)
+            return many * np.prod(
+                x[:, None] ** powers * (1 - x[:, None]) ** (degree - powers), axis=2
+            )
 
         places = [(local + corner) / 2 for corner in product((0, 1), repeat=3)]
         points = local.T
     from_values = np.linalg.inv(basis(local))
     corners = np.flatnonzero(np.isin(powers, (0, degree)).all(axis=1))
-    return _Bernstein(points, from_values, np.array([from_values @ basis(x) for x in places]), corners)
+    return _Bernstein(
+        points, from_values, np.array([from_values @ basis(x) for x in places]), corners
+    )
 
 
 def _refuse(mesh, bad, value, what, name, unit, cure):
@@ -213,8 +254,10 @@ def _refuse(mesh, bad, value, what, name, unit, cure):
     worst = int(np.argmin(np.where(np.isnan(value), -np.inf, value)))
     x, y, z = mesh.p[:, mesh.t[:, worst]].mean(axis=1)
     count = int(bad.sum())
-    raise MeshError(f"{count} of {len(bad)} elements {'is' if count == 1 else 'are'} {what}, the worst is element "
-                    f"{worst} at ({x:.4g}, {y:.4g}, {z:.4g}) m with {name} {value[worst]:.3g} {unit}: {cure}")
+    raise MeshError(
+        f"{count} of {len(bad)} elements {'is' if count == 1 else 'are'} {what}, the worst is element "
+        f"{worst} at ({x:.4g}, {y:.4g}, {z:.4g}) m with {name} {value[worst]:.3g} {unit}: {cure}"
+    )
 
 
 def volume_of(segments):
@@ -225,8 +268,12 @@ def volume_of(segments):
     segments : sequence
         Objects with y0, y1, outer0, outer1, inner0, inner1 [m].
     """
-    return float(sum(np.pi * (s.y1 - s.y0) * (_squares(s.outer0, s.outer1) - _squares(s.inner0, s.inner1))
-                     for s in segments))
+    return float(
+        sum(
+            np.pi * (s.y1 - s.y0) * (_squares(s.outer0, s.outer1) - _squares(s.inner0, s.inner1))
+            for s in segments
+        )
+    )
 
 
 @dataclass(frozen=True)
@@ -263,23 +310,27 @@ def mass_properties(segments):
     -------
     MassProperties
     """
-    parts = np.array([_frustum(s.y0, s.y1, s.outer0, s.outer1, s.material.density) for s in segments]
-                     + [_frustum(s.y0, s.y1, s.inner0, s.inner1, -s.material.density) for s in segments])
+    parts = np.array(
+        [_frustum(s.y0, s.y1, s.outer0, s.outer1, s.material.density) for s in segments]
+        + [_frustum(s.y0, s.y1, s.inner0, s.inner1, -s.material.density) for s in segments]
+    )
     mass, first, polar = parts[:, :3].sum(axis=0)
     centre = first / mass
     # second moment of each part about the common centre: about its own small end, then shifted
     offset = parts[:, 3] - centre
     axial = (parts[:, 5] + 2.0 * offset * parts[:, 4] + offset**2 * parts[:, 0]).sum()
-    return MassProperties(mass=float(mass), centre=float(centre), ixx=float(0.5 * polar + axial), iyy=float(polar))
+    return MassProperties(
+        mass=float(mass), centre=float(centre), ixx=float(0.5 * polar + axial), iyy=float(polar)
+    )
 
 
 def _frustum(y0, y1, a, b, density):
     """Mass, moment of mass in y, polar inertia, and y0 with first and second moment about y0, of a solid frustum."""
     h = y1 - y0
     mass = density * np.pi * h * _squares(a, b)
-    first = density * np.pi * h**2 * (a * a + 2.0 * a * b + 3.0 * b * b) / 12.0         # int r^2 s
-    second = density * np.pi * h**3 * (a * a + 3.0 * a * b + 6.0 * b * b) / 30.0        # int r^2 s^2
-    fourth = (a**4 + a**3 * b + a**2 * b**2 + a * b**3 + b**4) / 5.0                    # int r^4
+    first = density * np.pi * h**2 * (a * a + 2.0 * a * b + 3.0 * b * b) / 12.0  # int r^2 s
+    second = density * np.pi * h**3 * (a * a + 3.0 * a * b + 6.0 * b * b) / 30.0  # int r^2 s^2
+    fourth = (a**4 + a**3 * b + a**2 * b**2 + a * b**3 + b**4) / 5.0  # int r^4
     return mass, first + y0 * mass, 0.5 * density * np.pi * h * fourth, y0, first, second
 
 

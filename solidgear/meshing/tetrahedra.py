@@ -19,9 +19,9 @@ from solidgear.interruptible import abandoned, call
 from solidgear.meshing.quality import MeshError, MeshQuality, check_mesh, element_ratios, volume_of
 
 _APT = "apt-get install libglu1-mesa libgl1 libegl1 libegl-mesa0 libxft2 libxinerama1 libxcursor1 libgomp1"
-_TET10 = 11             # gmsh's number for the ten-node tetrahedron
-_FOLD = 0.05            # below this min/max det J an element's edges are straightened
-_GROWTH = 0.5           # element size gained per distance from a lateral surface
+_TET10 = 11  # gmsh's number for the ten-node tetrahedron
+_FOLD = 0.05  # below this min/max det J an element's edges are straightened
+_GROWTH = 0.5  # element size gained per distance from a lateral surface
 
 
 @dataclass(frozen=True)
@@ -42,7 +42,9 @@ class TetMesh:
     quality: MeshQuality
 
 
-def tetrahedra(segments, planes=(), circles=(), *, size, graded_size=None, reach=None, around=16, progress=None):
+def tetrahedra(
+    segments, planes=(), circles=(), *, size, graded_size=None, reach=None, around=16, progress=None
+):
     """Mesh a shaft of revolution about y with curved ten-node tetrahedra.
 
     Parameters
@@ -92,12 +94,16 @@ def tetrahedra(segments, planes=(), circles=(), *, size, graded_size=None, reach
         except MeshError:
             raise
         except Exception as error:
-            raise MeshError(f"gmsh could not mesh the shaft ({error}): change size or graded_size a little, "
-                            "or look for segments much thinner than size") from error
+            raise MeshError(
+                f"gmsh could not mesh the shaft ({error}): change size or graded_size a little, "
+                "or look for segments much thinner than size"
+            ) from error
 
     report(0.9, "checking the mesh")
     # four times what the arcs lose by themselves: a lost part is far larger
-    quality = check_mesh(mesh, volume=volume_of(segments), rtol=max(1e-3, 4.0 * (pi / around)**4 / 30.0))
+    quality = check_mesh(
+        mesh, volume=volume_of(segments), rtol=max(1e-3, 4.0 * (pi / around) ** 4 / 30.0)
+    )
     # interfaces are planes of element faces, so the mean of the corners decides
     y = mesh.p[1][mesh.t].mean(axis=0)
     segment = np.searchsorted([s.y1 for s in segments[:-1]], y)
@@ -120,8 +126,10 @@ def _import_gmsh():
     try:
         import gmsh
     except (ImportError, OSError) as error:
-        raise MeshError(f"gmsh cannot be loaded ({error}); install its wheel (pip install gmsh) "
-                        f"and the system libraries it needs: {_APT}") from error
+        raise MeshError(
+            f"gmsh cannot be loaded ({error}); install its wheel (pip install gmsh) "
+            f"and the system libraries it needs: {_APT}"
+        ) from error
     return gmsh
 
 
@@ -130,7 +138,7 @@ class _Session:
 
     options = {
         "General.Terminal": 0,
-        "General.NumThreads": 1,            # the order of the elements depends on the number of threads
+        "General.NumThreads": 1,  # the order of the elements depends on the number of threads
         "Mesh.RandomSeed": 1,
         "Mesh.Algorithm": 6,
         "Mesh.Algorithm3D": 1,
@@ -139,7 +147,7 @@ class _Session:
         "Mesh.SecondOrderLinear": 0,
         "Mesh.SecondOrderIncomplete": 0,
         "Mesh.HighOrderOptimize": 0,
-        "Mesh.MeshSizeFromPoints": 0,       # the size is the field's alone
+        "Mesh.MeshSizeFromPoints": 0,  # the size is the field's alone
         "Mesh.MeshSizeFromCurvature": 0,
         "Mesh.MeshSizeExtendFromBoundary": 0,
         "Mesh.MeshSizeFactor": 1,
@@ -157,12 +165,16 @@ class _Session:
         if self.ours:
             # configuration files would make the mesh depend on the machine
             gmsh.initialize(["gmsh", "-v", "0"], readConfigFiles=False, interruptible=False)
-        self.before = {} if self.ours else {name: gmsh.option.getNumber(name) for name in self.options}
+        self.before = (
+            {} if self.ours else {name: gmsh.option.getNumber(name) for name in self.options}
+        )
         self.model = None if self.ours else gmsh.model.getCurrent()
         for name, value in self.options.items():
             gmsh.option.setNumber(name, value)
         taken = set(gmsh.model.list())
-        self.name = next(name for name in (f"solidgear{i}" for i in range(len(taken) + 1)) if name not in taken)
+        self.name = next(
+            name for name in (f"solidgear{i}" for i in range(len(taken) + 1)) if name not in taken
+        )
         gmsh.model.add(self.name)
 
     def __exit__(self, *exception):
@@ -185,22 +197,33 @@ def _validate(segments, planes, circles, size, graded_size, reach, around):
         raise MeshError("there is no segment to mesh: give at least one")
     for i, s in enumerate(segments):
         if not s.y1 > s.y0:
-            raise MeshError(f"segment {i} ends at y = {s.y1:g} m, not after its start {s.y0:g} m: order it along y")
-        if not (s.outer0 >= s.inner0 >= 0.0 and s.outer1 >= s.inner1 >= 0.0
-                and s.outer0 + s.outer1 > s.inner0 + s.inner1):
+            raise MeshError(
+                f"segment {i} ends at y = {s.y1:g} m, not after its start {s.y0:g} m: order it along y"
+            )
+        if not (
+            s.outer0 >= s.inner0 >= 0.0
+            and s.outer1 >= s.inner1 >= 0.0
+            and s.outer0 + s.outer1 > s.inner0 + s.inner1
+        ):
             raise MeshError(f"segment {i} has no wall everywhere: keep 0 <= inner < outer")
     tolerance = _tolerance(segments)
     for i, (a, b) in enumerate(zip(segments, segments[1:])):
         if abs(a.y1 - b.y0) > tolerance:
-            raise MeshError(f"segment {i} ends at y = {a.y1:g} m but segment {i + 1} starts at {b.y0:g} m: "
-                            "put the segments end to end")
+            raise MeshError(
+                f"segment {i} ends at y = {a.y1:g} m but segment {i + 1} starts at {b.y0:g} m: "
+                "put the segments end to end"
+            )
         if min(a.outer1, b.outer0) <= max(a.inner1, b.inner0) + tolerance:
-            raise MeshError(f"segments {i} and {i + 1} share no material at y = {a.y1:g} m: make their walls overlap")
+            raise MeshError(
+                f"segments {i} and {i + 1} share no material at y = {a.y1:g} m: make their walls overlap"
+            )
     for name, positions in (("plane", planes), ("circle", circles)):
         for y in positions:
             if not segments[0].y0 - tolerance <= y <= segments[-1].y1 + tolerance:
-                raise MeshError(f"the {name} at y = {y:g} m lies outside the shaft "
-                                f"({segments[0].y0:g} to {segments[-1].y1:g} m): move it inside")
+                raise MeshError(
+                    f"the {name} at y = {y:g} m lies outside the shaft "
+                    f"({segments[0].y0:g} to {segments[-1].y1:g} m): move it inside"
+                )
     for name, value in (("size", size), ("graded_size", graded_size), ("reach", reach)):
         if value is not None and not value > 0.0:
             raise MeshError(f"{name} is {value:g} m: give a positive length")
@@ -241,7 +264,7 @@ def _revolve(gmsh, segments, planes, circles):
         bottom = _between(inner0, outer0, (below[3], below[5]) if below else ())
         top = _between(inner1, outer1, (above[2], above[4]) if above else ())
         side = _cuts(slabs[i], circles, tolerance)
-        loop = ([(r, y0) for r in bottom] + side + [(r, y1) for r in reversed(top)])
+        loop = [(r, y0) for r in bottom] + side + [(r, y1) for r in reversed(top)]
         tags = []
         for r, y in loop:
             tag = point(r, y)
@@ -270,7 +293,9 @@ def _corners(slabs, circles, tolerance):
     return corners + _kinks(slabs, on_station, tolerance)
 
 
-def estimated_counts(segments, planes=(), circles=(), *, size, graded_size=None, reach=None, around=16):
+def estimated_counts(
+    segments, planes=(), circles=(), *, size, graded_size=None, reach=None, around=16
+):
     """Vertices, edges, faces and cells of :func:`tetrahedra` for the same arguments, without meshing.
 
     Volume, surface and the rims that are graded towards are filled with elements of the size asked for.  The constants were fitted to 21 meshes
@@ -285,7 +310,10 @@ def estimated_counts(segments, planes=(), circles=(), *, size, graded_size=None,
     slabs = _slabs(segments, [float(y) for y in planes], tolerance)
     corners = _corners(slabs, [float(y) for y in circles], tolerance)
     # the mesher's own formulas, so that there is one truth
-    fields = [eval(f"lambda x, y, z: {f}".replace("^", "**"), _NUMPY) for f in _size_formulas(segments, corners, size, graded_size, reach, around)]
+    fields = [
+        eval(f"lambda x, y, z: {f}".replace("^", "**"), _NUMPY)
+        for f in _size_formulas(segments, corners, size, graded_size, reach, around)
+    ]
     least = min(size, graded_size or size)
 
     def edge(r, y):
@@ -301,7 +329,9 @@ def estimated_counts(segments, planes=(), circles=(), *, size, graded_size=None,
         for a, b in zip([s.y0, *inside], [*inside, s.y1]):
             y, along = _graded_points(a, b, least)
             t = (y - s.y0) / (s.y1 - s.y0)
-            bore, outer = ((1 - t) * r0 + t * r1 for r0, r1 in ((s.inner0, s.inner1), (s.outer0, s.outer1)))
+            bore, outer = (
+                (1 - t) * r0 + t * r1 for r0, r1 in ((s.inner0, s.inner1), (s.outer0, s.outer1))
+            )
             part, across = _graded_points(0.0, 1.0, least / max(s.outer0, s.outer1))
             r = bore[:, None] + (outer - bore)[:, None] * part
             h = edge(r, y[:, None])
@@ -313,16 +343,25 @@ def estimated_counts(segments, planes=(), circles=(), *, size, graded_size=None,
     for below, above in zip([None, *ends], [*ends, None]):
         rims = sorted({r for r in (*(below[3:5] if below else ()), *(above[1:3] if above else ()))})
         for a, b in zip(rims, rims[1:]):
-            if (below is not None and below[3] <= a < below[4]) != (above is not None and above[1] <= a < above[2]):
+            if (below is not None and below[3] <= a < below[4]) != (
+                above is not None and above[1] <= a < above[2]
+            ):
                 r, across = _graded_points(a, b, least)
-                surface += (2 * pi * across * r / edge(r, np.array(below[5] if below else above[0])) ** 2).sum()
+                surface += (
+                    2 * pi * across * r / edge(r, np.array(below[5] if below else above[0])) ** 2
+                ).sum()
     rim = sum(2 * pi * r / float(edge(np.array(r), np.array(y))) for y, r in set(corners))
     return tuple(np.array(_FILL) @ (volume, surface, rim))
 
 
 _NUMPY = {"Sqrt": np.sqrt, "Max": np.maximum, "Min": np.minimum, "__builtins__": {}}
 # vertices, edges, faces and cells, per volume over h^3, per surface over h^2 and per length of rims over h
-_FILL = ((0.602, 0.931, 1.663), (4.288, 4.214, 8.013), (7.357, 5.397, 11.527), (3.670, 2.114, 5.178))
+_FILL = (
+    (0.602, 0.931, 1.663),
+    (4.288, 4.214, 8.013),
+    (7.357, 5.397, 11.527),
+    (3.670, 2.114, 5.178),
+)
 
 
 def _graded_points(a, b, least):
@@ -352,15 +391,25 @@ def _slabs(segments, planes, tolerance):
     slabs = []
     start = segments[0].y0
     for s in segments:
-        cuts = [s.y0] + sorted({y for y in planes if s.y0 + tolerance < y < s.y1 - tolerance}) + [s.y1]
+        cuts = (
+            [s.y0] + sorted({y for y in planes if s.y0 + tolerance < y < s.y1 - tolerance}) + [s.y1]
+        )
         for a, b in zip(cuts, cuts[1:]):
             if b - a <= tolerance:
                 continue
             u, v = (a - s.y0) / (s.y1 - s.y0), (b - s.y0) / (s.y1 - s.y0)
             outer, inner = s.outer1 - s.outer0, s.inner1 - s.inner0
             # the end of one slab is the very float that starts the next
-            slabs.append((start, b, s.outer0 + u * outer, s.outer0 + v * outer,
-                          s.inner0 + u * inner, s.inner0 + v * inner))
+            slabs.append(
+                (
+                    start,
+                    b,
+                    s.outer0 + u * outer,
+                    s.outer0 + v * outer,
+                    s.inner0 + u * inner,
+                    s.inner0 + v * inner,
+                )
+            )
             start = b
     return slabs
 
@@ -376,12 +425,16 @@ def _kinks(slabs, circles, tolerance):
         below = slabs[i - 1] if i else None
         above = slabs[i] if i < len(slabs) else None
         y = below[1] if below else above[0]
-        for outer, inner in ((True, False), (False, True)):
+        for outer in (True, False):
             column = 2 if outer else 4
             r0 = below[column + 1] if below else None
             r1 = above[column] if above else None
-            turns = (below is None or above is None or abs(r0 - r1) > tolerance
-                     or abs(_slope(below, column) - _slope(above, column)) > 1e-6)
+            turns = (
+                below is None
+                or above is None
+                or abs(r0 - r1) > tolerance
+                or abs(_slope(below, column) - _slope(above, column)) > 1e-6
+            )
             if turns or (outer and any(abs(y - c) <= tolerance for c in circles)):
                 found += [(y, r) for r in {r0, r1} - {None, 0.0}]
     return found
@@ -397,16 +450,18 @@ def _size_formulas(segments, corners, size, graded_size, reach, around):
     formulas = []
     for y, r in sorted(set(corners)) if graded_size is not None and graded_size < size else ():
         slope = (size - graded_size) / (reach or r)
-        formulas.append(f"{_num(graded_size)}+{_num(slope)}*Sqrt(({radius}-{_num(r)})^2+(y-{_num(y)})^2)")
+        formulas.append(
+            f"{_num(graded_size)}+{_num(slope)}*Sqrt(({radius}-{_num(r)})^2+(y-{_num(y)})^2)"
+        )
     for s in segments:
         for r0, r1 in ((s.outer0, s.outer1), (s.inner0, s.inner1)):
             if max(r0, r1) == 0.0:
                 continue
-            least = 0.1 * max(r0, r1)           # the tip of a cone would ask for elements of no size
+            least = 0.1 * max(r0, r1)  # the tip of a cone would ask for elements of no size
             per_radius = 2.0 * pi / around
             wall = min(s.outer0 - s.inner0, s.outer1 - s.inner1)
-            if wall > 0.0:                      # an arc must not bulge through a thin wall: height edge^2 / 8r
-                per_radius = min(per_radius, (wall / max(r0, r1))**0.5)
+            if wall > 0.0:  # an arc must not bulge through a thin wall: height edge^2 / 8r
+                per_radius = min(per_radius, (wall / max(r0, r1)) ** 0.5)
             if per_radius * max(min(r0, r1), least) >= size:
                 continue
             # foot of the point on the generator, as a fraction of its length
@@ -414,8 +469,10 @@ def _size_formulas(segments, corners, size, graded_size, reach, around):
             along = f"({radius}-{_num(r0)})*{_num(dr / (dr**2 + dy**2))}+(y-{_num(s.y0)})*{_num(dy / (dr**2 + dy**2))}"
             foot = f"Max(0,Min(1,{along}))"
             near_r, near_y = f"({_num(r0)}+{_num(dr)}*{foot})", f"({_num(s.y0)}+{_num(dy)}*{foot})"
-            formulas.append(f"Max({_num(least)},{near_r})*{_num(per_radius)}"
-                            f"+{_GROWTH}*Sqrt(({radius}-{near_r})^2+(y-{near_y})^2)")
+            formulas.append(
+                f"Max({_num(least)},{near_r})*{_num(per_radius)}"
+                f"+{_GROWTH}*Sqrt(({radius}-{near_r})^2+(y-{near_y})^2)"
+            )
     return formulas
 
 
@@ -439,8 +496,10 @@ def _to_skfem(gmsh):
     """The gmsh mesh as a scikit-fem one, mid-edge nodes matched by the pair of corners they lie between."""
     types, _, nodes = gmsh.model.mesh.getElements(3)
     if list(types) != [_TET10]:
-        raise MeshError("gmsh made no second-order tetrahedra: look for a gap in the meridian, or finalize gmsh "
-                        "if an earlier mesh failed in the same session")
+        raise MeshError(
+            "gmsh made no second-order tetrahedra: look for a gap in the meridian, or finalize gmsh "
+            "if an earlier mesh failed in the same session"
+        )
     tags, coordinates, _ = gmsh.model.mesh.getNodes()
     position = np.empty((int(tags.max()) + 1, 3))
     position[tags] = coordinates.reshape(-1, 3)
@@ -448,10 +507,12 @@ def _to_skfem(gmsh):
 
     used, corners = np.unique(cells[:, :4], return_inverse=True)
     corners = corners.reshape(-1, 4)
-    straight = MeshTet1(np.ascontiguousarray(position[used].T), np.ascontiguousarray(corners.T.astype(np.int32)))
+    straight = MeshTet1(
+        np.ascontiguousarray(position[used].T), np.ascontiguousarray(corners.T.astype(np.int32))
+    )
     mesh = MeshTet2.from_mesh(straight)
 
-    pairs = corners[:, _mid_node_corners(gmsh)]                         # (element, 6, 2)
+    pairs = corners[:, _mid_node_corners(gmsh)]  # (element, 6, 2)
     key = pairs.min(axis=2) * len(used) + pairs.max(axis=2)
     key, first = np.unique(key, return_index=True)
     middle = cells[:, 4:].reshape(-1)[first]

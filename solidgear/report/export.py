@@ -58,8 +58,14 @@ def write_vtu(scene, body, modes, path: str | Path, *, most: int | None = None) 
     else:
         still = surface(scene, body, {})
         points = still.points
-        cells = [(kind, at) for kind, at in (("quad", still.faces), ("triangle", still.triangles)) if len(at)]
-        data = {name: surface(scene, body, vectors).displacement for name, vectors in shapes.items()}
+        cells = [
+            (kind, at)
+            for kind, at in (("quad", still.faces), ("triangle", still.triangles))
+            if len(at)
+        ]
+        data = {
+            name: surface(scene, body, vectors).displacement for name, vectors in shapes.items()
+        }
     path.parent.mkdir(parents=True, exist_ok=True)
     with whole(path) as partial:
         meshio.write(partial, meshio.Mesh(points, cells, point_data=data), file_format="vtu")
@@ -78,7 +84,10 @@ def _volume(body, shapes):
     mesh = body.geometry
     kind, vtk_name = CELLS[mesh.name]
     order = node_order(mesh.element.doflocs, vtk_name)
-    data = {name: mesh_unknowns(body, vectors)["full"].reshape(-1, 3) for name, vectors in shapes.items()}
+    data = {
+        name: mesh_unknowns(body, vectors)["full"].reshape(-1, 3)
+        for name, vectors in shapes.items()
+    }
     return mesh.nodes.T, [(kind, mesh.dofs[order].T)], data
 
 

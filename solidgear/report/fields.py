@@ -89,8 +89,12 @@ def mesh_unknowns(body, vectors: Mapping[int, np.ndarray]) -> dict[str, np.ndarr
     for index, vector in vectors.items():
         block = body.block(index)
         if np.shape(vector) != (block.size,):
-            raise SolidgearError(f"a shape of block {block.name} has {block.size} values, not {np.shape(vector)}")
-        out[block.name] = np.asarray(vector, float) if block.expand is None else block.expand @ vector
+            raise SolidgearError(
+                f"a shape of block {block.name} has {block.size} values, not {np.shape(vector)}"
+            )
+        out[block.name] = (
+            np.asarray(vector, float) if block.expand is None else block.expand @ vector
+        )
     return out
 
 
@@ -138,7 +142,9 @@ def _revolve(rings: _Rings, waves: list[_Wave]) -> Surface:
         out[1] += w.swirl[ring] - w.tangential[ring] * sin
         out[2] += w.axial[ring] * cos
     points = np.column_stack([r * np.sin(t), y, r * np.cos(t)])
-    displacement = np.column_stack([out[0] * np.sin(t) + out[1] * np.cos(t), out[2], out[0] * np.cos(t) - out[1] * np.sin(t)])
+    displacement = np.column_stack(
+        [out[0] * np.sin(t) + out[1] * np.cos(t), out[2], out[0] * np.cos(t) - out[1] * np.sin(t)]
+    )
 
     turn = np.arange(TURNS)
 
@@ -149,11 +155,21 @@ def _revolve(rings: _Rings, waves: list[_Wave]) -> Surface:
     quads = np.stack([at(a, turn), at(a, turn + 1), at(b, turn + 1), at(b, turn)], axis=-1)
     from_axis, to_axis = on_axis[a], on_axis[b]
     faces = quads[~(from_axis | to_axis)].reshape(-1, 4)
-    triangles = np.concatenate([quads[from_axis][:, :, [0, 2, 3]].reshape(-1, 3), quads[to_axis][:, :, [0, 1, 2]].reshape(-1, 3)])
+    triangles = np.concatenate(
+        [
+            quads[from_axis][:, :, [0, 2, 3]].reshape(-1, 3),
+            quads[to_axis][:, :, [0, 1, 2]].reshape(-1, 3),
+        ]
+    )
     spokes = np.arange(0, TURNS, TURNS // MERIDIANS)
     circles = rings.drawn[~on_axis[rings.drawn]]
-    lines = [np.stack([at(a, spokes), at(b, spokes)], axis=-1), np.stack([at(circles, turn), at(circles, turn + 1)], axis=-1)]
-    return Surface(points, displacement, faces, triangles, np.concatenate([x.reshape(-1, 2) for x in lines]))
+    lines = [
+        np.stack([at(a, spokes), at(b, spokes)], axis=-1),
+        np.stack([at(circles, turn), at(circles, turn + 1)], axis=-1),
+    ]
+    return Surface(
+        points, displacement, faces, triangles, np.concatenate([x.reshape(-1, 2) for x in lines])
+    )
 
 
 # ------------------------------------------------------------------------------------------------- beams
@@ -164,12 +180,23 @@ def _beam(scene, nodes, moved):
     for name, start in (("bending_z", 0.0), ("bending_x", np.pi / 2)):
         if name in moved:
             # In the x plane the second unknown is -thz, which turns z into x as thx turns y into z.
-            lift, tilt = (np.interp(rings.y, nodes, moved[name][k : 2 * len(nodes) : 2]) for k in (0, 1))
+            lift, tilt = (
+                np.interp(rings.y, nodes, moved[name][k : 2 * len(nodes) : 2]) for k in (0, 1)
+            )
             waves.append(_wave(1, start, lift, lift, -rings.r * tilt))
     if "axial" in moved:
         waves.append(_wave(0, 0.0, 0.0, 0.0, np.interp(rings.y, nodes, moved["axial"])))
     if "torsion" in moved:
-        waves.append(_wave(0, 0.0, 0.0, 0.0, 0.0 * rings.r, rings.r * np.interp(rings.y, nodes, moved["torsion"])))
+        waves.append(
+            _wave(
+                0,
+                0.0,
+                0.0,
+                0.0,
+                0.0 * rings.r,
+                rings.r * np.interp(rings.y, nodes, moved["torsion"]),
+            )
+        )
     return rings, waves
 
 
@@ -188,7 +215,11 @@ def _profile(scene, nodes) -> _Rings:
     # Faces across the axis are divided, so that their colours follow the displacement.
     parts, drawn, size = [], [], 0
     for p, q in zip(loop, np.roll(loop, -1, axis=0)):
-        n = max(1, int(np.ceil(abs(q[0] - p[0]) / (0.03 * scene.length)))) if abs(q[1] - p[1]) < tol else 1
+        n = (
+            max(1, int(np.ceil(abs(q[0] - p[0]) / (0.03 * scene.length))))
+            if abs(q[1] - p[1]) < tol
+            else 1
+        )
         parts.append(p + np.arange(n)[:, None] / n * (q - p))
         drawn.append(size)
         size += n
@@ -211,7 +242,9 @@ def _harmonic(geometry, moved):
     edges = cells[ends].transpose(0, 2, 1)  # (side, cell, end)
     seen = Counter(map(tuple, np.sort(edges.reshape(-1, 2), axis=1)))
     edge_r = points[0][edges].max(axis=2)
-    free = np.array([[seen[tuple(sorted(e))] == 1 for e in side] for side in edges]) & (edge_r > 1e-9 * points[0].max())
+    free = np.array([[seen[tuple(sorted(e))] == 1 for e in side] for side in edges]) & (
+        edge_r > 1e-9 * points[0].max()
+    )
     side, cell = np.nonzero(free)
     vertex, corner = np.unique(edges[side, cell], return_inverse=True)
     corner = corner.reshape(-1, 2)
@@ -229,7 +262,9 @@ def _harmonic(geometry, moved):
             out[ring[here]] = np.einsum("bq,bec->eqc", values[k], field[dofs[:, cell[here]]])
         return out.T
 
-    rings = _Rings(r, y, np.column_stack([ring[:, :-1].ravel(), ring[:, 1:].ravel()]), np.arange(len(vertex)))
+    rings = _Rings(
+        r, y, np.column_stack([ring[:, :-1].ravel(), ring[:, 1:].ravel()]), np.arange(len(vertex))
+    )
     axis = _on_axis(geometry)
     waves = []
     for name, vector in moved.items():
@@ -253,7 +288,9 @@ def _on_axis(geometry) -> np.ndarray:
 
     flat, dofs = geometry.meridian, geometry.dofs
     tol = 1e-9 * flat.points[0].max()
-    cells = flat.inner[(np.abs(flat.points[0][flat.cells[[0, 3]][:, flat.inner]]) < tol).all(axis=0)]
+    cells = flat.inner[
+        (np.abs(flat.points[0][flat.cells[[0, 3]][:, flat.inner]]) < tol).all(axis=0)
+    ]
     # More points than the highest basis function has zeros on an edge.
     inside = np.linspace(0.0, 1.0, 16)[1:-1]
     values = reference(geometry.element, np.array([0 * inside, inside]))[0]
@@ -273,7 +310,9 @@ def _with_axis(vector, n, axis) -> np.ndarray:
     else:
         keep[axis] = False
     if keep.sum() != len(vector):
-        raise SolidgearError(f"a shape of harmonic n = {n} has {len(vector)} values where its mesh has {int(keep.sum())} unknowns")
+        raise SolidgearError(
+            f"a shape of harmonic n = {n} has {len(vector)} values where its mesh has {int(keep.sum())} unknowns"
+        )
     out = np.zeros(keep.shape)
     out[keep] = vector
     return out
@@ -300,19 +339,27 @@ def _solid(geometry, vector) -> Surface:
         corner = refdom.p[:, refdom.facets[place]]
         s, t = corner[:, 1] - corner[:, 0], corner[:, -1] - corner[:, 0]
         points = corner[:, :1] + np.outer(s, grid[:, 0] / m) + np.outer(t, grid[:, 1] / m)
-        values.append(np.einsum("bq,bef->eqf", reference(element, points)[0], fields[dofs[:, elements]]).reshape(-1, 6))
+        values.append(
+            np.einsum(
+                "bq,bef->eqf", reference(element, points)[0], fields[dofs[:, elements]]
+            ).reshape(-1, 6)
+        )
         serial = done + np.arange(len(elements) * len(grid)).reshape(-1, len(grid))
         done += serial.size
         # A point inside a face is its own; one on an edge is named by the edge's vertices, so that neighbours share it.
         key = np.stack([-1 - serial, 0 * serial, 0 * serial], axis=-1)
         va, vb = (geometry.mesh.t[refdom.facets[place]][c][:, elements].T for c in (a, b))
         vb = np.where(k == 0, va, vb)
-        key[:, rim] = np.stack([np.minimum(va, vb), np.maximum(va, vb), np.where(va <= vb, k, m - k)], axis=-1)
+        key[:, rim] = np.stack(
+            [np.minimum(va, vb), np.maximum(va, vb), np.where(va <= vb, k, m - k)], axis=-1
+        )
         keys.append(key.reshape(-1, 3))
         outward = np.cross(s, t) @ (corner.mean(axis=1) - refdom.p.mean(axis=1)) > 0
         faces.append(serial[:, cells if outward else cells[:, ::-1]].reshape(-1, corners))
         lines.append(serial[:, np.column_stack([rim, np.roll(rim, -1)])].reshape(-1, 2))
-    _, first, number = np.unique(np.concatenate(keys), axis=0, return_index=True, return_inverse=True)
+    _, first, number = np.unique(
+        np.concatenate(keys), axis=0, return_index=True, return_inverse=True
+    )
     number = number.ravel()
     at = np.concatenate(values)[first]
     found = {corners: number[np.concatenate(faces)]}
@@ -334,6 +381,11 @@ def _grid(m: int, corners: int):
     inside = i + j <= m
     place = np.cumsum(inside) - 1
     low, high = (i * n + j)[i + j < m], (i * n + j)[i + j < m - 1]
-    cells = np.vstack([np.column_stack([low, low + n, low + 1]), np.column_stack([high + n, high + n + 1, high + 1])])
+    cells = np.vstack(
+        [
+            np.column_stack([low, low + n, low + 1]),
+            np.column_stack([high + n, high + n + 1, high + 1]),
+        ]
+    )
     rim = np.concatenate([step * n, (m - step) * n + step, m - step])
     return np.column_stack([i, j])[inside], place[cells], place[rim]

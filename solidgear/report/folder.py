@@ -26,7 +26,9 @@ LOCK = ".solidgear.lock"
 #: what is ever listed, and so ever removed: a damaged list can name nothing else
 OWN = re.compile(r"(report\.html|mode_\w+\.png|modes_\w+\.vtu)")
 #: what a process that was killed can have left half written, see :func:`solidgear.whole_file.whole`
-HALF = re.compile(rf"\.({OWN.pattern}|results\.json|rows\.csv|machine\.json|speed_accuracy\.png)\.(?P<process>\d+)\.part")
+HALF = re.compile(
+    rf"\.({OWN.pattern}|results\.json|rows\.csv|machine\.json|speed_accuracy\.png)\.(?P<process>\d+)\.part"
+)
 # Folders this process holds; it may enter them again.
 _held: set[Path] = set()
 
@@ -46,7 +48,9 @@ def prepare(out) -> Path:
         probe.touch()
         probe.unlink()
     except OSError as error:
-        raise SolidgearError(f"--out {out}: cannot write there ({error.strerror or error}); name a folder you may write") from None
+        raise SolidgearError(
+            f"--out {out}: cannot write there ({error.strerror or error}); name a folder you may write"
+        ) from None
     return folder
 
 
@@ -83,7 +87,9 @@ def _locked(folder: Path, out) -> IO | None:
         try:
             file = (folder / LOCK).open("a+")
         except OSError as error:
-            raise SolidgearError(f"--out {out}: cannot write there ({error.strerror or error}); name a folder you may write") from None
+            raise SolidgearError(
+                f"--out {out}: cannot write there ({error.strerror or error}); name a folder you may write"
+            ) from None
         try:
             fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except BlockingIOError:
@@ -91,7 +97,9 @@ def _locked(folder: Path, out) -> IO | None:
             process = file.read().strip()
             file.close()
             who = f"process {process}" if process.isdigit() else "another process"
-            raise SolidgearError(f"--out {out}: {who} is writing there; wait for it to end, or name another folder") from None
+            raise SolidgearError(
+                f"--out {out}: {who} is writing there; wait for it to end, or name another folder"
+            ) from None
         except OSError:  # a drive without locks
             file.close()
             return None
@@ -134,7 +142,9 @@ def _listed(folder: Path) -> list[str]:
         listed = results.get("files")
         if listed is None:
             models = results["models"]
-            listed = [f"modes_{model}.vtu" for model in models] + [f"mode_{model}.png" for model in models]
+            listed = [f"modes_{model}.vtu" for model in models] + [
+                f"mode_{model}.png" for model in models
+            ]
         return [str(name) for name in listed]
     except (OSError, ValueError, KeyError, TypeError, AttributeError):
         return []

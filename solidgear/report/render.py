@@ -91,7 +91,11 @@ def render_modes(jobs: Iterable[RenderJob], *, timeout: float = 120) -> list[Ren
     deadline = time.monotonic() + timeout
     with tempfile.TemporaryDirectory(prefix="solidgear-render-") as folder:
         room = Path(folder)
-        arrays = {f"{i}.{name}": getattr(job.surface, name) for i, job in enumerate(jobs) for name in ARRAYS}
+        arrays = {
+            f"{i}.{name}": getattr(job.surface, name)
+            for i, job in enumerate(jobs)
+            for name in ARRAYS
+        }
         np.savez(room / "surfaces.npz", **arrays)
         (room / "titles.json").write_text(json.dumps([job.title for job in jobs]), encoding="utf-8")
         end = ""
@@ -101,7 +105,9 @@ def render_modes(jobs: Iterable[RenderJob], *, timeout: float = 120) -> list[Ren
             if not end or deadline - time.monotonic() <= 0:
                 break
         works = (room / "window").exists()
-        return [_collect(room, i, Path(job.path), end, works, timeout) for i, job in enumerate(jobs)]
+        return [
+            _collect(room, i, Path(job.path), end, works, timeout) for i, job in enumerate(jobs)
+        ]
 
 
 def _windows() -> list[str | None]:
@@ -109,7 +115,10 @@ def _windows() -> list[str | None]:
     if not sys.platform.startswith("linux") or WINDOW in os.environ:
         return [None]
     # A display that is set may still be dead, as over a lost ssh connection.
-    return ([None] if os.environ.get("DISPLAY") else []) + ["vtkEGLRenderWindow", "vtkOSOpenGLRenderWindow"]
+    return ([None] if os.environ.get("DISPLAY") else []) + [
+        "vtkEGLRenderWindow",
+        "vtkOSOpenGLRenderWindow",
+    ]
 
 
 def _child(room: Path, window: str | None, seconds: float) -> str:
@@ -122,7 +131,14 @@ def _child(room: Path, window: str | None, seconds: float) -> str:
     env["PYTHONPATH"] = os.pathsep.join(filter(None, [here, env.get("PYTHONPATH")]))
     command = [sys.executable, "-m", "solidgear.report.render", str(room)]
     try:
-        done = subprocess.run(command, env=env, stdin=subprocess.DEVNULL, capture_output=True, timeout=max(seconds, 0.1), errors="replace")
+        done = subprocess.run(
+            command,
+            env=env,
+            stdin=subprocess.DEVNULL,
+            capture_output=True,
+            timeout=max(seconds, 0.1),
+            errors="replace",
+        )
     except subprocess.TimeoutExpired:
         return "timeout"
     except OSError as error:
@@ -135,25 +151,42 @@ def _child(room: Path, window: str | None, seconds: float) -> str:
     return f"ended with status {done.returncode}" + (f" ({last[:200]})" if last else "")
 
 
-def _collect(room: Path, index: int, path: Path, end: str, works: bool, timeout: float) -> RenderResult:
+def _collect(
+    room: Path, index: int, path: Path, end: str, works: bool, timeout: float
+) -> RenderResult:
     """Move a finished picture to its place, or say why there is none."""
     from solidgear.whole_file import whole
 
     drawn, said = room / f"{index}.png", room / f"{index}.txt"
     if said.exists():
-        return RenderResult(False, path, f"the picture {path.name} could not be drawn: {said.read_text(encoding='utf-8')}")
+        return RenderResult(
+            False,
+            path,
+            f"the picture {path.name} could not be drawn: {said.read_text(encoding='utf-8')}",
+        )
     if drawn.exists():
         try:
             path.parent.mkdir(parents=True, exist_ok=True)
             with whole(path) as partial:
                 shutil.copyfile(drawn, partial)
         except OSError as error:
-            return RenderResult(False, path, f"the picture {path} could not be written: {error.strerror or error}")
+            return RenderResult(
+                False, path, f"the picture {path} could not be written: {error.strerror or error}"
+            )
         return RenderResult(True, path)
     if end == "timeout":
-        return RenderResult(False, path, f"the picture {path.name} was not drawn within {timeout:g} s; allow more time, or on Debian and Ubuntu mend OpenGL by `{PACKAGES}`")
+        return RenderResult(
+            False,
+            path,
+            f"the picture {path.name} was not drawn within {timeout:g} s; allow more time, or on Debian and Ubuntu mend OpenGL by `{PACKAGES}`",
+        )
     what = end or "left no picture"
-    return RenderResult(False, path, f"the drawing process {what}; on Debian and Ubuntu OpenGL is mended by `{PACKAGES}`", not works)
+    return RenderResult(
+        False,
+        path,
+        f"the drawing process {what}; on Debian and Ubuntu OpenGL is mended by `{PACKAGES}`",
+        not works,
+    )
 
 
 # ------------------------------------------------------------------------------------------------- in the child
@@ -179,7 +212,9 @@ def _main(room: Path) -> int:
                 _draw(pv, title, partial, *(store[f"{i}.{name}"] for name in ARRAYS))
                 os.replace(partial, target)
             except Exception as error:  # a bad picture must not cost the others
-                (room / f"{i}.txt").write_text(" ".join(f"{type(error).__name__}: {error}".split()), encoding="utf-8")
+                (room / f"{i}.txt").write_text(
+                    " ".join(f"{type(error).__name__}: {error}".split()), encoding="utf-8"
+                )
     return 0
 
 
@@ -191,31 +226,97 @@ def _draw(pv, title, path, points, displacement, faces, triangles, lines):
     displacement = displacement * (SWING * length / size.max())
     plane, right, up, back = _view(points, displacement)
     displacement = displacement * _sign(points, displacement, plane)
-    cells = np.concatenate([np.insert(f, 0, f.shape[1], axis=1).ravel() for f in (faces, triangles)])
+    cells = np.concatenate(
+        [np.insert(f, 0, f.shape[1], axis=1).ravel() for f in (faces, triangles)]
+    )
     rest, deformed = pv.PolyData(points, cells), pv.PolyData(points + displacement, cells)
     deformed["size"] = size / size.max()
     p = pv.Plotter(off_screen=True, window_size=SIZE, lighting="none")
     p.set_background("white")
     p.enable_anti_aliasing("ssaa")
     # A lamp over the left shoulder of the viewer and a weak one from the other side.
-    for offset, strength in ((0.7 * up - 0.5 * right + back, 0.75), (-0.5 * up + 0.6 * right + 0.8 * back, 0.35)):
-        p.add_light(pv.Light(position=10 * length * offset, focal_point=(0, 0, 0), light_type="scene light", intensity=strength))
-    look = {"smooth_shading": True, "split_sharp_edges": True, "feature_angle": 35, "ambient": 0.5, "diffuse": 0.7, "specular": 0.05}
-    body = p.add_mesh(deformed, scalars="size", cmap=_colours(), clim=(0, 1), show_scalar_bar=False, **look)
+    for offset, strength in (
+        (0.7 * up - 0.5 * right + back, 0.75),
+        (-0.5 * up + 0.6 * right + 0.8 * back, 0.35),
+    ):
+        p.add_light(
+            pv.Light(
+                position=10 * length * offset,
+                focal_point=(0, 0, 0),
+                light_type="scene light",
+                intensity=strength,
+            )
+        )
+    look = {
+        "smooth_shading": True,
+        "split_sharp_edges": True,
+        "feature_angle": 35,
+        "ambient": 0.5,
+        "diffuse": 0.7,
+        "specular": 0.05,
+    }
+    body = p.add_mesh(
+        deformed, scalars="size", cmap=_colours(), clim=(0, 1), show_scalar_bar=False, **look
+    )
     # Lines on a surface are brought a hair nearer, or they would sink into it here and there.
     nearer = 0.004 * length * back
-    p.add_mesh(_wires(pv, deformed.points + nearer, lines), color="black", line_width=2.0, opacity=0.2, lighting=False)
-    edges = {"feature_angle": 30, "boundary_edges": False, "non_manifold_edges": False, "manifold_edges": False}
-    p.add_mesh(deformed.extract_feature_edges(**edges).translate(nearer), color="#202020", line_width=3.0, lighting=False)
-    p.add_mesh(rest.extract_feature_edges(**edges).translate(nearer), color=OUTLINE, line_width=3.0, lighting=False)
+    p.add_mesh(
+        _wires(pv, deformed.points + nearer, lines),
+        color="black",
+        line_width=2.0,
+        opacity=0.2,
+        lighting=False,
+    )
+    edges = {
+        "feature_angle": 30,
+        "boundary_edges": False,
+        "non_manifold_edges": False,
+        "manifold_edges": False,
+    }
+    p.add_mesh(
+        deformed.extract_feature_edges(**edges).translate(nearer),
+        color="#202020",
+        line_width=3.0,
+        lighting=False,
+    )
+    p.add_mesh(
+        rest.extract_feature_edges(**edges).translate(nearer),
+        color=OUTLINE,
+        line_width=3.0,
+        lighting=False,
+    )
     p.add_silhouette(rest, color=OUTLINE, line_width=3.5, feature_angle=None)
     for words, height, font in ((title, 0.92, 15), ("displacement / max", 0.105, 10)):
-        text = p.add_text(words, position=(0.5, height), viewport=True, font_size=font, color="black", font="arial")
+        text = p.add_text(
+            words,
+            position=(0.5, height),
+            viewport=True,
+            font_size=font,
+            color="black",
+            font="arial",
+        )
         text.prop.justification_horizontal = "center"
     # The bar's own title would sit on its labels.
-    bar = {"title": "", "label_font_size": 20, "color": "black", "n_labels": 6, "fmt": "%.1f", "font_family": "arial"}
-    p.add_scalar_bar(mapper=body.mapper, width=0.36, height=0.075, position_x=0.32, position_y=0.02, **bar)
-    p.add_axes(xlabel="x", ylabel="y", zlabel="z", color="black", line_width=4, label_size=(0.25, 0.13), viewport=(0.0, 0.0, 0.2, 0.34))
+    bar = {
+        "title": "",
+        "label_font_size": 20,
+        "color": "black",
+        "n_labels": 6,
+        "fmt": "%.1f",
+        "font_family": "arial",
+    }
+    p.add_scalar_bar(
+        mapper=body.mapper, width=0.36, height=0.075, position_x=0.32, position_y=0.02, **bar
+    )
+    p.add_axes(
+        xlabel="x",
+        ylabel="y",
+        zlabel="z",
+        color="black",
+        line_width=4,
+        label_size=(0.25, 0.13),
+        viewport=(0.0, 0.0, 0.2, 0.34),
+    )
     _aim(p, points, points + displacement, right, up, back)
     p.screenshot(str(path))
     p.close()

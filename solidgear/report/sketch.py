@@ -34,7 +34,9 @@ def draw(results: Mapping) -> Any:
     top = radius * inch * enlarged
     left = (WIDTH - length * inch) / 2
 
-    stations = [(b, False) for b in scene.get("bearings") or []] + ([(scene["port"], True)] if scene.get("port") else [])
+    stations = [(b, False) for b in scene.get("bearings") or []] + (
+        [(scene["port"], True)] if scene.get("port") else []
+    )
     labels = _labels(stations, lambda y: left + y * inch)
     ordinates = _staggered([(left + y * inch, f"{1e3 * y:.1f}") for y in _marks(scene, length)])
     above = top + 0.62 + 0.34 * (1 + max((level for *_, level in labels), default=0))
@@ -47,23 +49,58 @@ def draw(results: Mapping) -> Any:
     pen = _Pen(ax, left, inch, enlarged, top)
     for s in segments:
         pen.segment(s)
-    ax.plot([left - 0.3, left + length * inch + 0.3], [0, 0], color=INK, lw=0.8, dashes=(12, 3, 2, 3), zorder=4)
+    ax.plot(
+        [left - 0.3, left + length * inch + 0.3],
+        [0, 0],
+        color=INK,
+        lw=0.8,
+        dashes=(12, 3, 2, 3),
+        zorder=4,
+    )
     for b in scene.get("bearings") or []:
         pen.bearing(b, segments)
     if scene.get("port"):
         pen.port(scene["port"], segments)
-    for x, y, text, is_port, level in labels:
+    for x, _, text, is_port, level in labels:
         colour = SPAN if is_port else SEAT
         height = top + 0.62 + 0.34 * level
-        ax.plot([x, x], [0.08 if is_port else top + 0.45, height - 0.04], color=colour, lw=0.6, zorder=6)
-        ax.text(x, height, text, color=colour, ha="center", va="bottom", fontsize=8.5, linespacing=1.1, parse_math=False,
-                bbox={"facecolor": "white", "edgecolor": "none", "pad": 0.6}, zorder=7)  # fmt: skip
+        ax.plot(
+            [x, x], [0.08 if is_port else top + 0.45, height - 0.04], color=colour, lw=0.6, zorder=6
+        )
+        ax.text(
+            x,
+            height,
+            text,
+            color=colour,
+            ha="center",
+            va="bottom",
+            fontsize=8.5,
+            linespacing=1.1,
+            parse_math=False,
+            bbox={"facecolor": "white", "edgecolor": "none", "pad": 0.6},
+            zorder=7,
+        )
     pen.lengths(segments, -top - 0.72)
     pen.ruler(ordinates, length, -top - 1.04)
     if enlarged > 1:
-        ax.text(WIDTH - 0.15, above - 0.1, f"radii drawn {enlarged:.2g} times larger than lengths", ha="right", va="top", fontsize=8, style="italic")
+        ax.text(
+            WIDTH - 0.15,
+            above - 0.1,
+            f"radii drawn {enlarged:.2g} times larger than lengths",
+            ha="right",
+            va="top",
+            fontsize=8,
+            style="italic",
+        )
     if is_number(scene.get("housing_axial")):
-        ax.text(0.15, -top - 1.04, "not drawn: housing on\nan axial spring", va="center", fontsize=8, style="italic")
+        ax.text(
+            0.15,
+            -top - 1.04,
+            "not drawn: housing on\nan axial spring",
+            va="center",
+            fontsize=8,
+            style="italic",
+        )
     _legend(ax, segments, scene, -below + 0.1)
     return figure
 
@@ -80,7 +117,7 @@ def _staggered(items: list[tuple[float, str]]) -> list[tuple[float, str, int]]:
     for x, text in sorted(items):
         half = CHAR * max(len(line) for line in text.splitlines() or [""]) / 2 + 0.05
         level = next((k for k, end in enumerate(ends) if x - half >= end), len(ends))
-        ends[level:level + 1] = [x + half]
+        ends[level : level + 1] = [x + half]
         placed.append((x, text, level))
     return placed
 
@@ -122,8 +159,18 @@ class _Pen:
         x0, x1 = self.x(s["y0"]), self.x(s["y1"])
         o0, o1, i0, i1 = (self.radial * s[k] for k in ("outer0", "outer1", "inner0", "inner1"))
         colour = FILL.get(s.get("part"), FILL["shaft"])
-        self.ax.fill([x0, x1, x1, x0], [i0, i1, o1, o0], facecolor=colour, edgecolor="#8a8f94", hatch="////", lw=0, zorder=2)
-        self.ax.fill([x0, x1, x1, x0], [0, 0, -o1, -o0], facecolor=colour, alpha=0.55, lw=0, zorder=2)
+        self.ax.fill(
+            [x0, x1, x1, x0],
+            [i0, i1, o1, o0],
+            facecolor=colour,
+            edgecolor="#8a8f94",
+            hatch="////",
+            lw=0,
+            zorder=2,
+        )
+        self.ax.fill(
+            [x0, x1, x1, x0], [0, 0, -o1, -o0], facecolor=colour, alpha=0.55, lw=0, zorder=2
+        )
         self.ax.plot([x0, x0, x1, x1, x0], [-o0, o0, o1, -o1, -o0], color=INK, lw=1.1, zorder=3)
         if i0 > 0 or i1 > 0:
             self.ax.plot([x0, x1], [i0, i1], color=INK, lw=0.9, zorder=3)
@@ -133,13 +180,28 @@ class _Pen:
     def _diameter(self, s, x0, x1, room):
         d0, d1 = (f"⌀{2e3 * s[k]:.5g}" for k in ("outer0", "outer1"))
         text = d0 if d0 == d1 else f"{d0} – {d1}"
-        bore = "" if not (s["inner0"] or s["inner1"]) else f"\nbore {2e3 * s['inner0']:.5g}" + ("" if s["inner0"] == s["inner1"] else f" – {2e3 * s['inner1']:.5g}")
+        bore = (
+            ""
+            if not (s["inner0"] or s["inner1"])
+            else f"\nbore {2e3 * s['inner0']:.5g}"
+            + ("" if s["inner0"] == s["inner1"] else f" – {2e3 * s['inner1']:.5g}")
+        )
         size = CHAR * max(len(line) for line in (text + bore).splitlines()) * 0.95
         upright = size > x1 - x0
         if upright and (size > 0.95 * room or x1 - x0 < 0.14):
             return
-        self.ax.text((x0 + x1) / 2, -room / 2, text + bore, rotation=90 if upright else 0, ha="center", va="center", fontsize=8, color=INK, zorder=5,
-                     bbox={"facecolor": "white", "edgecolor": "none", "alpha": 0.55, "pad": 0.5})  # fmt: skip
+        self.ax.text(
+            (x0 + x1) / 2,
+            -room / 2,
+            text + bore,
+            rotation=90 if upright else 0,
+            ha="center",
+            va="center",
+            fontsize=8,
+            color=INK,
+            zorder=5,
+            bbox={"facecolor": "white", "edgecolor": "none", "alpha": 0.55, "pad": 0.5},
+        )
 
     def bearing(self, b: Mapping, segments) -> None:
         points = _surface(segments, b["lo"], b["hi"])
@@ -147,25 +209,63 @@ class _Pen:
         radius = self.radial * (middle[0][1] if middle else 0.0)
         x, ground = self.x(b["y"]), self.top + 0.38
         for side in (1, -1):
-            self.ax.plot([self.x(y) for y, _ in points], [side * self.radial * r for _, r in points], color=SEAT, lw=4.5, solid_capstyle="butt", zorder=5)
+            self.ax.plot(
+                [self.x(y) for y, _ in points],
+                [side * self.radial * r for _, r in points],
+                color=SEAT,
+                lw=4.5,
+                solid_capstyle="butt",
+                zorder=5,
+            )
             rise = ground - radius
-            zigzag = [(0, 0), (0, 0.2)] + [(0.07 * (-1) ** k, 0.2 + 0.6 * (k + 0.5) / 6) for k in range(6)] + [(0, 0.8), (0, 1)]
-            self.ax.plot([x + dx for dx, _ in zigzag], [side * (radius + t * rise) for _, t in zigzag], color=SEAT, lw=1.1, zorder=5)
+            zigzag = (
+                [(0, 0), (0, 0.2)]
+                + [(0.07 * (-1) ** k, 0.2 + 0.6 * (k + 0.5) / 6) for k in range(6)]
+                + [(0, 0.8), (0, 1)]
+            )
+            self.ax.plot(
+                [x + dx for dx, _ in zigzag],
+                [side * (radius + t * rise) for _, t in zigzag],
+                color=SEAT,
+                lw=1.1,
+                zorder=5,
+            )
             self.ax.plot([x - 0.17, x + 0.17], [side * ground] * 2, color=SEAT, lw=1.4, zorder=5)
             for k in range(6):
                 foot = x - 0.17 + 0.068 * k
-                self.ax.plot([foot, foot - 0.05], [side * ground, side * (ground + 0.06)], color=SEAT, lw=0.7, zorder=5)
+                self.ax.plot(
+                    [foot, foot - 0.05],
+                    [side * ground, side * (ground + 0.06)],
+                    color=SEAT,
+                    lw=0.7,
+                    zorder=5,
+                )
 
     def port(self, port: Mapping, segments) -> None:
         points = _surface(segments, port["lo"], port["hi"])
         x = self.x(port["y"])
         for side in (1, -1):
-            self.ax.plot([self.x(y) for y, _ in points], [side * self.radial * r for _, r in points], color=SPAN, lw=4, alpha=0.9, solid_capstyle="butt", zorder=5)
+            self.ax.plot(
+                [self.x(y) for y, _ in points],
+                [side * self.radial * r for _, r in points],
+                color=SPAN,
+                lw=4,
+                alpha=0.9,
+                solid_capstyle="butt",
+                zorder=5,
+            )
             for k in range(5):
                 y = port["lo"] + (port["hi"] - port["lo"]) * (0.04 + 0.92 * k / 4)
                 spot = _surface(segments, y - 1e-6, y + 1e-6)
                 if spot:
-                    self.ax.plot([x, self.x(y)], [0, side * self.radial * spot[0][1]], color=SPAN, lw=0.5, ls=":", zorder=4)
+                    self.ax.plot(
+                        [x, self.x(y)],
+                        [0, side * self.radial * spot[0][1]],
+                        color=SPAN,
+                        lw=0.5,
+                        ls=":",
+                        zorder=4,
+                    )
         self.ax.plot([x], [0], marker="o", ms=8, mfc="white", mec=SPAN, mew=1.6, zorder=8)
         self.ax.plot([x], [0], marker="+", ms=8, mec=SPAN, mew=1.0, zorder=9)
 
@@ -176,9 +276,36 @@ class _Pen:
             text = f"{1e3 * (s['y1'] - s['y0']):.2f}".rstrip("0").rstrip(".")
             wide = b - a > CHAR * len(text) + 0.2
             for x, y in ((a, s["outer0"]), (b, s["outer1"])):
-                self.ax.plot([x, x], [-self.radial * y - 0.04, level - 0.06], color="#777777", lw=0.4, zorder=1)
-            self.ax.annotate("", (a, level), (b, level), arrowprops={"arrowstyle": "<|-|>", "lw": 0.6, "shrinkA": 0, "shrinkB": 0, "color": INK, "mutation_scale": 6 if wide else 4})
-            self.ax.text((a + b) / 2, level + (0.02 if wide else 0.07), text, ha="center", va="bottom", fontsize=8, bbox={"facecolor": "white", "edgecolor": "none", "pad": 0.5}, zorder=6)
+                self.ax.plot(
+                    [x, x],
+                    [-self.radial * y - 0.04, level - 0.06],
+                    color="#777777",
+                    lw=0.4,
+                    zorder=1,
+                )
+            self.ax.annotate(
+                "",
+                (a, level),
+                (b, level),
+                arrowprops={
+                    "arrowstyle": "<|-|>",
+                    "lw": 0.6,
+                    "shrinkA": 0,
+                    "shrinkB": 0,
+                    "color": INK,
+                    "mutation_scale": 6 if wide else 4,
+                },
+            )
+            self.ax.text(
+                (a + b) / 2,
+                level + (0.02 if wide else 0.07),
+                text,
+                ha="center",
+                va="bottom",
+                fontsize=8,
+                bbox={"facecolor": "white", "edgecolor": "none", "pad": 0.5},
+                zorder=6,
+            )
 
     def ruler(self, ordinates, length: float, level: float) -> None:
         """Positions from y = 0 of the ends, the bearings and the lumped point."""
@@ -194,9 +321,22 @@ def _legend(ax, segments, scene, y: float) -> None:
     from matplotlib.patches import Patch
 
     parts = [p for p in FILL if any(s.get("part", "shaft") == p for s in segments)]
-    handles: list[Any] = [Patch(facecolor=FILL[p], edgecolor=INK, lw=0.6, label=PART_NAMES[p]) for p in parts]
+    handles: list[Any] = [
+        Patch(facecolor=FILL[p], edgecolor=INK, lw=0.6, label=PART_NAMES[p]) for p in parts
+    ]
     if scene.get("bearings"):
         handles.append(Line2D([], [], color=SEAT, lw=4, label="bearing seat"))
     if scene.get("port"):
-        handles.append(Line2D([], [], color=SPAN, lw=4, label="surface that carries the lumped point"))
-    ax.legend(handles=handles, loc="lower center", bbox_to_anchor=(WIDTH / 2, y), bbox_transform=ax.transData, ncols=len(handles), frameon=False, fontsize=8, borderaxespad=0)
+        handles.append(
+            Line2D([], [], color=SPAN, lw=4, label="surface that carries the lumped point")
+        )
+    ax.legend(
+        handles=handles,
+        loc="lower center",
+        bbox_to_anchor=(WIDTH / 2, y),
+        bbox_transform=ax.transData,
+        ncols=len(handles),
+        frameon=False,
+        fontsize=8,
+        borderaxespad=0,
+    )

@@ -21,12 +21,32 @@ from solidgear.whole_file import whole
 log = logging.getLogger(__name__)
 
 ROWS, MACHINE, PICTURE = "rows.csv", "machine.json", "speed_accuracy.png"
-COLOUR = {"lumped": "#b3305c", "beam": "#0072b2", "harmonic": "#00805e", "tetrahedra": "#d08a00", "hexahedra": "#5a3e8c"}
-FAMILY_NAME = {"lumped": "lumped", "beam": "beams", "harmonic": "harmonic solid", "tetrahedra": "3D, tetrahedra", "hexahedra": "3D, hexahedra"}
+COLOUR = {
+    "lumped": "#b3305c",
+    "beam": "#0072b2",
+    "harmonic": "#00805e",
+    "tetrahedra": "#d08a00",
+    "hexahedra": "#5a3e8c",
+}
+FAMILY_NAME = {
+    "lumped": "lumped",
+    "beam": "beams",
+    "harmonic": "harmonic solid",
+    "tetrahedra": "3D, tetrahedra",
+    "hexahedra": "3D, hexahedra",
+}
 MARKER = {
-    "lumped": "P", "Euler": "v", "Timoshenko": "s", "harmonic h": "o", "harmonic p": "D",
-    "TET4": "<", "TET10": "^", "HEX8": "s", "HEX20": "D", "HEX27": "h",
-}  # fmt: skip
+    "lumped": "P",
+    "Euler": "v",
+    "Timoshenko": "s",
+    "harmonic h": "o",
+    "harmonic p": "D",
+    "TET4": "<",
+    "TET10": "^",
+    "HEX8": "s",
+    "HEX20": "D",
+    "HEX27": "h",
+}
 COSTS = {"seconds": "wall time from scene to both answers, s (median)", "unknowns": "unknowns"}
 QUANTITY = {"C_zz": "port compliance C_zz", "bending 1": "first bending frequency"}
 #: kinds of error in rows.csv besides those charted
@@ -77,22 +97,38 @@ def records(race: Race) -> list[dict]:
     out = []
     for row in race.rows:
         samples = row.samples or [None]
-        r = {k: v for k, v in asdict(row).items() if k not in ("options", "samples", "values", "errors", "like_for_like")}
-        r |= {"options": options_text(row), "runs": len(row.samples), "seconds_min": min(samples), "seconds_median": row.seconds, "seconds_max": max(samples)}
+        r = {
+            k: v
+            for k, v in asdict(row).items()
+            if k not in ("options", "samples", "values", "errors", "like_for_like")
+        }
+        r |= {
+            "options": options_text(row),
+            "runs": len(row.samples),
+            "seconds_min": min(samples),
+            "seconds_median": row.seconds,
+            "seconds_max": max(samples),
+        }
         r["samples"] = " ".join(repr(s) for s in row.samples)
         r |= {_column(q): row.values.get(q) for q in CHARTED}
         r |= {f"error_{_column(q)}": row.errors.get(q) for q in (*CHARTED, WHOLE)}
         r |= {f"like_for_like_{_column(q)}": row.like_for_like.get(q) for q in CHARTED}
         for q in race.reference["values"]:
-            r[f"resolved_{_column(q)}"] = "" if q not in row.errors else "yes" if race.resolved(row, q) else "no"
-            r[f"front_{_column(q)}"] = " ".join(cost for cost in COSTS if any(row is other for other in fronts[q, cost]))
+            r[f"resolved_{_column(q)}"] = (
+                "" if q not in row.errors else "yes" if race.resolved(row, q) else "no"
+            )
+            r[f"front_{_column(q)}"] = " ".join(
+                cost for cost in COSTS if any(row is other for other in fronts[q, cost])
+            )
         out.append(r)
     return out
 
 
 def options_text(row: Row) -> str:
     """Builder options as they follow ``--set``."""
-    return " ".join(f"{k}={v:.6g}" if isinstance(v, float) else f"{k}={v}" for k, v in row.options.items())
+    return " ".join(
+        f"{k}={v:.6g}" if isinstance(v, float) else f"{k}={v}" for k, v in row.options.items()
+    )
 
 
 def _column(quantity: str) -> str:
@@ -114,10 +150,19 @@ def _row(line: Mapping[str, str]) -> Row:
 
     options = dict(pair.split("=", 1) for pair in line["options"].split())
     return Row(
-        line["family"], line["series"], int(line["level"]), line["model"], {k: _value(v) for k, v in options.items()}, line["status"], line["reason"],
-        int(line["unknowns"]) if line["unknowns"] else None, [float(s) for s in line["samples"].split()],
-        numbers(CHARTED, ""), numbers((*CHARTED, WHOLE), "error_"), numbers(CHARTED, "like_for_like_"),
-    )  # fmt: skip
+        line["family"],
+        line["series"],
+        int(line["level"]),
+        line["model"],
+        {k: _value(v) for k, v in options.items()},
+        line["status"],
+        line["reason"],
+        int(line["unknowns"]) if line["unknowns"] else None,
+        [float(s) for s in line["samples"].split()],
+        numbers(CHARTED, ""),
+        numbers((*CHARTED, WHOLE), "error_"),
+        numbers(CHARTED, "like_for_like_"),
+    )
 
 
 def _value(text: str):
@@ -165,8 +210,20 @@ def figure(race: Race):
     for ax, words in zip(axes[-1], COSTS.values()):
         ax.set_xlabel(words)
     title = race.scene.get("title") or race.scene.get("name", "")
-    out.suptitle(f"{title}: error against cost" + ("" if race.complete else " (interrupted)"), x=0.01, ha="left", fontsize=12, weight="bold")
-    out.legend(handles=_legend(race), loc="outside right upper", fontsize=8.5, handlelength=3.2, labelspacing=0.45)
+    out.suptitle(
+        f"{title}: error against cost" + ("" if race.complete else " (interrupted)"),
+        x=0.01,
+        ha="left",
+        fontsize=12,
+        weight="bold",
+    )
+    out.legend(
+        handles=_legend(race),
+        loc="outside right upper",
+        fontsize=8.5,
+        handlelength=3.2,
+        labelspacing=0.45,
+    )
     out.supxlabel(_footer(race), x=0.01, ha="left", fontsize=8, color="#444444", linespacing=1.45)
     return out
 
@@ -178,40 +235,91 @@ def _panel(ax, race: Race, quantity: str, cost: str) -> None:
     band = race.reference["bands"][quantity]
     shown = [r for r in race.rows if race.error(r, quantity) is not None]
     steps = race.front(quantity, cost)
-    costs = [getattr(r, cost) for r in race.rows if r.status in ("ok", "failed") and getattr(r, cost)] or [1.0]
+    costs = [
+        getattr(r, cost) for r in race.rows if r.status in ("ok", "failed") and getattr(r, cost)
+    ] or [1.0]
     left, right = min(costs) / 2.2, max(costs) * 2.2
-    errors = [race.error(r, quantity) for r in shown] + [race.error(r, quantity) and r.like_for_like.get(quantity) or band for r in shown]
+    errors = [race.error(r, quantity) for r in shown] + [
+        race.error(r, quantity) and r.like_for_like.get(quantity) or band for r in shown
+    ]
     errors = [e for e in errors if e > 0] or [1e-3]
     top, low = max(errors) * 4, max(band / 2.5, min(e for e in errors if e > 0) / 40)
 
     # a band far below every error is named at the bottom, so that it does not squeeze what there is to see
     if band > 0:
         ax.axhspan(low, max(band, low), color="#00805e", alpha=0.13, lw=0)
-    ax.annotate(f"band of the reference {percent(band, signed=False)}" + ("" if band > low else ", below this axis"), (0.01, max(band, low)), xycoords=("axes fraction", "data"),
-                xytext=(0, 3), textcoords="offset points", fontsize=7.5, color="#00603f", va="bottom")  # fmt: skip
+    ax.annotate(
+        f"band of the reference {percent(band, signed=False)}"
+        + ("" if band > low else ", below this axis"),
+        (0.01, max(band, low)),
+        xycoords=("axes fraction", "data"),
+        xytext=(0, 3),
+        textcoords="offset points",
+        fontsize=7.5,
+        color="#00603f",
+        va="bottom",
+    )
     tolerance = (race.scene.get("ask") or {}).get("tolerance")
     if is_number(tolerance) and low < tolerance < top:
         ax.axhline(tolerance, color="#aa2222", lw=0.8, ls=":")
-        ax.annotate(f"tolerance {100 * tolerance:.4g} %", (0.995, tolerance), xycoords=("axes fraction", "data"), xytext=(0, 2), textcoords="offset points",
-                    ha="right", fontsize=7.5, color="#aa2222")  # fmt: skip
+        ax.annotate(
+            f"tolerance {100 * tolerance:.4g} %",
+            (0.995, tolerance),
+            xycoords=("axes fraction", "data"),
+            xytext=(0, 2),
+            textcoords="offset points",
+            ha="right",
+            fontsize=7.5,
+            color="#aa2222",
+        )
     if steps:
         xs, ys = [getattr(r, cost) for r in steps], [race.sure_error(r, quantity) for r in steps]
-        ax.step([xs[0], *xs, right], [top, *ys, ys[-1]], where="post", color="#9a9a9a", lw=5, alpha=0.45, solid_joinstyle="miter", zorder=1.5)
+        ax.step(
+            [xs[0], *xs, right],
+            [top, *ys, ys[-1]],
+            where="post",
+            color="#9a9a9a",
+            lw=5,
+            alpha=0.45,
+            solid_joinstyle="miter",
+            zorder=1.5,
+        )
     for name in dict.fromkeys(r.series for r in race.rows):
         _series(ax, race, [r for r in race.rows if r.series == name], quantity, cost, top)
     if cost in race.reference:
-        ax.plot([race.reference[cost]], [max(band, low)], "*", ms=11, color="#00603f", mfc="white", zorder=4, clip_on=False)
+        ax.plot(
+            [race.reference[cost]],
+            [max(band, low)],
+            "*",
+            ms=11,
+            color="#00603f",
+            mfc="white",
+            zorder=4,
+            clip_on=False,
+        )
         right = max(right, 1.5 * race.reference[cost])
     ax.set(xlim=(left, right), ylim=(low, top))
-    ax.xaxis.set_major_formatter(FuncFormatter(lambda v, _: f"{v:g}" if cost == "seconds" else count(v)))
+    ax.xaxis.set_major_formatter(
+        FuncFormatter(lambda v, _: f"{v:g}" if cost == "seconds" else count(v))
+    )
     ax.xaxis.set_minor_formatter(NullFormatter())
     ax.yaxis.set_major_formatter(FuncFormatter(lambda v, _: f"{100 * v:.6g} %"))
     ax.yaxis.set_minor_formatter(NullFormatter())
     setup = sum(race.setup.values())
     if cost == "seconds" and left < setup < right:
         ax.axvline(setup, color="#777777", lw=0.9, ls=(0, (1, 2)))
-        ax.annotate("set-up, once a process", (setup, 0.985), xycoords=("data", "axes fraction"), xytext=(-3, 0), textcoords="offset points",
-                    rotation=90, ha="right", va="top", fontsize=7.5, color="#666666")  # fmt: skip
+        ax.annotate(
+            "set-up, once a process",
+            (setup, 0.985),
+            xycoords=("data", "axes fraction"),
+            xytext=(-3, 0),
+            textcoords="offset points",
+            rotation=90,
+            ha="right",
+            va="top",
+            fontsize=7.5,
+            color="#666666",
+        )
 
 
 def _series(ax, race: Race, rows: list[Row], quantity: str, cost: str, top: float) -> None:
@@ -219,23 +327,62 @@ def _series(ax, race: Race, rows: list[Row], quantity: str, cost: str, top: floa
     dashed = rows[0].series.endswith("uniform")
     good = [r for r in rows if race.error(r, quantity) is not None]
     xs, ys = [getattr(r, cost) for r in good], [race.error(r, quantity) for r in good]
-    ax.plot(xs, ys, ls="--" if dashed else "-", color=colour, lw=1.0 if dashed else 1.5, alpha=0.75 if dashed else 1.0, zorder=2)
+    ax.plot(
+        xs,
+        ys,
+        ls="--" if dashed else "-",
+        color=colour,
+        lw=1.0 if dashed else 1.5,
+        alpha=0.75 if dashed else 1.0,
+        zorder=2,
+    )
     for r, x, y in zip(good, xs, ys):
-        ax.plot([x], [y], marker, ms=5.5, color=colour, mfc=_fill(colour, dashed), mew=1.0, zorder=3)
+        ax.plot(
+            [x], [y], marker, ms=5.5, color=colour, mfc=_fill(colour, dashed), mew=1.0, zorder=3
+        )
         if not race.resolved(r, quantity):
-            ax.annotate("", (x, y), xytext=(0, -13), textcoords="offset points", zorder=3, arrowprops={"arrowstyle": "<|-", "color": colour, "lw": 1.1, "shrinkB": 3})
+            ax.annotate(
+                "",
+                (x, y),
+                xytext=(0, -13),
+                textcoords="offset points",
+                zorder=3,
+                arrowprops={"arrowstyle": "<|-", "color": colour, "lw": 1.1, "shrinkB": 3},
+            )
         if cost == "seconds" and len(r.samples) > 1:
-            ax.hlines(y, min(r.samples), max(r.samples), color=colour, lw=0.9, alpha=0.45, zorder=1.8)
+            ax.hlines(
+                y, min(r.samples), max(r.samples), color=colour, lw=0.9, alpha=0.45, zorder=1.8
+            )
         if rows[0].series == "harmonic p graded":
-            ax.annotate(f"p{r.options['order']}", (x, y), xytext=(-4, -3), textcoords="offset points", ha="right", va="top", fontsize=7, color=colour)
+            ax.annotate(
+                f"p{r.options['order']}",
+                (x, y),
+                xytext=(-4, -3),
+                textcoords="offset points",
+                ha="right",
+                va="top",
+                fontsize=7,
+                color=colour,
+            )
         like = r.like_for_like.get(quantity)
         if rows[0].family in ("lumped", "beam") and like:
             ax.plot([x, x], [y, like], ":", color=colour, lw=1.1, zorder=1.9)
             ax.plot([x], [like], marker, ms=5.5, color=colour, mfc="white", mew=1.1, zorder=3)
     if rows[0].family in ("lumped", "beam") and good:
         # beams do not converge to the reference: their levels coincide, one name will do
-        place = {"xytext": (0, -8), "ha": "center", "va": "top"} if rows[0].family == "lumped" else {"xytext": (6, 5)}
-        ax.annotate(rows[0].series, (xs[-1], ys[-1]), textcoords="offset points", fontsize=8, color=colour, **place)
+        place = (
+            {"xytext": (0, -8), "ha": "center", "va": "top"}
+            if rows[0].family == "lumped"
+            else {"xytext": (6, 5)}
+        )
+        ax.annotate(
+            rows[0].series,
+            (xs[-1], ys[-1]),
+            textcoords="offset points",
+            fontsize=8,
+            color=colour,
+            **place,
+        )
     for r in rows:
         failed = r.status == "failed" or (r.status == "ok" and quantity not in r.errors)
         if failed and getattr(r, cost):
@@ -265,16 +412,70 @@ def _legend(race: Race) -> list:
             handles.append(Line2D([], [], ls="", label=name.upper()))
         for s in series:
             dashed = s.endswith("uniform")
-            line = {"ls": "" if family in ("lumped", "beam") else "--" if dashed else "-", "lw": 1.0 if dashed else 1.5}
-            name = s.replace("harmonic ", "").replace("h ", "h, order 2, ").replace("p ", "p, order 1 up, ")
-            handles.append(Line2D([], [], color=COLOUR[family], mfc=_fill(COLOUR[family], dashed), marker=MARKER.get(_kind(s), "o"), ms=5.5, label=name, **line))
+            line = {
+                "ls": "" if family in ("lumped", "beam") else "--" if dashed else "-",
+                "lw": 1.0 if dashed else 1.5,
+            }
+            name = (
+                s.replace("harmonic ", "")
+                .replace("h ", "h, order 2, ")
+                .replace("p ", "p, order 1 up, ")
+            )
+            handles.append(
+                Line2D(
+                    [],
+                    [],
+                    color=COLOUR[family],
+                    mfc=_fill(COLOUR[family], dashed),
+                    marker=MARKER.get(_kind(s), "o"),
+                    ms=5.5,
+                    label=name,
+                    **line,
+                )
+            )
     handles += [
         Line2D([], [], ls="", label=""),
-        Line2D([], [], ls=":", marker="s", mfc="white", color=COLOUR["beam"], ms=5.5, label="like for like:\nsection ties on both sides"),
-        Line2D([], [], color="#9a9a9a", lw=5, alpha=0.45, label="Pareto front,\ncancellations not counted"),
-        Line2D([], [], ls="", marker="*", ms=11, mfc="white", color="#00603f", label="the reference itself"),
-        Line2D([], [], ls="", marker=7, ms=8, color="#555555", label="below the band: not resolved"),
-        Line2D([], [], ls="", marker="x", ms=8, mew=2, color="#555555", label="failed, or no such number"),
+        Line2D(
+            [],
+            [],
+            ls=":",
+            marker="s",
+            mfc="white",
+            color=COLOUR["beam"],
+            ms=5.5,
+            label="like for like:\nsection ties on both sides",
+        ),
+        Line2D(
+            [],
+            [],
+            color="#9a9a9a",
+            lw=5,
+            alpha=0.45,
+            label="Pareto front,\ncancellations not counted",
+        ),
+        Line2D(
+            [],
+            [],
+            ls="",
+            marker="*",
+            ms=11,
+            mfc="white",
+            color="#00603f",
+            label="the reference itself",
+        ),
+        Line2D(
+            [], [], ls="", marker=7, ms=8, color="#555555", label="below the band: not resolved"
+        ),
+        Line2D(
+            [],
+            [],
+            ls="",
+            marker="x",
+            ms=8,
+            mew=2,
+            color="#555555",
+            label="failed, or no such number",
+        ),
     ]
     return handles
 
@@ -285,12 +486,21 @@ def _footer(race: Race) -> str:
     lines = [
         f"Reference: harmonic solid, {', '.join(f'{k} {v}' for k, v in reference['options'].items())}, {reference['unknowns']} unknowns, {seconds(reference['seconds'])} s; "
         f"its band is the grid convergence index of orders {reference['options']['order'] - 2} to {reference['options']['order']}.",
-        f"Time: new body, six loads, {race.modes} modes; median of {race.runs} interleaved runs" + (f" (slow cases down to {min(runs)})" if runs and min(runs) < race.runs else "")
-        + (". Set-up, not in it: " + ", ".join(f"{k} {seconds(v)} s" for k, v in race.setup.items()) if race.setup else "") + ".",
+        f"Time: new body, six loads, {race.modes} modes; median of {race.runs} interleaved runs"
+        + (f" (slow cases down to {min(runs)})" if runs and min(runs) < race.runs else "")
+        + (
+            ". Set-up, not in it: "
+            + ", ".join(f"{k} {seconds(v)} s" for k, v in race.setup.items())
+            if race.setup
+            else ""
+        )
+        + ".",
         f"{machine.get('cpu')}, {machine.get('cores')} cores, {machine.get('date')}; the whole chart took {race.seconds:.0f} s.",
     ]
     if left_out(race):
-        lines += textwrap.wrap(f"Left out ({race.budget:g} s allowed): {left_out(race)}; reasons in rows.csv.", 190)
+        lines += textwrap.wrap(
+            f"Left out ({race.budget:g} s allowed): {left_out(race)}; reasons in rows.csv.", 190
+        )
     return "\n".join(lines)
 
 
@@ -316,8 +526,16 @@ def error_text(race: Race, row: Row, quantity: str) -> str:
     found = race.error(row, quantity)
     if found is None:
         return "-"
-    text = percent(found, signed=False) if race.resolved(row, quantity) else f"< {percent(found, signed=False)}"
-    return text + (f" / {percent(row.like_for_like[quantity], signed=False)}" if quantity in row.like_for_like else "")
+    text = (
+        percent(found, signed=False)
+        if race.resolved(row, quantity)
+        else f"< {percent(found, signed=False)}"
+    )
+    return text + (
+        f" / {percent(row.like_for_like[quantity], signed=False)}"
+        if quantity in row.like_for_like
+        else ""
+    )
 
 
 def front_table(race: Race):
@@ -328,14 +546,30 @@ def front_table(race: Race):
     from rich.text import Text
 
     names = {"bending 1": "f1"}
-    table = RichTable(box=box.SIMPLE_HEAD, padding=0, collapse_padding=True, pad_edge=False, title="Pareto front over wall time", title_justify="left")
+    table = RichTable(
+        box=box.SIMPLE_HEAD,
+        padding=0,
+        collapse_padding=True,
+        pad_edge=False,
+        title="Pareto front over wall time",
+        title_justify="left",
+    )
     table.add_column("model", no_wrap=True)
     table.add_column("options")
     for head in ("DOFs", "s", *(f"error {names.get(q, q)}" for q in race.reference["values"])):
         table.add_column(head, justify="right", no_wrap=True)
     for row, on in front_rows(race):
-        errors = (error_text(race, row, q).replace(" %", "%") + ("*" if q in on else " ") for q in race.reference["values"])
-        table.add_row(Text(row.series), Text(options_text(row) or "default"), count(row.unknowns), seconds(row.seconds), *errors)
+        errors = (
+            error_text(race, row, q).replace(" %", "%") + ("*" if q in on else " ")
+            for q in race.reference["values"]
+        )
+        table.add_row(
+            Text(row.series),
+            Text(options_text(row) or "default"),
+            count(row.unknowns),
+            seconds(row.seconds),
+            *errors,
+        )
     notes = "*: on the front of this quantity; <: below the band of the reference\nafter the stroke: like for like, section ties on both sides; no cancellation counts"
     return Group(table, Text(notes))
 
@@ -346,19 +580,47 @@ def section(folder, scene: Mapping) -> dict | None:
     picture = Path(folder) / PICTURE if race else None
     if race is None or race.scene != scene or not picture.exists():
         return None
-    head = ["model", "options", "unknowns", "seconds", *(f"error of {q}" for q in race.reference["values"]), "on the front of"]
+    head = [
+        "model",
+        "options",
+        "unknowns",
+        "seconds",
+        *(f"error of {q}" for q in race.reference["values"]),
+        "on the front of",
+    ]
     note = "“<”: below the band of the reference, which is shown instead. After the stroke: like for like, with section ties on both sides. No cancellation counts on the front."
     rows = []
     for r, on in front_rows(race):
         errors = (error_text(race, r, q) for q in race.reference["values"])
-        rows.append([r.series, (options_text(r) or "default", "text"), f"{r.unknowns:,}".replace(",", " "), seconds(r.seconds), *errors, (", ".join(on), "text")])
-    lost = [[f"{r.series}, level {r.level}", (options_text(r), "text"), r.status, (r.reason, "text")] for r in race.rows if r.status != "ok" or r.reason]
+        rows.append(
+            [
+                r.series,
+                (options_text(r) or "default", "text"),
+                f"{r.unknowns:,}".replace(",", " "),
+                seconds(r.seconds),
+                *errors,
+                (", ".join(on), "text"),
+            ]
+        )
+    lost = [
+        [f"{r.series}, level {r.level}", (options_text(r), "text"), r.status, (r.reason, "text")]
+        for r in race.rows
+        if r.status != "ok" or r.reason
+    ]
     return {
         "uri": f"data:image/png;base64,{base64.b64encode(picture.read_bytes()).decode()}",
         "caption": CAPTION,
         "tables": [
             Table("The Pareto front over wall time", head, rows, note),
-            Table("Set-up, once a process and in none of the times", ["what", "seconds"], [[k, seconds(v)] for k, v in race.setup.items()]),
-            Table("Failed, left out, or with something missing", ["case", "options", "status", "reason"], lost),
+            Table(
+                "Set-up, once a process and in none of the times",
+                ["what", "seconds"],
+                [[k, seconds(v)] for k, v in race.setup.items()],
+            ),
+            Table(
+                "Failed, left out, or with something missing",
+                ["case", "options", "status", "reason"],
+                lost,
+            ),
         ],
     }

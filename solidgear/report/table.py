@@ -23,7 +23,15 @@ class Table:
     def columns(self) -> list[tuple[str, str]]:
         """(head, css class): a head stands over its column, texts to the left and numbers to the right."""
         first = self.rows[0] if self.rows else []
-        return [(h, "text" if k < len(first) and isinstance(first[k], tuple) and "text" in first[k][1] else "") for k, h in enumerate(self.head)]
+        return [
+            (
+                h,
+                "text"
+                if k < len(first) and isinstance(first[k], tuple) and "text" in first[k][1]
+                else "",
+            )
+            for k, h in enumerate(self.head)
+        ]
 
     def __bool__(self) -> bool:
         return bool(self.rows)

@@ -18,10 +18,19 @@ from rich.text import Text
 from solidgear.frames import DOF_NAMES
 
 #: key -> name in a sentence, cheapest first
-MODEL_NAMES = {"lumped": "lumped", "euler": "Euler beam", "timoshenko": "Timoshenko beam", "harmonic": "harmonic solid", "solid": "3D solid"}
+MODEL_NAMES = {
+    "lumped": "lumped",
+    "euler": "Euler beam",
+    "timoshenko": "Timoshenko beam",
+    "harmonic": "harmonic solid",
+    "solid": "3D solid",
+}
 BEAMS = ("euler", "timoshenko")
 #: kind -> unit of the blocks (translation, translation), (mixed), (rotation, rotation)
-BLOCK_UNITS = {"stiffness": ("N/m", "N/rad", "N m/rad"), "compliance": ("m/N", "rad/N", "rad/(N m)")}
+BLOCK_UNITS = {
+    "stiffness": ("N/m", "N/rad", "N m/rad"),
+    "compliance": ("m/N", "rad/N", "rad/(N m)"),
+}
 NOTHING = "-"
 
 
@@ -76,14 +85,24 @@ def percent(value: float | None, signed: bool = True, nothing: str = NOTHING) ->
 
 def hertz(value: float | None, nothing: str = NOTHING) -> str:
     """A frequency to five or six figures, without its unit."""
-    return nothing if not is_number(value) else f"{value:.1f}" if abs(value) >= 100 else f"{value:.5g}"
+    return (
+        nothing if not is_number(value) else f"{value:.1f}" if abs(value) >= 100 else f"{value:.5g}"
+    )
 
 
 def seconds(value: float | None, nothing: str = NOTHING) -> str:
     """A duration in s, to about three figures, without its unit."""
     if not is_number(value):
         return nothing
-    return f"{value:.0f}" if value >= 100 else f"{value:.1f}" if value >= 10 else f"{value:.2f}" if value >= 0.01 else f"{value:.1g}"
+    return (
+        f"{value:.0f}"
+        if value >= 100
+        else f"{value:.1f}"
+        if value >= 10
+        else f"{value:.2f}"
+        if value >= 0.01
+        else f"{value:.1g}"
+    )
 
 
 def count(value: float | None, nothing: str = NOTHING) -> str:
@@ -114,7 +133,11 @@ def first_mode(model: Mapping, family: str) -> dict | None:
     """The lowest elastic mode of a family ('bending', 'axial', 'torsion'), or None."""
     for mode in model.get("modes") or ():
         name = str(mode.get("name", ""))
-        if (mode.get("family") == family or name.startswith(family)) and not name.startswith("rigid") and is_number(mode.get("frequency_hz")):
+        if (
+            (mode.get("family") == family or name.startswith(family))
+            and not name.startswith("rigid")
+            and is_number(mode.get("frequency_hz"))
+        ):
             return mode
     return None
 
@@ -130,7 +153,11 @@ def headline(results: Mapping, model: str, quantity: str) -> dict | None:
 
     A beam has no seat surface: its fair partner is the solid with section ties ('section'). A solid is compared as the scene has it.
     """
-    rows = [r for r in results.get("deviations") or () if r.get("model") == model and quantity_key(r.get("quantity", "")) == quantity_key(quantity)]
+    rows = [
+        r
+        for r in results.get("deviations") or ()
+        if r.get("model") == model and quantity_key(r.get("quantity", "")) == quantity_key(quantity)
+    ]
     wanted = "section" if model in BEAMS else "as scene"
     return next((r for r in rows if r.get("attachment") == wanted), rows[0] if rows else None)
 
@@ -140,7 +167,11 @@ def is_resolved(row: Mapping) -> bool:
     verdict = row.get("verdict")
     if verdict is not None:
         return verdict != "not resolved"
-    return not (is_number(row.get("band")) and is_number(row.get("relative")) and abs(row["relative"]) <= row["band"])
+    return not (
+        is_number(row.get("band"))
+        and is_number(row.get("relative"))
+        and abs(row["relative"]) <= row["band"]
+    )
 
 
 def answer_seconds(model: Mapping) -> float | None:
@@ -165,12 +196,18 @@ def validity(model: Mapping) -> str:
 
 def band_percent(value: float | None, nothing: str = NOTHING) -> str:
     """A band in per cent; one beyond 100 % says nothing but that."""
-    return "> 100 %" if is_number(value) and value > 1 else percent(value, signed=False, nothing=nothing)
+    return (
+        "> 100 %"
+        if is_number(value) and value > 1
+        else percent(value, signed=False, nothing=nothing)
+    )
 
 
 def reference_of(results: Mapping) -> str | None:
     """The key of the model that the others are measured against."""
-    return (results.get("verdict") or {}).get("reference") or (results.get("mac") or {}).get("reference")
+    return (results.get("verdict") or {}).get("reference") or (results.get("mac") or {}).get(
+        "reference"
+    )
 
 
 # ------------------------------------------------------------------------------------------------- renderables
@@ -192,7 +229,16 @@ def final_table(results: Mapping) -> RenderableType:
     table = Table(box=box.SIMPLE_HEAD, padding=0, pad_edge=False)
     table.add_column("model", no_wrap=True)
     table.add_column("valid", justify="center", no_wrap=True)
-    for head in ("K_zz\nN/m", "C_zz\nm/N", "f1\nHz", "dC_zz\n", "df1\n", "band\nC", "DOFs\n", "time\ns"):
+    for head in (
+        "K_zz\nN/m",
+        "C_zz\nm/N",
+        "f1\nHz",
+        "dC_zz\n",
+        "df1\n",
+        "band\nC",
+        "DOFs\n",
+        "time\ns",
+    ):
         table.add_column(head, justify="right", no_wrap=True)
     unresolved, reasons = False, []
     for key, model in (results.get("models") or {}).items():
@@ -208,23 +254,45 @@ def final_table(results: Mapping) -> RenderableType:
                 cells.append(percent(row.get("relative")) if row else NOTHING)
         bending = first_mode(model, "bending") or {}
         table.add_row(
-            Text({"euler": "Euler", "timoshenko": "Timoshenko", "harmonic": "harmonic"}.get(key, model_name(key))[:10]),
+            Text(
+                {"euler": "Euler", "timoshenko": "Timoshenko", "harmonic": "harmonic"}.get(
+                    key, model_name(key)
+                )[:10]
+            ),
             VALID[validity(model)],
-            engineering(entry(model, "stiffness", 2, 2), 4), engineering(entry(model, "compliance", 2, 2), 4), hertz(bending.get("frequency_hz")),
-            *cells, band_percent((model.get("band") or {}).get("compliance")),
-            count(model.get("dofs")), seconds(answer_seconds(model)),
-        )  # fmt: skip
+            engineering(entry(model, "stiffness", 2, 2), 4),
+            engineering(entry(model, "compliance", 2, 2), 4),
+            hertz(bending.get("frequency_hz")),
+            *cells,
+            band_percent((model.get("band") or {}).get("compliance")),
+            count(model.get("dofs")),
+            seconds(answer_seconds(model)),
+        )
         if validity(model) in ("no", "open"):
-            reasons.append(Text(f"{VALID[validity(model)]:<4}{model_name(key)}: {model.get('why_not') or 'not valid for this scene'}"))
+            reasons.append(
+                Text(
+                    f"{VALID[validity(model)]:<4}{model_name(key)}: {model.get('why_not') or 'not valid for this scene'}"
+                )
+            )
     notes = []
     if reference:
-        notes.append(Text(f"d: difference from the {model_name(reference)} (ref.); a beam's is taken with section ties on both sides"))
+        notes.append(
+            Text(
+                f"d: difference from the {model_name(reference)} (ref.); a beam's is taken with section ties on both sides"
+            )
+        )
     if any(validity(m) == "open" for m in (results.get("models") or {}).values()):
         notes.append(Text("?: not judged, or too close to the tolerance to tell"))
     if unresolved:
-        notes.append(Text("n.r.: not resolved, the difference lies inside the bands of the two models"))
+        notes.append(
+            Text("n.r.: not resolved, the difference lies inside the bands of the two models")
+        )
     if table.row_count:
-        notes.append(Text("band: mesh uncertainty of the worst compliance; time: building and solving, without the evidence"))
+        notes.append(
+            Text(
+                "band: mesh uncertainty of the worst compliance; time: building and solving, without the evidence"
+            )
+        )
     if results.get("complete") is False:
         notes.append(Text("INCOMPLETE: the run was interrupted; what is missing shows as a dash"))
     return Group(table, *notes, *reasons)
@@ -237,9 +305,15 @@ def closing_lines(results: Mapping) -> list[str]:
     trusted = (results.get("verdict") or {}).get("trust")
     evidence = ((results.get("models") or {}).get(trusted) or {}).get("evidence") or {}
     if evidence.get("complete"):
-        lines.append(f"{model_name(trusted)[0].upper()}{model_name(trusted)[1:]}: {evidence['complete'][0].lower()}{evidence['complete'][1:]}")
+        lines.append(
+            f"{model_name(trusted)[0].upper()}{model_name(trusted)[1:]}: {evidence['complete'][0].lower()}{evidence['complete'][1:]}"
+        )
     if is_number(results.get("seconds_total")):
-        peak = f", peak memory {results['peak_mb']:.0f} MB" if is_number(results.get("peak_mb")) else ""
+        peak = (
+            f", peak memory {results['peak_mb']:.0f} MB"
+            if is_number(results.get("peak_mb"))
+            else ""
+        )
         if peak and is_number(results.get("expected_peak_mb")):
             peak += f" ({results['expected_peak_mb']:.0f} MB estimated)"
         lines.append(f"Solved in {seconds(results['seconds_total'])} s{peak}.")
@@ -251,11 +325,17 @@ def verdict_text(results: Mapping) -> str:
     verdict = plain(results).get("verdict") or {}
     if not verdict:
         return "No verdict: the run did not get that far."
-    lines = [f"Trust: {model_name(verdict['trust'])}" if verdict.get("trust") else "Trust: none of the models that ran"]
+    lines = [
+        f"Trust: {model_name(verdict['trust'])}"
+        if verdict.get("trust")
+        else "Trust: none of the models that ran"
+    ]
     if is_number(verdict.get("tolerance")):
         tolerance = f"{100 * verdict['tolerance']:.4g} %"
         cheapest = verdict.get("cheapest")
-        lines.append(f"Cheapest model within {tolerance}: {model_name(cheapest) if cheapest else 'none below the reference'}")
+        lines.append(
+            f"Cheapest model within {tolerance}: {model_name(cheapest) if cheapest else 'none below the reference'}"
+        )
     return "\n".join(lines + [f"- {s}" for s in verdict.get("sentences") or ()])
 
 
@@ -274,7 +354,9 @@ def matrix_table(matrix: Sequence[Sequence[float | None]], kind: str) -> Table:
     """
     same, mixed, turn = BLOCK_UNITS[kind]
     rows = plain(matrix) or [[None] * 6] * 6
-    table = Table(box=box.SIMPLE_HEAD, padding=0, pad_edge=False, title=f"{kind}, SI", title_justify="left")
+    table = Table(
+        box=box.SIMPLE_HEAD, padding=0, pad_edge=False, title=f"{kind}, SI", title_justify="left"
+    )
     table.add_column("")
     for name in DOF_NAMES:
         table.add_column(name, justify="right", no_wrap=True)
@@ -293,5 +375,10 @@ def modes_table(modes: Sequence[Mapping]) -> Table:
     table.add_column("frequency, Hz", justify="right")
     table.add_column("shapes", justify="right")
     for mode in plain(list(modes or ())):
-        table.add_row(Text(str(mode.get("name", NOTHING))), Text(str(mode.get("family", NOTHING))), hertz(mode.get("frequency_hz")), str(mode.get("multiplicity") or 1))
+        table.add_row(
+            Text(str(mode.get("name", NOTHING))),
+            Text(str(mode.get("family", NOTHING))),
+            hertz(mode.get("frequency_hz")),
+            str(mode.get("multiplicity") or 1),
+        )
     return table

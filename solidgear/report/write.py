@@ -29,19 +29,36 @@ def write_all(comparison, out, *, renders: bool, progress) -> Path:
             clear(folder)
             (folder / "report.html").unlink(missing_ok=True)
             # Numbers first: whatever happens to pictures, they are there.  What is about to be written is listed before it is.
-            results["files"] = ["report.html", *(f"modes_{m}.vtu" for m in shapes), *(f"mode_{m}.png" for m in shapes if renders)]
+            results["files"] = [
+                "report.html",
+                *(f"modes_{m}.vtu" for m in shapes),
+                *(f"mode_{m}.png" for m in shapes if renders),
+            ]
             _write_json(folder / "results.json", results)
             for model, rung in shapes.items():
-                _try(results, f"vtu of {model}", _write_vtu, comparison.scene, rung, folder / f"modes_{model}.vtu")
+                _try(
+                    results,
+                    f"vtu of {model}",
+                    _write_vtu,
+                    comparison.scene,
+                    rung,
+                    folder / f"modes_{model}.vtu",
+                )
             if renders and shapes:
                 progress("renders")
                 _draw(comparison, folder)
             progress("report")
-            results["files"] = [name for name in results["files"] if name == "report.html" or (folder / name).exists()]
+            results["files"] = [
+                name
+                for name in results["files"]
+                if name == "report.html" or (folder / name).exists()
+            ]
             _write_json(folder / "results.json", results)
             write_report(results, folder)
         except OSError as error:
-            raise SolidgearError(f"--out {out}: writing stopped ({error.strerror or error}); files already there are whole") from error
+            raise SolidgearError(
+                f"--out {out}: writing stopped ({error.strerror or error}); files already there are whole"
+            ) from error
     return folder
 
 
@@ -78,7 +95,9 @@ def _job(scene, body, modes, name: str, path: Path):
     mode = modes.named(name)
     if mode is None:
         have = ", ".join(m.name for m in modes.modes)
-        raise SolidgearError(f"mode {name!r}: the {body.fidelity} model found none of that name; it has {have}")
+        raise SolidgearError(
+            f"mode {name!r}: the {body.fidelity} model found none of that name; it has {have}"
+        )
     title = f"{body.fidelity}: {mode.name}, {mode.frequency_hz:.1f} Hz"
     return RenderJob(surface(scene, body, mode.vectors[0]), title, path)
 
@@ -88,12 +107,22 @@ def _draw(comparison, folder: Path) -> None:
 
     results, jobs = comparison.results, {}
     for model, rung in comparison.rungs.items():
-        name = MODE if rung.modes.named(MODE) else next((m.name for m in rung.modes.modes if m.frequency_hz > 0), None)
+        name = (
+            MODE
+            if rung.modes.named(MODE)
+            else next((m.name for m in rung.modes.modes if m.frequency_hz > 0), None)
+        )
         if name is None:
             continue
         path = folder / f"mode_{model}.png"
         path.unlink(missing_ok=True)  # whoever made it, it must not pass for this run's
-        _try(results, f"render of {model}", lambda m=model, r=rung, n=name, p=path: jobs.update({m: _job(comparison.scene, r.body, r.modes, n, p)}))
+        _try(
+            results,
+            f"render of {model}",
+            lambda m=model, r=rung, n=name, p=path: jobs.update(
+                {m: _job(comparison.scene, r.body, r.modes, n, p)}
+            ),
+        )
     reasons: dict[str, list[str]] = {}
     for model, done in zip(jobs, render_modes(jobs.values())):
         if done.ok:
@@ -120,7 +149,9 @@ def render_mode(scene, body, modes, name: str, path) -> Path:
     try:
         (done,) = render_modes([job])
     except OSError as error:  # the drawing process is handed its shape in a temporary file
-        raise SolidgearError(f"--out {path}: drawing stopped ({error.strerror or error}); free some space there and in the folder for temporary files") from error
+        raise SolidgearError(
+            f"--out {path}: drawing stopped ({error.strerror or error}); free some space there and in the folder for temporary files"
+        ) from error
     if not done.ok:
         raise SolidgearError(done.reason)
     return done.path

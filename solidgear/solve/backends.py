@@ -40,9 +40,13 @@ def upper_triangle(matrix: sp.csr_matrix) -> sp.csr_matrix:
     Its arrays are those of the lower triangle by columns as well.
     """
     n = matrix.shape[0]
-    keep = matrix.indices >= np.repeat(np.arange(n, dtype=matrix.indices.dtype), np.diff(matrix.indptr))
+    keep = matrix.indices >= np.repeat(
+        np.arange(n, dtype=matrix.indices.dtype), np.diff(matrix.indptr)
+    )
     before = np.concatenate([[0], np.cumsum(keep, dtype=matrix.indptr.dtype)])
-    return sp.csr_matrix((matrix.data[keep], matrix.indices[keep], before[matrix.indptr]), shape=(n, n))
+    return sp.csr_matrix(
+        (matrix.data[keep], matrix.indices[keep], before[matrix.indptr]), shape=(n, n)
+    )
 
 
 def _size_mb(matrix):
@@ -62,7 +66,11 @@ def _mkl():
     """
     os.environ.setdefault("KMP_BLOCKTIME", "0")  # read when the library is loaded
     try:
-        rt = None if os.environ.get("PYPARDISO_MKL_RT") else next((f for f in files("mkl") or () if "mkl_rt" in f.name), None)
+        rt = (
+            None
+            if os.environ.get("PYPARDISO_MKL_RT")
+            else next((f for f in files("mkl") or () if "mkl_rt" in f.name), None)
+        )
     except PackageNotFoundError:
         rt = None
     if rt is not None:
@@ -98,6 +106,10 @@ def _int(value):
     return ctypes.byref(ctypes.c_int32(value))
 
 
+#: where a phase of PARDISO takes no right-hand side, and gives no solution
+UNUSED = np.zeros(1)
+
+
 class Pardiso:
     """MKL PARDISO called directly: pypardiso copies the indices at every call, hashes the matrix at every solve and refines twice.
 
@@ -105,7 +117,11 @@ class Pardiso:
     """
 
     name = "pardiso"
-    ERRORS = {-2: "not enough memory", -4: "a zero or negative pivot: the matrix is not positive definite", -8: "an overflow of 32-bit integers"}
+    ERRORS = {
+        -2: "not enough memory",
+        -4: "a zero or negative pivot: the matrix is not positive definite",
+        -8: "an overflow of 32-bit integers",
+    }
     # no defaults; parallel nested dissection; no refinement; two-level factorisation; parallel solve; report entries; count from zero
     SETTINGS = {1: 1, 2: 3, 8: 0, 24: 1, 25: 2, 18: -1, 35: 1}
     # perturb pivots below 1e-8 of the norm (and report them); Bunch-Kaufman pivots
@@ -115,8 +131,12 @@ class Pardiso:
         self.upper = upper_triangle(matrix)
         self.n = matrix.shape[0]
         # An empty row would end in a segmentation fault.
-        if np.diff(self.upper.indptr).min() == 0 or np.any(self.upper.indices[self.upper.indptr[:-1]] != np.arange(self.n)):
-            raise FactorError("PARDISO failed on the system matrix: an entry of the diagonal is missing")
+        if np.diff(self.upper.indptr).min() == 0 or np.any(
+            self.upper.indices[self.upper.indptr[:-1]] != np.arange(self.n)
+        ):
+            raise FactorError(
+                "PARDISO failed on the system matrix: an entry of the diagonal is missing"
+            )
         self.pt, self.iparm = np.zeros(64, np.int64), np.zeros(64, np.int32)
         for number, value in {**self.SETTINGS, **({} if definite else self.INDEFINITE)}.items():
             self.iparm[number - 1] = value
@@ -124,18 +144,38 @@ class Pardiso:
         self.order = _node_order(matrix)
         if self.order is not None:
             self.iparm[4] = 1
-        self.ia, self.ja = self.upper.indptr.astype(np.int32, copy=False), self.upper.indices.astype(np.int32, copy=False)
-        self._release = weakref.finalize(self, _release, _mkl_pardiso(), self.pt, self.iparm, 2 if definite else -2, self.n)
+        self.ia, self.ja = (
+            self.upper.indptr.astype(np.int32, copy=False),
+            self.upper.indices.astype(np.int32, copy=False),
+        )
+        self._release = weakref.finalize(
+            self, _release, _mkl_pardiso(), self.pt, self.iparm, 2 if definite else -2, self.n
+        )
         self._release.atexit = False  # a factorisation that was interrupted may still be at it
         self._call(11)
         symbolic_peak, symbolic, numeric = (int(kb) for kb in self.iparm[14:17])
         self.estimate_mb = max(symbolic_peak, symbolic + numeric) / 1024 + _size_mb(self.upper)
 
-    def _call(self, phase, rhs=np.zeros(1), x=np.zeros(1), columns=1):
+    def _call(self, phase, rhs=UNUSED, x=UNUSED, columns=1):
         mtype = 2 if self.definite else -2
-        error = _pardiso_phase(phase, self.pt, self.iparm, mtype, self.n, self.upper.data, self.ia, self.ja, self.order, rhs, x, columns)
+        error = _pardiso_phase(
+            phase,
+            self.pt,
+            self.iparm,
+            mtype,
+            self.n,
+            self.upper.data,
+            self.ia,
+            self.ja,
+            self.order,
+            rhs,
+            x,
+            columns,
+        )
         if error:
-            raise FactorError(f"PARDISO failed on the system matrix: {self.ERRORS.get(error, f'error {error}')}")
+            raise FactorError(
+                f"PARDISO failed on the system matrix: {self.ERRORS.get(error, f'error {error}')}"
+            )
 
     def factor(self):
         self._call(22)
@@ -147,7 +187,11 @@ class Pardiso:
     @property
     def negative(self) -> int | None:
         """Negative pivots; None if some were perturbed or do not add up."""
-        perturbed, positive, negative = int(self.iparm[13]), int(self.iparm[21]), int(self.iparm[22])
+        perturbed, positive, negative = (
+            int(self.iparm[13]),
+            int(self.iparm[21]),
+            int(self.iparm[22]),
+        )
         return negative if not perturbed and positive + negative == self.n else None
 
     def solve(self, rhs):
@@ -161,12 +205,28 @@ class Pardiso:
         return np.ascontiguousarray(x)
 
 
-def _pardiso_phase(phase, pt, iparm, mtype, n, data, ia, ja, order=None, rhs=np.zeros(1), x=np.zeros(1), columns=1) -> int:
+def _pardiso_phase(
+    phase, pt, iparm, mtype, n, data, ia, ja, order=None, rhs=UNUSED, x=UNUSED, columns=1
+) -> int:
     error = ctypes.c_int32(0)
     _mkl_pardiso()(
-        _pointer(pt), _int(1), _int(1), _int(mtype), _int(phase), _int(n), _pointer(data), _pointer(ia), _pointer(ja), None if order is None else _pointer(order),
-        _int(columns), _pointer(iparm), _int(0), _pointer(rhs), _pointer(x), ctypes.byref(error),
-    )  # fmt: skip
+        _pointer(pt),
+        _int(1),
+        _int(1),
+        _int(mtype),
+        _int(phase),
+        _int(n),
+        _pointer(data),
+        _pointer(ia),
+        _pointer(ja),
+        None if order is None else _pointer(order),
+        _int(columns),
+        _pointer(iparm),
+        _int(0),
+        _pointer(rhs),
+        _pointer(x),
+        ctypes.byref(error),
+    )
     return error.value
 
 
@@ -184,14 +244,29 @@ def _node_order(matrix, components: int = 3) -> np.ndarray | None:
     if np.mean(length.min(axis=1) > 0.3 * length.max(axis=1)) < 0.9:
         return None
     rows = matrix[::components]
-    graph = sp.csr_matrix((np.ones(rows.nnz), rows.indices // components, rows.indptr), shape=(n, n))
+    graph = sp.csr_matrix(
+        (np.ones(rows.nnz), rows.indices // components, rows.indptr), shape=(n, n)
+    )
     graph.sum_duplicates()
     graph.data[:] = -1.0
-    upper = sp.triu(graph + graph.T + sp.diags(2.0 * np.asarray(abs(graph).sum(axis=1)).ravel() + 2.0), format="csr")
+    upper = sp.triu(
+        graph + graph.T + sp.diags(2.0 * np.asarray(abs(graph).sum(axis=1)).ravel() + 2.0),
+        format="csr",
+    )
     pt, iparm, order = np.zeros(64, np.int64), np.zeros(64, np.int32), np.zeros(n, np.int32)
     for number, value in {**Pardiso.SETTINGS, 5: 2}.items():
         iparm[number - 1] = value
-    error = _pardiso_phase(11, pt, iparm, 2, n, upper.data, upper.indptr.astype(np.int32), upper.indices.astype(np.int32), order)
+    error = _pardiso_phase(
+        11,
+        pt,
+        iparm,
+        2,
+        n,
+        upper.data,
+        upper.indptr.astype(np.int32),
+        upper.indices.astype(np.int32),
+        order,
+    )
     _release(_mkl_pardiso(), pt, iparm, 2, n)
     if error or not np.array_equal(np.sort(order), np.arange(n)):
         return None
@@ -201,8 +276,24 @@ def _node_order(matrix, components: int = 3) -> np.ndarray | None:
 def _release(pardiso, pt, iparm, mtype, n):
     """Give PARDISO's memory back."""
     nothing = np.zeros(1)
-    pardiso(_pointer(pt), _int(1), _int(1), _int(mtype), _int(-1), _int(n), _pointer(nothing), None, None, None, _int(1), _pointer(iparm), _int(0),
-            _pointer(nothing), _pointer(nothing), _int(0))  # fmt: skip
+    pardiso(
+        _pointer(pt),
+        _int(1),
+        _int(1),
+        _int(mtype),
+        _int(-1),
+        _int(n),
+        _pointer(nothing),
+        None,
+        None,
+        None,
+        _int(1),
+        _pointer(iparm),
+        _int(0),
+        _pointer(nothing),
+        _pointer(nothing),
+        _int(0),
+    )
 
 
 # --------------------------------------------------------------------------- CHOLMOD
@@ -226,7 +317,9 @@ class Cholmod:
         try:
             self.symbolic.cholesky_inplace(self.lower)
         except CholmodNotPositiveDefiniteError as error:
-            raise FactorError("CHOLMOD could not factor the system matrix: it is not positive definite") from error
+            raise FactorError(
+                "CHOLMOD could not factor the system matrix: it is not positive definite"
+            ) from error
         except CholmodError as error:
             raise FactorError(f"CHOLMOD could not factor the system matrix ({error})") from error
         del self.lower  # the factor does not need it
@@ -251,7 +344,9 @@ class Mumps:
         upper = upper_triangle(matrix).tocoo()
         self.context.set_matrix(upper, symmetric=True)
         self._try(self.context.analyze, ordering="auto")
-        self.estimate_mb = float(self.context.analysis_stats.est_mem_incore) + 16 * upper.nnz / 2**20  # by coordinates: two indices and a number
+        self.estimate_mb = (
+            float(self.context.analysis_stats.est_mem_incore) + 16 * upper.nnz / 2**20
+        )  # by coordinates: two indices and a number
 
     def _try(self, step, **options):
         try:
@@ -260,9 +355,13 @@ class Mumps:
             raise FactorError(f"MUMPS could not factor the system matrix ({error})") from error
 
     def factor(self):
-        self._try(self.context.factor, reuse_analysis=True, pivot_tol=0.0 if self.definite else 0.01)
+        self._try(
+            self.context.factor, reuse_analysis=True, pivot_tol=0.0 if self.definite else 0.01
+        )
         if self.definite and self.negative:
-            raise FactorError("MUMPS could not factor the system matrix: it is not positive definite")
+            raise FactorError(
+                "MUMPS could not factor the system matrix: it is not positive definite"
+            )
 
     @property
     def nnz(self) -> int:
@@ -271,7 +370,11 @@ class Mumps:
     @property
     def negative(self) -> int | None:
         """Negative pivots (INFOG(12) of the users' guide); None if tiny ones were replaced."""
-        return None if self.context.factor_stats.tiny_pivots else int(self.context.mumps_instance.infog[12])
+        return (
+            None
+            if self.context.factor_stats.tiny_pivots
+            else int(self.context.mumps_instance.infog[12])
+        )
 
     def solve(self, rhs):
         return np.ascontiguousarray(self.context.solve(np.asarray(rhs, dtype=float)))
@@ -290,7 +393,9 @@ class SuperLU:
 
     def __init__(self, matrix: sp.csr_matrix, definite: bool = True, planar: bool = False):
         # the matrix is symmetric: its rows are its columns
-        self.matrix = sp.csc_matrix((matrix.data, matrix.indices, matrix.indptr), shape=matrix.shape)
+        self.matrix = sp.csc_matrix(
+            (matrix.data, matrix.indices, matrix.indptr), shape=matrix.shape
+        )
         self.checked = definite and matrix.shape[0] <= (CHECKED_PLANAR if planar else CHECKED)
         copies = 2 if self.checked or not definite else 1
         self.estimate_mb = copies * law("superlu", matrix, planar)
@@ -298,16 +403,27 @@ class SuperLU:
     def factor(self):
         n = self.matrix.shape[0]
         try:
-            self._lu = Made(spla.splu(self.matrix, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True}))
+            self._lu = Made(
+                spla.splu(
+                    self.matrix,
+                    permc_spec="MMD_AT_PLUS_A",
+                    diag_pivot_thresh=0.0,
+                    options={"SymmetricMode": True},
+                )
+            )
         except RuntimeError as error:
             raise FactorError(f"SuperLU could not factor the system matrix ({error})") from error
         except MemoryError:
-            raise FactorError(f"SuperLU ran out of memory or of 32-bit indices on {n} unknowns; install the extra 'fast', or use a coarser model") from None
+            raise FactorError(
+                f"SuperLU ran out of memory or of 32-bit indices on {n} unknowns; install the extra 'fast', or use a coarser model"
+            ) from None
         self.nnz = int(self._lu.value.nnz)
         del self.matrix
         # SuperLU does not mind an indefinite matrix, and one off-diagonal pivot is proof of a vanishing diagonal.
         if self.checked and self.negative != 0:
-            raise FactorError("SuperLU could not factor the system matrix: it is not positive definite")
+            raise FactorError(
+                "SuperLU could not factor the system matrix: it is not positive definite"
+            )
 
     @property
     def negative(self) -> int | None:
@@ -323,7 +439,11 @@ class SuperLU:
 
 # --------------------------------------------------------------------------- what is there
 BACKENDS = {back.name: back for back in (Pardiso, Cholmod, Mumps, SuperLU)}
-INSTALL = {"pardiso": "install the extra 'fast'", "cholmod": "install the extra 'cholmod'", "mumps": "install the extra 'mumps'"}
+INSTALL = {
+    "pardiso": "install the extra 'fast'",
+    "cholmod": "install the extra 'cholmod'",
+    "mumps": "install the extra 'mumps'",
+}
 
 
 @lru_cache
@@ -334,7 +454,12 @@ def missing(name: str) -> str:
     ----------
     name : {'pardiso', 'cholmod', 'mumps', 'superlu'}
     """
-    module = {"pardiso": "pypardiso", "cholmod": "scikit-sparse", "mumps": "python-mumps", "superlu": "scipy"}[name]
+    module = {
+        "pardiso": "pypardiso",
+        "cholmod": "scikit-sparse",
+        "mumps": "python-mumps",
+        "superlu": "scipy",
+    }[name]
     try:
         back = BACKENDS[name](sp.identity(2, format="csr"))
         back.factor()

@@ -35,9 +35,15 @@ class Circumference:
         self.waves = self._resolved()
         least = 2 * (2 * self.waves + 1)
         self._bins = []
-        for own in _divided(np.column_stack([self._r, y]), np.flatnonzero(outside), max(least, outside.sum() // BINS)):
+        for own in _divided(
+            np.column_stack([self._r, y]),
+            np.flatnonzero(outside),
+            max(least, outside.sum() // BINS),
+        ):
             basis = self._basis(own) * np.sqrt(weight[own])[:, None]
-            self._bins.append((own, np.linalg.pinv(basis, rcond=1e-3) * np.sqrt(weight[own]), basis.T @ basis))
+            self._bins.append(
+                (own, np.linalg.pinv(basis, rcond=1e-3) * np.sqrt(weight[own]), basis.T @ basis)
+            )
 
     def _resolved(self) -> int:
         rim = self._r > (1 - 1e-6) * self._r.max()
@@ -67,7 +73,9 @@ class Circumference:
         """
         c, s = np.cos(self._angle), np.sin(self._angle)
         # z = r cos t, x = r sin t
-        motion = np.column_stack([shape[:, 2] * c + shape[:, 0] * s, shape[:, 0] * c - shape[:, 2] * s, shape[:, 1]])
+        motion = np.column_stack(
+            [shape[:, 2] * c + shape[:, 0] * s, shape[:, 0] * c - shape[:, 2] * s, shape[:, 1]]
+        )
         n = self.waves
         out = np.zeros((n + 1, len(self._bins), 3), complex)
         for k, (own, fit, gram) in enumerate(self._bins):

@@ -88,7 +88,9 @@ def lowest(supported: Supported, n: int, method: str | None = None) -> Solved:
         If the method is unknown or ARPACK, the last resort, does not converge.
     """
     if method not in (None, *METHODS):
-        raise SolidgearError(f"modes: method = {method!r} is unknown; use 'lanczos', 'arpack' or 'dense'")
+        raise SolidgearError(
+            f"modes: method = {method!r} is unknown; use 'lanczos', 'arpack' or 'dense'"
+        )
     total, rigid = supported.size, supported.free
     wanted = min(n + 2, total - rigid.shape[1])
     if wanted < 1:
@@ -100,12 +102,17 @@ def lowest(supported: Supported, n: int, method: str | None = None) -> Solved:
             method = "arpack" if alone and supported.backend in SINGLE else "lanczos"
         if total <= DENSE or wanted >= total - 2 - WIDTH:
             method = "dense"
-        theta, u, method = {"dense": _dense, "arpack": _arpack, "lanczos": _lanczos}[method](supported, wanted)
+        theta, u, method = {"dense": _dense, "arpack": _arpack, "lanczos": _lanczos}[method](
+            supported, wanted
+        )
     value = 1.0 / theta - supported.shift
     found = refine(supported, u, value, n)
     u = found.vectors
     orthogonality = float(np.abs(u.T @ supported.mass(u) - np.eye(len(theta))).max(initial=0.0))
-    elastic = [Raw(float(v), supported.split(u[:, i]), float(found.residual[i]), float(found.error[i])) for i, v in enumerate(found.value)]
+    elastic = [
+        Raw(float(v), supported.split(u[:, i]), float(found.residual[i]), float(found.error[i]))
+        for i, v in enumerate(found.value)
+    ]
     free = [Raw(0.0, supported.split(rigid[:, i]), 0.0, 0.0) for i in range(rigid.shape[1])]
     return Solved(elastic, free, orthogonality, method, found.steps)
 
@@ -114,7 +121,9 @@ def _dense(supported: Supported, wanted: int):
     heavy = supported.mass(np.eye(supported.size))
     try:
         root = np.linalg.cholesky(heavy)
-    except np.linalg.LinAlgError:  # unknowns without mass, such as the turns of a lumped beam without rotary inertia
+    except (
+        np.linalg.LinAlgError
+    ):  # unknowns without mass, such as the turns of a lumped beam without rotary inertia
         w, v = np.linalg.eigh((heavy + heavy.T) / 2)
         keep = w > 1e-14 * w[-1]
         root = v[:, keep] * np.sqrt(w[keep])
@@ -124,18 +133,31 @@ def _dense(supported: Supported, wanted: int):
     theta, w = theta[::-1][:wanted], w[:, ::-1][:, :wanted]
     if root.shape[0] == root.shape[1]:
         return theta, sla.solve_triangular(root.T, w, lower=False), "dense"
-    full = theta > 1e-14 * theta[0]  # no more modes than there are masses, less those of free rigid motions
+    full = (
+        theta > 1e-14 * theta[0]
+    )  # no more modes than there are masses, less those of free rigid motions
     return theta[full], moved @ (w[:, full] / theta[full]), "dense"
 
 
 def _lanczos(supported: Supported, wanted: int):
     # Loads drawn at random excite every shape, whatever its symmetry. Static solutions under port loads are no better a
     # start (they needed one block more on a pinion of 93,000 unknowns) and cannot see a mode that moves no port.
-    start = supported.inverse(supported.mass(np.random.default_rng(0).standard_normal((supported.size, WIDTH))))
-    found = block_lanczos(supported.inverse, supported.mass, start, wanted, tolerance=TOLERANCE, most=max(160, 12 * wanted))
+    start = supported.inverse(
+        supported.mass(np.random.default_rng(0).standard_normal((supported.size, WIDTH)))
+    )
+    found = block_lanczos(
+        supported.inverse,
+        supported.mass,
+        start,
+        wanted,
+        tolerance=TOLERANCE,
+        most=max(160, 12 * wanted),
+    )
     if found.converged and len(found.theta) == wanted:
         return found.theta, found.vectors, "lanczos"
-    log.warning("block Lanczos did not converge within %d vectors; ARPACK takes over", found.columns)
+    log.warning(
+        "block Lanczos did not converge within %d vectors; ARPACK takes over", found.columns
+    )
     theta, u, _ = _arpack(supported, wanted)
     return theta, u, f"arpack (block Lanczos did not converge within {found.columns} vectors)"
 
@@ -156,7 +178,9 @@ def _arpack(supported: Supported, wanted: int):
             tol=1e-12,
         )
     except spla.ArpackNoConvergence as error:
-        raise SolidgearError(f"modes: ARPACK found only {len(error.eigenvalues)} of {wanted} modes; ask for fewer modes") from error
+        raise SolidgearError(
+            f"modes: ARPACK found only {len(error.eigenvalues)} of {wanted} modes; ask for fewer modes"
+        ) from error
     theta = 1.0 / (value + shift)
     order = np.argsort(-theta)
     return theta[order], u[:, order], "arpack"
@@ -215,7 +239,11 @@ def count_below(supported: Supported, solved: Solved, reach: float) -> Count | N
     backends = set()
     for block, part in zip(supported.blocks, supported.parts(load)):
         try:
-            factor = indefinite((block.stiffness - below * block.mass).tocsr(), planar=block.planar, border=block.border)
+            factor = indefinite(
+                (block.stiffness - below * block.mass).tocsr(),
+                planar=block.planar,
+                border=block.border,
+            )
         except FactorError:  # no room for a second factor, say: the result stands without the count
             factor = None
         if factor is None:

@@ -18,7 +18,15 @@ from solidgear.interruptible import call
 from solidgear.memory import available_mb
 from solidgear.solve.backends import BACKENDS, INSTALL, FactorError, missing
 
-__all__ = ["Factor", "FactorError", "Indefinite", "factorise", "indefinite", "negative_pivots", "pardiso_missing"]
+__all__ = [
+    "Factor",
+    "FactorError",
+    "Indefinite",
+    "factorise",
+    "indefinite",
+    "negative_pivots",
+    "pardiso_missing",
+]
 
 # SuperLU's indices overflow on the factors of planar meshes of very high order ("not enough memory").
 LARGE_PLANAR = 30_000_000  # entries
@@ -80,7 +88,9 @@ def pardiso_missing() -> str:
     return missing("pardiso")
 
 
-def factorise(matrix: sp.spmatrix, backend: str | None = None, planar: bool = False, border: int = 0) -> Factor:
+def factorise(
+    matrix: sp.spmatrix, backend: str | None = None, planar: bool = False, border: int = 0
+) -> Factor:
     """Factor a symmetric positive definite matrix.
 
     Parameters
@@ -102,13 +112,17 @@ def factorise(matrix: sp.spmatrix, backend: str | None = None, planar: bool = Fa
     """
     matrix = _canonical(matrix)
     if border:
-        return _bordered(matrix, border, lambda inner: factorise(inner, backend, planar), _definite_corner)
+        return _bordered(
+            matrix, border, lambda inner: factorise(inner, backend, planar), _definite_corner
+        )
     name, reason = choice(matrix, backend, planar)
     work = _factored(name, matrix, planar, definite=True)
     return Factor(name, reason, work.solve, work.estimate_mb, work.nnz)
 
 
-def indefinite(matrix: sp.spmatrix, backend: str | None = None, planar: bool = False, border: int = 0) -> Indefinite | None:
+def indefinite(
+    matrix: sp.spmatrix, backend: str | None = None, planar: bool = False, border: int = 0
+) -> Indefinite | None:
     """Factor a symmetric matrix of any sign and count its negative eigenvalues (Sylvester's law of inertia).
 
     Every count is backed by the backward error of one solve with a random load: a stable factorisation counts exactly for a matrix within
@@ -131,16 +145,21 @@ def indefinite(matrix: sp.spmatrix, backend: str | None = None, planar: bool = F
     """
     matrix = _canonical(matrix)
     if border:
-        return _bordered(matrix, border, lambda inner: indefinite(inner, backend, planar), _any_corner)
-    name, reason = choice(matrix, backend, planar)
-    forced = reason == FORCED and name in COUNTING
-    for name in [name] if forced else [name, *(other for other in COUNTING if other != name)]:
+        return _bordered(
+            matrix, border, lambda inner: indefinite(inner, backend, planar), _any_corner
+        )
+    chosen, reason = choice(matrix, backend, planar)
+    forced = reason == FORCED and chosen in COUNTING
+    others = () if forced else (other for other in COUNTING if other != chosen)
+    for name in (chosen, *others):
         if name not in COUNTING or missing(name):
             continue
         try:
             work = _factored(name, matrix, planar, definite=False)
             if work.negative is not None and _backward_error(matrix, work.solve) < SOUND:
-                return Indefinite(name, reason, work.solve, work.estimate_mb, work.nnz, work.negative)
+                return Indefinite(
+                    name, reason, work.solve, work.estimate_mb, work.nnz, work.negative
+                )
         except NoRoom:
             raise
         except FactorError:
@@ -165,7 +184,9 @@ class NoRoom(FactorError):
 
 def _canonical(matrix):
     if not np.all(np.isfinite(matrix.data)):
-        raise FactorError("the system matrix holds NaN or infinite entries; check material and geometry")
+        raise FactorError(
+            "the system matrix holds NaN or infinite entries; check material and geometry"
+        )
     matrix = sp.csr_matrix(matrix)
     if not matrix.has_canonical_format:
         matrix = matrix.copy() if matrix.has_sorted_indices else matrix.sorted_indices()
@@ -179,7 +200,9 @@ def choice(matrix, backend: str | None = None, planar: bool = False) -> tuple[st
     n = matrix.shape[0]
     if backend is not None:
         if backend not in BACKENDS:
-            raise FactorError(f"unknown back end {backend!r}; use " + ", ".join(map(repr, BACKENDS)))
+            raise FactorError(
+                f"unknown back end {backend!r}; use " + ", ".join(map(repr, BACKENDS))
+            )
         if why := _missing(backend):
             raise FactorError(f"back end {backend} was asked for but {why}")
         return backend, FORCED
@@ -192,7 +215,9 @@ def choice(matrix, backend: str | None = None, planar: bool = False) -> tuple[st
         if not (why := _missing(name)):
             break
         absent.append(f"{why}; {INSTALL[name]}")
-    return name, f"{n} unknowns are above {SMALL}" + "".join(f"; faster but absent: {why}" for why in absent)
+    return name, f"{n} unknowns are above {SMALL}" + "".join(
+        f"; faster but absent: {why}" for why in absent
+    )
 
 
 def _missing(name):
@@ -227,7 +252,9 @@ def _backward_error(matrix, solve):
     x = solve(rhs)
     if not np.isfinite(x).all():
         return np.inf
-    largest = np.linalg.norm(matrix.data)  # Frobenius: bounds the 2-norm from above, by no more than the bandwidth's root
+    largest = np.linalg.norm(
+        matrix.data
+    )  # Frobenius: bounds the 2-norm from above, by no more than the bandwidth's root
     return np.linalg.norm(matrix @ x - rhs) / (largest * np.linalg.norm(x) + np.linalg.norm(rhs))
 
 
@@ -253,7 +280,14 @@ def _bordered(matrix, border, factor, corner_of):
 
     if isinstance(inner, Indefinite):
         # Haynsworth: the inertia of a matrix is that of a block plus that of its Schur complement.
-        return Indefinite(inner.backend, inner.reason, solve, inner.estimate_mb, inner.nnz, inner.negative + negative)
+        return Indefinite(
+            inner.backend,
+            inner.reason,
+            solve,
+            inner.estimate_mb,
+            inner.nnz,
+            inner.negative + negative,
+        )
     return Factor(inner.backend, inner.reason, solve, inner.estimate_mb, inner.nnz)
 
 

@@ -33,7 +33,16 @@ class Found:
     converged: bool
 
 
-def block_lanczos(operator, mass, start: np.ndarray, wanted: int, *, tolerance: float = 1e-9, most: int = 400, seed: int = 1) -> Found:
+def block_lanczos(
+    operator,
+    mass,
+    start: np.ndarray,
+    wanted: int,
+    *,
+    tolerance: float = 1e-9,
+    most: int = 400,
+    seed: int = 1,
+) -> Found:
     """Largest eigenvalues of a symmetric positive operator in the mass inner product.
 
     Parameters

@@ -16,7 +16,15 @@ from solidgear.body import FURTHER, Body, as_supports
 from solidgear.errors import SolidgearError
 from solidgear.solve.eigen import Raw
 from solidgear.solve.naming import Names, Projection, numbered
-from solidgear.solve.parts import Part, Uncounted, complete, families, further_parts, reach_of, solved_parts
+from solidgear.solve.parts import (
+    Part,
+    Uncounted,
+    complete,
+    families,
+    further_parts,
+    reach_of,
+    solved_parts,
+)
 from solidgear.solve.statics import SHIFT, factors
 from solidgear.solve.supported import decoupled
 from solidgear.threads import pinned
@@ -157,7 +165,11 @@ def modes(
     spring, bound = decoupled(body, supports, coupling_tolerance)
     own = solved_parts(body, supports, spring, n, method)
     highest = np.inf if max_frequency is None else (2 * np.pi * max_frequency) ** 2
-    more, left = further_parts(body, own, n, highest, method) if ovalising and body.further is not None else ([], [])
+    more, left = (
+        further_parts(body, own, n, highest, method)
+        if ovalising and body.further is not None
+        else ([], [])
+    )
     parts = own + more
     start = time.perf_counter()
     if count:
@@ -184,10 +196,19 @@ def modes(
     if count:
         evidence |= {"count": [part.verdict for part in parts], "count_seconds": spent}
         if all(part.verdict["checked"] for part in parts):
-            evidence["complete_below_hz"] = min([part.verdict["below_hz"] for part in parts] + [u.begins_hz for u in left])
+            evidence["complete_below_hz"] = min(
+                [part.verdict["below_hz"] for part in parts] + [u.begins_hz for u in left]
+            )
     if torn:
         evidence["torn_pairs"] = torn
-    return ModeSet(body.fidelity, (*_rigid(names, rigid), *told), np.linspace(0.0, body.length, STATIONS), project.gram, evidence, beyond)
+    return ModeSet(
+        body.fidelity,
+        (*_rigid(names, rigid), *told),
+        np.linspace(0.0, body.length, STATIONS),
+        project.gram,
+        evidence,
+        beyond,
+    )
 
 
 def _lowest(parts: list[Part], count: int) -> list[Raw]:
@@ -201,8 +222,19 @@ def _rigid(names: Names, raw: list[Raw]):
         motion = names.project(r.vectors)
         shares = names.project.shares(motion)
         family = max(shares, key=shares.get)
-        name = "rigid (combined)" if sum(s > 0.01 for s in shares.values()) > 1 else f"rigid {family}"
-        yield Mode(name, family, 0.0, 1, (r.vectors,), motion[None], sum(shares.values()), int(family == "bending"))
+        name = (
+            "rigid (combined)" if sum(s > 0.01 for s in shares.values()) > 1 else f"rigid {family}"
+        )
+        yield Mode(
+            name,
+            family,
+            0.0,
+            1,
+            (r.vectors,),
+            motion[None],
+            sum(shares.values()),
+            int(family == "bending"),
+        )
 
 
 def _named(body, names: Names, parts: list[Part], n: int, max_frequency: float | None):
@@ -242,7 +274,11 @@ def _named(body, names: Names, parts: list[Part], n: int, max_frequency: float |
             beyond.append(mode)
         room -= mode.multiplicity
         own_room -= mode.multiplicity if own else 0
-    pairs = [(of[i].name, of[j].name, of[j].frequency_hz / of[i].frequency_hz - 1) for i, j in torn if i in of and j in of]
+    pairs = [
+        (of[i].name, of[j].name, of[j].frequency_hz / of[i].frequency_hz - 1)
+        for i, j in torn
+        if i in of and j in of
+    ]
     return tuple(told), tuple(beyond), pairs, every
 
 
@@ -255,7 +291,9 @@ def _sound(body, mode: Mode, parts: list[Part]) -> Mode:
                 f"{told}: bearings resist it by the difference of far larger stiffnesses that couple, and its sixteen digits are not enough; give the bearing a "
                 "stiffness that is clearly positive in every direction, or zero"
             )
-        highest = max(part.supported.highest for part in parts) / (2 * np.pi * mode.frequency_hz) ** 2
+        highest = (
+            max(part.supported.highest for part in parts) / (2 * np.pi * mode.frequency_hz) ** 2
+        )
         raise SolidgearError(
             f"{told}: the smallest cell of the {body.fidelity} body is so stiff that the "
             f"eigenvalues span {np.log10(highest):.0f} digits of the 16 there are; use a coarser mesh (lower order, fewer layers), or a beam for a shaft as slender as this"
@@ -266,21 +304,53 @@ def _sound(body, mode: Mode, parts: list[Part]) -> Mode:
 def _by_springs(mode: Mode, parts: list[Part]) -> float:
     """Share of the relative error of a frequency that comes from the rounding of the bearings' stiffness."""
     value, lost = (2 * np.pi * mode.frequency_hz) ** 2, 0.0
-    for part, vectors in ((p, v) for p in parts for v in mode.vectors if set(v) & set(p.supported.group)):
-        u = np.concatenate([vectors.get(b, np.zeros(block.size)) for b, block in zip(part.supported.group, part.supported.blocks)])
+    for part, vectors in (
+        (p, v) for p in parts for v in mode.vectors if set(v) & set(p.supported.group)
+    ):
+        u = np.concatenate(
+            [
+                vectors.get(b, np.zeros(block.size))
+                for b, block in zip(part.supported.group, part.supported.blocks)
+            ]
+        )
         lost = max(lost, float(part.supported.spring_rounding(u[:, None])[0]))
     return lost / (2 * value)
 
 
-def _families(parts: list[Part], left: list[Uncounted], found: list[tuple[str, float, int]]) -> list[dict]:
+def _families(
+    parts: list[Part], left: list[Uncounted], found: list[tuple[str, float, int]]
+) -> list[dict]:
     """What was solved and counted, family by family, and what was left alone: see :class:`ModeSet`."""
-    below = min((p.verdict["below_hz"] for p in parts if p.verdict and p.verdict["checked"]), default=np.inf)
+    below = min(
+        (p.verdict["below_hz"] for p in parts if p.verdict and p.verdict["checked"]), default=np.inf
+    )
     rows = []
     for family, waves, counted in families(parts):
-        mine = [(hz, shapes) for name, hz, shapes in found if waves is None or name == family or (family, name) == ("axial", "breathing")]
+        mine = [
+            (hz, shapes)
+            for name, hz, shapes in found
+            if waves is None or name == family or (family, name) == ("axial", "breathing")
+        ]
         lowest = min((hz for hz, _ in mine), default=None)
-        rows.append({"family": family, "n": waves, "counted": counted, "modes_below": sum(shapes for hz, shapes in mine if hz < below), "lowest_hz": lowest})
+        rows.append(
+            {
+                "family": family,
+                "n": waves,
+                "counted": counted,
+                "modes_below": sum(shapes for hz, shapes in mine if hz < below),
+                "lowest_hz": lowest,
+            }
+        )
     rows.sort(key=lambda row: (row["n"] or 0, row["family"]))
     for u in left:
-        rows.append({"family": f"ovalising n={u.n}", "n": u.n, "counted": False, "modes_below": 0, "lowest_hz": u.begins_hz, "above": u.and_above})
+        rows.append(
+            {
+                "family": f"ovalising n={u.n}",
+                "n": u.n,
+                "counted": False,
+                "modes_below": 0,
+                "lowest_hz": u.begins_hz,
+                "above": u.and_above,
+            }
+        )
     return rows

@@ -134,19 +134,28 @@ class Names:
         if self._round is not None:
             energy, profile = self._around(vectors)
         elif len(self.body.blocks) == 1 and len(self.body.blocks[0].components) == 6:
-            energy, profile = {(1 if name == "bending" else 0, name): share for name, share in shares.items()}, vectors
+            energy, profile = (
+                {(1 if name == "bending" else 0, name): share for name, share in shares.items()},
+                vectors,
+            )
         else:
             energy, profile = self._by_block(vectors), vectors
         waves, family = max(energy, key=energy.get)
         if self._round is not None:
             profile = profile[waves]
-        return Shape(family, waves, motion, sum(shares.values()), profile, self._round is None and waves > 1)
+        return Shape(
+            family, waves, motion, sum(shares.values()), profile, self._round is None and waves > 1
+        )
 
     def _around(self, vectors):
         fit, displacements = self._round
         profile, share = fit(displacements(vectors[0]))
         radial, tangential, axial = share[0]
-        energy = {(0, "torsion"): tangential, (0, "axial" if axial >= radial else "breathing"): axial + radial, (1, "bending"): share[1].sum()}
+        energy = {
+            (0, "torsion"): tangential,
+            (0, "axial" if axial >= radial else "breathing"): axial + radial,
+            (1, "bending"): share[1].sum(),
+        }
         energy |= {(n, f"ovalising n={n}"): share[n].sum() for n in range(2, fit.waves + 1)}
         return energy, profile
 
@@ -174,12 +183,18 @@ class Names:
 
     def overlap(self, a: Shape, b: Shape) -> float:
         """How much one shape, a quarter of a wave further round, is like another: 1 for twins, 0 for modes of other profiles (a MAC)."""
-        if a.family != b.family or a.waves < 1 or (self._round is None and len(self.body.blocks) == 1):
+        if (
+            a.family != b.family
+            or a.waves < 1
+            or (self._round is None and len(self.body.blocks) == 1)
+        ):
             return 0.0
         if self._round is not None:
             size = np.vdot(a.profile, a.profile).real * np.vdot(b.profile, b.profile).real
             return float(np.vdot(1j * a.profile, b.profile).real ** 2 / size)
-        return self._turned(a.profile, b.profile) ** 2 / (self._turned(a.profile, None) * self._turned(b.profile, None))
+        return self._turned(a.profile, b.profile) ** 2 / (
+            self._turned(a.profile, None) * self._turned(b.profile, None)
+        )
 
     def _turned(self, a, b) -> float:
         """Mass product of a shape in blocks that mirror each other, turned into the other plane, with another; with itself, not turned, for None."""
@@ -196,7 +211,9 @@ class Names:
                     out += sign * float(a[p] @ (block.mass @ b[q]))
         return out
 
-    def pairs(self, shapes: list[Shape], value: np.ndarray) -> tuple[list[tuple[int, ...]], list[tuple[int, int]]]:
+    def pairs(
+        self, shapes: list[Shape], value: np.ndarray
+    ) -> tuple[list[tuple[int, ...]], list[tuple[int, int]]]:
         """Which shapes belong together.
 
         Parameters
@@ -220,8 +237,16 @@ class Names:
             double = shape.waves >= 1 and (shape.waves > 1 or self.promised <= ALIKE)
             if not double or shape.double or i in partner:
                 continue
-            tolerance = 2 * max(own, self.promised) if shape.waves == 1 else max(2 * own, OVAL_TOLERANCE)
-            others = [j for j in range(i + 1, len(shapes)) if j not in partner and shapes[j].waves == shape.waves and shapes[j].family == shape.family]
+            tolerance = (
+                2 * max(own, self.promised) if shape.waves == 1 else max(2 * own, OVAL_TOLERANCE)
+            )
+            others = [
+                j
+                for j in range(i + 1, len(shapes))
+                if j not in partner
+                and shapes[j].waves == shape.waves
+                and shapes[j].family == shape.family
+            ]
             like = {j: self.overlap(shape, shapes[j]) for j in others}
             twin = max(like, key=like.get, default=None)
             near = others and value[others[0]] - value[i] <= tolerance * abs(value[i])
@@ -234,7 +259,11 @@ class Names:
                 partner[i] = partner[twin] = twin
             elif like[twin] >= 0.5:
                 torn.append((i, twin))
-        groups = [(i, partner[i]) if i in partner else (i,) for i in range(len(shapes)) if partner.get(i) != i]
+        groups = [
+            (i, partner[i]) if i in partner else (i,)
+            for i in range(len(shapes))
+            if partner.get(i) != i
+        ]
         return groups, torn
 
 
@@ -262,5 +291,3 @@ def numbered(families: list[str]) -> list[str]:
         count[family] = count.get(family, 0) + 1
         out.append(f"{family} {count[family]}")
     return out
-
-

@@ -60,8 +60,15 @@ class Part:
 
     def everywhere(self, found: list[Raw]) -> list[Raw]:
         """Eigenpairs of the group and of its twins."""
-        own = [Raw(r.value, {self.first + b: v for b, v in r.vectors.items()}, r.residual, r.error) for r in found]
-        return own + [Raw(r.value, {twin: next(iter(r.vectors.values()))}, r.residual, r.error) for twin in self.twins for r in found]
+        own = [
+            Raw(r.value, {self.first + b: v for b, v in r.vectors.items()}, r.residual, r.error)
+            for r in found
+        ]
+        return own + [
+            Raw(r.value, {twin: next(iter(r.vectors.values()))}, r.residual, r.error)
+            for twin in self.twins
+            for r in found
+        ]
 
     def values(self) -> list[float]:
         """Elastic eigenvalues with every shape counted."""
@@ -77,11 +84,15 @@ class Uncounted:
     and_above: bool = False
 
 
-def solved_parts(body: Body, supports: Supports, spring: np.ndarray, n: int, method: str | None) -> list[Part]:
+def solved_parts(
+    body: Body, supports: Supports, spring: np.ndarray, n: int, method: str | None
+) -> list[Part]:
     """Eigenpairs of all groups of a body's own blocks, each searched only as far as the ``n`` lowest of all reach."""
     parts: list[Part] = []
     for group in groups(body, supports, spring):
-        original = next((p for p in parts if _is_twin(body, supports, spring, group, p.supported.group)), None)
+        original = next(
+            (p for p in parts if _is_twin(body, supports, spring, group, p.supported.group)), None
+        )
         if original is not None:
             original.twins.append(group[0])
         else:
@@ -96,7 +107,11 @@ def solved_parts(body: Body, supports: Supports, spring: np.ndarray, n: int, met
             part.solved = lowest(part.supported, part.ask, method)
         values = sorted(v for part in parts for v in part.values())
         reach = values[n - 1] if len(values) >= n else np.inf
-        waiting = [p for p in parts if p.ask < n and p.solved.elastic and p.solved.elastic[-1].value <= 1.01 * reach]
+        waiting = [
+            p
+            for p in parts
+            if p.ask < n and p.solved.elastic and p.solved.elastic[-1].value <= 1.01 * reach
+        ]
         for part in waiting:
             part.ask = min(2 * part.ask, n)
     return parts
@@ -108,7 +123,9 @@ def reach_of(parts: list[Part], n: int, highest: float = np.inf) -> float:
     return min(values[min(n, len(values)) - 1], highest) if values else 0.0
 
 
-def further_parts(body: Body, parts: list[Part], n: int, highest: float, method: str | None) -> tuple[list[Part], list[Uncounted]]:
+def further_parts(
+    body: Body, parts: list[Part], n: int, highest: float, method: str | None
+) -> tuple[list[Part], list[Uncounted]]:
     """Circumferential families of two waves and more that begin among the ``n`` lowest shapes.
 
     Parameters
@@ -143,7 +160,11 @@ def further_parts(body: Body, parts: list[Part], n: int, highest: float, method:
             left.append(Uncounted(waves, light[waves] / LIGHT))
             continue
         alone = body.family(waves)
-        part = Part(Supported(alone, Supports((), np.zeros((0, 0))), np.zeros((0, 0)), [0]), max(2, n // 8), first=FURTHER + waves)
+        part = Part(
+            Supported(alone, Supports((), np.zeros((0, 0))), np.zeros((0, 0)), [0]),
+            max(2, n // 8),
+            first=FURTHER + waves,
+        )
         while True:
             part.solved = lowest(part.supported, part.ask, method)
             # Two shapes for every value: half of n is all that can be told.
@@ -170,12 +191,19 @@ def complete(part: Part, reach: float, method: str | None) -> None:
     seen = count_below(supported, part.solved, reach)
     if seen is not None and seen.counted != seen.found:
         missed = seen.counted - seen.found
-        part.solved = lowest(supported, n + 4 + 2 * abs(missed), "arpack" if part.solved.method == "lanczos" else "lanczos")
+        part.solved = lowest(
+            supported,
+            n + 4 + 2 * abs(missed),
+            "arpack" if part.solved.method == "lanczos" else "lanczos",
+        )
         seen = count_below(supported, part.solved, reach)
     if seen is not None and seen.counted != seen.found:
         stiffest = supported.highest / seen.below
         if EPS * stiffest > DOUBT * seen.distance:
-            part.verdict = {"checked": False, "why": f"the stiffest cell lies {stiffest:.0e} times above the modes, so that rounding turns signs of the factor"}
+            part.verdict = {
+                "checked": False,
+                "why": f"the stiffest cell lies {stiffest:.0e} times above the modes, so that rounding turns signs of the factor",
+            }
             return
         raise SolidgearError(
             f"modes: {seen.found} modes were found below {_hz(seen.below):.6g} Hz but the factor counts {seen.counted}; ask for more modes (n = {n})"
@@ -183,7 +211,12 @@ def complete(part: Part, reach: float, method: str | None) -> None:
     if seen is None:
         part.verdict = {"checked": False, "why": f"no inertia from {supported.backend}"}
     else:
-        part.verdict = {"checked": True, "below_hz": _hz(seen.below), "modes": seen.counted, "backend": seen.backend}
+        part.verdict = {
+            "checked": True,
+            "below_hz": _hz(seen.below),
+            "modes": seen.counted,
+            "backend": seen.backend,
+        }
 
 
 def families(parts: list[Part]) -> list[tuple[str, int | None, bool]]:
@@ -192,7 +225,9 @@ def families(parts: list[Part]) -> list[tuple[str, int | None, bool]]:
     for part in parts:
         for block in part.blocks:
             name = family_of(block)
-            counted = bool(part.verdict and part.verdict["checked"]) and rows.get(name, (0, True))[1]
+            counted = (
+                bool(part.verdict and part.verdict["checked"]) and rows.get(name, (0, True))[1]
+            )
             rows[name] = (None if name == "all" else waves_of(block), counted)
     return [(name, *row) for name, row in rows.items()]
 

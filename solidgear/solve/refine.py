@@ -13,7 +13,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-import scipy.linalg as sla
 
 from solidgear.solve.supported import ROUNDED
 
@@ -88,7 +87,13 @@ def refine(supported, vectors: np.ndarray, value: np.ndarray, needed: int) -> Re
     # The lowest, as far as they are nearly rigid: the shift may drown their eigenvalues.  One above an elastic mode is not in that danger.
     count = int(np.argmax(elastic))
     found = _corrected(supported, vectors, value, needed, count)
-    if count and np.abs(found.vectors[:, :count].T @ supported.mass(found.vectors[:, count:])).max(initial=0.0) > ASKEW:
+    if (
+        count
+        and np.abs(found.vectors[:, :count].T @ supported.mass(found.vectors[:, count:])).max(
+            initial=0.0
+        )
+        > ASKEW
+    ):
         found = _corrected(supported, vectors, value, needed, 0)
     return found
 
@@ -99,12 +104,27 @@ def _corrected(supported, vectors, value, needed: int, count: int) -> Refined:
     wrong = np.zeros(len(value), bool)
     correction = forces = np.zeros_like(vectors)
     for step in range(STEPS + 1):
-        low, high = (wrong & own for own in (np.arange(len(value)) < count, np.arange(len(value)) >= count))
+        low, high = (
+            wrong & own for own in (np.arange(len(value)) < count, np.arange(len(value)) >= count)
+        )
         stiffness = supported.elastic_extended if fine else supported.elastic
         slow = _soft_modes(supported, stiffness, vectors[:, :count], correction[:, low])
-        quick = _modes(supported, stiffness, vectors[:, count:], value[count:], correction[:, high], forces[:, high], slow.u)
-        value, rounding = np.append(slow.value, quick.value), np.append(slow.rounding, quick.rounding)
-        if best is not None and value.min() <= 0.5 * best.value[0] * max(0.0, 1 - 2 * best.error[0]):
+        quick = _modes(
+            supported,
+            stiffness,
+            vectors[:, count:],
+            value[count:],
+            correction[:, high],
+            forces[:, high],
+            slow.u,
+        )
+        value, rounding = (
+            np.append(slow.value, quick.value),
+            np.append(slow.rounding, quick.rounding),
+        )
+        if best is not None and value.min() <= 0.5 * best.value[0] * max(
+            0.0, 1 - 2 * best.error[0]
+        ):
             return best  # a correction that is nothing but rounding
         vectors, forces = np.hstack([slow.u, quick.u]), np.hstack([slow.force, quick.force])
         correction = supported.inverse(forces)
@@ -141,11 +161,19 @@ def _modes(supported, stiffness, u, value, correction, forces, below) -> _Pairs:
     energy = (turn.T @ (rest.T @ pull + stretch.T @ stretch) @ turn).astype(float)
     w, v = np.linalg.eigh((energy + energy.T) / 2)
     turn = turn @ v[:, :count]
-    u, rest, pull, stretch, heavy = basis @ turn, rest @ turn, pull @ turn, stretch @ turn, heavy @ turn
+    u, rest, pull, stretch, heavy = (
+        basis @ turn,
+        rest @ turn,
+        pull @ turn,
+        stretch @ turn,
+        heavy @ turn,
+    )
     # The small problem knows its eigenvalues to the rounding of the largest; quotients know each to its own.
     value = (_columns(rest, pull) + _columns(stretch, stretch)) / _columns(u, heavy)
     force = pull + supported.load @ stretch - heavy * value
-    return _Pairs(value.astype(float), u, force.astype(float), _rounding(supported, u, rest, stretch))
+    return _Pairs(
+        value.astype(float), u, force.astype(float), _rounding(supported, u, rest, stretch)
+    )
 
 
 def _outside(x, known, mass):
@@ -184,7 +212,9 @@ def _soft_modes(supported, stiffness, u, correction) -> _Pairs:
         held = held @ (v[:, w > 1e-10] / np.sqrt(w[w > 1e-10]))
     rest = supported.without_rigid(supported.without_rigid(np.hstack([u, correction])))
     size = np.sqrt(_columns(rest, mass(rest)))
-    keep = size > 1e-9 * np.append(np.ones(count), np.full(correction.shape[1], 1e-3))  # below that a remainder of a shape is rounding
+    keep = size > 1e-9 * np.append(
+        np.ones(count), np.full(correction.shape[1], 1e-3)
+    )  # below that a remainder of a shape is rounding
     rest = rest[:, keep] / size[keep]
     w, v = np.linalg.eigh(rest.T @ mass(rest))
     good = w > 1e-12

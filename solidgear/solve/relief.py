@@ -39,7 +39,9 @@ def inertia_relief(solve, mass, rigid: np.ndarray):
     return balanced, relieved
 
 
-def elastic_fields(solve, mass, stiffness, rigid: np.ndarray, load: np.ndarray, tolerance: float, most: int = 30):
+def elastic_fields(
+    solve, mass, stiffness, rigid: np.ndarray, load: np.ndarray, tolerance: float, most: int = 30
+):
     """Displacements ``K u = f`` of a free body under balanced loads.
 
     Parameters

@@ -90,7 +90,11 @@ class Condensed:
     @property
     def oblique(self) -> np.ndarray:
         """(6, k) free motions that no single component describes, largest entry 1."""
-        rest = self.free[:, np.abs(self.free[~self._alone()]).max(axis=0, initial=0.0) > 1e-9 * np.abs(self.free).max(axis=0, initial=0.0)]
+        rest = self.free[
+            :,
+            np.abs(self.free[~self._alone()]).max(axis=0, initial=0.0)
+            > 1e-9 * np.abs(self.free).max(axis=0, initial=0.0),
+        ]
         return rest / np.abs(rest).max(axis=0, initial=0.0)
 
     def _alone(self) -> np.ndarray:
@@ -105,7 +109,11 @@ def factors(body: Body) -> list[Factor]:
         for block in body.blocks:
             key = id(block.stiffness)
             if key not in made:
-                made[key] = factorise((block.stiffness + SHIFT * body.scale * block.mass).tocsr(), planar=block.planar, border=block.border)
+                made[key] = factorise(
+                    (block.stiffness + SHIFT * body.scale * block.mass).tocsr(),
+                    planar=block.planar,
+                    border=block.border,
+                )
         body.memory["factors"] = [made[id(b.stiffness)] for b in body.blocks]
     return body.memory["factors"]
 
@@ -123,17 +131,24 @@ def flexibility(body: Body, tolerance: float = 1e-12) -> Flexibility:
             continue
         rows = body.rows(block)
         if block.mirror is not None:
-            original, signs = body.rows(body.blocks[block.mirror[0]]), np.tile(block.mirror[1], len(body.ports))
+            original, signs = (
+                body.rows(body.blocks[block.mirror[0]]),
+                np.tile(block.mirror[1], len(body.ports)),
+            )
             out[np.ix_(rows, rows)] = out[np.ix_(original, original)] * np.outer(signs, signs)
             continue
         k = block.stiffness
         load = block.ports.T.toarray() if sp.issparse(block.ports) else block.ports.T
-        load, u, missing = elastic_fields(factor.solve, block.mass.__matmul__, k.__matmul__, block.rigid, load, tolerance)
+        load, u, missing = elastic_fields(
+            factor.solve, block.mass.__matmul__, k.__matmul__, block.rigid, load, tolerance
+        )
         # Clapeyron: 2 u'f - u'Ku is stationary at the solution; each pair of loads misses the product of what both displacements miss.
         work = u.T @ load
         f_block = work + work.T - u.T @ (k @ u)
         size = np.sqrt(np.abs(np.diag(f_block)))
-        asymmetry = max(asymmetry, float((np.abs(f_block - f_block.T) / np.outer(size, size)).max()))
+        asymmetry = max(
+            asymmetry, float((np.abs(f_block - f_block.T) / np.outer(size, size)).max())
+        )
         residual = max(residual, float(missing))
         out[np.ix_(rows, rows)] = (f_block + f_block.T) / 2
         backends.append(factor.backend)
@@ -207,7 +222,9 @@ def _half_solve(a, b):
     try:
         c = np.linalg.cholesky(a * np.outer(d, d))
     except np.linalg.LinAlgError as error:
-        raise SolidgearError("the condensed system is not positive definite; check the bearing stiffnesses") from error
+        raise SolidgearError(
+            "the condensed system is not positive definite; check the bearing stiffnesses"
+        ) from error
     return sla.solve_triangular(c, d[:, None] * b, lower=True)
 
 
@@ -222,7 +239,9 @@ def _half_inverse(n, b):
     r, pivot = sla.qr((n / size)[order], mode="r", pivoting=True)
     r = r[: n.shape[1]]
     if len(r) < n.shape[1] or np.any(np.diag(r) == 0):
-        raise SolidgearError("the condensed system is not positive definite; check the bearing stiffnesses")
+        raise SolidgearError(
+            "the condensed system is not positive definite; check the bearing stiffnesses"
+        )
     return sla.solve_triangular(r, (b / size[:, None])[pivot], trans="T")
 
 
@@ -260,7 +279,9 @@ def _complement(null: np.ndarray, length: float) -> np.ndarray:
 
 def _allowed_loads(null_at_port: np.ndarray) -> np.ndarray:
     """Basis of the loads that do no work on free motions; coordinate axes where possible."""
-    clean = np.where(np.abs(null_at_port) < 1e-9 * np.abs(null_at_port).max(initial=0.0), 0.0, null_at_port)
+    clean = np.where(
+        np.abs(null_at_port) < 1e-9 * np.abs(null_at_port).max(initial=0.0), 0.0, null_at_port
+    )
     mask = _aligned(clean)
     if mask is not None:
         return np.eye(6)[:, ~mask]

@@ -45,7 +45,9 @@ def decoupled(body: Body, supports: Supports, tolerance: float):
     if w[0] < 1e-9:
         return k, 0.0
     half = v / np.sqrt(w)
-    bound = float(np.abs(np.linalg.eigvalsh(half.T @ (removed[np.ix_(on, on)] / scale) @ half)).max())
+    bound = float(
+        np.abs(np.linalg.eigvalsh(half.T @ (removed[np.ix_(on, on)] / scale) @ half)).max()
+    )
     return (kept, bound) if bound <= tolerance else (k, 0.0)
 
 
@@ -99,7 +101,14 @@ class Supported:
         self.rigid = self._rigid_motions()
         self.mass_rigid = self.mass(self.rigid)
         null = supports.unresisted(body)
-        self.free = np.vstack([b.rigid @ null[list(b.components)] if b.components else np.zeros((b.size, null.shape[1])) for b in self.blocks])
+        self.free = np.vstack(
+            [
+                b.rigid @ null[list(b.components)]
+                if b.components
+                else np.zeros((b.size, null.shape[1]))
+                for b in self.blocks
+            ]
+        )
         self.free = self.free[:, np.abs(self.free).max(axis=0, initial=0.0) > 0]
         if self.free.shape[1]:
             w, v = np.linalg.eigh(self.free.T @ self.mass(self.free))
@@ -136,7 +145,9 @@ class Supported:
         """
         if not self._seats:
             return np.zeros(u.shape[1])
-        motion = np.abs(np.vstack([seats @ part for seats, part in zip(self._seats, self.parts(u))]))
+        motion = np.abs(
+            np.vstack([seats @ part for seats, part in zip(self._seats, self.parts(u))])
+        )
         # as large a multiple as condensing springs in series and taking the root of the matrix may make of it
         return 8 * EPS * np.einsum("ik,ij,jk->k", motion, np.abs(self._spring), motion)
 
@@ -157,7 +168,9 @@ class Supported:
     def _free_inverse(self, x):
         """``(K + shift M)^-1 x``.  Rigid motions answer with 1 / shift exactly, and the factor, which would round that, is left with the rest."""
         carried = self.rigid.T @ x
-        y = self._per_block(lambda i, part: self._factors[i].solve(part), x - self.mass_rigid @ carried)
+        y = self._per_block(
+            lambda i, part: self._factors[i].solve(part), x - self.mass_rigid @ carried
+        )
         return self.without_rigid(y) + self.rigid @ (carried / self.shift)
 
     def without_rigid(self, u):
@@ -174,7 +187,12 @@ class Supported:
 
     def elastic_extended(self, x):
         """The same in extended precision, for shapes whose energy is small beside what its terms are."""
-        return self._per_block(lambda i, part: self.blocks[i].stiffness.astype(np.longdouble) @ part.astype(np.longdouble), x)
+        return self._per_block(
+            lambda i, part: (
+                self.blocks[i].stiffness.astype(np.longdouble) @ part.astype(np.longdouble)
+            ),
+            x,
+        )
 
     def purge(self, x):
         """Take unresisted rigid motions out of displacements."""
@@ -187,7 +205,11 @@ class Supported:
 
     def forward(self, u):
         """``(K + springs + shift M) u``; the rigid part, which K resists by rounding only, is kept from it."""
-        return self.elastic(self.without_rigid(u)) + self.load @ (self.load.T @ u) + self.shift * self.mass(u)
+        return (
+            self.elastic(self.without_rigid(u))
+            + self.load @ (self.load.T @ u)
+            + self.shift * self.mass(u)
+        )
 
     @cached_property
     def inaccuracy(self) -> float:
@@ -196,12 +218,20 @@ class Supported:
             return 0.0  # no rounding could be seen
         rng = np.random.default_rng(0)
         x = self.mass(rng.standard_normal((self.size, 1)))
-        x = np.hstack([x, self.load @ rng.standard_normal((self.load.shape[1], 1))]) if self.load.shape[1] else x
+        x = (
+            np.hstack([x, self.load @ rng.standard_normal((self.load.shape[1], 1))])
+            if self.load.shape[1]
+            else x
+        )
         x = x - self._mass_free @ (self.free.T @ x)
         y = self._quick_inverse(x)
         left = x - self.forward(y)
         step = self._quick_inverse(left)
-        return float(np.sqrt(np.abs(np.einsum("ij,ij->j", left, step)) / np.abs(np.einsum("ij,ij->j", x, y))).max())
+        return float(
+            np.sqrt(
+                np.abs(np.einsum("ij,ij->j", left, step)) / np.abs(np.einsum("ij,ij->j", x, y))
+            ).max()
+        )
 
     def _quick_inverse(self, x):
         if self.free.shape[1]:
@@ -219,7 +249,10 @@ class Supported:
     @cached_property
     def highest(self) -> float:
         """Highest eigenvalue of the free body, from below and within a factor of ten, rad^2/s^2."""
-        stiff, heavy = (np.concatenate([getattr(b, name).diagonal() for b in self.blocks]) for name in ("stiffness", "mass"))
+        stiff, heavy = (
+            np.concatenate([getattr(b, name).diagonal() for b in self.blocks])
+            for name in ("stiffness", "mass")
+        )
         return float((stiff[heavy > 0] / heavy[heavy > 0]).max())
 
     def stretch(self, u, loads) -> np.ndarray:
@@ -294,4 +327,6 @@ class Supported:
 
     def _relieved(self, load, rigid, tolerance: float = 1e-24):
         """Elastic displacements of the free body under loads balanced by their own inertia."""
-        return elastic_fields(self._free_inverse, self.mass, self.elastic, rigid, load, tolerance)[1]
+        return elastic_fields(self._free_inverse, self.mass, self.elastic, rigid, load, tolerance)[
+            1
+        ]

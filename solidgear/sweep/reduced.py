@@ -70,8 +70,14 @@ class ReducedBlock:
         """The same in the other bending plane."""
         signs = np.array(block.mirror[1])
         sign = np.tile(signs, len(self.motions) // len(signs))
-        return replace(self, components=block.components, turn=self.turn * signs, motions=sign[:, None] * self.motions,
-                       moments=self.moments * np.outer(sign, sign), mirror=(index, block.mirror[1]))  # fmt: skip
+        return replace(
+            self,
+            components=block.components,
+            turn=self.turn * signs,
+            motions=sign[:, None] * self.motions,
+            moments=self.moments * np.outer(sign, sign),
+            mirror=(index, block.mirror[1]),
+        )
 
 
 @dataclass(frozen=True)
@@ -130,17 +136,43 @@ def reduce(body: Body, n: int, level: int = 0) -> Reduced:
         # A block of its own holds a part of the wanted modes only.
         share = 2 * n if len(block.components) == 6 else n // 2
         blocks.append(_reduce_block(body, index, int(more * (share + 6)), steps))
-    return Reduced(tuple(blocks), _frame(body), SHIFT * body.scale, body.mesh.get("pair_tolerance", 1e-7), level)
+    return Reduced(
+        tuple(blocks),
+        _frame(body),
+        SHIFT * body.scale,
+        body.mesh.get("pair_tolerance", 1e-7),
+        level,
+    )
 
 
 def _reduce_block(body: Body, index: int, count: int, steps: int) -> ReducedBlock:
     block, factor, shift = body.blocks[index], factors(body)[index], SHIFT * body.scale
     r = len(block.components)
-    alone = Body(body.fidelity, (replace(block, mirror=None),), body.ports, body.scale, body.length, body.mesh, body.geometry, memory={"factors": [factor]})
-    found = [(v[0], m.family) for m in modes(alone, (), n=min(count + 1, block.size)).modes if not m.name.startswith("rigid") for v in m.vectors]
+    alone = Body(
+        body.fidelity,
+        (replace(block, mirror=None),),
+        body.ports,
+        body.scale,
+        body.length,
+        body.mesh,
+        body.geometry,
+        memory={"factors": [factor]},
+    )
+    found = [
+        (v[0], m.family)
+        for m in modes(alone, (), n=min(count + 1, block.size)).modes
+        if not m.name.startswith("rigid")
+        for v in m.vectors
+    ]
     families = [_family((c,)) for c in block.components]
-    lower = np.linalg.cholesky(block.rigid.T @ (block.mass @ block.rigid)) if r else np.zeros((0, 0))
-    u = np.column_stack([block.rigid @ sla.inv(lower).T] * bool(r) + [v for v, _ in found]) if r or found else np.zeros((block.size, 0))
+    lower = (
+        np.linalg.cholesky(block.rigid.T @ (block.mass @ block.rigid)) if r else np.zeros((0, 0))
+    )
+    u = (
+        np.column_stack([block.rigid @ sla.inv(lower).T] * bool(r) + [v for v, _ in found])
+        if r or found
+        else np.zeros((block.size, 0))
+    )
     # Pairs come with their mean frequency; the quotient is that of the shape itself.
     value = np.einsum("ij,ij->j", u, block.stiffness @ u) / np.einsum("ij,ij->j", u, block.mass @ u)
     value[:r] = 0.0
@@ -163,7 +195,9 @@ def _reduce_block(body: Body, index: int, count: int, steps: int) -> ReducedBloc
     own = _family(block.components) if block.components else ""
     scaled = u * np.sqrt(theta)
     turn = lower.T * np.sqrt(1 / theta[:r])[:, None]
-    return ReducedBlock(block.components, turn, theta, block.ports @ scaled, moments, cut, (*families, own), None)
+    return ReducedBlock(
+        block.components, turn, theta, block.ports @ scaled, moments, cut, (*families, own), None
+    )
 
 
 def _moments(inverse, block: Block, steps: int) -> list[np.ndarray]:
@@ -188,12 +222,28 @@ def _frame(body: Body) -> Body:
 
     def bare(block):
         c = len(block.components)
-        return Block(block.name, block.components, sp.csr_matrix((0, 0)), sp.csr_matrix((0, 0)), np.zeros((0, c)), np.zeros(0), sp.csr_matrix((0, 0)),
-                     block.mirror)  # fmt: skip
+        return Block(
+            block.name,
+            block.components,
+            sp.csr_matrix((0, 0)),
+            sp.csr_matrix((0, 0)),
+            np.zeros((0, c)),
+            np.zeros(0),
+            sp.csr_matrix((0, 0)),
+            block.mirror,
+        )
 
     memory: dict[str, Flexibility] = {"flexibility": flexibility(body)}
     ports = tuple(Port(p.name, p.y, p.attachment) for p in body.ports)
-    return Body(body.fidelity, tuple(map(bare, body.blocks)), ports, body.scale, body.length, dict(body.mesh), memory=memory)
+    return Body(
+        body.fidelity,
+        tuple(map(bare, body.blocks)),
+        ports,
+        body.scale,
+        body.length,
+        dict(body.mesh),
+        memory=memory,
+    )
 
 
 __all__ = ["LEVELS", "Reduced", "ReducedBlock", "reduce"]

@@ -113,7 +113,9 @@ class _Together:
         self.mass = sla.block_diag(*(p.mass for p in parts))
         self.defect = sla.block_diag(*(p.defect for p in parts))
         starts = np.cumsum([0] + [len(p.mass) for p in parts])
-        self.rigid = np.concatenate([s + np.arange(len(c)) for s, c in zip(starts, self.components)]).astype(int)
+        self.rigid = np.concatenate(
+            [s + np.arange(len(c)) for s, c in zip(starts, self.components)]
+        ).astype(int)
         names = np.array([name for p in parts for name in p.families])
         self.families = {str(name): names == name for name in dict.fromkeys(names) if name}
 
@@ -157,7 +159,9 @@ class _Group:
     share: dict[str, np.ndarray]
 
 
-def ritz_modes(reduced: Reduced, seats: Seats, supports: Supports, n: int, slack: float) -> RitzModes:
+def ritz_modes(
+    reduced: Reduced, seats: Seats, supports: Supports, n: int, slack: float
+) -> RitzModes:
     """Lowest ``n`` elastic modes on some bearings.
 
     Parameters
@@ -176,9 +180,17 @@ def ritz_modes(reduced: Reduced, seats: Seats, supports: Supports, n: int, slack
     solved: dict[tuple[int, ...], _Group] = {}
     for group in groups(frame, supports, spring):
         twin = _twin(reduced, supports, spring, group)
-        solved[tuple(group)] = solved[twin] if twin in solved else _solve(reduced, seats, supports, spring, group, null)
+        solved[tuple(group)] = (
+            solved[twin]
+            if twin in solved
+            else _solve(reduced, seats, supports, spring, group, null)
+        )
     # A block without port motions is an ovalising one, which stands for its cosine and its sine form.
-    parts = [part for group, part in solved.items() for _ in range(1 if reduced.blocks[group[0]].components else 2)]
+    parts = [
+        part
+        for group, part in solved.items()
+        for _ in range(1 if reduced.blocks[group[0]].components else 2)
+    ]
     which = np.concatenate([np.full(len(p.value), k) for k, p in enumerate(parts)])
     place = np.concatenate([np.arange(len(p.value)) for p in parts])
     value = np.concatenate([p.value for p in parts])
@@ -186,9 +198,18 @@ def ritz_modes(reduced: Reduced, seats: Seats, supports: Supports, n: int, slack
     value = value[order]
     bound = np.inf if len(value) < n else 0.0
     for k, part in enumerate(parts):
-        bound = max(bound, _bound(part, int((which[order] == k).sum()), value[-1], reduced.shift, slack))
-    family = [max(parts[k].share, key=lambda name: parts[k].share[name][j]) for k, j in zip(which[order], place[order])]
-    return RitzModes(np.sqrt(value) / (2 * np.pi), _names(value, family, _tolerances(reduced, supports)), float(bound))
+        bound = max(
+            bound, _bound(part, int((which[order] == k).sum()), value[-1], reduced.shift, slack)
+        )
+    family = [
+        max(parts[k].share, key=lambda name: parts[k].share[name][j])
+        for k, j in zip(which[order], place[order])
+    ]
+    return RitzModes(
+        np.sqrt(value) / (2 * np.pi),
+        _names(value, family, _tolerances(reduced, supports)),
+        float(bound),
+    )
 
 
 def _twin(reduced, supports, spring, group):
@@ -197,10 +218,16 @@ def _twin(reduced, supports, spring, group):
     if len(group) != 1 or mirror is None:
         return None
     m = len(supports.ports)
-    mine, theirs = (component_rows(range(m), reduced.blocks[b].components) for b in (group[0], mirror[0]))
+    mine, theirs = (
+        component_rows(range(m), reduced.blocks[b].components) for b in (group[0], mirror[0])
+    )
     sign = np.tile(mirror[1], m)
     a, b = spring[np.ix_(mine, mine)], spring[np.ix_(theirs, theirs)] * np.outer(sign, sign)
-    return (mirror[0],) if np.abs(a - b).max(initial=0.0) <= 1e-14 * np.abs(b).max(initial=0.0) else None
+    return (
+        (mirror[0],)
+        if np.abs(a - b).max(initial=0.0) <= 1e-14 * np.abs(b).max(initial=0.0)
+        else None
+    )
 
 
 def _solve(reduced: Reduced, seats: Seats, supports: Supports, spring, group, null) -> _Group:
@@ -234,7 +261,9 @@ def _soft(shape, mass, held, shift) -> np.ndarray:
     # Rigid shapes are those whose energy in A is sigma times their mass, alone.
     rigid = np.abs(np.diag(mass) * shift - 1) < 1e-9
     r = int(rigid.sum())
-    rest = np.where(rigid[:, None], 0.0, shape / np.sqrt(np.einsum("ij,ij->j", shape, mass @ shape)))
+    rest = np.where(
+        rigid[:, None], 0.0, shape / np.sqrt(np.einsum("ij,ij->j", shape, mass @ shape))
+    )
     w, v = np.linalg.eigh(rest.T @ mass @ rest)
     keep = w > 1e-18
     rest = rest @ (v[:, keep] / np.sqrt(w[keep]))
@@ -263,7 +292,9 @@ def _tolerances(reduced: Reduced, supports: Supports) -> tuple[float, float]:
     """How near eigenvalues of one pair lie, relative, for bending and for more waves around; as :meth:`solidgear.solve.naming.Names.pairs` has it."""
     own, bearings = reduced.pair_tolerance, alike(supports)
     whole = len(reduced.blocks) == 1
-    return 2 * max(own, bearings) if bearings <= ALIKE else -1.0, max(2 * own, OVAL_TOLERANCE) if whole else 2 * own
+    return 2 * max(own, bearings) if bearings <= ALIKE else -1.0, max(
+        2 * own, OVAL_TOLERANCE
+    ) if whole else 2 * own
 
 
 def _names(value, family, tolerances) -> tuple[str, ...]:
@@ -272,8 +303,19 @@ def _names(value, family, tolerances) -> tuple[str, ...]:
     out: list[str] = []
     paired = False
     for k, name in enumerate(family):
-        tolerance = tolerances[0] if name == "bending" else tolerances[1] if name.startswith("ovalising") else -1.0
-        if k and not paired and family[k - 1] == name and value[k] - value[k - 1] <= tolerance * value[k - 1]:
+        tolerance = (
+            tolerances[0]
+            if name == "bending"
+            else tolerances[1]
+            if name.startswith("ovalising")
+            else -1.0
+        )
+        if (
+            k
+            and not paired
+            and family[k - 1] == name
+            and value[k] - value[k - 1] <= tolerance * value[k - 1]
+        ):
             out.append(out[-1])
             paired = True
             continue

@@ -187,10 +187,14 @@ def _solve(found, file, variants, body, n, tolerance, todo, team, jobs, progress
     )
 
 
-def variants_of(scene: Scene, texts: Iterable[str], sample: int | None = None, seed: int = 0) -> Variants:
+def variants_of(
+    scene: Scene, texts: Iterable[str], sample: int | None = None, seed: int = 0
+) -> Variants:
     """The points of a sweep: all combinations of ``--vary`` texts, or a sample of them."""
     axes = vary.axes(scene, texts)
-    return Variants(scene, axes, vary.product(axes) if sample is None else vary.sample(axes, sample, seed))
+    return Variants(
+        scene, axes, vary.product(axes) if sample is None else vary.sample(axes, sample, seed)
+    )
 
 
 class _Solver:
@@ -227,7 +231,9 @@ class _Solver:
         return self.task.rows([row["variant"]])[0]
 
 
-def _check_seats(shaft: SeatedShaft, scene: Scene, fidelity: str, options: Mapping[str, Any]) -> None:
+def _check_seats(
+    shaft: SeatedShaft, scene: Scene, fidelity: str, options: Mapping[str, Any]
+) -> None:
     seats, most = len(shaft.stations) - 1, MOST_SEATS.get(fidelity)
     if most is not None and seats > most:
         raise SolidgearError(
@@ -236,14 +242,31 @@ def _check_seats(shaft: SeatedShaft, scene: Scene, fidelity: str, options: Mappi
     asked = options.get("attachments") or ()
     kinds = asked if isinstance(asked, (tuple, list)) else (asked,)
     if "rigid" in kinds and seats > len(scene.bearings):
-        raise SolidgearError("attachments: a rigid seat stiffens the shaft wherever it is meshed, so seats cannot be rigid in a sweep of positions")
+        raise SolidgearError(
+            "attachments: a rigid seat stiffens the shaft wherever it is meshed, so seats cannot be rigid in a sweep of positions"
+        )
 
 
 def _plan(variants: Variants, sample, seed, fidelity, options, n, tolerance) -> dict[str, Any]:
     from solidgear import __version__
 
-    scene = {key: value for key, value in variants.scene.as_dict().items() if key not in ("title", "name", "source", "ask")}
+    scene = {
+        key: value
+        for key, value in variants.scene.as_dict().items()
+        if key not in ("title", "name", "source", "ask")
+    }
     axes = {axis.label: [axis.spacing, *axis.values] for axis in variants.axes}
     drawn = None if sample is None else {"points": sample, "seed": seed}
-    settings = {key: list(value) if isinstance(value, tuple) else value for key, value in options.items()}
-    return {"scene": scene, "vary": axes, "sample": drawn, "fidelity": fidelity, "set": settings, "n": n, "tolerance": tolerance, "version": __version__}
+    settings = {
+        key: list(value) if isinstance(value, tuple) else value for key, value in options.items()
+    }
+    return {
+        "scene": scene,
+        "vary": axes,
+        "sample": drawn,
+        "fidelity": fidelity,
+        "set": settings,
+        "n": n,
+        "tolerance": tolerance,
+        "version": __version__,
+    }

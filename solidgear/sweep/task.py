@@ -19,7 +19,9 @@ from solidgear.sweep.variants import Variants
 from solidgear.threads import pinned
 
 #: Entries of the stiffness and the compliance that a row holds.
-ENTRIES = {name: (i, i) for i, name in enumerate(2 * d if i < 3 else d for i, d in enumerate(DOF_NAMES))} | {"x_thz": (0, 5), "z_thx": (2, 3)}
+ENTRIES = {
+    name: (i, i) for i, name in enumerate(2 * d if i < 3 else d for i, d in enumerate(DOF_NAMES))
+} | {"x_thz": (0, 5), "z_thx": (2, 3)}
 
 
 def columns(variants: Variants, n: int) -> dict[str, type]:
@@ -80,7 +82,9 @@ class Task:
     def _row(
         self, index: int, basis: Reduced, seats: dict[tuple[int, ...], Seats]
     ) -> dict[str, Any]:
-        row: dict[str, Any] = {"variant": index} | {a.label: float(v) for a, v in zip(self.variants.axes, self.variants.values[index])}
+        row: dict[str, Any] = {"variant": index} | {
+            a.label: float(v) for a, v in zip(self.variants.axes, self.variants.values[index])
+        }
         frame = basis.frame
         try:
             scene, supports = self.variants.supports(index)
@@ -92,8 +96,17 @@ class Task:
             found = ritz_modes(basis, seats[place], supports, self.n, self.tolerance)
         except SolidgearError as error:
             return row | {"status": " ".join(str(error).split()), "how": ""}
-        row |= {"status": "ok", "how": "reduced", "error_bound": found.error_bound, "rigid_modes": supports.unresisted(frame).shape[1]}
-        row |= {f"{kind}_{name}": float(m[at]) for kind, m in (("K", static.stiffness), ("C", static.compliance)) for name, at in ENTRIES.items()}
+        row |= {
+            "status": "ok",
+            "how": "reduced",
+            "error_bound": found.error_bound,
+            "rigid_modes": supports.unresisted(frame).shape[1],
+        }
+        row |= {
+            f"{kind}_{name}": float(m[at])
+            for kind, m in (("K", static.stiffness), ("C", static.compliance))
+            for name, at in ENTRIES.items()
+        }
         return row | _modal(found.frequency_hz, found.names)
 
     def weak(self, row: dict[str, Any]) -> bool:
@@ -104,10 +117,23 @@ class Task:
         """A row with its modes solved on the body itself."""
         _, supports = self.variants.supports(row["variant"])
         found = modes(body, supports, self.n, ovalising=False)
-        shapes = [(m.frequency_hz, m.name) for m in found.modes if not m.name.startswith("rigid") for _ in range(m.multiplicity)][: self.n]
+        shapes = [
+            (m.frequency_hz, m.name)
+            for m in found.modes
+            if not m.name.startswith("rigid")
+            for _ in range(m.multiplicity)
+        ][: self.n]
         # the residual bounds the error of an eigenvalue, twice that of a frequency
-        return row | {"how": "full", "error_bound": found.evidence["residual"] / 2} | _modal(np.array([f for f, _ in shapes]), [name for _, name in shapes])
+        return (
+            row
+            | {"how": "full", "error_bound": found.evidence["residual"] / 2}
+            | _modal(np.array([f for f, _ in shapes]), [name for _, name in shapes])
+        )
 
 
 def _modal(frequency_hz, names) -> dict[str, Any]:
-    return {key: value for k, (f, name) in enumerate(zip(frequency_hz, names), start=1) for key, value in ((f"f{k}_hz", float(f)), (f"mode{k}", name))}
+    return {
+        key: value
+        for k, (f, name) in enumerate(zip(frequency_hz, names), start=1)
+        for key, value in ((f"f{k}_hz", float(f)), (f"mode{k}", name))
+    }

@@ -109,14 +109,20 @@ class Variants:
         """
         placed = [s for s in self._placed.values() if isinstance(s, Scene)]
         if not placed:
-            raise SolidgearError(f"no variant can be solved; the first one is refused: {next(iter(self._placed.values()))}")
+            raise SolidgearError(
+                f"no variant can be solved; the first one is refused: {next(iter(self._placed.values()))}"
+            )
         for k in self._moves:
             bearing = self.scene.bearings[self.axes[k].bearing]
             if bearing.attachment == "rigid" and len(self.axes[k].values) > 1:
                 raise SolidgearError(
                     f"{self.axes[k].label}: a rigid seat stiffens the shaft wherever it is meshed, so it cannot move in one body; use attachment 'average' or 'section'"
                 )
-        seats = {seat_name(b): b.with_changes(name=seat_name(b)) for scene in placed for b in scene.bearings}
+        seats = {
+            seat_name(b): b.with_changes(name=seat_name(b))
+            for scene in placed
+            for b in scene.bearings
+        }
         ordered = sorted(seats.values(), key=lambda b: b.y)
         return SeatedShaft(self.scene.segments, (self.scene.port, *ordered))
 

@@ -52,7 +52,9 @@ class Axis:
         A position is drawn among its listed values, because every seat is meshed.
         """
         if self.spacing == "list" or self.field == "position":
-            return np.array(self.values)[np.minimum((u * len(self.values)).astype(int), len(self.values) - 1)]
+            return np.array(self.values)[
+                np.minimum((u * len(self.values)).astype(int), len(self.values) - 1)
+            ]
         a, b = self.values[0], self.values[-1]
         return a + (b - a) * u if self.spacing == "linear" else a * (b / a) ** u
 
@@ -69,10 +71,14 @@ def axes(scene, texts: Iterable[str]) -> tuple[Axis, ...]:
     for text in texts:
         axis = _axis(scene, text)
         if any((a.bearing, a.field) == (axis.bearing, axis.field) for a in out):
-            raise SolidgearError(f"--vary {text}: {axis.label} is varied already; give all its values in one list")
+            raise SolidgearError(
+                f"--vary {text}: {axis.label} is varied already; give all its values in one list"
+            )
         out.append(axis)
     if not out:
-        raise SolidgearError('nothing is varied; give for example --vary "bearing.1.kxx=log:1e8 N/m:1e10 N/m:9"')
+        raise SolidgearError(
+            'nothing is varied; give for example --vary "bearing.1.kxx=log:1e8 N/m:1e10 N/m:9"'
+        )
     return tuple(out)
 
 
@@ -80,7 +86,9 @@ def product(axes: Sequence[Axis]) -> np.ndarray:
     """(variants, axes) all combinations, the last axis running fastest."""
     total = int(np.prod([float(len(a.values)) for a in axes]))
     if total > MOST:
-        raise SolidgearError(f"{total} variants are more than the {MOST} a sweep takes; use fewer values, or draw some with --sample")
+        raise SolidgearError(
+            f"{total} variants are more than the {MOST} a sweep takes; use fewer values, or draw some with --sample"
+        )
     return np.array(list(itertools.product(*(a.values for a in axes))), float)
 
 
@@ -101,16 +109,22 @@ def _axis(scene, text: str) -> Axis:
     head, _, field = target.strip().rpartition(".")
     word, _, name = head.partition(".")
     if not equals or word != "bearing" or not name:
-        raise SolidgearError(f"--vary {text}: write bearing.NAME.FIELD=VALUES, such as \"bearing.2.position=0.2 m:0.3 m:11\"")
+        raise SolidgearError(
+            f'--vary {text}: write bearing.NAME.FIELD=VALUES, such as "bearing.2.position=0.2 m:0.3 m:11"'
+        )
     names = [b.name for b in scene.bearings]
     if name in names:
         index = names.index(name)
     elif name.isdecimal() and 1 <= int(name) <= len(names):
         index = int(name) - 1
     else:
-        raise SolidgearError(f"--vary {text}: there is no bearing {name!r}{nearest(name, names)}; the scene has {', '.join(names) or 'none'}")
+        raise SolidgearError(
+            f"--vary {text}: there is no bearing {name!r}{nearest(name, names)}; the scene has {', '.join(names) or 'none'}"
+        )
     if field not in FIELDS:
-        raise SolidgearError(f"--vary {text}: unknown field {field!r}{nearest(field, FIELDS)}; valid are {', '.join(FIELDS)}")
+        raise SolidgearError(
+            f"--vary {text}: unknown field {field!r}{nearest(field, FIELDS)}; valid are {', '.join(FIELDS)}"
+        )
     try:
         values, spacing = _values(field, spec)
     except SceneError as error:
@@ -119,7 +133,9 @@ def _axis(scene, text: str) -> Axis:
 
 
 def _values(field: str, spec: str) -> tuple[tuple[float, ...], str]:
-    dimension = {"position": "length", "scale": "dimensionless"}.get(field) or STIFFNESS_NAMES[field][2]
+    dimension = {"position": "length", "scale": "dimensionless"}.get(field) or STIFFNESS_NAMES[
+        field
+    ][2]
     spacing, parts = "linear", [part.strip() for part in spec.split(":")]
     if parts[0] == "log":
         spacing, parts = "log", parts[1:]

@@ -42,11 +42,15 @@ def _joblib(jobs: int) -> Workers:
     try:
         from joblib import Parallel, delayed
     except ImportError:
-        raise SolidgearError(f"--jobs {jobs} needs joblib: pip install 'solidgear[sweep]', or use --jobs 1") from None
+        raise SolidgearError(
+            f"--jobs {jobs} needs joblib: pip install 'solidgear[sweep]', or use --jobs 1"
+        ) from None
 
     def run(task, parts):
         # Parts are sent as places fall free, so that later ones get a basis enlarged meanwhile.
-        yield from Parallel(n_jobs=jobs, return_as="generator")(delayed(Task.rows)(task(), part) for part in parts)
+        yield from Parallel(n_jobs=jobs, return_as="generator")(
+            delayed(Task.rows)(task(), part) for part in parts
+        )
 
     return run
 
@@ -55,11 +59,15 @@ def _dask(address: str) -> Workers:
     try:
         from distributed import Client
     except ImportError:
-        raise SolidgearError(f"--dask {address} needs Dask: pip install 'solidgear[dask]'") from None
+        raise SolidgearError(
+            f"--dask {address} needs Dask: pip install 'solidgear[dask]'"
+        ) from None
     try:
         client = Client(address, timeout=10, set_as_default=False)
     except (OSError, TimeoutError, ValueError) as error:
-        raise SolidgearError(f"--dask {address}: no Dask scheduler answers there ({type(error).__name__})") from None
+        raise SolidgearError(
+            f"--dask {address}: no Dask scheduler answers there ({type(error).__name__})"
+        ) from None
 
     def run(task, parts):
         with client:

@@ -9,7 +9,6 @@ from collections import Counter, defaultdict
 import numpy as np
 
 from solidgear.evidence.quantities import QUANTITIES
-
 from validation.attack.judge import Band, band_of, called, rate
 
 

@@ -11,7 +11,6 @@ from pathlib import Path
 
 from solidgear.errors import SolidgearError
 from solidgear.scene import Scene
-
 from validation.attack import judge
 from validation.attack.outcome import SOLIDS, outcome, stamp
 from validation.attack.reference import FOLDER, Reference, coupling_scale, reference, section_ties

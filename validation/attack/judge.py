@@ -9,7 +9,6 @@ from dataclasses import dataclass
 import numpy as np
 
 from solidgear.evidence.correlate import subspace_mac
-
 from validation.attack.reference import Reference, coupling_scale
 
 #: errors below this are rounding and are not judged

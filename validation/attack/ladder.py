@@ -19,7 +19,6 @@ from solidgear.evidence.quantities import measure
 from solidgear.fidelity import build
 from solidgear.solve.modes import modes
 from solidgear.solve.statics import condense
-
 from validation.attack import reference as finest
 from validation.attack.scenes import TIES, random_scene, traits
 

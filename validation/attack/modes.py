@@ -1,6 +1,6 @@
 """Random shafts against an independent dense solution: no mode may be missed, none wrong by more than 1e-6 or than its own bound says.
 
-    python validation/attack/modes.py [--runs 1000] [--seed 1]
+    python -m validation.attack.modes [--runs 1000] [--seed 1]
 
 Shafts are slender or short, solid or thin-walled, of one or several materials, on bearings that are soft, stiff, coupled, partial or none; bodies are beams, and
 harmonic solids of low order, small enough for a dense solution.  That is another way from beginning to end: matrices and springs put together here, dense
@@ -14,27 +14,29 @@ import argparse
 import sys
 import time
 from dataclasses import dataclass, field
-from pathlib import Path
 
-sys.path.insert(0, str(Path(__file__).resolve().parent.parent))
+import numpy as np
+import scipy.linalg as sla
+import scipy.sparse as sp
 
-from common import results_folder, show, write_rows  # noqa: E402  (first of all: it pins BLAS to one thread)
-
-import numpy as np  # noqa: E402
-import scipy.linalg as sla  # noqa: E402
-import scipy.sparse as sp  # noqa: E402
-
-from solidgear.errors import SolidgearError  # noqa: E402
-from solidgear.fidelity import build  # noqa: E402
-from solidgear.scene import STEEL, Bearing, Material, Port, Scene, SceneError, Segment  # noqa: E402
-from solidgear.solve.modes import modes  # noqa: E402
+from solidgear.errors import SolidgearError
+from solidgear.fidelity import build
+from solidgear.scene import STEEL, Bearing, Material, Port, Scene, SceneError, Segment
+from solidgear.solve.modes import modes
+from validation.common import results_folder, show, write_rows
 
 #: relative error of a frequency that is wrong, whatever its bound
 WRONG = 1e-6
 #: unknowns a dense solution is allowed
 DENSE = 1500
 EXACT = np.longdouble
-MATERIALS = (STEEL, Material(E=3e9, nu=0.4, density=1400.0), Material(E=1.14e11, nu=0.34, density=4430.0), Material(E=7e10, nu=0.33, density=2700.0), Material(E=1.6e10, nu=0.44, density=11340.0))
+MATERIALS = (
+    STEEL,
+    Material(E=3e9, nu=0.4, density=1400.0),
+    Material(E=1.14e11, nu=0.34, density=4430.0),
+    Material(E=7e10, nu=0.33, density=2700.0),
+    Material(E=1.6e10, nu=0.44, density=11340.0),
+)
 
 
 # --------------------------------------------------------------------------- scenes
@@ -59,9 +61,16 @@ def case(seed: int, number: int) -> Case:
         except SceneError:
             continue
     fidelity = str(rng.choice(["euler", "timoshenko", "harmonic", "harmonic"]))
-    options = {"elements": int(rng.integers(4, 40))} if fidelity != "harmonic" else _light(scene, rng)
+    options = (
+        {"elements": int(rng.integers(4, 40))} if fidelity != "harmonic" else _light(scene, rng)
+    )
     method = rng.choice([None, None, "lanczos", "arpack", "dense"])
-    ask = {"n": int(rng.integers(1, 17)), "method": method, "count": bool(rng.random() < 0.5), "coupling_tolerance": float(rng.choice([0.0, 1e-6]))}
+    ask = {
+        "n": int(rng.integers(1, 17)),
+        "method": method,
+        "count": bool(rng.random() < 0.5),
+        "coupling_tolerance": float(rng.choice([0.0, 1e-6])),
+    }
     return Case(number, scene, fidelity, options, ask)
 
 
@@ -70,7 +79,10 @@ def _log(rng, low, high) -> float:
 
 
 def _scene(rng) -> Scene:
-    radius, slenderness = _log(rng, 0.005, 0.2), _log(rng, 0.3, 80.0 if rng.random() < 0.8 else 300.0)
+    radius, slenderness = (
+        _log(rng, 0.005, 0.2),
+        _log(rng, 0.3, 80.0 if rng.random() < 0.8 else 300.0),
+    )
     length = 2 * radius * slenderness
     count = int(rng.integers(1, 6))
     cuts = np.sort(rng.uniform(0.1, 0.9, count - 1))
@@ -85,7 +97,18 @@ def _scene(rng) -> Scene:
         outer1 = radius * rng.uniform(0.6, 1.4) if rng.random() < 0.2 else outer0
         bore = 0.0 if wall == 1.0 else (1 - wall) * min(outer0, outer1, before)
         material = MATERIALS[rng.integers(len(MATERIALS))] if several else base
-        parts.append(Segment(name=f"s{k}", y0=a, y1=b, outer0=outer0, outer1=outer1, inner0=bore, inner1=bore, material=material))
+        parts.append(
+            Segment(
+                name=f"s{k}",
+                y0=a,
+                y1=b,
+                outer0=outer0,
+                outer1=outer1,
+                inner0=bore,
+                inner1=bore,
+                material=material,
+            )
+        )
         before = outer1
     bearings = []
     for k in rng.permutation(count)[: rng.integers(0, 4)]:
@@ -94,16 +117,33 @@ def _scene(rng) -> Scene:
         y = rng.uniform(a + width / 2, b - width / 2)
         attachment = str(rng.choice(["average", "average", "rigid", "section"]))
         series = (_log(rng, 1e5, 1e10),) if rng.random() < 0.2 else ()
-        bearings.append(Bearing(name=f"b{k}", y=y, seat_width=width, matrix=_springs(rng, radius), axial_series=series, attachment=attachment))
+        bearings.append(
+            Bearing(
+                name=f"b{k}",
+                y=y,
+                seat_width=width,
+                matrix=_springs(rng, radius),
+                axial_series=series,
+                attachment=attachment,
+            )
+        )
     k = int(rng.integers(count))
-    port = Port(y=(ends[k] + ends[k + 1]) / 2, lo=ends[k], hi=ends[k + 1], attachment=str(rng.choice(["average", "section"])))
+    port = Port(
+        y=(ends[k] + ends[k + 1]) / 2,
+        lo=ends[k],
+        hi=ends[k + 1],
+        attachment=str(rng.choice(["average", "section"])),
+    )
     housing = _log(rng, 1e5, 1e10) if rng.random() < 0.15 else None
     return Scene.from_parts(parts, bearings=bearings, port=port, housing_axial=housing)
 
 
 def _springs(rng, radius):
     """Six by six: soft to stiff, radial only, alike in both planes or not, or coupled without mercy."""
-    size, lever = _log(rng, *((1e3, 1e12) if rng.random() < 0.8 else (1.0, 1e16))), np.repeat([1.0, radius * rng.uniform(0.2, 2.0)], 3)
+    size, lever = (
+        _log(rng, *((1e3, 1e12) if rng.random() < 0.8 else (1.0, 1e16))),
+        np.repeat([1.0, radius * rng.uniform(0.2, 2.0)], 3),
+    )
     kind = rng.choice(["alike", "alike", "uneven", "radial", "coupled", "one"])
     if kind == "coupled":
         root = rng.standard_normal((6, int(rng.integers(2, 8)))) * lever[:, None]
@@ -123,7 +163,12 @@ def _light(scene, rng) -> dict:
     """Options of a harmonic solid of few cells."""
     order = int(rng.integers(1, 4))
     thick = max(max(s.outer0, s.outer1) for s in scene.segments)
-    return {"order": order, "layers": int(rng.integers(0, 2)), "edge_layers": 0, "size": max(scene.length / (14 // order), thick / 2)}
+    return {
+        "order": order,
+        "layers": int(rng.integers(0, 2)),
+        "edge_layers": 0,
+        "size": max(scene.length / (14 // order), thick / 2),
+    }
 
 
 # --------------------------------------------------------------------------- dense reference
@@ -146,7 +191,9 @@ def springs_by_hand(scene) -> np.ndarray:
 def springs_lost(scene) -> float:
     """What rounding leaves open of the stiffness of stiff bearings in series with soft springs: both sides take a difference there."""
     stiff = max((b.matrix[1][1] for b in scene.bearings), default=0.0)
-    series = [s for b in scene.bearings for s in b.axial_series] + ([scene.housing_axial] if scene.housing_axial else [])
+    series = [s for b in scene.bearings for s in b.axial_series] + (
+        [scene.housing_axial] if scene.housing_axial else []
+    )
     return 4 * float(np.finfo(float).eps) * stiff / min(series) if series and stiff else 0.0
 
 
@@ -161,7 +208,10 @@ class Dense:
 
     def __init__(self, body, scene):
         blocks = body.blocks
-        k, m = (sp.block_diag([getattr(b, name) for b in blocks], format="csr") for name in ("stiffness", "mass"))
+        k, m = (
+            sp.block_diag([getattr(b, name) for b in blocks], format="csr")
+            for name in ("stiffness", "mass")
+        )
         count, size = len(body.ports), k.shape[0]
         ports, rigid = np.zeros((6 * count, size)), np.zeros((size, 6))
         start = 0
@@ -199,7 +249,9 @@ class Dense:
         x = np.zeros_like(load)
         left = load
         for _ in range(12):
-            step = self._d[:, None] * sla.cho_solve(self._chol, self._d[:, None] * left.astype(float))
+            step = self._d[:, None] * sla.cho_solve(
+                self._chol, self._d[:, None] * left.astype(float)
+            )
             x = x + step
             if np.abs(step).max() < 1e-17 * np.abs(x).max():
                 break
@@ -211,7 +263,7 @@ class Dense:
         size = len(self._d)
         skip = self.free
         wanted = min(n + skip + 6, size)
-        chol = np.linalg.cholesky((self._m.toarray() * np.outer(self._d, self._d)))
+        chol = np.linalg.cholesky(self._m.toarray() * np.outer(self._d, self._d))
         half = sla.cho_solve(self._chol, chol)
         theta, v = sla.eigh(chol.T @ half, subset_by_index=[size - wanted, size - 1])
         x = (self._d[:, None] * (half @ v))[:, ::-1].astype(EXACT)
@@ -222,11 +274,15 @@ class Dense:
             for _ in range(2):
                 gram, energy = x.T @ (self.m @ x), x.T @ self.stiff(x)
                 low = np.linalg.cholesky(gram.astype(float)).astype(EXACT)
-                inverse = sla.solve_triangular(low.astype(float), np.eye(len(low)), lower=True).astype(EXACT)
+                inverse = sla.solve_triangular(
+                    low.astype(float), np.eye(len(low)), lower=True
+                ).astype(EXACT)
                 small = (inverse @ energy @ inverse.T).astype(float)
                 w, turn = np.linalg.eigh((small + small.T) / 2)
                 x = x @ (inverse.T @ turn.astype(EXACT))
-            value = np.sort(np.einsum("ij,ij->j", x, self.stiff(x)) / np.einsum("ij,ij->j", x, self.m @ x))
+            value = np.sort(
+                np.einsum("ij,ij->j", x, self.stiff(x)) / np.einsum("ij,ij->j", x, self.m @ x)
+            )
             value = value[skip : skip + n]
             if last is not None:
                 change = np.abs(value / last - 1).astype(float)
@@ -268,8 +324,16 @@ def judge(c: Case) -> Verdict:
     try:
         body = build(c.scene, c.fidelity, **c.options)
     except SolidgearError as error:
-        return Verdict(c.number, "not built", row={"number": c.number, "what": "not built", "why": str(error)})
-    row = {"number": c.number, "fidelity": c.fidelity, "unknowns": body.size, "L/D": c.scene.length / (2 * max(s.outer0 for s in c.scene.segments)), "bearings": len(c.scene.bearings)}
+        return Verdict(
+            c.number, "not built", row={"number": c.number, "what": "not built", "why": str(error)}
+        )
+    row = {
+        "number": c.number,
+        "fidelity": c.fidelity,
+        "unknowns": body.size,
+        "L/D": c.scene.length / (2 * max(s.outer0 for s in c.scene.segments)),
+        "bearings": len(c.scene.bearings),
+    }
     if body.size > DENSE:
         return Verdict(c.number, "too large", row=row | {"what": "too large"})
     n = c.ask["n"]
@@ -277,12 +341,23 @@ def judge(c: Case) -> Verdict:
         found = modes(body, c.scene, **c.ask, ovalising=False)
     except SolidgearError as error:
         return Verdict(c.number, "refused", row=row | {"what": "refused", "why": str(error)})
-    told = [(m.frequency_hz, m.error, m.name) for m in found.modes if m.frequency_hz > 0 for _ in range(m.multiplicity)]
+    told = [
+        (m.frequency_hz, m.error, m.name)
+        for m in found.modes
+        if m.frequency_hz > 0
+        for _ in range(m.multiplicity)
+    ]
     rigid = sum(m.frequency_hz == 0 for m in found.modes)
     dense = Dense(body, c.scene)
     value, change = dense.values(max(n, len(told)))
     exact = np.sqrt(np.maximum(value, 0.0)) / (2 * np.pi)
-    row |= {"n": n, "method": found.evidence["method"], "steps": found.evidence["steps"], "residual": found.evidence["residual"], "error": found.evidence["error"]}
+    row |= {
+        "n": n,
+        "method": found.evidence["method"],
+        "steps": found.evidence["steps"],
+        "residual": found.evidence["residual"],
+        "error": found.evidence["error"],
+    }
     verdict = Verdict(c.number, row=row)
     if rigid != dense.free:
         verdict.what = f"rigid motions: {rigid} told, {dense.free} there"
@@ -302,7 +377,11 @@ def judge(c: Case) -> Verdict:
             if off > mode.error + unknown or off > WRONG + unknown:
                 verdict.what = f"{mode.name} told {mode.frequency_hz:.9g} Hz, is {true:.9g}: {off:.1e} off, {mode.error:.1e} allowed"
                 break
-    verdict.row |= {"what": verdict.what, "worst": verdict.worst, "seconds": time.perf_counter() - start}
+    verdict.row |= {
+        "what": verdict.what,
+        "worst": verdict.worst,
+        "seconds": time.perf_counter() - start,
+    }
     return verdict
 
 
@@ -313,7 +392,9 @@ def attack(seed: int, numbers) -> list[Verdict]:
 
 def main() -> int:
     """Command line; exit code 1 if a mode was missed or wrong."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
     parser.add_argument("--runs", type=int, default=1000)
     parser.add_argument("--first", type=int, default=0)
     parser.add_argument("--seed", type=int, default=1)
@@ -326,11 +407,28 @@ def main() -> int:
             print(f"{number}: {verdict.what} {verdict.row.get('why', '')}", flush=True)
     words = {}
     for v in found:
-        kind = v.what if v.what in ("right", "too large", "not built", "refused") else "missed or wrong"
+        kind = (
+            v.what
+            if v.what in ("right", "too large", "not built", "refused")
+            else "missed or wrong"
+        )
         words[kind] = words.get(kind, 0) + 1
     right = [v.worst for v in found if v.what == "right"]
-    show("Modes against a dense solution", [{"seed": options.seed, **words, "median error": float(np.median(right)), "largest error": float(np.max(right))}])
-    write_rows(results_folder("attack") / f"modes_{options.seed}_{options.first}.csv", [v.row for v in found])
+    show(
+        "Modes against a dense solution",
+        [
+            {
+                "seed": options.seed,
+                **words,
+                "median error": float(np.median(right)),
+                "largest error": float(np.max(right)),
+            }
+        ],
+    )
+    write_rows(
+        results_folder("attack") / f"modes_{options.seed}_{options.first}.csv",
+        [v.row for v in found],
+    )
     return int("missed or wrong" in words)
 
 

@@ -15,7 +15,6 @@ from solidgear.comparison import compare
 from solidgear.evidence.quantities import QUANTITIES
 from solidgear.fidelity import build
 from solidgear.scene import Scene
-
 from validation.attack.reference import coupling_scale
 
 SOLIDS = ("harmonic", "solid")

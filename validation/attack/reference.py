@@ -32,7 +32,6 @@ from solidgear.scene import Ask, Scene
 from solidgear.solve.modes import modes
 from solidgear.solve.statics import condense
 from solidgear.whole_file import whole
-
 from validation.attack.corner_mesh import corner_mesh
 from validation.attack.spectral import spectral
 

@@ -17,7 +17,6 @@ import numpy as np
 
 from solidgear.errors import SceneError
 from solidgear.scene import Ask, Bearing, Material, Port, Scene, Segment
-
 from validation.attack.springs import random_springs
 
 MATERIALS = {
@@ -147,7 +146,7 @@ def _end_to_end(pieces: list[dict]) -> list[Segment]:
                 inner1=p["bore"] / 2,
                 part=p["part"],
                 **given,
-            )  # fmt: skip
+            )
         )
         y += length
     return out

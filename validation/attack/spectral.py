@@ -20,7 +20,6 @@ import scipy.sparse as sp
 from solidgear.body import Block, Body, Port
 from solidgear.fidelity.attachment import tie_rigidly
 from solidgear.scene import Scene
-
 from validation.attack.corner_mesh import CornerMesh
 
 #: local edges of a cell in the direction in which its nodes are counted

@@ -15,16 +15,31 @@ from pathlib import Path
 
 import numpy as np
 
-from peers.problem import Problem
-from peers.process import PeerError, last_words, run
 from solidgear.frames import cross_matrix
+from validation.peers.problem import Problem
+from validation.peers.process import PeerError, last_words, run
 
 # Local nodes in CalculiX's order by their reference coordinates (user's manual, the sections on C3D10 and C3D20): corners,
 # then edges.  They are looked up by position, so nothing is assumed about the numbering of the other side.
 _TET = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]], float)
-_HEX = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [0, 0, 1], [1, 0, 1], [1, 1, 1], [0, 1, 1]], float)
+_HEX = np.array(
+    [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [0, 0, 1], [1, 0, 1], [1, 1, 1], [0, 1, 1]], float
+)
 _TET_EDGES = ((0, 1), (1, 2), (2, 0), (0, 3), (1, 3), (2, 3))
-_HEX_EDGES = ((0, 1), (1, 2), (2, 3), (3, 0), (4, 5), (5, 6), (6, 7), (7, 4), (0, 4), (1, 5), (2, 6), (3, 7))
+_HEX_EDGES = (
+    (0, 1),
+    (1, 2),
+    (2, 3),
+    (3, 0),
+    (4, 5),
+    (5, 6),
+    (6, 7),
+    (7, 4),
+    (0, 4),
+    (1, 5),
+    (2, 6),
+    (3, 7),
+)
 _T10 = np.vstack([_TET, [_TET[[a, b]].mean(axis=0) for a, b in _TET_EDGES]])
 _H20 = np.vstack([_HEX, [_HEX[[a, b]].mean(axis=0) for a, b in _HEX_EDGES]])
 #: CalculiX's element type -> (our element, reference coordinates of its nodes)
@@ -56,10 +71,22 @@ class Answer:
 
 def present() -> str:
     """Empty if CalculiX can be run, else the reason why not."""
-    return "" if shutil.which("ccx") else "no program ccx on the path (Debian: apt-get install calculix-ccx)"
+    return (
+        ""
+        if shutil.which("ccx")
+        else "no program ccx on the path (Debian: apt-get install calculix-ccx)"
+    )
 
 
-def solve(problem: Problem, kind: str, *, modes: int = 0, loads: bool = False, limit: float = 900.0, threads: int | None = None) -> Answer:
+def solve(
+    problem: Problem,
+    kind: str,
+    *,
+    modes: int = 0,
+    loads: bool = False,
+    limit: float = 900.0,
+    threads: int | None = None,
+) -> Answer:
     """Run CalculiX in a folder of its own, which is gone afterwards.
 
     Parameters
@@ -121,7 +148,13 @@ def deck(problem: Problem, kind: str, *, modes: int = 0, loads: bool = False) ->
         for cell in cells[problem.material == m]:
             out += _wrapped([element, *cell])
             element += 1
-        out += [f"*MATERIAL, NAME=M{m}", "*ELASTIC", f"{young:.10e}, {poisson:.10e}", "*DENSITY", f"{density:.10e}"]
+        out += [
+            f"*MATERIAL, NAME=M{m}",
+            "*ELASTIC",
+            f"{young:.10e}, {poisson:.10e}",
+            "*DENSITY",
+            f"{density:.10e}",
+        ]
         out.append(f"*SOLID SECTION, ELSET=PART{m}, MATERIAL=M{m}")
     node = len(problem.nodes) + 1
     for seat in problem.seats:
@@ -134,7 +167,9 @@ def deck(problem: Problem, kind: str, *, modes: int = 0, loads: bool = False) ->
         out += ["*NSET, NSET=LOADED", *(f"{i + 1}" for i in at)]
         for force in problem.wrench:
             out += ["*STEP", "*STATIC", "*CLOAD, OP=NEW"]
-            out += [f"{i + 1}, {c + 1}, {force[i, c]:.12e}" for i in at for c in range(3) if force[i, c]]
+            out += [
+                f"{i + 1}, {c + 1}, {force[i, c]:.12e}" for i in at for c in range(3) if force[i, c]
+            ]
             out += ["*NODE PRINT, NSET=LOADED", "U", "*END STEP"]
     return "\n".join(out) + "\n"
 
@@ -151,8 +186,14 @@ def node_order(doflocs: np.ndarray, kind: str) -> np.ndarray:
 
 def frequencies(printed: str) -> np.ndarray:
     """Natural frequencies in the ``.dat`` file, Hz: mode number, eigenvalue, rad/s, Hz, imaginary part."""
-    found = re.search(r"E I G E N V A L U E   O U T P U T(.*?)(?:P A R T I C I P A T I O N|\Z)", printed, re.S)
-    rows = re.findall(r"^\s+\d+((?:\s+[-+]?\d\.\d+E[-+]\d+){4})\s*$", found.group(1), re.M) if found else []
+    found = re.search(
+        r"E I G E N V A L U E   O U T P U T(.*?)(?:P A R T I C I P A T I O N|\Z)", printed, re.S
+    )
+    rows = (
+        re.findall(r"^\s+\d+((?:\s+[-+]?\d\.\d+E[-+]\d+){4})\s*$", found.group(1), re.M)
+        if found
+        else []
+    )
     return np.array([float(row.split()[2]) for row in rows])
 
 
@@ -176,12 +217,18 @@ def _nodes(points, first: int) -> list[str]:
 def _wrapped(numbers, width: int = 12) -> list[str]:
     """Whole numbers over several lines; all but the last end in a comma, which tells CalculiX to read on."""
     rows = [numbers[i : i + width] for i in range(0, len(numbers), width)]
-    return [", ".join(str(x) for x in row) + ("," if k + 1 < len(rows) else "") for k, row in enumerate(rows)]
+    return [
+        ", ".join(str(x) for x in row) + ("," if k + 1 < len(rows) else "")
+        for k, row in enumerate(rows)
+    ]
 
 
 def _equation(terms) -> list[str]:
     """A linear equation whose left side is zero; the first term is the dependent one."""
-    rows = [", ".join(f"{node}, {c + 1}, {a:.12e}" for node, c, a in terms[i : i + 4]) for i in range(0, len(terms), 4)]
+    rows = [
+        ", ".join(f"{node}, {c + 1}, {a:.12e}" for node, c, a in terms[i : i + 4])
+        for i in range(0, len(terms), 4)
+    ]
     return ["*EQUATION", f"{len(terms)}", *rows]
 
 
@@ -197,7 +244,10 @@ def _seat(problem: Problem, seat, node: int, element: int):
             lever = cross_matrix(problem.nodes[i] - at)
             for c in range(3):
                 # u = d + th x r = d - [r] th
-                out += _equation([(i + 1, c, -1.0), (move, c, 1.0)] + [(turn, k, -lever[c, k]) for k in range(3) if lever[c, k]])
+                out += _equation(
+                    [(i + 1, c, -1.0), (move, c, 1.0)]
+                    + [(turn, k, -lever[c, k]) for k in range(3) if lever[c, k]]
+                )
     # The 6x6 as single springs: K = sum k_j l_j l_j', each on the motion q_j = l_j . d of a node of its own.
     for k, direction in _springs(seat.stiffness):
         if seat.mean is None:
@@ -205,7 +255,13 @@ def _seat(problem: Problem, seat, node: int, element: int):
         else:
             share = np.einsum("i,inc->nc", direction, seat.mean)
             parts = [(i + 1, c, share[i, c]) for i, c in np.argwhere(share)]
-        out += ["*NODE", *_nodes([at], node), *_equation([(node, 0, -1.0), *parts]), "*BOUNDARY", f"{node}, 2, 3"]
+        out += [
+            "*NODE",
+            *_nodes([at], node),
+            *_equation([(node, 0, -1.0), *parts]),
+            "*BOUNDARY",
+            f"{node}, 2, 3",
+        ]
         out += [f"*ELEMENT, TYPE=SPRING1, ELSET=SPRING{element}", f"{element}, {node}"]
         out += [f"*SPRING, ELSET=SPRING{element}", "1", f"{k:.12e}"]
         node, element = node + 1, element + 1

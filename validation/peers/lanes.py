@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from peers.process import PeerError
+from validation.peers.process import PeerError
 
 
 @dataclass
@@ -61,10 +61,24 @@ class Lane:
     def row(self) -> dict:
         """For the table."""
         t = self.times() or [float("nan")]
-        row = {"heat": self.heat, "lane": self.who, "unknowns": self.unknowns, "median s": statistics.median(t), "min s": min(t), "max s": max(t)}
-        row |= {"runs": len(self.samples), "cpu s": statistics.median([s.cpu for s in self.samples]) if self.samples else None}
+        row = {
+            "heat": self.heat,
+            "lane": self.who,
+            "unknowns": self.unknowns,
+            "median s": statistics.median(t),
+            "min s": min(t),
+            "max s": max(t),
+        }
+        row |= {
+            "runs": len(self.samples),
+            "cpu s": statistics.median([s.cpu for s in self.samples]) if self.samples else None,
+        }
         names = self.samples[0].stages if self.samples else {}
-        row |= {f"{name} s": statistics.median([s.stages[name] for s in self.samples]) for name in names if len(names) > 1}
+        row |= {
+            f"{name} s": statistics.median([s.stages[name] for s in self.samples])
+            for name in names
+            if len(names) > 1
+        }
         return row | {"note": self.error or self.note}
 
 
@@ -91,11 +105,20 @@ class Figure:
     def fastest(self) -> Lane:
         """The slow lane that counts; one that did not run only if none did."""
         lanes = self.slow if isinstance(self.slow, list) else [self.slow]
-        return min(lanes, key=lambda lane: statistics.median(lane.times()) if lane.samples else float("inf"))
+        return min(
+            lanes,
+            key=lambda lane: statistics.median(lane.times()) if lane.samples else float("inf"),
+        )
 
     def row(self) -> dict:
         """Ratio of medians, its spread over the rounds, and whether it met what was asked."""
-        row: dict = {"ratio": self.what, "asked": self.asked, "measured": None, "over rounds": "", "met": ""}
+        row: dict = {
+            "ratio": self.what,
+            "asked": self.asked,
+            "measured": None,
+            "over rounds": "",
+            "met": "",
+        }
         slow = self.fastest()
         if not slow.samples or not self.fast.samples:
             missing = self.fast if slow.samples else slow
@@ -114,7 +137,13 @@ def paired(frequency, multiplicity) -> np.ndarray:
     A mesh without symmetry splits a pair by its own error; our results give the pair, a peer gives both.
     """
     cuts = np.cumsum([0, *multiplicity])
-    return np.array([np.sqrt(np.mean(np.square(frequency[a:b]))) for a, b in zip(cuts, cuts[1:]) if b <= len(frequency)])
+    return np.array(
+        [
+            np.sqrt(np.mean(np.square(frequency[a:b])))
+            for a, b in zip(cuts, cuts[1:])
+            if b <= len(frequency)
+        ]
+    )
 
 
 def frequency_gap(frequency, modes) -> float:

@@ -73,9 +73,23 @@ def solve(scene, fidelity: str, options: dict, modes: int = 10, *, free: bool = 
     found = sg.modes(body, () if free else scene, n=modes)
     clock.append(time.perf_counter())
     build, factor, loads, shapes = (b - a for a, b in zip(clock, clock[1:]))
-    stages = {"mesh": build - assembly[0], "assembly": assembly[0], "factor": factor, "loads": loads, "modes": shapes}
+    stages = {
+        "mesh": build - assembly[0],
+        "assembly": assembly[0],
+        "factor": factor,
+        "loads": loads,
+        "modes": shapes,
+    }
     cpu = time.process_time() - cpu
-    return Run(stages, cpu, body.size, None if free else at_port.compliance, None if free else at_port.stiffness, found, body)
+    return Run(
+        stages,
+        cpu,
+        body.size,
+        None if free else at_port.compliance,
+        None if free else at_port.stiffness,
+        found,
+        body,
+    )
 
 
 def free(body, modes: int = 10):
@@ -110,17 +124,34 @@ def _assembly_seconds(fidelity: str):
         solid._matrices = plain
 
 
-def whole(path, attachment: str, fidelity: str, options: dict, modes: int = 10, *, limit: float = 900.0) -> tuple[dict, float]:
+def whole(
+    path, attachment: str, fidelity: str, options: dict, modes: int = 10, *, limit: float = 900.0
+) -> tuple[dict, float]:
     """Wall seconds (as the one stage) and processor seconds of a process that imports, loads the scene and solves it."""
     import tempfile
 
-    from peers.process import run
+    from validation.peers.process import run
 
     with tempfile.TemporaryDirectory(prefix="ours-") as name:
         job = Path(name) / "job.json"
-        job.write_text(json.dumps({"scene": str(path), "attachment": attachment, "fidelity": fidelity, "options": options, "modes": modes}))
+        job.write_text(
+            json.dumps(
+                {
+                    "scene": str(path),
+                    "attachment": attachment,
+                    "fidelity": fidelity,
+                    "options": options,
+                    "modes": modes,
+                }
+            )
+        )
         root = str(Path(__file__).resolve().parents[2])
-        seconds, cpu, _ = run([sys.executable, str(Path(__file__).resolve()), str(job)], Path(name), limit=limit, extra={"PYTHONPATH": root})
+        seconds, cpu, _ = run(
+            [sys.executable, str(Path(__file__).resolve()), str(job)],
+            Path(name),
+            limit=limit,
+            extra={"PYTHONPATH": root},
+        )
     return {"whole process": seconds}, cpu
 
 
@@ -129,8 +160,17 @@ def _child(path: str) -> None:
 
     pin()
     job = json.loads(Path(path).read_text())
-    done = solve(held(job["scene"], job["attachment"]), job["fidelity"], job["options"], job["modes"])
-    print(json.dumps({"compliance": done.compliance.tolist(), "frequency_hz": done.modes.frequency_hz.tolist()}))
+    done = solve(
+        held(job["scene"], job["attachment"]), job["fidelity"], job["options"], job["modes"]
+    )
+    print(
+        json.dumps(
+            {
+                "compliance": done.compliance.tolist(),
+                "frequency_hz": done.modes.frequency_hz.tolist(),
+            }
+        )
+    )
 
 
 if __name__ == "__main__":

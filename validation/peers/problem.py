@@ -91,8 +91,28 @@ def of(body, scene) -> Problem:
     seats = []
     for bearing in scene.bearings:
         at = mesh.facet_unknowns(mesh.seat(bearing, scene.segments, 1e-7 * scene.length))
-        seats.append(Seat(bearing.y, at, np.array(bearing.stiffness), None if bearing.attachment == "rigid" else mean(bearing)))
-    kinds = list(dict.fromkeys((s.material.E, s.material.nu, s.material.density) for s in scene.segments))
-    owner = np.array([kinds.index((s.material.E, s.material.nu, s.material.density)) for s in scene.segments])
+        seats.append(
+            Seat(
+                bearing.y,
+                at,
+                np.array(bearing.stiffness),
+                None if bearing.attachment == "rigid" else mean(bearing),
+            )
+        )
+    kinds = list(
+        dict.fromkeys((s.material.E, s.material.nu, s.material.density) for s in scene.segments)
+    )
+    owner = np.array(
+        [kinds.index((s.material.E, s.material.nu, s.material.density)) for s in scene.segments]
+    )
     place = np.asarray(mesh.element.doflocs)
-    return Problem(mesh.name, place, mesh.nodes.T, mesh.dofs.T, owner[mesh.segment], tuple(kinds), tuple(seats), mean(scene.port))
+    return Problem(
+        mesh.name,
+        place,
+        mesh.nodes.T,
+        mesh.dofs.T,
+        owner[mesh.segment],
+        tuple(kinds),
+        tuple(seats),
+        mean(scene.port),
+    )

@@ -19,7 +19,14 @@ def cores() -> int:
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
-def run(command: list[str], folder: Path, *, limit: float, threads: int | None = None, extra: dict[str, str] | None = None) -> tuple[float, float, str]:
+def run(
+    command: list[str],
+    folder: Path,
+    *,
+    limit: float,
+    threads: int | None = None,
+    extra: dict[str, str] | None = None,
+) -> tuple[float, float, str]:
     """Wall seconds, processor seconds and standard output of one whole process.
 
     Parameters
@@ -40,10 +47,24 @@ def run(command: list[str], folder: Path, *, limit: float, threads: int | None =
         If it ran out of time or returned a non-zero code.
     """
     count = str(threads or cores())
-    env = {**os.environ, "OMP_NUM_THREADS": count, "CCX_NPROC_EQUATION_SOLVER": count, "CCX_NPROC_STIFFNESS": count, "CCX_NPROC_RESULTS": count}
+    env = {
+        **os.environ,
+        "OMP_NUM_THREADS": count,
+        "CCX_NPROC_EQUATION_SOLVER": count,
+        "CCX_NPROC_STIFFNESS": count,
+        "CCX_NPROC_RESULTS": count,
+    }
     start, spent = time.perf_counter(), _children()
     # A session of its own, so that whatever it starts can be ended with it.
-    child = subprocess.Popen(command, cwd=folder, env={**env, **(extra or {})}, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, start_new_session=True)
+    child = subprocess.Popen(
+        command,
+        cwd=folder,
+        env={**env, **(extra or {})},
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        text=True,
+        start_new_session=True,
+    )
     try:
         out, _ = child.communicate(timeout=limit)
     except BaseException as error:

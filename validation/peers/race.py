@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from peers.lanes import Figure, Lane
-from peers.process import PeerError
+from validation.peers.lanes import Figure, Lane
+from validation.peers.process import PeerError
 
 
 @dataclass
@@ -57,20 +57,31 @@ class Race:
             If they differ by more than allowed: then times mean nothing.
         """
         good = bool(gap <= allowed)
-        self.checks[what] = {"answers compared": what, "largest difference": gap, "allowed": allowed, "agree": "yes" if good else "NO", "because": why}
+        self.checks[what] = {
+            "answers compared": what,
+            "largest difference": gap,
+            "allowed": allowed,
+            "agree": "yes" if good else "NO",
+            "because": why,
+        }
         if not good:
             raise PeerError(f"{what} differ from ours by {gap:.1e}, allowed is {allowed:g}")
 
     def run(self, rounds: int) -> None:
         """Every lane once a round."""
-        from common import write_rows
+        from validation.common import write_rows
 
         for k in range(rounds):
             for lane in self.lanes:
                 lane.run()
                 if lane.samples or lane.error:
-                    self.say(f"round {k + 1}: {lane.heat}, {lane.who}: " + (lane.error or f"{lane.times()[-1]:.3g} s"))
-                write_rows(self.folder / "rows.csv", [x.row() for x in self.lanes if x.samples or x.error])
+                    self.say(
+                        f"round {k + 1}: {lane.heat}, {lane.who}: "
+                        + (lane.error or f"{lane.times()[-1]:.3g} s")
+                    )
+                write_rows(
+                    self.folder / "rows.csv", [x.row() for x in self.lanes if x.samples or x.error]
+                )
 
     def finish(self, machine: dict, show, write_rows) -> None:
         """Tables, chart and sentences."""
@@ -81,31 +92,59 @@ class Race:
                 row["met"] = "quick run"
         self.say("\n".join(f"{k}: {v}" for k, v in machine.items()))
         narrow = ("heat", "lane", "unknowns", "median s", "min s", "max s", "runs", "cpu s", "note")
-        for name, table in (("answers", list(self.checks.values())), ("rows", rows), ("ratios", ratios)):
+        for name, table in (
+            ("answers", list(self.checks.values())),
+            ("rows", rows),
+            ("ratios", ratios),
+        ):
             if table:
-                show(name, [{k: v for k, v in row.items() if name != "rows" or k in narrow} for row in table])
+                show(
+                    name,
+                    [
+                        {k: v for k, v in row.items() if name != "rows" or k in narrow}
+                        for row in table
+                    ],
+                )
                 write_rows(self.folder / f"{name}.csv", table)
         text = self.sentences(ratios, machine)
         self.say("\n" + text)
         (self.folder / "summary.txt").write_text(text + "\n")
         if any(x.samples for x in self.lanes):
-            chart([x for x in self.lanes if x.samples], self.folder / "seconds.png", machine, self.quick)
+            chart(
+                [x for x in self.lanes if x.samples],
+                self.folder / "seconds.png",
+                machine,
+                self.quick,
+            )
 
     def sentences(self, ratios: list[dict], machine: dict) -> str:
         """What a reader should take home."""
-        out = [f"Measured in one interleaved run on {machine.get('cpu')}, {machine.get('cores')} cores, {machine.get('date')}."]
+        out = [
+            f"Measured in one interleaved run on {machine.get('cpu')}, {machine.get('cores')} cores, {machine.get('date')}."
+        ]
         if self.quick:
             out.append("This was a quick run on small meshes: its ratios say nothing about speed.")
         for check in self.checks.values():
-            out.append(f"{check['answers compared']}: {check['largest difference']:.1e} from ours, allowed {check['allowed']:g} ({check['because']}).")
+            out.append(
+                f"{check['answers compared']}: {check['largest difference']:.1e} from ours, allowed {check['allowed']:g} ({check['because']})."
+            )
         for figure, row in zip(self.figures, ratios):
             if row["measured"] is None:
                 out.append(f"{row['ratio']}: {row['met']}.")
                 continue
-            asked = "" if row["asked"] is None or self.quick else f"; asked {row['asked']:g}: {'met' if row['met'] == 'yes' else 'missed'}"
-            out.append(f"{row['ratio']}: {row['measured']:.3g} times, {row['over rounds']} over the rounds{asked}.")
+            asked = (
+                ""
+                if row["asked"] is None or self.quick
+                else f"; asked {row['asked']:g}: {'met' if row['met'] == 'yes' else 'missed'}"
+            )
+            out.append(
+                f"{row['ratio']}: {row['measured']:.3g} times, {row['over rounds']} over the rounds{asked}."
+            )
             if row["met"] == "NO":
-                out += [f"  why: {lane.who} spends {profile(lane)}." for lane in (figure.fast, figure.fastest())]
+                out += [
+                    f"  why: {lane.who} spends {profile(lane)}."
+                    for lane in (figure.fast, figure.fastest())
+                ]
         out += [f"Not raced: {text}." for text in self.skipped]
         out.append(
             "CalculiX is timed as a whole process with its deck given; ours within a running Python, as a workbench is used, where imports are "
@@ -135,14 +174,34 @@ def chart(lanes: list[Lane], path: Path, machine: dict, quick: bool) -> None:
         times = lane.times()
         middle = statistics.median(times)
         ours = "solidgear" in lane.who
-        axes.barh(k, middle, color=colour[lane.heat], alpha=1.0 if ours else 0.45, xerr=[[middle - min(times)], [max(times) - middle]], capsize=3)
-        axes.annotate(f"{middle:.3g} s", (max(times), k), (6, 0), textcoords="offset points", va="center", fontsize=8)
+        axes.barh(
+            k,
+            middle,
+            color=colour[lane.heat],
+            alpha=1.0 if ours else 0.45,
+            xerr=[[middle - min(times)], [max(times) - middle]],
+            capsize=3,
+        )
+        axes.annotate(
+            f"{middle:.3g} s",
+            (max(times), k),
+            (6, 0),
+            textcoords="offset points",
+            va="center",
+            fontsize=8,
+        )
     axes.set_yticks(range(len(lanes)), [f"{x.heat}: {x.who}" for x in lanes], fontsize=8)
     axes.invert_yaxis()
     axes.set_xscale("log")
     axes.margins(x=0.15)
     axes.grid(axis="x", alpha=0.3)
-    axes.set_xlabel(f"wall seconds, median of {len(lanes[0].samples)} interleaved runs, fastest to slowest" + (" (quick run)" if quick else ""))
-    axes.set_title(f"Full bars solidgear, pale bars peers; {machine.get('cpu')}, {machine.get('cores')} cores", fontsize=9)
+    axes.set_xlabel(
+        f"wall seconds, median of {len(lanes[0].samples)} interleaved runs, fastest to slowest"
+        + (" (quick run)" if quick else "")
+    )
+    axes.set_title(
+        f"Full bars solidgear, pale bars peers; {machine.get('cpu')}, {machine.get('cores')} cores",
+        fontsize=9,
+    )
     figure.savefig(path, dpi=130)
     plt.close(figure)

@@ -17,7 +17,11 @@ RUNS = 3
 
 def present() -> str:
     """Empty if ROSS can be run, else the reason why not."""
-    return "" if importlib.util.find_spec("ross") else "no package ross (pip install ross-rotordynamics)"
+    return (
+        ""
+        if importlib.util.find_spec("ross")
+        else "no package ross (pip install ross-rotordynamics)"
+    )
 
 
 def tiltless(scene):
@@ -49,9 +53,17 @@ def rotor(scene, body) -> dict:
         segment = next(s for s in scene.segments if s.y0 <= middle <= s.y1)
         radii = [segment.radius_at(min(max(y, segment.y0), segment.y1)) for y in (left, right)]
         material = segment.material
-        sides = [2 * x for radius in radii for x in radius]  # inner and outer diameter, left then right
+        sides = [
+            2 * x for radius in radii for x in radius
+        ]  # inner and outer diameter, left then right
         elements.append([right - left, *sides, material.E, material.nu, material.density])
-    bearings = [[min(range(len(nodes)), key=lambda i: abs(nodes[i] - b.y)), *(float(b.stiffness[c, c]) for c in range(3))] for b in scene.bearings]
+    bearings = [
+        [
+            min(range(len(nodes)), key=lambda i: abs(nodes[i] - b.y)),
+            *(float(b.stiffness[c, c]) for c in range(3)),
+        ]
+        for b in scene.bearings
+    ]
     return {"elements": elements, "bearings": bearings}
 
 
@@ -62,12 +74,14 @@ def solve(data: dict, *, limit: float = 300.0) -> dict:
     ------
     PeerError
     """
-    from peers.process import PeerError, last_words, run
+    from validation.peers.process import PeerError, last_words, run
 
     with tempfile.TemporaryDirectory(prefix="ross-") as name:
         folder = Path(name)
         (folder / "rotor.json").write_text(json.dumps(data))
-        whole, cpu, out = run([sys.executable, str(Path(__file__).resolve()), "rotor.json"], folder, limit=limit)
+        whole, cpu, out = run(
+            [sys.executable, str(Path(__file__).resolve()), "rotor.json"], folder, limit=limit
+        )
         if not (folder / "answer.json").exists():
             raise PeerError("ROSS gave no answer: " + last_words(out))
         return json.loads((folder / "answer.json").read_text()) | {"whole": whole, "cpu": cpu}
@@ -84,12 +98,30 @@ def _child(path: str) -> None:
         start = time.perf_counter()
         steels: dict[tuple, object] = {}
         elements = []
-        for n, (length, inner0, outer0, inner1, outer1, young, poisson, density) in enumerate(data["elements"]):
+        for n, (length, inner0, outer0, inner1, outer1, young, poisson, density) in enumerate(
+            data["elements"]
+        ):
             key = (young, poisson, density)
             if key not in steels:
-                steels[key] = ross.Material(name=f"M{len(steels)}", rho=density, E=young, Poisson=poisson)
-            elements.append(ross.ShaftElement(length, inner0, outer0, inner1, outer1, material=steels[key], n=n, shear_method_calc="cowper"))
-        bearings = [ross.BearingElement(n=n, kxx=kx, kyy=kz, kzz=ky, cxx=0.0) for n, kx, ky, kz in data["bearings"]]
+                steels[key] = ross.Material(
+                    name=f"M{len(steels)}", rho=density, E=young, Poisson=poisson
+                )
+            elements.append(
+                ross.ShaftElement(
+                    length,
+                    inner0,
+                    outer0,
+                    inner1,
+                    outer1,
+                    material=steels[key],
+                    n=n,
+                    shear_method_calc="cowper",
+                )
+            )
+        bearings = [
+            ross.BearingElement(n=n, kxx=kx, kyy=kz, kzz=ky, cxx=0.0)
+            for n, kx, ky, kz in data["bearings"]
+        ]
         rotor = ross.Rotor(elements, bearing_elements=bearings)
         found = rotor.run_modal(speed=0.0, num_modes=24)
         seconds.append(time.perf_counter() - start)

@@ -38,16 +38,48 @@ def straightened(body, scene):
     curved = body.geometry.mesh
     basis = Basis(MeshTet1(curved.p[:, : curved.t.max() + 1], curved.t), ElementTetP2(), intorder=4)
     material = scene.segments[0].material
-    mu, lame = material.E / (2 * (1 + material.nu)), material.E * material.nu / ((1 + material.nu) * (1 - 2 * material.nu))
-    gram = [[BilinearForm(lambda u, v, w, a=a, b=b: v.grad[a] * u.grad[b]).assemble(basis) for b in range(3)] for a in range(3)]
+    mu, lame = (
+        material.E / (2 * (1 + material.nu)),
+        material.E * material.nu / ((1 + material.nu) * (1 - 2 * material.nu)),
+    )
+    gram = [
+        [
+            BilinearForm(lambda u, v, w, a=a, b=b: v.grad[a] * u.grad[b]).assemble(basis)
+            for b in range(3)
+        ]
+        for a in range(3)
+    ]
     trace = sum(gram[a][a] for a in range(3))
-    k = sum(sp.kron(lame * gram[a][b] + mu * gram[b][a] + (mu * trace if a == b else 0 * trace), _unit(a, b)) for a in range(3) for b in range(3))
+    k = sum(
+        sp.kron(
+            lame * gram[a][b] + mu * gram[b][a] + (mu * trace if a == b else 0 * trace), _unit(a, b)
+        )
+        for a in range(3)
+        for b in range(3)
+    )
     m = sp.kron(material.density * BilinearForm(lambda u, v, w: u * v).assemble(basis), sp.eye(3))
     x, y, z = basis.doflocs
     zero, one = 0 * x, 0 * x + 1
-    fields = ((one, zero, zero), (zero, one, zero), (zero, zero, one), (zero, -z, y), (z, zero, -x), (-y, x, zero))
+    fields = (
+        (one, zero, zero),
+        (zero, one, zero),
+        (zero, zero, one),
+        (zero, -z, y),
+        (z, zero, -x),
+        (-y, x, zero),
+    )
     rigid = np.column_stack([np.column_stack(f).ravel() for f in fields])
-    block = Block("full", tuple(range(6)), k.tocsr(), m.tocsr(), rigid, np.repeat(y, 3), sp.csr_matrix((0, 3 * len(x))), None, False)
+    block = Block(
+        "full",
+        tuple(range(6)),
+        k.tocsr(),
+        m.tocsr(),
+        rigid,
+        np.repeat(y, 3),
+        sp.csr_matrix((0, 3 * len(x))),
+        None,
+        False,
+    )
     return replace(body, blocks=(block,), ports=(), geometry=None, memory={})
 
 
@@ -66,14 +98,25 @@ def solve(body, scene, modes: int, *, limit: float = 600.0) -> dict:
     """
     import numpy as np
 
-    from peers.process import PeerError, last_words, run
+    from validation.peers.process import PeerError, last_words, run
 
     mesh, material = body.geometry.mesh, scene.segments[0].material
     with tempfile.TemporaryDirectory(prefix="sfepy-") as name:
         folder = Path(name)
         count = mesh.t.max() + 1
-        np.savez(folder / "problem.npz", points=mesh.p[:, :count].T, cells=mesh.t.T, material=[material.E, material.nu, material.density])
-        command = [sys.executable, str(Path(__file__).resolve()), "problem.npz", repr(float(-1e-3 * body.scale)), str(modes)]
+        np.savez(
+            folder / "problem.npz",
+            points=mesh.p[:, :count].T,
+            cells=mesh.t.T,
+            material=[material.E, material.nu, material.density],
+        )
+        command = [
+            sys.executable,
+            str(Path(__file__).resolve()),
+            "problem.npz",
+            repr(float(-1e-3 * body.scale)),
+            str(modes),
+        ]
         whole, cpu, out = run(command, folder, limit=limit, extra={"OPENBLAS_NUM_THREADS": "1"})
         if not (folder / "answer.json").exists():
             raise PeerError("sfepy gave no answer: " + last_words(out))
@@ -94,13 +137,20 @@ def _child(path: str, shift: float, modes: int) -> None:
     young, poisson, density = data["material"]
     clock = [time.perf_counter()]
     cells = np.ascontiguousarray(data["cells"], np.int32)
-    mesh = Mesh.from_data("race", data["points"], None, [cells], [np.zeros(len(cells), np.int32)], ["3_4"])
+    mesh = Mesh.from_data(
+        "race", data["points"], None, [cells], [np.zeros(len(cells), np.int32)], ["3_4"]
+    )
     omega = FEDomain("domain", mesh).create_region("Omega", "all")
     field = Field.from_args("fu", np.float64, "vector", omega, approx_order=2)
-    u, v = FieldVariable("u", "unknown", field), FieldVariable("v", "test", field, primary_var_name="u")
+    u, v = (
+        FieldVariable("u", "unknown", field),
+        FieldVariable("v", "test", field, primary_var_name="u"),
+    )
     steel = Material("m", D=stiffness_from_youngpoisson(3, young, poisson), rho=density)
     integral = Integral("i", order=4)
-    stiff = Equation("stiffness", Term.new("dw_lin_elastic(m.D, v, u)", integral, omega, m=steel, v=v, u=u))
+    stiff = Equation(
+        "stiffness", Term.new("dw_lin_elastic(m.D, v, u)", integral, omega, m=steel, v=v, u=u)
+    )
     heavy = Equation("mass", Term.new("dw_dot(m.rho, v, u)", integral, omega, m=steel, v=v, u=u))
     problem = Problem("modal", equations=Equations([stiff, heavy]))
     problem.time_update()
@@ -110,11 +160,23 @@ def _child(path: str, shift: float, modes: int) -> None:
     m.data[:] = 0.0
     m = heavy.evaluate(mode="weak", dw_mode="matrix", asm_obj=m)
     clock.append(time.perf_counter())
-    settings = Struct(name="eigs", kind="eig.scipy", method="eigsh", tol=1e-10, maxiter=1000, which="LM", sigma=shift)
+    settings = Struct(
+        name="eigs",
+        kind="eig.scipy",
+        method="eigsh",
+        tol=1e-10,
+        maxiter=1000,
+        which="LM",
+        sigma=shift,
+    )
     value, _ = Solver.any_from_conf(settings)(k, m, modes + 6, eigenvectors=True)
     clock.append(time.perf_counter())
     frequency = np.sqrt(np.sort(value)[6:].clip(min=0.0)) / (2 * np.pi)
-    answer = {"seconds": {"assembly": clock[1] - clock[0], "modes": clock[2] - clock[1]}, "frequency_hz": frequency.tolist(), "unknowns": k.shape[0]}
+    answer = {
+        "seconds": {"assembly": clock[1] - clock[0], "modes": clock[2] - clock[1]},
+        "frequency_hz": frequency.tolist(),
+        "unknowns": k.shape[0],
+    }
     Path("answer.json").write_text(json.dumps(answer | {"version": sfepy.__version__}))
 
 

@@ -1,6 +1,6 @@
 """Run every script of this folder and write one report: method, edge measured, what the program does about it.
 
-    python validation/stability [--quick] [--only NAME ...]
+python -m validation.stability [--quick] [--only NAME ...]
 """
 
 from __future__ import annotations
@@ -10,15 +10,13 @@ import importlib
 import sys
 import time
 import traceback
-from pathlib import Path
 
-sys.path.insert(0, str(Path(__file__).resolve().parent))
+from validation.common import results_folder
+from validation.stability.frame import FOLDER, ROOT, findings, publish
 
-from frame import FOLDER, ROOT, findings, publish  # noqa: E402
-
-from common import results_folder  # noqa: E402
-
-SCRIPTS = sorted(p.stem for p in FOLDER.glob("*.py") if p.stem not in ("frame", "__main__"))
+SCRIPTS = sorted(
+    p.stem for p in FOLDER.glob("*.py") if not p.stem.startswith("_") and p.stem != "frame"
+)
 
 
 def run(names, quick: bool = False):
@@ -27,7 +25,7 @@ def run(names, quick: bool = False):
     for name in names:
         start = time.perf_counter()
         try:
-            script = importlib.import_module(name)
+            script = importlib.import_module(f"validation.stability.{name}")
             done[name] = findings(script.measure(quick=quick))
             for finding in done[name]:
                 publish(finding, getattr(script, "draw", None))
@@ -35,15 +33,26 @@ def run(names, quick: bool = False):
             done.pop(name, None)
             failed[name] = f"{type(error).__name__}: {error}"
             traceback.print_exc()
-        print(f"{name:28s} {'failed' if name in failed else 'done':7s} {time.perf_counter() - start:6.1f} s", flush=True)
+        print(
+            f"{name:28s} {'failed' if name in failed else 'done':7s} {time.perf_counter() - start:6.1f} s",
+            flush=True,
+        )
     return done, failed
 
 
 def report(done, failed) -> str:
     """The whole table and every finding, as Markdown."""
     whole = [f for name in sorted(done) for f in done[name]]
-    lines = ["# Where methods fail", "", "| method | edge measured | what the program does |", "| --- | --- | --- |"]
-    lines += [f"| [{_cell(f.method)}](#{f.name.replace('_', '-')}) | {_cell(f.edge)} | {_cell(f.program)} |" for f in whole]
+    lines = [
+        "# Where methods fail",
+        "",
+        "| method | edge measured | what the program does |",
+        "| --- | --- | --- |",
+    ]
+    lines += [
+        f"| [{_cell(f.method)}](#{f.name.replace('_', '-')}) | {_cell(f.edge)} | {_cell(f.program)} |"
+        for f in whole
+    ]
     lines += ["", *(f"- `{name}` could not be measured: {why}" for name, why in failed.items()), ""]
     for f in whole:
         heading = f.name.replace("_", "-")
@@ -59,9 +68,18 @@ def _cell(text: str) -> str:
 
 def main() -> int:
     """Command line; the exit code is 1 if any script failed."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
     parser.add_argument("--quick", action="store_true", help="fewer and coarser points")
-    parser.add_argument("--only", nargs="+", choices=SCRIPTS, default=SCRIPTS, metavar="NAME", help="of " + ", ".join(SCRIPTS))
+    parser.add_argument(
+        "--only",
+        nargs="+",
+        choices=SCRIPTS,
+        default=SCRIPTS,
+        metavar="NAME",
+        help="of " + ", ".join(SCRIPTS),
+    )
     options = parser.parse_args()
     done, failed = run(options.only, options.quick)
     target = results_folder("stability") / "report.md"

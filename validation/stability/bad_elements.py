@@ -3,24 +3,23 @@
 Cases: a sliver (a vertex pushed towards the opposite face), a mid-edge node slid along its edge until det J turns negative at a corner and then at Gauss points,
 and two elements whose det J is positive at all their nodes and Gauss points and negative in between.
 
-    python validation/stability/bad_elements.py [--quick]
+    python -m validation.stability.bad_elements [--quick]
 """
 
 from __future__ import annotations
 
 from dataclasses import replace
 
-from frame import Finding, main
+import numpy as np
+import scipy.sparse.linalg as spla
+from skfem import MeshHex, MeshHex2, MeshTet, MeshTet2
 
-import numpy as np  # noqa: E402
-import scipy.sparse.linalg as spla  # noqa: E402
-from skfem import MeshHex, MeshHex2, MeshTet, MeshTet2  # noqa: E402
-
-import solidgear as sg  # noqa: E402
-from solidgear.fidelity.assembly import tabulate  # noqa: E402
-from solidgear.fidelity.solid import _cell_rule, _isoparametric, _matrices  # noqa: E402
-from solidgear.meshing.quality import MeshError, check_mesh, element_ratios  # noqa: E402
-from solidgear.scene import Scene, Segment  # noqa: E402
+import solidgear as sg
+from solidgear.fidelity.assembly import tabulate
+from solidgear.fidelity.solid import _cell_rule, _isoparametric, _matrices
+from solidgear.meshing.quality import MeshError, check_mesh, element_ratios
+from solidgear.scene import Scene, Segment
+from validation.stability.frame import Finding, main
 
 HEIGHTS = (1.0, 1e-1, 1e-2, 1e-3, 1e-4, 1e-6)
 SLIDES = (0.5, 0.35, 0.26, 0.24, 0.2, 0.15, 0.1)
@@ -34,20 +33,36 @@ def good_mesh():
 
 def least_at_gauss_points(mesh, name: str) -> float:
     """Least det J at the points the stiffness is integrated at, relative to the greatest in the same element."""
-    det = tabulate(mesh.elem(), mesh.doflocs[:, mesh.dofs.element_dofs], mesh.elem(), _cell_rule(name)[0]).det
+    det = tabulate(
+        mesh.elem(), mesh.doflocs[:, mesh.dofs.element_dofs], mesh.elem(), _cell_rule(name)[0]
+    ).det
     return float((det.min(axis=1) / det.max(axis=1)).min())
 
 
 def spoilt(scene, geometry, mesh) -> dict:
     """What the matrices, the frequencies and the gate say to a mesh."""
-    row = {"least det J": float(element_ratios(mesh).min()), "least at Gauss points": least_at_gauss_points(mesh, "tet10")}
+    row = {
+        "least det J": float(element_ratios(mesh).min()),
+        "least at Gauss points": least_at_gauss_points(mesh, "tet10"),
+    }
     with np.errstate(invalid="ignore"):
         k, m = _matrices(_isoparametric(mesh, "tet10", geometry.segment), scene)
     k, m = k.tocsr(), m.tocsr()
     if np.isfinite(k.data).all():
-        row["greatest eigenvalue"] = float(spla.eigsh(k, 1, m, tol=1e-3, return_eigenvectors=False, v0=np.ones(k.shape[0]))[0])
+        row["greatest eigenvalue"] = float(
+            spla.eigsh(k, 1, m, tol=1e-3, return_eigenvectors=False, v0=np.ones(k.shape[0]))[0]
+        )
         row["trace of K"] = float(k.diagonal().sum())
-        row["first bending, Hz"] = float(np.sqrt(np.sort(spla.eigsh(k, 8, m, sigma=-1e6, return_eigenvectors=False, v0=np.ones(k.shape[0])))[6]) / (2 * np.pi))
+        row["first bending, Hz"] = float(
+            np.sqrt(
+                np.sort(
+                    spla.eigsh(
+                        k, 8, m, sigma=-1e6, return_eigenvectors=False, v0=np.ones(k.shape[0])
+                    )
+                )[6]
+            )
+            / (2 * np.pi)
+        )
     else:
         row["stiffness"] = "not a number"
     try:
@@ -109,14 +124,28 @@ def measure(quick: bool = False) -> Finding:
     rows = []
     vertex, element = inner_vertex(mesh)
     for height in HEIGHTS[::2] if quick else HEIGHTS:
-        rows.append({"case": "sliver", "amount": height} | spoilt(scene, geometry, flattened(mesh, vertex, element, height)))
+        rows.append(
+            {"case": "sliver", "amount": height}
+            | spoilt(scene, geometry, flattened(mesh, vertex, element, height))
+        )
     inner = np.setdiff1d(np.arange(mesh.edges.shape[1]), mesh.boundary_edges())
     edge = int(inner[len(inner) // 2])
     for place in SLIDES[::2] if quick else SLIDES:
-        rows.append({"case": "mid node", "amount": place} | spoilt(scene, geometry, slid(mesh, edge, place)))
+        rows.append(
+            {"case": "mid node", "amount": place} | spoilt(scene, geometry, slid(mesh, edge, place))
+        )
     for name, one in negative_between().items():
-        nodes = tabulate(one.elem(), one.doflocs[:, one.dofs.element_dofs], one.elem(), one.elem().doflocs.T).det
-        rows.append({"case": f"between, {name}", "least at nodes": nodes.min() / nodes.max(), "least at Gauss points": least_at_gauss_points(one, name), "least det J": float(element_ratios(one)[0])})
+        nodes = tabulate(
+            one.elem(), one.doflocs[:, one.dofs.element_dofs], one.elem(), one.elem().doflocs.T
+        ).det
+        rows.append(
+            {
+                "case": f"between, {name}",
+                "least at nodes": nodes.min() / nodes.max(),
+                "least at Gauss points": least_at_gauss_points(one, name),
+                "least det J": float(element_ratios(one)[0]),
+            }
+        )
         rows[-1]["gate"] = "inverted" if _refused(one) else "passes"
     sliver = [r for r in rows if r["case"] == "sliver"]
     worst = sliver[-1]
@@ -153,10 +182,28 @@ def draw(finding: Finding, axes) -> None:
     """Growth of the greatest eigenvalue and change of first bending with the height of the sliver."""
     rows = [r for r in finding.rows if r["case"] == "sliver"]
     at, base = [r["amount"] for r in rows], rows[0]
-    axes.loglog(at, [r["greatest eigenvalue"] / base["greatest eigenvalue"] for r in rows], "o-", color="#c4541c", lw=1.3, label="greatest eigenvalue, times that of the good mesh")
-    axes.loglog(at[1:], [abs(r["first bending, Hz"] / base["first bending, Hz"] - 1) for r in rows[1:]], "s-", color="#0072b2", lw=1.3, label="change of first bending")
+    axes.loglog(
+        at,
+        [r["greatest eigenvalue"] / base["greatest eigenvalue"] for r in rows],
+        "o-",
+        color="#c4541c",
+        lw=1.3,
+        label="greatest eigenvalue, times that of the good mesh",
+    )
+    axes.loglog(
+        at[1:],
+        [abs(r["first bending, Hz"] / base["first bending, Hz"] - 1) for r in rows[1:]],
+        "s-",
+        color="#0072b2",
+        lw=1.3,
+        label="change of first bending",
+    )
     axes.invert_xaxis()
-    axes.set(xlabel="height of the sliver, part of the good element's", ylabel="factor, relative change", title="One sliver in a mesh of a shaft")
+    axes.set(
+        xlabel="height of the sliver, part of the good element's",
+        ylabel="factor, relative change",
+        title="One sliver in a mesh of a shaft",
+    )
     axes.legend()
 
 

@@ -3,22 +3,21 @@ initial-parameter solution (krylov) for the first frequency.
 
 Models: an Euler beam of 10 and of 160 elements; its springs by the Woodbury identity and inertia relief (the program), and added to the stiffness matrix, K + G'KbG (naive).
 
-    python validation/stability/bearing_extremes.py [--quick]
+    python -m validation.stability.bearing_extremes [--quick]
 """
 
 from __future__ import annotations
 
-from frame import Finding, crossing, main
+import numpy as np
+import scipy.linalg as sla
+import scipy.sparse as sp
+import scipy.sparse.linalg as spla
 
-import numpy as np  # noqa: E402
-import scipy.linalg as sla  # noqa: E402
-import scipy.sparse as sp  # noqa: E402
-import scipy.sparse.linalg as spla  # noqa: E402
-
-import solidgear as sg  # noqa: E402
-from solidgear.body import Supports  # noqa: E402
-from solidgear.fidelity.krylov import from_scene, krylov  # noqa: E402
-from solidgear.scene import STEEL, Bearing, Port, Scene, Segment  # noqa: E402
+import solidgear as sg
+from solidgear.body import Supports
+from solidgear.fidelity.krylov import from_scene, krylov
+from solidgear.scene import STEEL, Bearing, Port, Scene, Segment
+from validation.stability.frame import Finding, crossing, main
 
 LENGTH, DIAMETER, AT = 0.4, 0.06, (0.1, 0.35)
 ELEMENTS = (10, 160)
@@ -26,9 +25,20 @@ ELEMENTS = (10, 160)
 
 def shaft(k: float) -> Scene:
     """Lumped point at the free end, radial and axial springs behind it."""
-    bearings = [Bearing(name=str(i + 1), y=y, seat_width=0.02, matrix=np.diag([k, k, k, 0, 0, 0]), attachment="section") for i, y in enumerate(AT)]
+    bearings = [
+        Bearing(
+            name=str(i + 1),
+            y=y,
+            seat_width=0.02,
+            matrix=np.diag([k, k, k, 0, 0, 0]),
+            attachment="section",
+        )
+        for i, y in enumerate(AT)
+    ]
     port = Port(name="end", y=0.0, lo=0.0, hi=0.02, attachment="section")
-    return Scene.from_parts([Segment.cylinder("shaft", length=LENGTH, diameter=DIAMETER)], bearings=bearings, port=port)
+    return Scene.from_parts(
+        [Segment.cylinder("shaft", length=LENGTH, diameter=DIAMETER)], bearings=bearings, port=port
+    )
 
 
 def exact_compliance(k: float) -> float:
@@ -67,7 +77,12 @@ def naive_compliance(body, supports, port: str) -> float:
 
 def naive_first(body, supports, number: int = 0) -> float:
     """Eigenvalue of the assembled matrices by a dense symmetric solver, as a frequency; negative ones stay negative."""
-    value = sla.eigh(assembled(body, supports).toarray(), block_of(body).mass.tocsr().toarray(), eigvals_only=True, subset_by_index=(number, number))[0]
+    value = sla.eigh(
+        assembled(body, supports).toarray(),
+        block_of(body).mass.tocsr().toarray(),
+        eigvals_only=True,
+        subset_by_index=(number, number),
+    )[0]
     return float(np.sign(value) * np.sqrt(abs(value)) / (2 * np.pi))
 
 
@@ -89,20 +104,48 @@ def measure(quick: bool = False) -> Finding:
         body = sg.build(shaft(1.0), "euler", rotary_inertia=False, elements=elements)
         for k in (1e-3, 1.0, 1e6, 1e12, 1e18, 1e24) if quick else 10.0 ** np.arange(-3, 25):
             supports = sg.body.as_supports(shaft(k))
-            compliance, first = exact_compliance(k), krylov(*from_scene(shaft(k)), n=1).frequency_hz[0]
+            compliance, first = (
+                exact_compliance(k),
+                krylov(*from_scene(shaft(k)), n=1).frequency_hz[0],
+            )
             here = sg.condense(body, supports, port="end").compliance[2, 2]
             found = sg.modes(body, supports, n=4)
             mine = next(m.frequency_hz for m in found.modes if m.family == "bending")
-            row = {"elements": elements, "k N/m": float(k), "C_zz program": abs(here / compliance - 1), "C_zz naive": abs(naive_compliance(body, supports, "end") / compliance - 1)}
+            row = {
+                "elements": elements,
+                "k N/m": float(k),
+                "C_zz program": abs(here / compliance - 1),
+                "C_zz naive": abs(naive_compliance(body, supports, "end") / compliance - 1),
+            }
             # The beam's own error against the exact frequency is in both columns; it is below 1e-4 for ten elements.
-            row |= {"f1 program": abs(mine / first - 1), "f1 naive": abs(naive_first(body, supports) / first - 1), "f1 residual told": found.evidence["residual"]}
+            row |= {
+                "f1 program": abs(mine / first - 1),
+                "f1 naive": abs(naive_first(body, supports) / first - 1),
+                "f1 residual told": found.evidence["residual"],
+            }
             rows.append(row | {"rounding / lambda_1": rounding_over_first(body, supports, first)})
-        free = sg.condense(body, sg.body.as_supports([b.with_changes(matrix=np.zeros((6, 6))) for b in shaft(1.0).bearings]), port="end")
+        free = sg.condense(
+            body,
+            sg.body.as_supports(
+                [b.with_changes(matrix=np.zeros((6, 6))) for b in shaft(1.0).bearings]
+            ),
+            port="end",
+        )
         none = Supports(("1", "2"), np.zeros((12, 12)))
-        rows.append({"elements": elements, "k N/m": 0.0, "C_zz program": float(np.abs(free.stiffness).max()), "C_zz naive": naive_compliance(body, none, "end")})
+        rows.append(
+            {
+                "elements": elements,
+                "k N/m": 0.0,
+                "C_zz program": float(np.abs(free.stiffness).max()),
+                "C_zz naive": naive_compliance(body, none, "end"),
+            }
+        )
     fine = [r for r in rows if r["elements"] == ELEMENTS[1] and r["k N/m"] > 0]
     k = np.array([r["k N/m"] for r in fine])
-    soft = {name: crossing(k[k < 1e12], [r[name] for r in fine if r["k N/m"] < 1e12], 0.01) for name in ("C_zz naive", "f1 naive")}
+    soft = {
+        name: crossing(k[k < 1e12], [r[name] for r in fine if r["k N/m"] < 1e12], 0.01)
+        for name in ("C_zz naive", "f1 naive")
+    }
     stiff = crossing(k[k >= 1e12], [r["f1 naive"] for r in fine if r["k N/m"] >= 1e12], 0.01)
     worst = {name: max(fine, key=lambda r: r[name]) for name in ("C_zz program", "f1 program")}
     zero = [r for r in rows if r["k N/m"] == 0]
@@ -123,9 +166,22 @@ def draw(finding: Finding, axes) -> None:
     """Errors of the compliance over stiffness."""
     for elements, line in zip(ELEMENTS, (":", "-")):
         rows = [r for r in finding.rows if r["elements"] == elements and r["k N/m"] > 0]
-        for name, colour, marker in (("C_zz naive", "#c4541c", "o"), ("f1 naive", "#e0a030", "D"), ("C_zz program", "#0072b2", "s"), ("f1 program", "#00805e", "^")):
+        for name, colour, marker in (
+            ("C_zz naive", "#c4541c", "o"),
+            ("f1 naive", "#e0a030", "D"),
+            ("C_zz program", "#0072b2", "s"),
+            ("f1 program", "#00805e", "^"),
+        ):
             values = [np.clip(np.nan_to_num(r[name], nan=1e3), 1e-17, 1e3) for r in rows]
-            axes.loglog([r["k N/m"] for r in rows], values, marker + line, color=colour, ms=4, lw=1.2, label=f"{name}, {elements} elements")
+            axes.loglog(
+                [r["k N/m"] for r in rows],
+                values,
+                marker + line,
+                color=colour,
+                ms=4,
+                lw=1.2,
+                label=f"{name}, {elements} elements",
+            )
     axes.axhline(0.01, color="#aa2222", lw=0.8, ls="--")
     axes.set(xlabel="bearing stiffness, N/m", ylabel="relative error", title=finding.method)
     axes.legend(fontsize=7, ncols=2)

@@ -3,33 +3,44 @@ Reference: all eigenpairs of the same matrices by a dense solution.
 
 Models: `modes` with every count from 1 up on the Timoshenko beam, the harmonic and the 3D solid; textbook shift-invert from one start vector beside it.
 
-    python validation/stability/clusters.py [--quick]
+    python -m validation.stability.clusters [--quick]
 """
 
 from __future__ import annotations
 
-from frame import Finding, main
+import numpy as np
+import scipy.linalg as sla
 
-import numpy as np  # noqa: E402
-import scipy.linalg as sla  # noqa: E402
-
-import solidgear as sg  # noqa: E402
-from free_body_shift import shift_invert  # noqa: E402
-from shift_on_eigenvalue import supported  # noqa: E402
-from solidgear.body import Supports  # noqa: E402
-from solidgear.evidence.correlate import subspace_mac  # noqa: E402
-from solidgear.scene import Bearing, Port, Scene, Segment  # noqa: E402
+import solidgear as sg
+from solidgear.body import Supports
+from solidgear.evidence.correlate import subspace_mac
+from solidgear.scene import Bearing, Port, Scene, Segment
+from validation.stability.frame import Finding, main
+from validation.stability.free_body_shift import shift_invert
+from validation.stability.shift_on_eigenvalue import supported
 
 BODIES = {
     "timoshenko": ("timoshenko", {"elements": 40}),
     "harmonic": ("harmonic", {"order": 2, "layers": 0, "edge_layers": 0}),
-    "hex8": ("solid", {"element": "hex8", "layers": 0, "edge_layers": 0, "radial_layers": 0, "around": 8, "refinement": 0.5}),
+    "hex8": (
+        "solid",
+        {
+            "element": "hex8",
+            "layers": 0,
+            "edge_layers": 0,
+            "radial_layers": 0,
+            "around": 8,
+            "refinement": 0.5,
+        },
+    ),
 }
 COUNTS = (1, 3, 5, 7, 9)
 FEW = (1, 9)
 MOST = 12
 LENGTH, HEAD = 0.6, 0.05
-SPRING = np.diag([1e9, 1e9, 1e9, 1e6, 1e6, 1e6])  # stiffer ones would cost the dense reference its digits
+SPRING = np.diag(
+    [1e9, 1e9, 1e9, 1e6, 1e6, 1e6]
+)  # stiffer ones would cost the dense reference its digits
 
 
 def dumbbell() -> Scene:
@@ -40,13 +51,26 @@ def dumbbell() -> Scene:
         Segment.cylinder("shaft", length=thin, diameter=0.04, y0=HEAD),
         Segment.cylinder("right", length=HEAD, diameter=0.12, y0=HEAD + thin),
     ]
-    bearings = [Bearing(name=str(i), y=LENGTH / 2 + 0.05 * i, seat_width=0.02, matrix=SPRING, attachment="section") for i in range(-4, 5)]
-    return Scene.from_parts(segments, bearings=bearings, port=Port(name="end", y=HEAD / 2, lo=0.0, hi=HEAD))
+    bearings = [
+        Bearing(
+            name=str(i),
+            y=LENGTH / 2 + 0.05 * i,
+            seat_width=0.02,
+            matrix=SPRING,
+            attachment="section",
+        )
+        for i in range(-4, 5)
+    ]
+    return Scene.from_parts(
+        segments, bearings=bearings, port=Port(name="end", y=HEAD / 2, lo=0.0, hi=HEAD)
+    )
 
 
 def held_by(count: int) -> Supports:
     """The innermost bearings only."""
-    return Supports(tuple(str(i) for i in range(-(count // 2), count // 2 + 1)), np.kron(np.eye(count), SPRING))
+    return Supports(
+        tuple(str(i) for i in range(-(count // 2), count // 2 + 1)), np.kron(np.eye(count), SPRING)
+    )
 
 
 def dense(body, supports):
@@ -60,20 +84,30 @@ def stacked(body, mode) -> np.ndarray:
     """Shapes of a mode as columns over all blocks."""
     out = []
     for vectors in mode.vectors:
-        out.append(np.concatenate([vectors.get(b, np.zeros(block.size)) for b, block in enumerate(body.blocks)]))
+        out.append(
+            np.concatenate(
+                [vectors.get(b, np.zeros(block.size)) for b, block in enumerate(body.blocks)]
+            )
+        )
     return np.array(out)
 
 
 def held(body, supports, exact, u, m, n: int) -> dict:
     """One call of `modes` against the dense solution: shapes, pairs cut, frequencies off, and the subspace MAC of every cluster."""
     found = [x for x in sg.modes(body, supports, n=n).modes if x.frequency_hz > 0]
-    values = np.repeat([(2 * np.pi * x.frequency_hz) ** 2 for x in found], [x.multiplicity for x in found])
+    values = np.repeat(
+        [(2 * np.pi * x.frequency_hz) ** 2 for x in found], [x.multiplicity for x in found]
+    )
     zeros = int((exact < 1e-9 * exact[-1]).sum())
     want = exact[zeros : zeros + len(values)]
     shapes = np.vstack([stacked(body, x) for x in found])
     # Clusters of the dense solution, cut where the next eigenvalue is 1e-5 away; one that reaches past the last shape asked for is left out.
     mac, start = 1.0, 0
-    edges = [i for i in range(1, len(exact) - zeros) if exact[zeros + i] / exact[zeros + i - 1] - 1 > 1e-5]
+    edges = [
+        i
+        for i in range(1, len(exact) - zeros)
+        if exact[zeros + i] / exact[zeros + i - 1] - 1 > 1e-5
+    ]
     for end in edges:
         if end > len(values):
             break
@@ -81,7 +115,12 @@ def held(body, supports, exact, u, m, n: int) -> dict:
         start = end
     # An axisymmetric shaft has all its bending in pairs: a single bending mode is half of one.
     cut = sum(x.family == "bending" and x.multiplicity != 2 for x in found)
-    return {"shapes": len(values), "worst eigenvalue": float(np.abs(values / want - 1).max()), "1 - subspace MAC": 1 - mac, "pairs cut": cut}
+    return {
+        "shapes": len(values),
+        "worst eigenvalue": float(np.abs(values / want - 1).max()),
+        "1 - subspace MAC": 1 - mac,
+        "pairs cut": cut,
+    }
 
 
 def naive_lost(k, m, exact, n: int) -> int:
@@ -111,10 +150,19 @@ def measure(quick: bool = False) -> Finding:
             supports = held_by(count)
             exact, u, m = dense(body, supports)
             whole_k, whole_m = supported(body, supports)
-            bending = [x.frequency_hz for x in sg.modes(body, supports, n=MOST).modes if x.family == "bending" and x.frequency_hz > 0]
+            bending = [
+                x.frequency_hz
+                for x in sg.modes(body, supports, n=MOST).modes
+                if x.family == "bending" and x.frequency_hz > 0
+            ]
             gap = float((np.diff(bending) / bending[:-1]).min())
             for n in (1, 3, 6) if quick else range(1, MOST + 1):
-                row = {"body": name, "bearings": count, "nearest pairs apart": gap, "asked": n} | held(body, supports, exact, u, m, n)
+                row = {
+                    "body": name,
+                    "bearings": count,
+                    "nearest pairs apart": gap,
+                    "asked": n,
+                } | held(body, supports, exact, u, m, n)
                 rows.append(row | {"one vector lost": naive_lost(whole_k, whole_m, exact, n)})
     short = [r for r in rows if r["shapes"] < r["asked"]]
     return Finding(
@@ -135,11 +183,38 @@ def draw(finding: Finding, axes) -> None:
     for name, colour, marker in zip(BODIES, ("#0072b2", "#c4541c", "#00805e"), "osD"):
         rows = [r for r in finding.rows if r["body"] == name]
         at = [max(r["nearest pairs apart"], 1e-16) for r in rows]
-        axes.loglog(at, [max(r["worst eigenvalue"], 1e-17) for r in rows], marker, color=colour, ms=5, label=f"{name}: eigenvalue")
-        axes.loglog(at, [max(r["1 - subspace MAC"], 1e-17) for r in rows], marker, color=colour, ms=5, mfc="none", label=f"{name}: 1 - subspace MAC")
+        axes.loglog(
+            at,
+            [max(r["worst eigenvalue"], 1e-17) for r in rows],
+            marker,
+            color=colour,
+            ms=5,
+            label=f"{name}: eigenvalue",
+        )
+        axes.loglog(
+            at,
+            [max(r["1 - subspace MAC"], 1e-17) for r in rows],
+            marker,
+            color=colour,
+            ms=5,
+            mfc="none",
+            label=f"{name}: 1 - subspace MAC",
+        )
     lost = [r for r in finding.rows if r["one vector lost"]]
-    axes.plot([max(r["nearest pairs apart"], 1e-16) for r in lost], [1e-1] * len(lost), "x", color="#aa2222", ms=7, label="iteration from one vector lost a mode")
-    axes.set(xlabel="distance of the two nearest pairs, relative", ylabel="error of the program", title=finding.method, ylim=(1e-17, 1e4))
+    axes.plot(
+        [max(r["nearest pairs apart"], 1e-16) for r in lost],
+        [1e-1] * len(lost),
+        "x",
+        color="#aa2222",
+        ms=7,
+        label="iteration from one vector lost a mode",
+    )
+    axes.set(
+        xlabel="distance of the two nearest pairs, relative",
+        ylabel="error of the program",
+        title=finding.method,
+        ylim=(1e-17, 1e4),
+    )
     axes.legend(fontsize=7, ncols=2)
 
 

@@ -3,17 +3,16 @@ Reference: the same bearing turned to its principal directions, where it has no 
 
 Models: the program's scene and its Timoshenko beam of the overhung pinion.
 
-    python validation/stability/doubtful_six_by_six.py [--quick]
+    python -m validation.stability.doubtful_six_by_six [--quick]
 """
 
 from __future__ import annotations
 
-from frame import ROOT, Finding, main
+import numpy as np
 
-import numpy as np  # noqa: E402
-
-import solidgear as sg  # noqa: E402
-from solidgear.body import DOF_NAMES, as_supports  # noqa: E402
+import solidgear as sg
+from solidgear.body import DOF_NAMES, as_supports
+from validation.stability.frame import ROOT, Finding, main
 
 K = 1e9
 GAPS = (*10.0 ** -np.arange(0.5, 16), 0.0)
@@ -30,7 +29,9 @@ def turned(gap: float) -> tuple[np.ndarray, np.ndarray]:
 
 def held(scene, matrix):
     """The scene with that matrix for both bearings."""
-    return scene.with_changes(bearings=[b.with_changes(matrix=matrix, axial_series=()) for b in scene.bearings])
+    return scene.with_changes(
+        bearings=[b.with_changes(matrix=matrix, axial_series=()) for b in scene.bearings]
+    )
 
 
 def sample(edit) -> np.ndarray:
@@ -92,8 +93,17 @@ def measure(quick: bool = False) -> list[Finding]:
         count = supports.unresisted(body).shape[1]
         finite = bool(np.isfinite(found.stiffness).all())
         still = tuple(n for n, row in zip(DOF_NAMES, found.stiffness) if not row.any())
-        verdicts.append({"matrix": name, "scene": "accepted", "free motions": count, "said to be free": " ".join(found.free_names), "of stiffness zero": " ".join(still), "stiffness": "finite" if finite else "not finite",
-                         "modes": len(sg.modes(body, supports, n=6).modes)})  # fmt: skip
+        verdicts.append(
+            {
+                "matrix": name,
+                "scene": "accepted",
+                "free motions": count,
+                "said to be free": " ".join(found.free_names),
+                "of stiffness zero": " ".join(still),
+                "stiffness": "finite" if finite else "not finite",
+                "modes": len(sg.modes(body, supports, n=6).modes),
+            }
+        )
     rows = []
     for gap in GAPS[::5] if quick else GAPS:
         coupled, principal = turned(float(gap))
@@ -101,14 +111,38 @@ def measure(quick: bool = False) -> list[Finding]:
         one, two = bending(body, a), bending(body, b)
         free = as_supports(a).unresisted(body).shape[1], as_supports(b).unresisted(body).shape[1]
         error = float(np.abs(one / np.where(two > 0, two, 1.0) - (two > 0)).max())
-        rows.append({"1 - k_xz / k": float(gap), "frequency error": error, "free motions, coupled": free[0], "free motions, turned": free[1]})
-    wrong = [r["1 - k_xz / k"] for r in rows if r["free motions, coupled"] != r["free motions, turned"]]
+        rows.append(
+            {
+                "1 - k_xz / k": float(gap),
+                "frequency error": error,
+                "free motions, coupled": free[0],
+                "free motions, turned": free[1],
+            }
+        )
+    wrong = [
+        r["1 - k_xz / k"] for r in rows if r["free motions, coupled"] != r["free motions, turned"]
+    ]
     same = [r for r in rows if r["free motions, coupled"] == r["free motions, turned"]]
     worst = max(same, key=lambda r: r["frequency error"])
-    refused, accepted = ([v["matrix"] for v in verdicts if v["scene"] == word] for word in ("refused", "accepted"))
-    past = [v["matrix"] for v in verdicts if v["scene"] == "accepted" and ("past" in v["matrix"] or "barely" in v["matrix"] or "by 1e" in v["matrix"])]
-    misnamed = [v["matrix"] for v in verdicts if v["scene"] == "accepted" and v["said to be free"] != v["of stiffness zero"]]
-    names = f"a free direction oblique to the axes ({'; '.join(misnamed)}) is said to leave every component free, though their stiffness is not zero" if misnamed else "every component said to be free has stiffness 0"
+    refused, accepted = (
+        [v["matrix"] for v in verdicts if v["scene"] == word] for word in ("refused", "accepted")
+    )
+    past = [
+        v["matrix"]
+        for v in verdicts
+        if v["scene"] == "accepted"
+        and ("past" in v["matrix"] or "barely" in v["matrix"] or "by 1e" in v["matrix"])
+    ]
+    misnamed = [
+        v["matrix"]
+        for v in verdicts
+        if v["scene"] == "accepted" and v["said to be free"] != v["of stiffness zero"]
+    ]
+    names = (
+        f"a free direction oblique to the axes ({'; '.join(misnamed)}) is said to leave every component free, though their stiffness is not zero"
+        if misnamed
+        else "every component said to be free has stiffness 0"
+    )
     return [
         Finding(
             "doubtful_six_by_six",
@@ -138,16 +172,32 @@ def draw(finding: Finding, axes) -> None:
     axes.set_title(finding.method)
     if finding.name == "strong_coupling":
         at = [max(r["1 - k_xz / k"], 1e-17) for r in finding.rows]
-        axes.loglog(at, [max(r["frequency error"], 1e-17) for r in finding.rows], "o-", color="#0072b2", label="coupled against turned bearing, worst frequency")
-        bad = [a for a, r in zip(at, finding.rows) if r["free motions, coupled"] != r["free motions, turned"]]
-        axes.plot(bad, [3.0] * len(bad), "x", color="#aa2222", label="another number of free motions")
+        axes.loglog(
+            at,
+            [max(r["frequency error"], 1e-17) for r in finding.rows],
+            "o-",
+            color="#0072b2",
+            label="coupled against turned bearing, worst frequency",
+        )
+        bad = [
+            a
+            for a, r in zip(at, finding.rows)
+            if r["free motions, coupled"] != r["free motions, turned"]
+        ]
+        axes.plot(
+            bad, [3.0] * len(bad), "x", color="#aa2222", label="another number of free motions"
+        )
         axes.set(xlabel="1 - k_xz / k", ylabel="relative error", ylim=(1e-17, 30))
         axes.legend(fontsize=8)
         return
     names = [r["matrix"] for r in finding.rows][::-1]
     refused = [r["scene"] == "refused" for r in finding.rows][::-1]
     free = [0 if no else r["free motions"] for no, r in zip(refused, finding.rows[::-1])]
-    axes.barh(range(len(names)), [6.5 if no else max(f, 0.1) for no, f in zip(refused, free)], color=["#c4541c" if no else "#0072b2" for no in refused])
+    axes.barh(
+        range(len(names)),
+        [6.5 if no else max(f, 0.1) for no, f in zip(refused, free)],
+        color=["#c4541c" if no else "#0072b2" for no in refused],
+    )
     axes.set_yticks(range(len(names)), names, fontsize=6)
     axes.set(xlabel="rigid motions left free (orange: refused)")
 

@@ -3,17 +3,16 @@ Reference: the Timoshenko beam they are made from.
 
 Models: the published pair of equations (energy and determinant), mode-matched, Guyan, total mass.
 
-    python validation/stability/effective_mass_limits.py [--quick]
+    python -m validation.stability.effective_mass_limits [--quick]
 """
 
 from __future__ import annotations
 
-from frame import ROOT, Finding, main
+import numpy as np
 
-import numpy as np  # noqa: E402
-
-import solidgear as sg  # noqa: E402
-from solidgear.lumped.effective_mass import METHODS, synthesise  # noqa: E402
+import solidgear as sg
+from solidgear.lumped.effective_mass import METHODS, synthesise
+from validation.stability.frame import ROOT, Finding, main
 
 STATUS = ("first", "second", "negative", "no real pair", "none")
 
@@ -35,21 +34,39 @@ def measure(quick: bool = False) -> Finding:
         here = scene.with_port(y=float(y))
         body = sg.build(here, "timoshenko")
         point, found = synthesise(body, here, here.port.name)
-        row = {"y mm": float(1e3 * y), "energy share of the static shape": point.static_share, "discriminant": found["thesis"].numbers["discriminant"]}
+        row = {
+            "y mm": float(1e3 * y),
+            "energy share of the static shape": point.static_share,
+            "discriminant": found["thesis"].numbers["discriminant"],
+        }
         for name in METHODS:
             s = found[name]
             row |= {name: status(s), f"{name} f1 error": s.frequency_error}
         matched = found["mode-matched"]
         chosen = matched if matched.feasible and matched.first else found["guyan"]
         own = point.omega / (2 * np.pi)
-        row |= {"mass kg": float(matched.mass[0, 0]), "inertia kg m2": float(matched.mass[1, 1]), "chosen": chosen.method, "chosen f1 error": chosen.frequency_error,
-                "chosen kinetic error": chosen.kinetic_error, "chosen holds to / f1": chosen.valid_to_hz / own}  # fmt: skip
+        row |= {
+            "mass kg": float(matched.mass[0, 0]),
+            "inertia kg m2": float(matched.mass[1, 1]),
+            "chosen": chosen.method,
+            "chosen f1 error": chosen.frequency_error,
+            "chosen kinetic error": chosen.kinetic_error,
+            "chosen holds to / f1": chosen.valid_to_hz / own,
+        }
         rows.append(row)
     count = {word: sum(r["mode-matched"] == word for r in rows) for word in STATUS}
     thesis = {word: sum(r["thesis"] == word for r in rows) for word in STATUS}
     # Kept frequency, lost energy: the frequency is exact while the lumped masses carry a fraction of the mode's.
-    hollow = [r for r in rows if r["chosen"] == "mode-matched" and r["energy share of the static shape"] < 0.8]
-    good = [r["y mm"] for r in rows if r["mode-matched"] == "first" and r["energy share of the static shape"] >= 0.95]
+    hollow = [
+        r
+        for r in rows
+        if r["chosen"] == "mode-matched" and r["energy share of the static shape"] < 0.8
+    ]
+    good = [
+        r["y mm"]
+        for r in rows
+        if r["mode-matched"] == "first" and r["energy share of the static shape"] >= 0.95
+    ]
     least = min(hollow, key=lambda r: r["energy share of the static shape"])
     poor = max(rows, key=lambda r: abs(r["chosen f1 error"]))
     front = [r["y mm"] for r in rows if r["mode-matched"] == "negative"]
@@ -71,15 +88,45 @@ def measure(quick: bool = False) -> Finding:
 def draw(finding: Finding, axes) -> None:
     """Energy share, discriminant and frequency errors along the shaft."""
     y = [r["y mm"] for r in finding.rows]
-    axes.plot(y, [r["energy share of the static shape"] for r in finding.rows], "-", color="#0072b2", label="energy share of the static shape")
-    axes.plot(y, [r["discriminant"] for r in finding.rows], "--", color="#888888", label="discriminant of the published equations")
-    axes.plot(y, [r["guyan f1 error"] for r in finding.rows], "-", color="#00805e", lw=1.0, label="Guyan, error of f1")
-    axes.plot(y, [r["chosen holds to / f1"] for r in finding.rows], ":", color="#c4541c", label="receptance of the chosen one holds to, over f1")
+    axes.plot(
+        y,
+        [r["energy share of the static shape"] for r in finding.rows],
+        "-",
+        color="#0072b2",
+        label="energy share of the static shape",
+    )
+    axes.plot(
+        y,
+        [r["discriminant"] for r in finding.rows],
+        "--",
+        color="#888888",
+        label="discriminant of the published equations",
+    )
+    axes.plot(
+        y,
+        [r["guyan f1 error"] for r in finding.rows],
+        "-",
+        color="#00805e",
+        lw=1.0,
+        label="Guyan, error of f1",
+    )
+    axes.plot(
+        y,
+        [r["chosen holds to / f1"] for r in finding.rows],
+        ":",
+        color="#c4541c",
+        label="receptance of the chosen one holds to, over f1",
+    )
     for word, colour in (("first", "#0072b2"), ("second", "#e0a030"), ("negative", "#aa2222")):
         at = [r["y mm"] for r in finding.rows if r["mode-matched"] == word]
         axes.plot(at, [-0.45] * len(at), "s", color=colour, ms=4, label=f"mode-matched: {word}")
     axes.axhline(0.95, color="#aa2222", lw=0.8, ls=":")
-    axes.set(xlabel="lumped point from the toe, mm", ylabel="share, error, ratio", title=finding.method, ylim=(-0.6, 1.6))
+    axes.set(
+        xlabel="lumped point from the toe, mm",
+        ylabel="share, error, ratio",
+        title=finding.method,
+        ylim=(-0.6, 1.6),
+    )
     axes.legend(fontsize=7, ncols=2)
 
 

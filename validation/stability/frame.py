@@ -11,11 +11,9 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from validation.common import ROOT, results_folder, show, write_rows
+
 FOLDER = Path(__file__).resolve().parent
-sys.path.insert(0, str(FOLDER.parent))
-
-from common import ROOT, results_folder, show, write_rows  # noqa: E402  (first of all: it pins BLAS to one thread)
-
 __all__ = ["FOLDER", "ROOT", "Finding", "crossing", "main", "publish"]
 
 
@@ -66,7 +64,10 @@ def crossing(x, y, level: float) -> float:
     """
     import numpy as np
 
-    x, y = np.log(np.asarray(x, float)), np.log(np.maximum(np.asarray(y, float), 1e-300)) - np.log(level)
+    x, y = (
+        np.log(np.asarray(x, float)),
+        np.log(np.maximum(np.asarray(y, float), 1e-300)) - np.log(level),
+    )
     change = np.flatnonzero(np.sign(y[:-1]) != np.sign(y[1:]))
     if not len(change):
         return float("nan")
@@ -88,7 +89,9 @@ def publish(finding: Finding, draw: Callable | None) -> Path:
 
         with matplotlib.rc_context():
             matplotlib.rcdefaults()
-            matplotlib.rcParams.update(STYLE | {"text.parse_math": True})  # powers of ten on logarithmic axes
+            matplotlib.rcParams.update(
+                STYLE | {"text.parse_math": True}
+            )  # powers of ten on logarithmic axes
             figure = Figure(figsize=(8.0, 4.4), dpi=150, layout="constrained")
             axes = figure.subplots()
             draw(finding, axes)
@@ -98,7 +101,10 @@ def publish(finding: Finding, draw: Callable | None) -> Path:
 
 def main(measure: Callable, draw: Callable | None) -> None:
     """Measure, print, publish: what a script does when it is run."""
-    parser = argparse.ArgumentParser(description=sys.modules["__main__"].__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(
+        description=sys.modules["__main__"].__doc__,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
     parser.add_argument("--quick", action="store_true", help="fewer and coarser points")
     for finding in findings(measure(quick=parser.parse_args().quick)):
         show(finding.method, finding.rows)

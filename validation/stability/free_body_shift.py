@@ -2,21 +2,24 @@
 
 Models: textbook shift-invert (ARPACK on the factor of K - sigma M) with sigma from 0 to -1e4 times the first elastic eigenvalue, and `modes`, which takes the rigid motions out.
 
-    python validation/stability/free_body_shift.py [--quick]
+    python -m validation.stability.free_body_shift [--quick]
 """
 
 from __future__ import annotations
 
-from frame import ROOT, Finding, main
+import numpy as np
+import scipy.linalg as sla
+import scipy.sparse as sp
+import scipy.sparse.linalg as spla
 
-import numpy as np  # noqa: E402
-import scipy.linalg as sla  # noqa: E402
-import scipy.sparse as sp  # noqa: E402
-import scipy.sparse.linalg as spla  # noqa: E402
+import solidgear as sg
+from validation.stability.frame import ROOT, Finding, main
 
-import solidgear as sg  # noqa: E402
-
-BODIES = {"timoshenko": ("timoshenko", {}), "hex8": ("solid", {"element": "hex8", "refinement": 0.5}), "hex20": ("solid", {"element": "hex20", "refinement": 0.5})}
+BODIES = {
+    "timoshenko": ("timoshenko", {}),
+    "hex8": ("solid", {"element": "hex8", "refinement": 0.5}),
+    "hex20": ("solid", {"element": "hex20", "refinement": 0.5}),
+}
 SHIFTS = (0.0, -1e-16, -1e-14, -1e-12, -1e-10, -1e-8, -1e-6, -1e-4, -1e-3, -1e-2, -1.0, -1e2, -1e4)
 FEW = (0.0, -1e-12, -1e-3)
 WANTED = 14
@@ -25,17 +28,35 @@ RUNS = 12  # numberings of the unknowns and start vectors, where the result is o
 
 def whole(body) -> tuple[sp.csc_matrix, sp.csc_matrix]:
     """All blocks of a body as one pair of matrices, as a program without symmetry would hold it."""
-    return sp.block_diag([b.stiffness for b in body.blocks], "csc"), sp.block_diag([b.mass.tocsr() for b in body.blocks], "csc")
+    return sp.block_diag([b.stiffness for b in body.blocks], "csc"), sp.block_diag(
+        [b.mass.tocsr() for b in body.blocks], "csc"
+    )
 
 
 def shift_invert(k, m, sigma: float, wanted: int, seed: int = 0) -> np.ndarray:
     """Eigenvalues nearest the shift, unknowns numbered at random; raises RuntimeError where the factorisation or the iteration fails."""
     order = np.random.default_rng(seed).permutation(k.shape[0])
     k, m = k[order][:, order], m[order][:, order]
-    lu = spla.splu((k - sigma * m).tocsc(), permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
+    lu = spla.splu(
+        (k - sigma * m).tocsc(),
+        permc_spec="MMD_AT_PLUS_A",
+        diag_pivot_thresh=0.0,
+        options={"SymmetricMode": True},
+    )
     n = k.shape[0]
     start = np.random.default_rng(seed).standard_normal(n)
-    return np.sort(spla.eigsh(k, wanted, m, sigma=sigma, OPinv=spla.LinearOperator((n, n), lu.solve), v0=start, tol=1e-10, return_eigenvectors=False))
+    return np.sort(
+        spla.eigsh(
+            k,
+            wanted,
+            m,
+            sigma=sigma,
+            OPinv=spla.LinearOperator((n, n), lu.solve),
+            v0=start,
+            tol=1e-10,
+            return_eigenvectors=False,
+        )
+    )
 
 
 def judged(found: np.ndarray, exact: np.ndarray) -> dict:
@@ -51,7 +72,13 @@ def judged(found: np.ndarray, exact: np.ndarray) -> dict:
         worst = max(worst, abs(near / value - 1) / 2)
         left.remove(near)
     noise = float(np.sqrt(np.abs(zeros).max(initial=0.0) / first))
-    return {"zero modes": len(zeros), "negative": int((zeros < 0).sum()), "rigid f / f1": noise, "elastic missing": missing, "elastic error": worst}
+    return {
+        "zero modes": len(zeros),
+        "negative": int((zeros < 0).sum()),
+        "rigid f / f1": noise,
+        "elastic missing": missing,
+        "elastic error": worst,
+    }
 
 
 def wrong(r: dict) -> bool:
@@ -68,29 +95,56 @@ def measure(quick: bool = False) -> Finding:
             continue
         body = sg.build(scene, fidelity, **options)
         k, m = whole(body)
-        exact = sla.eigh(k.toarray(), m.toarray(), eigvals_only=True, subset_by_index=(0, WANTED + 2))
+        exact = sla.eigh(
+            k.toarray(), m.toarray(), eigvals_only=True, subset_by_index=(0, WANTED + 2)
+        )
         # Rayleigh: entries of the diagonal bound the largest eigenvalue from below.
         rounding = np.finfo(float).eps / 2 * (k.diagonal() / m.diagonal()).max()
         for relative in FEW if quick else SHIFTS:
             runs = []
             for seed in range(RUNS if relative > -1e-7 else 2):
                 try:
-                    runs.append(judged(shift_invert(k, m, relative * exact[6], WANTED, seed), exact))
+                    runs.append(
+                        judged(shift_invert(k, m, relative * exact[6], WANTED, seed), exact)
+                    )
                 except (RuntimeError, spla.ArpackError) as error:
                     runs.append({"failed": str(error)[:60]})
             done = [r for r in runs if "failed" not in r]
-            row = {"body": name, "solver": "shift-invert", "shift / lambda_1": relative, "runs": len(runs), "failed runs": len(runs) - len(done), "wrong runs": sum(wrong(r) for r in done)}
+            row = {
+                "body": name,
+                "solver": "shift-invert",
+                "shift / lambda_1": relative,
+                "runs": len(runs),
+                "failed runs": len(runs) - len(done),
+                "wrong runs": sum(wrong(r) for r in done),
+            }
             if relative:
                 row["rounding / shift"] = float(rounding / abs(relative * exact[6]))
-            rows.append(row | max(done, key=lambda r: (r["elastic missing"], r["rigid f / f1"]), default={}))
+            rows.append(
+                row | max(done, key=lambda r: (r["elastic missing"], r["rigid f / f1"]), default={})
+            )
         found = sg.modes(body, (), n=WANTED - 6)
         values = np.repeat((2 * np.pi * found.frequency_hz) ** 2, found.multiplicity)
-        rows.append({"body": name, "solver": "program", "shift / lambda_1": found.evidence["shift_rad2"] / exact[6], "runs": 1, "failed runs": 0, "wrong runs": int(wrong(own := judged(values, exact)))} | own)
+        rows.append(
+            {
+                "body": name,
+                "solver": "program",
+                "shift / lambda_1": found.evidence["shift_rad2"] / exact[6],
+                "runs": 1,
+                "failed runs": 0,
+                "wrong runs": int(wrong(own := judged(values, exact))),
+            }
+            | own
+        )
     naive = [r for r in rows if r["solver"] == "shift-invert"]
     ours = [r for r in rows if r["solver"] == "program"]
     near = [r for r in naive if -1e-7 < r["shift / lambda_1"] < 0]
     zero = [r for r in naive if r["shift / lambda_1"] == 0]
-    good = [r["shift / lambda_1"] for r in naive if -1 <= r["shift / lambda_1"] < -1e-7 and not r["wrong runs"] and not r["failed runs"]]
+    good = [
+        r["shift / lambda_1"]
+        for r in naive
+        if -1 <= r["shift / lambda_1"] < -1e-7 and not r["wrong runs"] and not r["failed runs"]
+    ]
     noise = min((r for r in naive if r["shift / lambda_1"] < 0), key=lambda r: r["rigid f / f1"])
 
     def told(part):
@@ -115,11 +169,30 @@ def draw(finding: Finding, axes) -> None:
         rows = [r for r in finding.rows if r["body"] == name and r["solver"] == "shift-invert"]
         at = [max(-r["shift / lambda_1"], 1e-18) for r in rows]
         for key, line, marker in (("rigid f / f1", "-", "o"), ("elastic error", ":", "s")):
-            axes.loglog(at, [np.nan if "failed" in r else max(r[key], 1e-17) for r in rows], marker + line, color=colour, ms=4, lw=1.2, label=f"{name}: {key}")
-        axes.plot([a for a, r in zip(at, rows) if r.get("elastic missing", 1)], [3.0] * sum(bool(r.get("elastic missing", 1)) for r in rows), "x", color=colour, ms=9)
+            axes.loglog(
+                at,
+                [np.nan if "failed" in r else max(r[key], 1e-17) for r in rows],
+                marker + line,
+                color=colour,
+                ms=4,
+                lw=1.2,
+                label=f"{name}: {key}",
+            )
+        axes.plot(
+            [a for a, r in zip(at, rows) if r.get("elastic missing", 1)],
+            [3.0] * sum(bool(r.get("elastic missing", 1)) for r in rows),
+            "x",
+            color=colour,
+            ms=9,
+        )
     axes.axvline(1e-18, color="#888888", lw=0.8)
     axes.annotate("shift 0", (1e-18, 1e-16), rotation=90, fontsize=8)
-    axes.set(xlabel="negative shift over first elastic eigenvalue (crosses: elastic modes missing, or failed)", ylabel="relative to f1", title=finding.method, ylim=(1e-17, 20))
+    axes.set(
+        xlabel="negative shift over first elastic eigenvalue (crosses: elastic modes missing, or failed)",
+        ylabel="relative to f1",
+        title=finding.method,
+        ylim=(1e-17, 20),
+    )
     axes.legend(fontsize=7, ncols=3)
 
 

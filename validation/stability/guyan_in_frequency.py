@@ -3,20 +3,19 @@ Reference: the exact dynamic stiffness of the same beam, by a direct solution at
 
 Models: static condensation (stiffness alone), the same with the rigid mass of the body, and Guyan's reduction (mass condensed on the static shapes).
 
-    python validation/stability/guyan_in_frequency.py [--quick]
+    python -m validation.stability.guyan_in_frequency [--quick]
 """
 
 from __future__ import annotations
 
-from frame import ROOT, Finding, crossing, main
+import numpy as np
+import scipy.linalg as sla
 
-import numpy as np  # noqa: E402
-import scipy.linalg as sla  # noqa: E402
-
-import solidgear as sg  # noqa: E402
-from bearing_extremes import assembled, block_of  # noqa: E402
-from solidgear.body import as_supports  # noqa: E402
-from solidgear.lumped.effective_mass import lumped_point  # noqa: E402
+import solidgear as sg
+from solidgear.body import as_supports
+from solidgear.lumped.effective_mass import lumped_point
+from validation.stability.bearing_extremes import assembled, block_of
+from validation.stability.frame import ROOT, Finding, crossing, main
 
 SCENES = ("pinion_overhung", "pinion_straddle")
 MODELS = ("static", "total mass", "Guyan")
@@ -57,22 +56,45 @@ def measure(quick: bool = False) -> Finding:
         scene = sg.load(ROOT / "geometry" / f"{name}.toml").with_attachment("section")
         exact = Exact(scene)
         point, _ = lumped_point(exact.body, scene, scene.port.name)
-        mass = {"static": np.zeros((2, 2)), "total mass": np.diag([point.total_mass, point.total_inertia]), "Guyan": point.guyan}
+        mass = {
+            "static": np.zeros((2, 2)),
+            "total mass": np.diag([point.total_mass, point.total_inertia]),
+            "Guyan": point.guyan,
+        }
         mine = []
         for ratio in ratios:
             omega = ratio * exact.fixed_interface
             here = exact(omega)
             row = {"scene": name, "w / w_fixed": float(ratio), "w / w1": float(omega / exact.first)}
-            mine.append(row | {model: off(point.stiffness - omega**2 * mass[model], here, point.stiffness) for model in MODELS})
+            mine.append(
+                row
+                | {
+                    model: off(point.stiffness - omega**2 * mass[model], here, point.stiffness)
+                    for model in MODELS
+                }
+            )
         rows += mine
         before = [r for r in mine if r["w / w_fixed"] < 0.99]
-        edges |= {(name, model, level): crossing([r["w / w_fixed"] for r in before], [r[model] for r in before], level) for model in MODELS for level in LEVELS}
+        edges |= {
+            (name, model, level): crossing(
+                [r["w / w_fixed"] for r in before], [r[model] for r in before], level
+            )
+            for model in MODELS
+            for level in LEVELS
+        }
         guyan = np.sqrt(sla.eigh(point.stiffness, point.guyan, eigvals_only=True))
-        first[name] = exact.first / exact.fixed_interface, guyan[0] / exact.first - 1, guyan[1] / exact.second - 1
+        first[name] = (
+            exact.first / exact.fixed_interface,
+            guyan[0] / exact.first - 1,
+            guyan[1] / exact.second - 1,
+        )
 
     def told(name):
         share, one, two = first[name]
-        limits = ", ".join(f"{model} {edges[name, model, 0.01]:.2f} / {edges[name, model, 0.1]:.2f}" for model in ("static", "Guyan"))
+        limits = ", ".join(
+            f"{model} {edges[name, model, 0.01]:.2f} / {edges[name, model, 0.1]:.2f}"
+            for model in ("static", "Guyan")
+        )
         return f"{name}: {limits}; first mode at {share:.2f}, which Guyan puts {100 * one:+.1f} % off, the second {100 * two:+.0f} %"
 
     return Finding(
@@ -91,13 +113,25 @@ def draw(finding: Finding, axes) -> None:
     for name, line in zip(SCENES, ("-", "--")):
         rows = [r for r in finding.rows if r["scene"] == name]
         for model, colour in zip(MODELS, ("#c4541c", "#e0a030", "#0072b2")):
-            axes.loglog([r["w / w_fixed"] for r in rows], [max(r[model], 1e-6) for r in rows], line, color=colour, lw=1.3, label=f"{model}, {name}")
+            axes.loglog(
+                [r["w / w_fixed"] for r in rows],
+                [max(r[model], 1e-6) for r in rows],
+                line,
+                color=colour,
+                lw=1.3,
+                label=f"{model}, {name}",
+            )
     for level in LEVELS:
         axes.axhline(level, color="#aa2222", lw=0.8, ls=":")
     axes.axvline(1.0, color="#888888", lw=0.8)
     axes.set_xticks(ticks := [0.03, 0.1, 0.3, 1, 2], [f"{t:g}" for t in ticks])
     axes.minorticks_off()
-    axes.set(xlabel="frequency over first fixed-interface frequency", ylabel="error over static stiffness", title=finding.method, ylim=(1e-5, 1e3))
+    axes.set(
+        xlabel="frequency over first fixed-interface frequency",
+        ylabel="error over static stiffness",
+        title=finding.method,
+        ylim=(1e-5, 1e3),
+    )
     axes.legend(fontsize=7)
 
 

@@ -2,17 +2,16 @@
 
 Models: the determinant U^2 - T V (clamped; the free one has the same) in plain cosh and sinh, whole and as a product of transfer matrices, and the program's `krylov`.
 
-    python validation/stability/krylov_duncan.py [--quick]
+    python -m validation.stability.krylov_duncan [--quick]
 """
 
 from __future__ import annotations
 
-from frame import Finding, crossing, main
+import numpy as np
+from scipy.optimize import brentq
 
-import numpy as np  # noqa: E402
-from scipy.optimize import brentq  # noqa: E402
-
-from solidgear.fidelity.krylov import Span, krylov, krylov_duncan  # noqa: E402
+from solidgear.fidelity.krylov import Span, krylov, krylov_duncan
+from validation.stability.frame import Finding, crossing, main
 
 MOST = 64
 CUTS = 8
@@ -21,7 +20,18 @@ CUTS = 8
 def exact(count: int) -> np.ndarray:
     """Elastic roots kL of cos(x) cosh(x) = 1, the first 4.730."""
     middle = np.pi * (np.arange(1, count + 1) + 0.5)
-    return np.array([brentq(lambda x: np.cos(x) - 1 / np.cosh(x), m - 0.3, m + 0.3, xtol=1e-15, rtol=4 * np.finfo(float).eps) for m in middle])
+    return np.array(
+        [
+            brentq(
+                lambda x: np.cos(x) - 1 / np.cosh(x),
+                m - 0.3,
+                m + 0.3,
+                xtol=1e-15,
+                rtol=4 * np.finfo(float).eps,
+            )
+            for m in middle
+        ]
+    )
 
 
 def determinant(kl: float) -> float:
@@ -62,14 +72,29 @@ def measure(quick: bool = False) -> Finding:
             at, changes = root(f, x)
             row |= {f"{name} error": abs(at / x - 1), f"{name} roots seen": changes}
         below, above = found.counts[found.rigid + i]
-        rows.append(row | {"estimate eps exp(kL) / kL": float(np.finfo(float).eps * np.exp(x) / x), "program error": abs(mine[i] / x - 1), "program roots counted": int(above - below)})
+        rows.append(
+            row
+            | {
+                "estimate eps exp(kL) / kL": float(np.finfo(float).eps * np.exp(x) / x),
+                "program error": abs(mine[i] / x - 1),
+                "program roots counted": int(above - below),
+            }
+        )
     kl = [r["kL"] for r in rows]
 
     def lost(name):
         return next((r["kL"] for r in rows if r[f"{name} roots seen"] != 1), float("nan"))
 
     # Past 40 both are noise.
-    edge = {(name, level): crossing([x for x in kl if x < 40], [max(np.nan_to_num(r[f"{name} error"], nan=1.0), 1e-17) for r in rows if r["kL"] < 40], level) for name in ("plain", "transfer") for level in (1e-6, 1e-4)}
+    edge = {
+        (name, level): crossing(
+            [x for x in kl if x < 40],
+            [max(np.nan_to_num(r[f"{name} error"], nan=1.0), 1e-17) for r in rows if r["kL"] < 40],
+            level,
+        )
+        for name in ("plain", "transfer")
+        for level in (1e-6, 1e-4)
+    }
     return Finding(
         "krylov_duncan",
         "Krylov-Duncan functions in cosh and sinh",
@@ -86,13 +111,48 @@ def measure(quick: bool = False) -> Finding:
 def draw(finding: Finding, axes) -> None:
     """Errors over kL."""
     kl = [r["kL"] for r in finding.rows]
-    axes.semilogy(kl, [r["plain error"] for r in finding.rows], "o-", color="#c4541c", ms=4, label="plain cosh, sinh")
-    axes.semilogy(kl, [r["transfer error"] for r in finding.rows], "s:", color="#e0a030", ms=4, label=f"{CUTS} transfer matrices")
-    axes.semilogy(kl, [max(r["program error"], 1e-17) for r in finding.rows], "^-", color="#0072b2", ms=4, label="program")
-    axes.semilogy(kl, [r["estimate eps exp(kL) / kL"] for r in finding.rows], "--", color="#888888", lw=1, label="eps exp(kL) / kL")
+    axes.semilogy(
+        kl,
+        [r["plain error"] for r in finding.rows],
+        "o-",
+        color="#c4541c",
+        ms=4,
+        label="plain cosh, sinh",
+    )
+    axes.semilogy(
+        kl,
+        [r["transfer error"] for r in finding.rows],
+        "s:",
+        color="#e0a030",
+        ms=4,
+        label=f"{CUTS} transfer matrices",
+    )
+    axes.semilogy(
+        kl,
+        [max(r["program error"], 1e-17) for r in finding.rows],
+        "^-",
+        color="#0072b2",
+        ms=4,
+        label="program",
+    )
+    axes.semilogy(
+        kl,
+        [r["estimate eps exp(kL) / kL"] for r in finding.rows],
+        "--",
+        color="#888888",
+        lw=1,
+        label="eps exp(kL) / kL",
+    )
     wrong = [r["kL"] for r in finding.rows if r["plain roots seen"] != 1]
-    axes.plot(wrong, [3.0] * len(wrong), "x", color="#aa2222", ms=5, label="plain: wrong number of roots")
-    axes.set(xlabel="kL of the root", ylabel="relative error of kL", title=finding.method, ylim=(1e-17, 30))
+    axes.plot(
+        wrong, [3.0] * len(wrong), "x", color="#aa2222", ms=5, label="plain: wrong number of roots"
+    )
+    axes.set(
+        xlabel="kL of the root",
+        ylabel="relative error of kL",
+        title=finding.method,
+        ylim=(1e-17, 30),
+    )
     axes.legend(fontsize=8, loc="center right")
 
 

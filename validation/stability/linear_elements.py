@@ -3,21 +3,26 @@
 Models: TET4 and HEX8 against TET10, HEX20 and HEX27 at equal numbers of unknowns; and hexahedra drawn out along the shaft on one mesh of the section, where
 a linear element answers bending with shear it should not have.
 
-    python validation/stability/linear_elements.py [--quick]
+    python -m validation.stability.linear_elements [--quick]
 """
 
 from __future__ import annotations
 
-from frame import Finding, crossing, main
+import numpy as np
 
-import numpy as np  # noqa: E402
-
-import solidgear as sg  # noqa: E402
-from solidgear.meshing.quality import mass_properties  # noqa: E402
-from solidgear.scene import Bearing, Port, Scene, Segment  # noqa: E402
+import solidgear as sg
+from solidgear.meshing.quality import mass_properties
+from solidgear.scene import Bearing, Port, Scene, Segment
+from validation.stability.frame import Finding, crossing, main
 
 RADIUS, LENGTH = 0.05, 0.4
-LEVELS = {"tet4": (2.4, 3.2), "hex8": (2, 3), "tet10": (1, 1.6), "hex20": (1.5, 1.8), "hex27": (1, 1.3)}
+LEVELS = {
+    "tet4": (2.4, 3.2),
+    "hex8": (2, 3),
+    "tet10": (1, 1.6),
+    "hex20": (1.5, 1.8),
+    "hex27": (1, 1.3),
+}
 FEW = {"tet4": (1, 1.6), "hex8": (1, 1.4), "hex20": (0.7, 1)}
 EQUAL, EQUAL_QUICK = 9000, 2000  # unknowns at which errors are compared
 ASPECTS = (1.0, 1.5, 2.0, 4.0, 6.0)
@@ -26,20 +31,33 @@ PLAIN = dict(layers=0, edge_layers=0, radial_layers=0)
 
 def shaft() -> Scene:
     """Uniform shaft held by one section and loaded at its first."""
-    clamp = Bearing(name="clamp", y=LENGTH - RADIUS / 2, seat_width=RADIUS, matrix=np.diag([1e24] * 6), attachment="section")
+    clamp = Bearing(
+        name="clamp",
+        y=LENGTH - RADIUS / 2,
+        seat_width=RADIUS,
+        matrix=np.diag([1e24] * 6),
+        attachment="section",
+    )
     port = Port(y=0.0, lo=0.0, hi=RADIUS, attachment="section")
-    return Scene.from_parts([Segment.cylinder("shaft", length=LENGTH, diameter=2 * RADIUS)], bearings=[clamp], port=port)
+    return Scene.from_parts(
+        [Segment.cylinder("shaft", length=LENGTH, diameter=2 * RADIUS)], bearings=[clamp], port=port
+    )
 
 
 def answers(body, scene) -> dict[str, float]:
     """Tilt under a unit moment, and first bending of the free body (its lowest elastic mode)."""
-    return {"C_thx": sg.condense(body, scene, port="port").compliance[3, 3], "f1": next(f for f in sg.modes(body, (), n=2).frequency_hz if f > 0)}
+    return {
+        "C_thx": sg.condense(body, scene, port="port").compliance[3, 3],
+        "f1": next(f for f in sg.modes(body, (), n=2).frequency_hz if f > 0),
+    }
 
 
 def mesh(element: str, level: float) -> dict:
     """Builder options of one uniform mesh."""
     if element.startswith("tet"):
-        return dict(element=element, size=RADIUS / 1.5 / level, graded_size=RADIUS / 1.5 / level, around=16)
+        return dict(
+            element=element, size=RADIUS / 1.5 / level, graded_size=RADIUS / 1.5 / level, around=16
+        )
     return dict(element=element, size=RADIUS / level, around=max(8, 4 * round(3 * level)), **PLAIN)
 
 
@@ -65,12 +83,16 @@ def drawn_out(scene, want, element: str, aspect: float, around: int) -> dict:
     """Errors with cells half a radius across and ``aspect`` times as long, or the next shorter that fits."""
     size = aspect * RADIUS / 2
     long = scene.bearings[0].y / np.ceil(scene.bearings[0].y / size - 1e-6)
-    return {"drawn out": element, "length over width": long / (RADIUS / 2)} | errors(scene, want, element=element, size=size, around=around, **PLAIN)
+    return {"drawn out": element, "length over width": long / (RADIUS / 2)} | errors(
+        scene, want, element=element, size=size, around=around, **PLAIN
+    )
 
 
 def mass_error(scene, around: int) -> dict:
     """What trilinear hexahedra lose of the mass: their nodes lie where those of quadratic ones should."""
-    mass = sg.build(scene, "solid", element="hex8", size=4 * RADIUS, around=around, **PLAIN).mass_matrix()[0, 0]
+    mass = sg.build(
+        scene, "solid", element="hex8", size=4 * RADIUS, around=around, **PLAIN
+    ).mass_matrix()[0, 0]
     return {"HEX8, cells around": around, "mass": mass / mass_properties(scene.segments).mass - 1}
 
 
@@ -78,15 +100,30 @@ def measure(quick: bool = False) -> Finding:
     """Errors over unknowns, and over aspect ratio."""
     scene = shaft()
     want = answers(sg.build(scene, "harmonic", order=6, layers=0, edge_layers=3), scene)
-    rows = [{"element": element} | errors(scene, want, **mesh(element, level)) for element, levels in (FEW if quick else LEVELS).items() for level in levels]
+    rows = [
+        {"element": element} | errors(scene, want, **mesh(element, level))
+        for element, levels in (FEW if quick else LEVELS).items()
+        for level in levels
+    ]
     equal = EQUAL_QUICK if quick else EQUAL
-    compared = {e: {n: at_equal([r for r in rows if r["element"] == e], equal, n) for n in want} for e in dict.fromkeys(r["element"] for r in rows)}
-    drawn = [drawn_out(scene, want, e, a, 16 if quick else 24) for e in ("hex8", "hex20") for a in (ASPECTS[::2] if quick else ASPECTS)]
+    compared = {
+        e: {n: at_equal([r for r in rows if r["element"] == e], equal, n) for n in want}
+        for e in dict.fromkeys(r["element"] for r in rows)
+    }
+    drawn = [
+        drawn_out(scene, want, e, a, 16 if quick else 24)
+        for e in ("hex8", "hex20")
+        for a in (ASPECTS[::2] if quick else ASPECTS)
+    ]
     light = [mass_error(scene, around) for around in (12, 16, 24, 32, 48)[:: 4 if quick else 1]]
     stiff = [r for r in drawn if r["drawn out"] == "hex8"]
     edge = crossing([r["length over width"] for r in stiff], [abs(r["C_thx"]) for r in stiff], 0.05)
     longest, straight = stiff[-1], [r for r in drawn if r["drawn out"] == "hex20"][-1]
-    tet = f"TET4 {compared['tet4']['f1'] / compared['tet10']['f1']:.0f} times TET10, " if "tet10" in compared else ""
+    tet = (
+        f"TET4 {compared['tet4']['f1'] / compared['tet10']['f1']:.0f} times TET10, "
+        if "tet10" in compared
+        else ""
+    )
     return Finding(
         "linear_elements",
         "TET4 and HEX8",
@@ -98,23 +135,61 @@ def measure(quick: bool = False) -> Finding:
         f"HEX8 lacks {abs(light[0]['mass']):.1%} of the mass with {light[0]['HEX8, cells around']} cells around.",
         "`solidgear check --fidelity solid` cautions on element = tet4 or hex8 and calls the lost mass a fault; HEX20 is the default everywhere.",
         "tests/test_check_guards.py::test_guard[hex8]",
-        rows + [{"at equal unknowns": e, "unknowns": equal} | v for e, v in compared.items()] + drawn + light,
+        rows
+        + [{"at equal unknowns": e, "unknowns": equal} | v for e, v in compared.items()]
+        + drawn
+        + light,
     )
 
 
 def draw(finding: Finding, axes) -> None:
     """Error of first bending over unknowns."""
-    style = {"tet4": ("#c98a00", "^"), "hex8": ("#c4541c", "s"), "tet10": ("#0072b2", "^"), "hex20": ("#00805e", "s"), "hex27": ("#5a3e8c", "D")}
+    style = {
+        "tet4": ("#c98a00", "^"),
+        "hex8": ("#c4541c", "s"),
+        "tet10": ("#0072b2", "^"),
+        "hex20": ("#00805e", "s"),
+        "hex27": ("#5a3e8c", "D"),
+    }
     for element, (colour, marker) in style.items():
         rows = [r for r in finding.rows if r.get("element") == element]
         if rows:
-            axes.loglog([r["unknowns"] for r in rows], [abs(r["f1"]) for r in rows], marker + "-", color=colour, ms=5, lw=1.3, label=element.upper())
+            axes.loglog(
+                [r["unknowns"] for r in rows],
+                [abs(r["f1"]) for r in rows],
+                marker + "-",
+                color=colour,
+                ms=5,
+                lw=1.3,
+                label=element.upper(),
+            )
     for element, words in (("hex8", "HEX8 drawn out"), ("hex20", "HEX20 drawn out")):
         rows = [r for r in finding.rows if r.get("drawn out") == element]
-        axes.loglog([r["unknowns"] for r in rows], [abs(r["f1"]) for r in rows], ":", marker="o", mfc="white", color=style[element][0], ms=5, lw=1, label=words)
+        axes.loglog(
+            [r["unknowns"] for r in rows],
+            [abs(r["f1"]) for r in rows],
+            ":",
+            marker="o",
+            mfc="white",
+            color=style[element][0],
+            ms=5,
+            lw=1,
+            label=words,
+        )
         for r in rows:
-            axes.annotate(f"{r['length over width']:.0f}", (r["unknowns"], abs(r["f1"])), xytext=(5, 3), textcoords="offset points", fontsize=7.5, color=style[element][0])
-    axes.set(xlabel="unknowns", ylabel="error of first bending", title=f"{finding.method} (figures: length over width of cells)")
+            axes.annotate(
+                f"{r['length over width']:.0f}",
+                (r["unknowns"], abs(r["f1"])),
+                xytext=(5, 3),
+                textcoords="offset points",
+                fontsize=7.5,
+                color=style[element][0],
+            )
+    axes.set(
+        xlabel="unknowns",
+        ylabel="error of first bending",
+        title=f"{finding.method} (figures: length over width of cells)",
+    )
     axes.legend(ncols=2, fontsize=8)
 
 

@@ -3,16 +3,14 @@
 Models: all elements of the 3D solid, the harmonic solid of low order, the Timoshenko beam (its shear coefficient).  A displacement element that cannot keep its volume
 while it bends locks: its error grows with 1 / (1 - 2 nu).
 
-    python validation/stability/nearly_incompressible.py [--quick]
+    python -m validation.stability.nearly_incompressible [--quick]
 """
 
 from __future__ import annotations
 
-from frame import Finding, main
-
-from linear_elements import PLAIN, RADIUS, answers, shaft  # noqa: E402
-
-import solidgear as sg  # noqa: E402
+import solidgear as sg
+from validation.stability.frame import Finding, main
+from validation.stability.linear_elements import PLAIN, RADIUS, answers, shaft
 
 RATIOS = (0.3, 0.4, 0.45, 0.49, 0.499, 0.4999, 0.49999)
 FEW = (0.3, 0.49, 0.4999)
@@ -55,12 +53,20 @@ def measure(quick: bool = False) -> Finding:
         want = sg.condense(exact, scene, port="port").compliance[3, 3]
         for model, row in rows.items():
             fidelity, options = MODELS[model]
-            row[f"nu {nu:g}"] = beam_error(scene, exact) if fidelity == "timoshenko" else compliance(scene, fidelity, **options) / want - 1
+            row[f"nu {nu:g}"] = (
+                beam_error(scene, exact)
+                if fidelity == "timoshenko"
+                else compliance(scene, fidelity, **options) / want - 1
+            )
     rows = list(rows.values())
     at = [k for k in rows[0] if k != "model"]
 
     def words(chosen):
-        return ", ".join(f"{r['model']} {100 * abs(r[at[0]]):.2g} to {100 * abs(r[at[-1]]):.2g} %" for r in rows if chosen(r["model"]))
+        return ", ".join(
+            f"{r['model']} {100 * abs(r[at[0]]):.2g} to {100 * abs(r[at[-1]]):.2g} %"
+            for r in rows
+            if chosen(r["model"])
+        )
 
     at_049 = {r["model"]: 100 * abs(r["nu 0.49"]) for r in rows}
     return Finding(
@@ -78,10 +84,34 @@ def measure(quick: bool = False) -> Finding:
 def draw(finding: Finding, axes) -> None:
     """Error over the distance of nu from one half."""
     at = [k for k in finding.rows[0] if k.startswith("nu ")]
-    colours = dict(zip(MODELS, ("#c98a00", "#c4541c", "#0072b2", "#00805e", "#5a3e8c", "#c4541c", "#00805e", "#0072b2", "#888888", "#111111")))
+    colours = dict(
+        zip(
+            MODELS,
+            (
+                "#c98a00",
+                "#c4541c",
+                "#0072b2",
+                "#00805e",
+                "#5a3e8c",
+                "#c4541c",
+                "#00805e",
+                "#0072b2",
+                "#888888",
+                "#111111",
+            ),
+        )
+    )
     for row in finding.rows:
         solid = MODELS[row["model"]][0] == "solid"
-        axes.loglog([0.5 - float(k[3:]) for k in at], [abs(row[k]) for k in at], "o-" if solid else "x--", color=colours[row["model"]], ms=4.5, lw=1.2, label=row["model"])
+        axes.loglog(
+            [0.5 - float(k[3:]) for k in at],
+            [abs(row[k]) for k in at],
+            "o-" if solid else "x--",
+            color=colours[row["model"]],
+            ms=4.5,
+            lw=1.2,
+            label=row["model"],
+        )
     axes.invert_xaxis()
     axes.set_xticks([0.5 - float(k[3:]) for k in at], [k[3:] for k in at], fontsize=8)
     axes.minorticks_off()

@@ -3,20 +3,19 @@ bearings almost at one place, seats that touch, overlap or hang over.  Reference
 
 Model: the Timoshenko beam.  What counts is the gap between the two in excess of the sound scene's, what `check_scene` says, and the residual of the modes.
 
-    python validation/stability/odd_geometry.py [--quick]
+    python -m validation.stability.odd_geometry [--quick]
 """
 
 from __future__ import annotations
 
 import re
 
-from frame import Finding, main
+import numpy as np
 
-import numpy as np  # noqa: E402
-
-import solidgear as sg  # noqa: E402
-from solidgear.check import check_scene  # noqa: E402
-from solidgear.scene import Bearing, Port, Scene, Segment  # noqa: E402
+import solidgear as sg
+from solidgear.check import check_scene
+from solidgear.scene import Bearing, Port, Scene, Segment
+from validation.stability.frame import Finding, main
 
 K = np.diag([1e9, 5e8, 1e9, 2e6, 0.0, 2e6])
 PIN = np.diag([1e9, 5e8, 1e9, 0.0, 0.0, 0.0])
@@ -24,16 +23,35 @@ HEAD, LENGTH, DIAMETER = 0.06, 0.3, 0.06
 LIMIT = 0.1
 
 
-def scene(segments=None, seats=((0.1, 0.03), (0.25, 0.03)), port=(0.03, 0.0, HEAD), matrix=K, attachment="average") -> Scene:
+def scene(
+    segments=None,
+    seats=((0.1, 0.03), (0.25, 0.03)),
+    port=(0.03, 0.0, HEAD),
+    matrix=K,
+    attachment="average",
+) -> Scene:
     """The sound scene with some part replaced; seats are (middle, width), the port is (y, from, to)."""
-    segments = segments or (Segment.cylinder("head", length=HEAD, diameter=0.12), Segment.cylinder("shaft", length=LENGTH - HEAD, diameter=DIAMETER, y0=HEAD))
-    bearings = [Bearing(name=str(i + 1), y=y, seat_width=w, matrix=matrix, attachment=attachment) for i, (y, w) in enumerate(seats)]
-    return Scene.from_parts(segments, bearings=bearings, port=Port(name="p", y=port[0], lo=port[1], hi=port[2], attachment=attachment))
+    segments = segments or (
+        Segment.cylinder("head", length=HEAD, diameter=0.12),
+        Segment.cylinder("shaft", length=LENGTH - HEAD, diameter=DIAMETER, y0=HEAD),
+    )
+    bearings = [
+        Bearing(name=str(i + 1), y=y, seat_width=w, matrix=matrix, attachment=attachment)
+        for i, (y, w) in enumerate(seats)
+    ]
+    return Scene.from_parts(
+        segments,
+        bearings=bearings,
+        port=Port(name="p", y=port[0], lo=port[1], hi=port[2], attachment=attachment),
+    )
 
 
 def disc(length: float) -> Scene:
     """A head that is a disc."""
-    parts = Segment.cylinder("head", length=length, diameter=0.12), Segment.cylinder("shaft", length=LENGTH - length, diameter=DIAMETER, y0=length)
+    parts = (
+        Segment.cylinder("head", length=length, diameter=0.12),
+        Segment.cylinder("shaft", length=LENGTH - length, diameter=DIAMETER, y0=length),
+    )
     return scene(parts, port=(length / 2, 0.0, length))
 
 
@@ -41,7 +59,9 @@ def cone(length: float) -> Scene:
     """The step drawn as a short cone."""
     parts = (
         Segment.cylinder("head", length=HEAD - length, diameter=0.12),
-        Segment.cone("cone", length=length, start_diameter=0.12, end_diameter=DIAMETER, y0=HEAD - length),
+        Segment.cone(
+            "cone", length=length, start_diameter=0.12, end_diameter=DIAMETER, y0=HEAD - length
+        ),
         Segment.cylinder("shaft", length=LENGTH - HEAD, diameter=DIAMETER, y0=HEAD),
     )
     return scene(parts, port=(0.03, 0.0, 0.05))
@@ -49,26 +69,58 @@ def cone(length: float) -> Scene:
 
 def joint(width: float) -> Scene:
     """A hollow head that shares a ring of that width with the end face of the shaft."""
-    parts = Segment.cylinder("head", length=HEAD, diameter=0.12, bore=DIAMETER - 2 * width), Segment.cylinder("shaft", length=LENGTH - HEAD, diameter=DIAMETER, y0=HEAD)
+    parts = (
+        Segment.cylinder("head", length=HEAD, diameter=0.12, bore=DIAMETER - 2 * width),
+        Segment.cylinder("shaft", length=LENGTH - HEAD, diameter=DIAMETER, y0=HEAD),
+    )
     return scene(parts)
 
 
 def step(height: float) -> Scene:
     """A step of that height in the diameter."""
-    return scene((Segment.cylinder("head", length=HEAD, diameter=DIAMETER + height), Segment.cylinder("shaft", length=LENGTH - HEAD, diameter=DIAMETER, y0=HEAD)))
+    return scene(
+        (
+            Segment.cylinder("head", length=HEAD, diameter=DIAMETER + height),
+            Segment.cylinder("shaft", length=LENGTH - HEAD, diameter=DIAMETER, y0=HEAD),
+        )
+    )
 
 
 #: what is odd -> (how to make it, values from sound to absurd, unit)
 SWEEPS = {
-    "lumped point beyond its surface, over the diameter": (lambda d: scene(port=(HEAD + d * DIAMETER, 0.0, HEAD)), (0.1, 0.33, 1.0, 2.0, 4.0)),
-    "seat width over the diameter": (lambda w: scene(seats=((0.1, w * DIAMETER), (0.25, w * DIAMETER))), (0.5, 0.2, 0.1, 0.05, 0.02, 1e-2, 1e-3)),
-    "head length over its diameter": (lambda x: disc(0.12 * x), (0.5, 0.3, 0.2, 0.1, 0.05, 0.02, 1e-2, 1e-3)),
-    "cone length over the step, across a shoulder": (lambda x: cone(0.03 * x), (1.0, 0.5, 0.2, 0.1, 1e-2, 1e-3)),
-    "ring shared by hollow head and shaft, over the radius": (lambda x: joint(x * DIAMETER / 2), (0.9, 0.5, 0.3, 0.2, 0.1, 0.05, 1e-2, 1e-3)),
+    "lumped point beyond its surface, over the diameter": (
+        lambda d: scene(port=(HEAD + d * DIAMETER, 0.0, HEAD)),
+        (0.1, 0.33, 1.0, 2.0, 4.0),
+    ),
+    "seat width over the diameter": (
+        lambda w: scene(seats=((0.1, w * DIAMETER), (0.25, w * DIAMETER))),
+        (0.5, 0.2, 0.1, 0.05, 0.02, 1e-2, 1e-3),
+    ),
+    "head length over its diameter": (
+        lambda x: disc(0.12 * x),
+        (0.5, 0.3, 0.2, 0.1, 0.05, 0.02, 1e-2, 1e-3),
+    ),
+    "cone length over the step, across a shoulder": (
+        lambda x: cone(0.03 * x),
+        (1.0, 0.5, 0.2, 0.1, 1e-2, 1e-3),
+    ),
+    "ring shared by hollow head and shaft, over the radius": (
+        lambda x: joint(x * DIAMETER / 2),
+        (0.9, 0.5, 0.3, 0.2, 0.1, 0.05, 1e-2, 1e-3),
+    ),
     "step over the diameter": (lambda x: step(x * DIAMETER), (0.1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6)),
-    "lever between bearings without tilt stiffness, over the diameter": (lambda x: scene(seats=((0.1, 0.5 * x * DIAMETER), (0.1 + x * DIAMETER, 0.5 * x * DIAMETER)), matrix=PIN), (1.0, 0.3, 0.1, 1e-2, 1e-3)),
+    "lever between bearings without tilt stiffness, over the diameter": (
+        lambda x: scene(
+            seats=((0.1, 0.5 * x * DIAMETER), (0.1 + x * DIAMETER, 0.5 * x * DIAMETER)), matrix=PIN
+        ),
+        (1.0, 0.3, 0.1, 1e-2, 1e-3),
+    ),
 }
-FEW = {"lumped point beyond its surface, over the diameter": (1.0,), "head length over its diameter": (1e-2,), "ring shared by hollow head and shaft, over the radius": (0.05,)}
+FEW = {
+    "lumped point beyond its surface, over the diameter": (1.0,),
+    "head length over its diameter": (1e-2,),
+    "ring shared by hollow head and shaft, over the radius": (0.05,),
+}
 #: things that are plainly wrong -> how to make them
 PLAIN = {
     "lumped point off the shaft": lambda: scene(port=(-0.01, 0.0, HEAD)),
@@ -91,7 +143,13 @@ def answers(body, here) -> dict:
     c = sg.condense(body, here, port="p").compliance
     found = sg.modes(body, here, n=8)
     first = found.named("bending 1")
-    return {"C_zz": c[2, 2], "C_thx": c[3, 3], "f1": first.frequency_hz if first else np.nan, "residual": found.evidence["residual"], "local": sum(m.family == "local" for m in found.modes)}
+    return {
+        "C_zz": c[2, 2],
+        "C_thx": c[3, 3],
+        "f1": first.frequency_hz if first else np.nan,
+        "residual": found.evidence["residual"],
+        "local": sum(m.family == "local" for m in found.modes),
+    }
 
 
 def cautions(here, body) -> set[str]:
@@ -102,9 +160,15 @@ def cautions(here, body) -> set[str]:
 
 def compare(here, quick: bool) -> dict:
     """Beam and solid of one scene."""
-    solid = sg.build(here, "harmonic", order=3, layers=1 if quick else 2, edge_layers=0 if quick else 1)
+    solid = sg.build(
+        here, "harmonic", order=3, layers=1 if quick else 2, edge_layers=0 if quick else 1
+    )
     beam, full = answers(sg.build(here, "timoshenko"), here), answers(solid, here)
-    return {name: full[name] / beam[name] - 1 for name in ("C_zz", "C_thx", "f1")} | {"residual": full["residual"], "local modes": full["local"], "said": cautions(here, solid)}
+    return {name: full[name] / beam[name] - 1 for name in ("C_zz", "C_thx", "f1")} | {
+        "residual": full["residual"],
+        "local modes": full["local"],
+        "said": cautions(here, solid),
+    }
 
 
 def measure(quick: bool = False) -> list[Finding]:
@@ -121,15 +185,37 @@ def measure(quick: bool = False) -> list[Finding]:
             except sg.SolidgearError as error:
                 rows.append(row | {"outcome": "refused", "sentence": str(error)})
                 continue
-            gaps = {name: max(abs(got[name]) - abs(sound[name]), 0.0) for name in ("C_zz", "C_thx", "f1")}
+            gaps = {
+                name: max(abs(got[name]) - abs(sound[name]), 0.0)
+                for name in ("C_zz", "C_thx", "f1")
+            }
             new = got["said"] - sound["said"]
             worst = max(gaps.values())
-            outcome = "told" if new else "silent" if worst > LIMIT or got["residual"] > 1e-3 or np.isnan(got["f1"]) else "sound"
-            rows.append(row | gaps | {"worst": worst, "residual": got["residual"], "local modes": got["local modes"], "outcome": outcome, "sentence": " / ".join(sorted(new))})
+            outcome = (
+                "told"
+                if new
+                else "silent"
+                if worst > LIMIT or got["residual"] > 1e-3 or np.isnan(got["f1"])
+                else "sound"
+            )
+            rows.append(
+                row
+                | gaps
+                | {
+                    "worst": worst,
+                    "residual": got["residual"],
+                    "local modes": got["local modes"],
+                    "outcome": outcome,
+                    "sentence": " / ".join(sorted(new)),
+                }
+            )
     plain = []
     for what, make in PLAIN.items():
         row = {"odd": what}
-        for model, options in (("timoshenko", {}), ("harmonic", {"order": 2, "layers": 0, "edge_layers": 0})):
+        for model, options in (
+            ("timoshenko", {}),
+            ("harmonic", {"order": 2, "layers": 0, "edge_layers": 0}),
+        ):
             try:
                 sg.condense(sg.build(make(), model, **options), make(), port="p")
                 row[model] = "accepted"
@@ -143,8 +229,13 @@ def measure(quick: bool = False) -> list[Finding]:
         own = [r for r in rows if r["odd"] == what and r["outcome"] == "silent"]
         if own:
             begins, worst = own[0], max(own, key=lambda r: r["worst"])
-            silent[what] = f"{what} from {begins['value']:g} ({100 * begins['worst']:.0f} %), at worst {_times(worst['worst'])}, residual up to {max(r['residual'] for r in own):.0e}"
-    ends = {what: [r["value"] for r in rows if r["odd"] == what and r["outcome"] == "refused"] for what in dict.fromkeys(r["odd"] for r in rows)}
+            silent[what] = (
+                f"{what} from {begins['value']:g} ({100 * begins['worst']:.0f} %), at worst {_times(worst['worst'])}, residual up to {max(r['residual'] for r in own):.0e}"
+            )
+    ends = {
+        what: [r["value"] for r in rows if r["odd"] == what and r["outcome"] == "refused"]
+        for what in dict.fromkeys(r["odd"] for r in rows)
+    }
     told = list(dict.fromkeys(r["odd"] for r in rows if r["outcome"] == "told"))
     return [
         Finding(
@@ -153,7 +244,11 @@ def measure(quick: bool = False) -> list[Finding]:
             "Beam and solid answer different questions once the lumped point leaves its surface, a head is a disc, or parts hang together by a thin ring; seats narrower than the mesh tie like a line.",
             f"Gaps of more than {100 * LIMIT:.0f} % in excess of the sound scene's, or no first bending at all, come without a caution for: {'; '.join(silent.values()) or 'none'}"
             + (f". Told by `check`: {'; '.join(told)}" if told else "")
-            + (f". Refused: {'; '.join(f'{what} at {v[0]:g}' for what, v in ends.items() if v)}." if any(ends.values()) else "."),
+            + (
+                f". Refused: {'; '.join(f'{what} at {v[0]:g}' for what, v in ends.items() if v)}."
+                if any(ends.values())
+                else "."
+            ),
             "`solidgear compare` shows each gap between beam and solid and calls the beam out of tolerance; `solidgear check` cautions on discs, thin joints, narrow seats and lumped points off their surface, and a scene is refused where a part is a millionth of the shaft.",
             "tests/test_check_guards.py::test_guard[disc]",
             rows,
@@ -163,7 +258,11 @@ def measure(quick: bool = False) -> list[Finding]:
             "Seats and spans that cannot be",
             "Seats that overlap, cross a step or hang over the end, and lumped points off the shaft, have no meaning that every model shares.",
             f"Of {len(plain)} such scenes {sum(r['harmonic'] == 'scene refused' for r in plain)} are refused as scenes; "
-            + "; ".join(f"{r['odd']}: beam {r['timoshenko']}, solid {r['harmonic']}" for r in plain if r["harmonic"] != "scene refused")
+            + "; ".join(
+                f"{r['odd']}: beam {r['timoshenko']}, solid {r['harmonic']}"
+                for r in plain
+                if r["harmonic"] != "scene refused"
+            )
             + ".",
             "Every command refuses such a scene in one sentence with the place and the numbers; two rigid seats that touch are refused by the solids only, because only they share points.",
             "tests/test_bad_scenes.py::test_refused_in_one_line",
@@ -185,18 +284,37 @@ def draw(finding: Finding, axes) -> None:
         for i, r in enumerate(finding.rows[::-1]):
             for k, model in enumerate(("timoshenko", "harmonic")):
                 axes.barh(i, 0.9, left=k, color=colours[r[model]])
-                axes.text(k + 0.45, i, r[model], ha="center", va="center", fontsize=7, color="white")
+                axes.text(
+                    k + 0.45, i, r[model], ha="center", va="center", fontsize=7, color="white"
+                )
         axes.set_yticks(range(len(names)), names, fontsize=7)
         axes.set_xticks((0.45, 1.45), ("beam", "harmonic solid"))
         return
     for what, marker in zip(SWEEPS, "osD^v<P"):
         rows = [r for r in finding.rows if r["odd"] == what and "worst" in r]
         if rows:
-            axes.loglog([r["value"] for r in rows], [max(r["worst"], 1e-5) for r in rows], marker + "-", ms=4, lw=1.2, label=what)
+            axes.loglog(
+                [r["value"] for r in rows],
+                [max(r["worst"], 1e-5) for r in rows],
+                marker + "-",
+                ms=4,
+                lw=1.2,
+                label=what,
+            )
             quiet = [r for r in rows if r["outcome"] == "silent"]
-            axes.plot([r["value"] for r in quiet], [max(r["worst"], 1e-5) for r in quiet], "o", color="#aa2222", ms=10, mfc="none")
+            axes.plot(
+                [r["value"] for r in quiet],
+                [max(r["worst"], 1e-5) for r in quiet],
+                "o",
+                color="#aa2222",
+                ms=10,
+                mfc="none",
+            )
     axes.axhline(LIMIT, color="#aa2222", lw=0.8, ls="--")
-    axes.set(xlabel="what is odd, relative (circled in red: without a caution)", ylabel="gap beam to solid in excess of the sound scene's")
+    axes.set(
+        xlabel="what is odd, relative (circled in red: without a caution)",
+        ylabel="gap beam to solid in excess of the sound scene's",
+    )
     axes.legend(fontsize=6)
 
 

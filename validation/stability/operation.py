@@ -3,7 +3,7 @@ written, a reader that goes away.  Reference: what a command owes its user: an e
 
 Every case is a child process on the overhung pinion.
 
-    python validation/stability/operation.py [--quick]
+    python -m validation.stability.operation [--quick]
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ import time
 from dataclasses import dataclass
 from pathlib import Path
 
-from frame import ROOT, Finding, main
+from validation.stability.frame import ROOT, Finding, main
 
 SCENE = str(ROOT / "geometry" / "pinion_overhung.toml")
 CHEAP = ("compare", SCENE, "--models", "timoshenko,euler", "--out")
@@ -68,29 +68,160 @@ NO_MKL = ("PYPARDISO_MKL_RT", "/nowhere/libmkl_rt.so")
 DEATH = (("pyvista", "import os, signal; os.kill(os.getpid(), signal.SIGSEGV)"),)
 MB = 1 << 20
 CASES = (
-    Case("memory: limit set to 30 MB, modes of a solid", ("modes", SCENE, "-f", "solid", "-n", "4"), (1,), "MB are free", env=(("SOLIDGEAR_MEMORY_MB", "30"),)),
-    Case("memory: limit set to 30 MB, compare", ("compare", SCENE, "--models", "timoshenko,solid", "--no-renders", "--out", "{out}"), (0,), "MB are free", env=(("SOLIDGEAR_MEMORY_MB", "30"),)),
-    Case("memory: address space of 900 MB, modes of a fine solid", ("modes", SCENE, "-f", "solid", "--set", "refinement=1.8"), (1,), "memory", limit=(resource.RLIMIT_AS, 900 * MB)),
-    Case("memory: limit that is no number", ("modes", SCENE, "-f", "solid"), (1,), "SOLIDGEAR_MEMORY_MB", env=(("SOLIDGEAR_MEMORY_MB", "lots"),)),
-    Case("back end: one that does not exist", ("stiffness", SCENE, "-f", "timoshenko"), (1,), "back end", env=(("SOLIDGEAR_BACKEND", "umfpack"),), quick=True),
-    Case("back end: asked for, not installed", ("stiffness", SCENE, "-f", "timoshenko"), (1,), "pardiso", env=(("SOLIDGEAR_BACKEND", "pardiso"), NO_MKL), hide=NO_PARDISO, quick=True),
-    Case("back end: not installed, not asked for", ("modes", SCENE, "-f", "solid", "--set", "refinement=0.7", "-n", "4"), (0,), "Residual", env=(NO_MKL,), hide=NO_PARDISO),
-    Case("renderer: none, render", ("render", SCENE, "-f", "timoshenko", "--out", "{file}"), (1,), "OpenGL", env=(("SOLIDGEAR_RENDERER", "none"),)),
-    Case("renderer: none, compare", (*CHEAP, "{out}"), (0,), "Report", env=(("SOLIDGEAR_RENDERER", "none"),)),
-    Case("renderer: dies of a segmentation fault, compare", (*CHEAP, "{out}"), (0,), "Report", hide=DEATH),
-    Case("renderer: dies of a segmentation fault, render", ("render", SCENE, "-f", "timoshenko", "--out", "{file}"), (1,), "signal 11", hide=DEATH),
-    Case("interrupt: Ctrl-C in the solid of compare", ("compare", SCENE, "--models", "timoshenko,solid", "--out", "{out}"), (130,), "interrupt", stop=("solid: build", signal.SIGINT)),
-    Case("interrupt: Ctrl-C at the start", ("compare", SCENE, "--models", "timoshenko,solid", "--out", "{out}"), (130,), "", stop=("timoshenko: build", signal.SIGINT)),
-    Case("interrupt: terminated while files are written", (*CHEAP, "{out}"), (-signal.SIGTERM, 143), "", stop=("report", signal.SIGTERM)),
-    Case("interrupt: killed while files are written", (*CHEAP, "{out}"), (-signal.SIGKILL,), "", stop=("renders", signal.SIGKILL)),
-    Case("disk: full after 60 kB, compare", (*CHEAP, "{out}"), (1,), "File too large", limit=(resource.RLIMIT_FSIZE, 60 << 10)),
-    Case("disk: full from the start, compare", (*CHEAP, "{out}"), (1,), "File too large", limit=(resource.RLIMIT_FSIZE, 0)),
-    Case("disk: full, render", ("render", SCENE, "-f", "timoshenko", "--out", "{file}"), (1,), "", limit=(resource.RLIMIT_FSIZE, 4 << 10)),
-    Case("disk: standard output full", ("modes", SCENE, "-f", "timoshenko", "--json"), (1,), "", stdout="/dev/full", quick=True),
-    Case("pipe: nobody reads", ("modes", SCENE, "-f", "timoshenko"), (0, 1, -signal.SIGPIPE, 141), "", stdout="closed"),
+    Case(
+        "memory: limit set to 30 MB, modes of a solid",
+        ("modes", SCENE, "-f", "solid", "-n", "4"),
+        (1,),
+        "MB are free",
+        env=(("SOLIDGEAR_MEMORY_MB", "30"),),
+    ),
+    Case(
+        "memory: limit set to 30 MB, compare",
+        ("compare", SCENE, "--models", "timoshenko,solid", "--no-renders", "--out", "{out}"),
+        (0,),
+        "MB are free",
+        env=(("SOLIDGEAR_MEMORY_MB", "30"),),
+    ),
+    Case(
+        "memory: address space of 900 MB, modes of a fine solid",
+        ("modes", SCENE, "-f", "solid", "--set", "refinement=1.8"),
+        (1,),
+        "memory",
+        limit=(resource.RLIMIT_AS, 900 * MB),
+    ),
+    Case(
+        "memory: limit that is no number",
+        ("modes", SCENE, "-f", "solid"),
+        (1,),
+        "SOLIDGEAR_MEMORY_MB",
+        env=(("SOLIDGEAR_MEMORY_MB", "lots"),),
+    ),
+    Case(
+        "back end: one that does not exist",
+        ("stiffness", SCENE, "-f", "timoshenko"),
+        (1,),
+        "back end",
+        env=(("SOLIDGEAR_BACKEND", "umfpack"),),
+        quick=True,
+    ),
+    Case(
+        "back end: asked for, not installed",
+        ("stiffness", SCENE, "-f", "timoshenko"),
+        (1,),
+        "pardiso",
+        env=(("SOLIDGEAR_BACKEND", "pardiso"), NO_MKL),
+        hide=NO_PARDISO,
+        quick=True,
+    ),
+    Case(
+        "back end: not installed, not asked for",
+        ("modes", SCENE, "-f", "solid", "--set", "refinement=0.7", "-n", "4"),
+        (0,),
+        "Residual",
+        env=(NO_MKL,),
+        hide=NO_PARDISO,
+    ),
+    Case(
+        "renderer: none, render",
+        ("render", SCENE, "-f", "timoshenko", "--out", "{file}"),
+        (1,),
+        "OpenGL",
+        env=(("SOLIDGEAR_RENDERER", "none"),),
+    ),
+    Case(
+        "renderer: none, compare",
+        (*CHEAP, "{out}"),
+        (0,),
+        "Report",
+        env=(("SOLIDGEAR_RENDERER", "none"),),
+    ),
+    Case(
+        "renderer: dies of a segmentation fault, compare",
+        (*CHEAP, "{out}"),
+        (0,),
+        "Report",
+        hide=DEATH,
+    ),
+    Case(
+        "renderer: dies of a segmentation fault, render",
+        ("render", SCENE, "-f", "timoshenko", "--out", "{file}"),
+        (1,),
+        "signal 11",
+        hide=DEATH,
+    ),
+    Case(
+        "interrupt: Ctrl-C in the solid of compare",
+        ("compare", SCENE, "--models", "timoshenko,solid", "--out", "{out}"),
+        (130,),
+        "interrupt",
+        stop=("solid: build", signal.SIGINT),
+    ),
+    Case(
+        "interrupt: Ctrl-C at the start",
+        ("compare", SCENE, "--models", "timoshenko,solid", "--out", "{out}"),
+        (130,),
+        "",
+        stop=("timoshenko: build", signal.SIGINT),
+    ),
+    Case(
+        "interrupt: terminated while files are written",
+        (*CHEAP, "{out}"),
+        (-signal.SIGTERM, 143),
+        "",
+        stop=("report", signal.SIGTERM),
+    ),
+    Case(
+        "interrupt: killed while files are written",
+        (*CHEAP, "{out}"),
+        (-signal.SIGKILL,),
+        "",
+        stop=("renders", signal.SIGKILL),
+    ),
+    Case(
+        "disk: full after 60 kB, compare",
+        (*CHEAP, "{out}"),
+        (1,),
+        "File too large",
+        limit=(resource.RLIMIT_FSIZE, 60 << 10),
+    ),
+    Case(
+        "disk: full from the start, compare",
+        (*CHEAP, "{out}"),
+        (1,),
+        "File too large",
+        limit=(resource.RLIMIT_FSIZE, 0),
+    ),
+    Case(
+        "disk: full, render",
+        ("render", SCENE, "-f", "timoshenko", "--out", "{file}"),
+        (1,),
+        "",
+        limit=(resource.RLIMIT_FSIZE, 4 << 10),
+    ),
+    Case(
+        "disk: standard output full",
+        ("modes", SCENE, "-f", "timoshenko", "--json"),
+        (1,),
+        "",
+        stdout="/dev/full",
+        quick=True,
+    ),
+    Case(
+        "pipe: nobody reads",
+        ("modes", SCENE, "-f", "timoshenko"),
+        (0, 1, -signal.SIGPIPE, 141),
+        "",
+        stdout="closed",
+    ),
     Case("folder: lies below a file", (*CHEAP, SCENE + "/out"), (1,), "--out", quick=True),
     Case("folder: system folder that takes no files", (*CHEAP, "/proc/solidgear"), (1,), "--out"),
-    Case("scene: a device without end", ("check", "/dev/zero"), (1,), "/dev/zero", limit=(resource.RLIMIT_AS, 3000 * MB)),
+    Case(
+        "scene: a device without end",
+        ("check", "/dev/zero"),
+        (1,),
+        "/dev/zero",
+        limit=(resource.RLIMIT_AS, 3000 * MB),
+    ),
 )
 
 
@@ -109,7 +240,9 @@ def run(case: Case, room: Path) -> dict:
     env["PYTHONPATH"] = os.pathsep.join(p for p in path if p)
 
     def limited():
-        signal.signal(signal.SIGINT, signal.SIG_DFL)  # a shell's background jobs ignore it, and children inherit that
+        signal.signal(
+            signal.SIGINT, signal.SIG_DFL
+        )  # a shell's background jobs ignore it, and children inherit that
         if case.limit:
             resource.setrlimit(case.limit[0], (case.limit[1], case.limit[1]))
 
@@ -123,15 +256,27 @@ def run(case: Case, room: Path) -> dict:
             target = os.open(case.stdout, os.O_WRONLY) if case.stdout else os.dup(sink.fileno())
         # The log is a file of the parent's making: a limit on file sizes would cut it off too, so errors go through a pipe there.
         pipe = case.limit is not None and case.limit[0] == resource.RLIMIT_FSIZE
-        child = subprocess.Popen([sys.executable, "-m", "solidgear.cli", *words], env=env, cwd=room, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE if pipe else target,
-                                 stderr=subprocess.STDOUT if pipe else sink, preexec_fn=limited, start_new_session=True)  # fmt: skip
+        child = subprocess.Popen(
+            [sys.executable, "-m", "solidgear.cli", *words],
+            env=env,
+            cwd=room,
+            stdin=subprocess.DEVNULL,
+            stdout=subprocess.PIPE if pipe else target,
+            stderr=subprocess.STDOUT if pipe else sink,
+            preexec_fn=limited,
+            start_new_session=True,
+        )
         os.close(target)
         try:
             if pipe:
                 text = child.communicate(timeout=SECONDS)[0].decode(errors="replace")
             elif case.stop:
                 word, number = case.stop
-                while child.poll() is None and word not in log.read_text(errors="replace") and time.perf_counter() - start < SECONDS:
+                while (
+                    child.poll() is None
+                    and word not in log.read_text(errors="replace")
+                    and time.perf_counter() - start < SECONDS
+                ):
                     time.sleep(0.01)
                 child.send_signal(number)
             code = child.wait(timeout=SECONDS)
@@ -140,7 +285,11 @@ def run(case: Case, room: Path) -> dict:
             code = child.wait()
     text = text or log.read_text(errors="replace")
     lines = [line for line in text.splitlines() if line.strip()]
-    left = [p for p in sorted(room.rglob("*")) if p.is_file() and p.name != "log" and "shadow" not in p.parts]
+    left = [
+        p
+        for p in sorted(room.rglob("*"))
+        if p.is_file() and p.name != "log" and "shadow" not in p.parts
+    ]
     seconds = time.perf_counter() - start
     faults = []
     if "Traceback" in text:
@@ -149,12 +298,26 @@ def run(case: Case, room: Path) -> dict:
         faults.append("hangs")
     if code not in case.code:
         faults.append(f"exit code {code}")
-    if case.says and case.says not in text and case.says not in "".join(p.read_text(errors="replace") for p in left if p.suffix == ".json"):
+    if (
+        case.says
+        and case.says not in text
+        and case.says
+        not in "".join(p.read_text(errors="replace") for p in left if p.suffix == ".json")
+    ):
         faults.append("does not say why")
     faults += [f"half-written {p.name}" for p in left if not whole(p)]
-    said = next((line for line in reversed(lines) if line.startswith("solidgear:")), lines[-1] if lines else "")
+    said = next(
+        (line for line in reversed(lines) if line.startswith("solidgear:")),
+        lines[-1] if lines else "",
+    )
     said = said.replace(str(room), "").replace(str(ROOT), "").strip()
-    return {"what": case.what, "exit code": code, "fault": "; ".join(faults), "says": said[:200], "files left": ", ".join(p.name for p in left)}
+    return {
+        "what": case.what,
+        "exit code": code,
+        "fault": "; ".join(faults),
+        "says": said[:200],
+        "files left": ", ".join(p.name for p in left),
+    }
 
 
 def whole(path: Path) -> bool:
@@ -188,7 +351,12 @@ def measure(quick: bool = False) -> Finding:
         "operation",
         "A machine that fails the run",
         "A run can end for reasons outside the model: memory, back end, renderer, an interrupt, a disk; what must not happen is a traceback, a wrong exit code, or a file that looks whole and is not.",
-        f"Of {len(rows)} ways to fail {len(rows) - len(bad)} end with the right exit code, a sentence and whole files or none" + (f"; not so: {'; '.join(r['what'] + ' (' + r['fault'] + ')' for r in bad)}." if bad else "."),
+        f"Of {len(rows)} ways to fail {len(rows) - len(bad)} end with the right exit code, a sentence and whole files or none"
+        + (
+            f"; not so: {'; '.join(r['what'] + ' (' + r['fault'] + ')' for r in bad)}."
+            if bad
+            else "."
+        ),
         "Every command ends in one sentence and exit code 1 (130 after Ctrl-C); files are written under another name and moved into place; a picture is drawn in a child process, so that its death costs only the picture.",
         "tests/test_compare.py::test_disk_that_fills_up_is_a_sentence_and_leaves_no_halves",
         rows,
@@ -201,7 +369,14 @@ def draw(finding: Finding, axes) -> None:
     for i, r in enumerate(rows):
         axes.plot(0, i, "s", color="#c4541c" if r["fault"] else "#00805e", ms=7)
         axes.text(0.03, i, f"exit {r['exit code']}", fontsize=6, va="center")
-        axes.text(0.12, i, r["fault"] or r["says"].replace("solidgear: ", "")[:95], fontsize=6, va="center", color="#c4541c" if r["fault"] else "black")
+        axes.text(
+            0.12,
+            i,
+            r["fault"] or r["says"].replace("solidgear: ", "")[:95],
+            fontsize=6,
+            va="center",
+            color="#c4541c" if r["fault"] else "black",
+        )
     axes.set_yticks(range(len(rows)), [r["what"] for r in rows], fontsize=6)
     axes.set(xlim=(-0.02, 1), xticks=(), title=finding.method)
     axes.grid(False)

@@ -3,21 +3,20 @@
 Models: the harmonic solid on uniform meshes (orders of convergence against twice the corner exponent), on graded ones, and the greatest strain on the surface,
 which has no limit at a sharp corner.  The fillet is made of short cones.
 
-    python validation/stability/sharp_or_fillet.py [--quick]
+    python -m validation.stability.sharp_or_fillet [--quick]
 """
 
 from __future__ import annotations
 
-from frame import Finding, main
+import numpy as np
+import scipy.sparse.linalg as spla
+from skfem import ElementQuad1
 
-import numpy as np  # noqa: E402
-import scipy.sparse.linalg as spla  # noqa: E402
-from skfem import ElementQuad1  # noqa: E402
-
-import solidgear as sg  # noqa: E402
-from solidgear.evidence.converge import sharpest_corner  # noqa: E402
-from solidgear.fidelity.assembly import reference, tabulate  # noqa: E402
-from solidgear.scene import STEEL, Bearing, Port, Scene, Segment  # noqa: E402
+import solidgear as sg
+from solidgear.evidence.converge import sharpest_corner
+from solidgear.fidelity.assembly import reference, tabulate
+from solidgear.scene import STEEL, Bearing, Port, Scene, Segment
+from validation.stability.frame import Finding, main
 
 THIN, THICK, STEP, END = 0.05, 0.075, 0.1, 0.2  # radii and places, m
 CONES = 6
@@ -33,11 +32,27 @@ def shaft(fillet: float) -> Scene:
     y, r = STEP - radius + radius * np.sin(turn), THIN + radius - radius * np.cos(turn)
     segments = [Segment(name="thin", y0=0.0, y1=y[0], outer0=THIN, outer1=THIN)]
     for i in range(len(turn) - 1):
-        segments.append(Segment(name=f"fillet {i + 1}", y0=segments[-1].y1, y1=y[i + 1], outer0=r[i], outer1=r[i + 1]))
+        segments.append(
+            Segment(
+                name=f"fillet {i + 1}",
+                y0=segments[-1].y1,
+                y1=y[i + 1],
+                outer0=r[i],
+                outer1=r[i + 1],
+            )
+        )
     segments.append(Segment(name="thick", y0=segments[-1].y1, y1=END, outer0=THICK, outer1=THICK))
     width = 2e-4 * THIN
-    clamp = Bearing(name="clamp", y=END - width / 2, seat_width=width, matrix=np.diag([1e24] * 6), attachment="section")
-    return Scene.from_parts(segments, bearings=[clamp], port=Port(y=0.0, lo=0.0, hi=width, attachment="section"))
+    clamp = Bearing(
+        name="clamp",
+        y=END - width / 2,
+        seat_width=width,
+        matrix=np.diag([1e24] * 6),
+        attachment="section",
+    )
+    return Scene.from_parts(
+        segments, bearings=[clamp], port=Port(y=0.0, lo=0.0, hi=width, attachment="section")
+    )
 
 
 def tilt(body, scene) -> float:
@@ -48,7 +63,9 @@ def tilt(body, scene) -> float:
 def greatest_strain(body, scene) -> float:
     """Greatest axial strain at the middles of surface cells near the shoulder, over M r / E I of the thin shaft."""
     block, work = body.blocks[0], body.geometry
-    here, there = (block.ports[2 * body.port_index(n) : 2 * body.port_index(n) + 2] for n in ("port", "clamp"))
+    here, there = (
+        block.ports[2 * body.port_index(n) : 2 * body.port_index(n) + 2] for n in ("port", "clamp")
+    )
     # springs that hold the clamped section carry the moment; their stiffness moves the shaft but does not strain it
     held = (block.stiffness + there.T @ there * 1e10).tocsc()
     u = spla.spsolve(held, here[1].toarray().ravel())
@@ -56,25 +73,36 @@ def greatest_strain(body, scene) -> float:
     full = np.zeros((dofs.max() + 1, 3))
     keep = np.ones(full.shape, bool)
     inner = flat.inner[np.abs(flat.points[0][flat.cells[0, flat.inner]]) < 1e-12]
-    side = np.abs(reference(work.element, np.array([[0.0] * 5, np.linspace(0, 1, 5)]))[0]).max(axis=1) > 1e-12
+    side = (
+        np.abs(reference(work.element, np.array([[0.0] * 5, np.linspace(0, 1, 5)]))[0]).max(axis=1)
+        > 1e-12
+    )
     keep[np.unique(dofs[side][:, inner]), 1:] = False
     full[keep] = u
     outer = flat.outer[np.abs(flat.points[1][flat.cells[:, flat.outer]].mean(axis=0) - STEP) < 0.05]
     middle = np.array([[1.0], [0.5]])
-    tangent = tabulate(ElementQuad1(), flat.points[:, flat.cells[:, outer]], work.element, middle).tangent[:, 0]
+    tangent = tabulate(
+        ElementQuad1(), flat.points[:, flat.cells[:, outer]], work.element, middle
+    ).tangent[:, 0]
     slope = reference(work.element, middle)[1][:, :, 0]
-    strain = np.einsum("bc,ec,be->e", slope, np.linalg.inv(tangent)[:, :, 1], full[:, 2][dofs[:, outer]])
+    strain = np.einsum(
+        "bc,ec,be->e", slope, np.linalg.inv(tangent)[:, :, 1], full[:, 2][dofs[:, outer]]
+    )
     return float(np.abs(strain).max() / (THIN / (STEEL.E * np.pi / 4 * THIN**4)))
 
 
 def uniform(scene, order: int, refinement: int):
     """Harmonic solid on a mesh that takes no notice of the shoulder."""
-    return sg.build(scene, "harmonic", order=order, layers=0, edge_layers=0, size=0.025, refinement=refinement)
+    return sg.build(
+        scene, "harmonic", order=order, layers=0, edge_layers=0, size=0.025, refinement=refinement
+    )
 
 
 def graded(scene, order: int, layers: int, ratio: float = RATIO):
     """Harmonic solid with layers towards the shoulder."""
-    return sg.build(scene, "harmonic", order=order, layers=layers, edge_layers=0, size=0.025, ratio=ratio)
+    return sg.build(
+        scene, "harmonic", order=order, layers=layers, edge_layers=0, size=0.025, ratio=ratio
+    )
 
 
 def measure(quick: bool = False) -> Finding:
@@ -90,22 +118,52 @@ def measure(quick: bool = False) -> Finding:
             body = uniform(scene, order, refinement)
             errors.append(abs(tilt(body, scene) / best - 1))
             strains.append(greatest_strain(body, scene) if order == 2 else None)
-            rows.append({"mesh": f"uniform Q{order}", "refinement": refinement, "unknowns": body.size, "error of tilt": errors[-1], "greatest strain over nominal": strains[-1]})
+            rows.append(
+                {
+                    "mesh": f"uniform Q{order}",
+                    "refinement": refinement,
+                    "unknowns": body.size,
+                    "error of tilt": errors[-1],
+                    "greatest strain over nominal": strains[-1],
+                }
+            )
         orders[order] = np.log2(errors[-2] / errors[-1])
     for order in (2, 3) if quick else (2, 3, 4, 5):
         body = graded(scene, order, order)
-        rows.append({"mesh": f"graded Q{order}, {order} layers", "unknowns": body.size, "error of tilt": abs(tilt(body, scene) / best - 1)})
+        rows.append(
+            {
+                "mesh": f"graded Q{order}, {order} layers",
+                "unknowns": body.size,
+                "error of tilt": abs(tilt(body, scene) / best - 1),
+            }
+        )
     layers = LAYERS[:2] if quick else LAYERS
     peaks = [greatest_strain(graded(scene, 3, n), scene) for n in layers]
-    rows += [{"mesh": f"strain, Q3, {n} layers", "refinement": n, "greatest strain over nominal": x} for n, x in zip(layers, peaks)]
+    rows += [
+        {"mesh": f"strain, Q3, {n} layers", "refinement": n, "greatest strain over nominal": x}
+        for n, x in zip(layers, peaks)
+    ]
     growth = np.log(peaks[-1] / peaks[-2]) / np.log(RATIO) / (layers[-1] - layers[-2])
     for fillet in FILLETS[::2] if quick else FILLETS:
         scene = shaft(fillet)
         fine = tilt(graded(scene, 5 if quick else 7, 2 if fillet else 6), scene)
-        errors = [abs(tilt(uniform(scene, 2, n), scene) / fine - 1) for n in ((1, 2) if quick else (1, 2, 4))]
-        strain = [greatest_strain(uniform(scene, 2, n), scene) for n in ((1, 2) if quick else (2, 4))]
-        rows.append({"fillet over d": fillet, "tilt over sharp": fine / best - 1, "corner exponent": sharpest_corner(scene)[1], "observed order": np.log2(errors[-2] / errors[-1]),
-                     "greatest strain over nominal": strain[-1], "its last change": strain[-1] / strain[-2] - 1})  # fmt: skip
+        errors = [
+            abs(tilt(uniform(scene, 2, n), scene) / fine - 1)
+            for n in ((1, 2) if quick else (1, 2, 4))
+        ]
+        strain = [
+            greatest_strain(uniform(scene, 2, n), scene) for n in ((1, 2) if quick else (2, 4))
+        ]
+        rows.append(
+            {
+                "fillet over d": fillet,
+                "tilt over sharp": fine / best - 1,
+                "corner exponent": sharpest_corner(scene)[1],
+                "observed order": np.log2(errors[-2] / errors[-1]),
+                "greatest strain over nominal": strain[-1],
+                "its last change": strain[-1] / strain[-2] - 1,
+            }
+        )
     cheap = next(r for r in rows if r["mesh"].startswith("graded Q3"))
     last = next(r for r in rows[::-1] if r.get("mesh") == "uniform Q2")
     softer = [r for r in rows if r.get("fillet over d")]
@@ -132,12 +190,34 @@ def draw(finding: Finding, axes) -> None:
     """Error of the tilt over unknowns."""
     for order, colour, marker in ((1, "#c98a00", "v"), (2, "#c4541c", "o"), (3, "#5a3e8c", "D")):
         rows = [r for r in finding.rows if r.get("mesh") == f"uniform Q{order}"]
-        axes.loglog([r["unknowns"] for r in rows], [r["error of tilt"] for r in rows], marker + "-", color=colour, ms=5, lw=1.3, label=f"uniform Q{order}")
+        axes.loglog(
+            [r["unknowns"] for r in rows],
+            [r["error of tilt"] for r in rows],
+            marker + "-",
+            color=colour,
+            ms=5,
+            lw=1.3,
+            label=f"uniform Q{order}",
+        )
     rows = [r for r in finding.rows if str(r.get("mesh")).startswith("graded")]
-    axes.loglog([r["unknowns"] for r in rows], [r["error of tilt"] for r in rows], "s-", color="#00805e", ms=5, lw=1.3, label="graded Q2 to Q5")
+    axes.loglog(
+        [r["unknowns"] for r in rows],
+        [r["error of tilt"] for r in rows],
+        "s-",
+        color="#00805e",
+        ms=5,
+        lw=1.3,
+        label="graded Q2 to Q5",
+    )
     rows = [r for r in finding.rows if r.get("mesh") == "uniform Q2"]
     other = axes.twinx()
-    other.loglog([r["unknowns"] for r in rows], [r["greatest strain over nominal"] for r in rows], "x:", color="#0072b2", lw=1.3)
+    other.loglog(
+        [r["unknowns"] for r in rows],
+        [r["greatest strain over nominal"] for r in rows],
+        "x:",
+        color="#0072b2",
+        lw=1.3,
+    )
     other.set(ylabel="greatest strain over nominal, uniform Q2 (crosses)", ylim=(1, 10))
     other.set_yticks([1, 2, 3, 5, 10], ["1", "2", "3", "5", "10"])
     other.minorticks_off()

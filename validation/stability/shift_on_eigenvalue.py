@@ -2,24 +2,26 @@
 
 Models: textbook shift-invert with the shift 1e-2 down to 0 (relative) from the pair, and `modes`, whose shift is negative and so is never on an eigenvalue.
 
-    python validation/stability/shift_on_eigenvalue.py [--quick]
+    python -m validation.stability.shift_on_eigenvalue [--quick]
 """
 
 from __future__ import annotations
 
-from frame import ROOT, Finding, main
+import numpy as np
+import scipy.linalg as sla
+import scipy.sparse as sp
+import scipy.sparse.linalg as spla
 
-import numpy as np  # noqa: E402
-import scipy.linalg as sla  # noqa: E402
-import scipy.sparse as sp  # noqa: E402
-import scipy.sparse.linalg as spla  # noqa: E402
-
-import solidgear as sg  # noqa: E402
-from free_body_shift import whole  # noqa: E402
-from solidgear.body import as_supports  # noqa: E402
+import solidgear as sg
+from solidgear.body import as_supports
+from validation.stability.frame import ROOT, Finding, main
+from validation.stability.free_body_shift import whole
 
 AWAY = (*10.0 ** -np.arange(2, 15.5, 0.5), 0.0)
-BODIES = {"timoshenko": ("timoshenko", {}), "hex8": ("solid", {"element": "hex8", "refinement": 0.5})}
+BODIES = {
+    "timoshenko": ("timoshenko", {}),
+    "hex8": ("solid", {"element": "hex8", "refinement": 0.5}),
+}
 FEW = (1e-2, 1e-7, 1e-12, 0.0)
 WANTED = 6
 RUNS = 6
@@ -45,14 +47,18 @@ def attempt(k, m, sigma, exact, seed) -> dict:
         lu = spla.splu((k - sigma * m).tocsc())
         n = k.shape[0]
         start = np.random.default_rng(seed).standard_normal(n)
-        value, u = spla.eigsh(k, WANTED, m, sigma=sigma, OPinv=spla.LinearOperator((n, n), lu.solve), v0=start, tol=0)
+        value, u = spla.eigsh(
+            k, WANTED, m, sigma=sigma, OPinv=spla.LinearOperator((n, n), lu.solve), v0=start, tol=0
+        )
     except (RuntimeError, spla.ArpackError) as error:
         return {"failed": str(error)[:60]}
     near = np.sort(exact[np.argsort(np.abs(exact - sigma))[:WANTED]])
     left, missing, worst = list(value), 0, 0.0
     for v in near:
         closest = min(left, key=lambda x: abs(x - v))
-        error = abs(closest - v) / max(abs(v), exact[1])  # a rigid motion that nothing resists has no relative error
+        error = abs(closest - v) / max(
+            abs(v), exact[1]
+        )  # a rigid motion that nothing resists has no relative error
         if error > 1e-3 or not np.isfinite(error):
             missing += 1
         else:
@@ -82,24 +88,69 @@ def measure(quick: bool = False) -> Finding:
         k, m = supported(body, as_supports(scene))
         exact = sla.eigh(k.toarray(), m.toarray(), eigvals_only=True, subset_by_index=(0, 19))
         pair = next(i for i in range(1, 18) if abs(exact[i + 1] / exact[i] - 1) < 1e-9)
-        highest = spla.eigsh(k, 1, m, Minv=spla.LinearOperator(k.shape, spla.splu(m).solve), which="LM", tol=1e-2, return_eigenvectors=False)[0] / exact[pair]
+        highest = (
+            spla.eigsh(
+                k,
+                1,
+                m,
+                Minv=spla.LinearOperator(k.shape, spla.splu(m).solve),
+                which="LM",
+                tol=1e-2,
+                return_eigenvectors=False,
+            )[0]
+            / exact[pair]
+        )
         for away in FEW if quick else AWAY:
-            runs = [attempt(k, m, exact[pair] * (1 + away), exact, seed) for seed in range(2 if quick else RUNS)]
+            runs = [
+                attempt(k, m, exact[pair] * (1 + away), exact, seed)
+                for seed in range(2 if quick else RUNS)
+            ]
             done = [r for r in runs if "failed" not in r]
-            row = {"body": name, "solver": "shift-invert", "shift from pair": float(away), "highest / pair": highest, "runs": len(runs), "failed": len(runs) - len(done)}
-            row["cholesky"] = cholesky(k - exact[pair] * (1 + away) * m) if away in (AWAY[0], 0.0) else None
-            rows.append(row | {key: max((r[key] for r in done), default=float("nan")) for key in ("missing", "error", "residual")})
+            row = {
+                "body": name,
+                "solver": "shift-invert",
+                "shift from pair": float(away),
+                "highest / pair": highest,
+                "runs": len(runs),
+                "failed": len(runs) - len(done),
+            }
+            row["cholesky"] = (
+                cholesky(k - exact[pair] * (1 + away) * m) if away in (AWAY[0], 0.0) else None
+            )
+            rows.append(
+                row
+                | {
+                    key: max((r[key] for r in done), default=float("nan"))
+                    for key in ("missing", "error", "residual")
+                }
+            )
         found = sg.modes(body, scene, n=10)
         mode = found.named("bending 1")
         error = abs((2 * np.pi * mode.frequency_hz) ** 2 / exact[pair] - 1)
         away = abs(found.evidence["shift_rad2"] / exact[pair] - 1)
-        rows.append({"body": name, "solver": "program", "shift from pair": away, "highest / pair": highest, "runs": 1, "failed": 0, "missing": 2 - mode.multiplicity, "error": error,
-                     "residual": found.evidence["residual"]})  # fmt: skip
-    naive, ours = ([r for r in rows if r["solver"] == which] for which in ("shift-invert", "program"))
+        rows.append(
+            {
+                "body": name,
+                "solver": "program",
+                "shift from pair": away,
+                "highest / pair": highest,
+                "runs": 1,
+                "failed": 0,
+                "missing": 2 - mode.multiplicity,
+                "error": error,
+                "residual": found.evidence["residual"],
+            }
+        )
+    naive, ours = (
+        [r for r in rows if r["solver"] == which] for which in ("shift-invert", "program")
+    )
 
     def told(name):
         own = [r for r in naive if r["body"] == name]
-        worst, on = max(own, key=lambda r: (r["missing"], r["error"])), next(r for r in own if r["shift from pair"] == 0)
+        worst, on = (
+            max(own, key=lambda r: (r["missing"], r["error"])),
+            next(r for r in own if r["shift from pair"] == 0),
+        )
         return (
             f"{name}: error {own[0]['error']:.0e} at 1e-2, at worst {worst['error']:.0e} at {worst['shift from pair']:.0e} with a residual of {worst['residual']:.0e} and {worst['missing']:g} of {WANTED} modes missing, "
             f"{on['error']:.0e} on the pair itself"
@@ -123,16 +174,47 @@ def draw(finding: Finding, axes) -> None:
     for name, colour in zip(BODIES, ("#0072b2", "#c4541c")):
         rows = [r for r in finding.rows if r["solver"] == "shift-invert" and r["body"] == name]
         at = [max(r["shift from pair"], 1e-16) for r in rows]
-        axes.loglog(at, [max(r["error"], 1e-17) for r in rows], "o-", color=colour, ms=4, label=f"{name}: worst eigenvalue error")
-        axes.loglog(at, [max(r["residual"], 1e-17) for r in rows], "s:", color=colour, ms=3, label=f"{name}: residual seen")
+        axes.loglog(
+            at,
+            [max(r["error"], 1e-17) for r in rows],
+            "o-",
+            color=colour,
+            ms=4,
+            label=f"{name}: worst eigenvalue error",
+        )
+        axes.loglog(
+            at,
+            [max(r["residual"], 1e-17) for r in rows],
+            "s:",
+            color=colour,
+            ms=3,
+            label=f"{name}: residual seen",
+        )
         for a, r in zip(at, rows):
             if r["missing"]:
-                axes.annotate(f"{r['missing']:g} lost", (a, 0.03), rotation=90, ha="center", va="bottom", fontsize=8, color=colour)
-        own = next((r for r in finding.rows if r["solver"] == "program" and r["body"] == name), None)
+                axes.annotate(
+                    f"{r['missing']:g} lost",
+                    (a, 0.03),
+                    rotation=90,
+                    ha="center",
+                    va="bottom",
+                    fontsize=8,
+                    color=colour,
+                )
+        own = next(
+            (r for r in finding.rows if r["solver"] == "program" and r["body"] == name), None
+        )
         if own:
-            axes.axhline(max(own["error"], 1e-17), color=colour, lw=0.8, ls="--", label=f"{name}: program")
+            axes.axhline(
+                max(own["error"], 1e-17), color=colour, lw=0.8, ls="--", label=f"{name}: program"
+            )
     axes.annotate("on the pair", (1e-16, 1e-15), rotation=90, fontsize=8)
-    axes.set(xlabel="distance of the shift from the pair, relative", ylabel="relative error", title=finding.method, ylim=(1e-17, 10))
+    axes.set(
+        xlabel="distance of the shift from the pair, relative",
+        ylabel="relative error",
+        title=finding.method,
+        ylim=(1e-17, 10),
+    )
     axes.legend(fontsize=8)
 
 

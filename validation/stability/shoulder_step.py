@@ -4,17 +4,16 @@ Model: Timoshenko beam.  A pure moment loads a section tie with the stresses of 
 shoulder: stress cannot fill the thick part right behind it.  It is told as a missing length of thin shaft, and as the
 angle of the cone (from the axis) that the thick part may be thought to start with.
 
-    python validation/stability/shoulder_step.py [--quick]
+    python -m validation.stability.shoulder_step [--quick]
 """
 
 from __future__ import annotations
 
-from frame import Finding, crossing, main
+import numpy as np
 
-import numpy as np  # noqa: E402
-
-import solidgear as sg  # noqa: E402
-from solidgear.scene import STEEL, Bearing, Port, Scene, Segment  # noqa: E402
+import solidgear as sg
+from solidgear.scene import STEEL, Bearing, Port, Scene, Segment
+from validation.stability.frame import Finding, crossing, main
 
 THIN = 0.1  # diameter, m
 RATIOS = (1.02, 1.05, 1.1, 1.2, 1.3, 1.5, 1.75, 2.0, 2.5, 3.0)
@@ -31,11 +30,23 @@ def shaft(ratio: float, reach: float, angle: float | None = None) -> Scene:
     y = step
     if angle is not None:
         y = step + (thick - THIN) / 2 / np.tan(angle)
-        segments.append(Segment.cone("cone", y0=step, length=y - step, start_diameter=THIN, end_diameter=thick))
+        segments.append(
+            Segment.cone("cone", y0=step, length=y - step, start_diameter=THIN, end_diameter=thick)
+        )
     segments.append(Segment.cylinder("thick", y0=segments[-1].y1, length=end - y, diameter=thick))
-    width = 2e-4 * THIN  # what lies beyond a tie is strained along and stiffens: 0.002 d in tilt at a stub of 0.01 d
-    clamp = Bearing(name="clamp", y=end - width / 2, seat_width=width, matrix=np.diag([1e24] * 6), attachment="section")
-    return Scene.from_parts(segments, bearings=[clamp], port=Port(y=0.0, lo=0.0, hi=width, attachment="section"))
+    width = (
+        2e-4 * THIN
+    )  # what lies beyond a tie is strained along and stiffens: 0.002 d in tilt at a stub of 0.01 d
+    clamp = Bearing(
+        name="clamp",
+        y=end - width / 2,
+        seat_width=width,
+        matrix=np.diag([1e24] * 6),
+        attachment="section",
+    )
+    return Scene.from_parts(
+        segments, bearings=[clamp], port=Port(y=0.0, lo=0.0, hi=width, attachment="section")
+    )
 
 
 def compliance(model: str, scene: Scene, **options) -> tuple[float, float]:
@@ -61,14 +72,24 @@ def measure(quick: bool = False) -> Finding:
         for reach in REACH:
             scene = shaft(ratio, reach)
             options = dict(edge_layers=0, size=THIN / 2)
-            solid = compliance("harmonic", scene, order=4 if quick else 6, layers=2 if quick else 4, **options)
+            solid = compliance(
+                "harmonic", scene, order=4 if quick else 6, layers=2 if quick else 4, **options
+            )
             beam = compliance("timoshenko", scene)
-            row |= {f"C_zz, {reach:g} d": beam[0] / solid[0] - 1, f"C_thx, {reach:g} d": beam[1] / solid[1] - 1}
+            row |= {
+                f"C_zz, {reach:g} d": beam[0] / solid[0] - 1,
+                f"C_thx, {reach:g} d": beam[1] / solid[1] - 1,
+            }
             row[f"missing length / d, {reach:g} d"] = (solid[1] - beam[1]) * stiff / THIN
         extra = solid[1] - beam[1]
         row["cone angle, deg"] = np.degrees(cone_angle(extra, ratio))
-        row["C_zz with that cone"] = compliance("timoshenko", shaft(ratio, reach, cone_angle(extra, ratio)))[0] / solid[0] - 1
-        row["C_zz with 45 deg"] = compliance("timoshenko", shaft(ratio, reach, np.pi / 4))[0] / solid[0] - 1
+        row["C_zz with that cone"] = (
+            compliance("timoshenko", shaft(ratio, reach, cone_angle(extra, ratio)))[0] / solid[0]
+            - 1
+        )
+        row["C_zz with 45 deg"] = (
+            compliance("timoshenko", shaft(ratio, reach, np.pi / 4))[0] / solid[0] - 1
+        )
         row["C_zz with a hinge"] = (beam[0] + extra * (reach * THIN) ** 2) / solid[0] - 1
         rows.append(row)
     at = [r["ratio"] for r in rows]
@@ -78,7 +99,9 @@ def measure(quick: bool = False) -> Finding:
         return f"{level:.0%} at {x:.2f}" if np.isfinite(x) else f"{level:.0%} never"
 
     last = rows[-1]
-    cone, hinge = (max(abs(r[f"C_zz with {what}"]) for r in rows) for what in ("that cone", "a hinge"))
+    cone, hinge = (
+        max(abs(r[f"C_zz with {what}"]) for r in rows) for what in ("that cone", "a hinge")
+    )
     return Finding(
         "shoulder_step",
         "Beam at a shoulder",
@@ -105,8 +128,21 @@ def draw(finding: Finding, axes) -> None:
         ("C_zz with that cone", "#00805e", "D", "deflection, 2 d, with the cone"),
         ("C_zz with a hinge", "#111111", "^", "deflection, 2 d, with a hinge"),
     ):
-        axes.plot(at, [100 * r[name] for r in finding.rows], marker + "-", color=colour, ms=5, lw=1.3, label=words)
-    axes.set(xlabel="ratio of diameters", ylabel="beam against solid, %", title=finding.method, ylim=(-22, 22))
+        axes.plot(
+            at,
+            [100 * r[name] for r in finding.rows],
+            marker + "-",
+            color=colour,
+            ms=5,
+            lw=1.3,
+            label=words,
+        )
+    axes.set(
+        xlabel="ratio of diameters",
+        ylabel="beam against solid, %",
+        title=finding.method,
+        ylim=(-22, 22),
+    )
     axes.legend(loc="upper left", ncols=2)
     other = axes.twinx()
     other.plot(at, [r["cone angle, deg"] for r in finding.rows], ":", color="#5a3e8c", lw=1.6)

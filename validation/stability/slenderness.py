@@ -3,17 +3,16 @@
 Models: Euler and Timoshenko beams.  The shaft on bearings has its seats at a tenth of its length from both ends and is loaded in the middle, all tied by
 section means, the fair partner of a beam node.
 
-    python validation/stability/slenderness.py [--quick]
+    python -m validation.stability.slenderness [--quick]
 """
 
 from __future__ import annotations
 
-from frame import Finding, crossing, main
+import numpy as np
 
-import numpy as np  # noqa: E402
-
-import solidgear as sg  # noqa: E402
-from solidgear.scene import STEEL, Bearing, Port, Scene, Segment  # noqa: E402
+import solidgear as sg
+from solidgear.scene import STEEL, Bearing, Port, Scene, Segment
+from validation.stability.frame import Finding, crossing, main
 
 DIAMETER = 0.1
 SLENDERNESS = (20.0, 16.0, 12.0, 8.0, 5.0, 4.0, 3.0, 2.5, 2.0, 1.5, 1.25, 1.0, 0.75, 0.5)
@@ -28,18 +27,43 @@ def shaft(slenderness: float) -> Scene:
     shear = STEEL.shear_modulus * np.pi * DIAMETER**2 / length
     k = 1e3 / (1 / bending + 1 / shear)
     width = 0.02 * length
-    bearings = [Bearing(name=f"bearing {i + 1}", y=f * length, seat_width=width, matrix=np.diag([k, k, k, 0, 0, 0]), attachment="section") for i, f in enumerate((0.1, 0.9))]
-    port = Port(name="middle", y=length / 2, lo=length / 2 - width, hi=length / 2 + width, attachment="section")
-    return Scene.from_parts([Segment.cylinder("shaft", length=length, diameter=DIAMETER)], bearings=bearings, port=port)
+    bearings = [
+        Bearing(
+            name=f"bearing {i + 1}",
+            y=f * length,
+            seat_width=width,
+            matrix=np.diag([k, k, k, 0, 0, 0]),
+            attachment="section",
+        )
+        for i, f in enumerate((0.1, 0.9))
+    ]
+    port = Port(
+        name="middle",
+        y=length / 2,
+        lo=length / 2 - width,
+        hi=length / 2 + width,
+        attachment="section",
+    )
+    return Scene.from_parts(
+        [Segment.cylinder("shaft", length=length, diameter=DIAMETER)], bearings=bearings, port=port
+    )
 
 
 def answers(body, scene) -> dict[str, float]:
     """First bending free, first bending and compliance on bearings."""
 
     def first(supports):
-        return next(m.frequency_hz for m in sg.modes(body, supports, n=12).modes if m.family == "bending" and m.frequency_hz > 0)
+        return next(
+            m.frequency_hz
+            for m in sg.modes(body, supports, n=12).modes
+            if m.family == "bending" and m.frequency_hz > 0
+        )
 
-    return {"free f1": first(()), "f1 on bearings": first(scene), "C_zz on bearings": sg.condense(body, scene, port="middle").compliance[2, 2]}
+    return {
+        "free f1": first(()),
+        "f1 on bearings": first(scene),
+        "C_zz on bearings": sg.condense(body, scene, port="middle").compliance[2, 2],
+    }
 
 
 def measure(quick: bool = False) -> list[Finding]:
@@ -47,11 +71,26 @@ def measure(quick: bool = False) -> list[Finding]:
     rows: dict[str, list[dict]] = {"euler": [], "timoshenko": []}
     for slenderness in FEW if quick else SLENDERNESS:
         scene = shaft(slenderness)
-        coarse, fine = (answers(sg.build(scene, "harmonic", order=p, layers=0, edge_layers=0, size=DIAMETER * min(0.5, slenderness / 4)), scene) for p in ((3, 4) if quick else (4, 6)))
+        coarse, fine = (
+            answers(
+                sg.build(
+                    scene,
+                    "harmonic",
+                    order=p,
+                    layers=0,
+                    edge_layers=0,
+                    size=DIAMETER * min(0.5, slenderness / 4),
+                ),
+                scene,
+            )
+            for p in ((3, 4) if quick else (4, 6))
+        )
         for model, into in rows.items():
             mine = answers(sg.build(scene, model), scene)
             row = {"L/D": slenderness} | {name: mine[name] / fine[name] - 1 for name in fine}
-            into.append(row | {"reference moved": max(abs(coarse[name] / fine[name] - 1) for name in fine)})
+            into.append(
+                row | {"reference moved": max(abs(coarse[name] / fine[name] - 1) for name in fine)}
+            )
     return [_finding(model, into) for model, into in rows.items()]
 
 
@@ -59,24 +98,38 @@ def thresholds(rows) -> dict[tuple[str, float], float]:
     """L/D at which each error passes each level, going towards short shafts."""
     at = [r["L/D"] for r in rows][::-1]
     names = [n for n in rows[0] if n not in ("L/D", "reference moved")]
-    return {(n, level): crossing(at, [abs(r[n]) for r in rows][::-1], level) for n in names for level in LEVELS}
+    return {
+        (n, level): crossing(at, [abs(r[n]) for r in rows][::-1], level)
+        for n in names
+        for level in LEVELS
+    }
 
 
 def _finding(model, rows) -> Finding:
     edge = thresholds(rows)
 
     def words(level):
-        return ", ".join(f"{name} {edge[name, level]:.2f}" if np.isfinite(edge[name, level]) else f"{name} nowhere" for name in ("free f1", "f1 on bearings", "C_zz on bearings"))
+        return ", ".join(
+            f"{name} {edge[name, level]:.2f}"
+            if np.isfinite(edge[name, level])
+            else f"{name} nowhere"
+            for name in ("free f1", "f1 on bearings", "C_zz on bearings")
+        )
 
     name = {"euler": "Euler", "timoshenko": "Timoshenko"}[model]
-    lacks = {"euler": "shear and rotary inertia are missing", "timoshenko": "a section is taken to stay plane and of one shape"}[model]
+    lacks = {
+        "euler": "shear and rotary inertia are missing",
+        "timoshenko": "a section is taken to stay plane and of one shape",
+    }[model]
     return Finding(
         f"slenderness_{model}",
         f"{name} beam, short shaft",
         f"The {name} beam is wrong on short uniform shafts, where {lacks}.",
         f"1 % is passed below L/D of {words(0.01)}; 5 % below {words(0.05)} (down to L/D 0.5).",
         "`solidgear check` cautions below the slenderness for 1 %, and for 5 % says not to use it; `solidgear compare` measures the gap to the solid and calls the beam out of tolerance.",
-        "tests/test_check_guards.py::test_guard[" + {"euler": "Euler, L/D 17.9", "timoshenko": "Timoshenko, L/D 1.1"}[model] + "]",
+        "tests/test_check_guards.py::test_guard["
+        + {"euler": "Euler, L/D 17.9", "timoshenko": "Timoshenko, L/D 1.1"}[model]
+        + "]",
         rows,
     )
 
@@ -84,13 +137,44 @@ def _finding(model, rows) -> Finding:
 def draw(finding: Finding, axes) -> None:
     """Errors over slenderness."""
     at = [r["L/D"] for r in finding.rows]
-    for name, colour, marker in (("free f1", "#c4541c", "o"), ("f1 on bearings", "#0072b2", "s"), ("C_zz on bearings", "#00805e", "D")):
-        axes.loglog(at, [abs(r[name]) for r in finding.rows], marker + "-", color=colour, ms=5, lw=1.3, label=name)
-    axes.loglog(at, [max(r["reference moved"], 1e-9) for r in finding.rows], ":", color="#888888", label="what refining the reference moves")
+    for name, colour, marker in (
+        ("free f1", "#c4541c", "o"),
+        ("f1 on bearings", "#0072b2", "s"),
+        ("C_zz on bearings", "#00805e", "D"),
+    ):
+        axes.loglog(
+            at,
+            [abs(r[name]) for r in finding.rows],
+            marker + "-",
+            color=colour,
+            ms=5,
+            lw=1.3,
+            label=name,
+        )
+    axes.loglog(
+        at,
+        [max(r["reference moved"], 1e-9) for r in finding.rows],
+        ":",
+        color="#888888",
+        label="what refining the reference moves",
+    )
     for level in LEVELS:
         axes.axhline(level, color="#aa2222", lw=0.8, ls="--")
-        axes.annotate(f"{100 * level:g} %", (1.0, level), xycoords=("axes fraction", "data"), ha="right", va="bottom", fontsize=8, color="#aa2222")
-    axes.set(xlabel="length over diameter", ylabel="distance from the solid", title=finding.method, ylim=(1e-7, 10))
+        axes.annotate(
+            f"{100 * level:g} %",
+            (1.0, level),
+            xycoords=("axes fraction", "data"),
+            ha="right",
+            va="bottom",
+            fontsize=8,
+            color="#aa2222",
+        )
+    axes.set(
+        xlabel="length over diameter",
+        ylabel="distance from the solid",
+        title=finding.method,
+        ylim=(1e-7, 10),
+    )
     axes.set_xticks(ticks := [0.5, 1, 2, 3, 5, 10, 20], [f"{t:g}" for t in ticks])
     axes.minorticks_off()
     axes.legend()

@@ -3,23 +3,25 @@ Reference: isotropic bearings give exact pairs; the split to first order is that
 
 Models: Timoshenko and harmonic (bending planes apart), hexahedra (an O-grid of fourfold symmetry keeps pairs) and tetrahedra (no symmetry: the mesh splits every pair).
 
-    python validation/stability/split_pairs.py [--quick]
+    python -m validation.stability.split_pairs [--quick]
 """
 
 from __future__ import annotations
 
-from frame import ROOT, Finding, crossing, main
+import numpy as np
 
-import numpy as np  # noqa: E402
-
-import solidgear as sg  # noqa: E402
-from solidgear.body import Supports, as_supports  # noqa: E402
-from solidgear.evidence.correlate import subspace_mac  # noqa: E402
+import solidgear as sg
+from solidgear.body import Supports, as_supports
+from solidgear.evidence.correlate import subspace_mac
+from validation.stability.frame import ROOT, Finding, crossing, main
 
 BODIES = {
     "timoshenko": ("timoshenko", {}),
     "harmonic": ("harmonic", {"order": 2, "layers": 0, "edge_layers": 0}),
-    "hex8": ("solid", {"element": "hex8", "layers": 1, "edge_layers": 0, "radial_layers": 0, "around": 8}),
+    "hex8": (
+        "solid",
+        {"element": "hex8", "layers": 1, "edge_layers": 0, "radial_layers": 0, "around": 8},
+    ),
     "tet4 coarse": ("solid", {"element": "tet4", "refinement": 0.5}),
     "tet10 coarse": ("solid", {"element": "tet10", "refinement": 0.35}),
     "tet10 default": ("solid", {"element": "tet10"}),
@@ -74,27 +76,68 @@ def measure(quick: bool = False) -> Finding:
         body = sg.build(scene, fidelity, **options)
         base, base_split = None, 0.0
         tet = name.startswith("tet")
-        for by in FEW if quick else SOME[:1] if name == "tet10 default" else SOME if tet else SPLITS:
+        for by in (
+            FEW if quick else SOME[:1] if name == "tet10 default" else SOME if tet else SPLITS
+        ):
             supports = anisotropic(scene, by)
             found = sg.modes(body, supports, n=6)
             pair, split = first_two(body, supports, found)
             span = np.vstack([m.motions.reshape(m.multiplicity, -1) for m in pair])
             base = span if base is None else base
-            row = {"body": name, "anisotropy": float(by), "split of f1": split, "grouped as": " + ".join(f"{m.name} x{m.multiplicity}" for m in pair), "1 - subspace MAC to isotropic": 1 - subspace_mac(span, base, found.gram)}
+            row = {
+                "body": name,
+                "anisotropy": float(by),
+                "split of f1": split,
+                "grouped as": " + ".join(f"{m.name} x{m.multiplicity}" for m in pair),
+                "1 - subspace MAC to isotropic": 1 - subspace_mac(span, base, found.gram),
+            }
             supports = anisotropic(scene, by, ANGLE)
             other, turned = first_two(body, supports, sg.modes(body, supports, n=6))
-            ends = [abs(b.frequency_hz / a.frequency_hz - 1) for a, b in zip((pair[0], pair[-1]), (other[0], other[-1]))]
+            ends = [
+                abs(b.frequency_hz / a.frequency_hz - 1)
+                for a, b in zip((pair[0], pair[-1]), (other[0], other[-1]))
+            ]
             second = [m for m in found.modes if m.name == "bending 2"]
-            row |= {"change when turned 30 deg": max(ends), "split when turned": turned, "bending 2 Hz": second[0].frequency_hz if second else None}
+            row |= {
+                "change when turned 30 deg": max(ends),
+                "split when turned": turned,
+                "bending 2 Hz": second[0].frequency_hz if second else None,
+            }
             if by == 0:
                 base_split = mesh_split[name] = split
-            rows.append(row | {"pair_tolerance": body.mesh.get("pair_tolerance", 1e-7), "unknowns": body.size, "split above isotropic": split - base_split})
+            rows.append(
+                row
+                | {
+                    "pair_tolerance": body.mesh.get("pair_tolerance", 1e-7),
+                    "unknowns": body.size,
+                    "split above isotropic": split - base_split,
+                }
+            )
     # The smallest anisotropy whose true split, that of the beam, is larger than what the mesh makes of an isotropic shaft.
-    beam = [(r["anisotropy"], r["split of f1"]) for r in rows if r["body"] == "timoshenko" and r["anisotropy"] > 0]
+    beam = [
+        (r["anisotropy"], r["split of f1"])
+        for r in rows
+        if r["body"] == "timoshenko" and r["anisotropy"] > 0
+    ]
     beam = [(a, s) for a, s in beam if s > 1e-13]
-    blind = {n: crossing([a for a, _ in beam], [s for _, s in beam], split) for n, split in mesh_split.items() if split > beam[0][1]}
-    wrong = [n for n in mesh_split if next(r for r in rows if r["body"] == n and r["anisotropy"] == 0)["grouped as"] != "bending 1 x2"]
-    apart = {n: min((r["anisotropy"] for r in rows if r["body"] == n and " + " in r["grouped as"]), default=np.nan) for n in mesh_split}
+    blind = {
+        n: crossing([a for a, _ in beam], [s for _, s in beam], split)
+        for n, split in mesh_split.items()
+        if split > beam[0][1]
+    }
+    wrong = [
+        n
+        for n in mesh_split
+        if next(r for r in rows if r["body"] == n and r["anisotropy"] == 0)["grouped as"]
+        != "bending 1 x2"
+    ]
+    apart = {
+        n: min(
+            (r["anisotropy"] for r in rows if r["body"] == n and " + " in r["grouped as"]),
+            default=np.nan,
+        )
+        for n in mesh_split
+    }
     size = {r["body"]: (r["unknowns"], r["bending 2 Hz"]) for r in rows if r["anisotropy"] == 0}
     good = size["timoshenko"][1]
     return Finding(
@@ -106,7 +149,11 @@ def measure(quick: bool = False) -> Finding:
         + "; the true split passes that of the mesh only above an anisotropy of "
         + ", ".join(f"{a:.0e} ({n})" for n, a in blind.items())
         + f"; the program takes a pair apart from {', '.join(f'{a:g} ({n})' for n, a in apart.items() if a > 0)}"
-        + (f"; torn on isotropic bearings: {', '.join(f'{n} (bending 2 said to be {size[n][1]:.0f} Hz, {good:.0f} by the beam)' for n in wrong)}" if wrong else "")
+        + (
+            f"; torn on isotropic bearings: {', '.join(f'{n} (bending 2 said to be {size[n][1]:.0f} Hz, {good:.0f} by the beam)' for n in wrong)}"
+            if wrong
+            else ""
+        )
         + ".",
         "`solidgear modes` groups twins within a tolerance of the body: 1e-9 harmonic, 1e-7 beams, 1e-6 hexahedra, 2e-3 tetrahedra; `solidgear check` cautions where bearings split a pair by less than that; where bearings are alike in x and z and a coarse mesh still splits a pair, `modes` and `compare` say so; `solidgear compare` pairs modes by subspace MAC.",
         "tests/test_check_guards.py::test_guard[pair split by 1e-8]",
@@ -116,16 +163,35 @@ def measure(quick: bool = False) -> Finding:
 
 def draw(finding: Finding, axes) -> None:
     """Split of the first pair over the anisotropy."""
-    for name, colour, marker in zip(BODIES, ("#0072b2", "#00805e", "#e0a030", "#c4541c", "#aa2277", "#555555"), "osD^v<"):
+    for name, colour, marker in zip(
+        BODIES, ("#0072b2", "#00805e", "#e0a030", "#c4541c", "#aa2277", "#555555"), "osD^v<"
+    ):
         rows = [r for r in finding.rows if r["body"] == name]
         if not rows:
             continue
         at = [max(r["anisotropy"], 1e-17) for r in rows]
-        axes.loglog(at, [max(r["split of f1"], 1e-17) for r in rows], marker + "-", color=colour, ms=4, lw=1, label=name)
-        grouped = [(a, max(r["split of f1"], 1e-17)) for a, r in zip(at, rows) if " + " not in r["grouped as"]]
+        axes.loglog(
+            at,
+            [max(r["split of f1"], 1e-17) for r in rows],
+            marker + "-",
+            color=colour,
+            ms=4,
+            lw=1,
+            label=name,
+        )
+        grouped = [
+            (a, max(r["split of f1"], 1e-17))
+            for a, r in zip(at, rows)
+            if " + " not in r["grouped as"]
+        ]
         if grouped:
             axes.plot(*zip(*grouped), marker, color=colour, ms=9, mfc="none", ls="none")
-    axes.set(xlabel="anisotropy of the bearings (circled: held to be one pair)", ylabel="split of the first pair, relative", title=finding.method, ylim=(3e-18, 10))
+    axes.set(
+        xlabel="anisotropy of the bearings (circled: held to be one pair)",
+        ylabel="split of the first pair, relative",
+        title=finding.method,
+        ylim=(3e-18, 10),
+    )
     axes.legend(fontsize=8)
 
 

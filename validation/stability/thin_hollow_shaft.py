@@ -3,37 +3,62 @@
 Models: the harmonic solid with its extra harmonics, the full 3D solid on one tube.  In the thin limit the harmonic solid is held against the inextensional ring,
 ``w^2 = E' I n^2 (n^2-1)^2 / (rho A R^4 (n^2+1))`` (Love, Theory of Elasticity, sec. 293): E' = E for a narrow hoop, E / (1 - nu^2) for a long tube.
 
-    python validation/stability/thin_hollow_shaft.py [--quick]
+    python -m validation.stability.thin_hollow_shaft [--quick]
 """
 
 from __future__ import annotations
 
-from frame import Finding, crossing, main
+import numpy as np
 
-import numpy as np  # noqa: E402
-
-import solidgear as sg  # noqa: E402
-from solidgear.scene import STEEL, Scene, Segment  # noqa: E402
+import solidgear as sg
+from solidgear.scene import STEEL, Scene, Segment
+from validation.stability.frame import Finding, crossing, main
 
 OUTER = 0.5  # radius, m: frequencies go with its inverse, ratios do not care
-WALLS = (0.7, 0.6, 0.5, 0.4, 0.3, 0.25, 0.2, 0.15, 0.1, 0.07, 0.05, 0.035, 0.025)  # of the outer radius
+WALLS = (
+    0.7,
+    0.6,
+    0.5,
+    0.4,
+    0.3,
+    0.25,
+    0.2,
+    0.15,
+    0.1,
+    0.07,
+    0.05,
+    0.035,
+    0.025,
+)  # of the outer radius
 SLENDERNESS = (1.5, 2.0, 3.0, 4.0, 6.0, 8.0, 10.0)
 WAVES = (2, 3)
 
 
 def tube(wall: float, length: float) -> Scene:
     """A tube of a wall told in outer radii."""
-    return Scene.from_parts([Segment.cylinder("tube", length=length, diameter=2 * OUTER, bore=2 * OUTER * (1 - wall))])
+    return Scene.from_parts(
+        [Segment.cylinder("tube", length=length, diameter=2 * OUTER, bore=2 * OUTER * (1 - wall))]
+    )
 
 
 def frequencies(wall: float, length: float, order: int = 4) -> dict[int, float]:
     """Lowest elastic frequency (Hz) of the free tube by the number of waves around; 1 is bending."""
-    body = sg.build(tube(wall, length), "harmonic", order=order, layers=0, edge_layers=0, size=min(OUTER, length / 2), ovalising=WAVES)
+    body = sg.build(
+        tube(wall, length),
+        "harmonic",
+        order=order,
+        layers=0,
+        edge_layers=0,
+        size=min(OUTER, length / 2),
+        ovalising=WAVES,
+    )
     found = sg.modes(body, (), n=24).modes
     out = {}
     for waves in (1, *WAVES):
         family = "bending" if waves == 1 else f"ovalising n={waves}"
-        out[waves] = next((m.frequency_hz for m in found if m.family == family and m.frequency_hz > 0), np.nan)
+        out[waves] = next(
+            (m.frequency_hz for m in found if m.family == family and m.frequency_hz > 0), np.nan
+        )
     return out
 
 
@@ -41,18 +66,38 @@ def ring(wall: float, waves: int, long: bool) -> float:
     """Frequency (Hz) of an inextensional ring."""
     thickness, radius = wall * OUTER, OUTER * (1 - wall / 2)
     modulus = STEEL.E / (1 - STEEL.nu**2) if long else STEEL.E
-    omega2 = modulus * thickness**2 / 12 * waves**2 * (waves**2 - 1) ** 2 / (STEEL.density * radius**4 * (waves**2 + 1))
+    omega2 = (
+        modulus
+        * thickness**2
+        / 12
+        * waves**2
+        * (waves**2 - 1) ** 2
+        / (STEEL.density * radius**4 * (waves**2 + 1))
+    )
     return float(np.sqrt(omega2) / (2 * np.pi))
 
 
 def solid_error(wall: float, slenderness: float, around: int) -> dict[str, float]:
     """Relative distance of the 3D solid's lowest n = 2 and n = 3 pairs from the harmonic ones."""
     scene = tube(wall, 2 * OUTER * slenderness)
-    body = sg.build(scene, "solid", element="hex20", around=around, layers=0, edge_layers=0, radial_layers=0, size=OUTER * min(1.0, 24 / around))
+    body = sg.build(
+        scene,
+        "solid",
+        element="hex20",
+        around=around,
+        layers=0,
+        edge_layers=0,
+        radial_layers=0,
+        size=OUTER * min(1.0, 24 / around),
+    )
     # a thin tube's lowest four pairs: two of two waves (even and odd along the axis), then two of three
     found = [m.frequency_hz for m in sg.modes(body, (), n=8).modes if m.frequency_hz > 0]
     want = frequencies(wall, scene.length)
-    return {"3D solid, cells around": around, "n = 2": found[0] / want[2] - 1, "n = 3": found[2] / want[3] - 1}
+    return {
+        "3D solid, cells around": around,
+        "n = 2": found[0] / want[2] - 1,
+        "n = 3": found[2] / want[3] - 1,
+    }
 
 
 def timoshenko(wall: float, slenderness: float) -> float:
@@ -72,11 +117,21 @@ def measure(quick: bool = False) -> Finding:
             ratio = np.array([f[n] / f[1] for f in found])
             known = np.isfinite(ratio)
             row[f"wall / radius, n = {n} meets bending"] = crossing(walls[known], ratio[known], 1.0)
-        row["wall / radius, closed form"] = crossing(walls, [ring(w, 2, True) / timoshenko(w, slenderness) for w in walls], 1.0)
+        row["wall / radius, closed form"] = crossing(
+            walls, [ring(w, 2, True) / timoshenko(w, slenderness) for w in walls], 1.0
+        )
         rows.append(row)
-    limits = [{"wall": w} | _limit(w) for w in ((0.2, 0.01) if quick else (0.5, 0.3, 0.2, 0.1, 0.05, 0.02, 0.01))]
-    solid = [solid_error(0.1, 2.0, around) for around in ((12, 32) if quick else (12, 16, 24, 32, 48, 64))]
-    edges = ", ".join(f"{r['wall / radius, n = 2 meets bending']:.2f} at L/D {r['L/D']:g}" for r in rows)
+    limits = [
+        {"wall": w} | _limit(w)
+        for w in ((0.2, 0.01) if quick else (0.5, 0.3, 0.2, 0.1, 0.05, 0.02, 0.01))
+    ]
+    solid = [
+        solid_error(0.1, 2.0, around)
+        for around in ((12, 32) if quick else (12, 16, 24, 32, 48, 64))
+    ]
+    edges = ", ".join(
+        f"{r['wall / radius, n = 2 meets bending']:.2f} at L/D {r['L/D']:g}" for r in rows
+    )
     thin = limits[-1]
     return Finding(
         "thin_hollow_shaft",
@@ -107,11 +162,37 @@ def draw(finding: Finding, axes) -> None:
     rows = [r for r in finding.rows if "L/D" in r]
     at = [r["L/D"] for r in rows]
     for n, colour, marker in ((2, "#c4541c", "o"), (3, "#0072b2", "s")):
-        axes.loglog(at, [r[f"wall / radius, n = {n} meets bending"] for r in rows], marker + "-", color=colour, ms=5, lw=1.3, label=f"n = {n} meets bending (measured)")
-    axes.loglog(at, [r["wall / radius, closed form"] for r in rows], ":", color="#555555", label="closed form: ring against Timoshenko")
-    axes.fill_between(at, [r["wall / radius, n = 2 meets bending"] for r in rows], 0.01, color="#c4541c", alpha=0.08, lw=0)
+        axes.loglog(
+            at,
+            [r[f"wall / radius, n = {n} meets bending"] for r in rows],
+            marker + "-",
+            color=colour,
+            ms=5,
+            lw=1.3,
+            label=f"n = {n} meets bending (measured)",
+        )
+    axes.loglog(
+        at,
+        [r["wall / radius, closed form"] for r in rows],
+        ":",
+        color="#555555",
+        label="closed form: ring against Timoshenko",
+    )
+    axes.fill_between(
+        at,
+        [r["wall / radius, n = 2 meets bending"] for r in rows],
+        0.01,
+        color="#c4541c",
+        alpha=0.08,
+        lw=0,
+    )
     axes.annotate("ovalises first", (0.06, 0.08), xycoords="axes fraction", color="#c4541c")
-    axes.set(xlabel="length over outer diameter", ylabel="wall over outer radius", title=finding.method, ylim=(0.01, 1))
+    axes.set(
+        xlabel="length over outer diameter",
+        ylabel="wall over outer radius",
+        title=finding.method,
+        ylim=(0.01, 1),
+    )
     axes.set_xticks(at, [f"{t:g}" for t in at])
     axes.minorticks_off()
     axes.legend()

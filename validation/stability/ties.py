@@ -4,18 +4,17 @@ Reference: closed forms of how the first two diverge.  A line load on a half spa
 ``ln 2 (1 + nu) (2 - nu) / (2 pi^2 R E)`` at each halving (plane strain for its radial part, antiplane shear for its tangential part;
 Johnson, Contact Mechanics, sec. 2.2).  A point load sinks in by 1/h (Boussinesq).
 
-    python validation/stability/ties.py [--quick]
+    python -m validation.stability.ties [--quick]
 """
 
 from __future__ import annotations
 
-from frame import Finding, main
+import numpy as np
 
-import numpy as np  # noqa: E402
-
-import solidgear as sg  # noqa: E402
-from solidgear.scene import STEEL, Bearing, Port, Scene, Segment  # noqa: E402
-from solidgear.solve.factor import factorise  # noqa: E402
+import solidgear as sg
+from solidgear.scene import STEEL, Bearing, Port, Scene, Segment
+from solidgear.solve.factor import factorise
+from validation.stability.frame import Finding, main
 
 RADIUS, LENGTH = 0.05, 0.3
 SPRING = 1e9  # N/m
@@ -25,15 +24,30 @@ REFINEMENTS_3D = (1, 2, 3)  # of 16 cells around: a corner of elements stays whe
 
 def shaft() -> Scene:
     """Cylinder on two springs at sections near its ends; the load is in the middle."""
-    bearings = [Bearing(name=n, y=y, seat_width=0.02, matrix=np.diag([SPRING] * 3 + [0.0] * 3), attachment="section") for n, y in (("one", 0.03), ("two", LENGTH - 0.03))]
+    bearings = [
+        Bearing(
+            name=n,
+            y=y,
+            seat_width=0.02,
+            matrix=np.diag([SPRING] * 3 + [0.0] * 3),
+            attachment="section",
+        )
+        for n, y in (("one", 0.03), ("two", LENGTH - 0.03))
+    ]
     port = Port(y=LENGTH / 2, lo=LENGTH / 2 - 0.01, hi=LENGTH / 2 + 0.01)
-    return Scene.from_parts([Segment.cylinder("shaft", length=LENGTH, diameter=2 * RADIUS)], bearings=bearings, port=port)
+    return Scene.from_parts(
+        [Segment.cylinder("shaft", length=LENGTH, diameter=2 * RADIUS)],
+        bearings=bearings,
+        port=port,
+    )
 
 
 def compliance_of(block, held_rows, load) -> float:
     """Motion under a load, where the load is, with springs on some rows of the ports."""
     held = block.ports.tocsr()[held_rows]
-    u = factorise((block.stiffness + SPRING * (held.T @ held)).tocsr(), planar=block.planar).solve(load)
+    u = factorise((block.stiffness + SPRING * (held.T @ held)).tocsr(), planar=block.planar).solve(
+        load
+    )
     return float(load @ u)
 
 
@@ -41,7 +55,11 @@ def on_a_ring_line(body) -> float:
     """Deflection under a unit force on the ring of nodes in the middle (second-order nodal basis)."""
     block = body.blocks[0]
     # unknowns p, q, w of a node follow one another, and w is told by its part in a unit tilt, -r
-    w = np.flatnonzero((np.abs(block.y - LENGTH / 2) < 1e-9) & (np.abs(block.rigid[:, 1] + RADIUS) < 1e-9) & (block.rigid[:, 0] == 0))
+    w = np.flatnonzero(
+        (np.abs(block.y - LENGTH / 2) < 1e-9)
+        & (np.abs(block.rigid[:, 1] + RADIUS) < 1e-9)
+        & (block.rigid[:, 0] == 0)
+    )
     load = np.zeros(block.size)
     load[w[0] - 2] = 1.0
     return compliance_of(block, [2 * body.port_index(n) for n in ("one", "two")], load)
@@ -55,7 +73,9 @@ def on_a_point(body) -> float:
     load = np.zeros(block.size)
     load[3 * node + 2] = 1.0
     # both sections are held by springs, and one against turning about the axis, which this load does not do
-    held = [6 * body.port_index(n) + c for n in ("one", "two") for c in range(3)] + [6 * body.port_index("one") + 4]
+    held = [6 * body.port_index(n) + c for n in ("one", "two") for c in range(3)] + [
+        6 * body.port_index("one") + 4
+    ]
     return compliance_of(block, held, load)
 
 
@@ -64,17 +84,55 @@ def measure(quick: bool = False) -> Finding:
     scene = shaft()
     rows = []
     for refinement in REFINEMENTS[:4] if quick else REFINEMENTS:
-        body = sg.build(scene, "harmonic", order=2, layers=0, edge_layers=0, size=RADIUS / 2, refinement=refinement, attachments=("average", "section"))
-        held = sg.build(scene.with_port(attachment="rigid"), "harmonic", order=2, layers=0, edge_layers=0, size=RADIUS / 2, refinement=refinement)
+        body = sg.build(
+            scene,
+            "harmonic",
+            order=2,
+            layers=0,
+            edge_layers=0,
+            size=RADIUS / 2,
+            refinement=refinement,
+            attachments=("average", "section"),
+        )
+        held = sg.build(
+            scene.with_port(attachment="rigid"),
+            "harmonic",
+            order=2,
+            layers=0,
+            edge_layers=0,
+            size=RADIUS / 2,
+            refinement=refinement,
+        )
         springs = sg.body.as_supports(scene).with_attachment("section")
         row = {"h / R": 0.5 / refinement, "ring line": on_a_ring_line(body)}
-        row |= {words: sg.condense(body, springs, port="port", attachment=tie).compliance[2, 2] for words, tie in (("patch", "average"), ("section", "section"))}
+        row |= {
+            words: sg.condense(body, springs, port="port", attachment=tie).compliance[2, 2]
+            for words, tie in (("patch", "average"), ("section", "section"))
+        }
         rows.append(row | {"rigid ring": sg.condense(held, scene, port="port").compliance[2, 2]})
     points = []
-    wide = scene.with_port(lo=LENGTH / 2 - RADIUS / 2, hi=LENGTH / 2 + RADIUS / 2, attachment="section")  # whole cells on either side of the load
+    wide = scene.with_port(
+        lo=LENGTH / 2 - RADIUS / 2, hi=LENGTH / 2 + RADIUS / 2, attachment="section"
+    )  # whole cells on either side of the load
     for refinement in REFINEMENTS_3D[:2] if quick else REFINEMENTS_3D:
-        body = sg.build(wide, "solid", element="hex8", layers=0, edge_layers=0, radial_layers=0, size=RADIUS / 2, around=16, refinement=refinement)
-        points.append({"h / R": 0.5 / refinement, "point": on_a_point(body), "section, same mesh": sg.condense(body, wide, port="port").compliance[2, 2]})
+        body = sg.build(
+            wide,
+            "solid",
+            element="hex8",
+            layers=0,
+            edge_layers=0,
+            radial_layers=0,
+            size=RADIUS / 2,
+            around=16,
+            refinement=refinement,
+        )
+        points.append(
+            {
+                "h / R": 0.5 / refinement,
+                "point": on_a_point(body),
+                "section, same mesh": sg.condense(body, wide, port="port").compliance[2, 2],
+            }
+        )
     base = rows[-1]["section"]
     gain = rows[-1]["ring line"] - rows[-2]["ring line"]
     closed = np.log(2) * (1 + STEEL.nu) * (2 - STEEL.nu) / (2 * np.pi**2 * RADIUS * STEEL.E)
@@ -93,22 +151,42 @@ def measure(quick: bool = False) -> Finding:
         f"{last['patch']:.0e}, the rigid ring by {last['rigid ring']:.0e}, the section by {last['section']:.0e}.",
         "No command ties anything to a node or a line: attachments are `average`, `rigid` or `section`, and a scene that asks for another is refused.",
         "tests/test_bad_scenes.py::test_refused_in_one_line[unknown attachment]",
-        [r | {"ring line gains": b["ring line"] - a["ring line"] if a else None} for a, r, b in zip([None, *rows], rows, rows)] + points,
+        [
+            r | {"ring line gains": b["ring line"] - a["ring line"] if a else None}
+            for a, r, b in zip([None, *rows], rows, rows)
+        ]
+        + points,
     )
 
 
 def draw(finding: Finding, axes) -> None:
     """Compliance over mesh size."""
     base = next(r["section"] for r in finding.rows[::-1] if "section" in r)
-    for name, colour, marker in (("point", "#c4541c", "o"), ("ring line", "#c98a00", "v"), ("patch", "#00805e", "s"), ("rigid ring", "#5a3e8c", "D"), ("section", "#0072b2", "^")):
+    for name, colour, marker in (
+        ("point", "#c4541c", "o"),
+        ("ring line", "#c98a00", "v"),
+        ("patch", "#00805e", "s"),
+        ("rigid ring", "#5a3e8c", "D"),
+        ("section", "#0072b2", "^"),
+    ):
         rows = [r for r in finding.rows if name in r]
-        axes.loglog([r["h / R"] for r in rows], [r[name] / base for r in rows], marker + "-", color=colour, ms=5, lw=1.3, label=name)
+        axes.loglog(
+            [r["h / R"] for r in rows],
+            [r[name] / base for r in rows],
+            marker + "-",
+            color=colour,
+            ms=5,
+            lw=1.3,
+            label=name,
+        )
     axes.invert_xaxis()
     ticks = [r["h / R"] for r in finding.rows if "section" in r]
     axes.set_xticks(ticks, [f"R/{1 / t:.0f}" for t in ticks])
     axes.set_yticks([1, 1.2, 1.5, 2, 3, 4], ["1", "1.2", "1.5", "2", "3", "4"])
     axes.minorticks_off()
-    axes.set(xlabel="mesh size", ylabel="compliance over that of a section tie", title=finding.method)
+    axes.set(
+        xlabel="mesh size", ylabel="compliance over that of a section tie", title=finding.method
+    )
     axes.legend()
 
 

@@ -3,16 +3,15 @@ Reference: none is needed; a guard must fire on the slip and stay silent on the 
 
 Models: criteria that cost nothing, each over all scenes and slips.
 
-    python validation/stability/wrong_units.py [--quick]
+    python -m validation.stability.wrong_units [--quick]
 """
 
 from __future__ import annotations
 
-from frame import ROOT, Finding, main
+import numpy as np
 
-import numpy as np  # noqa: E402
-
-import solidgear as sg  # noqa: E402
+import solidgear as sg
+from validation.stability.frame import ROOT, Finding, main
 
 GEOMETRY = ROOT / "geometry"
 #: slip -> factors on lengths, E, density, translational stiffness (its tilt stiffness follows its own unit)
@@ -41,40 +40,90 @@ def slipped(scene, length=1.0, E=1.0, density=1.0, spring=1.0, tilt=1.0):
     """The scene as it would have been read."""
     segments = tuple(
         s.with_changes(
-            y0=s.y0 * length, y1=s.y1 * length, outer0=s.outer0 * length, outer1=s.outer1 * length, inner0=s.inner0 * length, inner1=s.inner1 * length,
-            material=s.material.with_changes(E=s.material.E * E, density=s.material.density * density),
+            y0=s.y0 * length,
+            y1=s.y1 * length,
+            outer0=s.outer0 * length,
+            outer1=s.outer1 * length,
+            inner0=s.inner0 * length,
+            inner1=s.inner1 * length,
+            material=s.material.with_changes(
+                E=s.material.E * E, density=s.material.density * density
+            ),
         )
         for s in scene.segments
-    )  # fmt: skip
+    )
     # Couplings carry the geometric mean of the two, so that the matrix stays positive.
     scale = np.sqrt(np.repeat([spring, tilt], 3))
     bearings = tuple(
-        b.with_changes(y=b.y * length, seat_width=b.seat_width * length, matrix=np.array(b.matrix) * np.outer(scale, scale), axial_series=tuple(k * spring for k in b.axial_series)) for b in scene.bearings
+        b.with_changes(
+            y=b.y * length,
+            seat_width=b.seat_width * length,
+            matrix=np.array(b.matrix) * np.outer(scale, scale),
+            axial_series=tuple(k * spring for k in b.axial_series),
+        )
+        for b in scene.bearings
     )
-    port = scene.port.with_changes(y=scene.port.y * length, lo=scene.port.lo * length, hi=scene.port.hi * length)
+    port = scene.port.with_changes(
+        y=scene.port.y * length, lo=scene.port.lo * length, hi=scene.port.hi * length
+    )
     housing = None if scene.housing_axial is None else scene.housing_axial * spring
-    return scene.with_changes(segments=segments, bearings=bearings, port=port, housing_axial=housing, material=segments[0].material)
+    return scene.with_changes(
+        segments=segments,
+        bearings=bearings,
+        port=port,
+        housing_axial=housing,
+        material=segments[0].material,
+    )
 
 
 def ratios(scene) -> dict[str, float]:
     """Numbers that a slip moves by orders of magnitude; no solution is needed for any."""
     length = scene.length
-    second = sum(np.pi / 4 * (((s.outer0 + s.outer1) / 2) ** 4 - ((s.inner0 + s.inner1) / 2) ** 4) * s.length for s in scene.segments) / length
-    area = sum(np.pi * (((s.outer0 + s.outer1) / 2) ** 2 - ((s.inner0 + s.inner1) / 2) ** 2) * s.length for s in scene.segments) / length
+    second = (
+        sum(
+            np.pi
+            / 4
+            * (((s.outer0 + s.outer1) / 2) ** 4 - ((s.inner0 + s.inner1) / 2) ** 4)
+            * s.length
+            for s in scene.segments
+        )
+        / length
+    )
+    area = (
+        sum(
+            np.pi * (((s.outer0 + s.outer1) / 2) ** 2 - ((s.inner0 + s.inner1) / 2) ** 2) * s.length
+            for s in scene.segments
+        )
+        / length
+    )
     e = np.array([s.material.E for s in scene.segments])
     rho = np.array([s.material.density for s in scene.segments])
     bend = e.mean() * second
-    out = {"length m": length, "E Pa": e.min() if e.min() < 1e10 else e.max(), "density kg/m3": rho.min() if rho.min() < 2000 else rho.max()}
+    out = {
+        "length m": length,
+        "E Pa": e.min() if e.min() < 1e10 else e.max(),
+        "density kg/m3": rho.min() if rho.min() < 2000 else rho.max(),
+    }
     out["wave speed m/s"] = float(np.sqrt(e.mean() / rho.mean()))
-    out["first bending, free, Hz"] = float(22.37 / (2 * np.pi) * np.sqrt(bend / (rho.mean() * area * length**4)))
+    out["first bending, free, Hz"] = float(
+        22.37 / (2 * np.pi) * np.sqrt(bend / (rho.mean() * area * length**4))
+    )
     if scene.bearings:
         k = [np.diag(b.matrix) for b in scene.bearings]
         radial = [v for row in k for v in row[[0, 2]] if v > 0]
-        turn = [(row[3 + i], row[2 - i]) for row in k for i in (0, 2) if row[3 + i] > 0 and row[2 - i] > 0]
+        turn = [
+            (row[3 + i], row[2 - i])
+            for row in k
+            for i in (0, 2)
+            if row[3 + i] > 0 and row[2 - i] > 0
+        ]
         local = e.mean() * np.mean([2 * s.outer0 for s in scene.segments])
         out["bearing radial / (E d)"] = float(np.exp(np.mean(np.log(radial))) / local)
         if turn:
-            out["tilt arm over d"] = float(np.sqrt(np.mean([t / r for t, r in turn])) / np.mean([2 * s.outer0 for s in scene.segments]))
+            out["tilt arm over d"] = float(
+                np.sqrt(np.mean([t / r for t, r in turn]))
+                / np.mean([2 * s.outer0 for s in scene.segments])
+            )
     return out
 
 
@@ -98,7 +147,12 @@ def measure(quick: bool = False) -> Finding:
         scene = sg.load(path)
         for slip, factors in SLIPS.items():
             moved = set(factors) & {"spring", "tilt"}
-            if moved and not scene.bearings or "tilt" in moved and not any(b.matrix[3][3] for b in scene.bearings):
+            if (
+                moved
+                and not scene.bearings
+                or "tilt" in moved
+                and not any(b.matrix[3][3] for b in scene.bearings)
+            ):
                 continue
             row = {"scene": path.stem, "slip": slip}
             try:
@@ -107,15 +161,29 @@ def measure(quick: bool = False) -> Finding:
                 rows.append(row | {"refused": error.reason})
                 continue
             values = ratios(here)
-            fires = [name for name, value in values.items() if not LIMITS[name][0] <= value <= LIMITS[name][1]]
+            fires = [
+                name
+                for name, value in values.items()
+                if not LIMITS[name][0] <= value <= LIMITS[name][1]
+            ]
             rows.append(row | values | {"refused": "", "fires": ", ".join(fires)})
     false = [r for r in rows if r["slip"] == "sound" and (r["refused"] or r["fires"])]
-    caught = {slip: (sum(bool(r["refused"] or r.get("fires")) for r in own), sum(bool(r["refused"]) for r in own), len(own)) for slip in SLIPS if slip != "sound" and (own := [r for r in rows if r["slip"] == slip])}
+    caught = {
+        slip: (
+            sum(bool(r["refused"] or r.get("fires")) for r in own),
+            sum(bool(r["refused"]) for r in own),
+            len(own),
+        )
+        for slip in SLIPS
+        if slip != "sound" and (own := [r for r in rows if r["slip"] == slip])
+    }
     refused = [slip for slip, (_, no, all_) in caught.items() if no == all_]
     only = [slip for slip, (yes, no, all_) in caught.items() if yes == all_ and no < all_]
     part = [f"{slip} ({yes} of {all_})" for slip, (yes, _, all_) in caught.items() if yes < all_]
     sound = [r for r in rows if r["slip"] == "sound"]
-    span = {name: (min(v), max(v)) for name in LIMITS if (v := [r[name] for r in sound if name in r])}
+    span = {
+        name: (min(v), max(v)) for name in LIMITS if (v := [r[name] for r in sound if name in r])
+    }
     return Finding(
         "wrong_units",
         "A scene in wrong units",
@@ -146,13 +214,23 @@ def draw(finding: Finding, axes) -> None:
     axes.set_xticks(range(len(names)), names, fontsize=6, rotation=20, ha="right")
     for i, j in np.ndindex(*share.shape):
         if share[i, j]:
-            axes.text(j, i, f"{100 * share[i, j]:.0f} %", ha="center", va="center", fontsize=6, color="white" if share[i, j] > 0.5 else "black")
+            axes.text(
+                j,
+                i,
+                f"{100 * share[i, j]:.0f} %",
+                ha="center",
+                va="center",
+                fontsize=6,
+                color="white" if share[i, j] > 0.5 else "black",
+            )
     axes.set_title(finding.method)
     axes.grid(False)
 
 
 def _fired(row) -> list[str]:
-    return [name for name, (low, high) in LIMITS.items() if name in row and not low <= row[name] <= high]
+    return [
+        name for name, (low, high) in LIMITS.items() if name in row and not low <= row[name] <= high
+    ]
 
 
 if __name__ == "__main__":

@@ -6,7 +6,7 @@ inertia, mesh stiffness and torsional springs identified, (iii) the mesh stiffne
 the axial mass identified instead, (iv) as (ii) with a mass and inertia for each mounting, as the effective-mass method gives.
 The pinion's K_ll is the published one, the gear's is condensed from an Euler beam of the published shaft and bearings.
 
-    python validation/thesis/pair.py
+    python -m validation.thesis.pair
 """
 
 from __future__ import annotations
@@ -15,23 +15,29 @@ import sys
 import tomllib
 from pathlib import Path
 
-sys.path.insert(0, str(Path(__file__).resolve().parent.parent))
+import numpy as np
+from scipy.linalg import eigh
 
-import numpy as np  # noqa: E402
-from common import ROOT, results_folder, show, write_rows  # noqa: E402
-from scipy.linalg import eigh  # noqa: E402
-
-import solidgear as sg  # noqa: E402
-from solidgear.drivetrain.gear_mesh import MeshVector, line_of_action, mean_radius, mesh_point, to_gear_frame  # noqa: E402
-from solidgear.drivetrain.identify import Unknown, identify, torsion_springs  # noqa: E402
-from solidgear.drivetrain.lumped_pair import LumpedPair, consistency, diagonal_mass, shaft_stiffness  # noqa: E402
+import solidgear as sg
+from solidgear.drivetrain.gear_mesh import (
+    MeshVector,
+    line_of_action,
+    mean_radius,
+    mesh_point,
+    to_gear_frame,
+)
+from solidgear.drivetrain.identify import Unknown, identify, torsion_springs
+from solidgear.drivetrain.lumped_pair import LumpedPair, consistency, diagonal_mass, shaft_stiffness
+from validation.common import ROOT, results_folder, show, write_rows
 
 DATA = tomllib.loads(Path(__file__).with_name("published.toml").read_text())
 CASES = tuple(DATA["support"])
 PUBLISHED = {case: np.array(DATA["frequency_hz"][case]) for case in CASES}
 ELASTIC = np.concatenate([PUBLISHED[case][1:] for case in CASES])
 RATIO = DATA["gears"]["teeth"][1] / DATA["gears"]["teeth"][0]
-PRESSURE_ANGLE = np.radians(25.0)  # not published; gives the plotted line of action with the published angles
+PRESSURE_ANGLE = np.radians(
+    25.0
+)  # not published; gives the plotted line of action with the published angles
 
 UNKNOWNS = {
     u.name: u
@@ -73,8 +79,17 @@ def geared_pair(values: dict[str, float], case: str, gear_stiffness: np.ndarray)
     """The pair of one mounting; `values` override the published data."""
     gears, inertia, support = DATA["gears"], DATA["inertia"], DATA["support"][case]
     v = {**DEFAULTS, **values}
-    n = line_of_action(gears["pitch_angle"][0], gears["spiral_angle"], PRESSURE_ANGLE, gears["hand"][0], gears["loaded_side"][0])
-    radius = v.get("mesh radius", mean_radius(gears["pitch_radius"][0], gears["pitch_angle"][0], gears["face_width"]))
+    n = line_of_action(
+        gears["pitch_angle"][0],
+        gears["spiral_angle"],
+        PRESSURE_ANGLE,
+        gears["hand"][0],
+        gears["loaded_side"][0],
+    )
+    radius = v.get(
+        "mesh radius",
+        mean_radius(gears["pitch_radius"][0], gears["pitch_angle"][0], gears["face_width"]),
+    )
     pinion = MeshVector(n, mesh_point(radius, v["mesh axial, pinion"]))
     # The radii are in the ratio of the teeth: the published pitch angles, 0.391 and 1.282 rad, do not belong to
     # 14 and 45 teeth (0.302 and 1.269), so the mean radii that follow from them would miss it.
@@ -108,7 +123,9 @@ def bending_frequencies(stiffness: np.ndarray, mass: float, inertia: float) -> n
     move the line of action, so these frequencies stay in the spectrum of the pair whatever the mesh is.
     """
     plane = np.ix_([0, 5], [0, 5])
-    return np.sqrt(eigh(stiffness[plane], np.diag([mass, inertia]), eigvals_only=True)) / (2 * np.pi)
+    return np.sqrt(eigh(stiffness[plane], np.diag([mass, inertia]), eigvals_only=True)) / (
+        2 * np.pi
+    )
 
 
 def fit(names, gear_stiffness, starts=8, **bounds):
@@ -116,14 +133,20 @@ def fit(names, gear_stiffness, starts=8, **bounds):
     unknowns = [bounds.get(name.replace(" ", "_"), UNKNOWNS[name]) for name in names]
 
     def frequencies(values):
-        return np.concatenate([geared_pair(values, case, gear_stiffness).solve().frequency_hz[1:] for case in CASES])
+        return np.concatenate(
+            [geared_pair(values, case, gear_stiffness).solve().frequency_hz[1:] for case in CASES]
+        )
 
     return identify(frequencies, unknowns, ELASTIC, starts=starts)
 
 
 def frequency_rows(fits: dict, gear_stiffness: np.ndarray) -> list[dict]:
     """One row a published frequency, all cases side by side, with the component that dominates in (ii)."""
-    solved = {(name, case): geared_pair(f.values, case, gear_stiffness).solve() for name, f in fits.items() for case in CASES}
+    solved = {
+        (name, case): geared_pair(f.values, case, gear_stiffness).solve()
+        for name, f in fits.items()
+        for case in CASES
+    }
     rows = []
     for case in CASES:
         for k, published in enumerate(PUBLISHED[case]):
@@ -131,9 +154,17 @@ def frequency_rows(fits: dict, gear_stiffness: np.ndarray) -> list[dict]:
             for name in fits:
                 value = solved[name, case].frequency_hz[k]
                 row[f"{name}_hz"] = f"{value:.1f}"
-                row[f"{name}_error"] = f"{100 * (value / published - 1):+.1f} %" if published else "exact" if value == 0 else "NOT ZERO"
+                row[f"{name}_error"] = (
+                    f"{100 * (value / published - 1):+.1f} %"
+                    if published
+                    else "exact"
+                    if value == 0
+                    else "NOT ZERO"
+                )
             modes = solved["ii", case]
-            row["most energy in (ii)"] = f"{modes.dominant()[k]} {modes.energy[k].max():.2f}" if published else "rigid"
+            row["most energy in (ii)"] = (
+                f"{modes.dominant()[k]} {modes.energy[k].max():.2f}" if published else "rigid"
+            )
             rows.append(row)
     return rows
 
@@ -155,7 +186,9 @@ def quantity_rows(name: str, found) -> list[dict]:
                 "upper": q.upper,
                 "on bound": q.on_bound or "no",
                 "spread": f"{100 * q.spread:.1f} %",
-                "d ln f / d ln p, largest": "; ".join(f"{label[j]} Hz {q.sensitivity[j]:+.2f}" for j in order),
+                "d ln f / d ln p, largest": "; ".join(
+                    f"{label[j]} Hz {q.sensitivity[j]:+.2f}" for j in order
+                ),
             }
         )
     return rows
@@ -165,7 +198,11 @@ def sensitivity_rows(found) -> list[dict]:
     """d ln f_j / d ln p, one row a frequency."""
     places = [(case, hz) for case in CASES for hz in PUBLISHED[case][1:]]
     return [
-        {"mounting": case, "published_hz": hz, **{q.name: round(float(q.sensitivity[j]), 4) for q in found.quantities}}
+        {
+            "mounting": case,
+            "published_hz": hz,
+            **{q.name: round(float(q.sensitivity[j]), 4) for q in found.quantities},
+        }
         for j, (case, hz) in enumerate(places)
     ]
 
@@ -176,7 +213,9 @@ def rayleigh_rows(fits: dict) -> list[dict]:
     for name, found in fits.items():
         for case in CASES:
             pair = geared_pair(found.values, case, np.zeros((6, 6)))
-            verdict = consistency(np.diag(pair.pinion_support), np.diag(pair.pinion_mass), PUBLISHED[case].max())
+            verdict = consistency(
+                np.diag(pair.pinion_support), np.diag(pair.pinion_mass), PUBLISHED[case].max()
+            )
             rows.append(
                 {
                     "masses": "(i) published" if name == "i" else f"({name})",
@@ -193,18 +232,34 @@ def rayleigh_rows(fits: dict) -> list[dict]:
 def blind_rows(gear_stiffness: np.ndarray, mass: float, inertia: float) -> list[dict]:
     """Frequencies the mesh cannot move, against the published ones in their places of the spectrum."""
     gear, pinion = DATA["inertia"]["gear"], DATA["inertia"]["pinion"]
-    cases = [("gear, published mass, nothing identified", gear_stiffness, gear["mass"], gear["bending"], (430.3, 1920.2))]
+    cases = [
+        (
+            "gear, published mass, nothing identified",
+            gear_stiffness,
+            gear["mass"],
+            gear["bending"],
+            (430.3, 1920.2),
+        )
+    ]
     for case, pair in BLIND.items():
         stiffness = shaft_stiffness(**DATA["support"][case])
         own = exact_masses(stiffness, pair)
-        cases.append((f"pinion {case}, published mass", stiffness, pinion["mass"], pinion["bending"], pair))
+        cases.append(
+            (f"pinion {case}, published mass", stiffness, pinion["mass"], pinion["bending"], pair)
+        )
         cases.append((f"pinion {case}, identified (ii)", stiffness, mass, inertia, pair))
         cases.append((f"pinion {case}, mass of its own", stiffness, *own, pair))
     rows = []
     for name, stiffness, m, i, pair in cases:
         for found, hz in zip(bending_frequencies(stiffness, m, i), pair):
             error = f"{100 * (found / hz - 1):+.1f} %"
-            row = {"body": name, "mass": f"{m:.2f}", "inertia": f"{i:.4f}", "published_hz": f"{hz:.1f}", "computed_hz": f"{found:.1f}"}
+            row = {
+                "body": name,
+                "mass": f"{m:.2f}",
+                "inertia": f"{i:.4f}",
+                "published_hz": f"{hz:.1f}",
+                "computed_hz": f"{found:.1f}",
+            }
             rows.append({**row, "error": error})
     return rows
 
@@ -225,28 +280,61 @@ def exact_masses(stiffness: np.ndarray, pair: tuple[float, float]) -> tuple[floa
 def mesh_rows() -> list[dict]:
     """Line of action and mean mesh point from Table 1, against the plots."""
     gears, plotted, rows = DATA["gears"], DATA["plotted"], []
-    n = line_of_action(gears["pitch_angle"][0], gears["spiral_angle"], PRESSURE_ANGLE, gears["hand"][0], gears["loaded_side"][0])
-    rows.append({"quantity": "line of action, pinion", "ours": np.round(n, 3).tolist(), "plotted": plotted["line_of_action"]})
-    for name, angle in (("published pitch angle", gears["pitch_angle"][0]), ("pitch angle of 14/45 teeth", float(np.arctan(1 / RATIO)))):
+    n = line_of_action(
+        gears["pitch_angle"][0],
+        gears["spiral_angle"],
+        PRESSURE_ANGLE,
+        gears["hand"][0],
+        gears["loaded_side"][0],
+    )
+    rows.append(
+        {
+            "quantity": "line of action, pinion",
+            "ours": np.round(n, 3).tolist(),
+            "plotted": plotted["line_of_action"],
+        }
+    )
+    for name, angle in (
+        ("published pitch angle", gears["pitch_angle"][0]),
+        ("pitch angle of 14/45 teeth", float(np.arctan(1 / RATIO))),
+    ):
         r = mean_radius(gears["pitch_radius"][0], angle, gears["face_width"])
         ours = [round(-r, 3), round(r / float(np.tan(angle)), 3), 0.0]
-        rows.append({"quantity": f"mesh point from the apex, {name}", "ours": ours, "plotted": plotted["mesh_point"]})
+        rows.append(
+            {
+                "quantity": f"mesh point from the apex, {name}",
+                "ours": ours,
+                "plotted": plotted["mesh_point"],
+            }
+        )
     return rows
 
 
 def torsion_rows(identified: dict[str, float]) -> list[dict]:
     """Both exact springs of the rigid-mesh chain, and what the chain becomes with the identified ones."""
     inertia, rows = DATA["inertia"], []
-    chain = (inertia["engine"], inertia["pinion"]["torsional"], inertia["gear"]["torsional"], inertia["load"])
+    chain = (
+        inertia["engine"],
+        inertia["pinion"]["torsional"],
+        inertia["gear"]["torsional"],
+        inertia["load"],
+    )
     exact = torsion_springs(*chain, RATIO, 16.3, 47.3)
     for name, (k1, k2) in [
         *((f"rigid mesh, solution {k + 1}", pair) for k, pair in enumerate(exact)),
-        ("identified (ii), mesh made rigid", (identified["pinion torsion"], identified["gear torsion"])),
+        (
+            "identified (ii), mesh made rigid",
+            (identified["pinion torsion"], identified["gear torsion"]),
+        ),
     ]:
         j = np.diag([chain[0], chain[1] + chain[2] / RATIO**2, chain[3] / RATIO**2])
         k = k1 * np.outer([1, -1, 0], [1, -1, 0]) + k2 / RATIO**2 * np.outer([0, 1, -1], [0, 1, -1])
         hz = np.sqrt(np.abs(eigh(k, j, eigvals_only=True))) / (2 * np.pi)
-        row = {"chain": name, "engine-pinion N m/rad": f"{k1:.4g}", "gear-load N m/rad": f"{k2:.4g}"}
+        row = {
+            "chain": name,
+            "engine-pinion N m/rad": f"{k1:.4g}",
+            "gear-load N m/rad": f"{k2:.4g}",
+        }
         rows.append({**row, "hz": f"{hz[1]:.3f}, {hz[2]:.3f}"})
     return rows
 
@@ -259,14 +347,20 @@ def main() -> int:
     fits = {
         "i": fit(TORSION_AND_MESH, stiffness),
         "ii": fit((*TORSION_AND_MESH, *MASSES), stiffness),
-        "iii": fit((*TORSION_AND_MESH, *MASSES, "pinion axial mass", *MESH_POINT), stiffness, mesh_stiffness=plotted),
+        "iii": fit(
+            (*TORSION_AND_MESH, *MASSES, "pinion axial mass", *MESH_POINT),
+            stiffness,
+            mesh_stiffness=plotted,
+        ),
         "iv": fit((*TORSION_AND_MESH, *MASSES_EACH), stiffness),
     }
     tables = {
         "frequencies": frequency_rows(fits, stiffness),
         "identified": [row for name, found in fits.items() for row in quantity_rows(name, found)],
         "rayleigh": rayleigh_rows(fits),
-        "mesh_blind": blind_rows(stiffness, fits["ii"].values["pinion mass"], fits["ii"].values["pinion bending inertia"]),
+        "mesh_blind": blind_rows(
+            stiffness, fits["ii"].values["pinion mass"], fits["ii"].values["pinion bending inertia"]
+        ),
         "mesh": mesh_rows(),
         "torsion": torsion_rows(fits["ii"].values),
         "sensitivity": sensitivity_rows(fits["ii"]),
@@ -284,7 +378,9 @@ def main() -> int:
         )
     torsional = max(abs(fits["ii"].error[k]) for k in (0, 1, 13, 14))
     passed = abs(fits["ii"].error).max() < 0.10 and torsional < 0.01
-    print(f"torsional modes within {100 * torsional:.2f} % (asked 1 %), all others within 10 %: {'passed' if passed else 'FAILED'}")
+    print(
+        f"torsional modes within {100 * torsional:.2f} % (asked 1 %), all others within 10 %: {'passed' if passed else 'FAILED'}"
+    )
     print(
         "Not reproduced: with the published pinion mass and inertia the frequencies cannot come out, whatever the mesh, because "
         "the published K_ll alone puts the highest one above the published one; and the mesh stiffness that fits, "

@@ -3,19 +3,14 @@
 Reference: the published entries, four digits.  Models: Euler, Timoshenko, harmonic solid, from the same two scenes, whose head
 and stub are identified from these entries.  Then the effective masses of the same bodies.
 
-    python validation/thesis/stiffness.py
+    python -m validation.thesis.stiffness
 """
 
 from __future__ import annotations
 
-import sys
-from pathlib import Path
-
-sys.path.insert(0, str(Path(__file__).resolve().parent.parent))
-from common import ROOT, results_folder, show, write_rows
-
 import solidgear as sg
 from solidgear.lumped.effective_mass import synthesise
+from validation.common import ROOT, results_folder, show, write_rows
 
 PUBLISHED = {
     "thesis_overhung": {"kxx": 8.644e9, "kyy": 1.013e9, "kthx": 2.843e7, "|kx,thz|": 4.140e8},
@@ -28,12 +23,20 @@ def main() -> None:
     stiffness, masses = [], []
     for name, published in PUBLISHED.items():
         scene = sg.load(ROOT / "geometry" / f"{name}.toml")
-        stiffness.append({"scene": name, "model": "published", **{k: f"{v:.4g}" for k, v in published.items()}})
+        stiffness.append(
+            {"scene": name, "model": "published", **{k: f"{v:.4g}" for k, v in published.items()}}
+        )
         for fidelity in ("euler", "timoshenko", "harmonic"):
             body = sg.build(scene, fidelity)
             k = sg.condense(body, scene, scene.port.name).stiffness
             row = {"scene": name, "model": fidelity}
-            stiffness.append(row | {q: f"{abs(k[PLACE[q]]):.4g} ({100 * (abs(k[PLACE[q]]) / v - 1):+.2f} %)" for q, v in published.items()})
+            stiffness.append(
+                row
+                | {
+                    q: f"{abs(k[PLACE[q]]):.4g} ({100 * (abs(k[PLACE[q]]) / v - 1):+.2f} %)"
+                    for q, v in published.items()
+                }
+            )
             point, found = synthesise(body, scene, scene.port.name)
             for method, s in found.items():
                 masses.append(

@@ -1,0 +1,1 @@
+"""Cases that hold the package against references, run as ``python -m validation.NAME``."""

@@ -1,0 +1,1 @@
+"""Every method driven to its edge."""

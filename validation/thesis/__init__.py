@@ -1,0 +1,1 @@
+"""What comes of the published numbers of the thesis."""
