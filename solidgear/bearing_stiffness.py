@@ -35,7 +35,8 @@ def stiffness_matrix(entries: Mapping[str, Any]) -> np.ndarray:
     Parameters
     ----------
     entries : mapping
-        For example ``{"kxx": "8.8e9 N/m", "kx_thz": 1.45e8}``; plain numbers are SI (N/m, N/rad, N m/rad).
+        For example ``{"kxx": "8.8e9 N/m", "kx_thz": 1.45e8}``; plain numbers are SI (N/m, N/rad, N
+        m/rad).
 
     Returns
     -------
@@ -74,7 +75,9 @@ def stiffness_entries(K: Any) -> dict[str, float]:
 
 
 def checked_matrix(value: Any) -> tuple[tuple[float, ...], ...]:
-    """A checked symmetric positive semidefinite 6x6 as nested tuples (hashable, comparable) from entries or rows."""
+    """A checked symmetric positive semidefinite 6x6 as nested tuples (hashable, comparable) from
+    entries or rows.
+    """
     if isinstance(value, Mapping):
         K = stiffness_matrix(value)
     else:
@@ -107,7 +110,8 @@ def checked_matrix(value: Any) -> tuple[tuple[float, ...], ...]:
     # a matrix turned by a rotation couples what has no stiffness of its own by rounding only
     bare = np.diag(K) == 0
     K[(bare[:, None] | bare) & (np.abs(K) <= 1e-14 * np.abs(K).max())] = 0.0
-    # unit-free: a row with no stiffness of its own is scaled so that its largest coupling becomes 1, hence indefinite
+    # unit-free: a row with no stiffness of its own is scaled so that its largest coupling becomes
+    # 1, hence indefinite
     for i in np.flatnonzero(size == 0):
         coupling = np.abs(K[i]) / np.where(size > 0, size, np.sqrt(np.abs(K[i])) + (K[i] == 0))
         size[i] = coupling.max() or 1.0

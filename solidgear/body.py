@@ -20,7 +20,8 @@ from solidgear.frames import DOF_NAMES, shift
 from solidgear.mass import ScalarMass
 from solidgear.sections import Sections, from_points, signed
 
-#: Index of the block of n waves around the axis is this plus n, where it is not among the blocks of a body.
+#: Index of the block of n waves around the axis is this plus n, where it is not among the blocks of
+#: a body.
 FURTHER = 1000
 
 
@@ -66,13 +67,15 @@ class Block:
     ports : (n_ports * len(components), n) sparse
         Port motions as linear functions of the unknowns, port by port.
     mirror : (int, tuple of float), optional
-        Index of the block this one repeats in the other plane, and the sign of each component there.
+        Index of the block this one repeats in the other plane, and the sign of each component
+        there.
     border : int
         Number of unknowns at the end that are coupled to very many others (motions of rigid seats).
     planar : bool
         Whether the matrix comes from a 1D or 2D mesh, for which a light factorisation is best.
     expand : (n_mesh, n) sparse, optional
-        The unknowns of the mesh from those of a block with rigidly tied seats; None where they are the same.
+        The unknowns of the mesh from those of a block with rigidly tied seats; None where they are
+        the same.
     sections : callable, optional
         See :mod:`solidgear.sections`; None where all unknowns are values at points, ``y``.
     """
@@ -95,7 +98,8 @@ class Block:
     ) -> Block:
         """The same block in the other bending plane.
 
-        In the x plane the matrices of the z plane act on ``(u_x, -thz)``: same matrices, signs on the components.
+        In the x plane the matrices of the z plane act on ``(u_x, -thz)``: same matrices, signs on
+        the components.
 
         Parameters
         ----------
@@ -157,7 +161,8 @@ class Body:
     ports : tuple of Port
         In the order of the rows of every block's ``ports``.
     scale : float
-        Estimate of the lowest elastic eigenvalue of the free body, rad^2/s^2; it sets the spectral shift.
+        Estimate of the lowest elastic eigenvalue of the free body, rad^2/s^2; it sets the spectral
+        shift.
     length : float
         Overall length, m; it makes rotations and translations comparable.
     mesh : dict
@@ -165,8 +170,9 @@ class Body:
     geometry : object or None
         What a renderer needs to draw the body (fidelity specific), or None.
     further : object or None
-        Builder of further circumferential families, such as :class:`solidgear.fidelity.circumferential.Families`; None where the blocks are all
-        that the fidelity knows.
+        Builder of further circumferential families, such as
+        :class:`solidgear.fidelity.circumferential.Families`; None where the blocks are all that the
+        fidelity knows.
     """
 
     fidelity: str
@@ -177,7 +183,8 @@ class Body:
     mesh: dict[str, Any] = field(default_factory=dict)
     geometry: Any = None
     further: Any = None
-    # Factorisations and flexibilities are kept with the body they belong to, so that they die with it.
+    # Factorisations and flexibilities are kept with the body they belong to, so that they die with
+    # it.
     memory: dict[str, Any] = field(default_factory=dict, repr=False)
 
     @property
@@ -186,11 +193,14 @@ class Body:
         return sum(block.size for block in self.blocks)
 
     def block(self, index: int) -> Block:
-        """A block by its index; from ``FURTHER`` on, that of a further circumferential family, built when first asked for."""
+        """A block by its index; from ``FURTHER`` on, that of a further circumferential family,
+        built when first asked for.
+        """
         return self.blocks[index] if index < FURTHER else self.family(index - FURTHER).blocks[0]
 
     def family(self, n: int) -> Body:
-        """The motions of ``n`` waves around the axis (at least 2), as a body of one block without port motions; kept once built.
+        """The motions of ``n`` waves around the axis (at least 2), as a body of one block without
+        port motions; kept once built.
 
         Raises
         ------
@@ -263,7 +273,8 @@ class Supports:
     ports : tuple of str
         Names of the supported ports.
     stiffness : (6 m, 6 m) ndarray
-        Symmetric positive semidefinite, port by port; off-diagonal blocks only where a common housing ties bearings together.
+        Symmetric positive semidefinite, port by port; off-diagonal blocks only where a common
+        housing ties bearings together.
     attachments : tuple of (str or None)
         Attachment asked for at each port; None takes the body's first.
     """
@@ -307,7 +318,9 @@ class Supports:
         return Supports(self.ports, self.stiffness, (attachment,) * len(self.ports))
 
     def unresisted(self, body: Body) -> np.ndarray:
-        """(6, k) rigid motions about the origin that no spring resists (orthonormal, rotations times the length)."""
+        """(6, k) rigid motions about the origin that no spring resists (orthonormal, rotations
+        times the length).
+        """
         size = np.array([1.0, 1.0, 1.0, 1 / body.length, 1 / body.length, 1 / body.length])
         if not self.ports:
             return np.eye(6) * size

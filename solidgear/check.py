@@ -51,9 +51,10 @@ def check_scene(scene, body: Body) -> dict:
     Returns
     -------
     dict
-        ``facts``, ``cautions`` (will not hold as well as one might think) and ``faults`` (must not be used): lists of sentences;
-        ``records``: the same as dicts of ``guard``, ``level``, ``models`` and ``sentence``;
-        ``verdicts``: by model, ``verdict`` and the names of the guards it rests on.
+        ``facts``, ``cautions`` (will not hold as well as one might think) and ``faults`` (must not
+        be used): lists of sentences; ``records``: the same as dicts of ``guard``, ``level``,
+        ``models`` and ``sentence``; ``verdicts``: by model, ``verdict`` and the names of the guards
+        it rests on.
     """
     probe = Probe(scene, body)
     said = [("body", notice) for notice in _of_the_body(scene, body)]
@@ -90,7 +91,8 @@ def notices(scene, rungs: dict[str, Rung], names: tuple[str, ...] | None = None)
     Returns
     -------
     list of dict
-        ``guard``, ``level``, ``models`` (those that are solved; empty where it is about the data) and ``sentence``.
+        ``guard``, ``level``, ``models`` (those that are solved; empty where it is about the data)
+        and ``sentence``.
     """
     probes = [Probe(scene, r.body, rungs) for r in rungs.values()]
     solved = {*rungs, "lumped"}
@@ -114,7 +116,8 @@ def notices(scene, rungs: dict[str, Rung], names: tuple[str, ...] | None = None)
 
 
 def cautions(scene, body: Body, fidelity: str | None = None) -> list[str]:
-    """What the guards have to say before the numbers of one model are used, in sentences; facts and what concerns other models left out.
+    """What the guards have to say before the numbers of one model are used, in sentences; facts and
+    what concerns other models left out.
 
     Parameters
     ----------

@@ -69,14 +69,15 @@ def compare(
 ) -> Comparison:
     """Solve a scene with several fidelities and hold them against each other.
 
-    Solids are solved on ever finer meshes until their bands meet the tolerance of the scene: that of the harmonic solid, which
-    judges, a twentieth of it, that of the 3D solid half of it.
+    Solids are solved on ever finer meshes until their bands meet the tolerance of the scene: that
+    of the harmonic solid, which judges, a twentieth of it, that of the 3D solid half of it.
 
     Parameters
     ----------
     scene : Scene
     models : tuple of str
-        Any of lumped, euler, timoshenko, harmonic, solid; lumped needs one of the others to rest on.
+        Any of lumped, euler, timoshenko, harmonic, solid; lumped needs one of the others to rest
+        on.
     settings : dict, optional
         Builder options per model, such as ``{"harmonic": {"order": 8}}``.  Options that speak of the mesh fix it: that mesh and two
         coarser ones are solved.
@@ -133,7 +134,8 @@ def _run(scene, models, options, found: _Found, progress: Progress) -> None:
     for model in (m for m in FIDELITIES if m in models):
         try:
             chosen = _circumference(scene, model, options[model], found)
-            # A count takes a second factor.  One by the harmonic solid counts for the 3D one, whose modes are paired with its own.
+            # A count takes a second factor.  One by the harmonic solid counts for the 3D one, whose
+            # modes are paired with its own.
             counted = model != "solid" or "harmonic" not in found.rungs
             rung = study(
                 scene,
@@ -148,7 +150,8 @@ def _run(scene, models, options, found: _Found, progress: Progress) -> None:
             log.warning("%s failed: %s", model, found.failed[model])
             continue
         found.rungs[model] = rung
-        # A 3D solid's lumped models are those of the harmonic one within the bands, at ten times the price.
+        # A 3D solid's lumped models are those of the harmonic one within the bands, at ten times
+        # the price.
         if "lumped" in models and not (model == "solid" and "harmonic" in found.lumped):
             progress(f"lumped: synthesis from {model}")
             found.lumped |= synthesise_all(scene, {model: rung}, log.info)
@@ -161,7 +164,9 @@ def _run(scene, models, options, found: _Found, progress: Progress) -> None:
 
 
 def _circumference(scene, model: str, options: dict, found: _Found) -> dict:
-    """Options of a 3D solid with as many cells around as the modes need that the harmonic solid found in the range asked for."""
+    """Options of a 3D solid with as many cells around as the modes need that the harmonic solid
+    found in the range asked for.
+    """
     harmonic = found.rungs.get("harmonic")
     if model != "solid" or harmonic is None or "around" in options:
         return options

@@ -7,7 +7,8 @@ from pathlib import Path
 
 
 def control_groups(root: Path, controller: str) -> Iterator[tuple[Path, bool]]:
-    """Folders of every group from that of this process up to the root, for each may carry the limit; and whether it is of version 2.
+    """Folders of every group from that of this process up to the root, for each may carry the
+    limit; and whether it is of version 2.
 
     Parameters
     ----------
@@ -25,7 +26,8 @@ def control_groups(root: Path, controller: str) -> Iterator[tuple[Path, bool]]:
         else:
             continue
         group = top / path.lstrip("/")
-        # Inside a container the path is that of the host and need not exist here: its own group is then mounted at the top.
+        # Inside a container the path is that of the host and need not exist here: its own group is
+        # then mounted at the top.
         for place in [group, *group.parents] if group.is_dir() else [top]:
             yield place, kinds == ""
             if place == top:

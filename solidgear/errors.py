@@ -1,4 +1,6 @@
-"""Errors a user can act on: one sentence for each problem, naming the place, the value as written and what would be right."""
+"""Errors a user can act on: one sentence for each problem, naming the place, the value as written
+and what would be right.
+"""
 
 from __future__ import annotations
 
@@ -39,7 +41,8 @@ class SceneError(SolidgearError, ValueError):
     Attributes
     ----------
     problems : tuple of SceneError
-        All of them, this one first. Each alone is one sentence; the whole of a file is a list of `TOLD` lines at most.
+        All of them, this one first. Each alone is one sentence; the whole of a file is a list of
+        `TOLD` lines at most.
     """
 
     def __init__(
@@ -102,7 +105,9 @@ class SceneError(SolidgearError, ValueError):
     def located(
         self, data: Any, *, where: str = "", prefix: tuple = (), path: tuple | None = None
     ) -> SceneError:
-        """The same error with its fields named, and its values quoted, from the `data` the user wrote."""
+        """The same error with its fields named, and its values quoted, from the `data` the user
+        wrote.
+        """
         return type(self).of(
             one._located(data, where, (*prefix, *one.path) if path is None else path)
             for one in self.problems
@@ -126,12 +131,16 @@ class SceneError(SolidgearError, ValueError):
 
 # ------------------------------------------------------------------------------------------------- texts
 def printable(text: str) -> str:
-    """`text` in one line, with escapes for what would move a terminal's cursor or turn its writing round."""
+    """`text` in one line, with escapes for what would move a terminal's cursor or turn its writing
+    round.
+    """
     return _escaped(" ".join(text.split()))
 
 
 def for_terminal(error: Exception) -> str:
-    """What a terminal shows of an error: a line, or those of a `SceneError`; what a line quotes must not fill the screen."""
+    """What a terminal shows of an error: a line, or those of a `SceneError`; what a line quotes
+    must not fill the screen.
+    """
     if isinstance(error, SceneError):
         return str(error)
     line = printable(str(error))
@@ -152,7 +161,9 @@ def _escaped(text: str) -> str:
 
 
 def show(value: Any, width: int = 70) -> str:
-    """`value` as one would write it in TOML, in one line of at most `width` characters, however large or deep it is."""
+    """`value` as one would write it in TOML, in one line of at most `width` characters, however
+    large or deep it is.
+    """
     text = ""
     for piece in _pieces(value, width):
         text += piece
@@ -162,7 +173,9 @@ def show(value: Any, width: int = 70) -> str:
 
 
 def _pieces(value: Any, width: int) -> Iterator[str]:
-    """A value's text from left to right; a reader who stops after `width` characters has gone no deeper than that."""
+    """A value's text from left to right; a reader who stops after `width` characters has gone no
+    deeper than that.
+    """
     if isinstance(value, Mapping):
         yield "{"
         for k, (key, entry) in enumerate(value.items()):

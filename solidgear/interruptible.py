@@ -2,14 +2,14 @@
 
 Python hears a signal between two of its own instructions, in the main thread; one call into C that
 takes a minute is one instruction.  So the call runs in a second thread and the main thread waits,
-where it hears Ctrl-C at once.  The call itself cannot be ended: it is abandoned, runs on at the lowest
-priority, and what it makes is thrown away.  The command line then ends the process without waiting for
-it (:func:`leave`).
+where it hears Ctrl-C at once.  The call itself cannot be ended: it is abandoned, runs on at the
+lowest priority, and what it makes is thrown away.  The command line then ends the process without
+waiting for it (:func:`leave`).
 
-This needs a callee that lets go of Python's lock.  MKL and gmsh (through ctypes), SciPy's SuperLU and
-sparse products and numpy's products do; scikit-sparse does not, nor does scipy.linalg, which this
-package calls for small dense matrices only.  In a thread that is not the main one, or where Ctrl-C is
-not heard by Python, the call is simply made.
+This needs a callee that lets go of Python's lock.  MKL and gmsh (through ctypes), SciPy's SuperLU
+and sparse products and numpy's products do; scikit-sparse does not, nor does scipy.linalg, which
+this package calls for small dense matrices only.  In a thread that is not the main one, or where
+Ctrl-C is not heard by Python, the call is simply made.
 """
 
 from __future__ import annotations
@@ -63,7 +63,8 @@ def abandoned() -> bool:
 
 
 def leave(code: int | str | None) -> NoReturn:
-    """End the process as ``sys.exit`` does; at once if an abandoned call is still running, for it cannot be waited for.
+    """End the process as ``sys.exit`` does; at once if an abandoned call is still running, for it
+    cannot be waited for.
 
     Libraries that run C code at exit would free what that call works on.
     """
@@ -78,7 +79,8 @@ def leave(code: int | str | None) -> NoReturn:
 
 
 class Made:
-    """Something that only the thread that made it can free, such as a factor of SciPy's SuperLU, which keeps its books by thread.
+    """Something that only the thread that made it can free, such as a factor of SciPy's SuperLU,
+    which keeps its books by thread.
 
     Parameters
     ----------
@@ -153,7 +155,9 @@ def _idle_worker() -> queue.SimpleQueue:
 
 @atexit.register
 def _close() -> None:
-    """Let the idle worker end: what SciPy's SuperLU keeps for a thread is not freed in order otherwise, and Python complains."""
+    """Let the idle worker end: what SciPy's SuperLU keeps for a thread is not freed in order
+    otherwise, and Python complains.
+    """
     if _worker is not None:
         _worker.put(None)
         _thread.join(1.0)
@@ -173,7 +177,8 @@ def _abandon(job: _Job) -> None:
     _worker.put(None)  # its last one
     _worker = None
     _lost.append(job)
-    # Threads of its own, of MKL for instance, are not told apart: all but this one step back (Linux).
+    # Threads of its own, of MKL for instance, are not told apart: all but this one step back
+    # (Linux).
     own = threading.get_native_id()
     for place in Path("/proc/self/task").glob("*"):
         if int(place.name) != own:

@@ -1,4 +1,6 @@
-"""How much memory this process may still take: of the machine, of its control groups, of what the user allows."""
+"""How much memory this process may still take: of the machine, of its control groups, of what the
+user allows.
+"""
 
 from __future__ import annotations
 
@@ -20,8 +22,9 @@ UNLIMITED = 2**60
 def available_mb(root: str | Path = "/") -> float | None:
     """Memory (MB of 2**20 bytes) that can still be taken; None where the system does not tell.
 
-    The least of ``MemAvailable``, the room below the limit of every control group (v1 and v2) this process is in, and the environment
-    variable ``SOLIDGEAR_MEMORY_MB``, which can only lower it (see :func:`one_run`).
+    The least of ``MemAvailable``, the room below the limit of every control group (v1 and v2) this
+    process is in, and the environment variable ``SOLIDGEAR_MEMORY_MB``, which can only lower it
+    (see :func:`one_run`).
 
     Parameters
     ----------
@@ -52,7 +55,9 @@ def available_mb(root: str | Path = "/") -> float | None:
 
 @contextmanager
 def one_run() -> Iterator[None]:
-    """Within it, ``SOLIDGEAR_MEMORY_MB`` limits what is taken from here on in all, not what each body may take by itself."""
+    """Within it, ``SOLIDGEAR_MEMORY_MB`` limits what is taken from here on in all, not what each
+    body may take by itself.
+    """
     token = _base.set(resident_mb() if _base.get() is None else _base.get())
     try:
         yield

@@ -12,7 +12,8 @@ from solidgear.memory import resident_mb
 class Meter:
     """Collects ``seconds`` per stage and the peak resident memory over all of them.
 
-    Memory is sampled every 20 ms: what is shown is the size of the whole process while the stage ran.
+    Memory is sampled every 20 ms: what is shown is the size of the whole process while the stage
+    ran.
 
     Attributes
     ----------

@@ -1,8 +1,9 @@
 """The scene: what is modelled, and what is asked of it.
 
-A shaft of cylinders and cones along y, bearings with 6x6 stiffness, one lumped point (the port), and the questions.
-Frozen and validated, SI inside, no numerics beyond geometry bookkeeping. Degrees of freedom are everywhere in the
-order (x, y, z, thx, thy, thz); y runs along the shaft and is 0 at its first end face.
+A shaft of cylinders and cones along y, bearings with 6x6 stiffness, one lumped point (the port),
+and the questions. Frozen and validated, SI inside, no numerics beyond geometry bookkeeping. Degrees
+of freedom are everywhere in the order (x, y, z, thx, thy, thz); y runs along the shaft and is 0 at
+its first end face.
 
 >>> scene = solidgear.load("geometry/pinion_overhung.toml")
 >>> stiff = scene.with_attachment("rigid").with_bearing_scale(10.0)
@@ -100,7 +101,9 @@ class Model(BaseModel):
 
 # ------------------------------------------------------------------------------------------------- parts
 class Material(Model):
-    """Isotropic linear elastic material: `E` in Pa, `nu`, `density` in kg/m3 (numbers in SI, or texts with units)."""
+    """Isotropic linear elastic material: `E` in Pa, `nu`, `density` in kg/m3 (numbers in SI, or
+    texts with units).
+    """
 
     E: Modulus
     nu: Poisson
@@ -116,7 +119,9 @@ STEEL = Material(E=2.07e11, nu=0.3, density=7850.0)
 
 
 class Segment(Model):
-    """A cylinder or cone between `y0` and `y1` (m), with radii (m) at both ends; `inner` 0 is solid."""
+    """A cylinder or cone between `y0` and `y1` (m), with radii (m) at both ends; `inner` 0 is
+    solid.
+    """
 
     name: str
     y0: Position
@@ -208,8 +213,9 @@ class Segment(Model):
 class Bearing(Model):
     """A bearing: a 6x6 between ground and the seat it sits on.
 
-    `matrix` (or, as a constructor argument, `stiffness`: rows or named entries) is the bearing alone, in SI;
-    `axial_series` lists springs (N/m) in series with its axial stiffness. `y` is the middle of the seat.
+    `matrix` (or, as a constructor argument, `stiffness`: rows or named entries) is the bearing
+    alone, in SI; `axial_series` lists springs (N/m) in series with its axial stiffness. `y` is the
+    middle of the seat.
     """
 
     name: str
@@ -248,10 +254,13 @@ class Bearing(Model):
 
     @property
     def stiffness(self) -> np.ndarray:
-        """(6, 6) read-only, SI, order x y z thx thy thz: the bearing with its axial series springs condensed in."""
+        """(6, 6) read-only, SI, order x y z thx thy thz: the bearing with its axial series springs
+        condensed in.
+        """
         K = np.array(self.matrix)
         if self.axial_series:
-            # the ring between bearing and spring carries no load of its own: condense its y out, couplings included
+            # the ring between bearing and spring carries no load of its own: condense its y out,
+            # couplings included
             spring = 1 / sum(1 / k for k in self.axial_series)
             K -= np.outer(K[:, 1], K[1, :]) / (K[1, 1] + spring)
         K.flags.writeable = False
@@ -295,9 +304,11 @@ Quantity = Literal[
 
 
 class Ask(Model):
-    """The questions: how many modes, up to what frequency (Hz; None is no limit), to what relative tolerance.
+    """The questions: how many modes, up to what frequency (Hz; None is no limit), to what relative
+    tolerance.
 
-    `quantities` names what models are judged by; empty is the usual set, compliances with first bending and first axial mode.
+    `quantities` names what models are judged by; empty is the usual set, compliances with first
+    bending and first axial mode.
     """
 
     modes: Annotated[int, Field(strict=True, ge=1, le=MOST_MODES)] = 10
@@ -310,8 +321,9 @@ class Ask(Model):
 class Scene(Model):
     """A shaft on its bearings; read one with `solidgear.load`, or make one with `Scene.from_parts`.
 
-    `segments` lie end to end from y = 0; `port` is the lumped point; `housing_axial` (N/m or None) is the spring along
-    y between the common bearing housing and ground; `source` says where the data come from.
+    `segments` lie end to end from y = 0; `port` is the lumped point; `housing_axial` (N/m or None)
+    is the spring along y between the common bearing housing and ground; `source` says where the
+    data come from.
     """
 
     title: str = ""
@@ -352,7 +364,8 @@ class Scene(Model):
         material : Material
         bearings : iterable of Bearing
         port : Port, optional
-            Without it, the middle of the longest segment, attached to all of that segment's outer surface.
+            Without it, the middle of the longest segment, attached to all of that segment's outer
+            surface.
         **rest
             title, name, source, housing_axial, ask.
 
@@ -386,7 +399,9 @@ class Scene(Model):
         return steps(self.segments)
 
     def with_changes(self, **changes: Any) -> Scene:
-        """A validated copy with some fields replaced; a new `material` also replaces the old default in the segments."""
+        """A validated copy with some fields replaced; a new `material` also replaces the old
+        default in the segments.
+        """
         if "material" in changes and "segments" not in changes:
             swap = {self.material: changes["material"]}
             changes["segments"] = tuple(
@@ -395,7 +410,9 @@ class Scene(Model):
         return super().with_changes(**changes)
 
     def with_attachment(self, attachment: str) -> Scene:
-        """The same scene with the port and every bearing attached by 'average', 'rigid' or 'section'."""
+        """The same scene with the port and every bearing attached by 'average', 'rigid' or
+        'section'.
+        """
         bearings = tuple(b.with_changes(attachment=attachment) for b in self.bearings)
         return self.with_changes(
             bearings=bearings, port=self.port.with_changes(attachment=attachment)
@@ -408,18 +425,24 @@ class Scene(Model):
         )
 
     def with_material(self, **changes: Any) -> Scene:
-        """The same scene with `E`, `nu` or `density` replaced in the default material and in every segment."""
+        """The same scene with `E`, `nu` or `density` replaced in the default material and in every
+        segment.
+        """
         segments = tuple(
             s.with_changes(material=s.material.with_changes(**changes)) for s in self.segments
         )
         return self.with_changes(material=self.material.with_changes(**changes), segments=segments)
 
     def with_bearing_scale(self, factor: float) -> Scene:
-        """The same scene with every bearing's stiffness, series springs included, times `factor` > 0."""
+        """The same scene with every bearing's stiffness, series springs included, times `factor` >
+        0.
+        """
         return self.with_changes(bearings=tuple(b.scaled(factor) for b in self.bearings))
 
     def with_port(self, **changes: Any) -> Scene:
-        """The same scene with fields of its port replaced, such as ``y=0.03``; the span stays unless given too."""
+        """The same scene with fields of its port replaced, such as ``y=0.03``; the span stays
+        unless given too.
+        """
         return self.with_changes(port=self.port.with_changes(**changes))
 
     def as_dict(self) -> dict[str, Any]:

@@ -1,7 +1,9 @@
-"""From a TOML file to a `Scene`: datums and gear heads resolved, errors named by the keys of the file.
+"""From a TOML file to a `Scene`: datums and gear heads resolved, errors named by the keys of the
+file.
 
-The format is documented by the files in ``geometry``. Every problem of a file is told at once: of all tables on their own, of all names that
-they use of each other, and of the places of all that is sound so far.
+The format is documented by the files in ``geometry``. Every problem of a file is told at once: of
+all tables on their own, of all names that they use of each other, and of the places of all that is
+sound so far.
 """
 
 from __future__ import annotations
@@ -255,8 +257,8 @@ def load(path: str | os.PathLike) -> Scene:
     Raises
     ------
     SceneError
-        The file, the key (``bearing[2] "2".seat_width``, counted from one), the value as written, what would be right: one line for each
-        problem, in the order of the file.
+        The file, the key (``bearing[2] "2".seat_width``, counted from one), the value as written,
+        what would be right: one line for each problem, in the order of the file.
     """
     where = os.fspath(path)
     raw = parse(where)
@@ -286,7 +288,9 @@ def _read(raw: dict[str, Any], name: str) -> Scene:
 def _tables(
     raw: dict[str, Any], problems: list[SceneError]
 ) -> tuple[_SceneTable | None, list[int]]:
-    """The tables that are sound each by itself, and which bearings of the file are among them; None without a whole shaft."""
+    """The tables that are sound each by itself, and which bearings of the file are among them; None
+    without a whole shaft.
+    """
     count = len(raw["bearing"]) if isinstance(raw.get("bearing"), list) else 0
     try:
         return _SceneTable(**raw), list(range(count))
@@ -339,7 +343,8 @@ _EVERY_PIECE = ("start", "end", "middle")
 
 
 def _unknown_names(raw: dict[str, Any]) -> Iterator[SceneError]:
-    """Names of segments that are taken twice, and datums and segments that are asked for but are not there.
+    """Names of segments that are taken twice, and datums and segments that are asked for but are
+    not there.
 
     Read from the file as it stands, since a segment of a wrong length still has its name.
     """
@@ -437,7 +442,9 @@ def _resolve(
 
 
 def _lay_out(table: _SceneTable, problems: list[SceneError]):
-    """Segments end to end (None if one cannot be); which [[segment]] each came from; the surface of each by name; and all datums."""
+    """Segments end to end (None if one cannot be); which [[segment]] each came from; the surface of
+    each by name; and all datums.
+    """
     segments, owner, surface, datums, y = [], [], {}, {"start": 0.0}, 0.0
     for index, piece in enumerate(table.segment):
         material = table.material.with_changes(**piece.material.model_dump(exclude_none=True))

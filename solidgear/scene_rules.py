@@ -1,4 +1,5 @@
-"""What makes segments one shaft, and where ports and seats may lie on it: every problem in a sentence of its own.
+"""What makes segments one shaft, and where ports and seats may lie on it: every problem in a
+sentence of its own.
 
 Numbers in m. Paths of problems are those of a `Scene`.
 """
@@ -16,11 +17,13 @@ if TYPE_CHECKING:
 #: m; two edges nearer than this are one edge
 TOUCH = 1e-9
 
-#: least diameter and least length of a part over the length of the shaft, least wall over the radius; what is thinner would
-#: ask for meshes without end, or drown in rounding, and comes from a slip in the units
+#: least diameter and least length of a part over the length of the shaft, least wall over the
+#: radius; what is thinner would ask for meshes without end, or drown in rounding, and comes from a
+#: slip in the units
 SLIMMEST, SHORTEST, THINNEST = 1e-3, 1e-6, 1e-4
 
-#: moduli, densities or their quotients of two materials of one shaft; beyond, the residuals of frequencies rise above 1e-4 and searches do not end
+#: moduli, densities or their quotients of two materials of one shaft; beyond, the residuals of
+#: frequencies rise above 1e-4 and searches do not end
 MOST_UNLIKE = 1e5
 
 #: elastic modes that can be asked for; of the last of them no mesh here has a digit
@@ -38,7 +41,9 @@ def steps(segments: Sequence[Segment]) -> tuple[float, ...]:
 
 
 def shaft_problems(segments: Sequence[Segment]) -> list[SceneError]:
-    """What is wrong with segments as one shaft; their proportions are judged once they hang together."""
+    """What is wrong with segments as one shaft; their proportions are judged once they hang
+    together.
+    """
     if not segments:
         return [SceneError("a scene needs at least one segment", path=("segments",))]
     if len(segments) > MOST_SEGMENTS:
@@ -130,14 +135,16 @@ def _unlike(first: Material, here: Material, i: int) -> Iterator[SceneError]:
 def station_problems(
     segments: Sequence[Segment], port: Port | None, bearings: Mapping[int, Bearing]
 ) -> Iterator[SceneError]:
-    """Ports and seats lie on the shaft, on one smooth surface each, and seats do not share any of it.
+    """Ports and seats lie on the shaft, on one smooth surface each, and seats do not share any of
+    it.
 
     Parameters
     ----------
     segments : sequence of Segment
     port : Port or None
     bearings : mapping of int to Bearing
-        By their place in the scene; those that cannot be used for another reason may be left out, and so may the port.
+        By their place in the scene; those that cannot be used for another reason may be left out,
+        and so may the port.
     """
     length, jumps = segments[-1].y1, steps(segments)
     if len(bearings) > MOST_BEARINGS:
@@ -166,7 +173,9 @@ def station_problems(
 def _misplaced(
     here: Port | Bearing, what: str, before: Sequence[tuple], length: float, jumps: Sequence[float]
 ) -> str:
-    """Why a station cannot be where it is, or nothing: the first reason, of which others may be a consequence."""
+    """Why a station cannot be where it is, or nothing: the first reason, of which others may be a
+    consequence.
+    """
     if here.hi <= here.lo:
         return f"the span must end beyond its start at {here.lo:.6g} m"
     reach = f"the {what} reaches from {here.lo:.6g} to {here.hi:.6g} m"
@@ -180,7 +189,8 @@ def _misplaced(
                 f"{reach}, across the step of the outer radius at {step:.6g} m; it must end there"
             )
     for _, other, other_what in before:
-        # the port may share a seat's surface, unless both hold it rigid: that would weld the two points together
+        # the port may share a seat's surface, unless both hold it rigid: that would weld the two
+        # points together
         both = other_what == what or other.attachment == here.attachment == "rigid"
         if both and min(here.hi, other.hi) - max(here.lo, other.lo) > TOUCH:
             return (

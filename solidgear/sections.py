@@ -1,8 +1,11 @@
-"""What cross-sections do in a shape: least squares, weighted by mass, over motions that are linear between stations along the axis.
+"""What cross-sections do in a shape: least squares, weighted by mass, over motions that are linear
+between stations along the axis.
 
-A shape u of a body is described by section motions q at stations s as ``u = sum_s h_s(y) R(x, z) q_s``, with hat functions h_s and the rigid motions R of
-a section about its own centre.  The normal equations are ``G q = b`` with ``G_st = int rho h_s h_t R'R`` and the loads ``b_s = int rho h_s R'u``, which
-are linear in the unknowns of u.  Both are integrals over the material: no mesh has to be fine enough to hold a hat function.
+A shape u of a body is described by section motions q at stations s as ``u = sum_s h_s(y) R(x, z)
+q_s``, with hat functions h_s and the rigid motions R of a section about its own centre.  The normal
+equations are ``G q = b`` with ``G_st = int rho h_s h_t R'R`` and the loads ``b_s = int rho h_s
+R'u``, which are linear in the unknowns of u.  Both are integrals over the material: no mesh has to
+be fine enough to hold a hat function.
 """
 
 from __future__ import annotations
@@ -13,7 +16,8 @@ from typing import Any
 import numpy as np
 import scipy.sparse as sp
 
-#: Stations (s,) to loads (n, s c), one column per station and component, and the matrix G (s c, s c).
+#: Stations (s,) to loads (n, s c), one column per station and component, and the matrix G (s c, s
+#: c).
 Sections = Callable[[np.ndarray], tuple[np.ndarray, np.ndarray]]
 
 
@@ -43,7 +47,8 @@ def hats(y: np.ndarray, stations: np.ndarray) -> sp.csr_matrix:
 def from_points(
     mass: Any, rigid: np.ndarray, y: np.ndarray, components: tuple[int, ...]
 ) -> Sections:
-    """Sections of a body whose unknowns are values at points, closer to each other than the stations.
+    """Sections of a body whose unknowns are values at points, closer to each other than the
+    stations.
 
     Parameters
     ----------
@@ -51,12 +56,14 @@ def from_points(
     rigid : (n, c) ndarray
         Rigid motions about the origin, one column per component.
     y : (n,) ndarray
-        Axial position of each unknown; NaN for one that is no value at a point, which then takes no part in the fields.
+        Axial position of each unknown; NaN for one that is no value at a point, which then takes no
+        part in the fields.
     components : tuple of int
     """
     known = ~np.isnan(y)
     place = np.where(known, y, 0.0)
-    # A rigid tilt about the origin is a section tilt plus y times a translation: without the latter it is what a section does about its own centre.
+    # A rigid tilt about the origin is a section tilt plus y times a translation: without the latter
+    # it is what a section does about its own centre.
     local = np.where(known[:, None], rigid, 0.0)
     at = {c: k for k, c in enumerate(components)}
     for tilt, translation, sign in ((3, 2, 1.0), (5, 0, -1.0)):

@@ -21,9 +21,9 @@ first gets the limit for as long as it is inside this package (:func:`pinned`), 
 back afterwards.  A variable ``OPENBLAS_NUM_THREADS`` that is set is never overruled.
 
 Measured on the shipped overhung pinion (two cores, busy with other work, runs in turn): with numpy
-imported first and two threads, body, compliance and ten modes took 3.4 and 5.1 times as long as pinned on
-the harmonic solid, 1.7 on the 3D one.  The loss comes from threads that wait for each other: on an idle
-machine it is smaller.
+imported first and two threads, body, compliance and ten modes took 3.4 and 5.1 times as long as
+pinned on the harmonic solid, 1.7 on the 3D one.  The loss comes from threads that wait for each
+other: on an idle machine it is smaller.
 """
 
 from __future__ import annotations
@@ -57,7 +57,9 @@ def pin() -> None:
 
 
 def pinned(function: Function) -> Function:
-    """Decorator: OpenBLAS has one thread while the function runs, and what it had before afterwards."""
+    """Decorator: OpenBLAS has one thread while the function runs, and what it had before
+    afterwards.
+    """
 
     @functools.wraps(function)
     def inner(*args, **kwargs):
@@ -67,7 +69,8 @@ def pinned(function: Function) -> Function:
     return inner
 
 
-# Threads that are inside, and what to restore when the last one leaves: the number is one for the whole process.
+# Threads that are inside, and what to restore when the last one leaves: the number is one for the
+# whole process.
 _lock = threading.Lock()
 _inside = 0
 _before: list[tuple] = []
@@ -75,7 +78,9 @@ _before: list[tuple] = []
 
 @contextmanager
 def single() -> Iterator[None]:
-    """OpenBLAS on one thread; costs a microsecond where it has no more, or where the user has chosen."""
+    """OpenBLAS on one thread; costs a microsecond where it has no more, or where the user has
+    chosen.
+    """
     global _inside
     if VARIABLE in os.environ:
         yield
@@ -109,7 +114,8 @@ def _openblas() -> tuple:
 
 
 def offered(root: str | Path = "/") -> int:
-    """Processors this process may use: its affinity, or what a control group (v1 or v2) grants, whichever is less.
+    """Processors this process may use: its affinity, or what a control group (v1 or v2) grants,
+    whichever is less.
 
     Parameters
     ----------

@@ -10,9 +10,11 @@ from typing import Any
 
 from solidgear.errors import SceneError, printable
 
-#: bytes; a shipped scene takes some thousands, the largest shaft and bearings there may be some ten thousands
+#: bytes; a shipped scene takes some thousands, the largest shaft and bearings there may be some ten
+#: thousands
 LARGEST = 300_000
-#: full stops in one line: a 6x6 matrix has 36. The parser's time grows with the cube of the parts of a key
+#: full stops in one line: a 6x6 matrix has 36. The parser's time grows with the cube of the parts
+#: of a key
 MOST_DOTS = 100
 
 
@@ -75,7 +77,8 @@ def _text(where: str) -> str:
 
 # ------------------------------------------------------------------------------------------------- plain words
 _NUMBER = r"[+-]?\d[\d_]*"
-#: what people write, by the line the parser stopped in, the more telling first: pattern and plain words, with groups of the pattern
+#: what people write, by the line the parser stopped in, the more telling first: pattern and plain
+#: words, with groups of the pattern
 _HABITS = (
     (
         re.compile(rf"=\s*({_NUMBER}),(\d+)\s*([^\s\d,\]#]*)$"),

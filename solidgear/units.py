@@ -1,6 +1,7 @@
 """Units at the border: a quantity as a user writes it in, a float in SI out.
 
-The only module that touches pint, and only once a text is met: the import costs more than solving a beam.
+The only module that touches pint, and only once a text is met: the import costs more than solving a
+beam.
 """
 
 from __future__ import annotations
@@ -16,8 +17,9 @@ from pydantic import AfterValidator, BeforeValidator
 
 from solidgear.errors import SceneError, show
 
-#: dimension -> (SI unit, example as text, allowed powers of the radian). pint holds the radian to be dimensionless,
-#: so N, N/rad and N*rad look alike to it; the power is what tells an angle from a ratio and rpm from Hz.
+#: dimension -> (SI unit, example as text, allowed powers of the radian). pint holds the radian to
+#: be dimensionless, so N, N/rad and N*rad look alike to it; the power is what tells an angle from a
+#: ratio and rpm from Hz.
 DIMENSIONS: dict[str, tuple[str, str, tuple[int, ...]]] = {
     "length": ("m", "90 mm", (0,)),
     "angle": ("rad", "22.4 deg", (1,)),
@@ -30,7 +32,8 @@ DIMENSIONS: dict[str, tuple[str, str, tuple[int, ...]]] = {
     "dimensionless": ("", "0.3", (0,)),
 }
 
-#: no quantity of a scene is larger than this in SI, and no spring softer: squares and products of such numbers neither overflow nor vanish
+#: no quantity of a scene is larger than this in SI, and no spring softer: squares and products of
+#: such numbers neither overflow nor vanish
 LARGEST, SOFTEST = 1e24, 1e-30
 
 #: letters of a quantity
@@ -50,10 +53,12 @@ def quantity(value: Any, dimension: str) -> float:
     Parameters
     ----------
     value : int, float or str
-        A plain number is SI already; a text is a number and a unit, such as ``"90 mm"`` or ``"8.6e9 N/m"``.
+        A plain number is SI already; a text is a number and a unit, such as ``"90 mm"`` or ``"8.6e9
+        N/m"``.
     dimension : str
-        One of `DIMENSIONS`: length (m), angle (rad), pressure (Pa), density (kg/m3), force_per_length (N/m),
-        force (N or N/rad), moment (N m or N m/rad), frequency (Hz), dimensionless.
+        One of `DIMENSIONS`: length (m), angle (rad), pressure (Pa), density (kg/m3),
+        force_per_length (N/m), force (N or N/rad), moment (N m or N m/rad), frequency (Hz),
+        dimensionless.
 
     Returns
     -------
@@ -63,7 +68,8 @@ def quantity(value: Any, dimension: str) -> float:
     Raises
     ------
     SceneError
-        Not a number, NaN, infinite or larger than `LARGEST`, no unit or an unknown one, or a unit of another dimension.
+        Not a number, NaN, infinite or larger than `LARGEST`, no unit or an unknown one, or a unit
+        of another dimension.
     """
     si, example, _ = DIMENSIONS[dimension]
     if isinstance(value, str):
@@ -119,7 +125,8 @@ def _read_text(text: str, dimension: str) -> float:
     if dimensionality != (_si_factor(si)[2] if si else "dimensionless") or radians not in powers:
         wrong = f"not a unit of {name}" if si else "a unit, but this is a plain ratio"
         raise SceneError(f'{show(unit)} is {wrong}; write for example "{example}"', value=value)
-    # dividing by 1000 is exact where multiplying by 0.001 is not: "208 mm" must be the same float as 0.208
+    # dividing by 1000 is exact where multiplying by 0.001 is not: "208 mm" must be the same float
+    # as 0.208
     return (
         number / round(1 / factor) if factor < 1 and (1 / factor).is_integer() else number * factor
     )
@@ -127,7 +134,9 @@ def _read_text(text: str, dimension: str) -> float:
 
 @functools.lru_cache(maxsize=256)
 def _si_factor(unit: str) -> tuple[float, float, str] | None:
-    """(SI units in one `unit`, power of the radian in it, its dimensionality), or None when pint does not know it."""
+    """(SI units in one `unit`, power of the radian in it, its dimensionality), or None when pint
+    does not know it.
+    """
     # pint evaluates exponents as it parses; a chain such as m**9**9**9 would never return
     if (
         len(unit) > 60

@@ -31,7 +31,9 @@ TIES = {
 
 @dataclass(frozen=True)
 class Judgement:
-    """What a rung is worth: ``valid`` only if nothing speaks against it, ``open`` if that cannot be told."""
+    """What a rung is worth: ``valid`` only if nothing speaks against it, ``open`` if that cannot be
+    told.
+    """
 
     valid: bool
     why_not: str | None = None
@@ -46,10 +48,12 @@ def gap_verdict(gap: float, band: float, tolerance: float) -> str:
 
 
 def deviations(rungs: dict[str, Rung], reference: str) -> list[dict]:
-    """Relative deviations from the reference, once with the attachments of the scene and once like for like.
+    """Relative deviations from the reference, once with the attachments of the scene and once like
+    for like.
 
-    Couplings are related to the geometric mean of their diagonal entries, frequencies are those of the modes with the same shape.
-    A gap inside the sum of both bands is "not resolved", which is not agreement.
+    Couplings are related to the geometric mean of their diagonal entries, frequencies are those of
+    the modes with the same shape. A gap inside the sum of both bands is "not resolved", which is
+    not agreement.
     """
     base, out = rungs[reference], []
     for model, rung in rungs.items():
@@ -99,7 +103,9 @@ def _deviations(model: str, reference: str, tie: str, rung: Rung, base: Rung) ->
 
 
 def trusted(rungs: dict[str, Rung], tolerance: float) -> tuple[str | None, str]:
-    """The rung that may judge the others, and why there is none: a solid whose bands are inside the tolerance."""
+    """The rung that may judge the others, and why there is none: a solid whose bands are inside the
+    tolerance.
+    """
     why = "no solid was run, and a beam cannot judge itself"
     for model in ("harmonic", "solid"):
         if model not in rungs:
@@ -128,7 +134,8 @@ def judge(
     scene : Scene
     rungs : dict of str to Rung
     gaps : list of dict
-        From :func:`deviations`, against the rung that :func:`trusted` names or, where there is none, the best there is.
+        From :func:`deviations`, against the rung that :func:`trusted` names or, where there is
+        none, the best there is.
     notices : iterable of dict
         What the guards say: ``level``, ``models``, ``sentence``.
     """
@@ -275,7 +282,9 @@ def _cheapest(rungs, cheapest, tolerance) -> list[str]:
 
 
 def _beams(rungs, gaps, judged, tolerance) -> list[str]:
-    """Where a beam fails on a seat it does not know, and not on its own theory: the tie, not the beam."""
+    """Where a beam fails on a seat it does not know, and not on its own theory: the tie, not the
+    beam.
+    """
     out = []
     for model in ("euler", "timoshenko"):
         if model not in rungs:

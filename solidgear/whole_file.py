@@ -10,7 +10,8 @@ from pathlib import Path
 
 @contextmanager
 def whole(path: Path) -> Iterator[Path]:
-    """Another name in the same folder to write under; it takes the place of ``path`` at the end, or is gone if something was raised.
+    """Another name in the same folder to write under; it takes the place of ``path`` at the end, or
+    is gone if something was raised.
 
     A rename within a folder is all or nothing.
     """

@@ -1,7 +1,7 @@
 """Shafts that more than one test file meshes."""
 
-#: (length, outer at both ends, inner at both ends): steps up and down outside and in the bore, cones next to steps, a
-#: blind bore, a conical bore
+#: (length, outer at both ends, inner at both ends): steps up and down outside and in the bore,
+#: cones next to steps, a blind bore, a conical bore
 NASTY = (
     (0.04, 0.030, 0.030, 0.010, 0.010),
     (0.03, 0.030, 0.050, 0.010, 0.010),

@@ -1,4 +1,6 @@
-"""Random valid scenes for property tests: shafts of one to six segments on up to three bearings, of realistic magnitudes."""
+"""Random valid scenes for property tests: shafts of one to six segments on up to three bearings, of
+realistic magnitudes.
+"""
 
 import math
 
@@ -13,7 +15,8 @@ MATERIALS = (
     Material(E=1.1e11, nu=0.26, density=7100.0),
     Material(E=1.6e10, nu=0.44, density=11340.0),
 )
-#: N/m and m: a bearing resists a tilt like its radial stiffness at this lever, so translations and tilts are comparable
+#: N/m and m: a bearing resists a tilt like its radial stiffness at this lever, so translations and
+#: tilts are comparable
 STIFFNESS, LEVER = (1e6, 1e10), 0.02
 
 
@@ -28,7 +31,9 @@ def _drawn(draw, low, high):
 
 @st.composite
 def shafts(draw, most=6):
-    """Tuple of segments: cylinders, cones and bevel heads (frustum and backcone), hollow throughout or solid."""
+    """Tuple of segments: cylinders, cones and bevel heads (frustum and backcone), hollow throughout
+    or solid.
+    """
     bore = draw(st.sampled_from((0.0, 0.0, 0.2, 0.4))) * 0.05
     segments, y = [], 0.0
     for k in range(draw(st.integers(1, most))):
@@ -77,7 +82,9 @@ def shafts(draw, most=6):
 
 @st.composite
 def stiffnesses(draw, least=0):
-    """(6, 6) positive semidefinite stiffness of a random rank, zero included; couplings as strong as definiteness allows."""
+    """(6, 6) positive semidefinite stiffness of a random rank, zero included; couplings as strong
+    as definiteness allows.
+    """
     rank = draw(st.integers(least, 6))
     root = np.array(
         draw(st.lists(st.integers(-9, 9), min_size=6 * rank, max_size=6 * rank)), float
@@ -112,13 +119,16 @@ def bearings(draw, name, free, least=0):
 
 @st.composite
 def scenes(draw, most_segments=6, least_bearings=0, least_rank=0):
-    """A valid scene: bearings on segments of their own, the lumped point on the surface of any segment, a housing or none."""
+    """A valid scene: bearings on segments of their own, the lumped point on the surface of any
+    segment, a housing or none.
+    """
     segments = draw(shafts(most_segments))
     free = [(s.y0, s.y1) for s in segments if s.part != "backcone"]
     count = min(draw(st.integers(least_bearings, 3)), len(free))
     held = [draw(bearings(str(k + 1), free, least_rank)) for k in range(count)]
     carrier = draw(st.sampled_from(segments))
-    # on a bearing or clear of it: what is lost to rounding grows with the third power of the shaft over the shortest beam element
+    # on a bearing or clear of it: what is lost to rounding grows with the third power of the shaft
+    # over the shortest beam element
     at = carrier.y0 + draw(_between(0.25, 0.75, digits=1)) * carrier.length
     attachment = draw(st.sampled_from(("average", "section")))
     port = Port(name="port", y=at, lo=carrier.y0, hi=carrier.y1, attachment=attachment)

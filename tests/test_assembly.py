@@ -1,7 +1,8 @@
 """Block assembly against scikit-fem's own vector forms, and patch tests on distorted meshes.
 
-The forms below are written as in a textbook and assembled by scikit-fem; they share elements and mesh with the
-library, and nothing of its tabulation, its reference integrals, its Gram matrices or its scatter.
+The forms below are written as in a textbook and assembled by scikit-fem; they share elements and
+mesh with the library, and nothing of its tabulation, its reference integrals, its Gram matrices or
+its scatter.
 """
 
 from dataclasses import dataclass, replace
@@ -22,8 +23,8 @@ from solidgear.scene import STEEL, Material, Port, Scene, Segment
 
 SOLID = ("tet4", "tet10", "hex8", "hex20", "hex27")
 
-# Same sums in another order: a few hundred products an entry, some of which cancel.  1e-15 is what one sees here;
-# another BLAS may add in yet another order.
+# Same sums in another order: a few hundred products an entry, some of which cancel.  1e-15 is what
+# one sees here; another BLAS may add in yet another order.
 SAME_SUM = 1e-13
 
 
@@ -39,7 +40,9 @@ class MeshHex20(MeshHex2):
 
 
 def frustum():
-    """A stubby hollow cone on a solid cylinder of another material: curved faces, a shoulder, two materials."""
+    """A stubby hollow cone on a solid cylinder of another material: curved faces, a shoulder, two
+    materials.
+    """
     other = Material(E=7e10, nu=0.33, density=2700.0)
     segments = (
         Segment.cylinder("disc", length=0.03, diameter=0.08),
@@ -124,7 +127,9 @@ def test_curved_solid_matches_skfem_with_the_same_quadrature(element):
 
 # --------------------------------------------------------------------------- distorted boxes
 def box(element, seed=3, curved=False):
-    """Unit-free box of 3 x 3 x 3 cells with interior nodes moved at random; mid nodes too if curved."""
+    """Unit-free box of 3 x 3 x 3 cells with interior nodes moved at random; mid nodes too if
+    curved.
+    """
     lines = (np.linspace(0, 1, 4), np.linspace(0, 2, 4), np.linspace(0, 3, 4))
     rng = np.random.default_rng(seed)
     size = np.array([[1.0], [2.0], [3.0]])
@@ -167,8 +172,9 @@ def assembled_box(element, curved=False):
 
 @pytest.mark.parametrize("element", SOLID)
 def test_distorted_solid_matches_skfem_with_its_own_quadrature(element):
-    # The mass is a polynomial on straight-sided elements and the tetrahedral stiffness too, so any rule of sufficient
-    # order gives the same entries; the stiffness of a distorted brick is rational and depends on the rule.
+    # The mass is a polynomial on straight-sided elements and the tetrahedral stiffness too, so any
+    # rule of sufficient order gives the same entries; the stiffness of a distorted brick is
+    # rational and depends on the rule.
     geometry, k, m = assembled_box(element)
     stiffness, mass = skfem_elasticity(geometry, [STEEL], intorder=7)
     assert relative_difference(m, mass) < SAME_SUM
@@ -196,8 +202,9 @@ def test_patch_of_constant_stress(element, curved):
         (geometry.nodes > 1e-9) & (geometry.nodes < (1 - 1e-9) * size[:, None]), axis=0
     )
     assert interior.sum() >= 8
-    # The rules integrate grad N det J exactly on these elements (degree at most 6 a direction for curved bricks,
-    # 4 Gauss points do 7), so nothing but rounding of the products K_ij u_j is left: 4e-16 and a margin.
+    # The rules integrate grad N det J exactly on these elements (degree at most 6 a direction for
+    # curved bricks, 4 Gauss points do 7), so nothing but rounding of the products K_ij u_j is left:
+    # 4e-16 and a margin.
     scale = (abs(k) @ abs(u)).max()
     assert np.abs(force[interior]).max() / scale < 1e-14
     # ... and the faces carry the stress of Hooke's law times their area
@@ -207,7 +214,8 @@ def test_patch_of_constant_stress(element, curved):
         STEEL.E / 2 / (1 + STEEL.nu),
     )
     stress = lame * np.trace(strain) * np.eye(3) + 2 * mu * strain
-    # shear on the side faces shares the edge nodes, so look at the virial: sum of x f = volume times stress
+    # shear on the side faces shares the edge nodes, so look at the virial: sum of x f = volume
+    # times stress
     virial = force.T @ geometry.nodes.T
     assert np.abs(virial - stress * size.prod()).max() / np.abs(stress).max() / size.prod() < 1e-11
 
@@ -231,7 +239,9 @@ def test_patch_test_can_fail():
 
 # --------------------------------------------------------------------------- straight and curved elements
 def bent_box(element, amount, every=3):
-    """A box of straight elements of two materials with one mid node of every third element moved, by a share of the element's size."""
+    """A box of straight elements of two materials with one mid node of every third element moved,
+    by a share of the element's size.
+    """
     mesh = box(element)
     geometry = solid_module._isoparametric(mesh, element, np.arange(mesh.t.shape[1]) % 2)
     touched = geometry.dofs[
@@ -276,7 +286,8 @@ def test_taking_a_slightly_bent_element_for_straight_would_be_seen(monkeypatch):
 
 
 def test_straightness_is_measured_against_the_least_extent():
-    # A flat element: a bend that is small beside its length and not beside its height changes its stiffness.
+    # A flat element: a bend that is small beside its length and not beside its height changes its
+    # stiffness.
     element = solid_module.ELEMENTS["tet10"]()
     flat = (np.diag([1.0, 1.0, 1e-2]) @ element.doflocs.T)[:, :, None]
     assert straight(element, flat)[0].all()
@@ -370,7 +381,9 @@ def stepped(bore=0.0):
 
 
 def harmonic_by_skfem(scene, body, order, n):
-    """Stiffness and mass of harmonic n in the cylindrical strains of U, V, W; unknowns (p, q, w), (u_r, u_y) for n = 0."""
+    """Stiffness and mass of harmonic n in the cylindrical strains of U, V, W; unknowns (p, q, w),
+    (u_r, u_y) for n = 0.
+    """
     mesh, element = body.geometry.mesh, body.geometry.element
     rule = get_quadrature(RefQuad, 2 * (order + 2) - 1)
     c = 2 if n == 0 else 3
@@ -475,7 +488,9 @@ def test_harmonic_rigid_motions_cost_no_energy(order, bore):
 
 
 def nodal_field(body, field, components):
-    """Unknowns of a field given at vertices and (order 2) edge points; higher hierarchical unknowns are zero."""
+    """Unknowns of a field given at vertices and (order 2) edge points; higher hierarchical unknowns
+    are zero.
+    """
     geometry = body.geometry
     element, flat = geometry.element, geometry.meridian
     n = int(geometry.dofs.max()) + 1
@@ -495,7 +510,8 @@ def nodal_field(body, field, components):
 @pytest.mark.parametrize("bore", [0.0, 0.02])
 @pytest.mark.parametrize("order", [1, 2, 4, 6])
 def test_uniform_axial_stretch_with_poisson_contraction_is_in_equilibrium(order, bore):
-    # u_y = e y, u_r = -nu e r: sigma_yy = E e and nothing else, so only the end faces carry load: e E A in all.
+    # u_y = e y, u_r = -nu e r: sigma_yy = E e and nothing else, so only the end faces carry load: e
+    # E A in all.
     rod = Segment.cylinder("rod", length=0.2, diameter=0.06, bore=bore)
     scene = Scene.from_parts([rod], port=Port(y=0.1, lo=0.05, hi=0.12))
     body = sg.build(scene, "harmonic", order=order, layers=1)

@@ -1,4 +1,6 @@
-"""Real bodies on every back end that is there: the same physics, and the same count of negative eigenvalues."""
+"""Real bodies on every back end that is there: the same physics, and the same count of negative
+eigenvalues.
+"""
 
 from pathlib import Path
 
@@ -47,7 +49,8 @@ def test_flexibility_and_frequencies_do_not_depend_on_the_back_end(
 ):
     matrix, frequency = solved(fidelity, backend, monkeypatch)
     expected, expected_hz = reference[fidelity]
-    # the flexibility is refined on K itself, a frequency is accurate to the square of its vector: both are below 1e-9 though the factors round apart
+    # the flexibility is refined on K itself, a frequency is accurate to the square of its vector:
+    # both are below 1e-9 though the factors round apart
     size = np.sqrt(np.diag(expected))
     assert (np.abs(matrix - expected) / np.outer(size, size)).max() < 1e-9
     np.testing.assert_allclose(frequency, expected_hz, rtol=1e-9)
@@ -89,7 +92,8 @@ def test_count_of_a_random_matrix(backend, seed):
     matrix = (a + a.T + sp.diags(rng.standard_normal(200))).tocsr()
     expected = int((np.linalg.eigvalsh(matrix.toarray()) < 0).sum())
     found = indefinite(matrix, backend)
-    # Static or no pivots may leave a factor that is not sound: a back end may decline, it must not be wrong, and one of them must count.
+    # Static or no pivots may leave a factor that is not sound: a back end may decline, it must not
+    # be wrong, and one of them must count.
     if found is not None:
         check(matrix, found, expected, backend)
         assert negative_pivots(matrix, backend) == (expected, backend)

@@ -1,4 +1,5 @@
-"""Every way we know to spoil a scene file is refused in one line that names the file, the key and the value.
+"""Every way we know to spoil a scene file is refused in one line that names the file, the key and
+the value.
 
 Each case is one textual edit of a scene that works.
 """
@@ -13,7 +14,8 @@ from solidgear.scene_file import load
 GOOD = (Path(__file__).parents[1] / "geometry" / "pinion_overhung.toml").read_text(encoding="utf-8")
 BRG2 = GOOD.index('position = "150 mm"')  # edits marked "2:" are made from here on
 
-# what is wrong: (text in the good file, its replacement, key in the message, value in the message, what else it says)
+# what is wrong: (text in the good file, its replacement, key in the message, value in the message,
+# what else it says)
 CASES = {
     "zero length": (
         'length = "208 mm"',

@@ -1,4 +1,6 @@
-"""Bands of solids from their last meshes: what sets them, piece by piece.  Whether they hold the truth is asked by validation/attack."""
+"""Bands of solids from their last meshes: what sets them, piece by piece.  Whether they hold the
+truth is asked by validation/attack.
+"""
 
 import numpy as np
 import pytest
@@ -9,7 +11,9 @@ FINEST = {"C_zz": 2.0, "C_thx": 8.0, "C_z,thx": 1.0, "bending 1": 100.0}
 
 
 def levels(*steps):
-    """Values that approach `FINEST` from so far (relative; couplings relative to the mean of their diagonal entries, here 4)."""
+    """Values that approach `FINEST` from so far (relative; couplings relative to the mean of their
+    diagonal entries, here 4).
+    """
     size = FINEST | {"C_z,thx": 4.0}
     return [{q: v - s * size[q] for q, v in FINEST.items()} for s in (*steps, 0.0)]
 

@@ -1,7 +1,7 @@
 """Values kept on file, each with its source, its uncertainty and the reason for its tolerance.
 
-An entry without a source or a reason, or of an unknown kind, is refused.  The last tests perturb the physics and demand
-that the check goes red.
+An entry without a source or a reason, or of an unknown kind, is refused.  The last tests perturb
+the physics and demand that the check goes red.
 """
 
 import json
@@ -282,8 +282,9 @@ def section_scene():
 
 
 def test_gap_of_the_beam_with_cowpers_coefficient():
-    # Independent figures of the same comparison with Cowper's shear coefficient: frequency +2.7 %, 1 / C_zz +6.0 %, K_zz +6.7 %.
-    # Hutchinson's larger coefficient makes the beam stiffer: that difference is the whole of the difference to the baselines.
+    # Independent figures of the same comparison with Cowper's shear coefficient: frequency +2.7 %,
+    # 1 / C_zz +6.0 %, K_zz +6.7 %. Hutchinson's larger coefficient makes the beam stiffer: that
+    # difference is the whole of the difference to the baselines.
     scene, cache = section_scene(), Cache()
     cowper = {"kappa": "cowper"}
     beam, ring = (

@@ -1,7 +1,7 @@
 """Beam elements against exact solutions of the beam equations.
 
-References come from transfer matrices (matrix exponential of the first-order system), root finding and adaptive
-quadrature; none of it shares code with the elements.
+References come from transfer matrices (matrix exponential of the first-order system), root finding
+and adaptive quadrature; none of it shares code with the elements.
 """
 
 import numpy as np
@@ -32,7 +32,9 @@ def kappa_solid(nu=NU):
 
 
 def free_free_timoshenko(count, kappa, length=LENGTH, a=RADIUS, b=0.0):
-    """First frequencies (rad/s): zeros of the determinant that free ends make of the transfer matrix."""
+    """First frequencies (rad/s): zeros of the determinant that free ends make of the transfer
+    matrix.
+    """
     area, second = np.pi * (a**2 - b**2), np.pi / 4 * (a**4 - b**4)
     # moments and forces in units of EI / L and EI / L^2, lengths in L: all entries of order one
     stiff = E * second
@@ -76,7 +78,8 @@ def test_free_free_timoshenko(bore, kappa):
     body = sg.build(rod(bore), "timoshenko", elements=40)
     found = bending(sg.modes(body, n=12), 3)
     exact = free_free_timoshenko(3, kappa, b=bore / 2)
-    # 40 elements owe 1e-5 in the first three modes; the internal fields of the element make that a fourth-order error.
+    # 40 elements owe 1e-5 in the first three modes; the internal fields of the element make that a
+    # fourth-order error.
     assert np.abs(found / exact - 1).max() < 1e-5
     assert np.all(found > exact * (1 - 1e-9))  # Rayleigh: consistent elements bound from above
 
@@ -99,14 +102,17 @@ def test_free_free_euler():
     assert roots[0] == pytest.approx(4.73004074, abs=1e-8)  # Blevins' table
     exact = np.array(roots) ** 2 * np.sqrt(E * RADIUS**2 / 4 / RHO) / LENGTH**2
     found = bending(sg.modes(sg.build(rod(), "euler", elements=40), n=12), 3)
-    # cubic elements, error (beta h)^4 / 720 in the eigenvalue, half of it in the frequency: 1.4e-7, 1.0e-6, 4.0e-6
+    # cubic elements, error (beta h)^4 / 720 in the eigenvalue, half of it in the frequency: 1.4e-7,
+    # 1.0e-6, 4.0e-6
     expected = (np.array(roots) / 40) ** 4 / 1440
     assert found / exact - 1 == pytest.approx(expected, rel=0.05)
 
 
 # --------------------------------------------------------------------------- rods
 def discrete_rod(speed, n, elements, length=LENGTH):
-    """Frequency of mode n of two-node elements with consistent mass: closed form of the difference equation."""
+    """Frequency of mode n of two-node elements with consistent mass: closed form of the difference
+    equation.
+    """
     h = length / elements
     c = np.cos(n * np.pi / elements)
     return np.sqrt(6 * speed**2 / h**2 * (1 - c) / (2 + c))
@@ -133,10 +139,11 @@ def test_free_free_rod(family, speed):
 
 # --------------------------------------------------------------------------- cantilevers
 def cantilever(segments, spring=1e24, **options):
-    """Compliance at the tip of a shaft held at y = HELD by a bearing of equal stiffness in all six components.
+    """Compliance at the tip of a shaft held at y = HELD by a bearing of equal stiffness in all six
+    components.
 
-    The stub behind the clamp is free of stress; were it 1 mm short, 12 EI / h^3 of its one element would cost
-    the Euler beam four digits.
+    The stub behind the clamp is free of stress; were it 1 mm short, 12 EI / h^3 of its one element
+    would cost the Euler beam four digits.
     """
     length = segments[-1].y1
     clamp = Bearing(
@@ -162,8 +169,9 @@ def test_uniform_cantilever(fidelity):
     expected[0, 5] = expected[5, 0] = -bend * length / 2
     expected[1, 1] = length / (E * area)
     expected[4, 4] = length / (G * 2 * second)
-    # The elements are exact in statics, and a spring of 1e24 N/m adds 1e-24 m/N to 1e-9.  What is left is where the
-    # static refinement stops, 1e-12 of the flexibility, and here the flexibility of the free body is of the result's size.
+    # The elements are exact in statics, and a spring of 1e24 N/m adds 1e-24 m/N to 1e-9.  What is
+    # left is where the static refinement stops, 1e-12 of the flexibility, and here the flexibility
+    # of the free body is of the result's size.
     size = np.sqrt(np.diag(expected))
     assert np.abs((c - expected) / np.outer(size, size)).max() < 1e-11
 
@@ -178,8 +186,8 @@ def test_soft_clamp_adds_its_own_compliance():
     added[2, 2] = added[0, 0] = 1e-6 * (1 + length**2)
     added[2, 3] = added[3, 2] = 1e-6 * length
     added[0, 5] = added[5, 0] = -1e-6 * length
-    # exact in algebra; the largest entries are of the same order on both sides, so a few roundings of them
-    # and the static refinement's 1e-12
+    # exact in algebra; the largest entries are of the same order on both sides, so a few roundings
+    # of them and the static refinement's 1e-12
     assert np.abs(soft - stiff - added).max() < 1e-11 * np.abs(added).max()
 
 
@@ -216,7 +224,8 @@ def test_tapered_cantilever_against_the_unit_load_integral(bore):
         (4, 4): integral(lambda y: 1 / (2 * G * second(y))),
     }
     for (i, j), value in expected.items():
-        # 8 Gauss points on a quarter of the cone (radius changing by a quarter) leave about 1e-11 of the integral of r^-4
+        # 8 Gauss points on a quarter of the cone (radius changing by a quarter) leave about 1e-11
+        # of the integral of r^-4
         assert c[i, j] == pytest.approx(value, rel=1e-10), (i, j)
 
 
@@ -239,7 +248,8 @@ def test_shear_coefficient_of_a_solid_circle(nu):
 
 @pytest.mark.parametrize("nu", [0.0, 0.3, 0.5])
 def test_shear_coefficient_of_a_thin_tube(nu):
-    # Hutchinson's limit (1 + nu) / (2 + nu); the correction is of first order in the thickness squared
+    # Hutchinson's limit (1 + nu) / (2 + nu); the correction is of first order in the thickness
+    # squared
     assert shear_coefficient(nu, 1.0, 1 - 1e-6) == pytest.approx((1 + nu) / (2 + nu), rel=1e-6)
 
 
@@ -276,7 +286,9 @@ def test_beam_mass_is_that_of_the_cone(mass):
 
 @pytest.mark.parametrize("gap, refused", [(1e-5, True), (1e-4, True), (1e-3, False)])
 def test_euler_elements_too_short_to_keep_digits_are_refused(gap, refused):
-    """Two marks 1e-8 m apart once gave frequencies 59 % wrong without a word; Timoshenko does not mind them."""
+    """Two marks 1e-8 m apart once gave frequencies 59 % wrong without a word; Timoshenko does not
+    mind them.
+    """
     bearing = Bearing(name="1", y=0.1, seat_width=0.02, matrix=1e8 * np.eye(6))
     scene = Scene.from_parts(
         rod().segments, bearings=[bearing], port=Port(y=0.1 + gap * LENGTH, lo=0.05, hi=0.15)

@@ -1,4 +1,6 @@
-"""Cause tables: each switched assumption moves what it must, leaves alone what it cannot touch, and adds up."""
+"""Cause tables: each switched assumption moves what it must, leaves alone what it cannot touch, and
+adds up.
+"""
 
 from pathlib import Path
 
@@ -41,8 +43,9 @@ def test_overhung_pinion_has_every_cause(table):
 
 def test_shear_makes_a_shaft_softer(table):
     shear = table["shear"]
-    # Compliance can only grow when a constraint is lifted. At the lumped point of this stubby overhang shear deflection
-    # is a quarter of the rest (measured +26.0 %, -43.1 %, -9.7 %); half of it would mean another shear coefficient.
+    # Compliance can only grow when a constraint is lifted. At the lumped point of this stubby
+    # overhang shear deflection is a quarter of the rest (measured +26.0 %, -43.1 %, -9.7 %); half
+    # of it would mean another shear coefficient.
     assert 0.2 < shear.c_zz < 0.32
     assert -0.5 < shear.k_zz < -0.35
     assert -0.13 < shear.bending_1 < -0.07
@@ -60,12 +63,14 @@ def test_lumped_mass_is_dynamics_only(table):
     lumping = table["mass lumping"]
     # no mass in statics: rounding
     assert abs(lumping.c_zz) < 1e-9 and abs(lumping.k_zz) < 1e-9
-    # lumping is a discretisation of the mass: second order, measured 4.8e-4 at eight elements to a diameter, but not nothing
+    # lumping is a discretisation of the mass: second order, measured 4.8e-4 at eight elements to a
+    # diameter, but not nothing
     assert 1e-5 < abs(lumping.bending_1) < 2e-3
 
 
 def test_smeared_head_and_shear_coefficient_are_smaller_than_shear(table):
-    # Cowper's coefficient of the circle is 5 % below Hutchinson's: shear deflection grows by that share of a quarter (measured +0.9 %)
+    # Cowper's coefficient of the circle is 5 % below Hutchinson's: shear deflection grows by that
+    # share of a quarter (measured +0.9 %)
     assert 0.005 < table["shear coefficient"].c_zz < 0.05 * table["shear"].c_zz * 1.5
     # the mean cylinder is stiffer at the toe and softer at the heel; measured +1.7 % and -3.7 %
     assert 0.005 < abs(table["head smearing"].c_zz) < 0.05
@@ -92,9 +97,9 @@ def test_free_cylinder_has_frequencies_only():
     causes = {c.cause: c for c in beam_causes(sg.load(GEOMETRY / "cylinder_free.toml"))}
     assert "head smearing" not in causes
     assert all(c.c_zz is None and c.k_zz is None for c in causes.values())
-    # First mode, first-order perturbation, with r/L = D/4L = 1/20 and s = E/(k G) = 2.93 (Hutchinson, nu = 0.3):
-    # shear -s/2 (r/L)^2 12.30 = -4.5 %, rotary inertia -1/2 (r/L)^2 49.48 = -6.2 %; the next order takes up to a quarter of it
-    # (measured -4.1 % and -4.9 %).
+    # First mode, first-order perturbation, with r/L = D/4L = 1/20 and s = E/(k G) = 2.93
+    # (Hutchinson, nu = 0.3): shear -s/2 (r/L)^2 12.30 = -4.5 %, rotary inertia -1/2 (r/L)^2 49.48 =
+    # -6.2 %; the next order takes up to a quarter of it (measured -4.1 % and -4.9 %).
     assert -0.045 < causes["shear"].bending_1 < 0.8 * -0.045
     assert -0.062 < causes["rotary inertia"].bending_1 < 0.75 * -0.062
 

@@ -56,7 +56,9 @@ def few(scene=None, full=False):
 
 @pytest.fixture(scope="module", autouse=True)
 def light():
-    """A small plan and a small reference, so that what is tested is the way of the numbers, not their size."""
+    """A small plan and a small reference, so that what is tested is the way of the numbers, not
+    their size.
+    """
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(cases, "plan", few)
         patch.setattr(pareto, "REFERENCE", COARSE)

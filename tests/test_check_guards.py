@@ -1,4 +1,6 @@
-"""Every guard of `solidgear check`: a scene that sets it off, a near miss that does not, and silence once the guard is taken out."""
+"""Every guard of `solidgear check`: a scene that sets it off, a near miss that does not, and
+silence once the guard is taken out.
+"""
 
 import json
 from dataclasses import dataclass, field
@@ -46,7 +48,9 @@ def scene(
     material=STEEL,
     **ask,
 ) -> Scene:
-    """A stout head on a shaft, on two bearings; parts are (length, diameter[, bore]), seats (middle, width)."""
+    """A stout head on a shaft, on two bearings; parts are (length, diameter[, bore]), seats
+    (middle, width).
+    """
     segments, y = [], 0.0
     for i, (length, diameter, *bore) in enumerate(parts):
         segments.append(
@@ -617,6 +621,7 @@ def test_records_are_plain_data(shipped):
     ids=("thick tube", "thin tube", "disc"),
 )
 def test_two_waves_in_closed_form_are_never_far_above_the_solution(here):
-    # the screen lets pass what is 1.5 times above the limit; a disc on a stub and a short tube are stiffer than the closed form
+    # the screen lets pass what is 1.5 times above the limit; a disc on a stub and a short tube are
+    # stiffer than the closed form
     probe = Probe(here, sg.build(here, "euler"))
     assert probe.ovalising[2] / 2 < models._two_waves(probe) < models.SUSPECT * probe.ovalising[2]

@@ -1,4 +1,6 @@
-"""The command line: numbers on standard output, one sentence on standard error, and nothing written by a refused command."""
+"""The command line: numbers on standard output, one sentence on standard error, and nothing written
+by a refused command.
+"""
 
 import json
 import os
@@ -87,8 +89,8 @@ def test_stiffness_as_json(run, fidelity):
     )
     assert [len(row) for row in found["stiffness"]] == [6] * 6
     assert found["stiffness"][4] == [0.0] * 6 and found["compliance"][4] == [None] * 6
-    # Between the beams and the solids K_zz spreads from 4.7e9 to 8.5e9; the converged solid has 4.71e9, and what these light
-    # settings leave is 0.2 % (harmonic) and 1 % (solid).
+    # Between the beams and the solids K_zz spreads from 4.7e9 to 8.5e9; the converged solid has
+    # 4.71e9, and what these light settings leave is 0.2 % (harmonic) and 1 % (solid).
     low, high = {"euler": (8.3e9, 8.6e9), "timoshenko": (5.4e9, 5.6e9)}.get(
         fidelity, (4.71e9 * 0.97, 4.71e9 * 1.03)
     )
@@ -102,7 +104,8 @@ def test_modes_as_json(run, fidelity):
     found = strict(done.out)
     names = {m["name"]: m for m in found["modes"]}
     assert names["rigid torsion"]["frequency_hz"] == 0 and names["bending 1"]["multiplicity"] == 2
-    # 2758 Hz converged; at the scene's seats Euler is 23 % above it, Timoshenko 3.9 %, the solids within 1 %
+    # 2758 Hz converged; at the scene's seats Euler is 23 % above it, Timoshenko 3.9 %, the solids
+    # within 1 %
     want = {"euler": 3397, "timoshenko": 2865}.get(fidelity, 2758)
     assert names["bending 1"]["frequency_hz"] == pytest.approx(want, rel=0.01)
     # four shapes, twins counted twice, besides the rigid one
@@ -202,7 +205,8 @@ def test_builder_options(run):
         ).out
     )
     other = strict(run("stiffness", SCENE, "-f", "euler", "--set", "elements=30", "--json").out)
-    # one stiffness matrix, two mass matrices behind its regularisation (measured 1e-13); the head as a cone is 5 % away
+    # one stiffness matrix, two mass matrices behind its regularisation (measured 1e-13); the head
+    # as a cone is 5 % away
     assert found["dofs"] == same["dofs"] and found["stiffness"][2][2] == pytest.approx(
         same["stiffness"][2][2], rel=1e-9
     )

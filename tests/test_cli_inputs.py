@@ -1,4 +1,6 @@
-"""What the command line makes of inputs: every problem of a scene, bounds before anything is solved, and nothing that fills the screen."""
+"""What the command line makes of inputs: every problem of a scene, bounds before anything is
+solved, and nothing that fills the screen.
+"""
 
 import sys
 from pathlib import Path

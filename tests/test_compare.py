@@ -1,4 +1,6 @@
-"""The main job: one scene through every model, what the record holds, and what is left of it when something goes wrong."""
+"""The main job: one scene through every model, what the record holds, and what is left of it when
+something goes wrong.
+"""
 
 import json
 import math
@@ -20,7 +22,8 @@ LIGHT = {"solid": {"refinement": 0.35}, "harmonic": {"order": 4, "layers": 1}}
 LIGHTER = {"solid": {"refinement": 0.35}}
 ORDER = ["x", "y", "z", "thx", "thy", "thz"]
 
-# harmonic solid on the overhung pinion, order 10 with five graded layers, confirmed by a second code
+# harmonic solid on the overhung pinion, order 10 with five graded layers, confirmed by a second
+# code
 K_ZZ, FIRST_BENDING = 4.70996e9, 2758.003
 
 
@@ -166,7 +169,8 @@ def test_band_holds_the_true_error(results, model):
     # what a band is for; even these light settings must not be surer of themselves than they may be
     assert abs(record["stiffness"][2][2] / K_ZZ - 1) < record["band"]["each"]["K_zz"]
     assert abs(bending / FIRST_BENDING - 1) < record["band"]["bending_1"]
-    # and the band is of use: the harmonic one below a per cent in stiffness at 9000 unknowns (measured 0.23 %)
+    # and the band is of use: the harmonic one below a per cent in stiffness at 9000 unknowns
+    # (measured 0.23 %)
     if model == "harmonic":
         assert record["band"]["each"]["K_zz"] < 0.01
 
@@ -178,7 +182,8 @@ def test_attachments_from_soft_to_stiff(results):
         assert set(variants) == (set(ATTACHMENTS) if model != "solid" else {"average"})
         if model != "harmonic":
             continue  # a beam's mean over a seat is a mean of sections, which may lie on either side
-        # constraints only stiffen: a mean over the section lets more go than one over the seat, a rigid seat nothing
+        # constraints only stiffen: a mean over the section lets more go than one over the seat, a
+        # rigid seat nothing
         assert variants["section"]["c_zz"] > variants["average"]["c_zz"]
         assert variants["section"]["bending_1_hz"] < variants["average"]["bending_1_hz"]
         if "rigid" in variants:
@@ -196,7 +201,8 @@ def test_attachments_from_soft_to_stiff(results):
 
 @pytest.mark.parametrize("model", ["harmonic"])
 def test_shared_factors_change_no_attachment(results, overhung, model):
-    # the run takes section means as more rows on the bodies it has; here the scene itself asks for them
+    # the run takes section means as more rows on the bodies it has; here the scene itself asks for
+    # them
     other = overhung.with_attachment("section")
     body = sg.build(other, model, **LIGHT[model])
     record = results["attachments"][model]["section"]
@@ -245,7 +251,8 @@ def test_deviations_can_be_recomputed(results):
             assert row["value"] == results["models"][row["model"]]["stiffness"][2][2]
     # beams two ways, the 3D solid as tied, every quantity (none of them absent here)
     assert len(rows) == (2 + 2 + 1) * len(QUANTITIES)
-    # two solids at light settings: closer than the bands of the coarser one, which is not the same as agreement
+    # two solids at light settings: closer than the bands of the coarser one, which is not the same
+    # as agreement
     assert all(
         r["verdict"] == "not resolved"
         for r in rows
@@ -568,12 +575,14 @@ def test_free_cylinder(tmp_path):
         "axial 1",
         "torsion 1",
     }
-    # five diameters long: Euler is 11 % too high, Timoshenko right to a fraction of a per cent (measured 0.02 %)
+    # five diameters long: Euler is 11 % too high, Timoshenko right to a fraction of a per cent
+    # (measured 0.02 %)
     gaps = {(r["model"], r["quantity"]): r["relative"] for r in results["deviations"]}
     assert 0.08 < gaps[("euler", "bending 1")] < 0.14
     assert abs(gaps[("timoshenko", "bending 1")]) < 0.002
     assert results["verdict"]["cheapest"] == "timoshenko"
-    # torsion of a cylinder is exact in all: n c / 2 L; two-node rods and cubics are left 1e-3 of error
+    # torsion of a cylinder is exact in all: n c / 2 L; two-node rods and cubics are left 1e-3 of
+    # error
     torsion = next(
         m["frequency_hz"]
         for m in results["models"]["harmonic"]["modes"]
@@ -604,7 +613,8 @@ def test_ring_gear_shaft():
     json.dumps(results, allow_nan=False)
     assert results["complete"] and results["verdict"]["trust"] == "harmonic"
     assert results["port"]["name"] == "gear" and results["port"]["free"] == ["thy"]
-    # a disc of 215 mm on a shaft of 60 mm: a beam has sections that stay plane and cannot bend like a plate
+    # a disc of 215 mm on a shaft of 60 mm: a beam has sections that stay plane and cannot bend like
+    # a plate
     assert not results["models"]["euler"]["valid"] and not results["models"]["timoshenko"]["valid"]
     assert set(results["attachments"]["harmonic"]) == set(ATTACHMENTS)
 

@@ -1,4 +1,6 @@
-"""Condensation to a port: limits that can be worked out by hand, exact transformations, and a direct dense solution."""
+"""Condensation to a port: limits that can be worked out by hand, exact transformations, and a
+direct dense solution.
+"""
 
 from decimal import Context, Decimal, localcontext
 from pathlib import Path
@@ -36,20 +38,26 @@ def body(request, overhung):
 
 
 def moved(stiffness, d):
-    """6x6 at y0 + d of a spring at y0 + 0, both on the axis, from the work of a rigid motion; by hand, no library code."""
-    # motion of the spring's point for a motion of a point d further along y: thx carries -d to z, thz +d to x
+    """6x6 at y0 + d of a spring at y0 + 0, both on the axis, from the work of a rigid motion; by
+    hand, no library code.
+    """
+    # motion of the spring's point for a motion of a point d further along y: thx carries -d to z,
+    # thz +d to x
     t = np.eye(6)
     t[2, 3], t[0, 5] = -d, d
     return t.T @ stiffness @ t
 
 
 def bearing_by_hand(bearing):
-    """Bearing matrix with the springs in series with its axial stiffness, the ring between eliminated as a seventh unknown."""
+    """Bearing matrix with the springs in series with its axial stiffness, the ring between
+    eliminated as a seventh unknown.
+    """
     k = np.array(bearing.matrix)
     if not bearing.axial_series:
         return k
     spring = 1 / sum(1 / s for s in bearing.axial_series)
-    # unknowns: six of the shaft side, one axial of the ring; the bearing sees shaft minus ring along y
+    # unknowns: six of the shaft side, one axial of the ring; the bearing sees shaft minus ring
+    # along y
     b = np.hstack([np.eye(6), -np.eye(6)[:, 1:2]])
     big = b.T @ k @ b
     big[6, 6] += spring
@@ -93,8 +101,8 @@ def test_free_torsion_is_an_exact_zero(body, overhung):
 def test_both_bending_planes_agree(name):
     scene = shipped(name)
     k = sg.condense(sg.build(scene, "harmonic", order=2), scene, scene.port.name).stiffness
-    # the shaft's planes are equal bit by bit; the bearings' weak couplings (100 N/m in 1e9) differ between them, but enter
-    # squared, 1e-14
+    # the shaft's planes are equal bit by bit; the bearings' weak couplings (100 N/m in 1e9) differ
+    # between them, but enter squared, 1e-14
     assert k[0, 0] == pytest.approx(k[2, 2], rel=1e-12)
     assert k[3, 3] == pytest.approx(k[5, 5], rel=1e-12)
     assert k[0, 5] == pytest.approx(-k[2, 3], rel=1e-12)
@@ -110,7 +118,9 @@ def test_body_is_reciprocal(body):
 
 # --------------------------------------------------------------------------- against a direct solution
 def direct_stiffness(body, scene):
-    """K + G' Kb G of the whole beam, dense, torsion left out; then the port's 5x5 compliance, inverted."""
+    """K + G' Kb G of the whole beam, dense, torsion left out; then the port's 5x5 compliance,
+    inverted.
+    """
     blocks = [b for b in body.blocks if b.name != "torsion"]
     k = sla.block_diag(*[b.stiffness.toarray() for b in blocks])
     ports = len(body.ports)
@@ -139,7 +149,8 @@ def test_against_a_direct_dense_solution(overhung, fidelity, scale):
     scene = overhung.with_bearing_scale(scale)
     body = sg.build(scene, fidelity, elements=20)
     found = sg.condense(body, scene, "pinion").stiffness
-    # the direct matrix has a condition number near 1e6 after scaling, more with soft bearings: 1e-8 is what *it* can do
+    # the direct matrix has a condition number near 1e6 after scaling, more with soft bearings: 1e-8
+    # is what *it* can do
     assert relative(found, direct_stiffness(body, scene)) < 1e-8
 
 
@@ -147,15 +158,17 @@ def test_against_a_direct_dense_solution(overhung, fidelity, scale):
 @pytest.mark.parametrize("attachment", ["average", "rigid"])
 @pytest.mark.parametrize("fidelity", ["harmonic", "solid"])
 def test_moving_the_reference_point_is_an_adjoint(overhung, attachment, fidelity):
-    # The port's motion is a rigid motion fitted to the same surface, so its reference point is a matter of book-keeping.
-    # Mesh lines through the port move with it, hence both points are chosen on existing lines: seat ends of the head.
+    # The port's motion is a rigid motion fitted to the same surface, so its reference point is a
+    # matter of book-keeping. Mesh lines through the port move with it, hence both points are chosen
+    # on existing lines: seat ends of the head.
     here = overhung.with_port(attachment=attachment)
     y0, y1 = here.port.lo, here.port.hi
     a, b = here.with_port(y=y0), here.with_port(y=y1)
     options = OPTIONS[fidelity]
     ka = sg.condense(sg.build(a, fidelity, **options), a, "pinion").stiffness
     kb = sg.condense(sg.build(b, fidelity, **options), b, "pinion").stiffness
-    # the same numbers in another order: where the static refinement stops, 1e-12, times the lever's amplification
+    # the same numbers in another order: where the static refinement stops, 1e-12, times the lever's
+    # amplification
     assert relative(moved(ka, y1 - y0), kb) < 1e-10
 
 
@@ -168,8 +181,8 @@ def test_stiff_shaft_leaves_the_bearings(overhung, fidelity):
         scene = overhung.with_material(E=modulus)
         k = sg.condense(sg.build(scene, fidelity, **OPTIONS[fidelity]), scene, "pinion").stiffness
         error.append(relative(k, expected))
-    # In the stiffest direction of the rigid lever the bearings are some 40 times stiffer than the steel shaft, so a
-    # shaft 1e6 times stiffer leaves 4e-5 of it
+    # In the stiffest direction of the rigid lever the bearings are some 40 times stiffer than the
+    # steel shaft, so a shaft 1e6 times stiffer leaves 4e-5 of it
     assert error[1] < 1e-4
     # ... and proportionally to 1/E
     assert error[0] / error[1] == pytest.approx(100, rel=0.02)
@@ -178,13 +191,14 @@ def test_stiff_shaft_leaves_the_bearings(overhung, fidelity):
 def test_soft_bearings_leave_their_rigid_sum(body, overhung):
     soft = overhung.with_bearing_scale(1e-3 / 8.823e9)  # radial stiffness of bearing 1: 1e-3 N/m
     k = sg.condense(body, soft, "pinion").stiffness
-    # the bearings are about as stiff as the shaft, so scaled by 1e-13 they leave 1e-11 of elastic compliance; nothing larger
-    # than the result is subtracted on the way
+    # the bearings are about as stiff as the shaft, so scaled by 1e-13 they leave 1e-11 of elastic
+    # compliance; nothing larger than the result is subtracted on the way
     assert relative(k, rigid_sum(soft)) < 1e-10
 
 
 def test_soft_bearings_lengthen_the_compliance_of_a_beam_exactly(overhung):
-    # the soft limit tests nothing but rigid motions; at equal stiffness the two parts add: C = C_rigid + C_elastic(Kb)
+    # the soft limit tests nothing but rigid motions; at equal stiffness the two parts add: C =
+    # C_rigid + C_elastic(Kb)
     body = sg.build(overhung, "timoshenko")
     soft, softer = overhung.with_bearing_scale(1e-6), overhung.with_bearing_scale(1e-8)
     on = np.ix_([0, 1, 2, 3, 5], [0, 1, 2, 3, 5])
@@ -192,8 +206,9 @@ def test_soft_bearings_lengthen_the_compliance_of_a_beam_exactly(overhung):
     for scene in (soft, softer):
         c = sg.condense(body, scene, "pinion").compliance[on]
         elastic.append(c - np.linalg.inv(rigid_sum(scene)[on]))
-    # what is left after the springs' own compliance is the shaft under statically determined bearing shares: independent
-    # of the scale; the subtraction costs the ratio of the compliances, 1e8
+    # what is left after the springs' own compliance is the shaft under statically determined
+    # bearing shares: independent of the scale; the subtraction costs the ratio of the compliances,
+    # 1e8
     assert relative(elastic[1], elastic[0]) < 1e-4
 
 
@@ -215,7 +230,8 @@ def test_stiffness_grows_with_the_bearings(body, overhung):
         k = sg.condense(body, overhung.with_bearing_scale(scale), "pinion").stiffness
         if previous is not None:
             d = 1 / np.sqrt(np.where(np.diag(k) > 0, np.diag(k), 1.0))
-            # adding springs adds a positive semidefinite part; 1e-11 of the larger matrix is rounding once all is clamped
+            # adding springs adds a positive semidefinite part; 1e-11 of the larger matrix is
+            # rounding once all is clamped
             assert np.linalg.eigvalsh((k - previous) * np.outer(d, d)).min() > -1e-11, scale
         previous = k
 
@@ -253,11 +269,13 @@ def test_one_spring_leaves_its_own_motion_only():
 def test_axial_chain_of_bearings_and_housing(fidelity):
     scene = shipped("pinion_straddle").with_material(E=2e19)
     assert scene.housing_axial == 7.71e9
-    # bearing 0 carries no axial load; bearing 2 has K_c in series; both side by side, then the housing in series
+    # bearing 0 carries no axial load; bearing 2 has K_c in series; both side by side, then the
+    # housing in series
     second = 1 / (1 / 1.721e9 + 1 / 4.1e8)
     expected = 1 / (1 / (8.887e8 + second) + 1 / 7.71e9)
     k = sg.condense(sg.build(scene, fidelity, **OPTIONS[fidelity]), scene, "pinion").stiffness
-    # a shaft 1e8 times stiffer than steel leaves 1e-9; weak couplings (100 N/m in 1e9) enter squared
+    # a shaft 1e8 times stiffer than steel leaves 1e-9; weak couplings (100 N/m in 1e9) enter
+    # squared
     assert k[1, 1] == pytest.approx(expected, rel=1e-8)
 
 
@@ -270,7 +288,8 @@ def test_housing_spring_has_the_limits_it_must_have():
     }
     assert relative(k[1e24], k[None]) < 1e-12  # a rigid housing is none
     assert k[7.71e9][1, 1] < k[None][1, 1] * 0.95  # K_hb takes 15 % of this chain
-    # the housing is axial: radial stiffness feels it through the weak couplings only (1e2 of 1e9 N/m, squared)
+    # the housing is axial: radial stiffness feels it through the weak couplings only (1e2 of 1e9
+    # N/m, squared)
     assert k[7.71e9][2, 2] == pytest.approx(k[None][2, 2], rel=1e-9)
 
 
@@ -295,7 +314,9 @@ def decimal_solve(a, b):
 
 @pytest.mark.parametrize("soft", [1e-5, 1e-3, 1e3, 1e16, 1e24])
 def test_bearings_of_very_different_stiffness(overhung, soft):
-    """Equilibrium of bearing forces and rigid motion in sixty digits, from the same flexibility: what is left is the condensation's own rounding."""
+    """Equilibrium of bearing forces and rigid motion in sixty digits, from the same flexibility:
+    what is left is the condensation's own rounding.
+    """
     body = sg.build(overhung, "timoshenko")
     stiff = Supports(
         as_supports(overhung).ports,
@@ -330,7 +351,9 @@ def test_bearings_of_very_different_stiffness(overhung, soft):
 
 
 def test_a_free_direction_between_the_axes_is_named_as_one():
-    """A bearing that resists all but (1, 0, 1): no component alone is free, and none has a zero row."""
+    """A bearing that resists all but (1, 0, 1): no component alone is free, and none has a zero
+    row.
+    """
     v = np.array([1.0, 0.0, 1.0])
     k = np.zeros((6, 6))
     k[:3, :3] = 1e9 * np.eye(3) - 0.5e9 * np.outer(v, v)

@@ -1,4 +1,6 @@
-"""Grid convergence index on sequences whose limit is known, and the exponents of the corners that cap its order."""
+"""Grid convergence index on sequences whose limit is known, and the exponents of the corners that
+cap its order.
+"""
 
 import math
 from pathlib import Path
@@ -42,7 +44,8 @@ def test_band_is_the_true_error_times_the_factor(order, sizes, share):
     values = manufactured(order, sizes, share=share)
     found = gci(values, sizes, expected=1.09, highest=4.0, cap=3.5)
     true_error = abs(values[2] - LIMIT) / abs(values[2])
-    # Roache's definition: with the right order the band is 1.25 times the error, up to rounding of the differences
+    # Roache's definition: with the right order the band is 1.25 times the error, up to rounding of
+    # the differences
     assert found.gci == pytest.approx(1.25 * true_error, rel=1e-9)
 
 
@@ -51,7 +54,8 @@ def test_band_is_the_true_error_times_the_factor(order, sizes, share):
 def test_asymptotic_check_is_one(order, sizes):
     values = manufactured(order, sizes)
     found = gci(values, sizes, expected=1.09, highest=4.0)
-    # exactly so for one term of the error, both bands being relative to the finest value; the order is found to 1e-12
+    # exactly so for one term of the error, both bands being relative to the finest value; the order
+    # is found to 1e-12
     assert found.asymptotic == pytest.approx(1.0, rel=1e-9)
 
 
@@ -151,7 +155,8 @@ def test_oscillation_has_no_order_and_a_band_from_the_larger_change(sizes):
 
 
 def test_lull_before_a_jump_does_not_narrow_the_band():
-    # the finer pair hardly moves, the coarser one moves the other way: the smaller change must not be believed
+    # the finer pair hardly moves, the coarser one moves the other way: the smaller change must not
+    # be believed
     found = gci((1.0, 1.1, 1.0999), (4.0, 2.0, 1.0), expected=1.0, highest=4.0)
     assert found.observed_order is None
     # 3 * 0.1 / 1.0999 / (2 - 1)
@@ -216,7 +221,8 @@ def test_record_is_plain_data():
 
 
 def test_middle_value_of_zero():
-    # a coupling term may pass through zero between two meshes; the band itself is well defined: 1.25 * 1 / (2^p - 1), p = log2 3
+    # a coupling term may pass through zero between two meshes; the band itself is well defined:
+    # 1.25 * 1 / (2^p - 1), p = log2 3
     assert gci((3.0, 0.0, -1.0), (4.0, 2.0, 1.0), expected=1.09, highest=4.0).gci == pytest.approx(
         0.625, rel=1e-9
     )
@@ -253,7 +259,8 @@ def test_corner_exponent_solves_the_characteristic_equation(degrees):
 def test_sharper_corners_are_more_singular():
     found = [corner_exponent(math.radians(d)) for d in range(180, 361)]
     assert np.all(np.diff(found) < 0)
-    # no jump where the first root enters the search: a degree moves the exponent by 0.011 near 180 degrees
+    # no jump where the first root enters the search: a degree moves the exponent by 0.011 near 180
+    # degrees
     assert np.max(-np.diff(found)) < 0.012
 
 

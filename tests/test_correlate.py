@@ -1,4 +1,6 @@
-"""Mode correlation: the algebra of the subspace MAC, and modes of one shaft recognised across refinements and rotations."""
+"""Mode correlation: the algebra of the subspace MAC, and modes of one shaft recognised across
+refinements and rotations.
+"""
 
 from dataclasses import replace
 from pathlib import Path
@@ -102,9 +104,11 @@ def test_refinements_of_one_beam_agree(coarse_and_fine):
     found = correlate(coarse, fine)
     assert found.rows == found.columns and len(found.rows) >= 6
     assert "rigid torsion" in fine.names and not any("rigid" in name for name in found.rows)
-    # measured 2e-5 on the highest mode of 20 elements; 1 - MAC is the square of the angle between shapes
+    # measured 2e-5 on the highest mode of 20 elements; 1 - MAC is the square of the angle between
+    # shapes
     assert np.all(np.diag(found.values) > 1 - 1e-4)
-    # different modes are orthogonal in the section masses up to what sections do not describe: measured 4e-6
+    # different modes are orthogonal in the section masses up to what sections do not describe:
+    # measured 4e-6
     assert np.all(found.values - np.diag(np.diag(found.values)) < 1e-4)
     assert np.all((found.values >= 0) & (found.values <= 1))
     for partner in found.partners:

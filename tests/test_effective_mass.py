@@ -1,4 +1,6 @@
-"""Lumped synthesis: the published stiffness, and what can be said of a first bending mode with two numbers."""
+"""Lumped synthesis: the published stiffness, and what can be said of a first bending mode with two
+numbers.
+"""
 
 from functools import cache
 from pathlib import Path
@@ -110,7 +112,9 @@ def test_equations_52_and_53_have_no_solution_on_a_pinion(name, fidelity):
 
 
 def point_with(k, mass, order=0):
-    """A lumped point whose body *is* a 2-DOF model: its modes are static shapes of the lumped point."""
+    """A lumped point whose body *is* a 2-DOF model: its modes are static shapes of the lumped
+    point.
+    """
     w2, shapes = sla.eigh(k, mass)
     return LumpedPoint(k, shapes[:, order], float(np.sqrt(w2[order])), mass[0, 0], mass[1, 1], mass)
 
@@ -156,7 +160,8 @@ def test_mode_matched_keeps_frequency_and_slope(name, fidelity):
 
 
 def test_mode_matched_can_be_second_or_negative():
-    # On the straddled pinion the pair is positive but its mode the second one; on soft bearings the inertia is negative.
+    # On the straddled pinion the pair is positive but its mode the second one; on soft bearings the
+    # inertia is negative.
     straddle, stepped = (
         solved("pinion_straddle", "timoshenko")[3],
         solved("shaft_stepped", "timoshenko")[3],
@@ -182,7 +187,8 @@ def test_guyan_of_a_nearly_rigid_shaft_is_the_rigid_body():
     # seen from the lumped point: z motion couples with tilt through the static moment
     moment = m[2, 3] - y * m[2, 2]
     rigid = np.array([[m[2, 2], moment], [moment, m[3, 3] - 2 * y * m[2, 3] + y * y * m[2, 2]]])
-    # a thousand times stiffer steel leaves 1e-3 to 1e-4 of elasticity per unit of bearing flexibility
+    # a thousand times stiffer steel leaves 1e-3 to 1e-4 of elasticity per unit of bearing
+    # flexibility
     assert point.guyan == pytest.approx(rigid, rel=1e-3)
 
 
@@ -230,7 +236,9 @@ def test_a_free_shaft_has_no_lumped_model():
 
 @pytest.mark.parametrize("soft", ["kxx", "kzz"])
 def test_unequal_bearings_keep_the_model_in_its_plane(soft):
-    """With the other plane softer its mode comes first; the lumped model of (z, thx) still takes the mode that moves it."""
+    """With the other plane softer its mode comes first; the lumped model of (z, thx) still takes
+    the mode that moves it.
+    """
     scene = sg.load(Path(__file__).parent.parent / "geometry" / "pinion_overhung.toml")
     weight = np.ones(6)
     weight[{"kxx": 0, "kzz": 2}[soft]] = 0.9

@@ -1,4 +1,6 @@
-"""The eigensolvers against each other, their fall-back, and the count that proves no mode was missed."""
+"""The eigensolvers against each other, their fall-back, and the count that proves no mode was
+missed.
+"""
 
 from dataclasses import replace
 from pathlib import Path
@@ -42,14 +44,17 @@ def supported(body, scene, group=0):
 @pytest.mark.parametrize("fidelity", ["solid", "harmonic"])
 @pytest.mark.parametrize("bearings", [True, False])
 def test_lanczos_and_arpack_agree(scene, fidelity, bearings, request):
-    """Two algorithms on the same factor: frequencies are those of Rayleigh quotients, each good to the rounding of K u."""
+    """Two algorithms on the same factor: frequencies are those of Rayleigh quotients, each good to
+    the rounding of K u.
+    """
     body = request.getfixturevalue(fidelity)
     on = scene if bearings else ()
     a, b = (sg.modes(body, on, n=12, method=m) for m in ("lanczos", "arpack"))
     assert a.names == b.names
     assert a.multiplicity == b.multiplicity
-    # Entries of K u are rounded by eps |K| |u|, so an eigenvalue by eps times the largest one, which is about three times that of a
-    # single unknown; two quotients differ by twice that, their frequencies by half.
+    # Entries of K u are rounded by eps |K| |u|, so an eigenvalue by eps times the largest one,
+    # which is about three times that of a single unknown; two quotients differ by twice that, their
+    # frequencies by half.
     largest = 3 * max(
         (block.stiffness.diagonal() / block.mass.tocsr().diagonal()).max() for block in body.blocks
     )
@@ -94,7 +99,9 @@ def test_arpack_takes_over_where_lanczos_gives_up(scene, solid, monkeypatch):
 @pytest.mark.parametrize("fidelity", ["solid", "harmonic"])
 @pytest.mark.parametrize("scale", [1e-9, 1.0, 1e6])
 def test_count_confirms_complete_results(scene, fidelity, scale, request):
-    """Bearings from next to nothing to near rigid: the inertia of K - mu M and the correction for the springs add up."""
+    """Bearings from next to nothing to near rigid: the inertia of K - mu M and the correction for
+    the springs add up.
+    """
     body = request.getfixturevalue(fidelity)
     found = sg.modes(body, scene.with_bearing_scale(scale), n=10, count=True)
     assert all(c["checked"] for c in found.evidence["count"]), found.evidence["count"]
@@ -156,8 +163,9 @@ def test_a_mode_lost_twice_ends_in_a_sentence(scene, solid, monkeypatch):
 
 
 def test_elastic_modes_below_the_soft_limit_of_a_free_shaft():
-    """An estimate of the spectrum that is far too high puts elastic modes far below the shift, where soft springs put theirs; with no spring there is no
-    rigid motion to mix in."""
+    """An estimate of the spectrum that is far too high puts elastic modes far below the shift,
+    where soft springs put theirs; with no spring there is no rigid motion to mix in.
+    """
     lead = Material(E=16e9, nu=0.44, density=11340.0)
     steel = STEEL
     parts = [
@@ -179,7 +187,8 @@ def test_elastic_modes_below_the_soft_limit_of_a_free_shaft():
 
 @pytest.mark.parametrize("model", ["euler", "timoshenko"])
 def test_unknowns_without_mass(model):
-    # lumped masses without rotary inertia leave the turns of a beam massless; the mass matrix is then no metric
+    # lumped masses without rotary inertia leave the turns of a beam massless; the mass matrix is
+    # then no metric
     scene = sg.load(Path(__file__).parents[1] / "geometry" / "shaft_stepped.toml")
     lumped, consistent = (
         sg.modes(sg.build(scene, model, mass=mass, rotary_inertia=False), scene, n=6)
@@ -188,5 +197,6 @@ def test_unknowns_without_mass(model):
     assert lumped.names[:6] == consistent.names[:6]
     # lumping costs the square of the element over the wave: 40 elements, 1e-3 and less
     assert lumped.frequency_hz[:6] == pytest.approx(consistent.frequency_hz[:6], rel=3e-3)
-    # shapes are moved into place by the inverse, whose rounding is 1e-6 for short Euler elements; its square is what frequencies feel
+    # shapes are moved into place by the inverse, whose rounding is 1e-6 for short Euler elements;
+    # its square is what frequencies feel
     assert lumped.evidence["residual"] < 1e-4 and lumped.evidence["orthogonality"] < 1e-4

@@ -1,4 +1,6 @@
-"""One interface over several factorisations: the same answers from each, and a sentence where there is none."""
+"""One interface over several factorisations: the same answers from each, and a sentence where there
+is none.
+"""
 
 from pathlib import Path
 
@@ -225,7 +227,8 @@ def test_what_will_not_fit_is_refused_before_it_is_factored(plane, backend, plan
 @pytest.mark.parametrize("backend", BACKENDS)
 def test_estimate_is_of_the_size_of_the_factor(plane, backend):
     found = factorise(plane, backend, planar=True)
-    # A factor holds at least the upper triangle of the matrix (8 bytes an entry), and on a planar mesh nothing near a hundred times it.
+    # A factor holds at least the upper triangle of the matrix (8 bytes an entry), and on a planar
+    # mesh nothing near a hundred times it.
     least = 8 * plane.nnz / 2 / 2**20
     assert least < found.estimate_mb < 100 * least
     if found.nnz is not None:

@@ -1,4 +1,6 @@
-"""Families of two waves around and more: the rule that stops their search leaves out none that lies below what is asked for."""
+"""Families of two waves around and more: the rule that stops their search leaves out none that lies
+below what is asked for.
+"""
 
 import pytest
 
@@ -9,5 +11,6 @@ from validation.stability import circumferential_families as families
 def test_rule_misses_no_family(kind):
     row = families.shaft(3, kind, waves=range(2, 8), order=3)
     assert row["missed, program"] == 0
-    # the closed form stays below what a mesh finds (with the margin of the rule): it may end the search
+    # the closed form stays below what a mesh finds (with the margin of the rule): it may end the
+    # search
     assert row["closed form / lowest"] < families.MARGIN

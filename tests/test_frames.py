@@ -1,4 +1,6 @@
-"""Changing the reference point of motions, loads and stiffnesses, against vector algebra written out by hand."""
+"""Changing the reference point of motions, loads and stiffnesses, against vector algebra written
+out by hand.
+"""
 
 import numpy as np
 import pytest
@@ -47,7 +49,8 @@ def test_shifts_form_a_commutative_group(rng):
 
 
 def test_load_moves_by_the_transpose(rng):
-    # A force at the new point is the same force at the old one, plus its moment about the old point.
+    # A force at the new point is the same force at the old one, plus its moment about the old
+    # point.
     offset, force, moment = rng.standard_normal((3, 3))
     old = shift(offset).T @ np.concatenate([force, moment])
     assert np.allclose(old[:3], force, rtol=0, atol=ROUNDING)
@@ -83,7 +86,8 @@ def test_moved_compliance_is_the_inverse_of_the_moved_stiffness(rng):
 
 
 def test_radial_spring_seen_from_a_distance():
-    # A spring k on z at y = 0, seen from y = d: lifting needs k, tilting k d^2, and a lift couples to the tilt by -k d.
+    # A spring k on z at y = 0, seen from y = d: lifting needs k, tilting k d^2, and a lift couples
+    # to the tilt by -k d.
     k, d = 3.0, 0.5
     stiffness = np.zeros((6, 6))
     stiffness[2, 2] = k

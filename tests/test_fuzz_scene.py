@@ -1,4 +1,6 @@
-"""Scene files and command lines spoilt at random: refused in plain sentences or answered, never a traceback, a hang or half an output."""
+"""Scene files and command lines spoilt at random: refused in plain sentences or answered, never a
+traceback, a hang or half an output.
+"""
 
 import sys
 from collections import Counter
@@ -124,7 +126,8 @@ def test_what_the_fuzz_calls_a_bad_command(fuzz, fault, monkeypatch, tmp_path):
 
 
 # ------------------------------------------------------------------------------------------------- what it found
-#: numbers that are valid TOML, pass the sign checks, and led to overflow, endless meshes or singular matrices
+#: numbers that are valid TOML, pass the sign checks, and led to overflow, endless meshes or
+#: singular matrices
 ABSURD = {
     "stiffness that overflows when squared": (
         'kxx = "8.823e9 N/m"',

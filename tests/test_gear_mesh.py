@@ -34,14 +34,16 @@ def test_line_of_action_is_a_unit_vector(hand, side, member):
 
 
 def test_pinion_of_the_thesis():
-    # Left hand, concave side loaded. The reference is given to two digits: half a unit of the last one, and a bit.
+    # Left hand, concave side loaded. The reference is given to two digits: half a unit of the last
+    # one, and a bit.
     n = line_of_action(PITCH, SPIRAL, PRESSURE, "left", "concave")
     assert np.allclose(n, [0.23, 0.55, 0.81], rtol=0, atol=0.0055)
 
 
 @pytest.mark.parametrize("hand, side, member", ALL)
 def test_components_are_the_textbook_ones(hand, side, member):
-    # Axial and radial thrust per unit of tangential load, as printed in gear handbooks; the two flanks differ in a sign.
+    # Axial and radial thrust per unit of tangential load, as printed in gear handbooks; the two
+    # flanks differ in a sign.
     n = line_of_action(PITCH, SPIRAL, PRESSURE, hand, side, member)
     axial, inward, tangential = parts(n, member)
     sign = 1 if side == "concave" else -1
@@ -75,7 +77,8 @@ def test_no_pitch_angle_is_a_helical_gear():
 
 
 def test_hand_flips_the_axial_force_of_the_spiral():
-    # Same direction of load, other hand (so the other flank). Without pressure angle only the spiral pushes along the axis.
+    # Same direction of load, other hand (so the other flank). Without pressure angle only the
+    # spiral pushes along the axis.
     left = parts(line_of_action(PITCH, SPIRAL, 0.0, "left", "concave"), "pinion")
     right = parts(line_of_action(PITCH, SPIRAL, 0.0, "right", "convex"), "pinion")
     assert left[2] == right[2] > 0
@@ -97,7 +100,8 @@ def test_both_mesh_points_are_one_point():
     r_p, r_g = 0.0577, 0.1853
     pinion = mesh_point(r_p, axial=r_g, height=0.01)
     gear = mesh_point(np.hypot(pinion[1], 0.01), axial=-pinion[0], height=0.01, member="gear")
-    # From the apex, with axes that cross at 90 degrees, and exactly so because the frames are turned by 90 degrees.
+    # From the apex, with axes that cross at 90 degrees, and exactly so because the frames are
+    # turned by 90 degrees.
     assert np.allclose(to_gear_frame(pinion), gear, rtol=0, atol=ROUNDING)
 
 

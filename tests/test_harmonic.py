@@ -1,4 +1,6 @@
-"""The axisymmetric-harmonic solid against exact elasticity: torsion, Pochhammer-Chree waves, frustum integrals, Hutchinson's beam."""
+"""The axisymmetric-harmonic solid against exact elasticity: torsion, Pochhammer-Chree waves,
+frustum integrals, Hutchinson's beam.
+"""
 
 from pathlib import Path
 
@@ -36,8 +38,9 @@ def test_free_free_torsion(bore):
         if m.family == "torsion" and m.frequency_hz > 0
     ]
     exact = SHEAR / (2 * LENGTH) * np.arange(1, 3)
-    # sin(pi y / L) by polynomials of degree 7 on cells of a tenth of the length: the discretisation error is far below
-    # rounding, which the shift of 1e-3 of the first eigenvalue amplifies to about 1e-13; a hundred times that
+    # sin(pi y / L) by polynomials of degree 7 on cells of a tenth of the length: the discretisation
+    # error is far below rounding, which the shift of 1e-3 of the first eigenvalue amplifies to
+    # about 1e-13; a hundred times that
     assert found[:2] == pytest.approx(exact, rel=1e-11)
 
 
@@ -58,7 +61,8 @@ def test_mass_matrix_of_shipped_scenes(path):
 
 
 def test_mass_matrix_of_the_hollow_shaft_by_quadrature():
-    # own slice integrals of tube (400 mm, 80/50 mm) and flare (60 mm, 80 to 120 mm, bore 50 mm), 7850 kg/m^3
+    # own slice integrals of tube (400 mm, 80/50 mm) and flare (60 mm, 80 to 120 mm, bore 50 mm),
+    # 7850 kg/m^3
     outer = lambda y: 0.040 if y < 0.4 else 0.040 + (y - 0.4) / 0.06 * 0.020  # noqa: E731
 
     def integral(f):
@@ -82,7 +86,8 @@ def test_mass_matrix_of_the_hollow_shaft_by_quadrature():
 
 # --------------------------------------------------------------------------- Pochhammer-Chree
 def pochhammer_determinant(w, k, n=1, a=RADIUS):
-    """Traction-free lateral surface of a cylinder carrying a wave cos(k y) of circumferential order n.
+    """Traction-free lateral surface of a cylinder carrying a wave cos(k y) of circumferential order
+    n.
 
     From u = grad phi + curl(chi e_y) + curl curl(psi e_y) with phi = J_n(p r) cos(n t) cos(k y),
     chi = J_n(q r) sin(n t) cos(k y), psi = J_n(q r) cos(n t) sin(k y),
@@ -142,7 +147,8 @@ def fine_rod():
 
 @pytest.mark.parametrize("m", [1, 2, 3])
 def test_bending_wave_of_a_cylinder_between_sliding_ends(fine_rod, m):
-    # u_y = 0 and no shear at the end faces: the travelling wave of wave number m pi / L fits exactly.
+    # u_y = 0 and no shear at the end faces: the travelling wave of wave number m pi / L fits
+    # exactly.
     body = fine_rod
     block = body.blocks[0]
     assert block.name == "bending_z"
@@ -163,22 +169,26 @@ def test_bending_wave_of_a_cylinder_between_sliding_ends(fine_rod, m):
     wave = m * np.pi / LENGTH
     euler = wave**2 * np.sqrt(E * RADIUS**2 / 4 / RHO)
     exact = pochhammer_root(wave, 0.5 * euler, euler)
-    # a body that may slide has one rigid motion and many waves: look at those around the exact value
+    # a body that may slide has one rigid motion and many waves: look at those around the exact
+    # value
     near = spla.eigsh(k, 4, M=mass, sigma=(0.99 * exact) ** 2, return_eigenvectors=False)
     found = np.sqrt(near[np.argmin(np.abs(near - exact**2))])
-    # degree 8 on cells no longer than a radius reaches rounding, about 1e-12 after the shifted solve; a hundred times that
+    # degree 8 on cells no longer than a radius reaches rounding, about 1e-12 after the shifted
+    # solve; a hundred times that
     assert found == pytest.approx(exact, rel=1e-10)
 
 
 def test_pochhammer_determinant_itself():
-    # Long waves are Euler's beam, w = k^2 sqrt(E I / rho A): the first correction is -(k a)^2 (1 + E / kappa G) / 8.
+    # Long waves are Euler's beam, w = k^2 sqrt(E I / rho A): the first correction is -(k a)^2 (1 +
+    # E / kappa G) / 8.
     for ka in (0.04, 0.1):
         k = ka / RADIUS
         euler = k**2 * np.sqrt(E * RADIUS**2 / 4 / RHO)
         root = pochhammer_root(k, 0.9 * euler, 1.01 * euler)
         kappa = 6 * (1 + NU) ** 2 / (7 + 12 * NU + 4 * NU**2)
         correction = -(ka**2) / 8 * (1 + E / (kappa * G))
-        # the next term is smaller by (k a)^2; cancellation in the determinant, eps / (k a)^4, adds a part in a thousand
+        # the next term is smaller by (k a)^2; cancellation in the determinant, eps / (k a)^4, adds
+        # a part in a thousand
         assert root / euler - 1 == pytest.approx(correction, rel=ka**2 + 2e-3)
 
 
@@ -205,9 +215,10 @@ def transfer_frequency(length, a, b, kappa):
 
 @pytest.mark.parametrize("ratio, limit", [(0.0, 5e-5), (0.5, 5e-5), (0.8, 4e-4)])
 def test_hutchinson_coefficient_fits_the_exact_solid(ratio, limit):
-    # At a length of eight diameters the first mode has k a = 0.3.  What Hutchinson's beam leaves out is of fourth order in
-    # k a and grows with the radius of gyration, most for the thin tube, whose ends warp freely.  Cowper's coefficient
-    # differs by 4 to 6 %, which moves the frequency by 7e-4 to 2e-3.
+    # At a length of eight diameters the first mode has k a = 0.3.  What Hutchinson's beam leaves
+    # out is of fourth order in k a and grows with the radius of gyration, most for the thin tube,
+    # whose ends warp freely.  Cowper's coefficient differs by 4 to 6 %, which moves the frequency
+    # by 7e-4 to 2e-3.
     a, length = 0.05, 0.8
     b = ratio * a
     r2, r4 = ratio**2, ratio**4
@@ -224,8 +235,8 @@ def test_hutchinson_coefficient_fits_the_exact_solid(ratio, limit):
     assert gap < limit
     cowper = 6 * (1 + NU) * (1 + r2) ** 2 / ((7 + 6 * NU) * (1 + r2) ** 2 + (20 + 12 * NU) * r2)
     assert abs(transfer_frequency(length, a, b, cowper) / found - 1) > 5 * gap
-    # ... and the library's own coefficient is this one: the same beam, built, lands where the reference does.
-    # 300 elements leave a discretisation error of 1e-5.
+    # ... and the library's own coefficient is this one: the same beam, built, lands where the
+    # reference does. 300 elements leave a discretisation error of 1e-5.
     beam = (
         sg.modes(sg.build(rod(2 * b, length, a), "timoshenko", elements=300), n=6)
         .named("bending 1")
@@ -243,7 +254,8 @@ def test_order_and_grading_converge_from_above():
         ).stiffness[2, 2]
         for p in (1, 2, 4)
     ]
-    # Richer spaces on the same mesh: the averaged port makes the body softer, and the sequence contracts (about 20 each).
+    # Richer spaces on the same mesh: the averaged port makes the body softer, and the sequence
+    # contracts (about 20 each).
     assert stiffness[0] > stiffness[1] > stiffness[2] > 4.70996e9 * (1 - 1e-5)
     assert stiffness[2] == pytest.approx(
         4.70996e9, rel=2e-4

@@ -102,7 +102,8 @@ def test_volume_is_exact_segment_by_segment(case):
     _, volume, _ = integrals(mesh)
     assert volume.min() > 0
     for k, s in enumerate(scene.segments):
-        # circles of piecewise quadratics with the area of the true circle, cones straight: rounding (measured 2e-14)
+        # circles of piecewise quadratics with the area of the true circle, cones straight: rounding
+        # (measured 2e-14)
         assert volume[segment == k].sum() == pytest.approx(np.pi * frustum(s, 2), rel=1e-12)
 
 
@@ -118,13 +119,16 @@ def test_polar_inertia_closes_with_the_eighth_power_of_the_cells_around(case):
 
 def test_conforming(case):
     scene, around, mesh, _ = case
-    # facets belong to one or two elements by the data structure; a mesh that is torn has nodes twice in one place
+    # facets belong to one or two elements by the data structure; a mesh that is torn has nodes
+    # twice in one place
     scale = min(min(s.outer0, s.outer1) for s in scene.segments)
     # the thinnest layers are some per cent of the smallest radius
     assert not cKDTree(mesh.doflocs.T).query_pairs(1e-6 * scale)
-    # ... and facets inside that see only one element: then the surface would be larger than the shaft's
+    # ... and facets inside that see only one element: then the surface would be larger than the
+    # shaft's
     surface = facet_area(mesh, mesh.boundary_facets()).sum()
-    # flat facets make polygons of circles: their area is 2 pi^2 / 3 / around^2 too small, their circumference less so
+    # flat facets make polygons of circles: their area is 2 pi^2 / 3 / around^2 too small, their
+    # circumference less so
     assert surface == pytest.approx(skin(scene), rel=7 / around**2)
     inside = np.sum(mesh.f2t[1] != -1)
     assert 2 * inside + len(mesh.boundary_facets()) == 6 * mesh.t.shape[1]
@@ -132,8 +136,8 @@ def test_conforming(case):
 
 def facet_area(mesh, facets):
     a, b, c, d = np.moveaxis(mesh.p[:, mesh.facets[:, facets]], 1, 0)
-    # corners of facets are sorted, so any two may be opposite: the area of the hull of four points in a plane is the largest of
-    # the three quadrilaterals' cross products
+    # corners of facets are sorted, so any two may be opposite: the area of the hull of four points
+    # in a plane is the largest of the three quadrilaterals' cross products
     pairs = (
         np.cross(c - a, d - b, axis=0),
         np.cross(b - a, d - c, axis=0),
@@ -157,7 +161,8 @@ def skin(scene):
 def test_all_nodes_lie_inside_the_inflated_shaft_and_surface_nodes_on_it(case):
     scene, around, mesh, segment = case
     half = np.pi / around
-    # the quadratic through the ends and the middle of an arc encloses sin(h) (4 - cos(h)) / 3 per h of the unit circle's sector
+    # the quadratic through the ends and the middle of an arc encloses sin(h) (4 - cos(h)) / 3 per h
+    # of the unit circle's sector
     inflate = np.sqrt(half / (np.sin(half) * (4 - np.cos(half)) / 3))
     r, y = np.hypot(mesh.doflocs[0], mesh.doflocs[2]), mesh.doflocs[1]
     for s in scene.segments:

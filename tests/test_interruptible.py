@@ -101,7 +101,8 @@ def test_an_interrupted_call_is_left_to_itself_and_the_next_one_works():
         begun.wait()
         os.kill(os.getpid(), signal.SIGINT)
 
-    # Only threads that are there when a call is abandoned are slowed down, and this process is to stay as it is.
+    # Only threads that are there when a call is abandoned are slowed down, and this process is to
+    # stay as it is.
     presser = threading.Thread(target=press)
     presser.start()
     with pytest.MonkeyPatch.context() as patch, pytest.raises(KeyboardInterrupt):
@@ -192,7 +193,8 @@ def test_what_a_thread_made_is_freed_by_that_thread(made_by_worker):
 
 @pytest.mark.skipif(not sys.platform.startswith("linux"), reason="reads /proc")
 def test_factors_of_superlu_are_given_back():
-    # SciPy frees what SuperLU took only in the thread that took it: 40 factors of 3 MB each would stay.
+    # SciPy frees what SuperLU took only in the thread that took it: 40 factors of 3 MB each would
+    # stay.
     code = """
 import gc, re
 import numpy as np, scipy.sparse as sp

@@ -1,7 +1,8 @@
-"""Exact beam bending against classical frequency equations, the thesis's own determinant, and the finite elements.
+"""Exact beam bending against classical frequency equations, the thesis's own determinant, and the
+finite elements.
 
-Where the shaft has E I = m = L = 1, ``(k L)^2`` is the circular frequency. Frequency equations are divided by cosh, so that
-the references themselves do not overflow.
+Where the shaft has E I = m = L = 1, ``(k L)^2`` is the circular frequency. Frequency equations are
+divided by cosh, so that the references themselves do not overflow.
 """
 
 from pathlib import Path
@@ -91,7 +92,8 @@ def test_all_modes_up_to_kl_200():
         0 < np.diff(modes.y).min() and np.diff(modes.y).max() * 63 * np.pi < 2 + 1e-9
     )  # no piece has clamped roots of its own
     np.testing.assert_allclose(kl(modes), np.pi * np.arange(1, 64), rtol=1e-13)  # 1e-15 was seen
-    # sin(n pi y) with unit modal mass; the shape inherits the error of the root times n pi, below 1e-12.
+    # sin(n pi y) with unit modal mass; the shape inherits the error of the root times n pi, below
+    # 1e-12.
     y = np.linspace(0, 1, 777)
     for n in (1, 20, 63):
         z, right = modes.shape(n - 1, y)[0], np.sqrt(2) * np.sin(n * np.pi * y)
@@ -108,12 +110,15 @@ def test_limits_of_n_and_frequency():
 # ------------------------------------------------------------------------------------------- the thesis's case
 @pytest.mark.parametrize("mass, inertia", [(0.0, 0.0), (0.7, 0.05), (20.0, 3.0)])
 def test_overhung_shaft_of_the_thesis(mass, inertia):
-    """Two simple supports, one lumped mass and inertia at the overhung end, by initial parameters in plain S, T, U, V."""
+    """Two simple supports, one lumped mass and inertia at the overhung end, by initial parameters
+    in plain S, T, U, V.
+    """
     c, b = 0.4, 1.0  # overhang, distance of the supports
 
     def determinant(k):
-        # Unknown z and phi at the overhung end and the two reactions. At that end M = -J w^2 phi and M' = +M w^2 z
-        # (E I = m = 1, w^2 = k^4); a reaction r at the first support adds r to M'.
+        # Unknown z and phi at the overhung end and the two reactions. At that end M = -J w^2 phi
+        # and M' = +M w^2 z (E I = m = 1, w^2 = k^4); a reaction r at the first support adds r to
+        # M'.
         s, t, u, v = krylov_duncan(k * c)
         s2, t2, u2, v2 = krylov_duncan(k * (c + b))
         s3, t3, _, v3 = krylov_duncan(k * b)
@@ -138,7 +143,8 @@ def test_overhung_shaft_of_the_thesis(mass, inertia):
     ][:4]
     end = Station(0.0, mass=mass, inertia=inertia)
     modes = krylov([Span(c + b, 1.0, 1.0)], [held(c, STIFF), held(c + b, STIFF), end], 4)
-    # At the fourth root k L is near 12: the plain determinant is good to eps exp(12) / 12, about 3e-12.
+    # At the fourth root k L is near 12: the plain determinant is good to eps exp(12) / 12, about
+    # 3e-12.
     np.testing.assert_allclose(kl(modes), found, rtol=1e-9)
     assert (modes.lumped > 1e-3).any() == (mass > 0)
 
@@ -184,7 +190,8 @@ def test_splitting_changes_nothing():
 
 
 def test_a_very_short_span_costs_no_digits():
-    # The dynamic stiffness of the short pieces is 12 E I / l^3 = 1e19: assembled, it would leave no digit of the first mode.
+    # The dynamic stiffness of the short pieces is 12 E I / l^3 = 1e19: assembled, it would leave no
+    # digit of the first mode.
     modes = krylov([Span(1e-6, 1, 1), Span(1 - 2e-6, 1, 1), Span(1e-6, 1, 1)], [], 6)
     np.testing.assert_allclose(kl(modes)[2:], CLAMPED[:4], rtol=1e-12)
 
@@ -211,8 +218,8 @@ def test_frequencies_rise_with_the_spring_from_nothing_to_a_clamp():
         assert np.all(now >= before * (1 - 1e-13))  # rounding of a root
         before = now
         first.append(now[0])
-    # A soft spring bears nearly rigid motion: energy of the one motion that leaves the other spring alone, z = 1 - y,
-    # with the modal mass 1/3. Weaker by 1e10 than the other, so exact to 1e-9.
+    # A soft spring bears nearly rigid motion: energy of the one motion that leaves the other spring
+    # alone, z = 1 - y, with the modal mass 1/3. Weaker by 1e10 than the other, so exact to 1e-9.
     np.testing.assert_allclose((2 * np.pi * first[0]) ** 2, 1e-10 * 0.7**2 * 3, rtol=1e-9)
     limit = krylov([UNIT], [held(0.3, 1e24), held(1, 5.0)], 6).frequency_hz
     np.testing.assert_allclose(before, limit, rtol=1e-12)
@@ -220,7 +227,8 @@ def test_frequencies_rise_with_the_spring_from_nothing_to_a_clamp():
 
 @pytest.mark.parametrize("y", [0.0, 0.3, 0.5])
 def test_a_clamp_across_a_soft_spring_keeps_the_soft_one(y):
-    # A rigid rod on 1e-8: pinned, it swings about y; guided, it slides; the elastic share is of the order of 1e-8.
+    # A rigid rod on 1e-8: pinned, it swings about y; guided, it slides; the elastic share is of the
+    # order of 1e-8.
     soft = 1e-8
     for spring, inertia in (
         ([[STIFF, 0], [0, soft]], ((1 - y) ** 3 + y**3) / 3),
@@ -233,7 +241,8 @@ def test_a_clamp_across_a_soft_spring_keeps_the_soft_one(y):
 
 
 def test_a_clamp_against_tilt_in_mid_span():
-    # Even modes never tilt there; odd ones become two cantilevers of half the length. The soft spring shifts them by 1e-10.
+    # Even modes never tilt there; odd ones become two cantilevers of half the length. The soft
+    # spring shifts them by 1e-10.
     modes = krylov([UNIT], [held(0.5, 1e-8, STIFF)], 6)
     reference = np.sort(np.concatenate([CLAMPED[0:4:2], 2 * CANTILEVER[:3]]))
     np.testing.assert_allclose(kl(modes)[1:], reference, rtol=1e-9)
@@ -252,7 +261,8 @@ def test_stations_at_one_place_add_up():
 
 @pytest.mark.parametrize("reach", [0.1, 0.25, 0.3, 0.7, -0.15, 3.0])
 def test_one_coupled_spring_leaves_one_rigid_motion(reach):
-    # A point spring at the end of a stiff arm: rank one, although rounded, and rotation about that point is free.
+    # A point spring at the end of a stiff arm: rank one, although rounded, and rotation about that
+    # point is free.
     arm = np.array([1.0, reach])
     modes = krylov([UNIT], [Station(0.2, 1e5 * np.outer(arm, arm))], 3)
     assert modes.rigid == 1 and modes.frequency_hz[1] > 0 and counted(modes)
@@ -260,7 +270,8 @@ def test_one_coupled_spring_leaves_one_rigid_motion(reach):
     np.testing.assert_allclose(z, phi * (np.array([0.0, 0.4, 1.0]) - 0.2 - reach), atol=1e-10)
     # Rounding of a spring of 1e5 acting on motions of order one.
     np.testing.assert_allclose([m, q], 0, atol=1e-9)
-    # A second one whose arm ends at the same point leaves that rotation free, one that ends elsewhere does not.
+    # A second one whose arm ends at the same point leaves that rotation free, one that ends
+    # elsewhere does not.
     other = np.array([1.0, reach - 0.4])
     assert (
         krylov(
@@ -281,7 +292,8 @@ def test_modes_that_stand_still_at_every_support():
     modes = krylov([Span(3.0, 1.0, 1.0)], [held(y, STIFF) for y in range(4)], 9)
     assert counted(modes)
     np.testing.assert_allclose(kl(modes)[[0, 3, 6]], np.pi * np.arange(1, 4), rtol=1e-12)
-    # Clamped spans that tilt nowhere at the supports either appear only among clamped ones; each three times.
+    # Clamped spans that tilt nowhere at the supports either appear only among clamped ones; each
+    # three times.
     walls = krylov([Span(1.0, 1.0, 1.0)] * 3, [held(y, STIFF, STIFF) for y in range(4)], 9)
     np.testing.assert_allclose(kl(walls), np.repeat(CLAMPED[:3], 3), rtol=1e-12)
     np.testing.assert_array_equal(walls.counts, np.repeat([[0, 3], [3, 6], [6, 9]], 3, axis=0))
@@ -293,7 +305,8 @@ def test_modes_that_stand_still_at_every_support():
 
 @pytest.mark.parametrize("tilt", [1e5, 1e8, 1e11])
 def test_nearly_equal_frequencies_keep_orthogonal_shapes(tilt):
-    # Three spans that feel each other through nearly rigid walls: gaps of about 1 / tilt, relatively.
+    # Three spans that feel each other through nearly rigid walls: gaps of about 1 / tilt,
+    # relatively.
     modes = krylov(
         [Span(1.0, 1.0, 1.0)] * 3,
         [held(y, STIFF, STIFF if y in (0, 3) else tilt) for y in range(4)],
@@ -303,13 +316,15 @@ def test_nearly_equal_frequencies_keep_orthogonal_shapes(tilt):
     y, w = points(modes)
     z = np.array([modes.shape(k, y)[0] for k in range(6)])
     np.testing.assert_allclose((z * w) @ z.T, np.eye(6), atol=1e-10)
-    # A clamped beam of unit modal mass pulls at its wall with the moment 2 (k L)^2, 123 in the second mode; two may pull at one.
+    # A clamped beam of unit modal mass pulls at its wall with the moment 2 (k L)^2, 123 in the
+    # second mode; two may pull at one.
     slope = np.array([modes.shape(k, 1.0)[1] for k in range(6)])
     assert np.abs(slope).max() < 250 / tilt
 
 
 def test_a_mode_that_lives_far_from_one_end():
-    # Two clamped beams, lengths apart by 1 part in 3: each mode must be zero in the other, whichever side it is on.
+    # Two clamped beams, lengths apart by 1 part in 3: each mode must be zero in the other,
+    # whichever side it is on.
     modes = krylov(
         [Span(1.0, 1, 1), Span(1.3, 1, 1)], [held(y, STIFF, STIFF) for y in (0, 1, 2.3)], 4
     )
@@ -338,7 +353,8 @@ def test_orthogonality_and_energy_with_lumped_masses():
         mass += x @ np.diag([station.mass, station.inertia]) @ x.T
         energy += x @ station.spring @ x.T
     np.testing.assert_allclose(mass, np.eye(8), atol=1e-10)  # quadrature is exact to rounding
-    # Rayleigh: twice the potential energy of a mode of unit modal mass is w^2, and modes do not share it.
+    # Rayleigh: twice the potential energy of a mode of unit modal mass is w^2, and modes do not
+    # share it.
     w2 = (2 * np.pi * modes.frequency_hz) ** 2
     np.testing.assert_allclose(energy / np.sqrt(np.outer(w2, w2)), np.eye(8), atol=1e-10)
     np.testing.assert_allclose(modes.distributed + modes.lumped, 1, rtol=1e-12)
@@ -362,7 +378,8 @@ def test_derivatives_and_jumps(k):
         z, phi, m, q = modes.shape(k, station.y)
         near = modes.shape(k, station.y - 1e-12) if station.y else (z, phi, 0.0, 0.0)
         force = (station.spring - w2 * np.diag([station.mass, station.inertia])) @ [z, phi]
-        # The limit from the left is taken 1e-12 short of the station; forces change by about k times that.
+        # The limit from the left is taken 1e-12 short of the station; forces change by about k
+        # times that.
         np.testing.assert_allclose(
             [q - near[3], m - near[2]], force, atol=1e-8 * np.abs([q, m, *force]).max()
         )
@@ -373,7 +390,9 @@ def test_derivatives_and_jumps(k):
 
 # ------------------------------------------------------------------------------------------- scenes
 def bending_z(scene, **options):
-    """The finite elements' bending frequencies; both planes are alike here, and a pair is listed once."""
+    """The finite elements' bending frequencies; both planes are alike here, and a pair is listed
+    once.
+    """
     found = sg.modes(sg.build(scene, "euler", **options), scene, n=14)
     pairs = [m for m in found.modes if m.family == "bending"]
     assert all(m.multiplicity == 2 for m in pairs)  # or the comparison would mean nothing
@@ -383,8 +402,9 @@ def bending_z(scene, **options):
 def test_stepped_shaft_against_elements():
     scene = sg.load(GEOMETRY / "shaft_stepped.toml").with_attachment("section")
     modes = krylov(*from_scene(scene), 4)
-    # Few elements err by (k l)^4 / 720, 2e-7 at the fourth mode.  Many err by rounding: their stiffness grows with the cube
-    # of their number against the lowest eigenvalue (1e-6 at 200 and 6e-6 at 300 were seen).
+    # Few elements err by (k l)^4 / 720, 2e-7 at the fourth mode.  Many err by rounding: their
+    # stiffness grows with the cube of their number against the lowest eigenvalue (1e-6 at 200 and
+    # 6e-6 at 300 were seen).
     np.testing.assert_allclose(modes.frequency_hz, bending_z(scene, elements=60)[:4], rtol=1e-6)
     np.testing.assert_allclose(modes.frequency_hz, bending_z(scene, elements=200)[:4], rtol=1e-5)
 
@@ -405,7 +425,8 @@ def test_cones_converge_to_tapered_elements(name):
     error = np.array(
         [krylov(*from_scene(scene, pieces=p), 3).frequency_hz / reference - 1 for p in (4, 8, 16)]
     )
-    # Means over a piece are of second order; Richardson of the last two leaves the fourth order and the elements' own error.
+    # Means over a piece are of second order; Richardson of the last two leaves the fourth order and
+    # the elements' own error.
     assert np.all(np.abs(error[0] / error[1] - 4) < 0.2), error
     assert np.all(np.abs(error[2] - (error[1] - error[2]) / 3) < 3e-6), error
 

@@ -1,4 +1,6 @@
-"""Block Lanczos against dense eigenvalues: clusters, exhausted starts, tiny problems, honest failure."""
+"""Block Lanczos against dense eigenvalues: clusters, exhausted starts, tiny problems, honest
+failure.
+"""
 
 import numpy as np
 import pytest
@@ -8,7 +10,9 @@ from solidgear.solve.lanczos import block_lanczos
 
 
 def problem(theta, seed=0):
-    """Operator ``A^-1 M`` with given eigenvalues and a mass that is not the identity: (operator, mass, M, eigenvectors)."""
+    """Operator ``A^-1 M`` with given eigenvalues and a mass that is not the identity: (operator,
+    mass, M, eigenvectors).
+    """
     n = len(theta)
     rng = np.random.default_rng(seed)
     q, _ = np.linalg.qr(rng.standard_normal((n, n)))
@@ -46,7 +50,9 @@ def test_residual_meets_the_tolerance_asked_for():
 
 
 def test_a_start_inside_an_invariant_space_is_left():
-    """Ten exact eigenvectors as a start see nothing else; the search goes on with fresh directions and finds the largest."""
+    """Ten exact eigenvectors as a start see nothing else; the search goes on with fresh directions
+    and finds the largest.
+    """
     operator, mass, _, u = problem(SPECTRUM)
     found = block_lanczos(operator, mass, u[:, 5:9].copy(), 7)
     assert found.converged
@@ -74,11 +80,14 @@ def test_says_when_it_did_not_converge():
 
 
 def test_clusters_wider_than_the_block():
-    """Six equal eigenvalues and a block of two: exact arithmetic would show two of them, the restart finds the rest."""
+    """Six equal eigenvalues and a block of two: exact arithmetic would show two of them, the
+    restart finds the rest.
+    """
     theta = np.concatenate([np.full(6, 5.0), np.linspace(1.0, 0.01, 40)])
     operator, mass, _, _ = problem(theta)
     found = block_lanczos(operator, mass, start(46, 2), 6, tolerance=1e-8)
-    # Nothing in a Krylov space can promise this; the inertia count is there for it. What must hold: values are eigenvalues.
+    # Nothing in a Krylov space can promise this; the inertia count is there for it. What must hold:
+    # values are eigenvalues.
     nearest = np.abs(found.theta[:, None] - theta).min(axis=1)
     assert nearest.max() < 1e-7
     wide = block_lanczos(operator, mass, start(46, 8), 6, tolerance=1e-8)

@@ -1,4 +1,6 @@
-"""Mesh lines and the meridian mesh: conforming whatever the shaft looks like, and exact in area and volume."""
+"""Mesh lines and the meridian mesh: conforming whatever the shaft looks like, and exact in area and
+volume.
+"""
 
 from collections import Counter
 from itertools import pairwise
@@ -173,7 +175,8 @@ def test_refinement_multiplies_the_cells(scene, core):
 
 
 def test_a_flange_keeps_its_rings_to_itself():
-    # two flanges of different height on a bar: neither passes its rings on to the other, nor to the bar
+    # two flanges of different height on a bar: neither passes its rings on to the other, nor to the
+    # bar
     apart = layout(
         shaft(
             (0.1, 0.02, 0.02, 0, 0),
@@ -283,7 +286,8 @@ def test_meridian_conforms(scene, refinement):
     flat = meridian(scene, layout(scene, Grading(**PLAN, refinement=refinement)))
     count = edges(flat.cells)
     assert set(count.values()) == {1, 2}
-    # Edges of one cell only are the outline and nothing else: at a hanging node the long edge and its two halves would be counted too.
+    # Edges of one cell only are the outline and nothing else: at a hanging node the long edge and
+    # its two halves would be counted too.
     rim = np.array([sorted(e) for e, n in count.items() if n == 1]).T
     length = np.linalg.norm(np.diff(flat.points[:, rim], axis=1), axis=(0, 1)).sum()
     # sum of a few hundred lengths: rounding
@@ -297,7 +301,8 @@ def test_meridian_conforms(scene, refinement):
 def test_meridian_has_the_area_and_the_volume_of_the_shaft(scene):
     flat = meridian(scene, layout(scene, Grading(**PLAN)))
     area, moment = polygon(*flat.points[:, flat.cells])
-    # numbered inner-low, outer-low, outer-high, inner-high: counter-clockwise in (r, y), none folded
+    # numbered inner-low, outer-low, outer-high, inner-high: counter-clockwise in (r, y), none
+    # folded
     assert area.min() > 0
     for k, s in enumerate(scene.segments):
         mine = flat.segment == k

@@ -1,4 +1,6 @@
-"""The 14-DOF pair against answers one can work out by hand, its invariances, and identification on made-up data."""
+"""The 14-DOF pair against answers one can work out by hand, its invariances, and identification on
+made-up data.
+"""
 
 import re
 from dataclasses import fields, replace
@@ -26,7 +28,8 @@ from solidgear.frames import move_stiffness
 
 ROOT = Path(__file__).resolve().parent.parent
 RATIO = 45 / 14
-# Singular values are good to a few roundings of the largest one: 1e4 Hz * 1e-15 against the 16 Hz of the softest mode, times 10.
+# Singular values are good to a few roundings of the largest one: 1e4 Hz * 1e-15 against the 16 Hz
+# of the softest mode, times 10.
 CLOSE = 1e-11
 AXIAL = MeshVector([0, 1, 0], [0, 0, 0])  # line of action along both shafts: no torque, no tilt
 NOTHING = np.zeros((6, 6))
@@ -94,8 +97,9 @@ def test_two_masses_joined_by_the_mesh_spring(pair):
 
 
 def test_four_inertia_chain(pair):
-    # Masses too heavy to be moved by the mesh leave engine - pinion - gear - load. A symmetric chain falls apart: one
-    # shape with both halves in step with the teeth, where the mesh is not strained, and two against each other.
+    # Masses too heavy to be moved by the mesh leave engine - pinion - gear - load. A symmetric
+    # chain falls apart: one shape with both halves in step with the teeth, where the mesh is not
+    # strained, and two against each other.
     k, mesh, lever, j1, j2 = 2e4, 3e8, 0.05, 2.0, 0.1
     heavy = np.diag([1e25, 1e25, 1e25, 1e25, j2, 1e25])
     tooth_p, tooth_g = MeshVector([0, 0, 1], [-lever, 0, 0]), MeshVector([0, 0, 1], [lever, 0, 0])
@@ -119,7 +123,8 @@ def test_frequencies_the_mesh_cannot_move(pair):
 
 
 def test_signs_of_the_shaft_stiffness_are_those_of_a_spring_behind_the_lumped_point():
-    # A bearing at y = +L holds the shaft against x and z: seen from the lumped point it is the shifted spring.
+    # A bearing at y = +L holds the shaft against x and z: seen from the lumped point it is the
+    # shifted spring.
     k, length = 3e9, 0.1
     behind = move_stiffness(np.diag([k, 0, k, 0, 0, 0]), (0, -length, 0))
     assert np.allclose(shaft_stiffness(k, 0, k * length**2, -k * length), behind, rtol=1e-14)
@@ -200,7 +205,8 @@ def test_energy_is_that_of_the_springs(pair):
 
 # -- invariances -------------------------------------------------------------------------------------------------------------
 def test_transmission_error_ignores_a_common_rigid_motion(pair):
-    # Pinion and gear carried together, each in its own frame about a common apex, keep their teeth as they were.
+    # Pinion and gear carried together, each in its own frame about a common apex, keep their teeth
+    # as they were.
     n, apex_p, apex_g = (
         pair.pinion_mesh.normal,
         np.array([-0.055, 0.18, 0.0]),
@@ -307,8 +313,8 @@ def test_torsion_springs_give_back_their_frequencies():
 
 
 def test_torsion_springs_agree_with_the_pair_of_a_stiff_mesh(pair):
-    # With a mesh and supports that do not give, the 14-DOF model must come to the same two frequencies; the compliance left over
-    # (1e6 times as stiff) is of that relative size.
+    # With a mesh and supports that do not give, the 14-DOF model must come to the same two
+    # frequencies; the compliance left over (1e6 times as stiff) is of that relative size.
     for k1, k2 in torsion_springs(2.734, 0.0587, 1.92, 5.25, RATIO, 16.3, 47.3):
         springs = {
             name: getattr(pair, name) * 1e6
@@ -331,7 +337,8 @@ def test_identification_recovers_what_made_the_data():
     assert found.agreeing == 4 and not found.on_bounds
     k, m = found.quantities
     assert k.status == m.status == "identified"
-    # Frequencies go as sqrt(k): exactly a half. Central differences with a step of 1e-5 of the range err by about 1e-9.
+    # Frequencies go as sqrt(k): exactly a half. Central differences with a step of 1e-5 of the
+    # range err by about 1e-9.
     assert np.allclose(k.sensitivity, 0.5, rtol=1e-7)
     assert np.allclose(m.sensitivity, [-0.5, -0.5, -0.5 * 7 / 8], rtol=1e-5)
 

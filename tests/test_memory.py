@@ -73,7 +73,8 @@ def test_one_run_shares_the_limit_of_the_user(root, monkeypatch):
     held = iter([100.0, 100.0, 350.0, 80.0])
     monkeypatch.setattr("solidgear.memory.resident_mb", lambda: next(held))
     with one_run():
-        # what has been taken since is no longer free; what was given back does not make more than was allowed
+        # what has been taken since is no longer free; what was given back does not make more than
+        # was allowed
         assert [available_mb(root()) for _ in range(3)] == [500, 250, 500]
     assert available_mb(root()) == 500
 

@@ -56,7 +56,8 @@ def test_a_bulged_hexahedron_has_the_volume_of_its_bulge():
     doflocs = mesh.doflocs.copy()
     x, y, z = mesh.doflocs
     doflocs[0] = x * (1.0 + 0.4 * y * (1.0 - y) * 4.0 * z * (1.0 - z) * 4.0)
-    # int (1 + 0.4 * 4y(1-y) * 4z(1-z)) = 1 + 0.4 * 4/9; the biquadratic bulge is in the element's space, so exact
+    # int (1 + 0.4 * 4y(1-y) * 4z(1-z)) = 1 + 0.4 * 4/9; the biquadratic bulge is in the element's
+    # space, so exact
     assert check_mesh(replace(mesh, doflocs=doflocs)).volume == pytest.approx(
         1.0 + 0.4 * 4.0 / 9.0, rel=1e-13
     )
@@ -67,7 +68,8 @@ def test_the_ratio_is_that_of_a_known_bend():
     doflocs = mesh.doflocs.copy()
     edge = np.flatnonzero((mesh.edges.min(axis=0) == 0) & (mesh.edges.max(axis=0) == 1))[0]
     doflocs[0, mesh.dofs.edge_dofs[0, edge]] += 0.1
-    # x = X + 0.1 * 4 X (1 - X - Y - Z): det J = 1 + 0.4 (1 - 2X - Y - Z), 1.4 at the origin and 0.6 at (1, 0, 0)
+    # x = X + 0.1 * 4 X (1 - X - Y - Z): det J = 1 + 0.4 (1 - 2X - Y - Z), 1.4 at the origin and 0.6
+    # at (1, 0, 0)
     quality = check_mesh(replace(mesh, doflocs=doflocs))
     assert quality.min_ratio == pytest.approx(0.6 / 1.4, rel=1e-12)
     assert quality.max_det_j == pytest.approx(1.4, rel=1e-12)
@@ -79,8 +81,8 @@ def test_inversion_at_a_corner_only_is_seen(kind):
     doflocs = mesh.doflocs.copy()
     edge = mesh.t2e[0, 3]
     a, b = mesh.edges[:, edge]
-    # a mid node at 0.24 of its edge: det J at the near end is 4 * 0.24 - 1 = -0.04 of the straight one,
-    # and positive at every Gauss point
+    # a mid node at 0.24 of its edge: det J at the near end is 4 * 0.24 - 1 = -0.04 of the straight
+    # one, and positive at every Gauss point
     doflocs[:, mesh.dofs.edge_dofs[0, edge]] = 0.76 * doflocs[:, a] + 0.24 * doflocs[:, b]
     bad = replace(mesh, doflocs=doflocs)
     from skfem import Basis
@@ -94,7 +96,9 @@ def test_inversion_at_a_corner_only_is_seen(kind):
 
 
 def pressed(amount):
-    """One triquadratic cube with det J = 1 - amount z (1 - 8 (x - 1/4)^2): least, 1 - amount, at x = 1/4 on its top face."""
+    """One triquadratic cube with det J = 1 - amount z (1 - 8 (x - 1/4)^2): least, 1 - amount, at x
+    = 1/4 on its top face.
+    """
     mesh = MeshHex2.from_mesh(right_handed(MeshHex.init_tensor(*3 * [np.array([0.0, 1.0])])))
     x, y, z = mesh.doflocs
     return replace(
@@ -103,7 +107,9 @@ def pressed(amount):
 
 
 def bent():
-    """One curved tetrahedron with det J = (x - 0.37) (x - 0.48): negative in a slice of it that holds no node."""
+    """One curved tetrahedron with det J = (x - 0.37) (x - 0.48): negative in a slice of it that
+    holds no node.
+    """
     mesh = MeshTet2.from_mesh(MeshTet.init_refdom())
     x, y, z = mesh.doflocs
     return replace(mesh, doflocs=np.array([x**2 / 2 - 0.37 * x, y * (x - 0.48), z]))
@@ -127,7 +133,8 @@ def test_inversion_between_all_samples_is_seen(mesh, name):
 
 @pytest.mark.parametrize("amount", [0.85, 0.9, 0.97])
 def test_the_least_jacobian_is_that_of_the_polynomial(amount):
-    # greatest at x = 1, z = 1; the bound is good to 1e-3 of it where it matters, and no valid element is refused
+    # greatest at x = 1, z = 1; the bound is good to 1e-3 of it where it matters, and no valid
+    # element is refused
     quality = check_mesh(pressed(amount))
     assert quality.max_det_j == pytest.approx(1.0 + 3.5 * amount, rel=1e-12)
     assert quality.min_ratio == pytest.approx((1.0 - amount) / (1.0 + 3.5 * amount), abs=1.5e-3)
@@ -139,7 +146,8 @@ def test_the_volume_of_any_curved_element_is_exact(kind, name):
     from solidgear.fidelity.solid import _cell_rule
 
     mesh = box(kind, 1)
-    # every node moved at random: det J has all the terms it can have, and the rule of the stiffness integrates them exactly
+    # every node moved at random: det J has all the terms it can have, and the rule of the stiffness
+    # integrates them exactly
     bad = replace(
         mesh,
         doflocs=mesh.doflocs + np.random.default_rng(3).uniform(-0.05, 0.05, mesh.doflocs.shape),
@@ -155,7 +163,8 @@ def test_every_piece_of_a_cut_element_is_the_same_polynomial(kind):
     rule = _bernstein(tet, 3 if tet else 5)
     x, y, z = rule.points
     values = (x - 0.3) ** 2 + (y - 0.2) ** 2 + z**2 * x
-    # the mean of Bernstein coefficients is the mean of the polynomial, and the eight pieces share it equally
+    # the mean of Bernstein coefficients is the mean of the polynomial, and the eight pieces share
+    # it equally
     whole = rule.from_values @ values
     pieces = rule.children @ whole
     assert pieces.mean() == pytest.approx(whole.mean(), rel=1e-12)

@@ -1,4 +1,6 @@
-"""Natural frequencies: dense solutions assembled here, systems of one spring and one mass, and the evidence modes carry."""
+"""Natural frequencies: dense solutions assembled here, systems of one spring and one mass, and the
+evidence modes carry.
+"""
 
 from pathlib import Path
 
@@ -34,7 +36,9 @@ def bearing_by_hand(bearing):
 
 
 def dense_system(body, scene):
-    """K + G' Kb G and M of a whole body, all planes together, housing as an extra axial unknown of no mass condensed."""
+    """K + G' Kb G and M of a whole body, all planes together, housing as an extra axial unknown of
+    no mass condensed.
+    """
     k = sla.block_diag(*[b.stiffness.toarray() for b in body.blocks])
     m = sla.block_diag(*[b.mass.toarray() for b in body.blocks])
     count = len(body.ports)
@@ -79,9 +83,10 @@ def test_against_dense_eigenvalues(name, fidelity):
     expected = dense_frequencies(body, scene)
     assert found[0] == 0.0  # nothing holds the shaft about its axis
     assert expected[0] < 1.0  # the dense solver sees rounding noise there, in Hz
-    # Couplings that change eigenvalues by less than 1e-6 are left out (reported bound 5e-8 here), hence frequencies by
-    # less than half of that.  The dense solver adds eps (highest / lowest eigenvalue), half of it in frequency: on the
-    # stubby gear shaft that is 1e-6 with Euler elements, and it splits pairs that are exact.
+    # Couplings that change eigenvalues by less than 1e-6 are left out (reported bound 5e-8 here),
+    # hence frequencies by less than half of that.  The dense solver adds eps (highest / lowest
+    # eigenvalue), half of it in frequency: on the stubby gear shaft that is 1e-6 with Euler
+    # elements, and it splits pairs that are exact.
     noise = np.finfo(float).eps * (expected[-1] / expected[1]) ** 2
     assert noise < 1e-4
     assert found[1:] == pytest.approx(expected[1 : len(found)], rel=1e-7 + noise)
@@ -110,7 +115,8 @@ def test_small_and_large_solvers_agree(name):
 )
 def test_evidence_is_small(overhung, fidelity, options):
     found = sg.modes(sg.build(overhung, fidelity, **options), overhung, n=10)
-    # the solver asks Lanczos for 1e-12; 1e-6 relative in the eigenvalue is what the product promises
+    # the solver asks Lanczos for 1e-12; 1e-6 relative in the eigenvalue is what the product
+    # promises
     assert found.evidence["residual"] < 1e-6
     assert found.evidence["orthogonality"] < 1e-10
     assert found.evidence["rigid_modes"] == 1
@@ -175,13 +181,15 @@ def test_anisotropic_bearings_split_pairs(overhung, factor):
     )  # as above
     low, high = (m.frequency_hz for m in found.modes if m.name in ("bending 1", "bending 2"))
     assert low < high
-    # a softer plane can only be lower: compare with the isotropic pair, which the stiffer plane keeps
+    # a softer plane can only be lower: compare with the isotropic pair, which the stiffer plane
+    # keeps
     pair = sg.modes(body, overhung, n=3).named("bending 1").frequency_hz
     assert high == pytest.approx(pair, rel=1e-6)
 
 
 def test_dropped_couplings_change_less_than_their_bound(overhung):
-    # Couplings ten thousand times the published ones, so that what they do stands clear of rounding.
+    # Couplings ten thousand times the published ones, so that what they do stands clear of
+    # rounding.
     strong = []
     for b in overhung.bearings:
         k = np.array(b.matrix)
@@ -229,7 +237,8 @@ def test_free_cylinder_has_six_rigid_modes(fidelity, options):
     found = sg.modes(sg.build(scene, fidelity, **options), scene, n=4)
     assert found.evidence["rigid_modes"] == 6
     assert [m.frequency_hz for m in found.modes[:6]] == [0.0] * 6
-    # first elastic mode: bending, 4.73^2 / 2 pi sqrt(E I / rho A) / L^2 less some 5 % of shear and rotary inertia at L/D 5
+    # first elastic mode: bending, 4.73^2 / 2 pi sqrt(E I / rho A) / L^2 less some 5 % of shear and
+    # rotary inertia at L/D 5
     euler = 4.730041**2 / (2 * np.pi) * np.sqrt(STEEL.E * 0.03**2 / 4 / STEEL.density) / 0.3**2
     first = found.modes[6]
     assert first.name == "bending 1"
@@ -241,7 +250,8 @@ def test_rigid_torsion_is_exactly_zero(overhung):
     assert found.names[0] == "rigid torsion"
     assert found.frequency_hz[0] == 0.0
     turn = found.modes[0].motions[0]
-    # the same rotation at every station and nothing else; least squares on section motions, rounding only
+    # the same rotation at every station and nothing else; least squares on section motions,
+    # rounding only
     assert np.ptp(turn[:, 4]) < 1e-9 * np.abs(turn[:, 4]).max()
     assert np.abs(np.delete(turn, 4, axis=1)).max() == 0.0
 
@@ -258,7 +268,8 @@ def test_highest_frequency_cuts_the_list(overhung):
 
 def test_count_does_not_tear_pairs(overhung):
     body = sg.build(overhung, "timoshenko")
-    # axial 1, then the pair bending 1: asking for two shapes gives all three, and four gives the second pair whole
+    # axial 1, then the pair bending 1: asking for two shapes gives all three, and four gives the
+    # second pair whole
     assert [(m.name, m.multiplicity) for m in sg.modes(body, overhung, n=2).modes[1:]] == [
         ("axial 1", 1),
         ("bending 1", 2),
@@ -308,8 +319,9 @@ def test_shaft_on_soft_springs_is_a_rigid_mass(fidelity, options):
     scene = on_two_springs(radial, axial)
     found = every_shape(sg.modes(sg.build(scene, fidelity, **options), scene, n=5))
     assert found[0] == 0.0
-    # The shaft's own compliance lowers the frequencies by 1e-6 (1e4 N/m against some 1e9 to 1e10 of a rod on two points);
-    # the solid's O-grid carries the volume of the circle exactly and its inertia to 3e-7.
+    # The shaft's own compliance lowers the frequencies by 1e-6 (1e4 N/m against some 1e9 to 1e10 of
+    # a rod on two points); the solid's O-grid carries the volume of the circle exactly and its
+    # inertia to 3e-7.
     assert found[1:] == pytest.approx(rigid_frequencies(scene, radial, axial), rel=3e-6)
 
 
@@ -318,21 +330,25 @@ def test_near_rigid_shaft_on_stiff_springs(fidelity, options):
     radial, axial = 1e7, 3e7
     scene = on_two_springs(radial, axial, modulus=2e15)
     found = every_shape(sg.modes(sg.build(scene, fidelity, **options), scene, n=5))
-    # 1e4 times steel, some 1e13 to 1e14 N/m, against springs of 1e7 N/m: 1e-7; the shifted solve rounds to 3e-7
+    # 1e4 times steel, some 1e13 to 1e14 N/m, against springs of 1e7 N/m: 1e-7; the shifted solve
+    # rounds to 3e-7
     assert found[1:] == pytest.approx(rigid_frequencies(scene, radial, axial), rel=5e-6)
 
 
 @pytest.mark.parametrize("radial", [1.0, 1e-3])
 @pytest.mark.parametrize("fidelity, options", [("timoshenko", {}), ("harmonic", {"order": 2})])
 def test_very_soft_springs_keep_their_digits(fidelity, options, radial):
-    # elastic compliance is below 1e-9 of the springs', and the mass of both bodies is exact: closed form to 1e-6
+    # elastic compliance is below 1e-9 of the springs', and the mass of both bodies is exact: closed
+    # form to 1e-6
     scene = on_two_springs(radial, 3 * radial)
     found = every_shape(sg.modes(sg.build(scene, fidelity, **options), scene, n=5))
     assert found[1:] == pytest.approx(rigid_frequencies(scene, radial, 3 * radial), rel=1e-6)
 
 
 def test_a_pair_torn_by_the_mesh_is_told(overhung):
-    """Coarse linear tetrahedra: 'bending 2' is the twin of 'bending 1'. Bearings that differ in x and z split pairs for good reason."""
+    """Coarse linear tetrahedra: 'bending 2' is the twin of 'bending 1'. Bearings that differ in x
+    and z split pairs for good reason.
+    """
     coarse = sg.build(overhung, "solid", element="tet4", size=0.04)
     assert sg.modes(coarse, overhung, n=6).evidence["torn_pairs"][0][:2] == (
         "bending 1",
@@ -352,7 +368,9 @@ def test_a_pair_torn_by_the_mesh_is_told(overhung):
 
 # --------------------------------------------------------------------------- springs whose digits are used up
 def on_a_skewed_spring(soft):
-    """A cylinder on a bearing that is stiff in every entry of its matrix and resists one combination of motion and tilt by ``soft`` (N/m) only."""
+    """A cylinder on a bearing that is stiff in every entry of its matrix and resists one
+    combination of motion and tilt by ``soft`` (N/m) only.
+    """
     rod = Segment.cylinder("rod", length=0.3, diameter=0.06)
     stiff, arm = 1e12, 0.05
     couple = np.zeros((6, 6))

@@ -1,4 +1,6 @@
-"""The mutation check of the suite: its list still fits the source (fast), and every mutation is caught (slow)."""
+"""The mutation check of the suite: its list still fits the source (fast), and every mutation is
+caught (slow).
+"""
 
 from pathlib import Path
 

@@ -1,4 +1,6 @@
-"""Runs that end early, folders that are shared or used again, machines that lack something: a sentence, the right code, whole files."""
+"""Runs that end early, folders that are shared or used again, machines that lack something: a
+sentence, the right code, whole files.
+"""
 
 import json
 import os
@@ -23,7 +25,8 @@ posix = pytest.mark.skipif(os.name != "posix", reason="signals and locks of POSI
 # Long enough for a machine that does ten other things; what is waited for takes seconds.
 PATIENCE = 120
 
-# A factorisation of a solid that takes many minutes of C code, which is what Ctrl-C used to wait for.
+# A factorisation of a solid that takes many minutes of C code, which is what Ctrl-C used to wait
+# for.
 ENDLESS = """
 import hashlib, os
 from solidgear.cli import main
@@ -148,7 +151,9 @@ def test_ctrl_c_while_modules_are_read():
 @posix
 @pytest.mark.parametrize("at", range(1, 6))
 def test_killed_while_files_are_written(at, tmp_path):
-    """Before each file takes its place in turn: all others are whole, and no report or shape stands beside numbers that are not its own."""
+    """Before each file takes its place in turn: all others are whole, and no report or shape stands
+    beside numbers that are not its own.
+    """
     before = compare(OTHER, ("euler", "timoshenko"))
     before.write_report(tmp_path, renders=False)
     old = {p.name: p.read_bytes() for p in tmp_path.iterdir()}

@@ -140,7 +140,8 @@ def test_a_single_name_or_number_is_a_list_of_one():
 
 
 def test_the_thinnest_layer_still_has_digits():
-    # the limit was read from residuals that rise with ever thinner layers; just inside it the modes have three digits to spare
+    # the limit was read from residuals that rise with ever thinner layers; just inside it the modes
+    # have three digits to spare
     scene = sg.load(Path(__file__).parents[1] / "geometry" / "pinion_overhung.toml")
     body = sg.build(scene, "harmonic", order=3, ratio=0.1, layers=6)
     assert 0.1**6 == pytest.approx(THINNEST_LAYER)

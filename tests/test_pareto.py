@@ -1,4 +1,6 @@
-"""Error against cost: the front, the floor under it, and a race that nothing but its own reference can stop."""
+"""Error against cost: the front, the floor under it, and a race that nothing but its own reference
+can stop.
+"""
 
 from __future__ import annotations
 
@@ -64,7 +66,8 @@ def made(points, band=1e-4, **more):
 def test_front_of_hand_data():
     cost = [1.0, 2.0, 2.0, 3.0, 4.0, 5.0]
     error = [1e-1, 1e-2, 2e-2, 5e-2, 1e-3, 1e-3]
-    # the third costs as much as the second and errs more; the fourth is beaten in both; the sixth errs as much as the fifth and costs more
+    # the third costs as much as the second and errs more; the fourth is beaten in both; the sixth
+    # errs as much as the fifth and costs more
     assert front(cost, error) == [0, 1, 4]
 
 
@@ -153,7 +156,9 @@ def test_plan_has_every_family_uniform_and_graded_level_by_level(scene, full):
 
 
 def test_uniform_means_no_grading(scene):
-    """Cells next to a shoulder are as large as the others, to the rounding of whole numbers of cells."""
+    """Cells next to a shoulder are as large as the others, to the rounding of whole numbers of
+    cells.
+    """
     for row in plan(scene):
         if row.level > 1 or row.model not in ("harmonic", "solid") or row.family == "tetrahedra":
             continue
@@ -291,7 +296,8 @@ def test_budget_leaves_out_levels_that_would_not_fit_with_all_their_runs(scene, 
     )
     found = race(scene, tagged("a1", "b1", "a2", "b2", "a3", "b3"), runs=5, budget=60.0)
     status = {r.options["tag"]: r.status for r in found.rows}
-    # a3 is guessed at 16 s from the growth of a1 to a2: three runs of it and what is owed to the others are above 60 s
+    # a3 is guessed at 16 s from the growth of a1 to a2: three runs of it and what is owed to the
+    # others are above 60 s
     assert status == {"a1": "ok", "b1": "ok", "a2": "ok", "b2": "ok", "a3": "left out", "b3": "ok"}
     assert "60 s" in next(r.reason for r in found.rows if r.options["tag"] == "a3")
     assert "a3" not in stage.calls
@@ -392,7 +398,9 @@ def test_a_free_shaft_is_charted_by_its_frequency_alone():
 
 
 def test_the_band_of_the_reference_holds_its_error(scene, monkeypatch):
-    """Against a solid with further layers and a higher order: a band that did not would be no floor."""
+    """Against a solid with further layers and a higher order: a band that did not would be no
+    floor.
+    """
     monkeypatch.setattr(pareto, "LIKE_FOR_LIKE", COARSE)
     record, _ = pareto._reference(
         scene, {"order": 4, "layers": 1, "edge_layers": 1}, 10, lambda _: None

@@ -1,4 +1,6 @@
-"""Peers of the race in validation/: what CalculiX is told is our problem, what it prints is read right, failures stay failures."""
+"""Peers of the race in validation/: what CalculiX is told is our problem, what it prints is read
+right, failures stay failures.
+"""
 
 import sys
 from pathlib import Path
@@ -100,7 +102,8 @@ class Deck:
 
 
 def test_middle_nodes_lie_between_their_corners(case):
-    # The classic fault of written decks: two edge nodes swapped. An element is then wrong by its own length, not by its curvature.
+    # The classic fault of written decks: two edge nodes swapped. An element is then wrong by its
+    # own length, not by its curvature.
     *_, kind, deck = case
     assert deck.element
     for nodes in deck.element.values():
@@ -124,7 +127,8 @@ def test_no_field_is_longer_than_calculix_reads(case):
 
 
 def test_springs_store_the_energy_of_the_bearings_in_a_rigid_motion(case):
-    # A rigid motion must satisfy every equation of a seat, and what the springs then hold must be d' K d of the bearing's 6x6.
+    # A rigid motion must satisfy every equation of a seat, and what the springs then hold must be
+    # d' K d of the bearing's 6x6.
     scene, _, problem, _, deck = case
     d, th = np.array([1e-6, -2e-6, 3e-6]), np.array([2e-5, 1e-5, -3e-5])
     u = {i: d + np.cross(th, at) for i, at in deck.node.items()}

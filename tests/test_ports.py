@@ -1,4 +1,6 @@
-"""Ports: rigid motions pass through them exactly, and the averaged seat is the least-squares fit it says it is."""
+"""Ports: rigid motions pass through them exactly, and the averaged seat is the least-squares fit it
+says it is.
+"""
 
 from pathlib import Path
 
@@ -20,7 +22,9 @@ OPTIONS = {
 
 
 def rigid_motion_at(y):
-    """(6, 6) motion at y on the axis for unit rigid motions about the origin: translation plus th x r."""
+    """(6, 6) motion at y on the axis for unit rigid motions about the origin: translation plus th x
+    r.
+    """
     out = np.eye(6)
     for k in range(3):
         out[:3, 3 + k] = np.cross(np.eye(3)[k], [0.0, y, 0.0])
@@ -67,7 +71,8 @@ WARP = (RADIUS**2 / 2) / (WIDTH**2 / 12 + RADIUS**2 / 2)
 def test_averaged_seat_of_the_harmonic_solid():
     body = sg.build(rod("average"), "harmonic", order=2, layers=1)
     block = body.blocks[0]
-    # the unknowns' own places: lateral unknowns move with a translation, axial ones with -r under a tilt
+    # the unknowns' own places: lateral unknowns move with a translation, axial ones with -r under a
+    # tilt
     lateral = block.rigid[:, 0]
     axial = np.where(lateral == 0.0, block.rigid[:, 1], 0.0)
     bulge = block.ports @ (lateral * (block.y - MIDDLE) ** 2)
@@ -86,14 +91,16 @@ def test_averaged_seat_of_the_solid(element):
     lift[:, 2] = (y - MIDDLE) ** 2
     stretch[:, 1] = -z
     bulge, warp = ports @ lift.ravel(), ports @ stretch.ravel()
-    # eight quadratic arcs carry the circle's area; z^2 over its arc is right to a few 1e-4 of itself
+    # eight quadratic arcs carry the circle's area; z^2 over its arc is right to a few 1e-4 of
+    # itself
     assert bulge == pytest.approx([0, 0, BULGE, 0, 0, 0], abs=1e-12)
     assert warp == pytest.approx([0, 0, 0, WARP, 0, 0], abs=5e-4)
     assert abs(warp[3] - 1) > 0.1  # far from a rigid tilt, so the fit has something to decide
 
 
 def test_section_is_the_mean_of_the_cross_section():
-    # over a disc, u_y = -z is a tilt of the section by exactly one and u_z = z^2 is a mean of r^2 / 4
+    # over a disc, u_y = -z is a tilt of the section by exactly one and u_z = z^2 is a mean of r^2 /
+    # 4
     body = sg.build(rod("section"), "solid", element="hex27", around=8, layers=0)
     x, y, z = body.geometry.nodes
     ports = body.blocks[0].ports

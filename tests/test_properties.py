@@ -1,7 +1,9 @@
-"""What must hold for any shaft on any bearings, whatever the numbers: bounds, orders and symmetries of elasticity.
+"""What must hold for any shaft on any bearings, whatever the numbers: bounds, orders and symmetries
+of elasticity.
 
-Every property is stated once, on a scene and a way to build its body, and tried on random scenes: many beams, some harmonic solids, on request 3D solids.
-No reference value is used; what is compared are two results of the program that theory ties to each other.
+Every property is stated once, on a scene and a way to build its body, and tried on random scenes:
+many beams, some harmonic solids, on request 3D solids. No reference value is used; what is compared
+are two results of the program that theory ties to each other.
 """
 
 import numpy as np
@@ -18,7 +20,8 @@ from solidgear.frames import rotation
 from solidgear.solve.statics import condense, flexibility
 from solidgear.solve.supported import Supported
 
-# the same examples every time; a failing one is shown as found, since making it smaller takes minutes
+# the same examples every time; a failing one is shown as found, since making it smaller takes
+# minutes
 settings.register_profile(
     "properties",
     derandomize=True,
@@ -51,7 +54,8 @@ theories = st.sampled_from(("euler", "timoshenko"))
 
 
 def on_all_models(kind, **more):
-    """One property on beams, harmonic solids and (slow) 3D solids: registers the tests, named after it.
+    """One property on beams, harmonic solids and (slow) 3D solids: registers the tests, named after
+    it.
 
     ``kind`` restricts the scenes, ``more`` are strategies of further arguments of the property.
     """
@@ -89,7 +93,9 @@ def frequencies(body, supports, n=COUNT):
 
 
 def told(body):
-    """A pair is told as its mean: members may be off that by the tolerance within which the body takes twins for one."""
+    """A pair is told as its mean: members may be off that by the tolerance within which the body
+    takes twins for one.
+    """
     return RTOL + body.mesh.get("pair_tolerance", 0.0)
 
 
@@ -100,7 +106,9 @@ def both(a, b):
 
 
 def floor(body):
-    """Hz^2 below which a squared frequency is rounding: 1e-9 of where the elastic spectrum begins (1e-12 of its shift times a condition of 1e6)."""
+    """Hz^2 below which a squared frequency is rounding: 1e-9 of where the elastic spectrum begins
+    (1e-12 of its shift times a condition of 1e6).
+    """
     return 1e-9 * body.scale / (2 * np.pi) ** 2
 
 
@@ -117,7 +125,9 @@ def same(a, b, noise, rtol):
 
 
 def sizes(k):
-    """(6,) scale of every component of a 6x6; what is 1e-9 of its kind is rounding of a free motion and gets no scale of its own."""
+    """(6,) scale of every component of a 6x6; what is 1e-9 of its kind is rounding of a free motion
+    and gets no scale of its own.
+    """
     diagonal = np.diag(k)
     push, tilt = diagonal[:3].max(), diagonal[3:].max()
     lever = 0.1  # m, of the order of these shafts: what a tilt stiffness resists as a translation
@@ -142,8 +152,9 @@ def at_port(body, supports):
     return condense(body, supports, "port")
 
 
-# Relative rounding. In frequency: a factor of K + sigma M has a condition number of 1e8 here (highest over lowest of a beam or of a
-# light mesh), times 1e-16, with room for ten unlucky ones. In statics: bearings side by side differ by up to 1e8 in stiffness, times 1e-16.
+# Relative rounding. In frequency: a factor of K + sigma M has a condition number of 1e8 here
+# (highest over lowest of a beam or of a light mesh), times 1e-16, with room for ten unlucky ones.
+# In statics: bearings side by side differ by up to 1e8 in stiffness, times 1e-16.
 RTOL = STATIC = 1e-7
 
 
@@ -209,7 +220,8 @@ def frequencies_lie_between_free_and_clamped(scene, build):
     # r springs lift eigenvalue k no higher than free eigenvalue k + r (Courant and Fischer)
     for found, r in ((held, supports.root.shape[1]), (clamped, rank)):
         never_falls(found[: len(free) - r], free[r:], floor(body), told(body))
-    # springs of a 1e-12th are no springs: they change an elastic eigenvalue by their size over the stiffness of the shaft
+    # springs of a 1e-12th are no springs: they change an elastic eigenvalue by their size over the
+    # stiffness of the shaft
     soft = frequencies(body, Supports(supports.ports, 1e-12 * supports.stiffness), COUNT)
     same(soft[6:], free[6:], 0.0, RTOL)
 

@@ -83,7 +83,8 @@ def test_six_rigid_motions_and_a_closed_surface(name, fidelity, options):
         )
         np.testing.assert_allclose(s.displacement, wanted, rtol=0, atol=1e-14)
 
-    # Every edge belongs to two faces that run along it in opposite senses, so the surface is closed and oriented.
+    # Every edge belongs to two faces that run along it in opposite senses, so the surface is closed
+    # and oriented.
     sides = [s.faces[:, [i, (i + 1) % 4]] for i in range(4)] + [
         s.triangles[:, [i, (i + 1) % 3]] for i in range(3)
     ]
@@ -104,7 +105,8 @@ def test_ovalising_shapes_move_as_their_harmonic(pinion):
     s = surface(pinion, body, {index: np.ones(body.blocks[index].size)})
     x, _, z = s.points.T
     t = np.arctan2(x, z)
-    # all unknowns one: U = 2, V = 0, W = 1 beyond the cells that touch the axis, where they are held at zero
+    # all unknowns one: U = 2, V = 0, W = 1 beyond the cells that touch the axis, where they are
+    # held at zero
     off, on = np.hypot(x, z) > 0.04, np.hypot(x, z) < 1e-9
     radial = s.displacement[:, 0] * np.sin(t) + s.displacement[:, 2] * np.cos(t)
     around = s.displacement[:, 0] * np.cos(t) - s.displacement[:, 2] * np.sin(t)
@@ -131,8 +133,8 @@ def test_first_bending_moves_as_in_the_solid(pinion, solved, fidelity, options, 
     turn = []
     for other in others:
         target = other.displacement[near].ravel()
-        # A pair may be turned about the axis: two numbers align it. Left over are 0.4 % (harmonic) and 5.9 % (beam,
-        # whose sections stay plane).
+        # A pair may be turned about the axis: two numbers align it. Left over are 0.4 % (harmonic)
+        # and 5.9 % (beam, whose sections stay plane).
         c, *_ = np.linalg.lstsq(basis, target, rcond=None)
         assert np.linalg.norm(basis @ c - target) < share * np.linalg.norm(target)
         turn.append(c)
@@ -280,7 +282,8 @@ def test_a_solid_comes_back_from_its_file(pinion, tmp_path, element, kind, vtk_n
     volume, least = volumes(back.points, back.cells[0].data, vtk_name)
     assert least.min() > 0
     assert volume.sum() == pytest.approx(volume_of(pinion.segments), rel=loss)
-    # And VTK reads the same file; it measures curved cells by flat pieces, so up to 16 chords for a circle (2.6 %).
+    # And VTK reads the same file; it measures curved cells by flat pieces, so up to 16 chords for a
+    # circle (2.6 %).
     measured = pv.read(path).compute_cell_sizes(length=False, area=False)["Volume"]
     assert measured.min() > 0
     assert measured.sum() == pytest.approx(volume.sum(), rel=0.026 if kind[-1].isdigit() else 1e-12)

@@ -1,4 +1,6 @@
-"""The report says everything the run found, escapes what it was given, and survives a run that broke off."""
+"""The report says everything the run found, escapes what it was given, and survives a run that
+broke off.
+"""
 
 from __future__ import annotations
 
@@ -159,7 +161,9 @@ def _estimate(levels, column, limit, gci, observed):
 
 
 def fixture_results():
-    """A made-up run: the size of its figures is right, but no test may take a figure from here for a result."""
+    """A made-up run: the size of its figures is right, but no test may take a figure from here for
+    a result.
+    """
     models = {}
     facts = {
         "euler": (270, 0.31, 290.0),

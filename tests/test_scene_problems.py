@@ -115,7 +115,8 @@ def test_places_are_judged_beside_a_bearing_that_is_refused(tmp_path):
 
 
 def test_a_consequence_is_not_told(tmp_path):
-    # nothing is said of seats beyond a shaft whose length is in doubt, nor of the name of what is misspelt
+    # nothing is said of seats beyond a shaft whose length is in doubt, nor of the name of what is
+    # misspelt
     assert len(sentences(spoilt(('length = "208 mm"', "length = 208")), tmp_path)) == 1
     assert len(sentences(spoilt(("seat_width", "seat_widht")), tmp_path)) == 1
     assert len(sentences(spoilt(('diameter = "90 mm"', 'diameter = "90 um"')), tmp_path)) == 1

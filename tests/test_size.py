@@ -39,7 +39,8 @@ def test_unknowns_are_counted_exactly(scene, model, options):
     size = estimated_size(SCENES[scene], model, options)
     assert size.unknowns == estimated_unknowns(SCENES[scene], model, options) == body.size
     entries = sum(block.stiffness.nnz for block in body.blocks if block.mirror is None)
-    # rows that conditions on the axis or numbers that happen to be zero take out, at most half of the smallest meshes' entries
+    # rows that conditions on the axis or numbers that happen to be zero take out, at most half of
+    # the smallest meshes' entries
     assert (
         entries <= size.entries + 36
         and size.entries < (1.01 if model == "solid" else 1.6) * entries
@@ -47,7 +48,8 @@ def test_unknowns_are_counted_exactly(scene, model, options):
 
 
 def test_entries_of_hexahedra_are_exact_but_for_the_genus():
-    # 18 entries are what a body without a hole has more than Euler's formula for one with a hole: 9 for each of two vertices
+    # 18 entries are what a body without a hole has more than Euler's formula for one with a hole: 9
+    # for each of two vertices
     for name, more in (("pinion_overhung", 18), ("shaft_hollow", 0)):
         body = sg.build(SCENES[name], "solid", element="hex20", refinement=0.4)
         assert (
@@ -238,7 +240,9 @@ def test_peak_of_a_whole_comparison_within_a_third(name):
 
 
 def test_a_comparison_stays_below_the_limit(monkeypatch):
-    """A finer mesh that would not fit is refused with its number, and what was solved before is kept."""
+    """A finer mesh that would not fit is refused with its number, and what was solved before is
+    kept.
+    """
     import solidgear as sg
 
     monkeypatch.setenv("SOLIDGEAR_MEMORY_MB", "150")

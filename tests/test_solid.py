@@ -1,4 +1,6 @@
-"""The full 3D solid: mass, rigid motions, and convergence to the axisymmetric-harmonic solid from above."""
+"""The full 3D solid: mass, rigid motions, and convergence to the axisymmetric-harmonic solid from
+above.
+"""
 
 from pathlib import Path
 
@@ -17,7 +19,8 @@ SMALL = {
     "hex27": {"refinement": 0.5},
 }
 
-# harmonic solid on the overhung pinion, order 10 with five graded layers, confirmed by a second code
+# harmonic solid on the overhung pinion, order 10 with five graded layers, confirmed by a second
+# code
 K_ZZ, FIRST_BENDING = 4.70996e9, 2758.003
 
 
@@ -42,7 +45,9 @@ def light(overhung):
 
 # --------------------------------------------------------------------------- mass
 def frustum_moments(y0, y1, a, b, density):
-    """Mass, first and second axial moment and polar inertia of a solid frustum, closed form, about y = 0."""
+    """Mass, first and second axial moment and polar inertia of a solid frustum, closed form, about
+    y = 0.
+    """
     # r = a + (b - a) t: moments of r^2 t^k and r^4 over 0..1
     d, h = b - a, y1 - y0
     square = [a * a / (k + 1) + 2 * a * d / (k + 2) + d * d / (k + 3) for k in range(3)]
@@ -79,18 +84,21 @@ def test_mass_centre_and_inertia(name, element):
     expected = closed_form_mass(scene)
     size = np.sqrt(np.diag(expected))
     error = np.abs((m - expected) / np.outer(size, size))
-    # 16 quadratic edges around lose a^4 / 30 = 5e-5 of the area (half angle a = pi / 16) and twice that of the polar
-    # inertia; the O-grid has the area of the circle by construction and errs by 3e-7 in the polar inertia only.
+    # 16 quadratic edges around lose a^4 / 30 = 5e-5 of the area (half angle a = pi / 16) and twice
+    # that of the polar inertia; the O-grid has the area of the circle by construction and errs by
+    # 3e-7 in the polar inertia only.
     assert error.max() < (1e-4 if element == "tet10" else 1e-6)
     if element != "tet10":
         assert error[0, 0] < 1e-12  # straight generators, exact area: rounding
 
 
 def test_mass_of_straight_sides_is_short():
-    # straight-sided elements lie inside the circle: the gate above would notice if geometry were not curved
+    # straight-sided elements lie inside the circle: the gate above would notice if geometry were
+    # not curved
     scene = Scene.from_parts([Segment.cylinder("rod", length=0.1, diameter=0.06)])
     m = sg.build(scene, "solid", element="tet4", size=0.02, graded_size=0.02).mass_matrix()
-    # sixteen and more chords around: short by less than 1 - sin(2 pi / 16) / (2 pi / 16), which is 2.5 %
+    # sixteen and more chords around: short by less than 1 - sin(2 pi / 16) / (2 pi / 16), which is
+    # 2.5 %
     assert 0.002 < 1 - m[0, 0] / closed_form_mass(scene)[0, 0] < 0.026
 
 
@@ -113,8 +121,9 @@ def test_free_cylinder_has_six_rigid_modes_and_no_spurious_one(element):
     elastic, wanted = (
         [(m.name, m.multiplicity, m.frequency_hz) for m in x.modes[6:]] for x in (found, exact)
     )
-    # A spurious mode would stand between these.  Quadratic elements reach 0.3 % on these coarse meshes; linear ones are far
-    # too stiff in bending, so that for them only the first is looked at: it must lie above the exact one.
+    # A spurious mode would stand between these.  Quadratic elements reach 0.3 % on these coarse
+    # meshes; linear ones are far too stiff in bending, so that for them only the first is looked
+    # at: it must lie above the exact one.
     if element in ("tet4", "hex8"):
         assert elastic[0][0] == "bending 1" and wanted[0][2] < elastic[0][2] < 1.6 * wanted[0][2]
     else:
@@ -127,7 +136,8 @@ def test_free_cylinder_has_six_rigid_modes_and_no_spurious_one(element):
 
 
 def test_smallest_eigenvalues_of_one_stiffness():
-    # the raw matrix of a short cylinder: six zeros, then a gap; hourglass modes of an under-integrated element would fill it
+    # the raw matrix of a short cylinder: six zeros, then a gap; hourglass modes of an
+    # under-integrated element would fill it
     scene = Scene.from_parts([Segment.cylinder("disc", length=0.05, diameter=0.06)])
     for element in SMALL:
         size = (
@@ -147,13 +157,15 @@ def test_smallest_eigenvalues_of_one_stiffness():
 # --------------------------------------------------------------------------- convergence on the pinion
 def test_light_hexahedra_are_near_the_reference(overhung, light):
     k = sg.condense(light, overhung, "pinion").stiffness
-    # 14k unknowns: the graded mesh is above the reference, as displacement elements are, by less than half a per cent
+    # 14k unknowns: the graded mesh is above the reference, as displacement elements are, by less
+    # than half a per cent
     assert 0 < k[2, 2] / K_ZZ - 1 < 5e-3
 
 
 def test_light_hexahedra_keep_the_pair(overhung, light):
     k = sg.condense(light, overhung, "pinion").stiffness
-    # the O-grid has fourfold symmetry, hence equal planes to rounding; bearings' weak couplings enter squared
+    # the O-grid has fourfold symmetry, hence equal planes to rounding; bearings' weak couplings
+    # enter squared
     assert k[0, 0] == pytest.approx(k[2, 2], rel=1e-10)
     assert k[0, 5] == pytest.approx(-k[2, 3], rel=1e-10)
     found = sg.modes(light, overhung, n=6)
@@ -176,7 +188,8 @@ def test_light_hexahedra_keep_the_pair(overhung, light):
 
 def test_light_hexahedra_bend_near_the_reference(overhung, light):
     f = sg.modes(light, overhung, n=3).named("bending 1").frequency_hz
-    # frequencies feel the singular corners less than the port's stiffness does: a quarter of that error
+    # frequencies feel the singular corners less than the port's stiffness does: a quarter of that
+    # error
     assert 0 < f / FIRST_BENDING - 1 < 2e-3
 
 
@@ -208,5 +221,6 @@ def test_tetrahedra_are_near_the_reference(overhung):
 def test_tetrahedra_are_above_the_reference(overhung):
     body = sg.build(overhung, "solid", element="tet10", size=0.03, graded_size=0.012)
     k = sg.condense(body, overhung, "pinion").stiffness
-    # graded to 12 mm only: 1.1 % above; gmsh's mesh, and with it this figure, may change a little with its version
+    # graded to 12 mm only: 1.1 % above; gmsh's mesh, and with it this figure, may change a little
+    # with its version
     assert 0 < k[2, 2] / K_ZZ - 1 < 2e-2

@@ -1,4 +1,6 @@
-"""Where beams, elements and ties fail: the physics that the scripts of validation/stability claim, in their quick form."""
+"""Where beams, elements and ties fail: the physics that the scripts of validation/stability claim,
+in their quick form.
+"""
 
 import importlib
 import re
@@ -40,7 +42,8 @@ def test_a_shoulder_is_worth_a_length_of_thin_shaft_whatever_the_overhang(script
     shoulder_step = script("shoulder_step")
     rows = {r["ratio"]: r for r in shoulder_step.measure(quick=True).rows}
     for row in rows.values():
-        # a moment reaches the shoulder as beam stress, so what the shoulder gives way does not know where it comes from
+        # a moment reaches the shoulder as beam stress, so what the shoulder gives way does not know
+        # where it comes from
         assert row["missing length / d, 1 d"] == pytest.approx(
             row["missing length / d, 2 d"], abs=1e-6
         )
@@ -67,7 +70,8 @@ def test_the_thin_tube_is_a_ring(script):
     tube = script("thin_hollow_shaft")
     got = tube.frequencies(0.02, 20 * tube.OUTER)
     for n in (2, 3):
-        # the ring formula leaves out shear and curvature of the wall, of the order of (wall / radius)^2 n^2
+        # the ring formula leaves out shear and curvature of the wall, of the order of (wall /
+        # radius)^2 n^2
         assert got[n] == pytest.approx(tube.ring(0.02, n, long=True), rel=2e-3)
     assert got[2] < got[1] < got[3]
 
@@ -100,7 +104,9 @@ def test_a_failed_script_does_not_stop_the_others(script, monkeypatch):
 
 
 def test_every_guard_named_exists():
-    """The report of the folder names a test for each edge; a renamed test would leave it pointing nowhere."""
+    """The report of the folder names a test for each edge; a renamed test would leave it pointing
+    nowhere.
+    """
     for path in sorted(FOLDER.glob("*.py")):
         for file, test in re.findall(r"(tests/test_\w+\.py)::(test_\w+)", path.read_text()):
             if "test_x" not in file:

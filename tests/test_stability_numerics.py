@@ -1,6 +1,8 @@
-"""The scripts that drive numerics, solvers and operation to failure still find the failure, and the program still holds beyond it.
+"""The scripts that drive numerics, solvers and operation to failure still find the failure, and the
+program still holds beyond it.
 
-Quick mode, the cheap ones only; what is asserted is physics and what rounding cannot exceed, never noise itself and never time.
+Quick mode, the cheap ones only; what is asserted is physics and what rounding cannot exceed, never
+noise itself and never time.
 """
 
 import math
@@ -32,14 +34,17 @@ def measured():
 def test_springs_from_nothing_to_a_clamp(measured):
     finding = measured("bearing_extremes")["bearing_extremes"]
     rows = [r for r in finding.rows if r["k N/m"] > 0 and r["elements"] == 160]
-    # 160 elements have a condition of about 1e10 between the stiffest shape and the softest: 1e-9 is what double precision leaves.
+    # 160 elements have a condition of about 1e10 between the stiffest shape and the softest: 1e-9
+    # is what double precision leaves.
     assert max(r["C_zz program"] for r in rows) < 1e-8
     assert max(r["f1 program"] for r in rows) < 1e-3
     softest, stiffest = rows[0], rows[-1]
-    # The sum of shaft and springs is rounded by more than its first eigenvalue, at either end: whoever adds them has lost the
-    # first frequency before solving anything.  What then comes out is noise, of which nothing can be asserted.
+    # The sum of shaft and springs is rounded by more than its first eigenvalue, at either end:
+    # whoever adds them has lost the first frequency before solving anything.  What then comes out
+    # is noise, of which nothing can be asserted.
     assert softest["rounding / lambda_1"] > 1 and stiffest["rounding / lambda_1"] > 1
-    # In between the sum holds it, and the naive solution is as good as the sum: 160 elements, times ten for the steps of the solver.
+    # In between the sum holds it, and the naive solution is as good as the sum: 160 elements, times
+    # ten for the steps of the solver.
     sound = [r for r in rows if r["rounding / lambda_1"] < 1e-3]
     assert len(sound) >= 2 and all(
         r["f1 naive"] < 1600 * r["rounding / lambda_1"] + r["f1 program"] for r in sound
@@ -48,7 +53,9 @@ def test_springs_from_nothing_to_a_clamp(measured):
 
 
 def test_closed_form_of_the_overhang():
-    """The reference itself, from a solution by other means: two springs and an overhang by the exact initial-parameter method at a very low frequency."""
+    """The reference itself, from a solution by other means: two springs and an overhang by the
+    exact initial-parameter method at a very low frequency.
+    """
     from solidgear.fidelity.krylov import from_scene, krylov
     from validation.stability import bearing_extremes as case
 
@@ -70,8 +77,9 @@ def test_free_shaft_needs_no_luck(measured):
             ours["zero modes"] == 6 and ours["rigid f / f1"] == 0 and ours["elastic missing"] == 0
         )
         assert ours["elastic error"] < 1e-9
-    # A shift of 1e-12 of the first eigenvalue is of the size by which the entries of K are rounded, so the factor is one of rounding;
-    # a thousandth, as the program takes, is far above.  Which runs then go wrong is luck, and not asserted.
+    # A shift of 1e-12 of the first eigenvalue is of the size by which the entries of K are rounded,
+    # so the factor is one of rounding; a thousandth, as the program takes, is far above.  Which
+    # runs then go wrong is luck, and not asserted.
     naive = [r for r in rows if r["solver"] == "shift-invert"]
     assert all(r["rounding / shift"] > 0.1 for r in naive if r["shift / lambda_1"] == -1e-12)
     assert all(r["rounding / shift"] < 1e-6 for r in naive if r["shift / lambda_1"] == -1e-3)
@@ -80,7 +88,8 @@ def test_free_shaft_needs_no_luck(measured):
 def test_a_shift_cannot_hit_an_eigenvalue(measured):
     rows = measured("shift_on_eigenvalue")["shift_on_eigenvalue"].rows
     ours = [r for r in rows if r["solver"] == "program"]
-    # The nearest eigenvalue of a shaft on springs is not negative, so the distance to any is at least that of the shift to zero.
+    # The nearest eigenvalue of a shaft on springs is not negative, so the distance to any is at
+    # least that of the shift to zero.
     assert all(r["shift from pair"] > 1 and r["error"] < 1e-8 and r["missing"] == 0 for r in ours)
     assert {r["cholesky"] for r in rows if r.get("cholesky")} == {"refused"}
 
@@ -90,7 +99,8 @@ def test_no_twin_is_lost_in_a_cluster(measured):
     assert min(r["nearest pairs apart"] for r in rows) < 1e-4  # four modes of nearly one frequency
     for r in rows:
         assert r["shapes"] >= r["asked"] and r["pairs cut"] == 0
-        # The dense reference with its springs added is itself good to 1e-8; a gap of 1e-5 magnifies that in the shapes.
+        # The dense reference with its springs added is itself good to 1e-8; a gap of 1e-5 magnifies
+        # that in the shapes.
         assert r["worst eigenvalue"] < 1e-6 and r["1 - subspace MAC"] < 1e-6
 
 
@@ -98,7 +108,8 @@ def test_krylov_duncan_loses_roots_where_it_should(measured):
     rows = measured("krylov_duncan")["krylov_duncan"].rows
     assert all(r["program error"] < 1e-13 and r["program roots counted"] == 1 for r in rows)
     for r in rows:
-        # The plain determinant is good to eps exp(kL) / kL, times ten for functions that are four units off in the last place.
+        # The plain determinant is good to eps exp(kL) / kL, times ten for functions that are four
+        # units off in the last place.
         if r["kL"] < 30:
             assert (
                 r["plain roots seen"] == 1
@@ -120,7 +131,8 @@ def test_guyan_drifts_with_the_fourth_power(measured):
     def slope(model):
         return math.log(b[model] / a[model]) / math.log(b["w / w_fixed"] / a["w / w_fixed"])
 
-    # The stiffness left alone lacks the whole mass, Guyan's only what the shapes change with frequency.
+    # The stiffness left alone lacks the whole mass, Guyan's only what the shapes change with
+    # frequency.
     assert slope("static") == pytest.approx(2, abs=0.1) and slope("Guyan") == pytest.approx(
         4, abs=0.2
     )
@@ -168,7 +180,8 @@ def test_doubtful_matrices(measured):
         "oblique null direction": 2,
     }
     assert {name: verdicts[name]["free motions"] for name in free} == free
-    # A turn about the axis changes no frequency; 1e-6 is what a difference of entries leaves of a stiffness at 1e-11 of them.
+    # A turn about the axis changes no frequency; 1e-6 is what a difference of entries leaves of a
+    # stiffness at 1e-11 of them.
     same = [r for r in found["strong_coupling"].rows if r["1 - k_xz / k"] > 1e-11]
     assert max(r["frequency error"] for r in same) < 1e-5
 
@@ -227,7 +240,8 @@ def test_odd_drawings_part_beam_and_solid(measured):
     rows = {r["odd"]: r for r in found["odd_geometry"].rows}
     # A disc of a hundredth of its diameter tilts by its own bending, of which a beam knows nothing.
     assert rows["head length over its diameter"]["C_thx"] > 10
-    # A lumped point one diameter beyond its surface hangs on a rigid arm in both; what distorts at the surface is levered up in the solid only.
+    # A lumped point one diameter beyond its surface hangs on a rigid arm in both; what distorts at
+    # the surface is levered up in the solid only.
     assert rows["lumped point beyond its surface, over the diameter"]["C_zz"] > 0.2
     assert rows["ring shared by hollow head and shaft, over the radius"]["C_thx"] > 0.2
     plain = {r["odd"]: r for r in found["impossible_geometry"].rows}

@@ -1,6 +1,7 @@
 """Scenes that strangers wrote, on each of which a sentence or a number was once wrong.
 
-`tests/scenes` holds them as they came.  What must hold is stated here in words of the physics; the long runs are marked slow.
+`tests/scenes` holds them as they came.  What must hold is stated here in words of the physics; the
+long runs are marked slow.
 """
 
 from pathlib import Path
@@ -39,7 +40,8 @@ def found(name, n=None, **options):
 # --------------------------------------------------------------------------- modes
 def test_a_thin_tube_ovalises_below_its_bending():
     modes = found("thin_tube_ovalising")
-    # pairs that the families n = 2 and 3 have on a fine mesh: 848, 884, 2244 (n = 2 alone has two below 1 kHz) and 2391 Hz; a coarse mesh is above
+    # pairs that the families n = 2 and 3 have on a fine mesh: 848, 884, 2244 (n = 2 alone has two
+    # below 1 kHz) and 2391 Hz; a coarse mesh is above
     waves = sorted(m.frequency_hz for m in modes.modes if m.waves > 1)
     for truth in (848.0, 884.0, 2391.0):
         assert min(abs(f / truth - 1) for f in waves) < 5e-3, truth
@@ -76,7 +78,8 @@ def test_two_materials_in_a_slender_thin_tube():
 
 
 def test_no_twin_is_lost_on_a_small_solid():
-    # a free stub: bending pairs and axial modes close together, at the very end of what is asked for
+    # a free stub: bending pairs and axial modes close together, at the very end of what is asked
+    # for
     stub = Scene.from_parts([Segment.cylinder("stub", length=0.0719, diameter=0.1168)])
     body = sg.build(
         stub, "solid", layers=0, radial_layers=0, edge_layers=0, relative_size=1.5, around=8
@@ -93,7 +96,8 @@ def test_no_twin_is_lost_on_a_small_solid():
 def test_modes_of_other_shapes_are_not_compared():
     gaps = compare(scene_of("mispaired_axial"), ("timoshenko", "harmonic")).results["deviations"]
     frequencies = [g["relative"] for g in gaps if g["unit"] == "Hz"]
-    # 2476 % was the distance of two different modes; on a cone of this stoutness a beam is off by some tens of per cent
+    # 2476 % was the distance of two different modes; on a cone of this stoutness a beam is off by
+    # some tens of per cent
     assert frequencies and max(map(abs, frequencies)) < 0.6
 
 
@@ -129,7 +133,8 @@ def test_check_is_never_the_opposite_of_compare(name):
 @pytest.mark.parametrize("name", ["input_shaft", "motor_rotor", "hypoid_pinion"])
 def test_an_ordinary_shaft_needs_no_large_mesh(name):
     scene = scene_of(name)
-    # 189,000 to 309,000 unknowns of either solid, and 7 to 16 GB, were what small shoulders once cost
+    # 189,000 to 309,000 unknowns of either solid, and 7 to 16 GB, were what small shoulders once
+    # cost
     judge = study(scene, "harmonic", evidence=False)
     assert judge.worst_band() <= scene.ask.tolerance / 3 and judge.body.size < 65_000
     third = estimated_size(scene, "solid", {**HEXAHEDRA[2], "around": 8})

@@ -1,4 +1,6 @@
-"""Sweeps from scene to file: rows against separate runs, refusals, resuming, interruption, processes."""
+"""Sweeps from scene to file: rows against separate runs, refusals, resuming, interruption,
+processes.
+"""
 
 import csv
 import json
@@ -91,7 +93,9 @@ def test_every_row_is_what_a_separate_run_on_the_same_mesh_gives(fidelity, tmp_p
 
 
 def test_a_seat_meshed_for_others_changes_little(tmp_path):
-    """A separate run on its own mesh differs by the mesh error alone, below 1e-3 for this light one."""
+    """A separate run on its own mesh differs by the mesh error alone, below 1e-3 for this light
+    one.
+    """
     light(tmp_path / "rows.csv", "harmonic", ["bearing.2.position=0.21,0.2246,0.246"])
     for row in read(tmp_path / "rows.csv"):
         scene = variants_of(SCENE, [f"bearing.2.position={row['bearing.2.position']!r}"]).of(0)

@@ -87,7 +87,8 @@ def test_modes_of_any_bearings_agree_with_those_of_the_body(body, kind):
         found, direct = small(reduced, body, supports, 10), sg.modes(body, supports, 10)
         frequency, names = shapes(direct)
         assert found.error_bound < 1e-6
-        # a mode of 1 Hz in a shaft of 4 kHz is defined to about 1e-7 by matrices in double precision
+        # a mode of 1 Hz in a shaft of 4 kHz is defined to about 1e-7 by matrices in double
+        # precision
         rounding = 1e-7 if kind == "soft" else 1e-9
         np.testing.assert_allclose(
             found.frequency_hz,
@@ -99,7 +100,9 @@ def test_modes_of_any_bearings_agree_with_those_of_the_body(body, kind):
 
 
 def dense(body, supports, n):
-    """All eigenvalues of ``K + G' Kb G`` assembled in full, LAPACK's generalised solver: shares nothing with the package."""
+    """All eigenvalues of ``K + G' Kb G`` assembled in full, LAPACK's generalised solver: shares
+    nothing with the package.
+    """
     k, m = (
         sla.block_diag(*(b.stiffness.toarray() for b in body.blocks)),
         sla.block_diag(*(b.mass.toarray() for b in body.blocks)),
@@ -118,7 +121,9 @@ def dense(body, supports, n):
 @pytest.mark.parametrize("kind", ["plain", "coupled", "uneven"])
 @pytest.mark.parametrize("more", [0.2, 0.6, 1.0])
 def test_the_error_lies_below_its_bound_and_not_far(kind, more, monkeypatch):
-    """Poor bases on purpose, so that the error is far above rounding; every frequency is too high, and by no more than the bound."""
+    """Poor bases on purpose, so that the error is far above rounding; every frequency is too high,
+    and by no more than the bound.
+    """
     body = sg.build(VARIANTS.shaft(), "timoshenko", elements=12)
     # one step of Krylov taken away, and few free modes
     monkeypatch.setattr(reduction, "LEVELS", ((more, 0),))
@@ -204,7 +209,9 @@ def test_a_shaft_on_feathers_moves_as_a_rigid_body(body):
 
 
 def test_the_bound_holds_for_any_operator_it_is_made_for():
-    """Random operators ``[[T, E'], [E, C]]`` with ``C <= cut``: no eigenvalue above the last wanted one may go uncounted."""
+    """Random operators ``[[T, E'], [E, C]]`` with ``C <= cut``: no eigenvalue above the last wanted
+    one may go uncounted.
+    """
     rng = np.random.default_rng(1)
     finite = hidden = 0
     for _ in range(400):

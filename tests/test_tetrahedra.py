@@ -1,4 +1,6 @@
-"""Curved tetrahedra: the true volume and inertia, planes and circles kept, the same mesh every time."""
+"""Curved tetrahedra: the true volume and inertia, planes and circles kept, the same mesh every
+time.
+"""
 
 from dataclasses import replace
 from types import SimpleNamespace
@@ -58,7 +60,8 @@ def test_curved_volume_is_the_closed_form(meshed):
     exact = volume_of(SHAFT)
     curved = abs(meshed.quality.volume / exact - 1.0)
     straight = abs(check_mesh(MeshTet1.from_mesh(meshed.mesh)).volume / exact - 1.0)
-    # an arc over 1/16 of a circle loses a^4/30 = 5e-5 of its area, a = pi/16; gmsh's edges vary, hence twice that
+    # an arc over 1/16 of a circle loses a^4/30 = 5e-5 of its area, a = pi/16; gmsh's edges vary,
+    # hence twice that
     assert curved < 1e-4
     # a chord loses 2a^2/3 = 2.6e-2, and only mid nodes on the true surface win it back
     assert straight > 5.0 * curved
@@ -71,7 +74,8 @@ def test_curved_inertia_is_the_closed_form(meshed):
     density = 7850.0
     mass = density * dx.sum()
     centre = density * (y * dx).sum() / mass
-    # inertia goes with the fourth power of the radius: about twice the loss of the volume, hence 2e-4
+    # inertia goes with the fourth power of the radius: about twice the loss of the volume, hence
+    # 2e-4
     assert density * ((x**2 + z**2) * dx).sum() == pytest.approx(exact.iyy, rel=2e-4)
     assert density * (((y - centre) ** 2 + z**2) * dx).sum() == pytest.approx(exact.ixx, rel=2e-4)
     # a length of 0.16 m weighted with volumes that are each right to 1e-4
@@ -94,10 +98,12 @@ def test_every_plane_and_interface_is_made_of_facets(meshed):
         )
         below = next(s for s in SHAFT if s.y0 < y <= s.y1)
         above = next((s for s in SHAFT if s.y0 <= y < s.y1), below)
-        # at an interface the face covers the material of both sides: out to the larger radius, in to the smaller bore
+        # at an interface the face covers the material of both sides: out to the larger radius, in
+        # to the smaller bore
         outer = max(outer_radius(below, y), outer_radius(above, y))
         inner = min(inner_radius(below, y), inner_radius(above, y))
-        # straight facets lose the segments between chord and circle; add them from the rim's own edges
+        # straight facets lose the segments between chord and circle; add them from the rim's own
+        # edges
         area += rim_segments(mesh, y, outer) - rim_segments(mesh, y, inner)
         # then only rounding is left
         assert area == pytest.approx(np.pi * (outer**2 - inner**2), rel=1e-9)
@@ -118,7 +124,9 @@ def rim_segments(mesh, y, radius):
 
 
 def lateral_facets(mesh):
-    """Boundary facets on the outer surface: every vertex and mid node at the outer radius of one segment."""
+    """Boundary facets on the outer surface: every vertex and mid node at the outer radius of one
+    segment.
+    """
     facets = mesh.facets[:, mesh.boundary_facets()]
     y, r = mesh.p[1][facets], np.hypot(mesh.p[0], mesh.p[2])[facets]
     found = np.zeros(facets.shape[1], bool)
@@ -136,7 +144,8 @@ def lateral_facets(mesh):
 def test_no_lateral_facet_straddles_a_circle(meshed):
     facets = lateral_facets(meshed.mesh)
     y = meshed.mesh.p[1][facets]
-    # the lateral area proves that the facets looked at are all there are; chords of 1/16 lose 1 % at most
+    # the lateral area proves that the facets looked at are all there are; chords of 1/16 lose 1 %
+    # at most
     corners = meshed.mesh.p[:, facets]
     area = (
         0.5
@@ -167,7 +176,8 @@ def test_segments_hold_their_own_volume(meshed):
     for i, s in enumerate(SHAFT):
         mine = meshed.segment == i
         assert y[mine].min() > s.y0 - 1e-12 and y[mine].max() < s.y1 + 1e-12
-        # the same measure as for the whole, per segment; an element counted to its neighbour would be 1e-3
+        # the same measure as for the whole, per segment; an element counted to its neighbour would
+        # be 1e-3
         assert dx[mine].sum() == pytest.approx(volume_of([s]), rel=1e-4)
 
 

@@ -1,4 +1,6 @@
-"""How many threads the linear algebra gets, whatever was imported first and whatever the shell exports."""
+"""How many threads the linear algebra gets, whatever was imported first and whatever the shell
+exports.
+"""
 
 import os
 import subprocess
@@ -38,7 +40,9 @@ def said(code, **variables):
 
 
 def test_numpy_first_is_held_to_one_thread_inside_and_gets_its_own_back():
-    """As in the README's example, in a shell that exports OMP_NUM_THREADS; the machine may have one processor, so two are asked for by hand."""
+    """As in the README's example, in a shell that exports OMP_NUM_THREADS; the machine may have one
+    processor, so two are asked for by hand.
+    """
     code = (
         NUMBERS
         + """
@@ -135,7 +139,9 @@ def test_calls_inside_calls_and_beside_them_restore_the_number_once(monkeypatch)
     bool(missing("pardiso")) or not hasattr(os, "sched_setaffinity"), reason="needs MKL and Linux"
 )
 def test_mkl_takes_no_more_threads_than_processors():
-    """One processor granted, four threads asked for by the shell: a factorisation must start none beside its own."""
+    """One processor granted, four threads asked for by the shell: a factorisation must start none
+    beside its own.
+    """
     code = """
 import os
 os.sched_setaffinity(0, {min(os.sched_getaffinity(0))})

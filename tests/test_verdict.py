@@ -20,7 +20,9 @@ STATIONS = np.linspace(0.0, 1.0, 13)
 
 
 def mode(name, frequency):
-    """A mode whose shape belongs to its name: a sine of as many half waves, along y or in both planes."""
+    """A mode whose shape belongs to its name: a sine of as many half waves, along y or in both
+    planes.
+    """
     family, number = name.rsplit(" ", 1)
     wave = np.sin(int(number) * np.pi * STATIONS)
     components = {"bending": (2, 0), "axial": (1,), "torsion": (4,)}[family]
@@ -311,7 +313,9 @@ def test_nothing_solved():
 
 # --------------------------------------------------------------------------- on shafts
 def plain_shaft(**ask):
-    """The simplest shaft there is: 300 x 40 mm on two equal bearings, the lumped point in the middle of all of its surface."""
+    """The simplest shaft there is: 300 x 40 mm on two equal bearings, the lumped point in the
+    middle of all of its surface.
+    """
     bearings = [
         Bearing(name=n, y=y, seat_width=0.02, stiffness={"kxx": 3e8, "kzz": 3e8, **k})
         for n, y, k in (("A", 0.03, {"kyy": 1e8}), ("B", 0.27, {}))
@@ -338,12 +342,14 @@ def test_a_plain_symmetric_shaft_is_within_every_models_reach():
         and abs(gaps[(SCENE, "C_z,thx")]) < 1e-4
     )
     assert models["harmonic"]["band"]["compliance"] < 0.05 / 20
-    # a beam tied to a span of 300 mm as the solid is: 0.3 % in tilt, where its node alone was 650 % off
+    # a beam tied to a span of 300 mm as the solid is: 0.3 % in tilt, where its node alone was 650 %
+    # off
     assert abs(gaps[(SCENE, "C_thx")]) < 0.005 and abs(gaps[(SECTION, "C_thx")]) < 0.015
 
 
 def test_like_for_like_means_every_station():
-    # the port is tied by its section and a bearing rigidly: ties of the port alone would leave nothing to compare
+    # the port is tied by its section and a bearing rigidly: ties of the port alone would leave
+    # nothing to compare
     scene = plain_shaft(tolerance=0.01)
     scene = scene.with_port(attachment="section")
     scene = scene.with_changes(

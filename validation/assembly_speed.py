@@ -1,9 +1,11 @@
-"""Assembly of stiffness and mass against scikit-fem's own vector forms: same mesh, same quadrature, one process, interleaved.
+"""Assembly of stiffness and mass against scikit-fem's own vector forms: same mesh, same quadrature,
+one process, interleaved.
 
     python -m validation.assembly_speed [--runs 3] [--only tet10]
 
-Entries are compared before times.  Wall and processor seconds are medians; the processor's are the steadier on a busy machine.
-Asked for: K and M together at least 50 times faster for TET10 at about 94 thousand unknowns.
+Entries are compared before times.  Wall and processor seconds are medians; the processor's are the
+steadier on a busy machine. Asked for: K and M together at least 50 times faster for TET10 at about
+94 thousand unknowns.
 """
 
 from __future__ import annotations
@@ -43,7 +45,9 @@ class MeshHex20(MeshHex2):
 
 
 class Case(NamedTuple):
-    """What is raced: ``ours()`` gives (K, M); scikit-fem assembles two forms on a basis and keeps some of the unknowns."""
+    """What is raced: ``ours()`` gives (K, M); scikit-fem assembles two forms on a basis and keeps
+    some of the unknowns.
+    """
 
     ours: object
     basis: object
@@ -153,7 +157,9 @@ def restricted(matrix, keep):
 
 
 def race(case: Case, runs: int) -> dict:
-    """Medians of both sides, taken in turn; scikit-fem's K and M share one basis, which is counted with both."""
+    """Medians of both sides, taken in turn; scikit-fem's K and M share one basis, which is counted
+    with both.
+    """
     seconds = {name: ([], []) for name in ("ours", "basis", "K", "M")}
 
     def run(name, work):
@@ -198,7 +204,7 @@ def race(case: Case, runs: int) -> dict:
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser = argparse.ArgumentParser(description=__doc__.split("\n\n")[0])
     parser.add_argument("--runs", type=int, default=3)
     parser.add_argument("--only", choices=[*SOLIDS, "harmonic"])
     args = parser.parse_args()

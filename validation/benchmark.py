@@ -2,7 +2,8 @@
 
     python -m validation.benchmark [--runs 5]
 
-Figures asked for on two cores: compare within 60 s, harmonic stiffness within 3 s, start-up included.
+Figures asked for on two cores: compare within 60 s, harmonic stiffness within 3 s, start-up
+included.
 """
 
 from __future__ import annotations
@@ -47,7 +48,7 @@ def run(command: list[str]) -> float:
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser = argparse.ArgumentParser(description=__doc__.split("\n\n")[0])
     parser.add_argument("--runs", type=int, default=5)
     runs = parser.parse_args().runs
     times: dict[str, list[float]] = {name: [] for name in JOBS}

@@ -1,6 +1,8 @@
-"""Random command lines: every command and option, with values that are right, nearly right and absurd, on files of every kind.
+"""Random command lines: every command and option, with values that are right, nearly right and
+absurd, on files of every kind.
 
-Heavy answers are kept away by a memory limit (`ENVIRONMENT`), which the program itself must hold before it meshes anything.
+Heavy answers are kept away by a memory limit (`ENVIRONMENT`), which the program itself must hold
+before it meshes anything.
 """
 
 from __future__ import annotations
@@ -322,7 +324,8 @@ def command_line(seed: int, number: int) -> tuple[list[str], dict[str, bytes]]:
         )
     if rng.random() < 0.03:
         del arguments[rng.randrange(len(arguments))]
-    # a null byte cannot be part of an argument, and a process of its own would get these bytes as surrogates
+    # a null byte cannot be part of an argument, and a process of its own would get these bytes as
+    # surrogates
     return [a.replace("\0", "") for a in arguments], files
 
 

@@ -1,11 +1,14 @@
-"""Fuzz of scene files and command lines: each is refused in plain sentences or leads to finite numbers, and leaves nothing half done.
+"""Fuzz of scene files and command lines: each is refused in plain sentences or leads to finite
+numbers, and leaves nothing half done.
 
     python -m validation.fuzz_scenes [--cases 10000] [--seed 1] [--commands 0.4]
 
-A *finding* is anything else: an exception that is not raised on purpose (a user would see a traceback), a warning, a number that is not
-finite, a message that is not fit for a terminal or does not name the file, more time than `LIMIT` or `COMMAND_LIMIT`, or a command that
-leaves a file that is not whole, or anything at all when it is refused. Every case follows from the seed and its number alone, so that a
-finding can be made again. Everything runs in this process, with memory and time watched.
+A *finding* is anything else: an exception that is not raised on purpose (a user would see a
+traceback), a warning, a number that is not finite, a message that is not fit for a terminal or does
+not name the file, more time than `LIMIT` or `COMMAND_LIMIT`, or a command that leaves a file that
+is not whole, or anything at all when it is refused. Every case follows from the seed and its number
+alone, so that a finding can be made again. Everything runs in this process, with memory and time
+watched.
 """
 
 from __future__ import annotations
@@ -41,7 +44,8 @@ from validation.common import ROOT, results_folder, show, write_rows
 from validation.fuzz_commands import ENVIRONMENT, command_line, put
 from validation.fuzz_mutations import mutant
 
-# s of processor time, since wall time would blame the program for a busy machine; of a file, check of a thin tube included, and of a command line
+# s of processor time, since wall time would blame the program for a busy machine; of a file, check
+# of a thin tube included, and of a command line
 LIMIT, COMMAND_LIMIT = 5.0, 30.0
 STUCK = 60.0  # s of wall time, for what waits without computing
 ROOM = 3 << 30  # bytes a case may add to the process
@@ -82,7 +86,9 @@ def watched(limit: float) -> Iterator[None]:
 
 @dataclass(frozen=True)
 class Outcome:
-    """What became of one case: accepted, refused or a finding; how far it came; the sentence, or what was found; its sort, or a traceback."""
+    """What became of one case: accepted, refused or a finding; how far it came; the sentence, or
+    what was found; its sort, or a traceback.
+    """
 
     kind: str
     stage: str
@@ -96,7 +102,9 @@ def _sort(sentence: str) -> str:
 
 # ------------------------------------------------------------------------------------------------- files
 def use(path: Path, harmonic: bool = False) -> Outcome:
-    """Load a file and put the scene to use: 6x6 and modes of the Euler beam; on request the check and a light harmonic solid too."""
+    """Load a file and put the scene to use: 6x6 and modes of the Euler beam; on request the check
+    and a light harmonic solid too.
+    """
     stage = "load"
     try:
         with watched(LIMIT):
@@ -130,7 +138,9 @@ def use(path: Path, harmonic: bool = False) -> Outcome:
 
 
 def _judged(error: SolidgearError, path: Path, stage: str) -> Outcome:
-    """Whether a refusal is sentences one can act on: one for each problem of a scene, TOLD at most, and one for anything else."""
+    """Whether a refusal is sentences one can act on: one for each problem of a scene, TOLD at most,
+    and one for anything else.
+    """
     lines = str(error).splitlines()
     count = len(error.problems) if isinstance(error, SceneError) and stage == "load" else 1
     faults = {
@@ -152,7 +162,9 @@ def _judged(error: SolidgearError, path: Path, stage: str) -> Outcome:
 
 # ------------------------------------------------------------------------------------------------- command lines
 def command(arguments: list[str], folder: Path) -> tuple[int, str, str, list[Path]]:
-    """Exit code, standard output and error of the command line run in this process, and the files it left in ``folder``."""
+    """Exit code, standard output and error of the command line run in this process, and the files
+    it left in ``folder``.
+    """
     from solidgear.cli import main
 
     out, err = io.StringIO(), io.StringIO()
@@ -175,7 +187,9 @@ def command(arguments: list[str], folder: Path) -> tuple[int, str, str, list[Pat
 
 
 def use_command(path: Path, expected: str) -> Outcome:
-    """`stiffness --json` and, for what is refused, `compare --out`: exit code, one sentence or whole JSON, and nothing left behind."""
+    """`stiffness --json` and, for what is refused, `compare --out`: exit code, one sentence or
+    whole JSON, and nothing left behind.
+    """
     runs = [["stiffness", path.name, "-f", "euler", "--json"]]
     if expected == "refused":
         runs.append(["compare", path.name, "--models", "euler", "--no-renders", "--out", "out"])
@@ -227,7 +241,8 @@ def _fault(arguments: list[str], code: int, out: str, err: str, left: list[Path]
             if ("Usage: " in err or "─ Error ─" in err) and not out and not left
             else f"wrong usage, output {out[:60]!r}, error {err[:200]!r}, left {left}"
         )
-    # what was checked or compared may be answered in full and still end with 1: a fault of the mesh, or no model that could be solved
+    # what was checked or compared may be answered in full and still end with 1: a fault of the
+    # mesh, or no model that could be solved
     answered = code == 0 or code == 1 and out and arguments[0] in ("check", "compare")
     if not answered:
         lines = err.splitlines()
@@ -301,7 +316,8 @@ def run(
     commands : float
         Share of cases that are command lines; the others are files.
     every_command, every_harmonic : int
-        Of the files, every so many-th also goes through the command line, or through the harmonic solid.
+        Of the files, every so many-th also goes through the command line, or through the harmonic
+        solid.
     """
     load(
         ROOT / "geometry" / "pinion_overhung.toml"

@@ -1,4 +1,5 @@
-"""A solid of 300,000 unknowns: seconds by stage, estimate of the factor against what the process really took.
+"""A solid of 300,000 unknowns: seconds by stage, estimate of the factor against what the process
+really took.
 
     python -m validation.large_solid [--size 0.0135 --graded 0.0022]
 
@@ -17,7 +18,7 @@ from validation.common import ROOT, results_folder, show, write_rows
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser = argparse.ArgumentParser(description=__doc__.split("\n\n")[0])
     parser.add_argument(
         "--size", type=float, default=0.0135, help="m, tetrahedra away from shoulders"
     )

@@ -358,7 +358,8 @@ def apply(mutation: Mutation, root: Path) -> None:
 
 def passes(test: str, root: Path) -> bool:
     """Whether a test passes on the source under ``root``."""
-    # One test process per mutation, side by side: two MKL threads each would only get into each other's way.
+    # One test process per mutation, side by side: two MKL threads each would only get into each
+    # other's way.
     env = {
         **os.environ,
         "PYTHONPATH": str(root),
@@ -410,7 +411,7 @@ def healthy(test: str) -> bool:
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser = argparse.ArgumentParser(description=__doc__.split("\n\n")[0])
     parser.add_argument(
         "--only", default="", help="run only mutations with this word in their name"
     )

@@ -1,7 +1,9 @@
-"""Problem: the overhung pinion of the thesis.  Reference: an independent p10 solution of the same scene.
+"""Problem: the overhung pinion of the thesis.  Reference: an independent p10 solution of the same
+scene.
 
-Models: harmonic solid at its reference setting and finer, 3D hexahedra and tetrahedra, Euler and Timoshenko beams.
-Prints and writes: error of every model against the reference, attachment variants, the like-for-like beam gap.
+Models: harmonic solid at its reference setting and finer, 3D hexahedra and tetrahedra, Euler and
+Timoshenko beams. Prints and writes: error of every model against the reference, attachment
+variants, the like-for-like beam gap.
 
     python -m validation.overhung_pinion [--fine]
 """
@@ -16,7 +18,8 @@ from solidgear.comparison import rigid_seats
 from solidgear.evidence.quantities import change, measure
 from validation.common import ROOT, results_folder, show, write_rows
 
-# Independent solution, polynomial order 10 on five graded layers, digits as published with it; |K_z,thx| is given.
+# Independent solution, polynomial order 10 on five graded layers, digits as published with it;
+# |K_z,thx| is given.
 REFERENCE = {
     "K_zz": 4.70996e9,
     "K_z,thx": 2.40051e8,
@@ -109,7 +112,7 @@ def attachments(scene) -> list[dict]:
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser = argparse.ArgumentParser(description=__doc__.split("\n\n")[0])
     parser.add_argument("--fine", action="store_true", help="also the finest settings (minutes)")
     fine = parser.parse_args().fine
     scene = sg.load(ROOT / "geometry" / "pinion_overhung.toml")

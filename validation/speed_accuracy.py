@@ -1,14 +1,19 @@
-"""A race against what a user would pick instead, on the same mesh and at equal error: CalculiX and sfepy for the solid, ROSS for the beam.
+"""A race against what a user would pick instead, on the same mesh and at equal error: CalculiX and
+sfepy for the solid, ROSS for the beam.
 
-    python -m validation.speed_accuracy [--runs 3] [--quick] [--only mesh,error,sfepy,ross] [--limit 900]
+    python -m validation.speed_accuracy [--runs 3] [--quick] [--only mesh,error,sfepy,ross] [--limit
+    900]
 
-Lanes run in turns, so that a noisy spell of the machine hits all alike.  Answers are compared before times are: a peer whose answers do not
-agree gets no ratio.  Writes rows.csv, ratios.csv, answers.csv, seconds.png and summary.txt; Ctrl-C keeps what has been run so far.
+Lanes run in turns, so that a noisy spell of the machine hits all alike.  Answers are compared
+before times are: a peer whose answers do not agree gets no ratio.  Writes rows.csv, ratios.csv,
+answers.csv, seconds.png and summary.txt; Ctrl-C keeps what has been run so far.
 
-The problem is the overhung pinion with torsion held by springs (free torsion makes the stiffness matrix of a peer singular).  On one mesh
-of tetrahedra for two programs the seats are rigid: a tie both can write down cheaply.  CalculiX's own distributing coupling passes on forces
-only; an averaged seat as linear equations gives our numbers, but its springs couple all 5000 unknowns of a seat with one another, and
-CalculiX was not done with that after 100 seconds of processor time.  Hexahedra have 160 nodes a seat; at equal error seats are averaged.
+The problem is the overhung pinion with torsion held by springs (free torsion makes the stiffness
+matrix of a peer singular).  On one mesh of tetrahedra for two programs the seats are rigid: a tie
+both can write down cheaply.  CalculiX's own distributing coupling passes on forces only; an
+averaged seat as linear equations gives our numbers, but its springs couple all 5000 unknowns of a
+seat with one another, and CalculiX was not done with that after 100 seconds of processor time.
+Hexahedra have 160 nodes a seat; at equal error seats are averaged.
 """
 
 from __future__ import annotations
@@ -48,7 +53,8 @@ SOLID = (
     {"element": "hex27", "size": 0.0225, "around": 8, "layers": 3, "ratio": 0.4},
 )
 COARSE_SOLID = {"element": "hex20", "size": 0.03, "around": 8, "layers": 2, "radial_layers": 1}
-# Reduced integration makes an element softer, which here cancels part of the mesh's error: coarser meshes of ours will do.
+# Reduced integration makes an element softer, which here cancels part of the mesh's error: coarser
+# meshes of ours will do.
 REDUCED = (
     {"element": "hex20", "size": 0.03, "around": 8, "layers": 3, "radial_layers": 2},
     {"element": "hex20", "size": 0.0225, "around": 8, "layers": 3},
@@ -156,7 +162,9 @@ def same_mesh(race: Race) -> None:
 
 
 def equal_error(race: Race) -> None:
-    """From the scene to compliance and ten modes, within the target of the refined harmonic reference."""
+    """From the scene to compliance and ten modes, within the target of the refined harmonic
+    reference.
+    """
     heat, scene, target = (
         "equal error",
         ours.held(SCENE, "average"),
@@ -251,7 +259,8 @@ def equal_error(race: Race) -> None:
                 a.compliance, min(a.frequency_hz, key=lambda f: abs(f - _first(solved.modes)))
             )
             lane.note += f"; {_told(found)}"
-            # The same element on the same mesh has our error; rounding of printed digits must not throw it out.
+            # The same element on the same mesh has our error; rounding of printed digits must not
+            # throw it out.
             if _worst(found) > 1.02 * target:
                 raise PeerError(f"above the target: {_told(found)}")
 
@@ -285,7 +294,9 @@ def equal_error(race: Race) -> None:
 
 
 def free_modes(race: Race) -> None:
-    """Ten elastic modes of the free shaft on quadratic tetrahedra against sfepy, at a size its solver still likes."""
+    """Ten elastic modes of the free shaft on quadratic tetrahedra against sfepy, at a size its
+    solver still likes.
+    """
     if missing := sfepy_peer.present():
         race.skip(f"sfepy: {missing}")
         return
@@ -420,7 +431,9 @@ def ccx(race, heat, who, problem, kind, verify, *, loads) -> Lane:
 
 
 def choose_threads(race, problem, kind) -> None:
-    """The number of threads CalculiX is fastest with here: its solver waits by spinning, so more are not always better."""
+    """The number of threads CalculiX is fastest with here: its solver waits by spinning, so more
+    are not always better.
+    """
     seconds = {}
     for threads in sorted({1, cores()}):
         try:
@@ -457,7 +470,7 @@ HEATS = {"mesh": same_mesh, "error": equal_error, "sfepy": free_modes, "ross": b
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser = argparse.ArgumentParser(description=__doc__.split("\n\n")[0])
     parser.add_argument("--runs", type=int, default=3, help="rounds; every lane runs once a round")
     parser.add_argument(
         "--quick",

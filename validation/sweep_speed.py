@@ -2,10 +2,12 @@
 
     python -m validation.sweep_speed [--samples 20] [--models timoshenko,harmonic,solid] [--fine]
 
-A *separate run* is what a user would do instead, without start-up of Python: build the body with the seats of that variant alone, condense, solve modes.
-Its time is the median over a sample spread over the sweep and is multiplied by the number of variants.
-Differences are taken twice: against the direct solution on the mesh of the sweep (what the reduction costs), and against the separate run,
-whose mesh has its own seats only (that plus the error of the two meshes).  ``--fine`` adds the harmonic solid at order 8.
+A *separate run* is what a user would do instead, without start-up of Python: build the body with
+the seats of that variant alone, condense, solve modes. Its time is the median over a sample spread
+over the sweep and is multiplied by the number of variants. Differences are taken twice: against the
+direct solution on the mesh of the sweep (what the reduction costs), and against the separate run,
+whose mesh has its own seats only (that plus the error of the two meshes).  ``--fine`` adds the
+harmonic solid at order 8.
 """
 
 from __future__ import annotations
@@ -105,7 +107,7 @@ def case(name: str, samples: int) -> dict:
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser = argparse.ArgumentParser(description=__doc__.split("\n\n")[0])
     parser.add_argument("--samples", type=int, default=20)
     parser.add_argument("--models", default="timoshenko,harmonic,solid")
     parser.add_argument(

@@ -38,7 +38,9 @@ if _hears:
 
 
 def main() -> None:
-    """Entry point: errors raised on purpose become one sentence (a scene's, one for each problem) and exit code 1."""
+    """Entry point: errors raised on purpose become one sentence (a scene's, one for each problem)
+    and exit code 1.
+    """
     try:
         _run()
     except SystemExit as end:

@@ -88,7 +88,8 @@ def build_body(scene, fidelity: Fidelity, pairs):
     from solidgear.fidelity import build
     from solidgear.fidelity.options import checked
 
-    # Checked here too: an option called scene or fidelity would be taken for an argument of `build`.
+    # Checked here too: an option called scene or fidelity would be taken for an argument of
+    # `build`.
     return build(scene, fidelity.value, **checked(fidelity.value, options(pairs)))
 
 

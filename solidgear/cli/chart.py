@@ -84,7 +84,8 @@ def run_chart(
     budget: float | None = None,
     quiet: bool = False,
 ):
-    """Run and write the chart of a scene, and put it into the report that an earlier comparison of it left there.
+    """Run and write the chart of a scene, and put it into the report that an earlier comparison of
+    it left there.
 
     Returns
     -------
@@ -132,7 +133,9 @@ def run_chart(
 
 
 def _refresh_report(folder: Path, scene: dict) -> bool:
-    """Write the report of an earlier comparison of the same scene again, now with the chart; False where there is none."""
+    """Write the report of an earlier comparison of the same scene again, now with the chart; False
+    where there is none.
+    """
     from solidgear.report.html import write_report
 
     try:

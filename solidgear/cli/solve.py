@@ -284,7 +284,7 @@ def check(
     as_json: JsonFlag = False,
     settings: Settings = None,
 ) -> None:
-    """Say what will be modelled and what will not hold; nothing heavier than a light mesh is solved."""
+    """Say what will be modelled and what will not hold; a light mesh is the heaviest solved."""
     from solidgear.check import VERDICTS, check_scene
     from solidgear.scene_file import load
 

@@ -35,7 +35,8 @@ import numpy as np
 
 from solidgear.errors import SolidgearError
 
-# A line of action typed with six digits has this error; anything worse is a slip that would scale k_m.
+# A line of action typed with six digits has this error; anything worse is a slip that would scale
+# k_m.
 UNIT_TOLERANCE = 1e-6
 
 _SIDE_OF_MESH = {"pinion": -1.0, "gear": 1.0}  # x of the mesh point, see the drawing
@@ -52,8 +53,8 @@ def line_of_action(
 ) -> np.ndarray:
     """Direction of the tooth force *on* one member, in that member's frame.
 
-    With s as in the head of this module and t = +1 where the force turns the member about +y, the normal
-    force divides into (standard spiral bevel force formulas)
+    With s as in the head of this module and t = +1 where the force turns the member about +y, the
+    normal force divides into (standard spiral bevel force formulas)
 
         tangential   t cos(phi) cos(psi)
         along +y     sin(phi) sin(gamma) - s t cos(phi) sin(psi) cos(gamma)
@@ -68,7 +69,8 @@ def line_of_action(
     pitch_angle : float
         gamma, between the axis and the pitch cone, 0 to pi/2, rad.
     spiral_angle : float
-        psi at the mesh point, 0 (straight teeth) to below pi/2, rad; without sign, which is the hand's.
+        psi at the mesh point, 0 (straight teeth) to below pi/2, rad; without sign, which is the
+        hand's.
     pressure_angle : float
         phi, normal to the tooth, 0 to below pi/2, rad.
     hand : {"left", "right"}
@@ -206,7 +208,9 @@ class MeshVector:
 
     @cached_property
     def vector(self) -> np.ndarray:
-        """(6,) ``{n, r x n}``; its product with a motion is the displacement along the line of action."""
+        """(6,) ``{n, r x n}``; its product with a motion is the displacement along the line of
+        action.
+        """
         return np.concatenate([self.normal, np.cross(self.point, self.normal)])
 
     @property

@@ -1,7 +1,8 @@
 """Least-squares identification of what a source does not publish, from the frequencies it does.
 
-What comes out is `identified`, never `published`: every quantity carries its bounds, whether it rests on one of them,
-how strongly each frequency depends on it, and how well the frequencies fix it.
+What comes out is `identified`, never `published`: every quantity carries its bounds, whether it
+rests on one of them, how strongly each frequency depends on it, and how well the frequencies fix
+it.
 """
 
 from __future__ import annotations
@@ -16,7 +17,8 @@ from solidgear.errors import SolidgearError
 
 # A quantity this close to a bound, as a fraction of the way between the bounds, rests on it.
 ON_BOUND = 1e-3
-# Central differences of frequencies that are good to about 1e-13: 1e-5 of the way balances rounding and curvature.
+# Central differences of frequencies that are good to about 1e-13: 1e-5 of the way balances rounding
+# and curvature.
 STEP = 1e-5
 
 
@@ -74,7 +76,8 @@ class Identified:
     name, unit : str
     value, lower, upper : float
     on_bound : {"", "lower", "upper"}
-        Not empty where the data pull the quantity out of its bounds: then the value is the bound's, not the data's.
+        Not empty where the data pull the quantity out of its bounds: then the value is the bound's,
+        not the data's.
     sensitivity : (n,) ndarray
         ``d ln f_j / d ln p``.
     spread : float
@@ -106,7 +109,8 @@ class Identification:
     starts, agreeing : int
         Starting points, and how many of them ended at a cost within 1 % of the best.
     condition : float
-        Condition number of the matrix of sensitivities; far above 1e3 means that combinations of the quantities are free.
+        Condition number of the matrix of sensitivities; far above 1e3 means that combinations of
+        the quantities are free.
     """
 
     quantities: tuple[Identified, ...]
@@ -154,7 +158,8 @@ def identify(
     Parameters
     ----------
     model : callable
-        Natural frequencies, Hz, in the order of `published_hz`, from a dict of the unknowns by name.
+        Natural frequencies, Hz, in the order of `published_hz`, from a dict of the unknowns by
+        name.
     unknowns : sequence of Unknown
     published_hz : (n,) array_like
         Positive; leave out zero frequencies, which say nothing.
@@ -169,7 +174,8 @@ def identify(
     Raises
     ------
     SolidgearError
-        If there are more unknowns than frequencies, names repeat, or the model does not answer in kind.
+        If there are more unknowns than frequencies, names repeat, or the model does not answer in
+        kind.
 
     Notes
     -----
@@ -224,7 +230,8 @@ def identify(
         for p in points
     ]
     best = min(found, key=lambda s: s.cost)
-    # An exact fit leaves costs of rounding size, which differ by large factors: those agree as well.
+    # An exact fit leaves costs of rounding size, which differ by large factors: those agree as
+    # well.
     agreeing = sum(s.cost <= 1.01 * best.cost + 1e-18 for s in found)
     return _report(log_ratio, unknowns, best.x, published, starts, agreeing)
 
@@ -280,12 +287,14 @@ def torsion_springs(
 ) -> list[tuple[float, float]]:
     """Exact springs of the torsional chain with a rigid mesh, from its two frequencies.
 
-    With everything on the pinion's side, ``J1 = engine``, ``J2 = pinion + gear/R^2``, ``J3 = load/R^2``, the springs obey
+    With everything on the pinion's side, ``J1 = engine``, ``J2 = pinion + gear/R^2``, ``J3 =
+    load/R^2``, the springs obey
 
         k1 (1/J1 + 1/J2) + k2 (1/J2 + 1/J3) = w1^2 + w2^2
         k1 k2 (J1 + J2 + J3) / (J1 J2 J3) = w1^2 w2^2
 
-    which is a quadratic: none, one or two pairs fit, and the frequencies alone cannot tell which of two it is.
+    which is a quadratic: none, one or two pairs fit, and the frequencies alone cannot tell which of
+    two it is.
 
     Parameters
     ----------
@@ -299,7 +308,8 @@ def torsion_springs(
     Returns
     -------
     list of (float, float)
-        Engine-to-pinion and gear-to-load springs on their own shafts, N m/rad, the softer gear side first.
+        Engine-to-pinion and gear-to-load springs on their own shafts, N m/rad, the softer gear side
+        first.
 
     Raises
     ------

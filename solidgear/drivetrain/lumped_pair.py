@@ -7,10 +7,11 @@ Coordinates, in this order (Hua 2010, equations 15 and 16)::
     7 .. 12  gear   x y z thx thy thz     in the gear's frame, at its lumped point
     13       load thy
 
-Both frames are drawn in :mod:`solidgear.drivetrain.gear_mesh`.  Every spring is kept as rows of a strain
-matrix ``G`` with ``K = G'G``, and the natural frequencies are the singular values of ``G L^-T`` with ``M = L L'``.
-That halves the digits lost between the torsional modes at some ten Hz and the bending modes at some thousand,
-and makes zero frequencies a matter of counting rows: no spring has to cancel another one to give them.
+Both frames are drawn in :mod:`solidgear.drivetrain.gear_mesh`.  Every spring is kept as rows of a
+strain matrix ``G`` with ``K = G'G``, and the natural frequencies are the singular values of ``G
+L^-T`` with ``M = L L'``. That halves the digits lost between the torsional modes at some ten Hz and
+the bending modes at some thousand, and makes zero frequencies a matter of counting rows: no spring
+has to cancel another one to give them.
 """
 
 from __future__ import annotations
@@ -47,7 +48,8 @@ COMPONENTS = (
 )
 
 TRANSLATION, TILT = [0, 1, 2], [3, 5]
-# Published 6x6 carry seven digits at the very most: a torsion row or a negative eigenvalue below this is rounding.
+# Published 6x6 carry seven digits at the very most: a torsion row or a negative eigenvalue below
+# this is rounding.
 ROUNDING = 1e-9
 
 
@@ -124,7 +126,8 @@ class PairModes:
 
 @dataclass(frozen=True, eq=False)
 class LumpedPair:
-    """Two rigid gears on shaft-bearing stiffnesses, coupled by a mesh spring, between an engine and a load.
+    """Two rigid gears on shaft-bearing stiffnesses, coupled by a mesh spring, between an engine and
+    a load.
 
     Attributes
     ----------
@@ -133,13 +136,15 @@ class LumpedPair:
     pinion_mass, gear_mass : (6, 6) array_like
         Symmetric positive definite at the lumped point; see `diagonal_mass`.
     pinion_support, gear_support : (6, 6) array_like
-        K_ll, symmetric positive semidefinite with a zero torsion row; from `solidgear.condense` or `shaft_stiffness`.
+        K_ll, symmetric positive semidefinite with a zero torsion row; from `solidgear.condense` or
+        `shaft_stiffness`.
     pinion_torsion, gear_torsion : float
         Spring from engine to pinion and from gear to load, N m/rad, not negative.
     mesh_stiffness : float
         k_m, N/m, not negative.
     pinion_mesh, gear_mesh : MeshVector
-        h_p and h_g with *one* physical direction n, so that the transmission error is ``h_p q_p - h_g q_g``.
+        h_p and h_g with *one* physical direction n, so that the transmission error is ``h_p q_p -
+        h_g q_g``.
 
     Raises
     ------
@@ -190,7 +195,9 @@ class LumpedPair:
 
     @cached_property
     def train_rotation(self) -> np.ndarray:
-        """(14,) rotation of the whole train that strains no spring, the faster side turning by 1 rad."""
+        """(14,) rotation of the whole train that strains no spring, the faster side turning by 1
+        rad.
+        """
         lever_p, lever_g = self.pinion_mesh.lever, self.gear_mesh.lever
         if lever_p == 0 and lever_g == 0:
             raise SolidgearError(
@@ -226,7 +233,9 @@ class LumpedPair:
         return np.vstack(rows), where
 
     def matrices(self) -> tuple[np.ndarray, np.ndarray]:
-        """Stiffness and mass (14, 14), SI (equations 17 and 18), assembled from the springs and not from `strains`."""
+        """Stiffness and mass (14, 14), SI (equations 17 and 18), assembled from the springs and not
+        from `strains`.
+        """
         k, m = np.zeros((14, 14)), np.zeros((14, 14))
         k[PINION, PINION], k[GEAR, GEAR] = self.pinion_support, self.gear_support
         m[PINION, PINION], m[GEAR, GEAR] = self.pinion_mass, self.gear_mass
@@ -244,7 +253,8 @@ class LumpedPair:
         strain, where = self.strains
         chol = np.linalg.cholesky(m)
         _, w, vt = np.linalg.svd(sla.solve_triangular(chol, strain.T, lower=True).T)
-        # Rows that cannot be told from dependent ones, e.g. a mesh that acts on supports only, add no frequency.
+        # Rows that cannot be told from dependent ones, e.g. a mesh that acts on supports only, add
+        # no frequency.
         elastic = int((w > 1e-12 * w.max(initial=0.0)).sum())
         order = np.r_[np.arange(14)[elastic:], np.arange(elastic)[::-1]]
         omega = np.r_[np.zeros(14 - elastic), w[:elastic][::-1]]
@@ -318,7 +328,8 @@ class Consistency:
 def rayleigh_bound(stiffness, mass) -> float:
     """Lower bound of the highest natural frequency, Hz.
 
-    Rayleigh's quotient of a unit vector is ``K_ii / M_ii``, and no quotient exceeds the highest eigenvalue.
+    Rayleigh's quotient of a unit vector is ``K_ii / M_ii``, and no quotient exceeds the highest
+    eigenvalue.
 
     Parameters
     ----------
@@ -415,7 +426,9 @@ def _support(name: str, value) -> np.ndarray:
 
 
 def _root(stiffness: np.ndarray) -> np.ndarray:
-    """(r, 6) rows ``R`` with ``R'R`` the stiffness and r its rank; scaled first, so that every spring keeps its own precision."""
+    """(r, 6) rows ``R`` with ``R'R`` the stiffness and r its rank; scaled first, so that every
+    spring keeps its own precision.
+    """
     d = np.sqrt(np.diag(stiffness))
     safe = np.where(d > 0, d, 1.0)
     w, v = np.linalg.eigh(stiffness / np.outer(safe, safe))

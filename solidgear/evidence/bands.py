@@ -1,4 +1,5 @@
-"""How sure a solid is of its own numbers: one band a quantity, from the same solid on ever finer meshes.
+"""How sure a solid is of its own numbers: one band a quantity, from the same solid on ever finer
+meshes.
 
 **Layered** sequences (harmonic solid, graded hexahedra) raise order or size and layers together.  One layer of ratio q towards a
 corner of exponent a leaves the share ``q^(2a)`` of what the corner costs: 0.17 at a right-angled shoulder for q = 0.2, 0.32 for
@@ -8,11 +9,13 @@ distance.  The factors are measured, by ``validation/attack/bands.py`` on random
 **Other** sequences (tetrahedra, linear elements, meshes that were asked for by refinement) use the grid convergence index of
 :mod:`solidgear.evidence.converge`.
 
-A change that is small by accident, since a quantity passes through an extremum on its way, is not believed: the change before
-it, and for couplings the changes of both diagonal entries, set a floor.  Displacement elements are too stiff, so the error of the
-compliance is a positive semidefinite matrix and that of a coupling no larger than the geometric mean of its diagonal entries'.
-What the solver leaves (residuals of statics and modes) is added, and of hexahedra what the cells around leave, which layers do not
-touch: it is measured on the coarsest level with half as many cells around again.
+A change that is small by accident, since a quantity passes through an extremum on its way, is not
+believed: the change before it, and for couplings the changes of both diagonal entries, set a floor.
+Displacement elements are too stiff, so the error of the compliance is a positive semidefinite
+matrix and that of a coupling no larger than the geometric mean of its diagonal entries'. What the
+solver leaves (residuals of statics and modes) is added, and of hexahedra what the cells around
+leave, which layers do not touch: it is measured on the coarsest level with half as many cells
+around again.
 """
 
 from __future__ import annotations
@@ -25,21 +28,25 @@ from solidgear.evidence.quantities import COUPLINGS, QUANTITIES, change
 
 #: band over the last change: harmonic solid, graded hexahedra
 LAYERED = {"harmonic": 0.33, "solid": 0.8}
-#: the same where seats are rigid: their ends are singular like a crack, and a layer of ratio q leaves the share q
+#: the same where seats are rigid: their ends are singular like a crack, and a layer of ratio q
+#: leaves the share q
 RIGID = {"harmonic": 0.42, "solid": 1.3}
-#: the same after two levels only, without and with rigid seats: the step off the coarsest mesh tells less where it is small, perhaps by accident,
-#: and more where it is large.  Factor of small steps, the band they reach at most before the factor of large steps takes over, and that factor.
+#: the same after two levels only, without and with rigid seats: the step off the coarsest mesh
+#: tells less where it is small, perhaps by accident, and more where it is large.  Factor of small
+#: steps, the band they reach at most before the factor of large steps takes over, and that factor.
 FIRST = {
     "harmonic": ((0.15, 0.0, 0.15), (0.42, 0.0, 0.42)),
     "solid": ((1.8, 0.009, 0.6), (1.8, 0.036, 0.8)),
 }
 #: safety on the observed reduction of two regular steps, where that is the worse news
 OBSERVED, SLOWEST = 1.5, 0.7
-#: the last change counts for at least this share of the one before it, and a coupling's of its diagonal entries'
+#: the last change counts for at least this share of the one before it, and a coupling's of its
+#: diagonal entries'
 EARLIER, DIAGONAL = {"harmonic": 0.03, "solid": 0.15}, 0.2
 #: share of the last change by which a layered sequence is still expected to go on
 AHEAD = {"harmonic": 0.12, "solid": 0.4}
-#: safety on what the cells around leave: in thin walls the coarsest mesh, where it is measured, shows half of it
+#: safety on what the cells around leave: in thin walls the coarsest mesh, where it is measured,
+#: shows half of it
 SURE_AROUND = 2.5
 #: rounding, below which nothing is told apart
 LEAST = 1e-10
@@ -54,7 +61,8 @@ class Band:
     values : tuple of float
         Coarse to fine.
     gci : float
-        The band, relative to the finest value (couplings: to the geometric mean of their diagonal entries).
+        The band, relative to the finest value (couplings: to the geometric mean of their diagonal
+        entries).
     change : float
         Last change, relative.
     reduction : float or None
@@ -157,7 +165,9 @@ def _first(rule: tuple[float, float, float], step: float) -> float:
 
 
 def _left_around(around: Values, name: str) -> float:
-    """What the cells around leave in a quantity; in a coupling as much as in its diagonal entries, in one that was not measured as much as in the worst."""
+    """What the cells around leave in a quantity; in a coupling as much as in its diagonal entries,
+    in one that was not measured as much as in the worst.
+    """
     if name in COUPLINGS:
         own = [around[d] for d in COUPLINGS[name] if d in around]
         return max([around.get(name, 0.0), (own[0] * own[1]) ** 0.5 if len(own) == 2 else 0.0])

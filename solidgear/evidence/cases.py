@@ -1,4 +1,6 @@
-"""The cases of a chart of error against cost, and what a process pays once before the first of them."""
+"""The cases of a chart of error against cost, and what a process pays once before the first of
+them.
+"""
 
 from __future__ import annotations
 
@@ -131,7 +133,9 @@ print(json.dumps(seconds))
 
 
 def setup_seconds() -> dict[str, float]:
-    """What a fresh interpreter pays once before the first model, s by what for; empty where none can be started."""
+    """What a fresh interpreter pays once before the first model, s by what for; empty where none
+    can be started.
+    """
     try:
         done = subprocess.run(
             [sys.executable, "-c", _SETUP], capture_output=True, text=True, timeout=120, check=True

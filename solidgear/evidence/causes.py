@@ -76,7 +76,9 @@ def beam_causes(scene) -> list[Cause]:
 
 
 def attachment_causes(variants: dict[str, dict[str, float]], model: str) -> list[Cause]:
-    """Effect of the attachment, from results already at hand (``average``, ``rigid``, ``section`` -> quantities)."""
+    """Effect of the attachment, from results already at hand (``average``, ``rigid``, ``section``
+    -> quantities).
+    """
     base = variants.get("average")
     if base is None:
         return []
@@ -92,8 +94,9 @@ def shoulder_cause(
 ) -> Cause | None:
     """Share of the beam-to-solid gap that the steps of the shaft are to blame for.
 
-    The gap (Timoshenko over harmonic, section mean everywhere) of the scene, less the gap of the same scene with every outer
-    radius brought down to the smallest one: what stress cannot fill right at a shoulder.
+    The gap (Timoshenko over harmonic, section mean everywhere) of the scene, less the gap of the
+    same scene with every outer radius brought down to the smallest one: what stress cannot fill
+    right at a shoulder.
 
     Parameters
     ----------

@@ -1,4 +1,6 @@
-"""What a count of modes proves, in a sentence: which families were counted, and where the others begin."""
+"""What a count of modes proves, in a sentence: which families were counted, and where the others
+begin.
+"""
 
 from __future__ import annotations
 
@@ -6,7 +8,8 @@ BEAMS = ("euler", "timoshenko")
 
 
 def completeness(evidence: dict, fidelity: str) -> str:
-    """Claim about missed modes that the evidence of a :class:`~solidgear.solve.modes.ModeSet` carries.
+    """Claim about missed modes that the evidence of a :class:`~solidgear.solve.modes.ModeSet`
+    carries.
 
     Parameters
     ----------

@@ -129,7 +129,8 @@ def gci(
     plausible = observed is not None and 0.7 * expected <= observed <= highest + 0.5
     order = min(observed, max(cap, expected)) if plausible else expected
     factor = 1.25 if plausible else 3.0
-    # An oscillating or stalled pair says nothing about the size of the error: take the larger change.
+    # An oscillating or stalled pair says nothing about the size of the error: take the larger
+    # change.
     change = abs(fine) if plausible else max(abs(fine), abs(coarse) if observed is None else 0.0)
     band = factor * change / scale / (r32**order - 1)
     extrapolated = f3 + fine / (r32**order - 1)

@@ -1,4 +1,6 @@
-"""Mode correlation between fidelities: MAC on axis stations, subspace MAC for degenerate pairs and clusters, and which mode is which."""
+"""Mode correlation between fidelities: MAC on axis stations, subspace MAC for degenerate pairs and
+clusters, and which mode is which.
+"""
 
 from __future__ import annotations
 
@@ -15,9 +17,11 @@ from solidgear.solve.modes import Mode, ModeSet
 SURE, LEAD = 0.75, 0.25
 #: Less alike than this is no partner at all; from this on, two modes have something of each other.
 FOREIGN, SHARED = 0.3, 0.05
-#: Relative width of a cluster in which shapes may mix without harm, and how alike the spaces of two clusters must be.
+#: Relative width of a cluster in which shapes may mix without harm, and how alike the spaces of two
+#: clusters must be.
 CLOSE, SAME_SPACE = 0.05, 0.9
-#: Families without section motions are paired by rank; the partner is certain if frequencies are this near, relative.
+#: Families without section motions are paired by rank; the partner is certain if frequencies are
+#: this near, relative.
 RANKED = 0.15
 
 
@@ -78,7 +82,9 @@ class Pairing:
 
     @property
     def frequency_hz(self) -> float:
-        """Of the partner; the root mean square over its members where a pair is split, NaN without one."""
+        """Of the partner; the root mean square over its members where a pair is split, NaN without
+        one.
+        """
         members = [m for m in (self.mode, *self.others) if m is not None]
         if not members:
             return float("nan")
@@ -111,7 +117,8 @@ def pair_modes(model: ModeSet, reference: ModeSet) -> tuple[Pairing, ...]:
     Returns
     -------
     tuple of Pairing
-        One for every elastic mode of the reference, in its order; those beyond the end of its list follow.
+        One for every elastic mode of the reference, in its order; those beyond the end of its list
+        follow.
 
     Raises
     ------
@@ -164,7 +171,8 @@ def _by_shape(mine: list[Mode], theirs: list[Mode], gram) -> list[Pairing]:
     if not mine or not theirs:
         return [Pairing(m, None, 0.0, False) for m in theirs]
     mac = np.array([[subspace_mac(_rows(a), _rows(b), gram) for b in theirs] for a in mine])
-    # Shapes of which sections tell a like part; sections that tell all of one shape and little of another say that they differ.
+    # Shapes of which sections tell a like part; sections that tell all of one shape and little of
+    # another say that they differ.
     share_a, share_b = (
         np.array([max(min(m.captured, 1.0), 1e-3) for m in modes]) for modes in (mine, theirs)
     )
@@ -220,7 +228,9 @@ def _by_shape(mine: list[Mode], theirs: list[Mode], gram) -> list[Pairing]:
 
 
 def _clusters(mine, theirs, like, gram) -> dict[int, tuple[list[int], float]]:
-    """Partners by frequency inside clusters of close modes that span the same space in both models: reference -> (members, subspace MAC)."""
+    """Partners by frequency inside clusters of close modes that span the same space in both models:
+    reference -> (members, subspace MAC).
+    """
     links = like > SHARED
     m = len(mine)
     graph = np.block([[np.zeros((m, m)), links], [links.T, np.zeros((len(theirs),) * 2)]])
@@ -247,7 +257,9 @@ def _clusters(mine, theirs, like, gram) -> dict[int, tuple[list[int], float]]:
 
 
 def _dense_groups(left, right, mine, theirs):
-    """Runs of modes close in frequency, in both models, with as many shapes on either side: yields (indices, indices), the largest first."""
+    """Runs of modes close in frequency, in both models, with as many shapes on either side: yields
+    (indices, indices), the largest first.
+    """
     left = sorted(left, key=lambda i: mine[i].frequency_hz)
     right = sorted(right, key=lambda j: theirs[j].frequency_hz)
 

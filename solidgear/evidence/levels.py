@@ -1,8 +1,9 @@
 """Which meshes a solid is solved on, coarse to fine, until its band meets a target.
 
-Every level raises all that limits it at once: the order of the harmonic elements (or the size of 3D ones) and the layers towards
-shoulders and seat ends.  Errors then shrink by a nearly constant factor from level to level, which is what a band can be made of;
-raising one alone runs into what the other leaves (two levels that differ only in layers are one mesh on a shaft without shoulders).
+Every level raises all that limits it at once: the order of the harmonic elements (or the size of 3D
+ones) and the layers towards shoulders and seat ends.  Errors then shrink by a nearly constant
+factor from level to level, which is what a band can be made of; raising one alone runs into what
+the other leaves (two levels that differ only in layers are one mesh on a shaft without shoulders).
 """
 
 from __future__ import annotations
@@ -52,11 +53,14 @@ LINEAR = tuple({"refinement": r} for r in (0.6, 0.9, 1.35, 2.0))
 
 # What leaves the choice of meshes to the program although it is given.
 FREE = ("element", "around", "ovalising", "attachments")
-#: cells around of hexahedra that bend as a whole: eight are good to some 6e-4, and the error falls with the fourth power
+#: cells around of hexahedra that bend as a whole: eight are good to some 6e-4, and the error falls
+#: with the fourth power
 AROUND, ORDER_AROUND = 8, 4
-#: a solid that judges the others is wanted this much better than the tolerance, one that is judged this much
+#: a solid that judges the others is wanted this much better than the tolerance, one that is judged
+#: this much
 JUDGE, JUDGED = 20.0, 1.0
-#: unknowns of the second level above which a third one, some three times as large, is solved only if the band needs it
+#: unknowns of the second level above which a third one, some three times as large, is solved only
+#: if the band needs it
 HEAVY = 15_000
 #: and what such a second level must meet to judge
 LIGHT_JUDGE = 3.0
@@ -71,11 +75,14 @@ class Sequence:
     levels : tuple of dict
         Builder options of each.
     fixed : bool
-        All are solved, the last being the one that was asked for; otherwise the program climbs until a band is met.
+        All are solved, the last being the one that was asked for; otherwise the program climbs
+        until a band is met.
     layered : bool
-        Whether every level adds layers towards singular points (see :mod:`solidgear.evidence.bands`).
+        Whether every level adds layers towards singular points (see
+        :mod:`solidgear.evidence.bands`).
     turned : dict or None
-        The coarsest level with half as many cells around again: what they leave is measured there, where it is cheap.
+        The coarsest level with half as many cells around again: what they leave is measured there,
+        where it is cheap.
     """
 
     levels: tuple[Options, ...]
@@ -85,7 +92,9 @@ class Sequence:
 
     @property
     def left_around(self) -> float:
-        """Error of the cells around, as a multiple of the change from the coarsest level to the turned one."""
+        """Error of the cells around, as a multiple of the change from the coarsest level to the
+        turned one.
+        """
         if self.turned is None:
             return 0.0
         ratio = self.levels[0]["around"] / self.turned["around"]

@@ -1,9 +1,11 @@
-"""Error against cost: many discretisations of one scene, timed in turns, and those that no other beats in both.
+"""Error against cost: many discretisations of one scene, timed in turns, and those that no other
+beats in both.
 
-The error is that against a refined harmonic solid, whose own band (grid convergence index over its order) is the floor: what lies
-below it is not resolved.  A time runs from the scene in memory to both answers, compliance at the lumped point and modes, on a
-new body; what a process pays once (imports, first use of gmsh and MKL) is measured apart, and each kind of model runs once
-unmeasured before.
+The error is that against a refined harmonic solid, whose own band (grid convergence index over its
+order) is the floor: what lies below it is not resolved.  A time runs from the scene in memory to
+both answers, compliance at the lumped point and modes, on a new body; what a process pays once
+(imports, first use of gmsh and MKL) is measured apart, and each kind of model runs once unmeasured
+before.
 """
 
 from __future__ import annotations
@@ -67,8 +69,9 @@ class Row:
     samples : list of float
         Wall seconds of every run; of a failed case the seconds until it failed.
     values, errors, like_for_like : dict of str to float
-        By quantity: SI value; ``|value / reference - 1|``; for beams and lumped models the same against the reference with section ties.
-        ``errors`` also has ``C 6x6``: the largest ``|dC_ij| / sqrt(C_ii C_jj)`` over the motions that something resists.
+        By quantity: SI value; ``|value / reference - 1|``; for beams and lumped models the same
+        against the reference with section ties. ``errors`` also has ``C 6x6``: the largest
+        ``|dC_ij| / sqrt(C_ii C_jj)`` over the motions that something resists.
     """
 
     family: str
@@ -98,7 +101,8 @@ class Race:
     ----------
     scene : dict
     reference : dict
-        ``options``, ``unknowns``, ``seconds``, and by quantity ``values``, ``bands`` and ``like_for_like``.
+        ``options``, ``unknowns``, ``seconds``, and by quantity ``values``, ``bands`` and
+        ``like_for_like``.
     rows : list of Row
     setup : dict of str to float
         Seconds a process pays once, by what for.
@@ -132,10 +136,12 @@ class Race:
         )
 
     def sure_error(self, row: Row, quantity: str) -> float | None:
-        """The largest of the error a user makes, the one like for like, and those of finer levels of the series.
+        """The largest of the error a user makes, the one like for like, and those of finer levels
+        of the series.
 
-        A cancellation of errors earns no place on the front: neither a tie that makes up for a beam's stiffness, nor a coarse mesh
-        whose error changes sign and so beats its own refinements.
+        A cancellation of errors earns no place on the front: neither a tie that makes up for a
+        beam's stiffness, nor a coarse mesh whose error changes sign and so beats its own
+        refinements.
         """
         found = self.error(row, quantity)
         if found is None:
@@ -225,7 +231,8 @@ def race(
     Raises
     ------
     SolidgearError
-        If ``runs`` or ``budget`` are not positive, or the reference fails or has none of the charted quantities.
+        If ``runs`` or ``budget`` are not positive, or the reference fails or has none of the
+        charted quantities.
     """
     if runs < 1:
         raise SolidgearError(f"runs = {runs} is not usable; give a whole number of at least 1")
@@ -251,7 +258,8 @@ def race(
     try:
         first = _warm_up(scene, found.rows, n, progress)
         while waiting := [row for row in found.rows if row.status == "waiting"]:
-            # Cheapest first, so that one large solid does not use up the budget of many small models.
+            # Cheapest first, so that one large solid does not use up the budget of many small
+            # models.
             row = min(
                 (
                     r
@@ -283,7 +291,8 @@ def race(
 
 
 def answer(scene, model: str, options: dict, n: int):
-    """Body, condensed compliance and compared numbers of one model; the lumped one rests on Timoshenko's beam.
+    """Body, condensed compliance and compared numbers of one model; the lumped one rests on
+    Timoshenko's beam.
 
     Raises
     ------
@@ -309,7 +318,9 @@ def answer(scene, model: str, options: dict, n: int):
 
 
 def scaled_error(compliance: np.ndarray, reference: np.ndarray) -> float | None:
-    """Largest ``|dC_ij| / sqrt(C_ii C_jj)`` over the motions that something resists in both; None if there are none."""
+    """Largest ``|dC_ij| / sqrt(C_ii C_jj)`` over the motions that something resists in both; None
+    if there are none.
+    """
     keep = np.isfinite(np.diag(compliance)) & np.isfinite(np.diag(reference))
     if not keep.any():
         return None
@@ -319,7 +330,9 @@ def scaled_error(compliance: np.ndarray, reference: np.ndarray) -> float | None:
 
 
 def _reference(scene, options: dict, n: int, progress) -> tuple[dict, np.ndarray]:
-    """Record of the refined harmonic solid with the band from its two lower orders, and its compliance."""
+    """Record of the refined harmonic solid with the band from its two lower orders, and its
+    compliance.
+    """
     top = options["order"]
     orders, values = (top - 2, top - 1, top), []
     for order in orders:
@@ -411,7 +424,9 @@ def _kind(row: Row) -> tuple:
 
 
 def _warm_up(scene, rows: list[Row], n: int, progress) -> dict[tuple, float]:
-    """The first case of every kind once, outside the rows: first calls pay for imports and caches; seconds by kind."""
+    """The first case of every kind once, outside the rows: first calls pay for imports and caches;
+    seconds by kind.
+    """
     spent: dict[tuple, float] = {}
     for row in rows:
         if _kind(row) in spent:
@@ -427,7 +442,9 @@ def _warm_up(scene, rows: list[Row], n: int, progress) -> dict[tuple, float]:
 
 
 def _guess(row: Row, found: Race, first: dict[tuple, float]) -> float:
-    """Seconds of one run of a row, from the levels before it in its series; the first level costs what the warm-up of its kind did."""
+    """Seconds of one run of a row, from the levels before it in its series; the first level costs
+    what the warm-up of its kind did.
+    """
     times = [
         r.samples[0]
         for r in found.rows

@@ -1,4 +1,6 @@
-"""Which frequency of one model answers for a mode of another: the mode of the same shape, or where none is certain the same place in the order."""
+"""Which frequency of one model answers for a mode of another: the mode of the same shape, or where
+none is certain the same place in the order.
+"""
 
 from __future__ import annotations
 
@@ -21,10 +23,12 @@ class Partners:
         self.pairs = {p.reference.name: p for p in pair_modes(model, reference)}
 
     def frequency(self, name: str) -> tuple[float | None, str]:
-        """Frequency (Hz) of the model that answers for a mode of the reference, and in words how it was found where shapes did not tell.
+        """Frequency (Hz) of the model that answers for a mode of the reference, and in words how it
+        was found where shapes did not tell.
 
-        Where no shape is certainly the same, the mode is compared with the one at the same place in ascending order, twins counted twice:
-        eigenvalues of two models of one shaft are ordered alike (Courant and Fischer) whatever their shapes are called.
+        Where no shape is certainly the same, the mode is compared with the one at the same place in
+        ascending order, twins counted twice: eigenvalues of two models of one shaft are ordered
+        alike (Courant and Fischer) whatever their shapes are called.
         """
         pair = self.pairs.get(name)
         if pair is None:
@@ -48,7 +52,9 @@ class Partners:
 
 
 def _ladder(modes: ModeSet) -> np.ndarray:
-    """Elastic frequencies in ascending order, each as often as it has shapes; families that only one model has left out."""
+    """Elastic frequencies in ascending order, each as often as it has shapes; families that only
+    one model has left out.
+    """
     own = sorted((*modes.modes, *modes.beyond), key=lambda m: m.frequency_hz)
     return np.array(
         [

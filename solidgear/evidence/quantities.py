@@ -7,7 +7,8 @@ import numpy as np
 from solidgear.solve.modes import ModeSet
 from solidgear.solve.statics import Condensed
 
-# name -> (kind, place, unit); compliances first: they are what a change of tie or model moves least by accident.
+# name -> (kind, place, unit); compliances first: they are what a change of tie or model moves least
+# by accident.
 QUANTITIES = {
     "C_zz": ("compliance", (2, 2), "m/N"),
     "C_z,thx": ("compliance", (2, 3), "rad/N"),
@@ -24,16 +25,20 @@ QUANTITIES = {
 }
 
 
-#: a coupling passes through zero where symmetry wants it to: it is told against the geometric mean of these two
+#: a coupling passes through zero where symmetry wants it to: it is told against the geometric mean
+#: of these two
 COUPLINGS = {"C_z,thx": ("C_zz", "C_thx"), "K_z,thx": ("K_zz", "K_thx")}
 
-#: What models are judged by: compliances and the frequencies a gear designer reads.  Stiffnesses follow from compliances and are
-#: shown, not judged: inverting spreads a small change of one entry over all of them.
+#: What models are judged by: compliances and the frequencies a gear designer reads.  Stiffnesses
+#: follow from compliances and are shown, not judged: inverting spreads a small change of one entry
+#: over all of them.
 JUDGED = ("C_zz", "C_z,thx", "C_thx", "C_yy", "bending 1", "axial 1")
 
 
 def measure(condensed: Condensed, modes: ModeSet) -> dict[str, float]:
-    """The compared numbers of one solution; those that do not exist (free motions, missing modes) are left out."""
+    """The compared numbers of one solution; those that do not exist (free motions, missing modes)
+    are left out.
+    """
     out = {}
     for name, (kind, place, _) in QUANTITIES.items():
         if kind == "frequency":
@@ -48,9 +53,11 @@ def measure(condensed: Condensed, modes: ModeSet) -> dict[str, float]:
 
 
 def change(new: dict[str, float], old: dict[str, float], name: str) -> float | None:
-    """Relative change of one quantity, or None where either lacks it; rounding (below 1e-11) counts as none.
+    """Relative change of one quantity, or None where either lacks it; rounding (below 1e-11) counts
+    as none.
 
-    Couplings are related to the geometric mean of their diagonal entries (`COUPLINGS`), all else to the old value.
+    Couplings are related to the geometric mean of their diagonal entries (`COUPLINGS`), all else to
+    the old value.
     """
     if name not in new or name not in old:
         return None

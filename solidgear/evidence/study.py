@@ -1,8 +1,10 @@
-"""One model of one scene, solved with the ties of the scene and like for like, with the band of a solid.
+"""One model of one scene, solved with the ties of the scene and like for like, with the band of a
+solid.
 
-The *ties of the scene* are what its bearings and its port say.  *Like for like* means mean motions of cross-sections at every
-station: what a beam knows of a solid.  A solid is solved on ever finer meshes (:mod:`solidgear.evidence.levels`) until its bands
-(:mod:`solidgear.evidence.bands`) meet what is asked for.
+The *ties of the scene* are what its bearings and its port say.  *Like for like* means mean motions
+of cross-sections at every station: what a beam knows of a solid.  A solid is solved on ever finer
+meshes (:mod:`solidgear.evidence.levels`) until its bands (:mod:`solidgear.evidence.bands`) meet
+what is asked for.
 """
 
 from __future__ import annotations
@@ -31,9 +33,11 @@ Progress = Callable[[str], None]
 
 SOLIDS = ("harmonic", "solid")
 SCENE, SECTION = "as scene", "section"
-#: exponent at the end of a rigid seat, a clamp on a smooth surface (Williams 1952, clamped-free at 180 degrees)
+#: exponent at the end of a rigid seat, a clamp on a smooth surface (Williams 1952, clamped-free at
+#: 180 degrees)
 RIGID_EDGE = 0.5
-#: modes that hold the first bending pair and the first axial mode of anything that looks like a shaft
+#: modes that hold the first bending pair and the first axial mode of anything that looks like a
+#: shaft
 ENOUGH = 10
 
 
@@ -72,7 +76,8 @@ class Rung:
     bands : dict of str to dict of str to Band
         The same keys; empty for a model without a band of its own.
     variants : dict of str to Tied
-        The scene with each attachment everywhere: ``average``, ``rigid`` (bearing seats only), ``section``.
+        The scene with each attachment everywhere: ``average``, ``rigid`` (bearing seats only),
+        ``section``.
     levels : list of dict
         Facts about every mesh, coarse to fine.
     failed : dict of str to str
@@ -132,8 +137,8 @@ def study(
     options : mapping, optional
         Builder options; where they speak of the mesh, that mesh and two coarser ones are solved.
     share : float, optional
-        Bands of the judged quantities are wanted below the tolerance of the scene divided by this; by default 20 for the
-        harmonic solid, which judges, and 2 for the 3D solid.
+        Bands of the judged quantities are wanted below the tolerance of the scene divided by this;
+        by default 20 for the harmonic solid, which judges, and 2 for the 3D solid.
     most : int, optional
         Levels to stop at.
     evidence : bool
@@ -284,9 +289,12 @@ def _bands(
 def _solved(
     scene, model: str, options: Mapping[str, Any], meter: Meter, counted_from: float = math.inf
 ) -> tuple[Body, dict[str, Tied]]:
-    """A body and what it answers, tied as in the scene and by section means; modes are counted from so many unknowns on."""
+    """A body and what it answers, tied as in the scene and by section means; modes are counted from
+    so many unknowns on.
+    """
     given = {s.attachment for s in scene.stations}
-    # Means over seats and over sections are only rows on the same matrices; a rigid seat is another matrix.
+    # Means over seats and over sections are only rows on the same matrices; a rigid seat is another
+    # matrix.
     together = "rigid" not in given
     wanted = sorted(given) if model == "solid" else (*sorted(given), "section")
     kinds = tuple(dict.fromkeys(wanted)) if together else None
@@ -328,7 +336,8 @@ def _tied(
     with meter.stage("statics"):
         condensed = condense(body, supports, scene.port.name, attachment)
     with meter.stage("modes"):
-        # Families of two waves and more are told for the mesh that is told; bearings do not move them, nor do bands rest on them.
+        # Families of two waves and more are told for the mesh that is told; bearings do not move
+        # them, nor do bands rest on them.
         found = modes(
             body,
             supports,
@@ -370,9 +379,11 @@ def _add_variants(scene, rung: Rung, progress: Progress) -> None:
 
 
 def rigid_seats(scene):
-    """The scene with rigid bearing seats; a lumped point that was rigid becomes averaged, any other keeps its attachment.
+    """The scene with rigid bearing seats; a lumped point that was rigid becomes averaged, any other
+    keeps its attachment.
 
-    Only seats are compared in the literature on RBE2 against RBE3; a rigid head would be another model.
+    Only seats are compared in the literature on RBE2 against RBE3; a rigid head would be another
+    model.
     """
     bearings = tuple(b.with_changes(attachment="rigid") for b in scene.bearings)
     port = (

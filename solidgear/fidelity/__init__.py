@@ -24,8 +24,8 @@ def build(scene, fidelity: str, **options) -> Body:
     Raises
     ------
     SolidgearError
-        For an unknown fidelity, an option it does not have or cannot use (:data:`solidgear.fidelity.options.OPTIONS`), or a model that
-        will not fit into memory.
+        For an unknown fidelity, an option it does not have or cannot use
+        (:data:`solidgear.fidelity.options.OPTIONS`), or a model that will not fit into memory.
     """
     if fidelity in FIDELITIES:
         from solidgear.fidelity.options import checked

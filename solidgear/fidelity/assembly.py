@@ -15,8 +15,9 @@ import scipy.sparse as sp
 from skfem.assembly import Dofs
 
 BATCH_BYTES = 4e6
-# Rounding of coordinates puts the nodes of a straight element off by 1e-14 to 1e-13 of its least extent; a bend changes the entries by about
-# its own size.  Elements bent by more go through quadrature.
+# Rounding of coordinates puts the nodes of a straight element off by 1e-14 to 1e-13 of its least
+# extent; a bend changes the entries by about its own size.  Elements bent by more go through
+# quadrature.
 STRAIGHT = 3e-13
 
 
@@ -24,8 +25,9 @@ STRAIGHT = 3e-13
 class Tabulated:
     """Basis functions of some elements at reference points.
 
-    ``value`` (nb, nq); ``slope`` (nb, dim, nq) reference gradients; ``det`` (ne, nq); ``x`` (dim, ne, nq); ``jac`` and ``inverse``
-    (dim, dim, ne, nq), position along reference coordinates and back.
+    ``value`` (nb, nq); ``slope`` (nb, dim, nq) reference gradients; ``det`` (ne, nq); ``x`` (dim,
+    ne, nq); ``jac`` and ``inverse`` (dim, dim, ne, nq), position along reference coordinates and
+    back.
     """
 
     value: np.ndarray
@@ -37,7 +39,9 @@ class Tabulated:
 
     @property
     def tangent(self) -> np.ndarray:
-        """(ne, nq, dim, dim) derivative of position (third axis) along reference coordinates (fourth)."""
+        """(ne, nq, dim, dim) derivative of position (third axis) along reference coordinates
+        (fourth).
+        """
         return self.jac.transpose(2, 3, 0, 1)
 
     def gradient(self, factor) -> np.ndarray:
@@ -133,7 +137,8 @@ def straight(element, nodes: np.ndarray):
     mask : (ne,) ndarray of bool
         False where nodes are off by more than ``STRAIGHT`` of the smallest extent of the element.
     jac : (dim, dim, ne) ndarray
-        Derivative of position (first axis) along reference coordinates (second), in the least-squares sense.
+        Derivative of position (first axis) along reference coordinates (second), in the
+        least-squares sense.
     """
     dim, _, ne = nodes.shape
     affine = np.column_stack([element.doflocs, np.ones(len(element.doflocs))])
@@ -141,7 +146,8 @@ def straight(element, nodes: np.ndarray):
     bend = np.matmul(sla.null_space(affine.T).T, nodes)
     bend = np.sqrt(np.einsum("dne,dne->e", bend, bend))
     size = np.sqrt(np.einsum("dce,dce->e", jac, jac))
-    # the least extent is at least the determinant over the square (in the plane: the first power) of the largest
+    # the least extent is at least the determinant over the square (in the plane: the first power)
+    # of the largest
     return bend <= STRAIGHT * np.abs(inverted(jac)[1]) / size ** (dim - 1), jac
 
 
@@ -169,8 +175,9 @@ class Pattern:
         self.n = int(dofs.max()) + 1
         nb, ne = dofs.shape
         of = np.ascontiguousarray(dofs.T, np.int32)
-        # Element entries row by row, each row being an unknown of an element.  A transposition is a counting sort by column that
-        # leaves rows in order; the pattern is symmetric, so each entry carries the number of its mirror image.
+        # Element entries row by row, each row being an unknown of an element.  A transposition is a
+        # counting sort by column that leaves rows in order; the pattern is symmetric, so each entry
+        # carries the number of its mirror image.
         slots = np.arange(ne * nb, dtype=np.int32).reshape(ne, nb)
         by_row = sp.csr_matrix(
             (slots.ravel(), of.ravel(), np.arange(0, ne * nb + 1, nb)), shape=(ne, self.n)
@@ -180,8 +187,8 @@ class Pattern:
         entries = sp.csr_matrix(
             (mirror.ravel(), of[element].ravel(), by_row.indptr * nb), shape=(self.n, self.n)
         ).tocsc()
-        # A change of row opens a new entry.  So does a change of column: were the last row of column j the first of column j + 1,
-        # symmetry and the diagonal would contradict it.
+        # A change of row opens a new entry.  So does a change of column: were the last row of
+        # column j the first of column j + 1, symmetry and the diagonal would contradict it.
         first = np.ones(entries.nnz, bool)
         np.not_equal(entries.indices[1:], entries.indices[:-1], out=first[1:])
         self.place = np.empty((ne, nb * nb), np.int32)

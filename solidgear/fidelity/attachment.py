@@ -17,7 +17,8 @@ def tie_rigidly(block: Block, ties) -> Block:
     ----------
     block : Block
     ties : list of (port index, y, mask)
-        Port whose motion the surface takes, its position (m), and the (n,) mask of unknowns on the surface.
+        Port whose motion the surface takes, its position (m), and the (n,) mask of unknowns on the
+        surface.
 
     Returns
     -------

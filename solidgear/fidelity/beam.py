@@ -84,7 +84,8 @@ def beam(
     elements : int, optional
         Least number of elements along the shaft; by default eight to a diameter.
     attachments : tuple of str, optional
-        Attachments to build for every station, the first being the default one; by default what the scene says.
+        Attachments to build for every station, the first being the default one; by default what the
+        scene says.
 
     Returns
     -------
@@ -110,7 +111,8 @@ def beam(
     n = len(nodes)
     if not shear:
         _long_enough(nodes)
-    # Timoshenko elements carry internal unknowns, after the nodal ones; only rotary inertia drives the second.
+    # Timoshenko elements carry internal unknowns, after the nodal ones; only rotary inertia drives
+    # the second.
     inner = 1 + rotary_inertia if shear and mass == "consistent" else 0
     size = {"bending": 2 * n + inner * (n - 1), "axial": n, "torsion": n}
     entries = {name: ([], [], [], []) for name in size}
@@ -195,7 +197,8 @@ def beam(
 
 
 def mesh(scene, elements: int | None, wanted=()):
-    """Nodes at segment ends, ports and ends of rigid seats, filled in evenly; and the segment of every element.
+    """Nodes at segment ends, ports and ends of rigid seats, filled in evenly; and the segment of
+    every element.
 
     ``wanted`` lists stations with their attachments.
     """
@@ -222,7 +225,8 @@ def _long_enough(nodes):
     """Refuse Euler elements that would eat the digits: their stiffness grows with the inverse cube of their length, and the rest of the
     shaft with it only by what is left of sixteen digits.  Shear bounds that growth in a Timoshenko element.
 
-    Measured on a uniform shaft with two marks this close: first bending is off by 2e-6 at 3e-4 of the length, 3e-4 at 3e-5.
+    Measured on a uniform shaft with two marks this close: first bending is off by 2e-6 at 3e-4 of
+    the length, 3e-4 at 3e-5.
     """
     gap = np.diff(nodes)
     at = int(np.argmin(gap))
@@ -275,7 +279,8 @@ class _Section:
 
 
 def _bending(c: _Section, shear: bool, rotary: bool, mass: str):
-    """Stiffness, mass and fields of one bending element on ``(z, thx)`` at both ends, then internal unknowns.
+    """Stiffness, mass and fields of one bending element on ``(z, thx)`` at both ends, then internal
+    unknowns.
 
     With shear the static field has constant shear in an element, which alone converges with the square of its
     length.  Two internal fields, those of a clamped element under a uniform force and a uniform moment, lift
@@ -283,8 +288,9 @@ def _bending(c: _Section, shear: bool, rotary: bool, mass: str):
     """
     L, s, w = c.length, c.s, c.w
     soft = np.stack([1 / c.bend, 1 / c.shear if shear else np.zeros_like(s)])
-    # Clamped at the left.  With dz/dy = thx a tip force bends by L - s, a tip moment by 1, a uniform
-    # force by (L - s)^2 / 2 and a uniform moment by L - s.  First row moments, second row shear forces.
+    # Clamped at the left.  With dz/dy = thx a tip force bends by L - s, a tip moment by 1, a
+    # uniform force by (L - s)^2 / 2 and a uniform moment by L - s.  First row moments, second row
+    # shear forces.
     tip = np.stack(
         [
             np.column_stack([L - s, np.ones_like(s)]),
@@ -342,9 +348,11 @@ def _rod(c: _Section, rigidity, inertia, mass: str):
 
 @dataclass(frozen=True)
 class _Fields:
-    """Displacement fields of one element: unknowns and their shapes at the Gauss points of the element.
+    """Displacement fields of one element: unknowns and their shapes at the Gauss points of the
+    element.
 
-    ``bend`` has deflection and turn, (2, q, unknowns); ``stretch`` and ``twist`` one field each, (q, unknowns).
+    ``bend`` has deflection and turn, (2, q, unknowns); ``stretch`` and ``twist`` one field each,
+    (q, unknowns).
     """
 
     segment: object
@@ -355,7 +363,9 @@ class _Fields:
     twist: tuple[np.ndarray, np.ndarray]
 
     def part(self, lo: float, hi: float):
-        """Places y, radii, length weights on the surface from lo to hi, and the interpolation (q, q) from the Gauss points."""
+        """Places y, radii, length weights on the surface from lo to hi, and the interpolation (q,
+        q) from the Gauss points.
+        """
         x, w = _GAUSS
         middle, half = (lo + hi) / 2, (hi - lo) / 2
         y = middle + half * x
@@ -372,7 +382,9 @@ class _Fields:
 def _port_rows(
     station, attachment: str, nodes, fields: list[_Fields], size: dict[str, int]
 ) -> dict[str, np.ndarray]:
-    """Motions of a port as rows on the unknowns of bending (d, ph), axial and torsion; zeros where the tie is rigid."""
+    """Motions of a port as rows on the unknowns of bending (d, ph), axial and torsion; zeros where
+    the tie is rigid.
+    """
     out = {name: np.zeros((2 if name == "bending" else 1, n)) for name, n in size.items()}
     if attachment == "section":
         at = int(np.argmin(abs(nodes - station.y)))
@@ -405,7 +417,9 @@ def _port_rows(
 
 
 def _seat_mask(station, nodes, per_node: int, size: int) -> np.ndarray:
-    """Unknowns that a rigid seat takes along: those of its nodes, and the internal ones of its elements."""
+    """Unknowns that a rigid seat takes along: those of its nodes, and the internal ones of its
+    elements.
+    """
     tol = 1e-9 * nodes[-1]
     inside = (nodes > station.lo - tol) & (nodes < station.hi + tol)
     within = inside[1:] & inside[:-1]

@@ -1,9 +1,11 @@
-"""Further circumferential families of a harmonic solid, n = 2 waves around and more: built when asked for, and where they begin.
+"""Further circumferential families of a harmonic solid, n = 2 waves around and more: built when
+asked for, and where they begin.
 
-How low a family reaches is known at three prices.  In closed form: n waves of a wall of thickness h at radius R bend it at least as a free ring or disc
-bends, ``w^2 = E h^2 / (12 rho R^4) n^2 (n^2 - 1)^2 / (n^2 + 1)`` (Love, Theory of Elasticity, sec. 293; the free disc lies above), in series with shear, whose waves
-run no slower than Rayleigh's; that is taken over every part of the shaft, and grows with n without end.  By a light mesh of order 2, from above.
-And by the block itself.
+How low a family reaches is known at three prices.  In closed form: n waves of a wall of thickness h
+at radius R bend it at least as a free ring or disc bends, ``w^2 = E h^2 / (12 rho R^4) n^2 (n^2 -
+1)^2 / (n^2 + 1)`` (Love, Theory of Elasticity, sec. 293; the free disc lies above), in series with
+shear, whose waves run no slower than Rayleigh's; that is taken over every part of the shaft, and
+grows with n without end.  By a light mesh of order 2, from above. And by the block itself.
 """
 
 from __future__ import annotations
@@ -20,8 +22,9 @@ from solidgear.fidelity.scale import overhangs
 from solidgear.meshing.layout import Grading, layout
 from solidgear.meshing.meridian import meridian
 
-#: What carries a disc is no clamp: part of the stiffness of a clamped strip that it gets.  On 72 random shafts the closed form reached 1.27 of the truth
-#: with a clamp (flanges on hollow shafts), 0.92 with this; on cones it reaches 1.17 for another reason.
+#: What carries a disc is no clamp: part of the stiffness of a clamped strip that it gets.  On 72
+#: random shafts the closed form reached 1.27 of the truth with a clamp (flanges on hollow shafts),
+#: 0.92 with this; on cones it reaches 1.17 for another reason.
 HELD = 0.25
 
 
@@ -47,7 +50,9 @@ class Families:
         self._work = None
 
     def bound(self, n: int) -> float:
-        """Frequency (Hz) above which all motions of n waves should lie, in closed form; it grows with n."""
+        """Frequency (Hz) above which all motions of n waves should lie, in closed form; it grows
+        with n.
+        """
         return float(_rings(self._parts, n).min() / (2 * np.pi))
 
     def light(self, n: int) -> float:
@@ -81,7 +86,8 @@ class Families:
 
 
 def _parts(segments) -> np.ndarray:
-    """Walls that may ovalise: rows of (largest radius, thickness, overhang over what carries it or infinity, E / rho).
+    """Walls that may ovalise: rows of (largest radius, thickness, overhang over what carries it or
+    infinity, E / rho).
 
     A segment is a wall as thick as it is radially.  Neighbours that together stick out over a radius, or into the bore of others, are a disc as thick as they
     are long.

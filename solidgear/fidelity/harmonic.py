@@ -65,10 +65,11 @@ def harmonic(
         Polynomial order of the quadrilaterals, 1 to 12.  The defaults are the reference setting, good to 1e-4 on the
         overhung pinion; order 8 with 4 layers and 2 edge layers gives about 1e-6.
     layers, edge_layers, ratio : int, int, float
-        Geometric layers towards shoulders (also the ends of rigid seats) and towards the ends of averaged seats, and the
-        size of each relative to the last.
+        Geometric layers towards shoulders (also the ends of rigid seats) and towards the ends of
+        averaged seats, and the size of each relative to the last.
     relative_size : float
-        Cell size away from them in local outer radii (in a thin wall beside them, in decay lengths of the shell).
+        Cell size away from them in local outer radii (in a thin wall beside them, in decay lengths
+        of the shell).
     size : float, optional
         The same for the whole shaft, m.
     refinement : float
@@ -178,9 +179,9 @@ def _element(order):
 def _energy(n: int):
     """Coefficients of twice the strain energy density of harmonic n.
 
-    Returns three (3, c, 3, c) arrays that multiply lambda, 2 mu and mu: entry [i, p, j, q] belongs to the product of
-    function i of unknown p with function j of unknown q, functions being (phi / r, phi,r, phi,y) and
-    unknowns (u_r, u_y) for n = 0, (p, q, w) otherwise.
+    Returns three (3, c, 3, c) arrays that multiply lambda, 2 mu and mu: entry [i, p, j, q] belongs
+    to the product of function i of unknown p with function j of unknown q, functions being (phi /
+    r, phi,r, phi,y) and unknowns (u_r, u_y) for n = 0, (p, q, w) otherwise.
     """
     if n == 0:
         rr, tt, yy, rt, ty, ry = np.zeros((6, 3, 2))
@@ -224,7 +225,8 @@ class _Work:
         self.products = (
             (self.basis.value[:, None] * self.basis.value).reshape(-1, len(self.weights)).T
         )
-        # Vertex functions carry all rigid motions; higher ones are zero there in a hierarchical basis.
+        # Vertex functions carry all rigid motions; higher ones are zero there in a hierarchical
+        # basis.
         self.r = np.zeros(self.n)
         self.y = np.full(self.n, np.nan)
         if order > 2:
@@ -271,8 +273,8 @@ class _Work:
         nb = self.dofs.shape[0]
         stiffness, heavy = self.pattern.sum(c), self.pattern.sum()
         area = 0.0
-        # Strains are linear in (phi / r, phi,r, phi,y) of each unknown; one Gram matrix of those three
-        # functions per element holds every product that occurs.
+        # Strains are linear in (phi / r, phi,r, phi,y) of each unknown; one Gram matrix of those
+        # three functions per element holds every product that occurs.
         trace, normal, shear = (part.transpose(1, 3, 0, 2).reshape(c * c, 9) for part in _energy(n))
         for part, material, t, dv in self._batches():
             area += dv.sum()
@@ -379,7 +381,9 @@ class _Work:
         ]
 
     def _surface(self, station, attachment):
-        """Basis values (nb, q), r, y - y0, length weights (e, q) and unknowns on a seat or a section."""
+        """Basis values (nb, q), r, y - y0, length weights (e, q) and unknowns on a seat or a
+        section.
+        """
         if attachment == "average":
             cells, direction, value = self._seat_cells(station), 0, 1.0
         elif attachment == "section":

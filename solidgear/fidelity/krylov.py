@@ -1,15 +1,18 @@
 """Exact Euler-Bernoulli bending of a stepped shaft on point springs with lumped masses.
 
-The initial-parameter method with Krylov-Duncan functions, arranged so that it neither overflows nor loses roots.  Spans
-are cut into pieces short enough (``k l <= 2``) that the functions stay of order one, and the two solutions that meet the
-conditions at the left end are made orthonormal after every piece, so that the growing exponential cannot drown one.
-Roots are counted (Wittrick and Williams 1971, Q. J. Mech. Appl. Math. 24, 263): below a frequency lie as many modes as the
-dynamic stiffness, eliminated joint by joint, has negative pivots; clamped roots of a piece begin at ``k l = 4.73`` only.
-That stiffness is never formed: its entries grow like ``E I / l^3`` and would spend the digits of the lowest modes
-on the shortest span, whereas the transfer over a short piece is merely close to one.
+The initial-parameter method with Krylov-Duncan functions, arranged so that it neither overflows nor
+loses roots.  Spans are cut into pieces short enough (``k l <= 2``) that the functions stay of order
+one, and the two solutions that meet the conditions at the left end are made orthonormal after every
+piece, so that the growing exponential cannot drown one. Roots are counted (Wittrick and Williams
+1971, Q. J. Mech. Appl. Math. 24, 263): below a frequency lie as many modes as the dynamic
+stiffness, eliminated joint by joint, has negative pivots; clamped roots of a piece begin at ``k l =
+4.73`` only. That stiffness is never formed: its entries grow like ``E I / l^3`` and would spend the
+digits of the lowest modes on the shortest span, whereas the transfer over a short piece is merely
+close to one.
 
-There is no shear, and no rotary inertia but that of lumped parts: that is the model of the thesis, and either would bring a
-second length into the functions.  Nothing is shared with the finite elements, which makes agreement with them worth having.
+There is no shear, and no rotary inertia but that of lumped parts: that is the model of the thesis,
+and either would bring a second length into the functions.  Nothing is shared with the finite
+elements, which makes agreement with them worth having.
 """
 
 from __future__ import annotations
@@ -24,9 +27,11 @@ from scipy.sparse.linalg import splu
 from solidgear.errors import SolidgearError
 from solidgear.fidelity.options import number
 
-#: greatest ``k l`` of a piece: below the first clamped root, 4.730, and a growth by exp(2) at most between orthonormalisations
+#: greatest ``k l`` of a piece: below the first clamped root, 4.730, and a growth by exp(2) at most
+#: between orthonormalisations
 _REACH = 2.0
-#: series of the Krylov-Duncan functions in ``(k l)^4``; at ``k l = 2`` the first term left out is below 1e-20
+#: series of the Krylov-Duncan functions in ``(k l)^4``; at ``k l = 2`` the first term left out is
+#: below 1e-20
 _SERIES = np.array(
     [[1 / np.prod(np.arange(1.0, 4 * n + j + 1)) for n in range(7)] for j in range(4)]
 )
@@ -37,9 +42,11 @@ _AFTER = [0, 1, 4, 5]
 
 
 def krylov_duncan(kl):
-    """S, T, U, V of ``kl``: ``(cosh + cos) / 2, (sinh + sin) / 2, (cosh - cos) / 2, (sinh - sin) / 2``, with ``k^4 = m w^2 / (E I)``.
+    """S, T, U, V of ``kl``: ``(cosh + cos) / 2, (sinh + sin) / 2, (cosh - cos) / 2, (sinh - sin) /
+    2``, with ``k^4 = m w^2 / (E I)``.
 
-    Small arguments cost V its digits, and a determinant loses ``eps exp(kl) / kl`` to large ones: :func:`krylov` meets neither.
+    Small arguments cost V its digits, and a determinant loses ``eps exp(kl) / kl`` to large ones:
+    :func:`krylov` meets neither.
     """
     ch, c, sh, s = np.cosh(kl), np.cos(kl), np.sinh(kl), np.sin(kl)
     return (ch + c) / 2, (sh + s) / 2, (ch - c) / 2, (sh - s) / 2
@@ -47,7 +54,9 @@ def krylov_duncan(kl):
 
 @dataclass(frozen=True)
 class Span:
-    """A uniform length of shaft: `length` in m, `bending_stiffness` E I in N m^2, `mass_per_length` in kg/m."""
+    """A uniform length of shaft: `length` in m, `bending_stiffness` E I in N m^2, `mass_per_length`
+    in kg/m.
+    """
 
     length: float
     bending_stiffness: float
@@ -62,8 +71,8 @@ class Span:
 class Station:
     """A point spring to ground and a lumped mass at `y` (m, from the left end of the first span).
 
-    `spring` is (2, 2) on (z, thx), in N/m, N/rad and N m/rad, symmetric positive semidefinite; `mass` is in kg, and `inertia`, about
-    the x axis through the station, in kg m^2.
+    `spring` is (2, 2) on (z, thx), in N/m, N/rad and N m/rad, symmetric positive semidefinite;
+    `mass` is in kg, and `inertia`, about the x axis through the station, in kg m^2.
     """
 
     y: float
@@ -109,7 +118,8 @@ class KrylovModes:
     distributed, lumped : (n,) ndarray
         Shares of the modal mass in the spans and in the lumped masses, in sum one.
     defect : (n,) ndarray
-        Largest violation of the equations at the joints `y` (m) between pieces, relative to the largest term of each.
+        Largest violation of the equations at the joints `y` (m) between pieces, relative to the
+        largest term of each.
     """
 
     frequency_hz: np.ndarray
@@ -125,7 +135,8 @@ class KrylovModes:
     )  # (n, j, 6): z, thx, then Q, M before and Q, M after the joint
 
     def shape(self, k: int, y):
-        """Field ``z, phi, M, Q`` of mode `k`, from zero, at `y` (m, on the shaft); at a station just beyond it, at the right end just before.
+        """Field ``z, phi, M, Q`` of mode `k`, from zero, at `y` (m, on the shaft); at a station
+        just beyond it, at the right end just before.
 
         Deflection, m; ``phi = dz/dy = thx``; ``M = E I d2z/dy2``, N m; ``Q = -dM/dy``, N, the force along z by which the part
         beyond y acts on the part before it.  Each is an array like `y`.
@@ -233,7 +244,9 @@ def _given(what, name, value, **limits):
 
 
 def _transfer(s, stiff, force):
-    """(4, 4, ...) transfer of (z, phi, Q, M) over a length `s`; `force` is ``m w^2``, ``k^4`` times `stiff`."""
+    """(4, 4, ...) transfer of (z, phi, Q, M) over a length `s`; `force` is ``m w^2``, ``k^4`` times
+    `stiff`.
+    """
     k4 = force / stiff
     # All terms of the series are positive: nothing cancels, and w = 0 is no special case.
     c0, c1, c2, c3 = (
@@ -250,9 +263,11 @@ def _apply(t, b):
 
 
 class _Joint:
-    """Springs and masses at one place, the springs as ``L D L'`` with the stiffer direction `p` first; `down` is ``L^-1``, `up` is ``L'``.
+    """Springs and masses at one place, the springs as ``L D L'`` with the stiffer direction `p`
+    first; `down` is ``L^-1``, `up` is ``L'``.
 
-    A clamp of 1e20 N/m must not wash out a soft spring across it: factored, each acts with its own digits.
+    A clamp of 1e20 N/m must not wash out a soft spring across it: factored, each acts with its own
+    digits.
     """
 
     def __init__(self, stations, length):
@@ -354,11 +369,13 @@ class _Shaft:
             t = _transfer(
                 (self.y[i + 1] - self.y[i]) / parts, self.stiff[i], self.heavy[i] * omega**2
             )
-            # Forces at the left of the piece that move its right end by one; the determinant of `reach` is positive in a piece.
+            # Forces at the left of the piece that move its right end by one; the determinant of
+            # `reach` is positive in a piece.
             reach = np.array([[t[1, 3], -t[0, 3]], [-t[1, 2], t[0, 2]]])
             for _ in range(parts):
                 new = _apply(t[:, :, None], b)
-                # Pivot of the joint left of the piece: (forces of the left part + forces of the piece, far end clamped) per motion.
+                # Pivot of the joint left of the piece: (forces of the left part + forces of the
+                # piece, far end clamped) per motion.
                 ahead = (reach[:, :, None] * new[None, :2]).sum(axis=1)
                 negative, sign = _negative(ahead, b, w, sign)
                 total += negative
@@ -367,7 +384,9 @@ class _Shaft:
         return total + _negative(b[2:], b, w, sign)[0]
 
     def roots(self, first, last, top):
-        """Frequencies (rad/s) from number `first` to before `last` (None is all) below `top`, by bisection of the count."""
+        """Frequencies (rad/s) from number `first` to before `last` (None is all) below `top`, by
+        bisection of the count.
+        """
         high = (
             top
             if last is None
@@ -403,11 +422,13 @@ class _Shaft:
         )
 
     def solutions(self, omega, many):
-        """Solutions of all joint equations at once (multiple shooting), by inverse iteration on the normal equations.
+        """Solutions of all joint equations at once (multiple shooting), by inverse iteration on the
+        normal equations.
 
         A sweep from the left would lose a mode that lives elsewhere; here no end is preferred.
         """
-        # Six unknowns a joint; from the third row on, its two equations and then the four of the piece beyond it.
+        # Six unknowns a joint; from the third row on, its two equations and then the four of the
+        # piece beyond it.
         block = np.zeros((nodes := len(self.y), 6, 12))
         for joint, b in zip(self.joints, block):
             # In the factors of the spring, so that a stiff row does not hide the soft one.
@@ -439,7 +460,9 @@ class _Shaft:
         return (v / unit.reshape(-1, 1)).T.reshape(many, nodes, 6), abs(a @ v).max(axis=0)
 
     def shapes(self, omega):
-        """(n, j, 6) motions, and forces before and after, at the joints, for unit modal mass; their defect; and the shares of the mass."""
+        """(n, j, 6) motions, and forces before and after, at the joints, for unit modal mass; their
+        defect; and the shares of the mass.
+        """
         states, (defect, distributed, lumped) = (
             np.zeros((len(omega), len(self.y), 6)),
             np.zeros((3, len(omega))),
@@ -468,7 +491,9 @@ class _Shaft:
 
 
 def _groups(omega, gap):
-    """Indices of ascending frequencies, split where neighbours differ by more than `gap`, relatively."""
+    """Indices of ascending frequencies, split where neighbours differ by more than `gap`,
+    relatively.
+    """
     return [
         g
         for g in np.split(
@@ -479,10 +504,11 @@ def _groups(omega, gap):
 
 
 def _negative(force, b, w, sign):
-    """Negative eigenvalues of the pivot ``force motion^-1``; and the sign of ``det force``, which is that of the next ``det motion``.
+    """Negative eigenvalues of the pivot ``force motion^-1``; and the sign of ``det force``, which
+    is that of the next ``det motion``.
 
-    A determinant that is zero to rounding has some sign here and the same in the next pivot: taken over instead of
-    computed twice, it cannot make a mode appear in both or in neither.
+    A determinant that is zero to rounding has some sign here and the same in the next pivot: taken
+    over instead of computed twice, it cannot make a mode appear in both or in neither.
     """
     now = np.where(force[0, 0] * force[1, 1] < force[0, 1] * force[1, 0], -1.0, 1.0)
     # The trace is enough: with the sign of the determinant it tells 0, 1 and 2 apart.
@@ -492,7 +518,9 @@ def _negative(force, b, w, sign):
 
 
 def _orthonormal(b, w):
-    """The same two solutions, orthonormal in the unit `w`, by column operations of positive determinant."""
+    """The same two solutions, orthonormal in the unit `w`, by column operations of positive
+    determinant.
+    """
     first = b[:, 0] / np.sqrt(((w * b[:, 0]) ** 2).sum(axis=0))
     second = b[:, 1] - (w**2 * first * b[:, 1]).sum(axis=0) * first
     return np.stack([first, second / np.sqrt(((w * second) ** 2).sum(axis=0))], axis=1)

@@ -1,4 +1,6 @@
-"""Section motions of a harmonic solid, by quadrature on its cells: they may be far longer than the distance of two stations."""
+"""Section motions of a harmonic solid, by quadrature on its cells: they may be far longer than the
+distance of two stations.
+"""
 
 from __future__ import annotations
 
@@ -13,7 +15,9 @@ from solidgear.sections import Sections, hats
 
 @dataclass(frozen=True)
 class Part:
-    """Part of a displacement that a component of section motion moves: ``u = sign r^power`` in one unknown, under the mass ``factor rho r^weight``."""
+    """Part of a displacement that a component of section motion moves: ``u = sign r^power`` in one
+    unknown, under the mass ``factor rho r^weight``.
+    """
 
     unknown: int
     factor: float
@@ -22,7 +26,8 @@ class Part:
     power: int = 0
 
 
-#: Families, by their unknowns: (u_r, u_y) axially, u_t / r in torsion, (p, q, w) in bending with translation and tilt.
+#: Families, by their unknowns: (u_r, u_y) axially, u_t / r in torsion, (p, q, w) in bending with
+#: translation and tilt.
 AXIAL = (Part(1, 2 * np.pi, 1),)
 TORSION = (Part(0, 2 * np.pi, 3),)
 BENDING = (Part(0, 2 * np.pi, 1), Part(2, np.pi, 1, -1.0, 1))

@@ -1,4 +1,6 @@
-"""Builder options come from people: what there is, within which limits and why, and one place that refuses nonsense in a sentence."""
+"""Builder options come from people: what there is, within which limits and why, and one place that
+refuses nonsense in a sentence.
+"""
 
 from __future__ import annotations
 
@@ -42,7 +44,8 @@ class Option:
 
 
 _ATTACHMENTS = ("average", "rigid", "section")
-#: a last layer below this part of the first one costs digits: residuals of modes rise from 1e-8 to 1e-4 there, whatever layers and ratio make it
+#: a last layer below this part of the first one costs digits: residuals of modes rise from 1e-8 to
+#: 1e-4 there, whatever layers and ratio make it
 THINNEST_LAYER = 1e-6
 #: lines of cells along the shaft, or across it; a mesh of so many has billions of unknowns in 3D
 MOST_LINES = 20_000

@@ -1,8 +1,10 @@
 """Where the spectrum of a free shaft begins, roughly.
 
-The shaft is cut into slices: bending, stretch and twist of the chain of slices are solved as small banded eigenproblems over the true
-distribution of stiffness and mass, and what sticks out of it (flanges, thin discs) is judged as a plate that overhangs.  The least of all is
-within about a factor of three of the lowest elastic eigenvalue of the harmonic solid's own families on every shaft tried.
+The shaft is cut into slices: bending, stretch and twist of the chain of slices are solved as small
+banded eigenproblems over the true distribution of stiffness and mass, and what sticks out of it
+(flanges, thin discs) is judged as a plate that overhangs.  The least of all is within about a
+factor of three of the lowest elastic eigenvalue of the harmonic solid's own families on every shaft
+tried.
 """
 
 from __future__ import annotations
@@ -15,7 +17,8 @@ LEVELS = 60  # radii at which overhangs are looked for
 
 
 def elastic_scale(scene) -> float:
-    """Lowest elastic eigenvalue of the free shaft, rad^2/s^2, by a chain of slices and overhanging plates.
+    """Lowest elastic eigenvalue of the free shaft, rad^2/s^2, by a chain of slices and overhanging
+    plates.
 
     Parameters
     ----------
@@ -35,12 +38,15 @@ def elastic_scale(scene) -> float:
 
 
 class _Chain:
-    """Slices of a shaft: length, mass, and the stiffness of each in bending, shear, stretch and twist."""
+    """Slices of a shaft: length, mass, and the stiffness of each in bending, shear, stretch and
+    twist.
+    """
 
     def __init__(self, segments):
         ends = np.array([0.0, *(s.y1 for s in segments)])
         grid = np.linspace(0.0, ends[-1], SLICES + 1)
-        # Pieces within one segment and one slice; slices collect them, springs in series and masses in sum.
+        # Pieces within one segment and one slice; slices collect them, springs in series and masses
+        # in sum.
         edges = np.unique(np.concatenate([grid, ends]))
         middle, piece = (edges[1:] + edges[:-1]) / 2, np.diff(edges)
         owner = np.searchsorted(ends, middle) - 1
@@ -71,16 +77,21 @@ class _Chain:
         self.shear = 1 / summed(1 / (0.6 * shear * area))
 
     def rod(self, stiffness, inertia) -> float:
-        """Lowest elastic eigenvalue of inertias joined by springs in a row, each half of two slices."""
+        """Lowest elastic eigenvalue of inertias joined by springs in a row, each half of two
+        slices.
+        """
         between = 2 / (1 / stiffness[1:] + 1 / stiffness[:-1])
         return _second_tridiagonal(between, inertia)
 
     def bending(self) -> float:
-        """Lowest elastic eigenvalue of rigid slices joined by springs in bending and shear at their borders."""
+        """Lowest elastic eigenvalue of rigid slices joined by springs in bending and shear at their
+        borders.
+        """
         n = len(self.mass)
         bend = 2 / (1 / self.bend[1:] + 1 / self.bend[:-1])
         shear = 2 / (1 / self.shear[1:] + 1 / self.shear[:-1])
-        # Slices deflect and turn; a joint sees the turn between its neighbours, and the gap between their ends.
+        # Slices deflect and turn; a joint sees the turn between its neighbours, and the gap between
+        # their ends.
         left, right = self.length[:-1] / 2, self.length[1:] / 2
         turn = np.zeros((n - 1, 4))
         turn[:, 1], turn[:, 3] = -1.0, 1.0
@@ -110,9 +121,11 @@ def _second_tridiagonal(between, inertia) -> float:
 
 
 def _flanges(segments):
-    """Eigenvalues of what overhangs a thinner neighbour: plates clamped at its radius, of the quickest material there.
+    """Eigenvalues of what overhangs a thinner neighbour: plates clamped at its radius, of the
+    quickest material there.
 
-    A strip of length b and thickness h: bending ``12.4 E h^2 / (12 rho b^4)``, shear ``(pi / 2 b)^2 k G / rho``, in series.
+    A strip of length b and thickness h: bending ``12.4 E h^2 / (12 rho b^4)``, shear ``(pi / 2 b)^2
+    k G / rho``, in series.
     """
     for base, run in overhangs(
         [(max(s.outer0, s.outer1), s.length, s.material.E / s.material.density) for s in segments],
@@ -127,7 +140,8 @@ def _flanges(segments):
 
 
 def overhangs(parts, *bases: float):
-    """Neighbours that together reach beyond a radius: yields (that radius, list of parts) for every radius that a part ends at, and for ``bases``.
+    """Neighbours that together reach beyond a radius: yields (that radius, list of parts) for every
+    radius that a part ends at, and for ``bases``.
 
     Parameters
     ----------

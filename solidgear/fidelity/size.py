@@ -1,11 +1,14 @@
-"""How large a body will be, from the layout of its mesh alone: unknowns, matrix entries and peak memory, before anything large is made.
+"""How large a body will be, from the layout of its mesh alone: unknowns, matrix entries and peak
+memory, before anything large is made.
 
-Unknowns and entries of hexahedra and of harmonic solids are counted, not estimated: a mesh laid out by lines has as many vertices, edges,
-faces and cells as its lines say, and a pair of unknowns that meet in a cell makes one entry, whatever number of cells they share (cells
-less the inner faces between them, plus their inner edges, less their inner vertices, is one).  Tetrahedra fill volume and surface at the
-sizes asked of the mesher.
+Unknowns and entries of hexahedra and of harmonic solids are counted, not estimated: a mesh laid out
+by lines has as many vertices, edges, faces and cells as its lines say, and a pair of unknowns that
+meet in a cell makes one entry, whatever number of cells they share (cells less the inner faces
+between them, plus their inner edges, less their inner vertices, is one).  Tetrahedra fill volume
+and surface at the sizes asked of the mesher.
 
-Memory is that of mesh, assembly and factor together.  Its laws were fitted to peaks of resident memory, each in a process of its own.
+Memory is that of mesh, assembly and factor together.  Its laws were fitted to peaks of resident
+memory, each in a process of its own.
 """
 
 from __future__ import annotations
@@ -39,9 +42,11 @@ class Size:
     entries : int
         Of all stiffness matrices, twins counted once.
     largest : int
-        Entries of the largest list of element matrices or of one matrix, which 32-bit indices must number.
+        Entries of the largest list of element matrices or of one matrix, which 32-bit indices must
+        number.
     build_mb, peak_mb : float
-        Memory beyond what the process holds: of the body, and at the peak of building, factoring and first modes.
+        Memory beyond what the process holds: of the body, and at the peak of building, factoring
+        and first modes.
     lower : str
         What to lower, in words.
     """
@@ -67,13 +72,16 @@ def estimated_unknowns(scene, model: str, options: dict | None = None) -> int:
     Returns
     -------
     int
-        Exact for beams, hexahedra and harmonic solids without rigid seats (each takes some hundreds away); tetrahedra within a quarter.
+        Exact for beams, hexahedra and harmonic solids without rigid seats (each takes some hundreds
+        away); tetrahedra within a quarter.
     """
     return estimated_size(scene, model, options).unknowns
 
 
 def estimated_size(scene, model: str, options: dict | None = None) -> Size:
-    """Unknowns, entries and memory of ``build(scene, model, **options)`` and what is solved on it; parameters as :func:`estimated_unknowns`."""
+    """Unknowns, entries and memory of ``build(scene, model, **options)`` and what is solved on it;
+    parameters as :func:`estimated_unknowns`.
+    """
     options = checked(model, options or {})
     given = _defaults(model) | options
     if model in ("euler", "timoshenko"):
@@ -138,7 +146,8 @@ def _beam(scene, model: str, given: dict) -> Size:
     inner = 1 + given["rotary_inertia"] if given["shear"] and given["mass"] == "consistent" else 0
     bending = 2 * n + inner * (n - 1)
     unknowns, entries = 2 * bending + 2 * n, (4 + inner) ** 2 * (n - 1) + 6 * n
-    # narrow bands: the factor is no larger than the matrix, and Python's lists of element matrices outweigh both
+    # narrow bands: the factor is no larger than the matrix, and Python's lists of element matrices
+    # outweigh both
     memory = (3e3 * n + 16.0 * 6 * _ports(scene, given) * unknowns) / MB
     return Size(unknowns, entries, entries, memory, 2 * memory, "give fewer elements")
 
@@ -146,7 +155,9 @@ def _beam(scene, model: str, given: dict) -> Size:
 # ------------------------------------------------------------------------------------------------- laid out by lines
 @dataclass(frozen=True)
 class _Lines:
-    """First and last ring line of every row of cells and of every mesh line between rows; where there is material up to the axis."""
+    """First and last ring line of every row of cells and of every mesh line between rows; where
+    there is material up to the axis.
+    """
 
     rows: np.ndarray
     lines: np.ndarray
@@ -222,8 +233,9 @@ def _harmonic(scene, given: dict) -> Size:
 def _planar_factor_mb(components: int, unknowns: int, entries: int) -> float:
     """Peak memory of factoring a block on a meridian.
 
-    SuperLU's factor of 24 blocks of order 1 to 8 within 8 %: nodes times their degree, and a logarithm for the dissection of the plane.
-    PARDISO, which takes over the largest ones, by its own estimate for orders 8 and 12.
+    SuperLU's factor of 24 blocks of order 1 to 8 within 8 %: nodes times their degree, and a
+    logarithm for the dissection of the plane. PARDISO, which takes over the largest ones, by its
+    own estimate for orders 8 and 12.
     """
     from solidgear.solve.factor import LARGE_PLANAR
 
@@ -238,7 +250,9 @@ def _planar_factor_mb(components: int, unknowns: int, entries: int) -> float:
 # ------------------------------------------------------------------------------------------------- solids
 @dataclass(frozen=True)
 class _Kind:
-    """Nodes of an element type: on vertices, edges, faces and inside; of an element, a face and an edge with all that bounds it."""
+    """Nodes of an element type: on vertices, edges, faces and inside; of an element, a face and an
+    edge with all that bounds it.
+    """
 
     on: tuple[int, int, int, int]
     cell: int
@@ -272,11 +286,13 @@ def _hexahedra(scene, given: dict) -> Size:
     plan = _lines(scene, layout)
     rows = _sections(plan.rows, plan.solid_rows, around)
     lines = _sections(plan.lines, plan.solid_lines, around)
-    # a section drawn out along the shaft makes edges of its vertices, faces of its edges and cells of its faces
+    # a section drawn out along the shaft makes edges of its vertices, faces of its edges and cells
+    # of its faces
     counts = (lines[0], lines[1] + rows[0], lines[2] + rows[1], rows[2])
     unknowns, entries = _nodes(given["element"], counts, 4)
     bubbles = 3 * counts[3] if given["element"] == "hex27" else 0
-    # fill grows with the whole and, as a shaft is long, with its cross-section: 30 meshes of 2,000 to 165,000 unknowns within 20 %
+    # fill grows with the whole and, as a shaft is long, with its cross-section: 30 meshes of 2,000
+    # to 165,000 unknowns within 20 %
     width = unknowns / (2 * len(plan.rows))
     fill = (
         np.exp(1.448) * (unknowns - bubbles) ** 1.233 * (entries / unknowns) ** 0.165 * width**0.305
@@ -285,7 +301,9 @@ def _hexahedra(scene, given: dict) -> Size:
 
 
 def _sections(rings: np.ndarray, full: np.ndarray, around: int) -> tuple[float, float, float]:
-    """Vertices, edges and faces of all sections: rings of cells, and a square core in place of the first where the shaft is full."""
+    """Vertices, edges and faces of all sections: rings of cells, and a square core in place of the
+    first where the shaft is full.
+    """
     count, k = np.diff(rings)[:, 0] - full, around // 4
     vertices = around * (count + 1) + full * (k - 1) ** 2
     edges = around * (2 * count + 1) + full * 2 * k * (k - 1)
@@ -312,7 +330,9 @@ def _tetrahedra(scene, given: dict) -> Size:
 def _nodes(
     element: str, counts: tuple[float, float, float, float], sides: int
 ) -> tuple[float, float]:
-    """Unknowns and matrix entries of a mesh of so many vertices, edges, faces and cells, whose faces have so many sides."""
+    """Unknowns and matrix entries of a mesh of so many vertices, edges, faces and cells, whose
+    faces have so many sides.
+    """
     kind, (vertices, edges, faces, cells) = _KINDS[element], counts
     inner_faces = (6 if sides == 4 else 4) * cells - faces
     # every edge of the surface bounds two of its faces, and Euler's formula gives its vertices
@@ -356,7 +376,8 @@ def _solid(scene, given: dict, unknowns: float, entries: float, cells: float, fi
 def _solid_factor_mb(unknowns: float, entries: float, fill: float) -> float:
     """Peak memory of factoring the matrix of a solid by the back end that will be taken.
 
-    PARDISO needs its factor, its copy of the matrix and work by the entry: its own estimate for 47 meshes within 1 % where the fill is known.
+    PARDISO needs its factor, its copy of the matrix and work by the entry: its own estimate for 47
+    meshes within 1 % where the fill is known.
     """
     from solidgear.solve.backends import law
     from solidgear.solve.factor import FactorError, choice

@@ -1,7 +1,7 @@
 """Full 3D solid: TET10 on a gmsh mesh, or HEX8 / HEX20 / HEX27 on a structured O-grid.
 
-Elements, quadrature and the numbering of unknowns are scikit-fem's; matrices are assembled in blocks
-from one Gram matrix of basis gradients per element.
+Elements, quadrature and the numbering of unknowns are scikit-fem's; matrices are assembled in
+blocks from one Gram matrix of basis gradients per element.
 """
 
 from __future__ import annotations
@@ -84,7 +84,9 @@ class SolidMesh:
         return tabulate(self.element, self.nodes[:, self.dofs[:, elements]], self.element, points)
 
     def surface(self, facets: np.ndarray):
-        """Quadrature on facets: yields (values (nb, q), x (3, e, q), area weights (e, q), unknowns (nb, e))."""
+        """Quadrature on facets: yields (values (nb, q), x (3, e, q), area weights (e, q), unknowns
+        (nb, e)).
+        """
         ref, weights = _facet_rule(self.mesh.refdom)
         for place, elements in self.local_facets(facets):
             corners = self.mesh.refdom.p[:, self.mesh.refdom.facets[place]]
@@ -153,8 +155,8 @@ def solid(
     relative_size : float
         Size of hexahedra away from singular edges in local outer radii.
     size : float, optional
-        Element size away from singular edges, m; by default ``relative_size`` (hexahedra) or a third of the
-        largest outer radius (tetrahedra).
+        Element size away from singular edges, m; by default ``relative_size`` (hexahedra) or a
+        third of the largest outer radius (tetrahedra).
     layers, edge_layers, radial_layers, ratio
         Geometric grading of hexahedra: layers towards shoulders and towards seat ends along the shaft, towards
         surfaces across it, and the size of each relative to the last.  The defaults give 1.4e-3 in stiffness at 37k unknowns
@@ -163,11 +165,13 @@ def solid(
     around : int
         Elements around the circumference (tetrahedra: at least 16).
     graded_size : float, optional
-        Size of tetrahedra at shoulders and seat ends, m; a quarter of ``size`` by default, ``size`` for a uniform mesh.
+        Size of tetrahedra at shoulders and seat ends, m; a quarter of ``size`` by default, ``size``
+        for a uniform mesh.
     refinement : float
         Multiplies the number of cells in every direction, for convergence studies.
     attachments : tuple of str, optional
-        Attachments to build at every station, the first being the default one; by default what the scene says.
+        Attachments to build at every station, the first being the default one; by default what the
+        scene says.
 
     Returns
     -------
@@ -275,7 +279,9 @@ def hexahedra_layout(
     around,
     refinement,
 ):
-    """Mesh lines of :func:`solid` in hexahedra and cells around, before anything is meshed; parameters as there."""
+    """Mesh lines of :func:`solid` in hexahedra and cells around, before anything is meshed;
+    parameters as there.
+    """
     from solidgear.meshing.layout import layout
 
     countable(
@@ -300,7 +306,9 @@ def hexahedra_layout(
 
 
 def tetrahedra_plan(scene, wanted, *, size, graded_size, refinement, around) -> dict:
-    """Arguments of :func:`~solidgear.meshing.tetrahedra.tetrahedra` for the stations ``wanted`` with their attachments."""
+    """Arguments of :func:`~solidgear.meshing.tetrahedra.tetrahedra` for the stations ``wanted``
+    with their attachments.
+    """
     size = (
         countable(
             "solid",
@@ -368,7 +376,8 @@ def _matrices(m: SolidMesh, scene):
     nb, nq = basis.value.shape
     pattern = Pattern(m.dofs)
     stiffness, mass = pattern.sum(3), pattern.sum()
-    # products of basis functions, and of reference gradients, of which straight elements take one multiple each
+    # products of basis functions, and of reference gradients, of which straight elements take one
+    # multiple each
     products = (basis.value[:, None] * basis.value).reshape(nb * nb, nq).T
     slopes = np.einsum("apq,brq,q->prab", basis.slope, basis.slope, weights, optimize=True).reshape(
         9, nb * nb
@@ -395,7 +404,9 @@ def _matrices(m: SolidMesh, scene):
 
 
 def _elastic(gram, lame: float, mu: float):
-    """Isotropic stiffness from the integrals of products of gradients, components (3, 3, ...) of row and column first."""
+    """Isotropic stiffness from the integrals of products of gradients, components (3, 3, ...) of
+    row and column first.
+    """
     out = lame * gram
     shear = mu * gram
     out += shear.swapaxes(0, 1)
@@ -426,7 +437,9 @@ _CROSS = np.stack([cross_matrix(e) for e in np.eye(3)], axis=-1)
 
 
 def _cell_rule(name):
-    """Quadrature exact for stiffness and mass of affine elements, one order in reserve for curved ones."""
+    """Quadrature exact for stiffness and mass of affine elements, one order in reserve for curved
+    ones.
+    """
     if name.startswith("tet"):
         return get_quadrature(
             RefTet, 7 if name == "tet10" else 2

@@ -1,7 +1,8 @@
 """Guards: what will not hold for a scene, told before anybody relies on it.
 
-A guard is a function of a :class:`~solidgear.guards.probe.Probe` that yields notices.  Limits were measured by the scripts of
-``validation/stability``; the name of the script stands beside its number.
+A guard is a function of a :class:`~solidgear.guards.probe.Probe` that yields notices.  Limits were
+measured by the scripts of ``validation/stability``; the name of the script stands beside its
+number.
 """
 
 from __future__ import annotations

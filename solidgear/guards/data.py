@@ -20,7 +20,9 @@ SOUND = {
 
 
 def units(probe: Probe) -> Notices:
-    """Orders of magnitude that a slip in units moves: of the materials, then of the bearings, then of what comes of both."""
+    """Orders of magnitude that a slip in units moves: of the materials, then of the bearings, then
+    of what comes of both.
+    """
     scene = probe.scene
     mean = float(np.mean([2 * s.outer0 for s in scene.segments]))
     materials, bearings = [], []
@@ -90,7 +92,8 @@ def free_motions(probe: Probe) -> Notices:
         )
 
 
-# strong_coupling.py: below 1e-12 of the diagonal a direction is taken as free; a coupling written with four digits tells no less than 1e-3
+# strong_coupling.py: below 1e-12 of the diagonal a direction is taken as free; a coupling written
+# with four digits tells no less than 1e-3
 FREE, FOUR_DIGITS = 1e-12, 1e-3
 
 

@@ -17,8 +17,8 @@ from solidgear.memory import available_mb
 from solidgear.solve.backends import BACKENDS, INSTALL, law, missing
 from solidgear.solve.factor import FASTEST, SMALL
 
-# odd_geometry.py's shaft, softer than a seat of half the diameter: 5 % in C_zz at a bearing, 1.2 % in C_thx at the lumped point; then 1 to 2 % more
-# at each halving, without limit (ties.py)
+# odd_geometry.py's shaft, softer than a seat of half the diameter: 5 % in C_zz at a bearing, 1.2 %
+# in C_thx at the lumped point; then 1 to 2 % more at each halving, without limit (ties.py)
 NARROW, NARROW_POINT = (0.1, 5.0), (0.02, 1.2)
 
 
@@ -67,7 +67,8 @@ def rigid_seats(probe: Probe) -> Notices:
         )
 
 
-# linear_elements.py: error in first bending over that of the quadratic element of the same shape at 9000 unknowns
+# linear_elements.py: error in first bending over that of the quadratic element of the same shape at
+# 9000 unknowns
 LINEAR = {"tet4": ("tet10", 116), "hex8": ("hex20", 138)}
 
 
@@ -136,7 +137,8 @@ def uniform_at_shoulder(probe: Probe) -> Notices:
         )
 
 
-# Memory over CHOLMOD's law: PARDISO's own estimate 1.49 to 1.55, MUMPS's 1.46 to 1.84, on four shipped scenes.
+# Memory over CHOLMOD's law: PARDISO's own estimate 1.49 to 1.55, MUMPS's 1.46 to 1.84, on four
+# shipped scenes.
 OVER_LAW = {"pardiso": 1.55, "mumps": 1.8, "cholmod": 1.0}
 GOOD_TO = 1.5  # of the laws, whose estimate over measured is 0.68 to 1.41
 

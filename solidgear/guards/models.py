@@ -1,4 +1,6 @@
-"""Guards on what a model leaves out: beams, ovalising, lumped models.  Limits are those of steel (nu = 0.3)."""
+"""Guards on what a model leaves out: beams, ovalising, lumped models.  Limits are those of steel
+(nu = 0.3).
+"""
 
 from __future__ import annotations
 
@@ -16,7 +18,9 @@ CAUTIOUS = 2.0
 
 
 def beam_against_solid(probe: Probe) -> Notices:
-    """Both beams held against a light harmonic solid of the same scene, tied as in the scene and by section means."""
+    """Both beams held against a light harmonic solid of the same scene, tied as in the scene and by
+    section means.
+    """
     tolerance = probe.scene.ask.tolerance
     for model, concerned in (("euler", ("euler",)), ("timoshenko", ("timoshenko", "lumped"))):
         if not (gaps := probe.gaps(model)):
@@ -55,7 +59,8 @@ def beam_against_solid(probe: Probe) -> Notices:
             yield Notice("fact", concerned, f"{text}, the largest gap of what is compared")
 
 
-# slenderness.py: where the last of first bending free, on bearings, and C_zz on bearings passes 1 % and 5 %
+# slenderness.py: where the last of first bending free, on bearings, and C_zz on bearings passes 1 %
+# and 5 %
 EULER, TIMOSHENKO = (18.0, 7.9), (1.12, 0.77)
 
 
@@ -75,7 +80,8 @@ def slenderness(probe: Probe) -> Notices:
             )
 
 
-# shoulder_step.py: ratio of diameters, missing length of thin shaft over its diameter, what the deflection of an overhang of one diameter lacks
+# shoulder_step.py: ratio of diameters, missing length of thin shaft over its diameter, what the
+# deflection of an overhang of one diameter lacks
 STEPS = np.array(
     [
         [1.0, 0.0, 0.0],
@@ -149,7 +155,9 @@ BEYOND = 0.02  # odd_geometry.py's shaft: 1.4 % in the tilt compliance; 7 % at 0
 
 
 def point_beyond_surface(probe: Probe) -> Notices:
-    """A lumped point that a solid reaches by extrapolating from its surface, a beam along the shaft."""
+    """A lumped point that a solid reaches by extrapolating from its surface, a beam along the
+    shaft.
+    """
     port = probe.scene.port
     off = max(port.lo - port.y, port.y - port.hi) / probe.diameter(port.y)
     if off > BEYOND and port.attachment != "section":
@@ -168,7 +176,9 @@ SUSPECT = (
 
 
 def ovalising(probe: Probe) -> Notices:
-    """Modes of two and three waves around (a tube ovalises, a disc warps), near or below first bending or within the range asked for."""
+    """Modes of two and three waves around (a tube ovalises, a disc warps), near or below first
+    bending or within the range asked for.
+    """
     scene, first = probe.scene, probe.first_bending or 0.0
     limit = max(NEAR * first, scene.ask.max_frequency or 0.0)
     if _two_waves(probe) > SUSPECT * limit:
@@ -201,8 +211,9 @@ def ovalising(probe: Probe) -> Notices:
 
 #: cells around of the 3D solid unless told otherwise
 DEFAULT_AROUND = 12
-#: cells to a wave of a wall that is thin (below a quarter of the radius) or not: thin_hollow_shaft.py, n = 2 of a wall of 0.1 is 2.3 % too high with
-#: twelve; a thick disc needs half as many
+#: cells to a wave of a wall that is thin (below a quarter of the radius) or not:
+#: thin_hollow_shaft.py, n = 2 of a wall of 0.1 is 2.3 % too high with twelve; a thick disc needs
+#: half as many
 THIN, CELLS_THIN, CELLS_THICK, MOST_AROUND = 0.25, 12, 6, 48
 
 
@@ -217,7 +228,9 @@ def cells_around(scene, waves: int) -> int:
 
 
 def _two_waves(probe: Probe) -> float:
-    """n = 2 in closed form, Hz: the lowest of every part as a free disc (Leissa, Vibration of Plates, table 2.3) and of every wall as a long ring (Love, sec. 293)."""
+    """n = 2 in closed form, Hz: the lowest of every part as a free disc (Leissa, Vibration of
+    Plates, table 2.3) and of every wall as a long ring (Love, sec. 293).
+    """
     segments = probe.scene.segments
     speed = min(
         np.sqrt(s.material.E / (1 - s.material.nu**2) / s.material.density) for s in segments
@@ -237,7 +250,9 @@ ENERGY = 0.95  # effective_mass_limits.py: held along the head of the overhung p
 
 
 def effective_mass(probe: Probe) -> Notices:
-    """Which lumped model there is, and whether the first mode is nearly the static shape it rests on."""
+    """Which lumped model there is, and whether the first mode is nearly the static shape it rests
+    on.
+    """
     try:
         point, found = probe.lumped
     except SolidgearError as error:

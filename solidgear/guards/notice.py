@@ -8,7 +8,8 @@ from dataclasses import dataclass
 BEAMS = ("euler", "timoshenko", "lumped")
 SOLIDS = ("harmonic", "solid")
 MODELS = (*BEAMS, *SOLIDS)
-#: good to know; holds worse than one might think; cannot be told here; out of the tolerance asked for; wrong
+#: good to know; holds worse than one might think; cannot be told here; out of the tolerance asked
+#: for; wrong
 LEVELS = ("fact", "caution", "open", "avoid", "fault")
 
 

@@ -1,4 +1,5 @@
-"""Quick solutions that the guards of a scene share: both beams, a light harmonic solid, lumped models.
+"""Quick solutions that the guards of a scene share: both beams, a light harmonic solid, lumped
+models.
 
 Everything is solved when a guard first asks for it, and once.
 """
@@ -86,7 +87,9 @@ class Probe:
         return rung.body, rung.modes, rung.quantities
 
     def _tied(self, attachment: str | None) -> dict[str, float]:
-        """Numbers of the light harmonic solid with one attachment (``rigid``: at the bearings), or as the scene has it (None)."""
+        """Numbers of the light harmonic solid with one attachment (``rigid``: at the bearings), or
+        as the scene has it (None).
+        """
         given = {s.attachment for s in self.scene.stations}
         if attachment is None or given == {attachment}:
             return self.rung("harmonic").quantities
@@ -111,7 +114,9 @@ class Probe:
 
     @cached_property
     def lumped(self) -> tuple[LumpedPoint, dict[str, Synthesis]]:
-        """Lumped point and lumped models of the Timoshenko beam; SolidgearError where there is nothing to lump."""
+        """Lumped point and lumped models of the Timoshenko beam; SolidgearError where there is
+        nothing to lump.
+        """
         body, found, _ = self.beam("timoshenko")
         try:
             with np.errstate(divide="raise", invalid="raise"):
@@ -123,7 +128,9 @@ class Probe:
 
     @cached_property
     def fixed_interface(self) -> float | None:
-        """First bending (Hz) of the Timoshenko beam on its bearings with the lumped point held; None without a lumped model."""
+        """First bending (Hz) of the Timoshenko beam on its bearings with the lumped point held;
+        None without a lumped model.
+        """
         body, _, _ = self.beam("timoshenko")
         try:
             point, _ = self.lumped
@@ -154,7 +161,9 @@ class Probe:
 
     @cached_property
     def ovalising(self) -> dict[int, float]:
-        """Lowest frequency (Hz) of families of two waves around and more, as far as they are solved; bearings do not enter."""
+        """Lowest frequency (Hz) of families of two waves around and more, as far as they are
+        solved; bearings do not enter.
+        """
         harmonic = self.rungs.get("harmonic")
         solved = (
             [
@@ -183,7 +192,9 @@ class Probe:
 
     @cached_property
     def split(self) -> float:
-        """Relative distance of the two first bending frequencies of the Timoshenko beam; 0 where every bearing is alike in x and z."""
+        """Relative distance of the two first bending frequencies of the Timoshenko beam; 0 where
+        every bearing is alike in x and z.
+        """
         turned = [
             b.stiffness[np.ix_(X, X)] * SIGNS - b.stiffness[np.ix_(Z, Z)]
             for b in self.scene.bearings
@@ -211,7 +222,9 @@ class Probe:
 
     @cached_property
     def solid_unknowns(self) -> tuple[int, int]:
-        """Unknowns and matrix entries of the 3D solid: of the body if it is one, else estimated for the default HEX20 mesh."""
+        """Unknowns and matrix entries of the 3D solid: of the body if it is one, else estimated for
+        the default HEX20 mesh.
+        """
         if self.body.fidelity == "solid":
             matrix = self.body.blocks[0].stiffness
             return matrix.shape[0], matrix.nnz

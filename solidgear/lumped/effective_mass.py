@@ -1,7 +1,9 @@
-"""Effective mass and inertia at the lumped point: the thesis's equations, mode-matched, Guyan, and total.
+"""Effective mass and inertia at the lumped point: the thesis's equations, mode-matched, Guyan, and
+total.
 
-In a bending plane the lumped model is ``K_a - w^2 D`` on (z, phi), with K_a the static stiffness at the lumped point
-and D its 2x2 mass.  Hua (2010) asks in equations 52 and 53 for ``D = diag(M, I)`` such that
+In a bending plane the lumped model is ``K_a - w^2 D`` on (z, phi), with K_a the static stiffness at
+the lumped point and D its 2x2 mass.  Hua (2010) asks in equations 52 and 53 for ``D = diag(M, I)``
+such that
 
     M z^2 + I phi^2 = u'Mu  (= 1 here: kinetic energy of the first bending mode u)           (52)
     det(K_a - w1^2 D) = 0   with w1 the first natural frequency of the model                 (53)
@@ -11,11 +13,12 @@ with that motion at the lumped point the static one stores the least energy, so
 
     v' K_a v <= u'Ku = w1^2 u'Mu,
 
-with equality only if the mode *is* a static shape.  With (52), ``v' D v = u'Mu``, hence ``v'(K_a - w1^2 D) v <= 0``: unless
-equality holds the matrix is indefinite or worse at w1, and w1 cannot be the first frequency of the model.
-In the scaled unknowns ``x = M z^2, y = I phi^2`` with ``A = K_zz z^2 / w1^2``, ``B = K_pp phi^2 / w1^2``,
-``C = K_zp z phi / w1^2`` the inequality reads ``A + B + 2C <= 1`` and (52), (53) become ``x + y = 1``,
-``(A - x)(B - y) = C^2``, a quadratic in x with discriminant ``(A + B - 1)^2 - 4 C^2``.
+with equality only if the mode *is* a static shape.  With (52), ``v' D v = u'Mu``, hence ``v'(K_a -
+w1^2 D) v <= 0``: unless equality holds the matrix is indefinite or worse at w1, and w1 cannot be
+the first frequency of the model. In the scaled unknowns ``x = M z^2, y = I phi^2`` with ``A = K_zz
+z^2 / w1^2``, ``B = K_pp phi^2 / w1^2``, ``C = K_zp z phi / w1^2`` the inequality reads ``A + B + 2C
+<= 1`` and (52), (53) become ``x + y = 1``, ``(A - x)(B - y) = C^2``, a quadratic in x with
+discriminant ``(A + B - 1)^2 - 4 C^2``.
 """
 
 from __future__ import annotations
@@ -33,7 +36,8 @@ from solidgear.solve.supported import Supported, decoupled, groups
 
 PLANE = (2, 3)  # z and thx
 METHODS = ("old", "thesis", "mode-matched", "guyan")
-# v' K_a v / w1^2 this close to 1 counts as a static shape: the quadratic's double root then is real to rounding.
+# v' K_a v / w1^2 this close to 1 counts as a static shape: the quadratic's double root then is real
+# to rounding.
 STATIC_SHAPE = 1e-9
 
 
@@ -50,7 +54,8 @@ class Synthesis:
     feasible : bool
         Whether there is a real mass matrix, positive definite.
     first : bool
-        Whether the frequency below is the first of the lumped model (a mode-matched pair can place it second).
+        Whether the frequency below is the first of the lumped model (a mode-matched pair can place
+        it second).
     frequency_hz : float or None
         First natural frequency of the lumped model.
     frequency_error : float or None
@@ -58,7 +63,8 @@ class Synthesis:
     slope_error : float or None
         Of phi / z at the lumped point against the body's mode, relative.
     kinetic_error : float or None
-        ``v' D v - 1``: kinetic energy of the lumped mass moving with the mode, against the mode's own.
+        ``v' D v - 1``: kinetic energy of the lumped mass moving with the mode, against the mode's
+        own.
     valid_to_hz : float or None
         The receptance z/F_z at the lumped point stays within 5 per cent of the body's up to here.
     verdict : str
@@ -165,7 +171,9 @@ def _port_motion(body: Body, vectors: dict[int, np.ndarray], index: int) -> np.n
 
 
 def _first_in_plane(body: Body, found: ModeSet, index: int):
-    """First bending mode that moves the port in the z plane, and its (z, thx) there: unequal bearings may put one of the x plane before it."""
+    """First bending mode that moves the port in the z plane, and its (z, thx) there: unequal
+    bearings may put one of the x plane before it.
+    """
     for mode in (*found.modes, *found.beyond):
         if mode.family != "bending" or mode.frequency_hz == 0:
             continue
@@ -212,7 +220,9 @@ def _static_shapes(body: Body, supports, index: int):
 
 
 def _guyan(body: Body, supports, index: int, compliance: np.ndarray) -> np.ndarray:
-    """Mass on the static shapes of unit (z, phi) at the lumped point, no load elsewhere (Guyan 1965)."""
+    """Mass on the static shapes of unit (z, phi) at the lumped point, no load elsewhere (Guyan
+    1965).
+    """
     supported, fields = _static_shapes(body, supports, index)
     shapes = fields @ np.linalg.inv(compliance)
     m = shapes.T @ supported.mass(shapes)
@@ -226,7 +236,8 @@ def effective_masses(point: LumpedPoint, receptance=None) -> dict[str, Synthesis
     ----------
     point : LumpedPoint
     receptance : callable, optional
-        ``receptance(omega)`` of the full body, z per unit F_z at the lumped point, m/N; without it the band of validity stays None.
+        ``receptance(omega)`` of the full body, z per unit F_z at the lumped point, m/N; without it
+        the band of validity stays None.
 
     Returns
     -------
@@ -339,7 +350,9 @@ def _judge(point: LumpedPoint, method, mass, receptance, verdict, numbers=None) 
 
 
 def _valid_to(k, mass, receptance, omega, tolerance: float = 0.05) -> float:
-    """Highest frequency (Hz) below which the lumped receptance stays within the tolerance, looked for up to 1.5 times the first mode."""
+    """Highest frequency (Hz) below which the lumped receptance stays within the tolerance, looked
+    for up to 1.5 times the first mode.
+    """
     last = 0.0
     # Half steps, so that no point falls on the resonance itself.
     for w in 1.5 * (np.arange(600) + 0.5) / 600 * omega:
@@ -351,9 +364,11 @@ def _valid_to(k, mass, receptance, omega, tolerance: float = 0.05) -> float:
 
 
 def modal_receptance(body: Body, supports, port: str, found: ModeSet):
-    """Receptance z/F_z at a port by modal superposition with the static remainder, as a function of omega (rad/s).
+    """Receptance z/F_z at a port by modal superposition with the static remainder, as a function of
+    omega (rad/s).
 
-    The static part of the modes left out is exact, so the error is of the order of (omega / omega_left_out)^4.
+    The static part of the modes left out is exact, so the error is of the order of (omega /
+    omega_left_out)^4.
     """
     index = body.port_index(port)
     static = condense(body, supports, port).compliance[2, 2]

@@ -1,4 +1,6 @@
-"""The lumped rung of a comparison: every synthesis from every body, and the one that stands for them."""
+"""The lumped rung of a comparison: every synthesis from every body, and the one that stands for
+them.
+"""
 
 from __future__ import annotations
 
@@ -23,8 +25,9 @@ def synthesise_all(scene, rungs: dict, tell: Callable[[str], None] = lambda _: N
     Returns
     -------
     dict
-        Per model: ``stiffness`` (2x2 on z, thx), ``motion``, ``first_bending_hz``, ``static_share``, ``seconds`` and ``variants``;
-        or ``why_not`` where there is nothing to lump.
+        Per model: ``stiffness`` (2x2 on z, thx), ``motion``, ``first_bending_hz``,
+        ``static_share``, ``seconds`` and ``variants``; or ``why_not`` where there is nothing to
+        lump.
     """
     out = {}
     for model, rung in rungs.items():
@@ -65,7 +68,9 @@ def _record(s: Synthesis) -> dict:
 
 
 def representative(lumped: dict) -> tuple[str, str] | None:
-    """(source model, variant) that stands for the lumped rung: mode-matched where it is physical and first, else Guyan."""
+    """(source model, variant) that stands for the lumped rung: mode-matched where it is physical
+    and first, else Guyan.
+    """
     for source in SOURCES:
         variants = lumped.get(source, {}).get("variants")
         if not variants:

@@ -14,9 +14,11 @@ SHOULDER = 0.5445
 
 
 def corner_exponent(angle: float) -> float:
-    """Exponent of displacement at a traction-free corner, smaller of the symmetric and antisymmetric modes.
+    """Exponent of displacement at a traction-free corner, smaller of the symmetric and
+    antisymmetric modes.
 
-    Williams (1952), J. Appl. Mech. 19, 526: ``sin(l w) = +- l sin(w)`` for a material angle w; 0.5445 at 270 degrees.
+    Williams (1952), J. Appl. Mech. 19, 526: ``sin(l w) = +- l sin(w)`` for a material angle w;
+    0.5445 at 270 degrees.
 
     Parameters
     ----------
@@ -46,7 +48,9 @@ def corner_exponent(angle: float) -> float:
 
 
 def corner_angle(a, b) -> float:
-    """Largest material angle (rad) of the outline where segment ``b`` follows ``a``, outside or in the bore; pi at least."""
+    """Largest material angle (rad) of the outline where segment ``b`` follows ``a``, outside or in
+    the bore; pi at least.
+    """
     worst = np.pi
     for r_a, r_b, s_a, s_b, side in (
         (
@@ -79,14 +83,17 @@ def corner_angle(a, b) -> float:
 
 
 def sharpest_corner(scene) -> tuple[float, float]:
-    """Largest material angle (rad) at a shoulder of a scene and its exponent; (pi, 1) when there is none."""
+    """Largest material angle (rad) at a shoulder of a scene and its exponent; (pi, 1) when there is
+    none.
+    """
     pairs = zip(scene.segments, scene.segments[1:])
     worst = max((corner_angle(a, b) for a, b in pairs), default=np.pi)
     return worst, corner_exponent(worst)
 
 
 def corner_layers(a, b, layers: int) -> int:
-    """Geometric layers that the corner between two segments needs where a right-angled shoulder needs ``layers``.
+    """Geometric layers that the corner between two segments needs where a right-angled shoulder
+    needs ``layers``.
 
     Layers of one ratio shrink the error by ``ratio ** (2 exponent)`` each, and what they have to shrink
     grows with ``1 - exponent``, which is zero on a smooth outline.  A change of material counts as a shoulder.

@@ -1,8 +1,9 @@
-"""Structured hexahedral mesh of a shaft of revolution: an O-grid swept along the layout of mesh lines.
+"""Structured hexahedral mesh of a shaft of revolution: an O-grid swept along the layout of mesh
+lines.
 
-The cross-section is a square core of k x k cells inside rings of 4k cells.  Nodes on circles lie a little
-outside them, such that the piecewise quadratic circle encloses the exact area: the
-leading error of volume and inertia then cancels (8 cells around: 8e-4 in area without it).
+The cross-section is a square core of k x k cells inside rings of 4k cells.  Nodes on circles lie a
+little outside them, such that the piecewise quadratic circle encloses the exact area: the leading
+error of volume and inertia then cancels (8 cells around: 8e-4 in area without it).
 """
 
 from __future__ import annotations
@@ -104,7 +105,9 @@ def hexahedra(scene, plan: Layout, around: int = 8) -> tuple[MeshHex2, np.ndarra
 
 
 def _core(k: int) -> np.ndarray:
-    """(2k+1, 2k+1, 2) nodes of the core for a unit radius, in (z, x): a Coons patch between four bulged sides."""
+    """(2k+1, 2k+1, 2) nodes of the core for a unit radius, in (z, x): a Coons patch between four
+    bulged sides.
+    """
     n = 2 * k
     t = 5 * np.pi / 4 + np.arange(4 * n) * np.pi / (2 * n)
     square = np.cos(np.pi / 4) / np.maximum(abs(np.cos(t)), abs(np.sin(t)))
@@ -140,7 +143,9 @@ def _ring_key(line, ring, turn, n_lines, around):
 
 
 def _core_key(corner, row, rim_line, k, n_lines, around):
-    """Keys of core vertices: those on the edge are vertices of the first ring, inner ones are negative."""
+    """Keys of core vertices: those on the edge are vertices of the first ring, inner ones are
+    negative.
+    """
     i, j, line = corner[..., 0], corner[..., 1], row + corner[..., 2]
     turn = np.select([j == 0, i == k, j == k, i == 0], [i, k + j, 3 * k - i, 4 * k - j], -1)
     inside = -1 - (line.astype(np.int64) * (k + 1) + i) * (k + 1) - j

@@ -31,8 +31,8 @@ class Layout:
     left, right : tuple of ndarray per segment
         Radii of the band boundaries ``lowest .. end`` at the two ends of the segment, m.
     fractions : dict of (band index, first segment of a run) -> (m + 1,) ndarray
-        Subdivision of each band, 0 to 1 outwards, for every run of neighbours that have the band: a flange does not
-        pass its rings on to a seat at the other end of the shaft.
+        Subdivision of each band, 0 to 1 outwards, for every run of neighbours that have the band: a
+        flange does not pass its rings on to a seat at the other end of the shaft.
     """
 
     y: np.ndarray
@@ -57,7 +57,9 @@ class Layout:
 
     @cached_property
     def _offsets(self) -> dict[int, int]:
-        """Number of the innermost ring line of every band; bands count outwards through the whole shaft."""
+        """Number of the innermost ring line of every band; bands count outwards through the whole
+        shaft.
+        """
         widest: dict[int, int] = {}
         for (band, _), lines in self.fractions.items():
             widest[band] = max(widest.get(band, 0), len(lines) - 1)
@@ -74,7 +76,9 @@ class Layout:
         return max(self._offsets.values()) + 1
 
     def ring_numbers(self, segment: int) -> np.ndarray:
-        """Numbers of a segment's ring lines from the inside, the same as its neighbours' where they share a band."""
+        """Numbers of a segment's ring lines from the inside, the same as its neighbours' where they
+        share a band.
+        """
         lowest = self.bands[segment][0]
         parts = [
             self._offsets[lowest + k] + np.arange(len(lines) - 1)
@@ -108,14 +112,17 @@ ROOM_ONE, ROOM_TWO = 0.75, 0.45
 
 @dataclass(frozen=True)
 class Grading:
-    """How fine a mesh is where, in local lengths, so that a small step at one place does not refine another.
+    """How fine a mesh is where, in local lengths, so that a small step at one place does not refine
+    another.
 
-    The local length of a segment is its outer radius, or the decay length of a shell where its wall is thin.
+    The local length of a segment is its outer radius, or the decay length of a shell where its wall
+    is thin.
 
     Attributes
     ----------
     layers : int
-        Geometric layers towards right-angled shoulders and rigid seat ends, the strongest singularities.
+        Geometric layers towards right-angled shoulders and rigid seat ends, the strongest
+        singularities.
     edge_layers : int
         The same towards the ends of averaged seats.
     radial_layers : int
@@ -164,14 +171,18 @@ class Grading:
 
 
 def local_length(segment) -> float:
-    """Length (m) over which what happens at a line of the surface dies away: the radius, or a shell's ``2 sqrt(r t)``."""
+    """Length (m) over which what happens at a line of the surface dies away: the radius, or a
+    shell's ``2 sqrt(r t)``.
+    """
     wall = min(segment.outer0 - segment.inner0, segment.outer1 - segment.inner1)
     radius = min(segment.outer0, segment.outer1)
     return min(radius, SHELL * float(np.sqrt(radius * wall)))
 
 
 def corner_length(segment) -> float:
-    """Length (m) over which stress at a corner is singular: the wall, or the radius of a solid shaft."""
+    """Length (m) over which stress at a corner is singular: the wall, or the radius of a solid
+    shaft.
+    """
     return min(
         segment.outer0 - segment.inner0,
         segment.outer1 - segment.inner1,
@@ -232,7 +243,9 @@ class _Mark:
 
 
 def _marks(scene, grading: Grading, attachments) -> list[_Mark]:
-    """Ends, segment boundaries, seat ends and section planes; where several coincide the strongest counts."""
+    """Ends, segment boundaries, seat ends and section planes; where several coincide the strongest
+    counts.
+    """
     segments, tol = scene.segments, 1e-9 * scene.length
     weight: dict[float, int] = {s.y0: 0 for s in segments} | {segments[-1].y1: 0}
 
@@ -244,7 +257,8 @@ def _marks(scene, grading: Grading, attachments) -> list[_Mark]:
         held = "rigid" in ties
         for y in (station.lo, station.hi):
             at_face = min(abs(y), abs(y - scene.length)) <= tol
-            # An averaged seat that ends at a face meets no edge there; a rigid one is clamped up to the corner.
+            # An averaged seat that ends at a face meets no edge there; a rigid one is clamped up to
+            # the corner.
             add(y, grading.layers if held else 0 if at_face else grading.edge)
         planes = "section" in ties and tol < station.y < scene.length - tol
         add(station.y, max(grading.edge, grading.layers - 1) if planes else 0)
@@ -363,7 +377,9 @@ def graded(length, size, ratio, reach, refinement, low: int, high: int) -> np.nd
 
 
 def _filled(a: float, b: float, length: float, near: float, far: float) -> np.ndarray:
-    """Lines from a to b no further apart than the local cell size: ``near``, or the distance to the nearer end where that is more, up to ``far``."""
+    """Lines from a to b no further apart than the local cell size: ``near``, or the distance to the
+    nearer end where that is more, up to ``far``.
+    """
     if near >= far:
         n = max(1, int(np.ceil((b - a) / far - 1e-6)))
         return np.linspace(a, b, n + 1)
@@ -394,7 +410,9 @@ def _bands(segments):
     tol = 1e-9 * max(max(s.outer0, s.outer1) for s in segments)
 
     def levels(end, start):
-        """Least integers with level_i < level_j where i is the smaller neighbour, = where they meet."""
+        """Least integers with level_i < level_j where i is the smaller neighbour, = where they
+        meet.
+        """
         level = [0] * n
         for _ in range(n + 1):
             changed = False

@@ -1,8 +1,9 @@
 """Gates every volume mesh passes before it is worth a factorisation.
 
-A curved element can be inverted between any points one cares to sample, and a mesh can lose a sliver of its volume without any
-solver complaining. So the Jacobian determinant, a polynomial, is bounded from below over the whole element, and the
-volume is held against the closed form of the shaft.
+A curved element can be inverted between any points one cares to sample, and a mesh can lose a
+sliver of its volume without any solver complaining. So the Jacobian determinant, a polynomial, is
+bounded from below over the whole element, and the volume is held against the closed form of the
+shaft.
 """
 
 from dataclasses import dataclass
@@ -14,15 +15,19 @@ import numpy as np
 
 from solidgear.errors import SolidgearError
 
-# Elements whose bound says that det J stays above this part of its greatest value need no closer look.
+# Elements whose bound says that det J stays above this part of its greatest value need no closer
+# look.
 _CLEAR = 0.1
-# The least det J of the others is found to this part of the greatest; each cut makes the bound four times tighter.
+# The least det J of the others is found to this part of the greatest; each cut makes the bound four
+# times tighter.
 _TOLERANCE, _CUTS = 1e-3, 6
 _BATCH = 4000  # elements looked at at once
 
 
 class MeshError(SolidgearError):
-    """A mesh that cannot be made, or must not be used; the message says which element and what to do."""
+    """A mesh that cannot be made, or must not be used; the message says which element and what to
+    do.
+    """
 
 
 @dataclass(frozen=True)
@@ -38,9 +43,11 @@ class MeshQuality:
     min_det_j, max_det_j : float
         Extremes of the Jacobian determinant over all elements [m^3].
     min_ratio : float
-        Smallest (min det J) / (max det J) inside one element: 1 is an affine element, 0 or less a folded one.
+        Smallest (min det J) / (max det J) inside one element: 1 is an affine element, 0 or less a
+        folded one.
     min_volume_ratio : float
-        Smallest element volume over the mean one; grading lowers it rightly (size ratio cubed), a sliver wrongly.
+        Smallest element volume over the mean one; grading lowers it rightly (size ratio cubed), a
+        sliver wrongly.
     """
 
     n_elements: int
@@ -58,7 +65,8 @@ def check_mesh(mesh, *, volume=None, rtol=1e-3, min_ratio=1e-3):
     Parameters
     ----------
     mesh : skfem.MeshTet1, MeshTet2, MeshHex1 or MeshHex2
-        Right-handed. scikit-fem itself integrates with |det J|, and its `init_tensor` meshes are left-handed.
+        Right-handed. scikit-fem itself integrates with |det J|, and its `init_tensor` meshes are
+        left-handed.
     volume : float, optional
         Volume the mesh should have [m^3], see `volume_of`; None skips the comparison.
     rtol : float
@@ -137,8 +145,9 @@ def _measure(mesh):
 def _extremes(mesh, part):
     """Least and greatest det J of some elements, and their volumes.
 
-    det J is a polynomial, so its Bernstein coefficients bound it over the whole element; where they leave a doubt the
-    element is cut in eight, again and again, and only the doubtful pieces are kept (Johnen, Remacle and Geuzaine 2013, J. Comput. Phys. 233, 359).
+    det J is a polynomial, so its Bernstein coefficients bound it over the whole element; where they
+    leave a doubt the element is cut in eight, again and again, and only the doubtful pieces are
+    kept (Johnen, Remacle and Geuzaine 2013, J. Comput. Phys. 233, 359).
     """
     element = mesh.elem()
     tet, curved = element.refdom.nnodes == 4, element.doflocs.shape[0] > element.refdom.nnodes
@@ -189,8 +198,9 @@ def _determinants(mesh, element, points, part):
 class _Bernstein:
     """Polynomials of one degree on a reference element.
 
-    ``points`` (3, m) the lattice; ``from_values`` (m, m) makes coefficients of values there; ``children`` (8, m, m) makes
-    the coefficients of the eight pieces of the element; ``corners`` the coefficients that are values at its corners.
+    ``points`` (3, m) the lattice; ``from_values`` (m, m) makes coefficients of values there;
+    ``children`` (8, m, m) makes the coefficients of the eight pieces of the element; ``corners``
+    the coefficients that are values at its corners.
     """
 
     points: np.ndarray
@@ -287,7 +297,8 @@ class MassProperties:
     centre : float
         Position of the centre of mass along y [m].
     ixx : float
-        Moment of inertia about a transverse axis through the centre of mass [kg m^2]; the one about z is the same.
+        Moment of inertia about a transverse axis through the centre of mass [kg m^2]; the one about
+        z is the same.
     iyy : float
         Polar moment of inertia about the axis y [kg m^2].
     """
@@ -325,7 +336,9 @@ def mass_properties(segments):
 
 
 def _frustum(y0, y1, a, b, density):
-    """Mass, moment of mass in y, polar inertia, and y0 with first and second moment about y0, of a solid frustum."""
+    """Mass, moment of mass in y, polar inertia, and y0 with first and second moment about y0, of a
+    solid frustum.
+    """
     h = y1 - y0
     mass = density * np.pi * h * _squares(a, b)
     first = density * np.pi * h**2 * (a * a + 2.0 * a * b + 3.0 * b * b) / 12.0  # int r^2 s

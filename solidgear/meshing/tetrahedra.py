@@ -1,11 +1,12 @@
 """Curved second-order tetrahedra in a shaft of revolution, by gmsh.
 
-The meridian (the half section, radius against y) is drawn once as a planar map in which neighbouring segments share
-their edges, and the whole map is turned about the axis: what was shared stays shared, so interfaces and planes are
-conforming without any boolean operation. The element size is a closed formula in radius and y.
+The meridian (the half section, radius against y) is drawn once as a planar map in which
+neighbouring segments share their edges, and the whole map is turned about the axis: what was shared
+stays shared, so interfaces and planes are conforming without any boolean operation. The element
+size is a closed formula in radius and y.
 
-Second-order tetrahedra on straight edges lose 0.3 to 0.7 % of the volume. With mid-edge nodes on the true surface the
-loss is a^4/30, where an edge spans the angle 2a: 5e-5 with 16 elements around.
+Second-order tetrahedra on straight edges lose 0.3 to 0.7 % of the volume. With mid-edge nodes on
+the true surface the loss is a^4/30, where an edge spans the angle 2a: 5e-5 with 16 elements around.
 """
 
 from dataclasses import dataclass, replace
@@ -50,17 +51,21 @@ def tetrahedra(
     Parameters
     ----------
     segments : sequence
-        Objects with y0, y1, outer0, outer1, inner0, inner1 [m], end to end along y; inner 0 is solid.
+        Objects with y0, y1, outer0, outer1, inner0, inner1 [m], end to end along y; inner 0 is
+        solid.
     planes : sequence of float
         Positions y of cross-sections to be made of element faces [m].
     circles : sequence of float
         Positions y at which the outer surface is split along a circle (ends of seats) [m].
     size : float
-        Target length of an element edge in the bulk [m]; gmsh keeps it below about a tenth of the shaft's diagonal.
+        Target length of an element edge in the bulk [m]; gmsh keeps it below about a tenth of the
+        shaft's diagonal.
     graded_size : float, optional
-        Target edge at `circles` and at every kink of the outline (shoulders, cone ends, corners) [m]; None is uniform.
+        Target edge at `circles` and at every kink of the outline (shoulders, cone ends, corners)
+        [m]; None is uniform.
     reach : float, optional
-        Distance over which the edge grows from `graded_size` to `size` [m]; the local radius when None.
+        Distance over which the edge grows from `graded_size` to `size` [m]; the local radius when
+        None.
     around : int
         Least number of elements around a circle.
     progress : callable, optional
@@ -296,7 +301,8 @@ def _corners(slabs, circles, tolerance):
 def estimated_counts(
     segments, planes=(), circles=(), *, size, graded_size=None, reach=None, around=16
 ):
-    """Vertices, edges, faces and cells of :func:`tetrahedra` for the same arguments, without meshing.
+    """Vertices, edges, faces and cells of :func:`tetrahedra` for the same arguments, without
+    meshing.
 
     Volume, surface and the rims that are graded towards are filled with elements of the size asked for.  The constants were fitted to 21 meshes
     of 2,000 to 70,000 cells in shafts and tubes, whose cells they give within 17 %.
@@ -355,7 +361,8 @@ def estimated_counts(
 
 
 _NUMPY = {"Sqrt": np.sqrt, "Max": np.maximum, "Min": np.minimum, "__builtins__": {}}
-# vertices, edges, faces and cells, per volume over h^3, per surface over h^2 and per length of rims over h
+# vertices, edges, faces and cells, per volume over h^3, per surface over h^2 and per length of rims
+# over h
 _FILL = (
     (0.602, 0.931, 1.663),
     (4.288, 4.214, 8.013),
@@ -376,7 +383,9 @@ def _graded_points(a, b, least):
 
 
 def _embed_tips(gmsh, tolerance):
-    """Make the tip of a conical bore a node of the disc it touches: the two share a point, but no curve."""
+    """Make the tip of a conical bore a node of the disc it touches: the two share a point, but no
+    curve.
+    """
     ends = [(tag, gmsh.model.getValue(0, tag, [])) for _, tag in gmsh.model.getEntities(0)]
     tips = {tag: y for tag, (x, y, _) in ends if abs(x) <= tolerance}
     for _, face in gmsh.model.getEntities(2) if tips else ():
@@ -493,7 +502,9 @@ def _set_size(gmsh, formulas, size):
 
 
 def _to_skfem(gmsh):
-    """The gmsh mesh as a scikit-fem one, mid-edge nodes matched by the pair of corners they lie between."""
+    """The gmsh mesh as a scikit-fem one, mid-edge nodes matched by the pair of corners they lie
+    between.
+    """
     types, _, nodes = gmsh.model.mesh.getElements(3)
     if list(types) != [_TET10]:
         raise MeshError(
@@ -524,9 +535,11 @@ def _to_skfem(gmsh):
 
 
 def _relaxed(mesh):
-    """The mesh with the mid nodes of folded elements drawn towards the middle of their edges, as far as needed.
+    """The mesh with the mid nodes of folded elements drawn towards the middle of their edges, as
+    far as needed.
 
-    Only the tip of a cone folds elements of a sensible size; what is lost there is below the volume gate.
+    Only the tip of a cone folds elements of a sensible size; what is lost there is below the volume
+    gate.
     """
     straight = mesh.p[:, mesh.edges].mean(axis=1)
     middles = mesh.dofs.edge_dofs[0]
@@ -545,7 +558,9 @@ def _relaxed(mesh):
 
 
 def _mid_node_corners(gmsh):
-    """Local corners, shape (6, 2), between which each mid node lies; read from gmsh, whose order is its own."""
+    """Local corners, shape (6, 2), between which each mid node lies; read from gmsh, whose order is
+    its own.
+    """
     reference = np.array(gmsh.model.mesh.getElementProperties(_TET10)[4]).reshape(10, 3)
     pairs = [(a, b) for a in range(4) for b in range(a + 1, 4)]
     halves = np.array([(reference[a] + reference[b]) / 2.0 for a, b in pairs])

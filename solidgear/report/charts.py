@@ -1,7 +1,7 @@
 """The charts of the report, each as one SVG in bytes, or None where the run has nothing to draw.
 
-They are drawn through figure objects, never through a display, and the same results give the same bytes.
-matplotlib is imported when the first one is drawn: a terminal run has no use for it.
+They are drawn through figure objects, never through a display, and the same results give the same
+bytes. matplotlib is imported when the first one is drawn: a terminal run has no use for it.
 """
 
 from __future__ import annotations
@@ -50,7 +50,9 @@ STYLE = {
 
 
 def _chart(function: Callable[[dict], Any]) -> Callable[[Mapping], bytes | None]:
-    """From a function that makes a figure to one that returns its SVG, ready to stand in an HTML page."""
+    """From a function that makes a figure to one that returns its SVG, ready to stand in an HTML
+    page.
+    """
 
     @functools.wraps(function)
     def drawn(results: Mapping) -> bytes | None:
@@ -105,7 +107,9 @@ def sketch(results):
 # ------------------------------------------------------------------------------------------------- modes
 @_chart
 def mode_chart(results):
-    """Natural frequencies of all models side by side, and below them how far each is from the reference."""
+    """Natural frequencies of all models side by side, and below them how far each is from the
+    reference.
+    """
     from matplotlib.ticker import PercentFormatter
 
     models = {k: m for k, m in (results.get("models") or {}).items() if m.get("modes")}
@@ -265,7 +269,9 @@ def mac_chart(results):
 # ------------------------------------------------------------------------------------------------- evidence
 @_chart
 def convergence_chart(results):
-    """Distance from the extrapolated value over mesh size or unknowns, log-log, with the band and both orders."""
+    """Distance from the extrapolated value over mesh size or unknowns, log-log, with the band and
+    both orders.
+    """
     panels = []
     for key, model in (results.get("models") or {}).items():
         convergence = model.get("convergence") or {}
@@ -361,7 +367,9 @@ def _log_ticks(ax, xs, labels) -> None:
 
 
 def _percent_decades(ax) -> None:
-    """Decades in per cent, not as powers of ten: those need the mathematics mode that names are kept out of."""
+    """Decades in per cent, not as powers of ten: those need the mathematics mode that names are
+    kept out of.
+    """
     from matplotlib.ticker import FuncFormatter, NullFormatter
 
     ax.yaxis.set_major_formatter(FuncFormatter(lambda v, _: f"{100 * v:.6g} %"))
@@ -462,7 +470,8 @@ def attachment_chart(results):
 def cost_chart(results):
     """Seconds against deviation from the reference, log-log, one point a model.
 
-    The reference has no deviation; it stands at its own band, hollow, like every deviation that is not resolved.
+    The reference has no deviation; it stands at its own band, hollow, like every deviation that is
+    not resolved.
     """
     from matplotlib.ticker import FuncFormatter, NullFormatter
 

@@ -24,9 +24,10 @@ CELLS = {
 def write_vtu(scene, body, modes, path: str | Path, *, most: int | None = None) -> Path:
     """Write a body and its mode shapes.
 
-    A solid is written as its volume mesh, with cells of its own type; any other body as its surface.
-    Every shape is a vector at the points, named such as ``bending 1a (2758.00 Hz)``, normalised to unit modal mass
-    (kg^-1/2, so scale it before taking it for metres). Coordinates are in m.
+    A solid is written as its volume mesh, with cells of its own type; any other body as its
+    surface. Every shape is a vector at the points, named such as ``bending 1a (2758.00 Hz)``,
+    normalised to unit modal mass (kg^-1/2, so scale it before taking it for metres). Coordinates
+    are in m.
 
     Parameters
     ----------

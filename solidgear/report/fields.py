@@ -1,8 +1,8 @@
 """Displacement of the surface of a shaft, in space, from the unknowns of any fidelity.
 
-Beams and harmonic solids are bodies of revolution: both are drawn by revolving their meridian, and both move by
-``u_r = U cos n(t - t0), u_t = -V sin n(t - t0) + S, u_y = W cos n(t - t0)`` with ``z = r cos t, x = r sin t``.
-A beam section is the case U = V, W linear in r.
+Beams and harmonic solids are bodies of revolution: both are drawn by revolving their meridian, and
+both move by ``u_r = U cos n(t - t0), u_t = -V sin n(t - t0) + S, u_y = W cos n(t - t0)`` with ``z =
+r cos t, x = r sin t``. A beam section is the case U = V, W linear in r.
 """
 
 from __future__ import annotations
@@ -30,12 +30,14 @@ class Surface:
     points : (n, 3) ndarray
         x, y, z at rest, m.
     displacement : (n, 3) ndarray
-        In the unit of the vector it was made from; m for unit-mass shapes up to their common factor.
+        In the unit of the vector it was made from; m for unit-mass shapes up to their common
+        factor.
     faces : (m, 4) ndarray of int
         Quadrilaterals.
     triangles : (k, 3) ndarray of int
     lines : (l, 2) ndarray of int
-        Pieces of lines that are worth drawing: element edges of a solid, circles and meridians otherwise.
+        Pieces of lines that are worth drawing: element edges of a solid, circles and meridians
+        otherwise.
     """
 
     points: np.ndarray
@@ -101,7 +103,9 @@ def mesh_unknowns(body, vectors: Mapping[int, np.ndarray]) -> dict[str, np.ndarr
 # ------------------------------------------------------------------------------------------------- revolution
 @dataclass(frozen=True)
 class _Rings:
-    """Circles (r, y), the pieces of meridian (k, 2) between them with material on their left, and those to draw."""
+    """Circles (r, y), the pieces of meridian (k, 2) between them with material on their left, and
+    those to draw.
+    """
 
     r: np.ndarray
     y: np.ndarray
@@ -201,7 +205,9 @@ def _beam(scene, nodes, moved):
 
 
 def _profile(scene, nodes) -> _Rings:
-    """Closed outline of the meridian: up the outer surface, down the bore, counter-clockwise in (r, y)."""
+    """Closed outline of the meridian: up the outer surface, down the bore, counter-clockwise in (r,
+    y).
+    """
     tol = 1e-9 * scene.length
     outer, inner = [], []
     for s in scene.segments:
@@ -230,7 +236,9 @@ def _profile(scene, nodes) -> _Rings:
 
 # ------------------------------------------------------------------------------------------------- harmonic solid
 def _harmonic(geometry, moved):
-    """The outline of the meridian mesh; inside an edge the basis itself is evaluated, whatever its order."""
+    """The outline of the meridian mesh; inside an edge the basis itself is evaluated, whatever its
+    order.
+    """
     from solidgear.fidelity.assembly import reference
 
     points, cells, dofs = geometry.meridian.points, geometry.meridian.cells, geometry.dofs
@@ -320,14 +328,17 @@ def _with_axis(vector, n, axis) -> np.ndarray:
 
 # ------------------------------------------------------------------------------------------------- solid
 def _solid(geometry, vector) -> Surface:
-    """The boundary of the volume mesh; faces of second order are divided, so that curved ones look curved."""
+    """The boundary of the volume mesh; faces of second order are divided, so that curved ones look
+    curved.
+    """
     from solidgear.fidelity.assembly import reference
 
     moved = np.zeros((geometry.nodes.shape[1], 3)) if vector is None else vector.reshape(-1, 3)
     fields = np.column_stack([geometry.nodes.T, moved])
     refdom, element, dofs = geometry.mesh.refdom, geometry.element, geometry.dofs
     linear = len(dofs) == refdom.nnodes
-    # Two pieces end at the nodes in the middle of edges; more only pay where the mesh is coarse enough to see it.
+    # Two pieces end at the nodes in the middle of edges; more only pay where the mesh is coarse
+    # enough to see it.
     m = 1 if linear else PIECES if len(geometry.boundary) < 4000 else 2
     corners = len(refdom.facets[0])
     grid, cells, rim = _grid(m, corners)
@@ -346,7 +357,8 @@ def _solid(geometry, vector) -> Surface:
         )
         serial = done + np.arange(len(elements) * len(grid)).reshape(-1, len(grid))
         done += serial.size
-        # A point inside a face is its own; one on an edge is named by the edge's vertices, so that neighbours share it.
+        # A point inside a face is its own; one on an edge is named by the edge's vertices, so that
+        # neighbours share it.
         key = np.stack([-1 - serial, 0 * serial, 0 * serial], axis=-1)
         va, vb = (geometry.mesh.t[refdom.facets[place]][c][:, elements].T for c in (a, b))
         vb = np.where(k == 0, va, vb)
@@ -369,7 +381,9 @@ def _solid(geometry, vector) -> Surface:
 
 
 def _grid(m: int, corners: int):
-    """Points (i, j), cells and rim (from the first corner on) of a face divided into m pieces along each edge."""
+    """Points (i, j), cells and rim (from the first corner on) of a face divided into m pieces along
+    each edge.
+    """
     i, j = (g.ravel() for g in np.meshgrid(np.arange(m + 1), np.arange(m + 1), indexing="ij"))
     n = m + 1
     step = np.arange(m)

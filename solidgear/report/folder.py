@@ -1,8 +1,9 @@
-"""The folder a run writes into: one run at a time, and nothing of an earlier run beside the new one.
+"""The folder a run writes into: one run at a time, and nothing of an earlier run beside the new
+one.
 
-A run lists its files in ``results.json``, so that the next one removes those and nothing else.  The lock is
-one of the system, which lets go of it when the process dies, however it dies; where there is none (Windows,
-some network drives) two runs are not kept apart.
+A run lists its files in ``results.json``, so that the next one removes those and nothing else.  The
+lock is one of the system, which lets go of it when the process dies, however it dies; where there
+is none (Windows, some network drives) two runs are not kept apart.
 """
 
 from __future__ import annotations

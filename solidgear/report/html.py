@@ -1,7 +1,8 @@
 """One self-contained HTML page about one run.
 
-`write_report` turns the results of a run (the dict that is also ``results.json``) into tables and charts and fills
-``report.html``, the template beside this file. The page needs no network, no script and no other file.
+`write_report` turns the results of a run (the dict that is also ``results.json``) into tables and
+charts and fills ``report.html``, the template beside this file. The page needs no network, no
+script and no other file.
 """
 
 from __future__ import annotations
@@ -695,7 +696,9 @@ def _algebra(r: Mapping) -> Table:
 
 
 def _counted(e: Mapping) -> list:
-    """Eigensolver, and the frequency up to which the inertia of a factor confirms that every mode was found."""
+    """Eigensolver, and the frequency up to which the inertia of a factor confirms that every mode
+    was found.
+    """
     parts = e.get("mode_count") or []
     sure = parts and all(p.get("checked") for p in parts)
     return [

@@ -1,7 +1,8 @@
 """Pictures of mode shapes, drawn in a child process.
 
-Without the system's OpenGL libraries VTK does not raise, it takes the process down with a segmentation fault.
-So a child draws, the caller reads what came of it, and a failed picture never costs a number.
+Without the system's OpenGL libraries VTK does not raise, it takes the process down with a
+segmentation fault. So a child draws, the caller reads what came of it, and a failed picture never
+costs a number.
 """
 
 from __future__ import annotations
@@ -197,7 +198,8 @@ def _main(room: Path) -> int:
     import pyvista as pv
 
     pv.OFF_SCREEN = True
-    # Drawing nothing is what fails where there is no OpenGL; past this mark the renderer is not to blame.
+    # Drawing nothing is what fails where there is no OpenGL; past this mark the renderer is not to
+    # blame.
     probe = pv.Plotter(off_screen=True, window_size=(16, 16))
     probe.show(auto_close=False)
     probe.close()
@@ -337,7 +339,9 @@ def _wires(pv, points, lines):
 
 
 def _view(points, displacement):
-    """Direction of the motion across the axis; and right, up and towards the viewer, with y to the right and that motion up."""
+    """Direction of the motion across the axis; and right, up and towards the viewer, with y to the
+    right and that motion up.
+    """
     across = displacement[:, [0, 2]]
     w, v = np.linalg.eigh(across.T @ across)
     # Motion without a plane of its own (torsion, axial, a ring breathing) is seen from +x.

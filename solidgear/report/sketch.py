@@ -18,8 +18,9 @@ CHAR = 0.075  # of a letter at the size of the labels
 def draw(results: Mapping) -> Any:
     """The figure, or None when the scene has no segments.
 
-    The upper half is cut (hatched), the lower half shows the surface. Radii are to the same scale as lengths, unless
-    the shaft is so slender that they have to be enlarged; then the sketch says by how much.
+    The upper half is cut (hatched), the lower half shows the surface. Radii are to the same scale
+    as lengths, unless the shaft is so slender that they have to be enlarged; then the sketch says
+    by how much.
     """
     from matplotlib.figure import Figure
 

@@ -1,4 +1,6 @@
-"""Error against cost as a figure, as rows on file, as a table in the terminal and as a section of the report."""
+"""Error against cost as a figure, as rows on file, as a table in the terminal and as a section of
+the report.
+"""
 
 from __future__ import annotations
 
@@ -65,7 +67,8 @@ CAPTION = (
 def write_rows(race: Race, folder: Path) -> None:
     """Write ``rows.csv`` and ``machine.json`` into a folder, each in one step.
 
-    What an earlier race left goes first: its record and its picture must not stand beside these rows, should the run be killed.
+    What an earlier race left goes first: its record and its picture must not stand beside these
+    rows, should the run be killed.
     """
     record = {f.name: getattr(race, f.name) for f in fields(race) if f.name != "rows"}
     if sum(len(row.samples) for row in race.rows) <= 1:
@@ -245,7 +248,8 @@ def _panel(ax, race: Race, quantity: str, cost: str) -> None:
     errors = [e for e in errors if e > 0] or [1e-3]
     top, low = max(errors) * 4, max(band / 2.5, min(e for e in errors if e > 0) / 40)
 
-    # a band far below every error is named at the bottom, so that it does not squeeze what there is to see
+    # a band far below every error is named at the bottom, so that it does not squeeze what there is
+    # to see
     if band > 0:
         ax.axhspan(low, max(band, low), color="#00805e", alpha=0.13, lw=0)
     ax.annotate(
@@ -522,7 +526,9 @@ def front_rows(race: Race) -> list[tuple[Row, list[str]]]:
 
 
 def error_text(race: Race, row: Row, quantity: str) -> str:
-    """Error of a row in per cent, a beam's like for like after a stroke; what the reference does not resolve as its band."""
+    """Error of a row in per cent, a beam's like for like after a stroke; what the reference does
+    not resolve as its band.
+    """
     found = race.error(row, quantity)
     if found is None:
         return "-"
@@ -575,7 +581,9 @@ def front_table(race: Race):
 
 
 def section(folder, scene: Mapping) -> dict | None:
-    """What the report shows of a race in its folder: picture, words and tables; None where there is none of this scene."""
+    """What the report shows of a race in its folder: picture, words and tables; None where there is
+    none of this scene.
+    """
     race = read_race(folder) if folder is not None else None
     picture = Path(folder) / PICTURE if race else None
     if race is None or race.scene != scene or not picture.exists():

@@ -8,7 +8,9 @@ from typing import Any
 
 @dataclass
 class Table:
-    """A table as the template takes it: cells are texts or (text, css class); the first of a row is its header."""
+    """A table as the template takes it: cells are texts or (text, css class); the first of a row is
+    its header.
+    """
 
     caption: str
     head: list[str]
@@ -21,7 +23,9 @@ class Table:
 
     @property
     def columns(self) -> list[tuple[str, str]]:
-        """(head, css class): a head stands over its column, texts to the left and numbers to the right."""
+        """(head, css class): a head stands over its column, texts to the left and numbers to the
+        right.
+        """
         first = self.rows[0] if self.rows else []
         return [
             (

@@ -1,7 +1,8 @@
-"""The run in a terminal: the final table, the verdict, matrices and modes; and the figures and words they share with the HTML.
+"""The run in a terminal: the final table, the verdict, matrices and modes; and the figures and
+words they share with the HTML.
 
-Everything fits 80 columns and says the same without colour. Texts out of a scene go through `rich.text.Text`,
-so that a name with brackets in it stays a name.
+Everything fits 80 columns and says the same without colour. Texts out of a scene go through
+`rich.text.Text`, so that a name with brackets in it stays a name.
 """
 
 from __future__ import annotations
@@ -38,8 +39,8 @@ NOTHING = "-"
 def plain(value: Any) -> Any:
     """The same data as dicts, lists, texts and finite numbers; NaN and infinities become None.
 
-    Everything in the report reads its input through this, so that a result straight from numpy and one
-    read back from JSON give the same page.
+    Everything in the report reads its input through this, so that a result straight from numpy and
+    one read back from JSON give the same page.
     """
     if isinstance(value, Mapping):
         return {str(k): plain(v) for k, v in value.items()}
@@ -58,7 +59,9 @@ def is_number(value: Any) -> bool:
 
 
 def engineering(value: float | None, digits: int = 5, nothing: str = NOTHING) -> str:
-    """`value` with an exponent that is a multiple of three, such as ``240.05e6``; exact zeros are ``0``."""
+    """`value` with an exponent that is a multiple of three, such as ``240.05e6``; exact zeros are
+    ``0``.
+    """
     if not is_number(value):
         return nothing
     if value == 0:
@@ -143,7 +146,9 @@ def first_mode(model: Mapping, family: str) -> dict | None:
 
 
 def quantity_key(quantity: str) -> str:
-    """One spelling for a quantity: ``bending_1``, ``f_bending_1_hz`` and ``bending 1`` are the same."""
+    """One spelling for a quantity: ``bending_1``, ``f_bending_1_hz`` and ``bending 1`` are the
+    same.
+    """
     text = str(quantity).lower().replace("_", " ").removesuffix(" hz").strip()
     return "bending 1" if text in ("f bending 1", "f1") else text
 
@@ -151,7 +156,8 @@ def quantity_key(quantity: str) -> str:
 def headline(results: Mapping, model: str, quantity: str) -> dict | None:
     """The deviation that stands for a model where there is room for one.
 
-    A beam has no seat surface: its fair partner is the solid with section ties ('section'). A solid is compared as the scene has it.
+    A beam has no seat surface: its fair partner is the solid with section ties ('section'). A solid
+    is compared as the scene has it.
     """
     rows = [
         r
@@ -163,7 +169,9 @@ def headline(results: Mapping, model: str, quantity: str) -> dict | None:
 
 
 def is_resolved(row: Mapping) -> bool:
-    """Whether a deviation may be read as one: False only where it lies inside the bands of the models compared."""
+    """Whether a deviation may be read as one: False only where it lies inside the bands of the
+    models compared.
+    """
     verdict = row.get("verdict")
     if verdict is not None:
         return verdict != "not resolved"
@@ -175,7 +183,9 @@ def is_resolved(row: Mapping) -> bool:
 
 
 def answer_seconds(model: Mapping) -> float | None:
-    """What an answer costs: building and solving. Bands and variants are evidence on top, and in the total only."""
+    """What an answer costs: building and solving. Bands and variants are evidence on top, and in
+    the total only.
+    """
     times = model.get("seconds") or {}
     stages = [times.get(s) for s in ("build", "statics", "modes")]
     return sum(stages) if all(is_number(s) for s in stages) else times.get("total")
@@ -186,7 +196,9 @@ VALID = {"yes": "yes", "no": "NO", "open": "?", "unknown": "?"}
 
 
 def validity(model: Mapping) -> str:
-    """``yes``, ``no``, ``open`` (not judged, or not to be told) or ``unknown`` where the record says nothing."""
+    """``yes``, ``no``, ``open`` (not judged, or not to be told) or ``unknown`` where the record
+    says nothing.
+    """
     if model.get("valid") is True:
         return "yes"
     if model.get("open"):
@@ -212,7 +224,8 @@ def reference_of(results: Mapping) -> str | None:
 
 # ------------------------------------------------------------------------------------------------- renderables
 def final_table(results: Mapping) -> RenderableType:
-    """One line a model: validity, K_zz, C_zz, first bending, deviation from the reference, band, size, time.
+    """One line a model: validity, K_zz, C_zz, first bending, deviation from the reference, band,
+    size, time.
 
     Parameters
     ----------
@@ -222,7 +235,8 @@ def final_table(results: Mapping) -> RenderableType:
     Returns
     -------
     rich renderable
-        A table of at most 80 columns, and below it what its marks mean and why a model must not be trusted.
+        A table of at most 80 columns, and below it what its marks mean and why a model must not be
+        trusted.
     """
     results = plain(results)
     reference = reference_of(results)
@@ -299,7 +313,9 @@ def final_table(results: Mapping) -> RenderableType:
 
 
 def closing_lines(results: Mapping) -> list[str]:
-    """What else a reader must know: cautions, which modes were counted, seconds and peak memory (plain text)."""
+    """What else a reader must know: cautions, which modes were counted, seconds and peak memory
+    (plain text).
+    """
     results = plain(results)
     lines = [f"caution: {w}" for w in results.get("warnings") or ()]
     trusted = (results.get("verdict") or {}).get("trust")

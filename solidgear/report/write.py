@@ -13,10 +13,12 @@ MODE = "bending 1"
 
 
 def write_all(comparison, out, *, renders: bool, progress) -> Path:
-    """Write results.json, renders, vtu files and the report; see :meth:`solidgear.comparison.Comparison.write_report`.
+    """Write results.json, renders, vtu files and the report; see
+    :meth:`solidgear.comparison.Comparison.write_report`.
 
-    ``results`` gains ``files``, what was written beside it, and ``left_out``, a sentence for what could not be drawn or written.
-    After an interrupt there are numbers and a report, and no shapes: who has pressed Ctrl-C does not want to wait for them.
+    ``results`` gains ``files``, what was written beside it, and ``left_out``, a sentence for what
+    could not be drawn or written. After an interrupt there are numbers and a report, and no shapes:
+    who has pressed Ctrl-C does not want to wait for them.
     """
     from solidgear.report.html import write_report
 
@@ -25,10 +27,12 @@ def write_all(comparison, out, *, renders: bool, progress) -> Path:
     shapes = comparison.rungs if results["complete"] else {}
     with held(out) as folder:
         try:
-            # Nothing of an earlier run must stand beside the numbers of this one, should it end early.
+            # Nothing of an earlier run must stand beside the numbers of this one, should it end
+            # early.
             clear(folder)
             (folder / "report.html").unlink(missing_ok=True)
-            # Numbers first: whatever happens to pictures, they are there.  What is about to be written is listed before it is.
+            # Numbers first: whatever happens to pictures, they are there.  What is about to be
+            # written is listed before it is.
             results["files"] = [
                 "report.html",
                 *(f"modes_{m}.vtu" for m in shapes),

@@ -1,7 +1,8 @@
 """Direct solvers for sparse symmetric matrices, all behind the same four names.
 
-A back end takes the matrix as CSR, sorted, and analyses it; then it knows ``estimate_mb``, the memory the numbers will need, and only
-``factor()`` takes that memory.  After it ``solve(rhs)``, ``negative`` and ``nnz`` can be asked for.
+A back end takes the matrix as CSR, sorted, and analyses it; then it knows ``estimate_mb``, the
+memory the numbers will need, and only ``factor()`` takes that memory.  After it ``solve(rhs)``,
+``negative`` and ``nnz`` can be asked for.
 
 ======== =============================== ===================== ===========================================
 name     what it is                      indefinite matrices   memory estimate
@@ -35,7 +36,8 @@ class FactorError(SolidgearError):
 
 
 def upper_triangle(matrix: sp.csr_matrix) -> sp.csr_matrix:
-    """Upper triangle with the diagonal, of a CSR matrix with sorted rows (five to ten times faster than ``scipy.sparse.triu``).
+    """Upper triangle with the diagonal, of a CSR matrix with sorted rows (five to ten times faster
+    than ``scipy.sparse.triu``).
 
     Its arrays are those of the lower triangle by columns as well.
     """
@@ -58,11 +60,12 @@ def _size_mb(matrix):
 def _mkl():
     """The library.
 
-    Its threads sleep as soon as a call is over, unless told otherwise: by default they spin for 0.2 s, which with both of two cores busy
-    made ten modes of a 3D solid take 1.3 times as long (two runs in turn: 1.36, 1.34).
+    Its threads sleep as soon as a call is over, unless told otherwise: by default they spin for 0.2
+    s, which with both of two cores busy made ten modes of a 3D solid take 1.3 times as long (two
+    runs in turn: 1.36, 1.34).
 
-    pypardiso searches the whole environment for the library at every construction (1 s and more); the installed package
-    ``mkl`` knows where its library is, and asking once is enough.
+    pypardiso searches the whole environment for the library at every construction (1 s and more);
+    the installed package ``mkl`` knows where its library is, and asking once is enough.
     """
     os.environ.setdefault("KMP_BLOCKTIME", "0")  # read when the library is loaded
     try:
@@ -111,7 +114,8 @@ UNUSED = np.zeros(1)
 
 
 class Pardiso:
-    """MKL PARDISO called directly: pypardiso copies the indices at every call, hashes the matrix at every solve and refines twice.
+    """MKL PARDISO called directly: pypardiso copies the indices at every call, hashes the matrix at
+    every solve and refines twice.
 
     Parameter numbers and error codes: oneMKL developer reference, "pardiso iparm Parameter".
     """
@@ -122,7 +126,8 @@ class Pardiso:
         -4: "a zero or negative pivot: the matrix is not positive definite",
         -8: "an overflow of 32-bit integers",
     }
-    # no defaults; parallel nested dissection; no refinement; two-level factorisation; parallel solve; report entries; count from zero
+    # no defaults; parallel nested dissection; no refinement; two-level factorisation; parallel
+    # solve; report entries; count from zero
     SETTINGS = {1: 1, 2: 3, 8: 0, 24: 1, 25: 2, 18: -1, 35: 1}
     # perturb pivots below 1e-8 of the norm (and report them); Bunch-Kaufman pivots
     INDEFINITE = {10: 8, 21: 1}
@@ -231,7 +236,8 @@ def _pardiso_phase(
 
 
 def _node_order(matrix, components: int = 3) -> np.ndarray | None:
-    """Fill-reducing order of a solid from the graph of its nodes, or None if unknowns do not come in threes.
+    """Fill-reducing order of a solid from the graph of its nodes, or None if unknowns do not come
+    in threes.
 
     The three motions of a node have the same neighbours: ordering nodes gives the same fill for a ninth of the graph, and the analysis takes
     0.3 s instead of 1.0 s on 93,000 unknowns.  Only the cost depends on it, so the test may be a loose one.
@@ -419,7 +425,8 @@ class SuperLU:
             ) from None
         self.nnz = int(self._lu.value.nnz)
         del self.matrix
-        # SuperLU does not mind an indefinite matrix, and one off-diagonal pivot is proof of a vanishing diagonal.
+        # SuperLU does not mind an indefinite matrix, and one off-diagonal pivot is proof of a
+        # vanishing diagonal.
         if self.checked and self.negative != 0:
             raise FactorError(
                 "SuperLU could not factor the system matrix: it is not positive definite"

@@ -1,7 +1,9 @@
-"""What a shape of a 3D mesh does around the axis: its parts in cos nt and sin nt, whatever the mesh.
+"""What a shape of a 3D mesh does around the axis: its parts in cos nt and sin nt, whatever the
+mesh.
 
-Nodes are gathered in bins of like (r, y), divided until each has just enough of them to tell the waves apart, so that the profile over the
-meridian may be anything; in each bin the radial, tangential and axial motions are fitted by waves around.
+Nodes are gathered in bins of like (r, y), divided until each has just enough of them to tell the
+waves apart, so that the profile over the meridian may be anything; in each bin the radial,
+tangential and axial motions are fitted by waves around.
 """
 
 from __future__ import annotations
@@ -66,8 +68,8 @@ class Circumference:
         Returns
         -------
         profile : (waves + 1, bins * 3) complex ndarray
-            Row n: radial, tangential and axial motion ``Re(c exp(i n t))``, bin by bin, weighted so that the squared norm of a row is the share
-            of the mass that moves so.
+            Row n: radial, tangential and axial motion ``Re(c exp(i n t))``, bin by bin, weighted so
+            that the squared norm of a row is the share of the mass that moves so.
         share : (waves + 1, 3) ndarray
             Those squared norms by direction of motion.
         """
@@ -89,7 +91,9 @@ class Circumference:
 
 
 def _divided(key, own, least: int):
-    """Halve a set of points across its longer side until less than two times ``least`` are left; equal keys stay together."""
+    """Halve a set of points across its longer side until less than two times ``least`` are left;
+    equal keys stay together.
+    """
     stack, done = [own], []
     while stack:
         own = stack.pop()
@@ -105,7 +109,9 @@ def _divided(key, own, least: int):
 
 
 def of_body(body) -> tuple[Circumference, object] | None:
-    """The fit for a body of one 3D block that knows its mesh, and a function from its vectors to nodal displacements; else None."""
+    """The fit for a body of one 3D block that knows its mesh, and a function from its vectors to
+    nodal displacements; else None.
+    """
     block = body.blocks[0]
     nodes = getattr(body.geometry, "nodes", None)
     if len(body.blocks) != 1 or nodes is None or getattr(body.geometry, "dofs", None) is None:
@@ -120,7 +126,9 @@ def of_body(body) -> tuple[Circumference, object] | None:
 
 
 def _volumes(geometry) -> np.ndarray:
-    """(n,) share of each node in the volume, roughly: corner 0 of tetrahedra and hexahedra alike is joined to corners 1, 2 and 3."""
+    """(n,) share of each node in the volume, roughly: corner 0 of tetrahedra and hexahedra alike is
+    joined to corners 1, 2 and 3.
+    """
     corners = geometry.nodes[:, geometry.dofs[:4]]
     a, b, c = (corners[:, k] - corners[:, 0] for k in (1, 2, 3))
     volume = np.abs(np.einsum("ie,ie->e", a, np.cross(b, c, axis=0)))

@@ -1,6 +1,8 @@
-"""Lowest eigenpairs of a supported group of blocks: block Lanczos, ARPACK or dense, all checked the same way.
+"""Lowest eigenpairs of a supported group of blocks: block Lanczos, ARPACK or dense, all checked the
+same way.
 
-Everything stands on one factor of the free body; bearings come in by the Woodbury identity (:class:`~solidgear.solve.supported.Supported`).
+Everything stands on one factor of the free body; bearings come in by the Woodbury identity
+(:class:`~solidgear.solve.supported.Supported`).
 """
 
 from __future__ import annotations
@@ -22,7 +24,8 @@ log = logging.getLogger(__name__)
 
 DENSE = 400
 METHODS = ("lanczos", "arpack", "dense")
-# SuperLU solves eight right-hand sides no faster than eight times one, and ARPACK needs fewer: measured 0.3 s against 0.6 s on a meridian.
+# SuperLU solves eight right-hand sides no faster than eight times one, and ARPACK needs fewer:
+# measured 0.3 s against 0.6 s on a meridian.
 SINGLE = ("superlu",)
 WIDTH = 8
 TOLERANCE = 1e-7  # of shapes; frequencies are good to its square
@@ -78,7 +81,8 @@ def lowest(supported: Supported, n: int, method: str | None = None) -> Solved:
     ----------
     supported : Supported
     n : int
-        Number of modes wanted; two more are found, so that a pair at the end of the list is seen whole.
+        Number of modes wanted; two more are found, so that a pair at the end of the list is seen
+        whole.
     method : {None, 'lanczos', 'arpack', 'dense'}
         None takes the quickest for the size and the back end.  If block Lanczos does not converge ARPACK takes over.
 
@@ -97,7 +101,8 @@ def lowest(supported: Supported, n: int, method: str | None = None) -> Solved:
         method, theta, u = "dense", np.zeros(0), np.zeros((total, 0))
     else:
         if method is None:
-            # One vector sees one of two equal modes only through rounding: it is for a group that holds no twins.
+            # One vector sees one of two equal modes only through rounding: it is for a group that
+            # holds no twins.
             alone = len(supported.blocks) == 1 and supported.blocks[0].planar
             method = "arpack" if alone and supported.backend in SINGLE else "lanczos"
         if total <= DENSE or wanted >= total - 2 - WIDTH:
@@ -140,8 +145,9 @@ def _dense(supported: Supported, wanted: int):
 
 
 def _lanczos(supported: Supported, wanted: int):
-    # Loads drawn at random excite every shape, whatever its symmetry. Static solutions under port loads are no better a
-    # start (they needed one block more on a pinion of 93,000 unknowns) and cannot see a mode that moves no port.
+    # Loads drawn at random excite every shape, whatever its symmetry. Static solutions under port
+    # loads are no better a start (they needed one block more on a pinion of 93,000 unknowns) and
+    # cannot see a mode that moves no port.
     start = supported.inverse(
         supported.mass(np.random.default_rng(0).standard_normal((supported.size, WIDTH)))
     )
@@ -188,7 +194,8 @@ def _arpack(supported: Supported, wanted: int):
 
 @dataclass(frozen=True)
 class Count:
-    """Number of eigenvalues below a bound, from the inertia of a factor that shares nothing with the eigensolver.
+    """Number of eigenvalues below a bound, from the inertia of a factor that shares nothing with
+    the eigensolver.
 
     Attributes
     ----------
@@ -231,7 +238,8 @@ def count_below(supported: Supported, solved: Solved, reach: float) -> Count | N
         return None
     start = np.maximum(value[:-1], reach)
     clear = np.flatnonzero(value[1:] > 1.001 * start)
-    # A factor of K - mu M is sound only at a distance from the spectrum, so a bound inside a cluster is no use.
+    # A factor of K - mu M is sound only at a distance from the spectrum, so a bound inside a
+    # cluster is no use.
     at = int(clear[0]) if len(clear) else int(np.argmax(np.diff(np.log(value))))
     below = float((start[at] if len(clear) else value[at]) ** 0.6 * value[at + 1] ** 0.4)
     negative = 0

@@ -1,7 +1,8 @@
-"""Factorisation of sparse symmetric matrices: which back end, whether it will fit, and what came of it.
+"""Factorisation of sparse symmetric matrices: which back end, whether it will fit, and what came of
+it.
 
-``factorise(matrix)`` is for positive definite matrices, ``indefinite(matrix)`` for those whose negative eigenvalues are counted.
-The back ends themselves are in :mod:`solidgear.solve.backends`.
+``factorise(matrix)`` is for positive definite matrices, ``indefinite(matrix)`` for those whose
+negative eigenvalues are counted. The back ends themselves are in :mod:`solidgear.solve.backends`.
 """
 
 from __future__ import annotations
@@ -28,7 +29,8 @@ __all__ = [
     "pardiso_missing",
 ]
 
-# SuperLU's indices overflow on the factors of planar meshes of very high order ("not enough memory").
+# SuperLU's indices overflow on the factors of planar meshes of very high order ("not enough
+# memory").
 LARGE_PLANAR = 30_000_000  # entries
 # Solids below this size: what PARDISO gains is what it costs to load MKL (0.2 s, once).
 SMALL = 6_000
@@ -36,10 +38,12 @@ SMALL = 6_000
 # 0.65 to 1.3, MUMPS 1.4 to 1.8 with OpenBLAS; 2.7 and 5 with the reference BLAS (TET10, one run); SuperLU about 14 (HEX20, one run apart from these).
 FASTEST = ("pardiso", "cholmod", "mumps", "superlu")
 COUNTING = ("pardiso", "mumps", "superlu")
-# Unknowns from which on a call can take so long that Ctrl-C must be heard meanwhile; handing it over costs 0.1 ms.
+# Unknowns from which on a call can take so long that Ctrl-C must be heard meanwhile; handing it
+# over costs 0.1 ms.
 LONG = 5_000
-# Normwise backward error (Rigal and Gaches) of one solve.  Solids give 1e-17, since their solutions lie in the low modes; it must be far
-# below the ratio of the lowest eigenvalues to the norm, about 1e-9 there, for the signs of those to mean anything.
+# Normwise backward error (Rigal and Gaches) of one solve.  Solids give 1e-17, since their solutions
+# lie in the low modes; it must be far below the ratio of the lowest eigenvalues to the norm, about
+# 1e-9 there, for the signs of those to mean anything.
 SOUND = 1e-14
 
 
@@ -98,7 +102,8 @@ def factorise(
     matrix : (n, n) sparse
         Both triangles given.
     backend : {None, 'pardiso', 'cholmod', 'mumps', 'superlu'}
-        None chooses by size and availability; the environment variable ``SOLIDGEAR_BACKEND`` forces one for a whole run.
+        None chooses by size and availability; the environment variable ``SOLIDGEAR_BACKEND`` forces
+        one for a whole run.
     planar : bool
         The matrix comes from a 1D or 2D mesh: fill is small and SuperLU is the fastest.
     border : int
@@ -108,7 +113,8 @@ def factorise(
     Raises
     ------
     FactorError
-        If the matrix holds NaN, is not positive definite to the back end, will not fit into memory, or the back end is not there.
+        If the matrix holds NaN, is not positive definite to the back end, will not fit into memory,
+        or the back end is not there.
     """
     matrix = _canonical(matrix)
     if border:
@@ -123,7 +129,8 @@ def factorise(
 def indefinite(
     matrix: sp.spmatrix, backend: str | None = None, planar: bool = False, border: int = 0
 ) -> Indefinite | None:
-    """Factor a symmetric matrix of any sign and count its negative eigenvalues (Sylvester's law of inertia).
+    """Factor a symmetric matrix of any sign and count its negative eigenvalues (Sylvester's law of
+    inertia).
 
     Every count is backed by the backward error of one solve with a random load: a stable factorisation counts exactly for a matrix within
     its backward error, so a count is in doubt only for eigenvalues that close to zero (one load is a sample, not a bound).  A back end whose factor is not sound, or whose pivots do not tell, is passed over for the next.
@@ -136,7 +143,8 @@ def indefinite(
     Returns
     -------
     Indefinite or None
-        None if no back end gave a count that can be trusted; a matrix that is singular to rounding is such a case.
+        None if no back end gave a count that can be trusted; a matrix that is singular to rounding
+        is such a case.
 
     Raises
     ------
@@ -169,7 +177,9 @@ def indefinite(
 
 
 def negative_pivots(matrix: sp.spmatrix, backend: str | None = None) -> tuple[int, str] | None:
-    """Number of negative eigenvalues of a sparse symmetric matrix and the back end that counted them; None as for :func:`indefinite`."""
+    """Number of negative eigenvalues of a sparse symmetric matrix and the back end that counted
+    them; None as for :func:`indefinite`.
+    """
     found = indefinite(matrix, backend)
     return None if found is None else (found.negative, found.backend)
 
@@ -195,7 +205,9 @@ def _canonical(matrix):
 
 
 def choice(matrix, backend: str | None = None, planar: bool = False) -> tuple[str, str]:
-    """Name of the back end that will factor a matrix of such a shape and number of entries, and the reason for it."""
+    """Name of the back end that will factor a matrix of such a shape and number of entries, and the
+    reason for it.
+    """
     backend = backend or os.environ.get("SOLIDGEAR_BACKEND") or None
     n = matrix.shape[0]
     if backend is not None:
@@ -300,7 +312,8 @@ def _definite_corner(corner):
 
 
 def _any_corner(corner):
-    # Rows of a border differ in unit (forces, moments): scaled, so that small ones are not taken for rounding.
+    # Rows of a border differ in unit (forces, moments): scaled, so that small ones are not taken
+    # for rounding.
     scale = 1 / np.sqrt(np.maximum(np.abs(corner).max(axis=1), np.finfo(float).tiny))
     values, vectors = np.linalg.eigh(corner * np.outer(scale, scale))
     if np.abs(values).min() < 1e-13 * np.abs(values).max():

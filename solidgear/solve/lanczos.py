@@ -54,7 +54,8 @@ def block_lanczos(
     wanted : int
         Number of pairs.
     tolerance : float
-        Largest ``|A^-1 M u - theta u| / theta`` in the mass norm; eigenvalues are good to its square over the relative gap.
+        Largest ``|A^-1 M u - theta u| / theta`` in the mass norm; eigenvalues are good to its
+        square over the relative gap.
     most : int
         Largest number of basis vectors; beyond it the result is returned as not converged.
     seed : int
@@ -82,7 +83,8 @@ def block_lanczos(
         left = np.linalg.norm(coupling @ s[old:], axis=0)
         done = k >= min(wanted, n) and bool((left <= tolerance * np.abs(theta)).all())
         if not done and not block.shape[1] and k < n:
-            # The space is invariant: all that the start block can reach is found. Go on where it could not look.
+            # The space is invariant: all that the start block can reach is found. Go on where it
+            # could not look.
             fresh = operator(generator.standard_normal((n, width)))
             block, loaded, _ = _outside(fresh, mq.T @ fresh, q, mq, mass)
         if done or not block.shape[1] or k + block.shape[1] > most:
@@ -90,7 +92,8 @@ def block_lanczos(
 
 
 def _orthonormal(x, mass, least: float = 0.0):
-    """Mass-orthonormal columns that span ``x``, their product with the mass, and the coefficients of ``x`` on them.
+    """Mass-orthonormal columns that span ``x``, their product with the mass, and the coefficients
+    of ``x`` on them.
 
     Columns shorter than ``least`` and directions that are the rounding of others are left out.
     """
@@ -106,7 +109,8 @@ def _orthonormal(x, mass, least: float = 0.0):
 
 
 def _outside(x, inside, basis, heavy, mass):
-    """Mass-orthonormal columns of what of ``x`` lies outside the basis, with the coefficients of ``x`` on them.
+    """Mass-orthonormal columns of what of ``x`` lies outside the basis, with the coefficients of
+    ``x`` on them.
 
     ``inside = heavy.T @ x``.  Twice is enough (Parlett 1998, section 6.9), with the columns brought to unit length in between.
     """

@@ -1,8 +1,9 @@
 """Natural frequencies and mode shapes of a body on its bearings.
 
-Symmetric shift-invert (:mod:`solidgear.solve.eigen`) about a small negative shift, with the bearings added to the factor of
-the free body by the Woodbury identity, and values from the stiffness itself (:mod:`solidgear.solve.refine`).  Rigid motions that no spring resists are
-known exactly; they are projected out and reported as 0 Hz instead of as noise.
+Symmetric shift-invert (:mod:`solidgear.solve.eigen`) about a small negative shift, with the
+bearings added to the factor of the free body by the Woodbury identity, and values from the
+stiffness itself (:mod:`solidgear.solve.refine`).  Rigid motions that no spring resists are known
+exactly; they are projected out and reported as 0 Hz instead of as noise.
 """
 
 from __future__ import annotations
@@ -51,11 +52,14 @@ class Mode:
     motions : (multiplicity, STATIONS, 6) ndarray
         Section motions along the axis (mass-weighted projection).
     captured : float
-        Share of the modal mass that section motions describe; small for ovalising modes and for discs that bend.
+        Share of the modal mass that section motions describe; small for ovalising modes and for
+        discs that bend.
     waves : int
-        Waves around the axis: 0 for axial, breathing and torsion, 1 for bending, 2 and more for ovalising.
+        Waves around the axis: 0 for axial, breathing and torsion, 1 for bending, 2 and more for
+        ovalising.
     error : float
-        Bound on the relative error of the frequency that the solution of the eigenproblem leaves (not that of the mesh).
+        Bound on the relative error of the frequency that the solution of the eigenproblem leaves
+        (not that of the mesh).
     """
 
     name: str
@@ -87,7 +91,8 @@ class ModeSet:
         at ``lowest_hz`` at the earliest; ``torn_pairs`` where the mesh has split twins too far apart to be taken for one pair.  Where asked for,
         ``count``, ``count_seconds`` and ``complete_below_hz``, below which no mode of any family listed is missing.
     beyond : tuple of Mode
-        Further modes of the body's own blocks that were solved and lie above the end of the list, because ovalising ones took their places.
+        Further modes of the body's own blocks that were solved and lie above the end of the list,
+        because ovalising ones took their places.
     """
 
     fidelity: str
@@ -144,11 +149,14 @@ def modes(
         Bearing terms that couple bending planes, axial motion and torsion are left out
         when they provably change no eigenvalue by more than this, relative; the bound is reported.
     method : {None, 'lanczos', 'arpack', 'dense'}
-        Eigensolver; None takes the quickest for the size and the back end (see :func:`solidgear.solve.eigen.lowest`).
+        Eigensolver; None takes the quickest for the size and the back end (see
+        :func:`solidgear.solve.eigen.lowest`).
     count : bool
-        Check by the inertia of another factor that no mode was missed (Sylvester's law); costs about one more factorisation.
+        Check by the inertia of another factor that no mode was missed (Sylvester's law); costs
+        about one more factorisation.
     ovalising : bool
-        Solve the families of two waves around and more that begin below the highest mode told, for a body that can build them (a harmonic solid).
+        Solve the families of two waves around and more that begin below the highest mode told, for
+        a body that can build them (a harmonic solid).
 
     Returns
     -------
@@ -157,7 +165,8 @@ def modes(
     Raises
     ------
     SolidgearError
-        If ``n`` is not positive, the method unknown, a mode was missed and could not be found, or rounding leaves a frequency too few digits.
+        If ``n`` is not positive, the method unknown, a mode was missed and could not be found, or
+        rounding leaves a frequency too few digits.
     """
     if n < 1:
         raise SolidgearError(f"modes: n = {n} is not a number of modes; ask for 1 or more")
@@ -238,7 +247,9 @@ def _rigid(names: Names, raw: list[Raw]):
 
 
 def _named(body, names: Names, parts: list[Part], n: int, max_frequency: float | None):
-    """Modes told, own modes beyond the end of the list, torn pairs, and (family, frequency, shapes) of all that was found: no pair is cut in two."""
+    """Modes told, own modes beyond the end of the list, torn pairs, and (family, frequency, shapes)
+    of all that was found: no pair is cut in two.
+    """
     raw = _lowest(parts, sum(len(part.everywhere(part.solved.elastic)) for part in parts))
     shapes = [names.describe(r.vectors) for r in raw]
     groups, torn = names.pairs(shapes, np.array([r.value for r in raw]))
@@ -302,7 +313,9 @@ def _sound(body, mode: Mode, parts: list[Part]) -> Mode:
 
 
 def _by_springs(mode: Mode, parts: list[Part]) -> float:
-    """Share of the relative error of a frequency that comes from the rounding of the bearings' stiffness."""
+    """Share of the relative error of a frequency that comes from the rounding of the bearings'
+    stiffness.
+    """
     value, lost = (2 * np.pi * mode.frequency_hz) ** 2, 0.0
     for part, vectors in (
         (p, v) for p in parts for v in mode.vectors if set(v) & set(p.supported.group)

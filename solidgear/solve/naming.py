@@ -1,10 +1,14 @@
-"""What a mode is called: its family by what the shape does around the axis, twins by symmetry, numbers by frequency.
+"""What a mode is called: its family by what the shape does around the axis, twins by symmetry,
+numbers by frequency.
 
-Families are ``axial``, ``breathing`` and ``torsion`` (nothing varies around the axis: n = 0), ``bending`` (n = 1) and ``ovalising n=2`` and so on.
-A body in blocks knows n by the block, whatever its sections do; a 3D mesh is asked by :mod:`solidgear.solve.circumference`.
+Families are ``axial``, ``breathing`` and ``torsion`` (nothing varies around the axis: n = 0),
+``bending`` (n = 1) and ``ovalising n=2`` and so on. A body in blocks knows n by the block, whatever
+its sections do; a 3D mesh is asked by :mod:`solidgear.solve.circumference`.
 
-Two modes are one pair only where symmetry makes them so: the same profile over the meridian, a quarter of a wave further round, with bearings that
-a quarter turn leaves as they are, or with n >= 2, which bearings do not touch.  Twins that the mesh has split beyond its tolerance stay apart and are told.
+Two modes are one pair only where symmetry makes them so: the same profile over the meridian, a
+quarter of a wave further round, with bearings that a quarter turn leaves as they are, or with n >=
+2, which bearings do not touch.  Twins that the mesh has split beyond its tolerance stay apart and
+are told.
 """
 
 from __future__ import annotations
@@ -19,9 +23,11 @@ from solidgear.frames import rotation
 from solidgear.solve.circumference import of_body
 
 FAMILIES = {"bending": (0, 2, 3, 5), "axial": (1,), "torsion": (4,)}
-#: Bearings that a quarter turn changes by no more than this, relative, split a pair by half of it at most.
+#: Bearings that a quarter turn changes by no more than this, relative, split a pair by half of it
+#: at most.
 ALIKE = 1e-6
-#: Eigenvalues of twins of two and more waves that a 3D mesh has split by this much are still told as one pair.
+#: Eigenvalues of twins of two and more waves that a 3D mesh has split by this much are still told
+#: as one pair.
 OVAL_TOLERANCE = 1e-2
 
 
@@ -41,7 +47,8 @@ class Shape:
     profile : object
         What :meth:`Names.overlap` compares.
     double : bool
-        Whether it stands for its twin as well, as a block of two waves and more does for its cosine and its sine form.
+        Whether it stands for its twin as well, as a block of two waves and more does for its cosine
+        and its sine form.
     """
 
     family: str
@@ -88,9 +95,11 @@ class Projection:
 
 
 def alike(supports: Supports) -> float:
-    """Bound on the relative change of any eigenvalue by a quarter turn of the bearings; infinite where it is not small.
+    """Bound on the relative change of any eigenvalue by a quarter turn of the bearings; infinite
+    where it is not small.
 
-    If ``|v' D v| <= eps v' K v`` for the change D of the stiffness K, then no eigenvalue of the supported body moves by more than eps (Rayleigh).
+    If ``|v' D v| <= eps v' K v`` for the change D of the stiffness K, then no eigenvalue of the
+    supported body moves by more than eps (Rayleigh).
     """
     k = supports.stiffness
     if not supports.ports:
@@ -171,7 +180,9 @@ class Names:
         return energy
 
     def _radial_share(self, b, v) -> float:
-        """Share of the modal mass of a block of n = 0 that moves radially: the mass couples no two directions, so they fall apart by themselves."""
+        """Share of the modal mass of a block of n = 0 that moves radially: the mass couples no two
+        directions, so they fall apart by themselves.
+        """
         block = self.body.block(b)
         name = f"axial part {b}"
         if name not in self.body.memory:
@@ -182,7 +193,9 @@ class Names:
         return float(radial @ (block.mass @ radial)) / float(v @ (block.mass @ v))
 
     def overlap(self, a: Shape, b: Shape) -> float:
-        """How much one shape, a quarter of a wave further round, is like another: 1 for twins, 0 for modes of other profiles (a MAC)."""
+        """How much one shape, a quarter of a wave further round, is like another: 1 for twins, 0
+        for modes of other profiles (a MAC).
+        """
         if (
             a.family != b.family
             or a.waves < 1
@@ -197,7 +210,9 @@ class Names:
         )
 
     def _turned(self, a, b) -> float:
-        """Mass product of a shape in blocks that mirror each other, turned into the other plane, with another; with itself, not turned, for None."""
+        """Mass product of a shape in blocks that mirror each other, turned into the other plane,
+        with another; with itself, not turned, for None.
+        """
         out = 0.0
         for index, block in enumerate(self.body.blocks):
             if block.mirror is None:

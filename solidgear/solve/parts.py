@@ -1,7 +1,9 @@
-"""The groups of blocks a supported body falls into, each solved as far as the modes asked for reach, and counted.
+"""The groups of blocks a supported body falls into, each solved as far as the modes asked for
+reach, and counted.
 
-Symmetry and bearings decide which blocks belong together.  A body that can build further circumferential families (a harmonic solid) is asked for those
-that may begin below the highest mode wanted: by a closed form that no family undercuts and that grows with n, then by a light mesh.
+Symmetry and bearings decide which blocks belong together.  A body that can build further
+circumferential families (a harmonic solid) is asked for those that may begin below the highest mode
+wanted: by a closed form that no family undercuts and that grows with n, then by a light mesh.
 """
 
 from __future__ import annotations
@@ -16,11 +18,13 @@ from solidgear.solve.eigen import Raw, Solved, count_below, lowest
 from solidgear.solve.naming import family_of, waves_of
 from solidgear.solve.supported import Supported, groups
 
-# validation/stability/circumferential_families.py: no family of its random shafts began below the closed form over 1.5, nor below a light mesh's over 1.5.
+# validation/stability/circumferential_families.py: no family of its random shafts began below the
+# closed form over 1.5, nor below a light mesh's over 1.5.
 MARGIN = 1.5
 LIGHT = 1.5
 MOST_WAVES = 100
-# Rounding in a factor moves eigenvalues by about eps times the highest one; nearer to the bound than a hundred times that, signs may turn.
+# Rounding in a factor moves eigenvalues by about eps times the highest one; nearer to the bound
+# than a hundred times that, signs may turn.
 EPS, DOUBT = float(np.finfo(float).eps), 0.01
 
 
@@ -36,7 +40,8 @@ class Part:
     twins : list of int
         Lone blocks that repeat it in the other plane.
     first : int
-        Added to block indices: that of a further circumferential family stands apart from those of the body's own.
+        Added to block indices: that of a further circumferential family stands apart from those of
+        the body's own.
     verdict : dict or None
         What the count says.
     """
@@ -77,7 +82,9 @@ class Part:
 
 @dataclass(frozen=True)
 class Uncounted:
-    """A family that was left alone, and the frequency (Hz) above which it begins; the last one stands for all of more waves."""
+    """A family that was left alone, and the frequency (Hz) above which it begins; the last one
+    stands for all of more waves.
+    """
 
     n: int
     begins_hz: float
@@ -87,7 +94,9 @@ class Uncounted:
 def solved_parts(
     body: Body, supports: Supports, spring: np.ndarray, n: int, method: str | None
 ) -> list[Part]:
-    """Eigenpairs of all groups of a body's own blocks, each searched only as far as the ``n`` lowest of all reach."""
+    """Eigenpairs of all groups of a body's own blocks, each searched only as far as the ``n``
+    lowest of all reach.
+    """
     parts: list[Part] = []
     for group in groups(body, supports, spring):
         original = next(
@@ -220,7 +229,9 @@ def complete(part: Part, reach: float, method: str | None) -> None:
 
 
 def families(parts: list[Part]) -> list[tuple[str, int | None, bool]]:
-    """(family, waves around or None for all, whether counted) of everything that was solved, lowest number of waves last among single ones."""
+    """(family, waves around or None for all, whether counted) of everything that was solved, lowest
+    number of waves last among single ones.
+    """
     rows: dict[str, tuple[int | None, bool]] = {}
     for part in parts:
         for block in part.blocks:

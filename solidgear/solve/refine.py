@@ -1,10 +1,12 @@
 """Ritz values on the stiffness itself, how wrong they can be, and the steps that mend them.
 
-An eigensolver that works with a computed inverse of ``A = K + L L' + sigma M`` finds the eigenpairs of what rounding has made of it.  Here
-nothing of a value comes from that inverse: energies are taken from K and from the springs L, with rigid motions split off first, so that no
-large stiffness has to cancel.  The residual ``r = K u + L L'u - lambda M u`` is measured where it bounds the error: with
-``rho = |A^-1 r|_A / |u|_A`` an eigenvalue of ``A, M`` lies within ``rho`` of ``mu = lambda + sigma``, relative, and within ``rho^2 / gap`` if no
-other comes nearer than ``gap`` (Temple; Kato 1949; Parlett 1998, section 11.7, for clusters).  Where that is not small enough, ``A^-1 r`` is the
+An eigensolver that works with a computed inverse of ``A = K + L L' + sigma M`` finds the eigenpairs
+of what rounding has made of it.  Here nothing of a value comes from that inverse: energies are
+taken from K and from the springs L, with rigid motions split off first, so that no large stiffness
+has to cancel.  The residual ``r = K u + L L'u - lambda M u`` is measured where it bounds the error:
+with ``rho = |A^-1 r|_A / |u|_A`` an eigenvalue of ``A, M`` lies within ``rho`` of ``mu = lambda +
+sigma``, relative, and within ``rho^2 / gap`` if no other comes nearer than ``gap`` (Temple; Kato
+1949; Parlett 1998, section 11.7, for clusters).  Where that is not small enough, ``A^-1 r`` is the
 correction itself: it joins the basis and the best of both is taken (Knyazev 2001).
 """
 
@@ -16,12 +18,14 @@ import numpy as np
 
 from solidgear.solve.supported import ROUNDED
 
-#: Modes with no more than this part of their mass in elastic motion are nearly rigid ones on soft springs.
+#: Modes with no more than this part of their mass in elastic motion are nearly rigid ones on soft
+#: springs.
 SOFT = 1e-3
 #: Relative error of an eigenvalue that is worth a further solve, and how many are tried.
 ENOUGH, STEPS = 1e-9, 8
 EPS = float(np.finfo(float).eps)
-#: Rounding of an energy from which on it is worth products in extended precision, where the processor has it.
+#: Rounding of an energy from which on it is worth products in extended precision, where the
+#: processor has it.
 COARSE, EXTENDED = 1e-7, np.finfo(np.longdouble).eps < EPS
 #: Largest product of two shapes that are told as orthogonal.
 ASKEW = 1e-5
@@ -40,7 +44,8 @@ class Refined:
     residual : (k,) ndarray
         ``|A^-1 r|_A / |u|_A``, brought from the shifted to the true eigenvalue.
     error : (k,) ndarray
-        Bound on the relative error of each value: what the residual allows, and the rounding of its energy.
+        Bound on the relative error of each value: what the residual allows, and the rounding of its
+        energy.
     noise : (k,) ndarray
         The second part of it.
     steps : int
@@ -70,7 +75,8 @@ class _Pairs:
 
 
 def refine(supported, vectors: np.ndarray, value: np.ndarray, needed: int) -> Refined:
-    """Ritz pairs of a supported body in a space that is close to invariant, corrected until they are right.
+    """Ritz pairs of a supported body in a space that is close to invariant, corrected until they
+    are right.
 
     Parameters
     ----------
@@ -84,7 +90,8 @@ def refine(supported, vectors: np.ndarray, value: np.ndarray, needed: int) -> Re
     """
     carried = supported.mass_rigid.T @ vectors
     elastic = np.append(_columns(carried, carried) <= 1 - SOFT, True)
-    # The lowest, as far as they are nearly rigid: the shift may drown their eigenvalues.  One above an elastic mode is not in that danger.
+    # The lowest, as far as they are nearly rigid: the shift may drown their eigenvalues.  One above
+    # an elastic mode is not in that danger.
     count = int(np.argmax(elastic))
     found = _corrected(supported, vectors, value, needed, count)
     if (
@@ -99,7 +106,9 @@ def refine(supported, vectors: np.ndarray, value: np.ndarray, needed: int) -> Re
 
 
 def _corrected(supported, vectors, value, needed: int, count: int) -> Refined:
-    """Ritz pairs, the first ``count`` of them as nearly rigid modes, with corrections until they are right or rounding is all that is left."""
+    """Ritz pairs, the first ``count`` of them as nearly rigid modes, with corrections until they
+    are right or rounding is all that is left.
+    """
     best, last, fine = None, None, False
     wrong = np.zeros(len(value), bool)
     correction = forces = np.zeros_like(vectors)
@@ -142,7 +151,9 @@ def _corrected(supported, vectors, value, needed: int, count: int) -> Refined:
 
 
 def _modes(supported, stiffness, u, value, correction, forces, below) -> _Pairs:
-    """Rayleigh and Ritz in the span of shapes and their corrections, of which the modes below are taken out."""
+    """Rayleigh and Ritz in the span of shapes and their corrections, of which the modes below are
+    taken out.
+    """
     mass = supported.mass
     count = u.shape[1]
     if not count:
@@ -168,7 +179,8 @@ def _modes(supported, stiffness, u, value, correction, forces, below) -> _Pairs:
         stretch @ turn,
         heavy @ turn,
     )
-    # The small problem knows its eigenvalues to the rounding of the largest; quotients know each to its own.
+    # The small problem knows its eigenvalues to the rounding of the largest; quotients know each to
+    # its own.
     value = (_columns(rest, pull) + _columns(stretch, stretch)) / _columns(u, heavy)
     force = pull + supported.load @ stretch - heavy * value
     return _Pairs(
@@ -177,7 +189,8 @@ def _modes(supported, stiffness, u, value, correction, forces, below) -> _Pairs:
 
 
 def _outside(x, known, mass):
-    """Mass-orthonormal columns of what of ``x`` lies outside mass-orthonormal ones, and the coefficients of ``x`` in them, roughly.
+    """Mass-orthonormal columns of what of ``x`` lies outside mass-orthonormal ones, and the
+    coefficients of ``x`` in them, roughly.
 
     Columns that are the rounding of what they lost are left out.
     """
@@ -197,9 +210,11 @@ def _outside(x, known, mass):
 
 
 def _soft_modes(supported, stiffness, u, correction) -> _Pairs:
-    """Ritz pairs of nearly rigid modes in the span of the rigid motions and of what is elastic in them.
+    """Ritz pairs of nearly rigid modes in the span of the rigid motions and of what is elastic in
+    them.
 
-    Splitting the rigid part off exactly leaves no large stiffness to cancel: ``K`` sees the elastic remainder only.
+    Splitting the rigid part off exactly leaves no large stiffness to cancel: ``K`` sees the elastic
+    remainder only.
     """
     count = u.shape[1]
     if not count:
@@ -226,7 +241,8 @@ def _soft_modes(supported, stiffness, u, correction) -> _Pairs:
     elastic = np.zeros((len(w), r + len(w)))
     elastic[:, r:] = (v * np.sqrt(np.maximum(w, 0.0))).T
     basis = np.hstack([held, rest])
-    # Singular values of a root keep twice the digits of a soft direction that eigenvalues of its Gram matrix would.
+    # Singular values of a root keep twice the digits of a soft direction that eigenvalues of its
+    # Gram matrix would.
     root = np.vstack([supported.load.T @ basis, elastic])
     s, vt = np.linalg.svd(root)[1:]
     value = np.concatenate([s**2, np.zeros(basis.shape[1] - len(s))])[::-1][:count]
@@ -242,9 +258,12 @@ def _columns(a, b):
 
 
 def _rounding(supported, u, rest, stretch):
-    """How far the rounding of products and of the matrix itself may move each energy, rad^2/s^2 (held to dense solutions by validation/attack/modes.py)."""
+    """How far the rounding of products and of the matrix itself may move each energy, rad^2/s^2
+    (held to dense solutions by validation/attack/modes.py).
+    """
     own = np.linalg.norm(supported.diagonal[:, None] * rest**2, axis=0)
-    # A stretch that came from the load (see Supported.stretch) is good to the digits that the motion of its seat would have had at the least.
+    # A stretch that came from the load (see Supported.stretch) is good to the digits that the
+    # motion of its seat would have had at the least.
     lost = np.minimum(EPS * supported.spread(u), EPS / ROUNDED * np.abs(stretch))
     return EPS * 4 * own + 2 * np.linalg.norm(stretch * lost, axis=0) + supported.spring_rounding(u)
 
@@ -260,7 +279,9 @@ def _judged(supported, value, u, force, back, rounding, step) -> Refined:
 
 
 def _quadratic(mu, rho):
-    """``sum rho^2 / gap`` over the cluster around each value for which that is least; infinite where it would need to know what lies above."""
+    """``sum rho^2 / gap`` over the cluster around each value for which that is least; infinite
+    where it would need to know what lies above.
+    """
     out = np.full(len(mu), np.inf)
     for i in range(len(mu)):
         a = b = i

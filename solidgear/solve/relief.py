@@ -1,8 +1,10 @@
-"""Elastic displacements of a free body: loads balanced by its own inertia, displacements without their rigid part.
+"""Elastic displacements of a free body: loads balanced by its own inertia, displacements without
+their rigid part.
 
-One factor of ``A = K + sigma M`` serves.  It is not K, so its solutions are corrected on K itself by conjugate gradients: the preconditioned
-operator ``A^-1 K`` has the eigenvalues ``lambda / (lambda + sigma)``, all near one but the few lowest, and a handful of steps settles it
-whatever sigma is.
+One factor of ``A = K + sigma M`` serves.  It is not K, so its solutions are corrected on K itself
+by conjugate gradients: the preconditioned operator ``A^-1 K`` has the eigenvalues ``lambda /
+(lambda + sigma)``, all near one but the few lowest, and a handful of steps settles it whatever
+sigma is.
 """
 
 from __future__ import annotations
@@ -12,7 +14,8 @@ import scipy.linalg as sla
 
 
 def inertia_relief(solve, mass, rigid: np.ndarray):
-    """Two functions for a free body: loads balanced by its own inertia, and their elastic displacements.
+    """Two functions for a free body: loads balanced by its own inertia, and their elastic
+    displacements.
 
     Parameters
     ----------
@@ -24,7 +27,8 @@ def inertia_relief(solve, mass, rigid: np.ndarray):
     Returns
     -------
     balanced, relieved : callable
-        The load less the inertia forces of the rigid acceleration it causes; the solution less its rigid part in the mass norm.
+        The load less the inertia forces of the rigid acceleration it causes; the solution less its
+        rigid part in the mass norm.
     """
     heavy = mass(rigid)
     gram = sla.cho_factor(rigid.T @ heavy)
@@ -81,7 +85,8 @@ def elastic_fields(
         gain = along * size
         energy = energy + gain
         share = float(_ratio(np.abs(gain), energy).max(initial=0.0))
-        # What is still missing shrinks by a constant factor from step to step; rounding shows as gains that do not.
+        # What is still missing shrinks by a constant factor from step to step; rounding shows as
+        # gains that do not.
         missing = share if count == 0 else share * share / last
         if missing < tolerance or share > 0.5 * last:
             break

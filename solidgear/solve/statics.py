@@ -30,8 +30,8 @@ from solidgear.solve.factor import Factor, factorise
 from solidgear.solve.relief import elastic_fields
 from solidgear.threads import pinned
 
-# Of the lowest elastic eigenvalue.  Rounding in the factor is amplified by the highest eigenvalue of the mesh over the shift: 1e-3 left 5e-3 of the
-# frequencies of slender tubes wrong, 3e-2 leaves
+# Of the lowest elastic eigenvalue.  Rounding in the factor is amplified by the highest eigenvalue
+# of the mesh over the shift: 1e-3 left 5e-3 of the frequencies of slender tubes wrong, 3e-2 leaves
 # what refinement can mend.  Statics takes a solve more for it.
 SHIFT = 0.03
 
@@ -119,7 +119,9 @@ def factors(body: Body) -> list[Factor]:
 
 
 def flexibility(body: Body, tolerance: float = 1e-12) -> Flexibility:
-    """Flexibility of the free body at all its ports (inertia relief), by :func:`solidgear.solve.relief.elastic_fields`."""
+    """Flexibility of the free body at all its ports (inertia relief), by
+    :func:`solidgear.solve.relief.elastic_fields`.
+    """
     if "flexibility" in body.memory:
         return body.memory["flexibility"]
     n = 6 * len(body.ports)
@@ -142,7 +144,8 @@ def flexibility(body: Body, tolerance: float = 1e-12) -> Flexibility:
         load, u, missing = elastic_fields(
             factor.solve, block.mass.__matmul__, k.__matmul__, block.rigid, load, tolerance
         )
-        # Clapeyron: 2 u'f - u'Ku is stationary at the solution; each pair of loads misses the product of what both displacements miss.
+        # Clapeyron: 2 u'f - u'Ku is stationary at the solution; each pair of loads misses the
+        # product of what both displacements miss.
         work = u.T @ load
         f_block = work + work.T - u.T @ (k @ u)
         size = np.sqrt(np.abs(np.diag(f_block)))
@@ -195,7 +198,8 @@ def condense(body: Body, supports, port: str, attachment: str | None = None) -> 
     if free.shape[1] < 6:
         f_lb, f_bb = flex.matrix[np.ix_(here, there)], flex.matrix[np.ix_(there, there)]
         p_b, root = body.rigid_ports[there], supports.root
-        # S = N'N and H = (N P_b)'(N P_b); with the stiffest springs first both N and its QR factor keep the digits of the softest.
+        # S = N'N and H = (N P_b)'(N P_b); with the stiffest springs first both N and its QR factor
+        # keep the digits of the softest.
         inner = np.eye(root.shape[1]) + root.T @ f_bb @ root
         n = _half_solve(inner, root.T)
         held = _complement(free, body.length)
@@ -229,9 +233,11 @@ def _half_solve(a, b):
 
 
 def _half_inverse(n, b):
-    """``R^-T b`` with ``R`` the triangular factor of ``n``: its Gram matrix is ``b' (n'n)^-1 b``, without forming ``n'n``.
+    """``R^-T b`` with ``R`` the triangular factor of ``n``: its Gram matrix is ``b' (n'n)^-1 b``,
+    without forming ``n'n``.
 
-    The rows of ``n`` must fall in size: Householder's reflections then lose nothing of the small ones (Cox and Higham 1998).
+    The rows of ``n`` must fall in size: Householder's reflections then lose nothing of the small
+    ones (Cox and Higham 1998).
     """
     size = np.linalg.norm(n, axis=0)
     size = np.where(size > 0, size, 1.0)

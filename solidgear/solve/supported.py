@@ -14,7 +14,8 @@ from solidgear.body import Body, Supports, component_rows
 from solidgear.solve.relief import elastic_fields
 from solidgear.solve.statics import SHIFT, factors
 
-# The motion of a seat that comes out below this part of the largest one has no digits left that matter.
+# The motion of a seat that comes out below this part of the largest one has no digits left that
+# matter.
 ROUNDED = 1e-12
 # Relative error of an inverse from which on it is refined.
 REFINED = 1e-7
@@ -22,7 +23,8 @@ EPS = float(np.finfo(float).eps)
 
 
 def decoupled(body: Body, supports: Supports, tolerance: float):
-    """Bearing matrix with negligible couplings between blocks removed, and the bound that allows it.
+    """Bearing matrix with negligible couplings between blocks removed, and the bound that allows
+    it.
 
     If ``|v' D v| <= eps v' K0 v`` for the removed part D and all v, then by Rayleigh's quotient no
     eigenvalue of the supported body moves by more than eps, relative.
@@ -139,16 +141,19 @@ class Supported:
         return np.vstack(parts)
 
     def spring_rounding(self, u) -> np.ndarray:
-        """(k,) energy of shapes that the last digit of the stiffness entries of the springs stands for, N m.
+        """(k,) energy of shapes that the last digit of the stiffness entries of the springs stands
+        for, N m.
 
-        A coupled bearing may be far softer in one direction than any of its entries: what it resists there is a difference of large numbers.
+        A coupled bearing may be far softer in one direction than any of its entries: what it
+        resists there is a difference of large numbers.
         """
         if not self._seats:
             return np.zeros(u.shape[1])
         motion = np.abs(
             np.vstack([seats @ part for seats, part in zip(self._seats, self.parts(u))])
         )
-        # as large a multiple as condensing springs in series and taking the root of the matrix may make of it
+        # as large a multiple as condensing springs in series and taking the root of the matrix may
+        # make of it
         return 8 * EPS * np.einsum("ik,ij,jk->k", motion, np.abs(self._spring), motion)
 
     @property
@@ -186,7 +191,9 @@ class Supported:
         return self._per_block(lambda i, part: self.blocks[i].stiffness @ part, x)
 
     def elastic_extended(self, x):
-        """The same in extended precision, for shapes whose energy is small beside what its terms are."""
+        """The same in extended precision, for shapes whose energy is small beside what its terms
+        are.
+        """
         return self._per_block(
             lambda i, part: (
                 self.blocks[i].stiffness.astype(np.longdouble) @ part.astype(np.longdouble)
@@ -204,7 +211,9 @@ class Supported:
         return y + self._quick_inverse(x - self.forward(y)) if self.inaccuracy > REFINED else y
 
     def forward(self, u):
-        """``(K + springs + shift M) u``; the rigid part, which K resists by rounding only, is kept from it."""
+        """``(K + springs + shift M) u``; the rigid part, which K resists by rounding only, is kept
+        from it.
+        """
         return (
             self.elastic(self.without_rigid(u))
             + self.load @ (self.load.T @ u)
@@ -213,7 +222,9 @@ class Supported:
 
     @cached_property
     def inaccuracy(self) -> float:
-        """Relative error of the inverse in its own norm, measured by what one step of refinement changes, on loads of random masses and springs."""
+        """Relative error of the inverse in its own norm, measured by what one step of refinement
+        changes, on loads of random masses and springs.
+        """
         if EPS * self.highest < REFINED * self.shift:
             return 0.0  # no rounding could be seen
         rng = np.random.default_rng(0)
@@ -258,7 +269,8 @@ class Supported:
     def stretch(self, u, loads) -> np.ndarray:
         """Stretch ``L'u`` of the springs, the root of their energy.
 
-        Where the springs are so stiff that the motion of their seat is the rounding of ``u``, it comes from the load instead.
+        Where the springs are so stiff that the motion of their seat is the rounding of ``u``, it
+        comes from the load instead.
 
         Parameters
         ----------
@@ -274,9 +286,11 @@ class Supported:
         return out
 
     def spread(self, u) -> np.ndarray:
-        """(r, k) stretch of the springs by motions as large as the largest of each shape: what rounding of ``u`` is to be compared with.
+        """(r, k) stretch of the springs by motions as large as the largest of each shape: what
+        rounding of ``u`` is to be compared with.
 
-        The motion of a seat that is held fast is small, but it was computed beside large ones and carries their rounding.
+        The motion of a seat that is held fast is small, but it was computed beside large ones and
+        carries their rounding.
         """
         return np.abs(self.load).sum(axis=0)[:, None] * np.abs(u).max(axis=0, initial=0.0)
 
@@ -287,7 +301,8 @@ class Supported:
     def _rigid_motions(self) -> np.ndarray:
         """The same, mass-orthonormal."""
         rigid = self.rigid_motions()
-        # A block of a body whose seats are all one rigid piece may move less than its components say.
+        # A block of a body whose seats are all one rigid piece may move less than its components
+        # say.
         for _ in range(2):
             size = np.sqrt(np.einsum("ij,ij->j", rigid, self.mass(rigid)))
             rigid = rigid[:, size > 0] / size[size > 0]
@@ -313,7 +328,8 @@ class Supported:
             Unresisted rigid motions must do no work on it.
         """
         rigid = self.rigid_motions()
-        # Rotations are about 1/length of translations in size: equal columns keep the small systems well scaled.
+        # Rotations are about 1/length of translations in size: equal columns keep the small systems
+        # well scaled.
         rigid = rigid / np.linalg.norm(rigid, axis=0)
         e_f, e_b = self._relieved(load, rigid), self._relieved(self.load, rigid)
         held = self.load.T @ rigid

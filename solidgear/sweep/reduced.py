@@ -1,12 +1,14 @@
 """A free body reduced once to its lowest free modes and to moments of what is left at its seats.
 
-Notation: ``A = K + sigma M`` (the operator every body is factored with), G the motions of the ports, U the rigid motions and the
-lowest free modes, and H the inverse of A with U taken out of it.  The reduced basis of a set of seats is
+Notation: ``A = K + sigma M`` (the operator every body is factored with), G the motions of the
+ports, U the rigid motions and the lowest free modes, and H the inverse of A with U taken out of it.
+The reduced basis of a set of seats is
 
     V = [U, W_0, .., W_J],   W_j = (H M)^j H G',
 
-attachment fields (Rubin 1975, AIAA J. 13, 996; the rigid part is inertia relief) and J Krylov steps on them.  U is invariant under
-``A^-1 M`` and the rest lies in its complement, so nothing of the mesh is needed but the free eigenvalues, ``G U``, and the moments
+attachment fields (Rubin 1975, AIAA J. 13, 996; the rigid part is inertia relief) and J Krylov steps
+on them.  U is invariant under ``A^-1 M`` and the rest lies in its complement, so nothing of the
+mesh is needed but the free eigenvalues, ``G U``, and the moments
 
     mu_j = G (H M)^j H G':   W_i' A W_j = mu_(i+j),   W_i' M W_j = mu_(i+j+1),   W_i' M A^-1 M W_j = mu_(i+j+2),   G W_j = mu_j.
 

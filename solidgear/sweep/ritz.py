@@ -32,7 +32,8 @@ from solidgear.solve.naming import ALIKE, OVAL_TOLERANCE, alike
 from solidgear.solve.supported import decoupled, groups
 from solidgear.sweep.reduced import Reduced, ReducedBlock
 
-#: As in `solidgear.solve.modes.modes`: relative change of an eigenvalue below which couplings between blocks are left out.
+#: As in `solidgear.solve.modes.modes`: relative change of an eigenvalue below which couplings
+#: between blocks are left out.
 COUPLING = 1e-6
 
 
@@ -47,7 +48,8 @@ class RitzModes:
     names : tuple of str
         Such as ``bending 1``; twins share theirs.
     error_bound : float
-        Largest relative error of these frequencies against the body itself; infinite where nothing can be promised.
+        Largest relative error of these frequencies against the body itself; infinite where nothing
+        can be promised.
     """
 
     frequency_hz: np.ndarray
@@ -120,7 +122,9 @@ class _Together:
         self.families = {str(name): names == name for name in dict.fromkeys(names) if name}
 
     def resisted(self, null: np.ndarray) -> np.ndarray | None:
-        """Orthonormal basis without the rigid motions ``null`` (6, k) that no spring resists; None if there are none."""
+        """Orthonormal basis without the rigid motions ``null`` (6, k) that no spring resists; None
+        if there are none.
+        """
         free = np.vstack([turn @ null[c] for turn, c in zip(self.turns, self.components)])
         norm = np.linalg.norm(free, axis=0)
         free = free[:, norm > 0] / norm[norm > 0]
@@ -133,7 +137,9 @@ class _Together:
 
 
 def _orthonormal(gram: np.ndarray, width: int) -> np.ndarray:
-    """Combinations of fields with unit Gram matrix: the first ``width`` fields are kept whole, later ones where they add something."""
+    """Combinations of fields with unit Gram matrix: the first ``width`` fields are kept whole,
+    later ones where they add something.
+    """
     size = 1 / np.sqrt(np.diag(gram))
     gram = gram * np.outer(size, size)
     z = np.zeros((len(gram), 0))
@@ -142,7 +148,8 @@ def _orthonormal(gram: np.ndarray, width: int) -> np.ndarray:
         for _ in range(2):  # twice is enough
             new = new - z @ (z.T @ gram @ new)
         value, vector = np.linalg.eigh(new.T @ gram @ new)
-        # What is below this is rounding of the moments; attachment fields must stay for the bound to hold.
+        # What is below this is rounding of the moments; attachment fields must stay for the bound
+        # to hold.
         keep = value > (1e-14 if start == 0 else 1e-10)
         z = np.hstack([z, new @ (vector[:, keep] / np.sqrt(value[keep]))])
     return size[:, None] * z
@@ -172,7 +179,8 @@ def ritz_modes(
     supports : Supports
     n : int
     slack : float
-        Modes that may lie among the first ``n`` by less than this, relative, are no reason to distrust the count.
+        Modes that may lie among the first ``n`` by less than this, relative, are no reason to
+        distrust the count.
     """
     frame = reduced.frame
     spring, _ = decoupled(frame, supports, COUPLING)
@@ -185,7 +193,8 @@ def ritz_modes(
             if twin in solved
             else _solve(reduced, seats, supports, spring, group, null)
         )
-    # A block without port motions is an ovalising one, which stands for its cosine and its sine form.
+    # A block without port motions is an ovalising one, which stands for its cosine and its sine
+    # form.
     parts = [
         part
         for group, part in solved.items()
@@ -246,7 +255,8 @@ def _solve(reduced: Reduced, seats: Seats, supports: Supports, spring, group, nu
     good = theta > 0
     theta, shape = theta[good], half @ vector[:, good]
     value = 1 / theta - reduced.shift
-    # What the shift leaves of an eigenvalue below a thousandth of it is less than a direct Ritz step gives.
+    # What the shift leaves of an eigenvalue below a thousandth of it is less than a direct Ritz
+    # step gives.
     soft = value < 1e-3 * reduced.shift
     if soft.any():
         value[soft] = _soft(shape[:, soft], mass, held, reduced.shift)
@@ -257,7 +267,9 @@ def _solve(reduced: Reduced, seats: Seats, supports: Supports, spring, group, nu
 
 
 def _soft(shape, mass, held, shift) -> np.ndarray:
-    """Ritz values of nearly rigid modes, with the rigid part split off exactly (as in :mod:`solidgear.solve.modes`)."""
+    """Ritz values of nearly rigid modes, with the rigid part split off exactly (as in
+    :mod:`solidgear.solve.modes`).
+    """
     # Rigid shapes are those whose energy in A is sigma times their mass, alone.
     rigid = np.abs(np.diag(mass) * shift - 1) < 1e-9
     r = int(rigid.sum())
@@ -274,7 +286,9 @@ def _soft(shape, mass, held, shift) -> np.ndarray:
 
 
 def _bound(part: _Group, count: int, last: float, shift: float, slack: float) -> float:
-    """Largest relative frequency error of the first ``count`` modes of a group, the last of all groups being ``last``."""
+    """Largest relative frequency error of the first ``count`` modes of a group, the last of all
+    groups being ``last``.
+    """
     t = 1 / (last + shift)
     if t <= part.cut:
         return np.inf
@@ -289,7 +303,9 @@ def _bound(part: _Group, count: int, last: float, shift: float, slack: float) ->
 
 
 def _tolerances(reduced: Reduced, supports: Supports) -> tuple[float, float]:
-    """How near eigenvalues of one pair lie, relative, for bending and for more waves around; as :meth:`solidgear.solve.naming.Names.pairs` has it."""
+    """How near eigenvalues of one pair lie, relative, for bending and for more waves around; as
+    :meth:`solidgear.solve.naming.Names.pairs` has it.
+    """
     own, bearings = reduced.pair_tolerance, alike(supports)
     whole = len(reduced.blocks) == 1
     return 2 * max(own, bearings) if bearings <= ALIKE else -1.0, max(

@@ -38,9 +38,11 @@ class Summary:
     ----------
     path : Path
     total, skipped, refused, full : int
-        Variants; of these: rows that were there before, refused ones, and those whose modes were solved on the body itself (the last two of this run).
+        Variants; of these: rows that were there before, refused ones, and those whose modes were
+        solved on the body itself (the last two of this run).
     unknowns, seats, basis : int
-        Of the body; seats on it; unknowns of the largest small problem. Zero if there was nothing left to do.
+        Of the body; seats on it; unknowns of the largest small problem. Zero if there was nothing
+        left to do.
     seconds_once, seconds_each : float
         Wall seconds for body and reduction, and per variant of this run.
     repairs : tuple of str
@@ -96,8 +98,8 @@ def sweep(
     sample, seed : int, optional
         Draw so many points of a Latin hypercube instead of taking all combinations.
     tolerance : float
-        Relative error of frequencies against the same body solved in full. A variant whose bound exceeds it makes the basis
-        larger, and where that does not do it is solved in full.
+        Relative error of frequencies against the same body solved in full. A variant whose bound
+        exceeds it makes the basis larger, and where that does not do it is solved in full.
     jobs : int
         Processes on this machine (joblib), at most eight for each processor.
     dask : str, optional

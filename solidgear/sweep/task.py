@@ -36,7 +36,8 @@ def columns(variants: Variants, n: int) -> dict[str, type]:
 
 @dataclass(frozen=True)
 class Task:
-    """Everything that is needed to turn variants into rows; small, so that it can be sent to other processes.
+    """Everything that is needed to turn variants into rows; small, so that it can be sent to other
+    processes.
 
     Attributes
     ----------

@@ -95,7 +95,9 @@ class Variants:
         return placed.with_changes(bearings=tuple(bearings))
 
     def supports(self, index: int) -> tuple[Scene, Supports]:
-        """Scene of one variant, and its springs on the ports of the :meth:`shaft`. Raises like :meth:`of`."""
+        """Scene of one variant, and its springs on the ports of the :meth:`shaft`. Raises like
+        :meth:`of`.
+        """
         scene = self.of(index)
         return scene, replace(as_supports(scene), ports=tuple(map(seat_name, scene.bearings)))
 
@@ -128,7 +130,9 @@ class Variants:
 
 
 def seat_name(bearing: Bearing) -> str:
-    """Name of the port a bearing sits on: bearings of any stiffness share it if they hold the same surface alike."""
+    """Name of the port a bearing sits on: bearings of any stiffness share it if they hold the same
+    surface alike.
+    """
     return f"seat at {bearing.y!r} m, {bearing.lo!r} to {bearing.hi!r} m, {bearing.attachment}"
 
 

@@ -1,8 +1,10 @@
 """What a sweep varies: ``bearing.NAME.FIELD=SPEC`` texts, their full product or a Latin hypercube.
 
-FIELD is ``position`` (middle of the seat from y = 0, whatever the datum in the scene file), an entry of the bearing's own 6x6 as in scene
-files (``kxx``, ``kx_thz``, ...), or ``scale`` (a factor on the whole bearing, series springs included, after its entries).
-SPEC is ``a:b:n`` (n values, evenly), ``log:a:b:n`` (n values, geometrically) or a list ``a,b,c``; a value is a text with a unit or a plain SI number.
+FIELD is ``position`` (middle of the seat from y = 0, whatever the datum in the scene file), an
+entry of the bearing's own 6x6 as in scene files (``kxx``, ``kx_thz``, ...), or ``scale`` (a factor
+on the whole bearing, series springs included, after its entries). SPEC is ``a:b:n`` (n values,
+evenly), ``log:a:b:n`` (n values, geometrically) or a list ``a,b,c``; a value is a text with a unit
+or a plain SI number.
 """
 
 from __future__ import annotations
@@ -37,7 +39,8 @@ class Axis:
     values : tuple of float
         SI.
     spacing : {'linear', 'log', 'list'}
-        How values between the listed ones are drawn: along a line, along its logarithm, or not at all.
+        How values between the listed ones are drawn: along a line, along its logarithm, or not at
+        all.
     """
 
     bearing: int
@@ -65,7 +68,8 @@ def axes(scene, texts: Iterable[str]) -> tuple[Axis, ...]:
     Raises
     ------
     SolidgearError
-        A text that cannot be read, a bearing or field that is not there, or the same quantity twice.
+        A text that cannot be read, a bearing or field that is not there, or the same quantity
+        twice.
     """
     out: list[Axis] = []
     for text in texts:

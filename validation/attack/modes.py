@@ -1,11 +1,14 @@
-"""Random shafts against an independent dense solution: no mode may be missed, none wrong by more than 1e-6 or than its own bound says.
+"""Random shafts against an independent dense solution: no mode may be missed, none wrong by more
+than 1e-6 or than its own bound says.
 
     python -m validation.attack.modes [--runs 1000] [--seed 1]
 
-Shafts are slender or short, solid or thin-walled, of one or several materials, on bearings that are soft, stiff, coupled, partial or none; bodies are beams, and
-harmonic solids of low order, small enough for a dense solution.  That is another way from beginning to end: matrices and springs put together here, dense
-factors scaled to a unit diagonal, and values from Ritz steps whose residuals are taken in extended precision.  Rigid motions are known exactly on both sides.
-Every run follows from the seed and its number alone.
+Shafts are slender or short, solid or thin-walled, of one or several materials, on bearings that are
+soft, stiff, coupled, partial or none; bodies are beams, and harmonic solids of low order, small
+enough for a dense solution.  That is another way from beginning to end: matrices and springs put
+together here, dense factors scaled to a unit diagonal, and values from Ritz steps whose residuals
+are taken in extended precision.  Rigid motions are known exactly on both sides. Every run follows
+from the seed and its number alone.
 """
 
 from __future__ import annotations
@@ -139,7 +142,9 @@ def _scene(rng) -> Scene:
 
 
 def _springs(rng, radius):
-    """Six by six: soft to stiff, radial only, alike in both planes or not, or coupled without mercy."""
+    """Six by six: soft to stiff, radial only, alike in both planes or not, or coupled without
+    mercy.
+    """
     size, lever = (
         _log(rng, *((1e3, 1e12) if rng.random() < 0.8 else (1.0, 1e16))),
         np.repeat([1.0, radius * rng.uniform(0.2, 2.0)], 3),
@@ -173,7 +178,9 @@ def _light(scene, rng) -> dict:
 
 # --------------------------------------------------------------------------- dense reference
 def springs_by_hand(scene) -> np.ndarray:
-    """(6 m, 6 m) stiffness of all bearings, series springs and housing eliminated as unknowns of their own."""
+    """(6 m, 6 m) stiffness of all bearings, series springs and housing eliminated as unknowns of
+    their own.
+    """
     count = len(scene.bearings)
     out = np.zeros((6 * count, 6 * count))
     for i, bearing in enumerate(scene.bearings):
@@ -189,7 +196,9 @@ def springs_by_hand(scene) -> np.ndarray:
 
 
 def springs_lost(scene) -> float:
-    """What rounding leaves open of the stiffness of stiff bearings in series with soft springs: both sides take a difference there."""
+    """What rounding leaves open of the stiffness of stiff bearings in series with soft springs:
+    both sides take a difference there.
+    """
     stiff = max((b.matrix[1][1] for b in scene.bearings), default=0.0)
     series = [s for b in scene.bearings for s in b.axial_series] + (
         [scene.housing_axial] if scene.housing_axial else []
@@ -237,7 +246,9 @@ class Dense:
         self._m = m
 
     def stiff(self, x):
-        """``K x`` in extended precision; rigid motions, which K resists by rounding only, are taken out first."""
+        """``K x`` in extended precision; rigid motions, which K resists by rounding only, are taken
+        out first.
+        """
         elastic = x - self.rigid @ (self._project[1] @ (self._project[0].T @ x))
         elastic = elastic - self.rigid @ (self._project[1] @ (self._project[0].T @ elastic))
         force = self.k @ elastic
@@ -245,7 +256,9 @@ class Dense:
         return force + self.ports.T @ (self.springs @ (self.ports @ x))
 
     def solve(self, load):
-        """``(K + springs + shift M)^-1 load``, refined until the residual is one of extended precision."""
+        """``(K + springs + shift M)^-1 load``, refined until the residual is one of extended
+        precision.
+        """
         x = np.zeros_like(load)
         left = load
         for _ in range(12):
@@ -259,7 +272,9 @@ class Dense:
         return x
 
     def values(self, n: int, steps: int = 12) -> tuple[np.ndarray, np.ndarray]:
-        """Lowest ``n`` eigenvalues, zeros of unresisted motions left out, and what the last step changed, relative."""
+        """Lowest ``n`` eigenvalues, zeros of unresisted motions left out, and what the last step
+        changed, relative.
+        """
         size = len(self._d)
         skip = self.free
         wanted = min(n + skip + 6, size)
@@ -293,7 +308,9 @@ class Dense:
 
 
 def _unresisted(at, springs, rigid) -> int:
-    """Number of rigid motions that no spring resists: of the springs' root on motions brought to unit size."""
+    """Number of rigid motions that no spring resists: of the springs' root on motions brought to
+    unit size.
+    """
     if not len(springs):
         return 6
     d = np.sqrt(np.abs(np.diag(springs)))

@@ -46,7 +46,8 @@ MOST_UNKNOWNS = 100_000
 #: below this relative step the sequence has reached rounding and is not extrapolated
 ROUNDING = 1e-10
 EXTRA_MODES = 6
-#: on Aitken's own step: of 135 figures on 18 scenes the next level moved 12 by more than it, and one by more than three times it
+#: on Aitken's own step: of 135 figures on 18 scenes the next level moved 12 by more than it, and
+#: one by more than three times it
 SURE = 3.0
 
 

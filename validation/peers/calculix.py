@@ -1,8 +1,9 @@
 """CalculiX (``ccx``) as a peer: the deck of a solid problem, the run, and what it printed.
 
-Bearings are grounded springs on what their seats do, loads the nodal forces of unit wrenches.  A rigid seat is one linear equation a node on
-two reference nodes (translation, rotation).  An averaged seat is one equation a spring; such a spring couples all unknowns of the seat with
-one another, a dense block that CalculiX has to store and factor.
+Bearings are grounded springs on what their seats do, loads the nodal forces of unit wrenches.  A
+rigid seat is one linear equation a node on two reference nodes (translation, rotation).  An
+averaged seat is one equation a spring; such a spring couples all unknowns of the seat with one
+another, a dense block that CalculiX has to store and factor.
 """
 
 from __future__ import annotations
@@ -19,8 +20,9 @@ from solidgear.frames import cross_matrix
 from validation.peers.problem import Problem
 from validation.peers.process import PeerError, last_words, run
 
-# Local nodes in CalculiX's order by their reference coordinates (user's manual, the sections on C3D10 and C3D20): corners,
-# then edges.  They are looked up by position, so nothing is assumed about the numbering of the other side.
+# Local nodes in CalculiX's order by their reference coordinates (user's manual, the sections on
+# C3D10 and C3D20): corners, then edges.  They are looked up by position, so nothing is assumed
+# about the numbering of the other side.
 _TET = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]], float)
 _HEX = np.array(
     [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [0, 0, 1], [1, 0, 1], [1, 1, 1], [0, 1, 1]], float
@@ -185,7 +187,9 @@ def node_order(doflocs: np.ndarray, kind: str) -> np.ndarray:
 
 
 def frequencies(printed: str) -> np.ndarray:
-    """Natural frequencies in the ``.dat`` file, Hz: mode number, eigenvalue, rad/s, Hz, imaginary part."""
+    """Natural frequencies in the ``.dat`` file, Hz: mode number, eigenvalue, rad/s, Hz, imaginary
+    part.
+    """
     found = re.search(
         r"E I G E N V A L U E   O U T P U T(.*?)(?:P A R T I C I P A T I O N|\Z)", printed, re.S
     )
@@ -198,7 +202,9 @@ def frequencies(printed: str) -> np.ndarray:
 
 
 def displacements(printed: str, count: int) -> list[np.ndarray]:
-    """(count, 3) displacements of every static step in the ``.dat`` file; nodes that were not printed are zero."""
+    """(count, 3) displacements of every static step in the ``.dat`` file; nodes that were not
+    printed are zero.
+    """
     steps = []
     for text in re.split(r"displacements \(vx,vy,vz\)[^\n]*\n", printed)[1:]:
         rows = re.findall(r"^\s+(\d+)\s+(\S+E\S+)\s+(\S+E\S+)\s+(\S+E\S+)\s*$", text, re.M)
@@ -215,7 +221,9 @@ def _nodes(points, first: int) -> list[str]:
 
 
 def _wrapped(numbers, width: int = 12) -> list[str]:
-    """Whole numbers over several lines; all but the last end in a comma, which tells CalculiX to read on."""
+    """Whole numbers over several lines; all but the last end in a comma, which tells CalculiX to
+    read on.
+    """
     rows = [numbers[i : i + width] for i in range(0, len(numbers), width)]
     return [
         ", ".join(str(x) for x in row) + ("," if k + 1 < len(rows) else "")
@@ -248,7 +256,8 @@ def _seat(problem: Problem, seat, node: int, element: int):
                     [(i + 1, c, -1.0), (move, c, 1.0)]
                     + [(turn, k, -lever[c, k]) for k in range(3) if lever[c, k]]
                 )
-    # The 6x6 as single springs: K = sum k_j l_j l_j', each on the motion q_j = l_j . d of a node of its own.
+    # The 6x6 as single springs: K = sum k_j l_j l_j', each on the motion q_j = l_j . d of a node of
+    # its own.
     for k, direction in _springs(seat.stiffness):
         if seat.mean is None:
             parts = [(move if c < 3 else turn, c % 3, a) for c, a in enumerate(direction) if a]
@@ -269,7 +278,9 @@ def _seat(problem: Problem, seat, node: int, element: int):
 
 
 def _springs(stiffness: np.ndarray):
-    """(k, unit direction) of single springs that make up a 6x6; scaled first, for N/m and N m/rad differ by powers of ten."""
+    """(k, unit direction) of single springs that make up a 6x6; scaled first, for N/m and N m/rad
+    differ by powers of ten.
+    """
     scale = np.sqrt(np.diag(stiffness).clip(min=0.0))
     scale[scale == 0.0] = 1.0
     value, vector = np.linalg.eigh(stiffness / np.outer(scale, scale))

@@ -123,7 +123,8 @@ class Figure:
         if not slow.samples or not self.fast.samples:
             missing = self.fast if slow.samples else slow
             return row | {"met": f"not compared: {missing.error or 'not run'}"}
-        # Rounds both took part in: an interrupted last one would set different spells of the machine against each other.
+        # Rounds both took part in: an interrupted last one would set different spells of the
+        # machine against each other.
         slow, fast = zip(*zip(slow.times(), self.fast.times(self.stages)))
         ratio = statistics.median(slow) / statistics.median(fast)
         each = [a / b for a, b in zip(slow, fast)]
@@ -132,9 +133,11 @@ class Figure:
 
 
 def paired(frequency, multiplicity) -> np.ndarray:
-    """Single frequencies brought to distinct ones: root mean square over each group of as many as ``multiplicity`` says.
+    """Single frequencies brought to distinct ones: root mean square over each group of as many as
+    ``multiplicity`` says.
 
-    A mesh without symmetry splits a pair by its own error; our results give the pair, a peer gives both.
+    A mesh without symmetry splits a pair by its own error; our results give the pair, a peer gives
+    both.
     """
     cuts = np.cumsum([0, *multiplicity])
     return np.array(

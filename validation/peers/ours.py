@@ -1,4 +1,5 @@
-"""solidgear's own lanes: one scene to compliance and modes, seconds by stage, in this process or in one of its own.
+"""solidgear's own lanes: one scene to compliance and modes, seconds by stage, in this process or in
+one of its own.
 
 As a process:  python ours.py job.json   (a job: scene, fidelity, options, modes; the answer goes to standard output)
 """
@@ -13,13 +14,16 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 
-# Torsion is free in the scene: a peer's stiffness matrix would be singular, so both sides get the same spring (about that of a coupling).
+# Torsion is free in the scene: a peer's stiffness matrix would be singular, so both sides get the
+# same spring (about that of a coupling).
 TORSION = 1e6  # N m/rad
 
 
 @dataclass(frozen=True)
 class Run:
-    """One run: ``stages`` in wall seconds, ``cpu`` seconds in all, the numbers, and the body they came from."""
+    """One run: ``stages`` in wall seconds, ``cpu`` seconds in all, the numbers, and the body they
+    came from.
+    """
 
     stages: dict[str, float]
     cpu: float
@@ -31,7 +35,9 @@ class Run:
 
 
 def held(path, attachment: str):
-    """The scene with torsion held at every bearing and its seats attached as asked; the lumped point stays averaged."""
+    """The scene with torsion held at every bearing and its seats attached as asked; the lumped
+    point stays averaged.
+    """
     import numpy as np
 
     import solidgear as sg
@@ -46,7 +52,8 @@ def held(path, attachment: str):
 
 
 def solve(scene, fidelity: str, options: dict, modes: int = 10, *, free: bool = False) -> Run:
-    """A fresh body, its factor, the compliance at the lumped port and its modes, as a user would call for them.
+    """A fresh body, its factor, the compliance at the lumped port and its modes, as a user would
+    call for them.
 
     Parameters
     ----------
@@ -101,7 +108,9 @@ def free(body, modes: int = 10):
 
 @contextmanager
 def _assembly_seconds(fidelity: str):
-    """Seconds a solid spends in its matrices, as a list of one; zero for other bodies, where mesh and assembly are one stage."""
+    """Seconds a solid spends in its matrices, as a list of one; zero for other bodies, where mesh
+    and assembly are one stage.
+    """
     spent = [0.0]
     if fidelity != "solid":
         yield spent
@@ -127,7 +136,9 @@ def _assembly_seconds(fidelity: str):
 def whole(
     path, attachment: str, fidelity: str, options: dict, modes: int = 10, *, limit: float = 900.0
 ) -> tuple[dict, float]:
-    """Wall seconds (as the one stage) and processor seconds of a process that imports, loads the scene and solves it."""
+    """Wall seconds (as the one stage) and processor seconds of a process that imports, loads the
+    scene and solves it.
+    """
     import tempfile
 
     from validation.peers.process import run

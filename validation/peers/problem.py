@@ -19,7 +19,8 @@ class Seat:
     stiffness : (6, 6) ndarray
         SI, order x y z thx thy thz.
     mean : (6, n, 3) ndarray or None
-        The point's motion as the mean of the surface's; None where the surface is rigid and moves with the point.
+        The point's motion as the mean of the surface's; None where the surface is rigid and moves
+        with the point.
     """
 
     y: float
@@ -46,7 +47,8 @@ class Problem:
     materials : tuple of (E, nu, density)
     seats : tuple of Seat
     wrench : (6, n, 3) ndarray
-        Nodal forces of the six unit loads at the lumped port; with displacements u, ``wrench . u`` is the port's motion.
+        Nodal forces of the six unit loads at the lumped port; with displacements u, ``wrench . u``
+        is the port's motion.
     """
 
     element: str
@@ -81,7 +83,8 @@ def of(body, scene) -> Problem:
         index = body.port_index(station.name)
         rows = block.ports[6 * index : 6 * index + 6]
         if block.expand is not None:
-            # Unknowns that no seat ties come first and are those of the mesh; a mean that reaches others would need the seat's motion.
+            # Unknowns that no seat ties come first and are those of the mesh; a mean that reaches
+            # others would need the seat's motion.
             free = block.size - block.border
             if abs(rows[:, free:]).sum() > 0:
                 raise ValueError(f"{station.name} shares nodes with a rigid seat")

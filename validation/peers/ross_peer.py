@@ -1,4 +1,5 @@
-"""ROSS as a peer for the beam: the same nodes, tapered Timoshenko elements, bearings without tilt stiffness (ROSS has none).
+"""ROSS as a peer for the beam: the same nodes, tapered Timoshenko elements, bearings without tilt
+stiffness (ROSS has none).
 
 It is run in a process of its own, because it prints on import:  python ross_peer.py rotor.json
 """
@@ -68,7 +69,8 @@ def rotor(scene, body) -> dict:
 
 
 def solve(data: dict, *, limit: float = 300.0) -> dict:
-    """Run ROSS: ``seconds`` of building the rotor and its modes, ``whole`` of the process, ``frequency_hz``, ``version``.
+    """Run ROSS: ``seconds`` of building the rotor and its modes, ``whole`` of the process,
+    ``frequency_hz``, ``version``.
 
     Raises
     ------

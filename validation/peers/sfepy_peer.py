@@ -90,7 +90,8 @@ def _unit(a, b):
 
 
 def solve(body, scene, modes: int, *, limit: float = 600.0) -> dict:
-    """Run sfepy: ``seconds`` per stage, ``whole`` of the process, ``frequency_hz`` of the elastic modes, ``unknowns``, ``version``.
+    """Run sfepy: ``seconds`` per stage, ``whole`` of the process, ``frequency_hz`` of the elastic
+    modes, ``unknowns``, ``version``.
 
     Raises
     ------

@@ -1,4 +1,5 @@
-"""Run every script of this folder and write one report: method, edge measured, what the program does about it.
+"""Run every script of this folder and write one report: method, edge measured, what the program
+does about it.
 
 python -m validation.stability [--quick] [--only NAME ...]
 """
@@ -20,7 +21,9 @@ SCRIPTS = sorted(
 
 
 def run(names, quick: bool = False):
-    """Findings by script name, and one sentence for each script that failed; a failure does not stop the others."""
+    """Findings by script name, and one sentence for each script that failed; a failure does not
+    stop the others.
+    """
     done, failed = {}, {}
     for name in names:
         start = time.perf_counter()

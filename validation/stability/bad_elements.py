@@ -1,7 +1,9 @@
-"""Problem: one bad element in a good mesh of a shaft.  Reference: the same mesh before it was spoilt.
+"""Problem: one bad element in a good mesh of a shaft.  Reference: the same mesh before it was
+spoilt.
 
-Cases: a sliver (a vertex pushed towards the opposite face), a mid-edge node slid along its edge until det J turns negative at a corner and then at Gauss points,
-and two elements whose det J is positive at all their nodes and Gauss points and negative in between.
+Cases: a sliver (a vertex pushed towards the opposite face), a mid-edge node slid along its edge
+until det J turns negative at a corner and then at Gauss points, and two elements whose det J is
+positive at all their nodes and Gauss points and negative in between.
 
     python -m validation.stability.bad_elements [--quick]
 """
@@ -32,7 +34,9 @@ def good_mesh():
 
 
 def least_at_gauss_points(mesh, name: str) -> float:
-    """Least det J at the points the stiffness is integrated at, relative to the greatest in the same element."""
+    """Least det J at the points the stiffness is integrated at, relative to the greatest in the
+    same element.
+    """
     det = tabulate(
         mesh.elem(), mesh.doflocs[:, mesh.dofs.element_dofs], mesh.elem(), _cell_rule(name)[0]
     ).det
@@ -74,7 +78,9 @@ def spoilt(scene, geometry, mesh) -> dict:
 
 
 def flattened(mesh, vertex: int, element: int, height: float):
-    """The mesh with a vertex of an element brought down to a part of its height over the opposite face, edges kept straight."""
+    """The mesh with a vertex of an element brought down to a part of its height over the opposite
+    face, edges kept straight.
+    """
     others = [v for v in mesh.t[:4, element] if v != vertex]
     doflocs = mesh.doflocs.copy()
     face = doflocs[:, others].mean(axis=1)
@@ -85,7 +91,9 @@ def flattened(mesh, vertex: int, element: int, height: float):
 
 
 def inner_vertex(mesh) -> tuple[int, int]:
-    """A vertex inside the shaft and one of its elements that can be flattened without turning another inside out."""
+    """A vertex inside the shaft and one of its elements that can be flattened without turning
+    another inside out.
+    """
     surface = np.unique(mesh.facets[:, mesh.boundary_facets()])
     for vertex in np.setdiff1d(np.unique(mesh.t[:4]), surface):
         for element in np.flatnonzero((mesh.t[:4] == vertex).any(axis=0)):
@@ -104,7 +112,9 @@ def slid(mesh, edge: int, place: float):
 
 
 def negative_between() -> dict[str, object]:
-    """One element each that is inverted between its nodes and Gauss points; their least det J is known in closed form."""
+    """One element each that is inverted between its nodes and Gauss points; their least det J is
+    known in closed form.
+    """
     tet = MeshTet2.from_mesh(MeshTet.init_refdom())
     x, y, z = tet.doflocs
     # det J = (x - 0.37) (x - 0.48), at least -0.003

@@ -1,7 +1,9 @@
-"""Problem: a uniform overhung shaft on two springs of 1e-3 to 1e24 N/m, and of exactly 0.  Reference: closed form for the compliance at the overhung end, the exact
-initial-parameter solution (krylov) for the first frequency.
+"""Problem: a uniform overhung shaft on two springs of 1e-3 to 1e24 N/m, and of exactly 0.
+Reference: closed form for the compliance at the overhung end, the exact initial-parameter solution
+(krylov) for the first frequency.
 
-Models: an Euler beam of 10 and of 160 elements; its springs by the Woodbury identity and inertia relief (the program), and added to the stiffness matrix, K + G'KbG (naive).
+Models: an Euler beam of 10 and of 160 elements; its springs by the Woodbury identity and inertia
+relief (the program), and added to the stiffness matrix, K + G'KbG (naive).
 
     python -m validation.stability.bearing_extremes [--quick]
 """
@@ -42,7 +44,9 @@ def shaft(k: float) -> Scene:
 
 
 def exact_compliance(k: float) -> float:
-    """z at the end under a unit force there: both springs by levers, and the overhang on two rigid supports."""
+    """z at the end under a unit force there: both springs by levers, and the overhang on two rigid
+    supports.
+    """
     a, span = AT[0], AT[1] - AT[0]
     bend = STEEL.E * np.pi / 64 * DIAMETER**4
     return ((1 + a / span) ** 2 + (a / span) ** 2) / k + a * a * (span + a) / (3 * bend)
@@ -76,7 +80,9 @@ def naive_compliance(body, supports, port: str) -> float:
 
 
 def naive_first(body, supports, number: int = 0) -> float:
-    """Eigenvalue of the assembled matrices by a dense symmetric solver, as a frequency; negative ones stay negative."""
+    """Eigenvalue of the assembled matrices by a dense symmetric solver, as a frequency; negative
+    ones stay negative.
+    """
     value = sla.eigh(
         assembled(body, supports).toarray(),
         block_of(body).mass.tocsr().toarray(),
@@ -87,11 +93,12 @@ def naive_first(body, supports, number: int = 0) -> float:
 
 
 def rounding_over_first(body, supports, first: float) -> float:
-    """Unit roundoff times the largest eigenvalue of the assembled matrices, over the exact first one.
+    """Unit roundoff times the largest eigenvalue of the assembled matrices, over the exact first
+    one.
 
-    Above 1 the sum itself, however it is solved, holds no digit of the first frequency:
-    rounding its entries moves eigenvalues by more than that one is.
-    The largest entry of K over that of M on the diagonal bounds the largest eigenvalue from below (Rayleigh).
+    Above 1 the sum itself, however it is solved, holds no digit of the first frequency: rounding
+    its entries moves eigenvalues by more than that one is. The largest entry of K over that of M on
+    the diagonal bounds the largest eigenvalue from below (Rayleigh).
     """
     largest = (assembled(body, supports).diagonal() / block_of(body).mass.tocsr().diagonal()).max()
     return float(np.finfo(float).eps / 2 * largest / (2 * np.pi * first) ** 2)
@@ -117,7 +124,8 @@ def measure(quick: bool = False) -> Finding:
                 "C_zz program": abs(here / compliance - 1),
                 "C_zz naive": abs(naive_compliance(body, supports, "end") / compliance - 1),
             }
-            # The beam's own error against the exact frequency is in both columns; it is below 1e-4 for ten elements.
+            # The beam's own error against the exact frequency is in both columns; it is below 1e-4
+            # for ten elements.
             row |= {
                 "f1 program": abs(mine / first - 1),
                 "f1 naive": abs(naive_first(body, supports) / first - 1),

@@ -1,7 +1,10 @@
-"""Problem: free shafts drawn at random (stepped, hollow, flanged, of two materials) whose walls ovalise with n = 2, 3, ... waves.  Reference: each family's own block.
+"""Problem: free shafts drawn at random (stepped, hollow, flanged, of two materials) whose walls
+ovalise with n = 2, 3, ... waves.  Reference: each family's own block.
 
-Models: the closed form and the light mesh by which the program decides which families to solve.  The closed form must never lie above a family's lowest
-frequency by more than its margin, the light mesh never above by more than its own; a rule that only waits for the lowest frequencies to rise is run beside them.
+Models: the closed form and the light mesh by which the program decides which families to solve.
+The closed form must never lie above a family's lowest frequency by more than its margin, the light
+mesh never above by more than its own; a rule that only waits for the lowest frequencies to rise is
+run beside them.
 
     python -m validation.stability.circumferential_families [--quick]
 """
@@ -153,7 +156,9 @@ def lowest(scene: Scene, waves, order: int = 4) -> np.ndarray:
 
 
 def shaft(seed: int, kind: str, waves=WAVES, order: int = 4) -> dict:
-    """One shaft: how the closed form and the light mesh compare, whether the lowest frequencies fall again after a rise, and what rules would miss."""
+    """One shaft: how the closed form and the light mesh compare, whether the lowest frequencies
+    fall again after a rise, and what rules would miss.
+    """
     scene = random_shaft(np.random.default_rng([seed, KINDS.index(kind)]), kind)
     found = Families(scene, None)
     exact = lowest(scene, waves, order)
@@ -184,12 +189,16 @@ def shaft(seed: int, kind: str, waves=WAVES, order: int = 4) -> dict:
 
 
 def _limits(exact) -> np.ndarray:
-    """Frequencies up to which modes might be asked for: just above every family's lowest, and between."""
+    """Frequencies up to which modes might be asked for: just above every family's lowest, and
+    between.
+    """
     return np.unique(np.concatenate([1.001 * exact, np.sqrt(exact[1:] * exact[:-1])]))
 
 
 def _missed_rising(exact) -> int:
-    """Limits at which 'stop when the lowest lies above and has begun to rise' leaves a family out that lies below."""
+    """Limits at which 'stop when the lowest lies above and has begun to rise' leaves a family out
+    that lies below.
+    """
     missed = 0
     for limit in _limits(exact):
         stop = next(
@@ -201,7 +210,9 @@ def _missed_rising(exact) -> int:
 
 
 def _missed(exact, bound, light) -> int:
-    """The same for the program's rule: families up to the first whose closed form lies above by its margin, less those whose light mesh does by its own."""
+    """The same for the program's rule: families up to the first whose closed form lies above by its
+    margin, less those whose light mesh does by its own.
+    """
     missed = 0
     for limit in _limits(exact):
         above = np.flatnonzero(bound > MARGIN * limit)

@@ -1,7 +1,9 @@
-"""Problem: a dumbbell, two equal heads on a thin shaft.  Its bending pairs come two by two, and the nearer the more bearings stand between the heads.
-Reference: all eigenpairs of the same matrices by a dense solution.
+"""Problem: a dumbbell, two equal heads on a thin shaft.  Its bending pairs come two by two, and the
+nearer the more bearings stand between the heads. Reference: all eigenpairs of the same matrices by
+a dense solution.
 
-Models: `modes` with every count from 1 up on the Timoshenko beam, the harmonic and the 3D solid; textbook shift-invert from one start vector beside it.
+Models: `modes` with every count from 1 up on the Timoshenko beam, the harmonic and the 3D solid;
+textbook shift-invert from one start vector beside it.
 
     python -m validation.stability.clusters [--quick]
 """
@@ -93,7 +95,9 @@ def stacked(body, mode) -> np.ndarray:
 
 
 def held(body, supports, exact, u, m, n: int) -> dict:
-    """One call of `modes` against the dense solution: shapes, pairs cut, frequencies off, and the subspace MAC of every cluster."""
+    """One call of `modes` against the dense solution: shapes, pairs cut, frequencies off, and the
+    subspace MAC of every cluster.
+    """
     found = [x for x in sg.modes(body, supports, n=n).modes if x.frequency_hz > 0]
     values = np.repeat(
         [(2 * np.pi * x.frequency_hz) ** 2 for x in found], [x.multiplicity for x in found]
@@ -101,7 +105,8 @@ def held(body, supports, exact, u, m, n: int) -> dict:
     zeros = int((exact < 1e-9 * exact[-1]).sum())
     want = exact[zeros : zeros + len(values)]
     shapes = np.vstack([stacked(body, x) for x in found])
-    # Clusters of the dense solution, cut where the next eigenvalue is 1e-5 away; one that reaches past the last shape asked for is left out.
+    # Clusters of the dense solution, cut where the next eigenvalue is 1e-5 away; one that reaches
+    # past the last shape asked for is left out.
     mac, start = 1.0, 0
     edges = [
         i

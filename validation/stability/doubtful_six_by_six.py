@@ -1,5 +1,6 @@
-"""Problem: bearing matrices that are singular, indefinite, unsymmetric or not numbers, and an x-z coupling up to and past the bound of a positive matrix.
-Reference: the same bearing turned to its principal directions, where it has no coupling; a turn about the axis changes no frequency.
+"""Problem: bearing matrices that are singular, indefinite, unsymmetric or not numbers, and an x-z
+coupling up to and past the bound of a positive matrix. Reference: the same bearing turned to its
+principal directions, where it has no coupling; a turn about the axis changes no frequency.
 
 Models: the program's scene and its Timoshenko beam of the overhung pinion.
 

@@ -1,5 +1,6 @@
-"""Problem: effective masses of the overhung pinion's first bending mode, with the lumped point moved along the shaft from the toe to the far end.
-Reference: the Timoshenko beam they are made from.
+"""Problem: effective masses of the overhung pinion's first bending mode, with the lumped point
+moved along the shaft from the toe to the far end. Reference: the Timoshenko beam they are made
+from.
 
 Models: the published pair of equations (energy and determinant), mode-matched, Guyan, total mass.
 
@@ -56,7 +57,8 @@ def measure(quick: bool = False) -> Finding:
         rows.append(row)
     count = {word: sum(r["mode-matched"] == word for r in rows) for word in STATUS}
     thesis = {word: sum(r["thesis"] == word for r in rows) for word in STATUS}
-    # Kept frequency, lost energy: the frequency is exact while the lumped masses carry a fraction of the mode's.
+    # Kept frequency, lost energy: the frequency is exact while the lumped masses carry a fraction
+    # of the mode's.
     hollow = [
         r
         for r in rows

@@ -1,6 +1,8 @@
-"""What every script of this folder shares: a finding (where a method fails), its table, chart and three sentences.
+"""What every script of this folder shares: a finding (where a method fails), its table, chart and
+three sentences.
 
-A script defines ``measure(quick) -> Finding`` (or a list of them) and ``draw(finding, axes)``, and ends in ``main(measure, draw)``.
+A script defines ``measure(quick) -> Finding`` (or a list of them) and ``draw(finding, axes)``, and
+ends in ``main(measure, draw)``.
 """
 
 from __future__ import annotations
@@ -27,9 +29,11 @@ class Finding:
         Folder of the results, in words.
     method : str
     fails, edge, program : str
-        The three sentences: what fails; where, with the measured number; what the program does about it, in which command.
+        The three sentences: what fails; where, with the measured number; what the program does
+        about it, in which command.
     guard : str
-        Id of the test that holds the guard, ``tests/test_x.py::test_y``; empty where nothing in the program needs one.
+        Id of the test that holds the guard, ``tests/test_x.py::test_y``; empty where nothing in the
+        program needs one.
     rows : list of dict
         What was measured.
     """

@@ -1,6 +1,8 @@
-"""Problem: the free steel cylinder, whose six rigid motions have frequency zero.  Reference: six exact zeros, and the elastic modes of a dense solution.
+"""Problem: the free steel cylinder, whose six rigid motions have frequency zero.  Reference: six
+exact zeros, and the elastic modes of a dense solution.
 
-Models: textbook shift-invert (ARPACK on the factor of K - sigma M) with sigma from 0 to -1e4 times the first elastic eigenvalue, and `modes`, which takes the rigid motions out.
+Models: textbook shift-invert (ARPACK on the factor of K - sigma M) with sigma from 0 to -1e4 times
+the first elastic eigenvalue, and `modes`, which takes the rigid motions out.
 
     python -m validation.stability.free_body_shift [--quick]
 """
@@ -34,7 +36,9 @@ def whole(body) -> tuple[sp.csc_matrix, sp.csc_matrix]:
 
 
 def shift_invert(k, m, sigma: float, wanted: int, seed: int = 0) -> np.ndarray:
-    """Eigenvalues nearest the shift, unknowns numbered at random; raises RuntimeError where the factorisation or the iteration fails."""
+    """Eigenvalues nearest the shift, unknowns numbered at random; raises RuntimeError where the
+    factorisation or the iteration fails.
+    """
     order = np.random.default_rng(seed).permutation(k.shape[0])
     k, m = k[order][:, order], m[order][:, order]
     lu = spla.splu(
@@ -60,7 +64,9 @@ def shift_invert(k, m, sigma: float, wanted: int, seed: int = 0) -> np.ndarray:
 
 
 def judged(found: np.ndarray, exact: np.ndarray) -> dict:
-    """How many zero modes came out, how far from zero they are, how far the elastic ones are from the exact ones, and how many of those are missing."""
+    """How many zero modes came out, how far from zero they are, how far the elastic ones are from
+    the exact ones, and how many of those are missing.
+    """
     first = exact[6]
     zeros = found[np.abs(found) < 0.01 * first]
     left, missing, worst = list(found[np.abs(found) >= 0.01 * first]), 0, 0.0

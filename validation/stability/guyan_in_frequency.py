@@ -1,7 +1,9 @@
-"""Problem: dynamic stiffness at the lumped point of two pinions, (z, thx), over frequency up to twice the first fixed-interface mode (lumped point held still).
-Reference: the exact dynamic stiffness of the same beam, by a direct solution at each frequency.
+"""Problem: dynamic stiffness at the lumped point of two pinions, (z, thx), over frequency up to
+twice the first fixed-interface mode (lumped point held still). Reference: the exact dynamic
+stiffness of the same beam, by a direct solution at each frequency.
 
-Models: static condensation (stiffness alone), the same with the rigid mass of the body, and Guyan's reduction (mass condensed on the static shapes).
+Models: static condensation (stiffness alone), the same with the rigid mass of the body, and Guyan's
+reduction (mass condensed on the static shapes).
 
     python -m validation.stability.guyan_in_frequency [--quick]
 """
@@ -23,7 +25,9 @@ LEVELS = (0.01, 0.1)
 
 
 class Exact:
-    """Dynamic stiffness of a supported beam at its lumped point, and the modes with that point free and held."""
+    """Dynamic stiffness of a supported beam at its lumped point, and the modes with that point free
+    and held.
+    """
 
     def __init__(self, scene):
         self.body = sg.build(scene, "timoshenko")
@@ -43,7 +47,9 @@ class Exact:
 
 
 def off(got, exact, static) -> float:
-    """Largest difference of two dynamic stiffnesses, in units of the static one (its principal directions brought to 1)."""
+    """Largest difference of two dynamic stiffnesses, in units of the static one (its principal
+    directions brought to 1).
+    """
     root = np.linalg.inv(np.linalg.cholesky(static))
     return float(np.abs(np.linalg.eigvalsh(root @ (got - exact) @ root.T)).max())
 

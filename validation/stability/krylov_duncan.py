@@ -1,6 +1,8 @@
-"""Problem: bending roots of a uniform free-free and clamped-clamped shaft, kL from 5 to 200.  Reference: roots of cos(x) - 1/cosh(x), which overflows nowhere.
+"""Problem: bending roots of a uniform free-free and clamped-clamped shaft, kL from 5 to 200.
+Reference: roots of cos(x) - 1/cosh(x), which overflows nowhere.
 
-Models: the determinant U^2 - T V (clamped; the free one has the same) in plain cosh and sinh, whole and as a product of transfer matrices, and the program's `krylov`.
+Models: the determinant U^2 - T V (clamped; the free one has the same) in plain cosh and sinh, whole
+and as a product of transfer matrices, and the program's `krylov`.
 
     python -m validation.stability.krylov_duncan [--quick]
 """
@@ -49,7 +51,9 @@ def transferred(kl: float) -> float:
 
 
 def root(f, at: float) -> tuple[float, int]:
-    """The root of f found near one, NaN if there is no change of sign, and how many changes a scan sees where there is one."""
+    """The root of f found near one, NaN if there is no change of sign, and how many changes a scan
+    sees where there is one.
+    """
     scan = np.linspace(at - 1.2, at + 1.2, 120)  # an even number: the root itself is not among them
     signs = np.sign([f(x) for x in scan])
     changes = np.flatnonzero(signs[1:] * signs[:-1] < 0)

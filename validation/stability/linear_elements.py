@@ -1,7 +1,9 @@
-"""Problem: bending of a uniform shaft with linear elements, static and free.  Reference: the harmonic solid with the same section ties.
+"""Problem: bending of a uniform shaft with linear elements, static and free.  Reference: the
+harmonic solid with the same section ties.
 
-Models: TET4 and HEX8 against TET10, HEX20 and HEX27 at equal numbers of unknowns; and hexahedra drawn out along the shaft on one mesh of the section, where
-a linear element answers bending with shear it should not have.
+Models: TET4 and HEX8 against TET10, HEX20 and HEX27 at equal numbers of unknowns; and hexahedra
+drawn out along the shaft on one mesh of the section, where a linear element answers bending with
+shear it should not have.
 
     python -m validation.stability.linear_elements [--quick]
 """
@@ -69,7 +71,9 @@ def errors(scene, want, **options) -> dict[str, float]:
 
 
 def at_equal(rows, unknowns: float, name: str) -> float:
-    """Size of an error at a number of unknowns, on the line through the two nearest meshes, log-log."""
+    """Size of an error at a number of unknowns, on the line through the two nearest meshes,
+    log-log.
+    """
     x = np.log([r["unknowns"] for r in rows])
     near = np.sort(np.argsort(np.abs(x - np.log(unknowns)))[:2])
     y = np.log([abs(rows[i][name]) for i in near])
@@ -80,7 +84,9 @@ def at_equal(rows, unknowns: float, name: str) -> float:
 
 
 def drawn_out(scene, want, element: str, aspect: float, around: int) -> dict:
-    """Errors with cells half a radius across and ``aspect`` times as long, or the next shorter that fits."""
+    """Errors with cells half a radius across and ``aspect`` times as long, or the next shorter that
+    fits.
+    """
     size = aspect * RADIUS / 2
     long = scene.bearings[0].y / np.ceil(scene.bearings[0].y / size - 1e-6)
     return {"drawn out": element, "length over width": long / (RADIUS / 2)} | errors(
@@ -89,7 +95,9 @@ def drawn_out(scene, want, element: str, aspect: float, around: int) -> dict:
 
 
 def mass_error(scene, around: int) -> dict:
-    """What trilinear hexahedra lose of the mass: their nodes lie where those of quadratic ones should."""
+    """What trilinear hexahedra lose of the mass: their nodes lie where those of quadratic ones
+    should.
+    """
     mass = sg.build(
         scene, "solid", element="hex8", size=4 * RADIUS, around=around, **PLAIN
     ).mass_matrix()[0, 0]

@@ -1,7 +1,9 @@
-"""Problem: a shaft whose Poisson ratio goes to one half.  Reference: the harmonic solid of order 10 at the same ratio.
+"""Problem: a shaft whose Poisson ratio goes to one half.  Reference: the harmonic solid of order 10
+at the same ratio.
 
-Models: all elements of the 3D solid, the harmonic solid of low order, the Timoshenko beam (its shear coefficient).  A displacement element that cannot keep its volume
-while it bends locks: its error grows with 1 / (1 - 2 nu).
+Models: all elements of the 3D solid, the harmonic solid of low order, the Timoshenko beam (its
+shear coefficient).  A displacement element that cannot keep its volume while it bends locks: its
+error grows with 1 / (1 - 2 nu).
 
     python -m validation.stability.nearly_incompressible [--quick]
 """
@@ -45,7 +47,9 @@ def beam_error(scene, body) -> float:
 
 
 def measure(quick: bool = False) -> Finding:
-    """Error of the bending compliance of every model at every ratio; of first bending for the beam, whose pure bending knows no nu."""
+    """Error of the bending compliance of every model at every ratio; of first bending for the beam,
+    whose pure bending knows no nu.
+    """
     rows = {model: {"model": model} for model in (CHEAP if quick else MODELS)}
     for nu in FEW if quick else RATIOS:
         scene = shaft().with_material(nu=nu)

@@ -1,7 +1,9 @@
-"""Problem: a shaft with a head on two bearings, drawn oddly in one respect at a time: lumped point off its surface, narrow seats, thin discs, thin joints, steep cones, tiny steps,
-bearings almost at one place, seats that touch, overlap or hang over.  Reference: the harmonic solid of the same scene.
+"""Problem: a shaft with a head on two bearings, drawn oddly in one respect at a time: lumped point
+off its surface, narrow seats, thin discs, thin joints, steep cones, tiny steps, bearings almost at
+one place, seats that touch, overlap or hang over.  Reference: the harmonic solid of the same scene.
 
-Model: the Timoshenko beam.  What counts is the gap between the two in excess of the sound scene's, what `check_scene` says, and the residual of the modes.
+Model: the Timoshenko beam.  What counts is the gap between the two in excess of the sound scene's,
+what `check_scene` says, and the residual of the modes.
 
     python -m validation.stability.odd_geometry [--quick]
 """
@@ -30,7 +32,9 @@ def scene(
     matrix=K,
     attachment="average",
 ) -> Scene:
-    """The sound scene with some part replaced; seats are (middle, width), the port is (y, from, to)."""
+    """The sound scene with some part replaced; seats are (middle, width), the port is (y, from,
+    to).
+    """
     segments = segments or (
         Segment.cylinder("head", length=HEAD, diameter=0.12),
         Segment.cylinder("shaft", length=LENGTH - HEAD, diameter=DIAMETER, y0=HEAD),

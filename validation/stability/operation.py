@@ -1,5 +1,6 @@
-"""Problem: the commands on a machine that fails them: too little memory, no back end, no renderer or one that dies, an interrupt, a full disk, a folder that cannot be
-written, a reader that goes away.  Reference: what a command owes its user: an exit code, one sentence, and whole files or none.
+"""Problem: the commands on a machine that fails them: too little memory, no back end, no renderer
+or one that dies, an interrupt, a full disk, a folder that cannot be written, a reader that goes
+away.  Reference: what a command owes its user: an exit code, one sentence, and whole files or none.
 
 Every case is a child process on the overhung pinion.
 
@@ -254,7 +255,8 @@ def run(case: Case, room: Path) -> dict:
             os.close(reader)
         else:
             target = os.open(case.stdout, os.O_WRONLY) if case.stdout else os.dup(sink.fileno())
-        # The log is a file of the parent's making: a limit on file sizes would cut it off too, so errors go through a pipe there.
+        # The log is a file of the parent's making: a limit on file sizes would cut it off too, so
+        # errors go through a pipe there.
         pipe = case.limit is not None and case.limit[0] == resource.RLIMIT_FSIZE
         child = subprocess.Popen(
             [sys.executable, "-m", "solidgear.cli", *words],

@@ -1,7 +1,9 @@
-"""Problem: a shoulder, sharp or with a fillet, under a pure moment.  Reference: a finely graded harmonic solid of high order for each.
+"""Problem: a shoulder, sharp or with a fillet, under a pure moment.  Reference: a finely graded
+harmonic solid of high order for each.
 
-Models: the harmonic solid on uniform meshes (orders of convergence against twice the corner exponent), on graded ones, and the greatest strain on the surface,
-which has no limit at a sharp corner.  The fillet is made of short cones.
+Models: the harmonic solid on uniform meshes (orders of convergence against twice the corner
+exponent), on graded ones, and the greatest strain on the surface, which has no limit at a sharp
+corner.  The fillet is made of short cones.
 
     python -m validation.stability.sharp_or_fillet [--quick]
 """
@@ -61,12 +63,15 @@ def tilt(body, scene) -> float:
 
 
 def greatest_strain(body, scene) -> float:
-    """Greatest axial strain at the middles of surface cells near the shoulder, over M r / E I of the thin shaft."""
+    """Greatest axial strain at the middles of surface cells near the shoulder, over M r / E I of
+    the thin shaft.
+    """
     block, work = body.blocks[0], body.geometry
     here, there = (
         block.ports[2 * body.port_index(n) : 2 * body.port_index(n) + 2] for n in ("port", "clamp")
     )
-    # springs that hold the clamped section carry the moment; their stiffness moves the shaft but does not strain it
+    # springs that hold the clamped section carry the moment; their stiffness moves the shaft but
+    # does not strain it
     held = (block.stiffness + there.T @ there * 1e10).tocsc()
     u = spla.spsolve(held, here[1].toarray().ravel())
     flat, dofs = work.meridian, work.dofs

@@ -1,6 +1,8 @@
-"""Problem: the overhung pinion on its bearings, with a shift that lands on its first bending pair.  Reference: the dense solution.
+"""Problem: the overhung pinion on its bearings, with a shift that lands on its first bending pair.
+Reference: the dense solution.
 
-Models: textbook shift-invert with the shift 1e-2 down to 0 (relative) from the pair, and `modes`, whose shift is negative and so is never on an eigenvalue.
+Models: textbook shift-invert with the shift 1e-2 down to 0 (relative) from the pair, and `modes`,
+whose shift is negative and so is never on an eigenvalue.
 
     python -m validation.stability.shift_on_eigenvalue [--quick]
 """
@@ -42,7 +44,9 @@ def supported(body, supports) -> tuple[sp.csc_matrix, sp.csc_matrix]:
 
 
 def attempt(k, m, sigma, exact, seed) -> dict:
-    """One run of shift-invert, its nearest modes held against the exact ones: how many are missing, the worst error, the residual a user could see."""
+    """One run of shift-invert, its nearest modes held against the exact ones: how many are missing,
+    the worst error, the residual a user could see.
+    """
     try:
         lu = spla.splu((k - sigma * m).tocsc())
         n = k.shape[0]

@@ -1,8 +1,10 @@
-"""Problem: a shaft clamped by its thick part and loaded at its thin end.  Reference: the harmonic solid, tied by section means at both ends as a beam is.
+"""Problem: a shaft clamped by its thick part and loaded at its thin end.  Reference: the harmonic
+solid, tied by section means at both ends as a beam is.
 
-Model: Timoshenko beam.  A pure moment loads a section tie with the stresses of beam theory, so all of the gap in tilt comes from the
-shoulder: stress cannot fill the thick part right behind it.  It is told as a missing length of thin shaft, and as the
-angle of the cone (from the axis) that the thick part may be thought to start with.
+Model: Timoshenko beam.  A pure moment loads a section tie with the stresses of beam theory, so all
+of the gap in tilt comes from the shoulder: stress cannot fill the thick part right behind it.  It
+is told as a missing length of thin shaft, and as the angle of the cone (from the axis) that the
+thick part may be thought to start with.
 
     python -m validation.stability.shoulder_step [--quick]
 """
@@ -23,7 +25,9 @@ LEVELS = (0.01, 0.05)
 
 
 def shaft(ratio: float, reach: float, angle: float | None = None) -> Scene:
-    """Thin shaft, then a thick one held by an immovable section; the thick one may start with a cone."""
+    """Thin shaft, then a thick one held by an immovable section; the thick one may start with a
+    cone.
+    """
     step, end = reach * THIN, reach * THIN + 1.5 * ratio * THIN
     thick = ratio * THIN
     segments = [Segment.cylinder("thin", length=step, diameter=THIN)]
@@ -56,7 +60,9 @@ def compliance(model: str, scene: Scene, **options) -> tuple[float, float]:
 
 
 def cone_angle(extra: float, ratio: float) -> float:
-    """Angle (rad) of the cone whose extra tilt under a unit moment, over a cylinder of the thick radius, is ``extra``."""
+    """Angle (rad) of the cone whose extra tilt under a unit moment, over a cylinder of the thick
+    radius, is ``extra``.
+    """
     a, b = THIN / 2, ratio * THIN / 2
     # int dy / (E I) along the cone less along the cylinder, with dy = dr cot(angle)
     per_cot = ((a**-3 - b**-3) / 3 - (b - a) / b**4) / (STEEL.E * np.pi / 4)

@@ -1,7 +1,9 @@
-"""Problem: a uniform shaft, from slender to a disc, free and on two stiff bearings.  Reference: the harmonic solid, its own change under refinement beside it.
+"""Problem: a uniform shaft, from slender to a disc, free and on two stiff bearings.  Reference: the
+harmonic solid, its own change under refinement beside it.
 
-Models: Euler and Timoshenko beams.  The shaft on bearings has its seats at a tenth of its length from both ends and is loaded in the middle, all tied by
-section means, the fair partner of a beam node.
+Models: Euler and Timoshenko beams.  The shaft on bearings has its seats at a tenth of its length
+from both ends and is loaded in the middle, all tied by section means, the fair partner of a beam
+node.
 
     python -m validation.stability.slenderness [--quick]
 """
@@ -21,7 +23,9 @@ LEVELS = (0.01, 0.05)
 
 
 def shaft(slenderness: float) -> Scene:
-    """The shaft on two bearings a thousand times stiffer than itself; its free body is that of the free shaft."""
+    """The shaft on two bearings a thousand times stiffer than itself; its free body is that of the
+    free shaft.
+    """
     length = slenderness * DIAMETER
     bending = 48 * STEEL.E * np.pi / 64 * DIAMETER**4 / (0.8 * length) ** 3
     shear = STEEL.shear_modulus * np.pi * DIAMETER**2 / length

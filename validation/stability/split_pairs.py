@@ -1,7 +1,9 @@
-"""Problem: the overhung pinion on bearings that are stiffer along z than along x, by 1e-16 to 10 times: its bending pairs split.
-Reference: isotropic bearings give exact pairs; the split to first order is that of the harmonic solid.
+"""Problem: the overhung pinion on bearings that are stiffer along z than along x, by 1e-16 to 10
+times: its bending pairs split. Reference: isotropic bearings give exact pairs; the split to first
+order is that of the harmonic solid.
 
-Models: Timoshenko and harmonic (bending planes apart), hexahedra (an O-grid of fourfold symmetry keeps pairs) and tetrahedra (no symmetry: the mesh splits every pair).
+Models: Timoshenko and harmonic (bending planes apart), hexahedra (an O-grid of fourfold symmetry
+keeps pairs) and tetrahedra (no symmetry: the mesh splits every pair).
 
     python -m validation.stability.split_pairs [--quick]
 """
@@ -34,7 +36,9 @@ ANGLE = np.radians(30.0)
 
 
 def anisotropic(scene, by: float, turn: float = 0.0) -> Supports:
-    """The scene's bearings without their weak couplings, their terms of z times 1 + `by`, then turned about the axis."""
+    """The scene's bearings without their weak couplings, their terms of z times 1 + `by`, then
+    turned about the axis.
+    """
     keep = [(0, 0), (1, 1), (2, 2), (3, 3), (5, 5), (0, 5), (5, 0), (2, 3), (3, 2)]
     base = as_supports(scene)
     k = np.zeros_like(base.stiffness)
@@ -49,7 +53,9 @@ def anisotropic(scene, by: float, turn: float = 0.0) -> Supports:
 
 
 def first_two(body, supports, found) -> tuple[list, float]:
-    """The modes that make up the first bending pair, and the distance of the two frequencies, by Rayleigh's quotient where they were grouped."""
+    """The modes that make up the first bending pair, and the distance of the two frequencies, by
+    Rayleigh's quotient where they were grouped.
+    """
     bending = [m for m in found.modes if m.family == "bending" and m.frequency_hz > 0]
     pair = bending[:1] if bending[0].multiplicity == 2 else bending[:2]
     values = sorted(quotient(body, supports, v) for m in pair for v in m.vectors)
@@ -113,7 +119,8 @@ def measure(quick: bool = False) -> Finding:
                     "split above isotropic": split - base_split,
                 }
             )
-    # The smallest anisotropy whose true split, that of the beam, is larger than what the mesh makes of an isotropic shaft.
+    # The smallest anisotropy whose true split, that of the beam, is larger than what the mesh makes
+    # of an isotropic shaft.
     beam = [
         (r["anisotropy"], r["split of f1"])
         for r in rows

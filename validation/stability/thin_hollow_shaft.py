@@ -1,7 +1,10 @@
-"""Problem: a free tube whose section ovalises (n = 2, 3 waves around) before its axis bends.  Reference: rings in closed form.
+"""Problem: a free tube whose section ovalises (n = 2, 3 waves around) before its axis bends.
+Reference: rings in closed form.
 
-Models: the harmonic solid with its extra harmonics, the full 3D solid on one tube.  In the thin limit the harmonic solid is held against the inextensional ring,
-``w^2 = E' I n^2 (n^2-1)^2 / (rho A R^4 (n^2+1))`` (Love, Theory of Elasticity, sec. 293): E' = E for a narrow hoop, E / (1 - nu^2) for a long tube.
+Models: the harmonic solid with its extra harmonics, the full 3D solid on one tube.  In the thin
+limit the harmonic solid is held against the inextensional ring, ``w^2 = E' I n^2 (n^2-1)^2 / (rho A
+R^4 (n^2+1))`` (Love, Theory of Elasticity, sec. 293): E' = E for a narrow hoop, E / (1 - nu^2) for
+a long tube.
 
     python -m validation.stability.thin_hollow_shaft [--quick]
 """
@@ -90,7 +93,8 @@ def solid_error(wall: float, slenderness: float, around: int) -> dict[str, float
         radial_layers=0,
         size=OUTER * min(1.0, 24 / around),
     )
-    # a thin tube's lowest four pairs: two of two waves (even and odd along the axis), then two of three
+    # a thin tube's lowest four pairs: two of two waves (even and odd along the axis), then two of
+    # three
     found = [m.frequency_hz for m in sg.modes(body, (), n=8).modes if m.frequency_hz > 0]
     want = frequencies(wall, scene.length)
     return {
@@ -149,7 +153,9 @@ def measure(quick: bool = False) -> Finding:
 
 
 def _limit(wall: float) -> dict[str, float]:
-    """Harmonic n = 2, 3 over the rings of closed form, for a long tube and for a hoop three walls long (a shorter one first bends out of its plane)."""
+    """Harmonic n = 2, 3 over the rings of closed form, for a long tube and for a hoop three walls
+    long (a shorter one first bends out of its plane).
+    """
     out = {}
     for words, length, long in (("long tube", 20 * OUTER, True), ("hoop", 3 * wall * OUTER, False)):
         got = frequencies(wall, length)

@@ -1,7 +1,9 @@
-"""Problem: the same shaft loaded in the middle through a point, a ring line, a patch, a rigid ring or a whole section, on ever finer uniform meshes.
+"""Problem: the same shaft loaded in the middle through a point, a ring line, a patch, a rigid ring
+or a whole section, on ever finer uniform meshes.
 
-Reference: closed forms of how the first two diverge.  A line load on a half space sinks in by ``ln(1/h)``: a unit force spread over a ring of radius R gains
-``ln 2 (1 + nu) (2 - nu) / (2 pi^2 R E)`` at each halving (plane strain for its radial part, antiplane shear for its tangential part;
+Reference: closed forms of how the first two diverge.  A line load on a half space sinks in by
+``ln(1/h)``: a unit force spread over a ring of radius R gains ``ln 2 (1 + nu) (2 - nu) / (2 pi^2 R
+E)`` at each halving (plane strain for its radial part, antiplane shear for its tangential part;
 Johnson, Contact Mechanics, sec. 2.2).  A point load sinks in by 1/h (Boussinesq).
 
     python -m validation.stability.ties [--quick]
@@ -66,13 +68,16 @@ def on_a_ring_line(body) -> float:
 
 
 def on_a_point(body) -> float:
-    """Deflection under a unit force on one surface node of a 3D mesh, in the middle and in the plane of the force."""
+    """Deflection under a unit force on one surface node of a 3D mesh, in the middle and in the
+    plane of the force.
+    """
     block, nodes = body.blocks[0], body.geometry.nodes
     middle = np.abs(nodes[1] - LENGTH / 2) < 1e-9
     node = np.flatnonzero(middle)[nodes[2, middle].argmax()]
     load = np.zeros(block.size)
     load[3 * node + 2] = 1.0
-    # both sections are held by springs, and one against turning about the axis, which this load does not do
+    # both sections are held by springs, and one against turning about the axis, which this load
+    # does not do
     held = [6 * body.port_index(n) + c for n in ("one", "two") for c in range(3)] + [
         6 * body.port_index("one") + 4
     ]

@@ -1,4 +1,5 @@
-"""Problem: every shipped scene with one of the usual slips in units: millimetres read as metres and the other way, MPa or GPa read as Pa, g/cm3 or t/mm3 read as kg/m3, N/mm or kN/mm read as N/m.
+"""Problem: every shipped scene with one of the usual slips in units: millimetres read as metres and
+the other way, MPa or GPa read as Pa, g/cm3 or t/mm3 read as kg/m3, N/mm or kN/mm read as N/m.
 Reference: none is needed; a guard must fire on the slip and stay silent on the sound scene.
 
 Models: criteria that cost nothing, each over all scenes and slips.
@@ -14,7 +15,8 @@ import solidgear as sg
 from validation.stability.frame import ROOT, Finding, main
 
 GEOMETRY = ROOT / "geometry"
-#: slip -> factors on lengths, E, density, translational stiffness (its tilt stiffness follows its own unit)
+#: slip -> factors on lengths, E, density, translational stiffness (its tilt stiffness follows its
+#: own unit)
 SLIPS = {
     "sound": {},
     "mm read as m": {"length": 1e3},

@@ -1,10 +1,12 @@
-"""Problem: the 28 natural frequencies of Hua (2010), two pinion mountings of one spiral bevel geared rotor.
+"""Problem: the 28 natural frequencies of Hua (2010), two pinion mountings of one spiral bevel
+geared rotor.
 
 Reference: the printed frequencies.  Models: the 14-DOF lumped pair with (i) the published masses
 (springs of torsion and mesh, which are not published, identified), (ii) pinion mass, pinion
-inertia, mesh stiffness and torsional springs identified, (iii) the mesh stiffness kept within the thesis's plots and its point and
-the axial mass identified instead, (iv) as (ii) with a mass and inertia for each mounting, as the effective-mass method gives.
-The pinion's K_ll is the published one, the gear's is condensed from an Euler beam of the published shaft and bearings.
+inertia, mesh stiffness and torsional springs identified, (iii) the mesh stiffness kept within the
+thesis's plots and its point and the axial mass identified instead, (iv) as (ii) with a mass and
+inertia for each mounting, as the effective-mass method gives. The pinion's K_ll is the published
+one, the gear's is condensed from an Euler beam of the published shaft and bearings.
 
     python -m validation.thesis.pair
 """
@@ -61,8 +63,9 @@ MASSES = ("pinion mass", "pinion bending inertia")
 MASSES_EACH = tuple(f"{name}, {case}" for name in MASSES for case in CASES)
 MESH_POINT = ("mesh radius", "mesh axial, pinion", "mesh axial, gear")
 TORSION_AND_MESH = ("pinion torsion", "gear torsion", "mesh stiffness")
-# Without better knowledge the lumped points are taken at the middle of the face.  The mesh point stays at the height of the
-# axes: moving it along the line of action changes nothing, so of its three coordinates only two can be identified.
+# Without better knowledge the lumped points are taken at the middle of the face.  The mesh point
+# stays at the height of the axes: moving it along the line of action changes nothing, so of its
+# three coordinates only two can be identified.
 DEFAULTS = {"mesh axial, pinion": 0.0, "mesh axial, gear": 0.0}
 
 # The mesh-blind frequencies of the pinion, by their place in the spectrum of model (ii).
@@ -70,7 +73,9 @@ BLIND = {"2-bearing": (620.2, 3145.5), "3-bearing": (1739.2, 4062.8)}
 
 
 def gear_support() -> np.ndarray:
-    """The gear's K_ll, which the source does not print: Euler beam, as its pinion K_ll turned out to be."""
+    """The gear's K_ll, which the source does not print: Euler beam, as its pinion K_ll turned out
+    to be.
+    """
     scene = sg.load(ROOT / "geometry" / "gear_shaft.toml")
     return sg.condense(sg.build(scene, "euler"), scene, "gear").stiffness
 
@@ -91,8 +96,9 @@ def geared_pair(values: dict[str, float], case: str, gear_stiffness: np.ndarray)
         mean_radius(gears["pitch_radius"][0], gears["pitch_angle"][0], gears["face_width"]),
     )
     pinion = MeshVector(n, mesh_point(radius, v["mesh axial, pinion"]))
-    # The radii are in the ratio of the teeth: the published pitch angles, 0.391 and 1.282 rad, do not belong to
-    # 14 and 45 teeth (0.302 and 1.269), so the mean radii that follow from them would miss it.
+    # The radii are in the ratio of the teeth: the published pitch angles, 0.391 and 1.282 rad, do
+    # not belong to 14 and 45 teeth (0.302 and 1.269), so the mean radii that follow from them would
+    # miss it.
     n_gear = to_gear_frame(n)
     gear = MeshVector(n_gear, mesh_point(RATIO * radius, v["mesh axial, gear"], member="gear"))
     mass, bending = (
@@ -119,8 +125,9 @@ def geared_pair(values: dict[str, float], case: str, gear_stiffness: np.ndarray)
 def bending_frequencies(stiffness: np.ndarray, mass: float, inertia: float) -> np.ndarray:
     """Two frequencies, Hz, of a body of revolution on its K_ll in one plane.
 
-    The mesh is one spring, and every one of these frequencies is double (two planes): one mode of each pair does not
-    move the line of action, so these frequencies stay in the spectrum of the pair whatever the mesh is.
+    The mesh is one spring, and every one of these frequencies is double (two planes): one mode of
+    each pair does not move the line of action, so these frequencies stay in the spectrum of the
+    pair whatever the mesh is.
     """
     plane = np.ix_([0, 5], [0, 5])
     return np.sqrt(eigh(stiffness[plane], np.diag([mass, inertia]), eigvals_only=True)) / (
@@ -129,7 +136,9 @@ def bending_frequencies(stiffness: np.ndarray, mass: float, inertia: float) -> n
 
 
 def fit(names, gear_stiffness, starts=8, **bounds):
-    """Identify the named quantities from both mountings at once; published frequencies of zero say nothing."""
+    """Identify the named quantities from both mountings at once; published frequencies of zero say
+    nothing.
+    """
     unknowns = [bounds.get(name.replace(" ", "_"), UNKNOWNS[name]) for name in names]
 
     def frequencies(values):
@@ -141,7 +150,9 @@ def fit(names, gear_stiffness, starts=8, **bounds):
 
 
 def frequency_rows(fits: dict, gear_stiffness: np.ndarray) -> list[dict]:
-    """One row a published frequency, all cases side by side, with the component that dominates in (ii)."""
+    """One row a published frequency, all cases side by side, with the component that dominates in
+    (ii).
+    """
     solved = {
         (name, case): geared_pair(f.values, case, gear_stiffness).solve()
         for name, f in fits.items()
@@ -311,7 +322,9 @@ def mesh_rows() -> list[dict]:
 
 
 def torsion_rows(identified: dict[str, float]) -> list[dict]:
-    """Both exact springs of the rigid-mesh chain, and what the chain becomes with the identified ones."""
+    """Both exact springs of the rigid-mesh chain, and what the chain becomes with the identified
+    ones.
+    """
     inertia, rows = DATA["inertia"], []
     chain = (
         inertia["engine"],

@@ -1,7 +1,9 @@
-"""Problem: the condensed stiffness K_ll of Hua (2010), 2-bearing overhung and 3-bearing straddle pinion.
+"""Problem: the condensed stiffness K_ll of Hua (2010), 2-bearing overhung and 3-bearing straddle
+pinion.
 
-Reference: the published entries, four digits.  Models: Euler, Timoshenko, harmonic solid, from the same two scenes, whose head
-and stub are identified from these entries.  Then the effective masses of the same bodies.
+Reference: the published entries, four digits.  Models: Euler, Timoshenko, harmonic solid, from the
+same two scenes, whose head and stub are identified from these entries.  Then the effective masses
+of the same bodies.
 
     python -m validation.thesis.stiffness
 """
