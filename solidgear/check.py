@@ -24,13 +24,20 @@ VERDICTS = {
     "fault": "will not hold",
 }
 #: what a comparison finds out by itself, or what is no matter of the models
-NOT_IN_COMPARISONS = ("beam_against_solid", "rigid_seats", "memory", "renderer")
+NOT_IN_COMPARISONS = (
+    "beam_against_solid",
+    "lumped_against_solid",
+    "rigid_seats",
+    "memory",
+    "renderer",
+)
 #: what is about other models than a body, or about the machine
 NOT_HEARD_ALONE = (
     "rigid_seats",
     "memory",
     "renderer",
     "effective_mass",
+    "lumped_against_solid",
     "frequency_range",
     "doubtful_data",
 )

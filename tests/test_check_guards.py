@@ -337,6 +337,14 @@ CASES = {
         uniform(5),
     ),
     "second mode": Case("effective_mass", "second one", ("lumped",), "avoid", STRADDLE, OVERHUNG),
+    "lumped pinion": Case(
+        "lumped_against_solid",
+        "first bending of the lumped model is",
+        ("lumped",),
+        "avoid",
+        STRADDLE,
+        sg.load(ROOT / "geometry" / "shaft_hollow.toml"),
+    ),
     "mode elsewhere": Case(
         "effective_mass",
         "% of the energy",
@@ -512,7 +520,8 @@ def shipped():
 def test_shipped_scenes_raise_no_false_alarm(shipped):
     for name, found in shipped.items():
         alarms = {r["guard"] for r in found["records"] if r["level"] != "fact"}
-        right = {"beam_against_solid", "slenderness", "shoulder", "effective_mass", "doubtful_data"}
+        right = {"beam_against_solid", "slenderness", "shoulder", "doubtful_data"}
+        right |= {"effective_mass", "lumped_against_solid"}
         right |= {"gear_shaft": {"disc_head"}, "pinion_overhung": {"frequency_range"}}.get(
             name, set()
         )
@@ -535,7 +544,7 @@ def test_verdicts_are_those_of_a_full_comparison(shipped):
     assert holds == {"cylinder_free", "shaft_hollow"}
     assert shipped["pinion_straddle"]["verdicts"]["lumped"] == {
         "verdict": "will not hold",
-        "guards": ["beam_against_solid", "effective_mass"],
+        "guards": ["beam_against_solid", "effective_mass", "lumped_against_solid"],
     }
 
 

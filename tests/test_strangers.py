@@ -16,7 +16,7 @@ from solidgear.evidence.completeness import completeness
 from solidgear.evidence.levels import HARMONIC, HEXAHEDRA
 from solidgear.evidence.study import SCENE, study
 from solidgear.fidelity.size import estimated_size
-from solidgear.scene import Scene, Segment
+from solidgear.scene import Bearing, Port, Scene, Segment
 
 SCENES = Path(__file__).parent / "scenes"
 COARSE = HARMONIC[1]
@@ -150,3 +150,23 @@ def test_both_solids_meet_the_tolerance_and_each_other(name):
         gap = abs(solid.quantities[q] / harmonic.quantities[q] - 1)
         band = solid.bands[SCENE][q].gci + harmonic.bands[SCENE][q].gci
         assert gap <= band <= 2 * scene.ask.tolerance, q
+
+
+def test_a_lumped_model_is_judged_in_the_plane_it_lumps():
+    """Bearings softer in x than in z: the shaft's first bending lies in x, the lumped model's in z."""
+    soft, stiff = (np.diag([kx, 1e7, 4e7, 0.0, 0.0, 0.0]) for kx in (2e7, 2e7))
+    bearings = [
+        Bearing(name=n, y=y, seat_width=0.02, matrix=k)
+        for n, y, k in (("a", 0.03, soft), ("b", 0.27, stiff))
+    ]
+    rod = Segment.cylinder("rod", length=0.3, diameter=0.03)
+    port = Port(name="gear", y=0.15, lo=0.13, hi=0.17)
+    scene = Scene.from_parts([rod], bearings=bearings, port=port)
+    results = sg.compare(scene, ("lumped", "timoshenko", "harmonic")).results
+    told = results["models"]["harmonic"]["modes"]
+    first, second = [m["frequency_hz"] for m in told if m["family"] == "bending"][:2]
+    assert second > 1.05 * first
+    assert results["lumped"]["harmonic"]["first_bending_hz"] == pytest.approx(second, rel=1e-6)
+    assert results["models"]["lumped"]["valid"], results["models"]["lumped"]["why_not"]
+    checked = check_scene(scene, sg.build(scene, "timoshenko"))["verdicts"]["lumped"]["verdict"]
+    assert checked != "will not hold"

@@ -27,22 +27,22 @@ from solidgear.evidence.converge import gci
 from solidgear.evidence.quantities import COUPLINGS, QUANTITIES, change
 
 #: band over the last change: harmonic solid, graded hexahedra
-LAYERED = {"harmonic": 0.33, "solid": 0.8}
+LAYERED = {"harmonic": 0.25, "solid": 0.8}
 #: the same where seats are rigid: their ends are singular like a crack, and a layer of ratio q
 #: leaves the share q
-RIGID = {"harmonic": 0.42, "solid": 1.3}
+RIGID = {"harmonic": 0.25, "solid": 1.3}
 #: the same after two levels only, without and with rigid seats: the step off the coarsest mesh
 #: tells less where it is small, perhaps by accident, and more where it is large.  Factor of small
 #: steps, the band they reach at most before the factor of large steps takes over, and that factor.
 FIRST = {
-    "harmonic": ((0.15, 0.0, 0.15), (0.42, 0.0, 0.42)),
+    "harmonic": ((0.07, 0.0, 0.07), (0.11, 0.0, 0.11)),
     "solid": ((1.8, 0.009, 0.6), (1.8, 0.036, 0.8)),
 }
 #: safety on the observed reduction of two regular steps, where that is the worse news
 OBSERVED, SLOWEST = 1.5, 0.7
 #: the last change counts for at least this share of the one before it, and a coupling's of its
 #: diagonal entries'
-EARLIER, DIAGONAL = {"harmonic": 0.03, "solid": 0.15}, 0.2
+EARLIER, DIAGONAL = {"harmonic": 0.06, "solid": 0.15}, 0.2
 #: share of the last change by which a layered sequence is still expected to go on
 AHEAD = {"harmonic": 0.12, "solid": 0.4}
 #: safety on what the cells around leave: in thin walls the coarsest mesh, where it is measured,

@@ -32,6 +32,7 @@ GUARDS: dict[str, Callable[[Probe], Notices]] = {
         models.point_beyond_surface,
         models.ovalising,
         models.effective_mass,
+        models.lumped_against_solid,
         models.frequency_range,
         elements.narrow_seat,
         elements.rigid_seats,

@@ -9,6 +9,7 @@ import numpy as np
 from solidgear import verdict
 from solidgear.errors import SolidgearError
 from solidgear.evidence.converge import sharpest_corner
+from solidgear.evidence.study import SCENE
 from solidgear.guards.notice import BEAMS, MODELS, Notice, Notices, beyond
 from solidgear.guards.probe import Probe
 from solidgear.verdict import TIES, gap_verdict
@@ -279,6 +280,42 @@ def effective_mass(probe: Probe) -> Notices:
             ("lumped",),
             f"the static shape of {probe.scene.port.name!r} holds {100 * point.static_share:.0f} % of the energy of first bending, less than {100 * ENERGY:g} %: the mode lives "
             "elsewhere, and a lumped model is good for stiffness only; use the beam",
+        )
+
+
+def lumped_against_solid(probe: Probe) -> Notices:
+    """First bending of the lumped model, of its beam and of lumping together, held against a light
+    harmonic solid.
+    """
+    try:
+        _, found = probe.lumped
+    except SolidgearError:
+        return  # `effective_mass` says so
+    matched, solid = found["mode-matched"], probe.rung("harmonic")
+    lumped = matched if matched.feasible and matched.first else found["guyan"]
+    truth, tolerance = probe.solid_in_the_lumped_plane, probe.scene.ask.tolerance
+    if not truth:
+        return
+    gap = lumped.frequency_hz / truth - 1
+    bands = solid.bands.get(SCENE, {})
+    band = bands["bending 1"].gci if "bending 1" in bands else 0.0
+    kind = gap_verdict(gap, CAUTIOUS * band, tolerance)
+    text = (
+        f"first bending of the lumped model is {100 * abs(gap):.3g} % "
+        f"{'higher' if gap > 0 else 'lower'} than that of a light harmonic solid"
+    )
+    if kind == verdict.BEYOND:
+        yield Notice(
+            "avoid",
+            ("lumped",),
+            f"{text}, more than the {100 * tolerance:g} % asked for; use a beam or a solid",
+        )
+    elif kind == verdict.OPEN:
+        yield Notice(
+            "open",
+            ("lumped",),
+            f"{text}, and the light solid is too coarse to tell whether that is within the "
+            f"{100 * tolerance:g} % asked for; compare tells",
         )
 
 

@@ -7,6 +7,8 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Iterable
 
+import numpy as np
+
 from solidgear.errors import SolidgearError
 from solidgear.lumped.effective_mass import Synthesis, synthesise
 
@@ -25,7 +27,7 @@ def synthesise_all(scene, rungs: dict, tell: Callable[[str], None] = lambda _: N
     Returns
     -------
     dict
-        Per model: ``stiffness`` (2x2 on z, thx), ``motion``, ``first_bending_hz``,
+        Per model: ``stiffness`` (2x2 on z, thx), ``motion``, ``first_bending_hz`` (in that plane),
         ``static_share``, ``seconds`` and ``variants``; or ``why_not`` where there is nothing to
         lump.
     """
@@ -41,9 +43,7 @@ def synthesise_all(scene, rungs: dict, tell: Callable[[str], None] = lambda _: N
         out[model] = {
             "stiffness": point.stiffness.tolist(),
             "motion": point.motion.tolist(),
-            "first_bending_hz": rung.modes.named("bending 1").frequency_hz
-            if rung.modes.named("bending 1")
-            else point.omega / 6.283185307179586,
+            "first_bending_hz": point.omega / (2 * np.pi),
             "static_share": point.static_share,
             "total_mass": point.total_mass,
             "seconds": time.perf_counter() - start,
@@ -128,8 +128,19 @@ def model_record(
             "not judged: there is no first bending of a trusted model to hold it against",
             True,
         )
-    elif abs(own["frequency_hz"] / reference_hz - 1) + band > tolerance:
-        why_not = f"its first bending is {100 * (own['frequency_hz'] / reference_hz - 1):+.1f} % off, more than the {100 * tolerance:g} % asked for"
+    else:
+        gap = own["frequency_hz"] / reference_hz - 1
+        if abs(gap) - band > tolerance:
+            why_not = (
+                f"its first bending is {100 * gap:+.1f} % off, "
+                f"more than the {100 * tolerance:g} % asked for"
+            )
+        elif abs(gap) + band > tolerance:
+            why_not, undecided = (
+                f"not judged: its first bending is {100 * gap:+.1f} % off, and with the band of the "
+                f"reference that may be more or less than the {100 * tolerance:g} % asked for",
+                True,
+            )
     # The price of its source comes first: there is no lumped model without a body to condense.
     seconds = {k: base["seconds"].get(k, 0.0) for k in ("build", "statics", "modes")} | {
         "synthesis": lumped[source]["seconds"]
