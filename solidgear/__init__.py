@@ -20,6 +20,14 @@ __version__ = "0.1.0"
 _WHERE = {
     "load": "solidgear.scene_file",
     "Scene": "solidgear.scene",
+    "Segment": "solidgear.scene",
+    "Bearing": "solidgear.scene",
+    "Port": "solidgear.scene",
+    "Material": "solidgear.scene",
+    "Ask": "solidgear.scene",
+    "STEEL": "solidgear.scene",
+    "Body": "solidgear.body",
+    "Supports": "solidgear.body",
     "build": "solidgear.fidelity",
     "condense": "solidgear.solve.statics",
     "modes": "solidgear.solve.modes",
@@ -28,9 +36,17 @@ _WHERE = {
     "SceneError": "solidgear.errors",
 }
 __all__ = [
+    "STEEL",
+    "Ask",
+    "Bearing",
+    "Body",
+    "Material",
+    "Port",
     "Scene",
     "SceneError",
+    "Segment",
     "SolidgearError",
+    "Supports",
     "__version__",
     "build",
     "compare",
@@ -40,10 +56,11 @@ __all__ = [
 ]
 
 if TYPE_CHECKING:
+    from solidgear.body import Body, Supports
     from solidgear.comparison import compare
     from solidgear.errors import SceneError, SolidgearError
     from solidgear.fidelity import build
-    from solidgear.scene import Scene
+    from solidgear.scene import STEEL, Ask, Bearing, Material, Port, Scene, Segment
     from solidgear.scene_file import load
     from solidgear.solve.modes import modes
     from solidgear.solve.statics import condense
@@ -55,3 +72,7 @@ def __getattr__(name: str):
     value = getattr(importlib.import_module(_WHERE[name]), name)
     globals()[name] = value
     return value
+
+
+def __dir__() -> list[str]:
+    return sorted({*globals(), *__all__})

@@ -1,0 +1,28 @@
+"""What will hold, asked before anything large is solved.
+
+It illustrates how to:
+
+* check a scene,
+* read verdicts and cautions.
+"""
+
+from pathlib import Path
+
+import solidgear as sg
+from solidgear.check import check_scene
+
+GEOMETRY = Path(__file__).parent.parent / "geometry"
+
+
+def main():
+    scene = sg.load(GEOMETRY / "pinion_overhung.toml")
+    found = check_scene(scene, sg.build(scene, "timoshenko"))
+    for model, verdict in found["verdicts"].items():
+        print(f"{model:11s} {verdict['verdict']}")
+    for caution in found["cautions"]:
+        print("-", caution)
+    return {model: verdict["verdict"] for model, verdict in found["verdicts"].items()}
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,95 @@
+"""Every example runs, and shows what it says it shows."""
+
+import importlib.util
+from pathlib import Path
+
+import pytest
+
+import solidgear as sg
+
+FOLDER = Path(__file__).parent.parent / "examples"
+ROOT = FOLDER.parent
+
+
+def run(name):
+    spec = importlib.util.spec_from_file_location(name, FOLDER / f"{name}.py")
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module.main()
+
+
+def test_first_answer():
+    found = run("first_answer")
+    # converged values of the overhung pinion, tests/baselines
+    assert found["C_zz"] == pytest.approx(5.961e-10, rel=1e-3)
+    assert found["bending 1"] == pytest.approx(2758.0, rel=1e-3)
+
+
+def test_shaft_in_python():
+    found = run("shaft_in_python")
+    assert found["euler"] == pytest.approx(found["formula"], rel=1e-6)
+    # shear and rotary inertia cost some 2.6 (d / L)^2 of the frequency, and 3D no more than that
+    assert 1 - found["timoshenko"] / found["euler"] == pytest.approx(2.6 * (1 / 30) ** 2, rel=0.1)
+    assert found["harmonic"] == pytest.approx(found["timoshenko"], rel=1e-5)
+
+
+def test_attachments():
+    found = run("attachments")
+    assert found["section"] < found["average"] < found["rigid"]
+    assert found["rigid"] / found["section"] > 1.1
+
+
+def test_many_bearings():
+    found = run("many_bearings")
+    # a stiffer bearing never makes a softer shaft
+    assert found["falls"] and 0 < found["share"] < 1
+
+
+def test_which_model():
+    assert run("which_model") == {"trust": "harmonic", "cheapest": "harmonic"}
+
+
+def test_ovalising():
+    found = run("ovalising")
+    assert found["harmonic"][0].startswith("ovalising n=2")
+    # the ring formula: 7.746 / 2 pi sqrt(E h^2 / 12 rho (1 - nu^2)) / R^2, a few per cent off at
+    # the free ends
+    steel = sg.STEEL
+    wave = (steel.E * 0.005**2 / (12 * steel.density)) ** 0.5 / 0.0975**2
+    assert found["harmonic"][1] == pytest.approx(2.683 * wave / 6.2832, rel=0.05)
+    assert "ovalising n=2" in found["counted"]
+
+
+def test_how_sure():
+    assert all(0 < band < 2.5e-3 for band in run("how_sure").values())  # a twentieth of 5 %
+
+
+def test_lumped_model():
+    found = run("lumped_model")
+    assert found["thesis"] is None  # no real pair of masses
+    assert abs(found["mode-matched"]) < 1e-12
+    assert found["old"] < -0.5 and 0 < found["guyan"] < 0.02
+
+
+def test_exact_beam():
+    # cubic elements: the error falls with the fourth power of their length over the wave
+    assert run("exact_beam")["worst"] < 1e-6
+
+
+def test_before_solving():
+    found = run("before_solving")
+    assert found["euler"] == found["timoshenko"] == "will not hold" and found["solid"] == "holds"
+
+
+def test_every_example_is_tested_and_short():
+    scripts = {p.stem: p.read_text() for p in FOLDER.glob("*.py")}
+    tests = Path(__file__).read_text()
+    for name, text in scripts.items():
+        assert f"def test_{name}(" in tests, name
+        assert "It illustrates how to:" in text and len(text.splitlines()) < 60, name
+
+
+def test_the_package_shows_its_nouns():
+    assert {"Scene", "Segment", "Bearing", "Port", "Body", "Supports", "compare"} <= set(dir(sg))
+    for name in sg.__all__:
+        assert getattr(sg, name) is not None
