@@ -55,7 +55,8 @@ def deviations(rungs: dict[str, Rung], reference: str) -> list[dict]:
     the modes with the same shape. A gap inside the sum of both bands is "not resolved", which is
     not agreement.
     """
-    base, out = rungs[reference], []
+    base = rungs[reference]
+    out: list[dict] = []
     for model, rung in rungs.items():
         if model == reference:
             continue
@@ -73,9 +74,9 @@ def deviations(rungs: dict[str, Rung], reference: str) -> list[dict]:
 def _deviations(model: str, reference: str, tie: str, rung: Rung, base: Rung) -> Iterable[dict]:
     mine, theirs = rung.ties[tie], base.ties[tie]
     partners = Partners(mine.modes, theirs.modes)
-    for name, (kind, place, unit) in QUANTITIES.items():
+    for name, (_, place, unit) in QUANTITIES.items():
         value, how = mine.quantities.get(name), ""
-        if kind == "frequency":
+        if isinstance(place, str):
             value, how = partners.frequency(place)
         if value is None or name not in theirs.quantities:
             continue

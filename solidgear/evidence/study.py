@@ -54,7 +54,7 @@ class Tied:
         """Relative error that the solver may have left in every quantity."""
         out = {}
         for name, (kind, place, _) in QUANTITIES.items():
-            mode = self.modes.named(place) if kind == "frequency" else None
+            mode = self.modes.named(place) if isinstance(place, str) else None
             out[name] = (
                 getattr(mode, "error", 0.0)
                 if kind == "frequency"
