@@ -109,7 +109,9 @@ def _corrected(supported, vectors, value, needed: int, count: int) -> Refined:
     """Ritz pairs, the first ``count`` of them as nearly rigid modes, with corrections until they
     are right or rounding is all that is left.
     """
-    best, last, fine = None, None, False
+    best: Refined | None = None
+    last: Refined | None = None
+    fine = False
     wrong = np.zeros(len(value), bool)
     correction = forces = np.zeros_like(vectors)
     for step in range(STEPS + 1):
@@ -147,7 +149,9 @@ def _corrected(supported, vectors, value, needed: int, count: int) -> Refined:
             break
         if coarse:
             fine, last, best = True, best, None  # values of the two precisions are not compared
-    return best if best is not None else last
+    result = best if best is not None else last
+    assert result is not None  # every step leaves one of them
+    return result
 
 
 def _modes(supported, stiffness, u, value, correction, forces, below) -> _Pairs:
