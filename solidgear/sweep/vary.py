@@ -152,7 +152,7 @@ def _values(field: str, spec: str) -> tuple[tuple[float, ...], str]:
         if spacing == "log" and not a * b > 0:
             raise SceneError("a logarithmic range needs both ends above zero")
         n = int(parts[2])
-        values = np.linspace(a, b, n) if spacing == "linear" else np.geomspace(a, b, n)
+        values = (np.linspace if spacing == "linear" else np.geomspace)(a, b, n).tolist()
     else:
         raise SceneError('values are "a:b:n", "log:a:b:n" or a list "a,b,c"')
     if field == "position":
