@@ -56,15 +56,15 @@ class Tabulated:
         return out
 
 
-def reference(element, points):
+def reference(element, points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Values (nb, nq) and reference gradients (nb, dim, nq) of a scikit-fem element."""
     count = element.refdom.nnodes * element.nodal_dofs
     count += (element.refdom.nedges or 0) * element.edge_dofs if element.refdom.dim() == 3 else 0
     count += element.refdom.nfacets * element.facet_dofs + element.interior_dofs
-    value, gradient = zip(*(element.lbasis(points, i) for i in range(count)))
+    values, gradients = zip(*(element.lbasis(points, i) for i in range(count)))
     shape = points.shape[1:]
-    value = np.array([np.broadcast_to(v, shape) for v in value])
-    gradient = np.array([[np.broadcast_to(g, shape) for g in grad] for grad in gradient])
+    value = np.array([np.broadcast_to(v, shape) for v in values])
+    gradient = np.array([[np.broadcast_to(g, shape) for g in grad] for grad in gradients])
     return value, gradient
 
 
@@ -105,7 +105,7 @@ def tabulate(geometry, nodes, element, points) -> Tabulated:
     return Tabulation(geometry, element, points).on(nodes)
 
 
-def inverted(jac: np.ndarray):
+def inverted(jac: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Inverses, and determinants (...), of (d, d, ...) small matrices, d = 2 or 3, by cofactors."""
     d = len(jac)
     if d == 2:
@@ -123,7 +123,7 @@ def inverted(jac: np.ndarray):
     return out, det
 
 
-def straight(element, nodes: np.ndarray):
+def straight(element, nodes: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Elements whose nodes are an affine image of the reference nodes, and the constant Jacobians.
 
     Parameters
@@ -233,7 +233,7 @@ class Sum:
         ).tocsr()
 
 
-def batches(elements: np.ndarray, bytes_each: float):
+def batches(elements: np.ndarray, bytes_each: float) -> list[np.ndarray]:
     """Cut a list of elements into pieces whose work arrays stay within ``BATCH_BYTES``."""
     step = max(1, int(BATCH_BYTES / bytes_each))
     return [elements[i : i + step] for i in range(0, len(elements), step)]

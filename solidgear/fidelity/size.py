@@ -13,11 +13,13 @@ memory, each in a process of its own.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from types import SimpleNamespace
 
 import numpy as np
 
+from solidgear.body import Body
 from solidgear.errors import SolidgearError
 from solidgear.fidelity.options import checked
 from solidgear.memory import available_mb
@@ -120,12 +122,19 @@ def refuse_too_large(scene, model: str, options: dict | None = None) -> Size:
 def _defaults(model: str) -> dict:
     from inspect import signature
 
+    builder: Callable[..., Body]
     if model in ("euler", "timoshenko"):
-        from solidgear.fidelity.beam import beam as builder
+        from solidgear.fidelity.beam import beam
+
+        builder = beam
     elif model == "harmonic":
-        from solidgear.fidelity.harmonic import harmonic as builder
+        from solidgear.fidelity.harmonic import harmonic
+
+        builder = harmonic
     else:
-        from solidgear.fidelity.solid import solid as builder
+        from solidgear.fidelity.solid import solid
+
+        builder = solid
     found = {
         name: p.default
         for name, p in signature(builder).parameters.items()

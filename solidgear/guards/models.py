@@ -266,12 +266,13 @@ def effective_mass(probe: Probe) -> Notices:
         )
     matched = found["mode-matched"]
     if not (matched.feasible and matched.first):
-        error = found["guyan"].frequency_error
+        off = found["guyan"].frequency_error
+        assert off is not None  # its mass is always positive definite
         why = "holds the mode as its second one" if matched.feasible else "has a negative entry"
         yield Notice(
-            beyond(error, probe.scene.ask.tolerance),
+            beyond(off, probe.scene.ask.tolerance),
             ("lumped",),
-            f"the mode-matched pair of masses {why}: Guyan's stands in, with first bending {100 * error:+.3g} % off its beam; use the beam",
+            f"the mode-matched pair of masses {why}: Guyan's stands in, with first bending {100 * off:+.3g} % off its beam; use the beam",
         )
     if point.static_share < ENERGY:
         yield Notice(

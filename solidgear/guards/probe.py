@@ -181,7 +181,7 @@ class Probe:
             spla.eigsh(
                 b.stiffness.tocsc(),
                 1,
-                b.mass.tocsc(),
+                b.mass.tocsr().tocsc(),
                 sigma=0.0,
                 v0=np.ones(b.size),
                 return_eigenvectors=False,

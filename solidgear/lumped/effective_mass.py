@@ -279,7 +279,7 @@ def _thesis(point: LumpedPoint, receptance) -> Synthesis:
     a, b, c = k[0, 0] * z * z / w2, k[1, 1] * phi * phi / w2, k[0, 1] * z * phi / w2
     discriminant = (a + b - 1) ** 2 - 4 * c * c
     share = point.static_share
-    numbers = {"discriminant": float(discriminant), "static_share": share}
+    numbers: dict[str, object] = {"discriminant": float(discriminant), "static_share": share}
     half = (a - b + 1) / 2
     root = np.sqrt(complex(discriminant)) / 2
     numbers["mass_roots"] = [

@@ -29,7 +29,7 @@ def synthesise_all(scene, rungs: dict, tell: Callable[[str], None] = lambda _: N
         ``static_share``, ``seconds`` and ``variants``; or ``why_not`` where there is nothing to
         lump.
     """
-    out = {}
+    out: dict[str, dict] = {}
     for model, rung in rungs.items():
         start = time.perf_counter()
         try:

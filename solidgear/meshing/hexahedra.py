@@ -94,13 +94,13 @@ def hexahedra(scene, plan: Layout, around: int = 8) -> tuple[MeshHex2, np.ndarra
                 )
             )
             owner.append(np.full(around, seg))
-    nodes, keys = np.concatenate(nodes), np.concatenate(keys)
-    _, where, t = np.unique(keys, return_index=True, return_inverse=True)
-    points = nodes[:, :8].reshape(-1, 3)[where]
-    straight = MeshHex1(points.T.copy(), t.reshape(keys.shape).T.copy().astype(np.int32))
+    place, key = np.concatenate(nodes), np.concatenate(keys)
+    _, where, t = np.unique(key, return_index=True, return_inverse=True)
+    points = place[:, :8].reshape(-1, 3)[where]
+    straight = MeshHex1(points.T.copy(), t.reshape(key.shape).T.copy().astype(np.int32))
     mesh = MeshHex2.from_mesh(straight)
     located = mesh.doflocs.copy()
-    located[:, mesh.dofs.element_dofs.T] = np.moveaxis(nodes, -1, 0)
+    located[:, mesh.dofs.element_dofs.T] = np.moveaxis(place, -1, 0)
     return MeshHex2(located, mesh.t), np.concatenate(owner)
 
 

@@ -38,7 +38,8 @@ def meridian(scene, plan: Layout) -> Meridian:
     """Mesh the meridian of a scene along a layout."""
     points: list[tuple[float, float]] = []
     index: dict[tuple[int, int], int] = {}
-    cells, owner, outer, inner = [], [], [], []
+    cells: list[tuple[int, int, int, int]] = []
+    owner, outer, inner = [], [], []
     for row, seg in enumerate(plan.segment):
         segment = scene.segments[seg]
         rings = [
