@@ -6,11 +6,14 @@ import functools
 import sys
 from enum import StrEnum
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from solidgear.errors import SolidgearError, show
+
+if TYPE_CHECKING:
+    from rich.status import Status
 
 app = typer.Typer(
     no_args_is_help=True,
@@ -111,7 +114,7 @@ class Progress:
 
         self.console = Console(stderr=True, highlight=False)
         self.quiet, self.start, self.clock = quiet, time.perf_counter(), time.perf_counter
-        self.status = None
+        self.status: Status | None = None
 
     def __enter__(self):
         if not self.quiet and self.console.is_terminal:
