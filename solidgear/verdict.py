@@ -9,11 +9,15 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 from solidgear.evidence.partners import Partners
 from solidgear.evidence.quantities import JUDGED, QUANTITIES, change
 from solidgear.evidence.study import SCENE, SECTION, Rung
 from solidgear.fidelity import FIDELITIES
+
+if TYPE_CHECKING:
+    from solidgear.scene import Scene
 
 WITHIN, OPEN, BEYOND = "within", "open", "beyond"
 NAMES = {
@@ -126,7 +130,7 @@ def _reason(rung: Rung) -> str:
 
 
 def judge(
-    scene, rungs: dict[str, Rung], gaps: list[dict], notices: Iterable[dict] = ()
+    scene: Scene, rungs: dict[str, Rung], gaps: list[dict], notices: Iterable[dict] = ()
 ) -> tuple[dict, dict[str, Judgement]]:
     """Validity of every rung and the verdict in sentences.
 

@@ -25,6 +25,7 @@ from solidgear.meshing.meridian import meridian
 
 if TYPE_CHECKING:
     from solidgear.fidelity.harmonic import _Work
+    from solidgear.shaft import Shaft
 
 #: What carries a disc is no clamp: part of the stiffness of a clamped strip that it gets.  On 72
 #: random shafts the closed form reached 1.27 of the truth with a clamp (flanges on hollow shafts),
@@ -47,7 +48,7 @@ class Families:
         The same.
     """
 
-    def __init__(self, scene, build: Callable[[int], Block]):
+    def __init__(self, scene: Shaft, build: Callable[[int], Block]):
         self._scene, self.block = scene, build
         self._parts = _parts(scene.segments)
         self._found: dict[int, float] = {}

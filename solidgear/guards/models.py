@@ -4,6 +4,8 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import numpy as np
 
 from solidgear import verdict
@@ -12,6 +14,9 @@ from solidgear.evidence.converge import sharpest_corner
 from solidgear.guards.notice import BEAMS, MODELS, Notice, Notices, beyond
 from solidgear.guards.probe import Probe
 from solidgear.verdict import TIES, gap_verdict
+
+if TYPE_CHECKING:
+    from solidgear.scene import Scene
 
 #: bands of a light solid rest on two meshes only
 CAUTIOUS = 2.0
@@ -217,7 +222,7 @@ DEFAULT_AROUND = 12
 THIN, CELLS_THIN, CELLS_THICK, MOST_AROUND = 0.25, 12, 6, 48
 
 
-def cells_around(scene, waves: int) -> int:
+def cells_around(scene: Scene, waves: int) -> int:
     """Cells around that hexahedra need for a shape of so many waves."""
     wall = min(
         min(s.outer0 - s.inner0, s.outer1 - s.inner1) / max(s.outer0, s.outer1)

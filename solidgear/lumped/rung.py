@@ -6,15 +6,19 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Iterable
+from typing import TYPE_CHECKING
 
 from solidgear.errors import SolidgearError
 from solidgear.lumped.effective_mass import Synthesis, synthesise
+
+if TYPE_CHECKING:
+    from solidgear.scene import Scene
 
 #: bodies the lumped rung may rest on, the usual one of a lumped-parameter program first
 SOURCES = ("timoshenko", "euler", "harmonic", "solid")
 
 
-def synthesise_all(scene, rungs: dict, tell: Callable[[str], None] = lambda _: None) -> dict:
+def synthesise_all(scene: Scene, rungs: dict, tell: Callable[[str], None] = lambda _: None) -> dict:
     """Lumped models of every solved body, as plain data.
 
     Parameters

@@ -8,6 +8,8 @@ error of volume and inertia then cancels (8 cells around: 8e-4 in area without i
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import numpy as np
 from skfem import MeshHex1, MeshHex2
 from skfem.element import ElementHex2
@@ -15,11 +17,14 @@ from skfem.element import ElementHex2
 from solidgear.meshing.layout import Layout
 from solidgear.meshing.quality import MeshError
 
+if TYPE_CHECKING:
+    from solidgear.shaft import Shaft
+
 # Between 0 (circular core: 180 degree corners) and 1 (square core: thin first ring).
 SQUARENESS = 0.5
 
 
-def hexahedra(scene, plan: Layout, around: int = 8) -> tuple[MeshHex2, np.ndarray]:
+def hexahedra(scene: Shaft, plan: Layout, around: int = 8) -> tuple[MeshHex2, np.ndarray]:
     """Mesh a scene with curved 27-node hexahedra.
 
     Parameters

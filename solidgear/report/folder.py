@@ -34,7 +34,7 @@ HALF = re.compile(
 _held: set[Path] = set()
 
 
-def prepare(out) -> Path:
+def prepare(out: str | os.PathLike) -> Path:
     """Make sure a folder can be written, before an hour is spent on what goes into it.
 
     Raises
@@ -56,7 +56,7 @@ def prepare(out) -> Path:
 
 
 @contextmanager
-def held(out) -> Iterator[Path]:
+def held(out: str | os.PathLike) -> Iterator[Path]:
     """A folder that can be written and that no other process takes meanwhile.
 
     Raises

@@ -12,6 +12,8 @@ from collections.abc import Callable
 
 import numpy as np
 
+from solidgear.body import Body
+
 MOST = 16  # waves around that are told apart, where the mesh has the nodes for them
 BINS = 512
 
@@ -110,7 +112,7 @@ def _divided(key, own, least: int):
     return done
 
 
-def of_body(body) -> tuple[Circumference, Callable[[np.ndarray], np.ndarray]] | None:
+def of_body(body: Body) -> tuple[Circumference, Callable[[np.ndarray], np.ndarray]] | None:
     """The fit for a body of one 3D block that knows its mesh, and a function from its vectors to
     nodal displacements; else None.
     """

@@ -11,6 +11,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from solidgear.solve.relief import Linear
+
 
 @dataclass(frozen=True)
 class Found:
@@ -34,8 +36,8 @@ class Found:
 
 
 def block_lanczos(
-    operator,
-    mass,
+    operator: Linear,
+    mass: Linear,
     start: np.ndarray,
     wanted: int,
     *,

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import time
 from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -29,6 +30,9 @@ from solidgear.solve.parts import (
 from solidgear.solve.statics import SHIFT, factors
 from solidgear.solve.supported import decoupled
 from solidgear.threads import pinned
+
+if TYPE_CHECKING:
+    from solidgear.body import Holding
 
 STATIONS = 13
 #: Relative error of a frequency above which it is not told.
@@ -125,7 +129,7 @@ class ModeSet:
 @pinned
 def modes(
     body: Body,
-    supports=(),
+    supports: Holding = (),
     n: int = 10,
     *,
     max_frequency: float | None = None,

@@ -19,7 +19,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.sparse.csgraph import connected_components
 
-from solidgear.body import Body, Supports
+from solidgear.body import Block, Body, Supports
 from solidgear.frames import rotation
 from solidgear.solve.circumference import Circumference, of_body
 
@@ -284,14 +284,14 @@ class Names:
         return groups, torn
 
 
-def waves_of(block) -> int:
+def waves_of(block: Block) -> int:
     """Waves around the axis of the motions of a block."""
     if block.name.startswith("ovalising_"):
         return int(block.name.removeprefix("ovalising_"))
     return 1 if set(block.components) & set(FAMILIES["bending"]) else 0
 
 
-def family_of(block) -> str:
+def family_of(block: Block) -> str:
     """Family of the motions of a block, ``all`` for one that holds every motion."""
     if len(block.components) == 6:
         return "all"

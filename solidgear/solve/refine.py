@@ -16,7 +16,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from solidgear.solve.supported import ROUNDED
+from solidgear.solve.supported import ROUNDED, Supported
 
 #: Modes with no more than this part of their mass in elastic motion are nearly rigid ones on soft
 #: springs.
@@ -74,7 +74,7 @@ class _Pairs:
     rounding: np.ndarray
 
 
-def refine(supported, vectors: np.ndarray, value: np.ndarray, needed: int) -> Refined:
+def refine(supported: Supported, vectors: np.ndarray, value: np.ndarray, needed: int) -> Refined:
     """Ritz pairs of a supported body in a space that is close to invariant, corrected until they
     are right.
 
