@@ -47,7 +47,8 @@ def stiffness_matrix(entries: Mapping[str, Any]) -> np.ndarray:
     SceneError
         Unknown name, or an entry that is not a quantity of its dimension.
     """
-    K, problems = np.zeros((6, 6)), []
+    K = np.zeros((6, 6))
+    problems: list[SceneError] = []
     for name, value in entries.items():
         if name not in STIFFNESS_NAMES:
             near = nearest(name, STIFFNESS_NAMES) if len(problems) < TOLD else ""
@@ -102,9 +103,9 @@ def checked_matrix(value: Any) -> tuple[tuple[float, ...], ...]:
     size = np.sqrt(np.abs(np.diag(K)))
     bound = 1e-9 * np.maximum(np.maximum(np.abs(K), np.abs(K.T)), np.outer(size, size))
     if np.any(np.abs(K - K.T) > bound):
-        i, j = np.unravel_index(np.argmax(np.abs(K - K.T) - bound), (6, 6))
+        a, b = np.unravel_index(np.argmax(np.abs(K - K.T) - bound), (6, 6))
         raise SceneError(
-            f"the stiffness is not symmetric: ({DOF_NAMES[i]}, {DOF_NAMES[j]}) is {K[i, j]:.6g} and ({DOF_NAMES[j]}, {DOF_NAMES[i]}) is {K[j, i]:.6g}"
+            f"the stiffness is not symmetric: ({DOF_NAMES[a]}, {DOF_NAMES[b]}) is {K[a, b]:.6g} and ({DOF_NAMES[b]}, {DOF_NAMES[a]}) is {K[b, a]:.6g}"
         )
     K = (K + K.T) / 2
     # a matrix turned by a rotation couples what has no stiffness of its own by rounding only
@@ -112,9 +113,10 @@ def checked_matrix(value: Any) -> tuple[tuple[float, ...], ...]:
     K[(bare[:, None] | bare) & (np.abs(K) <= 1e-14 * np.abs(K).max())] = 0.0
     # unit-free: a row with no stiffness of its own is scaled so that its largest coupling becomes
     # 1, hence indefinite
-    for i in np.flatnonzero(size == 0):
-        coupling = np.abs(K[i]) / np.where(size > 0, size, np.sqrt(np.abs(K[i])) + (K[i] == 0))
-        size[i] = coupling.max() or 1.0
+    for own in np.flatnonzero(size == 0):
+        coupled = np.abs(K[own])
+        coupling = coupled / np.where(size > 0, size, np.sqrt(coupled) + (coupled == 0))
+        size[own] = coupling.max() or 1.0
     eigenvalue, vector = np.linalg.eigh(K / np.outer(size, size))
     if eigenvalue[0] < -1e-9:
         a, b = sorted(np.argsort(-np.abs(vector[:, 0]), kind="stable")[:2])

@@ -7,10 +7,10 @@ Bearings are never part of a body: they are :class:`Supports` that act on ports.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import Any
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 import scipy.sparse as sp
@@ -19,6 +19,12 @@ from solidgear.errors import SolidgearError
 from solidgear.frames import DOF_NAMES, shift
 from solidgear.mass import ScalarMass
 from solidgear.sections import Sections, from_points, signed
+
+if TYPE_CHECKING:
+    from solidgear.scene import Bearing, Scene
+
+    #: what :func:`as_supports` takes
+    Holding: TypeAlias = "Supports | Scene | Iterable[Bearing]"
 
 #: Index of the block of n waves around the axis is this plus n, where it is not among the blocks of
 #: a body.
@@ -43,7 +49,7 @@ class Port:
     attachment: str
 
 
-def component_rows(ports, components) -> np.ndarray:
+def component_rows(ports: Iterable[int], components: Sequence[int]) -> np.ndarray:
     """Places of some components of some ports (indices) in a vector of six per port."""
     return np.array([6 * p + c for p in ports for c in components], int)
 
@@ -335,7 +341,7 @@ class Supports:
         return size[:, None] * null
 
 
-def as_supports(source) -> Supports:
+def as_supports(source: Holding) -> Supports:
     """Supports from a scene (housing included), from bearings (no housing), or as they are.
 
     A housing spring sits between ground and the axially rigid ring that carries all outer races:

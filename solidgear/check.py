@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -12,6 +13,9 @@ from solidgear.evidence.study import Rung
 from solidgear.guards import GUARDS, LEVELS, MODELS, Notice, Probe
 from solidgear.meshing.quality import mass_properties
 from solidgear.threads import pinned
+
+if TYPE_CHECKING:
+    from solidgear.scene import Scene
 
 # Closure of mass and inertia that each discretisation owes to the closed form.
 MASS_TOLERANCE = {"euler": 1e-9, "timoshenko": 1e-9, "harmonic": 1e-9, "solid": 1e-3}
@@ -46,7 +50,7 @@ OF_A_MESH = ("linear_elements", "nearly_incompressible", "uniform_at_shoulder")
 
 
 @pinned
-def check_scene(scene, body: Body) -> dict:
+def check_scene(scene: Scene, body: Body) -> dict:
     """Facts, cautions and faults of a scene, in sentences, and what each model is worth for it.
 
     Parameters
@@ -85,7 +89,9 @@ def check_scene(scene, body: Body) -> dict:
     }
 
 
-def notices(scene, rungs: dict[str, Rung], names: tuple[str, ...] | None = None) -> list[dict]:
+def notices(
+    scene: Scene, rungs: dict[str, Rung], names: tuple[str, ...] | None = None
+) -> list[dict]:
     """What the guards have to say of models that are solved, facts left out.
 
     Parameters
@@ -122,7 +128,7 @@ def notices(scene, rungs: dict[str, Rung], names: tuple[str, ...] | None = None)
     return list(out.values())
 
 
-def cautions(scene, body: Body, fidelity: str | None = None) -> list[str]:
+def cautions(scene: Scene, body: Body, fidelity: str | None = None) -> list[str]:
     """What the guards have to say before the numbers of one model are used, in sentences; facts and
     what concerns other models left out.
 
@@ -173,7 +179,7 @@ def _verdict(model: str, records: list[dict]) -> dict:
     }
 
 
-def _of_the_body(scene, body: Body) -> Iterator[Notice]:
+def _of_the_body(scene: Scene, body: Body) -> Iterator[Notice]:
     """Mass and inertia against the closed form, and no stiffness against rigid motions."""
     exact, matrix, own = mass_properties(scene.segments), body.mass_matrix(), (body.fidelity,)
     yield Notice(

@@ -4,8 +4,11 @@ from __future__ import annotations
 
 import functools
 import logging
+import os
 from collections.abc import Callable
 from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
 
 from solidgear.errors import SolidgearError
 from solidgear.evidence.causes import attachment_causes, beam_causes, shoulder_cause
@@ -17,6 +20,9 @@ from solidgear.lumped.rung import synthesise_all
 from solidgear.memory import one_run
 from solidgear.meter import Meter
 from solidgear.record import record
+
+if TYPE_CHECKING:
+    from solidgear.scene import Scene
 
 log = logging.getLogger(__name__)
 Progress = Callable[[str], None]
@@ -38,11 +44,13 @@ class Comparison:
         The bodies and mode shapes behind it.
     """
 
-    scene: object
+    scene: Scene
     results: dict
     rungs: dict[str, Rung]
 
-    def write_report(self, out, *, renders: bool = True, progress: Progress = lambda _: None):
+    def write_report(
+        self, out: str | os.PathLike, *, renders: bool = True, progress: Progress = lambda _: None
+    ) -> Path:
         """Write results.json, report.html, mode_*.png and modes_*.vtu into a folder.
 
         Returns
@@ -61,7 +69,7 @@ class Comparison:
 
 
 def compare(
-    scene,
+    scene: Scene,
     models: tuple[str, ...] = MODELS,
     *,
     settings: dict[str, dict] | None = None,
@@ -128,7 +136,7 @@ class _Found:
     guards: list[dict]
 
 
-def _run(scene, models, options, found: _Found, progress: Progress) -> None:
+def _run(scene: Scene, models, options, found: _Found, progress: Progress) -> None:
     from solidgear.check import notices
 
     for model in (m for m in FIDELITIES if m in models):
@@ -163,7 +171,7 @@ def _run(scene, models, options, found: _Found, progress: Progress) -> None:
     found.causes = _causes(scene, found.rungs, options, progress)
 
 
-def _circumference(scene, model: str, options: dict, found: _Found) -> dict:
+def _circumference(scene: Scene, model: str, options: dict, found: _Found) -> dict:
     """Options of a 3D solid with as many cells around as the modes need that the harmonic solid
     found in the range asked for.
     """
@@ -194,7 +202,7 @@ def check_models(models: tuple[str, ...]) -> None:
         )
 
 
-def _causes(scene, rungs: dict[str, Rung], options, progress: Progress) -> list:
+def _causes(scene: Scene, rungs: dict[str, Rung], options, progress: Progress) -> list:
     out = []
     progress("causes: switching assumptions one at a time")
     try:

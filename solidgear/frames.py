@@ -7,18 +7,21 @@ by ``th x r``.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
+from numpy.typing import ArrayLike
 
 DOF_NAMES = ("x", "y", "z", "thx", "thy", "thz")
 
 
-def cross_matrix(r) -> np.ndarray:
+def cross_matrix(r: np.ndarray | Sequence[float]) -> np.ndarray:
     """Matrix ``[r]`` with ``[r] v = r x v``, shape (3, 3)."""
     x, y, z = r
     return np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
 
 
-def shift(offset) -> np.ndarray:
+def shift(offset: ArrayLike) -> np.ndarray:
     """Adjoint that carries a motion to another reference point.
 
     Parameters
@@ -37,7 +40,7 @@ def shift(offset) -> np.ndarray:
     return out
 
 
-def move_stiffness(stiffness, offset) -> np.ndarray:
+def move_stiffness(stiffness: ArrayLike, offset: ArrayLike) -> np.ndarray:
     """6x6 stiffness seen from a reference point displaced by ``offset`` (m).
 
     The two points are joined rigidly; ``K_new = T^-T K_old T^-1`` with
@@ -47,7 +50,7 @@ def move_stiffness(stiffness, offset) -> np.ndarray:
     return back.T @ np.asarray(stiffness, float) @ back
 
 
-def move_compliance(compliance, offset) -> np.ndarray:
+def move_compliance(compliance: ArrayLike, offset: ArrayLike) -> np.ndarray:
     """6x6 compliance seen from a point displaced by ``offset`` (m): ``T C T'``."""
     forth = shift(offset)
     return forth @ np.asarray(compliance, float) @ forth.T

@@ -23,7 +23,7 @@ class ScalarMass:
     __array_ufunc__ = None  # numpy leaves operators to us
     __array_priority__ = 20.0  # and so does scipy, whose matrices have 10.1
 
-    def __init__(self, scalar, components: int):
+    def __init__(self, scalar: sp.csr_matrix, components: int):
         self.scalar, self.components = scalar, components
 
     @property
@@ -37,7 +37,7 @@ class ScalarMass:
         return self.scalar.nnz * self.components
 
     @property
-    def dtype(self):
+    def dtype(self) -> np.dtype:
         return self.scalar.dtype
 
     @property

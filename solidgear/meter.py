@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import threading
 import time
+from collections.abc import Iterator
 from contextlib import contextmanager
 
 from solidgear.memory import resident_mb
@@ -34,7 +35,7 @@ class Meter:
             self.expected_mb = max(self.expected_mb or 0.0, now + more_mb)
 
     @contextmanager
-    def stage(self, name: str):
+    def stage(self, name: str) -> Iterator[None]:
         """Time a block of code under ``name``; stages of one name add up."""
         stop = threading.Event()
 

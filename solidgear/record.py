@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import asdict
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -16,9 +17,12 @@ from solidgear.frames import DOF_NAMES
 from solidgear.lumped.rung import model_record as lumped_record
 from solidgear.verdict import NAMES, Judgement, deviations, judge, percent, trusted
 
+if TYPE_CHECKING:
+    from solidgear.scene import Scene
+
 
 def record(
-    scene,
+    scene: Scene,
     rungs: dict[str, Rung],
     failed: dict[str, str],
     causes: list,

@@ -183,7 +183,7 @@ class Segment(Model):
         outer0, outer1, inner = (
             quantity(d, "length") / 2 for d in (start_diameter, end_diameter, bore)
         )
-        given = {} if material is None else {"material": material}
+        given: dict[str, Any] = {} if material is None else {"material": material}
         return cls(
             name=name,
             y0=y0,
@@ -380,7 +380,7 @@ class Scene(Model):
         if port is None and segments:
             longest = max(segments, key=lambda s: s.length)
             port = Port(y=(longest.y0 + longest.y1) / 2, lo=longest.y0, hi=longest.y1)
-        given = {} if port is None else {"port": port}
+        given: dict[str, Any] = {} if port is None else {"port": port}
         return cls(segments=segments, material=material, bearings=tuple(bearings), **given, **rest)
 
     @property

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import math
 import os
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
@@ -240,7 +240,7 @@ class _SceneTable(Model):
 class _SoundTables(_SceneTable):
     """What is left of a file without the tables that cannot be used."""
 
-    port: _PortTable | None = None
+    port: _PortTable | None = None  # type: ignore[assignment]  # it may be what is missing
 
 
 def _drop_tag(loc: tuple) -> tuple:
@@ -318,7 +318,8 @@ class _FileOrder:
 
     def of(self, path: tuple) -> list[int]:
         """Places of the keys of a path in their tables, the last one for a key that is missing."""
-        out, here = [], self.raw
+        out: list[int] = []
+        here = self.raw
         for key in path:
             if id(here) not in self.places:
                 keys = (
@@ -522,15 +523,18 @@ def _bearing(item: _BearingTable, index: int, attachment: str, datums: dict[str,
 
 def _port(
     item: _PortTable,
-    attachment: str,
+    attachment: Attachment,
     datums: dict[str, float],
     surface: dict[str, tuple[float, float]],
 ) -> Port | None:
     """The port, or None where it names what is not there."""
     datum = item.at or item.from_ or "start"
-    if datum not in datums or not (item.span or item.attach_to in surface):
+    span: Sequence[float] | None = item.span
+    if span is None and item.attach_to is not None:
+        span = surface.get(item.attach_to)
+    if datum not in datums or span is None:
         return None
-    lo, hi = item.span or surface[item.attach_to]
+    lo, hi = span
     return Port(
         name=item.name,
         y=datums[datum] + (item.position or 0.0),
@@ -540,7 +544,7 @@ def _port(
     )
 
 
-def _file_path(path: tuple, table: _SceneTable, owner: list[int]) -> tuple:
+def _file_path(path: tuple, table: _SceneTable, owner: Sequence[int]) -> tuple:
     """The key in the file that an entry of the resolved scene came from."""
     match path:
         case ("segments", index, key):

@@ -150,7 +150,9 @@ def station_problems(
     if len(bearings) > MOST_BEARINGS:
         yield SceneError(too_many("bearings", len(bearings), MOST_BEARINGS), path=("bearings",))
         return
-    places = [(("bearings", i, "seat_width"), bearing, "seat") for i, bearing in bearings.items()]
+    places: list[tuple[tuple[str | int, ...], Port | Bearing, str]] = [
+        (("bearings", i, "seat_width"), bearing, "seat") for i, bearing in bearings.items()
+    ]
     if port is not None:
         if not -TOUCH <= port.y <= length + TOUCH:
             yield SceneError(

@@ -75,9 +75,9 @@ def from_points(
         fields = np.zeros((len(y), len(stations), count))
         hat = hats(np.clip(place, stations[0], stations[-1]), stations).tocoo()
         fields[hat.row, hat.col] = hat.data[:, None] * local[hat.row]
-        fields = fields.reshape(len(y), -1)
-        loads = mass @ fields
-        return loads, fields.T @ loads
+        columns = fields.reshape(len(y), -1)
+        loads = mass @ columns
+        return loads, columns.T @ loads
 
     return sections
 

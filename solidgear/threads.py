@@ -36,11 +36,12 @@ import threading
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import TypeVar
+from typing import ParamSpec, TypeVar
 
 from solidgear.control_groups import control_groups, text_of
 
-Function = TypeVar("Function", bound=Callable)
+P = ParamSpec("P")
+R = TypeVar("R")
 VARIABLE = "OPENBLAS_NUM_THREADS"
 
 
@@ -56,13 +57,13 @@ def pin() -> None:
             library.set_num_threads(1)
 
 
-def pinned(function: Function) -> Function:
+def pinned(function: Callable[P, R]) -> Callable[P, R]:
     """Decorator: OpenBLAS has one thread while the function runs, and what it had before
     afterwards.
     """
 
     @functools.wraps(function)
-    def inner(*args, **kwargs):
+    def inner(*args: P.args, **kwargs: P.kwargs) -> R:
         with single():
             return function(*args, **kwargs)
 

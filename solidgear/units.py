@@ -122,7 +122,8 @@ def _read_text(text: str, dimension: str) -> float:
     if known is None:
         raise SceneError(f'unknown unit {show(unit)}; write for example "{example}"', value=value)
     factor, radians, dimensionality = known
-    if dimensionality != (_si_factor(si)[2] if si else "dimensionless") or radians not in powers:
+    own = _si_factor(si) if si else None
+    if dimensionality != (own[2] if own else "dimensionless") or radians not in powers:
         wrong = f"not a unit of {name}" if si else "a unit, but this is a plain ratio"
         raise SceneError(f'{show(unit)} is {wrong}; write for example "{example}"', value=value)
     # dividing by 1000 is exact where multiplying by 0.001 is not: "208 mm" must be the same float

@@ -9,11 +9,15 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 from solidgear.evidence.partners import Partners
 from solidgear.evidence.quantities import JUDGED, QUANTITIES, change
 from solidgear.evidence.study import SCENE, SECTION, Rung
 from solidgear.fidelity import FIDELITIES
+
+if TYPE_CHECKING:
+    from solidgear.scene import Scene
 
 WITHIN, OPEN, BEYOND = "within", "open", "beyond"
 NAMES = {
@@ -55,7 +59,8 @@ def deviations(rungs: dict[str, Rung], reference: str) -> list[dict]:
     the modes with the same shape. A gap inside the sum of both bands is "not resolved", which is
     not agreement.
     """
-    base, out = rungs[reference], []
+    base = rungs[reference]
+    out: list[dict] = []
     for model, rung in rungs.items():
         if model == reference:
             continue
@@ -73,9 +78,9 @@ def deviations(rungs: dict[str, Rung], reference: str) -> list[dict]:
 def _deviations(model: str, reference: str, tie: str, rung: Rung, base: Rung) -> Iterable[dict]:
     mine, theirs = rung.ties[tie], base.ties[tie]
     partners = Partners(mine.modes, theirs.modes)
-    for name, (kind, place, unit) in QUANTITIES.items():
+    for name, (_, place, unit) in QUANTITIES.items():
         value, how = mine.quantities.get(name), ""
-        if kind == "frequency":
+        if isinstance(place, str):
             value, how = partners.frequency(place)
         if value is None or name not in theirs.quantities:
             continue
@@ -125,7 +130,7 @@ def _reason(rung: Rung) -> str:
 
 
 def judge(
-    scene, rungs: dict[str, Rung], gaps: list[dict], notices: Iterable[dict] = ()
+    scene: Scene, rungs: dict[str, Rung], gaps: list[dict], notices: Iterable[dict] = ()
 ) -> tuple[dict, dict[str, Judgement]]:
     """Validity of every rung and the verdict in sentences.
 

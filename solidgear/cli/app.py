@@ -4,13 +4,24 @@ from __future__ import annotations
 
 import functools
 import sys
+from collections.abc import Callable, Collection
 from enum import StrEnum
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated, ParamSpec, TypeVar
 
 import typer
 
 from solidgear.errors import SolidgearError, show
+
+if TYPE_CHECKING:
+    from rich.console import Console
+    from rich.status import Status
+
+    from solidgear.body import Body
+    from solidgear.scene import Scene
+
+P = ParamSpec("P")
+R = TypeVar("R")
 
 app = typer.Typer(
     no_args_is_help=True,
@@ -61,7 +72,7 @@ def options(pairs: list[str] | None) -> dict:
     return out
 
 
-def options_by_model(pairs: list[str] | None, models) -> dict[str, dict]:
+def options_by_model(pairs: list[str] | None, models: Collection[str]) -> dict[str, dict]:
     """Builder options per model from ``MODEL.key=value`` texts."""
     out: dict[str, dict] = {}
     for pair in pairs or []:
@@ -83,7 +94,7 @@ def _value(text: str):
     return {"true": True, "false": False}.get(text, text)
 
 
-def build_body(scene, fidelity: Fidelity, pairs):
+def build_body(scene: Scene, fidelity: Fidelity, pairs: list[str] | None) -> Body:
     """Body of a scene at one fidelity, with ``--set`` options."""
     from solidgear.fidelity import build
     from solidgear.fidelity.options import checked
@@ -93,7 +104,7 @@ def build_body(scene, fidelity: Fidelity, pairs):
     return build(scene, fidelity.value, **checked(fidelity.value, options(pairs)))
 
 
-def console():
+def console() -> Console:
     """Terminal for tables on standard output."""
     from rich.console import Console
 
@@ -111,7 +122,7 @@ class Progress:
 
         self.console = Console(stderr=True, highlight=False)
         self.quiet, self.start, self.clock = quiet, time.perf_counter(), time.perf_counter
-        self.status = None
+        self.status: Status | None = None
 
     def __enter__(self):
         if not self.quiet and self.console.is_terminal:
@@ -133,11 +144,11 @@ class Progress:
             print(line, file=sys.stderr, flush=True)
 
 
-def command(function):
+def command(function: Callable[P, R]) -> Callable[P, R]:
     """Register a command; typer would swallow Ctrl-C without a word."""
 
     @functools.wraps(function)
-    def quiet(*args, **kwargs):
+    def quiet(*args: P.args, **kwargs: P.kwargs) -> R:
         try:
             return function(*args, **kwargs)
         except KeyboardInterrupt:

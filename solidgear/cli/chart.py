@@ -5,12 +5,16 @@ from __future__ import annotations
 import functools
 import json
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from solidgear.cli.app import JsonFlag, Progress, SceneFile, command, console
 from solidgear.errors import SolidgearError
+
+if TYPE_CHECKING:
+    from solidgear.evidence.pareto import Race
+    from solidgear.scene import Scene
 
 
 @command
@@ -76,14 +80,14 @@ def chart(
 
 
 def run_chart(
-    scene,
+    scene: Scene,
     out: Path,
     *,
     full: bool = False,
     runs: int = 5,
     budget: float | None = None,
     quiet: bool = False,
-):
+) -> tuple[Race, bool]:
     """Run and write the chart of a scene, and put it into the report that an earlier comparison of
     it left there.
 

@@ -32,6 +32,7 @@ from functools import cached_property
 from math import cos, isfinite, pi, sin, sqrt
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from solidgear.errors import SolidgearError
 
@@ -152,7 +153,7 @@ def mean_radius(pitch_radius: float, pitch_angle: float, face_width: float) -> f
     return out
 
 
-def to_gear_frame(vector, shaft_angle: float = pi / 2) -> np.ndarray:
+def to_gear_frame(vector: ArrayLike, shaft_angle: float = pi / 2) -> np.ndarray:
     """A direction or an offset given in the pinion's frame, in the gear's frame."""
     c, s = cos(shaft_angle), sin(shaft_angle)
     return np.array([[c, s, 0.0], [-s, c, 0.0], [0.0, 0.0, 1.0]]) @ np.asarray(vector, float)

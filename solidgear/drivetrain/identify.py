@@ -11,6 +11,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import ArrayLike
 from scipy.optimize import least_squares
 
 from solidgear.errors import SolidgearError
@@ -149,7 +150,7 @@ class Identification:
 def identify(
     model: Callable[[dict[str, float]], np.ndarray],
     unknowns: Sequence[Unknown],
-    published_hz,
+    published_hz: ArrayLike,
     starts: int = 8,
     seed: int = 0,
 ) -> Identification:

@@ -8,13 +8,17 @@ import json
 import logging
 import subprocess
 import sys
+from typing import TYPE_CHECKING
 
 from solidgear.evidence.pareto import Row
+
+if TYPE_CHECKING:
+    from solidgear.scene import Scene
 
 log = logging.getLogger(__name__)
 
 
-def plan(scene, full: bool = False) -> list[Row]:
+def plan(scene: Scene, full: bool = False) -> list[Row]:
     """Series of every family, uniform and graded, level by level.
 
     Parameters

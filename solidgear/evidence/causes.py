@@ -4,12 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 from solidgear.errors import SolidgearError
 from solidgear.evidence.quantities import change, measure
 from solidgear.fidelity import build
 from solidgear.solve.modes import modes
 from solidgear.solve.statics import condense
+
+if TYPE_CHECKING:
+    from solidgear.scene import Scene
 
 
 @dataclass(frozen=True)
@@ -24,7 +28,7 @@ class Cause:
     bending_1: float | None
 
 
-def _solve(scene, fidelity, **options):
+def _solve(scene: Scene, fidelity, **options):
     body = build(scene, fidelity, **options)
     # Ten shapes hold the first bending pair of anything that looks like a shaft.
     return measure(condense(body, scene, scene.port.name), modes(body, scene, 10, ovalising=False))
@@ -41,7 +45,7 @@ def _row(cause, text, model, new, old) -> Cause:
     )
 
 
-def beam_causes(scene) -> list[Cause]:
+def beam_causes(scene: Scene) -> list[Cause]:
     """Assumptions inside the beam model, with the beam's own nodes for ports."""
     scene = scene.with_attachment("section")
     plain = _solve(scene, "euler")
@@ -87,7 +91,7 @@ def attachment_causes(variants: dict[str, dict[str, float]], model: str) -> list
 
 
 def shoulder_cause(
-    scene,
+    scene: Scene,
     beam_gap: dict[str, float | None],
     options: dict,
     tell: Callable[[str], None] = lambda _: None,

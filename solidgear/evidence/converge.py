@@ -102,7 +102,7 @@ def gci(
     r21, r32 = h1 / h2, h2 / h3
     coarse, fine = f2 - f1, f3 - f2
     scale = abs(f3) or 1.0
-    observed = None
+    observed: float | None = None
     if abs(fine) <= 1e-13 * scale:
         # Nothing left to converge: the quantity is exact on these meshes.
         band = max(abs(coarse), abs(fine)) / scale
@@ -126,8 +126,10 @@ def gci(
 
         if gap(1e-3) < 0 < gap(20.0):
             observed = float(brentq(gap, 1e-3, 20.0))
-    plausible = observed is not None and 0.7 * expected <= observed <= highest + 0.5
-    order = min(observed, max(cap, expected)) if plausible else expected
+    if observed is not None and 0.7 * expected <= observed <= highest + 0.5:
+        plausible, order = True, min(observed, max(cap, expected))
+    else:
+        plausible, order = False, expected
     factor = 1.25 if plausible else 3.0
     # An oscillating or stalled pair says nothing about the size of the error: take the larger
     # change.

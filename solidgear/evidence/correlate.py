@@ -269,7 +269,9 @@ def _dense_groups(left, right, mine, theirs):
             if b - a > 1 and frequency[b - 1] <= (1 + CLOSE) * frequency[a]:
                 yield order[a:b], sum(modes[k].multiplicity for k in order[a:b])
 
-    ours, used_left, used_right = list(runs(left, mine)), set(), set()
+    ours = list(runs(left, mine))
+    used_left: set[int] = set()
+    used_right: set[int] = set()
     for others, shapes in sorted(runs(right, theirs), key=lambda x: -x[1]):
         for group, count in ours:
             if count == shapes and not used_left & set(group) and not used_right & set(others):

@@ -33,7 +33,7 @@ def _hexahedra(layers: int, edge_layers: int, relative_size: float) -> Options:
     }
 
 
-HARMONIC = (
+HARMONIC: tuple[Options, ...] = (
     _harmonic(2, 0, 0, 4.0),
     _harmonic(3, 1, 1, 4.0),
     _harmonic(4, 2, 2, 4.0),
@@ -41,15 +41,15 @@ HARMONIC = (
     _harmonic(6, 4, 3, 4.0),
     _harmonic(7, 5, 3, 2.0),
 )
-HEXAHEDRA = (
+HEXAHEDRA: tuple[Options, ...] = (
     _hexahedra(0, 0, 1.5),
     _hexahedra(1, 1, 1.0),
     _hexahedra(2, 2, 0.7),
     _hexahedra(3, 3, 0.5),
     _hexahedra(4, 4, 0.35),
 )
-TETRAHEDRA = tuple({"refinement": r} for r in (0.45, 0.65, 0.95, 1.4, 2.0))
-LINEAR = tuple({"refinement": r} for r in (0.6, 0.9, 1.35, 2.0))
+TETRAHEDRA: tuple[Options, ...] = tuple({"refinement": r} for r in (0.45, 0.65, 0.95, 1.4, 2.0))
+LINEAR: tuple[Options, ...] = tuple({"refinement": r} for r in (0.6, 0.9, 1.35, 2.0))
 
 # What leaves the choice of meshes to the program although it is given.
 FREE = ("element", "around", "ovalising", "attachments")

@@ -180,15 +180,15 @@ def front(cost: Sequence[float | None], error: Sequence[float | None]) -> list[i
         In ascending order of cost.
     """
     known = [
-        k
+        (c, e, k)
         for k, (c, e) in enumerate(zip(cost, error))
         if c is not None and e is not None and np.isfinite(c) and np.isfinite(e)
     ]
     out, best = [], np.inf
-    for k in sorted(known, key=lambda k: (cost[k], error[k], k)):
-        if error[k] < best:
+    for _, e, k in sorted(known):
+        if e < best:
             out.append(k)
-            best = error[k]
+            best = e
     return out
 
 

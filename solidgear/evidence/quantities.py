@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 import numpy as np
 
 from solidgear.solve.modes import ModeSet
 from solidgear.solve.statics import Condensed
 
 # name -> (kind, place, unit); compliances first: they are what a change of tie or model moves least
-# by accident.
-QUANTITIES = {
+# by accident.  The place is an entry of a matrix, or the name of a mode.
+QUANTITIES: dict[str, tuple[str, tuple[int, int] | str, str]] = {
     "C_zz": ("compliance", (2, 2), "m/N"),
     "C_z,thx": ("compliance", (2, 3), "rad/N"),
     "C_thx": ("compliance", (3, 3), "rad/(N m)"),
@@ -41,7 +43,7 @@ def measure(condensed: Condensed, modes: ModeSet) -> dict[str, float]:
     """
     out = {}
     for name, (kind, place, _) in QUANTITIES.items():
-        if kind == "frequency":
+        if isinstance(place, str):
             mode = modes.named(place)
             value = mode.frequency_hz if mode else np.nan
         else:
@@ -52,7 +54,7 @@ def measure(condensed: Condensed, modes: ModeSet) -> dict[str, float]:
     return {name: v for name, v in out.items() if all(d in out for d in COUPLINGS.get(name, ()))}
 
 
-def change(new: dict[str, float], old: dict[str, float], name: str) -> float | None:
+def change(new: Mapping[str, float], old: Mapping[str, float], name: str) -> float | None:
     """Relative change of one quantity, or None where either lacks it; rounding (below 1e-11) counts
     as none.
 

@@ -11,9 +11,9 @@ from __future__ import annotations
 
 import logging
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field, replace
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from solidgear.body import Body, Supports, as_supports
 from solidgear.errors import SolidgearError
@@ -27,6 +27,9 @@ from solidgear.meshing.corners import sharpest_corner
 from solidgear.meter import Meter
 from solidgear.solve.modes import ModeSet, modes
 from solidgear.solve.statics import Condensed, condense
+
+if TYPE_CHECKING:
+    from solidgear.scene import Scene
 
 log = logging.getLogger(__name__)
 Progress = Callable[[str], None]
@@ -54,7 +57,7 @@ class Tied:
         """Relative error that the solver may have left in every quantity."""
         out = {}
         for name, (kind, place, _) in QUANTITIES.items():
-            mode = self.modes.named(place) if kind == "frequency" else None
+            mode = self.modes.named(place) if isinstance(place, str) else None
             out[name] = (
                 getattr(mode, "error", 0.0)
                 if kind == "frequency"
@@ -109,14 +112,14 @@ class Rung:
         """Compared numbers with the ties of the scene."""
         return self.ties[SCENE].quantities
 
-    def worst_band(self, names=JUDGED) -> float | None:
+    def worst_band(self, names: Iterable[str] = JUDGED) -> float | None:
         """Largest band with the ties of the scene over some quantities; None where there is none."""
         own = self.bands.get(SCENE, {})
         return max((own[n].gci for n in names if n in own), default=None)
 
 
 def study(
-    scene,
+    scene: Scene,
     model: str,
     options: Mapping[str, Any] | None = None,
     *,
@@ -180,7 +183,7 @@ def study(
     return rung
 
 
-def _climbed(scene, model, options, meter, target, most, counted, progress, keep) -> Rung:
+def _climbed(scene: Scene, model, options, meter, target, most, counted, progress, keep) -> Rung:
     """The finest of the levels that were needed, or that could be had."""
     plan: Sequence = sequence(model, options)
     levels = plan.levels if plan.fixed else plan.levels[:most]
@@ -250,7 +253,7 @@ def _facts(body: Body, tied: Tied) -> dict:
 
 
 def _around(
-    scene, model: str, plan: Sequence, ties: dict[str, Tied], meter: Meter
+    scene: Scene, model: str, plan: Sequence, ties: dict[str, Tied], meter: Meter
 ) -> dict[str, dict[str, float]]:
     """Relative error that the cells around leave, per way of tying and quantity."""
     spare = Meter()
@@ -265,7 +268,12 @@ def _around(
 
 
 def _bands(
-    scene, model: str, plan: Sequence, solved: list[dict[str, Tied]], facts: list[dict], around
+    scene: Scene,
+    model: str,
+    plan: Sequence,
+    solved: list[dict[str, Tied]],
+    facts: list[dict],
+    around,
 ) -> dict[str, dict[str, Band]]:
     """Bands of the finest level for every way of tying that all of the last levels have."""
     out = {}
@@ -287,7 +295,11 @@ def _bands(
 
 
 def _solved(
-    scene, model: str, options: Mapping[str, Any], meter: Meter, counted_from: float = math.inf
+    scene: Scene,
+    model: str,
+    options: Mapping[str, Any],
+    meter: Meter,
+    counted_from: float = math.inf,
 ) -> tuple[Body, dict[str, Tied]]:
     """A body and what it answers, tied as in the scene and by section means; modes are counted from
     so many unknowns on.
@@ -323,14 +335,14 @@ def _solved(
     return body, ties
 
 
-def _built(scene, model: str, options: Mapping[str, Any], meter: Meter) -> Body:
+def _built(scene: Scene, model: str, options: Mapping[str, Any], meter: Meter) -> Body:
     meter.expect(estimated_size(scene, model, dict(options)).peak_mb)
     with meter.stage("build"):
         return build(scene, model, **options)
 
 
 def _tied(
-    scene, body: Body, supports: Supports, attachment: str | None, meter: Meter, count: bool
+    scene: Scene, body: Body, supports: Supports, attachment: str | None, meter: Meter, count: bool
 ) -> Tied:
     ask = scene.ask
     with meter.stage("statics"):
@@ -351,7 +363,7 @@ def _tied(
     return Tied(condensed, found, measure(condensed, found))
 
 
-def _add_variants(scene, rung: Rung, progress: Progress) -> None:
+def _add_variants(scene: Scene, rung: Rung, progress: Progress) -> None:
     """The same scene with each attachment everywhere; a 3D solid only with those its mesh carries."""
     given = {s.attachment for s in scene.stations}
     spare = Meter()
@@ -378,7 +390,7 @@ def _add_variants(scene, rung: Rung, progress: Progress) -> None:
                 log.info("%s: attachment %s left out: %s", rung.model, attachment, error)
 
 
-def rigid_seats(scene):
+def rigid_seats(scene: Scene) -> Scene:
     """The scene with rigid bearing seats; a lumped point that was rigid becomes averaged, any other
     keeps its attachment.
 

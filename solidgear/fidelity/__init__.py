@@ -2,15 +2,20 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 from solidgear.body import Body
 from solidgear.errors import SolidgearError
 from solidgear.threads import pinned
+
+if TYPE_CHECKING:
+    from solidgear.shaft import Shaft
 
 FIDELITIES = ("euler", "timoshenko", "harmonic", "solid")
 
 
 @pinned
-def build(scene, fidelity: str, **options) -> Body:
+def build(scene: Shaft, fidelity: str, **options) -> Body:
     """Free body of a scene at one fidelity.
 
     Parameters

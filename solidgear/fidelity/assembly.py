@@ -12,6 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 import scipy.linalg as sla
 import scipy.sparse as sp
+from skfem import Element, Mesh
 from skfem.assembly import Dofs
 
 BATCH_BYTES = 4e6
@@ -44,7 +45,7 @@ class Tabulated:
         """
         return self.jac.transpose(2, 3, 0, 1)
 
-    def gradient(self, factor) -> np.ndarray:
+    def gradient(self, factor: np.ndarray) -> np.ndarray:
         """(ne, dim, nb, nq) gradients in physical coordinates, times a (ne, nq) factor."""
         to = self.inverse * factor
         dim = len(to)
@@ -56,15 +57,15 @@ class Tabulated:
         return out
 
 
-def reference(element, points):
+def reference(element: Element, points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Values (nb, nq) and reference gradients (nb, dim, nq) of a scikit-fem element."""
     count = element.refdom.nnodes * element.nodal_dofs
     count += (element.refdom.nedges or 0) * element.edge_dofs if element.refdom.dim() == 3 else 0
     count += element.refdom.nfacets * element.facet_dofs + element.interior_dofs
-    value, gradient = zip(*(element.lbasis(points, i) for i in range(count)))
+    values, gradients = zip(*(element.lbasis(points, i) for i in range(count)))
     shape = points.shape[1:]
-    value = np.array([np.broadcast_to(v, shape) for v in value])
-    gradient = np.array([[np.broadcast_to(g, shape) for g in grad] for grad in gradient])
+    value = np.array([np.broadcast_to(v, shape) for v in values])
+    gradient = np.array([[np.broadcast_to(g, shape) for g in grad] for grad in gradients])
     return value, gradient
 
 
@@ -81,7 +82,7 @@ class Tabulation:
         Reference points.
     """
 
-    def __init__(self, geometry, element, points: np.ndarray):
+    def __init__(self, geometry: Element, element: Element, points: np.ndarray):
         self._shape, self._dshape = reference(geometry, points)
         self.value, self.slope = (
             (self._shape, self._dshape) if geometry is element else reference(element, points)
@@ -100,12 +101,14 @@ class Tabulation:
         return Tabulated(self.value, self.slope, det, nodes @ self._shape, jac, inverse)
 
 
-def tabulate(geometry, nodes, element, points) -> Tabulated:
+def tabulate(
+    geometry: Element, nodes: np.ndarray, element: Element, points: np.ndarray
+) -> Tabulated:
     """Tabulate basis functions on (dim, nn, ne) nodes once; see :class:`Tabulation`."""
     return Tabulation(geometry, element, points).on(nodes)
 
 
-def inverted(jac: np.ndarray):
+def inverted(jac: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Inverses, and determinants (...), of (d, d, ...) small matrices, d = 2 or 3, by cofactors."""
     d = len(jac)
     if d == 2:
@@ -123,7 +126,7 @@ def inverted(jac: np.ndarray):
     return out, det
 
 
-def straight(element, nodes: np.ndarray):
+def straight(element: Element, nodes: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Elements whose nodes are an affine image of the reference nodes, and the constant Jacobians.
 
     Parameters
@@ -151,7 +154,7 @@ def straight(element, nodes: np.ndarray):
     return bend <= STRAIGHT * np.abs(inverted(jac)[1]) / size ** (dim - 1), jac
 
 
-def unknowns(mesh, element) -> np.ndarray:
+def unknowns(mesh: Mesh, element: Element) -> np.ndarray:
     """(nb, ne) scalar numbering of unknowns, scikit-fem's own."""
     return np.asarray(Dofs(mesh, element).element_dofs)
 
@@ -209,7 +212,7 @@ class Sum:
         self.pattern, self.c = pattern, components
         self.data = np.zeros(len(pattern.indices) * components**2)
 
-    def add(self, elements, values: np.ndarray) -> None:
+    def add(self, elements: slice | np.ndarray, values: np.ndarray) -> None:
         """Add element matrices.
 
         Parameters
@@ -233,7 +236,7 @@ class Sum:
         ).tocsr()
 
 
-def batches(elements: np.ndarray, bytes_each: float):
+def batches(elements: np.ndarray, bytes_each: float) -> list[np.ndarray]:
     """Cut a list of elements into pieces whose work arrays stay within ``BATCH_BYTES``."""
     step = max(1, int(BATCH_BYTES / bytes_each))
     return [elements[i : i + step] for i in range(0, len(elements), step)]

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 import scipy.sparse as sp
 
@@ -10,7 +12,7 @@ from solidgear.errors import SolidgearError
 from solidgear.sections import from_points, through
 
 
-def tie_rigidly(block: Block, ties) -> Block:
+def tie_rigidly(block: Block, ties: Sequence[tuple[int, float, np.ndarray]]) -> Block:
     """Let surfaces of a block move as rigid bodies.
 
     Parameters

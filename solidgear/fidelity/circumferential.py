@@ -11,6 +11,7 @@ grows with n without end.  By a light mesh of order 2, from above. And by the bl
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import TYPE_CHECKING
 
 import numpy as np
 import scipy.sparse.linalg as spla
@@ -21,6 +22,10 @@ from solidgear.fidelity.assembly import unknowns
 from solidgear.fidelity.scale import overhangs
 from solidgear.meshing.layout import Grading, layout
 from solidgear.meshing.meridian import meridian
+
+if TYPE_CHECKING:
+    from solidgear.fidelity.harmonic import _Work
+    from solidgear.shaft import Shaft
 
 #: What carries a disc is no clamp: part of the stiffness of a clamped strip that it gets.  On 72
 #: random shafts the closed form reached 1.27 of the truth with a clamp (flanges on hollow shafts),
@@ -43,11 +48,11 @@ class Families:
         The same.
     """
 
-    def __init__(self, scene, build: Callable[[int], Block]):
+    def __init__(self, scene: Shaft, build: Callable[[int], Block]):
         self._scene, self.block = scene, build
         self._parts = _parts(scene.segments)
         self._found: dict[int, float] = {}
-        self._work = None
+        self._work: _Work | None = None
 
     def bound(self, n: int) -> float:
         """Frequency (Hz) above which all motions of n waves should lie, in closed form; it grows

@@ -76,7 +76,7 @@ class Station:
     """
 
     y: float
-    spring: np.ndarray = ((0.0, 0.0), (0.0, 0.0))
+    spring: np.ndarray = field(default_factory=lambda: np.zeros((2, 2)))
     mass: float = 0.0
     inertia: float = 0.0
 
@@ -305,7 +305,8 @@ class _Joint:
 def _joined(spans, stations):
     """The shaft with a joint at the ends of every span and at every station."""
     ends = np.append(0.0, np.cumsum([s.length for s in spans]))
-    length, near, marks, held = ends[-1], 1e-9 * ends[-1], list(ends), [[] for _ in ends]
+    length, near, marks = ends[-1], 1e-9 * ends[-1], list(ends)
+    held: list[list[Station]] = [[] for _ in ends]
     for station in stations:
         if not -near <= station.y <= length + near:
             raise SolidgearError(

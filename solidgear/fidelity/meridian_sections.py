@@ -8,8 +8,10 @@ from dataclasses import dataclass
 
 import numpy as np
 import scipy.sparse as sp
+from skfem import Element
 
 from solidgear.fidelity.assembly import Tabulation, batches
+from solidgear.meshing.meridian import Meridian
 from solidgear.sections import Sections, hats
 
 
@@ -34,10 +36,10 @@ BENDING = (Part(0, 2 * np.pi, 1), Part(2, np.pi, 1, -1.0, 1))
 
 
 def from_cells(
-    flat,
+    flat: Meridian,
     dofs: np.ndarray,
-    geometry,
-    element,
+    geometry: Element,
+    element: Element,
     order: int,
     density: np.ndarray,
     parts: tuple[Part, ...],

@@ -8,9 +8,14 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from numbers import Integral, Real
-from typing import Any
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from solidgear.errors import SolidgearError, listed, nearest, show
+
+if TYPE_CHECKING:
+    from solidgear.shaft import Shaft
+
+Given = TypeVar("Given")
 
 
 @dataclass(frozen=True)
@@ -318,13 +323,13 @@ def _within(value, above=None, least=None, below=None, most=None) -> bool:
 def number(
     model: str,
     name: str,
-    value,
+    value: Given,
     *,
     above: float | None = None,
     least: float | None = None,
     below: float | None = None,
     whole: bool = False,
-):
+) -> Given:
     """A number within limits, or one sentence.
 
     Parameters
@@ -354,7 +359,7 @@ def number(
     )
 
 
-def countable(model: str, scene, size: float, refinement: float) -> float:
+def countable(model: str, scene: Shaft, size: float, refinement: float) -> float:
     """A size of cells of which a mesh can be laid out at all, or one sentence.
 
     Parameters

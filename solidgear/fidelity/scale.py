@@ -9,14 +9,20 @@ tried.
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Sequence
+from typing import TYPE_CHECKING
+
 import numpy as np
 import scipy.linalg as sla
+
+if TYPE_CHECKING:
+    from solidgear.shaft import Shaft
 
 SLICES = 120
 LEVELS = 60  # radii at which overhangs are looked for
 
 
-def elastic_scale(scene) -> float:
+def elastic_scale(scene: Shaft) -> float:
     """Lowest elastic eigenvalue of the free shaft, rad^2/s^2, by a chain of slices and overhanging
     plates.
 
@@ -139,7 +145,9 @@ def _flanges(segments):
             yield bending * shear / (bending + shear)
 
 
-def overhangs(parts, *bases: float):
+def overhangs(
+    parts: Sequence[tuple[float, float, float]], *bases: float
+) -> Iterator[tuple[float, list[tuple[float, float, float]]]]:
     """Neighbours that together reach beyond a radius: yields (that radius, list of parts) for every
     radius that a part ends at, and for ``bases``.
 

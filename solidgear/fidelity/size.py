@@ -13,14 +13,20 @@ memory, each in a process of its own.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from types import SimpleNamespace
+from typing import TYPE_CHECKING
 
 import numpy as np
 
+from solidgear.body import Body
 from solidgear.errors import SolidgearError
 from solidgear.fidelity.options import checked
 from solidgear.memory import available_mb
+
+if TYPE_CHECKING:
+    from solidgear.shaft import Shaft
 
 MB = 2.0**20
 #: entries that 32-bit indices can number, less some for what is numbered beside them
@@ -59,7 +65,7 @@ class Size:
     lower: str
 
 
-def estimated_unknowns(scene, model: str, options: dict | None = None) -> int:
+def estimated_unknowns(scene: Shaft, model: str, options: dict | None = None) -> int:
     """Unknowns of ``build(scene, model, **options)``, without building it.
 
     Parameters
@@ -78,7 +84,7 @@ def estimated_unknowns(scene, model: str, options: dict | None = None) -> int:
     return estimated_size(scene, model, options).unknowns
 
 
-def estimated_size(scene, model: str, options: dict | None = None) -> Size:
+def estimated_size(scene: Shaft, model: str, options: dict | None = None) -> Size:
     """Unknowns, entries and memory of ``build(scene, model, **options)`` and what is solved on it;
     parameters as :func:`estimated_unknowns`.
     """
@@ -95,7 +101,7 @@ def estimated_size(scene, model: str, options: dict | None = None) -> Size:
     )
 
 
-def refuse_too_large(scene, model: str, options: dict | None = None) -> Size:
+def refuse_too_large(scene: Shaft, model: str, options: dict | None = None) -> Size:
     """The estimated size, if the machine can take it.
 
     Raises
@@ -120,12 +126,19 @@ def refuse_too_large(scene, model: str, options: dict | None = None) -> Size:
 def _defaults(model: str) -> dict:
     from inspect import signature
 
+    builder: Callable[..., Body]
     if model in ("euler", "timoshenko"):
-        from solidgear.fidelity.beam import beam as builder
+        from solidgear.fidelity.beam import beam
+
+        builder = beam
     elif model == "harmonic":
-        from solidgear.fidelity.harmonic import harmonic as builder
+        from solidgear.fidelity.harmonic import harmonic
+
+        builder = harmonic
     else:
-        from solidgear.fidelity.solid import solid as builder
+        from solidgear.fidelity.solid import solid
+
+        builder = solid
     found = {
         name: p.default
         for name, p in signature(builder).parameters.items()
@@ -134,12 +147,12 @@ def _defaults(model: str) -> dict:
     return found | ({"shear": False, "rotary_inertia": False} if model == "euler" else {})
 
 
-def _ports(scene, given: dict) -> int:
+def _ports(scene: Shaft, given: dict) -> int:
     return len(scene.stations) * len(given.get("attachments") or (None,))
 
 
 # ------------------------------------------------------------------------------------------------- beams
-def _beam(scene, model: str, given: dict) -> Size:
+def _beam(scene: Shaft, model: str, given: dict) -> Size:
     from solidgear.fidelity.beam import mesh
 
     n = len(mesh(scene, given["elements"])[0])
@@ -165,7 +178,7 @@ class _Lines:
     solid_lines: np.ndarray
 
 
-def _lines(scene, plan) -> _Lines:
+def _lines(scene: Shaft, plan) -> _Lines:
     numbers = [set(plan.ring_numbers(k)) for k in range(len(scene.segments))]
     full = np.array([s.inner0 == s.inner1 == 0.0 for s in scene.segments])[plan.segment]
     count = np.array([len(numbers[k]) - 1 for k in plan.segment])
@@ -176,7 +189,7 @@ def _lines(scene, plan) -> _Lines:
     return _Lines(rows, lines, full, np.r_[full[:1], full] | np.r_[full, full[-1:]])
 
 
-def _harmonic(scene, given: dict) -> Size:
+def _harmonic(scene: Shaft, given: dict) -> Size:
     from solidgear.fidelity.harmonic import harmonic_layout
 
     order = given["order"]
@@ -269,7 +282,7 @@ _KINDS = {
 }
 
 
-def _hexahedra(scene, given: dict) -> Size:
+def _hexahedra(scene: Shaft, given: dict) -> Size:
     from solidgear.fidelity.solid import hexahedra_layout
 
     names = (
@@ -310,7 +323,7 @@ def _sections(rings: np.ndarray, full: np.ndarray, around: int) -> tuple[float, 
     return float(vertices.sum()), float(edges.sum()), float((around * count + full * k * k).sum())
 
 
-def _tetrahedra(scene, given: dict) -> Size:
+def _tetrahedra(scene: Shaft, given: dict) -> Size:
     from solidgear.fidelity.solid import tetrahedra_plan
     from solidgear.meshing.tetrahedra import estimated_counts
 
@@ -347,7 +360,9 @@ def _nodes(
     return 3 * float(np.dot(kind.on, counts)), 9 * pairs
 
 
-def _solid(scene, given: dict, unknowns: float, entries: float, cells: float, fill: float) -> Size:
+def _solid(
+    scene: Shaft, given: dict, unknowns: float, entries: float, cells: float, fill: float
+) -> Size:
     per_cell = _KINDS[given["element"]].cell
     tets = given["element"].startswith("tet")
     # matrices; mesh, its numbering and its quality; gmsh itself

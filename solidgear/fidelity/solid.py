@@ -11,6 +11,7 @@ from functools import cached_property
 
 import numpy as np
 import scipy.sparse as sp
+from skfem import Element, Mesh
 from skfem.element import ElementHex1, ElementHex2, ElementHexS2, ElementTetP1, ElementTetP2
 from skfem.quadrature import get_quadrature
 from skfem.refdom import RefTet, RefTri
@@ -60,9 +61,9 @@ class SolidMesh:
     segment : (ne,) ndarray of int
     """
 
-    mesh: object
+    mesh: Mesh
     name: str
-    element: object
+    element: Element
     dofs: np.ndarray
     nodes: np.ndarray
     segment: np.ndarray
@@ -212,7 +213,7 @@ def solid(
     body_mesh = _isoparametric(mesh, element, segment)
     k, m = _matrices(body_mesh, scene)
     n = body_mesh.nodes.shape[1]
-    rigid = np.zeros((n, 3, 6))
+    rigid: np.ndarray = np.zeros((n, 3, 6))
     rigid[:, :, :3] = np.eye(3)
     x, y, z = body_mesh.nodes
     zero = np.zeros(n)

@@ -4,6 +4,8 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import numpy as np
 
 from solidgear import verdict
@@ -13,6 +15,9 @@ from solidgear.evidence.study import SCENE
 from solidgear.guards.notice import BEAMS, MODELS, Notice, Notices, beyond
 from solidgear.guards.probe import Probe
 from solidgear.verdict import TIES, gap_verdict
+
+if TYPE_CHECKING:
+    from solidgear.scene import Scene
 
 #: bands of a light solid rest on two meshes only
 CAUTIOUS = 2.0
@@ -218,7 +223,7 @@ DEFAULT_AROUND = 12
 THIN, CELLS_THIN, CELLS_THICK, MOST_AROUND = 0.25, 12, 6, 48
 
 
-def cells_around(scene, waves: int) -> int:
+def cells_around(scene: Scene, waves: int) -> int:
     """Cells around that hexahedra need for a shape of so many waves."""
     wall = min(
         min(s.outer0 - s.inner0, s.outer1 - s.inner1) / max(s.outer0, s.outer1)
@@ -267,12 +272,13 @@ def effective_mass(probe: Probe) -> Notices:
         )
     matched = found["mode-matched"]
     if not (matched.feasible and matched.first):
-        error = found["guyan"].frequency_error
+        off = found["guyan"].frequency_error
+        assert off is not None  # its mass is always positive definite
         why = "holds the mode as its second one" if matched.feasible else "has a negative entry"
         yield Notice(
-            beyond(error, probe.scene.ask.tolerance),
+            beyond(off, probe.scene.ask.tolerance),
             ("lumped",),
-            f"the mode-matched pair of masses {why}: Guyan's stands in, with first bending {100 * error:+.3g} % off its beam; use the beam",
+            f"the mode-matched pair of masses {why}: Guyan's stands in, with first bending {100 * off:+.3g} % off its beam; use the beam",
         )
     if point.static_share < ENERGY:
         yield Notice(
@@ -296,6 +302,7 @@ def lumped_against_solid(probe: Probe) -> Notices:
     truth, tolerance = probe.solid_in_the_lumped_plane, probe.scene.ask.tolerance
     if not truth:
         return
+    assert lumped.frequency_hz is not None  # Guyan's mass is positive definite
     gap = lumped.frequency_hz / truth - 1
     bands = solid.bands.get(SCENE, {})
     band = bands["bending 1"].gci if "bending 1" in bands else 0.0

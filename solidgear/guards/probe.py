@@ -9,6 +9,7 @@ from __future__ import annotations
 from dataclasses import replace
 from functools import cache, cached_property
 from itertools import pairwise
+from typing import TYPE_CHECKING
 
 import numpy as np
 import scipy.linalg as sla
@@ -24,6 +25,9 @@ from solidgear.lumped.effective_mass import LumpedPoint, Synthesis, synthesise
 from solidgear.scene import TOUCH
 from solidgear.solve.modes import ModeSet, modes
 from solidgear.verdict import deviations
+
+if TYPE_CHECKING:
+    from solidgear.scene import Scene
 
 #: modes enough for the first bending pair, the first axial one and the rigid ones between them
 FEW = 8
@@ -46,7 +50,7 @@ class Probe:
         What is solved already.
     """
 
-    def __init__(self, scene, body: Body, rungs: dict[str, Rung] | None = None):
+    def __init__(self, scene: Scene, body: Body, rungs: dict[str, Rung] | None = None):
         self.scene, self.body, self.supports = scene, body, as_supports(scene)
         self.rungs = dict(rungs or {})
         self.tied, self.gaps = cache(self._tied), cache(self._gaps)
@@ -192,7 +196,7 @@ class Probe:
             spla.eigsh(
                 b.stiffness.tocsc(),
                 1,
-                b.mass.tocsc(),
+                b.mass.tocsr().tocsc(),
                 sigma=0.0,
                 v0=np.ones(b.size),
                 return_eigenvectors=False,

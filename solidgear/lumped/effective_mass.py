@@ -23,7 +23,9 @@ discriminant ``(A + B - 1)^2 - 4 C^2``.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
 
 import numpy as np
 import scipy.linalg as sla
@@ -33,6 +35,9 @@ from solidgear.errors import SolidgearError
 from solidgear.solve.modes import ModeSet, modes
 from solidgear.solve.statics import condense
 from solidgear.solve.supported import Supported, decoupled, groups
+
+if TYPE_CHECKING:
+    from solidgear.body import Holding
 
 PLANE = (2, 3)  # z and thx
 METHODS = ("old", "thesis", "mode-matched", "guyan")
@@ -118,7 +123,7 @@ class LumpedPoint:
 
 
 def lumped_point(
-    body: Body, supports, port: str, found: ModeSet | None = None
+    body: Body, supports: Holding, port: str, found: ModeSet | None = None
 ) -> tuple[LumpedPoint, ModeSet]:
     """Static stiffness, first bending motion and condensed mass of a body at its lumped point.
 
@@ -229,7 +234,9 @@ def _guyan(body: Body, supports, index: int, compliance: np.ndarray) -> np.ndarr
     return (m + m.T) / 2
 
 
-def effective_masses(point: LumpedPoint, receptance=None) -> dict[str, Synthesis]:
+def effective_masses(
+    point: LumpedPoint, receptance: Callable[[float], float] | None = None
+) -> dict[str, Synthesis]:
     """All four lumped models of a first bending mode.
 
     Parameters
@@ -279,7 +286,7 @@ def _thesis(point: LumpedPoint, receptance) -> Synthesis:
     a, b, c = k[0, 0] * z * z / w2, k[1, 1] * phi * phi / w2, k[0, 1] * z * phi / w2
     discriminant = (a + b - 1) ** 2 - 4 * c * c
     share = point.static_share
-    numbers = {"discriminant": float(discriminant), "static_share": share}
+    numbers: dict[str, object] = {"discriminant": float(discriminant), "static_share": share}
     half = (a - b + 1) / 2
     root = np.sqrt(complex(discriminant)) / 2
     numbers["mass_roots"] = [
@@ -363,7 +370,9 @@ def _valid_to(k, mass, receptance, omega, tolerance: float = 0.05) -> float:
     return float(last / (2 * np.pi))
 
 
-def modal_receptance(body: Body, supports, port: str, found: ModeSet):
+def modal_receptance(
+    body: Body, supports: Holding, port: str, found: ModeSet
+) -> Callable[[float], float]:
     """Receptance z/F_z at a port by modal superposition with the static remainder, as a function of
     omega (rad/s).
 
@@ -387,7 +396,7 @@ def modal_receptance(body: Body, supports, port: str, found: ModeSet):
 
 
 def synthesise(
-    body: Body, supports, port: str, found: ModeSet | None = None
+    body: Body, supports: Holding, port: str, found: ModeSet | None = None
 ) -> tuple[LumpedPoint, dict[str, Synthesis]]:
     """Lumped point and all four lumped models of a body, judged against the body itself."""
     point, found = lumped_point(body, supports, port, found)

@@ -6,17 +6,21 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Iterable
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from solidgear.errors import SolidgearError
 from solidgear.lumped.effective_mass import Synthesis, synthesise
 
+if TYPE_CHECKING:
+    from solidgear.scene import Scene
+
 #: bodies the lumped rung may rest on, the usual one of a lumped-parameter program first
 SOURCES = ("timoshenko", "euler", "harmonic", "solid")
 
 
-def synthesise_all(scene, rungs: dict, tell: Callable[[str], None] = lambda _: None) -> dict:
+def synthesise_all(scene: Scene, rungs: dict, tell: Callable[[str], None] = lambda _: None) -> dict:
     """Lumped models of every solved body, as plain data.
 
     Parameters
@@ -31,7 +35,7 @@ def synthesise_all(scene, rungs: dict, tell: Callable[[str], None] = lambda _: N
         ``static_share``, ``seconds`` and ``variants``; or ``why_not`` where there is nothing to
         lump.
     """
-    out = {}
+    out: dict[str, dict] = {}
     for model, rung in rungs.items():
         start = time.perf_counter()
         try:

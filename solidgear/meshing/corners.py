@@ -6,8 +6,14 @@ layers a mesh needs towards the corner.
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import numpy as np
 from scipy.optimize import brentq
+
+if TYPE_CHECKING:
+    from solidgear.scene import Segment
+    from solidgear.shaft import Shaft
 
 # Exponent of a right-angled shoulder, against which layers are counted.
 SHOULDER = 0.5445
@@ -47,7 +53,7 @@ def corner_exponent(angle: float) -> float:
     return min(roots, default=1.0)
 
 
-def corner_angle(a, b) -> float:
+def corner_angle(a: Segment, b: Segment) -> float:
     """Largest material angle (rad) of the outline where segment ``b`` follows ``a``, outside or in
     the bore; pi at least.
     """
@@ -82,7 +88,7 @@ def corner_angle(a, b) -> float:
     return worst
 
 
-def sharpest_corner(scene) -> tuple[float, float]:
+def sharpest_corner(scene: Shaft) -> tuple[float, float]:
     """Largest material angle (rad) at a shoulder of a scene and its exponent; (pi, 1) when there is
     none.
     """
@@ -91,7 +97,7 @@ def sharpest_corner(scene) -> tuple[float, float]:
     return worst, corner_exponent(worst)
 
 
-def corner_layers(a, b, layers: int) -> int:
+def corner_layers(a: Segment, b: Segment, layers: int) -> int:
     """Geometric layers that the corner between two segments needs where a right-angled shoulder
     needs ``layers``.
 

@@ -8,6 +8,8 @@ error of volume and inertia then cancels (8 cells around: 8e-4 in area without i
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import numpy as np
 from skfem import MeshHex1, MeshHex2
 from skfem.element import ElementHex2
@@ -15,11 +17,14 @@ from skfem.element import ElementHex2
 from solidgear.meshing.layout import Layout
 from solidgear.meshing.quality import MeshError
 
+if TYPE_CHECKING:
+    from solidgear.shaft import Shaft
+
 # Between 0 (circular core: 180 degree corners) and 1 (square core: thin first ring).
 SQUARENESS = 0.5
 
 
-def hexahedra(scene, plan: Layout, around: int = 8) -> tuple[MeshHex2, np.ndarray]:
+def hexahedra(scene: Shaft, plan: Layout, around: int = 8) -> tuple[MeshHex2, np.ndarray]:
     """Mesh a scene with curved 27-node hexahedra.
 
     Parameters
@@ -94,13 +99,13 @@ def hexahedra(scene, plan: Layout, around: int = 8) -> tuple[MeshHex2, np.ndarra
                 )
             )
             owner.append(np.full(around, seg))
-    nodes, keys = np.concatenate(nodes), np.concatenate(keys)
-    _, where, t = np.unique(keys, return_index=True, return_inverse=True)
-    points = nodes[:, :8].reshape(-1, 3)[where]
-    straight = MeshHex1(points.T.copy(), t.reshape(keys.shape).T.copy().astype(np.int32))
+    place, key = np.concatenate(nodes), np.concatenate(keys)
+    _, where, t = np.unique(key, return_index=True, return_inverse=True)
+    points = place[:, :8].reshape(-1, 3)[where]
+    straight = MeshHex1(points.T.copy(), t.reshape(key.shape).T.copy().astype(np.int32))
     mesh = MeshHex2.from_mesh(straight)
     located = mesh.doflocs.copy()
-    located[:, mesh.dofs.element_dofs.T] = np.moveaxis(nodes, -1, 0)
+    located[:, mesh.dofs.element_dofs.T] = np.moveaxis(place, -1, 0)
     return MeshHex2(located, mesh.t), np.concatenate(owner)
 
 

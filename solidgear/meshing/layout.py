@@ -353,19 +353,19 @@ def graded(length, size, ratio, reach, refinement, low: int, high: int) -> np.nd
     low, high : int
         Layers at the two ends.
     """
-    near, far = (size, size) if np.isscalar(size) else size
-    first, last = (reach, reach) if np.isscalar(reach) else reach
+    near, far = (size, size) if np.ndim(size) == 0 else size
+    first, last = (reach, reach) if np.ndim(reach) == 0 else reach
     room = (ROOM_TWO if low and high else ROOM_ONE) * length
-    lines = {0.0, float(length)}
+    places = {0.0, float(length)}
     for layers, start, place in ((low, first, lambda d: d), (high, last, lambda d: length - d)):
         if layers:
             beyond = max(
                 0, int(np.ceil(np.log(near / start / (1 - ratio)) / -np.log(ratio) - 1e-6))
             )
-            lines |= {
+            places |= {
                 float(place(d)) for d in start * ratio ** np.arange(-beyond, layers + 1) if d < room
             }
-    lines = np.array(_distinct(sorted(lines), 1e-9 * length))
+    lines = np.array(_distinct(sorted(places), 1e-9 * length))
     lines[-1] = length  # a last layer thinner than that must not move the end
     filled = [lines[:1]]
     for a, b in zip(lines[:-1], lines[1:]):
@@ -437,7 +437,8 @@ def _bands(segments):
         keys = sorted(known)
         return np.interp(np.arange(lo, hi + 1), keys, [known[k] for k in keys])
 
-    left, right = [None] * n, [None] * n
+    left: dict[int, np.ndarray] = {}
+    right: dict[int, np.ndarray] = {}
     for i in range(n - 1):
         a, b = segments[i], segments[i + 1]
         low, high = max(bottoms[i], bottoms[i + 1]), min(tops[i], tops[i + 1])
@@ -448,15 +449,15 @@ def _bands(segments):
         )
     # A free end divides its radius as the far end of the same segment does.
     for i, s in enumerate(segments):
-        if left[i] is None and right[i] is None:
+        if i not in left and i not in right:
             left[i] = np.linspace(s.inner0, s.outer0, tops[i] - bottoms[i] + 1)
             right[i] = np.linspace(s.inner1, s.outer1, tops[i] - bottoms[i] + 1)
-        elif left[i] is None:
+        elif i not in left:
             left[i] = s.inner0 + (right[i] - s.inner1) * (s.outer0 - s.inner0) / (
                 s.outer1 - s.inner1
             )
-        elif right[i] is None:
+        elif i not in right:
             right[i] = s.inner1 + (left[i] - s.inner0) * (s.outer1 - s.inner1) / (
                 s.outer0 - s.inner0
             )
-    return bands, tuple(left), tuple(right)
+    return bands, tuple(left[i] for i in range(n)), tuple(right[i] for i in range(n))

@@ -3,10 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from solidgear.meshing.layout import Layout
+
+if TYPE_CHECKING:
+    from solidgear.shaft import Shaft
 
 
 @dataclass(frozen=True)
@@ -34,11 +38,12 @@ class Meridian:
     inner: np.ndarray
 
 
-def meridian(scene, plan: Layout) -> Meridian:
+def meridian(scene: Shaft, plan: Layout) -> Meridian:
     """Mesh the meridian of a scene along a layout."""
     points: list[tuple[float, float]] = []
     index: dict[tuple[int, int], int] = {}
-    cells, owner, outer, inner = [], [], [], []
+    cells: list[tuple[int, int, int, int]] = []
+    owner, outer, inner = [], [], []
     for row, seg in enumerate(plan.segment):
         segment = scene.segments[seg]
         rings = [

@@ -6,14 +6,23 @@ bounded from below over the whole element, and the volume is held against the cl
 shaft.
 """
 
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import cache
 from itertools import product
 from math import factorial
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from solidgear.errors import SolidgearError
+
+if TYPE_CHECKING:
+    from skfem import Mesh
+
+    from solidgear.scene import Segment
 
 # Elements whose bound says that det J stays above this part of its greatest value need no closer
 # look.
@@ -59,7 +68,9 @@ class MeshQuality:
     min_volume_ratio: float
 
 
-def check_mesh(mesh, *, volume=None, rtol=1e-3, min_ratio=1e-3):
+def check_mesh(
+    mesh: Mesh, *, volume: float | None = None, rtol: float = 1e-3, min_ratio: float = 1e-3
+) -> MeshQuality:
     """Measure a volume mesh and refuse it when an element is inverted or the volume is wrong.
 
     Parameters
@@ -110,7 +121,7 @@ def check_mesh(mesh, *, volume=None, rtol=1e-3, min_ratio=1e-3):
     return quality
 
 
-def element_ratios(mesh):
+def element_ratios(mesh: Mesh) -> np.ndarray:
     """(min det J) / (max det J) inside each element, -1 where no det J is positive; no gate."""
     return _measure(mesh)[3]
 
@@ -270,7 +281,7 @@ def _refuse(mesh, bad, value, what, name, unit, cure):
     )
 
 
-def volume_of(segments):
+def volume_of(segments: Iterable[Segment]) -> float:
     """Volume of hollow frusta end to end [m^3], closed form.
 
     Parameters
@@ -309,7 +320,7 @@ class MassProperties:
     iyy: float
 
 
-def mass_properties(segments):
+def mass_properties(segments: Sequence[Segment]) -> MassProperties:
     """Mass, centre and inertia of hollow frusta, by exact integration of the polynomials in y.
 
     Parameters

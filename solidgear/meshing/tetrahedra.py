@@ -245,7 +245,9 @@ def _revolve(gmsh, segments, planes, circles):
     """Draw the meridian with shared edges and turn it about y; returns the (y, radius) to grade at."""
     occ = gmsh.model.occ
     tolerance = _tolerance(segments)
-    points, lines, faces = {}, {}, []
+    points: dict[tuple[float, float], int] = {}
+    lines: dict[tuple[int, int], int] = {}
+    faces = []
 
     def point(r, y):
         for (r0, y0), tag in points.items():
@@ -354,7 +356,7 @@ def estimated_counts(
             ):
                 r, across = _graded_points(a, b, least)
                 surface += (
-                    2 * pi * across * r / edge(r, np.array(below[5] if below else above[0])) ** 2
+                    2 * pi * across * r / edge(r, np.array(below[5] if below else ends[0][0])) ** 2
                 ).sum()
     rim = sum(2 * pi * r / float(edge(np.array(r), np.array(y))) for y, r in set(corners))
     return tuple(np.array(_FILL) @ (volume, surface, rim))
@@ -433,14 +435,14 @@ def _kinks(slabs, circles, tolerance):
     for i in range(len(slabs) + 1):
         below = slabs[i - 1] if i else None
         above = slabs[i] if i < len(slabs) else None
-        y = below[1] if below else above[0]
+        y = below[1] if below else slabs[0][0]
         for outer in (True, False):
             column = 2 if outer else 4
             r0 = below[column + 1] if below else None
             r1 = above[column] if above else None
             turns = (
-                below is None
-                or above is None
+                r0 is None
+                or r1 is None
                 or abs(r0 - r1) > tolerance
                 or abs(_slope(below, column) - _slope(above, column)) > 1e-6
             )

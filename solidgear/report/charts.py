@@ -10,7 +10,7 @@ import functools
 import io
 import re
 from collections.abc import Callable, Mapping
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from solidgear.report import sketch as scene_sketch
 from solidgear.report.terminal import (
@@ -24,12 +24,15 @@ from solidgear.report.terminal import (
     reference_of,
 )
 
+if TYPE_CHECKING:
+    from matplotlib.typing import RcKeyType
+
 #: colours that stay apart for the colour-blind, and markers that stay apart in grey
 COLOUR = {"euler": "#c98a00", "timoshenko": "#0072b2", "harmonic": "#00805e", "solid": "#5a3e8c"}
 MARKER = {"euler": "v", "timoshenko": "s", "harmonic": "o", "solid": "D"}
 QUANTITY_COLOUR = {"c_zz": "#1f5f99", "k_zz": "#9db8d2", "bending_1": "#c4541c"}
 QUANTITY_NAME = {"c_zz": "C_zz", "k_zz": "K_zz", "bending_1": "bending 1"}
-STYLE = {
+STYLE: dict[RcKeyType, Any] = {
     "svg.fonttype": "none",  # text stays text: it can be searched, copied and read aloud
     "font.family": "sans-serif",
     "font.sans-serif": ["DejaVu Sans", "Arial", "Helvetica"],
@@ -188,7 +191,7 @@ def mode_chart(results):
             )
     axes[0].set(ylabel="frequency, Hz", ylim=(0, None))
     axes[0].legend(ncols=4, loc="upper left", bbox_to_anchor=(0, 1.14), borderaxespad=0)
-    if relative:
+    if relative and reference is not None:
         axes[1].axhline(0, color=_colour(reference), lw=1.2)
         axes[1].set_ylabel(f"against {model_name(reference)}")
         axes[1].yaxis.set_major_formatter(PercentFormatter(1.0, decimals=None, symbol=" %"))
@@ -445,7 +448,8 @@ def cause_chart(results):
 def attachment_chart(results):
     """Rigid and section ties against averaged ones, for compliance and first bending."""
     solids = {k: a for k, a in (results.get("attachments") or {}).items() if a and a.get("average")}
-    labels, columns = [], {"c_zz": [], "bending_1": []}
+    labels = []
+    columns: dict[str, list[float | None]] = {"c_zz": [], "bending_1": []}
     for key, ties in solids.items():
         for tie in ("rigid", "section"):
             if not ties.get(tie):

@@ -5,11 +5,18 @@ from __future__ import annotations
 from collections.abc import Iterable
 from itertools import islice
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from solidgear.report.fields import mesh_unknowns, surface
+from solidgear.solve.modes import ModeSet
 from solidgear.whole_file import whole
+
+if TYPE_CHECKING:
+    from solidgear.body import Body
+    from solidgear.scene import Scene
+    from solidgear.solve.modes import Mode
 
 #: solid element -> (meshio's cell type, VTK's class of cell)
 CELLS = {
@@ -21,7 +28,14 @@ CELLS = {
 }
 
 
-def write_vtu(scene, body, modes, path: str | Path, *, most: int | None = None) -> Path:
+def write_vtu(
+    scene: Scene,
+    body: Body,
+    modes: ModeSet | Iterable[Mode],
+    path: str | Path,
+    *,
+    most: int | None = None,
+) -> Path:
     """Write a body and its mode shapes.
 
     A solid is written as its volume mesh, with cells of its own type; any other body as its
@@ -53,7 +67,8 @@ def write_vtu(scene, body, modes, path: str | Path, *, most: int | None = None) 
     import meshio
 
     path = Path(path)
-    shapes = dict(_shapes(islice(getattr(modes, "modes", modes), most)))
+    told = modes.modes if isinstance(modes, ModeSet) else modes
+    shapes = dict(_shapes(islice(told, most)))
     if body.fidelity == "solid" and body.geometry is not None:
         points, cells, data = _volume(body, shapes)
     else:

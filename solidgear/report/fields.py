@@ -209,7 +209,8 @@ def _profile(scene, nodes) -> _Rings:
     y).
     """
     tol = 1e-9 * scene.length
-    outer, inner = [], []
+    outer: list[tuple[float, float]] = []
+    inner: list[tuple[float, float]] = []
     for s in scene.segments:
         inside = nodes[(nodes > s.y0 + tol) & (nodes < s.y1 - tol)]
         y = np.concatenate([[s.y0], inside, [s.y1]])

@@ -21,7 +21,7 @@ from solidgear.errors import SolidgearError
 try:
     import fcntl
 except ImportError:  # Windows
-    fcntl = None
+    fcntl = None  # type: ignore[assignment]  # a module, or none
 
 LOCK = ".solidgear.lock"
 #: what is ever listed, and so ever removed: a damaged list can name nothing else
@@ -34,7 +34,7 @@ HALF = re.compile(
 _held: set[Path] = set()
 
 
-def prepare(out) -> Path:
+def prepare(out: str | os.PathLike) -> Path:
     """Make sure a folder can be written, before an hour is spent on what goes into it.
 
     Raises
@@ -56,7 +56,7 @@ def prepare(out) -> Path:
 
 
 @contextmanager
-def held(out) -> Iterator[Path]:
+def held(out: str | os.PathLike) -> Iterator[Path]:
     """A folder that can be written and that no other process takes meanwhile.
 
     Raises

@@ -200,7 +200,7 @@ def _main(room: Path) -> int:
     pv.OFF_SCREEN = True
     # Drawing nothing is what fails where there is no OpenGL; past this mark the renderer is not to
     # blame.
-    probe = pv.Plotter(off_screen=True, window_size=(16, 16))
+    probe = pv.Plotter(off_screen=True, window_size=[16, 16])
     probe.show(auto_close=False)
     probe.close()
     (room / "window").touch()

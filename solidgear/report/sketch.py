@@ -159,7 +159,7 @@ class _Pen:
     def segment(self, s: Mapping) -> None:
         x0, x1 = self.x(s["y0"]), self.x(s["y1"])
         o0, o1, i0, i1 = (self.radial * s[k] for k in ("outer0", "outer1", "inner0", "inner1"))
-        colour = FILL.get(s.get("part"), FILL["shaft"])
+        colour = FILL.get(s.get("part", "shaft"), FILL["shaft"])
         self.ax.fill(
             [x0, x1, x1, x0],
             [i0, i1, o1, o0],

@@ -13,6 +13,7 @@ import textwrap
 from collections.abc import Mapping
 from dataclasses import asdict, fields
 from pathlib import Path
+from typing import Any
 
 from solidgear.evidence.pareto import CHARTED, Race, Row
 from solidgear.report.charts import STYLE
@@ -99,7 +100,6 @@ def records(race: Race) -> list[dict]:
     fronts = {(q, cost): race.front(q, cost) for q in race.reference["values"] for cost in COSTS}
     out = []
     for row in race.rows:
-        samples = row.samples or [None]
         r = {
             k: v
             for k, v in asdict(row).items()
@@ -108,9 +108,9 @@ def records(race: Race) -> list[dict]:
         r |= {
             "options": options_text(row),
             "runs": len(row.samples),
-            "seconds_min": min(samples),
+            "seconds_min": min(row.samples, default=None),
             "seconds_median": row.seconds,
-            "seconds_max": max(samples),
+            "seconds_max": max(row.samples, default=None),
         }
         r["samples"] = " ".join(repr(s) for s in row.samples)
         r |= {_column(q): row.values.get(q) for q in CHARTED}
@@ -416,7 +416,7 @@ def _legend(race: Race) -> list:
             handles.append(Line2D([], [], ls="", label=name.upper()))
         for s in series:
             dashed = s.endswith("uniform")
-            line = {
+            line: dict[str, Any] = {
                 "ls": "" if family in ("lumped", "beam") else "--" if dashed else "-",
                 "lw": 1.0 if dashed else 1.5,
             }
@@ -522,7 +522,9 @@ def front_rows(race: Race) -> list[tuple[Row, list[str]]]:
     """Rows on a front over seconds, cheapest first, and of which quantities."""
     on = {q: race.front(q) for q in race.reference["values"]}
     rows = [(r, [q for q in on if any(r is other for other in on[q])]) for r in race.rows]
-    return sorted(((r, names) for r, names in rows if names), key=lambda pair: pair[0].seconds)
+    return sorted(
+        ((r, names) for r, names in rows if names), key=lambda pair: pair[0].seconds or 0.0
+    )
 
 
 def error_text(race: Race, row: Row, quantity: str) -> str:
@@ -585,8 +587,7 @@ def section(folder, scene: Mapping) -> dict | None:
     none of this scene.
     """
     race = read_race(folder) if folder is not None else None
-    picture = Path(folder) / PICTURE if race else None
-    if race is None or race.scene != scene or not picture.exists():
+    if race is None or race.scene != scene or not (picture := Path(folder) / PICTURE).exists():
         return None
     head = [
         "model",

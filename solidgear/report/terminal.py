@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from typing import Any
+from typing import TYPE_CHECKING, Any, TypeGuard
 
 from rich import box
 from rich.console import Group, RenderableType
@@ -17,6 +17,9 @@ from rich.table import Table
 from rich.text import Text
 
 from solidgear.frames import DOF_NAMES
+
+if TYPE_CHECKING:
+    import numpy as np
 
 #: key -> name in a sentence, cheapest first
 MODEL_NAMES = {
@@ -53,7 +56,7 @@ def plain(value: Any) -> Any:
     return value
 
 
-def is_number(value: Any) -> bool:
+def is_number(value: Any) -> TypeGuard[float]:
     """Whether `value` is a finite number (a truth value is none)."""
     return isinstance(value, (int, float)) and not isinstance(value, bool) and math.isfinite(value)
 
@@ -188,7 +191,8 @@ def answer_seconds(model: Mapping) -> float | None:
     """
     times = model.get("seconds") or {}
     stages = [times.get(s) for s in ("build", "statics", "modes")]
-    return sum(stages) if all(is_number(s) for s in stages) else times.get("total")
+    known = [s for s in stages if is_number(s)]
+    return sum(known) if len(known) == len(stages) else times.get("total")
 
 
 #: how the worth of a model is told in a narrow column
@@ -355,7 +359,7 @@ def verdict_text(results: Mapping) -> str:
     return "\n".join(lines + [f"- {s}" for s in verdict.get("sentences") or ()])
 
 
-def matrix_table(matrix: Sequence[Sequence[float | None]], kind: str) -> Table:
+def matrix_table(matrix: np.ndarray | Sequence[Sequence[float | None]], kind: str) -> Table:
     """A 6x6 with its units; free components (None or NaN) show as a dash.
 
     Parameters

@@ -3,16 +3,31 @@
 from __future__ import annotations
 
 import json
+import os
+from collections.abc import Callable
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from solidgear.errors import SolidgearError
 from solidgear.report.folder import clear, held, prepare
 from solidgear.whole_file import whole
 
+if TYPE_CHECKING:
+    from solidgear.body import Body
+    from solidgear.comparison import Comparison
+    from solidgear.scene import Scene
+    from solidgear.solve.modes import ModeSet
+
 MODE = "bending 1"
 
 
-def write_all(comparison, out, *, renders: bool, progress) -> Path:
+def write_all(
+    comparison: Comparison,
+    out: str | os.PathLike,
+    *,
+    renders: bool,
+    progress: Callable[[str], None],
+) -> Path:
     """Write results.json, renders, vtu files and the report; see
     :meth:`solidgear.comparison.Comparison.write_report`.
 
@@ -86,13 +101,13 @@ def _leave_out(results: dict, sentence: str) -> None:
     results["warnings"].append(sentence)
 
 
-def _write_vtu(scene, rung, path: Path) -> None:
+def _write_vtu(scene: Scene, rung, path: Path) -> None:
     from solidgear.report.export import write_vtu
 
     write_vtu(scene, rung.body, rung.modes, path)
 
 
-def _job(scene, body, modes, name: str, path: Path):
+def _job(scene: Scene, body, modes, name: str, path: Path):
     from solidgear.report.fields import surface
     from solidgear.report.render import RenderJob
 
@@ -137,7 +152,9 @@ def _draw(comparison, folder: Path) -> None:
         _leave_out(results, f"render of {', '.join(models)} left out: {reason}")
 
 
-def render_mode(scene, body, modes, name: str, path) -> Path:
+def render_mode(
+    scene: Scene, body: Body, modes: ModeSet, name: str, path: str | os.PathLike
+) -> Path:
     """Draw one mode of one body.
 
     Raises

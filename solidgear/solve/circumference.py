@@ -8,7 +8,11 @@ tangential and axial motions are fitted by waves around.
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
+
+from solidgear.body import Body
 
 MOST = 16  # waves around that are told apart, where the mesh has the nodes for them
 BINS = 512
@@ -108,7 +112,7 @@ def _divided(key, own, least: int):
     return done
 
 
-def of_body(body) -> tuple[Circumference, object] | None:
+def of_body(body: Body) -> tuple[Circumference, Callable[[np.ndarray], np.ndarray]] | None:
     """The fit for a body of one 3D block that knows its mesh, and a function from its vectors to
     nodal displacements; else None.
     """

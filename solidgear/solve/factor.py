@@ -204,7 +204,9 @@ def _canonical(matrix):
     return matrix
 
 
-def choice(matrix, backend: str | None = None, planar: bool = False) -> tuple[str, str]:
+def choice(
+    matrix: sp.csr_matrix, backend: str | None = None, planar: bool = False
+) -> tuple[str, str]:
     """Name of the back end that will factor a matrix of such a shape and number of entries, and the
     reason for it.
     """

@@ -11,6 +11,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from solidgear.solve.relief import Linear
+
 
 @dataclass(frozen=True)
 class Found:
@@ -34,8 +36,8 @@ class Found:
 
 
 def block_lanczos(
-    operator,
-    mass,
+    operator: Linear,
+    mass: Linear,
     start: np.ndarray,
     wanted: int,
     *,
@@ -114,7 +116,7 @@ def _outside(x, inside, basis, heavy, mass):
 
     ``inside = heavy.T @ x``.  Twice is enough (Parlett 1998, section 6.9), with the columns brought to unit length in between.
     """
-    rounding = 1e-13 * np.linalg.norm(inside)
+    rounding = 1e-13 * float(np.linalg.norm(inside))
     y, _, first = _orthonormal(x - basis @ inside, mass, rounding)
     y, loaded, second = _orthonormal(y - basis @ (heavy.T @ y), mass)
     return y, loaded, second @ first

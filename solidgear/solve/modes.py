@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import time
 from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -29,6 +30,9 @@ from solidgear.solve.parts import (
 from solidgear.solve.statics import SHIFT, factors
 from solidgear.solve.supported import decoupled
 from solidgear.threads import pinned
+
+if TYPE_CHECKING:
+    from solidgear.body import Holding
 
 STATIONS = 13
 #: Relative error of a frequency above which it is not told.
@@ -125,7 +129,7 @@ class ModeSet:
 @pinned
 def modes(
     body: Body,
-    supports=(),
+    supports: Holding = (),
     n: int = 10,
     *,
     max_frequency: float | None = None,
@@ -181,10 +185,10 @@ def modes(
     )
     parts = own + more
     start = time.perf_counter()
+    verdicts: list[dict] = []
     if count:
         reach = reach_of(parts, n, highest)
-        for part in parts:
-            complete(part, reach, method)
+        verdicts = [complete(part, reach, method) for part in parts]
     spent = time.perf_counter() - start
     project = Projection(body, np.linspace(0.0, body.length, STATIONS))
     names = Names(body, supports, project)
@@ -203,10 +207,10 @@ def modes(
         "families": _families(parts, left, every),
     }
     if count:
-        evidence |= {"count": [part.verdict for part in parts], "count_seconds": spent}
-        if all(part.verdict["checked"] for part in parts):
+        evidence |= {"count": verdicts, "count_seconds": spent}
+        if all(verdict["checked"] for verdict in verdicts):
             evidence["complete_below_hz"] = min(
-                [part.verdict["below_hz"] for part in parts] + [u.begins_hz for u in left]
+                [verdict["below_hz"] for verdict in verdicts] + [u.begins_hz for u in left]
             )
     if torn:
         evidence["torn_pairs"] = torn
@@ -230,7 +234,7 @@ def _rigid(names: Names, raw: list[Raw]):
     for r in raw:
         motion = names.project(r.vectors)
         shares = names.project.shares(motion)
-        family = max(shares, key=shares.get)
+        family = max(shares, key=shares.__getitem__)
         name = (
             "rigid (combined)" if sum(s > 0.01 for s in shares.values()) > 1 else f"rigid {family}"
         )

@@ -13,14 +13,15 @@ are told.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 from scipy.sparse.csgraph import connected_components
 
-from solidgear.body import Body, Supports
+from solidgear.body import Block, Body, Supports
 from solidgear.frames import rotation
-from solidgear.solve.circumference import of_body
+from solidgear.solve.circumference import Circumference, of_body
 
 FAMILIES = {"bending": (0, 2, 3, 5), "axial": (1,), "torsion": (4,)}
 #: Bearings that a quarter turn changes by no more than this, relative, split a pair by half of it
@@ -44,7 +45,7 @@ class Shape:
         Section motions.
     captured : float
         Share of the modal mass they describe.
-    profile : object
+    profile : ndarray or dict of int to ndarray
         What :meth:`Names.overlap` compares.
     double : bool
         Whether it stands for its twin as well, as a block of two waves and more does for its cosine
@@ -55,7 +56,7 @@ class Shape:
     waves: int
     motion: np.ndarray
     captured: float
-    profile: object
+    profile: np.ndarray | dict[int, np.ndarray]
     double: bool = False
 
 
@@ -140,24 +141,26 @@ class Names:
         """Family, waves around, section motions and profile of one shape."""
         motion = self.project(vectors)
         shares = self.project.shares(motion)
+        profile: np.ndarray | dict[int, np.ndarray] = vectors
         if self._round is not None:
-            energy, profile = self._around(vectors)
+            energy, profile = self._around(*self._round, vectors)
         elif len(self.body.blocks) == 1 and len(self.body.blocks[0].components) == 6:
-            energy, profile = (
-                {(1 if name == "bending" else 0, name): share for name, share in shares.items()},
-                vectors,
-            )
+            energy = {
+                (1 if name == "bending" else 0, name): share for name, share in shares.items()
+            }
         else:
-            energy, profile = self._by_block(vectors), vectors
-        waves, family = max(energy, key=energy.get)
+            energy = self._by_block(vectors)
+        waves, family = max(energy, key=energy.__getitem__)
         if self._round is not None:
             profile = profile[waves]
         return Shape(
             family, waves, motion, sum(shares.values()), profile, self._round is None and waves > 1
         )
 
-    def _around(self, vectors):
-        fit, displacements = self._round
+    @staticmethod
+    def _around(
+        fit: Circumference, displacements: Callable[[np.ndarray], np.ndarray], vectors
+    ) -> tuple[dict[tuple[int, str], float], np.ndarray]:
         profile, share = fit(displacements(vectors[0]))
         radial, tangential, axial = share[0]
         energy = {
@@ -168,7 +171,7 @@ class Names:
         energy |= {(n, f"ovalising n={n}"): share[n].sum() for n in range(2, fit.waves + 1)}
         return energy, profile
 
-    def _by_block(self, vectors):
+    def _by_block(self, vectors) -> dict[tuple[int, str], float]:
         energy: dict[tuple[int, str], float] = {}
         for b, v in vectors.items():
             block = self.body.block(b)
@@ -202,12 +205,11 @@ class Names:
             or (self._round is None and len(self.body.blocks) == 1)
         ):
             return 0.0
-        if self._round is not None:
-            size = np.vdot(a.profile, a.profile).real * np.vdot(b.profile, b.profile).real
-            return float(np.vdot(1j * a.profile, b.profile).real ** 2 / size)
-        return self._turned(a.profile, b.profile) ** 2 / (
-            self._turned(a.profile, None) * self._turned(b.profile, None)
-        )
+        one, other = a.profile, b.profile
+        if isinstance(one, np.ndarray) and isinstance(other, np.ndarray):
+            size = np.vdot(one, one).real * np.vdot(other, other).real
+            return float(np.vdot(1j * one, other).real ** 2 / size)
+        return self._turned(one, other) ** 2 / (self._turned(one, None) * self._turned(other, None))
 
     def _turned(self, a, b) -> float:
         """Mass product of a shape in blocks that mirror each other, turned into the other plane,
@@ -263,7 +265,7 @@ class Names:
                 and shapes[j].family == shape.family
             ]
             like = {j: self.overlap(shape, shapes[j]) for j in others}
-            twin = max(like, key=like.get, default=None)
+            twin = max(like, key=like.__getitem__, default=None)
             near = others and value[others[0]] - value[i] <= tolerance * abs(value[i])
             if twin is None or like[twin] < 0.5:
                 # Shapes of a cluster mix: then the nearest is as good as any.
@@ -274,7 +276,7 @@ class Names:
                 partner[i] = partner[twin] = twin
             elif like[twin] >= 0.5:
                 torn.append((i, twin))
-        groups = [
+        groups: list[tuple[int, ...]] = [
             (i, partner[i]) if i in partner else (i,)
             for i in range(len(shapes))
             if partner.get(i) != i
@@ -282,14 +284,14 @@ class Names:
         return groups, torn
 
 
-def waves_of(block) -> int:
+def waves_of(block: Block) -> int:
     """Waves around the axis of the motions of a block."""
     if block.name.startswith("ovalising_"):
         return int(block.name.removeprefix("ovalising_"))
     return 1 if set(block.components) & set(FAMILIES["bending"]) else 0
 
 
-def family_of(block) -> str:
+def family_of(block: Block) -> str:
     """Family of the motions of a block, ``all`` for one that holds every motion."""
     if len(block.components) == 6:
         return "all"

@@ -36,7 +36,8 @@ class Part:
     ----------
     supported : Supported
     ask : int
-    solved : Solved or None
+    solved : Solved
+        Set by the first search.
     twins : list of int
         Lone blocks that repeat it in the other plane.
     first : int
@@ -48,7 +49,7 @@ class Part:
 
     supported: Supported
     ask: int
-    solved: Solved | None = None
+    solved: Solved = field(init=False)
     twins: list[int] = field(default_factory=list)
     first: int = 0
     verdict: dict | None = None
@@ -163,7 +164,7 @@ def further_parts(
         waves += 1
     left = [Uncounted(waves, body.further.bound(waves) / MARGIN, True)]
     found: list[Part] = []
-    for waves in sorted(light, key=light.get):
+    for waves in sorted(light, key=light.__getitem__):
         limit = reach_of(parts + found, n, highest)
         if light[waves] > 1.01 * LIGHT * _hz(limit):
             left.append(Uncounted(waves, light[waves] / LIGHT))
@@ -188,8 +189,9 @@ def _hz(value: float) -> float:
     return float(np.sqrt(max(value, 0.0)) / (2 * np.pi))
 
 
-def complete(part: Part, reach: float, method: str | None) -> None:
-    """Count the modes of a part, and search again with more vectors where one was missed.
+def complete(part: Part, reach: float, method: str | None) -> dict:
+    """Count the modes of a part, and search again with more vectors where one was missed; the
+    verdict, which the part keeps.
 
     Raises
     ------
@@ -213,7 +215,7 @@ def complete(part: Part, reach: float, method: str | None) -> None:
                 "checked": False,
                 "why": f"the stiffest cell lies {stiffest:.0e} times above the modes, so that rounding turns signs of the factor",
             }
-            return
+            return part.verdict
         raise SolidgearError(
             f"modes: {seen.found} modes were found below {_hz(seen.below):.6g} Hz but the factor counts {seen.counted}; ask for more modes (n = {n})"
         )
@@ -226,6 +228,7 @@ def complete(part: Part, reach: float, method: str | None) -> None:
             "modes": seen.counted,
             "backend": seen.backend,
         }
+    return part.verdict
 
 
 def families(parts: list[Part]) -> list[tuple[str, int | None, bool]]:

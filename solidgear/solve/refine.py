@@ -16,7 +16,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from solidgear.solve.supported import ROUNDED
+from solidgear.solve.supported import ROUNDED, Supported
 
 #: Modes with no more than this part of their mass in elastic motion are nearly rigid ones on soft
 #: springs.
@@ -74,7 +74,7 @@ class _Pairs:
     rounding: np.ndarray
 
 
-def refine(supported, vectors: np.ndarray, value: np.ndarray, needed: int) -> Refined:
+def refine(supported: Supported, vectors: np.ndarray, value: np.ndarray, needed: int) -> Refined:
     """Ritz pairs of a supported body in a space that is close to invariant, corrected until they
     are right.
 
@@ -109,7 +109,9 @@ def _corrected(supported, vectors, value, needed: int, count: int) -> Refined:
     """Ritz pairs, the first ``count`` of them as nearly rigid modes, with corrections until they
     are right or rounding is all that is left.
     """
-    best, last, fine = None, None, False
+    best: Refined | None = None
+    last: Refined | None = None
+    fine = False
     wrong = np.zeros(len(value), bool)
     correction = forces = np.zeros_like(vectors)
     for step in range(STEPS + 1):
@@ -147,7 +149,9 @@ def _corrected(supported, vectors, value, needed: int, count: int) -> Refined:
             break
         if coarse:
             fine, last, best = True, best, None  # values of the two precisions are not compared
-    return best if best is not None else last
+    result = best if best is not None else last
+    assert result is not None  # every step leaves one of them
+    return result
 
 
 def _modes(supported, stiffness, u, value, correction, forces, below) -> _Pairs:

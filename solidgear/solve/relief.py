@@ -9,11 +9,15 @@ sigma is.
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 import scipy.linalg as sla
 
+Linear = Callable[[np.ndarray], np.ndarray]
 
-def inertia_relief(solve, mass, rigid: np.ndarray):
+
+def inertia_relief(solve: Linear, mass: Linear, rigid: np.ndarray) -> tuple[Linear, Linear]:
     """Two functions for a free body: loads balanced by its own inertia, and their elastic
     displacements.
 
@@ -44,8 +48,14 @@ def inertia_relief(solve, mass, rigid: np.ndarray):
 
 
 def elastic_fields(
-    solve, mass, stiffness, rigid: np.ndarray, load: np.ndarray, tolerance: float, most: int = 30
-):
+    solve: Linear,
+    mass: Linear,
+    stiffness: Linear,
+    rigid: np.ndarray,
+    load: np.ndarray,
+    tolerance: float,
+    most: int = 30,
+) -> tuple[np.ndarray, np.ndarray, float]:
     """Displacements ``K u = f`` of a free body under balanced loads.
 
     Parameters

@@ -18,6 +18,7 @@ taken out exactly, so a free torsion is an exact zero and not a penalty.
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
 
 import numpy as np
 import scipy.linalg as sla
@@ -29,6 +30,9 @@ from solidgear.frames import DOF_NAMES
 from solidgear.solve.factor import Factor, factorise
 from solidgear.solve.relief import elastic_fields
 from solidgear.threads import pinned
+
+if TYPE_CHECKING:
+    from solidgear.body import Holding
 
 # Of the lowest elastic eigenvalue.  Rounding in the factor is amplified by the highest eigenvalue
 # of the mesh over the shift: 1e-3 left 5e-3 of the frequencies of slender tubes wrong, 3e-2 leaves
@@ -163,7 +167,7 @@ def flexibility(body: Body, tolerance: float = 1e-12) -> Flexibility:
 
 
 @pinned
-def condense(body: Body, supports, port: str, attachment: str | None = None) -> Condensed:
+def condense(body: Body, supports: Holding, port: str, attachment: str | None = None) -> Condensed:
     """Stiffness and compliance of the supported shaft at one port.
 
     Parameters

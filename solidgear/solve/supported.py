@@ -5,6 +5,7 @@ The factor of the free body does all the work; bearings enter by the Woodbury id
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from functools import cached_property
 
 import numpy as np
@@ -22,7 +23,7 @@ REFINED = 1e-7
 EPS = float(np.finfo(float).eps)
 
 
-def decoupled(body: Body, supports: Supports, tolerance: float):
+def decoupled(body: Body, supports: Supports, tolerance: float) -> tuple[np.ndarray, float]:
     """Bearing matrix with negligible couplings between blocks removed, and the bound that allows
     it.
 
@@ -140,7 +141,7 @@ class Supported:
             start += len(at)
         return np.vstack(parts)
 
-    def spring_rounding(self, u) -> np.ndarray:
+    def spring_rounding(self, u: np.ndarray) -> np.ndarray:
         """(k,) energy of shapes that the last digit of the stiffness entries of the springs stands
         for, N m.
 
@@ -161,16 +162,16 @@ class Supported:
         """Back ends of the factors, joined by ``+``."""
         return "+".join(sorted({f.backend for f in self._factors}))
 
-    def parts(self, x) -> list[np.ndarray]:
+    def parts(self, x: np.ndarray) -> list[np.ndarray]:
         """Rows of ``x`` block by block."""
         return [x[a:b] for a, b in zip(self._cuts, self._cuts[1:])]
 
-    def _per_block(self, f, x):
+    def _per_block(self, f: Callable[[int, np.ndarray], np.ndarray], x: np.ndarray) -> np.ndarray:
         # one block is the common case, and large vectors are not copied for it
         found = [f(i, part) for i, part in enumerate(self.parts(x))]
         return found[0] if len(found) == 1 else np.concatenate(found)
 
-    def _free_inverse(self, x):
+    def _free_inverse(self, x: np.ndarray) -> np.ndarray:
         """``(K + shift M)^-1 x``.  Rigid motions answer with 1 / shift exactly, and the factor, which would round that, is left with the rest."""
         carried = self.rigid.T @ x
         y = self._per_block(
@@ -178,19 +179,19 @@ class Supported:
         )
         return self.without_rigid(y) + self.rigid @ (carried / self.shift)
 
-    def without_rigid(self, u):
+    def without_rigid(self, u: np.ndarray) -> np.ndarray:
         """Displacements less their rigid part in the mass norm."""
         return u - self.rigid @ (self.mass_rigid.T @ u)
 
-    def mass(self, x):
+    def mass(self, x: np.ndarray) -> np.ndarray:
         """``M x``."""
         return self._per_block(lambda i, part: self.blocks[i].mass @ part, x)
 
-    def elastic(self, x):
+    def elastic(self, x: np.ndarray) -> np.ndarray:
         """``K x`` of the free body."""
         return self._per_block(lambda i, part: self.blocks[i].stiffness @ part, x)
 
-    def elastic_extended(self, x):
+    def elastic_extended(self, x: np.ndarray) -> np.ndarray:
         """The same in extended precision, for shapes whose energy is small beside what its terms
         are.
         """
@@ -201,16 +202,16 @@ class Supported:
             x,
         )
 
-    def purge(self, x):
+    def purge(self, x: np.ndarray) -> np.ndarray:
         """Take unresisted rigid motions out of displacements."""
         return x - self.free @ (self._mass_free.T @ x) if self.free.shape[1] else x
 
-    def inverse(self, x):
+    def inverse(self, x: np.ndarray) -> np.ndarray:
         """Displacements ``(K + springs + shift M)^-1 x`` without unresisted rigid motions."""
         y = self._quick_inverse(x)
         return y + self._quick_inverse(x - self.forward(y)) if self.inaccuracy > REFINED else y
 
-    def forward(self, u):
+    def forward(self, u: np.ndarray) -> np.ndarray:
         """``(K + springs + shift M) u``; the rigid part, which K resists by rounding only, is kept
         from it.
         """
@@ -244,7 +245,7 @@ class Supported:
             ).max()
         )
 
-    def _quick_inverse(self, x):
+    def _quick_inverse(self, x: np.ndarray) -> np.ndarray:
         if self.free.shape[1]:
             x = x - self._mass_free @ (self.free.T @ x)
         y = self._free_inverse(x)
@@ -266,7 +267,7 @@ class Supported:
         )
         return float((stiff[heavy > 0] / heavy[heavy > 0]).max())
 
-    def stretch(self, u, loads) -> np.ndarray:
+    def stretch(self, u: np.ndarray, loads: np.ndarray) -> np.ndarray:
         """Stretch ``L'u`` of the springs, the root of their energy.
 
         Where the springs are so stiff that the motion of their seat is the rounding of ``u``, it
@@ -285,7 +286,7 @@ class Supported:
                 out = np.where(lost, sla.cho_solve(self._inner, self._through.T @ loads), out)
         return out
 
-    def spread(self, u) -> np.ndarray:
+    def spread(self, u: np.ndarray) -> np.ndarray:
         """(r, k) stretch of the springs by motions as large as the largest of each shape: what
         rounding of ``u`` is to be compared with.
 
@@ -311,7 +312,7 @@ class Supported:
             rigid = rigid @ (v[:, keep] / np.sqrt(w[keep]))
         return rigid
 
-    def split(self, x) -> dict[int, np.ndarray]:
+    def split(self, x: np.ndarray) -> dict[int, np.ndarray]:
         """A vector of the group as block index -> vector."""
         return {b: x[a:c] for b, a, c in zip(self.group, self._cuts, self._cuts[1:])}
 

@@ -70,6 +70,7 @@ class ReducedBlock:
 
     def mirrored(self, index: int, block: Block) -> ReducedBlock:
         """The same in the other bending plane."""
+        assert block.mirror is not None  # asked of blocks that repeat another only
         signs = np.array(block.mirror[1])
         sign = np.tile(signs, len(self.motions) // len(signs))
         return replace(

@@ -76,7 +76,7 @@ class RowFile:
         if self._parquet:
             _pyarrow()
         beside = self.path.with_name(self.path.name + ".sqlite")
-        self._store: Store | None = None
+        self._opened: Store | None = None
         with self._writing():
             self.path.parent.mkdir(parents=True, exist_ok=True)
             for place in (self.path, beside):
@@ -86,7 +86,7 @@ class RowFile:
                     )
             if self.path.exists() and not overwrite and not _size(beside):
                 raise self._unknown(beside)
-            self._store = Store(beside, {"columns": list(columns), **plan}, total, overwrite)
+            self._opened = Store(beside, {"columns": list(columns), **plan}, total, overwrite)
         try:
             with self._writing():
                 self._compare(overwrite)
@@ -96,7 +96,12 @@ class RowFile:
 
     @property
     def done(self) -> set[int]:
-        return self._store.done if self._store else set()
+        return self._opened.done if self._opened else set()
+
+    @property
+    def _store(self) -> Store:
+        assert self._opened is not None  # or there would be no file of rows
+        return self._opened
 
     @property
     def basis(self) -> int | None:

@@ -108,7 +108,7 @@ class Store:
             raise
 
     # ---------------------------------------------------------------------------------- opening
-    def _lock(self, discard: bool) -> tuple[sqlite3.Connection, tuple[int, int]]:
+    def _lock(self, discard: bool) -> tuple[sqlite3.Connection, tuple[int, int] | None]:
         """The database under its exclusive lock, and which file that is."""
         for _ in range(3):
             if not self.path.exists():
@@ -288,12 +288,12 @@ class Store:
     def append(self, rows: Iterable[tuple[int, str]]) -> None:
         """Add rows, each a number and its text; all are on the disk when this returns, or none."""
         self._still_there()
-        rows = [(number, line, self._checksum(number, line)) for number, line in rows]
+        new = [(number, line, self._checksum(number, line)) for number, line in rows]
         with self._db:
             self._db.execute("BEGIN")
-            self._db.executemany(ADD_ROW, rows)
-            self._db.execute(SET_FACT, self._fact(("rows", len(self.done) + len(rows))))
-        self.done.update(number for number, _, _ in rows)
+            self._db.executemany(ADD_ROW, new)
+            self._db.execute(SET_FACT, self._fact(("rows", len(self.done) + len(new))))
+        self.done.update(number for number, _, _ in new)
         self.facts["rows"] = len(self.done)
 
     def note(self, name: str, value: Any) -> None:

@@ -10,7 +10,7 @@ import numpy as np
 from solidgear.bearing_stiffness import STIFFNESS_NAMES
 from solidgear.body import Supports, as_supports
 from solidgear.errors import SceneError, SolidgearError
-from solidgear.scene import Bearing, Port, Scene
+from solidgear.scene import Bearing, Port, Scene, Segment
 from solidgear.sweep.vary import Axis
 
 
@@ -21,7 +21,7 @@ class SeatedShaft:
     A `Scene` refuses seats that overlap; here only one of them carries a bearing at a time.
     """
 
-    segments: tuple
+    segments: tuple[Segment, ...]
     stations: tuple[Port | Bearing, ...]
 
     @property

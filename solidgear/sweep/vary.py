@@ -12,12 +12,16 @@ from __future__ import annotations
 import itertools
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from solidgear.bearing_stiffness import STIFFNESS_NAMES
 from solidgear.errors import SceneError, SolidgearError, nearest
 from solidgear.units import POSITION_DECIMALS, quantity
+
+if TYPE_CHECKING:
+    from solidgear.scene import Scene
 
 FIELDS = ("position", "scale", *STIFFNESS_NAMES)
 #: More variants than this are a slip of the keyboard.
@@ -62,7 +66,7 @@ class Axis:
         return a + (b - a) * u if self.spacing == "linear" else a * (b / a) ** u
 
 
-def axes(scene, texts: Iterable[str]) -> tuple[Axis, ...]:
+def axes(scene: Scene, texts: Iterable[str]) -> tuple[Axis, ...]:
     """Read all ``--vary`` texts of a sweep.
 
     Raises
@@ -108,7 +112,7 @@ def sample(axes: Sequence[Axis], count: int, seed: int) -> np.ndarray:
     return np.column_stack([axis.draw(u[:, k]) for k, axis in enumerate(axes)])
 
 
-def _axis(scene, text: str) -> Axis:
+def _axis(scene: Scene, text: str) -> Axis:
     target, equals, spec = text.partition("=")
     head, _, field = target.strip().rpartition(".")
     word, _, name = head.partition(".")
@@ -152,7 +156,7 @@ def _values(field: str, spec: str) -> tuple[tuple[float, ...], str]:
         if spacing == "log" and not a * b > 0:
             raise SceneError("a logarithmic range needs both ends above zero")
         n = int(parts[2])
-        values = np.linspace(a, b, n) if spacing == "linear" else np.geomspace(a, b, n)
+        values = (np.linspace if spacing == "linear" else np.geomspace)(a, b, n).tolist()
     else:
         raise SceneError('values are "a:b:n", "log:a:b:n" or a list "a,b,c"')
     if field == "position":

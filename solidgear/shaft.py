@@ -1,0 +1,24 @@
+"""What builders and meshes see of a scene."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Protocol
+
+if TYPE_CHECKING:
+    from solidgear.scene import Bearing, Port, Segment
+
+
+class Shaft(Protocol):
+    """Segments end to end, and what is attached to them: a `Scene`, or something like it."""
+
+    @property
+    def segments(self) -> tuple[Segment, ...]:
+        """From y = 0 on."""
+
+    @property
+    def stations(self) -> tuple[Port | Bearing, ...]:
+        """Each has name, y, lo, hi, attachment."""
+
+    @property
+    def length(self) -> float:
+        """m."""
