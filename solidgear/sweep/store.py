@@ -108,7 +108,7 @@ class Store:
             raise
 
     # ---------------------------------------------------------------------------------- opening
-    def _lock(self, discard: bool) -> tuple[sqlite3.Connection, tuple[int, int] | None]:
+    def _lock(self, discard: bool) -> tuple[sqlite3.Connection, tuple[int, int]]:
         """The database under its exclusive lock, and which file that is."""
         for _ in range(3):
             if not self.path.exists():
@@ -134,7 +134,7 @@ class Store:
                 self.path.unlink()
                 continue
             # Another process that ends without rows takes its file away, perhaps just now.
-            if self._identity() == file:
+            if file is not None and self._identity() == file:
                 return db, file
             db.close()
         raise self._taken()
