@@ -13,7 +13,7 @@ from collections.abc import Callable, Mapping
 from typing import Any
 
 from solidgear.report import sketch as scene_sketch
-from solidgear.report.terminal import (
+from solidgear.report.words import (
     answer_seconds,
     headline,
     is_number,

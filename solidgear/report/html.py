@@ -19,7 +19,7 @@ from solidgear.frames import DOF_NAMES
 from solidgear.report import charts, speed_accuracy
 from solidgear.report.lumped import lumped_tables
 from solidgear.report.table import Table
-from solidgear.report.terminal import (
+from solidgear.report.words import (
     BEAMS,
     BLOCK_UNITS,
     MODEL_NAMES,

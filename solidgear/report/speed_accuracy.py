@@ -17,7 +17,12 @@ from pathlib import Path
 from solidgear.evidence.pareto import CHARTED, Race, Row
 from solidgear.report.charts import STYLE
 from solidgear.report.table import Table
-from solidgear.report.terminal import count, is_number, percent, seconds
+from solidgear.report.words import (
+    count,
+    is_number,
+    percent,
+    seconds,
+)
 from solidgear.whole_file import whole
 
 log = logging.getLogger(__name__)
