@@ -15,7 +15,7 @@ from dataclasses import asdict, fields
 from pathlib import Path
 
 from solidgear.evidence.pareto import CHARTED, Race, Row
-from solidgear.report.charts import STYLE
+from solidgear.report.chart_style import STYLE
 from solidgear.report.table import Table
 from solidgear.report.words import (
     count,
