@@ -31,7 +31,7 @@ ENDLESS = """
 import hashlib, os
 from solidgear.cli import main
 from solidgear.solve import factor
-from solidgear.solve.backends import SuperLU
+from solidgear.solve.backends.superlu import SuperLU
 factor.LONG = 0
 real = SuperLU.factor
 

@@ -379,7 +379,7 @@ def _solid_factor_mb(unknowns: float, entries: float, fill: float) -> float:
     PARDISO needs its factor, its copy of the matrix and work by the entry: its own estimate for 47
     meshes within 1 % where the fill is known.
     """
-    from solidgear.solve.backends import law
+    from solidgear.solve.backends.memory_law import law
     from solidgear.solve.factor import FactorError, choice
 
     matrix = SimpleNamespace(shape=(unknowns, unknowns), nnz=entries)
