@@ -16,23 +16,15 @@ superlu  SciPy's SuperLU, LU             unpivoted             a law: it has no 
 
 from __future__ import annotations
 
-import ctypes
-import os
-import weakref
 from functools import lru_cache
-from importlib.metadata import PackageNotFoundError, files
 
 import numpy as np
 import scipy.sparse as sp
-import scipy.sparse.linalg as spla
 
-from solidgear.errors import SolidgearError
-from solidgear.interruptible import Made
 from solidgear.solve.backends.cholmod import Cholmod
 from solidgear.solve.backends.mumps import Mumps
 from solidgear.solve.backends.pardiso import Pardiso
 from solidgear.solve.backends.superlu import SuperLU
-from solidgear.threads import offered
 
 BACKENDS = {back.name: back for back in (Pardiso, Cholmod, Mumps, SuperLU)}
 INSTALL = {
