@@ -203,7 +203,7 @@ MUTATIONS = (
     ),
     Mutation(
         "lumped point 1 mm off",
-        "solidgear/scene_file.py",
+        "solidgear/scene_places.py",
         "_lay_out",
         "(segments[-1].y0 + y) / 2",
         "(segments[-1].y0 + y) / 2 + 1e-3",
