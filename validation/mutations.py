@@ -59,7 +59,7 @@ MUTATIONS = (
     ),
     Mutation(
         "Young's modulus 1 % high in the harmonic solid",
-        "solidgear/fidelity/harmonic.py",
+        "solidgear/fidelity/harmonic_blocks.py",
         "_Work.bending_block",
         "stiffness.add(part, (lame * trace + mu * (2 * normal + shear)) @ gram)",
         "stiffness.add(part, 1.01 * (lame * trace + mu * (2 * normal + shear)) @ gram)",
@@ -123,7 +123,7 @@ MUTATIONS = (
     ),
     Mutation(
         "axis condition of bending dropped",
-        "solidgear/fidelity/harmonic.py",
+        "solidgear/fidelity/harmonic_blocks.py",
         "_Work.bending_block",
         "keep[self.on_axis, 1:] = False",
         "keep[self.on_axis, 2:] = False",
@@ -131,7 +131,7 @@ MUTATIONS = (
     ),
     Mutation(
         "one sign in the strain of the first harmonic",
-        "solidgear/fidelity/harmonic.py",
+        "solidgear/fidelity/harmonic_blocks.py",
         "_energy",
         "ty[2, 0], ty[2, 1], ty[0, 2] = -1.0, 1.0, -n",
         "ty[2, 0], ty[2, 1], ty[0, 2] = -1.0, 1.0, n",
@@ -139,7 +139,7 @@ MUTATIONS = (
     ),
     Mutation(
         "mass of p and q taken like that of w",
-        "solidgear/fidelity/harmonic.py",
+        "solidgear/fidelity/harmonic_blocks.py",
         "_Work.bending_block",
         "np.array([2.0, 2.0, 1.0])",
         "np.array([1.0, 1.0, 1.0])",
@@ -147,7 +147,7 @@ MUTATIONS = (
     ),
     Mutation(
         "torsion with r squared for r cubed",
-        "solidgear/fidelity/harmonic.py",
+        "solidgear/fidelity/harmonic_blocks.py",
         "_Work.torsion_block",
         "w = 2 * np.pi * dv * t.x[0] ** 3",
         "w = 2 * np.pi * dv * t.x[0] ** 2",
@@ -155,7 +155,7 @@ MUTATIONS = (
     ),
     Mutation(
         "Lame's lambda of plane stress",
-        "solidgear/fidelity/harmonic.py",
+        "solidgear/fidelity/harmonic_blocks.py",
         "_Work.bending_block",
         "lame = 2 * mu * material.nu / (1 - 2 * material.nu)",
         "lame = 2 * mu * material.nu / (1 - material.nu)",
@@ -163,7 +163,7 @@ MUTATIONS = (
     ),
     Mutation(
         "seat mean without the weight of the radius",
-        "solidgear/fidelity/harmonic.py",
+        "solidgear/fidelity/harmonic_blocks.py",
         "_Work._mean",
         "out[1, :, 2] = scatter(-np.pi * w * r * r)",
         "out[1, :, 2] = scatter(-np.pi * w * r)",

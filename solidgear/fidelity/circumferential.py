@@ -72,7 +72,8 @@ class Families:
         return self._found[n]
 
     def _light_work(self):
-        from solidgear.fidelity.harmonic import _element, _Work
+        from solidgear.fidelity.harmonic import _element
+        from solidgear.fidelity.harmonic_blocks import _Work
 
         if self._work is None:
             s = self._scene
