@@ -251,7 +251,7 @@ MUTATIONS = (
     ),
     Mutation(
         "Lame's lambda of plane stress in the 3D solid",
-        "solidgear/fidelity/solid.py",
+        "solidgear/fidelity/solid_matrices.py",
         "_matrices",
         "lame = 2 * mu * nu / (1 - 2 * nu)",
         "lame = 2 * mu * nu / (1 - nu)",
