@@ -19,9 +19,9 @@ from solidgear.report import (
     charts,
     evidence_tables,
     input_tables,
+    race_tables,
     result_tables,
     run_tables,
-    speed_accuracy,
 )
 from solidgear.report.cells import DASH, capital, short_percent
 from solidgear.report.lumped import lumped_tables
@@ -79,7 +79,7 @@ def render_page(
         warnings=warnings,
         charts={name: Markup(svg.decode()) if svg else None for name, svg in drawn.items()},
         renders=_renders(r, folder, images),
-        race=speed_accuracy.section(folder, r["scene"]),
+        race=race_tables.section(folder, r["scene"]),
         **_tables(r),
     )
 
