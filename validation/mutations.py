@@ -275,7 +275,7 @@ MUTATIONS = (
     ),
     Mutation(
         "sign of a lumped mass in the exact beam",
-        "solidgear/fidelity/krylov.py",
+        "solidgear/fidelity/krylov_shaft.py",
         "_Joint.act",
         "b[2:] - self.mass[:, None, None] * omega**2 * b[:2]",
         "b[2:] + self.mass[:, None, None] * omega**2 * b[:2]",
