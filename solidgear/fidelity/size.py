@@ -312,7 +312,7 @@ def _sections(rings: np.ndarray, full: np.ndarray, around: int) -> tuple[float, 
 
 def _tetrahedra(scene, given: dict) -> Size:
     from solidgear.fidelity.solid import tetrahedra_plan
-    from solidgear.meshing.tetrahedra import estimated_counts
+    from solidgear.meshing.element_size import estimated_counts
 
     wanted = [(s, a) for s in scene.stations for a in (given["attachments"] or (s.attachment,))]
     counts = estimated_counts(
