@@ -19,7 +19,8 @@ from skfem import MeshQuad1
 from solidgear.body import Block
 from solidgear.fidelity.assembly import unknowns
 from solidgear.fidelity.scale import overhangs
-from solidgear.meshing.layout import Grading, layout
+from solidgear.meshing.grading import Grading
+from solidgear.meshing.layout import layout
 from solidgear.meshing.meridian import meridian
 
 #: What carries a disc is no clamp: part of the stiffness of a clamped strip that it gets.  On 72

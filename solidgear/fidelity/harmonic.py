@@ -19,7 +19,8 @@ from solidgear.fidelity.circumferential import Families
 from solidgear.fidelity.harmonic_blocks import _Work
 from solidgear.fidelity.options import checked, countable
 from solidgear.fidelity.scale import elastic_scale
-from solidgear.meshing.layout import Grading, Layout, layout
+from solidgear.meshing.grading import Grading
+from solidgear.meshing.layout import Layout, layout
 from solidgear.meshing.meridian import Meridian, meridian
 
 

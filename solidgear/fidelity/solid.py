@@ -16,7 +16,7 @@ from solidgear.fidelity.options import checked, countable
 from solidgear.fidelity.scale import elastic_scale
 from solidgear.fidelity.solid_matrices import _matrices, _mean
 from solidgear.fidelity.solid_mesh import _isoparametric
-from solidgear.meshing.layout import Grading
+from solidgear.meshing.grading import Grading
 
 
 def solid(
