@@ -9,7 +9,8 @@ from pydantic import AfterValidator, Field, model_validator
 
 from solidgear.bearing_stiffness import stiffness_matrix
 from solidgear.errors import SceneError
-from solidgear.scene import Ask, Attachment, AxialSeries, Material, Model, Status
+from solidgear.scene import Ask, Material
+from solidgear.scene_parts import Attachment, AxialSeries, Model, Status
 from solidgear.units import (
     Angle,
     AxialSpring,

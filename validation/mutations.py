@@ -195,7 +195,7 @@ MUTATIONS = (
     ),
     Mutation(
         "series spring beside the bearing instead of behind it",
-        "solidgear/scene.py",
+        "solidgear/scene_parts.py",
         "Bearing.stiffness",
         "K -= np.outer(K[:, 1], K[1, :]) / (K[1, 1] + spring)",
         "K[1, 1] += spring",
