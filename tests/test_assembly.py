@@ -17,7 +17,7 @@ from skfem.quadrature import get_quadrature
 from skfem.refdom import RefQuad
 
 import solidgear as sg
-from solidgear.fidelity import solid as solid_module
+from solidgear.fidelity import solid_matrices, solid_mesh
 from solidgear.fidelity.assembly import STRAIGHT, Pattern, inverted, straight
 from solidgear.scene import STEEL, Material, Port, Scene, Segment
 
@@ -117,7 +117,7 @@ def skfem_elasticity(geometry, materials, quadrature=None, intorder=None):
 @pytest.mark.parametrize("element", SOLID)
 def test_curved_solid_matches_skfem_with_the_same_quadrature(element):
     scene, body = small_solid(element)
-    rule = solid_module._cell_rule(element)
+    rule = solid_matrices._cell_rule(element)
     stiffness, mass = skfem_elasticity(
         body.geometry, [s.material for s in scene.segments], quadrature=rule
     )
@@ -163,8 +163,8 @@ def move(p, size, amount, rng):
 
 def assembled_box(element, curved=False):
     mesh = box(element, curved=curved)
-    geometry = solid_module._isoparametric(mesh, element, np.zeros(mesh.t.shape[1], int))
-    k, m = solid_module._matrices(
+    geometry = solid_mesh._isoparametric(mesh, element, np.zeros(mesh.t.shape[1], int))
+    k, m = solid_matrices._matrices(
         geometry, SimpleNamespace(segments=(SimpleNamespace(material=STEEL),))
     )
     return geometry, k, m
@@ -225,12 +225,12 @@ def test_patch_test_can_fail():
     mesh = box("hex27")
     soft = np.zeros(mesh.t.shape[1], int)
     soft[0] = 1
-    geometry = solid_module._isoparametric(mesh, "hex27", soft)
+    geometry = solid_mesh._isoparametric(mesh, "hex27", soft)
     softer = Material(E=STEEL.E * (1 - 1e-6), nu=STEEL.nu, density=STEEL.density)
     scene = SimpleNamespace(
         segments=(SimpleNamespace(material=STEEL), SimpleNamespace(material=softer))
     )
-    k, _ = solid_module._matrices(geometry, scene)
+    k, _ = solid_matrices._matrices(geometry, scene)
     u = (np.diag([1e-3, 0, 0]) @ geometry.nodes).T.ravel()
     size = np.array([1.0, 2.0, 3.0])[:, None]
     interior = np.all((geometry.nodes > 1e-9) & (geometry.nodes < (1 - 1e-9) * size), axis=0)
@@ -243,7 +243,7 @@ def bent_box(element, amount, every=3):
     by a share of the element's size.
     """
     mesh = box(element)
-    geometry = solid_module._isoparametric(mesh, element, np.arange(mesh.t.shape[1]) % 2)
+    geometry = solid_mesh._isoparametric(mesh, element, np.arange(mesh.t.shape[1]) % 2)
     touched = geometry.dofs[
         -1 if element == "hex27" else geometry.mesh.p.shape[0] + 1 if element == "tet10" else 8,
         ::every,
@@ -268,9 +268,9 @@ def test_bends_large_and_small_match_skfem(amount):
         assert found.all()
     if amount >= 1e-11:
         assert not found[bent].any()
-    k, m = solid_module._matrices(geometry, TWO)
+    k, m = solid_matrices._matrices(geometry, TWO)
     stiffness, mass = skfem_elasticity(
-        geometry, [STEEL, SOFT], quadrature=solid_module._cell_rule("tet10")
+        geometry, [STEEL, SOFT], quadrature=solid_matrices._cell_rule("tet10")
     )
     # whatever is taken for straight may change entries by less than this
     assert relative_difference(k, stiffness) < 1e-12
@@ -279,16 +279,16 @@ def test_bends_large_and_small_match_skfem(amount):
 
 def test_taking_a_slightly_bent_element_for_straight_would_be_seen(monkeypatch):
     geometry, _ = bent_box("tet10", 1e-9)
-    right, _ = solid_module._matrices(geometry, TWO)
+    right, _ = solid_matrices._matrices(geometry, TWO)
     monkeypatch.setattr("solidgear.fidelity.assembly.STRAIGHT", 1e-3)
-    wrong, _ = solid_module._matrices(geometry, TWO)
+    wrong, _ = solid_matrices._matrices(geometry, TWO)
     assert 1e-11 < relative_difference(wrong, right) < 1e-7
 
 
 def test_straightness_is_measured_against_the_least_extent():
     # A flat element: a bend that is small beside its length and not beside its height changes its
     # stiffness.
-    element = solid_module.ELEMENTS["tet10"]()
+    element = solid_mesh.ELEMENTS["tet10"]()
     flat = (np.diag([1.0, 1.0, 1e-2]) @ element.doflocs.T)[:, :, None]
     assert straight(element, flat)[0].all()
     flat[2, 4] += 30 * STRAIGHT * 1e-2
@@ -308,11 +308,11 @@ def test_parallelepipeds_match_skfem(element):
     mesh = replace(
         mesh, doflocs=np.array([[1.0, 0.3, 0.1], [0.0, 1.2, -0.2], [0.1, 0.0, 0.7]]) @ mesh.doflocs
     )
-    geometry = solid_module._isoparametric(mesh, element, np.arange(8) % 2)
+    geometry = solid_mesh._isoparametric(mesh, element, np.arange(8) % 2)
     assert straight(geometry.element, geometry.nodes[:, geometry.dofs])[0].all()
-    k, m = solid_module._matrices(geometry, TWO)
+    k, m = solid_matrices._matrices(geometry, TWO)
     stiffness, mass = skfem_elasticity(
-        geometry, [STEEL, SOFT], quadrature=solid_module._cell_rule(element)
+        geometry, [STEEL, SOFT], quadrature=solid_matrices._cell_rule(element)
     )
     assert relative_difference(k, stiffness) < SAME_SUM
     assert relative_difference(m, mass) < SAME_SUM
@@ -321,13 +321,13 @@ def test_parallelepipeds_match_skfem(element):
 @pytest.mark.parametrize("element", ["hex20", "hex27"])
 def test_one_bent_brick_among_straight_ones(element):
     mesh = cubes()
-    geometry = solid_module._isoparametric(mesh, element, np.arange(8) % 2)
+    geometry = solid_mesh._isoparametric(mesh, element, np.arange(8) % 2)
     geometry.nodes[:, geometry.dofs[-1, 2]] += 0.02
     found, _ = straight(geometry.element, geometry.nodes[:, geometry.dofs])
     assert 0 < found.sum() < 8
-    k, m = solid_module._matrices(geometry, TWO)
+    k, m = solid_matrices._matrices(geometry, TWO)
     stiffness, mass = skfem_elasticity(
-        geometry, [STEEL, SOFT], quadrature=solid_module._cell_rule(element)
+        geometry, [STEEL, SOFT], quadrature=solid_matrices._cell_rule(element)
     )
     assert relative_difference(k, stiffness) < SAME_SUM
     assert relative_difference(m, mass) < SAME_SUM

@@ -11,7 +11,8 @@ import scipy.sparse as sp
 
 import solidgear as sg
 from solidgear.solve import factor
-from solidgear.solve.backends import missing, upper_triangle
+from solidgear.solve.backends import missing
+from solidgear.solve.backends.matrix import upper_triangle
 from solidgear.solve.factor import factorise, indefinite, negative_pivots
 from solidgear.solve.statics import flexibility
 

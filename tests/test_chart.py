@@ -13,24 +13,22 @@ import pytest
 
 import solidgear as sg
 from solidgear import cli
-from solidgear.evidence import cases, pareto
-from solidgear.evidence.pareto import Race, Row, race
-from solidgear.report import speed_accuracy
+from solidgear.evidence import cases, racing
+from solidgear.evidence.pareto import Race, Row
+from solidgear.evidence.racing import race
+from solidgear.report import race_figure, race_rows
 from solidgear.report.html import render_page, write_report
-from solidgear.report.speed_accuracy import (
+from solidgear.report.race_figure import draw, figure
+from solidgear.report.race_rows import (
     MACHINE,
     PICTURE,
     ROWS,
-    draw,
-    error_text,
-    figure,
-    front_rows,
     left_out,
     read_race,
     records,
-    section,
     write_rows,
 )
+from solidgear.report.race_tables import error_text, front_rows, section
 
 ROOT = Path(__file__).parent.parent
 SCENE = ROOT / "geometry" / "shaft_stepped.toml"
@@ -61,8 +59,8 @@ def light():
     """
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(cases, "plan", few)
-        patch.setattr(pareto, "REFERENCE", COARSE)
-        patch.setattr(pareto, "LIKE_FOR_LIKE", COARSE)
+        patch.setattr(racing, "REFERENCE", COARSE)
+        patch.setattr(racing, "LIKE_FOR_LIKE", COARSE)
         patch.setattr(cases, "setup_seconds", lambda: SETUP)
         yield
 
@@ -92,7 +90,7 @@ def run(monkeypatch, capsys, tmp_path):
 
 @pytest.fixture
 def undrawn(monkeypatch):
-    monkeypatch.setattr(speed_accuracy, "draw", lambda found, path: path)
+    monkeypatch.setattr(race_figure, "draw", lambda found, path: path)
 
 
 def marks(ax, marker):
@@ -322,7 +320,7 @@ def test_command_refuses_a_folder_that_cannot_be_written(run, tmp_path):
 
 
 def test_an_interrupt_leaves_rows_and_chart_of_what_there_was(run, tmp_path, monkeypatch):
-    real, seen = pareto._run, []
+    real, seen = racing._run, []
 
     def interrupted(scene, row, *rest):
         if len(seen) == 2:
@@ -330,7 +328,7 @@ def test_an_interrupt_leaves_rows_and_chart_of_what_there_was(run, tmp_path, mon
         seen.append(row.series)
         real(scene, row, *rest)
 
-    monkeypatch.setattr(pareto, "_run", interrupted)
+    monkeypatch.setattr(racing, "_run", interrupted)
     code, _, _ = run("chart", SCENE, "--out", tmp_path)
     assert code == 130
     found = read_race(tmp_path)
@@ -341,12 +339,12 @@ def test_an_interrupt_leaves_rows_and_chart_of_what_there_was(run, tmp_path, mon
 
 def test_rows_are_written_as_they_come(run, tmp_path, monkeypatch, undrawn):
     """A process that is killed leaves what it had measured."""
-    lengths, real = [], speed_accuracy.write_rows
+    lengths, real = [], race_rows.write_rows
 
     def watch(found, folder):
         real(found, folder)
         lengths.append(sum(bool(r.samples) for r in read_race(folder).rows))
 
-    monkeypatch.setattr(speed_accuracy, "write_rows", watch)
+    monkeypatch.setattr(race_rows, "write_rows", watch)
     run("chart", SCENE, "--out", tmp_path, "--runs", "1")
     assert lengths[:5] == [1, 2, 3, 4, 5]

@@ -10,8 +10,9 @@ from shafts import NASTY
 from skfem.quadrature import get_quadrature
 
 import solidgear as sg
+from solidgear.meshing.grading import Grading
 from solidgear.meshing.hexahedra import hexahedra
-from solidgear.meshing.layout import Grading, layout
+from solidgear.meshing.layout import layout
 from solidgear.meshing.quality import MeshError
 from solidgear.scene import Scene, Segment
 

@@ -12,7 +12,8 @@ import pytest
 from scipy.optimize import brentq
 
 import solidgear as sg
-from solidgear.fidelity.krylov import Span, Station, from_scene, krylov, krylov_duncan
+from solidgear.fidelity.krylov import Span, Station, from_scene, krylov
+from solidgear.fidelity.krylov_shaft import krylov_duncan
 from solidgear.scene import Scene, Segment
 
 GEOMETRY = Path(__file__).parents[1] / "geometry"

@@ -12,7 +12,9 @@ from shafts import NASTY
 
 import solidgear as sg
 from solidgear.errors import SolidgearError
-from solidgear.meshing.layout import Grading, first_of_run, graded, layout
+from solidgear.meshing.bands import first_of_run
+from solidgear.meshing.grading import Grading, graded
+from solidgear.meshing.layout import layout
 from solidgear.meshing.meridian import meridian
 from solidgear.scene import Bearing, Port, Scene, Segment
 

@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 from solidgear.drivetrain.gear_mesh import MeshVector, line_of_action, mesh_point, to_gear_frame
+from solidgear.drivetrain.highest_frequency import consistency, rayleigh_bound
 from solidgear.drivetrain.identify import Unknown, identify, torsion_springs
 from solidgear.drivetrain.lumped_pair import (
     COMPONENTS,
@@ -18,9 +19,7 @@ from solidgear.drivetrain.lumped_pair import (
     LOAD,
     PINION,
     LumpedPair,
-    consistency,
     diagonal_mass,
-    rayleigh_bound,
     shaft_stiffness,
 )
 from solidgear.errors import SolidgearError

@@ -31,7 +31,7 @@ ENDLESS = """
 import hashlib, os
 from solidgear.cli import main
 from solidgear.solve import factor
-from solidgear.solve.backends import SuperLU
+from solidgear.solve.backends.superlu import SuperLU
 factor.LONG = 0
 real = SuperLU.factor
 
@@ -195,7 +195,7 @@ def test_killed_while_files_are_written(at, tmp_path):
 
 def test_a_chart_that_is_killed_leaves_no_picture_of_another(tmp_path):
     from solidgear.evidence.pareto import Race, Row
-    from solidgear.report.speed_accuracy import MACHINE, PICTURE, ROWS, write_rows
+    from solidgear.report.race_rows import MACHINE, PICTURE, ROWS, write_rows
 
     (tmp_path / PICTURE).write_bytes(b"of an earlier chart")
     row = Row(

@@ -11,7 +11,8 @@ from solidgear.cli.app import Fidelity, build_body, options
 from solidgear.fidelity.beam import beam
 from solidgear.fidelity.harmonic import harmonic
 from solidgear.fidelity.options import OPTIONS, THINNEST_LAYER, checked
-from solidgear.fidelity.solid import ELEMENTS, solid
+from solidgear.fidelity.solid import solid
+from solidgear.fidelity.solid_mesh import ELEMENTS
 
 SCENE = sg.load(Path(__file__).parents[1] / "geometry" / "shaft_stepped.toml")
 BUILDERS = {"euler": beam, "timoshenko": beam, "harmonic": harmonic, "solid": solid}

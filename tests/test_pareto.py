@@ -11,9 +11,10 @@ import pytest
 
 import solidgear as sg
 from solidgear.errors import SolidgearError
-from solidgear.evidence import pareto
+from solidgear.evidence import racing
 from solidgear.evidence.cases import plan, setup_seconds
-from solidgear.evidence.pareto import Race, Row, answer, front, race, scaled_error
+from solidgear.evidence.pareto import Race, Row, front
+from solidgear.evidence.racing import answer, race, scaled_error
 
 GEOMETRY = Path(__file__).parent.parent / "geometry"
 #: coarse, but enough to give a band
@@ -204,7 +205,7 @@ def test_errors_are_those_of_the_answers_a_user_gets(scene, raced):
 
 def test_like_for_like_is_against_section_ties(scene, raced):
     tied = scene.with_attachment("section")
-    reference = sg.build(tied, "harmonic", **pareto.LIKE_FOR_LIKE)
+    reference = sg.build(tied, "harmonic", **racing.LIKE_FOR_LIKE)
     c = sg.condense(reference, tied, scene.port.name).compliance[2, 2]
     beam = raced.rows[0]
     own = sg.condense(sg.build(tied, beam.model, **beam.options), tied, scene.port.name).compliance[
@@ -232,7 +233,7 @@ def test_lumped_has_the_compliance_of_its_source_and_its_own_frequency(scene):
 
 
 def test_a_lumped_model_that_cannot_be_made_fails_with_the_reason(scene, monkeypatch):
-    monkeypatch.setattr(pareto, "representative", lambda made: None)
+    monkeypatch.setattr(racing, "representative", lambda made: None)
     with pytest.raises(SolidgearError, match="no lumped mass is positive"):
         answer(scene, "lumped", {}, 10)
 
@@ -240,8 +241,8 @@ def test_a_lumped_model_that_cannot_be_made_fails_with_the_reason(scene, monkeyp
 def test_median_and_number_of_runs():
     assert Row("beam", "Euler", 1, "euler", {}, samples=[3.0, 1.0, 2.0, 50.0, 1.5]).seconds == 2.0
     assert Row("beam", "Euler", 1, "euler", {}).seconds is None
-    assert [pareto._most_runs(s, 5) for s in (0.1, 7.9, 8.1, 19.0, 21.0)] == [5, 5, 3, 3, 1]
-    assert [pareto._most_runs(s, 2) for s in (0.1, 9.0, 21.0)] == [2, 2, 1]
+    assert [racing._most_runs(s, 5) for s in (0.1, 7.9, 8.1, 19.0, 21.0)] == [5, 5, 3, 3, 1]
+    assert [racing._most_runs(s, 2) for s in (0.1, 9.0, 21.0)] == [2, 2, 1]
 
 
 class Stage:
@@ -251,8 +252,8 @@ class Stage:
         self.now, self.cost, self.calls = 0.0, cost, []
         real = answer(scene, "timoshenko", {}, 10)
         self.real = real
-        monkeypatch.setattr(pareto.time, "perf_counter", lambda: self.now)
-        monkeypatch.setattr(pareto, "answer", self.answer)
+        monkeypatch.setattr(racing.time, "perf_counter", lambda: self.now)
+        monkeypatch.setattr(racing, "answer", self.answer)
         reference = {
             "options": COARSE,
             "unknowns": 1,
@@ -261,10 +262,10 @@ class Stage:
             "bands": {"C_zz": 1e-6, "bending 1": 1e-6},
             "like_for_like": {},
         }
-        monkeypatch.setattr(pareto, "_reference", lambda *_: (reference, real[1].compliance))
-        monkeypatch.setattr(pareto, "_warm_up", lambda *_: {})
+        monkeypatch.setattr(racing, "_reference", lambda *_: (reference, real[1].compliance))
+        monkeypatch.setattr(racing, "_warm_up", lambda *_: {})
         monkeypatch.setattr(
-            pareto.gc, "collect", lambda: 0
+            racing.gc, "collect", lambda: 0
         )  # it walks through all that the suite has loaded
 
     def answer(self, scene, model, options, n):
@@ -310,7 +311,7 @@ def test_small_models_come_before_large_ones_and_the_warm_up_tells_which_are_lar
 ):
     stage = Stage(monkeypatch, scene, {"a1": 30.0, "b1": 0.1, "b2": 0.2})
     monkeypatch.setattr(
-        pareto,
+        racing,
         "_warm_up",
         lambda *_: {("solid", None, False): 30.0, ("harmonic", None, False): 0.1},
     )
@@ -385,7 +386,7 @@ def test_a_missing_first_bending_is_said_and_costs_only_that_number(scene, monke
     "wrong", [{"runs": 0}, {"budget": 0.0}, {"budget": float("nan")}, {"budget": float("inf")}]
 )
 def test_bad_settings_are_refused_before_anything_runs(scene, monkeypatch, wrong):
-    monkeypatch.setattr(pareto, "_reference", lambda *_: pytest.fail("it ran"))
+    monkeypatch.setattr(racing, "_reference", lambda *_: pytest.fail("it ran"))
     with pytest.raises(SolidgearError, match=next(iter(wrong))):
         race(scene, [], **wrong)
 
@@ -401,8 +402,8 @@ def test_the_band_of_the_reference_holds_its_error(scene, monkeypatch):
     """Against a solid with further layers and a higher order: a band that did not would be no
     floor.
     """
-    monkeypatch.setattr(pareto, "LIKE_FOR_LIKE", COARSE)
-    record, _ = pareto._reference(
+    monkeypatch.setattr(racing, "LIKE_FOR_LIKE", COARSE)
+    record, _ = racing._reference(
         scene, {"order": 4, "layers": 1, "edge_layers": 1}, 10, lambda _: None
     )
     fine = sg.build(scene, "harmonic", order=5, layers=2, edge_layers=2)

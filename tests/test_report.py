@@ -16,14 +16,12 @@ from rich.console import Console
 from solidgear.report import charts
 from solidgear.report.html import render_page, write_report
 from solidgear.report.terminal import (
-    engineering,
     final_table,
-    hertz,
     matrix_table,
     modes_table,
-    percent,
     verdict_text,
 )
+from solidgear.report.words import engineering, hertz, percent
 
 ORDER = ["x", "y", "z", "thx", "thy", "thz"]
 #: K_zz, K_yy, K_z,thx, K_thx

@@ -11,7 +11,7 @@ import pytest
 import solidgear as sg
 from solidgear.fidelity import size as sizes
 from solidgear.fidelity.size import estimated_size, estimated_unknowns
-from solidgear.meshing.tetrahedra import estimated_counts
+from solidgear.meshing.element_size import estimated_counts
 
 GEOMETRY = Path(__file__).parents[1] / "geometry"
 SCENES = {

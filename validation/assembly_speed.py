@@ -24,8 +24,7 @@ from skfem.quadrature import get_quadrature
 from skfem.refdom import RefQuad
 
 import solidgear as sg
-from solidgear.fidelity import harmonic as harmonic_module
-from solidgear.fidelity import solid as solid_module
+from solidgear.fidelity import harmonic_blocks, solid_matrices
 from validation.common import ROOT, results_folder, show, write_rows
 
 SCENE = ROOT / "geometry" / "pinion_overhung.toml"
@@ -82,11 +81,11 @@ def solid_case(scene, element, options):
 
     def basis():
         return Basis(
-            mesh, ElementVector(geometry.element), quadrature=solid_module._cell_rule(element)
+            mesh, ElementVector(geometry.element), quadrature=solid_matrices._cell_rule(element)
         )
 
     return Case(
-        lambda: solid_module._matrices(geometry, scene), basis, stiffness, mass, slice(None)
+        lambda: solid_matrices._matrices(geometry, scene), basis, stiffness, mass, slice(None)
     )
 
 
@@ -136,7 +135,7 @@ def harmonic_case(scene):
     keep[on_axis, 1:] = False
 
     def ours():
-        work = harmonic_module._Work(
+        work = harmonic_blocks._Work(
             scene, mesh, element, body.geometry.dofs, body.geometry.meridian, order
         )
         block = work.bending_block("bending_z", (2, 3), 1, [(scene.stations[0], "average")])

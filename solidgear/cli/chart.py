@@ -44,7 +44,8 @@ def chart(
     as_json: JsonFlag = False,
 ) -> None:
     """Chart error against cost: every model and element, uniform and graded, with the Pareto front."""
-    from solidgear.report.speed_accuracy import PICTURE, front_table, left_out, records
+    from solidgear.report.race_rows import PICTURE, left_out, records
+    from solidgear.report.race_tables import front_table
     from solidgear.scene_file import load
 
     found, reported = run_chart(
@@ -104,9 +105,10 @@ def run_chart(
         For a bad number, a folder that cannot be written, or a scene with nothing to chart.
     """
     from solidgear.evidence.cases import plan, setup_seconds
-    from solidgear.evidence.pareto import BUDGET, FULL_BUDGET, race
+    from solidgear.evidence.racing import BUDGET, FULL_BUDGET, race
     from solidgear.report.folder import clear_halves, held
-    from solidgear.report.speed_accuracy import PICTURE, draw, write_rows
+    from solidgear.report.race_figure import draw
+    from solidgear.report.race_rows import PICTURE, write_rows
 
     if runs < 1:
         raise SolidgearError(f"--runs {runs}: give a whole number of at least 1")

@@ -18,7 +18,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass, fields
 from functools import cached_property
-from typing import Any
 
 import numpy as np
 import scipy.linalg as sla
@@ -36,7 +35,6 @@ NAMES = (
     *(f"gear {d}" for d in DOF_NAMES),
     "load thy",
 )
-
 # Components of the strain energy in the order and words of Hua (2010), figure 3.8 (a).
 COMPONENTS = (
     "pinion translation",
@@ -47,7 +45,6 @@ COMPONENTS = (
     "gear bending",
     "mesh",
 )
-
 TRANSLATION, TILT = [0, 1, 2], [3, 5]
 # Published 6x6 carry seven digits at the very most: a torsion row or a negative eigenvalue below
 # this is rounding.
@@ -181,7 +178,7 @@ class LumpedPair:
                 object.__setattr__(self, field.name, _mass(name, value))
             elif name.endswith("support"):
                 object.__setattr__(self, field.name, _support(name, value))
-            elif not (_is_finite(value) and value >= 0):
+            elif not (np.isscalar(value) and np.isfinite(value) and value >= 0):
                 raise SolidgearError(
                     f"{name} is {value}; it must be a finite stiffness that is not negative"
                 )
@@ -295,88 +292,8 @@ class LumpedPair:
         return np.divide(out, total, out=np.zeros_like(out), where=total > 0)
 
 
-@dataclass(frozen=True)
-class Consistency:
-    """Verdict on a published highest frequency.
-
-    Attributes
-    ----------
-    consistent : bool
-    bound_hz : float
-        The highest natural frequency cannot be lower than this.
-    published_hz : float
-    dof : int
-        Place of the diagonal entry that sets the bound.
-    needed_mass : float
-        Smallest mass (or inertia) there with which the published frequency becomes possible.
-    """
-
-    consistent: bool
-    bound_hz: float
-    published_hz: float
-    dof: int
-    needed_mass: float
-
-    def __str__(self) -> str:
-        if self.consistent:
-            return f"{self.published_hz:.1f} Hz is possible: the highest frequency is at least {self.bound_hz:.1f} Hz"
-        return (
-            f"{self.published_hz:.1f} Hz is impossible: the highest frequency is at least {self.bound_hz:.1f} Hz, "
-            f"unless the mass of degree of freedom {self.dof + 1} is {self.needed_mass:.4g} or more"
-        )
-
-
-def rayleigh_bound(stiffness, mass) -> float:
-    """Lower bound of the highest natural frequency, Hz.
-
-    Rayleigh's quotient of a unit vector is ``K_ii / M_ii``, and no quotient exceeds the highest
-    eigenvalue.
-
-    Parameters
-    ----------
-    stiffness, mass : (n, n) array_like
-        Symmetric; only the diagonals enter.  Springs left out can only raise the highest frequency.
-    """
-    return consistency(
-        np.diag(np.asarray(stiffness, float)), np.diag(np.asarray(mass, float)), 0.0
-    ).bound_hz
-
-
-def consistency(stiffness_diagonal, mass_diagonal, highest_hz: float) -> Consistency:
-    """Whether a published highest frequency can belong to published stiffnesses and masses.
-
-    Parameters
-    ----------
-    stiffness_diagonal, mass_diagonal : (n,) array_like
-        SI; stiffnesses may leave out the mesh, which only raises the bound.
-    highest_hz : float
-        Highest published frequency of the whole model, Hz.
-    """
-    k, m = np.asarray(stiffness_diagonal, float), np.asarray(mass_diagonal, float)
-    if k.shape != m.shape or k.ndim != 1 or k.size == 0:
-        raise SolidgearError(
-            f"stiffness and mass diagonals need the same length, but have shapes {k.shape} and {m.shape}"
-        )
-    if not (np.isfinite(k).all() and np.isfinite(m).all() and (m > 0).all()):
-        raise SolidgearError(
-            "stiffness and mass diagonals must be finite, and every mass and inertia positive"
-        )
-    if not (np.isfinite(highest_hz) and highest_hz >= 0):
-        raise SolidgearError(
-            f"the highest published frequency is {highest_hz}; it must be a finite number of Hz, not negative"
-        )
-    worst = int(np.argmax(k / m))
-    bound = float(np.sqrt(max(k[worst], 0.0) / m[worst]) / (2 * np.pi))
-    needed = float(k[worst] / (2 * np.pi * highest_hz) ** 2) if highest_hz > 0 else np.inf
-    return Consistency(bool(highest_hz >= bound), bound, float(highest_hz), worst, needed)
-
-
-def _is_finite(value: Any) -> bool:
-    return bool(np.isscalar(value) and np.isfinite(value))
-
-
 def _positive(name: str, value: float) -> None:
-    if not (_is_finite(value) and value > 0):
+    if not (np.isscalar(value) and np.isfinite(value) and value > 0):
         raise SolidgearError(f"{name} is {value}; it must be finite and positive")
 
 

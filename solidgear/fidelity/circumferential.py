@@ -20,7 +20,8 @@ from skfem import MeshQuad1
 from solidgear.body import Block
 from solidgear.fidelity.assembly import unknowns
 from solidgear.fidelity.scale import overhangs
-from solidgear.meshing.layout import Grading, layout
+from solidgear.meshing.grading import Grading
+from solidgear.meshing.layout import layout
 from solidgear.meshing.meridian import meridian
 
 if TYPE_CHECKING:
@@ -77,7 +78,8 @@ class Families:
         return self._found[n]
 
     def _light_work(self):
-        from solidgear.fidelity.harmonic import _element, _Work
+        from solidgear.fidelity.harmonic import _element
+        from solidgear.fidelity.harmonic_blocks import _Work
 
         if self._work is None:
             s = self._scene

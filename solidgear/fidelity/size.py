@@ -325,7 +325,7 @@ def _sections(rings: np.ndarray, full: np.ndarray, around: int) -> tuple[float, 
 
 def _tetrahedra(scene: Shaft, given: dict) -> Size:
     from solidgear.fidelity.solid import tetrahedra_plan
-    from solidgear.meshing.tetrahedra import estimated_counts
+    from solidgear.meshing.element_size import estimated_counts
 
     wanted = [(s, a) for s in scene.stations for a in (given["attachments"] or (s.attachment,))]
     counts = estimated_counts(
@@ -394,7 +394,7 @@ def _solid_factor_mb(unknowns: float, entries: float, fill: float) -> float:
     PARDISO needs its factor, its copy of the matrix and work by the entry: its own estimate for 47
     meshes within 1 % where the fill is known.
     """
-    from solidgear.solve.backends import law
+    from solidgear.solve.backends.memory_law import law
     from solidgear.solve.factor import FactorError, choice
 
     matrix = SimpleNamespace(shape=(unknowns, unknowns), nnz=entries)

@@ -6,129 +6,17 @@ blocks from one Gram matrix of basis gradients per element.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from functools import cached_property
-
 import numpy as np
 import scipy.sparse as sp
-from skfem import Element, Mesh
-from skfem.element import ElementHex1, ElementHex2, ElementHexS2, ElementTetP1, ElementTetP2
-from skfem.quadrature import get_quadrature
-from skfem.refdom import RefTet, RefTri
 
 from solidgear.body import Block, Body, Port
 from solidgear.errors import SolidgearError
-from solidgear.fidelity.assembly import (
-    Pattern,
-    Tabulation,
-    batches,
-    inverted,
-    reference,
-    straight,
-    tabulate,
-    unknowns,
-)
 from solidgear.fidelity.attachment import tie_rigidly
 from solidgear.fidelity.options import checked, countable
 from solidgear.fidelity.scale import elastic_scale
-from solidgear.frames import cross_matrix
-from solidgear.mass import ScalarMass
-from solidgear.meshing.layout import Grading
-
-ELEMENTS = {
-    "tet4": ElementTetP1,
-    "tet10": ElementTetP2,
-    "hex8": ElementHex1,
-    "hex20": ElementHexS2,
-    "hex27": ElementHex2,
-}
-
-
-@dataclass(frozen=True, eq=False)
-class SolidMesh:
-    """An isoparametric volume mesh.
-
-    Attributes
-    ----------
-    mesh : skfem mesh
-        Topology; its geometry is that of ``nodes`` for second-order elements.
-    name : str
-        ``tet10`` and so on.
-    element : skfem element
-    dofs : (nb, ne) ndarray of int
-    nodes : (3, n) ndarray
-        m.
-    segment : (ne,) ndarray of int
-    """
-
-    mesh: Mesh
-    name: str
-    element: Element
-    dofs: np.ndarray
-    nodes: np.ndarray
-    segment: np.ndarray
-
-    @cached_property
-    def boundary(self) -> np.ndarray:
-        """Indices of the facets on the surface."""
-        return self.mesh.boundary_facets()
-
-    def local_facets(self, facets: np.ndarray):
-        """Group facets by their place in the element they are seen from: yields (place, elements)."""
-        elements = self.mesh.f2t[0, facets]
-        place = (self.mesh.t2f[:, elements] == facets).argmax(axis=0)
-        for p in np.unique(place):
-            yield p, elements[place == p]
-
-    def tabulate(self, points, elements):
-        """Tabulate basis and geometry on some elements."""
-        return tabulate(self.element, self.nodes[:, self.dofs[:, elements]], self.element, points)
-
-    def surface(self, facets: np.ndarray):
-        """Quadrature on facets: yields (values (nb, q), x (3, e, q), area weights (e, q), unknowns
-        (nb, e)).
-        """
-        ref, weights = _facet_rule(self.mesh.refdom)
-        for place, elements in self.local_facets(facets):
-            corners = self.mesh.refdom.p[:, self.mesh.refdom.facets[place]]
-            s = corners[:, 1] - corners[:, 0]
-            t = corners[:, -1] - corners[:, 0]
-            points = corners[:, :1] + np.outer(s, ref[0]) + np.outer(t, ref[1])
-            tab = self.tabulate(points, elements)
-            area = np.linalg.norm(np.cross(tab.tangent @ s, tab.tangent @ t), axis=2) * weights
-            yield tab.value, tab.x, area, self.dofs[:, elements]
-
-    def facet_unknowns(self, facets: np.ndarray) -> np.ndarray:
-        """Unknowns that do not vanish on some facets."""
-        ref, _ = _facet_rule(self.mesh.refdom)
-        found = []
-        for place, elements in self.local_facets(facets):
-            corners = self.mesh.refdom.p[:, self.mesh.refdom.facets[place]]
-            points = (
-                corners[:, :1]
-                + np.outer(corners[:, 1] - corners[:, 0], ref[0])
-                + np.outer(corners[:, -1] - corners[:, 0], ref[1])
-            )
-            alive = np.abs(reference(self.element, points)[0]).max(axis=1) > 1e-9
-            found.append(self.dofs[alive][:, elements].ravel())
-        return np.unique(np.concatenate(found))
-
-    def seat(self, station, segments, tol: float) -> np.ndarray:
-        """Facets of the outer lateral surface between the ends of a seat."""
-        p = self.mesh.p[:, self.mesh.facets[:, self.boundary]]
-        y, r = p[1], np.hypot(p[0], p[2])
-        inside = (y.min(axis=0) >= station.lo - tol) & (y.max(axis=0) <= station.hi + tol)
-        steep = y.max(axis=0) - y.min(axis=0) > tol
-        middle = y.mean(axis=0)
-        outer = np.interp(middle, *_profile(segments))
-        bore = np.interp(middle, *_profile(segments, inner=True))
-        near = r.mean(axis=0) > (outer + bore) / 2
-        return self.boundary[inside & steep & near]
-
-    def section(self, y0: float, tol: float) -> np.ndarray:
-        """Facets in the plane of a cross-section."""
-        y = self.mesh.p[1, self.mesh.facets]
-        return np.flatnonzero(np.abs(y - y0).max(axis=0) < tol)
+from solidgear.fidelity.solid_matrices import _matrices, _mean
+from solidgear.fidelity.solid_mesh import _isoparametric
+from solidgear.meshing.grading import Grading
 
 
 def solid(
@@ -213,7 +101,7 @@ def solid(
     body_mesh = _isoparametric(mesh, element, segment)
     k, m = _matrices(body_mesh, scene)
     n = body_mesh.nodes.shape[1]
-    rigid: np.ndarray = np.zeros((n, 3, 6))
+    rigid = np.zeros((n, 3, 6))
     rigid[:, :, :3] = np.eye(3)
     x, y, z = body_mesh.nodes
     zero = np.zeros(n)
@@ -357,114 +245,3 @@ def _tets(scene, wanted, element, size, graded_size, refinement, around):
     straight = MeshTet1(made.mesh.p[:, : made.mesh.t.max() + 1], made.mesh.t)
     # Straight sides lose some of the volume by nature; the gate only looks for broken elements.
     return straight, made.segment, check_mesh(straight, volume=volume_of(scene.segments), rtol=5e-2)
-
-
-def _isoparametric(mesh, name, segment) -> SolidMesh:
-    """Unknowns and nodes of an element type on the geometry of a mesh."""
-    element = ELEMENTS[name]()
-    dofs = unknowns(mesh, element)
-    geometry = mesh.elem()
-    tab = tabulate(geometry, mesh.doflocs[:, mesh.dofs.element_dofs], geometry, element.doflocs.T)
-    nodes = np.zeros((3, int(dofs.max()) + 1))
-    nodes[:, dofs.T] = tab.x
-    return SolidMesh(mesh, name, element, dofs, nodes, segment)
-
-
-def _matrices(m: SolidMesh, scene):
-    """Stiffness (3n, 3n) and consistent mass of an isotropic solid."""
-    points, weights = _cell_rule(m.name)
-    basis = Tabulation(m.element, m.element, points)
-    nb, nq = basis.value.shape
-    pattern = Pattern(m.dofs)
-    stiffness, mass = pattern.sum(3), pattern.sum()
-    # products of basis functions, and of reference gradients, of which straight elements take one
-    # multiple each
-    products = (basis.value[:, None] * basis.value).reshape(nb * nb, nq).T
-    slopes = np.einsum("apq,brq,q->prab", basis.slope, basis.slope, weights, optimize=True).reshape(
-        9, nb * nb
-    )
-    is_straight, jac = straight(m.element, m.nodes[:, m.dofs])
-    for index, segment in enumerate(scene.segments):
-        nu, mu, rho = segment.material.nu, segment.material.shear_modulus, segment.material.density
-        lame = 2 * mu * nu / (1 - 2 * nu)
-        here = m.segment == index
-        for part in batches(np.flatnonzero(here & is_straight), 8 * 20 * nb * nb):
-            inverse, det = inverted(jac[:, :, part])
-            along = (inverse * det)[:, :, None, None] * inverse  # (reference, space) twice
-            tensor = _elastic(along.transpose(1, 3, 4, 0, 2).reshape(3, 3, len(part), 9), lame, mu)
-            stiffness.add(part, tensor @ slopes)
-            mass.add(part, np.outer(rho * det, weights @ products))
-        for part in batches(np.flatnonzero(here & ~is_straight), 8 * (3 * nb * nq + 30 * nb * nb)):
-            t = basis.on(m.nodes[:, m.dofs[:, part]])
-            dv = t.det * weights
-            g = t.gradient(np.sqrt(dv)).reshape(len(part), 3 * nb, nq)
-            gram = (g @ g.transpose(0, 2, 1)).reshape(-1, 3, nb, 3, nb).transpose(1, 3, 0, 2, 4)
-            stiffness.add(part, _elastic(gram, lame, mu))
-            mass.add(part, rho * dv @ products)
-    return stiffness.matrix(), ScalarMass(mass.matrix(), 3)
-
-
-def _elastic(gram, lame: float, mu: float):
-    """Isotropic stiffness from the integrals of products of gradients, components (3, 3, ...) of
-    row and column first.
-    """
-    out = lame * gram
-    shear = mu * gram
-    out += shear.swapaxes(0, 1)
-    trace = shear[0, 0] + shear[1, 1] + shear[2, 2]
-    for i in range(3):
-        out[i, i] += trace
-    return out
-
-
-def _mean(m: SolidMesh, facets, y0, n) -> sp.csr_matrix:
-    """(6, 3n) area-weighted least-squares rigid motion of facets about the axis point at y0."""
-    a = np.zeros((6, 6))
-    b = np.zeros((n, 3, 6))
-    for value, x, area, dofs in m.surface(facets):
-        offset = np.moveaxis(x, 0, -1) - np.array([0.0, y0, 0.0])  # (e, q, 3)
-        motion = np.zeros((*offset.shape, 6))
-        motion[..., :3] = np.eye(3)
-        motion[..., 3:] = -np.einsum("abc,eqc->eqab", _CROSS, offset)
-        a += np.einsum("eq,eqci,eqcj->ij", area, motion, motion)
-        np.add.at(b, dofs.T, np.einsum("bq,eq,eqci->ebci", value, area, motion, optimize=True))
-    g = np.linalg.solve(a, b.reshape(3 * n, 6).T)
-    g[np.abs(g) < 1e-14 * np.abs(g).max(axis=1, keepdims=True)] = 0.0
-    return sp.csr_matrix(g)
-
-
-# cross_matrix(r)[a, b] = sum_c _CROSS[a, b, c] r[c]
-_CROSS = np.stack([cross_matrix(e) for e in np.eye(3)], axis=-1)
-
-
-def _cell_rule(name):
-    """Quadrature exact for stiffness and mass of affine elements, one order in reserve for curved
-    ones.
-    """
-    if name.startswith("tet"):
-        return get_quadrature(
-            RefTet, 7 if name == "tet10" else 2
-        )  # both rules have positive weights only
-    x, w = np.polynomial.legendre.leggauss(3 if name == "hex8" else 4)
-    x, w = (x + 1) / 2, w / 2
-    grid = np.array([g.ravel() for g in np.meshgrid(x, x, x, indexing="ij")])
-    return grid, np.einsum("i,j,k->ijk", w, w, w).ravel()
-
-
-def _facet_rule(refdom):
-    """Quadrature on a facet in two local coordinates."""
-    if refdom is RefTet:
-        return get_quadrature(RefTri, 6)
-    x, w = np.polynomial.legendre.leggauss(4)
-    x, w = (x + 1) / 2, w / 2
-    return np.array([g.ravel() for g in np.meshgrid(x, x, indexing="ij")]), np.outer(w, w).ravel()
-
-
-def _profile(segments, inner: bool = False):
-    """Breakpoints of the outer (inner) radius; doubled a hair apart at steps, as np.interp needs."""
-    hair = 1e-12 * segments[-1].y1
-    y, r = [], []
-    for s in segments:
-        y += [s.y0 + hair, s.y1 - hair]
-        r += [s.inner0, s.inner1] if inner else [s.outer0, s.outer1]
-    return np.array(y), np.array(r)

@@ -14,7 +14,8 @@ from solidgear.evidence.quantities import change
 from solidgear.guards.notice import MODELS, SOLIDS, Notice, Notices, beyond
 from solidgear.guards.probe import Probe
 from solidgear.memory import available_mb
-from solidgear.solve.backends import BACKENDS, INSTALL, law, missing
+from solidgear.solve.backends import BACKENDS, INSTALL, missing
+from solidgear.solve.backends.memory_law import law
 from solidgear.solve.factor import FASTEST, SMALL
 
 # odd_geometry.py's shaft, softer than a seat of half the diameter: 5 % in C_zz at a bearing, 1.2 %

@@ -22,7 +22,7 @@ from solidgear.evidence.quantities import JUDGED
 from solidgear.evidence.study import Rung, rigid_seats, study
 from solidgear.fidelity import build
 from solidgear.lumped.effective_mass import LumpedPoint, Synthesis, synthesise
-from solidgear.scene import TOUCH
+from solidgear.scene_rules import TOUCH
 from solidgear.solve.modes import ModeSet, modes
 from solidgear.verdict import deviations
 

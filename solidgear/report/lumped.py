@@ -5,7 +5,13 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from solidgear.report.table import Table
-from solidgear.report.terminal import engineering, hertz, is_number, model_name, percent
+from solidgear.report.words import (
+    engineering,
+    hertz,
+    is_number,
+    model_name,
+    percent,
+)
 
 DASH = "\u2013"
 

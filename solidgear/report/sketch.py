@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from solidgear.report.terminal import is_number
+from solidgear.report.words import is_number
 
 FILL = {"shaft": "#d5dbe1", "frustum": "#ecd9b4", "backcone": "#dcc08a"}
 PART_NAMES = {"shaft": "shaft", "frustum": "gear head (pitch cone)", "backcone": "backcone"}

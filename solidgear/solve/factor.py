@@ -17,7 +17,8 @@ import scipy.sparse as sp
 
 from solidgear.interruptible import call
 from solidgear.memory import available_mb
-from solidgear.solve.backends import BACKENDS, INSTALL, FactorError, missing
+from solidgear.solve.backends import BACKENDS, INSTALL, missing
+from solidgear.solve.backends.matrix import FactorError
 
 __all__ = [
     "Factor",

@@ -18,7 +18,8 @@ from skfem import MeshHex, MeshHex2, MeshTet, MeshTet2
 
 import solidgear as sg
 from solidgear.fidelity.assembly import tabulate
-from solidgear.fidelity.solid import _cell_rule, _isoparametric, _matrices
+from solidgear.fidelity.solid_matrices import _cell_rule, _matrices
+from solidgear.fidelity.solid_mesh import _isoparametric
 from solidgear.meshing.quality import MeshError, check_mesh, element_ratios
 from solidgear.scene import Scene, Segment
 from validation.stability.frame import Finding, main

@@ -17,8 +17,10 @@ from skfem import MeshQuad1
 
 from solidgear.fidelity.assembly import unknowns
 from solidgear.fidelity.circumferential import Families
-from solidgear.fidelity.harmonic import _element, _Work
-from solidgear.meshing.layout import Grading, layout
+from solidgear.fidelity.harmonic import _element
+from solidgear.fidelity.harmonic_blocks import _Work
+from solidgear.meshing.grading import Grading
+from solidgear.meshing.layout import layout
 from solidgear.meshing.meridian import meridian
 from solidgear.scene import STEEL, Material, Scene, Segment
 from solidgear.solve.parts import LIGHT, MARGIN

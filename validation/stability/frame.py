@@ -89,7 +89,7 @@ def publish(finding: Finding, draw: Callable | None) -> Path:
         import matplotlib
         from matplotlib.figure import Figure
 
-        from solidgear.report.charts import STYLE
+        from solidgear.report.chart_style import STYLE
 
         with matplotlib.rc_context():
             matplotlib.rcdefaults()

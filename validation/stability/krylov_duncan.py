@@ -12,7 +12,8 @@ from __future__ import annotations
 import numpy as np
 from scipy.optimize import brentq
 
-from solidgear.fidelity.krylov import Span, krylov, krylov_duncan
+from solidgear.fidelity.krylov import Span, krylov
+from solidgear.fidelity.krylov_shaft import krylov_duncan
 from validation.stability.frame import Finding, crossing, main
 
 MOST = 64

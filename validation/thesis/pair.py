@@ -28,8 +28,9 @@ from solidgear.drivetrain.gear_mesh import (
     mesh_point,
     to_gear_frame,
 )
+from solidgear.drivetrain.highest_frequency import consistency
 from solidgear.drivetrain.identify import Unknown, identify, torsion_springs
-from solidgear.drivetrain.lumped_pair import LumpedPair, consistency, diagonal_mass, shaft_stiffness
+from solidgear.drivetrain.lumped_pair import LumpedPair, diagonal_mass, shaft_stiffness
 from validation.common import ROOT, results_folder, show, write_rows
 
 DATA = tomllib.loads(Path(__file__).with_name("published.toml").read_text())

@@ -1,29 +1,16 @@
-"""Error against cost as a figure, as rows on file, as a table in the terminal and as a section of
-the report.
-"""
+"""A race as a figure: error against cost, one line of panels a quantity."""
 
 from __future__ import annotations
 
-import base64
-import csv
 import io
-import json
-import logging
 import textwrap
-from collections.abc import Mapping
-from dataclasses import asdict, fields
 from pathlib import Path
-from typing import Any
 
-from solidgear.evidence.pareto import CHARTED, Race, Row
-from solidgear.report.charts import STYLE
-from solidgear.report.table import Table
-from solidgear.report.terminal import count, is_number, percent, seconds
-from solidgear.whole_file import whole
+from solidgear.evidence.pareto import Race, Row
+from solidgear.report.chart_style import STYLE
+from solidgear.report.race_rows import COSTS, left_out, replace_file
+from solidgear.report.words import count, is_number, percent, seconds
 
-log = logging.getLogger(__name__)
-
-ROWS, MACHINE, PICTURE = "rows.csv", "machine.json", "speed_accuracy.png"
 COLOUR = {
     "lumped": "#b3305c",
     "beam": "#0072b2",
@@ -50,137 +37,9 @@ MARKER = {
     "HEX20": "D",
     "HEX27": "h",
 }
-COSTS = {"seconds": "wall time from scene to both answers, s (median)", "unknowns": "unknowns"}
 QUANTITY = {"C_zz": "port compliance C_zz", "bending 1": "first bending frequency"}
-#: kinds of error in rows.csv besides those charted
-WHOLE = "C 6x6"
-CAPTION = (
-    "Error against the refined harmonic solid with the attachments of the scene, over wall time and over unknowns. Solid lines: meshes graded to shoulders and seat ends; "
-    "dashed and pale: uniform. Thin bars: fastest and slowest run. Beams tie to nodes and cannot average over a seat: filled is the error a user of this scene makes, tie "
-    "included; hollow, at the other end of the dotted line, the error against the solid with section ties, like for like; where the hollow one lies higher, errors cancel. "
-    "A sharp dip of a curve is a change of sign, not a good mesh. The grey steps are the Pareto front, on which no cancellation counts: a beam stands there with the "
-    "larger of its two errors, a mesh with the largest of its own and those of finer meshes of its series. Points with an arrow, on the edge of the shaded band, lie below "
-    "what the reference resolves. Crosses at the top failed, or found no such number; the reason is in rows.csv."
-)
 
 
-# ------------------------------------------------------------------------------------------------- files
-def write_rows(race: Race, folder: Path) -> None:
-    """Write ``rows.csv`` and ``machine.json`` into a folder, each in one step.
-
-    What an earlier race left goes first: its record and its picture must not stand beside these
-    rows, should the run be killed.
-    """
-    record = {f.name: getattr(race, f.name) for f in fields(race) if f.name != "rows"}
-    if sum(len(row.samples) for row in race.rows) <= 1:
-        for name in (MACHINE, PICTURE):
-            (folder / name).unlink(missing_ok=True)
-    _replace(folder / ROWS, _csv(race).encode())
-    _replace(folder / MACHINE, (json.dumps(record, indent=1, allow_nan=False) + "\n").encode())
-
-
-def read_race(folder) -> Race | None:
-    """The race that `write_rows` left in a folder; None where there is none that can be read."""
-    folder = Path(folder)
-    if not (folder / MACHINE).exists() or not (folder / ROWS).exists():
-        return None
-    try:
-        record = dict(json.loads((folder / MACHINE).read_text(encoding="utf-8")))
-        with open(folder / ROWS, encoding="utf-8", newline="") as lines:
-            race = Race(**record, rows=[_row(line) for line in csv.DictReader(lines)])
-        records(race)  # what is not whole shows here, and not in the middle of a page
-        return race
-    except (OSError, ValueError, KeyError, TypeError) as error:
-        log.warning("%s in %s cannot be read: %s", ROWS, folder, error)
-        return None
-
-
-def records(race: Race) -> list[dict]:
-    """One flat record a row, as in ``rows.csv``; what a row does not have is None."""
-    fronts = {(q, cost): race.front(q, cost) for q in race.reference["values"] for cost in COSTS}
-    out = []
-    for row in race.rows:
-        r = {
-            k: v
-            for k, v in asdict(row).items()
-            if k not in ("options", "samples", "values", "errors", "like_for_like")
-        }
-        r |= {
-            "options": options_text(row),
-            "runs": len(row.samples),
-            "seconds_min": min(row.samples, default=None),
-            "seconds_median": row.seconds,
-            "seconds_max": max(row.samples, default=None),
-        }
-        r["samples"] = " ".join(repr(s) for s in row.samples)
-        r |= {_column(q): row.values.get(q) for q in CHARTED}
-        r |= {f"error_{_column(q)}": row.errors.get(q) for q in (*CHARTED, WHOLE)}
-        r |= {f"like_for_like_{_column(q)}": row.like_for_like.get(q) for q in CHARTED}
-        for q in race.reference["values"]:
-            r[f"resolved_{_column(q)}"] = (
-                "" if q not in row.errors else "yes" if race.resolved(row, q) else "no"
-            )
-            r[f"front_{_column(q)}"] = " ".join(
-                cost for cost in COSTS if any(row is other for other in fronts[q, cost])
-            )
-        out.append(r)
-    return out
-
-
-def options_text(row: Row) -> str:
-    """Builder options as they follow ``--set``."""
-    return " ".join(
-        f"{k}={v:.6g}" if isinstance(v, float) else f"{k}={v}" for k, v in row.options.items()
-    )
-
-
-def _column(quantity: str) -> str:
-    return quantity.replace(" ", "_")
-
-
-def _csv(race: Race) -> str:
-    rows, target = records(race), io.StringIO()
-    if rows:
-        writer = csv.DictWriter(target, list(rows[0]), lineterminator="\n")
-        writer.writeheader()
-        writer.writerows(rows)
-    return target.getvalue()
-
-
-def _row(line: Mapping[str, str]) -> Row:
-    def numbers(names, prefix):
-        return {q: float(line[prefix + _column(q)]) for q in names if line.get(prefix + _column(q))}
-
-    options = dict(pair.split("=", 1) for pair in line["options"].split())
-    return Row(
-        line["family"],
-        line["series"],
-        int(line["level"]),
-        line["model"],
-        {k: _value(v) for k, v in options.items()},
-        line["status"],
-        line["reason"],
-        int(line["unknowns"]) if line["unknowns"] else None,
-        [float(s) for s in line["samples"].split()],
-        numbers(CHARTED, ""),
-        numbers((*CHARTED, WHOLE), "error_"),
-        numbers(CHARTED, "like_for_like_"),
-    )
-
-
-def _value(text: str):
-    try:
-        return json.loads(text)
-    except ValueError:
-        return text
-
-
-def _replace(path: Path, data: bytes) -> None:
-    with whole(path) as partial:
-        partial.write_bytes(data)
-
-
-# ------------------------------------------------------------------------------------------------- figure
 def draw(race: Race, path) -> Path:
     """Draw the figure of a race as a PNG.
 
@@ -195,7 +54,7 @@ def draw(race: Race, path) -> Path:
         matplotlib.rcParams.update(STYLE)
         target = io.BytesIO()
         figure(race).savefig(target, format="png", dpi=150, metadata={"Software": None})
-    _replace(Path(path), target.getvalue())
+    replace_file(Path(path), target.getvalue())
     return Path(path)
 
 
@@ -416,7 +275,7 @@ def _legend(race: Race) -> list:
             handles.append(Line2D([], [], ls="", label=name.upper()))
         for s in series:
             dashed = s.endswith("uniform")
-            line: dict[str, Any] = {
+            line = {
                 "ls": "" if family in ("lumped", "beam") else "--" if dashed else "-",
                 "lw": 1.0 if dashed else 1.5,
             }
@@ -506,130 +365,3 @@ def _footer(race: Race) -> str:
             f"Left out ({race.budget:g} s allowed): {left_out(race)}; reasons in rows.csv.", 190
         )
     return "\n".join(lines)
-
-
-def left_out(race: Race) -> str:
-    """The levels that were left out, in a line; empty when there are none."""
-    first: dict[str, int] = {}
-    for r in race.rows:
-        if r.status == "left out":
-            first[r.series] = min(r.level, first.get(r.series, r.level))
-    return ", ".join(f"{series} from level {level}" for series, level in first.items())
-
-
-# ------------------------------------------------------------------------------------------------- tables
-def front_rows(race: Race) -> list[tuple[Row, list[str]]]:
-    """Rows on a front over seconds, cheapest first, and of which quantities."""
-    on = {q: race.front(q) for q in race.reference["values"]}
-    rows = [(r, [q for q in on if any(r is other for other in on[q])]) for r in race.rows]
-    return sorted(
-        ((r, names) for r, names in rows if names), key=lambda pair: pair[0].seconds or 0.0
-    )
-
-
-def error_text(race: Race, row: Row, quantity: str) -> str:
-    """Error of a row in per cent, a beam's like for like after a stroke; what the reference does
-    not resolve as its band.
-    """
-    found = race.error(row, quantity)
-    if found is None:
-        return "-"
-    text = (
-        percent(found, signed=False)
-        if race.resolved(row, quantity)
-        else f"< {percent(found, signed=False)}"
-    )
-    return text + (
-        f" / {percent(row.like_for_like[quantity], signed=False)}"
-        if quantity in row.like_for_like
-        else ""
-    )
-
-
-def front_table(race: Race):
-    """The Pareto front over seconds as a rich table of 80 columns."""
-    from rich import box
-    from rich.console import Group
-    from rich.table import Table as RichTable
-    from rich.text import Text
-
-    names = {"bending 1": "f1"}
-    table = RichTable(
-        box=box.SIMPLE_HEAD,
-        padding=0,
-        collapse_padding=True,
-        pad_edge=False,
-        title="Pareto front over wall time",
-        title_justify="left",
-    )
-    table.add_column("model", no_wrap=True)
-    table.add_column("options")
-    for head in ("DOFs", "s", *(f"error {names.get(q, q)}" for q in race.reference["values"])):
-        table.add_column(head, justify="right", no_wrap=True)
-    for row, on in front_rows(race):
-        errors = (
-            error_text(race, row, q).replace(" %", "%") + ("*" if q in on else " ")
-            for q in race.reference["values"]
-        )
-        table.add_row(
-            Text(row.series),
-            Text(options_text(row) or "default"),
-            count(row.unknowns),
-            seconds(row.seconds),
-            *errors,
-        )
-    notes = "*: on the front of this quantity; <: below the band of the reference\nafter the stroke: like for like, section ties on both sides; no cancellation counts"
-    return Group(table, Text(notes))
-
-
-def section(folder, scene: Mapping) -> dict | None:
-    """What the report shows of a race in its folder: picture, words and tables; None where there is
-    none of this scene.
-    """
-    race = read_race(folder) if folder is not None else None
-    if race is None or race.scene != scene or not (picture := Path(folder) / PICTURE).exists():
-        return None
-    head = [
-        "model",
-        "options",
-        "unknowns",
-        "seconds",
-        *(f"error of {q}" for q in race.reference["values"]),
-        "on the front of",
-    ]
-    note = "“<”: below the band of the reference, which is shown instead. After the stroke: like for like, with section ties on both sides. No cancellation counts on the front."
-    rows = []
-    for r, on in front_rows(race):
-        errors = (error_text(race, r, q) for q in race.reference["values"])
-        rows.append(
-            [
-                r.series,
-                (options_text(r) or "default", "text"),
-                f"{r.unknowns:,}".replace(",", " "),
-                seconds(r.seconds),
-                *errors,
-                (", ".join(on), "text"),
-            ]
-        )
-    lost = [
-        [f"{r.series}, level {r.level}", (options_text(r), "text"), r.status, (r.reason, "text")]
-        for r in race.rows
-        if r.status != "ok" or r.reason
-    ]
-    return {
-        "uri": f"data:image/png;base64,{base64.b64encode(picture.read_bytes()).decode()}",
-        "caption": CAPTION,
-        "tables": [
-            Table("The Pareto front over wall time", head, rows, note),
-            Table(
-                "Set-up, once a process and in none of the times",
-                ["what", "seconds"],
-                [[k, seconds(v)] for k, v in race.setup.items()],
-            ),
-            Table(
-                "Failed, left out, or with something missing",
-                ["case", "options", "status", "reason"],
-                lost,
-            ),
-        ],
-    }

@@ -1,0 +1,182 @@
+"""Beam finite element for stepped, tapered and hollow shafts: Euler-Bernoulli and Timoshenko.
+
+One element serves both theories and any taper.  Its stiffness is the inverse of the tip
+flexibility of the element clamped at one end, integrated over the true section; its mass
+is consistent with the displacement field of that static problem.  A uniform element is
+the textbook one.  Nothing here is shared with the solid builders: that
+independence is what makes a comparison worth having.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import scipy.linalg as sla
+
+_GAUSS = np.polynomial.legendre.leggauss(8)
+
+
+def shear_coefficient(nu: float, outer, inner):
+    """Timoshenko shear coefficient of a circular tube (Hutchinson 2001, J. Appl. Mech. 68, eq. 49).
+
+    For a solid circle it is ``6 (1+nu)^2 / (7 + 12 nu + 4 nu^2)``.
+
+    Parameters
+    ----------
+    nu : float
+    outer, inner : float or ndarray
+        Radii, m.
+    """
+    a, b = np.asarray(outer, float), np.asarray(inner, float)
+    a2, b2 = a * a, b * b
+    top = 6 * (1 + nu) ** 2 * (a2 + b2) ** 2
+    bottom = (
+        7 * a2**2
+        + 34 * a2 * b2
+        + 7 * b2**2
+        + nu * (12 * a2**2 + 48 * a2 * b2 + 12 * b2**2)
+        + nu**2 * (4 * a2**2 + 16 * a2 * b2 + 4 * b2**2)
+    )
+    return top / bottom
+
+
+class Section:
+    """Section properties of one element at its Gauss points (distances s from the left end)."""
+
+    def __init__(self, segment, left, right, head, kappa):
+        x, w = _GAUSS
+        self.length = right - left
+        self.s = self.length * (x + 1) / 2
+        self.w = self.length * w / 2
+        if head == "mean":
+            a = np.full_like(self.s, (segment.outer0 + segment.outer1) / 2)
+            b = np.full_like(self.s, (segment.inner0 + segment.inner1) / 2)
+        else:
+            t = (left + self.s - segment.y0) / segment.length
+            a = segment.outer0 + t * (segment.outer1 - segment.outer0)
+            b = segment.inner0 + t * (segment.inner1 - segment.inner0)
+        mat = segment.material
+        area = np.pi * (a**2 - b**2)
+        second = np.pi / 4 * (a**4 - b**4)
+        g = mat.E / (2 * (1 + mat.nu))
+        self.bend = mat.E * second
+        # Cowper (1966), J. Appl. Mech. 33, 335: 6 (1 + nu) / (7 + 6 nu)
+        factor = (
+            shear_coefficient(mat.nu, a, b)
+            if kappa == "hutchinson"
+            else 6 * (1 + mat.nu) / (7 + 6 * mat.nu)
+        )
+        self.shear = factor * g * area
+        self.stretch = mat.E * area
+        self.twist = 2 * g * second
+        self.mass = mat.density * area
+        self.rotary = mat.density * second
+        self.polar = 2 * self.rotary
+        # Integration from 0 to s at the Gauss points, exact for the polynomial through them.
+        lagrange = np.linalg.inv(np.vander(x, increasing=True))
+        powers = np.array(
+            [[(xi ** (j + 1) - (-1.0) ** (j + 1)) / (j + 1) for j in range(len(x))] for xi in x]
+        )
+        self.integral = self.length / 2 * powers @ lagrange
+
+
+def bending_matrices(c: Section, shear: bool, rotary: bool, mass: str):
+    """Stiffness, mass and fields of one bending element on ``(z, thx)`` at both ends, then internal
+    unknowns.
+
+    With shear the static field has constant shear in an element, which alone converges with the square of its
+    length.  Two internal fields, those of a clamped element under a uniform force and a uniform moment, lift
+    that to the fourth power; they store no energy together with the nodal fields.
+    """
+    L, s, w = c.length, c.s, c.w
+    soft = np.stack([1 / c.bend, 1 / c.shear if shear else np.zeros_like(s)])
+    # Clamped at the left.  With dz/dy = thx a tip force bends by L - s, a tip moment by 1, a
+    # uniform force by (L - s)^2 / 2 and a uniform moment by L - s.  First row moments, second row
+    # shear forces.
+    tip = np.stack(
+        [
+            np.column_stack([L - s, np.ones_like(s)]),
+            np.column_stack([np.ones_like(s), np.zeros_like(s)]),
+        ]
+    )
+    spread = np.stack(
+        [np.column_stack([(L - s) ** 2 / 2, L - s]), np.column_stack([L - s, np.zeros_like(s)])]
+    )
+
+    def energy(a, b):
+        return np.einsum("kqi,kq,kqj->ij", a, w * soft, b)
+
+    def field(inner):
+        """Deflection and turn along the cantilever for internal moments and forces."""
+        turn = c.integral @ (inner[0] * soft[0][:, None])
+        return np.stack([c.integral @ (turn + inner[1] * soft[1][:, None]), turn])
+
+    resist = np.linalg.inv(energy(tip, tip))
+    carry = np.array([[1.0, L], [0.0, 1.0]])  # rigid motion of the right end under that of the left
+    difference = np.hstack([-carry, np.eye(2)])
+    k = difference.T @ resist @ difference
+    rigid = np.zeros((2, len(s), 4))
+    rigid[0, :, 0] = rigid[1, :, 1] = 1.0
+    rigid[0, :, 1] = s
+    shape = field(tip) @ resist @ difference + rigid
+    inertia = np.stack([c.mass, c.rotary if rotary else np.zeros_like(s)])
+    if mass == "lumped":
+        left = s < L / 2
+        ends = [(w * i)[part].sum() for part in (left, ~left) for i in inertia]
+        return k, np.diag(ends), shape
+    if shear:
+        spread = spread[:, :, : 1 + rotary]
+        clamped = spread - tip @ (resist @ energy(tip, spread))
+        stiff = energy(clamped, clamped)
+        # Brought to the size of the nodal stiffness, for a well-scaled matrix.
+        clamped = clamped * np.sqrt(k[0, 0] / np.diag(stiff))
+        k = sla.block_diag(k, energy(clamped, clamped))
+        shape = np.concatenate([shape, field(clamped)], axis=2)
+    m = np.einsum("kqi,kq,kqj->ij", shape, w * inertia, shape)
+    return k, m, shape
+
+
+def rod_matrices(c: Section, rigidity, inertia, mass: str):
+    """Stiffness and mass (2, 2) of a tapered bar in stretch or twist, and its field (q, 2)."""
+    compliance = (c.w / rigidity).sum()
+    k = np.array([[1.0, -1.0], [-1.0, 1.0]]) / compliance
+    right = c.integral @ (1 / rigidity) / compliance
+    shape = np.column_stack([1 - right, right])
+    m = shape.T @ ((c.w * inertia)[:, None] * shape)
+    if mass == "lumped":
+        m = np.diag(m.sum(axis=1))
+    return k, m, shape
+
+
+@dataclass(frozen=True)
+class Fields:
+    """Displacement fields of one element: unknowns and their shapes at the Gauss points of the
+    element.
+
+    ``bend`` has deflection and turn, (2, q, unknowns); ``stretch`` and ``twist`` one field each,
+    (q, unknowns).
+    """
+
+    segment: object
+    left: float
+    right: float
+    bend: tuple[np.ndarray, np.ndarray]
+    stretch: tuple[np.ndarray, np.ndarray]
+    twist: tuple[np.ndarray, np.ndarray]
+
+    def part(self, lo: float, hi: float):
+        """Places y, radii, length weights on the surface from lo to hi, and the interpolation (q,
+        q) from the Gauss points.
+        """
+        x, w = _GAUSS
+        middle, half = (lo + hi) / 2, (hi - lo) / 2
+        y = middle + half * x
+        local = (2 * y - self.left - self.right) / (self.right - self.left)
+        lagrange = np.vander(local, len(x), increasing=True) @ np.linalg.inv(
+            np.vander(x, increasing=True)
+        )
+        segment = self.segment
+        slope = (segment.outer1 - segment.outer0) / segment.length
+        r = segment.outer0 + slope * (y - segment.y0)
+        return y, r, w * half * np.hypot(1.0, slope), lagrange

@@ -1,0 +1,94 @@
+"""Integrals over a volume mesh: stiffness, mass, and the mean motion of a surface."""
+
+from __future__ import annotations
+
+import numpy as np
+import scipy.sparse as sp
+from skfem.quadrature import get_quadrature
+from skfem.refdom import RefTet
+
+from solidgear.fidelity.assembly import Pattern, Tabulation, batches, inverted, straight
+from solidgear.fidelity.solid_mesh import SolidMesh
+from solidgear.frames import cross_matrix
+from solidgear.mass import ScalarMass
+
+
+def _matrices(m: SolidMesh, scene):
+    """Stiffness (3n, 3n) and consistent mass of an isotropic solid."""
+    points, weights = _cell_rule(m.name)
+    basis = Tabulation(m.element, m.element, points)
+    nb, nq = basis.value.shape
+    pattern = Pattern(m.dofs)
+    stiffness, mass = pattern.sum(3), pattern.sum()
+    # products of basis functions, and of reference gradients, of which straight elements take one
+    # multiple each
+    products = (basis.value[:, None] * basis.value).reshape(nb * nb, nq).T
+    slopes = np.einsum("apq,brq,q->prab", basis.slope, basis.slope, weights, optimize=True).reshape(
+        9, nb * nb
+    )
+    is_straight, jac = straight(m.element, m.nodes[:, m.dofs])
+    for index, segment in enumerate(scene.segments):
+        nu, mu, rho = segment.material.nu, segment.material.shear_modulus, segment.material.density
+        lame = 2 * mu * nu / (1 - 2 * nu)
+        here = m.segment == index
+        for part in batches(np.flatnonzero(here & is_straight), 8 * 20 * nb * nb):
+            inverse, det = inverted(jac[:, :, part])
+            along = (inverse * det)[:, :, None, None] * inverse  # (reference, space) twice
+            tensor = _elastic(along.transpose(1, 3, 4, 0, 2).reshape(3, 3, len(part), 9), lame, mu)
+            stiffness.add(part, tensor @ slopes)
+            mass.add(part, np.outer(rho * det, weights @ products))
+        for part in batches(np.flatnonzero(here & ~is_straight), 8 * (3 * nb * nq + 30 * nb * nb)):
+            t = basis.on(m.nodes[:, m.dofs[:, part]])
+            dv = t.det * weights
+            g = t.gradient(np.sqrt(dv)).reshape(len(part), 3 * nb, nq)
+            gram = (g @ g.transpose(0, 2, 1)).reshape(-1, 3, nb, 3, nb).transpose(1, 3, 0, 2, 4)
+            stiffness.add(part, _elastic(gram, lame, mu))
+            mass.add(part, rho * dv @ products)
+    return stiffness.matrix(), ScalarMass(mass.matrix(), 3)
+
+
+def _elastic(gram, lame: float, mu: float):
+    """Isotropic stiffness from the integrals of products of gradients, components (3, 3, ...) of
+    row and column first.
+    """
+    out = lame * gram
+    shear = mu * gram
+    out += shear.swapaxes(0, 1)
+    trace = shear[0, 0] + shear[1, 1] + shear[2, 2]
+    for i in range(3):
+        out[i, i] += trace
+    return out
+
+
+def _mean(m: SolidMesh, facets, y0, n) -> sp.csr_matrix:
+    """(6, 3n) area-weighted least-squares rigid motion of facets about the axis point at y0."""
+    a = np.zeros((6, 6))
+    b = np.zeros((n, 3, 6))
+    for value, x, area, dofs in m.surface(facets):
+        offset = np.moveaxis(x, 0, -1) - np.array([0.0, y0, 0.0])  # (e, q, 3)
+        motion = np.zeros((*offset.shape, 6))
+        motion[..., :3] = np.eye(3)
+        motion[..., 3:] = -np.einsum("abc,eqc->eqab", _CROSS, offset)
+        a += np.einsum("eq,eqci,eqcj->ij", area, motion, motion)
+        np.add.at(b, dofs.T, np.einsum("bq,eq,eqci->ebci", value, area, motion, optimize=True))
+    g = np.linalg.solve(a, b.reshape(3 * n, 6).T)
+    g[np.abs(g) < 1e-14 * np.abs(g).max(axis=1, keepdims=True)] = 0.0
+    return sp.csr_matrix(g)
+
+
+# cross_matrix(r)[a, b] = sum_c _CROSS[a, b, c] r[c]
+_CROSS = np.stack([cross_matrix(e) for e in np.eye(3)], axis=-1)
+
+
+def _cell_rule(name):
+    """Quadrature exact for stiffness and mass of affine elements, one order in reserve for curved
+    ones.
+    """
+    if name.startswith("tet"):
+        return get_quadrature(
+            RefTet, 7 if name == "tet10" else 2
+        )  # both rules have positive weights only
+    x, w = np.polynomial.legendre.leggauss(3 if name == "hex8" else 4)
+    x, w = (x + 1) / 2, w / 2
+    grid = np.array([g.ravel() for g in np.meshgrid(x, x, x, indexing="ij")])
+    return grid, np.einsum("i,j,k->ijk", w, w, w).ravel()

@@ -1,0 +1,74 @@
+"""Radial bands of the segments of a shaft, such that neighbours share mesh lines."""
+
+from __future__ import annotations
+
+import numpy as np
+
+
+def first_of_run(bands, band: int, segment: int) -> int:
+    """First of the neighbours of a segment that have a band without a gap between them."""
+    while segment > 0 and bands[segment - 1][0] <= band < bands[segment - 1][1]:
+        segment -= 1
+    return segment
+
+
+def radial_bands(segments):
+    """Radial bands of every segment such that neighbours share mesh lines.
+
+    Where the outer radius jumps, the larger side gets at least one band more than
+    the smaller one, whose bands it continues; likewise inwards where the bore jumps.
+    """
+    n = len(segments)
+    tol = 1e-9 * max(max(s.outer0, s.outer1) for s in segments)
+
+    def levels(end, start):
+        """Least integers with level_i < level_j where i is the smaller neighbour, = where they
+        meet.
+        """
+        level = [0] * n
+        for _ in range(n + 1):
+            changed = False
+            for i in range(n - 1):
+                d = end(segments[i]) - start(segments[i + 1])
+                lo, hi = (i, i + 1) if d < -tol else (i + 1, i)
+                need = level[lo] + (1 if abs(d) > tol else 0)
+                if level[hi] < need:
+                    level[hi], changed = need, True
+                if abs(d) <= tol and level[lo] < level[hi]:
+                    level[lo], changed = level[hi], True
+            if not changed:
+                return level
+        return level
+
+    tops = [t + 1 for t in levels(lambda s: s.outer1, lambda s: s.outer0)]
+    bottoms = [-b for b in levels(lambda s: -s.inner1, lambda s: -s.inner0)]
+    bands = tuple(zip(bottoms, tops))
+
+    def spread(lo, hi, known):
+        """Radii of boundaries lo..hi from the known ones, evenly between."""
+        keys = sorted(known)
+        return np.interp(np.arange(lo, hi + 1), keys, [known[k] for k in keys])
+
+    left, right = [None] * n, [None] * n
+    for i in range(n - 1):
+        a, b = segments[i], segments[i + 1]
+        low, high = max(bottoms[i], bottoms[i + 1]), min(tops[i], tops[i + 1])
+        common = {low: max(a.inner1, b.inner0), high: min(a.outer1, b.outer0)}
+        right[i] = spread(*bands[i], {**common, bottoms[i]: a.inner1, tops[i]: a.outer1})
+        left[i + 1] = spread(
+            *bands[i + 1], {**common, bottoms[i + 1]: b.inner0, tops[i + 1]: b.outer0}
+        )
+    # A free end divides its radius as the far end of the same segment does.
+    for i, s in enumerate(segments):
+        if left[i] is None and right[i] is None:
+            left[i] = np.linspace(s.inner0, s.outer0, tops[i] - bottoms[i] + 1)
+            right[i] = np.linspace(s.inner1, s.outer1, tops[i] - bottoms[i] + 1)
+        elif left[i] is None:
+            left[i] = s.inner0 + (right[i] - s.inner1) * (s.outer0 - s.inner0) / (
+                s.outer1 - s.inner1
+            )
+        elif right[i] is None:
+            right[i] = s.inner1 + (left[i] - s.inner0) * (s.outer1 - s.inner1) / (
+                s.outer0 - s.inner0
+            )
+    return bands, tuple(left), tuple(right)

@@ -1,0 +1,141 @@
+"""The size of tetrahedra, a closed formula in radius and y, and how many it makes of them."""
+
+from math import pi
+
+import numpy as np
+
+from solidgear.meshing.outline import Frustum, corners_of, slabs_between, tolerance_of
+
+_GROWTH = 0.5  # element size gained per distance from a lateral surface
+
+
+def estimated_counts(
+    segments, planes=(), circles=(), *, size, graded_size=None, reach=None, around=16
+):
+    """Vertices, edges, faces and cells of :func:`tetrahedra` for the same arguments, without
+    meshing.
+
+    Volume, surface and the rims that are graded towards are filled with elements of the size asked for.  The constants were fitted to 21 meshes
+    of 2,000 to 70,000 cells in shafts and tubes, whose cells they give within 17 %.
+
+    Returns
+    -------
+    tuple of float
+    """
+    segments = [Frustum(*(float(getattr(s, name)) for name in Frustum._fields)) for s in segments]
+    tolerance = tolerance_of(segments)
+    slabs = slabs_between(segments, [float(y) for y in planes], tolerance)
+    corners = corners_of(slabs, [float(y) for y in circles], tolerance)
+    # the mesher's own formulas, so that there is one truth
+    fields = [
+        eval(f"lambda x, y, z: {f}".replace("^", "**"), _NUMPY)
+        for f in size_formulas(segments, corners, size, graded_size, reach, around)
+    ]
+    least = min(size, graded_size or size)
+
+    def edge(r, y):
+        h = np.full(np.broadcast_shapes(r.shape, y.shape), float(size))
+        for field in fields:
+            np.minimum(h, field(r, y, 0.0), out=h)
+        return h
+
+    marks = sorted({y for y, _ in corners} | {s.y0 for s in segments} | {segments[-1].y1})
+    volume = surface = 0.0
+    for s in segments:
+        inside = [y for y in marks if s.y0 + tolerance < y < s.y1 - tolerance]
+        for a, b in zip([s.y0, *inside], [*inside, s.y1]):
+            y, along = _graded_points(a, b, least)
+            t = (y - s.y0) / (s.y1 - s.y0)
+            bore, outer = (
+                (1 - t) * r0 + t * r1 for r0, r1 in ((s.inner0, s.inner1), (s.outer0, s.outer1))
+            )
+            part, across = _graded_points(0.0, 1.0, least / max(s.outer0, s.outer1))
+            r = bore[:, None] + (outer - bore)[:, None] * part
+            h = edge(r, y[:, None])
+            volume += (2 * pi * along[:, None] * (outer - bore)[:, None] * across * r / h**3).sum()
+            # the outermost and innermost points lie a hair from the surfaces
+            for at, radius in ((-1, outer), (0, bore)):
+                surface += (2 * pi * along * radius / h[:, at] ** 2).sum()
+    ends = [(s.y0, s.inner0, s.outer0, s.inner1, s.outer1, s.y1) for s in segments]
+    for below, above in zip([None, *ends], [*ends, None]):
+        rims = sorted({r for r in (*(below[3:5] if below else ()), *(above[1:3] if above else ()))})
+        for a, b in zip(rims, rims[1:]):
+            if (below is not None and below[3] <= a < below[4]) != (
+                above is not None and above[1] <= a < above[2]
+            ):
+                r, across = _graded_points(a, b, least)
+                surface += (
+                    2 * pi * across * r / edge(r, np.array(below[5] if below else above[0])) ** 2
+                ).sum()
+    rim = sum(2 * pi * r / float(edge(np.array(r), np.array(y))) for y, r in set(corners))
+    return tuple(np.array(_FILL) @ (volume, surface, rim))
+
+
+_NUMPY = {"Sqrt": np.sqrt, "Max": np.maximum, "Min": np.minimum, "__builtins__": {}}
+# vertices, edges, faces and cells, per volume over h^3, per surface over h^2 and per length of rims
+# over h
+_FILL = (
+    (0.602, 0.931, 1.663),
+    (4.288, 4.214, 8.013),
+    (7.357, 5.397, 11.527),
+    (3.670, 2.114, 5.178),
+)
+
+
+def _graded_points(a, b, least):
+    """Points and weights for integrals from a to b of what varies within `least` of both ends."""
+    half = (b - a) / 2
+    steps = max(2, min(24, int(np.log(max(half / least, 1.0)) / np.log(2.5)) + 3))
+    ends = np.r_[0.0, half * 2.5 ** -np.arange(steps)[::-1]]
+    ends = np.r_[a + ends, (b - ends[:-1])[::-1]]
+    middle, width = (ends[1:] + ends[:-1]) / 2, np.diff(ends)
+    shift = width / np.sqrt(12)
+    return np.r_[middle - shift, middle + shift], np.r_[width, width] / 2
+
+
+def size_formulas(segments, corners, size, graded_size, reach, around):
+    """Formulas of the element edge in r = Sqrt(x^2+z^2) and y; the least one counts."""
+    radius = "Sqrt(x^2+z^2)"
+    formulas = []
+    for y, r in sorted(set(corners)) if graded_size is not None and graded_size < size else ():
+        slope = (size - graded_size) / (reach or r)
+        formulas.append(
+            f"{_num(graded_size)}+{_num(slope)}*Sqrt(({radius}-{_num(r)})^2+(y-{_num(y)})^2)"
+        )
+    for s in segments:
+        for r0, r1 in ((s.outer0, s.outer1), (s.inner0, s.inner1)):
+            if max(r0, r1) == 0.0:
+                continue
+            least = 0.1 * max(r0, r1)  # the tip of a cone would ask for elements of no size
+            per_radius = 2.0 * pi / around
+            wall = min(s.outer0 - s.inner0, s.outer1 - s.inner1)
+            if wall > 0.0:  # an arc must not bulge through a thin wall: height edge^2 / 8r
+                per_radius = min(per_radius, (wall / max(r0, r1)) ** 0.5)
+            if per_radius * max(min(r0, r1), least) >= size:
+                continue
+            # foot of the point on the generator, as a fraction of its length
+            dr, dy = r1 - r0, s.y1 - s.y0
+            along = f"({radius}-{_num(r0)})*{_num(dr / (dr**2 + dy**2))}+(y-{_num(s.y0)})*{_num(dy / (dr**2 + dy**2))}"
+            foot = f"Max(0,Min(1,{along}))"
+            near_r, near_y = f"({_num(r0)}+{_num(dr)}*{foot})", f"({_num(s.y0)}+{_num(dy)}*{foot})"
+            formulas.append(
+                f"Max({_num(least)},{near_r})*{_num(per_radius)}"
+                f"+{_GROWTH}*Sqrt(({radius}-{near_r})^2+(y-{near_y})^2)"
+            )
+    return formulas
+
+
+def _num(value):
+    """In brackets, since gmsh's parser ends the process at a sign after an operator."""
+    return f"({float(value)!r})"
+
+
+def set_size(gmsh, formulas, size):
+    field = gmsh.model.mesh.field
+    tags = []
+    for formula in [_num(size)] + formulas:
+        tags.append(field.add("MathEval"))
+        field.setString(tags[-1], "F", formula)
+    least = field.add("Min")
+    field.setNumbers(least, "FieldsList", tags)
+    field.setAsBackgroundMesh(least)

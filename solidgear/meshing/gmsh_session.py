@@ -1,0 +1,76 @@
+"""gmsh, loaded when needed, and a model in it that leaves no trace."""
+
+from solidgear.interruptible import abandoned
+from solidgear.meshing.quality import MeshError
+
+_APT = "apt-get install libglu1-mesa libgl1 libegl1 libegl-mesa0 libxft2 libxinerama1 libxcursor1 libgomp1"
+
+
+def import_gmsh():
+    try:
+        import gmsh
+    except (ImportError, OSError) as error:
+        raise MeshError(
+            f"gmsh cannot be loaded ({error}); install its wheel (pip install gmsh) "
+            f"and the system libraries it needs: {_APT}"
+        ) from error
+    return gmsh
+
+
+class Session:
+    """A gmsh model of our own that leaves no trace in a gmsh the caller may already be using."""
+
+    options = {
+        "General.Terminal": 0,
+        "General.NumThreads": 1,  # the order of the elements depends on the number of threads
+        "Mesh.RandomSeed": 1,
+        "Mesh.Algorithm": 6,
+        "Mesh.Algorithm3D": 1,
+        "Mesh.Optimize": 1,
+        "Mesh.ElementOrder": 2,
+        "Mesh.SecondOrderLinear": 0,
+        "Mesh.SecondOrderIncomplete": 0,
+        "Mesh.HighOrderOptimize": 0,
+        "Mesh.MeshSizeFromPoints": 0,  # the size is the field's alone
+        "Mesh.MeshSizeFromCurvature": 0,
+        "Mesh.MeshSizeExtendFromBoundary": 0,
+        "Mesh.MeshSizeFactor": 1,
+        "Mesh.MeshSizeMin": 0,
+        "Mesh.MeshSizeMax": 1e22,
+        "Mesh.SaveAll": 0,
+    }
+
+    def __init__(self, gmsh):
+        self.gmsh = gmsh
+
+    def __enter__(self):
+        gmsh = self.gmsh
+        self.ours = not gmsh.isInitialized()
+        if self.ours:
+            # configuration files would make the mesh depend on the machine
+            gmsh.initialize(["gmsh", "-v", "0"], readConfigFiles=False, interruptible=False)
+        self.before = (
+            {} if self.ours else {name: gmsh.option.getNumber(name) for name in self.options}
+        )
+        self.model = None if self.ours else gmsh.model.getCurrent()
+        for name, value in self.options.items():
+            gmsh.option.setNumber(name, value)
+        taken = set(gmsh.model.list())
+        self.name = next(
+            name for name in (f"solidgear{i}" for i in range(len(taken) + 1)) if name not in taken
+        )
+        gmsh.model.add(self.name)
+
+    def __exit__(self, *exception):
+        gmsh = self.gmsh
+        if abandoned():
+            return  # gmsh is still meshing after Ctrl-C: what it works on must stay
+        if self.ours:
+            gmsh.finalize()
+            return
+        gmsh.model.setCurrent(self.name)
+        gmsh.model.remove()
+        if self.model in gmsh.model.list():
+            gmsh.model.setCurrent(self.model)
+        for name, value in self.before.items():
+            gmsh.option.setNumber(name, value)

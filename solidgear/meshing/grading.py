@@ -1,0 +1,163 @@
+"""How fine a mesh is where: local lengths, cell sizes, and lines graded towards the two ends."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+#: where grading starts, in local lengths; one layer of ratio 0.2 begins at a twentieth of a radius
+REACH = 0.25
+#: of the wall, a shell's decay length is about sqrt(radius wall); a solid shaft's is its radius
+SHELL = 2.0
+#: lines nearer to the far end of an interval than this share of it are left out
+ROOM_ONE, ROOM_TWO = 0.75, 0.45
+
+
+@dataclass(frozen=True)
+class Grading:
+    """How fine a mesh is where, in local lengths, so that a small step at one place does not refine
+    another.
+
+    The local length of a segment is its outer radius, or the decay length of a shell where its wall
+    is thin.
+
+    Attributes
+    ----------
+    layers : int
+        Geometric layers towards right-angled shoulders and rigid seat ends, the strongest
+        singularities.
+    edge_layers : int
+        The same towards the ends of averaged seats.
+    radial_layers : int
+        As ``layers``, across the thickness, where a line costs more cells than along the shaft.
+    ratio : float
+        Size of a layer relative to the one before, 0.15 to 0.5.
+    relative_size : float
+        Size of a cell away from singular points, in local lengths.
+    size : float or None
+        Size of a cell away from singular points in m, in place of ``relative_size``.
+    reach, radial_reach : float
+        Where grading starts, in local lengths from the singular point, along the shaft and across.
+    refinement : float
+        Multiplies the number of cells everywhere.
+    core : bool
+        Start the band on the axis with one cell of half its width, room for the core of an O-grid.
+    """
+
+    layers: int = 3
+    edge_layers: int = 1
+    radial_layers: int | None = None
+    ratio: float = 0.2
+    relative_size: float = 1.0
+    size: float | None = None
+    reach: float = REACH
+    radial_reach: float = REACH
+    refinement: float = 1.0
+    core: bool = False
+
+    @property
+    def across(self) -> int:
+        """Layers across the thickness."""
+        return self.layers if self.radial_layers is None else self.radial_layers
+
+    @property
+    def edge(self) -> int:
+        """Layers towards the ends of averaged seats, never more than towards shoulders."""
+        return min(self.edge_layers, self.layers)
+
+    def cell(self, segment) -> tuple[float, float]:
+        """Cell size (m) beside singular points of a segment and away from them."""
+        if self.size is not None:
+            return self.size, self.size
+        far = self.relative_size * min(segment.outer0, segment.outer1)
+        return min(self.relative_size, 1.0) * local_length(segment), far
+
+
+def local_length(segment) -> float:
+    """Length (m) over which what happens at a line of the surface dies away: the radius, or a
+    shell's ``2 sqrt(r t)``.
+    """
+    wall = min(segment.outer0 - segment.inner0, segment.outer1 - segment.inner1)
+    radius = min(segment.outer0, segment.outer1)
+    return min(radius, SHELL * float(np.sqrt(radius * wall)))
+
+
+def corner_length(segment) -> float:
+    """Length (m) over which stress at a corner is singular: the wall, or the radius of a solid
+    shaft.
+    """
+    return min(
+        segment.outer0 - segment.inner0,
+        segment.outer1 - segment.inner1,
+        segment.outer0,
+        segment.outer1,
+    )
+
+
+def graded(length, size, ratio, reach, refinement, low: int, high: int) -> np.ndarray:
+    """Positions 0 .. length of mesh lines with geometric layers towards the two ends.
+
+    Layers stand at ``reach ratio^k`` from their end, k = 0 .. layers, as far as there is room: a short interval between two
+    singular points is a layer itself and is not filled with more.  Beyond ``reach`` cells go on growing by the same ratio up to the
+    smaller size, from there with the distance.
+    The density is that of refinement 1; other refinements sample it with proportionally more cells, which keeps meshes similar.
+
+    Parameters
+    ----------
+    length : float
+        m.
+    size : float or (float, float)
+        Largest cell, m; two sizes are those at the ends and far from them.
+    ratio : float
+    reach : float or (float, float)
+        Distance at which grading starts, m, at both ends or at each.
+    refinement : float
+    low, high : int
+        Layers at the two ends.
+    """
+    near, far = (size, size) if np.isscalar(size) else size
+    first, last = (reach, reach) if np.isscalar(reach) else reach
+    room = (ROOM_TWO if low and high else ROOM_ONE) * length
+    lines = {0.0, float(length)}
+    for layers, start, place in ((low, first, lambda d: d), (high, last, lambda d: length - d)):
+        if layers:
+            beyond = max(
+                0, int(np.ceil(np.log(near / start / (1 - ratio)) / -np.log(ratio) - 1e-6))
+            )
+            lines |= {
+                float(place(d)) for d in start * ratio ** np.arange(-beyond, layers + 1) if d < room
+            }
+    lines = np.array(distinct(sorted(lines), 1e-9 * length))
+    lines[-1] = length  # a last layer thinner than that must not move the end
+    filled = [lines[:1]]
+    for a, b in zip(lines[:-1], lines[1:]):
+        filled.append(_filled(a, b, length, near, far)[1:])
+    lines = np.concatenate(filled)
+    n = len(lines) - 1
+    m = max(1, int(round(n * refinement)))
+    return lines if m == n else np.interp(np.linspace(0, n, m + 1), np.arange(n + 1), lines)
+
+
+def _filled(a: float, b: float, length: float, near: float, far: float) -> np.ndarray:
+    """Lines from a to b no further apart than the local cell size: ``near``, or the distance to the
+    nearer end where that is more, up to ``far``.
+    """
+    if near >= far:
+        n = max(1, int(np.ceil((b - a) / far - 1e-6)))
+        return np.linspace(a, b, n + 1)
+    x = np.linspace(a, b, 257)
+    size = np.minimum(np.maximum(near, np.minimum(x, length - x)), far)
+    cells = np.concatenate([[0.0], np.cumsum(np.diff(x) * (1 / size[1:] + 1 / size[:-1]) / 2)])
+    n = max(1, int(np.ceil(cells[-1] - 1e-6)))
+    lines = np.interp(np.linspace(0, cells[-1], n + 1), cells, x)
+    lines[0], lines[-1] = a, b
+    return lines
+
+
+def distinct(values, tol):
+    out = [values[0]]
+    for v in values[1:]:
+        if v - out[-1] > tol:
+            out.append(v)
+    return out

@@ -1,0 +1,91 @@
+"""The outline of a shaft in plain floats: slabs between cuts, and the corners to grade towards."""
+
+from typing import NamedTuple
+
+
+class Frustum(NamedTuple):
+    """The shape of a segment in plain floats, so that formulas can be written from them."""
+
+    y0: float
+    y1: float
+    outer0: float
+    outer1: float
+    inner0: float
+    inner1: float
+
+
+def tolerance_of(segments):
+    """Positions nearer than this are one."""
+    return 1e-9 * (segments[-1].y1 - segments[0].y0)
+
+
+def cuts_of(slab, circles, tolerance):
+    """(radius, y) of the circles inside a slab, on its outer surface."""
+    y0, y1, outer0, outer1 = slab[:4]
+    cuts = sorted(y for y in circles if y0 + tolerance < y < y1 - tolerance)
+    return [(outer0 + (outer1 - outer0) * (y - y0) / (y1 - y0), y) for y in cuts]
+
+
+def corners_of(slabs, circles, tolerance):
+    """(y, radius) to grade at: circles on the surface and kinks of the outline."""
+    corners = [(y, r) for slab in slabs for r, y in cuts_of(slab, circles, tolerance)]
+    on_station = [y for y in circles if not any(abs(y - c) <= tolerance for c, _ in corners)]
+    return corners + _kinks(slabs, on_station, tolerance)
+
+
+def slabs_between(segments, planes, tolerance):
+    """Segments cut at the planes: tuples (y0, y1, outer0, outer1, inner0, inner1)."""
+    slabs = []
+    start = segments[0].y0
+    for s in segments:
+        cuts = (
+            [s.y0] + sorted({y for y in planes if s.y0 + tolerance < y < s.y1 - tolerance}) + [s.y1]
+        )
+        for a, b in zip(cuts, cuts[1:]):
+            if b - a <= tolerance:
+                continue
+            u, v = (a - s.y0) / (s.y1 - s.y0), (b - s.y0) / (s.y1 - s.y0)
+            outer, inner = s.outer1 - s.outer0, s.inner1 - s.inner0
+            # the end of one slab is the very float that starts the next
+            slabs.append(
+                (
+                    start,
+                    b,
+                    s.outer0 + u * outer,
+                    s.outer0 + v * outer,
+                    s.inner0 + u * inner,
+                    s.inner0 + v * inner,
+                )
+            )
+            start = b
+    return slabs
+
+
+def radii_between(low, high, others):
+    return sorted({low, high} | {r for r in others if low < r < high})
+
+
+def _kinks(slabs, circles, tolerance):
+    """(y, radius) where the outline turns, and where a circle falls on a slab end."""
+    found = []
+    for i in range(len(slabs) + 1):
+        below = slabs[i - 1] if i else None
+        above = slabs[i] if i < len(slabs) else None
+        y = below[1] if below else above[0]
+        for outer in (True, False):
+            column = 2 if outer else 4
+            r0 = below[column + 1] if below else None
+            r1 = above[column] if above else None
+            turns = (
+                below is None
+                or above is None
+                or abs(r0 - r1) > tolerance
+                or abs(_slope(below, column) - _slope(above, column)) > 1e-6
+            )
+            if turns or (outer and any(abs(y - c) <= tolerance for c in circles)):
+                found += [(y, r) for r in {r0, r1} - {None, 0.0}]
+    return found
+
+
+def _slope(slab, column):
+    return (slab[column + 1] - slab[column]) / (slab[1] - slab[0])

@@ -1,0 +1,133 @@
+"""Tables of what was given: the scene in facts, its segments and its bearings."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from solidgear.report.cells import DASH, eng, mm, short_percent
+from solidgear.report.table import Table
+from solidgear.report.words import is_number
+
+
+def scene_facts(r: Mapping) -> Table:
+    """The scene in a few lines."""
+    scene = r["scene"]
+    port = scene.get("port") or r.get("port") or {}
+    material, housing = scene.get("material") or {}, scene.get("housing_axial")
+    free = (r.get("port") or {}).get("free") or []
+    rows = [
+        ["source", scene.get("source") or "not given"],
+        ["length", f"{mm(scene.get('length'))} mm"],
+        [
+            "material",
+            f"E = {eng(material.get('E'), 4)} Pa, nu = {material.get('nu', DASH)}, density = {material.get('density', DASH)} kg/m³",
+        ],
+        [
+            "lumped point",
+            f"{port.get('name', '')} on the axis at y = {mm(port.get('y'))} mm, carried by the outer surface from {mm(port.get('lo'))} to {mm(port.get('hi'))} mm, "
+            f"attachment {port.get('attachment', DASH)}",
+        ],
+        ["free motions there", ", ".join(free) or "none"],
+        [
+            "housing spring along y",
+            f"{eng(housing)} N/m" if is_number(housing) else "none",
+        ],
+        ["asked for", _asked(scene.get("ask") or {})],
+    ]
+    return Table("Scene", ["item", "value"], rows if scene else [], css="facts")
+
+
+def _asked(ask: Mapping) -> str:
+    """The questions of a scene in a line."""
+    words = f"{ask.get('modes', DASH)} modes"
+    if is_number(ask.get("max_frequency")):
+        words += f" up to {ask['max_frequency']:g} Hz"
+    if is_number(ask.get("tolerance")):
+        words += f", to a tolerance of {short_percent(ask['tolerance'])}"
+    return words
+
+
+def segments(scene: Mapping) -> Table:
+    """The shaft, a segment a row."""
+    default = scene.get("material") or {}
+    rows = []
+    for s in scene.get("segments") or []:
+        hollow = s.get("inner0") or s.get("inner1")
+        rows.append(
+            [
+                str(s.get("name", "")),
+                (s.get("part", "shaft"), "word text"),
+                mm(s.get("y0")),
+                mm(s.get("y1")),
+                mm(s.get("length", s["y1"] - s["y0"])),
+                _diameters(s, "outer"),
+                _diameters(s, "inner") if hollow else DASH,
+                (_own_material(s.get("material") or default, default), "word text"),
+            ]
+        )
+    return Table(
+        "Shaft segments, from the first end face (y = 0)",
+        [
+            "segment",
+            "part",
+            "from y, mm",
+            "to y, mm",
+            "length, mm",
+            "outer diameter, mm",
+            "bore, mm",
+            "material",
+        ],
+        rows,
+    )
+
+
+def _diameters(segment: Mapping, side: str) -> str:
+    """Diameters, mm, at both ends of the outer or inner surface."""
+    return f"{mm(2 * segment[side + '0'])} → {mm(2 * segment[side + '1'])}"
+
+
+def _own_material(material: Mapping, default: Mapping) -> str:
+    if material == default:
+        return "default"
+    modulus = eng(material.get("E"), 4)
+    return f"E {modulus}, nu {material.get('nu')}, density {material.get('density')}"
+
+
+def bearings(scene: Mapping) -> Table:
+    """The bearings with the stiffness they are solved with."""
+    rows = []
+    for b in scene.get("bearings") or []:
+        K = b.get("stiffness") or [[None] * 6] * 6
+        shown = [K[i][j] for i, j in ((0, 0), (1, 1), (2, 2), (2, 3), (3, 3), (5, 5))]
+        status = b.get("status") or "not stated"
+        rows.append(
+            [
+                str(b.get("name", "")),
+                mm(b.get("y")),
+                mm(b.get("seat_width")),
+                (b.get("attachment", DASH), "word text"),
+                *(eng(value, 4) for value in shown),
+                (status, f"word text mark {status}"),
+                (str(b.get("note") or ""), "text"),
+            ]
+        )
+    head = [
+        "bearing",
+        "y, mm",
+        "seat, mm",
+        "attachment",
+        "K_xx, N/m",
+        "K_yy, N/m",
+        "K_zz, N/m",
+        "K_z,thx, N/rad",
+        "K_thx, N m/rad",
+        "K_thz, N m/rad",
+        "status",
+        "note",
+    ]
+    return Table(
+        "Bearings, series springs included",
+        head,
+        rows,
+        note="Status says where the stiffness comes from: published, measured, identified (fitted), or assumed.",
+    )

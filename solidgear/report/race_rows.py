@@ -1,0 +1,145 @@
+"""A race on file: ``rows.csv`` and ``machine.json``, written and read."""
+
+from __future__ import annotations
+
+import csv
+import io
+import json
+import logging
+from collections.abc import Mapping
+from dataclasses import asdict, fields
+from pathlib import Path
+
+from solidgear.evidence.pareto import CHARTED, Race, Row
+from solidgear.whole_file import whole
+
+log = logging.getLogger(__name__)
+ROWS, MACHINE, PICTURE = "rows.csv", "machine.json", "speed_accuracy.png"
+COSTS = {"seconds": "wall time from scene to both answers, s (median)", "unknowns": "unknowns"}
+#: kinds of error in rows.csv besides those charted
+WHOLE = "C 6x6"
+
+
+def write_rows(race: Race, folder: Path) -> None:
+    """Write ``rows.csv`` and ``machine.json`` into a folder, each in one step.
+
+    What an earlier race left goes first: its record and its picture must not stand beside these
+    rows, should the run be killed.
+    """
+    record = {f.name: getattr(race, f.name) for f in fields(race) if f.name != "rows"}
+    if sum(len(row.samples) for row in race.rows) <= 1:
+        for name in (MACHINE, PICTURE):
+            (folder / name).unlink(missing_ok=True)
+    replace_file(folder / ROWS, _csv(race).encode())
+    replace_file(folder / MACHINE, (json.dumps(record, indent=1, allow_nan=False) + "\n").encode())
+
+
+def read_race(folder) -> Race | None:
+    """The race that `write_rows` left in a folder; None where there is none that can be read."""
+    folder = Path(folder)
+    if not (folder / MACHINE).exists() or not (folder / ROWS).exists():
+        return None
+    try:
+        record = dict(json.loads((folder / MACHINE).read_text(encoding="utf-8")))
+        with open(folder / ROWS, encoding="utf-8", newline="") as lines:
+            race = Race(**record, rows=[_row(line) for line in csv.DictReader(lines)])
+        records(race)  # what is not whole shows here, and not in the middle of a page
+        return race
+    except (OSError, ValueError, KeyError, TypeError) as error:
+        log.warning("%s in %s cannot be read: %s", ROWS, folder, error)
+        return None
+
+
+def records(race: Race) -> list[dict]:
+    """One flat record a row, as in ``rows.csv``; what a row does not have is None."""
+    fronts = {(q, cost): race.front(q, cost) for q in race.reference["values"] for cost in COSTS}
+    out = []
+    for row in race.rows:
+        samples = row.samples or [None]
+        r = {
+            k: v
+            for k, v in asdict(row).items()
+            if k not in ("options", "samples", "values", "errors", "like_for_like")
+        }
+        r |= {
+            "options": options_text(row),
+            "runs": len(row.samples),
+            "seconds_min": min(samples),
+            "seconds_median": row.seconds,
+            "seconds_max": max(samples),
+        }
+        r["samples"] = " ".join(repr(s) for s in row.samples)
+        r |= {_column(q): row.values.get(q) for q in CHARTED}
+        r |= {f"error_{_column(q)}": row.errors.get(q) for q in (*CHARTED, WHOLE)}
+        r |= {f"like_for_like_{_column(q)}": row.like_for_like.get(q) for q in CHARTED}
+        for q in race.reference["values"]:
+            r[f"resolved_{_column(q)}"] = (
+                "" if q not in row.errors else "yes" if race.resolved(row, q) else "no"
+            )
+            r[f"front_{_column(q)}"] = " ".join(
+                cost for cost in COSTS if any(row is other for other in fronts[q, cost])
+            )
+        out.append(r)
+    return out
+
+
+def options_text(row: Row) -> str:
+    """Builder options as they follow ``--set``."""
+    return " ".join(
+        f"{k}={v:.6g}" if isinstance(v, float) else f"{k}={v}" for k, v in row.options.items()
+    )
+
+
+def _column(quantity: str) -> str:
+    return quantity.replace(" ", "_")
+
+
+def _csv(race: Race) -> str:
+    rows, target = records(race), io.StringIO()
+    if rows:
+        writer = csv.DictWriter(target, list(rows[0]), lineterminator="\n")
+        writer.writeheader()
+        writer.writerows(rows)
+    return target.getvalue()
+
+
+def _row(line: Mapping[str, str]) -> Row:
+    def numbers(names, prefix):
+        return {q: float(line[prefix + _column(q)]) for q in names if line.get(prefix + _column(q))}
+
+    options = dict(pair.split("=", 1) for pair in line["options"].split())
+    return Row(
+        line["family"],
+        line["series"],
+        int(line["level"]),
+        line["model"],
+        {k: _value(v) for k, v in options.items()},
+        line["status"],
+        line["reason"],
+        int(line["unknowns"]) if line["unknowns"] else None,
+        [float(s) for s in line["samples"].split()],
+        numbers(CHARTED, ""),
+        numbers((*CHARTED, WHOLE), "error_"),
+        numbers(CHARTED, "like_for_like_"),
+    )
+
+
+def _value(text: str):
+    try:
+        return json.loads(text)
+    except ValueError:
+        return text
+
+
+def replace_file(path: Path, data: bytes) -> None:
+    with whole(path) as partial:
+        partial.write_bytes(data)
+
+
+def left_out(race: Race) -> str:
+    """The levels that were left out, in a line; empty when there are none."""
+    first: dict[str, int] = {}
+    for r in race.rows:
+        if r.status == "left out":
+            first[r.series] = min(r.level, first.get(r.series, r.level))
+    return ", ".join(f"{series} from level {level}" for series, level in first.items())

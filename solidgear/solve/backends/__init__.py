@@ -1,0 +1,58 @@
+"""Direct solvers for sparse symmetric matrices, all behind the same four names.
+
+A back end takes the matrix as CSR, sorted, and analyses it; then it knows ``estimate_mb``, the
+memory the numbers will need, and only ``factor()`` takes that memory.  After it ``solve(rhs)``,
+``negative`` and ``nnz`` can be asked for.
+
+======== =============================== ===================== ===========================================
+name     what it is                      indefinite matrices   memory estimate
+======== =============================== ===================== ===========================================
+pardiso  MKL PARDISO, LL' or LDL'        yes                   its own, from the analysis
+cholmod  SuiteSparse, supernodal LL'     no                    a law: scikit-sparse does not pass on the count
+mumps    MUMPS, LDL'                     yes                   its own, from the analysis
+superlu  SciPy's SuperLU, LU             unpivoted             a law: it has no separate analysis
+======== =============================== ===================== ===========================================
+"""
+
+from __future__ import annotations
+
+from functools import lru_cache
+
+import numpy as np
+import scipy.sparse as sp
+
+from solidgear.solve.backends.cholmod import Cholmod
+from solidgear.solve.backends.mumps import Mumps
+from solidgear.solve.backends.pardiso import Pardiso
+from solidgear.solve.backends.superlu import SuperLU
+
+BACKENDS = {back.name: back for back in (Pardiso, Cholmod, Mumps, SuperLU)}
+INSTALL = {
+    "pardiso": "install the extra 'fast'",
+    "cholmod": "install the extra 'cholmod'",
+    "mumps": "install the extra 'mumps'",
+}
+
+
+@lru_cache
+def missing(name: str) -> str:
+    """Empty if the back end can be used, else the reason why not.
+
+    Parameters
+    ----------
+    name : {'pardiso', 'cholmod', 'mumps', 'superlu'}
+    """
+    module = {
+        "pardiso": "pypardiso",
+        "cholmod": "scikit-sparse",
+        "mumps": "python-mumps",
+        "superlu": "scipy",
+    }[name]
+    try:
+        back = BACKENDS[name](sp.identity(2, format="csr"))
+        back.factor()
+        if np.array_equal(back.solve(np.ones(2)), np.ones(2)):
+            return ""
+        return f"{module} is not usable (it fails on the unit matrix)"
+    except Exception as error:  # a broken library raises OSError, ImportError, AttributeError ...
+        return f"{module} is not usable ({type(error).__name__})"
