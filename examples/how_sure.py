@@ -9,7 +9,8 @@ It illustrates how to:
 from pathlib import Path
 
 import solidgear as sg
-from solidgear.evidence.study import SCENE, study
+from solidgear.evidence.study import study
+from solidgear.evidence.ties import SCENE
 
 GEOMETRY = Path(__file__).parent.parent / "geometry"
 

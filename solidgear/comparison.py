@@ -14,7 +14,8 @@ from solidgear.errors import SolidgearError
 from solidgear.evidence.causes import attachment_causes, beam_causes, shoulder_cause
 from solidgear.evidence.levels import FREE, HARMONIC
 from solidgear.evidence.quantities import change
-from solidgear.evidence.study import SECTION, SOLIDS, Rung, rigid_seats, study
+from solidgear.evidence.study import SOLIDS, Rung, study
+from solidgear.evidence.ties import SECTION, rigid_seats
 from solidgear.fidelity import FIDELITIES
 from solidgear.lumped.rung import synthesise_all
 from solidgear.memory import one_run

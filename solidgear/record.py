@@ -11,7 +11,8 @@ from solidgear.environment import environment
 from solidgear.evidence.completeness import completeness
 from solidgear.evidence.correlate import correlate
 from solidgear.evidence.quantities import measure
-from solidgear.evidence.study import SCENE, Rung, Tied
+from solidgear.evidence.study import Rung, Tied
+from solidgear.evidence.ties import SCENE
 from solidgear.fidelity import FIDELITIES
 from solidgear.frames import DOF_NAMES
 from solidgear.lumped.rung import model_record as lumped_record

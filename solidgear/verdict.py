@@ -13,7 +13,8 @@ from typing import TYPE_CHECKING
 
 from solidgear.evidence.partners import Partners
 from solidgear.evidence.quantities import JUDGED, QUANTITIES, change
-from solidgear.evidence.study import SCENE, SECTION, Rung
+from solidgear.evidence.study import Rung
+from solidgear.evidence.ties import SCENE, SECTION
 from solidgear.fidelity import FIDELITIES
 
 if TYPE_CHECKING:

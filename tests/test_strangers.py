@@ -14,7 +14,8 @@ from solidgear.check import check_scene
 from solidgear.comparison import compare
 from solidgear.evidence.completeness import completeness
 from solidgear.evidence.levels import HARMONIC, HEXAHEDRA
-from solidgear.evidence.study import SCENE, study
+from solidgear.evidence.study import study
+from solidgear.evidence.ties import SCENE
 from solidgear.fidelity.size import estimated_size
 from solidgear.scene import Bearing, Port, Scene, Segment
 

@@ -10,7 +10,8 @@ import solidgear as sg
 from solidgear.comparison import compare
 from solidgear.evidence.bands import Band
 from solidgear.evidence.quantities import JUDGED
-from solidgear.evidence.study import SCENE, SECTION, Rung, Tied
+from solidgear.evidence.study import Rung, Tied
+from solidgear.evidence.ties import SCENE, SECTION
 from solidgear.scene import Ask, Bearing, Scene, Segment
 from solidgear.solve.modes import Mode, ModeSet
 from solidgear.verdict import BEYOND, OPEN, WITHIN, deviations, gap_verdict, judge, trusted

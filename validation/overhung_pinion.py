@@ -14,8 +14,8 @@ import argparse
 import time
 
 import solidgear as sg
-from solidgear.comparison import rigid_seats
 from solidgear.evidence.quantities import change, measure
+from solidgear.evidence.ties import rigid_seats
 from validation.common import ROOT, results_folder, show, write_rows
 
 # Independent solution, polynomial order 10 on five graded layers, digits as published with it;

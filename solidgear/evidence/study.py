@@ -21,6 +21,7 @@ from solidgear.evidence.bands import Band, layered_bands, refined_bands
 from solidgear.evidence.levels import HEAVY, JUDGE, LIGHT_JUDGE, Sequence, sequence
 from solidgear.evidence.levels import JUDGED as JUDGED_SHARE
 from solidgear.evidence.quantities import JUDGED, QUANTITIES, change, measure
+from solidgear.evidence.ties import SCENE, SECTION, rigid_seats
 from solidgear.fidelity import build
 from solidgear.fidelity.size import estimated_size
 from solidgear.meshing.corners import sharpest_corner
@@ -35,7 +36,6 @@ log = logging.getLogger(__name__)
 Progress = Callable[[str], None]
 
 SOLIDS = ("harmonic", "solid")
-SCENE, SECTION = "as scene", "section"
 #: exponent at the end of a rigid seat, a clamp on a smooth surface (Williams 1952, clamped-free at
 #: 180 degrees)
 RIGID_EDGE = 0.5
@@ -388,19 +388,3 @@ def _add_variants(scene: Scene, rung: Rung, progress: Progress) -> None:
                     )
             except SolidgearError as error:
                 log.info("%s: attachment %s left out: %s", rung.model, attachment, error)
-
-
-def rigid_seats(scene: Scene) -> Scene:
-    """The scene with rigid bearing seats; a lumped point that was rigid becomes averaged, any other
-    keeps its attachment.
-
-    Only seats are compared in the literature on RBE2 against RBE3; a rigid head would be another
-    model.
-    """
-    bearings = tuple(b.with_changes(attachment="rigid") for b in scene.bearings)
-    port = (
-        scene.port.with_changes(attachment="average")
-        if scene.port.attachment == "rigid"
-        else scene.port
-    )
-    return scene.with_changes(bearings=bearings, port=port)

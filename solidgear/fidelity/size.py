@@ -22,6 +22,7 @@ import numpy as np
 
 from solidgear.body import Body
 from solidgear.errors import SolidgearError
+from solidgear.fidelity.counts import KINDS, nodes, sections
 from solidgear.fidelity.options import checked
 from solidgear.memory import available_mb
 
@@ -261,27 +262,6 @@ def _planar_factor_mb(components: int, unknowns: int, entries: int) -> float:
 
 
 # ------------------------------------------------------------------------------------------------- solids
-@dataclass(frozen=True)
-class _Kind:
-    """Nodes of an element type: on vertices, edges, faces and inside; of an element, a face and an
-    edge with all that bounds it.
-    """
-
-    on: tuple[int, int, int, int]
-    cell: int
-    face: int
-    edge: int
-
-
-_KINDS = {
-    "hex8": _Kind((1, 0, 0, 0), 8, 4, 2),
-    "hex20": _Kind((1, 1, 0, 0), 20, 8, 3),
-    "hex27": _Kind((1, 1, 1, 1), 27, 9, 3),
-    "tet4": _Kind((1, 0, 0, 0), 4, 3, 2),
-    "tet10": _Kind((1, 1, 0, 0), 10, 6, 3),
-}
-
-
 def _hexahedra(scene: Shaft, given: dict) -> Size:
     from solidgear.fidelity.solid import hexahedra_layout
 
@@ -297,12 +277,12 @@ def _hexahedra(scene: Shaft, given: dict) -> Size:
     )
     layout, around = hexahedra_layout(scene, given["attachments"], **{k: given[k] for k in names})
     plan = _lines(scene, layout)
-    rows = _sections(plan.rows, plan.solid_rows, around)
-    lines = _sections(plan.lines, plan.solid_lines, around)
+    rows = sections(plan.rows, plan.solid_rows, around)
+    lines = sections(plan.lines, plan.solid_lines, around)
     # a section drawn out along the shaft makes edges of its vertices, faces of its edges and cells
     # of its faces
     counts = (lines[0], lines[1] + rows[0], lines[2] + rows[1], rows[2])
-    unknowns, entries = _nodes(given["element"], counts, 4)
+    unknowns, entries = nodes(given["element"], counts, 4)
     bubbles = 3 * counts[3] if given["element"] == "hex27" else 0
     # fill grows with the whole and, as a shaft is long, with its cross-section: 30 meshes of 2,000
     # to 165,000 unknowns within 20 %
@@ -311,16 +291,6 @@ def _hexahedra(scene: Shaft, given: dict) -> Size:
         np.exp(1.448) * (unknowns - bubbles) ** 1.233 * (entries / unknowns) ** 0.165 * width**0.305
     )
     return _solid(scene, given, unknowns, entries, counts[3], fill)
-
-
-def _sections(rings: np.ndarray, full: np.ndarray, around: int) -> tuple[float, float, float]:
-    """Vertices, edges and faces of all sections: rings of cells, and a square core in place of the
-    first where the shaft is full.
-    """
-    count, k = np.diff(rings)[:, 0] - full, around // 4
-    vertices = around * (count + 1) + full * (k - 1) ** 2
-    edges = around * (2 * count + 1) + full * 2 * k * (k - 1)
-    return float(vertices.sum()), float(edges.sum()), float((around * count + full * k * k).sum())
 
 
 def _tetrahedra(scene: Shaft, given: dict) -> Size:
@@ -334,36 +304,16 @@ def _tetrahedra(scene: Shaft, given: dict) -> Size:
             scene, wanted, **{k: given[k] for k in ("size", "graded_size", "refinement", "around")}
         ),
     )
-    unknowns, entries = _nodes(given["element"], counts, 3)
+    unknowns, entries = nodes(given["element"], counts, 3)
     # 21 meshes of 11,000 to 140,000 unknowns within 30 %
     fill = np.exp(0.519) * unknowns**1.313 * (entries / unknowns) ** 0.448
     return _solid(scene, given, unknowns, entries, counts[3], fill)
 
 
-def _nodes(
-    element: str, counts: tuple[float, float, float, float], sides: int
-) -> tuple[float, float]:
-    """Unknowns and matrix entries of a mesh of so many vertices, edges, faces and cells, whose
-    faces have so many sides.
-    """
-    kind, (vertices, edges, faces, cells) = _KINDS[element], counts
-    inner_faces = (6 if sides == 4 else 4) * cells - faces
-    # every edge of the surface bounds two of its faces, and Euler's formula gives its vertices
-    surface = faces - inner_faces
-    inner_edges, inner_vertices = edges - sides / 2 * surface, vertices - (sides / 2 - 1) * surface
-    pairs = (
-        kind.cell**2 * cells
-        - kind.face**2 * inner_faces
-        + kind.edge**2 * inner_edges
-        - inner_vertices
-    )
-    return 3 * float(np.dot(kind.on, counts)), 9 * pairs
-
-
 def _solid(
     scene: Shaft, given: dict, unknowns: float, entries: float, cells: float, fill: float
 ) -> Size:
-    per_cell = _KINDS[given["element"]].cell
+    per_cell = KINDS[given["element"]].cell
     tets = given["element"].startswith("tet")
     # matrices; mesh, its numbering and its quality; gmsh itself
     built = (1.11 * ENTRY * entries + 380.0 * per_cell * cells) / MB + 20 * tets

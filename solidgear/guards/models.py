@@ -11,7 +11,7 @@ import numpy as np
 from solidgear import verdict
 from solidgear.errors import SolidgearError
 from solidgear.evidence.converge import sharpest_corner
-from solidgear.evidence.study import SCENE
+from solidgear.evidence.ties import SCENE
 from solidgear.guards.notice import BEAMS, MODELS, Notice, Notices, beyond
 from solidgear.guards.probe import Probe
 from solidgear.verdict import TIES, gap_verdict

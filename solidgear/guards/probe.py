@@ -19,7 +19,8 @@ from solidgear.body import Body, Supports, as_supports
 from solidgear.errors import SolidgearError
 from solidgear.evidence.levels import HARMONIC
 from solidgear.evidence.quantities import JUDGED
-from solidgear.evidence.study import Rung, rigid_seats, study
+from solidgear.evidence.study import Rung, study
+from solidgear.evidence.ties import rigid_seats
 from solidgear.fidelity import build
 from solidgear.lumped.effective_mass import LumpedPoint, Synthesis, synthesise
 from solidgear.scene_rules import TOUCH

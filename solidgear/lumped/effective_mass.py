@@ -32,6 +32,7 @@ import scipy.linalg as sla
 
 from solidgear.body import Body, as_supports
 from solidgear.errors import SolidgearError
+from solidgear.lumped.receptance import modal_receptance, port_motion
 from solidgear.solve.modes import ModeSet, modes
 from solidgear.solve.statics import condense
 from solidgear.solve.supported import Supported, decoupled, groups
@@ -164,17 +165,6 @@ def lumped_point(
     ), found
 
 
-def _port_motion(body: Body, vectors: dict[int, np.ndarray], index: int) -> np.ndarray:
-    """(6,) motion of a port in a mode shape."""
-    out = np.zeros(6)
-    for b, vector in vectors.items():
-        block = body.block(b)
-        n = len(block.components)
-        if n:
-            out[list(block.components)] += block.ports[index * n : (index + 1) * n] @ vector
-    return out
-
-
 def _first_in_plane(body: Body, found: ModeSet, index: int):
     """First bending mode that moves the port in the z plane, and its (z, thx) there: unequal
     bearings may put one of the x plane before it.
@@ -182,7 +172,7 @@ def _first_in_plane(body: Body, found: ModeSet, index: int):
     for mode in (*found.modes, *found.beyond):
         if mode.family != "bending" or mode.frequency_hz == 0:
             continue
-        motions = np.array([_port_motion(body, v, index) for v in mode.vectors])
+        motions = np.array([port_motion(body, v, index) for v in mode.vectors])
         size = np.array([1.0, body.length])  # a rotation counts by what it moves at the other end
         z, x = (np.linalg.norm(motions[:, c] * size) for c in (list(PLANE), [0, 5]))
         if z >= 0.5 * x:
@@ -368,31 +358,6 @@ def _valid_to(k, mass, receptance, omega, tolerance: float = 0.05) -> float:
             break
         last = w
     return float(last / (2 * np.pi))
-
-
-def modal_receptance(
-    body: Body, supports: Holding, port: str, found: ModeSet
-) -> Callable[[float], float]:
-    """Receptance z/F_z at a port by modal superposition with the static remainder, as a function of
-    omega (rad/s).
-
-    The static part of the modes left out is exact, so the error is of the order of (omega /
-    omega_left_out)^4.
-    """
-    index = body.port_index(port)
-    static = condense(body, supports, port).compliance[2, 2]
-    pairs = []
-    for mode in (*found.modes, *found.beyond):
-        if mode.frequency_hz > 0:
-            w2 = (2 * np.pi * mode.frequency_hz) ** 2
-            pairs += [(w2, _port_motion(body, v, index)[2] ** 2) for v in mode.vectors]
-    w2, strength = np.array(pairs).T
-
-    def receptance(omega: float) -> float:
-        # 1 / (w_i^2 - w^2) - 1 / w_i^2, the dynamic surplus of each mode
-        return float(static + (strength * omega**2 / (w2 * (w2 - omega**2))).sum())
-
-    return receptance
 
 
 def synthesise(

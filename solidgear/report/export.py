@@ -10,13 +10,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from solidgear.report.fields import mesh_unknowns, surface
-from solidgear.solve.modes import ModeSet
 from solidgear.whole_file import whole
 
 if TYPE_CHECKING:
     from solidgear.body import Body
     from solidgear.scene import Scene
-    from solidgear.solve.modes import Mode
+    from solidgear.solve.modes import Mode, ModeSet
 
 #: solid element -> (meshio's cell type, VTK's class of cell)
 CELLS = {
@@ -67,7 +66,7 @@ def write_vtu(
     import meshio
 
     path = Path(path)
-    told = modes.modes if isinstance(modes, ModeSet) else modes
+    told = getattr(modes, "modes", modes)
     shapes = dict(_shapes(islice(told, most)))
     if body.fidelity == "solid" and body.geometry is not None:
         points, cells, data = _volume(body, shapes)

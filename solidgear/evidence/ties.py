@@ -1,0 +1,27 @@
+"""Ways of tying the stations of a scene that models are compared in."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from solidgear.scene import Scene
+
+#: as bearings and port say; and mean motions of cross-sections everywhere, what a beam knows
+SCENE, SECTION = "as scene", "section"
+
+
+def rigid_seats(scene: Scene) -> Scene:
+    """The scene with rigid bearing seats; a lumped point that was rigid becomes averaged, any other
+    keeps its attachment.
+
+    Only seats are compared in the literature on RBE2 against RBE3; a rigid head would be another
+    model.
+    """
+    bearings = tuple(b.with_changes(attachment="rigid") for b in scene.bearings)
+    port = (
+        scene.port.with_changes(attachment="average")
+        if scene.port.attachment == "rigid"
+        else scene.port
+    )
+    return scene.with_changes(bearings=bearings, port=port)
