@@ -116,7 +116,7 @@ class Scene(Model):
         if port is None and segments:
             longest = max(segments, key=lambda s: s.length)
             port = Port(y=(longest.y0 + longest.y1) / 2, lo=longest.y0, hi=longest.y1)
-        given = {} if port is None else {"port": port}
+        given: dict[str, Any] = {} if port is None else {"port": port}
         return cls(segments=segments, material=material, bearings=tuple(bearings), **given, **rest)
 
     @property

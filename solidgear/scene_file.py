@@ -90,7 +90,8 @@ class _FileOrder:
 
     def of(self, path: tuple) -> list[int]:
         """Places of the keys of a path in their tables, the last one for a key that is missing."""
-        out, here = [], self.raw
+        out: list[int] = []
+        here = self.raw
         for key in path:
             if id(here) not in self.places:
                 keys = (

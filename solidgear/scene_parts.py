@@ -162,7 +162,7 @@ class Segment(Model):
         outer0, outer1, inner = (
             quantity(d, "length") / 2 for d in (start_diameter, end_diameter, bore)
         )
-        given = {} if material is None else {"material": material}
+        given: dict[str, Any] = {} if material is None else {"material": material}
         return cls(
             name=name,
             y0=y0,

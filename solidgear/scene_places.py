@@ -5,8 +5,11 @@ A problem of a place is told by the key of the file that it came from.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 from solidgear.errors import SceneError
 from solidgear.scene import Bearing, Port, Scene, Segment
+from solidgear.scene_parts import Attachment
 from solidgear.scene_rules import shaft_problems, station_problems
 from solidgear.scene_tables import BearingTable, PortTable, SceneTable
 
@@ -136,15 +139,18 @@ def _bearing(item: BearingTable, index: int, attachment: str, datums: dict[str, 
 
 def _port(
     item: PortTable,
-    attachment: str,
+    attachment: Attachment,
     datums: dict[str, float],
     surface: dict[str, tuple[float, float]],
 ) -> Port | None:
     """The port, or None where it names what is not there."""
     datum = item.at or item.from_ or "start"
-    if datum not in datums or not (item.span or item.attach_to in surface):
+    span: Sequence[float] | None = item.span
+    if span is None and item.attach_to is not None:
+        span = surface.get(item.attach_to)
+    if datum not in datums or span is None:
         return None
-    lo, hi = item.span or surface[item.attach_to]
+    lo, hi = span
     return Port(
         name=item.name,
         y=datums[datum] + (item.position or 0.0),
@@ -154,7 +160,7 @@ def _port(
     )
 
 
-def _file_path(path: tuple, table: SceneTable, owner: list[int]) -> tuple:
+def _file_path(path: tuple, table: SceneTable, owner: Sequence[int]) -> tuple:
     """The key in the file that an entry of the resolved scene came from."""
     match path:
         case ("segments", index, key):

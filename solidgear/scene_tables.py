@@ -213,4 +213,4 @@ class SceneTable(Model):
 class SoundTables(SceneTable):
     """What is left of a file without the tables that cannot be used."""
 
-    port: PortTable | None = None
+    port: PortTable | None = None  # type: ignore[assignment]  # it may be what is missing

@@ -18,6 +18,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, fields
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 import scipy.linalg as sla
@@ -178,7 +179,7 @@ class LumpedPair:
                 object.__setattr__(self, field.name, _mass(name, value))
             elif name.endswith("support"):
                 object.__setattr__(self, field.name, _support(name, value))
-            elif not (np.isscalar(value) and np.isfinite(value) and value >= 0):
+            elif not (_is_finite(value) and value >= 0):
                 raise SolidgearError(
                     f"{name} is {value}; it must be a finite stiffness that is not negative"
                 )
@@ -292,8 +293,12 @@ class LumpedPair:
         return np.divide(out, total, out=np.zeros_like(out), where=total > 0)
 
 
+def _is_finite(value: Any) -> bool:
+    return bool(np.isscalar(value) and np.isfinite(value))
+
+
 def _positive(name: str, value: float) -> None:
-    if not (np.isscalar(value) and np.isfinite(value) and value > 0):
+    if not (_is_finite(value) and value > 0):
         raise SolidgearError(f"{name} is {value}; it must be finite and positive")
 
 

@@ -82,7 +82,7 @@ def beam(
     # the second.
     inner = 1 + rotary_inertia if shear and mass == "consistent" else 0
     size = {"bending": 2 * n + inner * (n - 1), "axial": n, "torsion": n}
-    entries = {name: ([], [], [], []) for name in size}
+    entries: dict[str, tuple[list, list, list, list]] = {name: ([], [], [], []) for name in size}
     fields: list[Fields] = []
     for e, segment in enumerate(owner):
         left, right = nodes[e], nodes[e + 1]
@@ -109,8 +109,8 @@ def beam(
             ):
                 store.append(values)
     k, m = {}, {}
-    for name, parts in entries.items():
-        row, col, stiff, heavy = (np.concatenate(p) for p in parts)
+    for name, lists in entries.items():
+        row, col, stiff, heavy = (np.concatenate(p) for p in lists)
         k[name] = sp.csr_matrix((stiff, (row, col)), shape=(size[name],) * 2)
         m[name] = sp.csr_matrix((heavy, (row, col)), shape=(size[name],) * 2)
     ports = tuple(Port(s.name, s.y, a) for s, a in wanted)
@@ -169,19 +169,19 @@ def mesh(scene, elements: int | None, wanted=()):
 
     ``wanted`` lists stations with their attachments.
     """
-    marks = {s.y0 for s in scene.segments} | {scene.segments[-1].y1} | {s.y for s in scene.stations}
-    marks |= {
+    found = {s.y0 for s in scene.segments} | {scene.segments[-1].y1} | {s.y for s in scene.stations}
+    found |= {
         y for s, a in wanted if a == "rigid" for y in (max(s.lo, 0.0), min(s.hi, scene.length))
     }
-    marks = np.array(sorted(marks))
+    marks = np.array(sorted(found))
     # Marks that differ by rounding only would make an element of no length.
     marks = marks[np.concatenate([[True], np.diff(marks) > 1e-9 * scene.length])]
     diameter = 2 * min(max(s.outer0, s.outer1) for s in scene.segments)
     size = scene.length / elements if elements else min(diameter / 8, scene.length / 40)
-    nodes = [marks[:1]]
+    filled = [marks[:1]]
     for a, b in zip(marks[:-1], marks[1:]):
-        nodes.append(np.linspace(a, b, max(1, int(np.ceil((b - a) / size - 1e-9))) + 1)[1:])
-    nodes = np.concatenate(nodes)
+        filled.append(np.linspace(a, b, max(1, int(np.ceil((b - a) / size - 1e-9))) + 1)[1:])
+    nodes = np.concatenate(filled)
     middle = (nodes[1:] + nodes[:-1]) / 2
     ends = np.array([s.y1 for s in scene.segments])
     owner = [scene.segments[i] for i in np.minimum(np.searchsorted(ends, middle), len(ends) - 1)]
@@ -211,7 +211,9 @@ def _port_rows(
     """Motions of a port as rows on the unknowns of bending (d, ph), axial and torsion; zeros where
     the tie is rigid.
     """
-    out = {name: np.zeros((2 if name == "bending" else 1, n)) for name, n in size.items()}
+    out: dict[str, np.ndarray] = {
+        name: np.zeros((2 if name == "bending" else 1, n)) for name, n in size.items()
+    }
     if attachment == "section":
         at = int(np.argmin(abs(nodes - station.y)))
         out["bending"][[0, 1], [2 * at, 2 * at + 1]] = 1.0
@@ -230,11 +232,11 @@ def _port_rows(
         out["bending"][0, unknowns] += w @ deflection
         out["bending"][1, unknowns] += (w * h) @ deflection + (w * r**2 / 2) @ turn
         gram += np.array([[w.sum(), w @ h], [w @ h, w @ (h * h + r**2 / 2)]])
-        for name, (at, along), weight in (
+        for name, (held, along), weight in (
             ("axial", field.stretch, w),
             ("torsion", field.twist, w * r**2),
         ):
-            out[name][0, at] += weight @ lagrange @ along
+            out[name][0, held] += weight @ lagrange @ along
         area, polar = area + w.sum(), polar + (w * r**2).sum()
     out["bending"] = np.linalg.solve(gram, out["bending"])
     out["axial"] /= area

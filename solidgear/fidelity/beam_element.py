@@ -10,9 +10,13 @@ independence is what makes a comparison worth having.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 import scipy.linalg as sla
+
+if TYPE_CHECKING:
+    from solidgear.scene import Segment
 
 _GAUSS = np.polynomial.legendre.leggauss(8)
 
@@ -158,7 +162,7 @@ class Fields:
     (q, unknowns).
     """
 
-    segment: object
+    segment: Segment
     left: float
     right: float
     bend: tuple[np.ndarray, np.ndarray]

@@ -147,7 +147,7 @@ class _Work:
         share = np.ones(2) if n == 0 else np.array([2.0, 2.0, 1.0])
         m = sp.kron(heavy.matrix(), sp.diags(share)).tocsr()
 
-        keep = np.ones((self.n, c), bool)
+        keep: np.ndarray = np.ones((self.n, c), bool)
         if n == 0:
             keep[self.on_axis, 0] = False
         elif n == 1:

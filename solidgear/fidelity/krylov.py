@@ -44,7 +44,7 @@ class Station:
     """
 
     y: float
-    spring: np.ndarray = ((0.0, 0.0), (0.0, 0.0))
+    spring: np.ndarray = field(default_factory=lambda: np.zeros((2, 2)))
     mass: float = 0.0
     inertia: float = 0.0
 

@@ -13,12 +13,16 @@ close to one.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 import scipy.sparse as sp
 from scipy.sparse.linalg import splu
 
 from solidgear.errors import SolidgearError
+
+if TYPE_CHECKING:
+    from solidgear.fidelity.krylov import Station
 
 #: greatest ``k l`` of a piece: below the first clamped root, 4.730, and a growth by exp(2) at most
 #: between orthonormalisations
@@ -107,7 +111,8 @@ class _Joint:
 def joined_shaft(spans, stations):
     """The shaft with a joint at the ends of every span and at every station."""
     ends = np.append(0.0, np.cumsum([s.length for s in spans]))
-    length, near, marks, held = ends[-1], 1e-9 * ends[-1], list(ends), [[] for _ in ends]
+    length, near, marks = ends[-1], 1e-9 * ends[-1], list(ends)
+    held: list[list[Station]] = [[] for _ in ends]
     for station in stations:
         if not -near <= station.y <= length + near:
             raise SolidgearError(

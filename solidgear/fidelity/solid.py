@@ -101,7 +101,7 @@ def solid(
     body_mesh = _isoparametric(mesh, element, segment)
     k, m = _matrices(body_mesh, scene)
     n = body_mesh.nodes.shape[1]
-    rigid = np.zeros((n, 3, 6))
+    rigid: np.ndarray = np.zeros((n, 3, 6))
     rigid[:, :, :3] = np.eye(3)
     x, y, z = body_mesh.nodes
     zero = np.zeros(n)

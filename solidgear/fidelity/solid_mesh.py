@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
+from skfem import Element, Mesh
 from skfem.element import ElementHex1, ElementHex2, ElementHexS2, ElementTetP1, ElementTetP2
 from skfem.quadrature import get_quadrature
 from skfem.refdom import RefTet, RefTri
@@ -38,9 +39,9 @@ class SolidMesh:
     segment : (ne,) ndarray of int
     """
 
-    mesh: object
+    mesh: Mesh
     name: str
-    element: object
+    element: Element
     dofs: np.ndarray
     nodes: np.ndarray
     segment: np.ndarray

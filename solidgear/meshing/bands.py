@@ -49,7 +49,8 @@ def radial_bands(segments):
         keys = sorted(known)
         return np.interp(np.arange(lo, hi + 1), keys, [known[k] for k in keys])
 
-    left, right = [None] * n, [None] * n
+    left: dict[int, np.ndarray] = {}
+    right: dict[int, np.ndarray] = {}
     for i in range(n - 1):
         a, b = segments[i], segments[i + 1]
         low, high = max(bottoms[i], bottoms[i + 1]), min(tops[i], tops[i + 1])
@@ -60,15 +61,15 @@ def radial_bands(segments):
         )
     # A free end divides its radius as the far end of the same segment does.
     for i, s in enumerate(segments):
-        if left[i] is None and right[i] is None:
+        if i not in left and i not in right:
             left[i] = np.linspace(s.inner0, s.outer0, tops[i] - bottoms[i] + 1)
             right[i] = np.linspace(s.inner1, s.outer1, tops[i] - bottoms[i] + 1)
-        elif left[i] is None:
+        elif i not in left:
             left[i] = s.inner0 + (right[i] - s.inner1) * (s.outer0 - s.inner0) / (
                 s.outer1 - s.inner1
             )
-        elif right[i] is None:
+        elif i not in right:
             right[i] = s.inner1 + (left[i] - s.inner0) * (s.outer1 - s.inner1) / (
                 s.outer0 - s.inner0
             )
-    return bands, tuple(left), tuple(right)
+    return bands, tuple(left[i] for i in range(n)), tuple(right[i] for i in range(n))

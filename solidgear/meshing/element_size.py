@@ -65,7 +65,7 @@ def estimated_counts(
             ):
                 r, across = _graded_points(a, b, least)
                 surface += (
-                    2 * pi * across * r / edge(r, np.array(below[5] if below else above[0])) ** 2
+                    2 * pi * across * r / edge(r, np.array(below[5] if below else ends[0][0])) ** 2
                 ).sum()
     rim = sum(2 * pi * r / float(edge(np.array(r), np.array(y))) for y, r in set(corners))
     return tuple(np.array(_FILL) @ (volume, surface, rim))

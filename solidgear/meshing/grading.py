@@ -116,19 +116,19 @@ def graded(length, size, ratio, reach, refinement, low: int, high: int) -> np.nd
     low, high : int
         Layers at the two ends.
     """
-    near, far = (size, size) if np.isscalar(size) else size
-    first, last = (reach, reach) if np.isscalar(reach) else reach
+    near, far = (size, size) if np.ndim(size) == 0 else size
+    first, last = (reach, reach) if np.ndim(reach) == 0 else reach
     room = (ROOM_TWO if low and high else ROOM_ONE) * length
-    lines = {0.0, float(length)}
+    places = {0.0, float(length)}
     for layers, start, place in ((low, first, lambda d: d), (high, last, lambda d: length - d)):
         if layers:
             beyond = max(
                 0, int(np.ceil(np.log(near / start / (1 - ratio)) / -np.log(ratio) - 1e-6))
             )
-            lines |= {
+            places |= {
                 float(place(d)) for d in start * ratio ** np.arange(-beyond, layers + 1) if d < room
             }
-    lines = np.array(distinct(sorted(lines), 1e-9 * length))
+    lines = np.array(distinct(sorted(places), 1e-9 * length))
     lines[-1] = length  # a last layer thinner than that must not move the end
     filled = [lines[:1]]
     for a, b in zip(lines[:-1], lines[1:]):

@@ -71,14 +71,14 @@ def _kinks(slabs, circles, tolerance):
     for i in range(len(slabs) + 1):
         below = slabs[i - 1] if i else None
         above = slabs[i] if i < len(slabs) else None
-        y = below[1] if below else above[0]
+        y = below[1] if below else slabs[0][0]
         for outer in (True, False):
             column = 2 if outer else 4
             r0 = below[column + 1] if below else None
             r1 = above[column] if above else None
             turns = (
-                below is None
-                or above is None
+                r0 is None
+                or r1 is None
                 or abs(r0 - r1) > tolerance
                 or abs(_slope(below, column) - _slope(above, column)) > 1e-6
             )

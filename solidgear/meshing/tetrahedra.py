@@ -165,7 +165,9 @@ def _revolve(gmsh, segments, planes, circles):
     """Draw the meridian with shared edges and turn it about y; returns the (y, radius) to grade at."""
     occ = gmsh.model.occ
     tolerance = tolerance_of(segments)
-    points, lines, faces = {}, {}, []
+    points: dict[tuple[float, float], int] = {}
+    lines: dict[tuple[int, int], int] = {}
+    faces = []
 
     def point(r, y):
         for (r0, y0), tag in points.items():

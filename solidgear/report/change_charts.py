@@ -79,7 +79,8 @@ def _cause(row: Mapping) -> str:
 def attachment_chart(results):
     """Rigid and section ties against averaged ones, for compliance and first bending."""
     solids = {k: a for k, a in (results.get("attachments") or {}).items() if a and a.get("average")}
-    labels, columns = [], {"c_zz": [], "bending_1": []}
+    labels = []
+    columns: dict[str, list[float | None]] = {"c_zz": [], "bending_1": []}
     for key, ties in solids.items():
         for tie in ("rigid", "section"):
             if not ties.get(tie):

@@ -6,17 +6,20 @@ import functools
 import io
 import re
 from collections.abc import Callable, Mapping
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from solidgear.report.words import (
     plain,
 )
 
+if TYPE_CHECKING:
+    from matplotlib.typing import RcKeyType
+
 #: colours that stay apart for the colour-blind, and markers that stay apart in grey
 COLOUR = {"euler": "#c98a00", "timoshenko": "#0072b2", "harmonic": "#00805e", "solid": "#5a3e8c"}
 MARKER = {"euler": "v", "timoshenko": "s", "harmonic": "o", "solid": "D"}
 QUANTITY_NAME = {"c_zz": "C_zz", "k_zz": "K_zz", "bending_1": "bending 1"}
-STYLE = {
+STYLE: dict[RcKeyType, Any] = {
     "svg.fonttype": "none",  # text stays text: it can be searched, copied and read aloud
     "font.family": "sans-serif",
     "font.sans-serif": ["DejaVu Sans", "Arial", "Helvetica"],

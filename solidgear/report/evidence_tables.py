@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from typing import Any
 
 from solidgear.report.cells import DASH, capital, eng, mm, pct, short_percent, small, whole_number
@@ -22,7 +22,11 @@ FREQUENCY = 2
 #: whether a difference is within the tolerance -> cell
 INSIDE = {True: ("yes", "good"), False: ("no", "bad"), None: DASH}
 #: what an attachment changes -> how it is written
-TIED = {"c_zz": engineering, "k_zz": engineering, "bending_1_hz": hertz}
+TIED: dict[str, Callable[..., str]] = {
+    "c_zz": engineering,
+    "k_zz": engineering,
+    "bending_1_hz": hertz,
+}
 
 
 def _unit(quantity: str) -> str:

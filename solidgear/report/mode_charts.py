@@ -44,7 +44,7 @@ def mode_chart(results):
             _differences(axes[1], key, spots, modes[key], modes[reference])
     axes[0].set(ylabel="frequency, Hz", ylim=(0, None))
     axes[0].legend(ncols=4, loc="upper left", bbox_to_anchor=(0, 1.14), borderaxespad=0)
-    if relative:
+    if relative and reference is not None:
         _as_differences(axes[1], reference)
     for ax in axes:
         _part_families(ax, [_family(known[name]) for name in names])
@@ -69,7 +69,7 @@ def _known(modes: Mapping[str, dict], reference: str | None) -> dict[str, Mappin
     known: dict[str, Mapping] = {}
     for found in modes.values():
         known |= found
-    return known | modes.get(reference, {})
+    return known if reference is None else known | modes.get(reference, {})
 
 
 def _family(mode: Mapping) -> str:

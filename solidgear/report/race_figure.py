@@ -5,6 +5,7 @@ from __future__ import annotations
 import io
 import textwrap
 from pathlib import Path
+from typing import Any
 
 from solidgear.evidence.pareto import Race, Row
 from solidgear.report.chart_style import STYLE
@@ -275,7 +276,7 @@ def _legend(race: Race) -> list:
             handles.append(Line2D([], [], ls="", label=name.upper()))
         for s in series:
             dashed = s.endswith("uniform")
-            line = {
+            line: dict[str, Any] = {
                 "ls": "" if family in ("lumped", "beam") else "--" if dashed else "-",
                 "lw": 1.0 if dashed else 1.5,
             }

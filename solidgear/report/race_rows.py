@@ -55,7 +55,6 @@ def records(race: Race) -> list[dict]:
     fronts = {(q, cost): race.front(q, cost) for q in race.reference["values"] for cost in COSTS}
     out = []
     for row in race.rows:
-        samples = row.samples or [None]
         r = {
             k: v
             for k, v in asdict(row).items()
@@ -64,9 +63,9 @@ def records(race: Race) -> list[dict]:
         r |= {
             "options": options_text(row),
             "runs": len(row.samples),
-            "seconds_min": min(samples),
+            "seconds_min": min(row.samples, default=None),
             "seconds_median": row.seconds,
-            "seconds_max": max(samples),
+            "seconds_max": max(row.samples, default=None),
         }
         r["samples"] = " ".join(repr(s) for s in row.samples)
         r |= {_column(q): row.values.get(q) for q in CHARTED}

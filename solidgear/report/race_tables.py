@@ -25,7 +25,9 @@ def front_rows(race: Race) -> list[tuple[Row, list[str]]]:
     """Rows on a front over seconds, cheapest first, and of which quantities."""
     on = {q: race.front(q) for q in race.reference["values"]}
     rows = [(r, [q for q in on if any(r is other for other in on[q])]) for r in race.rows]
-    return sorted(((r, names) for r, names in rows if names), key=lambda pair: pair[0].seconds)
+    return sorted(
+        ((r, names) for r, names in rows if names), key=lambda pair: pair[0].seconds or 0.0
+    )
 
 
 def error_text(race: Race, row: Row, quantity: str) -> str:
@@ -88,8 +90,7 @@ def section(folder, scene: Mapping) -> dict | None:
     none of this scene.
     """
     race = read_race(folder) if folder is not None else None
-    picture = Path(folder) / PICTURE if race else None
-    if race is None or race.scene != scene or not picture.exists():
+    if race is None or race.scene != scene or not (picture := Path(folder) / PICTURE).exists():
         return None
     head = [
         "model",

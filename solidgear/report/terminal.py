@@ -7,6 +7,7 @@ Everything fits 80 columns and says the same without colour. Texts out of a scen
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING
 
 from rich import box
 from rich.console import Group, RenderableType
@@ -34,6 +35,9 @@ from solidgear.report.words import (
     seconds,
     validity,
 )
+
+if TYPE_CHECKING:
+    import numpy as np
 
 NOT_RESOLVED = "n.r."
 SHORT_NAMES = {"euler": "Euler", "timoshenko": "Timoshenko", "harmonic": "harmonic"}
@@ -162,7 +166,7 @@ def verdict_text(results: Mapping) -> str:
     return "\n".join(lines + [f"- {s}" for s in verdict.get("sentences") or ()])
 
 
-def matrix_table(matrix: Sequence[Sequence[float | None]], kind: str) -> Table:
+def matrix_table(matrix: np.ndarray | Sequence[Sequence[float | None]], kind: str) -> Table:
     """A 6x6 with its units; free components (None or NaN) show as a dash.
 
     Parameters

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from typing import Any
+from typing import Any, TypeGuard
 
 #: key -> name in a sentence, cheapest first
 MODEL_NAMES = {
@@ -43,7 +43,7 @@ def plain(value: Any) -> Any:
     return value
 
 
-def is_number(value: Any) -> bool:
+def is_number(value: Any) -> TypeGuard[float]:
     """Whether `value` is a finite number (a truth value is none)."""
     return isinstance(value, (int, float)) and not isinstance(value, bool) and math.isfinite(value)
 
@@ -181,7 +181,8 @@ def answer_seconds(model: Mapping) -> float | None:
     """
     times = model.get("seconds") or {}
     stages = [times.get(s) for s in ("build", "statics", "modes")]
-    return sum(stages) if all(is_number(s) for s in stages) else times.get("total")
+    known = [s for s in stages if is_number(s)]
+    return sum(known) if len(known) == len(stages) else times.get("total")
 
 
 def validity(model: Mapping) -> str:
