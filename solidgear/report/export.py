@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from itertools import islice
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -66,7 +66,7 @@ def write_vtu(
     import meshio
 
     path = Path(path)
-    told = getattr(modes, "modes", modes)
+    told: Any = getattr(modes, "modes", modes)
     shapes = dict(_shapes(islice(told, most)))
     if body.fidelity == "solid" and body.geometry is not None:
         points, cells, data = _volume(body, shapes)
