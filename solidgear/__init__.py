@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING
 __version__ = "0.1.0"
 
 _WHERE = {
-    "load": "solidgear.scene_file",
+    "load": "solidgear.scene.file",
     "Scene": "solidgear.scene",
     "Segment": "solidgear.scene",
     "Bearing": "solidgear.scene",
@@ -31,7 +31,7 @@ _WHERE = {
     "build": "solidgear.fidelity",
     "condense": "solidgear.solve.statics",
     "modes": "solidgear.solve.modes",
-    "compare": "solidgear.comparison",
+    "compare": "solidgear.studies.comparison",
     "SolidgearError": "solidgear.errors",
     "SceneError": "solidgear.errors",
 }
@@ -57,13 +57,13 @@ __all__ = [
 
 if TYPE_CHECKING:
     from solidgear.body import Body, Supports
-    from solidgear.comparison import compare
     from solidgear.errors import SceneError, SolidgearError
     from solidgear.fidelity import build
     from solidgear.scene import STEEL, Ask, Bearing, Material, Port, Scene, Segment
-    from solidgear.scene_file import load
+    from solidgear.scene.file import load
     from solidgear.solve.modes import modes
     from solidgear.solve.statics import condense
+    from solidgear.studies.comparison import compare
 
 
 def __getattr__(name: str):

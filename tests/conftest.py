@@ -4,7 +4,7 @@ Ctrl-C is heard.
 
 import signal
 
-from solidgear.threads import pin
+from solidgear.machine.threads import pin
 
 pin()
 # A shell starts what it runs in the background deaf to Ctrl-C; tests that interrupt themselves

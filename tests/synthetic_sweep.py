@@ -9,8 +9,8 @@ from typer.testing import CliRunner
 
 import solidgear as sg
 from solidgear.cli import app
-from solidgear.sweep import sweep
-from solidgear.sweep.rows import RowFile
+from solidgear.studies.sweep import sweep
+from solidgear.studies.sweep.rows import RowFile
 
 SCENE = "geometry/pinion_overhung.toml"
 VARY = "bearing.1.scale=log:0.1:10:12"

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from solidgear.errors import SceneError
-from solidgear.scene_file import load
+from solidgear.scene.file import load
 
 GOOD = (Path(__file__).parents[1] / "geometry" / "pinion_overhung.toml").read_text(encoding="utf-8")
 BRG2 = GOOD.index('position = "150 mm"')  # edits marked "2:" are made from here on

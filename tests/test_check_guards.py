@@ -12,12 +12,12 @@ import pytest
 import scipy.linalg as sla
 
 import solidgear as sg
-from solidgear import check, guards
-from solidgear.check import check_scene
 from solidgear.cli import main
-from solidgear.guards import GUARDS, MODELS, Notice, elements, models
-from solidgear.guards.probe import Probe
 from solidgear.scene import STEEL, Ask, Bearing, Port, Scene, Segment
+from solidgear.studies import check, guards
+from solidgear.studies.check import check_scene
+from solidgear.studies.guards import GUARDS, MODELS, Notice, elements, models
+from solidgear.studies.guards.probe import Probe
 
 ROOT = Path(__file__).parent.parent
 SHIPPED = sorted((ROOT / "geometry").glob("*.toml"))

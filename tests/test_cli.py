@@ -129,7 +129,7 @@ def test_check_as_json(run, fidelity):
 
 def test_check_of_a_mesh_that_is_off_fails(run, monkeypatch):
     monkeypatch.setitem(
-        __import__("solidgear.check", fromlist=["x"]).MASS_TOLERANCE, "timoshenko", -1.0
+        __import__("solidgear.studies.check", fromlist=["x"]).MASS_TOLERANCE, "timoshenko", -1.0
     )
     done = run("check", SCENE, "-f", "timoshenko")
     assert done.code == 1 and "fault: mass of the timoshenko mesh" in done.out
@@ -250,12 +250,12 @@ def test_compare_in_which_all_fails_says_so(run, monkeypatch):
 
 
 def test_interrupted_compare_ends_with_130(run, monkeypatch):
-    import solidgear.comparison
+    import solidgear.studies.comparison
 
     def stop(*_, **__):
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(solidgear.comparison, "study", stop)
+    monkeypatch.setattr(solidgear.studies.comparison, "study", stop)
     done = run("compare", SCENE, "--models", "euler", "-o", "out", "--json")
     assert done.code == 130 and strict(done.out)["complete"] is False
 
@@ -376,7 +376,7 @@ def test_bad_scene_is_refused_by_every_command(run, tmp_path):
 def test_unwritable_folder_is_found_before_the_work(run, tmp_path, monkeypatch, out):
     (tmp_path / "occupied").write_text("a file")
     monkeypatch.setattr(
-        "solidgear.comparison.compare", lambda *_, **__: pytest.fail("solved first")
+        "solidgear.studies.comparison.compare", lambda *_, **__: pytest.fail("solved first")
     )
     done = run("compare", SCENE, "--models", "euler", "--out", out)
     assert done.code == 1 and done.out == "" and done.err.count("\n") == 1
@@ -483,5 +483,7 @@ def test_names_of_the_package():
 
 
 def test_compare_stays_a_function_after_an_import_of_its_module():
-    code = "import solidgear.comparison; import solidgear as sg; print(callable(sg.compare))"
+    code = (
+        "import solidgear.studies.comparison; import solidgear as sg; print(callable(sg.compare))"
+    )
     assert python("-c", code).stdout.strip() == "True"

@@ -10,12 +10,12 @@ import numpy as np
 import pytest
 
 import solidgear as sg
-from solidgear.comparison import ATTACHMENTS, compare
 from solidgear.errors import SolidgearError
 from solidgear.evidence.quantities import COUPLINGS, QUANTITIES
 from solidgear.fidelity import FIDELITIES
 from solidgear.frames import DOF_NAMES
 from solidgear.meshing.quality import MeshError
+from solidgear.studies.comparison import ATTACHMENTS, compare
 
 GEOMETRY = Path(__file__).parent.parent / "geometry"
 LIGHT = {"solid": {"refinement": 0.35}, "harmonic": {"order": 4, "layers": 1}}

@@ -11,7 +11,7 @@ import scipy.linalg as sla
 
 import solidgear as sg
 from solidgear.body import as_supports
-from solidgear.lumped.effective_mass import (
+from solidgear.reduction.effective_mass import (
     LumpedPoint,
     effective_masses,
     lumped_point,

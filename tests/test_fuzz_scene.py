@@ -10,7 +10,7 @@ import pytest
 
 from solidgear.errors import SceneError, SolidgearError
 from solidgear.scene import Bearing, Material, Port, Scene, Segment
-from solidgear.scene_file import load
+from solidgear.scene.file import load
 
 ROOT = Path(__file__).parents[1]
 GOOD = (ROOT / "geometry" / "pinion_overhung.toml").read_text(encoding="utf-8")

@@ -5,14 +5,14 @@ import itertools
 import numpy as np
 import pytest
 
-from solidgear.drivetrain.gear_mesh import (
+from solidgear.errors import SolidgearError
+from solidgear.system.gear_mesh import (
     MeshVector,
     line_of_action,
     mean_radius,
     mesh_point,
     to_gear_frame,
 )
-from solidgear.errors import SolidgearError
 
 # A dozen products of numbers of order one.
 ROUNDING = 1e-14

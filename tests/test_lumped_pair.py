@@ -9,10 +9,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from solidgear.drivetrain.gear_mesh import MeshVector, line_of_action, mesh_point, to_gear_frame
-from solidgear.drivetrain.highest_frequency import consistency, rayleigh_bound
-from solidgear.drivetrain.identify import Unknown, identify, torsion_springs
-from solidgear.drivetrain.lumped_pair import (
+from solidgear.errors import SolidgearError
+from solidgear.frames import move_stiffness
+from solidgear.system.gear_mesh import MeshVector, line_of_action, mesh_point, to_gear_frame
+from solidgear.system.highest_frequency import consistency, rayleigh_bound
+from solidgear.system.identify import Unknown, identify, torsion_springs
+from solidgear.system.lumped_pair import (
     COMPONENTS,
     ENGINE,
     GEAR,
@@ -22,8 +24,6 @@ from solidgear.drivetrain.lumped_pair import (
     diagonal_mass,
     shaft_stiffness,
 )
-from solidgear.errors import SolidgearError
-from solidgear.frames import move_stiffness
 
 ROOT = Path(__file__).resolve().parent.parent
 RATIO = 45 / 14

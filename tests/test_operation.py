@@ -14,9 +14,9 @@ import pytest
 
 import solidgear as sg
 from solidgear import cli
-from solidgear.comparison import compare
 from solidgear.report import charts
 from solidgear.report.folder import LOCK, held
+from solidgear.studies.comparison import compare
 
 ROOT = Path(__file__).parent.parent
 SCENE = str(ROOT / "geometry" / "pinion_overhung.toml")

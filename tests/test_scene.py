@@ -9,11 +9,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from solidgear.bearing_stiffness import STIFFNESS_NAMES, stiffness_entries, stiffness_matrix
 from solidgear.errors import SceneError
 from solidgear.scene import STEEL, Bearing, Material, Port, Scene, Segment
-from solidgear.scene_file import load
-from solidgear.units import quantity
+from solidgear.scene.bearing_stiffness import STIFFNESS_NAMES, stiffness_entries, stiffness_matrix
+from solidgear.scene.file import load
+from solidgear.scene.units import quantity
 
 GEOMETRY = Path(__file__).parents[1] / "geometry"
 NEAR = dict(rel=0, abs=1e-9)

@@ -9,7 +9,7 @@ import pytest
 
 from solidgear.errors import TOLD, SceneError, show
 from solidgear.scene import Port, Scene, Segment
-from solidgear.scene_file import load
+from solidgear.scene.file import load
 
 GOOD = (Path(__file__).parents[1] / "geometry" / "pinion_overhung.toml").read_text(encoding="utf-8")
 

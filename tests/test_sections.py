@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import solidgear as sg
-from solidgear.sections import hats
+from solidgear.body.sections import hats
 
 STATIONS = 13
 GEOMETRY = Path(__file__).parent.parent / "geometry"

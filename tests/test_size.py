@@ -161,7 +161,7 @@ def test_what_fits_is_built(monkeypatch):
 # ------------------------------------------------------------------------------------------------- peaks
 PEAK = """
 import json, resource, sys
-from solidgear.threads import pin
+from solidgear.machine.threads import pin
 pin()
 import solidgear as sg
 from solidgear.fidelity.size import estimated_size
@@ -216,7 +216,7 @@ def test_estimated_peak_within_a_third(name, model, options):
 
 WHOLE = """
 import json, sys
-from solidgear.threads import pin
+from solidgear.machine.threads import pin
 pin()
 import solidgear as sg
 results = sg.compare(sg.load(sys.argv[1])).results

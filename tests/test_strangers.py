@@ -10,14 +10,14 @@ import numpy as np
 import pytest
 
 import solidgear as sg
-from solidgear.check import check_scene
-from solidgear.comparison import compare
 from solidgear.evidence.completeness import completeness
 from solidgear.evidence.levels import HARMONIC, HEXAHEDRA
 from solidgear.evidence.study import study
 from solidgear.evidence.ties import SCENE
 from solidgear.fidelity.size import estimated_size
 from solidgear.scene import Bearing, Port, Scene, Segment
+from solidgear.studies.check import check_scene
+from solidgear.studies.comparison import compare
 
 SCENES = Path(__file__).parent / "scenes"
 COARSE = HARMONIC[1]

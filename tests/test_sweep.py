@@ -14,10 +14,10 @@ from typer.testing import CliRunner
 import solidgear as sg
 from solidgear.cli import app
 from solidgear.errors import SolidgearError
-from solidgear.sweep import run as runner
-from solidgear.sweep import sweep
-from solidgear.sweep.run import variants_of
-from solidgear.sweep.task import ENTRIES
+from solidgear.studies.sweep import run as runner
+from solidgear.studies.sweep import sweep
+from solidgear.studies.sweep.run import variants_of
+from solidgear.studies.sweep.task import ENTRIES
 
 SCENE = sg.load("geometry/pinion_overhung.toml")
 VARY = [
@@ -306,7 +306,7 @@ def test_two_processes_give_the_rows_of_one(finished, tmp_path):
 def test_workers_get_the_small_operators_only(monkeypatch):
     import pickle
 
-    from solidgear.sweep.reduced import reduce
+    from solidgear.studies.sweep.reduced import reduce
 
     variants = variants_of(SCENE, VARY)
     body = sg.build(variants.shaft(), "harmonic", order=4, layers=2)

@@ -6,10 +6,10 @@ import scipy.linalg as sla
 
 import solidgear as sg
 from solidgear.body import Supports
-from solidgear.sweep import reduced as reduction
-from solidgear.sweep.reduced import reduce
-from solidgear.sweep.ritz import Seats, _bound, _Group, ritz_modes
-from solidgear.sweep.run import variants_of
+from solidgear.studies.sweep import reduced as reduction
+from solidgear.studies.sweep.reduced import reduce
+from solidgear.studies.sweep.ritz import Seats, _bound, _Group, ritz_modes
+from solidgear.studies.sweep.run import variants_of
 
 SCENE = sg.load("geometry/pinion_overhung.toml")
 #: overlapping candidate seats, among them two that share no mesh line

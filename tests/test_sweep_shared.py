@@ -22,8 +22,8 @@ from synthetic_sweep import (
 )
 
 from solidgear.errors import SolidgearError
-from solidgear.sweep.rows import RowFile
-from solidgear.sweep.store import Store
+from solidgear.studies.sweep.rows import RowFile
+from solidgear.studies.sweep.store import Store
 
 
 # ------------------------------------------------------------------------------------------ shared
@@ -144,7 +144,7 @@ def test_no_room_for_the_file_keeps_the_rows(tmp_path, right, monkeypatch):
     assert sorted(os.listdir(tmp_path)) == ["rows.csv", "rows.csv.sqlite"]
     monkeypatch.undo()
     # killed between noting what the file will be and putting it there: either is right
-    monkeypatch.setattr("solidgear.whole_file.os.replace", _raise)
+    monkeypatch.setattr("solidgear.machine.whole_file.os.replace", _raise)
     with pytest.raises(SolidgearError, match="cannot be written"):
         write(out)
     monkeypatch.undo()

@@ -5,8 +5,8 @@ import pytest
 
 import solidgear as sg
 from solidgear.errors import SceneError, SolidgearError
-from solidgear.sweep import vary
-from solidgear.sweep.run import variants_of
+from solidgear.studies.sweep import vary
+from solidgear.studies.sweep.run import variants_of
 
 SCENE = sg.load("geometry/pinion_overhung.toml")
 GEAR = sg.load("geometry/gear_shaft.toml")
@@ -128,7 +128,7 @@ def test_a_variant_is_the_scene_a_file_would_give():
 
 
 def _entries(bearing):
-    from solidgear.bearing_stiffness import stiffness_entries
+    from solidgear.scene.bearing_stiffness import stiffness_entries
 
     return stiffness_entries(bearing.matrix)
 

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from solidgear import threads
+from solidgear.machine import threads
 from solidgear.solve.backends import missing
 
 ROOT = Path(__file__).parent.parent
@@ -48,7 +48,7 @@ def test_numpy_first_is_held_to_one_thread_inside_and_gets_its_own_back():
         + """
 set_all(2)
 import solidgear as sg
-from solidgear import threads
+from solidgear.machine import threads
 scene = sg.load("geometry/pinion_overhung.toml")
 seen = []
 import solidgear.fidelity.beam as beam
@@ -80,7 +80,7 @@ def test_a_number_that_was_chosen_is_kept():
         NUMBERS
         + """
 set_all(2)
-from solidgear import threads
+from solidgear.machine import threads
 with threads.single():
     print(numbers())
 threads.pin()

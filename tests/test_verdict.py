@@ -7,14 +7,14 @@ import numpy as np
 import pytest
 
 import solidgear as sg
-from solidgear.comparison import compare
 from solidgear.evidence.bands import Band
 from solidgear.evidence.quantities import JUDGED
 from solidgear.evidence.study import Rung, Tied
 from solidgear.evidence.ties import SCENE, SECTION
+from solidgear.evidence.verdict import BEYOND, OPEN, WITHIN, deviations, gap_verdict, judge, trusted
 from solidgear.scene import Ask, Bearing, Scene, Segment
 from solidgear.solve.modes import Mode, ModeSet
-from solidgear.verdict import BEYOND, OPEN, WITHIN, deviations, gap_verdict, judge, trusted
+from solidgear.studies.comparison import compare
 
 GEOMETRY = Path(__file__).parent.parent / "geometry"
 STATIONS = np.linspace(0.0, 1.0, 13)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import csv
 from pathlib import Path
 
-from solidgear.threads import pin
+from solidgear.machine.threads import pin
 
 ROOT = Path(__file__).resolve().parent.parent
 pin()

@@ -34,12 +34,12 @@ from pathlib import Path
 
 import numpy as np
 
-from solidgear.check import check_scene
 from solidgear.errors import TOLD, SceneError, SolidgearError
 from solidgear.fidelity import build
-from solidgear.scene_file import load
+from solidgear.scene.file import load
 from solidgear.solve.modes import modes
 from solidgear.solve.statics import condense
+from solidgear.studies.check import check_scene
 from validation.common import ROOT, results_folder, show, write_rows
 from validation.fuzz_commands import ENVIRONMENT, command_line, put
 from validation.fuzz_mutations import mutant

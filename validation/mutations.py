@@ -179,7 +179,7 @@ MUTATIONS = (
     ),
     Mutation(
         "housing spring left out",
-        "solidgear/body.py",
+        "solidgear/body/model.py",
         "as_supports",
         "(e @ ke + housing)",
         "(e @ ke + 1e30)",
@@ -187,7 +187,7 @@ MUTATIONS = (
     ),
     Mutation(
         "sign of a bearing's coupling",
-        "solidgear/body.py",
+        "solidgear/body/model.py",
         "as_supports",
         "k[6 * i : 6 * i + 6, 6 * i : 6 * i + 6] = bearing.stiffness",
         "k[6 * i : 6 * i + 6, 6 * i : 6 * i + 6] = bearing.stiffness * np.where(np.eye(6) > 0, 1, -1)",
@@ -195,7 +195,7 @@ MUTATIONS = (
     ),
     Mutation(
         "series spring beside the bearing instead of behind it",
-        "solidgear/scene_parts.py",
+        "solidgear/scene/parts.py",
         "Bearing.stiffness",
         "K -= np.outer(K[:, 1], K[1, :]) / (K[1, 1] + spring)",
         "K[1, 1] += spring",
@@ -203,7 +203,7 @@ MUTATIONS = (
     ),
     Mutation(
         "lumped point 1 mm off",
-        "solidgear/scene_places.py",
+        "solidgear/scene/places.py",
         "_lay_out",
         "(segments[-1].y0 + y) / 2",
         "(segments[-1].y0 + y) / 2 + 1e-3",
@@ -283,7 +283,7 @@ MUTATIONS = (
     ),
     Mutation(
         "Guyan mass on compliance shapes instead of unit motions",
-        "solidgear/lumped/effective_mass.py",
+        "solidgear/reduction/effective_mass.py",
         "_guyan",
         "shapes = fields @ np.linalg.inv(compliance)",
         "shapes = fields @ np.diag(1 / np.diag(compliance))",
@@ -291,7 +291,7 @@ MUTATIONS = (
     ),
     Mutation(
         "hand of the spiral swapped",
-        "solidgear/drivetrain/gear_mesh.py",
+        "solidgear/system/gear_mesh.py",
         "line_of_action",
         's = _SPIRAL[_word("hand", hand, _SPIRAL)]',
         's = -_SPIRAL[_word("hand", hand, _SPIRAL)]',

@@ -22,7 +22,7 @@ import argparse
 
 import numpy as np
 
-from solidgear.environment import environment
+from solidgear.machine.environment import environment
 from validation.common import ROOT, results_folder, show, write_rows
 from validation.peers import calculix, ours, ross_peer, sfepy_peer
 from validation.peers import problem as peer_problem

@@ -22,8 +22,8 @@ from pathlib import Path
 import numpy as np
 
 import solidgear as sg
-from solidgear.sweep import sweep
-from solidgear.sweep.run import variants_of
+from solidgear.studies.sweep import sweep
+from solidgear.studies.sweep.run import variants_of
 from validation.common import ROOT, results_folder, show, write_rows
 
 STIFFNESS = ["bearing.1.kzz=log:8e9:1e11:10", "bearing.2.scale=log:0.1:10:10"]

@@ -7,7 +7,7 @@ import signal
 import sys
 import threading
 
-from solidgear.threads import pin
+from solidgear.machine.threads import pin
 
 pin()  # before anything imports numpy
 
@@ -31,7 +31,7 @@ from solidgear.cli import (
 )
 from solidgear.cli.app import app
 from solidgear.errors import SolidgearError, for_terminal
-from solidgear.interruptible import leave
+from solidgear.machine.interruptible import leave
 
 if _hears:
     signal.signal(signal.SIGINT, signal.default_int_handler)

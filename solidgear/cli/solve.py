@@ -60,11 +60,11 @@ def compare(
     ] = False,
 ) -> None:
     """Solve a scene with every model and write a report on which to trust."""
-    from solidgear.comparison import check_models
-    from solidgear.comparison import compare as run
     from solidgear.fidelity import FIDELITIES
     from solidgear.report.folder import held
-    from solidgear.scene_file import load
+    from solidgear.scene.file import load
+    from solidgear.studies.comparison import check_models
+    from solidgear.studies.comparison import compare as run
 
     loaded = load(scene)
     wanted = tuple(m.strip() for m in models.split(",") if m.strip())
@@ -115,10 +115,10 @@ def stiffness(
     """6x6 stiffness and compliance at the lumped point, bearings included."""
     import numpy as np
 
-    from solidgear.check import cautions
     from solidgear.frames import DOF_NAMES
-    from solidgear.scene_file import load
+    from solidgear.scene.file import load
     from solidgear.solve.statics import condense
+    from solidgear.studies.check import cautions
 
     loaded = load(scene)
     if attachment:
@@ -184,10 +184,10 @@ def modes(
     settings: Settings = None,
 ) -> None:
     """Natural frequencies on the bearings, with the evidence for them."""
-    from solidgear.check import cautions
-    from solidgear.scene_file import load
-    from solidgear.scene_rules import MOST_MODES
+    from solidgear.scene.file import load
+    from solidgear.scene.rules import MOST_MODES
     from solidgear.solve.modes import modes as solve
+    from solidgear.studies.check import cautions
 
     if max_frequency is not None and not max_frequency > 0:
         raise SolidgearError(f"--max-frequency {max_frequency:g}: must be greater than zero, in Hz")
@@ -267,7 +267,7 @@ def render(
 ) -> None:
     """Draw one mode shape off-screen."""
     from solidgear.report.write import render_mode
-    from solidgear.scene_file import load
+    from solidgear.scene.file import load
     from solidgear.solve.modes import modes as solve
 
     loaded = load(scene)
@@ -285,8 +285,8 @@ def check(
     settings: Settings = None,
 ) -> None:
     """Say what will be modelled and what will not hold; a light mesh is the heaviest solved."""
-    from solidgear.check import VERDICTS, check_scene
-    from solidgear.scene_file import load
+    from solidgear.scene.file import load
+    from solidgear.studies.check import VERDICTS, check_scene
 
     loaded = load(scene)
     body = build_body(loaded, fidelity, settings)

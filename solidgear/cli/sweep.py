@@ -84,11 +84,11 @@ def sweep(
         TimeRemainingColumn,
     )
 
-    from solidgear.check import cautions
     from solidgear.fidelity import build
     from solidgear.fidelity.options import checked
-    from solidgear.scene_file import load
-    from solidgear.sweep import sweep as run
+    from solidgear.scene.file import load
+    from solidgear.studies.check import cautions
+    from solidgear.studies.sweep import sweep as run
 
     loaded = load(scene)
     given = checked(fidelity.value, options(settings))  # before a file of rows is begun

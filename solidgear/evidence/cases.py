@@ -117,11 +117,11 @@ def lap(name):
     global start
     now = time.perf_counter()
     seconds[name], start = now - start, now
-from solidgear.threads import pin
+from solidgear.machine.threads import pin
 pin()
 import numpy, scipy.sparse.linalg, scipy.optimize
 lap("numpy and scipy")
-import solidgear.fidelity.harmonic, solidgear.fidelity.solid, solidgear.fidelity.beam, solidgear.solve.modes, solidgear.scene_file
+import solidgear.fidelity.harmonic, solidgear.fidelity.solid, solidgear.fidelity.beam, solidgear.solve.modes, solidgear.scene.file
 lap("solidgear and scikit-fem")
 try:
     import gmsh

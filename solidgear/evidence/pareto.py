@@ -12,7 +12,7 @@ from statistics import median
 
 import numpy as np
 
-from solidgear.environment import environment
+from solidgear.machine.environment import environment
 
 #: what is charted, as named in `quantities`
 CHARTED = ("C_zz", "bending 1")

@@ -22,7 +22,7 @@ from solidgear.evidence.converge import gci, sharpest_corner
 from solidgear.evidence.pareto import CHARTED, Race, Row
 from solidgear.evidence.quantities import measure
 from solidgear.fidelity import build
-from solidgear.lumped.rung import representative, synthesise_all
+from solidgear.reduction.rung import representative, synthesise_all
 from solidgear.solve.modes import modes
 from solidgear.solve.statics import condense
 

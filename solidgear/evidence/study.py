@@ -24,8 +24,8 @@ from solidgear.evidence.quantities import JUDGED, QUANTITIES, change, measure
 from solidgear.evidence.ties import SCENE, SECTION, rigid_seats
 from solidgear.fidelity import build
 from solidgear.fidelity.size import estimated_size
+from solidgear.machine.meter import Meter
 from solidgear.meshing.corners import sharpest_corner
-from solidgear.meter import Meter
 from solidgear.solve.modes import ModeSet, modes
 from solidgear.solve.statics import Condensed, condense
 

@@ -6,10 +6,10 @@ from typing import TYPE_CHECKING
 
 from solidgear.body import Body
 from solidgear.errors import SolidgearError
-from solidgear.threads import pinned
+from solidgear.machine.threads import pinned
 
 if TYPE_CHECKING:
-    from solidgear.shaft import Shaft
+    from solidgear.scene.shaft import Shaft
 
 FIDELITIES = ("euler", "timoshenko", "harmonic", "solid")
 

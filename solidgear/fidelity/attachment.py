@@ -8,8 +8,8 @@ import numpy as np
 import scipy.sparse as sp
 
 from solidgear.body import Block
+from solidgear.body.sections import from_points, through
 from solidgear.errors import SolidgearError
-from solidgear.sections import from_points, through
 
 
 def tie_rigidly(block: Block, ties: Sequence[tuple[int, float, np.ndarray]]) -> Block:

@@ -26,7 +26,7 @@ from solidgear.meshing.meridian import meridian
 
 if TYPE_CHECKING:
     from solidgear.fidelity.harmonic import _Work
-    from solidgear.shaft import Shaft
+    from solidgear.scene.shaft import Shaft
 
 #: What carries a disc is no clamp: part of the stiffness of a clamped strip that it gets.  On 72
 #: random shafts the closed form reached 1.27 of the truth with a clamp (flanges on hollow shafts),

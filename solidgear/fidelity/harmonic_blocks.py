@@ -15,11 +15,11 @@ import scipy.sparse as sp
 from skfem import ElementQuad1
 
 from solidgear.body import Block
+from solidgear.body.sections import Sections, through
 from solidgear.errors import SolidgearError
 from solidgear.fidelity.assembly import Pattern, Tabulation, batches, reference, tabulate
 from solidgear.fidelity.attachment import tie_rigidly
 from solidgear.fidelity.meridian_sections import AXIAL, BENDING, TORSION, from_cells
-from solidgear.sections import Sections, through
 
 _CORNERS = ElementQuad1()
 

@@ -10,9 +10,9 @@ import numpy as np
 import scipy.sparse as sp
 from skfem import Element
 
+from solidgear.body.sections import Sections, hats
 from solidgear.fidelity.assembly import Tabulation, batches
 from solidgear.meshing.meridian import Meridian
-from solidgear.sections import Sections, hats
 
 
 @dataclass(frozen=True)

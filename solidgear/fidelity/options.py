@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 from solidgear.errors import SolidgearError, listed, nearest, show
 
 if TYPE_CHECKING:
-    from solidgear.shaft import Shaft
+    from solidgear.scene.shaft import Shaft
 
 Given = TypeVar("Given")
 

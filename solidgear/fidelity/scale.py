@@ -16,7 +16,7 @@ import numpy as np
 import scipy.linalg as sla
 
 if TYPE_CHECKING:
-    from solidgear.shaft import Shaft
+    from solidgear.scene.shaft import Shaft
 
 SLICES = 120
 LEVELS = 60  # radii at which overhangs are looked for

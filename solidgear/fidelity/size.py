@@ -24,10 +24,10 @@ from solidgear.body import Body
 from solidgear.errors import SolidgearError
 from solidgear.fidelity.counts import KINDS, nodes, sections
 from solidgear.fidelity.options import checked
-from solidgear.memory import available_mb
+from solidgear.machine.memory import available_mb
 
 if TYPE_CHECKING:
-    from solidgear.shaft import Shaft
+    from solidgear.scene.shaft import Shaft
 
 MB = 2.0**20
 #: entries that 32-bit indices can number, less some for what is numbered beside them

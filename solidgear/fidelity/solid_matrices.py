@@ -7,10 +7,10 @@ import scipy.sparse as sp
 from skfem.quadrature import get_quadrature
 from skfem.refdom import RefTet
 
+from solidgear.body.mass import ScalarMass
 from solidgear.fidelity.assembly import Pattern, Tabulation, batches, inverted, straight
 from solidgear.fidelity.solid_mesh import SolidMesh
 from solidgear.frames import cross_matrix
-from solidgear.mass import ScalarMass
 
 
 def _matrices(m: SolidMesh, scene):

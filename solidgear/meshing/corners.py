@@ -13,7 +13,7 @@ from scipy.optimize import brentq
 
 if TYPE_CHECKING:
     from solidgear.scene import Segment
-    from solidgear.shaft import Shaft
+    from solidgear.scene.shaft import Shaft
 
 # Exponent of a right-angled shoulder, against which layers are counted.
 SHOULDER = 0.5445

@@ -1,6 +1,6 @@
 """gmsh, loaded when needed, and a model in it that leaves no trace."""
 
-from solidgear.interruptible import abandoned
+from solidgear.machine.interruptible import abandoned
 from solidgear.meshing.quality import MeshError
 
 _APT = "apt-get install libglu1-mesa libgl1 libegl1 libegl-mesa0 libxft2 libxinerama1 libxcursor1 libgomp1"

@@ -18,7 +18,7 @@ from solidgear.meshing.layout import Layout
 from solidgear.meshing.quality import MeshError
 
 if TYPE_CHECKING:
-    from solidgear.shaft import Shaft
+    from solidgear.scene.shaft import Shaft
 
 # Between 0 (circular core: 180 degree corners) and 1 (square core: thin first ring).
 SQUARENESS = 0.5

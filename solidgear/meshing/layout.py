@@ -15,7 +15,7 @@ import numpy as np
 from solidgear.meshing.bands import first_of_run, radial_bands
 from solidgear.meshing.corners import corner_layers
 from solidgear.meshing.grading import Grading, corner_length, distinct, graded
-from solidgear.scene_rules import TOUCH
+from solidgear.scene.rules import TOUCH
 
 
 @dataclass(frozen=True)

@@ -10,7 +10,7 @@ import numpy as np
 from solidgear.meshing.layout import Layout
 
 if TYPE_CHECKING:
-    from solidgear.shaft import Shaft
+    from solidgear.scene.shaft import Shaft
 
 
 @dataclass(frozen=True)

@@ -14,7 +14,7 @@ from math import pi
 import numpy as np
 from skfem import MeshTet1, MeshTet2
 
-from solidgear.interruptible import call
+from solidgear.machine.interruptible import call
 from solidgear.meshing.element_size import set_size, size_formulas
 from solidgear.meshing.gmsh_session import Session, import_gmsh
 from solidgear.meshing.outline import (

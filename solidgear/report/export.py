@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from solidgear.machine.whole_file import whole
 from solidgear.report.fields import mesh_unknowns, surface
-from solidgear.whole_file import whole
 
 if TYPE_CHECKING:
     from solidgear.body import Body

@@ -26,7 +26,7 @@ except ImportError:  # Windows
 LOCK = ".solidgear.lock"
 #: what is ever listed, and so ever removed: a damaged list can name nothing else
 OWN = re.compile(r"(report\.html|mode_\w+\.png|modes_\w+\.vtu)")
-#: what a process that was killed can have left half written, see :func:`solidgear.whole_file.whole`
+#: what a process that was killed can have left half written, see :func:`solidgear.machine.whole_file.whole`
 HALF = re.compile(
     rf"\.({OWN.pattern}|results\.json|rows\.csv|machine\.json|speed_accuracy\.png)\.(?P<process>\d+)\.part"
 )

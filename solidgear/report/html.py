@@ -15,6 +15,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
+from solidgear.machine.whole_file import whole
 from solidgear.report import (
     charts,
     evidence_tables,
@@ -26,7 +27,6 @@ from solidgear.report import (
 from solidgear.report.cells import DASH, capital, short_percent
 from solidgear.report.lumped import lumped_tables
 from solidgear.report.words import MODEL_NAMES, model_name, plain, reference_of, seconds, validity
-from solidgear.whole_file import whole
 
 log = logging.getLogger(__name__)
 

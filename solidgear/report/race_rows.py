@@ -11,7 +11,7 @@ from dataclasses import asdict, fields
 from pathlib import Path
 
 from solidgear.evidence.pareto import CHARTED, Race, Row
-from solidgear.whole_file import whole
+from solidgear.machine.whole_file import whole
 
 log = logging.getLogger(__name__)
 ROWS, MACHINE, PICTURE = "rows.csv", "machine.json", "speed_accuracy.png"

@@ -156,7 +156,7 @@ def _collect(
     room: Path, index: int, path: Path, end: str, works: bool, timeout: float
 ) -> RenderResult:
     """Move a finished picture to its place, or say why there is none."""
-    from solidgear.whole_file import whole
+    from solidgear.machine.whole_file import whole
 
     drawn, said = room / f"{index}.png", room / f"{index}.txt"
     if said.exists():

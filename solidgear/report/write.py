@@ -9,14 +9,14 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from solidgear.errors import SolidgearError
+from solidgear.machine.whole_file import whole
 from solidgear.report.folder import clear, held, prepare
-from solidgear.whole_file import whole
 
 if TYPE_CHECKING:
     from solidgear.body import Body
-    from solidgear.comparison import Comparison
     from solidgear.scene import Scene
     from solidgear.solve.modes import ModeSet
+    from solidgear.studies.comparison import Comparison
 
 MODE = "bending 1"
 
@@ -29,7 +29,7 @@ def write_all(
     progress: Callable[[str], None],
 ) -> Path:
     """Write results.json, renders, vtu files and the report; see
-    :meth:`solidgear.comparison.Comparison.write_report`.
+    :meth:`solidgear.studies.comparison.Comparison.write_report`.
 
     ``results`` gains ``files``, what was written beside it, and ``left_out``, a sentence for what
     could not be drawn or written. After an interrupt there are numbers and a report, and no shapes:

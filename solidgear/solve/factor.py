@@ -15,8 +15,8 @@ import numpy as np
 import scipy.linalg as sla
 import scipy.sparse as sp
 
-from solidgear.interruptible import call
-from solidgear.memory import available_mb
+from solidgear.machine.interruptible import call
+from solidgear.machine.memory import available_mb
 from solidgear.solve.backends import BACKENDS, INSTALL, missing
 from solidgear.solve.backends.matrix import FactorError
 

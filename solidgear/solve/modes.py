@@ -16,6 +16,7 @@ import numpy as np
 
 from solidgear.body import FURTHER, Body, as_supports
 from solidgear.errors import SolidgearError
+from solidgear.machine.threads import pinned
 from solidgear.solve.eigen import Raw
 from solidgear.solve.naming import Names, Projection, numbered
 from solidgear.solve.parts import (
@@ -29,10 +30,9 @@ from solidgear.solve.parts import (
 )
 from solidgear.solve.statics import SHIFT, factors
 from solidgear.solve.supported import decoupled
-from solidgear.threads import pinned
 
 if TYPE_CHECKING:
-    from solidgear.body import Holding
+    from solidgear.body.model import Holding
 
 STATIONS = 13
 #: Relative error of a frequency above which it is not told.

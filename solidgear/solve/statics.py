@@ -27,12 +27,12 @@ import scipy.sparse as sp
 from solidgear.body import Body, as_supports
 from solidgear.errors import SolidgearError
 from solidgear.frames import DOF_NAMES
+from solidgear.machine.threads import pinned
 from solidgear.solve.factor import Factor, factorise
 from solidgear.solve.relief import elastic_fields
-from solidgear.threads import pinned
 
 if TYPE_CHECKING:
-    from solidgear.body import Holding
+    from solidgear.body.model import Holding
 
 # Of the lowest elastic eigenvalue.  Rounding in the factor is amplified by the highest eigenvalue
 # of the mesh over the shift: 1e-3 left 5e-3 of the frequencies of slender tubes wrong, 3e-2 leaves

@@ -8,6 +8,6 @@ asked for, `bands` and `verdicts` hold what `compare` and `check` say against it
 follows from its seed alone.
 """
 
-from solidgear.threads import pin
+from solidgear.machine.threads import pin
 
 pin()  # before numpy: one thread for the many small dense matrices

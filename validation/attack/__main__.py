@@ -16,7 +16,7 @@ from pathlib import Path
 import numpy as np
 
 from solidgear.errors import SolidgearError
-from solidgear.whole_file import whole
+from solidgear.machine.whole_file import whole
 from validation.attack.bands import BandTable
 from validation.attack.campaign import LANES, collect, described, problem_of, scene_of, truth_for
 from validation.attack.outcome import stamp

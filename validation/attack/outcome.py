@@ -10,11 +10,11 @@ from pathlib import Path
 import numpy as np
 
 import solidgear
-from solidgear.check import check_scene
-from solidgear.comparison import compare
 from solidgear.evidence.quantities import QUANTITIES
 from solidgear.fidelity import build
 from solidgear.scene import Scene
+from solidgear.studies.check import check_scene
+from solidgear.studies.comparison import compare
 from validation.attack.reference import coupling_scale
 
 SOLIDS = ("harmonic", "solid")

@@ -28,10 +28,10 @@ import numpy as np
 
 from solidgear.body import as_supports
 from solidgear.evidence.quantities import QUANTITIES, measure
+from solidgear.machine.whole_file import whole
 from solidgear.scene import Ask, Scene
 from solidgear.solve.modes import modes
 from solidgear.solve.statics import condense
-from solidgear.whole_file import whole
 from validation.attack.corner_mesh import corner_mesh
 from validation.attack.spectral import spectral
 

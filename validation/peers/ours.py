@@ -167,7 +167,7 @@ def whole(
 
 
 def _child(path: str) -> None:
-    from solidgear.threads import pin
+    from solidgear.machine.threads import pin
 
     pin()
     job = json.loads(Path(path).read_text())

@@ -12,7 +12,7 @@ from __future__ import annotations
 import numpy as np
 
 import solidgear as sg
-from solidgear.lumped.effective_mass import METHODS, synthesise
+from solidgear.reduction.effective_mass import METHODS, synthesise
 from validation.stability.frame import ROOT, Finding, main
 
 STATUS = ("first", "second", "negative", "no real pair", "none")

@@ -21,16 +21,16 @@ import numpy as np
 from scipy.linalg import eigh
 
 import solidgear as sg
-from solidgear.drivetrain.gear_mesh import (
+from solidgear.system.gear_mesh import (
     MeshVector,
     line_of_action,
     mean_radius,
     mesh_point,
     to_gear_frame,
 )
-from solidgear.drivetrain.highest_frequency import consistency
-from solidgear.drivetrain.identify import Unknown, identify, torsion_springs
-from solidgear.drivetrain.lumped_pair import LumpedPair, diagonal_mass, shaft_stiffness
+from solidgear.system.highest_frequency import consistency
+from solidgear.system.identify import Unknown, identify, torsion_springs
+from solidgear.system.lumped_pair import LumpedPair, diagonal_mass, shaft_stiffness
 from validation.common import ROOT, results_folder, show, write_rows
 
 DATA = tomllib.loads(Path(__file__).with_name("published.toml").read_text())

@@ -11,7 +11,7 @@ of the same bodies.
 from __future__ import annotations
 
 import solidgear as sg
-from solidgear.lumped.effective_mass import synthesise
+from solidgear.reduction.effective_mass import synthesise
 from validation.common import ROOT, results_folder, show, write_rows
 
 PUBLISHED = {
@@ -61,7 +61,7 @@ def main() -> None:
     print(
         "The published stiffness is that of Euler-Bernoulli beams: with shear, or in 3D, the same geometry is 40 to 55 % softer. "
         "Head and stub are identified from the published entries, so their agreement shows consistency, not prediction. "
-        "Equations 52 and 53 have no solution on either pinion; the reason is in solidgear.lumped.effective_mass."
+        "Equations 52 and 53 have no solution on either pinion; the reason is in solidgear.reduction.effective_mass."
     )
 
 

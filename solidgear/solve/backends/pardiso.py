@@ -11,8 +11,8 @@ from importlib.metadata import PackageNotFoundError, files
 import numpy as np
 import scipy.sparse as sp
 
+from solidgear.machine.threads import offered
 from solidgear.solve.backends.matrix import FactorError, size_mb, upper_triangle
-from solidgear.threads import offered
 
 
 @lru_cache(maxsize=1)

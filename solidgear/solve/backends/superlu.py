@@ -6,7 +6,7 @@ import numpy as np
 import scipy.sparse as sp
 import scipy.sparse.linalg as spla
 
-from solidgear.interruptible import Made
+from solidgear.machine.interruptible import Made
 from solidgear.solve.backends.matrix import FactorError
 from solidgear.solve.backends.memory_law import law
 

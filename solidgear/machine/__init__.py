@@ -1,0 +1,1 @@
+"""The machine underneath: threads, memory, time, files that appear whole or not at all."""

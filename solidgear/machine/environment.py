@@ -1,0 +1,40 @@
+"""What a result was made with."""
+
+from __future__ import annotations
+
+import platform
+from datetime import UTC, datetime
+from importlib.metadata import PackageNotFoundError, version
+
+from solidgear.machine.threads import offered
+
+
+def environment() -> dict:
+    """Versions, processor and date, for results.json."""
+    out: dict = {"python": platform.python_version()}
+    for name in ("solidgear", "numpy", "scipy", "scikit-fem", "gmsh", "pyvista", "pypardiso"):
+        try:
+            out[name] = version(name)
+        except PackageNotFoundError:
+            out[name] = None
+    if out["solidgear"] is None:  # run from a source tree
+        from solidgear import __version__
+
+        out["solidgear"] = __version__
+    out["platform"] = f"{platform.system()} {platform.machine()}"
+    out["cpu"] = _cpu()
+    # those this process may use, not those of the machine
+    out["cores"] = offered()
+    out["date"] = datetime.now(UTC).strftime("%Y-%m-%d %H:%M UTC")
+    return out
+
+
+def _cpu() -> str:
+    try:
+        with open("/proc/cpuinfo") as f:
+            for line in f:
+                if line.startswith("model name"):
+                    return line.split(":", 1)[1].strip()
+    except OSError:
+        pass
+    return platform.processor() or "unknown"

@@ -1,0 +1,104 @@
+"""How much memory this process may still take: of the machine, of its control groups, of what the
+user allows.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator
+from contextlib import contextmanager
+from contextvars import ContextVar
+from pathlib import Path
+
+from solidgear.errors import SolidgearError
+from solidgear.machine.control_groups import control_groups, text_of
+
+_base: ContextVar[float | None] = ContextVar("memory held when a run began", default=None)
+
+# cgroup v1 writes "no limit" as the largest multiple of a page; anything above an exabyte is none.
+UNLIMITED = 2**60
+
+
+def available_mb(root: str | Path = "/") -> float | None:
+    """Memory (MB of 2**20 bytes) that can still be taken; None where the system does not tell.
+
+    The least of ``MemAvailable``, the room below the limit of every control group (v1 and v2) this
+    process is in, and the environment variable ``SOLIDGEAR_MEMORY_MB``, which can only lower it
+    (see :func:`one_run`).
+
+    Parameters
+    ----------
+    root : path
+        Where ``proc`` and ``sys`` are looked for.
+
+    Raises
+    ------
+    SolidgearError
+        If ``SOLIDGEAR_MEMORY_MB`` is not a number above zero.
+    """
+    root = Path(root)
+    found = [*_machine(root), *_groups(root)]
+    if text := os.environ.get("SOLIDGEAR_MEMORY_MB", "").strip():
+        try:
+            allowed = float(text)
+        except ValueError:
+            allowed = 0.0
+        if not 0 < allowed < float("inf"):
+            raise SolidgearError(
+                f"SOLIDGEAR_MEMORY_MB = {text!r}: must be a number of megabytes above zero"
+            )
+        base = _base.get()
+        held = 0.0 if base is None else max(0.0, (resident_mb() or base) - base)
+        found.append(max(0.0, allowed - held))
+    return min(found, default=None)
+
+
+@contextmanager
+def one_run() -> Iterator[None]:
+    """Within it, ``SOLIDGEAR_MEMORY_MB`` limits what is taken from here on in all, not what each
+    body may take by itself.
+    """
+    token = _base.set(resident_mb() if _base.get() is None else _base.get())
+    try:
+        yield
+    finally:
+        _base.reset(token)
+
+
+def resident_mb() -> float | None:
+    """Resident memory of this process, MB; None where the system does not tell."""
+    try:
+        pages = int(Path("/proc/self/statm").read_text().split()[1])
+    except OSError:
+        return None
+    import resource
+
+    return pages * resource.getpagesize() / 2**20
+
+
+def _machine(root: Path) -> Iterator[float]:
+    for line in text_of(root / "proc/meminfo").splitlines():
+        if line.startswith("MemAvailable:"):
+            yield int(line.split()[1]) / 1024
+
+
+def _groups(root: Path) -> Iterator[float]:
+    for place, unified in control_groups(root, "memory"):
+        names = (
+            ("memory.max", "memory.current", "inactive_file")
+            if unified
+            else ("memory.limit_in_bytes", "memory.usage_in_bytes", "total_inactive_file")
+        )
+        ceiling, taken = (text_of(place / name).strip() for name in names[:2])
+        if ceiling.isdigit() and taken.isdigit() and int(ceiling) < UNLIMITED:
+            # Cached files count as used but are given back on demand.
+            yield (
+                max(0, int(ceiling) - int(taken) + _field(text_of(place / "memory.stat"), names[2]))
+                / 2**20
+            )
+
+
+def _field(text: str, name: str) -> int:
+    return next(
+        (int(line.split()[1]) for line in text.splitlines() if line.startswith(name + " ")), 0
+    )

@@ -1,0 +1,68 @@
+"""Seconds and peak memory of a stage of work."""
+
+from __future__ import annotations
+
+import threading
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+from solidgear.machine.memory import resident_mb
+
+
+class Meter:
+    """Collects ``seconds`` per stage and the peak resident memory over all of them.
+
+    Memory is sampled every 20 ms: what is shown is the size of the whole process while the stage
+    ran.
+
+    Attributes
+    ----------
+    seconds : dict of str to float
+    peak_mb, expected_mb : float or None
+        Seen, and estimated beforehand (see :meth:`expect`).
+    """
+
+    def __init__(self):
+        self.seconds: dict[str, float] = {}
+        self.peak_mb: float | None = None
+        self.expected_mb: float | None = None
+
+    def expect(self, more_mb: float) -> None:
+        """Note that so much memory (MB) will be taken beyond what the process holds now."""
+        now = resident_mb()
+        if now is not None:
+            self.expected_mb = max(self.expected_mb or 0.0, now + more_mb)
+
+    @contextmanager
+    def stage(self, name: str) -> Iterator[None]:
+        """Time a block of code under ``name``; stages of one name add up."""
+        stop = threading.Event()
+
+        def watch():
+            while True:
+                now = resident_mb()
+                if now is None:
+                    return
+                self.peak_mb = max(self.peak_mb or 0.0, now)
+                if stop.wait(0.02):
+                    return
+
+        watcher = threading.Thread(target=watch, daemon=True)
+        watcher.start()
+        start = time.perf_counter()
+        try:
+            yield
+        finally:
+            self.seconds[name] = self.seconds.get(name, 0.0) + time.perf_counter() - start
+            stop.set()
+            watcher.join()
+
+    def move(self, source: str, target: str, seconds: float) -> None:
+        """Book some seconds of one stage under another name."""
+        self.seconds[source] = self.seconds.get(source, 0.0) - seconds
+        self.seconds[target] = self.seconds.get(target, 0.0) + seconds
+
+    def total(self) -> dict[str, float]:
+        """Seconds per stage and their sum."""
+        return {**self.seconds, "total": sum(self.seconds.values())}

@@ -1,0 +1,370 @@
+"""Effective mass and inertia at the lumped point: the thesis's equations, mode-matched, Guyan, and
+total.
+
+In a bending plane the lumped model is ``K_a - w^2 D`` on (z, phi), with K_a the static stiffness at
+the lumped point and D its 2x2 mass.  Hua (2010) asks in equations 52 and 53 for ``D = diag(M, I)``
+such that
+
+    M z^2 + I phi^2 = u'Mu  (= 1 here: kinetic energy of the first bending mode u)           (52)
+    det(K_a - w1^2 D) = 0   with w1 the first natural frequency of the model                 (53)
+
+**These have no solution in general.**  Let v = (z, phi) be the motion of the lumped point in the mode.  Of all shapes
+with that motion at the lumped point the static one stores the least energy, so
+
+    v' K_a v <= u'Ku = w1^2 u'Mu,
+
+with equality only if the mode *is* a static shape.  With (52), ``v' D v = u'Mu``, hence ``v'(K_a -
+w1^2 D) v <= 0``: unless equality holds the matrix is indefinite or worse at w1, and w1 cannot be
+the first frequency of the model. In the scaled unknowns ``x = M z^2, y = I phi^2`` with ``A = K_zz
+z^2 / w1^2``, ``B = K_pp phi^2 / w1^2``, ``C = K_zp z phi / w1^2`` the inequality reads ``A + B + 2C
+<= 1`` and (52), (53) become ``x + y = 1``, ``(A - x)(B - y) = C^2``, a quadratic in x with
+discriminant ``(A + B - 1)^2 - 4 C^2``.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+import numpy as np
+import scipy.linalg as sla
+
+from solidgear.body import Body, as_supports
+from solidgear.errors import SolidgearError
+from solidgear.reduction.receptance import modal_receptance, port_motion
+from solidgear.solve.modes import ModeSet, modes
+from solidgear.solve.statics import condense
+from solidgear.solve.supported import Supported, decoupled, groups
+
+if TYPE_CHECKING:
+    from solidgear.body.model import Holding
+
+PLANE = (2, 3)  # z and thx
+METHODS = ("old", "thesis", "mode-matched", "guyan")
+# v' K_a v / w1^2 this close to 1 counts as a static shape: the quadratic's double root then is real
+# to rounding.
+STATIC_SHAPE = 1e-9
+
+
+@dataclass(frozen=True)
+class Synthesis:
+    """One lumped model of the first bending mode.
+
+    Attributes
+    ----------
+    method : str
+        ``old``, ``thesis``, ``mode-matched`` or ``guyan``.
+    mass : (2, 2) ndarray or None
+        On (z, thx): kg, kg m, kg m^2.  None when the method has no answer.
+    feasible : bool
+        Whether there is a real mass matrix, positive definite.
+    first : bool
+        Whether the frequency below is the first of the lumped model (a mode-matched pair can place
+        it second).
+    frequency_hz : float or None
+        First natural frequency of the lumped model.
+    frequency_error : float or None
+        Against the body's first bending, relative.
+    slope_error : float or None
+        Of phi / z at the lumped point against the body's mode, relative.
+    kinetic_error : float or None
+        ``v' D v - 1``: kinetic energy of the lumped mass moving with the mode, against the mode's
+        own.
+    valid_to_hz : float or None
+        The receptance z/F_z at the lumped point stays within 5 per cent of the body's up to here.
+    verdict : str
+        In a sentence.
+    numbers : dict
+        Discriminant, roots and the like.
+    """
+
+    method: str
+    mass: np.ndarray | None
+    feasible: bool
+    first: bool
+    frequency_hz: float | None
+    frequency_error: float | None
+    slope_error: float | None
+    kinetic_error: float | None
+    valid_to_hz: float | None
+    verdict: str
+    numbers: dict = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class LumpedPoint:
+    """What the synthesis needs to know of a body.
+
+    Attributes
+    ----------
+    stiffness : (2, 2) ndarray
+        Static, on (z, thx), everything else free to follow.
+    motion : (2,) ndarray
+        (z, phi) of the lumped point in the first bending mode of unit modal mass.
+    omega : float
+        rad/s.
+    total_mass, total_inertia : float
+        Of the body, the inertia transverse and about the lumped point.
+    guyan : (2, 2) ndarray
+        Mass condensed on the static shapes.
+    """
+
+    stiffness: np.ndarray
+    motion: np.ndarray
+    omega: float
+    total_mass: float
+    total_inertia: float
+    guyan: np.ndarray
+
+    @property
+    def static_share(self) -> float:
+        """``v' K_a v / w1^2``, never above 1; 1 when the mode is a static shape."""
+        return float(self.motion @ self.stiffness @ self.motion) / self.omega**2
+
+
+def lumped_point(
+    body: Body, supports: Holding, port: str, found: ModeSet | None = None
+) -> tuple[LumpedPoint, ModeSet]:
+    """Static stiffness, first bending motion and condensed mass of a body at its lumped point.
+
+    Raises
+    ------
+    SolidgearError
+        Without a first bending mode or a static stiffness at the port (a body that nothing holds).
+    """
+    supports = as_supports(supports)
+    condensed = condense(body, supports, port)
+    c = condensed.compliance[np.ix_(PLANE, PLANE)]
+    if not np.all(np.isfinite(c)):
+        raise SolidgearError(
+            f"port {port!r} has no static stiffness in bending: bearings leave it free; support the shaft first"
+        )
+    k = np.linalg.inv(c)
+    if np.linalg.eigvalsh(k)[0] <= 0:
+        raise SolidgearError(
+            f"the stiffness at port {port!r} is indefinite in bending: {k.tolist()}; check the bearings"
+        )
+    found = found if found is not None and found.named("bending 1") else modes(body, supports, 12)
+    index = body.port_index(port)
+    mode, motion = _first_in_plane(body, found, index)
+    if mode is None:
+        raise SolidgearError(
+            f"no bending mode in the z plane among the first 12 of the {body.fidelity} body; effective masses need one"
+        )
+    inertia = body.mass_matrix()
+    y = body.ports[index].y
+    about = inertia[3, 3] - 2 * y * inertia[2, 3] + y * y * inertia[2, 2]
+    return LumpedPoint(
+        k,
+        motion,
+        2 * np.pi * mode.frequency_hz,
+        float(inertia[2, 2]),
+        float(about),
+        _guyan(body, supports, index, c),
+    ), found
+
+
+def _first_in_plane(body: Body, found: ModeSet, index: int):
+    """First bending mode that moves the port in the z plane, and its (z, thx) there: unequal
+    bearings may put one of the x plane before it.
+    """
+    for mode in (*found.modes, *found.beyond):
+        if mode.family != "bending" or mode.frequency_hz == 0:
+            continue
+        motions = np.array([port_motion(body, v, index) for v in mode.vectors])
+        size = np.array([1.0, body.length])  # a rotation counts by what it moves at the other end
+        z, x = (np.linalg.norm(motions[:, c] * size) for c in (list(PLANE), [0, 5]))
+        if z >= 0.5 * x:
+            return mode, _in_plane(motions)
+    return None, None
+
+
+def _in_plane(motions: np.ndarray) -> np.ndarray:
+    """(z, thx) of the combination of a pair that moves in the z plane."""
+    if len(motions) == 1:
+        return motions[0][list(PLANE)]
+    # The pair spans both planes: take the unit combination without motion in the x plane.
+    scale = np.abs(motions).max(axis=0)
+    other = motions[:, [0, 5]] / np.where(scale[[0, 5]] > 0, scale[[0, 5]], 1.0)
+    u, _, _ = np.linalg.svd(other)
+    mix = u[:, -1]
+    motion = mix @ motions[:, list(PLANE)]
+    return motion if motion[0] >= 0 else -motion
+
+
+def _static_shapes(body: Body, supports, index: int):
+    """Group of the z plane and its displacements under unit (F_z, M_x) at a port."""
+    spring, _ = decoupled(body, supports, 1e-6)
+    for group in groups(body, supports, spring):
+        if any(2 in body.blocks[b].components for b in group):
+            supported = Supported(body, supports, spring, group)
+            parts = []
+            for b in group:
+                block = body.block(b)
+                rows = np.zeros((2, block.size))
+                n = len(block.components)
+                for r, c in enumerate(PLANE):
+                    if c in block.components:
+                        rows[r] = (
+                            block.ports[index * n + block.components.index(c)].toarray().ravel()
+                        )
+                parts.append(rows)
+            return supported, supported.static(np.hstack(parts).T)
+    raise SolidgearError(f"the {body.fidelity} body has no bending plane")
+
+
+def _guyan(body: Body, supports, index: int, compliance: np.ndarray) -> np.ndarray:
+    """Mass on the static shapes of unit (z, phi) at the lumped point, no load elsewhere (Guyan
+    1965).
+    """
+    supported, fields = _static_shapes(body, supports, index)
+    shapes = fields @ np.linalg.inv(compliance)
+    m = shapes.T @ supported.mass(shapes)
+    return (m + m.T) / 2
+
+
+def effective_masses(
+    point: LumpedPoint, receptance: Callable[[float], float] | None = None
+) -> dict[str, Synthesis]:
+    """All four lumped models of a first bending mode.
+
+    Parameters
+    ----------
+    point : LumpedPoint
+    receptance : callable, optional
+        ``receptance(omega)`` of the full body, z per unit F_z at the lumped point, m/N; without it
+        the band of validity stays None.
+
+    Returns
+    -------
+    dict of str to Synthesis
+        In the order of ``METHODS``.
+    """
+    out = {}
+    out["old"] = _judge(
+        point,
+        "old",
+        np.diag([point.total_mass, point.total_inertia]),
+        receptance,
+        "total mass and inertia",
+    )
+    out["thesis"] = _thesis(point, receptance)
+    matched = point.stiffness @ point.motion / (point.omega**2 * point.motion)
+    coupling = point.stiffness[0, 1] * point.motion[0] * point.motion[1]
+    text = (
+        "keeps first frequency and slope ratio exactly"
+        if np.all(matched > 0)
+        else "a negative entry: no physical mass"
+    )
+    if np.all(matched > 0) and coupling > 0:
+        text = "keeps the frequency and the slope ratio, but as the second mode of the lumped model"
+    out["mode-matched"] = _judge(point, "mode-matched", np.diag(matched), receptance, text)
+    out["guyan"] = _judge(
+        point,
+        "guyan",
+        point.guyan,
+        receptance,
+        "static condensation, always positive, first frequency from above",
+    )
+    return out
+
+
+def _thesis(point: LumpedPoint, receptance) -> Synthesis:
+    """Equations 52 and 53; see the module docstring for why they usually have no solution."""
+    k, (z, phi), w2 = point.stiffness, point.motion, point.omega**2
+    a, b, c = k[0, 0] * z * z / w2, k[1, 1] * phi * phi / w2, k[0, 1] * z * phi / w2
+    discriminant = (a + b - 1) ** 2 - 4 * c * c
+    share = point.static_share
+    numbers: dict[str, object] = {"discriminant": float(discriminant), "static_share": share}
+    half = (a - b + 1) / 2
+    root = np.sqrt(complex(discriminant)) / 2
+    numbers["mass_roots"] = [
+        [float(((half + s * root) / z**2).real), float(((half + s * root) / z**2).imag)]
+        for s in (1, -1)
+    ]
+    if abs(1 - share) <= STATIC_SHAPE:
+        x = half  # the double root; the mode is a static shape
+        mass = np.diag([x / z**2, (1 - x) / phi**2])
+        if x > 0 and 1 - x > 0 and c <= 0:
+            return _judge(
+                point,
+                "thesis",
+                mass,
+                receptance,
+                "equations 52 and 53 are met: the mode is a static shape",
+                numbers,
+            )
+        return _none(
+            "thesis",
+            "the mode is a static shape, but its pair is not positive or not the first",
+            numbers,
+        )
+    if discriminant < 0:
+        text = f"no real pair: discriminant {discriminant:.3g} < 0"
+    else:
+        xs = [half + s * np.sqrt(discriminant) / 2 for s in (1, -1)]
+        signs = "positive" if any(0 < x < 1 for x in xs) else "no positive pair"
+        text = f"real roots ({signs}), but the frequency asked for is not the first of the model"
+    return _none(
+        "thesis", f"{text}; v'Kv is {share:.4f} of w1^2 u'Mu, and only 1 would do", numbers
+    )
+
+
+def _none(method, verdict, numbers) -> Synthesis:
+    return Synthesis(method, None, False, False, None, None, None, None, None, verdict, numbers)
+
+
+def _judge(point: LumpedPoint, method, mass, receptance, verdict, numbers=None) -> Synthesis:
+    """Solve a lumped model and hold it against the body it came from."""
+    k, v = point.stiffness, point.motion
+    numbers = dict(numbers or {})
+    kinetic = float(v @ mass @ v) - 1
+    if np.linalg.eigvalsh(mass)[0] <= 0:
+        return Synthesis(
+            method, mass, False, False, None, None, None, kinetic, None, verdict, numbers
+        )
+    w2, shapes = sla.eigh(k, mass)
+    own = np.argmin(np.abs(np.sqrt(w2) / point.omega - 1))
+    shape = shapes[:, 0]
+    frequency = np.sqrt(w2[0]) / (2 * np.pi)
+    slope = (shape[1] / shape[0]) / (v[1] / v[0]) - 1 if shape[0] and v[0] and v[1] else None
+    valid = _valid_to(k, mass, receptance, point.omega) if receptance else None
+    first = method != "mode-matched" or own == 0
+    return Synthesis(
+        method,
+        mass,
+        True,
+        bool(first),
+        float(frequency),
+        float(np.sqrt(w2[0]) / point.omega - 1),
+        None if slope is None else float(slope),
+        kinetic,
+        valid,
+        verdict,
+        numbers,
+    )
+
+
+def _valid_to(k, mass, receptance, omega, tolerance: float = 0.05) -> float:
+    """Highest frequency (Hz) below which the lumped receptance stays within the tolerance, looked
+    for up to 1.5 times the first mode.
+    """
+    last = 0.0
+    # Half steps, so that no point falls on the resonance itself.
+    for w in 1.5 * (np.arange(600) + 0.5) / 600 * omega:
+        lumped = np.linalg.inv(k - w * w * mass)[0, 0]
+        if abs(lumped / receptance(w) - 1) > tolerance:
+            break
+        last = w
+    return float(last / (2 * np.pi))
+
+
+def synthesise(
+    body: Body, supports: Holding, port: str, found: ModeSet | None = None
+) -> tuple[LumpedPoint, dict[str, Synthesis]]:
+    """Lumped point and all four lumped models of a body, judged against the body itself."""
+    point, found = lumped_point(body, supports, port, found)
+    return point, effective_masses(
+        point, modal_receptance(body, as_supports(supports), port, found)
+    )

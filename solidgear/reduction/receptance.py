@@ -1,0 +1,51 @@
+"""What a port of a body does under a force that oscillates, by its modes."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from solidgear.body import Body
+from solidgear.solve.modes import ModeSet
+from solidgear.solve.statics import condense
+
+if TYPE_CHECKING:
+    from solidgear.body.model import Holding
+
+
+def port_motion(body: Body, vectors: dict[int, np.ndarray], index: int) -> np.ndarray:
+    """(6,) motion of a port in a mode shape."""
+    out = np.zeros(6)
+    for b, vector in vectors.items():
+        block = body.block(b)
+        n = len(block.components)
+        if n:
+            out[list(block.components)] += block.ports[index * n : (index + 1) * n] @ vector
+    return out
+
+
+def modal_receptance(
+    body: Body, supports: Holding, port: str, found: ModeSet
+) -> Callable[[float], float]:
+    """Receptance z/F_z at a port by modal superposition with the static remainder, as a function of
+    omega (rad/s).
+
+    The static part of the modes left out is exact, so the error is of the order of (omega /
+    omega_left_out)^4.
+    """
+    index = body.port_index(port)
+    static = condense(body, supports, port).compliance[2, 2]
+    pairs = []
+    for mode in (*found.modes, *found.beyond):
+        if mode.frequency_hz > 0:
+            w2 = (2 * np.pi * mode.frequency_hz) ** 2
+            pairs += [(w2, port_motion(body, v, index)[2] ** 2) for v in mode.vectors]
+    w2, strength = np.array(pairs).T
+
+    def receptance(omega: float) -> float:
+        # 1 / (w_i^2 - w^2) - 1 / w_i^2, the dynamic surplus of each mode
+        return float(static + (strength * omega**2 / (w2 * (w2 - omega**2))).sum())
+
+    return receptance

@@ -1,0 +1,177 @@
+"""The lumped rung of a comparison: every synthesis from every body, and the one that stands for
+them.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Iterable
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from solidgear.errors import SolidgearError
+from solidgear.reduction.effective_mass import Synthesis, synthesise
+
+if TYPE_CHECKING:
+    from solidgear.scene import Scene
+
+#: bodies the lumped rung may rest on, the usual one of a lumped-parameter program first
+SOURCES = ("timoshenko", "euler", "harmonic", "solid")
+
+
+def synthesise_all(scene: Scene, rungs: dict, tell: Callable[[str], None] = lambda _: None) -> dict:
+    """Lumped models of every solved body, as plain data.
+
+    Parameters
+    ----------
+    scene : Scene
+    rungs : dict of str to object with ``body`` and ``modes``
+
+    Returns
+    -------
+    dict
+        Per model: ``stiffness`` (2x2 on z, thx), ``motion``, ``first_bending_hz`` (in that plane),
+        ``static_share``, ``seconds`` and ``variants``; or ``why_not`` where there is nothing to
+        lump.
+    """
+    out: dict[str, dict] = {}
+    for model, rung in rungs.items():
+        start = time.perf_counter()
+        try:
+            point, found = synthesise(rung.body, scene, scene.port.name, rung.modes)
+        except SolidgearError as error:
+            tell(f"lumped from {model}: {error}")
+            out[model] = {"why_not": str(error)}
+            continue
+        out[model] = {
+            "stiffness": point.stiffness.tolist(),
+            "motion": point.motion.tolist(),
+            "first_bending_hz": point.omega / (2 * np.pi),
+            "static_share": point.static_share,
+            "total_mass": point.total_mass,
+            "seconds": time.perf_counter() - start,
+            "variants": {name: _record(s) for name, s in found.items()},
+        }
+    return out
+
+
+def _record(s: Synthesis) -> dict:
+    return {
+        "mass": None if s.mass is None else s.mass.tolist(),
+        "feasible": s.feasible,
+        "first": s.first,
+        "frequency_hz": s.frequency_hz,
+        "frequency_error": s.frequency_error,
+        "slope_error": s.slope_error,
+        "kinetic_error": s.kinetic_error,
+        "valid_to_hz": s.valid_to_hz,
+        "verdict": s.verdict,
+        **s.numbers,
+    }
+
+
+def representative(lumped: dict) -> tuple[str, str] | None:
+    """(source model, variant) that stands for the lumped rung: mode-matched where it is physical
+    and first, else Guyan.
+    """
+    for source in SOURCES:
+        variants = lumped.get(source, {}).get("variants")
+        if not variants:
+            continue
+        for name in ("mode-matched", "guyan"):
+            if variants[name]["feasible"] and variants[name]["first"]:
+                return source, name
+    return None
+
+
+def model_record(
+    lumped: dict,
+    models: dict,
+    reference_hz: float | None,
+    tolerance: float,
+    band: float | None,
+    notices: Iterable[dict] = (),
+) -> dict | None:
+    """Record of the lumped rung among the models; its stiffness is its source's.
+
+    Parameters
+    ----------
+    lumped : dict
+        From :func:`synthesise_all`.
+    models : dict
+        Records of the other rungs.
+    reference_hz : float or None
+        First bending of the reference model.
+    tolerance : float
+    band : float or None
+        Of the reference's first bending; None where nothing may judge.
+    notices : iterable of dict
+        What the guards say: ``level``, ``models``, ``sentence``.
+    """
+    chosen = representative(lumped)
+    if chosen is None:
+        return None
+    source, variant = chosen
+    base, own = models[source], lumped[source]["variants"][variant]
+    why_not, undecided = None, False
+    against = [
+        n["sentence"]
+        for n in notices
+        if "lumped" in n["models"] and n["level"] in ("avoid", "fault")
+    ]
+    if not base["valid"]:
+        why_not, undecided = (
+            f"its stiffness is that of the {source} model, which is out: {base['why_not']}",
+            base["open"],
+        )
+    elif against:
+        why_not = against[0]
+    elif not reference_hz or band is None:
+        why_not, undecided = (
+            "not judged: there is no first bending of a trusted model to hold it against",
+            True,
+        )
+    else:
+        gap = own["frequency_hz"] / reference_hz - 1
+        if abs(gap) - band > tolerance:
+            why_not = (
+                f"its first bending is {100 * gap:+.1f} % off, "
+                f"more than the {100 * tolerance:g} % asked for"
+            )
+        elif abs(gap) + band > tolerance:
+            why_not, undecided = (
+                f"not judged: its first bending is {100 * gap:+.1f} % off, and with the band of the "
+                f"reference that may be more or less than the {100 * tolerance:g} % asked for",
+                True,
+            )
+    # The price of its source comes first: there is no lumped model without a body to condense.
+    seconds = {k: base["seconds"].get(k, 0.0) for k in ("build", "statics", "modes")} | {
+        "synthesis": lumped[source]["seconds"]
+    }
+    return {
+        "valid": why_not is None,
+        "open": undecided,
+        "why_not": why_not,
+        "source": source,
+        "variant": variant,
+        "compliance": base["compliance"],
+        "stiffness": base["stiffness"],
+        "modes": [
+            {
+                "name": "bending 1",
+                "family": "bending",
+                "frequency_hz": own["frequency_hz"],
+                "multiplicity": 2,
+                "captured": None,
+            }
+        ],
+        "band": None,
+        "convergence": None,
+        "dofs": 6,
+        "seconds": {**seconds, "total": sum(seconds.values())},
+        "peak_mb": base["peak_mb"],
+        "backend": base["backend"],
+        "mesh": {"element": f"{variant} masses on the {source} stiffness"},
+        "evidence": {},
+    }

@@ -1,0 +1,132 @@
+"""The 6x6 stiffness of a bearing as people write it: named entries or rows, checked once.
+
+Order (x, y, z, thx, thy, thz), SI.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+
+from solidgear.errors import TOLD, SceneError, nearest, show
+from solidgear.frames import DOF_NAMES
+from solidgear.scene.units import quantity
+
+
+def _entry_names() -> dict[str, tuple[int, int, str]]:
+    names = {}
+    for i, a in enumerate(DOF_NAMES):
+        for j, b in enumerate(DOF_NAMES[i:], start=i):
+            dimension = "force_per_length" if j < 3 else "force" if i < 3 else "moment"
+            name = f"k{a}{b}" if j < 3 else f"k{a}" if i == j else f"k{a}_{b}"
+            names[name] = (i, j, dimension)
+    return names
+
+
+#: name of a stiffness entry -> (row, column, dimension); 21 names make the symmetric 6x6
+STIFFNESS_NAMES = _entry_names()
+
+
+def stiffness_matrix(entries: Mapping[str, Any]) -> np.ndarray:
+    """Symmetric 6x6 from named entries (`STIFFNESS_NAMES`); the ones not named are zero.
+
+    Parameters
+    ----------
+    entries : mapping
+        For example ``{"kxx": "8.8e9 N/m", "kx_thz": 1.45e8}``; plain numbers are SI (N/m, N/rad, N
+        m/rad).
+
+    Returns
+    -------
+    (6, 6) ndarray, order x y z thx thy thz
+
+    Raises
+    ------
+    SceneError
+        Unknown name, or an entry that is not a quantity of its dimension.
+    """
+    K = np.zeros((6, 6))
+    problems: list[SceneError] = []
+    for name, value in entries.items():
+        if name not in STIFFNESS_NAMES:
+            near = nearest(name, STIFFNESS_NAMES) if len(problems) < TOLD else ""
+            problems.append(
+                SceneError(
+                    f"unknown stiffness entry{near}; valid are {', '.join(STIFFNESS_NAMES)}",
+                    path=(name,),
+                )
+            )
+            continue
+        i, j, dimension = STIFFNESS_NAMES[name]
+        try:
+            K[i, j] = K[j, i] = quantity(value, dimension)
+        except SceneError as error:
+            problems.append(SceneError(error.reason, path=(name,), value=error.value))
+    if problems:
+        raise SceneError.of(problems)
+    return K
+
+
+def stiffness_entries(K: Any) -> dict[str, float]:
+    """Named non-zero entries (SI) of a symmetric 6x6: the inverse of `stiffness_matrix`."""
+    K = np.asarray(K, dtype=float)
+    return {name: float(K[i, j]) for name, (i, j, _) in STIFFNESS_NAMES.items() if K[i, j] != 0.0}
+
+
+def checked_matrix(value: Any) -> tuple[tuple[float, ...], ...]:
+    """A checked symmetric positive semidefinite 6x6 as nested tuples (hashable, comparable) from
+    entries or rows.
+    """
+    if isinstance(value, Mapping):
+        K = stiffness_matrix(value)
+    else:
+        rows = value.tolist() if isinstance(value, np.ndarray) else value
+        if not (
+            isinstance(rows, Sequence)
+            and len(rows) == 6
+            and all(isinstance(r, Sequence) and len(r) == 6 for r in rows)
+        ):
+            raise SceneError("must be 6 rows of 6 numbers, order x y z thx thy thz")
+        K = np.zeros((6, 6))
+        for i, row in enumerate(rows):
+            for j, entry in enumerate(row):
+                try:
+                    K[i, j] = quantity(
+                        entry if not isinstance(entry, str) else None, "dimensionless"
+                    )
+                except SceneError:
+                    raise SceneError(
+                        f"row {i + 1}, column {j + 1} must be a number in SI, finite and at most 1e24, not {show(entry)}"
+                    ) from None
+    size = np.sqrt(np.abs(np.diag(K)))
+    bound = 1e-9 * np.maximum(np.maximum(np.abs(K), np.abs(K.T)), np.outer(size, size))
+    if np.any(np.abs(K - K.T) > bound):
+        a, b = np.unravel_index(np.argmax(np.abs(K - K.T) - bound), (6, 6))
+        raise SceneError(
+            f"the stiffness is not symmetric: ({DOF_NAMES[a]}, {DOF_NAMES[b]}) is {K[a, b]:.6g} and ({DOF_NAMES[b]}, {DOF_NAMES[a]}) is {K[b, a]:.6g}"
+        )
+    K = (K + K.T) / 2
+    # a matrix turned by a rotation couples what has no stiffness of its own by rounding only
+    bare = np.diag(K) == 0
+    K[(bare[:, None] | bare) & (np.abs(K) <= 1e-14 * np.abs(K).max())] = 0.0
+    # unit-free: a row with no stiffness of its own is scaled so that its largest coupling becomes
+    # 1, hence indefinite
+    for own in np.flatnonzero(size == 0):
+        coupled = np.abs(K[own])
+        coupling = coupled / np.where(size > 0, size, np.sqrt(coupled) + (coupled == 0))
+        size[own] = coupling.max() or 1.0
+    eigenvalue, vector = np.linalg.eigh(K / np.outer(size, size))
+    if eigenvalue[0] < -1e-9:
+        a, b = sorted(np.argsort(-np.abs(vector[:, 0]), kind="stable")[:2])
+        if K[a, a] < 0 or K[b, b] < 0:
+            i = a if K[a, a] < 0 else b
+            raise SceneError(
+                f"the stiffness in {DOF_NAMES[i]} is {K[i, i]:.6g}; it must not be negative"
+            )
+        raise SceneError(
+            f"the stiffness is indefinite in the pair ({DOF_NAMES[a]}, {DOF_NAMES[b]}): their entries are {K[a, a]:.6g} and {K[b, b]:.6g}, coupled by "
+            f"{K[a, b]:.6g}, and the smallest eigenvalue, with the diagonal scaled to 1, is {eigenvalue[0]:.3g}; it must not be negative"
+        )
+    return tuple(tuple(float(v) for v in row) for row in K)

@@ -1,0 +1,166 @@
+"""From a TOML file to a `Scene`, errors named by the keys of the file.
+
+The format is documented by the files in ``geometry``. Every problem of a file is told at once: of
+all tables on their own, of all names that they use of each other, and of the places of all that is
+sound so far.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterable, Iterator, Mapping
+from pathlib import Path
+from typing import Any
+
+from solidgear.errors import SceneError, listed, nearest
+from solidgear.scene import Scene
+from solidgear.scene.places import resolve
+from solidgear.scene.rules import MOST_BEARINGS, MOST_SEGMENTS, too_many
+from solidgear.scene.tables import KINDS, SceneTable, SoundTables
+from solidgear.scene.toml_file import parse
+
+
+def _drop_tag(loc: tuple) -> tuple:
+    """pydantic puts the kind of a segment into its location; the file has no such key."""
+    return (*loc[:2], *loc[3:]) if loc[:1] == ("segment",) and loc[2:3] and loc[2] in KINDS else loc
+
+
+def load(path: str | os.PathLike) -> Scene:
+    """Read and resolve a scene file.
+
+    Raises
+    ------
+    SceneError
+        The file, the key (``bearing[2] "2".seat_width``, counted from one), the value as written,
+        what would be right: one line for each problem, in the order of the file.
+    """
+    where = os.fspath(path)
+    raw = parse(where)
+    try:
+        return _read(raw, Path(where).stem)
+    except SceneError as error:
+        problems = {
+            (one.path, one.reason): one for one in error.problems
+        }  # both ends of a cylinder are one diameter
+        order = _FileOrder(raw)
+        ordered = sorted(problems.values(), key=lambda one: order.of(one.path))
+        raise SceneError.of(ordered).located(raw, where=where) from None
+
+
+def _read(raw: dict[str, Any], name: str) -> Scene:
+    for what, most in (("segment", MOST_SEGMENTS), ("bearing", MOST_BEARINGS)):
+        if isinstance(raw.get(what), list) and len(raw[what]) > most:
+            raise SceneError(too_many(f"{what}s", len(raw[what]), most), path=(what,))
+    problems: list[SceneError] = []
+    table, numbers = _tables(raw, problems)
+    problems += _unknown_names(raw)
+    if table is None:
+        raise SceneError.of(problems)
+    return resolve(table, numbers, name, problems)
+
+
+def _tables(raw: dict[str, Any], problems: list[SceneError]) -> tuple[SceneTable | None, list[int]]:
+    """The tables that are sound each by itself, and which bearings of the file are among them; None
+    without a whole shaft.
+    """
+    count = len(raw["bearing"]) if isinstance(raw.get("bearing"), list) else 0
+    try:
+        return SceneTable(**raw), list(range(count))
+    except SceneError as error:
+        found = [one.located(raw, path=_drop_tag(one.path)) for one in error.problems]
+    problems += found
+    spoilt = {one.path[: 2 if one.path[0] in ("segment", "bearing") else 1] for one in found}
+    if ("bearing",) in spoilt or any(place[0] in ("segment", "material") for place in spoilt):
+        return None, []
+    numbers = [k for k in range(count) if ("bearing", k) not in spoilt]
+    sound = {
+        key: raw[key]
+        for key in ("material", "segment", "attachment", "port")
+        if key in raw and (key,) not in spoilt
+    }
+    return SoundTables(**sound, bearing=[raw["bearing"][k] for k in numbers]), numbers
+
+
+class _FileOrder:
+    """Where entries stand in a file."""
+
+    def __init__(self, raw: Mapping):
+        self.raw = raw
+        self.places: dict[int, dict] = {}
+
+    def of(self, path: tuple) -> list[int]:
+        """Places of the keys of a path in their tables, the last one for a key that is missing."""
+        out: list[int] = []
+        here = self.raw
+        for key in path:
+            if id(here) not in self.places:
+                keys = (
+                    here
+                    if isinstance(here, Mapping)
+                    else range(len(here))
+                    if isinstance(here, list)
+                    else ()
+                )
+                self.places[id(here)] = {key: place for place, key in enumerate(keys)}
+            places = self.places[id(here)]
+            if key not in places:
+                return [*out, len(places)]
+            out.append(places[key])
+            here = here[key]
+        return out
+
+
+_PIECES = {"bevel_head": ("start", "end", "middle", "mid_face")}
+_EVERY_PIECE = ("start", "end", "middle")
+
+
+def _unknown_names(raw: dict[str, Any]) -> Iterator[SceneError]:
+    """Names of segments that are taken twice, and datums and segments that are asked for but are
+    not there.
+
+    Read from the file as it stands, since a segment of a wrong length still has its name.
+    """
+    pieces, bearings, port = (
+        _list_of_tables(raw.get("segment")),
+        _list_of_tables(raw.get("bearing", [])),
+        raw.get("port"),
+    )
+    if pieces is None or not all(isinstance(piece.get("name"), str) for piece in pieces):
+        return  # what is meant by a name cannot be told
+    known, segments = ["start", "end"], []
+    for i, piece in enumerate(pieces):
+        if piece["name"] in segments:
+            yield SceneError(
+                "another segment has this name; each needs its own", path=("segment", i, "name")
+            )
+        segments.append(piece["name"])
+        known += [
+            f"{piece['name']}.{part}" for part in _PIECES.get(str(piece.get("kind")), _EVERY_PIECE)
+        ]
+    for i, bearing in enumerate(bearings or ()):
+        yield from _unknown_datum(bearing.get("from"), known, ("bearing", i, "from"))
+        known.append(f"bearing.{bearing.get('name')}")
+    if isinstance(port, Mapping) and bearings is not None:
+        for key in ("at", "from"):
+            yield from _unknown_datum(port.get(key), known, ("port", key))
+        carrier = port.get("attach_to")
+        if isinstance(carrier, str) and carrier not in segments:
+            yield SceneError(
+                f"unknown segment{nearest(carrier, segments)}; known here: {listed(segments)}",
+                path=("port", "attach_to"),
+            )
+
+
+def _list_of_tables(value: Any) -> list[Mapping] | None:
+    return (
+        value
+        if isinstance(value, list) and all(isinstance(entry, Mapping) for entry in value)
+        else None
+    )
+
+
+def _unknown_datum(text: Any, known: list[str], path: tuple) -> Iterable[SceneError]:
+    if isinstance(text, str) and text not in known:
+        yield SceneError(
+            f"unknown datum{nearest(text, known)}; known here: {listed(known)}", path=path
+        )

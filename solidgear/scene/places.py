@@ -1,0 +1,193 @@
+"""From the tables of a scene file to a `Scene`: segments laid end to end, datums resolved.
+
+A problem of a place is told by the key of the file that it came from.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from solidgear.errors import SceneError
+from solidgear.scene import Bearing, Port, Scene, Segment
+from solidgear.scene.parts import Attachment
+from solidgear.scene.rules import shaft_problems, station_problems
+from solidgear.scene.tables import BearingTable, PortTable, SceneTable
+
+
+def resolve(table: SceneTable, numbers: list[int], name: str, problems: list[SceneError]) -> Scene:
+    """The scene, if nothing is wrong with the places of its parts nor was before."""
+    if not table.segment:
+        raise SceneError.of(
+            [*problems, SceneError("a scene needs at least one [[segment]]", path=("segment",))]
+        )
+    segments, owner, surface, datums = _lay_out(table, problems)
+    if segments is not None:
+        shaft = shaft_problems(segments)
+        problems += [one.located(None, path=_file_path(one.path, table, owner)) for one in shaft]
+        segments = None if shaft else segments
+    if segments is None:
+        raise SceneError.of(problems)
+    bearings = {}
+    for index, item in zip(numbers, table.bearing):
+        if item.from_ in datums:  # else said before, or measured from a bearing that was refused
+            try:
+                bearings[index] = _bearing(item, index, table.attachment, datums)
+            except SceneError as error:
+                problems.append(error)
+    port = None
+    try:
+        port = _port(table.port, table.attachment, datums, surface) if table.port else None
+    except SceneError as error:
+        problems.append(error)
+    problems += [
+        one.located(None, path=_file_path(one.path, table, owner))
+        for one in station_problems(segments, port, bearings)
+    ]
+    if problems:
+        raise SceneError.of(problems)
+    return Scene.from_parts(
+        segments,
+        table.material,
+        bearings.values(),
+        port,
+        title=table.title,
+        name=name,
+        source=table.source,
+        housing_axial=table.housing.axial if table.housing else None,
+        ask=table.ask,
+    )
+
+
+def _lay_out(table: SceneTable, problems: list[SceneError]):
+    """Segments end to end (None if one cannot be); which [[segment]] each came from; the surface of
+    each by name; and all datums.
+    """
+    segments, owner, surface, datums, y = [], [], {}, {"start": 0.0}, 0.0
+    for index, piece in enumerate(table.segment):
+        material = table.material.with_changes(**piece.material.model_dump(exclude_none=True))
+        start = y
+        for name, part, length, outer0, outer1 in piece.pieces():
+            if length <= 1e-9:
+                key = {"frustum": "face_width", "backcone": "backcone", "shaft": "length"}[part]
+                problems.append(
+                    SceneError(
+                        "is less than a nanometre along the shaft: probably wrong units",
+                        path=("segment", index, key),
+                    )
+                )
+                continue
+            inner = piece.bore / 2
+            try:
+                segments.append(
+                    Segment(
+                        name=name,
+                        y0=y,
+                        y1=y + length,
+                        outer0=outer0,
+                        outer1=outer1,
+                        inner0=inner,
+                        inner1=inner,
+                        material=material,
+                        part=part,
+                    )
+                )
+            except SceneError as error:
+                problems.append(
+                    error.located(
+                        None,
+                        path=_file_path(
+                            ("segments", index, error.path[0]), table, range(index + 1)
+                        ),
+                    )
+                )
+                continue
+            owner.append(index)
+            y = segments[-1].y1
+            if part != "backcone":
+                surface[piece.name] = (segments[-1].y0, y)
+                if piece.kind == "bevel_head":
+                    datums[f"{piece.name}.mid_face"] = (segments[-1].y0 + y) / 2
+        datums |= {
+            f"{piece.name}.start": start,
+            f"{piece.name}.end": y,
+            f"{piece.name}.middle": (start + y) / 2,
+        }
+    whole = len(segments) == sum(len(piece.pieces()) for piece in table.segment)
+    return segments if whole else None, owner, surface, datums | {"end": y}
+
+
+def _bearing(item: BearingTable, index: int, attachment: str, datums: dict[str, float]) -> Bearing:
+    y = item.position + datums[item.from_]
+    given = item.stiffness if item.matrix is None else item.matrix
+    try:
+        bearing = Bearing(
+            name=item.name,
+            y=y,
+            seat_width=item.seat_width,
+            stiffness=given,
+            axial_series=item.axial_series,
+            attachment=item.attachment or attachment,
+            status=item.status,
+            note=item.note,
+        )
+    except SceneError as error:
+        key = "stiffness" if item.matrix is None else "matrix"
+        raise SceneError(error.reason, path=("bearing", index, key), value=error.value) from None
+    datums[f"bearing.{item.name}"] = bearing.y
+    return bearing
+
+
+def _port(
+    item: PortTable,
+    attachment: Attachment,
+    datums: dict[str, float],
+    surface: dict[str, tuple[float, float]],
+) -> Port | None:
+    """The port, or None where it names what is not there."""
+    datum = item.at or item.from_ or "start"
+    span: Sequence[float] | None = item.span
+    if span is None and item.attach_to is not None:
+        span = surface.get(item.attach_to)
+    if datum not in datums or span is None:
+        return None
+    lo, hi = span
+    return Port(
+        name=item.name,
+        y=datums[datum] + (item.position or 0.0),
+        lo=lo,
+        hi=hi,
+        attachment=item.attachment or attachment,
+    )
+
+
+def _file_path(path: tuple, table: SceneTable, owner: Sequence[int]) -> tuple:
+    """The key in the file that an entry of the resolved scene came from."""
+    match path:
+        case ("segments", index, key):
+            kind = table.segment[owner[index]].kind
+            start, end = {
+                "cylinder": ("diameter",) * 2,
+                "cone": ("start_diameter", "end_diameter"),
+                "bevel_head": ("pitch_radius",) * 2,
+            }[kind]
+            length = "face_width" if kind == "bevel_head" else "length"
+            key = {
+                "outer0": start,
+                "outer1": end,
+                "inner0": "bore",
+                "inner1": "bore",
+                "y1": length,
+            }.get(key, key)
+            return ("segment", owner[index], key)
+        case ("segments", index, "material", key):
+            own = getattr(table.segment[owner[index]].material, key) is not None
+            return ("segment", owner[index], "material", key) if own else ("material", key)
+        case ("bearings", index, key):
+            return ("bearing", index, {"y": "position"}.get(key, key))
+        case ("port", "y"):
+            return ("port", "at" if table.port.at is not None else "position")
+        case ("port", "lo" | "hi"):
+            return ("port", "span" if table.port.span is not None else "attach_to")
+        case ("housing_axial",):
+            return ("housing", "axial")
+    return path

@@ -1,0 +1,216 @@
+"""The tables of a scene file, each checked by itself: segments, bearings, housing, port."""
+
+from __future__ import annotations
+
+import math
+from typing import Annotated, Any, Literal
+
+from pydantic import AfterValidator, Field, model_validator
+
+from solidgear.errors import SceneError
+from solidgear.scene import Ask, Material
+from solidgear.scene.bearing_stiffness import stiffness_matrix
+from solidgear.scene.parts import Attachment, AxialSeries, Model, Status
+from solidgear.scene.units import (
+    Angle,
+    AxialSpring,
+    Density,
+    Length,
+    Modulus,
+    Poisson,
+    PositiveLength,
+    Thickness,
+)
+
+_WORDS = ("start", "end", "bearing")  # first words of datums, so no segment may be called that
+KINDS = ("cylinder", "cone", "bevel_head")
+
+
+def _plain_name(name: str) -> str:
+    if not name.strip() or "." in name or len(name) > 60 or not name.isprintable():
+        raise SceneError("a name is a short text without a dot")
+    return name
+
+
+def _segment_name(name: str) -> str:
+    if name in _WORDS:
+        raise SceneError("this name is kept for datums; choose another")
+    return _plain_name(name)
+
+
+def _entries(entries: dict) -> dict:
+    stiffness_matrix(entries)
+    return entries
+
+
+Name = Annotated[str, AfterValidator(_plain_name)]
+SegmentName = Annotated[str, AfterValidator(_segment_name)]
+
+
+class _MaterialChange(Model):
+    E: Modulus | None = None
+    nu: Poisson | None = None
+    density: Density | None = None
+
+
+class _Piece(Model):
+    name: SegmentName
+    bore: Thickness = 0.0
+    material: _MaterialChange = _MaterialChange()
+
+    def _check_bore(self, *keys: str) -> None:
+        for key in keys:
+            if self.bore >= getattr(self, key):
+                raise SceneError(
+                    f"must be smaller than {key} ({getattr(self, key):.6g} m)", path=("bore",)
+                )
+
+
+class _Cylinder(_Piece):
+    kind: Literal["cylinder"]
+    length: PositiveLength
+    diameter: PositiveLength
+
+    @model_validator(mode="after")
+    def _wall(self):
+        self._check_bore("diameter")
+        return self
+
+    def pieces(self):
+        return [(self.name, "shaft", self.length, self.diameter / 2, self.diameter / 2)]
+
+
+class _Cone(_Piece):
+    kind: Literal["cone"]
+    length: PositiveLength
+    start_diameter: PositiveLength
+    end_diameter: PositiveLength
+
+    @model_validator(mode="after")
+    def _wall(self):
+        self._check_bore("start_diameter", "end_diameter")
+        return self
+
+    def pieces(self):
+        return [(self.name, "shaft", self.length, self.start_diameter / 2, self.end_diameter / 2)]
+
+
+class _BevelHead(_Piece):
+    kind: Literal["bevel_head"]
+    pitch_radius: PositiveLength
+    pitch_angle: Angle
+    face_width: PositiveLength
+    backcone: Thickness = 0.0
+    toe: Literal["start", "end"] = "start"
+
+    @property
+    def small_radius(self) -> float:
+        return self.pitch_radius - self.face_width * math.sin(self.pitch_angle)
+
+    @model_validator(mode="after")
+    def _wall(self):
+        if self.small_radius <= 0:
+            longest = self.pitch_radius / math.sin(self.pitch_angle)
+            raise SceneError(
+                f"passes the apex of the pitch cone; it must be shorter than the cone distance {longest:.6g} m",
+                path=("face_width",),
+            )
+        if self.bore >= 2 * self.small_radius:
+            raise SceneError(
+                f"must be smaller than the small end of the head (diameter {2 * self.small_radius:.6g} m)",
+                path=("bore",),
+            )
+        return self
+
+    def pieces(self):
+        axial = self.face_width * math.cos(self.pitch_angle)
+        rows = [(self.name, "frustum", axial, self.small_radius, self.pitch_radius)]
+        if self.backcone > 0:
+            rows.append(
+                (
+                    f"{self.name}.backcone",
+                    "backcone",
+                    self.backcone,
+                    self.pitch_radius,
+                    self.pitch_radius,
+                )
+            )
+        return (
+            rows
+            if self.toe == "start"
+            else [(n, p, a, r1, r0) for n, p, a, r0, r1 in reversed(rows)]
+        )
+
+
+class BearingTable(Model):
+    name: Name
+    position: Length
+    from_: str = Field("start", alias="from")
+    seat_width: PositiveLength
+    stiffness: Annotated[dict[str, Any], AfterValidator(_entries)] | None = None
+    matrix: list[Any] | None = None
+    axial_series: AxialSeries = ()
+    attachment: Attachment | None = None
+    status: Status = "assumed"
+    note: str = ""
+
+    @model_validator(mode="after")
+    def _one_stiffness(self):
+        if self.stiffness is None and self.matrix is None:
+            raise SceneError(
+                "this key is missing; write stiffness = {kxx = ...} or matrix = 6 rows of 6 numbers",
+                path=("stiffness",),
+            )
+        if self.stiffness is not None and self.matrix is not None:
+            raise SceneError("give either stiffness or matrix, not both", path=("matrix",))
+        return self
+
+
+class _Housing(Model):
+    axial: AxialSpring
+
+
+class PortTable(Model):
+    name: Name = "port"
+    at: str | None = None
+    position: Length | None = None
+    from_: str | None = Field(None, alias="from")
+    attach_to: str | None = None
+    span: Annotated[list[Length], Field(min_length=2, max_length=2)] | None = None
+    attachment: Attachment | None = None
+
+    @model_validator(mode="after")
+    def _one_place_one_surface(self):
+        if self.at is None and self.position is None:
+            raise SceneError(
+                'this key is missing; write at = "<segment>.middle", or position with from',
+                path=("at",),
+            )
+        if self.at is not None and (self.position is not None or self.from_ is not None):
+            raise SceneError("give either at, or position with from, not both", path=("at",))
+        if self.attach_to is None and self.span is None:
+            raise SceneError(
+                'this key is missing; name the segment whose surface carries the port, or write span = ["0 mm", "58 mm"]',
+                path=("attach_to",),
+            )
+        if self.attach_to is not None and self.span is not None:
+            raise SceneError("give either attach_to or span, not both", path=("span",))
+        return self
+
+
+class SceneTable(Model):
+    title: str = ""
+    source: str = ""
+    attachment: Attachment = "average"
+    material: Material
+    segment: list[Annotated[_Cylinder | _Cone | _BevelHead, Field(discriminator="kind")]]
+    bearing: list[BearingTable] = []
+    housing: _Housing | None = None
+    port: PortTable
+    ask: Ask = Ask()
+
+
+class SoundTables(SceneTable):
+    """What is left of a file without the tables that cannot be used."""
+
+    port: PortTable | None = None  # type: ignore[assignment]  # it may be what is missing

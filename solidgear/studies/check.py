@@ -1,0 +1,218 @@
+"""What will not hold: mass closed, free body free, and every guard on the scene."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from solidgear.body import Body
+from solidgear.errors import SolidgearError
+from solidgear.evidence.study import Rung
+from solidgear.machine.threads import pinned
+from solidgear.meshing.quality import mass_properties
+from solidgear.studies.guards import GUARDS, LEVELS, MODELS, Notice, Probe
+
+if TYPE_CHECKING:
+    from solidgear.scene import Scene
+
+# Closure of mass and inertia that each discretisation owes to the closed form.
+MASS_TOLERANCE = {"euler": 1e-9, "timoshenko": 1e-9, "harmonic": 1e-9, "solid": 1e-3}
+#: what a model is worth after the worst that was said of it
+VERDICTS = {
+    "fact": "holds",
+    "caution": "holds with caution",
+    "open": "uncertain",
+    "avoid": "will not hold",
+    "fault": "will not hold",
+}
+#: what a comparison finds out by itself, or what is no matter of the models
+NOT_IN_COMPARISONS = (
+    "beam_against_solid",
+    "lumped_against_solid",
+    "rigid_seats",
+    "memory",
+    "renderer",
+)
+#: what is about other models than a body, or about the machine
+NOT_HEARD_ALONE = (
+    "rigid_seats",
+    "memory",
+    "renderer",
+    "effective_mass",
+    "lumped_against_solid",
+    "frequency_range",
+    "doubtful_data",
+)
+#: what depends on the mesh of one solid
+OF_A_MESH = ("linear_elements", "nearly_incompressible", "uniform_at_shoulder")
+
+
+@pinned
+def check_scene(scene: Scene, body: Body) -> dict:
+    """Facts, cautions and faults of a scene, in sentences, and what each model is worth for it.
+
+    Parameters
+    ----------
+    scene : Scene
+    body : Body
+        The fidelity asked for; its mesh is held against the closed form.
+
+    Returns
+    -------
+    dict
+        ``facts``, ``cautions`` (will not hold as well as one might think) and ``faults`` (must not
+        be used): lists of sentences; ``records``: the same as dicts of ``guard``, ``level``,
+        ``models`` and ``sentence``; ``verdicts``: by model, ``verdict`` and the names of the guards
+        it rests on.
+    """
+    probe = Probe(scene, body)
+    said = [("body", notice) for notice in _of_the_body(scene, body)]
+    for name in GUARDS:
+        said += [(name, notice) for notice in _heard(name, probe)]
+    records = [
+        {"guard": name, "level": n.level, "models": list(n.models), "sentence": n.sentence}
+        for name, n in said
+    ]
+    out = {
+        kind: [n.sentence for _, n in said if n.level in levels]
+        for kind, levels in (
+            ("facts", ("fact",)),
+            ("cautions", ("caution", "open", "avoid")),
+            ("faults", ("fault",)),
+        )
+    }
+    return out | {
+        "records": records,
+        "verdicts": {model: _verdict(model, records) for model in MODELS},
+    }
+
+
+def notices(
+    scene: Scene, rungs: dict[str, Rung], names: tuple[str, ...] | None = None
+) -> list[dict]:
+    """What the guards have to say of models that are solved, facts left out.
+
+    Parameters
+    ----------
+    scene : Scene
+    rungs : dict of str to Rung
+    names : tuple of str, optional
+        Guards to ask; by default all that a comparison does not answer by itself.
+
+    Returns
+    -------
+    list of dict
+        ``guard``, ``level``, ``models`` (those that are solved; empty where it is about the data)
+        and ``sentence``.
+    """
+    probes = [Probe(scene, r.body, rungs) for r in rungs.values()]
+    solved = {*rungs, "lumped"}
+    out: dict[str, dict] = {}
+    for name in names or tuple(n for n in GUARDS if n not in NOT_IN_COMPARISONS):
+        for probe in probes if name in OF_A_MESH else probes[-1:]:
+            for notice in _heard(name, probe):
+                about = [m for m in notice.models if m in solved]
+                mine = name not in OF_A_MESH or probe.body.fidelity in notice.models
+                if notice.level != "fact" and mine and (about or not notice.models):
+                    out.setdefault(
+                        notice.sentence,
+                        {
+                            "guard": name,
+                            "level": notice.level,
+                            "models": about,
+                            "sentence": notice.sentence,
+                        },
+                    )
+    return list(out.values())
+
+
+def cautions(scene: Scene, body: Body, fidelity: str | None = None) -> list[str]:
+    """What the guards have to say before the numbers of one model are used, in sentences; facts and
+    what concerns other models left out.
+
+    Parameters
+    ----------
+    scene : Scene
+    body : Body
+    fidelity : str, optional
+        Another model than that of ``body``, whose mesh is then not judged.
+    """
+    model = fidelity or body.fidelity
+    probe, out = Probe(scene, body), []
+    silent = set(NOT_HEARD_ALONE)
+    silent |= set() if model in ("euler", "timoshenko") else {"beam_against_solid"}
+    silent |= set(OF_A_MESH) if model != body.fidelity else set()
+    for name in GUARDS:
+        if name not in silent:
+            out += [
+                n.sentence
+                for n in _heard(name, probe)
+                if n.level != "fact" and (not n.models or model in n.models)
+            ]
+    return list(dict.fromkeys(out))
+
+
+def _heard(name: str, probe: Probe) -> list[Notice]:
+    """What a guard says; one that cannot be run must not hide what the others have to say."""
+    try:
+        return list(GUARDS[name](probe))
+    except (
+        SolidgearError,
+        ArithmeticError,
+        RuntimeError,
+        MemoryError,
+        np.linalg.LinAlgError,
+    ) as error:
+        return [Notice("caution", (), f"not checked ({name.replace('_', ' ')}): {error}")]
+
+
+def _verdict(model: str, records: list[dict]) -> dict:
+    own = [r for r in records if model in r["models"]]
+    worst = max((r["level"] for r in own), key=LEVELS.index, default="fact")
+    return {
+        "verdict": VERDICTS[worst],
+        "guards": list(
+            dict.fromkeys(r["guard"] for r in own if r["level"] == worst and worst != "fact")
+        ),
+    }
+
+
+def _of_the_body(scene: Scene, body: Body) -> Iterator[Notice]:
+    """Mass and inertia against the closed form, and no stiffness against rigid motions."""
+    exact, matrix, own = mass_properties(scene.segments), body.mass_matrix(), (body.fidelity,)
+    yield Notice(
+        "fact",
+        (),
+        f"{scene.name}: {body.fidelity}, {body.size} unknowns, length {1e3 * scene.length:.6g} mm",
+    )
+    yield Notice(
+        "fact",
+        (),
+        f"mass {exact.mass:.6g} kg, centre at y = {1e3 * exact.centre:.6g} mm, polar inertia {exact.iyy:.6g}, transverse {exact.ixx:.6g} kg m^2 (closed form)",
+    )
+    for name, got, want in (
+        ("mass", matrix[0, 0], exact.mass),
+        ("polar inertia", matrix[4, 4], exact.iyy),
+    ):
+        error, limit = got / want - 1, MASS_TOLERANCE[body.fidelity]
+        yield Notice("fact", own, f"{name} of the mesh against closed form: {error:+.1e}")
+        if abs(error) > limit:
+            yield Notice(
+                "fault",
+                own,
+                f"{name} of the {body.fidelity} mesh is {error:+.2e} off the closed form, limit {limit:g}: mesh finer",
+            )
+    residual = body.rigid_residual()
+    yield Notice(
+        "fact",
+        own,
+        f"stiffness times rigid motions: {residual:.1e} of its size (a free body gives rounding)",
+    )
+    if residual > 1e-9:
+        yield Notice(
+            "fault",
+            own,
+            f"the body is not free: rigid motions meet a stiffness of {residual:.1e}, limit 1e-9",
+        )

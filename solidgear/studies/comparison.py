@@ -1,0 +1,233 @@
+"""The main job: one scene, every rung, one verdict."""
+
+from __future__ import annotations
+
+import functools
+import logging
+import os
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from solidgear.errors import SolidgearError
+from solidgear.evidence.causes import attachment_causes, beam_causes, shoulder_cause
+from solidgear.evidence.levels import FREE, HARMONIC
+from solidgear.evidence.quantities import change
+from solidgear.evidence.record import record
+from solidgear.evidence.study import SOLIDS, Rung, study
+from solidgear.evidence.ties import SECTION, rigid_seats
+from solidgear.fidelity import FIDELITIES
+from solidgear.machine.memory import one_run
+from solidgear.machine.meter import Meter
+from solidgear.reduction.rung import synthesise_all
+
+if TYPE_CHECKING:
+    from solidgear.scene import Scene
+
+log = logging.getLogger(__name__)
+Progress = Callable[[str], None]
+
+ATTACHMENTS = ("average", "rigid", "section")
+MODELS = ("lumped", *FIDELITIES)
+
+
+@dataclass
+class Comparison:
+    """Everything a comparison found.
+
+    Attributes
+    ----------
+    scene : Scene
+    results : dict
+        Plain data, what ``results.json`` holds.
+    rungs : dict of str to Rung
+        The bodies and mode shapes behind it.
+    """
+
+    scene: Scene
+    results: dict
+    rungs: dict[str, Rung]
+
+    def write_report(
+        self, out: str | os.PathLike, *, renders: bool = True, progress: Progress = lambda _: None
+    ) -> Path:
+        """Write results.json, report.html, mode_*.png and modes_*.vtu into a folder.
+
+        Returns
+        -------
+        pathlib.Path
+            The folder.
+
+        Raises
+        ------
+        SolidgearError
+            If the folder cannot be written.
+        """
+        from solidgear.report.write import write_all
+
+        return write_all(self, out, renders=renders, progress=progress)
+
+
+def compare(
+    scene: Scene,
+    models: tuple[str, ...] = MODELS,
+    *,
+    settings: dict[str, dict] | None = None,
+    progress: Progress = lambda _: None,
+) -> Comparison:
+    """Solve a scene with several fidelities and hold them against each other.
+
+    Solids are solved on ever finer meshes until their bands meet the tolerance of the scene: that
+    of the harmonic solid, which judges, a twentieth of it, that of the 3D solid half of it.
+
+    Parameters
+    ----------
+    scene : Scene
+    models : tuple of str
+        Any of lumped, euler, timoshenko, harmonic, solid; lumped needs one of the others to rest
+        on.
+    settings : dict, optional
+        Builder options per model, such as ``{"harmonic": {"order": 8}}``.  Options that speak of the mesh fix it: that mesh and two
+        coarser ones are solved.
+    progress : callable
+        Told in words what is going on.
+
+    Returns
+    -------
+    Comparison
+        After Ctrl-C with what there was, ``results["complete"]`` False.
+
+    Raises
+    ------
+    SolidgearError
+        For an unknown model.  A model that fails is reported as not valid, and the others go on.
+    """
+    check_models(models)
+    options = {m: dict((settings or {}).get(m, {})) for m in FIDELITIES}
+    found = _Found({}, {}, [], {}, [])
+    complete = True
+    overall = Meter()
+    with overall.stage("all"), one_run():
+        try:
+            _run(scene, models, options, found, progress)
+        except KeyboardInterrupt:
+            complete = False
+            progress("interrupted; keeping what is there")
+    results = record(
+        scene, found.rungs, found.failed, found.causes, found.lumped, found.guards, complete
+    )
+    results["seconds_total"] = overall.seconds["all"]
+    results["peak_mb"] = overall.peak_mb
+    results["expected_peak_mb"] = max(
+        (r.meter.expected_mb for r in found.rungs.values() if r.meter.expected_mb is not None),
+        default=None,
+    )
+    return Comparison(scene, results, found.rungs)
+
+
+@dataclass
+class _Found:
+    """What a comparison has so far; an interrupt leaves it whole."""
+
+    rungs: dict[str, Rung]
+    failed: dict[str, str]
+    causes: list
+    lumped: dict
+    guards: list[dict]
+
+
+def _run(scene: Scene, models, options, found: _Found, progress: Progress) -> None:
+    from solidgear.studies.check import notices
+
+    for model in (m for m in FIDELITIES if m in models):
+        try:
+            chosen = _circumference(scene, model, options[model], found)
+            # A count takes a second factor.  One by the harmonic solid counts for the 3D one, whose
+            # modes are paired with its own.
+            counted = model != "solid" or "harmonic" not in found.rungs
+            rung = study(
+                scene,
+                model,
+                chosen,
+                counted=counted,
+                progress=progress,
+                keep=functools.partial(found.rungs.__setitem__, model),
+            )
+        except (SolidgearError, MemoryError) as error:
+            found.failed[model] = str(error) or "not enough memory"
+            log.warning("%s failed: %s", model, found.failed[model])
+            continue
+        found.rungs[model] = rung
+        # A 3D solid's lumped models are those of the harmonic one within the bands, at ten times
+        # the price.
+        if "lumped" in models and not (model == "solid" and "harmonic" in found.lumped):
+            progress(f"lumped: synthesis from {model}")
+            found.lumped |= synthesise_all(scene, {model: rung}, log.info)
+        # Factors are the largest thing a body holds, and nobody asks for another solution.
+        rung.body.memory.clear()
+    if found.rungs:
+        progress("guards")
+        found.guards = notices(scene, found.rungs)
+    found.causes = _causes(scene, found.rungs, options, progress)
+
+
+def _circumference(scene: Scene, model: str, options: dict, found: _Found) -> dict:
+    """Options of a 3D solid with as many cells around as the modes need that the harmonic solid
+    found in the range asked for.
+    """
+    harmonic = found.rungs.get("harmonic")
+    if model != "solid" or harmonic is None or "around" in options:
+        return options
+    waves = max(
+        (
+            r["n"]
+            for r in harmonic.modes.evidence.get("families", [])
+            if (r["n"] or 0) > 1 and r["modes_below"]
+        ),
+        default=1,
+    )
+    if waves < 2:
+        return options
+    from solidgear.studies.guards.models import cells_around
+
+    return {**options, "around": cells_around(scene, waves)}
+
+
+def check_models(models: tuple[str, ...]) -> None:
+    """Refuse unknown models, and the lumped one alone, in one sentence."""
+    unknown = [m for m in models if m not in MODELS]
+    if unknown or not set(models) & set(FIDELITIES):
+        raise SolidgearError(
+            f"models: {', '.join(unknown or models) or 'none given'}; choose from {', '.join(MODELS)}, lumped not alone"
+        )
+
+
+def _causes(scene: Scene, rungs: dict[str, Rung], options, progress: Progress) -> list:
+    out = []
+    progress("causes: switching assumptions one at a time")
+    try:
+        if "timoshenko" in rungs:
+            out += beam_causes(scene)
+        for model in SOLIDS:
+            if model in rungs:
+                out += attachment_causes(
+                    {a: v.quantities for a, v in rungs[model].variants.items()}, model
+                )
+        harmonic, beam = rungs.get("harmonic"), rungs.get("timoshenko")
+        if harmonic and beam and SECTION in harmonic.ties and SECTION in beam.ties:
+            section, own = harmonic.ties[SECTION].quantities, beam.ties[SECTION].quantities
+            gap = {name: change(own, section, name) for name in ("C_zz", "K_zz", "bending 1")}
+            mesh = (
+                {k: v for k, v in harmonic.options.items() if k not in FREE}
+                if options["harmonic"]
+                else HARMONIC[2]
+            )
+            found = shoulder_cause(scene, gap, mesh, progress)
+            out += [found] if found else []
+    except SolidgearError as error:
+        log.warning("causes left out: %s", error)
+    return out
+
+
+__all__ = ["ATTACHMENTS", "MODELS", "Comparison", "Rung", "compare", "rigid_seats"]

@@ -1,0 +1,45 @@
+"""Guards: what will not hold for a scene, told before anybody relies on it.
+
+A guard is a function of a :class:`~solidgear.studies.guards.probe.Probe` that yields notices.  Limits were
+measured by the scripts of ``validation/stability``; the name of the script stands beside its
+number.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from solidgear.studies.guards import data, elements, models
+from solidgear.studies.guards.notice import LEVELS, MODELS, Notice, Notices
+from solidgear.studies.guards.probe import Probe
+
+__all__ = ["GUARDS", "LEVELS", "MODELS", "Notice", "Probe"]
+
+#: every guard by its name, in the order in which they speak
+GUARDS: dict[str, Callable[[Probe], Notices]] = {
+    guard.__name__: guard
+    for guard in (
+        data.units,
+        data.doubtful_data,
+        data.free_motions,
+        data.oblique_softness,
+        data.split_pair,
+        models.beam_against_solid,
+        models.slenderness,
+        models.shoulder,
+        models.disc_head,
+        models.thin_joint,
+        models.point_beyond_surface,
+        models.ovalising,
+        models.effective_mass,
+        models.lumped_against_solid,
+        models.frequency_range,
+        elements.narrow_seat,
+        elements.rigid_seats,
+        elements.linear_elements,
+        elements.nearly_incompressible,
+        elements.uniform_at_shoulder,
+        elements.memory,
+        elements.renderer,
+    )
+}

@@ -1,0 +1,126 @@
+"""Guards on the data of a scene: units, and the stiffness of its bearings."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from solidgear.frames import DOF_NAMES
+from solidgear.studies.guards.notice import Notice, Notices
+from solidgear.studies.guards.probe import Probe
+
+# wrong_units.py: a slip of a factor of 1000 leaves at least one of these in every shipped scene
+SOUND = {
+    "E in Pa": (1e8, 1.5e12),
+    "density in kg/m^3": (500.0, 25e3),
+    "wave speed in m/s": (300.0, 20e3),
+    "stiffness over E d": (1e-3, 10.0),
+    "lever sqrt(tilt / radial stiffness) over d": (0.03, 2.0),
+    "first bending in Hz": (5.0, 2e5),
+}
+
+
+def units(probe: Probe) -> Notices:
+    """Orders of magnitude that a slip in units moves: of the materials, then of the bearings, then
+    of what comes of both.
+    """
+    scene = probe.scene
+    mean = float(np.mean([2 * s.outer0 for s in scene.segments]))
+    materials, bearings = [], []
+    for s in {s.material: s for s in reversed(scene.segments)}.values():
+        m = s.material
+        materials += [
+            (name, value, f"segment {s.name!r}")
+            for name, value in zip(SOUND, (m.E, m.density, np.sqrt(m.E / m.density)))
+        ]
+    for b in scene.bearings:
+        k = np.diag(b.stiffness)
+        for axis, tilt in ((0, 5), (2, 3)):
+            if k[axis] > 0:
+                where = f"bearing {b.name!r} in {DOF_NAMES[axis]}"
+                bearings.append(
+                    ("stiffness over E d", k[axis] / (scene.segments[0].material.E * mean), where)
+                )
+                if k[tilt] > 0:
+                    bearings.append(
+                        (
+                            "lever sqrt(tilt / radial stiffness) over d",
+                            np.sqrt(k[tilt] / k[axis]) / mean,
+                            where,
+                        )
+                    )
+    first = (
+        [("first bending in Hz", probe.first_bending, "the Timoshenko beam")]
+        if probe.first_bending
+        else []
+    )
+    # What is wrong early moves all that comes after it.
+    for found in (materials, bearings, first):
+        out = [
+            f"{name} of {where} is {value:.3g}, outside {SOUND[name][0]:g} to {SOUND[name][1]:g}"
+            for name, value, where in found
+            if not SOUND[name][0] <= value <= SOUND[name][1]
+        ]
+        if out:
+            yield Notice(
+                "caution",
+                (),
+                f"probably a slip in units: {'; '.join(out)}{' (d: mean diameter)' * (found is bearings)}; write the unit beside the number",
+            )
+            return
+
+
+def doubtful_data(probe: Probe) -> Notices:
+    """Bearings whose numbers were assumed or identified."""
+    doubtful = [
+        f"bearing {b.name!r} ({b.status})"
+        for b in probe.scene.bearings
+        if b.status in ("identified", "assumed")
+    ]
+    if doubtful:
+        yield Notice("caution", (), "data not measured or published: " + ", ".join(doubtful))
+
+
+def free_motions(probe: Probe) -> Notices:
+    """Rigid motions that no bearing resists."""
+    free = probe.supports.unresisted(probe.body).shape[1]
+    yield Notice("fact", (), f"rigid motions that no bearing resists: {free}")
+    if free > 1 and probe.scene.bearings:
+        yield Notice(
+            "caution",
+            (),
+            f"bearings leave {free} rigid motions free; only torsion is meant to be: give the missing entries a stiffness",
+        )
+
+
+# strong_coupling.py: below 1e-12 of the diagonal a direction is taken as free; a coupling written
+# with four digits tells no less than 1e-3
+FREE, FOUR_DIGITS = 1e-12, 1e-3
+
+
+def oblique_softness(probe: Probe) -> Notices:
+    """Bearings whose stiffness in one oblique direction is a small difference of large entries."""
+    for b in probe.scene.bearings:
+        on = np.diag(b.stiffness) > 0
+        if not on.any():
+            continue
+        d = np.sqrt(np.diag(b.stiffness)[on])
+        least = float(np.linalg.eigvalsh(b.stiffness[np.ix_(on, on)] / np.outer(d, d))[0])
+        if least < FOUR_DIGITS:
+            what = "is taken as free" if least < FREE else f"is {least:.1e} of its entries"
+            yield Notice(
+                "caution",
+                (),
+                f"the couplings of bearing {b.name!r} all but cancel its stiffness in one oblique direction, which {what}: below {FOUR_DIGITS:g} it hangs on the fourth digit of "
+                "the entries; check their signs and give more digits",
+            )
+
+
+def split_pair(probe: Probe) -> Notices:
+    """A bending pair that the bearings split."""
+    split = probe.split
+    if split >= 1e-9:
+        yield Notice(
+            "fact",
+            (),
+            f"bearings that differ in x and z split the first bending pair by {split:.1e} (Timoshenko): 'bending 2' is the twin of 'bending 1'",
+        )

@@ -1,0 +1,182 @@
+"""Guards on seats and elements of the solids, and on the machine that is to solve them."""
+
+from __future__ import annotations
+
+import os
+from importlib.util import find_spec
+from types import SimpleNamespace
+
+import numpy as np
+
+from solidgear.errors import SolidgearError
+from solidgear.evidence.converge import sharpest_corner
+from solidgear.evidence.quantities import change
+from solidgear.machine.memory import available_mb
+from solidgear.solve.backends import BACKENDS, INSTALL, missing
+from solidgear.solve.backends.memory_law import law
+from solidgear.solve.factor import FASTEST, SMALL
+from solidgear.studies.guards.notice import MODELS, SOLIDS, Notice, Notices, beyond
+from solidgear.studies.guards.probe import Probe
+
+# odd_geometry.py's shaft, softer than a seat of half the diameter: 5 % in C_zz at a bearing, 1.2 %
+# in C_thx at the lumped point; then 1 to 2 % more at each halving, without limit (ties.py)
+NARROW, NARROW_POINT = (0.1, 5.0), (0.02, 1.2)
+
+
+def narrow_seat(probe: Probe) -> Notices:
+    """Seats that tie like a line."""
+    for s in probe.scene.stations:
+        width = (s.hi - s.lo) / probe.diameter(s.y)
+        limit, softer = NARROW_POINT if s is probe.scene.port else NARROW
+        if width < limit and s.attachment != "section":
+            yield Notice(
+                "caution",
+                SOLIDS,
+                f"the seat of {s.name!r} is {width:.2g} diameters of the shaft wide: below {limit:g} it ties like a line, {softer:g} % softer than a seat of 0.5, and softer "
+                'without limit as it narrows; give the real width, or attachment = "section"',
+            )
+
+
+def rigid_seats(probe: Probe) -> Notices:
+    """What rigid seats move against averaged ones; they are the stiff bound."""
+    if not probe.scene.bearings:
+        return
+    chosen = [repr(s.name) for s in probe.scene.stations if s.attachment == "rigid"]
+    try:
+        stiff = probe.tied("rigid")
+    except (
+        SolidgearError
+    ):  # seats of other bearings touch, and all of them rigid is not what the scene asks for
+        return
+    moved = {
+        name: value
+        for name in ("C_zz", "C_thx", "bending 1")
+        if (value := change(stiff, probe.tied("average"), name)) is not None
+    }
+    words = ", ".join(f"{name} by {100 * value:+.3g} %" for name, value in moved.items())
+    if not chosen:
+        yield Notice(
+            "fact",
+            SOLIDS,
+            f"how seats are tied: rigid rings at all of them would move {words} against averaged seats",
+        )
+    elif max(map(abs, moved.values()), default=0.0) > 0.01:
+        yield Notice(
+            "caution",
+            SOLIDS,
+            f'rigid seats at {", ".join(chosen)}: rigid rings at all seats move {words} against averaged ones, limit 1 %; they are a stiff bound, use attachment = "average"',
+        )
+
+
+# linear_elements.py: error in first bending over that of the quadratic element of the same shape at
+# 9000 unknowns
+LINEAR = {"tet4": ("tet10", 116), "hex8": ("hex20", 138)}
+
+
+def linear_elements(probe: Probe) -> Notices:
+    """Elements that answer curvature with shear."""
+    element = probe.body.mesh.get("element")
+    if element in LINEAR:
+        better, factor = LINEAR[element]
+        yield Notice(
+            "caution",
+            ("solid",),
+            f"element = {element} errs {factor} times as much in first bending as {better} at 9000 unknowns, more on longer cells; use {better}",
+        )
+    elif element == "Q1":
+        yield Notice(
+            "caution",
+            ("harmonic",),
+            "order = 1 is 4 % too stiff in bending where order 2 is within 0.03 %; use order = 2 or more",
+        )
+
+
+# nearly_incompressible.py: what the bending compliance lacks, over nu
+NU = np.array([0.3, 0.4, 0.45, 0.49, 0.499, 0.4999, 0.49999])
+LOCKING = {
+    "tet4": (0.079, 0.103, 0.142, 0.309, 0.712, 0.947, 0.993),
+    "hex8": (0.0107, 0.0228, 0.0446, 0.145, 0.468, 0.855, 0.982),
+    "Q1": (0.040, 0.053, 0.0755, 0.191, 0.597, 0.918, 0.989),
+    "tet10": (2.2e-4, 5.5e-4, 8.9e-4, 1.6e-3, 3.1e-3, 8.5e-3, 0.032),
+    "hex20": (4.8e-4, 1.2e-3, 2.2e-3, 5.5e-3, 0.0186, 0.056, 0.096),
+    "hex27": (3.7e-4, 9.9e-4, 1.8e-3, 3.7e-3, 5.6e-3, 7.3e-3, 0.0114),
+}
+LOCKED, SOFT = 0.01, 0.45
+
+
+def nearly_incompressible(probe: Probe) -> Notices:
+    """Elements that lock as nu goes to 1/2; the harmonic solid from order 2 on does not."""
+    usual = {"solid": "hex20", "harmonic": "Q5"} | (
+        {probe.body.fidelity: probe.body.mesh["element"]} if probe.body.fidelity in SOLIDS else {}
+    )
+    for s in {s.material: s for s in reversed(probe.scene.segments)}.values():
+        nu = s.material.nu
+        for model, element in usual.items():
+            if nu < SOFT or element not in LOCKING:
+                continue
+            error = float(
+                np.exp(np.interp(-np.log(0.5 - nu), -np.log(0.5 - NU), np.log(LOCKING[element])))
+            )
+            if error > LOCKED:
+                yield Notice(
+                    beyond(error, probe.scene.ask.tolerance),
+                    (model,),
+                    f"nu = {nu:g} of segment {s.name!r}: element {element} locks and is about {100 * error:.2g} % too stiff in bending, limit {100 * LOCKED:g} %; use the "
+                    "harmonic solid of order 3 or more",
+                )
+
+
+def uniform_at_shoulder(probe: Probe) -> Notices:
+    """A harmonic mesh that is not graded towards a re-entrant corner."""
+    angle, exponent = sharpest_corner(probe.scene)
+    if probe.body.mesh.get("layers") == 0 and exponent < 1:
+        yield Notice(
+            "caution",
+            ("harmonic",),
+            f"layers = 0 at a corner of {np.degrees(angle):.0f} degrees: the mesh converges with order {2 * exponent:.2f} whatever the order of its elements; use layers = 2 or "
+            "more",
+        )
+
+
+# Memory over CHOLMOD's law: PARDISO's own estimate 1.49 to 1.55, MUMPS's 1.46 to 1.84, on four
+# shipped scenes.
+OVER_LAW = {"pardiso": 1.55, "mumps": 1.8, "cholmod": 1.0}
+GOOD_TO = 1.5  # of the laws, whose estimate over measured is 0.68 to 1.41
+
+
+def memory(probe: Probe) -> Notices:
+    """What will factor the 3D solid, and whether it will fit."""
+    size, entries = probe.solid_unknowns
+    absent, forced = [], os.environ.get("SOLIDGEAR_BACKEND")
+    for name in (forced,) if forced in BACKENDS else FASTEST if size > SMALL else ("superlu",):
+        if not (why := missing(name)):
+            break
+        absent.append(f"{why}; {INSTALL[name]}")
+    matrix = SimpleNamespace(shape=(size, size), nnz=entries)
+    need, free = (
+        OVER_LAW.get(name, 1.0) * law("cholmod" if name in OVER_LAW else "superlu", matrix, False),
+        available_mb(),
+    )
+    which = "the" if probe.body.fidelity == "solid" else "the default"
+    yield Notice(
+        "fact",
+        ("solid",),
+        f"{which} 3D solid, about {size} unknowns, is factored by {name} in about {need:.0f} MB"
+        + "".join(f"; faster but absent: {why}" for why in absent),
+    )
+    if free is not None and GOOD_TO * need > free:
+        yield Notice(
+            "avoid" if need > free else "caution",
+            ("solid",),
+            f"{which} 3D solid needs about {need:.0f} MB (good to a factor of {GOOD_TO:g}) and {free:.0f} MB are free; use the harmonic solid, or --set refinement=0.7",
+        )
+
+
+def renderer(probe: Probe) -> Notices:
+    """Whether pictures can be drawn at all."""
+    if find_spec("pyvista") is None:
+        yield Notice(
+            "fact",
+            MODELS,
+            "pyvista is not installed: no pictures will be drawn, and no number depends on it",
+        )

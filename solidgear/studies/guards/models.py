@@ -1,0 +1,344 @@
+"""Guards on what a model leaves out: beams, ovalising, lumped models.  Limits are those of steel
+(nu = 0.3).
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from solidgear.errors import SolidgearError
+from solidgear.evidence import verdict
+from solidgear.evidence.converge import sharpest_corner
+from solidgear.evidence.ties import SCENE
+from solidgear.evidence.verdict import TIES, gap_verdict
+from solidgear.studies.guards.notice import BEAMS, MODELS, Notice, Notices, beyond
+from solidgear.studies.guards.probe import Probe
+
+if TYPE_CHECKING:
+    from solidgear.scene import Scene
+
+#: bands of a light solid rest on two meshes only
+CAUTIOUS = 2.0
+
+
+def beam_against_solid(probe: Probe) -> Notices:
+    """Both beams held against a light harmonic solid of the same scene, tied as in the scene and by
+    section means.
+    """
+    tolerance = probe.scene.ask.tolerance
+    for model, concerned in (("euler", ("euler",)), ("timoshenko", ("timoshenko", "lumped"))):
+        if not (gaps := probe.gaps(model)):
+            continue
+        found = {
+            kind: [
+                g
+                for g in gaps
+                if gap_verdict(g["relative"], CAUTIOUS * (g["band"] or 0.0), tolerance) == kind
+            ]
+            for kind in (verdict.BEYOND, verdict.OPEN, verdict.WITHIN)
+        }
+        kind, worst = next((kind, rows[0]) for kind, rows in found.items() if rows)
+        name, gap = worst["quantity"], worst["relative"]
+        side = (
+            ("larger" if gap > 0 else "smaller")
+            if name.startswith("C_")
+            else "higher"
+            if gap > 0
+            else "lower"
+        )
+        text = f"{name} of the {model} beam is {100 * abs(gap):.3g} % {side} than that of a light harmonic solid {TIES[worst['attachment']]}"
+        if kind == verdict.BEYOND:
+            yield Notice(
+                "avoid",
+                concerned,
+                f"{text}, more than the {100 * tolerance:g} % asked for; use the harmonic solid",
+            )
+        elif kind == verdict.OPEN:
+            yield Notice(
+                "open",
+                concerned,
+                f"{text}, and the light solid is too coarse to tell whether that is within the {100 * tolerance:g} % asked for; compare tells",
+            )
+        else:
+            yield Notice("fact", concerned, f"{text}, the largest gap of what is compared")
+
+
+# slenderness.py: where the last of first bending free, on bearings, and C_zz on bearings passes 1 %
+# and 5 %
+EULER, TIMOSHENKO = (18.0, 7.9), (1.12, 0.77)
+
+
+def slenderness(probe: Probe) -> Notices:
+    """Length over mean diameter against what uniform shafts need."""
+    scene = probe.scene
+    ratio = scene.length**2 / sum(s.length * (s.outer0 + s.outer1) for s in scene.segments)
+    for name, (one, five), models, better in (
+        ("Euler-Bernoulli", EULER, ("euler",), "the Timoshenko beam or a solid"),
+        ("Timoshenko", TIMOSHENKO, ("timoshenko", "lumped"), "the harmonic solid"),
+    ):
+        if ratio < one:
+            yield Notice(
+                "caution",
+                models,
+                f"length over mean diameter is {ratio:.2f}: on uniform shafts {name} needs {one:g} for 1 % and {five:g} for 5 %; use {better}",
+            )
+
+
+# shoulder_step.py: ratio of diameters, missing length of thin shaft over its diameter, what the
+# deflection of an overhang of one diameter lacks
+STEPS = np.array(
+    [
+        [1.0, 0.0, 0.0],
+        [1.1, 0.022, 0.0049],
+        [1.2, 0.055, 0.0132],
+        [1.3, 0.086, 0.0238],
+        [1.5, 0.134, 0.0473],
+        [1.75, 0.173, 0.0766],
+        [2.0, 0.197, 0.1036],
+        [3.0, 0.234, 0.1836],
+    ]
+)
+STEP, STEEP = 1.17, 1.53
+
+
+def shoulder(probe: Probe) -> Notices:
+    """Steps of the outer radius beyond which stress does not fill the thick part at once."""
+    segments, degrees = probe.scene.segments, np.degrees(sharpest_corner(probe.scene)[0])
+    for a, b in zip(segments, segments[1:]):
+        thin, thick = sorted((a.outer1, b.outer0))
+        if thick / thin < STEP:
+            continue
+        missing, lacking = (
+            float(np.interp(thick / thin, STEPS[:, 0], column)) for column in STEPS.T[1:]
+        )
+        yield Notice(
+            "caution",
+            BEAMS,
+            f"shoulder between {a.name!r} and {b.name!r} at y = {1e3 * b.y0:.6g} mm (sharpest corner {degrees:.0f} degrees), ratio of diameters {thick / thin:.2f}: a beam lacks "
+            f"{2e3 * thin * missing:.2g} mm of thin shaft, {100 * lacking:.1f} % of the deflection of an overhang of one diameter; 1 % is passed at {STEP:g}, 5 % at {STEEP:g}; "
+            "use the harmonic solid",
+        )
+
+
+DISC = 0.2  # odd_geometry.py: the tilt compliance of a beam is 10 % further off than with a head of half its diameter, 88 % at 0.1
+
+
+def disc_head(probe: Probe) -> Notices:
+    """A head so short that it bends in itself."""
+    port, parts = probe.scene.port, probe.parts
+    at = next(i for i, (low, high, _) in enumerate(parts) if low <= (port.lo + port.hi) / 2 <= high)
+    low, high, widest = parts[at]
+    beside = [wide for i, (_, _, wide) in enumerate(parts) if abs(i - at) == 1]
+    if beside and max(beside) < widest and high - low < DISC * widest:
+        yield Notice(
+            "caution",
+            BEAMS,
+            f"the head with {port.name!r}, y = {1e3 * low:.6g} to {1e3 * high:.6g} mm, is {(high - low) / widest:.2g} of its diameter long: below {DISC:g} it bends in itself, and "
+            "a beam's tilt compliance misses 10 % and more; use the harmonic solid",
+        )
+
+
+JOINT = 0.5  # odd_geometry.py: the tilt compliance of a beam misses 5 %, at 0.3 12 %
+
+
+def thin_joint(probe: Probe) -> Notices:
+    """Neighbours that hang together by a ring thinner than either of them."""
+    for a, b in zip(probe.scene.segments, probe.scene.segments[1:]):
+        ring = min(a.outer1, b.outer0) - max(a.inner1, b.inner0)
+        share = ring / min(a.outer1 - a.inner1, b.outer0 - b.inner0)
+        if share < JOINT:
+            yield Notice(
+                "caution",
+                BEAMS,
+                f"{a.name!r} and {b.name!r} share a ring of {1e3 * ring:.3g} mm at y = {1e3 * b.y0:.6g} mm, {share:.2g} of the thinner wall: below {JOINT:g} a beam's tilt "
+                "compliance misses 5 %, below 0.3 12 %; use the harmonic solid",
+            )
+
+
+BEYOND = 0.02  # odd_geometry.py's shaft: 1.4 % in the tilt compliance; 7 % at 0.1
+
+
+def point_beyond_surface(probe: Probe) -> Notices:
+    """A lumped point that a solid reaches by extrapolating from its surface, a beam along the
+    shaft.
+    """
+    port = probe.scene.port
+    off = max(port.lo - port.y, port.y - port.hi) / probe.diameter(port.y)
+    if off > BEYOND and port.attachment != "section":
+        yield Notice(
+            "caution",
+            MODELS,
+            f"the lumped point {port.name!r} lies {off:.2f} diameters of the shaft beyond its surface ({1e3 * port.lo:.6g} to {1e3 * port.hi:.6g} mm): from {BEYOND:g} on beams "
+            "and solids answer different questions (7 % in tilt at 0.1); move the point, or give it the surface it stands for",
+        )
+
+
+NEAR = 1.2
+SUSPECT = (
+    1.5  # worth a solution: thin_hollow_shaft.py finds thick rings up to 13 % below the closed form
+)
+
+
+def ovalising(probe: Probe) -> Notices:
+    """Modes of two and three waves around (a tube ovalises, a disc warps), near or below first
+    bending or within the range asked for.
+    """
+    scene, first = probe.scene, probe.first_bending or 0.0
+    limit = max(NEAR * first, scene.ask.max_frequency or 0.0)
+    if _two_waves(probe) > SUSPECT * limit:
+        return
+    inside = {n: f for n, f in probe.ovalising.items() if f < limit}
+    if not inside:
+        return
+    low = min(inside.values())
+    what = " and ".join(f"n = {n} at {f:.4g} Hz" for n, f in inside.items())
+    where = (
+        f"{NEAR:g} times first bending, {first:.4g} Hz"
+        if limit == NEAR * first
+        else f"the {limit:g} Hz asked for"
+    )
+    yield Notice(
+        "avoid" if low < first else "caution",
+        BEAMS,
+        f"sections lose their shape below {where}: {what}, which a beam cannot do; use the harmonic solid, which solves them",
+    )
+    cells = probe.cells_around if probe.body.fidelity == "solid" else DEFAULT_AROUND
+    needed = max(cells_around(scene, n) for n in inside)
+    if cells < needed:
+        yield Notice(
+            "caution",
+            ("solid",),
+            f"sections lose their shape below {where}: {what}; with {cells} cells around hexahedra put such modes of a thin wall up to 25 % too high, with 24 2.3 %, "
+            f"with 32 0.9 %; use --set around={needed}",
+        )
+
+
+#: cells around of the 3D solid unless told otherwise
+DEFAULT_AROUND = 12
+#: cells to a wave of a wall that is thin (below a quarter of the radius) or not:
+#: thin_hollow_shaft.py, n = 2 of a wall of 0.1 is 2.3 % too high with twelve; a thick disc needs
+#: half as many
+THIN, CELLS_THIN, CELLS_THICK, MOST_AROUND = 0.25, 12, 6, 48
+
+
+def cells_around(scene: Scene, waves: int) -> int:
+    """Cells around that hexahedra need for a shape of so many waves."""
+    wall = min(
+        min(s.outer0 - s.inner0, s.outer1 - s.inner1) / max(s.outer0, s.outer1)
+        for s in scene.segments
+    )
+    each = CELLS_THIN if wall < THIN else CELLS_THICK
+    return min(MOST_AROUND, max(8, 4 * -(-each * waves // 4)))
+
+
+def _two_waves(probe: Probe) -> float:
+    """n = 2 in closed form, Hz: the lowest of every part as a free disc (Leissa, Vibration of
+    Plates, table 2.3) and of every wall as a long ring (Love, sec. 293).
+    """
+    segments = probe.scene.segments
+    speed = min(
+        np.sqrt(s.material.E / (1 - s.material.nu**2) / s.material.density) for s in segments
+    )
+    discs = [5.36 / np.sqrt(12) * (high - low) / (wide / 2) ** 2 for low, high, wide in probe.parts]
+    walls = [
+        (outer, inner)
+        for s in segments
+        for outer, inner in ((s.outer0, s.inner0), (s.outer1, s.inner1))
+        if inner
+    ]
+    rings = [np.sqrt(0.6) * (outer - inner) / ((outer + inner) / 2) ** 2 for outer, inner in walls]
+    return float(min(discs + rings) * speed / (2 * np.pi))
+
+
+ENERGY = 0.95  # effective_mass_limits.py: held along the head of the overhung pinion; at 7 % the receptance is right to 0.24 of first bending only
+
+
+def effective_mass(probe: Probe) -> Notices:
+    """Which lumped model there is, and whether the first mode is nearly the static shape it rests
+    on.
+    """
+    try:
+        point, found = probe.lumped
+    except SolidgearError as error:
+        yield Notice("avoid", ("lumped",), f"there is no lumped model: {error}")
+        return
+    if not found["thesis"].feasible:
+        yield Notice(
+            "fact",
+            ("lumped",),
+            f"the published equations of effective mass have no solution here ({found['thesis'].verdict})",
+        )
+    matched = found["mode-matched"]
+    if not (matched.feasible and matched.first):
+        off = found["guyan"].frequency_error
+        assert off is not None  # its mass is always positive definite
+        why = "holds the mode as its second one" if matched.feasible else "has a negative entry"
+        yield Notice(
+            beyond(off, probe.scene.ask.tolerance),
+            ("lumped",),
+            f"the mode-matched pair of masses {why}: Guyan's stands in, with first bending {100 * off:+.3g} % off its beam; use the beam",
+        )
+    if point.static_share < ENERGY:
+        yield Notice(
+            "caution",
+            ("lumped",),
+            f"the static shape of {probe.scene.port.name!r} holds {100 * point.static_share:.0f} % of the energy of first bending, less than {100 * ENERGY:g} %: the mode lives "
+            "elsewhere, and a lumped model is good for stiffness only; use the beam",
+        )
+
+
+def lumped_against_solid(probe: Probe) -> Notices:
+    """First bending of the lumped model, of its beam and of lumping together, held against a light
+    harmonic solid.
+    """
+    try:
+        _, found = probe.lumped
+    except SolidgearError:
+        return  # `effective_mass` says so
+    matched, solid = found["mode-matched"], probe.rung("harmonic")
+    lumped = matched if matched.feasible and matched.first else found["guyan"]
+    truth, tolerance = probe.solid_in_the_lumped_plane, probe.scene.ask.tolerance
+    if not truth:
+        return
+    assert lumped.frequency_hz is not None  # Guyan's mass is positive definite
+    gap = lumped.frequency_hz / truth - 1
+    bands = solid.bands.get(SCENE, {})
+    band = bands["bending 1"].gci if "bending 1" in bands else 0.0
+    kind = gap_verdict(gap, CAUTIOUS * band, tolerance)
+    text = (
+        f"first bending of the lumped model is {100 * abs(gap):.3g} % "
+        f"{'higher' if gap > 0 else 'lower'} than that of a light harmonic solid"
+    )
+    if kind == verdict.BEYOND:
+        yield Notice(
+            "avoid",
+            ("lumped",),
+            f"{text}, more than the {100 * tolerance:g} % asked for; use a beam or a solid",
+        )
+    elif kind == verdict.OPEN:
+        yield Notice(
+            "open",
+            ("lumped",),
+            f"{text}, and the light solid is too coarse to tell whether that is within the "
+            f"{100 * tolerance:g} % asked for; compare tells",
+        )
+
+
+HOLDS, DRIFTS = (
+    0.39,
+    0.63,
+)  # guyan_in_frequency.py: off by 1 % and 10 % of the static stiffness, over the first frequency with the lumped point held
+
+
+def frequency_range(probe: Probe) -> Notices:
+    """The range asked for against the first mode that a condensed model cannot have."""
+    asked = probe.scene.ask.max_frequency
+    if asked and (pole := probe.fixed_interface) and asked > HOLDS * pole:
+        yield Notice(
+            "avoid" if asked > pole else "caution",
+            ("lumped",),
+            f"{asked:g} Hz are asked for, and with the lumped point held the shaft has a mode at {pole:.4g} Hz that no condensed model has: Guyan's is off by 1 % of the "
+            f"stiffness from {HOLDS * pole:.4g} Hz, by 10 % from {DRIFTS * pole:.4g} Hz; use a beam or a solid above",
+        )

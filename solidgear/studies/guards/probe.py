@@ -1,0 +1,250 @@
+"""Quick solutions that the guards of a scene share: both beams, a light harmonic solid, lumped
+models.
+
+Everything is solved when a guard first asks for it, and once.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from functools import cache, cached_property
+from itertools import pairwise
+from typing import TYPE_CHECKING
+
+import numpy as np
+import scipy.linalg as sla
+import scipy.sparse.linalg as spla
+
+from solidgear.body import Body, Supports, as_supports
+from solidgear.errors import SolidgearError
+from solidgear.evidence.levels import HARMONIC
+from solidgear.evidence.quantities import JUDGED
+from solidgear.evidence.study import Rung, study
+from solidgear.evidence.ties import rigid_seats
+from solidgear.evidence.verdict import deviations
+from solidgear.fidelity import build
+from solidgear.reduction.effective_mass import LumpedPoint, Synthesis, synthesise
+from solidgear.scene.rules import TOUCH
+from solidgear.solve.modes import ModeSet, modes
+
+if TYPE_CHECKING:
+    from solidgear.scene import Scene
+
+#: modes enough for the first bending pair, the first axial one and the rigid ones between them
+FEW = 8
+#: a clamp this much stiffer than the shaft on its bearings moves a frequency by about the inverse
+CLAMP = 1e6
+
+#: components of the two bending planes, and the signs by which one matrix is the other
+X, Z, SIGNS = [0, 5], [2, 3], np.array([[1.0, -1.0], [-1.0, 1.0]])
+
+
+class Probe:
+    """Quick solutions of one scene.
+
+    Parameters
+    ----------
+    scene : Scene
+    body : Body
+        The body the user asked for; it is read, not solved.
+    rungs : dict of str to Rung, optional
+        What is solved already.
+    """
+
+    def __init__(self, scene: Scene, body: Body, rungs: dict[str, Rung] | None = None):
+        self.scene, self.body, self.supports = scene, body, as_supports(scene)
+        self.rungs = dict(rungs or {})
+        self.tied, self.gaps = cache(self._tied), cache(self._gaps)
+
+    def diameter(self, y: float) -> float:
+        """Outer diameter of the shaft at y, the larger one at a step, m."""
+        return 2 * max(
+            s.radius_at(y)[1] for s in self.scene.segments if s.y0 - TOUCH <= y <= s.y1 + TOUCH
+        )
+
+    @cached_property
+    def parts(self) -> list[tuple[float, float, float]]:
+        """Shaft between its steps: (first y, last y, greatest outer diameter) of every part, m."""
+        ends = (0.0, *self.scene.steps, self.scene.length)
+        return [
+            (
+                a,
+                b,
+                2
+                * max(
+                    max(s.outer0, s.outer1)
+                    for s in self.scene.segments
+                    if s.y0 > a - TOUCH and s.y1 < b + TOUCH
+                ),
+            )
+            for a, b in pairwise(ends)
+        ]
+
+    def rung(self, model: str) -> Rung:
+        """A beam, or the harmonic solid on its two coarsest meshes."""
+        if model not in self.rungs:
+            self.rungs[model] = study(self.scene, model, most=2, evidence=False)
+        return self.rungs[model]
+
+    def beam(self, model: str) -> tuple[Body, ModeSet, dict[str, float]]:
+        """A beam tied as in the scene: body, modes and compared numbers."""
+        rung = self.rung(model)
+        return rung.body, rung.modes, rung.quantities
+
+    def _tied(self, attachment: str | None) -> dict[str, float]:
+        """Numbers of the light harmonic solid with one attachment (``rigid``: at the bearings), or
+        as the scene has it (None).
+        """
+        given = {s.attachment for s in self.scene.stations}
+        if attachment is None or given == {attachment}:
+            return self.rung("harmonic").quantities
+        scene = (
+            rigid_seats(self.scene)
+            if attachment == "rigid"
+            else self.scene.with_attachment(attachment)
+        )
+        return study(scene, "harmonic", most=2, evidence=False).quantities
+
+    def _gaps(self, model: str) -> list[dict]:
+        """Deviations of a beam from the light solid in what is judged, the largest first."""
+        rungs = {model: self.rung(model), "harmonic": self.rung("harmonic")}
+        judged = self.scene.ask.quantities or JUDGED
+        found = [g for g in deviations(rungs, "harmonic") if g["quantity"] in judged]
+        return sorted(found, key=lambda g: -abs(g["relative"]))
+
+    @property
+    def first_bending(self) -> float | None:
+        """First bending of the Timoshenko beam on its bearings, Hz."""
+        return self.beam("timoshenko")[2].get("bending 1")
+
+    @cached_property
+    def lumped(self) -> tuple[LumpedPoint, dict[str, Synthesis]]:
+        """Lumped point and lumped models of the Timoshenko beam; SolidgearError where there is
+        nothing to lump.
+        """
+        body, found, _ = self.beam("timoshenko")
+        try:
+            with np.errstate(divide="raise", invalid="raise"):
+                return synthesise(body, self.supports, self.scene.port.name, found)
+        except FloatingPointError:
+            raise SolidgearError(
+                "first bending leaves the lumped point at rest in the z plane, in which masses are lumped; bearings differ in x and z"
+            ) from None
+
+    @cached_property
+    def solid_in_the_lumped_plane(self) -> float | None:
+        """First bending (Hz) of the light harmonic solid in the z plane, in which masses are lumped."""
+        rung = self.rung("harmonic")
+        try:
+            with np.errstate(divide="raise", invalid="raise"):
+                point, _ = synthesise(rung.body, self.supports, self.scene.port.name, rung.modes)
+        except (SolidgearError, FloatingPointError):
+            return None
+        return point.omega / (2 * np.pi)
+
+    @cached_property
+    def fixed_interface(self) -> float | None:
+        """First bending (Hz) of the Timoshenko beam on its bearings with the lumped point held;
+        None without a lumped model.
+        """
+        body, _, _ = self.beam("timoshenko")
+        try:
+            point, _ = self.lumped
+        except SolidgearError:
+            return None
+        clamp = CLAMP * np.diag(
+            [
+                point.stiffness[0, 0],
+                0.0,
+                point.stiffness[0, 0],
+                point.stiffness[1, 1],
+                0.0,
+                point.stiffness[1, 1],
+            ]
+        )
+        held = Supports(
+            (*self.supports.ports, self.scene.port.name),
+            sla.block_diag(self.supports.stiffness, clamp),
+        )
+        return next(
+            (
+                m.frequency_hz
+                for m in modes(body, held, FEW).modes
+                if m.family == "bending" and m.frequency_hz > 0
+            ),
+            None,
+        )
+
+    @cached_property
+    def ovalising(self) -> dict[int, float]:
+        """Lowest frequency (Hz) of families of two waves around and more, as far as they are
+        solved; bearings do not enter.
+        """
+        harmonic = self.rungs.get("harmonic")
+        solved = (
+            [
+                r
+                for r in harmonic.modes.evidence.get("families", [])
+                if (r["n"] or 0) > 1 and r["counted"]
+            ]
+            if harmonic
+            else []
+        )
+        if solved:
+            return {r["n"]: r["lowest_hz"] for r in solved if r["lowest_hz"]}
+        blocks = build(self.scene, "harmonic", **HARMONIC[1], ovalising=(2, 3)).blocks[-2:]
+        lowest = [
+            spla.eigsh(
+                b.stiffness.tocsc(),
+                1,
+                b.mass.tocsr().tocsc(),
+                sigma=0.0,
+                v0=np.ones(b.size),
+                return_eigenvectors=False,
+            )[0]
+            for b in blocks
+        ]
+        return {n: float(np.sqrt(w2) / (2 * np.pi)) for n, w2 in zip((2, 3), lowest)}
+
+    @cached_property
+    def split(self) -> float:
+        """Relative distance of the two first bending frequencies of the Timoshenko beam; 0 where
+        every bearing is alike in x and z.
+        """
+        turned = [
+            b.stiffness[np.ix_(X, X)] * SIGNS - b.stiffness[np.ix_(Z, Z)]
+            for b in self.scene.bearings
+        ]
+        if not any(t.any() for t in turned):
+            return 0.0
+        body, _, _ = self.beam("timoshenko")
+        apart = replace(body, mesh=body.mesh | {"pair_tolerance": 0.0})
+        found = [
+            m.frequency_hz
+            for m in modes(apart, self.supports, FEW).modes
+            if m.family == "bending" and m.frequency_hz > 0
+            for _ in range(m.multiplicity)
+        ]
+        return found[1] / found[0] - 1 if len(found) > 1 else 0.0
+
+    @cached_property
+    def cells_around(self) -> int:
+        """Cells around of a 3D solid of hexahedra (of tetrahedra, an upper bound)."""
+        mesh = self.body.geometry.mesh
+        x, _, z = mesh.p[:, np.unique(mesh.t[:8])]
+        r = np.hypot(x, z)
+        rim = r > (1 - 1e-6) * r.max()
+        return len(np.unique(np.round(np.arctan2(x[rim], z[rim]) % (2 * np.pi), 6)))
+
+    @cached_property
+    def solid_unknowns(self) -> tuple[int, int]:
+        """Unknowns and matrix entries of the 3D solid: of the body if it is one, else estimated for
+        the default HEX20 mesh.
+        """
+        if self.body.fidelity == "solid":
+            matrix = self.body.blocks[0].stiffness
+            return matrix.shape[0], matrix.nnz
+        from solidgear.fidelity.size import estimated_size
+
+        size = estimated_size(self.scene, "solid")
+        return size.unknowns, size.entries

@@ -1,0 +1,252 @@
+"""A free body reduced once to its lowest free modes and to moments of what is left at its seats.
+
+Notation: ``A = K + sigma M`` (the operator every body is factored with), G the motions of the
+ports, U the rigid motions and the lowest free modes, and H the inverse of A with U taken out of it.
+The reduced basis of a set of seats is
+
+    V = [U, W_0, .., W_J],   W_j = (H M)^j H G',
+
+attachment fields (Rubin 1975, AIAA J. 13, 996; the rigid part is inertia relief) and J Krylov steps
+on them.  U is invariant under ``A^-1 M`` and the rest lies in its complement, so nothing of the
+mesh is needed but the free eigenvalues, ``G U``, and the moments
+
+    mu_j = G (H M)^j H G':   W_i' A W_j = mu_(i+j),   W_i' M W_j = mu_(i+j+1),   W_i' M A^-1 M W_j = mu_(i+j+2),   G W_j = mu_j.
+
+Any choice of seats is a choice of rows and columns of these.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+import scipy.linalg as sla
+import scipy.sparse as sp
+
+from solidgear.body import Block, Body, Port
+from solidgear.machine.threads import pinned
+from solidgear.solve.modes import modes
+from solidgear.solve.naming import FAMILIES
+from solidgear.solve.statics import SHIFT, Flexibility, factors, flexibility
+
+
+@dataclass(frozen=True)
+class ReducedBlock:
+    """One block of a body, seen from its seats; all shapes in U have unit energy in A.
+
+    Attributes
+    ----------
+    components : tuple of int
+    turn : (r, c) ndarray
+        Coordinates in U of unit rigid motions about the origin.
+    theta : (u,) ndarray
+        ``1 / (lambda + sigma)`` of the shapes in U, rigid ones first, s^2.
+    motions : (c * p, u) ndarray
+        Port motions of the shapes in U.
+    moments : (2 J + 3, c * p, c * p) ndarray
+        mu_0 .. mu_(2J+2); empty when U is all there is.
+    cut : float
+        Least theta that is not in U: the largest of ``A^-1 M`` on its complement, s^2.
+    families : tuple of str
+        Of the shapes in U; the last entry is that of the block itself, or empty.
+    mirror : (int, tuple of float) or None
+        As in :class:`solidgear.body.Block`.
+    """
+
+    components: tuple[int, ...]
+    turn: np.ndarray
+    theta: np.ndarray
+    motions: np.ndarray
+    moments: np.ndarray
+    cut: float
+    families: tuple[str, ...]
+    mirror: tuple[int, tuple[float, ...]] | None = None
+
+    @property
+    def steps(self) -> int:
+        """Number of fields per port component, J + 1."""
+        return max(0, (len(self.moments) - 1) // 2)
+
+    def mirrored(self, index: int, block: Block) -> ReducedBlock:
+        """The same in the other bending plane."""
+        assert block.mirror is not None  # asked of blocks that repeat another only
+        signs = np.array(block.mirror[1])
+        sign = np.tile(signs, len(self.motions) // len(signs))
+        return replace(
+            self,
+            components=block.components,
+            turn=self.turn * signs,
+            motions=sign[:, None] * self.motions,
+            moments=self.moments * np.outer(sign, sign),
+            mirror=(index, block.mirror[1]),
+        )
+
+
+@dataclass(frozen=True)
+class Reduced:
+    """Everything the variants of a sweep need of a body; small, and independent of it.
+
+    Attributes
+    ----------
+    blocks : tuple of ReducedBlock
+    frame : Body
+        The ports with their static flexibility, and the components of the blocks: enough for
+        :func:`solidgear.solve.statics.condense`.
+    shift : float
+        sigma, rad^2/s^2.
+    pair_tolerance : float
+        Two shapes of a family nearer than this are a pair.
+    level : int
+        How often the basis was enlarged.
+    """
+
+    blocks: tuple[ReducedBlock, ...]
+    frame: Body
+    shift: float
+    pair_tolerance: float
+    level: int
+
+    @property
+    def size(self) -> int:
+        """Unknowns of the largest block with two seats occupied."""
+        return max(len(b.theta) + 2 * len(b.components) * b.steps for b in self.blocks)
+
+
+#: (free modes per wanted one, Krylov steps) from the first basis to the largest
+LEVELS = ((1.0, 1), (2.0, 1), (4.0, 2))
+
+
+@pinned
+def reduce(body: Body, n: int, level: int = 0) -> Reduced:
+    """Reduce a body for sweeps that ask for ``n`` modes.
+
+    Parameters
+    ----------
+    body : Body
+        With the lumped point as its first port and the seats after it.
+    n : int
+        Shapes wanted of the supported body; how many free ones go into the basis follows from it.
+    level : int
+        Index into `LEVELS`.
+    """
+    more, steps = LEVELS[level]
+    blocks: list[ReducedBlock] = []
+    for index, block in enumerate(body.blocks):
+        if block.mirror is not None:
+            blocks.append(blocks[block.mirror[0]].mirrored(block.mirror[0], block))
+            continue
+        # A block of its own holds a part of the wanted modes only.
+        share = 2 * n if len(block.components) == 6 else n // 2
+        blocks.append(_reduce_block(body, index, int(more * (share + 6)), steps))
+    return Reduced(
+        tuple(blocks),
+        _frame(body),
+        SHIFT * body.scale,
+        body.mesh.get("pair_tolerance", 1e-7),
+        level,
+    )
+
+
+def _reduce_block(body: Body, index: int, count: int, steps: int) -> ReducedBlock:
+    block, factor, shift = body.blocks[index], factors(body)[index], SHIFT * body.scale
+    r = len(block.components)
+    alone = Body(
+        body.fidelity,
+        (replace(block, mirror=None),),
+        body.ports,
+        body.scale,
+        body.length,
+        body.mesh,
+        body.geometry,
+        memory={"factors": [factor]},
+    )
+    found = [
+        (v[0], m.family)
+        for m in modes(alone, (), n=min(count + 1, block.size)).modes
+        if not m.name.startswith("rigid")
+        for v in m.vectors
+    ]
+    families = [_family((c,)) for c in block.components]
+    lower = (
+        np.linalg.cholesky(block.rigid.T @ (block.mass @ block.rigid)) if r else np.zeros((0, 0))
+    )
+    u = (
+        np.column_stack([block.rigid @ sla.inv(lower).T] * bool(r) + [v for v, _ in found])
+        if r or found
+        else np.zeros((block.size, 0))
+    )
+    # Pairs come with their mean frequency; the quotient is that of the shape itself.
+    value = np.einsum("ij,ij->j", u, block.stiffness @ u) / np.einsum("ij,ij->j", u, block.mass @ u)
+    value[:r] = 0.0
+    order = np.concatenate([np.arange(r), r + np.argsort(value[r:], kind="stable")]).astype(int)
+    u, theta = u[:, order], 1 / (value[order] + shift)
+    families += [found[k - r][1] for k in order[r:]]
+    whole = u.shape[1] >= block.size
+    cut = 0.0 if whole else float(theta[-1])
+    if not whole:
+        u, theta, families = u[:, :-1], theta[:-1], families[:-1]
+    heavy = block.mass @ u
+    moments = np.zeros((0, block.ports.shape[0], block.ports.shape[0]))
+    if not whole and r:
+
+        def inverse(load):
+            w = factor.solve(load - heavy @ (u.T @ load))
+            return w - u @ (heavy.T @ w)
+
+        moments = np.array(_moments(inverse, block, steps))
+    own = _family(block.components) if block.components else ""
+    scaled = u * np.sqrt(theta)
+    turn = lower.T * np.sqrt(1 / theta[:r])[:, None]
+    return ReducedBlock(
+        block.components, turn, theta, block.ports @ scaled, moments, cut, (*families, own), None
+    )
+
+
+def _moments(inverse, block: Block, steps: int) -> list[np.ndarray]:
+    """mu_0 .. mu_(2 steps + 2): even ones across a solve, odd ones as Gram matrices."""
+    w = inverse(block.ports.T.toarray())
+    out = [block.ports @ w]
+    for _ in range(steps + 1):
+        heavy = block.mass @ w
+        after = inverse(heavy)
+        out += [w.T @ heavy, heavy.T @ after]
+        w = after
+    return [(m + m.T) / 2 for m in out]
+
+
+def _family(components: Sequence[int]) -> str:
+    """Family of motions that all components belong to, or an empty text."""
+    return next((name for name, own in FAMILIES.items() if set(components) <= set(own)), "")
+
+
+def _frame(body: Body) -> Body:
+    """A body of ports only, with the flexibility of the true one."""
+
+    def bare(block):
+        c = len(block.components)
+        return Block(
+            block.name,
+            block.components,
+            sp.csr_matrix((0, 0)),
+            sp.csr_matrix((0, 0)),
+            np.zeros((0, c)),
+            np.zeros(0),
+            sp.csr_matrix((0, 0)),
+            block.mirror,
+        )
+
+    memory: dict[str, Flexibility] = {"flexibility": flexibility(body)}
+    ports = tuple(Port(p.name, p.y, p.attachment) for p in body.ports)
+    return Body(
+        body.fidelity,
+        tuple(map(bare, body.blocks)),
+        ports,
+        body.scale,
+        body.length,
+        dict(body.mesh),
+        memory=memory,
+    )
+
+
+__all__ = ["LEVELS", "Reduced", "ReducedBlock", "reduce"]

@@ -1,0 +1,341 @@
+r"""Modes of one bearing set in the reduced basis, with a bound on their error.
+
+The supported body is ``B = A + G' Kb G`` with ``A = K + sigma M``, and its modes are those of ``B^-1 M`` with ``theta = 1 / (lambda + sigma)``.
+The Ritz values theta~ in the span of V (:mod:`solidgear.studies.sweep.reduced`) are too small.  By how much at most follows from what V holds:
+
+- V contains ``A^-1 G'`` of every occupied seat.  A field v with ``V' B v = 0`` therefore has ``(I + G A^-1 G' Kb) G v = 0``, so ``G v = 0``: its seats stand still.
+- V contains the free modes U up to a cut.  With the above, ``0 = U' B v = U' A v``, so v lies in the complement of U and ``v' M v <= theta_c v' B v``,
+  theta_c being the first theta left out of U.
+- In a B-orthonormal basis of V (turned to its Ritz vectors) and of the rest, ``B^-1 M = [[T, E'], [E, C]]`` with ``T = diag(theta~)`` and
+  ``C <= theta_c``.  Eigenvalues above theta_c are those of ``T + E' (theta - C)^-1 E``, counted alike (Schur complement), and this is at most
+  ``T + E'E / (t - theta_c)`` for theta_c < t <= theta.
+
+So the k-th true theta lies between theta~_k and the k-th eigenvalue of ``T + E'E / (t - theta_c)``, t being the least theta~ wanted: an error of second
+order, without any assumption on gaps, for single and repeated frequencies, and no mode can be missed.  ``E'E`` is cheap: in an A-orthonormal basis
+of V with P = ``V'MV``, g = ``V'G'L``, ``L L' = Kb`` and the root ``R = (I + g g')^(-1/2)``, the Ritz matrix is ``R P R`` and
+
+    E'E = R (V' M A^-1 M V - P P) R,
+
+where the bracket has nothing to do with the bearings and is zero on U.  (``B^-1`` by Woodbury; ``L'G A^-1 G'L = g'g`` because V holds ``A^-1 G'``.)
+The bound is one in exact arithmetic; rounding adds about 1e-16 times the ratio of the largest to the wanted theta.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import scipy.linalg as sla
+
+from solidgear.body import Supports, component_rows
+from solidgear.solve.naming import ALIKE, OVAL_TOLERANCE, alike
+from solidgear.solve.supported import decoupled, groups
+from solidgear.studies.sweep.reduced import Reduced, ReducedBlock
+
+#: As in `solidgear.solve.modes.modes`: relative change of an eigenvalue below which couplings
+#: between blocks are left out.
+COUPLING = 1e-6
+
+
+@dataclass(frozen=True)
+class RitzModes:
+    """Lowest elastic modes of one variant.
+
+    Attributes
+    ----------
+    frequency_hz : (n,) ndarray
+        Ascending, twins twice.
+    names : tuple of str
+        Such as ``bending 1``; twins share theirs.
+    error_bound : float
+        Largest relative error of these frequencies against the body itself; infinite where nothing
+        can be promised.
+    """
+
+    frequency_hz: np.ndarray
+    names: tuple[str, ...]
+    error_bound: float
+
+
+class Seats:
+    """Bearing-independent part of the small problems on one set of occupied seats.
+
+    Parameters
+    ----------
+    reduced : Reduced
+    ports : tuple of int
+        Indices of the occupied ports.
+    """
+
+    def __init__(self, reduced: Reduced, ports: tuple[int, ...]):
+        self._blocks = [_Occupied(block, ports) for block in reduced.blocks]
+        self._groups: dict[tuple[int, ...], _Together] = {}
+
+    def group(self, blocks: tuple[int, ...]) -> _Together:
+        """Blocks that bearings couple."""
+        if blocks not in self._groups:
+            self._groups[blocks] = _Together([self._blocks[b] for b in blocks])
+        return self._groups[blocks]
+
+
+class _Occupied:
+    """One block with some of its seats occupied, in an A-orthonormal basis ``[U, W]``."""
+
+    def __init__(self, block: ReducedBlock, ports: tuple[int, ...]):
+        c, steps, mu = len(block.components), block.steps, block.moments
+        rows = np.array([c * p + k for p in ports for k in range(c)], int)
+        mu = mu[:, rows[:, None], rows]
+
+        def hankel(first):
+            return np.block([[mu[i + j + first] for j in range(steps)] for i in range(steps)])
+
+        if steps and len(rows):
+            z = _orthonormal(hankel(0), len(rows))
+            mass, beyond = z.T @ hankel(1) @ z, z.T @ hankel(2) @ z
+            motions = np.hstack(list(mu[:steps])) @ z
+        else:
+            mass = beyond = np.zeros((0, 0))
+            motions = np.zeros((len(rows), 0))
+        u, w = len(block.theta), len(mass)
+        self.block = block
+        self.motions = np.hstack([block.motions[rows], motions])
+        self.mass = sla.block_diag(np.diag(block.theta), mass)
+        self.defect = sla.block_diag(np.zeros((u, u)), beyond - mass @ mass)
+        self.families = (*block.families[:-1], *[block.families[-1]] * w)
+
+
+class _Together:
+    """Several such blocks side by side."""
+
+    def __init__(self, parts: list[_Occupied]):
+        self.components = [list(p.block.components) for p in parts]
+        self.turns = [p.block.turn for p in parts]
+        self.cut = max(p.block.cut for p in parts)
+        self.motions = sla.block_diag(*(p.motions for p in parts))
+        self.mass = sla.block_diag(*(p.mass for p in parts))
+        self.defect = sla.block_diag(*(p.defect for p in parts))
+        starts = np.cumsum([0] + [len(p.mass) for p in parts])
+        self.rigid = np.concatenate(
+            [s + np.arange(len(c)) for s, c in zip(starts, self.components)]
+        ).astype(int)
+        names = np.array([name for p in parts for name in p.families])
+        self.families = {str(name): names == name for name in dict.fromkeys(names) if name}
+
+    def resisted(self, null: np.ndarray) -> np.ndarray | None:
+        """Orthonormal basis without the rigid motions ``null`` (6, k) that no spring resists; None
+        if there are none.
+        """
+        free = np.vstack([turn @ null[c] for turn, c in zip(self.turns, self.components)])
+        norm = np.linalg.norm(free, axis=0)
+        free = free[:, norm > 0] / norm[norm > 0]
+        if not free.shape[1]:
+            return None
+        q, s, _ = np.linalg.svd(free)
+        basis = np.eye(len(self.mass))
+        basis[np.ix_(self.rigid, self.rigid)] = q
+        return np.delete(basis, self.rigid[: int((s > 1e-6).sum())], axis=1)
+
+
+def _orthonormal(gram: np.ndarray, width: int) -> np.ndarray:
+    """Combinations of fields with unit Gram matrix: the first ``width`` fields are kept whole,
+    later ones where they add something.
+    """
+    size = 1 / np.sqrt(np.diag(gram))
+    gram = gram * np.outer(size, size)
+    z = np.zeros((len(gram), 0))
+    for start in range(0, len(gram), width):
+        new = np.eye(len(gram))[:, start : start + width]
+        for _ in range(2):  # twice is enough
+            new = new - z @ (z.T @ gram @ new)
+        value, vector = np.linalg.eigh(new.T @ gram @ new)
+        # What is below this is rounding of the moments; attachment fields must stay for the bound
+        # to hold.
+        keep = value > (1e-14 if start == 0 else 1e-10)
+        z = np.hstack([z, new @ (vector[:, keep] / np.sqrt(value[keep]))])
+    return size[:, None] * z
+
+
+@dataclass(frozen=True)
+class _Group:
+    """Ritz solution of the blocks that the bearings couple."""
+
+    value: np.ndarray
+    theta: np.ndarray
+    excess: np.ndarray
+    cut: float
+    share: dict[str, np.ndarray]
+
+
+def ritz_modes(
+    reduced: Reduced, seats: Seats, supports: Supports, n: int, slack: float
+) -> RitzModes:
+    """Lowest ``n`` elastic modes on some bearings.
+
+    Parameters
+    ----------
+    reduced : Reduced
+    seats : Seats
+        Of the ports of ``supports``, in their order.
+    supports : Supports
+    n : int
+    slack : float
+        Modes that may lie among the first ``n`` by less than this, relative, are no reason to
+        distrust the count.
+    """
+    frame = reduced.frame
+    spring, _ = decoupled(frame, supports, COUPLING)
+    null = supports.unresisted(frame)
+    solved: dict[tuple[int, ...], _Group] = {}
+    for group in groups(frame, supports, spring):
+        twin = _twin(reduced, supports, spring, group)
+        solved[tuple(group)] = (
+            solved[twin]
+            if twin in solved
+            else _solve(reduced, seats, supports, spring, group, null)
+        )
+    # A block without port motions is an ovalising one, which stands for its cosine and its sine
+    # form.
+    parts = [
+        part
+        for group, part in solved.items()
+        for _ in range(1 if reduced.blocks[group[0]].components else 2)
+    ]
+    which = np.concatenate([np.full(len(p.value), k) for k, p in enumerate(parts)])
+    place = np.concatenate([np.arange(len(p.value)) for p in parts])
+    value = np.concatenate([p.value for p in parts])
+    order = np.argsort(value, kind="stable")[:n]
+    value = value[order]
+    bound = np.inf if len(value) < n else 0.0
+    for k, part in enumerate(parts):
+        bound = max(
+            bound, _bound(part, int((which[order] == k).sum()), value[-1], reduced.shift, slack)
+        )
+    family = [
+        max(parts[k].share, key=lambda name: parts[k].share[name][j])
+        for k, j in zip(which[order], place[order])
+    ]
+    return RitzModes(
+        np.sqrt(value) / (2 * np.pi),
+        _names(value, family, _tolerances(reduced, supports)),
+        float(bound),
+    )
+
+
+def _twin(reduced, supports, spring, group):
+    """The group that a lone block repeats in the other plane, if its springs are mirrored too."""
+    mirror = reduced.blocks[group[0]].mirror
+    if len(group) != 1 or mirror is None:
+        return None
+    m = len(supports.ports)
+    mine, theirs = (
+        component_rows(range(m), reduced.blocks[b].components) for b in (group[0], mirror[0])
+    )
+    sign = np.tile(mirror[1], m)
+    a, b = spring[np.ix_(mine, mine)], spring[np.ix_(theirs, theirs)] * np.outer(sign, sign)
+    return (
+        (mirror[0],)
+        if np.abs(a - b).max(initial=0.0) <= 1e-14 * np.abs(b).max(initial=0.0)
+        else None
+    )
+
+
+def _solve(reduced: Reduced, seats: Seats, supports: Supports, spring, group, null) -> _Group:
+    held_by = seats.group(tuple(group))
+    at = np.concatenate([component_rows(range(len(supports.ports)), c) for c in held_by.components])
+    root = Supports(supports.ports, spring[np.ix_(at, at)]).root if len(at) else np.zeros((0, 0))
+    held, mass, defect = held_by.motions.T @ root, held_by.mass, held_by.defect
+    basis = held_by.resisted(null)
+    if basis is not None:
+        held, mass, defect = basis.T @ held, basis.T @ mass @ basis, basis.T @ defect @ basis
+    left, s, _ = np.linalg.svd(held, full_matrices=False)
+    half = np.eye(len(mass)) + left @ ((1 / np.sqrt(1 + s * s) - 1)[:, None] * left.T)
+    small = half @ mass @ half
+    theta, vector = np.linalg.eigh((small + small.T) / 2)
+    theta, vector = theta[::-1], vector[:, ::-1]
+    good = theta > 0
+    theta, shape = theta[good], half @ vector[:, good]
+    value = 1 / theta - reduced.shift
+    # What the shift leaves of an eigenvalue below a thousandth of it is less than a direct Ritz
+    # step gives.
+    soft = value < 1e-3 * reduced.shift
+    if soft.any():
+        value[soft] = _soft(shape[:, soft], mass, held, reduced.shift)
+    full = shape if basis is None else basis @ shape
+    weight = full * (held_by.mass @ full)
+    share = {name: weight[own].sum(axis=0) for name, own in held_by.families.items()}
+    return _Group(value, theta, shape.T @ defect @ shape, held_by.cut, share)
+
+
+def _soft(shape, mass, held, shift) -> np.ndarray:
+    """Ritz values of nearly rigid modes, with the rigid part split off exactly (as in
+    :mod:`solidgear.solve.modes`).
+    """
+    # Rigid shapes are those whose energy in A is sigma times their mass, alone.
+    rigid = np.abs(np.diag(mass) * shift - 1) < 1e-9
+    r = int(rigid.sum())
+    rest = np.where(
+        rigid[:, None], 0.0, shape / np.sqrt(np.einsum("ij,ij->j", shape, mass @ shape))
+    )
+    w, v = np.linalg.eigh(rest.T @ mass @ rest)
+    keep = w > 1e-18
+    rest = rest @ (v[:, keep] / np.sqrt(w[keep]))
+    small = np.zeros((r + rest.shape[1],) * 2)
+    small[r:, r:] = rest.T @ rest - shift * rest.T @ mass @ rest
+    reach = held.T @ np.hstack([np.eye(len(mass))[:, rigid] * np.sqrt(shift), rest])
+    return np.linalg.eigvalsh(small + reach.T @ reach)[: shape.shape[1]]
+
+
+def _bound(part: _Group, count: int, last: float, shift: float, slack: float) -> float:
+    """Largest relative frequency error of the first ``count`` modes of a group, the last of all
+    groups being ``last``.
+    """
+    t = 1 / (last + shift)
+    if t <= part.cut:
+        return np.inf
+    upper = np.linalg.eigvalsh(np.diag(part.theta) + part.excess / (t - part.cut))[::-1]
+    if len(upper) > count and upper[count] > t * (1 + 2 * slack):
+        return np.inf  # a further mode may hide below the last one
+    lower = 1 / upper[:count] - shift
+    if np.any(lower <= 0):
+        return np.inf
+    value = 1 / part.theta[:count] - shift
+    return float(np.max(np.sqrt(value / lower) - 1, initial=0.0))
+
+
+def _tolerances(reduced: Reduced, supports: Supports) -> tuple[float, float]:
+    """How near eigenvalues of one pair lie, relative, for bending and for more waves around; as
+    :meth:`solidgear.solve.naming.Names.pairs` has it.
+    """
+    own, bearings = reduced.pair_tolerance, alike(supports)
+    whole = len(reduced.blocks) == 1
+    return 2 * max(own, bearings) if bearings <= ALIKE else -1.0, max(
+        2 * own, OVAL_TOLERANCE
+    ) if whole else 2 * own
+
+
+def _names(value, family, tolerances) -> tuple[str, ...]:
+    """Names as :mod:`solidgear.solve.naming` gives them."""
+    count: dict[str, int] = {}
+    out: list[str] = []
+    paired = False
+    for k, name in enumerate(family):
+        tolerance = (
+            tolerances[0]
+            if name == "bending"
+            else tolerances[1]
+            if name.startswith("ovalising")
+            else -1.0
+        )
+        if (
+            k
+            and not paired
+            and family[k - 1] == name
+            and value[k] - value[k - 1] <= tolerance * value[k - 1]
+        ):
+            out.append(out[-1])
+            paired = True
+            continue
+        paired = False
+        count[name] = count.get(name, 0) + 1
+        out.append(f"{name} {count[name]}")
+    return tuple(out)

@@ -1,0 +1,274 @@
+"""Run a sweep: the body once, its reduction once, then small problems, row by row."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+from solidgear.body import Body
+from solidgear.errors import SolidgearError
+from solidgear.fidelity import build as build_any
+from solidgear.fidelity.options import number
+from solidgear.fidelity.size import refuse_too_large
+from solidgear.scene import Scene
+from solidgear.studies.sweep import vary
+from solidgear.studies.sweep.reduced import LEVELS, Reduced, reduce
+from solidgear.studies.sweep.rows import RowFile, tell_in_log
+from solidgear.studies.sweep.task import Task, columns
+from solidgear.studies.sweep.variants import SeatedShaft, Variants
+from solidgear.studies.sweep.workers import workers
+
+#: Most seats one body carries.  Every seat end is a mesh line, so the mesh grows with their number; beams grow by a node.  Measured on the overhung
+#: pinion at these numbers: harmonic 590k unknowns, 2.8 GB, a minute of one core; solid 120k unknowns, 2.4 GB, as long; a beam less than seconds.
+MOST_SEATS = {"euler": 200, "timoshenko": 200, "harmonic": 60, "solid": 12}
+#: Most elastic shapes of a row, two columns each; a basis that holds as many is no small problem.
+MOST_SHAPES = 1000
+#: Variants that the basis is tried on before the run.
+PROBES = 24
+
+
+@dataclass(frozen=True)
+class Summary:
+    """What a sweep did.
+
+    Attributes
+    ----------
+    path : Path
+    total, skipped, refused, full : int
+        Variants; of these: rows that were there before, refused ones, and those whose modes were
+        solved on the body itself (the last two of this run).
+    unknowns, seats, basis : int
+        Of the body; seats on it; unknowns of the largest small problem. Zero if there was nothing
+        left to do.
+    seconds_once, seconds_each : float
+        Wall seconds for body and reduction, and per variant of this run.
+    repairs : tuple of str
+        What was found damaged in the files and how it was mended, a sentence each.
+    """
+
+    path: Path
+    total: int
+    skipped: int
+    refused: int = 0
+    full: int = 0
+    unknowns: int = 0
+    seats: int = 0
+    basis: int = 0
+    seconds_once: float = 0.0
+    seconds_each: float = 0.0
+    repairs: tuple[str, ...] = ()
+
+
+def sweep(
+    scene: Scene,
+    vary_texts: Iterable[str],
+    out: Path | str,
+    *,
+    fidelity: str = "harmonic",
+    options: Mapping[str, Any] | None = None,
+    n: int | None = None,
+    sample: int | None = None,
+    seed: int = 0,
+    tolerance: float = 1e-6,
+    jobs: int = 1,
+    dask: str | None = None,
+    overwrite: bool = False,
+    build: Callable[..., Body] = build_any,
+    progress: Callable[[int, int, str], None] = lambda done, total, text: None,
+    tell: Callable[[str], None] = tell_in_log,
+) -> Summary:
+    """Statics and first modes of many bearing sets on one body, as rows of a file.
+
+    Parameters
+    ----------
+    scene : Scene
+    vary_texts : iterable of str
+        See :mod:`solidgear.studies.sweep.vary`.
+    out : path
+        ``.csv`` or ``.parquet``. Rows already there from the same sweep are kept and not solved
+        again; they are in a database beside the file (``rows.csv.sqlite``), from which the file is
+        written in one step, see :mod:`solidgear.studies.sweep.rows`.
+    fidelity, options
+        As for :func:`solidgear.fidelity.build`.
+    n : int, optional
+        Elastic shapes, twins counted twice; as many as the scene asks for by default.
+    sample, seed : int, optional
+        Draw so many points of a Latin hypercube instead of taking all combinations.
+    tolerance : float
+        Relative error of frequencies against the same body solved in full. A variant whose bound
+        exceeds it makes the basis larger, and where that does not do it is solved in full.
+    jobs : int
+        Processes on this machine (joblib), at most eight for each processor.
+    dask : str, optional
+        Address of a Dask scheduler, whose workers have solidgear installed.
+    overwrite : bool
+        Discard rows that are there.
+    build : callable
+        Makes the body from a :class:`solidgear.studies.sweep.variants.SeatedShaft`, a fidelity and options.
+    progress : callable
+        Called with rows that are there, rows in all, and what is being done.
+    tell : callable
+        Called with a sentence for every damage to the files that was found and mended; by default
+        a warning of the logger.
+
+    Returns
+    -------
+    Summary
+
+    Raises
+    ------
+    SolidgearError
+        A text that cannot be read, too many seats, or a file that belongs to another sweep, is
+        being written by one, cannot be written, or is damaged beyond repair. A variant that a scene
+        file could not describe is no error: its row says why.
+    """
+    options = dict(options or {})
+    n = scene.ask.modes if n is None else n
+    number("sweep", "n", n, least=1, below=MOST_SHAPES + 1, whole=True)
+    number("sweep", "jobs", jobs, least=1, whole=True)
+    number("sweep", "tolerance", tolerance, above=0, below=1)
+    variants = variants_of(scene, vary_texts, sample, seed)
+    team = workers(jobs, dask)
+    refuse_too_large(variants.shaft(), fidelity, options)  # before a file of rows is begun
+    plan = _plan(variants, sample, seed, fidelity, options, n, tolerance)
+    repairs: list[str] = []
+
+    def mended(text: str) -> None:
+        repairs.append(text)
+        tell(text)
+
+    def body() -> tuple[Body, int]:
+        shaft = variants.shaft()
+        _check_seats(shaft, scene, fidelity, options)
+        seats = len(shaft.stations) - 1
+        progress(len(file.done), total, f"body with {seats} seats")
+        return build(shaft, fidelity, **options), seats
+
+    total = len(variants)
+    with RowFile(Path(out), columns(variants, n), plan, total, overwrite, mended) as file:
+        skipped = len(file.done)
+        todo = [i for i in range(total) if i not in file.done]
+        found = Summary(file.path, total, skipped)
+        if todo:
+            found = _solve(found, file, variants, body, n, tolerance, todo, team, jobs, progress)
+        file.finish()
+    return replace(found, repairs=tuple(repairs))
+
+
+def _solve(found, file, variants, body, n, tolerance, todo, team, jobs, progress) -> Summary:
+    """Solve some variants and append their rows."""
+    total, start = found.total, time.perf_counter()
+    body, seats = body()
+    progress(found.skipped, total, f"reducing {body.size} unknowns")
+    solver = _Solver(body, Task(variants, reduce(body, n, file.basis or 0), n, tolerance))
+    if file.basis is None:
+        # Of all variants, whatever is left of them: the basis is the same after an interruption.
+        solver.settle(range(total)[:: max(1, total // PROBES)])
+        file.basis = solver.task.reduced.level
+    once, start = time.perf_counter() - start, time.perf_counter()
+    refused = full = 0
+    size = max(1, min(50, len(todo) // (4 * jobs)))
+    for rows in team(lambda: solver.task, [todo[i : i + size] for i in range(0, len(todo), size)]):
+        rows = [solver.repaired(row) for row in rows]
+        file.append(rows)
+        refused += sum(row["status"] != "ok" for row in rows)
+        full += sum(row["how"] == "full" for row in rows)
+        progress(len(file.done), total, "solving")
+    return replace(
+        found,
+        refused=refused,
+        full=full,
+        unknowns=body.size,
+        seats=seats,
+        basis=solver.task.largest.size,
+        seconds_once=once,
+        seconds_each=(time.perf_counter() - start) / len(todo),
+    )
+
+
+def variants_of(
+    scene: Scene, texts: Iterable[str], sample: int | None = None, seed: int = 0
+) -> Variants:
+    """The points of a sweep: all combinations of ``--vary`` texts, or a sample of them."""
+    axes = vary.axes(scene, texts)
+    return Variants(
+        scene, axes, vary.product(axes) if sample is None else vary.sample(axes, sample, seed)
+    )
+
+
+class _Solver:
+    """A body, and the task with the bases that were needed so far."""
+
+    def __init__(self, body: Body, task: Task):
+        self.body, self.task = body, task
+
+    def grow(self) -> bool:
+        """Have a larger basis for variants that need it; False if there is none."""
+        basis = self._next()
+        if basis:
+            self.task = replace(self.task, larger=(*self.task.larger, basis))
+        return basis is not None
+
+    def settle(self, probes: Sequence[int]) -> None:
+        """Begin with a basis that does for some variants, or with the largest."""
+        while any(map(self.task.weak, self.task.rows(probes))) and (basis := self._next()):
+            self.task = replace(self.task, reduced=basis)
+
+    def repaired(self, row: dict[str, Any]) -> dict[str, Any]:
+        """A row within the tolerance."""
+        if self.task.weak(row):
+            row = self._again(row)  # there may be a larger basis by now
+        while self.task.weak(row) and self.grow():
+            row = self._again(row)
+        return self.task.in_full(row, self.body) if self.task.weak(row) else row
+
+    def _next(self) -> Reduced | None:
+        level = self.task.largest.level + 1
+        return reduce(self.body, self.task.n, level) if level < len(LEVELS) else None
+
+    def _again(self, row: dict[str, Any]) -> dict[str, Any]:
+        return self.task.rows([row["variant"]])[0]
+
+
+def _check_seats(
+    shaft: SeatedShaft, scene: Scene, fidelity: str, options: Mapping[str, Any]
+) -> None:
+    seats, most = len(shaft.stations) - 1, MOST_SEATS.get(fidelity)
+    if most is not None and seats > most:
+        raise SolidgearError(
+            f"{seats} different seats are more than the {most} one {fidelity} body carries; vary fewer positions, sweep them in parts, or use a cheaper model"
+        )
+    asked = options.get("attachments") or ()
+    kinds = asked if isinstance(asked, (tuple, list)) else (asked,)
+    if "rigid" in kinds and seats > len(scene.bearings):
+        raise SolidgearError(
+            "attachments: a rigid seat stiffens the shaft wherever it is meshed, so seats cannot be rigid in a sweep of positions"
+        )
+
+
+def _plan(variants: Variants, sample, seed, fidelity, options, n, tolerance) -> dict[str, Any]:
+    from solidgear import __version__
+
+    scene = {
+        key: value
+        for key, value in variants.scene.as_dict().items()
+        if key not in ("title", "name", "source", "ask")
+    }
+    axes = {axis.label: [axis.spacing, *axis.values] for axis in variants.axes}
+    drawn = None if sample is None else {"points": sample, "seed": seed}
+    settings = {
+        key: list(value) if isinstance(value, tuple) else value for key, value in options.items()
+    }
+    return {
+        "scene": scene,
+        "vary": axes,
+        "sample": drawn,
+        "fidelity": fidelity,
+        "set": settings,
+        "n": n,
+        "tolerance": tolerance,
+        "version": __version__,
+    }

@@ -1,0 +1,140 @@
+"""What one variant of a sweep comes to: statics at the lumped point and first modes, as a row."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from solidgear.body import Body
+from solidgear.errors import SolidgearError
+from solidgear.frames import DOF_NAMES
+from solidgear.machine.threads import pinned
+from solidgear.solve.modes import modes
+from solidgear.solve.statics import condense
+from solidgear.studies.sweep.reduced import Reduced
+from solidgear.studies.sweep.ritz import Seats, ritz_modes
+from solidgear.studies.sweep.variants import Variants
+
+#: Entries of the stiffness and the compliance that a row holds.
+ENTRIES = {
+    name: (i, i) for i, name in enumerate(2 * d if i < 3 else d for i, d in enumerate(DOF_NAMES))
+} | {"x_thz": (0, 5), "z_thx": (2, 3)}
+
+
+def columns(variants: Variants, n: int) -> dict[str, type]:
+    """Names and types of the columns of a row, in order."""
+    out: dict[str, type] = {"variant": int} | {axis.label: float for axis in variants.axes}
+    out |= {"status": str, "how": str, "error_bound": float, "rigid_modes": int}
+    out |= {f"{kind}_{name}": float for kind in "KC" for name in ENTRIES}
+    for k in range(1, n + 1):
+        out |= {f"f{k}_hz": float, f"mode{k}": str}
+    return out
+
+
+@dataclass(frozen=True)
+class Task:
+    """Everything that is needed to turn variants into rows; small, so that it can be sent to other
+    processes.
+
+    Attributes
+    ----------
+    variants : Variants
+    reduced : Reduced
+    n : int
+        Elastic shapes wanted, twins counted twice.
+    tolerance : float
+        Relative error of a frequency that is let pass.
+    larger : tuple of Reduced
+        Larger bases, tried one after the other on a variant whose bound exceeds the tolerance.
+    """
+
+    variants: Variants
+    reduced: Reduced
+    n: int
+    tolerance: float
+    larger: tuple[Reduced, ...] = ()
+
+    @pinned
+    def rows(self, indices: Iterable[int]) -> list[dict[str, Any]]:
+        """Rows of some variants.
+
+        A row comes from the first basis that does for it, so it does not depend on which rows were
+        solved before: a sweep that was stopped gives the same digits as one that was not.
+        """
+        seats: dict[tuple[int, ...], Seats] = {}
+        return [self._first_that_does(i, seats) for i in indices]
+
+    @property
+    def largest(self) -> Reduced:
+        """The largest basis there is."""
+        return (self.reduced, *self.larger)[-1]
+
+    def _first_that_does(self, index: int, seats: dict[tuple[int, ...], Seats]) -> dict[str, Any]:
+        row = self._row(index, self.reduced, seats)
+        for basis in self.larger:
+            if not self.weak(row):
+                break
+            row = self._row(index, basis, seats)
+        return row
+
+    def _row(
+        self, index: int, basis: Reduced, seats: dict[tuple[int, ...], Seats]
+    ) -> dict[str, Any]:
+        row: dict[str, Any] = {"variant": index} | {
+            a.label: float(v) for a, v in zip(self.variants.axes, self.variants.values[index])
+        }
+        frame = basis.frame
+        try:
+            scene, supports = self.variants.supports(index)
+            static = condense(frame, supports, scene.port.name)
+            ports = tuple(frame.port_index(name) for name in supports.ports)
+            place = (basis.level, *ports)
+            if place not in seats:
+                seats[place] = Seats(basis, ports)
+            found = ritz_modes(basis, seats[place], supports, self.n, self.tolerance)
+        except SolidgearError as error:
+            return row | {"status": " ".join(str(error).split()), "how": ""}
+        row |= {
+            "status": "ok",
+            "how": "reduced",
+            "error_bound": found.error_bound,
+            "rigid_modes": supports.unresisted(frame).shape[1],
+        }
+        row |= {
+            f"{kind}_{name}": float(m[at])
+            for kind, m in (("K", static.stiffness), ("C", static.compliance))
+            for name, at in ENTRIES.items()
+        }
+        return row | _modal(found.frequency_hz, found.names)
+
+    def weak(self, row: dict[str, Any]) -> bool:
+        """Whether the error bound of a row exceeds the tolerance."""
+        return row["status"] == "ok" and not row["error_bound"] <= self.tolerance
+
+    def in_full(self, row: dict[str, Any], body: Body) -> dict[str, Any]:
+        """A row with its modes solved on the body itself."""
+        _, supports = self.variants.supports(row["variant"])
+        found = modes(body, supports, self.n, ovalising=False)
+        shapes = [
+            (m.frequency_hz, m.name)
+            for m in found.modes
+            if not m.name.startswith("rigid")
+            for _ in range(m.multiplicity)
+        ][: self.n]
+        # the residual bounds the error of an eigenvalue, twice that of a frequency
+        return (
+            row
+            | {"how": "full", "error_bound": found.evidence["residual"] / 2}
+            | _modal(np.array([f for f, _ in shapes]), [name for _, name in shapes])
+        )
+
+
+def _modal(frequency_hz, names) -> dict[str, Any]:
+    return {
+        key: value
+        for k, (f, name) in enumerate(zip(frequency_hz, names), start=1)
+        for key, value in ((f"f{k}_hz", float(f)), (f"mode{k}", name))
+    }

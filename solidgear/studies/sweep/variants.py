@@ -1,0 +1,151 @@
+"""The bearing sets of a sweep as validated scenes, and the one shaft that carries all their seats."""
+
+from __future__ import annotations
+
+import functools
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from solidgear.body import Supports, as_supports
+from solidgear.errors import SceneError, SolidgearError
+from solidgear.scene import Bearing, Port, Scene, Segment
+from solidgear.scene.bearing_stiffness import STIFFNESS_NAMES
+from solidgear.studies.sweep.vary import Axis
+
+
+@dataclass(frozen=True)
+class SeatedShaft:
+    """A shaft with every seat that a sweep may use, as builders see a scene.
+
+    A `Scene` refuses seats that overlap; here only one of them carries a bearing at a time.
+    """
+
+    segments: tuple[Segment, ...]
+    stations: tuple[Port | Bearing, ...]
+
+    @property
+    def length(self) -> float:
+        """Length of the shaft in m."""
+        return self.segments[-1].y1
+
+
+@dataclass(frozen=True)
+class Variants:
+    """Points of a sweep and what they mean.
+
+    Attributes
+    ----------
+    scene : Scene
+    axes : tuple of Axis
+    values : (n, len(axes)) ndarray
+        SI.
+    """
+
+    scene: Scene
+    axes: tuple[Axis, ...]
+    values: np.ndarray
+
+    def __len__(self) -> int:
+        return len(self.values)
+
+    @functools.cached_property
+    def _moves(self) -> list[int]:
+        return [k for k, axis in enumerate(self.axes) if axis.field == "position"]
+
+    @functools.cached_property
+    def _placed(self) -> dict[tuple[float, ...], Scene | str]:
+        """Scene, or why there is none, for every placement of the seats that occurs."""
+        out: dict[tuple[float, ...], Scene | str] = {}
+        for key in dict.fromkeys(map(tuple, self.values[:, self._moves].tolist())):
+            bearings = list(self.scene.bearings)
+            try:
+                for k, y in zip(self._moves, key):
+                    b = self.axes[k].bearing
+                    bearings[b] = bearings[b].with_changes(y=y)
+                out[key] = self.scene.with_changes(bearings=tuple(bearings))
+            except SceneError as error:
+                out[key] = str(error)
+        return out
+
+    def of(self, index: int) -> Scene:
+        """Scene of one variant.
+
+        Raises
+        ------
+        SceneError
+            If a scene file with these values would be refused.
+        """
+        row = self.values[index]
+        placed = self._placed[tuple(row[self._moves].tolist())]
+        if isinstance(placed, str):
+            raise SceneError(placed)
+        changes: dict[int, list[tuple[str, float]]] = {}
+        for axis, value in zip(self.axes, row.tolist()):
+            if axis.field != "position":
+                changes.setdefault(axis.bearing, []).append((axis.field, value))
+        if not changes:
+            return placed
+        bearings = list(placed.bearings)
+        for b, fields in changes.items():
+            try:
+                bearings[b] = _changed(bearings[b], tuple(fields))
+            except SceneError as error:
+                raise SceneError(error.reason, field=f'bearing "{bearings[b].name}"') from None
+        return placed.with_changes(bearings=tuple(bearings))
+
+    def supports(self, index: int) -> tuple[Scene, Supports]:
+        """Scene of one variant, and its springs on the ports of the :meth:`shaft`. Raises like
+        :meth:`of`.
+        """
+        scene = self.of(index)
+        return scene, replace(as_supports(scene), ports=tuple(map(seat_name, scene.bearings)))
+
+    def shaft(self) -> SeatedShaft:
+        """The shaft with the seats of all placements that can be.
+
+        Raises
+        ------
+        SolidgearError
+            If nothing can be solved, or a rigid seat is to move.
+        """
+        placed = [s for s in self._placed.values() if isinstance(s, Scene)]
+        if not placed:
+            raise SolidgearError(
+                f"no variant can be solved; the first one is refused: {next(iter(self._placed.values()))}"
+            )
+        for k in self._moves:
+            bearing = self.scene.bearings[self.axes[k].bearing]
+            if bearing.attachment == "rigid" and len(self.axes[k].values) > 1:
+                raise SolidgearError(
+                    f"{self.axes[k].label}: a rigid seat stiffens the shaft wherever it is meshed, so it cannot move in one body; use attachment 'average' or 'section'"
+                )
+        seats = {
+            seat_name(b): b.with_changes(name=seat_name(b))
+            for scene in placed
+            for b in scene.bearings
+        }
+        ordered = sorted(seats.values(), key=lambda b: b.y)
+        return SeatedShaft(self.scene.segments, (self.scene.port, *ordered))
+
+
+def seat_name(bearing: Bearing) -> str:
+    """Name of the port a bearing sits on: bearings of any stiffness share it if they hold the same
+    surface alike.
+    """
+    return f"seat at {bearing.y!r} m, {bearing.lo!r} to {bearing.hi!r} m, {bearing.attachment}"
+
+
+# In a product of axes the same few bearings come again and again.
+@functools.lru_cache(maxsize=1024)
+def _changed(bearing: Bearing, fields: tuple[tuple[str, float], ...]) -> Bearing:
+    """A bearing with some entries of its own matrix replaced, then scaled."""
+    matrix, factor = np.array(bearing.matrix), None
+    for field, value in fields:
+        if field == "scale":
+            factor = value
+        else:
+            i, j, _ = STIFFNESS_NAMES[field]
+            matrix[i, j] = matrix[j, i] = value
+    bearing = bearing.with_changes(matrix=matrix)
+    return bearing if factor is None else bearing.scaled(factor)

@@ -1,0 +1,175 @@
+"""What a sweep varies: ``bearing.NAME.FIELD=SPEC`` texts, their full product or a Latin hypercube.
+
+FIELD is ``position`` (middle of the seat from y = 0, whatever the datum in the scene file), an
+entry of the bearing's own 6x6 as in scene files (``kxx``, ``kx_thz``, ...), or ``scale`` (a factor
+on the whole bearing, series springs included, after its entries). SPEC is ``a:b:n`` (n values,
+evenly), ``log:a:b:n`` (n values, geometrically) or a list ``a,b,c``; a value is a text with a unit
+or a plain SI number.
+"""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from solidgear.errors import SceneError, SolidgearError, nearest
+from solidgear.scene.bearing_stiffness import STIFFNESS_NAMES
+from solidgear.scene.units import POSITION_DECIMALS, quantity
+
+if TYPE_CHECKING:
+    from solidgear.scene import Scene
+
+FIELDS = ("position", "scale", *STIFFNESS_NAMES)
+#: More variants than this are a slip of the keyboard.
+MOST = 10_000_000
+
+
+@dataclass(frozen=True)
+class Axis:
+    """One varied quantity.
+
+    Attributes
+    ----------
+    bearing : int
+        Place of the bearing in the scene.
+    field : str
+        One of `FIELDS`.
+    label : str
+        Name of its column, such as ``bearing.2.kxx``.
+    values : tuple of float
+        SI.
+    spacing : {'linear', 'log', 'list'}
+        How values between the listed ones are drawn: along a line, along its logarithm, or not at
+        all.
+    """
+
+    bearing: int
+    field: str
+    label: str
+    values: tuple[float, ...]
+    spacing: str
+
+    def draw(self, u: np.ndarray) -> np.ndarray:
+        """Values for numbers between 0 and 1.
+
+        A position is drawn among its listed values, because every seat is meshed.
+        """
+        if self.spacing == "list" or self.field == "position":
+            return np.array(self.values)[
+                np.minimum((u * len(self.values)).astype(int), len(self.values) - 1)
+            ]
+        a, b = self.values[0], self.values[-1]
+        return a + (b - a) * u if self.spacing == "linear" else a * (b / a) ** u
+
+
+def axes(scene: Scene, texts: Iterable[str]) -> tuple[Axis, ...]:
+    """Read all ``--vary`` texts of a sweep.
+
+    Raises
+    ------
+    SolidgearError
+        A text that cannot be read, a bearing or field that is not there, or the same quantity
+        twice.
+    """
+    out: list[Axis] = []
+    for text in texts:
+        axis = _axis(scene, text)
+        if any((a.bearing, a.field) == (axis.bearing, axis.field) for a in out):
+            raise SolidgearError(
+                f"--vary {text}: {axis.label} is varied already; give all its values in one list"
+            )
+        out.append(axis)
+    if not out:
+        raise SolidgearError(
+            'nothing is varied; give for example --vary "bearing.1.kxx=log:1e8 N/m:1e10 N/m:9"'
+        )
+    return tuple(out)
+
+
+def product(axes: Sequence[Axis]) -> np.ndarray:
+    """(variants, axes) all combinations, the last axis running fastest."""
+    total = int(np.prod([float(len(a.values)) for a in axes]))
+    if total > MOST:
+        raise SolidgearError(
+            f"{total} variants are more than the {MOST} a sweep takes; use fewer values, or draw some with --sample"
+        )
+    return np.array(list(itertools.product(*(a.values for a in axes))), float)
+
+
+def sample(axes: Sequence[Axis], count: int, seed: int) -> np.ndarray:
+    """(count, axes) a Latin hypercube over the ranges of the axes."""
+    if not 1 <= count <= MOST:
+        raise SolidgearError(f"--sample {count}: give a whole number from 1 to {MOST}")
+    if seed < 0:
+        raise SolidgearError(f"--seed {seed}: must not be negative")
+    from scipy.stats import qmc
+
+    u = qmc.LatinHypercube(d=len(axes), seed=seed).random(count)
+    return np.column_stack([axis.draw(u[:, k]) for k, axis in enumerate(axes)])
+
+
+def _axis(scene: Scene, text: str) -> Axis:
+    target, equals, spec = text.partition("=")
+    head, _, field = target.strip().rpartition(".")
+    word, _, name = head.partition(".")
+    if not equals or word != "bearing" or not name:
+        raise SolidgearError(
+            f'--vary {text}: write bearing.NAME.FIELD=VALUES, such as "bearing.2.position=0.2 m:0.3 m:11"'
+        )
+    names = [b.name for b in scene.bearings]
+    if name in names:
+        index = names.index(name)
+    elif name.isdecimal() and 1 <= int(name) <= len(names):
+        index = int(name) - 1
+    else:
+        raise SolidgearError(
+            f"--vary {text}: there is no bearing {name!r}{nearest(name, names)}; the scene has {', '.join(names) or 'none'}"
+        )
+    if field not in FIELDS:
+        raise SolidgearError(
+            f"--vary {text}: unknown field {field!r}{nearest(field, FIELDS)}; valid are {', '.join(FIELDS)}"
+        )
+    try:
+        values, spacing = _values(field, spec)
+    except SceneError as error:
+        raise SolidgearError(f"--vary {text}: {error}") from None
+    return Axis(index, field, f"bearing.{names[index]}.{field}", values, spacing)
+
+
+def _values(field: str, spec: str) -> tuple[tuple[float, ...], str]:
+    dimension = {"position": "length", "scale": "dimensionless"}.get(field) or STIFFNESS_NAMES[
+        field
+    ][2]
+    spacing, parts = "linear", [part.strip() for part in spec.split(":")]
+    if parts[0] == "log":
+        spacing, parts = "log", parts[1:]
+    if len(parts) == 1 and spacing == "linear":
+        values, spacing = [_number(part, dimension) for part in spec.split(",")], "list"
+    elif len(parts) == 3:
+        a, b = (_number(part, dimension) for part in parts[:2])
+        if not parts[2].isdecimal() or not 2 <= int(parts[2]) <= MOST:
+            raise SceneError(f"a:b:n needs a whole number n of 2 or more values, not {parts[2]!r}")
+        if spacing == "log" and not a * b > 0:
+            raise SceneError("a logarithmic range needs both ends above zero")
+        n = int(parts[2])
+        values = (np.linspace if spacing == "linear" else np.geomspace)(a, b, n).tolist()
+    else:
+        raise SceneError('values are "a:b:n", "log:a:b:n" or a list "a,b,c"')
+    if field == "position":
+        values = [round(float(v), POSITION_DECIMALS) + 0.0 for v in values]
+    # the same value twice would be the same row twice
+    return tuple(dict.fromkeys(float(v) for v in values)), spacing
+
+
+def _number(text: str, dimension: str) -> float:
+    text = text.strip()
+    try:
+        return quantity(float(text), dimension)
+    except ValueError as error:
+        if isinstance(error, SceneError):
+            raise
+        return quantity(text, dimension)

@@ -1,5 +1,0 @@
-"""Re-bearing sweeps: one body, thousands of bearing sets as small dense problems."""
-
-from solidgear.sweep.run import Summary, sweep
-
-__all__ = ["Summary", "sweep"]

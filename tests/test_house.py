@@ -1,0 +1,93 @@
+"""The house: which room may import which, no circle, and no file that has become two things."""
+
+import ast
+import graphlib
+from pathlib import Path
+
+import pytest
+
+PACKAGE = Path(__file__).parent.parent / "solidgear"
+GROUND = {"errors", "frames"}
+
+#: room: what it may import, from the ground up
+MAY_IMPORT = {
+    "errors": set(),
+    "frames": {"errors"},
+    "machine": GROUND,
+    "scene": GROUND,
+    "body": GROUND,
+    "meshing": GROUND | {"machine", "scene"},
+    "solve": GROUND | {"machine", "body"},
+    "fidelity": GROUND | {"machine", "scene", "body", "meshing", "solve"},
+    "reduction": GROUND | {"body", "solve"},
+    "system": GROUND | {"body", "reduction"},
+    "evidence": GROUND | {"machine", "scene", "body", "meshing", "solve", "fidelity", "reduction"},
+    "report": GROUND | {"machine", "body", "fidelity", "evidence"},
+    "studies": GROUND
+    | {"machine", "scene", "body", "meshing", "solve", "fidelity", "reduction"}
+    | {"system", "evidence", "report"},
+}
+#: lines of a file
+LONGEST = 400
+
+
+def imports(path):
+    """Modules of this package that a file imports when it runs, wherever in it; names of types
+    alone are no arrow.
+    """
+    tree = ast.parse(path.read_text())
+    for node in ast.walk(tree):
+        if isinstance(node, ast.If) and ast.unparse(node.test) == "TYPE_CHECKING":
+            node.body = []
+    for node in ast.walk(tree):
+        if isinstance(node, ast.ImportFrom) and node.module and not node.level:
+            names = [f"{node.module}.{a.name}" for a in node.names]
+        elif isinstance(node, ast.Import):
+            names = [a.name for a in node.names]
+        else:
+            continue
+        yield from (n for n in names if n.startswith("solidgear."))
+
+
+def room(path):
+    first = path.relative_to(PACKAGE).parts[0]
+    return first.removesuffix(".py")
+
+
+def arrows():
+    found = {}
+    for path in sorted(PACKAGE.rglob("*.py")):
+        for name in imports(path):
+            there = name.split(".")[1]
+            if there != room(path) and there != "__version__":
+                found.setdefault(room(path), {}).setdefault(there, path.relative_to(PACKAGE))
+    return found
+
+
+FACES = {"__init__", "cli"}
+
+
+@pytest.mark.parametrize("name", sorted(MAY_IMPORT))
+def test_a_room_imports_only_what_lies_below(name):
+    wrong = {there: str(p) for there, p in arrows().get(name, {}).items()}
+    wrong = {there: p for there, p in wrong.items() if there not in MAY_IMPORT[name]}
+    assert not wrong
+
+
+def test_every_room_is_on_a_floor_and_there_is_no_circle():
+    rooms = {room(p) for p in PACKAGE.rglob("*.py")}
+    assert rooms - FACES == set(MAY_IMPORT)
+    graphlib.TopologicalSorter(MAY_IMPORT).prepare()  # raises CycleError
+
+
+def test_beams_share_no_code_with_solids():
+    for path in (PACKAGE / "fidelity").rglob("*.py"):
+        if "beam" in path.stem:
+            for name in imports(path):
+                parts = set(name.split("."))
+                assert not parts & {"meshing", "solid", "harmonic", "assembly"}, (path.name, name)
+
+
+@pytest.mark.parametrize("path", sorted(PACKAGE.rglob("*.py")), ids=lambda p: p.stem)
+def test_a_file_is_one_thing(path):
+    assert len(path.read_text().splitlines()) <= LONGEST
