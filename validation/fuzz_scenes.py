@@ -46,7 +46,7 @@ from validation.fuzz_mutations import mutant
 
 # s of processor time, since wall time would blame the program for a busy machine; of a file, check
 # of a thin tube included, and of a command line
-LIMIT, COMMAND_LIMIT = 5.0, 30.0
+LIMIT, COMMAND_LIMIT = 30.0, 30.0
 STUCK = 60.0  # s of wall time, for what waits without computing
 ROOM = 3 << 30  # bytes a case may add to the process
 
