@@ -97,7 +97,8 @@ def test_the_command_line_has_one_thread_whatever_omp_says():
 
 def test_pin_tells_a_numpy_that_is_there_already():
     assert said(
-        NUMBERS + "set_all(2)\nfrom solidgear import threads\nthreads.pin()\nprint(numbers())"
+        NUMBERS
+        + "set_all(2)\nfrom solidgear.machine import threads\nthreads.pin()\nprint(numbers())"
     ) == ["[1]"]
 
 
