@@ -30,12 +30,12 @@ from solidgear.evidence.quantities import COUPLINGS, QUANTITIES, change
 LAYERED = {"harmonic": 0.25, "solid": 0.8}
 #: the same where seats are rigid: their ends are singular like a crack, and a layer of ratio q
 #: leaves the share q
-RIGID = {"harmonic": 0.25, "solid": 1.3}
+RIGID = {"harmonic": 0.32, "solid": 1.3}
 #: the same after two levels only, without and with rigid seats: the step off the coarsest mesh
 #: tells less where it is small, perhaps by accident, and more where it is large.  Factor of small
 #: steps, the band they reach at most before the factor of large steps takes over, and that factor.
 FIRST = {
-    "harmonic": ((0.07, 0.0, 0.07), (0.11, 0.0, 0.11)),
+    "harmonic": ((0.075, 0.0, 0.075), (0.19, 0.0, 0.19)),
     "solid": ((1.8, 0.009, 0.6), (1.8, 0.036, 0.8)),
 }
 #: safety on the observed reduction of two regular steps, where that is the worse news

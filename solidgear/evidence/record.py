@@ -62,9 +62,7 @@ def record(
         elif model in failed:
             models[model] = {"valid": False, "open": False, "why_not": failed[model], "modes": []}
     if lumped and reference:
-        # Masses are lumped in the z plane, where the first bending need not be that of the shaft.
-        best = lumped.get(reference, {}).get("first_bending_hz")
-        best = best or rungs[reference].quantities.get("bending 1")
+        best = rungs[reference].quantities.get("bending 1")
         band = rungs[reference].bands.get(SCENE, {}).get("bending 1")
         own = lumped_record(
             lumped, models, best, scene.ask.tolerance, band.gci if band else None, guards

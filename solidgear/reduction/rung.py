@@ -139,6 +139,11 @@ def model_record(
                 f"its first bending is {100 * gap:+.1f} % off, "
                 f"more than the {100 * tolerance:g} % asked for"
             )
+            if abs(lumped[source]["first_bending_hz"] / reference_hz - 1) - band > tolerance:
+                why_not += (
+                    ": masses are lumped in the z plane, and the first bending of this shaft "
+                    "is not in it"
+                )
         elif abs(gap) + band > tolerance:
             why_not, undecided = (
                 f"not judged: its first bending is {100 * gap:+.1f} % off, and with the band of the "

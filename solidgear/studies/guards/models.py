@@ -299,7 +299,7 @@ def lumped_against_solid(probe: Probe) -> Notices:
         return  # `effective_mass` says so
     matched, solid = found["mode-matched"], probe.rung("harmonic")
     lumped = matched if matched.feasible and matched.first else found["guyan"]
-    truth, tolerance = probe.solid_in_the_lumped_plane, probe.scene.ask.tolerance
+    truth, tolerance = solid.quantities.get("bending 1"), probe.scene.ask.tolerance
     if not truth:
         return
     assert lumped.frequency_hz is not None  # Guyan's mass is positive definite

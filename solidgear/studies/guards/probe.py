@@ -132,17 +132,6 @@ class Probe:
             ) from None
 
     @cached_property
-    def solid_in_the_lumped_plane(self) -> float | None:
-        """First bending (Hz) of the light harmonic solid in the z plane, in which masses are lumped."""
-        rung = self.rung("harmonic")
-        try:
-            with np.errstate(divide="raise", invalid="raise"):
-                point, _ = synthesise(rung.body, self.supports, self.scene.port.name, rung.modes)
-        except (SolidgearError, FloatingPointError):
-            return None
-        return point.omega / (2 * np.pi)
-
-    @cached_property
     def fixed_interface(self) -> float | None:
         """First bending (Hz) of the Timoshenko beam on its bearings with the lumped point held;
         None without a lumped model.
