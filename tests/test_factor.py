@@ -233,3 +233,13 @@ def test_estimate_is_of_the_size_of_the_factor(plane, backend):
     assert least < found.estimate_mb < 100 * least
     if found.nnz is not None:
         assert found.nnz > plane.nnz / 2
+
+
+def test_a_matrix_that_is_all_border():
+    """A shaft that its rigid seats hold from end to end."""
+    matrix = sp.csr_matrix([[2.0, 1.0], [1.0, 3.0]])
+    rhs = np.array([1.0, 2.0])
+    made = factorise(matrix, planar=True, border=2)
+    assert matrix @ made.solve(rhs) == pytest.approx(rhs)
+    found = factor.indefinite(sp.csr_matrix([[2.0, 3.0], [3.0, 1.0]]), planar=True, border=2)
+    assert found is not None and found.negative == 1

@@ -277,6 +277,8 @@ def _backward_error(matrix, solve):
 def _bordered(matrix, border, factor, corner_of):
     """Factor the inner part by `factor`, the Schur complement of the last unknowns by `corner_of`."""
     n = matrix.shape[0] - border
+    if n == 0:  # a shaft that rigid seats hold from end to end: nothing but border
+        return factor(matrix)
     inner = factor(matrix[:n, :n])
     if inner is None:
         return None
