@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from solidgear.evidence.bands import DIAGONAL, LEAST, SURE_AROUND, layered_bands
+from solidgear.fidelity.ladder import LADDER
 
 FINEST = {"C_zz": 2.0, "C_thx": 8.0, "C_z,thx": 1.0, "bending 1": 100.0}
 
@@ -19,14 +20,14 @@ def levels(*steps):
 
 
 def test_a_band_is_a_factor_times_the_last_change():
-    one, two = (layered_bands(levels(0.1, s), {}, "harmonic") for s in (0.01, 0.02))
+    one, two = (layered_bands(levels(0.1, s), {}, LADDER["harmonic"].factors) for s in (0.01, 0.02))
     for name in FINEST:
         assert one[name].change == pytest.approx(0.01)
         assert two[name].gci - LEAST == pytest.approx(2 * (one[name].gci - LEAST))
 
 
 def test_a_step_that_is_small_by_accident_is_not_believed():
-    lucky = layered_bands(levels(0.1, 0.0), {}, "harmonic")
+    lucky = layered_bands(levels(0.1, 0.0), {}, LADDER["harmonic"].factors)
     assert all(band.gci > 1e-3 * 0.1 for band in lucky.values())
 
 
@@ -34,7 +35,10 @@ def test_a_step_that_is_small_by_accident_is_not_believed():
 def test_after_two_levels_of_hexahedra_larger_steps_give_larger_bands_and_lesser_shares(rigid):
     steps = np.geomspace(1e-5, 0.3, 60)
     bands = np.array(
-        [layered_bands(levels(s), {}, "solid", rigid=rigid)["C_zz"].gci for s in steps]
+        [
+            layered_bands(levels(s), {}, LADDER["solid"].factors, rigid=rigid)["C_zz"].gci
+            for s in steps
+        ]
     )
     assert (np.diff(bands) > -1e-15).all()
     shares = bands / steps
@@ -43,7 +47,7 @@ def test_after_two_levels_of_hexahedra_larger_steps_give_larger_bands_and_lesser
 
 def test_a_rigid_seat_costs_more():
     free, rigid = (
-        layered_bands(levels(0.05, 0.02), {}, model, rigid=held)["C_zz"].gci
+        layered_bands(levels(0.05, 0.02), {}, LADDER[model].factors, rigid=held)["C_zz"].gci
         for model, held in (("solid", False), ("solid", True))
     )
     assert rigid > free
@@ -53,17 +57,17 @@ def test_a_coupling_is_no_surer_than_its_diagonal_entries():
     before = levels(0.05, 0.01)
     before[1] = before[1] | {"C_z,thx": 1.0}  # it happens not to move
     before[0] = before[0] | {"C_z,thx": 1.0}
-    found = layered_bands(before, {}, "harmonic")
+    found = layered_bands(before, {}, LADDER["harmonic"].factors)
     assert found["C_z,thx"].change == 0.0
     assert found["C_z,thx"].gci == pytest.approx(DIAGONAL * found["C_zz"].gci, rel=1e-6)
 
 
 def test_cells_around_and_the_solver_are_added():
-    plain = layered_bands(levels(0.05, 0.01), {}, "solid")
+    plain = layered_bands(levels(0.05, 0.01), {}, LADDER["solid"].factors)
     full = layered_bands(
         levels(0.05, 0.01),
         {"C_zz": 1e-4},
-        "solid",
+        LADDER["solid"].factors,
         around={"C_zz": 1e-3, "C_thx": 4e-3, "C_z,thx": 0.0},
     )
     added = {q: full[q].gci - plain[q].gci for q in FINEST}

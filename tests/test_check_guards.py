@@ -16,7 +16,8 @@ from solidgear.cli import main
 from solidgear.scene import STEEL, Ask, Bearing, Port, Scene, Segment
 from solidgear.studies import check, guards
 from solidgear.studies.check import check_scene
-from solidgear.studies.guards import GUARDS, MODELS, Notice, elements, models
+from solidgear.studies.guards import GUARDS, Notice, elements, models
+from solidgear.studies.guards.notice import everything
 from solidgear.studies.guards.probe import Probe
 
 ROOT = Path(__file__).parent.parent
@@ -279,7 +280,7 @@ CASES = {
     "lumped point off its surface": Case(
         "point_beyond_surface",
         "0.03 diameters",
-        MODELS,
+        everything(),
         "caution",
         scene(port=(0.08 + 0.03 * D, 0.0, 0.08)),
         scene(port=(0.08 + 0.01 * D, 0.0, 0.08)),

@@ -2,6 +2,7 @@
 by a refused command.
 """
 
+import dataclasses
 import json
 import os
 import re
@@ -12,6 +13,7 @@ from pathlib import Path
 import pytest
 
 from solidgear import cli
+from solidgear.fidelity.ladder import LADDER
 from solidgear.solve.factor import pardiso_missing
 
 ROOT = Path(__file__).parent.parent
@@ -128,8 +130,8 @@ def test_check_as_json(run, fidelity):
 
 
 def test_check_of_a_mesh_that_is_off_fails(run, monkeypatch):
-    monkeypatch.setitem(
-        __import__("solidgear.studies.check", fromlist=["x"]).MASS_TOLERANCE, "timoshenko", -1.0
+    monkeypatch.setattr(
+        LADDER, "rungs", tuple(dataclasses.replace(r, mass_tolerance=-1.0) for r in LADDER)
     )
     done = run("check", SCENE, "-f", "timoshenko")
     assert done.code == 1 and "fault: mass of the timoshenko mesh" in done.out

@@ -12,10 +12,13 @@ import pytest
 import solidgear as sg
 from solidgear.errors import SolidgearError
 from solidgear.evidence.quantities import COUPLINGS, QUANTITIES
-from solidgear.fidelity import FIDELITIES
+from solidgear.fidelity.ladder import LADDER
+from solidgear.fidelity.options import ATTACHMENTS
 from solidgear.frames import DOF_NAMES
 from solidgear.meshing.quality import MeshError
-from solidgear.studies.comparison import ATTACHMENTS, compare
+from solidgear.studies.comparison import compare
+
+FIDELITIES = LADDER.bodies
 
 GEOMETRY = Path(__file__).parent.parent / "geometry"
 LIGHT = {"solid": {"refinement": 0.35}, "harmonic": {"order": 4, "layers": 1}}

@@ -9,7 +9,8 @@ import numpy as np
 import pytest
 
 import solidgear as sg
-from solidgear.evidence.converge import corner_exponent, gci, sharpest_corner
+from solidgear.evidence.converge import gci
+from solidgear.meshing.corners import corner_exponent, sharpest_corner
 from solidgear.scene import Scene, Segment
 
 GEOMETRY = Path(__file__).parent.parent / "geometry"

@@ -7,10 +7,11 @@ import numpy as np
 import pytest
 
 import solidgear as sg
-from solidgear.cli.app import Fidelity, build_body, options
+from solidgear.cli.app import build_body, options
 from solidgear.fidelity.beam import beam
 from solidgear.fidelity.harmonic import harmonic
-from solidgear.fidelity.options import OPTIONS, THINNEST_LAYER, checked
+from solidgear.fidelity.ladder import LADDER
+from solidgear.fidelity.options import THINNEST_LAYER
 from solidgear.fidelity.solid import solid
 from solidgear.fidelity.solid_mesh import ELEMENTS
 
@@ -25,22 +26,24 @@ def test_the_table_holds_what_builders_take(model):
         for name, p in inspect.signature(BUILDERS[model]).parameters.items()
         if name != "scene"
     }
-    assert set(OPTIONS[model]) == set(taken)
+    assert set(LADDER[model].options) == set(taken)
     # every default lies within its own limits
-    assert checked(model, {name: value for name, value in taken.items() if value is not None})
+    assert LADDER[model].checked(
+        {name: value for name, value in taken.items() if value is not None}
+    )
     for name, value in taken.items():
-        assert OPTIONS[model][name].optional == (value is None), name
+        assert LADDER[model].options[name].optional == (value is None), name
 
 
 def test_every_limit_has_a_reason():
-    for table in OPTIONS.values():
+    for table in (rung.options for rung in LADDER):
         for name, option in table.items():
             limited = any(
                 limit is not None
                 for limit in (option.least, option.most, option.above, option.below)
             )
             assert option.meaning and (option.why or not limited or option.kind == "flag"), name
-    assert set(OPTIONS["solid"]["element"].choices) == set(ELEMENTS)
+    assert set(LADDER["solid"].options["element"].choices) == set(ELEMENTS)
 
 
 REFUSED = {
@@ -115,9 +118,9 @@ def test_builders_hold_the_same_limits():
 
 
 @pytest.mark.parametrize("pair", ["scene=1", "fidelity=1", "self=1", "options=1", "nonsense=1"])
-@pytest.mark.parametrize("model", Fidelity)
+@pytest.mark.parametrize("model", LADDER.bodies)
 def test_names_of_arguments_are_no_options(pair, model):
-    with pytest.raises(sg.SolidgearError, match=f"{model.value}: there is no such option as"):
+    with pytest.raises(sg.SolidgearError, match=f"{model}: there is no such option as"):
         build_body(SCENE, model, [pair])
 
 
@@ -134,7 +137,7 @@ def test_settings_of_the_command_line():
 
 
 def test_a_single_name_or_number_is_a_list_of_one():
-    assert checked("harmonic", {"ovalising": 2, "attachments": "rigid"}) == {
+    assert LADDER["harmonic"].checked({"ovalising": 2, "attachments": "rigid"}) == {
         "ovalising": (2,),
         "attachments": ("rigid",),
     }

@@ -233,7 +233,7 @@ def test_lumped_has_the_compliance_of_its_source_and_its_own_frequency(scene):
 
 
 def test_a_lumped_model_that_cannot_be_made_fails_with_the_reason(scene, monkeypatch):
-    monkeypatch.setattr(racing, "representative", lambda made: None)
+    monkeypatch.setattr(racing, "preferred", lambda made: None)
     with pytest.raises(SolidgearError, match="no lumped mass is positive"):
         answer(scene, "lumped", {}, 10)
 

@@ -11,9 +11,9 @@ import pytest
 
 import solidgear as sg
 from solidgear.evidence.completeness import completeness
-from solidgear.evidence.levels import HARMONIC, HEXAHEDRA
 from solidgear.evidence.study import study
 from solidgear.evidence.ties import SCENE
+from solidgear.fidelity.levels import HARMONIC, HEXAHEDRA
 from solidgear.fidelity.size import estimated_size
 from solidgear.scene import Bearing, Port, Scene, Segment
 from solidgear.studies.check import check_scene

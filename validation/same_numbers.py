@@ -1,7 +1,7 @@
 """Whether another state of the source gives the same numbers: every shipped scene, every model.
 
-    git worktree add /tmp/before SOME_COMMIT
-    python -m validation.same_numbers /tmp/before [--only pinion_overhung] [--relative 1e-12]
+    git worktree add ../before SOME_COMMIT
+    python -m validation.same_numbers ../before [--only pinion_overhung] [--relative 1e-12]
 
 Both are run by this interpreter, each with its own source; times, memory and machine are left out.
 """

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Annotated, ParamSpec, TypeVar
 import typer
 
 from solidgear.errors import SolidgearError, show
+from solidgear.fidelity.ladder import LADDER
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -32,19 +33,18 @@ app = typer.Typer(
 )
 
 
-class Fidelity(StrEnum):
-    """Models, cheapest first."""
-
-    euler = "euler"
-    timoshenko = "timoshenko"
-    harmonic = "harmonic"
-    solid = "solid"
+#: the rung that commands solve with unless told otherwise
+FIDELITY = "harmonic"
 
 
 SceneFile = Annotated[
     Path, typer.Argument(help="Scene file (TOML), such as geometry/pinion_overhung.toml.")
 ]
-FidelityOption = Annotated[Fidelity, typer.Option("--fidelity", "-f", help="Model to solve with.")]
+if TYPE_CHECKING:
+    Choice = str
+else:
+    Choice = StrEnum("Choice", [(name, name) for name in LADDER.bodies])
+FidelityOption = Annotated[Choice, typer.Option("--fidelity", "-f", help="Model to solve with.")]
 JsonFlag = Annotated[
     bool, typer.Option("--json", help="Print JSON for machines instead of tables.")
 ]
@@ -94,14 +94,13 @@ def _value(text: str):
     return {"true": True, "false": False}.get(text, text)
 
 
-def build_body(scene: Scene, fidelity: Fidelity, pairs: list[str] | None) -> Body:
+def build_body(scene: Scene, fidelity: str, pairs: list[str] | None) -> Body:
     """Body of a scene at one fidelity, with ``--set`` options."""
     from solidgear.fidelity import build
-    from solidgear.fidelity.options import checked
 
     # Checked here too: an option called scene or fidelity would be taken for an argument of
     # `build`.
-    return build(scene, fidelity.value, **checked(fidelity.value, options(pairs)))
+    return build(scene, fidelity, **LADDER[fidelity].checked(options(pairs)))
 
 
 def console() -> Console:

@@ -9,7 +9,7 @@ from typing import Annotated
 import typer
 
 from solidgear.cli.app import (
-    Fidelity,
+    FIDELITY,
     FidelityOption,
     JsonFlag,
     Progress,
@@ -21,6 +21,7 @@ from solidgear.cli.app import (
     options_by_model,
 )
 from solidgear.errors import SolidgearError, show
+from solidgear.fidelity.ladder import LADDER
 
 
 @command
@@ -34,8 +35,8 @@ def compare(
     ] = Path("out"),
     models: Annotated[
         str,
-        typer.Option("--models", help="Comma-separated: lumped,euler,timoshenko,harmonic,solid."),
-    ] = "lumped,euler,timoshenko,harmonic,solid",
+        typer.Option("--models", help=f"Comma-separated: {','.join(LADDER.names)}."),
+    ] = ",".join(LADDER.names),
     as_json: JsonFlag = False,
     renders: Annotated[
         bool,
@@ -60,7 +61,6 @@ def compare(
     ] = False,
 ) -> None:
     """Solve a scene with every model and write a report on which to trust."""
-    from solidgear.fidelity import FIDELITIES
     from solidgear.report.folder import held
     from solidgear.scene.file import load
     from solidgear.studies.comparison import check_models
@@ -69,7 +69,7 @@ def compare(
     loaded = load(scene)
     wanted = tuple(m.strip() for m in models.split(",") if m.strip())
     check_models(wanted)
-    chosen = options_by_model(settings, FIDELITIES)
+    chosen = options_by_model(settings, LADDER.bodies)
     if solid_element:
         chosen.setdefault("solid", {})["element"] = solid_element
     with held(out):
@@ -102,7 +102,7 @@ def compare(
 @command
 def stiffness(
     scene: SceneFile,
-    fidelity: FidelityOption = Fidelity.harmonic,
+    fidelity: FidelityOption = FIDELITY,
     attachment: Annotated[
         str | None,
         typer.Option(
@@ -134,7 +134,7 @@ def stiffness(
 
         record = {
             "scene": loaded.name,
-            "fidelity": fidelity.value,
+            "fidelity": fidelity,
             "port": found.port,
             "attachment": found.attachment,
             "order": DOF_NAMES,
@@ -152,7 +152,7 @@ def stiffness(
 
     terminal = console()
     terminal.print(
-        f"{loaded.name}: {fidelity.value}, {body.size} unknowns, port {found.port!r} at y = {1e3 * loaded.port.y:.3f} mm ({found.attachment})",
+        f"{loaded.name}: {fidelity}, {body.size} unknowns, port {found.port!r} at y = {1e3 * loaded.port.y:.3f} mm ({found.attachment})",
         markup=False,
     )
     terminal.print(matrix_table(found.stiffness, "stiffness"))
@@ -169,7 +169,7 @@ def stiffness(
 @command
 def modes(
     scene: SceneFile,
-    fidelity: FidelityOption = Fidelity.harmonic,
+    fidelity: FidelityOption = FIDELITY,
     n: Annotated[
         int | None, typer.Option("-n", help="Number of elastic shapes; twins count twice.")
     ] = None,
@@ -220,7 +220,7 @@ def modes(
             json.dumps(
                 {
                     "scene": loaded.name,
-                    "fidelity": fidelity.value,
+                    "fidelity": fidelity,
                     "dofs": body.size,
                     "modes": rows,
                     "evidence": found.evidence,
@@ -233,7 +233,7 @@ def modes(
     from solidgear.report.terminal import modes_table
 
     terminal = console()
-    terminal.print(f"{loaded.name}: {fidelity.value}, {body.size} unknowns", markup=False)
+    terminal.print(f"{loaded.name}: {fidelity}, {body.size} unknowns", markup=False)
     terminal.print(modes_table(rows))
     e = found.evidence
     terminal.print(
@@ -250,7 +250,7 @@ def modes(
     if count:
         from solidgear.evidence.completeness import completeness
 
-        terminal.print(completeness(e, fidelity.value), markup=False)
+        terminal.print(completeness(e, fidelity), markup=False)
     for sentence in said:
         terminal.print(f"caution: {sentence}", markup=False)
 
@@ -259,7 +259,7 @@ def modes(
 def render(
     scene: SceneFile,
     out: Annotated[Path, typer.Option("--out", "-o", help="PNG file to write.")] = Path("mode.png"),
-    fidelity: FidelityOption = Fidelity.harmonic,
+    fidelity: FidelityOption = FIDELITY,
     mode: Annotated[
         str, typer.Option(help='Name of the mode, such as "bending 1" or "axial 1".')
     ] = "bending 1",
@@ -280,7 +280,7 @@ def render(
 @command
 def check(
     scene: SceneFile,
-    fidelity: FidelityOption = Fidelity.harmonic,
+    fidelity: FidelityOption = FIDELITY,
     as_json: JsonFlag = False,
     settings: Settings = None,
 ) -> None:

@@ -10,7 +10,7 @@ from typing import Annotated
 import typer
 
 from solidgear.cli.app import (
-    Fidelity,
+    FIDELITY,
     FidelityOption,
     JsonFlag,
     SceneFile,
@@ -41,7 +41,7 @@ def sweep(
             "a database beside it (rows.csv.sqlite), from which the file is written in one step.",
         ),
     ] = Path("rows.csv"),
-    fidelity: FidelityOption = Fidelity.harmonic,
+    fidelity: FidelityOption = FIDELITY,
     n: Annotated[
         int | None, typer.Option("-n", help="Number of elastic shapes; twins count twice.")
     ] = None,
@@ -85,13 +85,13 @@ def sweep(
     )
 
     from solidgear.fidelity import build
-    from solidgear.fidelity.options import checked
+    from solidgear.fidelity.ladder import LADDER
     from solidgear.scene.file import load
     from solidgear.studies.check import cautions
     from solidgear.studies.sweep import sweep as run
 
     loaded = load(scene)
-    given = checked(fidelity.value, options(settings))  # before a file of rows is begun
+    given = LADDER[fidelity].checked(options(settings))  # before a file of rows is begun
     terminal = Console(stderr=True, highlight=False)
     bar = Progress(
         TextColumn("{task.description}"),
@@ -117,7 +117,7 @@ def sweep(
                 loaded,
                 vary,
                 out,
-                fidelity=fidelity.value,
+                fidelity=fidelity,
                 options=given,
                 n=n,
                 sample=sample,
@@ -140,7 +140,7 @@ def sweep(
     if as_json:
         print(json.dumps(asdict(found), default=str))
         return
-    for sentence in cautions(loaded, build(loaded, "timoshenko"), fidelity.value):
+    for sentence in cautions(loaded, build(loaded, "timoshenko"), fidelity):
         print(f"caution: {sentence}", file=sys.stderr)
     new = found.total - found.skipped
     path = str(found.path).encode("utf-8", "backslashreplace").decode()  # bytes that are no text

@@ -4,7 +4,8 @@ meshes.
 **Layered** sequences (harmonic solid, graded hexahedra) raise order or size and layers together.  One layer of ratio q towards a
 corner of exponent a leaves the share ``q^(2a)`` of what the corner costs: 0.17 at a right-angled shoulder for q = 0.2, 0.32 for
 q = 0.35.  Every level then errs by a nearly fixed share of its distance from the one before, and the band is a factor times that
-distance.  The factors are measured, by ``validation/attack/bands.py`` on random shafts (see `LAYERED`); they are no theorem.
+distance.  The factors are measured, by ``validation/attack/bands.py`` on random shafts, and stand in the ladder with the rung
+(:class:`solidgear.fidelity.rung.BandFactors`); they are no theorem.
 
 **Other** sequences (tetrahedra, linear elements, meshes that were asked for by refinement) use the grid convergence index of
 :mod:`solidgear.evidence.converge`.
@@ -22,29 +23,18 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
+from typing import TYPE_CHECKING
 
 from solidgear.evidence.converge import gci
 from solidgear.evidence.quantities import COUPLINGS, QUANTITIES, change
 
-#: band over the last change: harmonic solid, graded hexahedra
-LAYERED = {"harmonic": 0.25, "solid": 0.8}
-#: the same where seats are rigid: their ends are singular like a crack, and a layer of ratio q
-#: leaves the share q
-RIGID = {"harmonic": 0.32, "solid": 1.3}
-#: the same after two levels only, without and with rigid seats: the step off the coarsest mesh
-#: tells less where it is small, perhaps by accident, and more where it is large.  Factor of small
-#: steps, the band they reach at most before the factor of large steps takes over, and that factor.
-FIRST = {
-    "harmonic": ((0.075, 0.0, 0.075), (0.19, 0.0, 0.19)),
-    "solid": ((1.8, 0.009, 0.6), (1.8, 0.036, 0.8)),
-}
+if TYPE_CHECKING:
+    from solidgear.fidelity.rung import BandFactors
+
 #: safety on the observed reduction of two regular steps, where that is the worse news
 OBSERVED, SLOWEST = 1.5, 0.7
-#: the last change counts for at least this share of the one before it, and a coupling's of its
-#: diagonal entries'
-EARLIER, DIAGONAL = {"harmonic": 0.06, "solid": 0.15}, 0.2
-#: share of the last change by which a layered sequence is still expected to go on
-AHEAD = {"harmonic": 0.12, "solid": 0.4}
+#: the change of a coupling counts for at least this share of those of its diagonal entries
+DIAGONAL = 0.2
 #: safety on what the cells around leave: in thin walls the coarsest mesh, where it is measured,
 #: shows half of it
 SURE_AROUND = 2.5
@@ -101,7 +91,7 @@ Values = Mapping[str, float]
 def layered_bands(
     levels: Sequence[Values],
     solver: Values,
-    model: str,
+    factors: BandFactors,
     *,
     rigid: bool = False,
     around: Values | None = None,
@@ -114,14 +104,16 @@ def layered_bands(
         Quantity to value (see :func:`solidgear.evidence.quantities.measure`), coarse to fine.
     solver : mapping
         Relative error the solver may have left in each quantity of the finest level.
-    model : {'harmonic', 'solid'}
+    factors : BandFactors
+        Of the rung.
     rigid : bool
         Whether a seat is rigid.
     around : mapping, optional
         Relative error that the cells around leave in each quantity.
     """
     around = around or {}
-    usual, out = (RIGID if rigid else LAYERED)[model], {}
+    usual = factors.rigid if rigid else factors.usual
+    out = {}
     finest, before = levels[-1], levels[-2]
     for name in QUANTITIES:
         if any(name not in level for level in levels[-2:]):
@@ -132,8 +124,8 @@ def layered_bands(
             earlier = abs(
                 (change(levels[-3], finest, name) or 0.0) - (change(before, finest, name) or 0.0)
             )
-        rests_on = max(last, EARLIER[model] * (earlier or 0.0))
-        factor = usual if len(levels) > 2 else _first(FIRST[model][rigid], rests_on)
+        rests_on = max(last, factors.earlier * (earlier or 0.0))
+        factor = usual if len(levels) > 2 else _first(factors.first[rigid], rests_on)
         if earlier and len(levels) > 3:  # the step off the coarsest mesh is no regular one
             ratio = min(last / earlier, SLOWEST)
             factor = max(usual, OBSERVED * ratio / (1 - ratio))
@@ -153,7 +145,7 @@ def layered_bands(
             reduction=float(last / earlier) if earlier else None,
             factor=factor,
             solver=float(left),
-            extrapolated=float(finest[name] + AHEAD[model] * (finest[name] - before[name])),
+            extrapolated=float(finest[name] + factors.ahead * (finest[name] - before[name])),
         )
     return out
 

@@ -4,7 +4,8 @@ begin.
 
 from __future__ import annotations
 
-BEAMS = ("euler", "timoshenko")
+from solidgear.fidelity.ladder import LADDER
+from solidgear.fidelity.rung import BEAM
 
 
 def completeness(evidence: dict, fidelity: str) -> str:
@@ -24,7 +25,7 @@ def completeness(evidence: dict, fidelity: str) -> str:
     rows = evidence["families"]
     counted = [row for row in rows if row["counted"]]
     text = f"No mode missed below {evidence['complete_below_hz']:.6g} Hz (counted by the inertia of a second factor): {_listed(counted)}"
-    if fidelity in BEAMS:
+    if LADDER[fidelity].family == BEAM:
         return f"{text}; a beam knows no others."
     left = _left([row for row in rows if not row["counted"]])
     return f"{text}; {left}." if left else f"{text}."

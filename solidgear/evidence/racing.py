@@ -12,17 +12,20 @@ import json
 import logging
 import time
 from collections.abc import Callable
-from types import SimpleNamespace
 
 import numpy as np
 
 from solidgear.body import as_supports
 from solidgear.errors import SolidgearError
-from solidgear.evidence.converge import gci, sharpest_corner
+from solidgear.evidence.converge import gci
+from solidgear.evidence.lumped import preferred, sources
 from solidgear.evidence.pareto import CHARTED, Race, Row
 from solidgear.evidence.quantities import measure
 from solidgear.fidelity import build
-from solidgear.reduction.rung import representative, synthesise_all
+from solidgear.fidelity.ladder import LADDER
+from solidgear.fidelity.rung import BEAM, LUMPED
+from solidgear.meshing.corners import sharpest_corner
+from solidgear.reduction.effective_mass import synthesise
 from solidgear.solve.modes import modes
 from solidgear.solve.statics import condense
 
@@ -144,21 +147,21 @@ def answer(scene, model: str, options: dict, n: int):
     SolidgearError
         Where the model cannot be made.
     """
-    source = "timoshenko" if model == "lumped" else model
+    lumped = LADDER[model].family == LUMPED
+    source = sources()[0] if lumped else model
     supports = as_supports(scene)
     body = build(scene, source, **options)
     condensed = condense(body, supports, scene.port.name)
     shapes = modes(body, supports, n, ovalising=False)
     values = measure(condensed, shapes)
-    if model == "lumped":
-        made = synthesise_all(scene, {source: SimpleNamespace(body=body, modes=shapes)})
-        chosen = representative(made)
-        if chosen is None:
+    if lumped:
+        _, made = synthesise(body, scene, scene.port.name, shapes)
+        chosen = preferred(made)
+        if chosen is None or chosen.frequency_hz is None:
             raise SolidgearError(
-                made[source].get("why_not")
-                or "no lumped mass is positive and has the first bending mode as its first"
+                "no lumped mass is positive and has the first bending mode as its first"
             )
-        values["bending 1"] = made[source]["variants"][chosen[1]]["frequency_hz"]
+        values["bending 1"] = chosen.frequency_hz
     return body, condensed, values
 
 
@@ -233,10 +236,10 @@ def _run(scene, row: Row, n: int, against: dict, compliance: np.ndarray) -> None
     if row.status == "ok":
         return
     row.status = "ok"
-    row.unknowns = 6 if row.model == "lumped" else body.size
+    row.unknowns = 6 if LADDER[row.model].family == LUMPED else body.size
     row.values = {q: values[q] for q in against["values"] if q in values}
     row.errors = {q: abs(v / against["values"][q] - 1) for q, v in row.values.items()}
-    if row.family in ("lumped", "beam"):
+    if LADDER[row.model].family in (LUMPED, BEAM):
         _, _, like = answer(scene.with_attachment("section"), row.model, row.options, n)
         row.like_for_like = {
             q: abs(like[q] / v - 1) for q, v in against["like_for_like"].items() if q in like

@@ -9,14 +9,14 @@ import numpy as np
 
 from solidgear.evidence.completeness import completeness
 from solidgear.evidence.correlate import correlate
+from solidgear.evidence.lumped import model_record as lumped_record
 from solidgear.evidence.quantities import measure
 from solidgear.evidence.study import Rung, Tied
 from solidgear.evidence.ties import SCENE
-from solidgear.evidence.verdict import NAMES, Judgement, deviations, judge, percent, trusted
-from solidgear.fidelity import FIDELITIES
+from solidgear.evidence.verdict import Judgement, deviations, judge, percent, trusted
+from solidgear.fidelity.ladder import LADDER
 from solidgear.frames import DOF_NAMES
 from solidgear.machine.environment import environment
-from solidgear.reduction.rung import model_record as lumped_record
 
 if TYPE_CHECKING:
     from solidgear.scene import Scene
@@ -41,7 +41,7 @@ def record(
         Models that could not be solved, and why.
     causes : list of Cause
     lumped : dict
-        From :func:`solidgear.reduction.rung.synthesise_all`.
+        From :func:`solidgear.evidence.lumped.synthesise_all`.
     guards : list of dict
         What the guards said: ``guard``, ``level``, ``models``, ``sentence``.
     complete : bool
@@ -49,14 +49,12 @@ def record(
     """
     trust, _ = trusted(rungs, scene.ask.tolerance)
     # Where nothing may judge, the distances are still told; they are no judgement.
-    reference = trust or next(
-        (m for m in ("harmonic", "solid", "timoshenko", "euler") if m in rungs), None
-    )
+    reference = trust or next((m for m in LADDER.judges if m in rungs), None)
     gaps = deviations(rungs, reference) if reference else []
     verdict, validity = judge(scene, rungs, gaps, guards)
     verdict["reference"] = reference
     models: dict[str, dict] = {}
-    for model in FIDELITIES:
+    for model in LADDER.bodies:
         if model in rungs:
             models[model] = _model_record(rungs[model], validity[model])
         elif model in failed:
@@ -135,7 +133,7 @@ def _add_lumped(verdict: dict, own: dict, lumped: dict, reference: str) -> None:
         if v["feasible"] and v["frequency_error"] is not None
     ]
     verdict["sentences"].append(
-        f"First bending of lumped models made from the {NAMES[reference]} itself: {', '.join(errors)}."
+        f"First bending of lumped models made from the {LADDER[reference].title} itself: {', '.join(errors)}."
     )
     if not made["thesis"]["feasible"]:
         verdict["sentences"].append(

@@ -3,7 +3,7 @@ solid.
 
 The *ties of the scene* are what its bearings and its port say.  *Like for like* means mean motions
 of cross-sections at every station: what a beam knows of a solid.  A solid is solved on ever finer
-meshes (:mod:`solidgear.evidence.levels`) until its bands (:mod:`solidgear.evidence.bands`) meet
+meshes (:mod:`solidgear.fidelity.levels`) until its bands (:mod:`solidgear.evidence.bands`) meet
 what is asked for.
 """
 
@@ -18,12 +18,12 @@ from typing import TYPE_CHECKING, Any
 from solidgear.body import Body, Supports, as_supports
 from solidgear.errors import SolidgearError
 from solidgear.evidence.bands import Band, layered_bands, refined_bands
-from solidgear.evidence.levels import HEAVY, JUDGE, LIGHT_JUDGE, Sequence, sequence
-from solidgear.evidence.levels import JUDGED as JUDGED_SHARE
 from solidgear.evidence.quantities import JUDGED, QUANTITIES, change, measure
 from solidgear.evidence.ties import SCENE, SECTION, rigid_seats
 from solidgear.fidelity import build
-from solidgear.fidelity.size import estimated_size
+from solidgear.fidelity.ladder import LADDER
+from solidgear.fidelity.levels import HEAVY, LIGHT_JUDGE, Sequence
+from solidgear.fidelity.options import ATTACHMENTS
 from solidgear.machine.meter import Meter
 from solidgear.meshing.corners import sharpest_corner
 from solidgear.solve.modes import ModeSet, modes
@@ -35,7 +35,6 @@ if TYPE_CHECKING:
 log = logging.getLogger(__name__)
 Progress = Callable[[str], None]
 
-SOLIDS = ("harmonic", "solid")
 #: exponent at the end of a rigid seat, a clamp on a smooth surface (Williams 1952, clamped-free at
 #: 180 degrees)
 RIGID_EDGE = 0.5
@@ -141,7 +140,7 @@ def study(
         Builder options; where they speak of the mesh, that mesh and two coarser ones are solved.
     share : float, optional
         Bands of the judged quantities are wanted below the tolerance of the scene divided by this;
-        by default 20 for the harmonic solid, which judges, and 2 for the 3D solid.
+        by default what its rung asks for, 20 for the harmonic solid, which judges.
     most : int, optional
         Levels to stop at.
     evidence : bool
@@ -160,19 +159,19 @@ def study(
     """
     options = dict(options or {})
     meter = Meter()
-    if model not in SOLIDS:
+    own = LADDER[model]
+    if own.meshes is None:
         progress(f"{model}: build, statics, modes")
         body, ties = _solved(scene, model, options, meter, 0 if evidence and counted else math.inf)
         rung = Rung(model, body, ties, meter, options=options)
         keep(rung)
     else:
-        share = share or (JUDGE if model == "harmonic" else JUDGED_SHARE)
         rung = _climbed(
             scene,
             model,
-            options,
+            own.meshes(options),
             meter,
-            scene.ask.tolerance / share,
+            scene.ask.tolerance / (share or own.share),
             most,
             evidence and counted,
             progress,
@@ -183,9 +182,18 @@ def study(
     return rung
 
 
-def _climbed(scene: Scene, model, options, meter, target, most, counted, progress, keep) -> Rung:
+def _climbed(
+    scene: Scene,
+    model: str,
+    plan: Sequence,
+    meter: Meter,
+    target: float,
+    most: int | None,
+    counted: bool,
+    progress: Progress,
+    keep: Callable[[Rung], None],
+) -> Rung:
     """The finest of the levels that were needed, or that could be had."""
-    plan: Sequence = sequence(model, options)
     levels = plan.levels if plan.fixed else plan.levels[:most]
     rung: Rung | None = None
     solved: list[dict[str, Tied]] = []
@@ -277,6 +285,8 @@ def _bands(
 ) -> dict[str, dict[str, Band]]:
     """Bands of the finest level for every way of tying that all of the last levels have."""
     out = {}
+    factors = LADDER[model].factors
+    assert factors is not None  # of a rung with several meshes
     for tie in (SCENE, SECTION):
         known = [s for s in solved if tie in s]
         if len(known) < 2 or tie not in solved[-1]:
@@ -284,13 +294,13 @@ def _bands(
         values, solver = [s[tie].quantities for s in known], known[-1][tie].solver
         if plan.layered:
             held = tie == SCENE and any(s.attachment == "rigid" for s in scene.stations)
-            out[tie] = layered_bands(values, solver, model, rigid=held, around=around.get(tie))
+            out[tie] = layered_bands(values, solver, factors, rigid=held, around=around.get(tie))
         elif len(known) > 2:
             sizes = [f["mesh"]["representative_size"] for f in facts[-3:]]
             held = any(s.attachment == "rigid" for s in scene.stations)
             exponent = min(sharpest_corner(scene)[1], RIGID_EDGE if held else 1.0)
             if sizes[0] > sizes[1] > sizes[2]:
-                out[tie] = refined_bands(values, solver, sizes, exponent, singular=model == "solid")
+                out[tie] = refined_bands(values, solver, sizes, exponent, singular=factors.singular)
     return out
 
 
@@ -308,7 +318,8 @@ def _solved(
     # Means over seats and over sections are only rows on the same matrices; a rigid seat is another
     # matrix.
     together = "rigid" not in given
-    wanted = sorted(given) if model == "solid" else (*sorted(given), "section")
+    sections = LADDER[model].section_ties
+    wanted = (*sorted(given), "section") if sections else sorted(given)
     kinds = tuple(dict.fromkeys(wanted)) if together else None
     extra = {"attachments": kinds} if together else {}
     body = _built(scene, model, {**options, **extra}, meter)
@@ -322,8 +333,8 @@ def _solved(
     }
     if given == {"section"}:
         ties[SECTION] = ties[SCENE]
-    elif model == "solid":
-        pass  # planes of section ties would have to be graded; the harmonic solid judges like for like
+    elif not sections:
+        pass  # planes of section ties would have to be graded; another solid judges like for like
     elif together:
         ties[SECTION] = _tied(
             scene, body, supports.with_attachment("section"), "section", meter, False
@@ -336,7 +347,6 @@ def _solved(
 
 
 def _built(scene: Scene, model: str, options: Mapping[str, Any], meter: Meter) -> Body:
-    meter.expect(estimated_size(scene, model, dict(options)).peak_mb)
     with meter.stage("build"):
         return build(scene, model, **options)
 
@@ -369,19 +379,18 @@ def _add_variants(scene: Scene, rung: Rung, progress: Progress) -> None:
     spare = Meter()
     progress(f"{rung.model}: attachments")
     with rung.meter.stage("attachments"):
-        for attachment in ("average", "rigid", "section"):
+        for attachment in ATTACHMENTS:
             try:
                 if given == {attachment}:
                     rung.variants[attachment] = rung.ties[SCENE]
                 elif attachment == "section" and SECTION in rung.ties:
                     rung.variants[attachment] = rung.ties[SECTION]
-                elif rung.model != "solid":
+                elif LADDER[rung.model].section_ties:
                     changed = (
                         rigid_seats(scene)
                         if attachment == "rigid"
                         else scene.with_attachment(attachment)
                     )
-                    rung.meter.expect(estimated_size(changed, rung.model, rung.options).peak_mb)
                     body = build(changed, rung.model, **rung.options)
                     rung.variants[attachment] = _tied(
                         changed, body, as_supports(changed), None, spare, False

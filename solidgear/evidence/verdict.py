@@ -15,19 +15,13 @@ from solidgear.evidence.partners import Partners
 from solidgear.evidence.quantities import JUDGED, QUANTITIES, change
 from solidgear.evidence.study import Rung
 from solidgear.evidence.ties import SCENE, SECTION
-from solidgear.fidelity import FIDELITIES
+from solidgear.fidelity.ladder import LADDER
+from solidgear.fidelity.rung import BEAM, SOLID
 
 if TYPE_CHECKING:
     from solidgear.scene import Scene
 
 WITHIN, OPEN, BEYOND = "within", "open", "beyond"
-NAMES = {
-    "lumped": "lumped model",
-    "euler": "Euler beam",
-    "timoshenko": "Timoshenko beam",
-    "harmonic": "harmonic solid",
-    "solid": "3D solid",
-}
 TIES = {
     SCENE: "with the attachments of the scene",
     SECTION: "like for like (section means everywhere)",
@@ -113,14 +107,14 @@ def trusted(rungs: dict[str, Rung], tolerance: float) -> tuple[str | None, str]:
     tolerance.
     """
     why = "no solid was run, and a beam cannot judge itself"
-    for model in ("harmonic", "solid"):
+    for model in LADDER.of(SOLID):
         if model not in rungs:
             continue
         worst = rungs[model].worst_band()
         if worst is None:
-            why = f"the {NAMES[model]} has no band of its own ({_reason(rungs[model])})"
+            why = f"the {LADDER[model].title} has no band of its own ({_reason(rungs[model])})"
         elif worst > tolerance:
-            why = f"the {NAMES[model]} is sure of itself to no better than {percent(worst)}, more than the {percent(tolerance)} asked for"
+            why = f"the {LADDER[model].title} is sure of itself to no better than {percent(worst)}, more than the {percent(tolerance)} asked for"
         else:
             return model, ""
     return None, why
@@ -152,7 +146,7 @@ def judge(
     validity = {
         m: _judged(m, rungs, reference, why, gaps, judged, tolerance, notices) for m in rungs
     }
-    cheapest = next((m for m in FIDELITIES if m in rungs and validity[m].valid), None)
+    cheapest = next((m for m in LADDER.bodies if m in rungs and validity[m].valid), None)
     sentences = []
     if not rungs:
         sentences = ["No model could be solved."]
@@ -175,16 +169,21 @@ def judge(
     return verdict, validity
 
 
-def _judged(model, rungs, reference, why, gaps, judged, tolerance, notices) -> Judgement:
-    against = [
+def spoken_against(model: str, notices: Iterable[dict]) -> list[str]:
+    """Sentences of the guards that put a model out."""
+    return [
         n["sentence"] for n in notices if model in n["models"] and n["level"] in ("avoid", "fault")
     ]
+
+
+def _judged(model, rungs, reference, why, gaps, judged, tolerance, notices) -> Judgement:
+    against = spoken_against(model, notices)
     if reference is None:
         return Judgement(False, f"not judged: {why}", open=True)
     if against:
         return Judgement(False, against[0])
     rung = rungs[model]
-    if model in ("harmonic", "solid"):
+    if LADDER[model].family == SOLID:
         worst = rung.worst_band(judged)
         if worst is None or worst > tolerance:
             text = (
@@ -206,7 +205,7 @@ def _judged(model, rungs, reference, why, gaps, judged, tolerance, notices) -> J
     if missing:
         return Judgement(
             False,
-            f"nothing in it corresponds to {' and '.join(missing)} of the {NAMES[reference]}",
+            f"nothing in it corresponds to {' and '.join(missing)} of the {LADDER[reference].title}",
             open=True,
         )
     worst_first = sorted(mine, key=lambda g: -(abs(g["relative"]) + (g["band"] or 0.0)))
@@ -218,7 +217,7 @@ def _judged(model, rungs, reference, why, gaps, judged, tolerance, notices) -> J
 
 
 def _why(gap: dict, reference: str, kind: str, tolerance: float) -> str:
-    text = f"{gap['quantity']} is {percent(abs(gap['relative']))} {_side(gap)} against the {NAMES[reference]} {TIES[gap['attachment']]}"
+    text = f"{gap['quantity']} is {percent(abs(gap['relative']))} {_side(gap)} against the {LADDER[reference].title} {TIES[gap['attachment']]}"
     if gap["pairing"]:
         text += f" ({gap['pairing']})"
     if kind == BEYOND:
@@ -250,40 +249,41 @@ def _trust(rungs, reference, gaps, judged) -> list[str]:
         size.append(f"{percent(c)} in compliance")
     if f is not None:
         size.append(f"{percent(f)} in first bending")
-    kind = (
-        "exact 3D elasticity of a body of revolution"
-        if reference == "harmonic"
-        else "full 3D elasticity"
-    )
     band = " and ".join(size) or "the numbers it has"
     out = [
-        f"Trust the {NAMES[reference]}: {kind}, sure of itself to {band} ({len(base.levels)} meshes)."
+        f"Trust the {LADDER[reference].title}: {LADDER[reference].theory}, sure of itself to {band} ({len(base.levels)} meshes)."
     ]
-    if reference == "solid" or "solid" not in rungs:
-        return out
+    for model in LADDER.of(SOLID):
+        if model in rungs and model != reference:
+            out += _other_solid(model, gaps, judged)
+    return out
+
+
+def _other_solid(model: str, gaps: list[dict], judged) -> list[str]:
+    """How far a solid that does not judge is from the one that does."""
     mine = [
         g
         for g in gaps
-        if g["model"] == "solid" and g["attachment"] == SCENE and g["quantity"] in judged
+        if g["model"] == model and g["attachment"] == SCENE and g["quantity"] in judged
     ]
-    if mine:
-        worst = max(mine, key=lambda g: abs(g["relative"]))
-        beyond = [g["quantity"] for g in mine if g["verdict"] == "resolved"]
-        text = f"The full 3D solid, another mesh and another formulation, is within {percent(abs(worst['relative']))} of it in every judged number"
-        text += (
-            f", beyond the bands in {', '.join(beyond)}."
-            if beyond
-            else "; all gaps lie inside the bands (not resolved)."
-        )
-        out.append(text)
-    return out
+    if not mine:
+        return []
+    worst = max(mine, key=lambda g: abs(g["relative"]))
+    beyond = [g["quantity"] for g in mine if g["verdict"] == "resolved"]
+    text = (
+        f"The {LADDER[model].title}, another mesh and another formulation, is within "
+        f"{percent(abs(worst['relative']))} of it in every judged number"
+    )
+    if beyond:
+        return [f"{text}, beyond the bands in {', '.join(beyond)}."]
+    return [f"{text}; all gaps lie inside the bands (not resolved)."]
 
 
 def _cheapest(rungs, cheapest, tolerance) -> list[str]:
     if not cheapest:
         return [f"No model is known to be within {percent(tolerance)}."]
     return [
-        f"Cheapest model within {percent(tolerance)}: {NAMES[cheapest]} ({_cost(rungs[cheapest])})."
+        f"Cheapest model within {percent(tolerance)}: {LADDER[cheapest].title} ({_cost(rungs[cheapest])})."
     ]
 
 
@@ -292,7 +292,7 @@ def _beams(rungs, gaps, judged, tolerance) -> list[str]:
     beam.
     """
     out = []
-    for model in ("euler", "timoshenko"):
+    for model in LADDER.of(BEAM):
         if model not in rungs:
             continue
         worst = {}
@@ -309,12 +309,12 @@ def _beams(rungs, gaps, judged, tolerance) -> list[str]:
         here, fair = abs(scene["relative"]), abs(like["relative"])
         if here > tolerance >= fair:
             out.append(
-                f"What puts the {NAMES[model]} out is the tie, not the beam: {scene['quantity']} is {percent(here)} off at the scene's seats, which "
+                f"What puts the {LADDER[model].title} out is the tie, not the beam: {scene['quantity']} is {percent(here)} off at the scene's seats, which "
                 f"distort sections, and nothing is more than {percent(fair)} off like for like."
             )
         elif here <= tolerance < fair:
             out.append(
-                f"The {NAMES[model]} looks within {percent(here)} at the scene's seats but is {percent(fair)} off in {like['quantity']} like for like: "
+                f"The {LADDER[model].title} looks within {percent(here)} at the scene's seats but is {percent(fair)} off in {like['quantity']} like for like: "
                 "seat flexibility, which a beam has not, hides part of its excess stiffness."
             )
     return out

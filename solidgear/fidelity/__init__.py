@@ -1,17 +1,17 @@
-"""One builder a file, cheapest first; ``build`` picks one by name."""
+"""One builder a file; ``build`` picks one from the ladder by name."""
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from solidgear.body import Body
-from solidgear.errors import SolidgearError
+from solidgear.errors import SolidgearError, nearest, show
+from solidgear.fidelity.ladder import LADDER
 from solidgear.machine.threads import pinned
 
 if TYPE_CHECKING:
+    from solidgear.body import Body
     from solidgear.scene.shaft import Shaft
-
-FIDELITIES = ("euler", "timoshenko", "harmonic", "solid")
 
 
 @pinned
@@ -21,7 +21,8 @@ def build(scene: Shaft, fidelity: str, **options) -> Body:
     Parameters
     ----------
     scene : Scene
-    fidelity : {'euler', 'timoshenko', 'harmonic', 'solid'}
+    fidelity : str
+        A rung of the ladder that builds a body: euler, timoshenko, harmonic, solid.
     **options
         Passed to the builder: see :func:`solidgear.fidelity.beam.beam`,
         :func:`solidgear.fidelity.harmonic.harmonic`, :func:`solidgear.fidelity.solid.solid`.
@@ -30,28 +31,18 @@ def build(scene: Shaft, fidelity: str, **options) -> Body:
     ------
     SolidgearError
         For an unknown fidelity, an option it does not have or cannot use
-        (:data:`solidgear.fidelity.options.OPTIONS`), or a model that will not fit into memory.
+        (the options of its rung), or a model that will not fit into memory.
     """
-    if fidelity in FIDELITIES:
-        from solidgear.fidelity.options import checked
-        from solidgear.fidelity.size import refuse_too_large
+    from solidgear.fidelity.size import refuse_too_large
 
-        options = checked(fidelity, options)
-        refuse_too_large(scene, fidelity, options)
-    if fidelity == "euler":
-        from solidgear.fidelity.beam import beam
-
-        return beam(scene, **{"shear": False, "rotary_inertia": False, **options})
-    if fidelity == "timoshenko":
-        from solidgear.fidelity.beam import beam
-
-        return beam(scene, **options)
-    if fidelity == "harmonic":
-        from solidgear.fidelity.harmonic import harmonic
-
-        return harmonic(scene, **options)
-    if fidelity == "solid":
-        from solidgear.fidelity.solid import solid
-
-        return solid(scene, **options)
-    raise SolidgearError(f"fidelity {fidelity!r} is unknown; use one of {', '.join(FIDELITIES)}")
+    if fidelity not in LADDER.bodies:
+        raise SolidgearError(
+            f"fidelity {show(fidelity, 40)} is unknown{nearest(fidelity, LADDER.bodies)}; "
+            f"use one of {', '.join(LADDER.bodies)}"
+        )
+    rung = LADDER[fidelity]
+    options = rung.checked(options)
+    refuse_too_large(scene, fidelity, options)
+    assert rung.build is not None  # as every rung of LADDER.bodies
+    body = rung.build(scene, **{**rung.preset, **options})
+    return body if body.fidelity == fidelity else replace(body, fidelity=fidelity)

@@ -16,7 +16,7 @@ from solidgear.body import Block, Body, Port
 from solidgear.errors import SolidgearError
 from solidgear.fidelity.attachment import tie_rigidly
 from solidgear.fidelity.beam_element import Fields, Section, bending_matrices, rod_matrices
-from solidgear.fidelity.options import checked
+from solidgear.fidelity.options import BEAM_OPTIONS, checked
 from solidgear.fidelity.scale import elastic_scale
 
 # Shortest Euler element over the length of the shaft.
@@ -68,6 +68,7 @@ def beam(
             "elements": elements,
             "attachments": attachments,
         },
+        BEAM_OPTIONS,
     )
     if kappa == "cowper" and any(s.inner0 or s.inner1 for s in scene.segments):
         raise SolidgearError(

@@ -17,7 +17,7 @@ from solidgear.body import Body, Port
 from solidgear.fidelity.assembly import unknowns
 from solidgear.fidelity.circumferential import Families
 from solidgear.fidelity.harmonic_blocks import _Work
-from solidgear.fidelity.options import checked, countable
+from solidgear.fidelity.options import HARMONIC_OPTIONS, checked, countable
 from solidgear.fidelity.scale import elastic_scale
 from solidgear.meshing.grading import Grading
 from solidgear.meshing.layout import Layout, layout
@@ -89,7 +89,9 @@ def harmonic(
         "refinement": refinement,
     }
     given = checked(
-        "harmonic", {"order": order, **grading, "attachments": attachments, "ovalising": ovalising}
+        "harmonic",
+        {"order": order, **grading, "attachments": attachments, "ovalising": ovalising},
+        HARMONIC_OPTIONS,
     )
     attachments, ovalising = given["attachments"], given["ovalising"]
     plan = harmonic_layout(scene, attachments, **grading)

@@ -48,7 +48,8 @@ class Option:
     optional: bool = False
 
 
-_ATTACHMENTS = ("average", "rigid", "section")
+#: ways of tying a station to the shaft
+ATTACHMENTS = ("average", "rigid", "section")
 #: a last layer below this part of the first one costs digits: residuals of modes rise from 1e-8 to
 #: 1e-4 there, whatever layers and ratio make it
 THINNEST_LAYER = 1e-6
@@ -64,7 +65,7 @@ _REFINEMENT = Option(
 _TIES = Option(
     "attachments to build at every station, the default one first",
     "attachments",
-    choices=_ATTACHMENTS,
+    choices=ATTACHMENTS,
     optional=True,
 )
 _SIZE = Option(
@@ -98,7 +99,7 @@ def _layers(where: str) -> Option:
     )
 
 
-_BEAM = {
+BEAM_OPTIONS = {
     "shear": Option("Timoshenko if true, Euler-Bernoulli if not", "flag"),
     "rotary_inertia": Option("whether sections carry rotary inertia in bending", "flag"),
     "head": Option(
@@ -119,67 +120,67 @@ _BEAM = {
     "attachments": _TIES,
 }
 
-#: options of every builder by the names of its keyword arguments
-OPTIONS: dict[str, dict[str, Option]] = {
-    "euler": _BEAM,
-    "timoshenko": _BEAM,
-    "harmonic": {
-        "order": Option(
-            "polynomial order of the quadrilaterals",
-            "whole",
-            least=1,
-            most=12,
-            why="bases of higher order are ill-conditioned",
-        ),
-        "layers": _layers("shoulders"),
-        "edge_layers": _layers("seat ends"),
-        "ratio": _RATIO,
-        "relative_size": _RELATIVE,
-        "size": _SIZE,
-        "refinement": _REFINEMENT,
-        "attachments": _TIES,
-        "ovalising": Option(
-            "further harmonics, that is waves around",
-            "harmonics",
-            least=2,
-            most=100,
-            why="the lowest modes of the thinnest and shortest tube a scene may have take fewer",
-        ),
-    },
-    "solid": {
-        "element": Option(
-            "element type", "choice", choices=("hex20", "hex27", "hex8", "tet10", "tet4")
-        ),
-        "relative_size": _RELATIVE,
-        "size": _SIZE,
-        "layers": _layers("shoulders"),
-        "edge_layers": _layers("seat ends"),
-        "radial_layers": _layers("surfaces, across the shaft"),
-        "ratio": _RATIO,
-        "around": Option(
-            "elements around the circumference", "whole", least=8, most=720, why="two to a degree"
-        ),
-        "graded_size": Option(
-            "size of tetrahedra at shoulders and seat ends, m",
-            above=0,
-            most=100,
-            optional=True,
-            why="a shaft is at most 20 m long",
-        ),
-        "refinement": _REFINEMENT,
-        "attachments": _TIES,
-    },
+#: options of the builders by the names of their keyword arguments
+HARMONIC_OPTIONS = {
+    "order": Option(
+        "polynomial order of the quadrilaterals",
+        "whole",
+        least=1,
+        most=12,
+        why="bases of higher order are ill-conditioned",
+    ),
+    "layers": _layers("shoulders"),
+    "edge_layers": _layers("seat ends"),
+    "ratio": _RATIO,
+    "relative_size": _RELATIVE,
+    "size": _SIZE,
+    "refinement": _REFINEMENT,
+    "attachments": _TIES,
+    "ovalising": Option(
+        "further harmonics, that is waves around",
+        "harmonics",
+        least=2,
+        most=100,
+        why="the lowest modes of the thinnest and shortest tube a scene may have take fewer",
+    ),
+}
+
+SOLID_OPTIONS = {
+    "element": Option(
+        "element type", "choice", choices=("hex20", "hex27", "hex8", "tet10", "tet4")
+    ),
+    "relative_size": _RELATIVE,
+    "size": _SIZE,
+    "layers": _layers("shoulders"),
+    "edge_layers": _layers("seat ends"),
+    "radial_layers": _layers("surfaces, across the shaft"),
+    "ratio": _RATIO,
+    "around": Option(
+        "elements around the circumference", "whole", least=8, most=720, why="two to a degree"
+    ),
+    "graded_size": Option(
+        "size of tetrahedra at shoulders and seat ends, m",
+        above=0,
+        most=100,
+        optional=True,
+        why="a shaft is at most 20 m long",
+    ),
+    "refinement": _REFINEMENT,
+    "attachments": _TIES,
 }
 
 
-def checked(model: str, options: Mapping[str, Any]) -> dict[str, Any]:
+def checked(model: str, options: Mapping[str, Any], known: Mapping[str, Option]) -> dict[str, Any]:
     """Options of one builder, within their limits.
 
     Parameters
     ----------
-    model : {'euler', 'timoshenko', 'harmonic', 'solid'}
+    model : str
+        Named in errors.
     options : mapping
         By name; those left out keep the builder's default.
+    known : mapping of str to Option
+        What the builder takes.
 
     Returns
     -------
@@ -191,7 +192,6 @@ def checked(model: str, options: Mapping[str, Any]) -> dict[str, Any]:
     SolidgearError
         For a name the builder does not know, or a value that it cannot use.
     """
-    known = OPTIONS[model]
     out = {}
     for name, value in options.items():
         if name not in known:

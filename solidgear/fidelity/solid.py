@@ -12,7 +12,7 @@ import scipy.sparse as sp
 from solidgear.body import Block, Body, Port
 from solidgear.errors import SolidgearError
 from solidgear.fidelity.attachment import tie_rigidly
-from solidgear.fidelity.options import checked, countable
+from solidgear.fidelity.options import SOLID_OPTIONS, checked, countable
 from solidgear.fidelity.scale import elastic_scale
 from solidgear.fidelity.solid_matrices import _matrices, _mean
 from solidgear.fidelity.solid_mesh import _isoparametric
@@ -85,6 +85,7 @@ def solid(
     attachments = checked(
         "solid",
         {"element": element, **grading, "graded_size": graded_size, "attachments": attachments},
+        SOLID_OPTIONS,
     )["attachments"]
     if element.startswith("hex") and around % 4:
         raise SolidgearError(

@@ -8,12 +8,30 @@ import os
 from collections.abc import Iterator
 from contextlib import contextmanager
 from contextvars import ContextVar
+from dataclasses import dataclass
 from pathlib import Path
 
 from solidgear.errors import SolidgearError
 from solidgear.machine.control_groups import control_groups, text_of
 
-_base: ContextVar[float | None] = ContextVar("memory held when a run began", default=None)
+
+@dataclass
+class Run:
+    """Memory of one run.
+
+    Attributes
+    ----------
+    base_mb : float or None
+        What the process held when it began; None where the system does not tell.
+    expected_mb : float or None
+        The largest peak that was estimated beforehand (see :func:`expect`).
+    """
+
+    base_mb: float | None
+    expected_mb: float | None = None
+
+
+_run: ContextVar[Run | None] = ContextVar("the run that this is part of", default=None)
 
 # cgroup v1 writes "no limit" as the largest multiple of a page; anything above an exabyte is none.
 UNLIMITED = 2**60
@@ -47,22 +65,31 @@ def available_mb(root: str | Path = "/") -> float | None:
             raise SolidgearError(
                 f"SOLIDGEAR_MEMORY_MB = {text!r}: must be a number of megabytes above zero"
             )
-        base = _base.get()
+        run = _run.get()
+        base = None if run is None else run.base_mb
         held = 0.0 if base is None else max(0.0, (resident_mb() or base) - base)
         found.append(max(0.0, allowed - held))
     return min(found, default=None)
 
 
 @contextmanager
-def one_run() -> Iterator[None]:
+def one_run() -> Iterator[Run]:
     """Within it, ``SOLIDGEAR_MEMORY_MB`` limits what is taken from here on in all, not what each
-    body may take by itself.
+    body may take by itself; a run within a run is part of it.
     """
-    token = _base.set(resident_mb() if _base.get() is None else _base.get())
+    run = _run.get() or Run(resident_mb())
+    token = _run.set(run)
     try:
-        yield
+        yield run
     finally:
-        _base.reset(token)
+        _run.reset(token)
+
+
+def expect(more_mb: float) -> None:
+    """Note that so much memory (MB) will be taken beyond what the process holds now."""
+    run, now = _run.get(), resident_mb()
+    if run is not None and now is not None:
+        run.expected_mb = max(run.expected_mb or 0.0, now + more_mb)
 
 
 def resident_mb() -> float | None:

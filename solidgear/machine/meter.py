@@ -19,20 +19,12 @@ class Meter:
     Attributes
     ----------
     seconds : dict of str to float
-    peak_mb, expected_mb : float or None
-        Seen, and estimated beforehand (see :meth:`expect`).
+    peak_mb : float or None
     """
 
     def __init__(self):
         self.seconds: dict[str, float] = {}
         self.peak_mb: float | None = None
-        self.expected_mb: float | None = None
-
-    def expect(self, more_mb: float) -> None:
-        """Note that so much memory (MB) will be taken beyond what the process holds now."""
-        now = resident_mb()
-        if now is not None:
-            self.expected_mb = max(self.expected_mb or 0.0, now + more_mb)
 
     @contextmanager
     def stage(self, name: str) -> Iterator[None]:

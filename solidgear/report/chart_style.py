@@ -8,16 +8,12 @@ import re
 from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, Any
 
-from solidgear.report.words import (
-    plain,
-)
+from solidgear.fidelity.ladder import LADDER
+from solidgear.report.words import plain
 
 if TYPE_CHECKING:
     from matplotlib.typing import RcKeyType
 
-#: colours that stay apart for the colour-blind, and markers that stay apart in grey
-COLOUR = {"euler": "#c98a00", "timoshenko": "#0072b2", "harmonic": "#00805e", "solid": "#5a3e8c"}
-MARKER = {"euler": "v", "timoshenko": "s", "harmonic": "o", "solid": "D"}
 QUANTITY_NAME = {"c_zz": "C_zz", "k_zz": "K_zz", "bending_1": "bending 1"}
 STYLE: dict[RcKeyType, Any] = {
     "svg.fonttype": "none",  # text stays text: it can be searched, copied and read aloud
@@ -81,11 +77,13 @@ def new_figure(width: float, height: float):
 
 
 def colour_of(key: str) -> str:
-    return COLOUR.get(key, "#777777")
+    """Colour of a model, apart from the others also for the colour-blind."""
+    return LADDER[key].colour if key in LADDER else "#777777"
 
 
 def marker_of(key: str) -> str:
-    return MARKER.get(key, "P")
+    """Marker of a model, apart from the others also in grey."""
+    return LADDER[key].marker if key in LADDER else "P"
 
 
 def percent_decades(ax) -> None:

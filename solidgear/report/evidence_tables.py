@@ -8,10 +8,10 @@ from typing import Any
 from solidgear.report.cells import DASH, capital, eng, mm, pct, short_percent, small, whole_number
 from solidgear.report.table import Table
 from solidgear.report.words import (
-    BEAMS,
     band_percent,
     engineering,
     hertz,
+    is_beam,
     is_number,
     is_resolved,
     model_name,
@@ -72,7 +72,7 @@ def _ties(model: str, attachment: str) -> str:
     """How two models were held when they were compared."""
     if attachment == "as scene":
         return "attachments as in the scene"
-    like = ", like for like" if attachment == "section" and model in BEAMS else ""
+    like = ", like for like" if attachment == "section" and is_beam(model) else ""
     return f"{attachment} ties on both sides{like}"
 
 

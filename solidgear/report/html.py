@@ -15,6 +15,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
+from solidgear.fidelity.ladder import LADDER
 from solidgear.machine.whole_file import whole
 from solidgear.report import (
     charts,
@@ -26,7 +27,7 @@ from solidgear.report import (
 )
 from solidgear.report.cells import DASH, capital, short_percent
 from solidgear.report.lumped import lumped_tables
-from solidgear.report.words import MODEL_NAMES, model_name, plain, reference_of, seconds, validity
+from solidgear.report.words import model_name, plain, reference_of, seconds, validity
 
 log = logging.getLogger(__name__)
 
@@ -106,7 +107,7 @@ def _opening(r: Mapping) -> dict[str, Any]:
         "verdict": verdict,
         "port": r.get("port") or scene.get("port") or {},
         "complete": r.get("complete", True),
-        "missing": [model_name(k) for k in MODEL_NAMES if k not in models and k != "lumped"],
+        "missing": [model_name(k) for k in LADDER.bodies if k not in models],
         "trusted": _name_or_none(verdict.get("trust")),
         "cheapest": _name_or_none(verdict.get("cheapest")),
         "tolerance": short_percent(verdict.get("tolerance")),

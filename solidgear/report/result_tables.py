@@ -5,11 +5,12 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
+from solidgear.fidelity.ladder import LADDER
+from solidgear.fidelity.rung import LUMPED
 from solidgear.frames import DOF_NAMES
 from solidgear.report.cells import DASH, capital, eng, megabytes, pct, whole_number
 from solidgear.report.table import Table
 from solidgear.report.words import (
-    BEAMS,
     BLOCK_UNITS,
     answer_seconds,
     band_percent,
@@ -17,6 +18,7 @@ from solidgear.report.words import (
     first_mode,
     headline,
     hertz,
+    is_beam,
     is_number,
     is_resolved,
     model_name,
@@ -64,7 +66,7 @@ def summary(r: Mapping) -> Table:
         def cell(key, m):
             if m.get("band"):
                 return band_percent(m["band"].get(name), DASH)
-            return ("none given", "quiet") if key in BEAMS else DASH
+            return ("none given", "quiet") if is_beam(key) else DASH
 
         return cell
 
@@ -100,7 +102,7 @@ def matrices(r: Mapping) -> list[tuple[str, list[dict]]]:
     out = []
     for key, model in r["models"].items():
         kinds = [kind for kind in BLOCK_UNITS if model.get(kind)]
-        if key != "lumped":
+        if key not in LADDER.of(LUMPED):
             out.append((model_name(key), [_matrix(r, key, model, kind) for kind in kinds]))
     return out
 

@@ -24,6 +24,7 @@ from solidgear.report.words import (
     engineering,
     entry,
     first_mode,
+    heading,
     headline,
     hertz,
     is_number,
@@ -40,7 +41,6 @@ if TYPE_CHECKING:
     import numpy as np
 
 NOT_RESOLVED = "n.r."
-SHORT_NAMES = {"euler": "Euler", "timoshenko": "Timoshenko", "harmonic": "harmonic"}
 #: how the worth of a model is told in a narrow column
 VALID = {"yes": "yes", "no": "NO", "open": "?", "unknown": "?"}
 
@@ -83,7 +83,7 @@ def final_table(results: Mapping) -> RenderableType:
         unresolved = unresolved or NOT_RESOLVED in cells
         bending = first_mode(model, "bending") or {}
         table.add_row(
-            Text(SHORT_NAMES.get(key, model_name(key))[:10]),
+            Text(heading(key)[:10]),
             VALID[validity(model)],
             engineering(entry(model, "stiffness", 2, 2), 4),
             engineering(entry(model, "compliance", 2, 2), 4),

@@ -9,15 +9,9 @@ import math
 from collections.abc import Mapping
 from typing import Any, TypeGuard
 
-#: key -> name in a sentence, cheapest first
-MODEL_NAMES = {
-    "lumped": "lumped",
-    "euler": "Euler beam",
-    "timoshenko": "Timoshenko beam",
-    "harmonic": "harmonic solid",
-    "solid": "3D solid",
-}
-BEAMS = ("euler", "timoshenko")
+from solidgear.fidelity.ladder import LADDER
+from solidgear.fidelity.rung import BEAM
+
 #: kind -> unit of the blocks (translation, translation), (mixed), (rotation, rotation)
 BLOCK_UNITS = {
     "stiffness": ("N/m", "N/rad", "N m/rad"),
@@ -114,7 +108,17 @@ def count(value: float | None, nothing: str = NOTHING) -> str:
 
 def model_name(key: str | None) -> str:
     """The name of a model in a sentence; an unknown key stays itself."""
-    return MODEL_NAMES.get(key or "", str(key or NOTHING))
+    return LADDER[key].title if key and key in LADDER else str(key or NOTHING)
+
+
+def heading(key: str) -> str:
+    """The name of a model at the head of a narrow column."""
+    return LADDER[key].heading if key in LADDER else key
+
+
+def is_beam(key: str) -> bool:
+    """Whether a model is a beam."""
+    return key in LADDER.of(BEAM)
 
 
 def entry(model: Mapping, kind: str, i: int, j: int) -> float | None:
@@ -154,7 +158,7 @@ def headline(results: Mapping, model: str, quantity: str) -> dict | None:
     key = quantity_key(quantity)
     of_model = [r for r in results.get("deviations") or () if r.get("model") == model]
     rows = [r for r in of_model if quantity_key(r.get("quantity", "")) == key]
-    wanted = "section" if model in BEAMS else "as scene"
+    wanted = "section" if is_beam(model) else "as scene"
     for row in rows:
         if row.get("attachment") == wanted:
             return row

@@ -10,15 +10,16 @@ import numpy as np
 from solidgear.body import Body
 from solidgear.errors import SolidgearError
 from solidgear.evidence.study import Rung
+from solidgear.fidelity.ladder import LADDER
+from solidgear.fidelity.rung import BEAM, LUMPED
 from solidgear.machine.threads import pinned
 from solidgear.meshing.quality import mass_properties
-from solidgear.studies.guards import GUARDS, LEVELS, MODELS, Notice, Probe
+from solidgear.studies.guards import GUARDS, LEVELS, Notice, Probe
+from solidgear.studies.guards.notice import everything
 
 if TYPE_CHECKING:
     from solidgear.scene import Scene
 
-# Closure of mass and inertia that each discretisation owes to the closed form.
-MASS_TOLERANCE = {"euler": 1e-9, "timoshenko": 1e-9, "harmonic": 1e-9, "solid": 1e-3}
 #: what a model is worth after the worst that was said of it
 VERDICTS = {
     "fact": "holds",
@@ -85,7 +86,7 @@ def check_scene(scene: Scene, body: Body) -> dict:
     }
     return out | {
         "records": records,
-        "verdicts": {model: _verdict(model, records) for model in MODELS},
+        "verdicts": {model: _verdict(model, records) for model in everything()},
     }
 
 
@@ -108,7 +109,7 @@ def notices(
         and ``sentence``.
     """
     probes = [Probe(scene, r.body, rungs) for r in rungs.values()]
-    solved = {*rungs, "lumped"}
+    solved = {*rungs, *LADDER.of(LUMPED)}
     out: dict[str, dict] = {}
     for name in names or tuple(n for n in GUARDS if n not in NOT_IN_COMPARISONS):
         for probe in probes if name in OF_A_MESH else probes[-1:]:
@@ -142,8 +143,10 @@ def cautions(scene: Scene, body: Body, fidelity: str | None = None) -> list[str]
     model = fidelity or body.fidelity
     probe, out = Probe(scene, body), []
     silent = set(NOT_HEARD_ALONE)
-    silent |= set() if model in ("euler", "timoshenko") else {"beam_against_solid"}
-    silent |= set(OF_A_MESH) if model != body.fidelity else set()
+    if LADDER[model].family != BEAM:
+        silent.add("beam_against_solid")
+    if model != body.fidelity:
+        silent.update(OF_A_MESH)
     for name in GUARDS:
         if name not in silent:
             out += [
@@ -196,7 +199,7 @@ def _of_the_body(scene: Scene, body: Body) -> Iterator[Notice]:
         ("mass", matrix[0, 0], exact.mass),
         ("polar inertia", matrix[4, 4], exact.iyy),
     ):
-        error, limit = got / want - 1, MASS_TOLERANCE[body.fidelity]
+        error, limit = got / want - 1, LADDER[body.fidelity].mass_tolerance
         yield Notice("fact", own, f"{name} of the mesh against closed form: {error:+.1e}")
         if abs(error) > limit:
             yield Notice(

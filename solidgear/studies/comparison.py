@@ -5,31 +5,29 @@ from __future__ import annotations
 import functools
 import logging
 import os
-from collections.abc import Callable
+from collections.abc import Callable, Collection
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from solidgear.errors import SolidgearError
 from solidgear.evidence.causes import attachment_causes, beam_causes, shoulder_cause
-from solidgear.evidence.levels import FREE, HARMONIC
+from solidgear.evidence.lumped import synthesise_all
 from solidgear.evidence.quantities import change
 from solidgear.evidence.record import record
-from solidgear.evidence.study import SOLIDS, Rung, study
-from solidgear.evidence.ties import SECTION, rigid_seats
-from solidgear.fidelity import FIDELITIES
+from solidgear.evidence.study import Rung, study
+from solidgear.evidence.ties import SECTION
+from solidgear.fidelity.ladder import LADDER
+from solidgear.fidelity.levels import FREE, HARMONIC
+from solidgear.fidelity.rung import LUMPED, SOLID
 from solidgear.machine.memory import one_run
 from solidgear.machine.meter import Meter
-from solidgear.reduction.rung import synthesise_all
 
 if TYPE_CHECKING:
     from solidgear.scene import Scene
 
 log = logging.getLogger(__name__)
 Progress = Callable[[str], None]
-
-ATTACHMENTS = ("average", "rigid", "section")
-MODELS = ("lumped", *FIDELITIES)
 
 
 @dataclass
@@ -71,7 +69,7 @@ class Comparison:
 
 def compare(
     scene: Scene,
-    models: tuple[str, ...] = MODELS,
+    models: tuple[str, ...] | None = None,
     *,
     settings: dict[str, dict] | None = None,
     progress: Progress = lambda _: None,
@@ -79,14 +77,14 @@ def compare(
     """Solve a scene with several fidelities and hold them against each other.
 
     Solids are solved on ever finer meshes until their bands meet the tolerance of the scene: that
-    of the harmonic solid, which judges, a twentieth of it, that of the 3D solid half of it.
+    of the harmonic solid, which judges, a twentieth of it, that of the 3D solid the whole.
 
     Parameters
     ----------
     scene : Scene
-    models : tuple of str
-        Any of lumped, euler, timoshenko, harmonic, solid; lumped needs one of the others to rest
-        on.
+    models : tuple of str, optional
+        Rungs of the ladder (lumped, euler, timoshenko, harmonic, solid); all by default. The
+        lumped one needs one of the others to rest on.
     settings : dict, optional
         Builder options per model, such as ``{"harmonic": {"order": 8}}``.  Options that speak of the mesh fix it: that mesh and two
         coarser ones are solved.
@@ -103,12 +101,13 @@ def compare(
     SolidgearError
         For an unknown model.  A model that fails is reported as not valid, and the others go on.
     """
+    models = LADDER.names if models is None else models
     check_models(models)
-    options = {m: dict((settings or {}).get(m, {})) for m in FIDELITIES}
+    options = {m: dict((settings or {}).get(m, {})) for m in LADDER.bodies}
     found = _Found({}, {}, [], {}, [])
     complete = True
     overall = Meter()
-    with overall.stage("all"), one_run():
+    with overall.stage("all"), one_run() as run:
         try:
             _run(scene, models, options, found, progress)
         except KeyboardInterrupt:
@@ -119,10 +118,7 @@ def compare(
     )
     results["seconds_total"] = overall.seconds["all"]
     results["peak_mb"] = overall.peak_mb
-    results["expected_peak_mb"] = max(
-        (r.meter.expected_mb for r in found.rungs.values() if r.meter.expected_mb is not None),
-        default=None,
-    )
+    results["expected_peak_mb"] = run.expected_mb
     return Comparison(scene, results, found.rungs)
 
 
@@ -140,12 +136,13 @@ class _Found:
 def _run(scene: Scene, models, options, found: _Found, progress: Progress) -> None:
     from solidgear.studies.check import notices
 
-    for model in (m for m in FIDELITIES if m in models):
+    lumped = bool(set(LADDER.of(LUMPED)) & set(models))
+    for model in (m for m in LADDER.bodies if m in models):
         try:
             chosen = _circumference(scene, model, options[model], found)
-            # A count takes a second factor.  One by the harmonic solid counts for the 3D one, whose
+            # A count takes a second factor.  One by a cheaper solid counts for a dearer one, whose
             # modes are paired with its own.
-            counted = model != "solid" or "harmonic" not in found.rungs
+            counted = not _after_a_solid(model, found.rungs)
             rung = study(
                 scene,
                 model,
@@ -159,9 +156,9 @@ def _run(scene: Scene, models, options, found: _Found, progress: Progress) -> No
             log.warning("%s failed: %s", model, found.failed[model])
             continue
         found.rungs[model] = rung
-        # A 3D solid's lumped models are those of the harmonic one within the bands, at ten times
+        # A dearer solid's lumped models are those of the cheaper one within the bands, at ten times
         # the price.
-        if "lumped" in models and not (model == "solid" and "harmonic" in found.lumped):
+        if lumped and not _after_a_solid(model, found.lumped):
             progress(f"lumped: synthesis from {model}")
             found.lumped |= synthesise_all(scene, {model: rung}, log.info)
         # Factors are the largest thing a body holds, and nobody asks for another solution.
@@ -172,12 +169,18 @@ def _run(scene: Scene, models, options, found: _Found, progress: Progress) -> No
     found.causes = _causes(scene, found.rungs, options, progress)
 
 
+def _after_a_solid(model: str, done: Collection[str]) -> bool:
+    """Whether a model is a solid and another one is done."""
+    solids = LADDER.of(SOLID)
+    return model in solids and any(s in done for s in solids if s != model)
+
+
 def _circumference(scene: Scene, model: str, options: dict, found: _Found) -> dict:
-    """Options of a 3D solid with as many cells around as the modes need that the harmonic solid
-    found in the range asked for.
+    """Options of a rung that divides the circumference into cells, with as many as the modes need
+    that the harmonic solid found in the range asked for.
     """
     harmonic = found.rungs.get("harmonic")
-    if model != "solid" or harmonic is None or "around" in options:
+    if "around" not in LADDER[model].options or harmonic is None or "around" in options:
         return options
     waves = max(
         (
@@ -196,10 +199,10 @@ def _circumference(scene: Scene, model: str, options: dict, found: _Found) -> di
 
 def check_models(models: tuple[str, ...]) -> None:
     """Refuse unknown models, and the lumped one alone, in one sentence."""
-    unknown = [m for m in models if m not in MODELS]
-    if unknown or not set(models) & set(FIDELITIES):
+    unknown = [m for m in models if m not in LADDER]
+    if unknown or not set(models) & set(LADDER.bodies):
         raise SolidgearError(
-            f"models: {', '.join(unknown or models) or 'none given'}; choose from {', '.join(MODELS)}, lumped not alone"
+            f"models: {', '.join(unknown or models) or 'none given'}; choose from {', '.join(LADDER.names)}, lumped not alone"
         )
 
 
@@ -209,7 +212,7 @@ def _causes(scene: Scene, rungs: dict[str, Rung], options, progress: Progress) -
     try:
         if "timoshenko" in rungs:
             out += beam_causes(scene)
-        for model in SOLIDS:
+        for model in LADDER.of(SOLID):
             if model in rungs:
                 out += attachment_causes(
                     {a: v.quantities for a, v in rungs[model].variants.items()}, model
@@ -228,6 +231,3 @@ def _causes(scene: Scene, rungs: dict[str, Rung], options, progress: Progress) -
     except SolidgearError as error:
         log.warning("causes left out: %s", error)
     return out
-
-
-__all__ = ["ATTACHMENTS", "MODELS", "Comparison", "Rung", "compare", "rigid_seats"]

@@ -10,10 +10,10 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from solidgear.studies.guards import data, elements, models
-from solidgear.studies.guards.notice import LEVELS, MODELS, Notice, Notices
+from solidgear.studies.guards.notice import LEVELS, Notice, Notices
 from solidgear.studies.guards.probe import Probe
 
-__all__ = ["GUARDS", "LEVELS", "MODELS", "Notice", "Probe"]
+__all__ = ["GUARDS", "LEVELS", "Notice", "Probe"]
 
 #: every guard by its name, in the order in which they speak
 GUARDS: dict[str, Callable[[Probe], Notices]] = {

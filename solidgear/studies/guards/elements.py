@@ -9,13 +9,13 @@ from types import SimpleNamespace
 import numpy as np
 
 from solidgear.errors import SolidgearError
-from solidgear.evidence.converge import sharpest_corner
 from solidgear.evidence.quantities import change
 from solidgear.machine.memory import available_mb
+from solidgear.meshing.corners import sharpest_corner
 from solidgear.solve.backends import BACKENDS, INSTALL, missing
 from solidgear.solve.backends.memory_law import law
 from solidgear.solve.factor import FASTEST, SMALL
-from solidgear.studies.guards.notice import MODELS, SOLIDS, Notice, Notices, beyond
+from solidgear.studies.guards.notice import Notice, Notices, beyond, everything, solids
 from solidgear.studies.guards.probe import Probe
 
 # odd_geometry.py's shaft, softer than a seat of half the diameter: 5 % in C_zz at a bearing, 1.2 %
@@ -31,7 +31,7 @@ def narrow_seat(probe: Probe) -> Notices:
         if width < limit and s.attachment != "section":
             yield Notice(
                 "caution",
-                SOLIDS,
+                solids(),
                 f"the seat of {s.name!r} is {width:.2g} diameters of the shaft wide: below {limit:g} it ties like a line, {softer:g} % softer than a seat of 0.5, and softer "
                 'without limit as it narrows; give the real width, or attachment = "section"',
             )
@@ -57,13 +57,13 @@ def rigid_seats(probe: Probe) -> Notices:
     if not chosen:
         yield Notice(
             "fact",
-            SOLIDS,
+            solids(),
             f"how seats are tied: rigid rings at all of them would move {words} against averaged seats",
         )
     elif max(map(abs, moved.values()), default=0.0) > 0.01:
         yield Notice(
             "caution",
-            SOLIDS,
+            solids(),
             f'rigid seats at {", ".join(chosen)}: rigid rings at all seats move {words} against averaged ones, limit 1 %; they are a stiff bound, use attachment = "average"',
         )
 
@@ -107,7 +107,7 @@ LOCKED, SOFT = 0.01, 0.45
 def nearly_incompressible(probe: Probe) -> Notices:
     """Elements that lock as nu goes to 1/2; the harmonic solid from order 2 on does not."""
     usual = {"solid": "hex20", "harmonic": "Q5"} | (
-        {probe.body.fidelity: probe.body.mesh["element"]} if probe.body.fidelity in SOLIDS else {}
+        {probe.body.fidelity: probe.body.mesh["element"]} if probe.body.fidelity in solids() else {}
     )
     for s in {s.material: s for s in reversed(probe.scene.segments)}.values():
         nu = s.material.nu
@@ -177,6 +177,6 @@ def renderer(probe: Probe) -> Notices:
     if find_spec("pyvista") is None:
         yield Notice(
             "fact",
-            MODELS,
+            everything(),
             "pyvista is not installed: no pictures will be drawn, and no number depends on it",
         )

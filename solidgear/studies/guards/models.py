@@ -10,10 +10,11 @@ import numpy as np
 
 from solidgear.errors import SolidgearError
 from solidgear.evidence import verdict
-from solidgear.evidence.converge import sharpest_corner
+from solidgear.evidence.lumped import preferred
 from solidgear.evidence.ties import SCENE
 from solidgear.evidence.verdict import TIES, gap_verdict
-from solidgear.studies.guards.notice import BEAMS, MODELS, Notice, Notices, beyond
+from solidgear.meshing.corners import sharpest_corner
+from solidgear.studies.guards.notice import Notice, Notices, beams, beyond, everything
 from solidgear.studies.guards.probe import Probe
 
 if TYPE_CHECKING:
@@ -115,7 +116,7 @@ def shoulder(probe: Probe) -> Notices:
         )
         yield Notice(
             "caution",
-            BEAMS,
+            beams(),
             f"shoulder between {a.name!r} and {b.name!r} at y = {1e3 * b.y0:.6g} mm (sharpest corner {degrees:.0f} degrees), ratio of diameters {thick / thin:.2f}: a beam lacks "
             f"{2e3 * thin * missing:.2g} mm of thin shaft, {100 * lacking:.1f} % of the deflection of an overhang of one diameter; 1 % is passed at {STEP:g}, 5 % at {STEEP:g}; "
             "use the harmonic solid",
@@ -134,7 +135,7 @@ def disc_head(probe: Probe) -> Notices:
     if beside and max(beside) < widest and high - low < DISC * widest:
         yield Notice(
             "caution",
-            BEAMS,
+            beams(),
             f"the head with {port.name!r}, y = {1e3 * low:.6g} to {1e3 * high:.6g} mm, is {(high - low) / widest:.2g} of its diameter long: below {DISC:g} it bends in itself, and "
             "a beam's tilt compliance misses 10 % and more; use the harmonic solid",
         )
@@ -151,7 +152,7 @@ def thin_joint(probe: Probe) -> Notices:
         if share < JOINT:
             yield Notice(
                 "caution",
-                BEAMS,
+                beams(),
                 f"{a.name!r} and {b.name!r} share a ring of {1e3 * ring:.3g} mm at y = {1e3 * b.y0:.6g} mm, {share:.2g} of the thinner wall: below {JOINT:g} a beam's tilt "
                 "compliance misses 5 %, below 0.3 12 %; use the harmonic solid",
             )
@@ -169,7 +170,7 @@ def point_beyond_surface(probe: Probe) -> Notices:
     if off > BEYOND and port.attachment != "section":
         yield Notice(
             "caution",
-            MODELS,
+            everything(),
             f"the lumped point {port.name!r} lies {off:.2f} diameters of the shaft beyond its surface ({1e3 * port.lo:.6g} to {1e3 * port.hi:.6g} mm): from {BEYOND:g} on beams "
             "and solids answer different questions (7 % in tilt at 0.1); move the point, or give it the surface it stands for",
         )
@@ -201,7 +202,7 @@ def ovalising(probe: Probe) -> Notices:
     )
     yield Notice(
         "avoid" if low < first else "caution",
-        BEAMS,
+        beams(),
         f"sections lose their shape below {where}: {what}, which a beam cannot do; use the harmonic solid, which solves them",
     )
     cells = probe.cells_around if probe.body.fidelity == "solid" else DEFAULT_AROUND
@@ -297,12 +298,10 @@ def lumped_against_solid(probe: Probe) -> Notices:
         _, found = probe.lumped
     except SolidgearError:
         return  # `effective_mass` says so
-    matched, solid = found["mode-matched"], probe.rung("harmonic")
-    lumped = matched if matched.feasible and matched.first else found["guyan"]
+    lumped, solid = preferred(found), probe.rung("harmonic")
     truth, tolerance = solid.quantities.get("bending 1"), probe.scene.ask.tolerance
-    if not truth:
+    if not truth or lumped is None or lumped.frequency_hz is None:
         return
-    assert lumped.frequency_hz is not None  # Guyan's mass is positive definite
     gap = lumped.frequency_hz / truth - 1
     bands = solid.bands.get(SCENE, {})
     band = bands["bending 1"].gci if "bending 1" in bands else 0.0

@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-BEAMS = ("euler", "timoshenko", "lumped")
-SOLIDS = ("harmonic", "solid")
-MODELS = (*BEAMS, *SOLIDS)
+from solidgear.fidelity.ladder import LADDER
+from solidgear.fidelity.rung import BEAM, LUMPED, SOLID
+
 #: good to know; holds worse than one might think; cannot be told here; out of the tolerance asked
 #: for; wrong
 LEVELS = ("fact", "caution", "open", "avoid", "fault")
@@ -33,6 +33,21 @@ class Notice:
 
 
 Notices = Iterator[Notice]
+
+
+def beams() -> tuple[str, ...]:
+    """Beams, and the lumped models that rest on them."""
+    return (*LADDER.of(BEAM), *LADDER.of(LUMPED))
+
+
+def solids() -> tuple[str, ...]:
+    """Solids."""
+    return LADDER.of(SOLID)
+
+
+def everything() -> tuple[str, ...]:
+    """All models."""
+    return (*beams(), *solids())
 
 
 def beyond(error: float, tolerance: float) -> str:

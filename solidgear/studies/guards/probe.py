@@ -17,12 +17,12 @@ import scipy.sparse.linalg as spla
 
 from solidgear.body import Body, Supports, as_supports
 from solidgear.errors import SolidgearError
-from solidgear.evidence.levels import HARMONIC
 from solidgear.evidence.quantities import JUDGED
 from solidgear.evidence.study import Rung, study
 from solidgear.evidence.ties import rigid_seats
 from solidgear.evidence.verdict import deviations
 from solidgear.fidelity import build
+from solidgear.fidelity.levels import HARMONIC
 from solidgear.reduction.effective_mass import LumpedPoint, Synthesis, synthesise
 from solidgear.scene.rules import TOUCH
 from solidgear.solve.modes import ModeSet, modes

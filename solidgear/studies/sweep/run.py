@@ -11,6 +11,7 @@ from typing import Any
 from solidgear.body import Body
 from solidgear.errors import SolidgearError
 from solidgear.fidelity import build as build_any
+from solidgear.fidelity.ladder import LADDER
 from solidgear.fidelity.options import number
 from solidgear.fidelity.size import refuse_too_large
 from solidgear.scene import Scene
@@ -21,9 +22,6 @@ from solidgear.studies.sweep.task import Task, columns
 from solidgear.studies.sweep.variants import SeatedShaft, Variants
 from solidgear.studies.sweep.workers import workers
 
-#: Most seats one body carries.  Every seat end is a mesh line, so the mesh grows with their number; beams grow by a node.  Measured on the overhung
-#: pinion at these numbers: harmonic 590k unknowns, 2.8 GB, a minute of one core; solid 120k unknowns, 2.4 GB, as long; a beam less than seconds.
-MOST_SEATS = {"euler": 200, "timoshenko": 200, "harmonic": 60, "solid": 12}
 #: Most elastic shapes of a row, two columns each; a basis that holds as many is no small problem.
 MOST_SHAPES = 1000
 #: Variants that the basis is tried on before the run.
@@ -236,7 +234,7 @@ class _Solver:
 def _check_seats(
     shaft: SeatedShaft, scene: Scene, fidelity: str, options: Mapping[str, Any]
 ) -> None:
-    seats, most = len(shaft.stations) - 1, MOST_SEATS.get(fidelity)
+    seats, most = len(shaft.stations) - 1, LADDER[fidelity].most_seats
     if most is not None and seats > most:
         raise SolidgearError(
             f"{seats} different seats are more than the {most} one {fidelity} body carries; vary fewer positions, sweep them in parts, or use a cheaper model"

@@ -5,19 +5,22 @@ them.
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from solidgear.errors import SolidgearError
+from solidgear.evidence.verdict import BEYOND, OPEN, Judgement, gap_verdict, spoken_against
+from solidgear.fidelity.ladder import LADDER
+from solidgear.fidelity.rung import BEAM, SOLID
 from solidgear.reduction.effective_mass import Synthesis, synthesise
 
 if TYPE_CHECKING:
     from solidgear.scene import Scene
 
-#: bodies the lumped rung may rest on, the usual one of a lumped-parameter program first
-SOURCES = ("timoshenko", "euler", "harmonic", "solid")
+#: variants that may stand for the lumped rung, the preferred one first
+PREFERRED = ("mode-matched", "guyan")
 
 
 def synthesise_all(scene: Scene, rungs: dict, tell: Callable[[str], None] = lambda _: None) -> dict:
@@ -71,17 +74,32 @@ def _record(s: Synthesis) -> dict:
     }
 
 
-def representative(lumped: dict) -> tuple[str, str] | None:
-    """(source model, variant) that stands for the lumped rung: mode-matched where it is physical
-    and first, else Guyan.
+def sources() -> tuple[str, ...]:
+    """Rungs whose bodies the lumped rung may rest on, the usual one of a lumped-parameter program
+    first: the best beam.
     """
-    for source in SOURCES:
+    return (*reversed(LADDER.of(BEAM)), *LADDER.of(SOLID))
+
+
+def representative(lumped: dict) -> tuple[str, str] | None:
+    """(source model, variant) that stands for the lumped rung."""
+    for source in sources():
         variants = lumped.get(source, {}).get("variants")
         if not variants:
             continue
-        for name in ("mode-matched", "guyan"):
+        for name in PREFERRED:
             if variants[name]["feasible"] and variants[name]["first"]:
                 return source, name
+    return None
+
+
+def preferred(made: Mapping[str, Synthesis]) -> Synthesis | None:
+    """The variant that stands for the lumped rung: mode-matched where it is physical and holds the
+    mode as its first, else Guyan; None where neither does.
+    """
+    for name in PREFERRED:
+        if made[name].feasible and made[name].first:
+            return made[name]
     return None
 
 
@@ -114,50 +132,15 @@ def model_record(
         return None
     source, variant = chosen
     base, own = models[source], lumped[source]["variants"][variant]
-    why_not, undecided = None, False
-    against = [
-        n["sentence"]
-        for n in notices
-        if "lumped" in n["models"] and n["level"] in ("avoid", "fault")
-    ]
-    if not base["valid"]:
-        why_not, undecided = (
-            f"its stiffness is that of the {source} model, which is out: {base['why_not']}",
-            base["open"],
-        )
-    elif against:
-        why_not = against[0]
-    elif not reference_hz or band is None:
-        why_not, undecided = (
-            "not judged: there is no first bending of a trusted model to hold it against",
-            True,
-        )
-    else:
-        gap = own["frequency_hz"] / reference_hz - 1
-        if abs(gap) - band > tolerance:
-            why_not = (
-                f"its first bending is {100 * gap:+.1f} % off, "
-                f"more than the {100 * tolerance:g} % asked for"
-            )
-            if abs(lumped[source]["first_bending_hz"] / reference_hz - 1) - band > tolerance:
-                why_not += (
-                    ": masses are lumped in the z plane, and the first bending of this shaft "
-                    "is not in it"
-                )
-        elif abs(gap) + band > tolerance:
-            why_not, undecided = (
-                f"not judged: its first bending is {100 * gap:+.1f} % off, and with the band of the "
-                f"reference that may be more or less than the {100 * tolerance:g} % asked for",
-                True,
-            )
+    judged = _judged(own, base, lumped[source], source, reference_hz, tolerance, band, notices)
     # The price of its source comes first: there is no lumped model without a body to condense.
     seconds = {k: base["seconds"].get(k, 0.0) for k in ("build", "statics", "modes")} | {
         "synthesis": lumped[source]["seconds"]
     }
     return {
-        "valid": why_not is None,
-        "open": undecided,
-        "why_not": why_not,
+        "valid": judged.valid,
+        "open": judged.open,
+        "why_not": judged.why_not,
         "source": source,
         "variant": variant,
         "compliance": base["compliance"],
@@ -180,3 +163,45 @@ def model_record(
         "mesh": {"element": f"{variant} masses on the {source} stiffness"},
         "evidence": {},
     }
+
+
+def _judged(
+    own: dict,
+    base: dict,
+    made: dict,
+    source: str,
+    reference_hz: float | None,
+    tolerance: float,
+    band: float | None,
+    notices: Iterable[dict],
+) -> Judgement:
+    """What the lumped rung is worth: its source's stiffness, and its own first bending."""
+    if not base["valid"]:
+        why = f"its stiffness is that of the {source} model, which is out: {base['why_not']}"
+        return Judgement(False, why, open=base["open"])
+    if against := spoken_against("lumped", notices):
+        return Judgement(False, against[0])
+    if not reference_hz or band is None:
+        why = "not judged: there is no first bending of a trusted model to hold it against"
+        return Judgement(False, why, open=True)
+    gap = own["frequency_hz"] / reference_hz - 1
+    kind = gap_verdict(gap, band, tolerance)
+    if kind == BEYOND:
+        why = (
+            f"its first bending is {100 * gap:+.1f} % off, "
+            f"more than the {100 * tolerance:g} % asked for"
+        )
+        lowest = made["first_bending_hz"] / reference_hz - 1
+        if gap_verdict(lowest, band, tolerance) == BEYOND:
+            why += (
+                ": masses are lumped in the z plane, and the first bending of this shaft "
+                "is not in it"
+            )
+        return Judgement(False, why)
+    if kind == OPEN:
+        why = (
+            f"not judged: its first bending is {100 * gap:+.1f} % off, and with the band of the "
+            f"reference that may be more or less than the {100 * tolerance:g} % asked for"
+        )
+        return Judgement(False, why, open=True)
+    return Judgement(True)

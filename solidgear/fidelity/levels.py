@@ -56,9 +56,6 @@ FREE = ("element", "around", "ovalising", "attachments")
 #: cells around of hexahedra that bend as a whole: eight are good to some 6e-4, and the error falls
 #: with the fourth power
 AROUND, ORDER_AROUND = 8, 4
-#: a solid that judges the others is wanted this much better than the tolerance, one that is judged
-#: this much
-JUDGE, JUDGED = 20.0, 1.0
 #: unknowns of the second level above which a third one, some three times as large, is solved only
 #: if the band needs it
 HEAVY = 15_000
@@ -105,32 +102,34 @@ def _turned(level: Options) -> Options:
     return {**level, "around": 4 * -(-3 * level["around"] // 8)}
 
 
-def sequence(model: str, options: Mapping[str, Any]) -> Sequence:
-    """Meshes on which to solve a solid.
+def harmonic_meshes(options: Mapping[str, Any]) -> Sequence:
+    """Meshes on which to solve a harmonic solid.
 
     Parameters
     ----------
-    model : {'harmonic', 'solid'}
     options : mapping
-        Builder options that were asked for.  Where they speak of the mesh, they are the finest of three levels (of two, for order 3).
+        Builder options that were asked for.  Where they speak of the mesh, they are the finest of
+        three levels (of two, for order 3).
     """
-    element = str(options.get("element", "hex20"))
-    layered = model == "harmonic" or element in ("hex20", "hex27")
-    if not set(options) - set(FREE):
-        if model == "harmonic":
-            known = HARMONIC
-        elif layered:
-            around = {"around": AROUND, **options}
-            levels = tuple({**level, **around} for level in HEXAHEDRA)
-            return Sequence(levels, False, True, _turned(levels[0]))
-        else:
-            known = TETRAHEDRA if element == "tet10" else LINEAR
-        return Sequence(tuple({**level, **options} for level in known), False, layered)
-    if model == "harmonic":
+    if set(options) - set(FREE):
         return _below_harmonic(dict(options))
-    if layered and "refinement" not in options:
-        return _below_hexahedra(dict(options))
-    return _refinements(dict(options))
+    return Sequence(tuple({**level, **options} for level in HARMONIC), False, True)
+
+
+def solid_meshes(options: Mapping[str, Any]) -> Sequence:
+    """Meshes on which to solve a 3D solid; options as for :func:`harmonic_meshes`."""
+    element = str(options.get("element", "hex20"))
+    layered = element in ("hex20", "hex27")
+    if set(options) - set(FREE):
+        if layered and "refinement" not in options:
+            return _below_hexahedra(dict(options))
+        return _refinements(dict(options))
+    if layered:
+        around = {"around": AROUND, **options}
+        levels = tuple({**level, **around} for level in HEXAHEDRA)
+        return Sequence(levels, False, True, _turned(levels[0]))
+    known = TETRAHEDRA if element == "tet10" else LINEAR
+    return Sequence(tuple({**level, **options} for level in known), False, False)
 
 
 def _below_harmonic(options: Options) -> Sequence:

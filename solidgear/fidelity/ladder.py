@@ -1,0 +1,91 @@
+"""The ladder: every model there is, cheapest first.  Whatever lists models goes through it."""
+
+from __future__ import annotations
+
+from solidgear.fidelity.levels import harmonic_meshes, solid_meshes
+from solidgear.fidelity.options import BEAM_OPTIONS, HARMONIC_OPTIONS, SOLID_OPTIONS
+from solidgear.fidelity.rung import BEAM, LUMPED, SOLID, BandFactors, Ladder, Later, Rung
+
+LADDER = Ladder(
+    Rung(
+        name="lumped",
+        title="lumped",
+        family=LUMPED,
+        colour="#b3305c",
+        marker="P",
+    ),
+    Rung(
+        name="euler",
+        title="Euler beam",
+        short="Euler",
+        family=BEAM,
+        build=Later("solidgear.fidelity.beam", "beam"),
+        options=BEAM_OPTIONS,
+        preset={"shear": False, "rotary_inertia": False},
+        size=Later("solidgear.fidelity.sizes", "beam_size"),
+        series=Later("solidgear.fidelity.series", "euler_series"),
+        most_seats=200,
+        colour="#c98a00",
+        marker="v",
+    ),
+    Rung(
+        name="timoshenko",
+        title="Timoshenko beam",
+        short="Timoshenko",
+        family=BEAM,
+        build=Later("solidgear.fidelity.beam", "beam"),
+        options=BEAM_OPTIONS,
+        size=Later("solidgear.fidelity.sizes", "beam_size"),
+        series=Later("solidgear.fidelity.series", "timoshenko_series"),
+        most_seats=200,
+        colour="#0072b2",
+        marker="s",
+    ),
+    Rung(
+        name="harmonic",
+        title="harmonic solid",
+        short="harmonic",
+        family=SOLID,
+        theory="exact 3D elasticity of a body of revolution",
+        build=Later("solidgear.fidelity.harmonic", "harmonic"),
+        options=HARMONIC_OPTIONS,
+        size=Later("solidgear.fidelity.sizes", "harmonic_size"),
+        meshes=harmonic_meshes,
+        factors=BandFactors(
+            usual=0.25,
+            rigid=0.32,
+            first=((0.075, 0.0, 0.075), (0.19, 0.0, 0.19)),
+            earlier=0.06,
+            ahead=0.12,
+        ),
+        share=20.0,
+        series=Later("solidgear.fidelity.series", "harmonic_series"),
+        most_seats=60,
+        colour="#00805e",
+        marker="o",
+    ),
+    Rung(
+        name="solid",
+        title="3D solid",
+        family=SOLID,
+        theory="full 3D elasticity",
+        build=Later("solidgear.fidelity.solid", "solid"),
+        options=SOLID_OPTIONS,
+        size=Later("solidgear.fidelity.sizes", "solid_size"),
+        meshes=solid_meshes,
+        factors=BandFactors(
+            usual=0.8,
+            rigid=1.3,
+            first=((1.8, 0.009, 0.6), (1.8, 0.036, 0.8)),
+            earlier=0.15,
+            ahead=0.4,
+            singular=True,
+        ),
+        section_ties=False,
+        mass_tolerance=1e-3,
+        series=Later("solidgear.fidelity.series", "solid_series"),
+        most_seats=12,
+        colour="#5a3e8c",
+        marker="D",
+    ),
+)

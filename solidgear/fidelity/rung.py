@@ -1,0 +1,217 @@
+"""What a rung of the ladder of models is: everything the program must know of a model that it does
+not know of all models.
+"""
+
+from __future__ import annotations
+
+import importlib
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+from solidgear.errors import SolidgearError, nearest, show
+from solidgear.fidelity.options import Option, checked
+
+if TYPE_CHECKING:
+    from solidgear.body import Body
+    from solidgear.fidelity.levels import Sequence
+    from solidgear.fidelity.size import Size
+    from solidgear.scene.shaft import Shaft
+
+LUMPED, BEAM, SOLID = "lumped", "beam", "solid"
+#: a line of a chart: family, label, builder options from the cheapest level on
+Series = tuple[str, str, list[dict[str, Any]]]
+
+
+@dataclass(frozen=True)
+class Later:
+    """A function of a module that is imported when the function is first called: the ladder is read
+    by every command, and builders bring large libraries.
+    """
+
+    module: str
+    name: str
+
+    def load(self) -> Callable[..., Any]:
+        """The function itself."""
+        return getattr(importlib.import_module(self.module), self.name)
+
+    def __call__(self, *args: Any, **kwargs: Any) -> Any:
+        return self.load()(*args, **kwargs)
+
+
+@dataclass(frozen=True)
+class BandFactors:
+    """Calibration of the bands of a solid; see :mod:`solidgear.evidence.bands` for what each does.
+
+    Attributes
+    ----------
+    usual : float
+        Band over the last change.
+    rigid : float
+        The same where seats are rigid: their ends are singular like a crack, and a layer of ratio q
+        leaves the share q.
+    first : pair of (float, float, float)
+        The same after two levels only, without and with rigid seats: the step off the coarsest mesh
+        tells less where it is small, perhaps by accident, and more where it is large. Factor of
+        small steps, the band they reach at most before the factor of large steps takes over, and
+        that factor.
+    earlier : float
+        The last change counts for at least this share of the one before it.
+    ahead : float
+        Share of the last change by which a layered sequence is still expected to go on.
+    singular : bool
+        Whether plain refinement stays at the order of the sharpest corner.
+    """
+
+    usual: float
+    rigid: float
+    first: tuple[tuple[float, float, float], tuple[float, float, float]]
+    earlier: float
+    ahead: float
+    singular: bool = False
+
+
+@dataclass(frozen=True)
+class Rung:
+    """One model of the ladder.
+
+    Attributes
+    ----------
+    name : str
+        What scenes, commands and records call it.
+    title : str
+        In a sentence, such as ``harmonic solid``.
+    short : str
+        At the head of a narrow column.
+    family : str
+        ``lumped`` (rests on another rung's body), ``beam`` or ``solid``. Solids judge the others.
+    build : callable or None
+        ``build(scene, **options)`` gives the free :class:`~solidgear.body.Body`; None for a lumped
+        model.
+    options : mapping of str to Option
+        Of the builder, with their limits.
+    preset : mapping
+        Options that make this rung of a builder that several share.
+    size : callable
+        ``size(scene, options)`` gives the :class:`~solidgear.fidelity.size.Size` of the body before
+        it is built; all options are given.
+    meshes : callable, optional
+        ``meshes(options)`` gives the :class:`~solidgear.fidelity.levels.Sequence` of its coarser
+        and finer relatives; None for a rung that is solved once and has no band of its own.
+    factors : BandFactors, optional
+        What a band over these meshes is made of.
+    share : float
+        Bands are wanted below the tolerance asked for divided by this.
+    theory : str
+        What it solves, in a sentence: ``Trust the ...: exact 3D elasticity ...``.
+    section_ties : bool
+        Whether its mesh carries the mean motion of any section; otherwise it is not compared like
+        for like.
+    mass_tolerance : float
+        Closure of mass and inertia that it owes to the closed form.
+    most_seats : int
+        Seats that one body carries in a sweep.
+    series : callable, optional
+        ``series(scene, full)`` gives the lines of a chart of error against cost; by default its
+        one usual mesh.
+    colour, marker : str
+        In charts.
+    """
+
+    name: str
+    title: str
+    family: str
+    build: Callable[..., Body] | None = None
+    options: Mapping[str, Option] = field(default_factory=dict)
+    size: Callable[[Shaft, Mapping[str, Any]], Size] | None = None
+    short: str = ""
+    preset: Mapping[str, Any] = field(default_factory=dict)
+    meshes: Callable[[Mapping[str, Any]], Sequence] | None = None
+    factors: BandFactors | None = None
+    share: float = 1.0
+    theory: str = ""
+    section_ties: bool = True
+    mass_tolerance: float = 1e-9
+    most_seats: int = 12
+    series: Callable[[Any, bool], list[Series]] | None = None
+    colour: str = "#777777"
+    marker: str = "P"
+
+    @property
+    def heading(self) -> str:
+        """Its name at the head of a narrow column."""
+        return self.short or self.title
+
+    def checked(self, options: Mapping[str, Any]) -> dict[str, Any]:
+        """Options for the builder within their limits; see
+        :func:`solidgear.fidelity.options.checked`.
+        """
+        return checked(self.name, options, self.options)
+
+    def defaults(self) -> dict[str, Any]:
+        """Every option of the builder with the value it has unless told otherwise."""
+        from inspect import signature
+
+        assert self.build is not None
+        builder = self.build.load() if isinstance(self.build, Later) else self.build
+        parameters = signature(builder).parameters.values()
+        return {p.name: p.default for p in parameters if p.default is not p.empty} | dict(
+            self.preset
+        )
+
+
+class Ladder:
+    """Rungs by name, cheapest first.
+
+    Parameters
+    ----------
+    rungs : Rung
+
+    Examples
+    --------
+    >>> from solidgear.fidelity.ladder import LADDER
+    >>> LADDER["solid"].title
+    '3D solid'
+    >>> LADDER.of("beam")
+    ('euler', 'timoshenko')
+    """
+
+    def __init__(self, *rungs: Rung):
+        self.rungs = rungs
+
+    def __iter__(self) -> Iterator[Rung]:
+        return iter(self.rungs)
+
+    def __contains__(self, name: object) -> bool:
+        return any(rung.name == name for rung in self.rungs)
+
+    def __getitem__(self, name: str) -> Rung:
+        for rung in self.rungs:
+            if rung.name == name:
+                return rung
+        raise SolidgearError(
+            f"model {show(name, 40)} is unknown{nearest(name, self.names)}; "
+            f"use one of {', '.join(self.names)}"
+        )
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """All rungs."""
+        return tuple(rung.name for rung in self.rungs)
+
+    @property
+    def bodies(self) -> tuple[str, ...]:
+        """Rungs that build a body of their own."""
+        return tuple(rung.name for rung in self.rungs if rung.build is not None)
+
+    @property
+    def judges(self) -> tuple[str, ...]:
+        """Rungs from the one that judges best to the one that judges worst: solids, the cheaper
+        first, then beams, the better first.
+        """
+        return (*self.of(SOLID), *reversed(self.of(BEAM)))
+
+    def of(self, *families: str) -> tuple[str, ...]:
+        """Rungs of some families."""
+        return tuple(rung.name for rung in self.rungs if rung.family in families)

@@ -1,0 +1,246 @@
+"""Sizes of beams, harmonic solids and 3D solids from the layout of their meshes; see
+:mod:`solidgear.fidelity.size`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from types import SimpleNamespace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from solidgear.fidelity.counts import KINDS, nodes, sections
+from solidgear.fidelity.size import Size
+
+if TYPE_CHECKING:
+    from solidgear.scene.shaft import Shaft
+
+MB = 2.0**20
+#: bytes of a matrix entry
+ENTRY = 12.0
+
+
+def _ports(scene: Shaft, given: Mapping[str, Any]) -> int:
+    return len(scene.stations) * len(given.get("attachments") or (None,))
+
+
+# ------------------------------------------------------------------------------------------------- beams
+def beam_size(scene: Shaft, given: Mapping[str, Any]) -> Size:
+    """Size of a beam; counted."""
+    from solidgear.fidelity.beam import mesh
+
+    n = len(mesh(scene, given["elements"])[0])
+    inner = 1 + given["rotary_inertia"] if given["shear"] and given["mass"] == "consistent" else 0
+    bending = 2 * n + inner * (n - 1)
+    unknowns, entries = 2 * bending + 2 * n, (4 + inner) ** 2 * (n - 1) + 6 * n
+    # narrow bands: the factor is no larger than the matrix, and Python's lists of element matrices
+    # outweigh both
+    memory = (3e3 * n + 16.0 * 6 * _ports(scene, given) * unknowns) / MB
+    return Size(unknowns, entries, entries, memory, 2 * memory, "give fewer elements")
+
+
+# ------------------------------------------------------------------------------------------------- laid out by lines
+@dataclass(frozen=True)
+class _Lines:
+    """First and last ring line of every row of cells and of every mesh line between rows; where
+    there is material up to the axis.
+    """
+
+    rows: np.ndarray
+    lines: np.ndarray
+    solid_rows: np.ndarray
+    solid_lines: np.ndarray
+
+
+def _lines(scene: Shaft, plan) -> _Lines:
+    numbers = [set(plan.ring_numbers(k)) for k in range(len(scene.segments))]
+    full = np.array([s.inner0 == s.inner1 == 0.0 for s in scene.segments])[plan.segment]
+    count = np.array([len(numbers[k]) - 1 for k in plan.segment])
+    # Where two segments meet, a mesh line has the rings of both.
+    meet = [len(numbers[a] | numbers[b]) - 1 for a, b in zip(plan.segment, plan.segment[1:])]
+    across = np.array([count[0], *meet, count[-1]])
+    rows, lines = (np.column_stack([np.zeros_like(c), c]) for c in (count, across))
+    return _Lines(rows, lines, full, np.r_[full[:1], full] | np.r_[full, full[-1:]])
+
+
+def harmonic_size(scene: Shaft, given: Mapping[str, Any]) -> Size:
+    """Size of a harmonic solid; counted."""
+    from solidgear.fidelity.harmonic import harmonic_layout
+
+    order = given["order"]
+    names = ("layers", "edge_layers", "ratio", "relative_size", "size", "refinement")
+    plan = _lines(
+        scene, harmonic_layout(scene, given["attachments"], **{k: given[k] for k in names})
+    )
+    across_rows, across_lines = (np.diff(part).sum() for part in (plan.rows, plan.lines))
+    vertices, edges, cells = (
+        across_lines + len(plan.lines),
+        across_lines + across_rows + len(plan.rows),
+        across_rows,
+    )
+    n = int(vertices + edges * (order - 1) + cells * (order - 1) ** 2)
+    inner_edges = 4 * cells - edges
+    inner_vertices = vertices - (edges - inner_edges)
+    pairs = int(cells * (order + 1) ** 4 - inner_edges * (order + 1) ** 2 + inner_vertices)
+    axis = order * int(plan.solid_rows.sum()) + int((np.diff(np.r_[0, plan.solid_rows]) > 0).sum())
+    # components, conditions on the axis; bending, axial motion, torsion and all further waves
+    blocks = [(3, 2), (2, 1), (1, 0)] + [(3, 3)] * len(given["ovalising"])
+    sizes = [(c, c * n - on_axis * axis, c * c * pairs) for c, on_axis in blocks]
+    unknowns, entries = (
+        sizes[0][1] + sum(size for _, size, _ in sizes),
+        sum(nnz for *_, nnz in sizes),
+    )
+    built = (18.2 * entries + 300.0 * unknowns) / MB + min(35.0, 12.0 * entries / MB)
+    held = peak = 0.0
+    for c, size, nnz in sizes:
+        factor = _planar_factor_mb(c, size, nnz)
+        peak = max(
+            peak, held + factor + ENTRY * nnz / MB
+        )  # of the shifted matrix, for as long as it is factored
+        held += factor
+    solved = (
+        16.0
+        * _ports(scene, given)
+        * sum(motions * size for motions, (_, size, _) in zip((2, 1, 1), sizes))
+        / MB
+    )
+    lower = (
+        "lower order, refinement or layers, or raise size"
+        + ", or ask for fewer ovalising harmonics" * bool(given["ovalising"])
+    )
+    return Size(
+        int(unknowns),
+        int(entries),
+        int(max(cells * (order + 1) ** 4, sizes[0][2])),
+        float(built),
+        float(built + peak + solved),
+        lower,
+    )
+
+
+def _planar_factor_mb(components: int, unknowns: int, entries: int) -> float:
+    """Peak memory of factoring a block on a meridian.
+
+    SuperLU's factor of 24 blocks of order 1 to 8 within 8 %: nodes times their degree, and a
+    logarithm for the dissection of the plane. PARDISO, which takes over the largest ones, by its
+    own estimate for orders 8 and 12.
+    """
+    from solidgear.solve.factor import LARGE_PLANAR
+
+    if entries >= LARGE_PLANAR:
+        return 33.0 * entries / MB
+    n, pairs = unknowns / components, entries / components**2
+    return (
+        12.6 * components**2 * n * max(0.585 * pairs / n + 7.37 * np.log2(n) - 52, pairs / n) / MB
+    )
+
+
+# ------------------------------------------------------------------------------------------------- solids
+def solid_size(scene: Shaft, given: Mapping[str, Any]) -> Size:
+    """Size of a 3D solid; counted for hexahedra, estimated for tetrahedra."""
+    if given["element"].startswith("tet"):
+        return _tetrahedra(scene, given)
+    return _hexahedra(scene, given)
+
+
+def _hexahedra(scene: Shaft, given: Mapping[str, Any]) -> Size:
+    from solidgear.fidelity.solid import hexahedra_layout
+
+    names = (
+        "relative_size",
+        "size",
+        "layers",
+        "edge_layers",
+        "radial_layers",
+        "ratio",
+        "around",
+        "refinement",
+    )
+    layout, around = hexahedra_layout(scene, given["attachments"], **{k: given[k] for k in names})
+    plan = _lines(scene, layout)
+    rows = sections(plan.rows, plan.solid_rows, around)
+    lines = sections(plan.lines, plan.solid_lines, around)
+    # a section drawn out along the shaft makes edges of its vertices, faces of its edges and cells
+    # of its faces
+    counts = (lines[0], lines[1] + rows[0], lines[2] + rows[1], rows[2])
+    unknowns, entries = nodes(given["element"], counts, 4)
+    bubbles = 3 * counts[3] if given["element"] == "hex27" else 0
+    # fill grows with the whole and, as a shaft is long, with its cross-section: 30 meshes of 2,000
+    # to 165,000 unknowns within 20 %
+    width = unknowns / (2 * len(plan.rows))
+    fill = (
+        np.exp(1.448) * (unknowns - bubbles) ** 1.233 * (entries / unknowns) ** 0.165 * width**0.305
+    )
+    return _solid(scene, given, unknowns, entries, counts[3], fill)
+
+
+def _tetrahedra(scene: Shaft, given: Mapping[str, Any]) -> Size:
+    from solidgear.fidelity.solid import tetrahedra_plan
+    from solidgear.meshing.element_size import estimated_counts
+
+    wanted = [(s, a) for s in scene.stations for a in (given["attachments"] or (s.attachment,))]
+    counts = estimated_counts(
+        scene.segments,
+        **tetrahedra_plan(
+            scene, wanted, **{k: given[k] for k in ("size", "graded_size", "refinement", "around")}
+        ),
+    )
+    unknowns, entries = nodes(given["element"], counts, 3)
+    # 21 meshes of 11,000 to 140,000 unknowns within 30 %
+    fill = np.exp(0.519) * unknowns**1.313 * (entries / unknowns) ** 0.448
+    return _solid(scene, given, unknowns, entries, counts[3], fill)
+
+
+def _solid(
+    scene: Shaft,
+    given: Mapping[str, Any],
+    unknowns: float,
+    entries: float,
+    cells: float,
+    fill: float,
+) -> Size:
+    per_cell = KINDS[given["element"]].cell
+    tets = given["element"].startswith("tet")
+    # matrices; mesh, its numbering and its quality; gmsh itself
+    built = (1.11 * ENTRY * entries + 380.0 * per_cell * cells) / MB + 20 * tets
+    # the shifted matrix while it is factored, and afterwards the vectors of the search for modes
+    beside = (
+        max(ENTRY * entries, 8.0 * 150 * unknowns) / MB
+        + 16.0 * 6 * _ports(scene, given) * unknowns / MB
+    )
+    lower = (
+        "lower refinement"
+        + (", or raise size and graded_size" if tets else ", around or the layers, or raise size")
+        + ", or use the harmonic model"
+    )
+    peak = built + beside + _solid_factor_mb(unknowns, entries, fill)
+    return Size(
+        int(round(unknowns)),
+        int(entries),
+        int(max(entries, per_cell**2 * cells)),
+        float(built),
+        float(peak),
+        lower,
+    )
+
+
+def _solid_factor_mb(unknowns: float, entries: float, fill: float) -> float:
+    """Peak memory of factoring the matrix of a solid by the back end that will be taken.
+
+    PARDISO needs its factor, its copy of the matrix and work by the entry: its own estimate for 47
+    meshes within 1 % where the fill is known.
+    """
+    from solidgear.solve.backends.memory_law import law
+    from solidgear.solve.factor import FactorError, choice
+
+    matrix = SimpleNamespace(shape=(unknowns, unknowns), nnz=entries)
+    try:
+        name, _ = choice(matrix)
+    except FactorError:
+        name = "superlu"  # said where it is factored
+    if name == "pardiso":
+        return (8.0 * 1.05 * fill + 24.5 * entries) / MB + 20
+    # MUMPS's own estimate was 1.46 to 1.84 times this law on four shafts
+    return 1.8 * law("cholmod", matrix, False) if name == "mumps" else law(name, matrix, False)
