@@ -304,7 +304,8 @@ def test_rotor_for_ross_has_our_sections_and_bearings():
         [b.stiffness[c, c] for c in range(3)] for b in scene.bearings
     ]
     assert all(
-        abs(body.geometry[k[0]] - b.y) < 1e-12 for k, b in zip(data["bearings"], scene.bearings)
+        abs(body.geometry.nodes[k[0]] - b.y) < 1e-12
+        for k, b in zip(data["bearings"], scene.bearings)
     )
 
 

@@ -20,7 +20,6 @@ from solidgear.errors import SolidgearError
 from solidgear.meshing.quality import volume_of
 from solidgear.report import render
 from solidgear.report.export import write_vtu
-from solidgear.report.fields import surface
 from solidgear.report.render import PACKAGES, RenderJob, render_modes
 from solidgear.solve.modes import Mode
 
@@ -76,7 +75,7 @@ def test_six_rigid_motions_and_a_closed_surface(name, fidelity, options):
     scene = sg.load(ROOT / "geometry" / f"{name}.toml")
     body = sg.build(scene, fidelity, **options)
     for component in range(6):
-        s = surface(scene, body, unit_motion(body, component))
+        s = body.surface(unit_motion(body, component))
         axis = np.eye(3)[component % 3]
         wanted = (
             np.broadcast_to(axis, s.points.shape) if component < 3 else np.cross(axis, s.points)
@@ -102,7 +101,7 @@ def test_six_rigid_motions_and_a_closed_surface(name, fidelity, options):
 def test_ovalising_shapes_move_as_their_harmonic(pinion):
     body = sg.build(pinion, "harmonic", order=2, ovalising=(2,))
     index = next(i for i, b in enumerate(body.blocks) if b.name == "ovalising_2")
-    s = surface(pinion, body, {index: np.ones(body.blocks[index].size)})
+    s = body.surface({index: np.ones(body.blocks[index].size)})
     x, _, z = s.points.T
     t = np.arctan2(x, z)
     # all unknowns one: U = 2, V = 0, W = 1 beyond the cells that touch the axis, where they are
@@ -117,7 +116,7 @@ def test_ovalising_shapes_move_as_their_harmonic(pinion):
 
 
 def shapes(scene, body, modes, name="bending 1"):
-    return [surface(scene, body, v) for v in modes.named(name).vectors]
+    return [body.surface(v) for v in modes.named(name).vectors]
 
 
 @pytest.mark.parametrize(
@@ -145,7 +144,7 @@ def test_first_bending_moves_as_in_the_solid(pinion, solved, fidelity, options, 
 def test_what_does_not_fit_is_refused(pinion, solved):
     body, _ = solved("timoshenko")
     with pytest.raises(SolidgearError, match="block bending_z has"):
-        surface(pinion, body, {0: np.zeros(3)})
+        body.surface({0: np.zeros(3)})
 
 
 def drawing(pinion, solved, folder):
@@ -154,9 +153,7 @@ def drawing(pinion, solved, folder):
         body, modes = solved(fidelity, **options)
         mode = modes.named("bending 1")
         title = f"{fidelity} - {mode.name} - {mode.frequency_hz:.1f} Hz"
-        jobs.append(
-            RenderJob(surface(pinion, body, mode.vectors[0]), title, folder / f"{fidelity}.png")
-        )
+        jobs.append(RenderJob(body.surface(mode.vectors[0]), title, folder / f"{fidelity}.png"))
     return jobs
 
 
@@ -270,7 +267,7 @@ def test_a_solid_comes_back_from_its_file(pinion, tmp_path, element, kind, vtk_n
         Mode(f"motion {c}", "", 1.5, 1, (unit_motion(body, c),), np.zeros((1, 1, 6)), 1.0)
         for c in range(6)
     ]
-    path = write_vtu(pinion, body, made_up, tmp_path / "new" / "body.vtu", most=4)
+    path = write_vtu(body, made_up, tmp_path / "new" / "body.vtu", most=4)
     assert [p.name for p in path.parent.iterdir()] == ["body.vtu"]
     back = meshio.read(path)
     assert [c.type for c in back.cells] == [kind]
@@ -292,11 +289,11 @@ def test_a_solid_comes_back_from_its_file(pinion, tmp_path, element, kind, vtk_n
 @pytest.mark.parametrize("fidelity, options", [("timoshenko", {}), ("harmonic", FINE)])
 def test_other_bodies_are_written_as_surfaces(pinion, solved, tmp_path, fidelity, options):
     body, modes = solved(fidelity, **options)
-    back = meshio.read(write_vtu(pinion, body, modes, tmp_path / "body.vtu"))
+    back = meshio.read(write_vtu(body, modes, tmp_path / "body.vtu"))
     assert {c.type for c in back.cells} == {"quad", "triangle"}
     bending = modes.named("bending 1")
     for letter, vectors in zip("ab", bending.vectors):
-        s = surface(pinion, body, vectors)
+        s = body.surface(vectors)
         np.testing.assert_array_equal(back.points, s.points)
         np.testing.assert_array_equal(
             back.point_data[f"bending 1{letter} ({bending.frequency_hz:.2f} Hz)"], s.displacement

@@ -230,7 +230,7 @@ def test_a_full_disk_costs_the_picture_a_sentence(tmp_path, monkeypatch):
 
     monkeypatch.setattr(render.np, "savez", full)
     with pytest.raises(sg.SolidgearError, match="No space left on device"):
-        render_mode(scene, body, sg.modes(body, scene, 4), "bending 1", tmp_path / "mode.png")
+        render_mode(body, sg.modes(body, scene, 4), "bending 1", tmp_path / "mode.png")
     assert not list(tmp_path.iterdir())
 
 

@@ -377,7 +377,7 @@ def beams(race: Race) -> None:
             heat,
             "ROSS, Timoshenko beam",
             call,
-            6 * len(body.geometry),
+            6 * len(body.geometry.nodes),
             note="best of three; wall seconds without imports",
         )
     )

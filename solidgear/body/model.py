@@ -7,7 +7,7 @@ Bearings are never part of a body: they are :class:`Supports` that act on ports.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, TypeAlias
@@ -17,6 +17,7 @@ import scipy.sparse as sp
 
 from solidgear.body.mass import ScalarMass
 from solidgear.body.sections import Sections, from_points, signed
+from solidgear.body.surface import Drawing, Surface, mesh_unknowns
 from solidgear.errors import SolidgearError
 from solidgear.frames import DOF_NAMES, shift
 
@@ -173,8 +174,9 @@ class Body:
         Overall length, m; it makes rotations and translations comparable.
     mesh : dict
         Facts about the discretisation, for the record.
-    geometry : object or None
-        What a renderer needs to draw the body (fidelity specific), or None.
+    geometry : Drawing or None
+        The mesh as its builder has it, which knows how it is drawn
+        (:class:`solidgear.body.surface.Drawing`).
     further : object or None
         Builder of further circumferential families, such as
         :class:`solidgear.fidelity.circumferential.Families`; None where the blocks are all that the
@@ -187,7 +189,7 @@ class Body:
     scale: float
     length: float
     mesh: dict[str, Any] = field(default_factory=dict)
-    geometry: Any = None
+    geometry: Drawing | None = None
     further: Any = None
     # Factorisations and flexibilities are kept with the body they belong to, so that they die with
     # it.
@@ -224,6 +226,23 @@ class Body:
                 self.fidelity, (self.further.block(n),), (), scale, self.length, self.mesh
             )
         return kept[n]
+
+    def surface(self, vectors: Mapping[int, np.ndarray]) -> Surface:
+        """Surface of the body moved by a vector of unknowns.
+
+        Parameters
+        ----------
+        vectors : mapping of block index to (n,) ndarray
+            One shape, such as ``Mode.vectors[0]``; blocks left out stand still.
+
+        Raises
+        ------
+        SolidgearError
+            For a body that carries no geometry, or a vector that does not fit its block.
+        """
+        if self.geometry is None:
+            raise SolidgearError(f"the {self.fidelity} body carries no geometry to draw")
+        return self.geometry.surface(mesh_unknowns(self, vectors))
 
     def port_index(self, name: str, attachment: str | None = None) -> int:
         """Index of the port called ``name``; the first one unless an attachment is asked for.

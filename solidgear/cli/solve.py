@@ -273,7 +273,7 @@ def render(
     loaded = load(scene)
     body = build_body(loaded, fidelity, settings)
     found = solve(body, loaded, max(loaded.ask.modes, 10))
-    path = render_mode(loaded, body, found, mode, out)
+    path = render_mode(body, found, mode, out)
     print(path)
 
 

@@ -15,6 +15,7 @@ import scipy.sparse as sp
 from solidgear.body import Block, Body, Port
 from solidgear.errors import SolidgearError
 from solidgear.fidelity.attachment import tie_rigidly
+from solidgear.fidelity.beam_drawing import BeamLine
 from solidgear.fidelity.beam_element import Fields, Section, bending_matrices, rod_matrices
 from solidgear.fidelity.options import BEAM_OPTIONS, checked
 from solidgear.fidelity.scale import elastic_scale
@@ -160,7 +161,7 @@ def beam(
         elastic_scale(scene),
         scene.length,
         facts,
-        geometry=nodes,
+        geometry=BeamLine(scene, nodes),
     )
 
 

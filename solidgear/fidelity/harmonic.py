@@ -7,6 +7,7 @@ The unknowns and the matrices of one harmonic are in
 from __future__ import annotations
 
 import logging
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -14,6 +15,7 @@ from skfem import ElementQuad1, ElementQuad2, MeshQuad1
 from skfem.element import ElementQuadP
 
 from solidgear.body import Body, Port
+from solidgear.body.surface import Surface
 from solidgear.fidelity.assembly import unknowns
 from solidgear.fidelity.circumferential import Families
 from solidgear.fidelity.harmonic_blocks import _Work
@@ -26,12 +28,22 @@ from solidgear.meshing.meridian import Meridian, meridian
 
 @dataclass(frozen=True)
 class HarmonicMesh:
-    """What a renderer and the port integrals need of a harmonic body."""
+    """The mesh of a meridian, with the unknowns of one component of the displacement."""
 
     mesh: MeshQuad1
     element: object
     dofs: np.ndarray
     meridian: Meridian
+
+    def surface(self, moved: Mapping[str, np.ndarray]) -> Surface:
+        """The outline of the meridian turned around the axis."""
+        from solidgear.fidelity.harmonic_drawing import surface
+
+        return surface(self, moved)
+
+    def volume(self) -> None:
+        """None: the mesh is that of a meridian."""
+        return None
 
 
 def harmonic(

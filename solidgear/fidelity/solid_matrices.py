@@ -64,7 +64,7 @@ def _mean(m: SolidMesh, facets, y0, n) -> sp.csr_matrix:
     """(6, 3n) area-weighted least-squares rigid motion of facets about the axis point at y0."""
     a = np.zeros((6, 6))
     b = np.zeros((n, 3, 6))
-    for value, x, area, dofs in m.surface(facets):
+    for value, x, area, dofs in m.over_facets(facets):
         offset = np.moveaxis(x, 0, -1) - np.array([0.0, y0, 0.0])  # (e, q, 3)
         motion = np.zeros((*offset.shape, 6))
         motion[..., :3] = np.eye(3)

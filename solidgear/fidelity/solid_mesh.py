@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -11,6 +12,7 @@ from skfem.element import ElementHex1, ElementHex2, ElementHexS2, ElementTetP1, 
 from skfem.quadrature import get_quadrature
 from skfem.refdom import RefTet, RefTri
 
+from solidgear.body.surface import Surface, Volume
 from solidgear.fidelity.assembly import reference, tabulate, unknowns
 
 ELEMENTS = {
@@ -46,6 +48,16 @@ class SolidMesh:
     nodes: np.ndarray
     segment: np.ndarray
 
+    def surface(self, moved: Mapping[str, np.ndarray]) -> Surface:
+        """The boundary of the mesh."""
+        from solidgear.fidelity.solid_drawing import solid_surface
+
+        return solid_surface(self, moved.get("full"))
+
+    def volume(self) -> Volume:
+        """The mesh itself."""
+        return Volume(self.name, self.nodes, self.dofs, self.element.doflocs)
+
     @cached_property
     def boundary(self) -> np.ndarray:
         """Indices of the facets on the surface."""
@@ -62,7 +74,7 @@ class SolidMesh:
         """Tabulate basis and geometry on some elements."""
         return tabulate(self.element, self.nodes[:, self.dofs[:, elements]], self.element, points)
 
-    def surface(self, facets: np.ndarray):
+    def over_facets(self, facets: np.ndarray):
         """Quadrature on facets: yields (values (nb, q), x (3, e, q), area weights (e, q), unknowns
         (nb, e)).
         """

@@ -9,12 +9,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from solidgear.body.surface import Volume, mesh_unknowns
 from solidgear.machine.whole_file import whole
-from solidgear.report.fields import mesh_unknowns, surface
 
 if TYPE_CHECKING:
     from solidgear.body import Body
-    from solidgear.scene import Scene
     from solidgear.solve.modes import Mode, ModeSet
 
 #: solid element -> (meshio's cell type, VTK's class of cell)
@@ -28,7 +27,6 @@ CELLS = {
 
 
 def write_vtu(
-    scene: Scene,
     body: Body,
     modes: ModeSet | Iterable[Mode],
     path: str | Path,
@@ -44,7 +42,6 @@ def write_vtu(
 
     Parameters
     ----------
-    scene : Scene
     body : Body
     modes : ModeSet or iterable of Mode
     path : str or Path
@@ -68,19 +65,18 @@ def write_vtu(
     path = Path(path)
     told: Any = getattr(modes, "modes", modes)
     shapes = dict(_shapes(islice(told, most)))
-    if body.fidelity == "solid" and body.geometry is not None:
-        points, cells, data = _volume(body, shapes)
+    volume = body.geometry.volume() if body.geometry is not None else None
+    if volume is not None:
+        points, cells, data = _volume(body, volume, shapes)
     else:
-        still = surface(scene, body, {})
+        still = body.surface({})
         points = still.points
         cells = [
             (kind, at)
             for kind, at in (("quad", still.faces), ("triangle", still.triangles))
             if len(at)
         ]
-        data = {
-            name: surface(scene, body, vectors).displacement for name, vectors in shapes.items()
-        }
+        data = {name: body.surface(vectors).displacement for name, vectors in shapes.items()}
     path.parent.mkdir(parents=True, exist_ok=True)
     with whole(path) as partial:
         meshio.write(partial, meshio.Mesh(points, cells, point_data=data), file_format="vtu")
@@ -95,15 +91,14 @@ def _shapes(modes: Iterable):
             yield f"{mode.name}{letter} ({mode.frequency_hz:.2f} Hz)", vectors
 
 
-def _volume(body, shapes):
-    mesh = body.geometry
-    kind, vtk_name = CELLS[mesh.name]
-    order = node_order(mesh.element.doflocs, vtk_name)
+def _volume(body: Body, mesh: Volume, shapes):
+    kind, vtk_name = CELLS[mesh.element]
+    order = node_order(mesh.local, vtk_name)
     data = {
         name: mesh_unknowns(body, vectors)["full"].reshape(-1, 3)
         for name, vectors in shapes.items()
     }
-    return mesh.nodes.T, [(kind, mesh.dofs[order].T)], data
+    return mesh.nodes.T, [(kind, mesh.cells[order].T)], data
 
 
 def node_order(doflocs: np.ndarray, vtk_name: str) -> np.ndarray:

@@ -22,7 +22,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 if TYPE_CHECKING:  # the child starts quickly because it imports nothing else of solidgear
-    from solidgear.report.moving_surface import Surface
+    from solidgear.body.surface import Surface
 
 SIZE = (1200, 700)
 #: largest drawn displacement, as a share of the length of the shaft

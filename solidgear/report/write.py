@@ -14,7 +14,6 @@ from solidgear.report.folder import clear, held, prepare
 
 if TYPE_CHECKING:
     from solidgear.body import Body
-    from solidgear.scene import Scene
     from solidgear.solve.modes import ModeSet
     from solidgear.studies.comparison import Comparison
 
@@ -59,7 +58,6 @@ def write_all(
                     results,
                     f"vtu of {model}",
                     _write_vtu,
-                    comparison.scene,
                     rung,
                     folder / f"modes_{model}.vtu",
                 )
@@ -101,14 +99,13 @@ def _leave_out(results: dict, sentence: str) -> None:
     results["warnings"].append(sentence)
 
 
-def _write_vtu(scene: Scene, rung, path: Path) -> None:
+def _write_vtu(rung, path: Path) -> None:
     from solidgear.report.export import write_vtu
 
-    write_vtu(scene, rung.body, rung.modes, path)
+    write_vtu(rung.body, rung.modes, path)
 
 
-def _job(scene: Scene, body, modes, name: str, path: Path):
-    from solidgear.report.fields import surface
+def _job(body, modes, name: str, path: Path):
     from solidgear.report.render import RenderJob
 
     mode = modes.named(name)
@@ -118,7 +115,7 @@ def _job(scene: Scene, body, modes, name: str, path: Path):
             f"mode {name!r}: the {body.fidelity} model found none of that name; it has {have}"
         )
     title = f"{body.fidelity}: {mode.name}, {mode.frequency_hz:.1f} Hz"
-    return RenderJob(surface(scene, body, mode.vectors[0]), title, path)
+    return RenderJob(body.surface(mode.vectors[0]), title, path)
 
 
 def _draw(comparison, folder: Path) -> None:
@@ -138,9 +135,7 @@ def _draw(comparison, folder: Path) -> None:
         _try(
             results,
             f"render of {model}",
-            lambda m=model, r=rung, n=name, p=path: jobs.update(
-                {m: _job(comparison.scene, r.body, r.modes, n, p)}
-            ),
+            lambda m=model, r=rung, n=name, p=path: jobs.update({m: _job(r.body, r.modes, n, p)}),
         )
     reasons: dict[str, list[str]] = {}
     for model, done in zip(jobs, render_modes(jobs.values())):
@@ -152,9 +147,7 @@ def _draw(comparison, folder: Path) -> None:
         _leave_out(results, f"render of {', '.join(models)} left out: {reason}")
 
 
-def render_mode(
-    scene: Scene, body: Body, modes: ModeSet, name: str, path: str | os.PathLike
-) -> Path:
+def render_mode(body: Body, modes: ModeSet, name: str, path: str | os.PathLike) -> Path:
     """Draw one mode of one body.
 
     Raises
@@ -165,7 +158,7 @@ def render_mode(
     from solidgear.report.render import render_modes
 
     path = Path(path)
-    job = _job(scene, body, modes, name, path)
+    job = _job(body, modes, name, path)
     prepare(path.parent)
     try:
         (done,) = render_modes([job])

@@ -47,7 +47,7 @@ def rotor(scene, body) -> dict:
     body : Body
         Timoshenko body of it, for its nodes.
     """
-    nodes = [float(y) for y in body.geometry]
+    nodes = [float(y) for y in body.geometry.nodes]
     elements = []
     for left, right in zip(nodes, nodes[1:]):
         middle = (left + right) / 2

@@ -219,8 +219,10 @@ class Probe:
     @cached_property
     def cells_around(self) -> int:
         """Cells around of a 3D solid of hexahedra (of tetrahedra, an upper bound)."""
-        mesh = self.body.geometry.mesh
-        x, _, z = mesh.p[:, np.unique(mesh.t[:8])]
+        volume = self.body.geometry.volume() if self.body.geometry else None
+        assert volume is not None  # asked of 3D solids only
+        corners = 8 if volume.element.startswith("hex") else 4
+        x, _, z = volume.nodes[:, np.unique(volume.cells[:corners])]
         r = np.hypot(x, z)
         rim = r > (1 - 1e-6) * r.max()
         return len(np.unique(np.round(np.arctan2(x[rim], z[rim]) % (2 * np.pi), 6)))

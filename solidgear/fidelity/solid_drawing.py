@@ -4,22 +4,23 @@ from __future__ import annotations
 
 import numpy as np
 
-from solidgear.report.moving_surface import PIECES, Surface
+from solidgear.body.surface import PIECES, Surface
+from solidgear.fidelity.assembly import reference
 
 
 def solid_surface(geometry, vector) -> Surface:
     """The boundary of the volume mesh; faces of second order are divided, so that curved ones look
     curved.
     """
-    from solidgear.fidelity.assembly import reference
-
     moved = np.zeros((geometry.nodes.shape[1], 3)) if vector is None else vector.reshape(-1, 3)
     fields = np.column_stack([geometry.nodes.T, moved])
     refdom, element, dofs = geometry.mesh.refdom, geometry.element, geometry.dofs
     linear = len(dofs) == refdom.nnodes
     # Two pieces end at the nodes in the middle of edges; more only pay where the mesh is coarse
     # enough to see it.
-    m = 1 if linear else PIECES if len(geometry.boundary) < 4000 else 2
+    m = PIECES if len(geometry.boundary) < 4000 else 2
+    if linear:
+        m = 1
     corners = len(refdom.facets[0])
     grid, cells, rim = _grid(m, corners)
     # Every rim point lies k pieces along the edge from corner a to corner b (k = 0 at a).

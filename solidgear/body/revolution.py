@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from solidgear.report.moving_surface import Surface
+from solidgear.body.surface import Surface
 
 TURNS = 48
 MERIDIANS = 12

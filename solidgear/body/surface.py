@@ -1,0 +1,95 @@
+"""How a body is drawn: its surface moved by a vector of unknowns, and the mesh of a volume."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Protocol
+
+import numpy as np
+
+from solidgear.errors import SolidgearError
+
+if TYPE_CHECKING:
+    from solidgear.body.model import Body
+
+#: pieces an edge is cut into, where its displacement is curved
+PIECES = 4
+
+
+@dataclass(frozen=True, eq=False)
+class Surface:
+    """A moving surface, made of faces whose normals point out of the material.
+
+    Attributes
+    ----------
+    points : (n, 3) ndarray
+        x, y, z at rest, m.
+    displacement : (n, 3) ndarray
+        In the unit of the vector it was made from; m for unit-mass shapes up to their common
+        factor.
+    faces : (m, 4) ndarray of int
+        Quadrilaterals.
+    triangles : (k, 3) ndarray of int
+    lines : (l, 2) ndarray of int
+        Pieces of lines that are worth drawing: element edges of a solid, circles and meridians
+        otherwise.
+    """
+
+    points: np.ndarray
+    displacement: np.ndarray
+    faces: np.ndarray
+    triangles: np.ndarray
+    lines: np.ndarray
+
+
+@dataclass(frozen=True, eq=False)
+class Volume:
+    """A mesh of a volume whose unknowns are displacements x, y, z of its nodes, node by node.
+
+    Attributes
+    ----------
+    element : str
+        ``tet4``, ``tet10``, ``hex8``, ``hex20`` or ``hex27``.
+    nodes : (3, n) ndarray
+        m.
+    cells : (nodes of a cell, m) ndarray of int
+    local : (nodes of a cell, 3) ndarray
+        Reference coordinates of a cell's nodes, in the order of ``cells``.
+    """
+
+    element: str
+    nodes: np.ndarray
+    cells: np.ndarray
+    local: np.ndarray
+
+
+class Drawing(Protocol):
+    """What a builder leaves with its body for pictures and files."""
+
+    def surface(self, moved: Mapping[str, np.ndarray]) -> Surface:
+        """Surface moved by the unknowns of some blocks, by name; blocks left out stand still."""
+
+    def volume(self) -> Volume | None:
+        """The mesh of the volume; None for bodies that have only a surface."""
+
+
+def mesh_unknowns(body: Body, vectors: Mapping[int, np.ndarray]) -> dict[str, np.ndarray]:
+    """Block name -> unknowns of its mesh, with rigidly tied seats expanded.
+
+    Raises
+    ------
+    SolidgearError
+        If a vector does not fit its block.
+    """
+    out = {}
+    for index, vector in vectors.items():
+        block = body.block(index)
+        if np.shape(vector) != (block.size,):
+            raise SolidgearError(
+                f"a shape of block {block.name} has {block.size} values, not {np.shape(vector)}"
+            )
+        out[block.name] = (
+            np.asarray(vector, float) if block.expand is None else block.expand @ vector
+        )
+    return out

@@ -1,0 +1,99 @@
+"""How a beam is drawn: its profile as a body of revolution.
+
+A section of a beam is a rigid disc: the case U = V, W linear in r of
+:mod:`solidgear.body.revolution`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from solidgear.body.revolution import Rings, Wave, revolve, wave
+from solidgear.body.surface import Surface
+
+if TYPE_CHECKING:
+    from solidgear.scene.shaft import Shaft
+
+
+@dataclass(frozen=True, eq=False)
+class BeamLine:
+    """Nodes of a beam along the profile of its shaft.
+
+    Attributes
+    ----------
+    shaft : Shaft
+    nodes : (n,) ndarray
+        Axial positions, m.
+    """
+
+    shaft: Shaft
+    nodes: np.ndarray
+
+    def surface(self, moved: Mapping[str, np.ndarray]) -> Surface:
+        """The profile of the shaft, each section of it a rigid disc."""
+        rings = _profile(self.shaft, self.nodes)
+        return revolve(rings, _waves(rings, self.nodes, moved))
+
+    def volume(self) -> None:
+        """None: a beam has no mesh of its volume."""
+        return None
+
+
+def _waves(rings: Rings, nodes: np.ndarray, moved: Mapping[str, np.ndarray]) -> list[Wave]:
+    waves = []
+    for name, start in (("bending_z", 0.0), ("bending_x", np.pi / 2)):
+        if name in moved:
+            # In the x plane the second unknown is -thz, which turns z into x as thx turns y into z.
+            lift, tilt = (
+                np.interp(rings.y, nodes, moved[name][k : 2 * len(nodes) : 2]) for k in (0, 1)
+            )
+            waves.append(wave(1, start, lift, lift, -rings.r * tilt))
+    if "axial" in moved:
+        waves.append(wave(0, 0.0, 0.0, 0.0, np.interp(rings.y, nodes, moved["axial"])))
+    if "torsion" in moved:
+        waves.append(
+            wave(
+                0,
+                0.0,
+                0.0,
+                0.0,
+                0.0 * rings.r,
+                rings.r * np.interp(rings.y, nodes, moved["torsion"]),
+            )
+        )
+    return waves
+
+
+def _profile(scene: Shaft, nodes: np.ndarray) -> Rings:
+    """Closed outline of the meridian: up the outer surface, down the bore, counter-clockwise in (r,
+    y).
+    """
+    tol = 1e-9 * scene.length
+    outer: list[tuple[float, float]] = []
+    inner: list[tuple[float, float]] = []
+    for s in scene.segments:
+        inside = nodes[(nodes > s.y0 + tol) & (nodes < s.y1 - tol)]
+        y = np.concatenate([[s.y0], inside, [s.y1]])
+        share = (y - s.y0) / s.length
+        outer += zip(s.outer0 + share * (s.outer1 - s.outer0), y)
+        inner += zip(s.inner0 + share * (s.inner1 - s.inner0), y)
+    loop = np.array(outer + inner[::-1])
+    loop = loop[np.linalg.norm(loop - np.roll(loop, 1, axis=0), axis=1) > tol]
+    # Faces across the axis are divided, so that their colours follow the displacement.
+    parts, drawn, size = [], [], 0
+    for p, q in zip(loop, np.roll(loop, -1, axis=0)):
+        n = (
+            max(1, int(np.ceil(abs(q[0] - p[0]) / (0.03 * scene.length))))
+            if abs(q[1] - p[1]) < tol
+            else 1
+        )
+        parts.append(p + np.arange(n)[:, None] / n * (q - p))
+        drawn.append(size)
+        size += n
+    r, y = np.concatenate(parts).T
+    ring = np.arange(size)
+    return Rings(r, y, np.column_stack([ring, (ring + 1) % size]), np.array(drawn))
