@@ -181,7 +181,7 @@ def test_what_is_taken_off_is_the_gap_of_the_plain_shaft(overhung):
 @pytest.mark.parametrize("name", ["cylinder_free", "shaft_hollow"])
 def test_no_shoulder_cause_without_steps(name, monkeypatch):
     monkeypatch.setattr(
-        "solidgear.evidence.causes.build", lambda *a, **k: pytest.fail("nothing is to be built")
+        "solidgear.evidence.causes.solve", lambda *a, **k: pytest.fail("nothing is to be built")
     )
     assert shoulder_cause(sg.load(GEOMETRY / f"{name}.toml"), {"C_zz": -0.1}, {}) is None
 

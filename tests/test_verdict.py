@@ -7,9 +7,10 @@ import numpy as np
 import pytest
 
 import solidgear as sg
+from solidgear.evidence.answer import Answer
 from solidgear.evidence.bands import Band
 from solidgear.evidence.quantities import JUDGED
-from solidgear.evidence.study import Rung, Tied
+from solidgear.evidence.study import Solution
 from solidgear.evidence.ties import SCENE, SECTION
 from solidgear.evidence.verdict import BEYOND, OPEN, WITHIN, deviations, gap_verdict, judge, trusted
 from solidgear.scene import Ask, Bearing, Scene, Segment
@@ -41,7 +42,8 @@ def tied(c_zz=1.0, bending=100.0, **others):
         )
     )
     found = ModeSet("any", modes, STATIONS, np.eye(6 * len(STATIONS)))
-    return Tied(
+    return Answer(
+        SimpleNamespace(size=10),
         SimpleNamespace(attachment="average", evidence={"residual": 0.0}),
         found,
         {"C_zz": c_zz, "bending 1": bending, **others},
@@ -58,7 +60,7 @@ def rung(c_zz=1.0, bending=100.0, *, model="beam", band=None, section=None, **ot
         ties[SECTION] = tied(*section)
     bands = {} if band is None else {tie: banded(band, t.quantities) for tie, t in ties.items()}
     meter = SimpleNamespace(seconds={"build": 1.0, "statics": 0.5, "modes": 0.5, "band": 100.0})
-    return Rung(model, SimpleNamespace(size=10), ties, meter, bands=bands, levels=[{}] * 3)
+    return Solution(model, ties, meter, bands=bands, levels=[{}] * 3)
 
 
 def asking(tolerance, quantities=()):

@@ -7,10 +7,8 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from solidgear.errors import SolidgearError
-from solidgear.evidence.quantities import change, measure
-from solidgear.fidelity import build
-from solidgear.solve.modes import modes
-from solidgear.solve.statics import condense
+from solidgear.evidence.answer import solve
+from solidgear.evidence.quantities import change
 
 if TYPE_CHECKING:
     from solidgear.scene import Scene
@@ -18,20 +16,20 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Cause:
-    """Effect of one assumption, as relative changes; None where a quantity does not exist."""
+    """Effect of one assumption: relative changes of quantities, None where one does not exist."""
 
     cause: str
     change: str
     model: str
-    c_zz: float | None
-    k_zz: float | None
-    bending_1: float | None
+    quantities: dict[str, float | None]
 
 
-def _solve(scene: Scene, fidelity, **options):
-    body = build(scene, fidelity, **options)
-    # Ten shapes hold the first bending pair of anything that looks like a shaft.
-    return measure(condense(body, scene, scene.port.name), modes(body, scene, 10, ovalising=False))
+#: what is shown of a cause
+SHOWN = ("C_zz", "K_zz", "bending 1")
+
+
+def _solve(scene: Scene, rung: str, **options) -> dict[str, float]:
+    return solve(scene, rung, **options).quantities
 
 
 def _row(cause, text, model, new, old) -> Cause:
@@ -39,9 +37,7 @@ def _row(cause, text, model, new, old) -> Cause:
         cause,
         text,
         model,
-        change(new, old, "C_zz"),
-        change(new, old, "K_zz"),
-        change(new, old, "bending 1"),
+        {name: change(new, old, name) for name in SHOWN},
     )
 
 
@@ -137,7 +133,5 @@ def shoulder_cause(
         "shoulder",
         "gap to the solid with steps, less without",
         "timoshenko",
-        share("C_zz"),
-        share("K_zz"),
-        share("bending 1"),
+        {name: share(name) for name in SHOWN},
     )

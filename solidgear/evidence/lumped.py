@@ -11,67 +11,69 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from solidgear.errors import SolidgearError
+from solidgear.evidence.record import LumpedRecord, LumpedVariant, ModelRecord, ModeRecord
 from solidgear.evidence.verdict import BEYOND, OPEN, Judgement, gap_verdict, spoken_against
 from solidgear.fidelity.ladder import LADDER
-from solidgear.fidelity.rung import BEAM, SOLID
+from solidgear.fidelity.rung import BEAM, LUMPED, SOLID
 from solidgear.reduction.effective_mass import Synthesis, synthesise
 
 if TYPE_CHECKING:
+    from solidgear.evidence.study import Solution
     from solidgear.scene import Scene
 
 #: variants that may stand for the lumped rung, the preferred one first
 PREFERRED = ("mode-matched", "guyan")
 
 
-def synthesise_all(scene: Scene, rungs: dict, tell: Callable[[str], None] = lambda _: None) -> dict:
-    """Lumped models of every solved body, as plain data.
+def synthesise_all(
+    scene: Scene, rungs: Mapping[str, Solution], tell: Callable[[str], None] = lambda _: None
+) -> dict[str, LumpedRecord]:
+    """Lumped models of every solved body.
 
     Parameters
     ----------
     scene : Scene
-    rungs : dict of str to object with ``body`` and ``modes``
+    rungs : mapping of str to Solution
 
     Returns
     -------
-    dict
-        Per model: ``stiffness`` (2x2 on z, thx), ``motion``, ``first_bending_hz`` (in that plane),
-        ``static_share``, ``seconds`` and ``variants``; or ``why_not`` where there is nothing to
-        lump.
+    dict of str to LumpedRecord
+        Per model; stiffness and first bending are those of the z plane.
     """
-    out: dict[str, dict] = {}
+    out: dict[str, LumpedRecord] = {}
     for model, rung in rungs.items():
         start = time.perf_counter()
         try:
             point, found = synthesise(rung.body, scene, scene.port.name, rung.modes)
         except SolidgearError as error:
             tell(f"lumped from {model}: {error}")
-            out[model] = {"why_not": str(error)}
+            out[model] = LumpedRecord(why_not=str(error))
             continue
-        out[model] = {
-            "stiffness": point.stiffness.tolist(),
-            "motion": point.motion.tolist(),
-            "first_bending_hz": point.omega / (2 * np.pi),
-            "static_share": point.static_share,
-            "total_mass": point.total_mass,
-            "seconds": time.perf_counter() - start,
-            "variants": {name: _record(s) for name, s in found.items()},
-        }
+        out[model] = LumpedRecord(
+            stiffness=point.stiffness,
+            motion=point.motion,
+            frequency_hz=point.omega / (2 * np.pi),
+            static_share=point.static_share,
+            total_mass=point.total_mass,
+            seconds=time.perf_counter() - start,
+            variants={name: _variant(s) for name, s in found.items()},
+        )
     return out
 
 
-def _record(s: Synthesis) -> dict:
-    return {
-        "mass": None if s.mass is None else s.mass.tolist(),
-        "feasible": s.feasible,
-        "first": s.first,
-        "frequency_hz": s.frequency_hz,
-        "frequency_error": s.frequency_error,
-        "slope_error": s.slope_error,
-        "kinetic_error": s.kinetic_error,
-        "valid_to_hz": s.valid_to_hz,
-        "verdict": s.verdict,
+def _variant(s: Synthesis) -> LumpedVariant:
+    return LumpedVariant(
+        mass=s.mass,
+        feasible=s.feasible,
+        first=s.first,
+        frequency_hz=s.frequency_hz,
+        frequency_error=s.frequency_error,
+        slope_error=s.slope_error,
+        kinetic_error=s.kinetic_error,
+        valid_to_hz=s.valid_to_hz,
+        verdict=s.verdict,
         **s.numbers,
-    }
+    )
 
 
 def sources() -> tuple[str, ...]:
@@ -81,14 +83,12 @@ def sources() -> tuple[str, ...]:
     return (*reversed(LADDER.of(BEAM)), *LADDER.of(SOLID))
 
 
-def representative(lumped: dict) -> tuple[str, str] | None:
+def representative(lumped: Mapping[str, LumpedRecord]) -> tuple[str, str] | None:
     """(source model, variant) that stands for the lumped rung."""
     for source in sources():
-        variants = lumped.get(source, {}).get("variants")
-        if not variants:
-            continue
+        variants = lumped[source].variants if source in lumped else {}
         for name in PREFERRED:
-            if variants[name]["feasible"] and variants[name]["first"]:
+            if name in variants and variants[name].feasible and variants[name].first:
                 return source, name
     return None
 
@@ -103,21 +103,33 @@ def preferred(made: Mapping[str, Synthesis]) -> Synthesis | None:
     return None
 
 
+def drawn(model: str) -> dict[str, str]:
+    """What a record keeps of a rung: its names, and how it is drawn in charts."""
+    rung = LADDER[model]
+    return {
+        "title": rung.title,
+        "short": rung.heading,
+        "family": rung.family,
+        "colour": rung.colour,
+        "marker": rung.marker,
+    }
+
+
 def model_record(
-    lumped: dict,
-    models: dict,
+    lumped: Mapping[str, LumpedRecord],
+    models: Mapping[str, ModelRecord],
     reference_hz: float | None,
     tolerance: float,
     band: float | None,
     notices: Iterable[dict] = (),
-) -> dict | None:
+) -> ModelRecord | None:
     """Record of the lumped rung among the models; its stiffness is its source's.
 
     Parameters
     ----------
-    lumped : dict
+    lumped : mapping of str to LumpedRecord
         From :func:`synthesise_all`.
-    models : dict
+    models : mapping of str to ModelRecord
         Records of the other rungs.
     reference_hz : float or None
         First bending of the reference model.
@@ -131,44 +143,43 @@ def model_record(
     if chosen is None:
         return None
     source, variant = chosen
-    base, own = models[source], lumped[source]["variants"][variant]
-    judged = _judged(own, base, lumped[source], source, reference_hz, tolerance, band, notices)
+    base, made = models[source], lumped[source]
+    own = made.variants[variant]
+    judged = _judged(own, base, made, source, reference_hz, tolerance, band, notices)
     # The price of its source comes first: there is no lumped model without a body to condense.
-    seconds = {k: base["seconds"].get(k, 0.0) for k in ("build", "statics", "modes")} | {
-        "synthesis": lumped[source]["seconds"]
-    }
-    return {
-        "valid": judged.valid,
-        "open": judged.open,
-        "why_not": judged.why_not,
-        "source": source,
-        "variant": variant,
-        "compliance": base["compliance"],
-        "stiffness": base["stiffness"],
-        "modes": [
-            {
-                "name": "bending 1",
-                "family": "bending",
-                "frequency_hz": own["frequency_hz"],
-                "multiplicity": 2,
-                "captured": None,
-            }
+    seconds = {k: base.seconds.get(k) or 0.0 for k in ("build", "statics", "modes")}
+    seconds["synthesis"] = made.seconds or 0.0
+    seconds["total"] = sum(seconds.values())
+    return ModelRecord(
+        **drawn(*LADDER.of(LUMPED)),
+        valid=judged.valid,
+        open=judged.open,
+        why_not=judged.why_not,
+        source=source,
+        variant=variant,
+        compliance=base.compliance,
+        stiffness=base.stiffness,
+        modes=[
+            ModeRecord(
+                name="bending 1",
+                family="bending",
+                frequency_hz=own.frequency_hz,
+                multiplicity=2,
+                captured=None,
+            )
         ],
-        "band": None,
-        "convergence": None,
-        "dofs": 6,
-        "seconds": {**seconds, "total": sum(seconds.values())},
-        "peak_mb": base["peak_mb"],
-        "backend": base["backend"],
-        "mesh": {"element": f"{variant} masses on the {source} stiffness"},
-        "evidence": {},
-    }
+        dofs=6,
+        seconds=seconds,
+        peak_mb=base.peak_mb,
+        backend=base.backend,
+        mesh={"element": f"{variant} masses on the {source} stiffness"},
+    )
 
 
 def _judged(
-    own: dict,
-    base: dict,
-    made: dict,
+    own: LumpedVariant,
+    base: ModelRecord,
+    made: LumpedRecord,
     source: str,
     reference_hz: float | None,
     tolerance: float,
@@ -176,22 +187,22 @@ def _judged(
     notices: Iterable[dict],
 ) -> Judgement:
     """What the lumped rung is worth: its source's stiffness, and its own first bending."""
-    if not base["valid"]:
-        why = f"its stiffness is that of the {source} model, which is out: {base['why_not']}"
-        return Judgement(False, why, open=base["open"])
+    if not base.valid:
+        why = f"its stiffness is that of the {source} model, which is out: {base.why_not}"
+        return Judgement(False, why, open=base.open)
     if against := spoken_against("lumped", notices):
         return Judgement(False, against[0])
-    if not reference_hz or band is None:
+    if not reference_hz or band is None or own.frequency_hz is None or made.frequency_hz is None:
         why = "not judged: there is no first bending of a trusted model to hold it against"
         return Judgement(False, why, open=True)
-    gap = own["frequency_hz"] / reference_hz - 1
+    gap = own.frequency_hz / reference_hz - 1
     kind = gap_verdict(gap, band, tolerance)
     if kind == BEYOND:
         why = (
             f"its first bending is {100 * gap:+.1f} % off, "
             f"more than the {100 * tolerance:g} % asked for"
         )
-        lowest = made["first_bending_hz"] / reference_hz - 1
+        lowest = made.frequency_hz / reference_hz - 1
         if gap_verdict(lowest, band, tolerance) == BEYOND:
             why += (
                 ": masses are lumped in the z plane, and the first bending of this shaft "

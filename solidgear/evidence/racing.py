@@ -12,22 +12,19 @@ import json
 import logging
 import time
 from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 
-from solidgear.body import as_supports
 from solidgear.errors import SolidgearError
+from solidgear.evidence.answer import Answer, solve
 from solidgear.evidence.converge import gci
 from solidgear.evidence.lumped import preferred, sources
 from solidgear.evidence.pareto import CHARTED, Race, Row
-from solidgear.evidence.quantities import measure
-from solidgear.fidelity import build
 from solidgear.fidelity.ladder import LADDER
 from solidgear.fidelity.rung import BEAM, LUMPED
 from solidgear.meshing.corners import sharpest_corner
 from solidgear.reduction.effective_mass import synthesise
-from solidgear.solve.modes import modes
-from solidgear.solve.statics import condense
 
 log = logging.getLogger(__name__)
 REFERENCE = {"order": 8, "layers": 4, "edge_layers": 2}
@@ -138,31 +135,25 @@ def race(
     return found
 
 
-def answer(scene, model: str, options: dict, n: int):
-    """Body, condensed compliance and compared numbers of one model; the lumped one rests on
-    Timoshenko's beam.
+def answer(scene, model: str, options: dict, n: int) -> Answer:
+    """What one model answers; the lumped one rests on the best beam, and has a first bending of its
+    own.
 
     Raises
     ------
     SolidgearError
         Where the model cannot be made.
     """
-    lumped = LADDER[model].family == LUMPED
-    source = sources()[0] if lumped else model
-    supports = as_supports(scene)
-    body = build(scene, source, **options)
-    condensed = condense(body, supports, scene.port.name)
-    shapes = modes(body, supports, n, ovalising=False)
-    values = measure(condensed, shapes)
-    if lumped:
-        _, made = synthesise(body, scene, scene.port.name, shapes)
-        chosen = preferred(made)
-        if chosen is None or chosen.frequency_hz is None:
-            raise SolidgearError(
-                "no lumped mass is positive and has the first bending mode as its first"
-            )
-        values["bending 1"] = chosen.frequency_hz
-    return body, condensed, values
+    if LADDER[model].family != LUMPED:
+        return solve(scene, model, n, **options)
+    found = solve(scene, sources()[0], n, **options)
+    _, made = synthesise(found.body, scene, scene.port.name, found.modes)
+    chosen = preferred(made)
+    if chosen is None or chosen.frequency_hz is None:
+        raise SolidgearError(
+            "no lumped mass is positive and has the first bending mode as its first"
+        )
+    return replace(found, quantities={**found.quantities, "bending 1": chosen.frequency_hz})
 
 
 def scaled_error(compliance: np.ndarray, reference: np.ndarray) -> float | None:
@@ -186,10 +177,11 @@ def _reference(scene, options: dict, n: int, progress) -> tuple[dict, np.ndarray
     for order in orders:
         progress(f"reference: harmonic solid of order {order}")
         start = time.perf_counter()
-        body, condensed, found = answer(scene, "harmonic", {**options, "order": order}, n)
-        seconds, unknowns, compliance = time.perf_counter() - start, body.size, condensed.compliance
-        del body, condensed
-        values.append(found)
+        found = answer(scene, "harmonic", {**options, "order": order}, n)
+        seconds, unknowns = time.perf_counter() - start, found.body.size
+        compliance = found.condensed.compliance
+        values.append(found.quantities)
+        del found
     have = [q for q in CHARTED if all(q in v for v in values)]
     if not have:
         raise SolidgearError(
@@ -202,7 +194,7 @@ def _reference(scene, options: dict, n: int, progress) -> tuple[dict, np.ndarray
         for q in have
     }
     progress("reference with section ties")
-    _, _, like = answer(scene.with_attachment("section"), "harmonic", LIKE_FOR_LIKE, n)
+    like = answer(scene.with_attachment("section"), "harmonic", LIKE_FOR_LIKE, n).quantities
     record = {
         "options": options,
         "unknowns": unknowns,
@@ -220,7 +212,7 @@ def _run(scene, row: Row, n: int, against: dict, compliance: np.ndarray) -> None
     gc.collect()
     start = time.perf_counter()
     try:
-        body, condensed, values = answer(scene, row.model, row.options, n)
+        found = answer(scene, row.model, row.options, n)
     except Exception as error:  # whatever stops a model is a finding about it, and the others go on
         row.samples = [time.perf_counter() - start]
         row.status, row.reason = "failed", _why(error)
@@ -235,19 +227,19 @@ def _run(scene, row: Row, n: int, against: dict, compliance: np.ndarray) -> None
     row.samples.append(time.perf_counter() - start)
     if row.status == "ok":
         return
-    row.status = "ok"
-    row.unknowns = 6 if LADDER[row.model].family == LUMPED else body.size
+    row.status, values = "ok", found.quantities
+    row.unknowns = 6 if LADDER[row.model].family == LUMPED else found.body.size
     row.values = {q: values[q] for q in against["values"] if q in values}
     row.errors = {q: abs(v / against["values"][q] - 1) for q, v in row.values.items()}
     if LADDER[row.model].family in (LUMPED, BEAM):
-        _, _, like = answer(scene.with_attachment("section"), row.model, row.options, n)
+        like = answer(scene.with_attachment("section"), row.model, row.options, n).quantities
         row.like_for_like = {
             q: abs(like[q] / v - 1) for q, v in against["like_for_like"].items() if q in like
         }
     missing = [q for q in against["values"] if q not in values]
     if missing:
         _note(row, f"found no {' and no '.join(missing)}")
-    whole = scaled_error(condensed.compliance, compliance)
+    whole = scaled_error(found.condensed.compliance, compliance)
     if whole is not None:
         row.errors["C 6x6"] = whole
 

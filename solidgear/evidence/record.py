@@ -1,248 +1,299 @@
-"""What ``results.json`` holds: plain data from the rungs of a comparison."""
+"""What ``results.json`` holds, typed.
+
+Everything a run found is written by dumping a :class:`Record` and read by validating one; tables,
+charts and tests read its attributes.  Numbers are SI.  A number that does not exist is None: JSON
+knows neither NaN nor infinity.  Quantities are called as in
+:data:`solidgear.evidence.quantities.QUANTITIES` everywhere.
+"""
 
 from __future__ import annotations
 
-from dataclasses import asdict
-from typing import TYPE_CHECKING
+import math
+from typing import Annotated, Any
 
-import numpy as np
+from pydantic import BaseModel, BeforeValidator, ConfigDict, Field
 
-from solidgear.evidence.completeness import completeness
-from solidgear.evidence.correlate import correlate
-from solidgear.evidence.lumped import model_record as lumped_record
-from solidgear.evidence.quantities import measure
-from solidgear.evidence.study import Rung, Tied
-from solidgear.evidence.ties import SCENE
-from solidgear.evidence.verdict import Judgement, deviations, judge, percent, trusted
-from solidgear.fidelity.ladder import LADDER
-from solidgear.frames import DOF_NAMES
-from solidgear.machine.environment import environment
-
-if TYPE_CHECKING:
-    from solidgear.scene import Scene
+#: version of this layout; it rises when a field is renamed or removed
+SCHEMA = 3
 
 
-def record(
-    scene: Scene,
-    rungs: dict[str, Rung],
-    failed: dict[str, str],
-    causes: list,
-    lumped: dict,
-    guards: list[dict],
-    complete: bool,
-) -> dict:
-    """Results of a comparison as plain data.
-
-    Parameters
-    ----------
-    scene : Scene
-    rungs : dict of str to Rung
-    failed : dict of str to str
-        Models that could not be solved, and why.
-    causes : list of Cause
-    lumped : dict
-        From :func:`solidgear.evidence.lumped.synthesise_all`.
-    guards : list of dict
-        What the guards said: ``guard``, ``level``, ``models``, ``sentence``.
-    complete : bool
-        False after an interrupt.
-    """
-    trust, _ = trusted(rungs, scene.ask.tolerance)
-    # Where nothing may judge, the distances are still told; they are no judgement.
-    reference = trust or next((m for m in LADDER.judges if m in rungs), None)
-    gaps = deviations(rungs, reference) if reference else []
-    verdict, validity = judge(scene, rungs, gaps, guards)
-    verdict["reference"] = reference
-    models: dict[str, dict] = {}
-    for model in LADDER.bodies:
-        if model in rungs:
-            models[model] = _model_record(rungs[model], validity[model])
-        elif model in failed:
-            models[model] = {"valid": False, "open": False, "why_not": failed[model], "modes": []}
-    if lumped and reference:
-        best = rungs[reference].quantities.get("bending 1")
-        band = rungs[reference].bands.get(SCENE, {}).get("bending 1")
-        own = lumped_record(
-            lumped, models, best, scene.ask.tolerance, band.gci if band else None, guards
-        )
-        if own:
-            models = {"lumped": own, **models}
-            _add_lumped(verdict, own, lumped, reference)
-    free = list(next(iter(rungs.values())).condensed.free_names) if rungs else []
-    return {
-        "schema": 2,
-        "complete": complete,
-        "scene": scene.as_dict(),
-        "port": {
-            "name": scene.port.name,
-            "y": scene.port.y,
-            "attachment": scene.port.attachment,
-            "order": list(DOF_NAMES),
-            "free": free,
-        },
-        "models": models,
-        "attachments": {
-            m: {a: _variant_record(v) for a, v in r.variants.items()}
-            for m, r in rungs.items()
-            if r.variants
-        },
-        "mac": _mac(rungs, reference),
-        "deviations": gaps,
-        "causes": [asdict(c) for c in causes],
-        "lumped": lumped,
-        "verdict": verdict,
-        "guards": guards,
-        "environment": environment(),
-        "images": {},
-        "warnings": _warnings(rungs, guards, models),
-    }
-
-
-def _warnings(rungs: dict[str, Rung], guards: list[dict], models: dict[str, dict]) -> list[str]:
-    out = []
-    for notice in guards:
-        # What speaks against a model that is out anyway is in the record, and nobody's concern.
-        about = [m for m in notice["models"] if models.get(m, {}).get("valid")]
-        if about or not notice["models"]:
-            out.append(f"{', '.join(about)}: {notice['sentence']}" if about else notice["sentence"])
-    out += [f"{m}: {what}: {why}" for m, r in rungs.items() for what, why in r.failed.items()]
-    for model, rung in rungs.items():
-        for one, other, gap in rung.modes.evidence.get("torn_pairs", ()):
-            out.append(
-                f"{model}: {one} and {other} are twins that the mesh has split by {gap:.1e}: refine it, or use hexahedra"
-            )
-    return out
-
-
-def _add_lumped(verdict: dict, own: dict, lumped: dict, reference: str) -> None:
-    """What the lumped models are worth, in the verdict."""
-    if own["valid"]:
-        verdict["cheapest"] = "lumped"
-        verdict["sentences"] = [
-            s for s in verdict["sentences"] if not s.startswith("Cheapest model")
-        ]
-        verdict["sentences"].append(
-            f"Cheapest model within {percent(verdict['tolerance'])}: lumped ({own['variant']} masses on the {own['source']} stiffness), for first bending and below only."
-        )
-    made = lumped.get(reference, {}).get("variants", {})
-    if not made or verdict["trust"] is None:
-        return
-    errors = [
-        f"{n} {_error(v['frequency_error'])}"
-        for n, v in made.items()
-        if v["feasible"] and v["frequency_error"] is not None
-    ]
-    verdict["sentences"].append(
-        f"First bending of lumped models made from the {LADDER[reference].title} itself: {', '.join(errors)}."
-    )
-    if not made["thesis"]["feasible"]:
-        verdict["sentences"].append(
-            f"The thesis's equations 52 and 53 have no usable solution here: {made['thesis']['verdict']}."
-        )
-
-
-def _error(relative: float) -> str:
-    return "exact" if abs(relative) < 1e-9 else f"{100 * relative:+.2g} %"
-
-
-def _matrix(a) -> list:
-    """Nested lists with None where a component is free."""
-    return [[None if not np.isfinite(v) else float(v) for v in row] for row in a]
-
-
-def _model_record(rung: Rung, judgement: Judgement) -> dict:
-    own = rung.bands.get(SCENE, {})
-    each = {name: band.gci for name, band in own.items()}
-    compliance = [v for k, v in each.items() if k.startswith("C_")]
-    band = None
-    if each:
-        method = next(iter(own.values())).method
-        band = {
-            "compliance": max(compliance, default=None),
-            "bending_1": each.get("bending 1"),
-            "method": f"{method}, {len(rung.levels)} meshes",
-            "each": each,
-        }
-    convergence = (
-        {
-            "levels": rung.levels,
-            **{k.replace(" ", "_").lower(): v.as_dict() for k, v in own.items()},
-        }
-        if own
-        else None
-    )
-    return {
-        "valid": judgement.valid,
-        "open": judgement.open,
-        "why_not": judgement.why_not,
-        "compliance": _matrix(rung.condensed.compliance),
-        "stiffness": _matrix(rung.condensed.stiffness),
-        "modes": [_mode_record(m) for m in rung.modes.modes],
-        "band": band,
-        "convergence": convergence,
-        "dofs": rung.body.size,
-        "seconds": rung.meter.total(),
-        "peak_mb": rung.meter.peak_mb,
-        "backend": rung.condensed.evidence["backend"],
-        "mesh": rung.body.mesh,
-        "evidence": _evidence(rung),
-    }
-
-
-def _evidence(rung: Rung) -> dict:
-    statics, found = rung.condensed.evidence, rung.modes.evidence
-    return {
-        "asymmetry": statics["asymmetry"],
-        "refinement_residual": statics["residual"],
-        "rigid_residual": rung.body.rigid_residual(),
-        "modal_residual": found["residual"],
-        "orthogonality": found["orthogonality"],
-        "eigensolver": found["method"],
-        "mode_count": found.get("count", []),
-        "families": found.get("families", []),
-        "complete": completeness(found, rung.model) if "count" in found else "",
-        "rigid_modes": found["rigid_modes"],
-        "coupling_bound": found["coupling_bound"],
-        "shift_rad2": float(found["shift_rad2"]),
-    }
-
-
-def _mode_record(m) -> dict:
-    return {
-        "name": m.name,
-        "family": m.family,
-        "frequency_hz": m.frequency_hz,
-        "multiplicity": m.multiplicity,
-        "captured": m.captured,
-        "error": getattr(m, "error", 0.0),
-    }
-
-
-def _variant_record(tied: Tied) -> dict:
-    values = measure(tied.condensed, tied.modes)
-    return {
-        "c_zz": values.get("C_zz"),
-        "k_zz": values.get("K_zz"),
-        "bending_1_hz": values.get("bending 1"),
-        "stiffness": _matrix(tied.condensed.stiffness),
-        "compliance": _matrix(tied.condensed.compliance),
-        "modes": [_mode_record(m) for m in tied.modes.modes],
-    }
-
-
-def _mac(rungs: dict[str, Rung], reference: str | None) -> dict | None:
-    if reference is None:
+def _plain(value: Any) -> Any:
+    """The same as lists, dicts, texts and finite numbers; all else that numpy may bring is None."""
+    if isinstance(value, dict):
+        return {str(k): _plain(v) for k, v in value.items()}
+    if hasattr(value, "tolist"):
+        value = value.tolist()
+    if isinstance(value, (list, tuple)):
+        return [_plain(v) for v in value]
+    if isinstance(value, float) and not math.isfinite(value):
         return None
-    base = rungs[reference].modes
-    out = {}
-    for model, rung in rungs.items():
-        if model == reference:
-            continue
-        c = correlate(rung.modes, base)
-        out[model] = {
-            "rows": list(c.rows),
-            "columns": list(c.columns),
-            "values": c.values.tolist(),
-            "pairs": [asdict(p) for p in c.partners],
-        }
-    return {"reference": reference, "stations": base.stations.tolist(), "models": out}
+    return value
+
+
+Number = Annotated[float | None, BeforeValidator(_plain)]
+Numbers = Annotated[list[float | None], BeforeValidator(_plain)]
+Matrix = Annotated[list[list[float | None]], BeforeValidator(_plain)]
+Facts = Annotated[dict[str, Any], BeforeValidator(_plain)]
+Quantities = dict[str, Number]
+
+
+class Part(BaseModel):
+    """Part of a record: fields that are missing have their default, unknown ones are kept."""
+
+    model_config = ConfigDict(extra="allow")
+
+
+class ModeRecord(Part):
+    """A mode, its pair counted in ``multiplicity``."""
+
+    name: str = ""
+    family: str = ""
+    frequency_hz: Number = None
+    multiplicity: int = 1
+    captured: Number = None
+    error: Number = 0.0
+
+
+class BandRecord(Part):
+    """Band of one quantity; see :class:`solidgear.evidence.bands.Band`."""
+
+    values: Numbers = []
+    gci: Number = None
+    change: Number = None
+    reduction: Number = None
+    factor: Number = None
+    solver: Number = None
+    extrapolated: Number = None
+    observed_order: Number = None
+    expected_order: Number = None
+    used_order: Number = None
+    method: str = ""
+
+
+class BandSummary(Part):
+    """How sure a model is of itself: relative bands of every quantity, and the worst compliance's."""
+
+    compliance: Number = None
+    method: str = ""
+    each: Quantities = {}
+
+
+class LevelRecord(Part):
+    """One mesh of a sequence."""
+
+    dofs: int | None = None
+    h: Number = None
+    order: int | None = None
+    quantities: Quantities = {}
+    mesh: Facts = {}
+
+
+class ConvergenceRecord(Part):
+    """Meshes from coarse to fine, and the band that each quantity has from them."""
+
+    levels: list[LevelRecord] = []
+    quantities: dict[str, BandRecord] = {}
+
+
+class EvidenceRecord(Part):
+    """Evidence for one solution: residuals, symmetry, count of modes."""
+
+    asymmetry: Number = None
+    refinement_residual: Number = None
+    rigid_residual: Number = None
+    modal_residual: Number = None
+    orthogonality: Number = None
+    eigensolver: str = ""
+    mode_count: list[Facts] = []
+    families: list[Facts] = []
+    complete: str = ""
+    rigid_modes: int | None = None
+    coupling_bound: Number = None
+    shift_rad2: Number = None
+
+
+class ModelRecord(Part):
+    """One rung.
+
+    ``title``, ``short``, ``family``, ``colour`` and ``marker`` are those of the ladder
+    (:class:`solidgear.fidelity.rung.Rung`), so that a record can be shown without it.
+    """
+
+    title: str = ""
+    short: str = ""
+    family: str = ""
+    colour: str = "#777777"
+    marker: str = "P"
+    valid: bool | None = None
+    open: bool = False
+    why_not: str | None = None
+    source: str | None = None
+    variant: str | None = None
+    compliance: Matrix | None = None
+    stiffness: Matrix | None = None
+    modes: list[ModeRecord] = []
+    band: BandSummary | None = None
+    convergence: ConvergenceRecord | None = None
+    dofs: int | None = None
+    seconds: Quantities = {}
+    peak_mb: Number = None
+    backend: str | None = None
+    mesh: Facts = {}
+    evidence: EvidenceRecord = EvidenceRecord()
+
+
+class VariantRecord(Part):
+    """A rung with one attachment at every station."""
+
+    quantities: Quantities = {}
+    stiffness: Matrix | None = None
+    compliance: Matrix | None = None
+    modes: list[ModeRecord] = []
+
+
+class DeviationRecord(Part):
+    """A quantity of a model against the reference."""
+
+    model: str = ""
+    reference: str = ""
+    attachment: str = ""
+    quantity: str = ""
+    unit: str = ""
+    value: Number = None
+    reference_value: Number = None
+    relative: Number = None
+    band: Number = None
+    verdict: str | None = None
+    pairing: str = ""
+
+
+class CauseRecord(Part):
+    """Relative change of quantities when one assumption is switched."""
+
+    cause: str = ""
+    change: str = ""
+    model: str = ""
+    quantities: Quantities = {}
+
+
+class LumpedVariant(Part):
+    """One lumped mass on a stiffness; further numbers by their own names."""
+
+    mass: Matrix | None = None
+    feasible: bool = False
+    first: bool = False
+    frequency_hz: Number = None
+    frequency_error: Number = None
+    slope_error: Number = None
+    kinetic_error: Number = None
+    valid_to_hz: Number = None
+    verdict: str = ""
+
+
+class LumpedRecord(Part):
+    """Lumped models of one body, on z and thx; ``why_not`` where there is nothing to lump."""
+
+    stiffness: Matrix | None = None
+    motion: Numbers = []
+    frequency_hz: Number = None
+    static_share: Number = None
+    total_mass: Number = None
+    seconds: Number = None
+    variants: dict[str, LumpedVariant] = {}
+    why_not: str | None = None
+
+
+class VerdictRecord(Part):
+    """Which model to trust, and which is the cheapest that will do."""
+
+    trust: str | None = None
+    reference: str | None = None
+    cheapest: str | None = None
+    tolerance: Number = None
+    judged: list[str] = []
+    sentences: list[str] = []
+
+
+class GuardRecord(Part):
+    """What a guard says of some models."""
+
+    guard: str = ""
+    level: str = ""
+    models: list[str] = []
+    sentence: str = ""
+
+
+class PartnerRecord(Part):
+    """A mode and its partner in the reference."""
+
+    mode: str = ""
+    partner: str | None = None
+    mac: Number = None
+    frequency_hz: Number = None
+    reference_hz: Number = None
+    relative: Number = None
+
+
+class MacTable(Part):
+    """Modal assurance criterion of a model's modes (rows) against the reference's (columns)."""
+
+    rows: list[str] = []
+    columns: list[str] = []
+    values: Matrix = []
+    pairs: list[PartnerRecord] = []
+
+
+class MacRecord(Part):
+    """Correlation of all models with the reference, on stations along the axis (m)."""
+
+    reference: str | None = None
+    stations: Numbers = []
+    models: dict[str, MacTable] = {}
+
+
+class PortRecord(Part):
+    """The lumped point, the order of its six components, and those that nothing resists."""
+
+    name: str = ""
+    y: Number = None
+    attachment: str = ""
+    order: list[str] = []
+    free: list[str] = []
+
+
+class Record(Part):
+    """Everything a comparison found.
+
+    Examples
+    --------
+    >>> record = Record.model_validate({"verdict": {"trust": "harmonic"}})
+    >>> record.verdict.trust, record.complete
+    ('harmonic', True)
+    """
+
+    model_config = ConfigDict(extra="allow", populate_by_name=True)
+
+    version: int = Field(SCHEMA, alias="schema")
+    complete: bool = True
+    scene: Facts = {}
+    port: PortRecord | None = None
+    models: dict[str, ModelRecord] = {}
+    attachments: dict[str, dict[str, VariantRecord]] = {}
+    mac: MacRecord | None = None
+    deviations: list[DeviationRecord] = []
+    causes: list[CauseRecord] = []
+    lumped: dict[str, LumpedRecord] = {}
+    verdict: VerdictRecord = VerdictRecord()
+    guards: list[GuardRecord] = []
+    environment: Facts = {}
+    images: dict[str, str] = {}
+    warnings: list[str] = []
+    seconds_total: Number = None
+    peak_mb: Number = None
+    expected_peak_mb: Number = None
+    left_out: list[str] = []
+    files: list[str] | None = None
+
+    def as_dict(self) -> dict[str, Any]:
+        """Plain data, as ``results.json`` has it."""
+        return self.model_dump(mode="json", by_alias=True)

@@ -17,8 +17,9 @@ from typing import TYPE_CHECKING, Any
 
 from solidgear.body import Body, Supports, as_supports
 from solidgear.errors import SolidgearError
+from solidgear.evidence.answer import ENOUGH, Answer, answered
 from solidgear.evidence.bands import Band, layered_bands, refined_bands
-from solidgear.evidence.quantities import JUDGED, QUANTITIES, change, measure
+from solidgear.evidence.quantities import JUDGED, change
 from solidgear.evidence.ties import SCENE, SECTION, rigid_seats
 from solidgear.fidelity import build
 from solidgear.fidelity.ladder import LADDER
@@ -26,8 +27,8 @@ from solidgear.fidelity.levels import HEAVY, LIGHT_JUDGE, Sequence
 from solidgear.fidelity.options import ATTACHMENTS
 from solidgear.machine.meter import Meter
 from solidgear.meshing.corners import sharpest_corner
-from solidgear.solve.modes import ModeSet, modes
-from solidgear.solve.statics import Condensed, condense
+from solidgear.solve.modes import ModeSet
+from solidgear.solve.statics import Condensed
 
 if TYPE_CHECKING:
     from solidgear.scene import Scene
@@ -38,46 +39,21 @@ Progress = Callable[[str], None]
 #: exponent at the end of a rigid seat, a clamp on a smooth surface (Williams 1952, clamped-free at
 #: 180 degrees)
 RIGID_EDGE = 0.5
-#: modes that hold the first bending pair and the first axial mode of anything that looks like a
-#: shaft
-ENOUGH = 10
 
 
 @dataclass
-class Tied:
-    """One body on its bearings, tied in one way."""
-
-    condensed: Condensed
-    modes: ModeSet
-    quantities: dict[str, float]
-
-    @property
-    def solver(self) -> dict[str, float]:
-        """Relative error that the solver may have left in every quantity."""
-        out = {}
-        for name, (kind, place, _) in QUANTITIES.items():
-            mode = self.modes.named(place) if isinstance(place, str) else None
-            out[name] = (
-                getattr(mode, "error", 0.0)
-                if kind == "frequency"
-                else self.condensed.evidence["residual"]
-            )
-        return out
-
-
-@dataclass
-class Rung:
-    """One model, solved.
+class Solution:
+    """One rung of one scene, solved with its evidence.
 
     Attributes
     ----------
-    body : Body
-        The finest, tied as in the scene.
-    ties : dict of str to Tied
+    model : str
+        The rung.
+    ties : dict of str to Answer
         ``as scene`` and ``section``, as far as they could be solved.
     bands : dict of str to dict of str to Band
         The same keys; empty for a model without a band of its own.
-    variants : dict of str to Tied
+    variants : dict of str to Answer
         The scene with each attachment everywhere: ``average``, ``rigid`` (bearing seats only),
         ``section``.
     levels : list of dict
@@ -87,14 +63,18 @@ class Rung:
     """
 
     model: str
-    body: Body
-    ties: dict[str, Tied]
+    ties: dict[str, Answer]
     meter: Meter
     bands: dict[str, dict[str, Band]] = field(default_factory=dict)
-    variants: dict[str, Tied] = field(default_factory=dict)
+    variants: dict[str, Answer] = field(default_factory=dict)
     levels: list[dict] = field(default_factory=list)
     failed: dict[str, str] = field(default_factory=dict)
     options: dict[str, Any] = field(default_factory=dict)
+
+    @property
+    def body(self) -> Body:
+        """The finest body, tied as in the scene."""
+        return self.ties[SCENE].body
 
     @property
     def condensed(self) -> Condensed:
@@ -127,8 +107,8 @@ def study(
     evidence: bool = True,
     counted: bool = True,
     progress: Progress = lambda _: None,
-    keep: Callable[[Rung], None] = lambda _: None,
-) -> Rung:
+    keep: Callable[[Solution], None] = lambda _: None,
+) -> Solution:
     """Solve one model of a scene, a solid on as many meshes as its bands need.
 
     Parameters
@@ -162,8 +142,8 @@ def study(
     own = LADDER[model]
     if own.meshes is None:
         progress(f"{model}: build, statics, modes")
-        body, ties = _solved(scene, model, options, meter, 0 if evidence and counted else math.inf)
-        rung = Rung(model, body, ties, meter, options=options)
+        ties = _solved(scene, model, options, meter, 0 if evidence and counted else math.inf)
+        rung = Solution(model, ties, meter, options=options)
         keep(rung)
     else:
         rung = _climbed(
@@ -191,12 +171,12 @@ def _climbed(
     most: int | None,
     counted: bool,
     progress: Progress,
-    keep: Callable[[Rung], None],
-) -> Rung:
+    keep: Callable[[Solution], None],
+) -> Solution:
     """The finest of the levels that were needed, or that could be had."""
     levels = plan.levels if plan.fixed else plan.levels[:most]
-    rung: Rung | None = None
-    solved: list[dict[str, Tied]] = []
+    rung: Solution | None = None
+    solved: list[dict[str, _Level]] = []
     facts: list[dict] = []
     failed: dict[str, str] = {}
     around: dict[str, dict[str, float]] = {}
@@ -207,7 +187,7 @@ def _climbed(
         # the second level is counted as well where a third one may be too dear to be solved
         least = 0 if last else HEAVY + 1 if not plan.fixed and k == 1 else math.inf
         try:
-            body, ties = _solved(scene, model, level, meter, least if counted else math.inf)
+            ties = _solved(scene, model, level, meter, least if counted else math.inf)
         except (SolidgearError, MemoryError) as error:
             why = str(error) or "not enough memory"
             if plan.fixed and k < len(levels) - 1:
@@ -220,19 +200,19 @@ def _climbed(
         if rung is not None:
             _book_as_evidence(meter, before)
             rung.body.memory.clear()
-        solved.append(ties)
-        facts.append(_facts(body, ties[SCENE]))
+        solved.append({tie: _Level(a.quantities, a.solver) for tie, a in ties.items()})
+        facts.append(_facts(ties[SCENE]))
         if plan.turned is not None and not around:
             progress(f"{model}: mesh {k + 1} with more cells around")
             around = _around(scene, model, plan, solved[0], meter)
-        rung = Rung(model, body, ties, meter, levels=facts, failed=failed, options=dict(level))
+        rung = Solution(model, ties, meter, levels=facts, failed=failed, options=dict(level))
         rung.bands = _bands(scene, model, plan, solved, facts, around)
         keep(rung)
         worst = rung.worst_band()
         enough = target if k >= 2 else max(target, scene.ask.tolerance / LIGHT_JUDGE)
         if (
             not plan.fixed
-            and (k >= 2 or k == 1 and body.size > HEAVY)
+            and (k >= 2 or k == 1 and rung.body.size > HEAVY)
             and worst is not None
             and worst <= enough
         ):
@@ -248,25 +228,37 @@ def _book_as_evidence(meter: Meter, before: dict[str, float]) -> None:
         meter.move(stage, "band", seconds)
 
 
-def _facts(body: Body, tied: Tied) -> dict:
+@dataclass(frozen=True)
+class _Level:
+    """Numbers of one mesh; its body and shapes need not outlive the next one."""
+
+    quantities: dict[str, float]
+    solver: dict[str, float]
+
+
+def _facts(found: Answer) -> dict:
+    body = found.body
     order = body.mesh.get("order")
     return {
         "dofs": body.size,
         "h": None if order else body.mesh.get("representative_size"),
         "order": order,
-        "c_zz": tied.quantities.get("C_zz"),
-        "bending_1_hz": tied.quantities.get("bending 1"),
+        "quantities": {
+            name: found.quantities[name]
+            for name in ("C_zz", "bending 1")
+            if name in found.quantities
+        },
         "mesh": body.mesh,
     }
 
 
 def _around(
-    scene: Scene, model: str, plan: Sequence, ties: dict[str, Tied], meter: Meter
+    scene: Scene, model: str, plan: Sequence, ties: dict[str, _Level], meter: Meter
 ) -> dict[str, dict[str, float]]:
     """Relative error that the cells around leave, per way of tying and quantity."""
     spare = Meter()
     with meter.stage("band"):
-        _, turned = _solved(scene, model, plan.turned or {}, spare)
+        turned = _solved(scene, model, plan.turned or {}, spare)
     out = {}
     for tie in set(ties) & set(turned):
         finer = turned[tie].quantities
@@ -279,7 +271,7 @@ def _bands(
     scene: Scene,
     model: str,
     plan: Sequence,
-    solved: list[dict[str, Tied]],
+    solved: list[dict[str, _Level]],
     facts: list[dict],
     around,
 ) -> dict[str, dict[str, Band]]:
@@ -310,8 +302,8 @@ def _solved(
     options: Mapping[str, Any],
     meter: Meter,
     counted_from: float = math.inf,
-) -> tuple[Body, dict[str, Tied]]:
-    """A body and what it answers, tied as in the scene and by section means; modes are counted from
+) -> dict[str, Answer]:
+    """What one mesh answers, tied as in the scene and by section means; modes are counted from
     so many unknowns on.
     """
     given = {s.attachment for s in scene.stations}
@@ -343,7 +335,7 @@ def _solved(
         plain = scene.with_attachment("section")
         other = _built(plain, model, options, meter)
         ties[SECTION] = _tied(plain, other, as_supports(plain), None, meter, False)
-    return body, ties
+    return ties
 
 
 def _built(scene: Scene, model: str, options: Mapping[str, Any], meter: Meter) -> Body:
@@ -353,27 +345,23 @@ def _built(scene: Scene, model: str, options: Mapping[str, Any], meter: Meter) -
 
 def _tied(
     scene: Scene, body: Body, supports: Supports, attachment: str | None, meter: Meter, count: bool
-) -> Tied:
-    ask = scene.ask
-    with meter.stage("statics"):
-        condensed = condense(body, supports, scene.port.name, attachment)
-    with meter.stage("modes"):
-        # Families of two waves and more are told for the mesh that is told; bearings do not move
-        # them, nor do bands rest on them.
-        found = modes(
-            body,
-            supports,
-            max(ask.modes, ENOUGH),
-            max_frequency=ask.max_frequency,
-            count=count,
-            ovalising=count,
-        )
-    # Evidence, not part of the answer: kept apart from what the modes cost.
-    meter.move("modes", "count", found.evidence.get("count_seconds", 0.0))
-    return Tied(condensed, found, measure(condensed, found))
+) -> Answer:
+    # Families of two waves and more are reported for the mesh that is; bearings do not move them,
+    # nor do bands rest on them.
+    return answered(
+        body,
+        supports,
+        scene.port.name,
+        attachment,
+        n=max(scene.ask.modes, ENOUGH),
+        max_frequency=scene.ask.max_frequency,
+        count=count,
+        ovalising=count,
+        meter=meter,
+    )
 
 
-def _add_variants(scene: Scene, rung: Rung, progress: Progress) -> None:
+def _add_variants(scene: Scene, rung: Solution, progress: Progress) -> None:
     """The same scene with each attachment everywhere; a 3D solid only with those its mesh carries."""
     given = {s.attachment for s in scene.stations}
     spare = Meter()

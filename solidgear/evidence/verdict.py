@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 
 from solidgear.evidence.partners import Partners
 from solidgear.evidence.quantities import JUDGED, QUANTITIES, change
-from solidgear.evidence.study import Rung
+from solidgear.evidence.study import Solution
 from solidgear.evidence.ties import SCENE, SECTION
 from solidgear.fidelity.ladder import LADDER
 from solidgear.fidelity.rung import BEAM, SOLID
@@ -46,7 +46,7 @@ def gap_verdict(gap: float, band: float, tolerance: float) -> str:
     return BEYOND if abs(gap) - band > tolerance else OPEN
 
 
-def deviations(rungs: dict[str, Rung], reference: str) -> list[dict]:
+def deviations(rungs: dict[str, Solution], reference: str) -> list[dict]:
     """Relative deviations from the reference, once with the attachments of the scene and once like
     for like.
 
@@ -70,7 +70,9 @@ def deviations(rungs: dict[str, Rung], reference: str) -> list[dict]:
     return out
 
 
-def _deviations(model: str, reference: str, tie: str, rung: Rung, base: Rung) -> Iterable[dict]:
+def _deviations(
+    model: str, reference: str, tie: str, rung: Solution, base: Solution
+) -> Iterable[dict]:
     mine, theirs = rung.ties[tie], base.ties[tie]
     partners = Partners(mine.modes, theirs.modes)
     for name, (_, place, unit) in QUANTITIES.items():
@@ -102,7 +104,7 @@ def _deviations(model: str, reference: str, tie: str, rung: Rung, base: Rung) ->
         }
 
 
-def trusted(rungs: dict[str, Rung], tolerance: float) -> tuple[str | None, str]:
+def trusted(rungs: dict[str, Solution], tolerance: float) -> tuple[str | None, str]:
     """The rung that may judge the others, and why there is none: a solid whose bands are inside the
     tolerance.
     """
@@ -120,19 +122,19 @@ def trusted(rungs: dict[str, Rung], tolerance: float) -> tuple[str | None, str]:
     return None, why
 
 
-def _reason(rung: Rung) -> str:
+def _reason(rung: Solution) -> str:
     return "; ".join(dict.fromkeys(rung.failed.values())) or "it was solved on one mesh only"
 
 
 def judge(
-    scene: Scene, rungs: dict[str, Rung], gaps: list[dict], notices: Iterable[dict] = ()
+    scene: Scene, rungs: dict[str, Solution], gaps: list[dict], notices: Iterable[dict] = ()
 ) -> tuple[dict, dict[str, Judgement]]:
     """Validity of every rung and the verdict in sentences.
 
     Parameters
     ----------
     scene : Scene
-    rungs : dict of str to Rung
+    rungs : dict of str to Solution
     gaps : list of dict
         From :func:`deviations`, against the rung that :func:`trusted` names or, where there is
         none, the best there is.
@@ -320,7 +322,7 @@ def _beams(rungs, gaps, judged, tolerance) -> list[str]:
     return out
 
 
-def _cost(rung: Rung) -> str:
+def _cost(rung: Solution) -> str:
     # The price of an answer is building and solving it; bands and variants are evidence on top.
     seconds = sum(rung.meter.seconds.get(k, 0.0) for k in ("build", "statics", "modes"))
     return f"{rung.body.size} unknowns, {seconds:.2g} s"

@@ -9,7 +9,7 @@ import numpy as np
 
 from solidgear.body import Body
 from solidgear.errors import SolidgearError
-from solidgear.evidence.study import Rung
+from solidgear.evidence.study import Solution
 from solidgear.fidelity.ladder import LADDER
 from solidgear.fidelity.rung import BEAM, LUMPED
 from solidgear.machine.threads import pinned
@@ -91,14 +91,14 @@ def check_scene(scene: Scene, body: Body) -> dict:
 
 
 def notices(
-    scene: Scene, rungs: dict[str, Rung], names: tuple[str, ...] | None = None
+    scene: Scene, rungs: dict[str, Solution], names: tuple[str, ...] | None = None
 ) -> list[dict]:
     """What the guards have to say of models that are solved, facts left out.
 
     Parameters
     ----------
     scene : Scene
-    rungs : dict of str to Rung
+    rungs : dict of str to Solution
     names : tuple of str, optional
         Guards to ask; by default all that a comparison does not answer by itself.
 

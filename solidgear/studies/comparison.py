@@ -11,11 +11,12 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from solidgear.errors import SolidgearError
-from solidgear.evidence.causes import attachment_causes, beam_causes, shoulder_cause
+from solidgear.evidence.causes import SHOWN, Cause, attachment_causes, beam_causes, shoulder_cause
 from solidgear.evidence.lumped import synthesise_all
 from solidgear.evidence.quantities import change
-from solidgear.evidence.record import record
-from solidgear.evidence.study import Rung, study
+from solidgear.evidence.record import LumpedRecord, Record
+from solidgear.evidence.recording import recorded
+from solidgear.evidence.study import Solution, study
 from solidgear.evidence.ties import SECTION
 from solidgear.fidelity.ladder import LADDER
 from solidgear.fidelity.levels import FREE, HARMONIC
@@ -37,15 +38,20 @@ class Comparison:
     Attributes
     ----------
     scene : Scene
-    results : dict
-        Plain data, what ``results.json`` holds.
-    rungs : dict of str to Rung
+    record : Record
+        What ``results.json`` holds.
+    rungs : dict of str to Solution
         The bodies and mode shapes behind it.
     """
 
     scene: Scene
-    results: dict
-    rungs: dict[str, Rung]
+    record: Record
+    rungs: dict[str, Solution]
+
+    @property
+    def results(self) -> dict:
+        """The record as plain data."""
+        return self.record.as_dict()
 
     def write_report(
         self, out: str | os.PathLike, *, renders: bool = True, progress: Progress = lambda _: None
@@ -94,7 +100,7 @@ def compare(
     Returns
     -------
     Comparison
-        After Ctrl-C with what there was, ``results["complete"]`` False.
+        After Ctrl-C with what there was, ``record.complete`` False.
 
     Raises
     ------
@@ -113,23 +119,23 @@ def compare(
         except KeyboardInterrupt:
             complete = False
             progress("interrupted; keeping what is there")
-    results = record(
+    record = recorded(
         scene, found.rungs, found.failed, found.causes, found.lumped, found.guards, complete
     )
-    results["seconds_total"] = overall.seconds["all"]
-    results["peak_mb"] = overall.peak_mb
-    results["expected_peak_mb"] = run.expected_mb
-    return Comparison(scene, results, found.rungs)
+    record.seconds_total = overall.seconds["all"]
+    record.peak_mb = overall.peak_mb
+    record.expected_peak_mb = run.expected_mb
+    return Comparison(scene, record, found.rungs)
 
 
 @dataclass
 class _Found:
     """What a comparison has so far; an interrupt leaves it whole."""
 
-    rungs: dict[str, Rung]
+    rungs: dict[str, Solution]
     failed: dict[str, str]
-    causes: list
-    lumped: dict
+    causes: list[Cause]
+    lumped: dict[str, LumpedRecord]
     guards: list[dict]
 
 
@@ -206,7 +212,7 @@ def check_models(models: tuple[str, ...]) -> None:
         )
 
 
-def _causes(scene: Scene, rungs: dict[str, Rung], options, progress: Progress) -> list:
+def _causes(scene: Scene, rungs: dict[str, Solution], options, progress: Progress) -> list:
     out = []
     progress("causes: switching assumptions one at a time")
     try:
@@ -220,7 +226,7 @@ def _causes(scene: Scene, rungs: dict[str, Rung], options, progress: Progress) -
         harmonic, beam = rungs.get("harmonic"), rungs.get("timoshenko")
         if harmonic and beam and SECTION in harmonic.ties and SECTION in beam.ties:
             section, own = harmonic.ties[SECTION].quantities, beam.ties[SECTION].quantities
-            gap = {name: change(own, section, name) for name in ("C_zz", "K_zz", "bending 1")}
+            gap = {name: change(own, section, name) for name in SHOWN}
             mesh = (
                 {k: v for k, v in harmonic.options.items() if k not in FREE}
                 if options["harmonic"]

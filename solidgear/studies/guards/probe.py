@@ -18,7 +18,7 @@ import scipy.sparse.linalg as spla
 from solidgear.body import Body, Supports, as_supports
 from solidgear.errors import SolidgearError
 from solidgear.evidence.quantities import JUDGED
-from solidgear.evidence.study import Rung, study
+from solidgear.evidence.study import Solution, study
 from solidgear.evidence.ties import rigid_seats
 from solidgear.evidence.verdict import deviations
 from solidgear.fidelity import build
@@ -47,11 +47,11 @@ class Probe:
     scene : Scene
     body : Body
         The body the user asked for; it is read, not solved.
-    rungs : dict of str to Rung, optional
+    rungs : dict of str to Solution, optional
         What is solved already.
     """
 
-    def __init__(self, scene: Scene, body: Body, rungs: dict[str, Rung] | None = None):
+    def __init__(self, scene: Scene, body: Body, rungs: dict[str, Solution] | None = None):
         self.scene, self.body, self.supports = scene, body, as_supports(scene)
         self.rungs = dict(rungs or {})
         self.tied, self.gaps = cache(self._tied), cache(self._gaps)
@@ -80,7 +80,7 @@ class Probe:
             for a, b in pairwise(ends)
         ]
 
-    def rung(self, model: str) -> Rung:
+    def rung(self, model: str) -> Solution:
         """A beam, or the harmonic solid on its two coarsest meshes."""
         if model not in self.rungs:
             self.rungs[model] = study(self.scene, model, most=2, evidence=False)
