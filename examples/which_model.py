@@ -17,13 +17,13 @@ def main():
     scene = sg.load(GEOMETRY / "shaft_hollow.toml")
     scene = scene.with_changes(ask=scene.ask.with_changes(tolerance=0.02))
     comparison = sg.compare(scene, ("euler", "timoshenko", "harmonic"))
-    verdict = comparison.results["verdict"]
-    for model, record in comparison.results["models"].items():
-        said = "valid" if record["valid"] else record["why_not"]
+    verdict = comparison.record.verdict
+    for model, record in comparison.record.models.items():
+        said = "valid" if record.valid else record.why_not
         print(f"{model:11s} {said}")
-    print("trust:", verdict["trust"], "- cheapest:", verdict["cheapest"])
+    print("trust:", verdict.trust, "- cheapest:", verdict.cheapest)
     # comparison.write_report("out") makes the page, the pictures and results.json
-    return {"trust": verdict["trust"], "cheapest": verdict["cheapest"]}
+    return {"trust": verdict.trust, "cheapest": verdict.cheapest}
 
 
 if __name__ == "__main__":

@@ -75,10 +75,8 @@ def compare(
     with held(out):
         with Progress(quiet=as_json) as progress:
             found = run(loaded, wanted, settings=chosen, progress=progress)
-            found.write_report(
-                out, renders=renders and found.results["complete"], progress=progress
-            )
-        if chart and found.results["complete"]:
+            found.write_report(out, renders=renders and found.record.complete, progress=progress)
+        if chart and found.record.complete:
             from solidgear.cli.chart import run_chart
 
             run_chart(loaded, out, quiet=as_json)
@@ -88,12 +86,12 @@ def compare(
         from solidgear.report.terminal import closing_lines, final_table, verdict_text
 
         terminal = console()
-        terminal.print(final_table(found.results))
-        terminal.print(verdict_text(found.results), markup=False)
-        for line in closing_lines(found.results):
+        terminal.print(final_table(found.record))
+        terminal.print(verdict_text(found.record), markup=False)
+        for line in closing_lines(found.record):
             terminal.print(line, markup=False, soft_wrap=True)
         terminal.print(f"Report: {out / 'report.html'}", markup=False, soft_wrap=True)
-    if not found.results["complete"]:
+    if not found.record.complete:
         raise typer.Exit(130)
     if not found.rungs:
         raise typer.Exit(1)

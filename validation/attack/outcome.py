@@ -70,7 +70,7 @@ def _model(record: dict, rung) -> dict:
         "steps": {},
         "modes": [],
     }
-    if "compliance" not in record:
+    if record["compliance"] is None:
         return out
     out["values"] = values(record)
     each = (record.get("band") or {}).get("each") or {}
@@ -78,7 +78,7 @@ def _model(record: dict, rung) -> dict:
         if name in out["values"] and band is not None:
             out["bands"][name] = float(band) * _told_of(record, out["values"], name)
     for name in out["bands"]:
-        found = (record.get("convergence") or {}).get(name.replace(" ", "_").lower())
+        found = (record["convergence"] or {}).get("quantities", {}).get(name)
         if found:
             out["steps"][name] = {
                 k: found.get(k)
@@ -123,7 +123,7 @@ def values(record: dict) -> dict[str, float]:
 
 def _told_of(record: dict, found: dict, name: str) -> float:
     """What a band is relative to: the scale the record names, or the value itself."""
-    details = (record.get("convergence") or {}).get(name.replace(" ", "_").lower()) or {}
+    details = (record["convergence"] or {}).get("quantities", {}).get(name) or {}
     scale = details.get("scale")
     if isinstance(scale, float):
         return scale
