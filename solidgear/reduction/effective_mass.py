@@ -38,7 +38,7 @@ from solidgear.solve.statics import condense
 from solidgear.solve.supported import Supported, decoupled, groups
 
 if TYPE_CHECKING:
-    from solidgear.body.model import Holding
+    from solidgear.body.supports import Holding
 
 PLANE = (2, 3)  # z and thx
 METHODS = ("old", "thesis", "mode-matched", "guyan")

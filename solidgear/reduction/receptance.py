@@ -12,7 +12,7 @@ from solidgear.solve.modes import ModeSet
 from solidgear.solve.statics import condense
 
 if TYPE_CHECKING:
-    from solidgear.body.model import Holding
+    from solidgear.body.supports import Holding
 
 
 def port_motion(body: Body, vectors: dict[int, np.ndarray], index: int) -> np.ndarray:

@@ -32,7 +32,7 @@ from solidgear.solve.statics import SHIFT, factors
 from solidgear.solve.supported import decoupled
 
 if TYPE_CHECKING:
-    from solidgear.body.model import Holding
+    from solidgear.body.supports import Holding
 
 STATIONS = 13
 #: Relative error of a frequency above which it is not told.
@@ -159,8 +159,8 @@ def modes(
         Check by the inertia of another factor that no mode was missed (Sylvester's law); costs
         about one more factorisation.
     ovalising : bool
-        Solve the families of two waves around and more that begin below the highest mode told, for
-        a body that can build them (a harmonic solid).
+        Solve the families of two waves around and more that begin below the highest mode reported,
+        for a body that can build them (a harmonic solid).
 
     Returns
     -------
@@ -171,6 +171,22 @@ def modes(
     SolidgearError
         If ``n`` is not positive, the method unknown, a mode was missed and could not be found, or
         rounding leaves a frequency too few digits.
+
+    Examples
+    --------
+    A slender free rod, whose first bending is ``(4.73 / L)^2 sqrt(E I / rho A) / 2 pi``:
+
+    >>> import numpy as np
+    >>> import solidgear as sg
+    >>> rod = sg.Segment.cylinder("rod", length=0.6, diameter=0.02)
+    >>> scene = sg.Scene.from_parts([rod])
+    >>> found = sg.modes(sg.build(scene, "euler"), scene, n=2)
+    >>> found.names[-1], found.multiplicity[-1]
+    ('bending 1', 2)
+    >>> wave = np.sqrt(sg.STEEL.E / sg.STEEL.density) * 0.02 / 4
+    >>> formula = (4.730041 / 0.6) ** 2 * wave / (2 * np.pi)
+    >>> bool(np.isclose(found.named("bending 1").frequency_hz, formula, rtol=1e-6))
+    True
     """
     if n < 1:
         raise SolidgearError(f"modes: n = {n} is not a number of modes; ask for 1 or more")

@@ -32,7 +32,7 @@ from solidgear.solve.factor import Factor, factorise
 from solidgear.solve.relief import elastic_fields
 
 if TYPE_CHECKING:
-    from solidgear.body.model import Holding
+    from solidgear.body.supports import Holding
 
 # Of the lowest elastic eigenvalue.  Rounding in the factor is amplified by the highest eigenvalue
 # of the mesh over the shift: 1e-3 left 5e-3 of the frequencies of slender tubes wrong, 3e-2 leaves
@@ -187,7 +187,19 @@ def condense(body: Body, supports: Holding, port: str, attachment: str | None = 
     Raises
     ------
     SolidgearError
-        If the body lacks the port.
+        If the body lacks the port, or the bearing stiffnesses leave no positive definite system.
+
+    Examples
+    --------
+    A shaft on two bearings that stop all but its rotation:
+
+    >>> import solidgear as sg
+    >>> scene = sg.load("geometry/shaft_stepped.toml")
+    >>> at_gear = sg.condense(sg.build(scene, "timoshenko"), scene, port="port")
+    >>> at_gear.free_names
+    ('thy',)
+    >>> bool(at_gear.stiffness[2, 2] < 4e8 + 5e8)  # softer than the bearings side by side
+    True
     """
     supports = as_supports(supports)
     flex = flexibility(body)
