@@ -1,8 +1,8 @@
 """What a shape of a 3D mesh does around the axis: its parts in cos nt and sin nt, whatever the
 mesh.
 
-Nodes are gathered in bins of like (r, y), divided until each has just enough of them to tell the
-waves apart, so that the profile over the meridian may be anything; in each bin the radial,
+Nodes are gathered in bins of like (r, y), divided until each has just enough of them to
+separate the waves, so that the profile over the meridian may be anything; in each bin the radial,
 tangential and axial motions are fitted by waves around.
 """
 
@@ -14,7 +14,7 @@ import numpy as np
 
 from solidgear.body import Body
 
-MOST = 16  # waves around that are told apart, where the mesh has the nodes for them
+MOST = 16  # waves around that are separated, where the mesh has the nodes for them
 BINS = 512
 
 
@@ -31,7 +31,7 @@ class Circumference:
     Attributes
     ----------
     waves : int
-        Highest number of waves that the nodes can tell.
+        Highest number of waves that the nodes can resolve.
     """
 
     def __init__(self, nodes: np.ndarray, weight: np.ndarray):

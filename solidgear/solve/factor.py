@@ -1,5 +1,4 @@
-"""Factorisation of sparse symmetric matrices: which back end, whether it will fit, and what came of
-it.
+"""Factorisation of sparse symmetric matrices: which back end, whether it will fit, and the result.
 
 ``factorise(matrix)`` is for positive definite matrices, ``indefinite(matrix)`` for those whose
 negative eigenvalues are counted. The back ends themselves are in :mod:`solidgear.solve.backends`.
@@ -61,7 +60,7 @@ class Factor:
     estimate_mb : float or None
         Memory it was expected to need, MB.
     nnz : int or None
-        Entries of the factor, where the back end tells.
+        Entries of the factor, where the back end reports them.
     """
 
     backend: str
@@ -218,7 +217,8 @@ def choice(
             raise FactorError(
                 f"unknown back end {backend!r}; use " + ", ".join(map(repr, BACKENDS))
             )
-        if why := _missing(backend):
+        why = _missing(backend)
+        if why:
             raise FactorError(f"back end {backend} was asked for but {why}")
         return backend, FORCED
     if planar and matrix.nnz < LARGE_PLANAR:
@@ -227,7 +227,8 @@ def choice(
         return "superlu", f"{n} unknowns are not above {SMALL}"
     absent = []
     for name in FASTEST:
-        if not (why := _missing(name)):
+        why = _missing(name)
+        if not why:
             break
         absent.append(f"{why}; {INSTALL[name]}")
     return name, f"{n} unknowns are above {SMALL}" + "".join(
@@ -246,8 +247,8 @@ def _factored(name, matrix, planar, definite):
     work = _heard(n, BACKENDS[name], matrix, definite=definite, **options)
     if free is not None and work.estimate_mb > free:
         raise NoRoom(
-            f"{matrix.shape[0]} unknowns need about {_mb(work.estimate_mb)} MB to factor by {name}, {_mb(free)} MB are free; "
-            "use a coarser mesh, or the harmonic model, which needs far less"
+            f"{matrix.shape[0]} unknowns need about {_mb(work.estimate_mb)} MB to factor by {name}, "
+            f"{_mb(free)} MB are free; use a coarser mesh, or the harmonic model, which needs far less"
         )
     _heard(n, work.factor)
     return work
@@ -267,15 +268,14 @@ def _backward_error(matrix, solve):
     x = solve(rhs)
     if not np.isfinite(x).all():
         return np.inf
-    largest = np.linalg.norm(
-        matrix.data
-    )  # Frobenius: bounds the 2-norm from above, by no more than the bandwidth's root
+    # Frobenius: bounds the 2-norm from above, by no more than the bandwidth's root
+    largest = np.linalg.norm(matrix.data)
     return np.linalg.norm(matrix @ x - rhs) / (largest * np.linalg.norm(x) + np.linalg.norm(rhs))
 
 
 # --------------------------------------------------------------------------- border
 def _bordered(matrix, border, factor, corner_of):
-    """Factor the inner part by `factor`, the Schur complement of the last unknowns by `corner_of`."""
+    """Factor the inner part by `factor`, the Schur complement of the border by `corner_of`."""
     n = matrix.shape[0] - border
     if n == 0:  # a shaft that rigid seats hold from end to end: nothing but border
         return factor(matrix)

@@ -21,13 +21,13 @@ from solidgear.solve.eigen import Raw
 from solidgear.solve.naming import Names, Projection, numbered
 from solidgear.solve.parts import (
     Part,
-    Uncounted,
     complete,
-    families,
+    family_rows,
     further_parts,
     reach_of,
     solved_parts,
 )
+from solidgear.solve.soundness import sound
 from solidgear.solve.statics import SHIFT, factors
 from solidgear.solve.supported import decoupled
 
@@ -35,8 +35,6 @@ if TYPE_CHECKING:
     from solidgear.body.supports import Holding
 
 STATIONS = 13
-#: Relative error of a frequency above which it is not told.
-WRONG = 1e-3
 
 
 @dataclass(frozen=True)
@@ -209,10 +207,10 @@ def modes(
     project = Projection(body, np.linspace(0.0, body.length, STATIONS))
     names = Names(body, supports, project)
     rigid = [r for part in parts for r in part.everywhere(part.solved.free)]
-    told, beyond, torn, every = _named(body, names, parts, n, max_frequency)
+    listed, beyond, torn, every = _named(body, names, parts, n, max_frequency)
     evidence = {
         "residual": max((r.residual for r in _lowest(parts, n + 2)), default=0.0),
-        "error": max((m.error for m in told), default=0.0),
+        "error": max((m.error for m in listed), default=0.0),
         "steps": max(part.solved.steps for part in parts),
         "orthogonality": max(part.solved.orthogonality for part in parts),
         "rigid_modes": len(rigid),
@@ -220,7 +218,7 @@ def modes(
         "coupling_bound": bound,
         "backend": "+".join(sorted({f.backend for f in factors(body)})),
         "method": "+".join(dict.fromkeys(part.solved.method for part in parts)),
-        "families": _families(parts, left, every),
+        "families": family_rows(parts, left, every),
     }
     if count:
         evidence |= {"count": verdicts, "count_seconds": spent}
@@ -232,7 +230,7 @@ def modes(
         evidence["torn_pairs"] = torn
     return ModeSet(
         body.fidelity,
-        (*_rigid(names, rigid), *told),
+        (*_rigid(names, rigid), *listed),
         np.linspace(0.0, body.length, STATIONS),
         project.gram,
         evidence,
@@ -267,14 +265,14 @@ def _rigid(names: Names, raw: list[Raw]):
 
 
 def _named(body, names: Names, parts: list[Part], n: int, max_frequency: float | None):
-    """Modes told, own modes beyond the end of the list, torn pairs, and (family, frequency, shapes)
+    """Modes of the list, own modes beyond the end of the list, torn pairs, and (family, frequency, shapes)
     of all that was found: no pair is cut in two.
     """
     raw = _lowest(parts, sum(len(part.everywhere(part.solved.elastic)) for part in parts))
     shapes = [names.describe(r.vectors) for r in raw]
     groups, torn = names.pairs(shapes, np.array([r.value for r in raw]))
     labels = numbered([shapes[group[0]].family for group in groups])
-    told: list[Mode] = []
+    listed: list[Mode] = []
     beyond: list[Mode] = []
     every: list[tuple[str, float, int]] = []
     of: dict[int, Mode] = {}
@@ -299,7 +297,7 @@ def _named(body, names: Names, parts: list[Part], n: int, max_frequency: float |
         )
         own = all(b < FURTHER for r in members for b in r.vectors)
         if room > 0:
-            told.append(_sound(body, mode, parts))
+            listed.append(sound(body, mode, parts))
             of |= dict.fromkeys(group, mode)
         elif own and own_room > 0:
             beyond.append(mode)
@@ -310,80 +308,4 @@ def _named(body, names: Names, parts: list[Part], n: int, max_frequency: float |
         for i, j in torn
         if i in of and j in of
     ]
-    return tuple(told), tuple(beyond), pairs, every
-
-
-def _sound(body, mode: Mode, parts: list[Part]) -> Mode:
-    """The mode, unless rounding leaves too little of its frequency."""
-    if mode.error > WRONG:
-        told = f"modes: rounding may move {mode.name} ({mode.frequency_hz:.6g} Hz) by {100 * mode.error:.2g} %"
-        if _by_springs(mode, parts) > mode.error / 2:
-            raise SolidgearError(
-                f"{told}: bearings resist it by the difference of far larger stiffnesses that couple, and its sixteen digits are not enough; give the bearing a "
-                "stiffness that is clearly positive in every direction, or zero"
-            )
-        highest = (
-            max(part.supported.highest for part in parts) / (2 * np.pi * mode.frequency_hz) ** 2
-        )
-        raise SolidgearError(
-            f"{told}: the smallest cell of the {body.fidelity} body is so stiff that the "
-            f"eigenvalues span {np.log10(highest):.0f} digits of the 16 there are; use a coarser mesh (lower order, fewer layers), or a beam for a shaft as slender as this"
-        )
-    return mode
-
-
-def _by_springs(mode: Mode, parts: list[Part]) -> float:
-    """Share of the relative error of a frequency that comes from the rounding of the bearings'
-    stiffness.
-    """
-    value, lost = (2 * np.pi * mode.frequency_hz) ** 2, 0.0
-    for part, vectors in (
-        (p, v) for p in parts for v in mode.vectors if set(v) & set(p.supported.group)
-    ):
-        u = np.concatenate(
-            [
-                vectors.get(b, np.zeros(block.size))
-                for b, block in zip(part.supported.group, part.supported.blocks)
-            ]
-        )
-        lost = max(lost, float(part.supported.spring_rounding(u[:, None])[0]))
-    return lost / (2 * value)
-
-
-def _families(
-    parts: list[Part], left: list[Uncounted], found: list[tuple[str, float, int]]
-) -> list[dict]:
-    """What was solved and counted, family by family, and what was left alone: see :class:`ModeSet`."""
-    below = min(
-        (p.verdict["below_hz"] for p in parts if p.verdict and p.verdict["checked"]), default=np.inf
-    )
-    rows = []
-    for family, waves, counted in families(parts):
-        mine = [
-            (hz, shapes)
-            for name, hz, shapes in found
-            if waves is None or name == family or (family, name) == ("axial", "breathing")
-        ]
-        lowest = min((hz for hz, _ in mine), default=None)
-        rows.append(
-            {
-                "family": family,
-                "n": waves,
-                "counted": counted,
-                "modes_below": sum(shapes for hz, shapes in mine if hz < below),
-                "lowest_hz": lowest,
-            }
-        )
-    rows.sort(key=lambda row: (row["n"] or 0, row["family"]))
-    for u in left:
-        rows.append(
-            {
-                "family": f"ovalising n={u.n}",
-                "n": u.n,
-                "counted": False,
-                "modes_below": 0,
-                "lowest_hz": u.begins_hz,
-                "above": u.and_above,
-            }
-        )
-    return rows
+    return tuple(listed), tuple(beyond), pairs, every

@@ -8,7 +8,7 @@ its sections do; a 3D mesh is asked by :mod:`solidgear.solve.circumference`.
 Two modes are one pair only where symmetry makes them so: the same profile over the meridian, a
 quarter of a wave further round, with bearings that a quarter turn leaves as they are, or with n >=
 2, which bearings do not touch.  Twins that the mesh has split beyond its tolerance stay apart and
-are told.
+are reported.
 """
 
 from __future__ import annotations
@@ -27,8 +27,8 @@ FAMILIES = {"bending": (0, 2, 3, 5), "axial": (1,), "torsion": (4,)}
 #: Bearings that a quarter turn changes by no more than this, relative, split a pair by half of it
 #: at most.
 ALIKE = 1e-6
-#: Eigenvalues of twins of two and more waves that a 3D mesh has split by this much are still told
-#: as one pair.
+#: Eigenvalues of twins of two and more waves that a 3D mesh has split by this much are still
+#: reported as one pair.
 OVAL_TOLERANCE = 1e-2
 
 

@@ -66,15 +66,15 @@ class Part:
 
     def everywhere(self, found: list[Raw]) -> list[Raw]:
         """Eigenpairs of the group and of its twins."""
-        own = [
-            Raw(r.value, {self.first + b: v for b, v in r.vectors.items()}, r.residual, r.error)
-            for r in found
-        ]
-        return own + [
-            Raw(r.value, {twin: next(iter(r.vectors.values()))}, r.residual, r.error)
-            for twin in self.twins
-            for r in found
-        ]
+        out = []
+        for r in found:
+            vectors = {self.first + b: v for b, v in r.vectors.items()}
+            out.append(Raw(r.value, vectors, r.residual, r.error))
+        for twin in self.twins:
+            for r in found:
+                vectors = {twin: next(iter(r.vectors.values()))}
+                out.append(Raw(r.value, vectors, r.residual, r.error))
+        return out
 
     def values(self) -> list[float]:
         """Elastic eigenvalues with every shape counted."""
@@ -177,7 +177,7 @@ def further_parts(
         )
         while True:
             part.solved = lowest(part.supported, part.ask, method)
-            # Two shapes for every value: half of n is all that can be told.
+            # Two shapes for every value: half of n is all that the list has room for.
             if part.solved.elastic[-1].value > 1.01 * limit or part.ask > n // 2 + 1:
                 break
             part.ask = min(2 * part.ask, n // 2 + 2)
@@ -213,11 +213,15 @@ def complete(part: Part, reach: float, method: str | None) -> dict:
         if EPS * stiffest > DOUBT * seen.distance:
             part.verdict = {
                 "checked": False,
-                "why": f"the stiffest cell lies {stiffest:.0e} times above the modes, so that rounding turns signs of the factor",
+                "why": (
+                    f"the stiffest cell lies {stiffest:.0e} times above the modes, "
+                    "so that rounding turns signs of the factor"
+                ),
             }
             return part.verdict
         raise SolidgearError(
-            f"modes: {seen.found} modes were found below {_hz(seen.below):.6g} Hz but the factor counts {seen.counted}; ask for more modes (n = {n})"
+            f"modes: {seen.found} modes were found below {_hz(seen.below):.6g} Hz "
+            f"but the factor counts {seen.counted}; ask for more modes (n = {n})"
         )
     if seen is None:
         part.verdict = {"checked": False, "why": f"no inertia from {supported.backend}"}
@@ -244,6 +248,44 @@ def families(parts: list[Part]) -> list[tuple[str, int | None, bool]]:
             )
             rows[name] = (None if name == "all" else waves_of(block), counted)
     return [(name, *row) for name, row in rows.items()]
+
+
+def family_rows(
+    parts: list[Part], left: list[Uncounted], found: list[tuple[str, float, int]]
+) -> list[dict]:
+    """What was solved and counted, family by family, and what was left alone: see :class:`ModeSet`."""
+    checked = [p.verdict for p in parts if p.verdict and p.verdict["checked"]]
+    below = min((verdict["below_hz"] for verdict in checked), default=np.inf)
+    rows = []
+    for family, waves, counted in families(parts):
+        mine = [
+            (hz, shapes)
+            for name, hz, shapes in found
+            if waves is None or name == family or (family, name) == ("axial", "breathing")
+        ]
+        lowest = min((hz for hz, _ in mine), default=None)
+        rows.append(
+            {
+                "family": family,
+                "n": waves,
+                "counted": counted,
+                "modes_below": sum(shapes for hz, shapes in mine if hz < below),
+                "lowest_hz": lowest,
+            }
+        )
+    rows.sort(key=lambda row: (row["n"] or 0, row["family"]))
+    for u in left:
+        rows.append(
+            {
+                "family": f"ovalising n={u.n}",
+                "n": u.n,
+                "counted": False,
+                "modes_below": 0,
+                "lowest_hz": u.begins_hz,
+                "above": u.and_above,
+            }
+        )
+    return rows
 
 
 def _is_twin(body, supports, spring, group: list[int], other: list[int]) -> bool:

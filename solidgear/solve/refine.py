@@ -27,7 +27,7 @@ EPS = float(np.finfo(float).eps)
 #: Rounding of an energy from which on it is worth products in extended precision, where the
 #: processor has it.
 COARSE, EXTENDED = 1e-7, np.finfo(np.longdouble).eps < EPS
-#: Largest product of two shapes that are told as orthogonal.
+#: Largest product of two shapes that count as orthogonal.
 ASKEW = 1e-5
 
 
@@ -94,14 +94,10 @@ def refine(supported: Supported, vectors: np.ndarray, value: np.ndarray, needed:
     # an elastic mode is not in that danger.
     count = int(np.argmax(elastic))
     found = _corrected(supported, vectors, value, needed, count)
-    if (
-        count
-        and np.abs(found.vectors[:, :count].T @ supported.mass(found.vectors[:, count:])).max(
-            initial=0.0
-        )
-        > ASKEW
-    ):
-        found = _corrected(supported, vectors, value, needed, 0)
+    if count:
+        rigid, rest = found.vectors[:, :count], found.vectors[:, count:]
+        if np.abs(rigid.T @ supported.mass(rest)).max(initial=0.0) > ASKEW:
+            found = _corrected(supported, vectors, value, needed, 0)
     return found
 
 
@@ -115,9 +111,8 @@ def _corrected(supported, vectors, value, needed: int, count: int) -> Refined:
     wrong = np.zeros(len(value), bool)
     correction = forces = np.zeros_like(vectors)
     for step in range(STEPS + 1):
-        low, high = (
-            wrong & own for own in (np.arange(len(value)) < count, np.arange(len(value)) >= count)
-        )
+        nearly_rigid = np.arange(len(value)) < count
+        low, high = wrong & nearly_rigid, wrong & ~nearly_rigid
         stiffness = supported.elastic_extended if fine else supported.elastic
         slow = _soft_modes(supported, stiffness, vectors[:, :count], correction[:, low])
         quick = _modes(
@@ -133,10 +128,10 @@ def _corrected(supported, vectors, value, needed: int, count: int) -> Refined:
             np.append(slow.value, quick.value),
             np.append(slow.rounding, quick.rounding),
         )
-        if best is not None and value.min() <= 0.5 * best.value[0] * max(
-            0.0, 1 - 2 * best.error[0]
-        ):
-            return best  # a correction that is nothing but rounding
+        if best is not None:
+            least = 0.5 * best.value[0] * max(0.0, 1 - 2 * best.error[0])
+            if value.min() <= least:
+                return best  # a correction that is nothing but rounding
         vectors, forces = np.hstack([slow.u, quick.u]), np.hstack([slow.force, quick.force])
         correction = supported.inverse(forces)
         found = _judged(supported, value, vectors, forces, correction, rounding, step)
@@ -231,9 +226,8 @@ def _soft_modes(supported, stiffness, u, correction) -> _Pairs:
         held = held @ (v[:, w > 1e-10] / np.sqrt(w[w > 1e-10]))
     rest = supported.without_rigid(supported.without_rigid(np.hstack([u, correction])))
     size = np.sqrt(_columns(rest, mass(rest)))
-    keep = size > 1e-9 * np.append(
-        np.ones(count), np.full(correction.shape[1], 1e-3)
-    )  # below that a remainder of a shape is rounding
+    # below that a remainder of a shape is rounding
+    keep = size > 1e-9 * np.append(np.ones(count), np.full(correction.shape[1], 1e-3))
     rest = rest[:, keep] / size[keep]
     w, v = np.linalg.eigh(rest.T @ mass(rest))
     good = w > 1e-12

@@ -94,11 +94,9 @@ class Condensed:
     @property
     def oblique(self) -> np.ndarray:
         """(6, k) free motions that no single component describes, largest entry 1."""
-        rest = self.free[
-            :,
-            np.abs(self.free[~self._alone()]).max(axis=0, initial=0.0)
-            > 1e-9 * np.abs(self.free).max(axis=0, initial=0.0),
-        ]
+        largest = np.abs(self.free).max(axis=0, initial=0.0)
+        others = np.abs(self.free[~self._alone()]).max(axis=0, initial=0.0)
+        rest = self.free[:, others > 1e-9 * largest]
         return rest / np.abs(rest).max(axis=0, initial=0.0)
 
     def _alone(self) -> np.ndarray:
@@ -137,10 +135,8 @@ def flexibility(body: Body, tolerance: float = 1e-12) -> Flexibility:
             continue
         rows = body.rows(block)
         if block.mirror is not None:
-            original, signs = (
-                body.rows(body.blocks[block.mirror[0]]),
-                np.tile(block.mirror[1], len(body.ports)),
-            )
+            original = body.rows(body.blocks[block.mirror[0]])
+            signs = np.tile(block.mirror[1], len(body.ports))
             out[np.ix_(rows, rows)] = out[np.ix_(original, original)] * np.outer(signs, signs)
             continue
         k = block.stiffness

@@ -64,7 +64,10 @@ def groups(body: Body, supports: Supports, spring: np.ndarray) -> list[list[int]
             a, b = rows[i], rows[j]
             if a.size and b.size and np.any(spring[np.ix_(a, b)]):
                 label = [label[i] if x == label[j] else x for x in label]
-    return [[i for i in range(count) if label[i] == x] for x in sorted(set(label))]
+    out: dict[int, list[int]] = {}
+    for i in range(count):
+        out.setdefault(label[i], []).append(i)
+    return [out[x] for x in sorted(out)]
 
 
 class Supported:
@@ -150,9 +153,8 @@ class Supported:
         """
         if not self._seats:
             return np.zeros(u.shape[1])
-        motion = np.abs(
-            np.vstack([seats @ part for seats, part in zip(self._seats, self.parts(u))])
-        )
+        motions = [seats @ part for seats, part in zip(self._seats, self.parts(u))]
+        motion = np.abs(np.vstack(motions))
         # as large a multiple as condensing springs in series and taking the root of the matrix may
         # make of it
         return 8 * EPS * np.einsum("ik,ij,jk->k", motion, np.abs(self._spring), motion)
@@ -230,20 +232,14 @@ class Supported:
             return 0.0  # no rounding could be seen
         rng = np.random.default_rng(0)
         x = self.mass(rng.standard_normal((self.size, 1)))
-        x = (
-            np.hstack([x, self.load @ rng.standard_normal((self.load.shape[1], 1))])
-            if self.load.shape[1]
-            else x
-        )
+        if self.load.shape[1]:
+            x = np.hstack([x, self.load @ rng.standard_normal((self.load.shape[1], 1))])
         x = x - self._mass_free @ (self.free.T @ x)
         y = self._quick_inverse(x)
         left = x - self.forward(y)
         step = self._quick_inverse(left)
-        return float(
-            np.sqrt(
-                np.abs(np.einsum("ij,ij->j", left, step)) / np.abs(np.einsum("ij,ij->j", x, y))
-            ).max()
-        )
+        changed = np.abs(np.einsum("ij,ij->j", left, step))
+        return float(np.sqrt(changed / np.abs(np.einsum("ij,ij->j", x, y))).max())
 
     def _quick_inverse(self, x: np.ndarray) -> np.ndarray:
         if self.free.shape[1]:
@@ -261,10 +257,8 @@ class Supported:
     @cached_property
     def highest(self) -> float:
         """Highest eigenvalue of the free body, from below and within a factor of ten, rad^2/s^2."""
-        stiff, heavy = (
-            np.concatenate([getattr(b, name).diagonal() for b in self.blocks])
-            for name in ("stiffness", "mass")
-        )
+        stiff = self.diagonal
+        heavy = np.concatenate([b.mass.diagonal() for b in self.blocks])
         return float((stiff[heavy > 0] / heavy[heavy > 0]).max())
 
     def stretch(self, u: np.ndarray, loads: np.ndarray) -> np.ndarray:

@@ -4,14 +4,14 @@ A back end takes the matrix as CSR, sorted, and analyses it; then it knows ``est
 memory the numbers will need, and only ``factor()`` takes that memory.  After it ``solve(rhs)``,
 ``negative`` and ``nnz`` can be asked for.
 
-======== =============================== ===================== ===========================================
-name     what it is                      indefinite matrices   memory estimate
-======== =============================== ===================== ===========================================
-pardiso  MKL PARDISO, LL' or LDL'        yes                   its own, from the analysis
-cholmod  SuiteSparse, supernodal LL'     no                    a law: scikit-sparse does not pass on the count
-mumps    MUMPS, LDL'                     yes                   its own, from the analysis
-superlu  SciPy's SuperLU, LU             unpivoted             a law: it has no separate analysis
-======== =============================== ===================== ===========================================
+======== ============================ ==================== ========================================
+name     what it is                   indefinite matrices  memory estimate
+======== ============================ ==================== ========================================
+pardiso  MKL PARDISO, LL' or LDL'     yes                  its own, from the analysis
+cholmod  SuiteSparse, supernodal LL'  no                   a law: scikit-sparse passes on no count
+mumps    MUMPS, LDL'                  yes                  its own, from the analysis
+superlu  SciPy's SuperLU, LU          unpivoted            a law: it has no separate analysis
+======== ============================ ==================== ========================================
 """
 
 from __future__ import annotations

@@ -8,7 +8,7 @@ import scipy.sparse as sp
 # overhung pinion: solids of all element types with 4 800 to 92 000 unknowns, harmonic blocks of 10 000 to 51 000 (order 2 to 8).
 # Estimate over measured: superlu 0.68 to 1.41 (ten solids), 0.97 to 1.04 (five planar); cholmod 0.75 to 1.16 (eleven), 0.97 to 1.02.
 # Graded hexahedra are at the low end: fitted without the largest of them, its memory came out as 0.47 (superlu) and 0.64 (cholmod) of the
-# measured.  So these tell a model that fits from one that is hopeless, not one that just fits.
+# measured.  So these separate a model that fits from one that is hopeless; they do not decide whether one just fits.
 LAWS = {
     ("superlu", False): (74.9, 0.778, 0.540),
     ("superlu", True): (18.6, 0.0, 0.836),

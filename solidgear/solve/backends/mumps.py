@@ -23,9 +23,9 @@ class Mumps:
         upper = upper_triangle(matrix).tocoo()
         self.context.set_matrix(upper, symmetric=True)
         self._try(self.context.analyze, ordering="auto")
-        self.estimate_mb = (
-            float(self.context.analysis_stats.est_mem_incore) + 16 * upper.nnz / 2**20
-        )  # by coordinates: two indices and a number
+        # by coordinates: two indices and a number
+        by_coordinates = 16 * upper.nnz / 2**20
+        self.estimate_mb = float(self.context.analysis_stats.est_mem_incore) + by_coordinates
 
     def _try(self, step, **options):
         try:

@@ -19,8 +19,8 @@ from solidgear.solve.backends.matrix import FactorError, size_mb, upper_triangle
 def _mkl():
     """The library.
 
-    Its threads sleep as soon as a call is over, unless told otherwise: by default they spin for 0.2
-    s, which with both of two cores busy made ten modes of a 3D solid take 1.3 times as long (two
+    Its threads sleep as soon as a call is over, unless the environment has it otherwise: by default
+    they spin for 0.2 s, which with both of two cores busy made ten modes of a 3D solid take 1.3 times as long (two
     runs in turn: 1.36, 1.34).
 
     pypardiso searches the whole environment for the library at every construction (1 s and more);
@@ -97,9 +97,8 @@ class Pardiso:
         self.upper = upper_triangle(matrix)
         self.n = matrix.shape[0]
         # An empty row would end in a segmentation fault.
-        if np.diff(self.upper.indptr).min() == 0 or np.any(
-            self.upper.indices[self.upper.indptr[:-1]] != np.arange(self.n)
-        ):
+        empty = np.diff(self.upper.indptr).min() == 0
+        if empty or np.any(self.upper.indices[self.upper.indptr[:-1]] != np.arange(self.n)):
             raise FactorError(
                 "PARDISO failed on the system matrix: an entry of the diagonal is missing"
             )

@@ -44,7 +44,8 @@ class SuperLU:
             raise FactorError(f"SuperLU could not factor the system matrix ({error})") from error
         except MemoryError:
             raise FactorError(
-                f"SuperLU ran out of memory or of 32-bit indices on {n} unknowns; install the extra 'fast', or use a coarser model"
+                f"SuperLU ran out of memory or of 32-bit indices on {n} unknowns; "
+                "install the extra 'fast', or use a coarser model"
             ) from None
         self.nnz = int(self._lu.value.nnz)
         del self.matrix
