@@ -85,7 +85,12 @@ def lowest(supported: Supported, n: int, method: str | None = None) -> Solved:
         Number of modes wanted; two more are found, so that a pair at the end of the list is seen
         whole.
     method : {None, 'lanczos', 'arpack', 'dense'}
-        None takes the quickest for the size and the back end.  If block Lanczos does not converge ARPACK takes over.
+        None takes the quickest for the size and the back end.  If block Lanczos does not converge
+        ARPACK takes over.
+
+    Returns
+    -------
+    Solved
 
     Raises
     ------

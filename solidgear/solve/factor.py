@@ -34,8 +34,10 @@ __all__ = [
 LARGE_PLANAR = 30_000_000  # entries
 # Solids below this size: what PARDISO gains is what it costs to load MKL (0.2 s, once).
 SMALL = 6_000
-# Fastest first, for solids.  Factorisation against PARDISO at 41 000 (HEX20) and 93 000 unknowns (TET10), two runs in turn on two busy cores: CHOLMOD
-# 0.65 to 1.3, MUMPS 1.4 to 1.8 with OpenBLAS; 2.7 and 5 with the reference BLAS (TET10, one run); SuperLU about 14 (HEX20, one run apart from these).
+# Fastest first, for solids. Factorisation against PARDISO at 41 000 (HEX20) and 93 000 unknowns
+# (TET10), two runs in turn on two busy cores: CHOLMOD 0.65 to 1.3, MUMPS 1.4 to 1.8 with OpenBLAS;
+# 2.7 and 5 with the reference BLAS (TET10, one run); SuperLU about 14 (HEX20, one run apart from
+# these).
 FASTEST = ("pardiso", "cholmod", "mumps", "superlu")
 COUNTING = ("pardiso", "mumps", "superlu")
 # Unknowns from which on a call can take so long that Ctrl-C must be heard meanwhile; handing it
@@ -70,7 +72,17 @@ class Factor:
     nnz: int | None = None
 
     def solve(self, rhs: np.ndarray) -> np.ndarray:
-        """Solve for one (n,) or several (n, k) right-hand sides."""
+        """Solve with the factor.
+
+        Parameters
+        ----------
+        rhs : (n,) or (n, k) ndarray
+
+        Returns
+        -------
+        ndarray
+            Of the same shape.
+        """
         return _heard(len(rhs), self._solve, rhs)
 
 
@@ -107,14 +119,25 @@ def factorise(
     planar : bool
         The matrix comes from a 1D or 2D mesh: fill is small and SuperLU is the fastest.
     border : int
-        Unknowns at the end that couple to very many others.  They are eliminated by hand, as a dense Schur complement:
-        left to a fill-reducing ordering they cost ten times the rest.
+        Unknowns at the end that couple to very many others.  They are eliminated by hand, as a
+        dense Schur complement: left to a fill-reducing ordering they cost ten times the rest.
+
+    Returns
+    -------
+    Factor
 
     Raises
     ------
     FactorError
         If the matrix holds NaN, is not positive definite to the back end, will not fit into memory,
         or the back end is not there.
+
+    Examples
+    --------
+    >>> matrix = sp.csr_matrix(np.array([[4.0, 1.0], [1.0, 3.0]]))
+    >>> factor = factorise(matrix, backend="superlu")
+    >>> bool(np.allclose(matrix @ factor.solve(np.ones(2)), 1.0))
+    True
     """
     matrix = _canonical(matrix)
     if border:
@@ -132,8 +155,10 @@ def indefinite(
     """Factor a symmetric matrix of any sign and count its negative eigenvalues (Sylvester's law of
     inertia).
 
-    Every count is backed by the backward error of one solve with a random load: a stable factorisation counts exactly for a matrix within
-    its backward error, so a count is in doubt only for eigenvalues that close to zero (one load is a sample, not a bound).  A back end whose factor is not sound, or whose pivots do not tell, is passed over for the next.
+    Every count is backed by the backward error of one solve with a random load: a stable
+    factorisation counts exactly for a matrix within its backward error, so a count is in doubt only
+    for eigenvalues that close to zero (one load is a sample, not a bound).  A back end whose factor
+    is not sound, or whose pivots give no count, is passed over for the next.
 
     Parameters
     ----------
@@ -150,6 +175,11 @@ def indefinite(
     ------
     FactorError
         If the matrix holds NaN, will not fit into memory, or the back end is not there.
+
+    Examples
+    --------
+    >>> indefinite(sp.csr_matrix(np.diag([2.0, -1.0, 3.0]))).negative
+    1
     """
     matrix = _canonical(matrix)
     if border:
@@ -177,8 +207,18 @@ def indefinite(
 
 
 def negative_pivots(matrix: sp.spmatrix, backend: str | None = None) -> tuple[int, str] | None:
-    """Number of negative eigenvalues of a sparse symmetric matrix and the back end that counted
-    them; None as for :func:`indefinite`.
+    """Number of negative eigenvalues of a sparse symmetric matrix.
+
+    Parameters
+    ----------
+    matrix : (n, n) sparse
+    backend : str, optional
+        As for :func:`factorise`.
+
+    Returns
+    -------
+    (int, str) or None
+        The count and the back end that made it; None as for :func:`indefinite`.
     """
     found = indefinite(matrix, backend)
     return None if found is None else (found.negative, found.backend)
@@ -207,8 +247,28 @@ def _canonical(matrix):
 def choice(
     matrix: sp.csr_matrix, backend: str | None = None, planar: bool = False
 ) -> tuple[str, str]:
-    """Name of the back end that will factor a matrix of such a shape and number of entries, and the
-    reason for it.
+    """The back end that will factor a matrix.
+
+    Parameters
+    ----------
+    matrix : (n, n) sparse
+        Its size and number of entries count.
+    backend, planar
+        As for :func:`factorise`.
+
+    Returns
+    -------
+    name, reason : str
+
+    Raises
+    ------
+    FactorError
+        If the one asked for is unknown or not there.
+
+    Examples
+    --------
+    >>> choice(sp.identity(100, format="csr"), backend="superlu")
+    ('superlu', 'asked for')
     """
     backend = backend or os.environ.get("SOLIDGEAR_BACKEND") or None
     n = matrix.shape[0]
@@ -247,8 +307,9 @@ def _factored(name, matrix, planar, definite):
     work = _heard(n, BACKENDS[name], matrix, definite=definite, **options)
     if free is not None and work.estimate_mb > free:
         raise NoRoom(
-            f"{matrix.shape[0]} unknowns need about {_mb(work.estimate_mb)} MB to factor by {name}, "
-            f"{_mb(free)} MB are free; use a coarser mesh, or the harmonic model, which needs far less"
+            f"{n} unknowns need about {_mb(work.estimate_mb)} MB to factor by {name}, "
+            f"{_mb(free)} MB are free; "
+            "use a coarser mesh, or the harmonic model, which needs far less"
         )
     _heard(n, work.factor)
     return work

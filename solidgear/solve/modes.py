@@ -2,7 +2,7 @@
 
 Symmetric shift-invert (:mod:`solidgear.solve.eigen`) about a small negative shift, with the
 bearings added to the factor of the free body by the Woodbury identity, and values from the
-stiffness itself (:mod:`solidgear.solve.refine`).  Rigid motions that no spring resists are known
+stiffness itself (:mod:`solidgear.solve.refine`). Rigid motions that no spring resists are known
 exactly; they are projected out and reported as 0 Hz instead of as noise.
 """
 
@@ -83,15 +83,20 @@ class ModeSet:
     ----------
     fidelity : str
     modes : tuple of Mode
-    stations, gram : ndarray
-        Where section motions are told, and their mass matrix.
+    stations : (s,) ndarray
+        Places of section motions, m.
+    gram : (6 s, 6 s) ndarray
+        Their mass matrix.
     evidence : dict
-        ``residual`` (largest ``|A^-1 r|_A / |u|_A`` of a mode and its residual force, brought back from the shifted to the true eigenvalue),
-        ``error`` (largest :attr:`Mode.error`), ``steps`` (corrections that were needed), ``orthogonality`` (largest entry of ``U'MU - I``),
-        ``rigid_modes``, ``shift_rad2``, ``coupling_bound``, ``backend``, ``method``; ``families``, a list of ``{family, n, counted, modes_below,
-        lowest_hz}`` with ``n`` None for a body that holds all motions in one and ``above`` where a row stands for all of more waves, which begin
-        at ``lowest_hz`` at the earliest; ``torn_pairs`` where the mesh has split twins too far apart to be taken for one pair.  Where asked for,
-        ``count``, ``count_seconds`` and ``complete_below_hz``, below which no mode of any family listed is missing.
+        ``residual`` (largest ``|A^-1 r|_A / |u|_A`` of a mode and its residual force, brought back
+        from the shifted to the true eigenvalue), ``error`` (largest :attr:`Mode.error`), ``steps``
+        (corrections that were needed), ``orthogonality`` (largest entry of ``U'MU - I``),
+        ``rigid_modes``, ``shift_rad2``, ``coupling_bound``, ``backend``, ``method``; ``families``,
+        a list of ``{family, n, counted, modes_below, lowest_hz}`` with ``n`` None for a body that
+        holds all motions in one and ``above`` where a row stands for all of more waves, which begin
+        at ``lowest_hz`` at the earliest; ``torn_pairs`` where the mesh has split twins too far
+        apart to be taken for one pair. Where asked for, ``count``, ``count_seconds`` and
+        ``complete_below_hz``, below which no mode of any family listed is missing.
     beyond : tuple of Mode
         Further modes of the body's own blocks that were solved and lie above the end of the list,
         because ovalising ones took their places.
@@ -106,7 +111,7 @@ class ModeSet:
 
     @property
     def frequency_hz(self) -> np.ndarray:
-        """Distinct natural frequencies, Hz."""
+        """(k,) distinct natural frequencies, Hz."""
         return np.array([m.frequency_hz for m in self.modes])
 
     @property
@@ -120,7 +125,17 @@ class ModeSet:
         return tuple(m.multiplicity for m in self.modes)
 
     def named(self, name: str) -> Mode | None:
-        """The mode of that name, also among those beyond the end of the list, or None."""
+        """The mode of that name, also among those beyond the end of the list.
+
+        Parameters
+        ----------
+        name : str
+            Such as ``bending 1``.
+
+        Returns
+        -------
+        Mode or None
+        """
         return next((m for m in (*self.modes, *self.beyond) if m.name == name), None)
 
 
@@ -265,8 +280,8 @@ def _rigid(names: Names, raw: list[Raw]):
 
 
 def _named(body, names: Names, parts: list[Part], n: int, max_frequency: float | None):
-    """Modes of the list, own modes beyond the end of the list, torn pairs, and (family, frequency, shapes)
-    of all that was found: no pair is cut in two.
+    """Modes of the list, own modes beyond the end of the list, torn pairs, and (family, frequency,
+    shapes) of all that was found: no pair is cut in two.
     """
     raw = _lowest(parts, sum(len(part.everywhere(part.solved.elastic)) for part in parts))
     shapes = [names.describe(r.vectors) for r in raw]

@@ -1,7 +1,7 @@
 """The groups of blocks a supported body falls into, each solved as far as the modes asked for
 reach, and counted.
 
-Symmetry and bearings decide which blocks belong together.  A body that can build further
+Symmetry and bearings decide which blocks belong together. A body that can build further
 circumferential families (a harmonic solid) is asked for those that may begin below the highest mode
 wanted: by a closed form that no family undercuts and that grows with n, then by a light mesh.
 """
@@ -36,6 +36,7 @@ class Part:
     ----------
     supported : Supported
     ask : int
+        Number of modes to search for.
     solved : Solved
         Set by the first search.
     twins : list of int
@@ -44,7 +45,7 @@ class Part:
         Added to block indices: that of a further circumferential family stands apart from those of
         the body's own.
     verdict : dict or None
-        What the count says.
+        Result of the count, see :func:`complete`.
     """
 
     supported: Supported
@@ -65,7 +66,17 @@ class Part:
         return 2 if waves_of(self.blocks[0]) > 1 else 1 + len(self.twins)
 
     def everywhere(self, found: list[Raw]) -> list[Raw]:
-        """Eigenpairs of the group and of its twins."""
+        """Eigenpairs of the group and of its twins.
+
+        Parameters
+        ----------
+        found : list of Raw
+            Of the group.
+
+        Returns
+        -------
+        list of Raw
+        """
         out = []
         for r in found:
             vectors = {self.first + b: v for b, v in r.vectors.items()}
@@ -77,14 +88,27 @@ class Part:
         return out
 
     def values(self) -> list[float]:
-        """Elastic eigenvalues with every shape counted."""
+        """Elastic eigenvalues with every shape counted, rad^2/s^2.
+
+        Returns
+        -------
+        list of float
+        """
         return [r.value for r in self.solved.elastic for _ in range(self.copies)]
 
 
 @dataclass(frozen=True)
 class Uncounted:
-    """A family that was left alone, and the frequency (Hz) above which it begins; the last one
-    stands for all of more waves.
+    """A family that was left alone.
+
+    Attributes
+    ----------
+    n : int
+        Waves around the axis.
+    begins_hz : float
+        The family begins above this frequency.
+    and_above : bool
+        Whether it stands for all families of more waves too.
     """
 
     n: int
@@ -95,8 +119,27 @@ class Uncounted:
 def solved_parts(
     body: Body, supports: Supports, spring: np.ndarray, n: int, method: str | None
 ) -> list[Part]:
-    """Eigenpairs of all groups of a body's own blocks, each searched only as far as the ``n``
-    lowest of all reach.
+    """Eigenpairs of all groups of a body's own blocks, each searched only as far as the lowest of
+    all reach.
+
+    Parameters
+    ----------
+    body : Body
+    supports : Supports
+    spring : (6 m, 6 m) ndarray
+        From :func:`~solidgear.solve.supported.decoupled`.
+    n : int
+        Number of shapes wanted in all.
+    method : {None, 'lanczos', 'arpack', 'dense'}
+
+    Returns
+    -------
+    list of Part
+
+    Raises
+    ------
+    SolidgearError
+        As :func:`~solidgear.solve.eigen.lowest`.
     """
     parts: list[Part] = []
     for group in groups(body, supports, spring):
@@ -128,7 +171,21 @@ def solved_parts(
 
 
 def reach_of(parts: list[Part], n: int, highest: float = np.inf) -> float:
-    """Highest eigenvalue that is used: that of the last of ``n`` shapes, or the highest allowed."""
+    """Highest eigenvalue that is used: that of the last of ``n`` shapes, or the highest allowed.
+
+    Parameters
+    ----------
+    parts : list of Part
+        Solved.
+    n : int
+    highest : float
+        rad^2/s^2.
+
+    Returns
+    -------
+    float
+        rad^2/s^2.
+    """
     values = sorted(v for part in parts for v in part.values())
     return min(values[min(n, len(values)) - 1], highest) if values else 0.0
 
@@ -190,8 +247,20 @@ def _hz(value: float) -> float:
 
 
 def complete(part: Part, reach: float, method: str | None) -> dict:
-    """Count the modes of a part, and search again with more vectors where one was missed; the
-    verdict, which the part keeps.
+    """Count the modes of a part, and search again with more vectors where one was missed.
+
+    Parameters
+    ----------
+    part : Part
+        Solved; it keeps the verdict.
+    reach : float
+        Highest eigenvalue that is used, rad^2/s^2.
+    method : {None, 'lanczos', 'arpack', 'dense'}
+
+    Returns
+    -------
+    dict
+        ``checked``, with ``below_hz``, ``modes`` and ``backend``, or with ``why`` not.
 
     Raises
     ------
@@ -236,8 +305,16 @@ def complete(part: Part, reach: float, method: str | None) -> dict:
 
 
 def families(parts: list[Part]) -> list[tuple[str, int | None, bool]]:
-    """(family, waves around or None for all, whether counted) of everything that was solved, lowest
-    number of waves last among single ones.
+    """Everything that was solved, lowest number of waves last among single families.
+
+    Parameters
+    ----------
+    parts : list of Part
+
+    Returns
+    -------
+    list of (str, int or None, bool)
+        Family, waves around the axis (None for all), and whether it was counted.
     """
     rows: dict[str, tuple[int | None, bool]] = {}
     for part in parts:
@@ -253,7 +330,20 @@ def families(parts: list[Part]) -> list[tuple[str, int | None, bool]]:
 def family_rows(
     parts: list[Part], left: list[Uncounted], found: list[tuple[str, float, int]]
 ) -> list[dict]:
-    """What was solved and counted, family by family, and what was left alone: see :class:`ModeSet`."""
+    """Which families were solved and counted, and which were left alone.
+
+    Parameters
+    ----------
+    parts : list of Part
+    left : list of Uncounted
+    found : list of (str, float, int)
+        Family, frequency (Hz) and number of shapes of every mode.
+
+    Returns
+    -------
+    list of dict
+        ``families`` of the evidence of :class:`~solidgear.solve.modes.ModeSet`.
+    """
     checked = [p.verdict for p in parts if p.verdict and p.verdict["checked"]]
     below = min((verdict["below_hz"] for verdict in checked), default=np.inf)
     rows = []

@@ -1,12 +1,12 @@
 """Ritz values on the stiffness itself, how wrong they can be, and the steps that mend them.
 
 An eigensolver that works with a computed inverse of ``A = K + L L' + sigma M`` finds the eigenpairs
-of what rounding has made of it.  Here nothing of a value comes from that inverse: energies are
-taken from K and from the springs L, with rigid motions split off first, so that no large stiffness
-has to cancel.  The residual ``r = K u + L L'u - lambda M u`` is measured where it bounds the error:
-with ``rho = |A^-1 r|_A / |u|_A`` an eigenvalue of ``A, M`` lies within ``rho`` of ``mu = lambda +
+of what rounding has made of it. Here nothing of a value comes from that inverse: energies are taken
+from K and from the springs L, with rigid motions split off first, so that no large stiffness has to
+cancel. The residual ``r = K u + L L'u - lambda M u`` is measured where it bounds the error: with
+``rho = |A^-1 r|_A / |u|_A`` an eigenvalue of ``A, M`` lies within ``rho`` of ``mu = lambda +
 sigma``, relative, and within ``rho^2 / gap`` if no other comes nearer than ``gap`` (Temple; Kato
-1949; Parlett 1998, section 11.7, for clusters).  Where that is not small enough, ``A^-1 r`` is the
+1949; Parlett 1998, section 11.7, for clusters). Where that is not small enough, ``A^-1 r`` is the
 correction itself: it joins the basis and the best of both is taken (Knyazev 2001).
 """
 
@@ -60,7 +60,17 @@ class Refined:
     steps: int
 
     def worst(self, needed: int) -> float:
-        """Largest error of the lowest pairs, rounding left out: no step would mend that."""
+        """Largest error of the lowest pairs, rounding left out: no step would mend that.
+
+        Parameters
+        ----------
+        needed : int
+            How many pairs.
+
+        Returns
+        -------
+        float
+        """
         return float((self.error - self.noise)[:needed].max(initial=0.0))
 
 
@@ -87,6 +97,10 @@ def refine(supported: Supported, vectors: np.ndarray, value: np.ndarray, needed:
         Their eigenvalues, roughly, ascending, rad^2/s^2.
     needed : int
         How many of the lowest must be right; the others are there to see gaps.
+
+    Returns
+    -------
+    Refined
     """
     carried = supported.mass_rigid.T @ vectors
     elastic = np.append(_columns(carried, carried) <= 1 - SOFT, True)

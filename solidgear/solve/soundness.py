@@ -18,7 +18,25 @@ WRONG = 1e-3
 
 
 def sound(body: Body, mode: Mode, parts: list[Part]) -> Mode:
-    """The mode, unless rounding leaves too little of its frequency."""
+    """The mode, unless rounding leaves too little of its frequency.
+
+    Parameters
+    ----------
+    body : Body
+    mode : Mode
+    parts : list of Part
+        Where it was found.
+
+    Returns
+    -------
+    Mode
+        The same.
+
+    Raises
+    ------
+    SolidgearError
+        If the error of the frequency is above ``WRONG``; the message names the cause.
+    """
     if mode.error > WRONG:
         doubt = (
             f"modes: rounding may move {mode.name} ({mode.frequency_hz:.6g} Hz) "

@@ -1,18 +1,18 @@
 """Elastic flexibility of a free body at its ports, and condensation to one port with bearings.
 
-The free body is factored once, as ``K + sigma M`` with a small sigma; everything about
-bearings happens in dense matrices of the size of the ports.  Derivation of the formulas:
+The free body is factored once, as ``K + sigma M`` with a small sigma; everything about bearings
+happens in dense matrices of the size of the ports. Derivation of the formulas:
 
 A free body under self-equilibrated port loads f moves its ports by ``d = F f + P a`` with F the
-inertia-relief flexibility and P the rigid motions.  With springs ``f_b = -Kb d_b`` on the
-bearing ports and equilibrium ``P_l' f_l = P_b' Kb d_b``, eliminating ``d_b`` gives
+inertia-relief flexibility and P the rigid motions. With springs ``f_b = -Kb d_b`` on the bearing
+ports and equilibrium ``P_l' f_l = P_b' Kb d_b``, eliminating ``d_b`` gives
 
     C = F_ll - F_lb S F_bl + (P_l - F_lb S P_b) H^-1 (P_l - F_lb S P_b)'
     S = L (I + L' F_bb L)^-1 L',   Kb = L L',   H = P_b' S P_b
 
-Nothing is subtracted that is larger than the result when springs are soft, and
-nothing overflows when they are stiff.  A rigid motion that no spring resists is
-taken out exactly, so a free torsion is an exact zero and not a penalty.
+Nothing is subtracted that is larger than the result when springs are soft, and nothing overflows
+when they are stiff. A rigid motion that no spring resists is taken out exactly, so a free torsion
+is an exact zero and not a penalty.
 """
 
 from __future__ import annotations
@@ -105,7 +105,22 @@ class Condensed:
 
 
 def factors(body: Body) -> list[Factor]:
-    """One factor of ``K + sigma M`` per block (twins share theirs), kept with the body."""
+    """One factor of ``K + sigma M`` per block, kept with the body.
+
+    Parameters
+    ----------
+    body : Body
+
+    Returns
+    -------
+    list of Factor
+        Twins share theirs.
+
+    Raises
+    ------
+    FactorError
+        As :func:`~solidgear.solve.factor.factorise`.
+    """
     if "factors" not in body.memory:
         made: dict[int, Factor] = {}
         for block in body.blocks:
@@ -121,8 +136,23 @@ def factors(body: Body) -> list[Factor]:
 
 
 def flexibility(body: Body, tolerance: float = 1e-12) -> Flexibility:
-    """Flexibility of the free body at all its ports (inertia relief), by
+    """Flexibility of the free body at all its ports (inertia relief), kept with the body; by
     :func:`solidgear.solve.relief.elastic_fields`.
+
+    Parameters
+    ----------
+    body : Body
+    tolerance : float
+        Relative error of the energy at which refinement stops.
+
+    Returns
+    -------
+    Flexibility
+
+    Raises
+    ------
+    SolidgearError
+        If the static solution is not finite.
     """
     if "flexibility" in body.memory:
         return body.memory["flexibility"]

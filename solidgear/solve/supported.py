@@ -29,6 +29,19 @@ def decoupled(body: Body, supports: Supports, tolerance: float) -> tuple[np.ndar
 
     If ``|v' D v| <= eps v' K0 v`` for the removed part D and all v, then by Rayleigh's quotient no
     eigenvalue of the supported body moves by more than eps, relative.
+
+    Parameters
+    ----------
+    body : Body
+    supports : Supports
+    tolerance : float
+        Largest bound that is accepted.
+
+    Returns
+    -------
+    spring : (6 m, 6 m) ndarray
+    bound : float
+        Zero where nothing was removed.
     """
     k = supports.stiffness
     if not supports.ports or len(body.blocks) == 1:
@@ -55,7 +68,20 @@ def decoupled(body: Body, supports: Supports, tolerance: float) -> tuple[np.ndar
 
 
 def groups(body: Body, supports: Supports, spring: np.ndarray) -> list[list[int]]:
-    """Blocks that bearings couple, as lists of block indices."""
+    """Blocks that bearings couple.
+
+    Parameters
+    ----------
+    body : Body
+    supports : Supports
+    spring : (6 m, 6 m) ndarray
+        From :func:`decoupled`.
+
+    Returns
+    -------
+    list of list of int
+        Block indices.
+    """
     count = len(body.blocks)
     label = list(range(count))
     rows = [component_rows(range(len(supports.ports)), block.components) for block in body.blocks]
@@ -145,8 +171,8 @@ class Supported:
         return np.vstack(parts)
 
     def spring_rounding(self, u: np.ndarray) -> np.ndarray:
-        """(k,) energy of shapes that the last digit of the stiffness entries of the springs stands
-        for, N m.
+        """(k,) energy of (n, k) shapes that the last digit of the stiffness entries of the springs
+        stands for, N m.
 
         A coupled bearing may be far softer in one direction than any of its entries: what it
         resists there is a difference of large numbers.
@@ -165,7 +191,7 @@ class Supported:
         return "+".join(sorted({f.backend for f in self._factors}))
 
     def parts(self, x: np.ndarray) -> list[np.ndarray]:
-        """Rows of ``x`` block by block."""
+        """Rows of (n, ...) ``x``, block by block."""
         return [x[a:b] for a, b in zip(self._cuts, self._cuts[1:])]
 
     def _per_block(self, f: Callable[[int, np.ndarray], np.ndarray], x: np.ndarray) -> np.ndarray:
@@ -174,7 +200,11 @@ class Supported:
         return found[0] if len(found) == 1 else np.concatenate(found)
 
     def _free_inverse(self, x: np.ndarray) -> np.ndarray:
-        """``(K + shift M)^-1 x``.  Rigid motions answer with 1 / shift exactly, and the factor, which would round that, is left with the rest."""
+        """``(K + shift M)^-1 x``.
+
+        Rigid motions answer with 1 / shift exactly, and the factor, which would round that, is left
+        with the rest.
+        """
         carried = self.rigid.T @ x
         y = self._per_block(
             lambda i, part: self._factors[i].solve(part), x - self.mass_rigid @ carried
@@ -182,15 +212,15 @@ class Supported:
         return self.without_rigid(y) + self.rigid @ (carried / self.shift)
 
     def without_rigid(self, u: np.ndarray) -> np.ndarray:
-        """Displacements less their rigid part in the mass norm."""
+        """(n, k) displacements less their rigid part in the mass norm."""
         return u - self.rigid @ (self.mass_rigid.T @ u)
 
     def mass(self, x: np.ndarray) -> np.ndarray:
-        """``M x``."""
+        """``M x`` of (n, k) displacements."""
         return self._per_block(lambda i, part: self.blocks[i].mass @ part, x)
 
     def elastic(self, x: np.ndarray) -> np.ndarray:
-        """``K x`` of the free body."""
+        """``K x`` of the free body, of (n, k) displacements."""
         return self._per_block(lambda i, part: self.blocks[i].stiffness @ part, x)
 
     def elastic_extended(self, x: np.ndarray) -> np.ndarray:
@@ -205,17 +235,19 @@ class Supported:
         )
 
     def purge(self, x: np.ndarray) -> np.ndarray:
-        """Take unresisted rigid motions out of displacements."""
+        """(n, k) displacements without unresisted rigid motions."""
         return x - self.free @ (self._mass_free.T @ x) if self.free.shape[1] else x
 
     def inverse(self, x: np.ndarray) -> np.ndarray:
-        """Displacements ``(K + springs + shift M)^-1 x`` without unresisted rigid motions."""
+        """Displacements ``(K + springs + shift M)^-1 x`` under (n, k) loads, without unresisted
+        rigid motions.
+        """
         y = self._quick_inverse(x)
         return y + self._quick_inverse(x - self.forward(y)) if self.inaccuracy > REFINED else y
 
     def forward(self, u: np.ndarray) -> np.ndarray:
-        """``(K + springs + shift M) u``; the rigid part, which K resists by rounding only, is kept
-        from it.
+        """``(K + springs + shift M) u`` of (n, k) displacements; the rigid part, which K resists by
+        rounding only, is kept from it.
         """
         return (
             self.elastic(self.without_rigid(u))
@@ -262,7 +294,7 @@ class Supported:
         return float((stiff[heavy > 0] / heavy[heavy > 0]).max())
 
     def stretch(self, u: np.ndarray, loads: np.ndarray) -> np.ndarray:
-        """Stretch ``L'u`` of the springs, the root of their energy.
+        """(r, k) stretch ``L'u`` of the springs, the root of their energy.
 
         Where the springs are so stiff that the motion of their seat is the rounding of ``u``, it
         comes from the load instead.
@@ -290,7 +322,7 @@ class Supported:
         return np.abs(self.load).sum(axis=0)[:, None] * np.abs(u).max(axis=0, initial=0.0)
 
     def rigid_motions(self) -> np.ndarray:
-        """All rigid motions of the group, one column per component, resisted or not."""
+        """(n, r) rigid motions of the group, one column per component, resisted or not."""
         return sla.block_diag(*(b.rigid for b in self.blocks))
 
     def _rigid_motions(self) -> np.ndarray:
@@ -307,15 +339,16 @@ class Supported:
         return rigid
 
     def split(self, x: np.ndarray) -> dict[int, np.ndarray]:
-        """A vector of the group as block index -> vector."""
+        """A vector (n,) of the group as block index -> vector."""
         return {b: x[a:c] for b, a, c in zip(self.group, self._cuts, self._cuts[1:])}
 
     def static(self, load: np.ndarray) -> np.ndarray:
-        """Static displacements under loads, springs included.
+        """(n, k) static displacements under loads, springs included.
 
-        The elastic and the rigid part are found apart, as in :mod:`solidgear.solve.statics`, so that springs may be as soft or as
-        stiff as they like.  With ``s = load_b' u`` the root of the spring energy, E the inertia-relief fields and R the rigid
-        motions, ``u = E_f - E_b s + R a`` and equilibrium ``R'(f - load_b s) = 0``.
+        The elastic and the rigid part are found apart, as in :mod:`solidgear.solve.statics`, so
+        that springs may be as soft or as stiff as they like. With ``s = load_b' u`` the root of the
+        spring energy, E the inertia-relief fields and R the rigid motions, ``u = E_f - E_b s + R
+        a`` and equilibrium ``R'(f - load_b s) = 0``.
 
         Parameters
         ----------

@@ -1,7 +1,7 @@
 """Direct solvers for sparse symmetric matrices, all behind the same four names.
 
 A back end takes the matrix as CSR, sorted, and analyses it; then it knows ``estimate_mb``, the
-memory the numbers will need, and only ``factor()`` takes that memory.  After it ``solve(rhs)``,
+memory the numbers will need, and only ``factor()`` takes that memory. After it ``solve(rhs)``,
 ``negative`` and ``nnz`` can be asked for.
 
 ======== ============================ ==================== ========================================
@@ -36,11 +36,21 @@ INSTALL = {
 
 @lru_cache
 def missing(name: str) -> str:
-    """Empty if the back end can be used, else the reason why not.
+    """Whether a back end can be used.
 
     Parameters
     ----------
     name : {'pardiso', 'cholmod', 'mumps', 'superlu'}
+
+    Returns
+    -------
+    str
+        Empty if it can, else the reason why not.
+
+    Examples
+    --------
+    >>> missing("superlu")
+    ''
     """
     module = {
         "pardiso": "pypardiso",
