@@ -283,7 +283,7 @@ MUTATIONS = (
     ),
     Mutation(
         "Guyan mass on compliance shapes instead of unit motions",
-        "solidgear/reduction/effective_mass.py",
+        "solidgear/reduction/lumped_point.py",
         "_guyan",
         "shapes = fields @ np.linalg.inv(compliance)",
         "shapes = fields @ np.diag(1 / np.diag(compliance))",
