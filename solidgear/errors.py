@@ -110,7 +110,7 @@ class SceneError(SolidgearError, ValueError):
         count = len(self.others)
         if not count:
             return self.sentence
-        if not self.where:  # a scene made in Python: whoever catches the error finds the rest in it
+        if not self.where:  # a scene made in Python: the rest is in `problems`
             return (
                 f"{self.sentence} (and {count} more problem{'s' * (count > 1)}: see its problems)"
             )

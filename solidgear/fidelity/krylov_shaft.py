@@ -333,7 +333,7 @@ class _Shaft:
         for g in _groups(omega, 1e-4):
             moved = states[g, :, :2].reshape(len(g), -1)
             spread, points = (z[g] * weight) @ z[g].T, (moved * mass) @ moved.T
-            # Solutions of frequencies this close know each other to fewer digits.
+            # Solutions of frequencies this close are separated to fewer digits.
             mix = np.linalg.inv(np.linalg.cholesky(spread + points))
             states[g] = np.tensordot(mix, states[g], 1)
             distributed[g], lumped[g] = np.diag(mix @ spread @ mix.T), np.diag(mix @ points @ mix.T)

@@ -3,7 +3,7 @@
 Python hears a signal between two of its own instructions, in the main thread; one call into C that
 takes a minute is one instruction.  So the call runs in a second thread and the main thread waits,
 where it hears Ctrl-C at once.  The call itself cannot be ended: it is abandoned, runs on at the
-lowest priority, and what it makes is thrown away.  The command line then ends the process without
+lowest priority, and its result is discarded.  The command line then ends the process without
 waiting for it (:func:`leave`).
 
 This needs a callee that lets go of Python's lock.  MKL and gmsh (through ctypes), SciPy's SuperLU
@@ -93,7 +93,7 @@ def leave(code: int | str | None) -> NoReturn:
         for stream in (sys.stdout, sys.stderr):
             try:
                 stream.flush()
-            except (OSError, ValueError):  # closed, or nobody reads
+            except (OSError, ValueError):  # closed, or not read
                 pass
         os._exit(code or 0)
     sys.exit(code)

@@ -40,7 +40,7 @@ def estimated_counts(
     tolerance = tolerance_of(segments)
     slabs = slabs_between(segments, [float(y) for y in planes], tolerance)
     corners = corners_of(slabs, [float(y) for y in circles], tolerance)
-    # the mesher's own formulas, so that there is one truth
+    # the formulas that the mesher itself uses
     formulas = size_formulas(segments, corners, size, graded_size, reach, around)
     fields = [eval(f"lambda x, y, z: {f}".replace("^", "**"), _NUMPY) for f in formulas]
     least = min(size, graded_size or size)

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
     from solidgear.scene import Segment
 
-# Elements whose bound says that det J stays above this part of its greatest value need no closer
+# Elements in which det J is bounded from below by this part of its greatest value need no closer
 # look.
 _CLEAR = 0.1
 # The least det J of the others is found to this part of the greatest; each cut makes the bound four

@@ -22,7 +22,7 @@ PLANE = (2, 3)  # z and thx
 
 @dataclass(frozen=True)
 class LumpedPoint:
-    """What the synthesis needs to know of a body.
+    """Constants of a body that the synthesis of lumped models needs.
 
     Attributes
     ----------

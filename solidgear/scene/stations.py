@@ -54,7 +54,7 @@ class Bearing(Model):
     attachment : {'average', 'rigid', 'section'}
         How the seat follows the bearing.
     status : {'published', 'identified', 'assumed', 'measured'}
-        How its numbers were come by.
+        Where its numbers come from.
     note : str
 
     Raises

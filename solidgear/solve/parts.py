@@ -151,7 +151,7 @@ def solved_parts(
         else:
             parts.append(Part(Supported(body, supports, spring, group), n))
     if len(parts) > 1:
-        # Bending pairs make most of a spectrum; whoever is asked for too little is asked again.
+        # Bending pairs make most of a spectrum; a group searched too little is searched again.
         for part in parts:
             part.ask = n // 3 + 1 if part.copies > 1 else n // 4 + 1
     waiting = parts

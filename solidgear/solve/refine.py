@@ -192,7 +192,7 @@ def _modes(supported, stiffness, u, value, correction, forces, below) -> _Pairs:
         stretch @ turn,
         heavy @ turn,
     )
-    # The small problem knows its eigenvalues to the rounding of the largest; quotients know each to
+    # The small problem gives its eigenvalues to the rounding of the largest; quotients give each to
     # its own.
     value = (_columns(rest, pull) + _columns(stretch, stretch)) / _columns(u, heavy)
     force = pull + supported.load @ stretch - heavy * value
@@ -292,7 +292,7 @@ def _judged(supported, value, u, force, back, rounding, step) -> Refined:
 
 def _quadratic(mu, rho):
     """``sum rho^2 / gap`` over the cluster around each value for which that is least; infinite
-    where it would need to know what lies above.
+    where that depends on eigenvalues above.
     """
     out = np.full(len(mu), np.inf)
     for i in range(len(mu)):

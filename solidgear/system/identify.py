@@ -181,8 +181,8 @@ def identify(
     Raises
     ------
     SolidgearError
-        If there are more unknowns than frequencies, names repeat, or the model does not answer in
-        kind.
+        If there are more unknowns than frequencies, names repeat, or the model does not return as
+        many finite, positive frequencies.
 
     Notes
     -----

@@ -1,6 +1,6 @@
 """Direct solvers for sparse symmetric matrices, all behind the same four names.
 
-A back end takes the matrix as CSR, sorted, and analyses it; then it knows ``estimate_mb``, the
+A back end takes the matrix as CSR, sorted, and analyses it; then it has ``estimate_mb``, the
 memory the numbers will need, and only ``factor()`` takes that memory. After it ``solve(rhs)``,
 ``negative`` and ``nnz`` can be asked for.
 

@@ -128,7 +128,7 @@ class Pardiso:
         self._release = weakref.finalize(
             self, _release, _mkl_pardiso(), self.pt, self.iparm, 2 if definite else -2, self.n
         )
-        self._release.atexit = False  # a factorisation that was interrupted may still be at it
+        self._release.atexit = False  # a factorisation that was interrupted may still use it
         self._call(11)
         symbolic_peak, symbolic, numeric = (int(kb) for kb in self.iparm[14:17])
         self.estimate_mb = max(symbolic_peak, symbolic + numeric) / 1024 + size_mb(self.upper)

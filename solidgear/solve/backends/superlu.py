@@ -12,7 +12,7 @@ from solidgear.solve.backends.memory_law import law
 
 # Reading SuperLU's pivots copies its factor. That takes 1 to 4 % of the time on solids and 6 to 9 %
 # on planar meshes, and as much memory again: done where SuperLU is the automatic choice for a
-# solid, and where a planar matrix is so small that nobody notices.
+# solid, and where a planar matrix is so small that it costs nothing.
 CHECKED, CHECKED_PLANAR = 12_000, 1_000
 
 
