@@ -2,8 +2,8 @@
 numbers by frequency.
 
 Families are ``axial``, ``breathing`` and ``torsion`` (nothing varies around the axis: n = 0),
-``bending`` (n = 1) and ``ovalising n=2`` and so on. For a body in blocks n is that of the block, whatever
-its sections do; a 3D mesh is asked by :mod:`solidgear.solve.circumference`.
+``bending`` (n = 1) and ``ovalising n=2`` and so on. For a body in blocks n is that of the block,
+whatever its sections do; a 3D mesh is asked by :mod:`solidgear.solve.circumference`.
 
 Two modes are one pair only where symmetry makes them so: the same profile over the meridian, a
 quarter of a wave further round, with bearings that a quarter turn leaves as they are, or with n >=
