@@ -15,13 +15,9 @@ WITH_EXAMPLES = sorted(p for p in PACKAGE.rglob("*.py") if ">>>" in p.read_text(
 NOUNS = [name for name in sg.__all__ if callable(getattr(sg, name))]
 
 
-class Finder(doctest.DocTestFinder):
-    """Sees functions behind a decorator of another module, which doctest takes for that module's
-    own and leaves out.
-    """
-
-    def _from_module(self, module, object):
-        return super()._from_module(module, inspect.unwrap(object))
+def examples_of(module):
+    """Docstrings of a module that hold examples."""
+    return [case for case in doctest.DocTestFinder().find(module) if case.examples]
 
 
 def module_of(path):
@@ -37,7 +33,7 @@ def test_examples_run(path, monkeypatch):
     monkeypatch.chdir(ROOT)  # scenes are named as a user names them, geometry/...
     runner = doctest.DocTestRunner(optionflags=doctest.NORMALIZE_WHITESPACE)
     words = []
-    for case in Finder(exclude_empty=True).find(module_of(path)):
+    for case in examples_of(module_of(path)):
         runner.run(case, out=words.append)
     assert runner.tries > 0
     assert runner.failures == 0, "".join(words)
@@ -47,11 +43,5 @@ def test_examples_run(path, monkeypatch):
 def test_a_noun_that_is_exported_has_an_example(name):
     noun = getattr(sg, name)
     assert "\nExamples\n---" in inspect.getdoc(noun)
-    found = Finder(recurse=False).find(noun, name)
-    assert any(case.examples for case in found)
-
-
-def test_an_example_behind_a_decorator_is_found():
-    module = importlib.import_module(inspect.unwrap(sg.condense).__module__)
-    names = {case.name for case in Finder().find(module) if case.examples}
-    assert f"{module.__name__}.condense" in names
+    module = importlib.import_module(noun.__module__)
+    assert f"{module.__name__}.{noun.__qualname__}" in {case.name for case in examples_of(module)}
