@@ -23,11 +23,12 @@ class SolidgearError(Exception):
     --------
     >>> import solidgear as sg
     >>> rod = sg.Segment.cylinder("rod", length=0.3, diameter=0.03)
+    >>> scene = sg.Scene.from_parts([rod])
     >>> try:
-    ...     sg.build(sg.Scene.from_parts([rod]), "plate")
+    ...     sg.modes(sg.build(scene, "euler"), scene, n=0)
     ... except sg.SolidgearError as error:
-    ...     print(str(error).split(";")[0])
-    fidelity 'plate' is unknown
+    ...     print(error)
+    modes: n = 0 is not a number of modes; ask for 1 or more
     """
 
 
