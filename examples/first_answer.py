@@ -15,7 +15,7 @@ GEOMETRY = Path(__file__).parent.parent / "geometry"
 
 
 def main():
-    # A scene says what is modelled: segments, bearings and the point the gear is lumped to.
+    # A scene holds what is modelled: segments, bearings and the point the gear is lumped to.
     scene = sg.load(GEOMETRY / "pinion_overhung.toml")
 
     # A body is the free shaft.  "harmonic" is exact elasticity of a body of revolution.

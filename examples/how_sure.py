@@ -1,4 +1,4 @@
-"""How sure a solid is of itself: its bands, from meshes that are each finer in all that limits them.
+"""How sure a solid is of itself: bands, from meshes each finer in everything that limits them.
 
 It illustrates how to:
 

@@ -23,8 +23,8 @@ def main():
     found = {}
     for name, model in models.items():
         found[name] = model.frequency_error if model.feasible else None
-        told = f"{100 * model.frequency_error:+.2g} %" if model.feasible else model.verdict
-        print(f"{name:13s} {told}")
+        text = f"{100 * model.frequency_error:+.2g} %" if model.feasible else model.verdict
+        print(f"{name:13s} {text}")
     return found
 
 

@@ -19,8 +19,8 @@ def main():
     comparison = sg.compare(scene, ("euler", "timoshenko", "harmonic"))
     verdict = comparison.record.verdict
     for model, record in comparison.record.models.items():
-        said = "valid" if record.valid else record.why_not
-        print(f"{model:11s} {said}")
+        status = "valid" if record.valid else record.why_not
+        print(f"{model:11s} {status}")
     print("trust:", verdict.trust, "- cheapest:", verdict.cheapest)
     # comparison.write_report("out") makes the page, the pictures and results.json
     return {"trust": verdict.trust, "cheapest": verdict.cheapest}

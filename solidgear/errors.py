@@ -10,14 +10,26 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from numbers import Integral
 from typing import Any
 
-#: problems of one file that are told; the rest are counted
+#: problems of one file that are written out; the rest are counted
 TOLD = 20
 #: letters of a line on a terminal
 LONGEST = 1000
 
 
 class SolidgearError(Exception):
-    """Base of every error solidgear raises on purpose."""
+    """Base of every error that solidgear raises on purpose; its text is for the user.
+
+    Examples
+    --------
+    >>> import solidgear as sg
+    >>> rod = sg.Segment.cylinder("rod", length=0.3, diameter=0.03)
+    >>> scene = sg.Scene.from_parts([rod])
+    >>> try:
+    ...     sg.modes(sg.build(scene, "euler"), scene, n=0)
+    ... except sg.SolidgearError as error:
+    ...     print(error)
+    modes: n = 0 is not a number of modes; ask for 1 or more
+    """
 
 
 class SceneError(SolidgearError, ValueError):
@@ -41,8 +53,17 @@ class SceneError(SolidgearError, ValueError):
     Attributes
     ----------
     problems : tuple of SceneError
-        All of them, this one first. Each alone is one sentence; the whole of a file is a list of
-        `TOLD` lines at most.
+        All of them, this one first. Each alone is one sentence; the text for a whole file lists
+        `TOLD` of them at most.
+
+    Examples
+    --------
+    >>> import solidgear as sg
+    >>> try:
+    ...     sg.Material(E="207 GPa", nu=0.6, density="7850 kg/m^3")
+    ... except sg.SceneError as error:
+    ...     print(error)
+    nu = 0.6: must lie between -1 and 0.5, both excluded; steel is 0.3
     """
 
     def __init__(
@@ -67,7 +88,7 @@ class SceneError(SolidgearError, ValueError):
 
     @classmethod
     def of(cls, problems: Iterable[SceneError]) -> SceneError:
-        """One error of several, each of which may be several."""
+        """One error of several (at least one), each of which may itself hold several."""
         first, *rest = (one for error in problems for one in error.problems)
         return first._changed(others=rest)
 
@@ -90,7 +111,7 @@ class SceneError(SolidgearError, ValueError):
         count = len(self.others)
         if not count:
             return self.sentence
-        if not self.where:  # a scene made in Python: whoever catches the error finds the rest in it
+        if not self.where:  # a scene made in Python: the rest is in `problems`
             return (
                 f"{self.sentence} (and {count} more problem{'s' * (count > 1)}: see its problems)"
             )
@@ -105,8 +126,22 @@ class SceneError(SolidgearError, ValueError):
     def located(
         self, data: Any, *, where: str = "", prefix: tuple = (), path: tuple | None = None
     ) -> SceneError:
-        """The same error with its fields named, and its values quoted, from the `data` the user
-        wrote.
+        """The same error with fields named, and values quoted, from what the user wrote.
+
+        Parameters
+        ----------
+        data : mapping or object or None
+            Root that the paths of the problems start from.
+        where : str
+            The file (or scene) it came from.
+        prefix : tuple
+            Put before the path of every problem.
+        path : tuple, optional
+            Takes the place of the path of every problem.
+
+        Returns
+        -------
+        SceneError
         """
         return type(self).of(
             one._located(data, where, (*prefix, *one.path) if path is None else path)
@@ -129,17 +164,25 @@ class SceneError(SolidgearError, ValueError):
         return type(self)(self.reason, **(given | changes))
 
 
-# ------------------------------------------------------------------------------------------------- texts
+# --------------------------------------------------------------------------- texts
 def printable(text: str) -> str:
-    """`text` in one line, with escapes for what would move a terminal's cursor or turn its writing
-    round.
+    """A text in one line, with escapes for what would move the cursor of a terminal or reverse the
+    direction of its writing.
     """
     return _escaped(" ".join(text.split()))
 
 
 def for_terminal(error: Exception) -> str:
-    """What a terminal shows of an error: a line, or those of a `SceneError`; what a line quotes
-    must not fill the screen.
+    """What a terminal shows of an error.
+
+    Parameters
+    ----------
+    error : Exception
+
+    Returns
+    -------
+    str
+        The lines of a `SceneError`; one line of `LONGEST` letters at most for any other.
     """
     if isinstance(error, SceneError):
         return str(error)
@@ -152,17 +195,35 @@ def _file_name(where: str) -> str:
 
 
 def _escaped(text: str) -> str:
-    if text.isprintable():
-        return text
-    return "".join(
-        c if c.isprintable() else f"\\u{ord(c):04x}" if ord(c) < 0x10000 else f"\\U{ord(c):08x}"
-        for c in text
-    )
+    return text if text.isprintable() else "".join(map(_escaped_letter, text))
+
+
+def _escaped_letter(letter: str) -> str:
+    if letter.isprintable():
+        return letter
+    code = ord(letter)
+    return f"\\u{code:04x}" if code < 0x10000 else f"\\U{code:08x}"
 
 
 def show(value: Any, width: int = 70) -> str:
-    """`value` as one would write it in TOML, in one line of at most `width` characters, however
-    large or deep it is.
+    """A value as one would write it in TOML, in one line, however large or deep it is.
+
+    Parameters
+    ----------
+    value : object
+    width : int
+        Greatest number of letters.
+
+    Returns
+    -------
+    str
+
+    Examples
+    --------
+    >>> show({"kxx": 1e8, "note": "measured"})
+    '{"kxx": 100000000.0, "note": "measured"}'
+    >>> show(list(range(100)), width=12)
+    '[0, 1, 2,...'
     """
     text = ""
     for piece in _pieces(value, width):
@@ -204,27 +265,39 @@ def _quoted(text: str, width: int) -> str:
 
 
 def nearest(word: Any, known: Iterable[str]) -> str:
-    """``'; did you mean "x"?'``, or nothing when no known word is near."""
+    """``'; did you mean "x"?'``, or an empty text when no known word is near.
+
+    Examples
+    --------
+    >>> nearest("positon", ["position", "seat_width"])
+    '; did you mean "position"?'
+    """
     return did_you_mean(near(word, known))
 
 
 def did_you_mean(word: str | None) -> str:
-    """What :func:`nearest` says of a known word."""
+    """The hint of :func:`nearest` for a known word; empty for none."""
     return f'; did you mean "{word}"?' if word else ""
 
 
 def near(word: Any, known: Iterable[str]) -> str:
-    """The known word that is nearest, or nothing."""
+    """The known word that is nearest to `word`, or an empty text."""
     return next(iter(difflib.get_close_matches(str(word)[:60], list(known), 1)), "")
 
 
 def listed(words: Iterable[Any], most: int = 24) -> str:
-    """Words with commas between, the first `most` of them."""
+    """Words with commas between, the first `most` of them; the others are counted.
+
+    Examples
+    --------
+    >>> listed(["x", "y", "z"], most=2)
+    'x, y and 1 more'
+    """
     words = [str(word) for word in words]
     return ", ".join(words[:most]) + (f" and {len(words) - most} more" if len(words) > most else "")
 
 
-# ------------------------------------------------------------------------------------------------- pydantic
+# --------------------------------------------------------------------------- pydantic
 def scene_error(error: Any, data: Any, *, where: str = "") -> SceneError:
     """Turn pydantic's ValidationError into a `SceneError` of all its problems.
 
@@ -235,6 +308,10 @@ def scene_error(error: Any, data: Any, *, where: str = "") -> SceneError:
         What was validated, for names and values as written.
     where : str
         File or scene name put in front.
+
+    Returns
+    -------
+    SceneError
     """
     return SceneError.of(
         _plain_error(one, data, where)

@@ -1,8 +1,7 @@
 """Six-component motions and loads under a change of reference point.
 
-Order everywhere: ``(x, y, z, thx, thy, thz)``, y along the shaft, SI units.
-A small rotation ``th`` about the reference point moves a point at offset ``r``
-by ``th x r``.
+Order everywhere: ``(x, y, z, thx, thy, thz)``, y along the shaft, SI units. A small rotation ``th``
+about the reference point moves a point at offset ``r`` by ``th x r``.
 """
 
 from __future__ import annotations
@@ -16,7 +15,22 @@ DOF_NAMES = ("x", "y", "z", "thx", "thy", "thz")
 
 
 def cross_matrix(r: np.ndarray | Sequence[float]) -> np.ndarray:
-    """Matrix ``[r]`` with ``[r] v = r x v``, shape (3, 3)."""
+    """Matrix of the cross product, ``[r] v = r x v``.
+
+    Parameters
+    ----------
+    r : (3,) ndarray or sequence of float
+
+    Returns
+    -------
+    (3, 3) ndarray
+        Skew-symmetric.
+
+    Examples
+    --------
+    >>> cross_matrix([1.0, 0.0, 0.0]) @ [0.0, 1.0, 0.0]  # x cross y is z
+    array([0., 0., 1.])
+    """
     x, y, z = r
     return np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
 
@@ -34,6 +48,14 @@ def shift(offset: ArrayLike) -> np.ndarray:
     (6, 6) ndarray
         ``T`` with ``motion_new = T motion_old``; loads go the other way,
         ``load_old = T.T load_new``.
+
+    Examples
+    --------
+    A shaft that tilts by 1 mrad about x rises by 0.1 mm at a point 0.1 m further along y:
+
+    >>> motion = shift([0.0, 0.1, 0.0]) @ [0.0, 0.0, 0.0, 1e-3, 0.0, 0.0]
+    >>> round(float(motion[2]), 9)
+    0.0001
     """
     out = np.eye(6)
     out[:3, 3:] = -cross_matrix(np.asarray(offset, float))
@@ -41,23 +63,84 @@ def shift(offset: ArrayLike) -> np.ndarray:
 
 
 def move_stiffness(stiffness: ArrayLike, offset: ArrayLike) -> np.ndarray:
-    """6x6 stiffness seen from a reference point displaced by ``offset`` (m).
+    """6x6 stiffness seen from a displaced reference point.
 
     The two points are joined rigidly; ``K_new = T^-T K_old T^-1`` with
     ``T = shift(offset)``, and the inverse of a shift is the opposite shift.
+
+    Parameters
+    ----------
+    stiffness : (6, 6) array_like
+        N/m, N/rad and N m/rad, order (x, y, z, thx, thy, thz).
+    offset : (3,) array_like
+        Vector from the old to the new reference point, in m.
+
+    Returns
+    -------
+    (6, 6) ndarray
+
+    Examples
+    --------
+    A spring of 1e6 N/m along z resists a tilt about a point 0.1 m away with 1e6 x 0.1^2 N m/rad:
+
+    >>> import numpy as np
+    >>> moved = move_stiffness(np.diag([0.0, 0.0, 1e6, 0.0, 0.0, 0.0]), [0.0, 0.1, 0.0])
+    >>> round(float(moved[3, 3]), 6)
+    10000.0
     """
     back = shift(-np.asarray(offset, float))
     return back.T @ np.asarray(stiffness, float) @ back
 
 
 def move_compliance(compliance: ArrayLike, offset: ArrayLike) -> np.ndarray:
-    """6x6 compliance seen from a point displaced by ``offset`` (m): ``T C T'``."""
+    """6x6 compliance seen from a displaced reference point, ``T C T'`` with ``T = shift(offset)``.
+
+    Parameters
+    ----------
+    compliance : (6, 6) array_like
+        m/N, rad/N and rad/(N m), order (x, y, z, thx, thy, thz).
+    offset : (3,) array_like
+        Vector from the old to the new reference point, in m.
+
+    Returns
+    -------
+    (6, 6) ndarray
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> stiffness = np.diag([1e8, 1e8, 1e8, 1e5, 1e5, 1e5])
+    >>> there = move_compliance(np.linalg.inv(stiffness), [0.0, 0.1, 0.0])
+    >>> np.allclose(there @ move_stiffness(stiffness, [0.0, 0.1, 0.0]), np.eye(6))
+    True
+    """
     forth = shift(offset)
     return forth @ np.asarray(compliance, float) @ forth.T
 
 
 def rotation(axis: int, angle: float) -> np.ndarray:
-    """(6, 6) rotation of motions and loads about coordinate ``axis`` by ``angle`` (rad)."""
+    """Rotation of motions and loads about a coordinate axis.
+
+    Parameters
+    ----------
+    axis : {0, 1, 2}
+        x, y or z.
+    angle : float
+        Right-handed, rad.
+
+    Returns
+    -------
+    (6, 6) ndarray
+        Orthogonal, the same for translations and rotations.
+
+    Examples
+    --------
+    A quarter turn about y carries z into x:
+
+    >>> import numpy as np
+    >>> np.round(rotation(1, np.pi / 2) @ [0.0, 0.0, 1.0, 0.0, 0.0, 0.0], 12) + 0.0
+    array([1., 0., 0., 0., 0., 0.])
+    """
     c, s = np.cos(angle), np.sin(angle)
     i, j = (axis + 1) % 3, (axis + 2) % 3
     q = np.eye(3)

@@ -179,7 +179,7 @@ MUTATIONS = (
     ),
     Mutation(
         "housing spring left out",
-        "solidgear/body/model.py",
+        "solidgear/body/supports.py",
         "as_supports",
         "(e @ ke + housing)",
         "(e @ ke + 1e30)",
@@ -187,7 +187,7 @@ MUTATIONS = (
     ),
     Mutation(
         "sign of a bearing's coupling",
-        "solidgear/body/model.py",
+        "solidgear/body/supports.py",
         "as_supports",
         "k[6 * i : 6 * i + 6, 6 * i : 6 * i + 6] = bearing.stiffness",
         "k[6 * i : 6 * i + 6, 6 * i : 6 * i + 6] = bearing.stiffness * np.where(np.eye(6) > 0, 1, -1)",
@@ -195,7 +195,7 @@ MUTATIONS = (
     ),
     Mutation(
         "series spring beside the bearing instead of behind it",
-        "solidgear/scene/parts.py",
+        "solidgear/scene/stations.py",
         "Bearing.stiffness",
         "K -= np.outer(K[:, 1], K[1, :]) / (K[1, 1] + spring)",
         "K[1, 1] += spring",
@@ -283,7 +283,7 @@ MUTATIONS = (
     ),
     Mutation(
         "Guyan mass on compliance shapes instead of unit motions",
-        "solidgear/reduction/effective_mass.py",
+        "solidgear/reduction/lumped_point.py",
         "_guyan",
         "shapes = fields @ np.linalg.inv(compliance)",
         "shapes = fields @ np.diag(1 / np.diag(compliance))",

@@ -1,20 +1,11 @@
 """The one currency of the house: free elastic parts with ports, and what holds them."""
 
-from solidgear.body.model import (
-    DOF_NAMES,
-    FURTHER,
-    Block,
-    Body,
-    Port,
-    Supports,
-    as_supports,
-    component_rows,
-)
+from solidgear.body.model import FURTHER, Block, Body, Port, component_rows
+from solidgear.body.supports import Supports, as_supports
 
 __all__ = [
     "Block",
     "Body",
-    "DOF_NAMES",
     "FURTHER",
     "Port",
     "Supports",

@@ -9,8 +9,9 @@ import scipy.sparse as sp
 class ScalarMass:
     """``kron(scalar, I)``: the same mass for every component of a node's motion.
 
-    Takes a third of the memory of the full matrix of a solid.  It multiplies arrays and sparse matrices, is added to sparse matrices,
-    and is turned into one by :meth:`tocsr`; scipy leaves all mixed operations to it.
+    Takes a third of the memory of the full matrix of a solid.  It multiplies arrays and sparse
+    matrices, is added to sparse matrices, and is turned into one by :meth:`tocsr`; scipy leaves all
+    mixed operations to it.
 
     Parameters
     ----------
@@ -18,6 +19,14 @@ class ScalarMass:
         Symmetric, kg.
     components : int
         Unknowns of a node, numbered together.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import scipy.sparse as sp
+    >>> mass = ScalarMass(sp.csr_matrix(np.diag([2.0, 3.0])), components=3)
+    >>> mass.shape, mass @ np.ones(6)
+    ((6, 6), array([2., 2., 2., 3., 3., 3.]))
     """
 
     __array_ufunc__ = None  # numpy leaves operators to us
@@ -28,6 +37,7 @@ class ScalarMass:
 
     @property
     def shape(self) -> tuple[int, int]:
+        """(n c, n c) of the full matrix."""
         n = self.scalar.shape[0] * self.components
         return n, n
 
@@ -38,10 +48,12 @@ class ScalarMass:
 
     @property
     def dtype(self) -> np.dtype:
+        """Type of the entries."""
         return self.scalar.dtype
 
     @property
     def T(self) -> ScalarMass:
+        """The transpose."""
         return ScalarMass(self.scalar.T.tocsr(), self.components)
 
     def diagonal(self) -> np.ndarray:
@@ -49,10 +61,11 @@ class ScalarMass:
         return np.repeat(self.scalar.diagonal(), self.components)
 
     def tocsr(self) -> sp.csr_matrix:
-        """The full matrix."""
+        """The full (n c, n c) matrix, sparse."""
         return sp.kron(self.scalar, sp.eye(self.components), format="csr")
 
     def toarray(self) -> np.ndarray:
+        """The full (n c, n c) matrix, dense."""
         return self.tocsr().toarray()
 
     def __matmul__(self, other):
@@ -61,9 +74,8 @@ class ScalarMass:
         other = np.asarray(other)
         if other.ndim not in (1, 2) or len(other) != self.shape[1]:
             raise ValueError(f"matmul: dimension mismatch, {self.shape} by {other.shape}")
-        columns = other.reshape(
-            self.scalar.shape[1], -1
-        )  # all components and columns of a node side by side
+        # all components and columns of a node side by side
+        columns = other.reshape(self.scalar.shape[1], -1)
         return (self.scalar @ columns).reshape(other.shape)
 
     def __rmatmul__(self, other):

@@ -1,8 +1,8 @@
 """The one currency of the house: a free elastic shaft with named ports.
 
-Every fidelity (beam, harmonic solid, 3D solid) is turned into a :class:`Body`;
-everything after that (condensation, modes, evidence) is written once against it.
-Bearings are never part of a body: they are :class:`Supports` that act on ports.
+Every fidelity (beam, harmonic solid, 3D solid) is turned into a :class:`Body`; everything after
+that (condensation, modes, evidence) is written once against it. Bearings are never part of a body:
+they are :class:`~solidgear.body.supports.Supports` that act on ports.
 """
 
 from __future__ import annotations
@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, TypeAlias
+from typing import Any
 
 import numpy as np
 import scipy.sparse as sp
@@ -19,13 +19,7 @@ from solidgear.body.mass import ScalarMass
 from solidgear.body.sections import Sections, from_points, signed
 from solidgear.body.surface import Drawing, Surface, mesh_unknowns
 from solidgear.errors import SolidgearError
-from solidgear.frames import DOF_NAMES, shift
-
-if TYPE_CHECKING:
-    from solidgear.scene import Bearing, Scene
-
-    #: what :func:`as_supports` takes
-    Holding: TypeAlias = "Supports | Scene | Iterable[Bearing]"
+from solidgear.frames import shift
 
 #: Index of the block of n waves around the axis is this plus n, where it is not among the blocks of
 #: a body.
@@ -51,7 +45,25 @@ class Port:
 
 
 def component_rows(ports: Iterable[int], components: Sequence[int]) -> np.ndarray:
-    """Places of some components of some ports (indices) in a vector of six per port."""
+    """Places of some components of some ports in a vector of six per port.
+
+    Parameters
+    ----------
+    ports : iterable of int
+        Indices of ports.
+    components : sequence of int
+        0 to 5.
+
+    Returns
+    -------
+    (len(ports) * len(components),) ndarray of int
+        Port by port.
+
+    Examples
+    --------
+    >>> component_rows([0, 1], (2, 3))
+    array([2, 3, 8, 9])
+    """
     return np.array([6 * p + c for p in ports for c in components], int)
 
 
@@ -110,12 +122,17 @@ class Block:
 
         Parameters
         ----------
-        name, components
+        name : str
+        components : tuple of int
             Of the new block.
         index : int
             Place of this block in its body.
         signs : tuple of float
             One per component.
+
+        Returns
+        -------
+        Block
         """
         count = self.ports.shape[0] // len(signs)
         ports = sp.diags(np.tile(signs, count)) @ self.ports
@@ -136,7 +153,8 @@ class Block:
         return self.stiffness.shape[0]
 
     def section_loads(self, stations: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """What gives the section motions of shapes; see :mod:`solidgear.body.sections`.
+        """Loads and Gram matrix that give the section motions of shapes, by
+        :mod:`solidgear.body.sections`.
 
         Parameters
         ----------
@@ -181,6 +199,16 @@ class Body:
         Builder of further circumferential families, such as
         :class:`solidgear.fidelity.circumferential.Families`; None where the blocks are all that the
         fidelity knows.
+
+    Examples
+    --------
+    >>> import solidgear as sg
+    >>> rod = sg.Segment.cylinder("rod", length=0.6, diameter=0.02)
+    >>> body = sg.build(sg.Scene.from_parts([rod]), "timoshenko")
+    >>> [(port.name, port.attachment) for port in body.ports]
+    [('port', 'average')]
+    >>> body.rigid_residual() < 1e-9  # no force holds it
+    True
     """
 
     fidelity: str
@@ -201,14 +229,36 @@ class Body:
         return sum(block.size for block in self.blocks)
 
     def block(self, index: int) -> Block:
-        """A block by its index; from ``FURTHER`` on, that of a further circumferential family,
-        built when first asked for.
+        """A block by its index.
+
+        Parameters
+        ----------
+        index : int
+            From ``FURTHER`` on, that of a further circumferential family, built when first asked
+            for.
+
+        Returns
+        -------
+        Block
+
+        Raises
+        ------
+        SolidgearError
+            If the fidelity has no such family.
         """
         return self.blocks[index] if index < FURTHER else self.family(index - FURTHER).blocks[0]
 
     def family(self, n: int) -> Body:
-        """The motions of ``n`` waves around the axis (at least 2), as a body of one block without
-        port motions; kept once built.
+        """The motions of some waves around the axis, as a body of one block without port motions.
+
+        Parameters
+        ----------
+        n : int
+            Waves, at least 2; a family is kept once built.
+
+        Returns
+        -------
+        Body
 
         Raises
         ------
@@ -245,7 +295,17 @@ class Body:
         return self.geometry.surface(mesh_unknowns(self, vectors))
 
     def port_index(self, name: str, attachment: str | None = None) -> int:
-        """Index of the port called ``name``; the first one unless an attachment is asked for.
+        """Index of a port.
+
+        Parameters
+        ----------
+        name : str
+        attachment : str, optional
+            Without it the first port of that name counts.
+
+        Returns
+        -------
+        int
 
         Raises
         ------
@@ -265,11 +325,26 @@ class Body:
         return np.vstack([shift((0.0, p.y, 0.0)) for p in self.ports])
 
     def rows(self, block: Block) -> np.ndarray:
-        """Places of a block's port rows among the ``6 * n_ports`` port components."""
+        """Places of a block's port rows among the ``6 * n_ports`` port components.
+
+        Parameters
+        ----------
+        block : Block
+
+        Returns
+        -------
+        (n_ports * len(block.components),) ndarray of int
+        """
         return component_rows(range(len(self.ports)), block.components)
 
     def mass_matrix(self) -> np.ndarray:
-        """(6, 6) rigid-body mass matrix about the origin of the scene, kg, kg m, kg m^2."""
+        """Rigid-body mass matrix about the origin of the scene.
+
+        Returns
+        -------
+        (6, 6) ndarray
+            kg, kg m, kg m^2.
+        """
         out = np.zeros((6, 6))
         for block in self.blocks:
             c = list(block.components)
@@ -277,7 +352,12 @@ class Body:
         return out
 
     def rigid_residual(self) -> float:
-        """Largest ``|K R|`` relative to ``|K| |R|``: zero for a body that is truly free."""
+        """Largest ``|K R|`` relative to ``|K| |R|``: zero for a body that is truly free.
+
+        Returns
+        -------
+        float
+        """
         worst = 0.0
         for block in self.blocks:
             if not block.components:
@@ -287,100 +367,3 @@ class Body:
                 worst, float((abs(block.stiffness @ block.rigid) / scale.max(axis=0)).max())
             )
         return worst
-
-
-@dataclass(frozen=True, eq=False)
-class Supports:
-    """Springs between ports and ground.
-
-    Attributes
-    ----------
-    ports : tuple of str
-        Names of the supported ports.
-    stiffness : (6 m, 6 m) ndarray
-        Symmetric positive semidefinite, port by port; off-diagonal blocks only where a common
-        housing ties bearings together.
-    attachments : tuple of (str or None)
-        Attachment asked for at each port; None takes the body's first.
-    """
-
-    ports: tuple[str, ...]
-    stiffness: np.ndarray
-    attachments: tuple[str | None, ...] = ()
-
-    @cached_property
-    def root(self) -> np.ndarray:
-        """(6 m, r) matrix ``L`` with ``L L' = stiffness`` and r its rank.
-
-        Cholesky's factor with the stiffest pivots first, of the matrix scaled to a unit diagonal: a spring of 1e-3 N/m beside one of 1e24
-        keeps its own precision, in a column of its own.  (Eigenvectors would mix equal entries of the scaled matrix, whatever they couple.)
-        """
-        if not self.ports:
-            return np.zeros((0, 0))
-        d = np.sqrt(np.abs(np.diag(self.stiffness)))
-        order = np.argsort(-d, kind="stable")
-        unit = np.where(d > 0, d, 1.0)[order]
-        left = self.stiffness[np.ix_(order, order)] / np.outer(unit, unit)
-        columns = []
-        for j in range(len(left)):
-            if left[j, j] > 1e-12:
-                column = left[:, j] / np.sqrt(left[j, j])
-                column[:j] = 0.0
-                columns.append(column)
-                left = left - np.outer(column, column)
-        out = np.zeros((len(d), len(columns)))
-        out[order] = d[order, None] * np.array(columns).reshape(len(columns), len(d)).T
-        return out
-
-    def rows(self, body: Body) -> np.ndarray:
-        """Places of the supported components among the body's port components."""
-        wanted = self.attachments or (None,) * len(self.ports)
-        places = [6 * body.port_index(n, a) + np.arange(6) for n, a in zip(self.ports, wanted)]
-        return np.concatenate(places) if places else np.zeros(0, int)
-
-    def with_attachment(self, attachment: str | None) -> Supports:
-        """The same springs acting on another attachment of the same ports."""
-        return Supports(self.ports, self.stiffness, (attachment,) * len(self.ports))
-
-    def unresisted(self, body: Body) -> np.ndarray:
-        """(6, k) rigid motions about the origin that no spring resists (orthonormal, rotations
-        times the length).
-        """
-        size = np.array([1.0, 1.0, 1.0, 1 / body.length, 1 / body.length, 1 / body.length])
-        if not self.ports:
-            return np.eye(6) * size
-        # Rank does not depend on how stiff a spring is: every row is brought to unit length first.
-        a = self.root.T @ body.rigid_ports[self.rows(body)] * size
-        norm = np.linalg.norm(a, axis=1, keepdims=True)
-        a = a / np.where(norm > 0, norm, 1.0)
-        _, s, vt = np.linalg.svd(a)
-        rank = int((s > 1e-9).sum())
-        null = vt[rank:].T
-        null[np.abs(null) < 1e-9] = 0.0
-        return size[:, None] * null
-
-
-def as_supports(source: Holding) -> Supports:
-    """Supports from a scene (housing included), from bearings (no housing), or as they are.
-
-    A housing spring sits between ground and the axially rigid ring that carries all outer races:
-    eliminating that ring leaves ``K - K e (e'K e + k)^-1 e'K`` with e the common axial motion.
-    """
-    if isinstance(source, Supports):
-        return source
-    housing = getattr(source, "housing_axial", None)
-    bearings: Iterable = getattr(source, "bearings", source) or ()
-    bearings = tuple(bearings)
-    n = len(bearings)
-    k = np.zeros((6 * n, 6 * n))
-    for i, bearing in enumerate(bearings):
-        k[6 * i : 6 * i + 6, 6 * i : 6 * i + 6] = bearing.stiffness
-    if housing is not None and n:
-        e = np.zeros(6 * n)
-        e[1::6] = 1.0
-        ke = k @ e
-        k = k - np.outer(ke, ke) / (e @ ke + housing)
-    return Supports(tuple(b.name for b in bearings), k)
-
-
-__all__ = ["DOF_NAMES", "Block", "Body", "Port", "Supports", "as_supports"]

@@ -2,9 +2,9 @@
 between stations along the axis.
 
 A shape u of a body is described by section motions q at stations s as ``u = sum_s h_s(y) R(x, z)
-q_s``, with hat functions h_s and the rigid motions R of a section about its own centre.  The normal
+q_s``, with hat functions h_s and the rigid motions R of a section about its own centre. The normal
 equations are ``G q = b`` with ``G_st = int rho h_s h_t R'R`` and the loads ``b_s = int rho h_s
-R'u``, which are linear in the unknowns of u.  Both are integrals over the material: no mesh has to
+R'u``, which are linear in the unknowns of u. Both are integrals over the material: no mesh has to
 be fine enough to hold a hat function.
 """
 
@@ -27,13 +27,20 @@ def hats(y: np.ndarray, stations: np.ndarray) -> sp.csr_matrix:
     Parameters
     ----------
     y : (p,) ndarray
-        Not beyond the outer stations.
+        m, not beyond the outer stations.
     stations : (s,) ndarray
-        Ascending.
+        Ascending, m.
 
     Returns
     -------
     (p, s) sparse
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> hats(np.array([0.25, 1.0]), np.array([0.0, 1.0, 2.0])).toarray()
+    array([[0.75, 0.25, 0.  ],
+           [0.  , 1.  , 0.  ]])
     """
     left = np.clip(np.searchsorted(stations, y, side="right") - 1, 0, len(stations) - 2)
     t = (y - stations[left]) / (stations[left + 1] - stations[left])
@@ -53,12 +60,18 @@ def from_points(
     Parameters
     ----------
     mass : (n, n) sparse or ScalarMass
+        kg.
     rigid : (n, c) ndarray
         Rigid motions about the origin, one column per component.
     y : (n,) ndarray
-        Axial position of each unknown; NaN for one that is no value at a point, which then takes no
-        part in the fields.
+        Axial position of each unknown, m; NaN for one that is no value at a point, which then takes
+        no part in the fields.
     components : tuple of int
+
+    Returns
+    -------
+    callable
+        :data:`Sections`.
     """
     known = ~np.isnan(y)
     place = np.where(known, y, 0.0)
@@ -83,7 +96,19 @@ def from_points(
 
 
 def through(sections: Sections, reduction: sp.csr_matrix) -> Sections:
-    """Sections in fewer unknowns v, where ``u = reduction v``."""
+    """Sections in fewer unknowns v, where ``u = reduction v``.
+
+    Parameters
+    ----------
+    sections : callable
+        :data:`Sections` of u.
+    reduction : (n, m) sparse
+
+    Returns
+    -------
+    callable
+        :data:`Sections` of v.
+    """
 
     def reduced(stations):
         loads, gram = sections(stations)
@@ -93,7 +118,20 @@ def through(sections: Sections, reduction: sp.csr_matrix) -> Sections:
 
 
 def signed(sections: Sections, signs: tuple[float, ...]) -> Sections:
-    """Sections with the sign of components changed, as in the other bending plane."""
+    """Sections with the sign of components changed, as in the other bending plane.
+
+    Parameters
+    ----------
+    sections : callable
+        :data:`Sections`.
+    signs : tuple of float
+        One per component.
+
+    Returns
+    -------
+    callable
+        :data:`Sections`.
+    """
 
     def other(stations):
         loads, gram = sections(stations)

@@ -27,11 +27,26 @@ def build(scene: Shaft, fidelity: str, **options) -> Body:
         Passed to the builder: see :func:`solidgear.fidelity.beam.beam`,
         :func:`solidgear.fidelity.harmonic.harmonic`, :func:`solidgear.fidelity.solid.solid`.
 
+    Returns
+    -------
+    Body
+
     Raises
     ------
     SolidgearError
         For an unknown fidelity, an option it does not have or cannot use
         (the options of its rung), or a model that will not fit into memory.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import solidgear as sg
+    >>> rod = sg.Segment.cylinder("rod", length=0.6, diameter=0.02)
+    >>> body = sg.build(sg.Scene.from_parts([rod]), "euler", elements=40)
+    >>> [block.name for block in body.blocks]
+    ['bending_z', 'bending_x', 'axial', 'torsion']
+    >>> bool(np.isclose(body.mass_matrix()[0, 0], 7850 * np.pi * 0.01**2 * 0.6))  # kg
+    True
     """
     from solidgear.fidelity.size import refuse_too_large
 

@@ -1,8 +1,8 @@
 """Block assembly on scikit-fem elements: tabulate once, batch the element matrices.
 
-scikit-fem supplies elements, mappings, quadrature and the numbering of unknowns; its own
-forms (the oracle in the tests) spend their time in Python loops over pairs of vector components.
-Batches are small enough to stay in the cache: fresh memory costs more than the arithmetic.
+scikit-fem supplies elements, mappings, quadrature and the numbering of unknowns; its own forms (the
+oracle in the tests) spend their time in Python loops over pairs of vector components. Batches are
+small enough to stay in the cache: fresh memory costs more than the arithmetic.
 """
 
 from __future__ import annotations
@@ -26,9 +26,17 @@ STRAIGHT = 3e-13
 class Tabulated:
     """Basis functions of some elements at reference points.
 
-    ``value`` (nb, nq); ``slope`` (nb, dim, nq) reference gradients; ``det`` (ne, nq); ``x`` (dim,
-    ne, nq); ``jac`` and ``inverse`` (dim, dim, ne, nq), position along reference coordinates and
-    back.
+    Attributes
+    ----------
+    value : (nb, nq) ndarray
+    slope : (nb, dim, nq) ndarray
+        Reference gradients.
+    det : (ne, nq) ndarray
+        Determinant of the Jacobian, m^dim.
+    x : (dim, ne, nq) ndarray
+        Places, m.
+    jac, inverse : (dim, dim, ne, nq) ndarray
+        Derivative of position along reference coordinates, m, and its inverse.
     """
 
     value: np.ndarray
@@ -46,7 +54,16 @@ class Tabulated:
         return self.jac.transpose(2, 3, 0, 1)
 
     def gradient(self, factor: np.ndarray) -> np.ndarray:
-        """(ne, dim, nb, nq) gradients in physical coordinates, times a (ne, nq) factor."""
+        """Gradients in physical coordinates, times a factor.
+
+        Parameters
+        ----------
+        factor : (ne, nq) ndarray
+
+        Returns
+        -------
+        (ne, dim, nb, nq) ndarray
+        """
         to = self.inverse * factor
         dim = len(to)
         out = np.empty((to.shape[2], dim, *self.value.shape))
@@ -58,14 +75,36 @@ class Tabulated:
 
 
 def reference(element: Element, points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Values (nb, nq) and reference gradients (nb, dim, nq) of a scikit-fem element."""
+    """Values and reference gradients of a scikit-fem element.
+
+    Parameters
+    ----------
+    element : scikit-fem element
+    points : (dim, nq) ndarray
+        Reference points.
+
+    Returns
+    -------
+    value : (nb, nq) ndarray
+    gradient : (nb, dim, nq) ndarray
+
+    Examples
+    --------
+    >>> from skfem import ElementQuad1
+    >>> value, gradient = reference(ElementQuad1(), np.array([[0.5], [0.5]]))
+    >>> value.ravel()
+    array([0.25, 0.25, 0.25, 0.25])
+    """
     count = element.refdom.nnodes * element.nodal_dofs
     count += (element.refdom.nedges or 0) * element.edge_dofs if element.refdom.dim() == 3 else 0
     count += element.refdom.nfacets * element.facet_dofs + element.interior_dofs
     values, gradients = zip(*(element.lbasis(points, i) for i in range(count)))
     shape = points.shape[1:]
     value = np.array([np.broadcast_to(v, shape) for v in values])
-    gradient = np.array([[np.broadcast_to(g, shape) for g in grad] for grad in gradients])
+    gradient = np.empty((count, len(gradients[0]), *shape))
+    for of, grad in zip(gradient, gradients):
+        for out, g in zip(of, grad):
+            out[:] = g
     return value, gradient
 
 
@@ -89,7 +128,17 @@ class Tabulation:
         )
 
     def on(self, nodes: np.ndarray) -> Tabulated:
-        """Tabulate on elements with (dim, nn, ne) nodes of the mapping, m."""
+        """Tabulate on some elements.
+
+        Parameters
+        ----------
+        nodes : (dim, nn, ne) ndarray
+            Of the mapping, m.
+
+        Returns
+        -------
+        Tabulated
+        """
         nn, dim, nq = self._dshape.shape
         nodes = np.ascontiguousarray(nodes.transpose(0, 2, 1))
         jac = (
@@ -104,12 +153,45 @@ class Tabulation:
 def tabulate(
     geometry: Element, nodes: np.ndarray, element: Element, points: np.ndarray
 ) -> Tabulated:
-    """Tabulate basis functions on (dim, nn, ne) nodes once; see :class:`Tabulation`."""
+    """Tabulate basis functions once; see :class:`Tabulation`.
+
+    Parameters
+    ----------
+    geometry : scikit-fem element
+        Of the mapping.
+    nodes : (dim, nn, ne) ndarray
+        Of the mapping, m.
+    element : scikit-fem element
+        Of the unknowns.
+    points : (dim, nq) ndarray
+        Reference points.
+
+    Returns
+    -------
+    Tabulated
+    """
     return Tabulation(geometry, element, points).on(nodes)
 
 
 def inverted(jac: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Inverses, and determinants (...), of (d, d, ...) small matrices, d = 2 or 3, by cofactors."""
+    """Inverses and determinants of small matrices, by cofactors.
+
+    Parameters
+    ----------
+    jac : (d, d, ...) ndarray
+        d = 2 or 3.
+
+    Returns
+    -------
+    inverse : (d, d, ...) ndarray
+    det : (...) ndarray
+
+    Examples
+    --------
+    >>> inverse, det = inverted(np.array([[2.0, 0.0], [1.0, 4.0]]))
+    >>> float(det), inverse[1]
+    (8.0, array([-0.125,  0.25 ]))
+    """
     d = len(jac)
     if d == 2:
         det = jac[0, 0] * jac[1, 1] - jac[0, 1] * jac[1, 0]
@@ -155,7 +237,17 @@ def straight(element: Element, nodes: np.ndarray) -> tuple[np.ndarray, np.ndarra
 
 
 def unknowns(mesh: Mesh, element: Element) -> np.ndarray:
-    """(nb, ne) scalar numbering of unknowns, scikit-fem's own."""
+    """Scalar numbering of unknowns, scikit-fem's own.
+
+    Parameters
+    ----------
+    mesh : scikit-fem mesh
+    element : scikit-fem element
+
+    Returns
+    -------
+    (nb, ne) ndarray of int
+    """
     return np.asarray(Dofs(mesh, element).element_dofs)
 
 
@@ -172,6 +264,19 @@ class Pattern:
         Number of unknowns.
     place : (ne, nb * nb) ndarray of int
         Place of every entry of every element matrix among the entries of the assembled one.
+
+    Examples
+    --------
+    Two springs of 1 and 2 N/m in a row:
+
+    >>> pattern = Pattern(np.array([[0, 1], [1, 2]]))
+    >>> chain = pattern.sum()
+    >>> spring = np.array([[1.0, -1.0], [-1.0, 1.0]])
+    >>> chain.add(np.array([0, 1]), np.array([spring, 2 * spring]))
+    >>> chain.matrix().toarray()
+    array([[ 1., -1.,  0.],
+           [-1.,  3., -2.],
+           [ 0., -2.,  2.]])
     """
 
     def __init__(self, dofs: np.ndarray):
@@ -201,7 +306,17 @@ class Pattern:
         self.indptr = np.searchsorted(starts, entries.indptr).astype(np.int32)
 
     def sum(self, components: int = 1) -> Sum:
-        """An empty matrix on this pattern, unknowns grouped by node."""
+        """An empty matrix on this pattern.
+
+        Parameters
+        ----------
+        components : int
+            Unknowns of a node, numbered together.
+
+        Returns
+        -------
+        Sum
+        """
         return Sum(self, components)
 
 
@@ -227,7 +342,13 @@ class Sum:
             np.add.at(self.data[k:], at, plane)
 
     def matrix(self) -> sp.csr_matrix:
-        """(n c, n c) matrix."""
+        """The assembled matrix.
+
+        Returns
+        -------
+        (n c, n c) sparse
+            Unknowns grouped by node.
+        """
         p, c = self.pattern, self.c
         if c == 1:
             return sp.csr_matrix((self.data, p.indices, p.indptr), shape=(p.n, p.n))
@@ -237,6 +358,17 @@ class Sum:
 
 
 def batches(elements: np.ndarray, bytes_each: float) -> list[np.ndarray]:
-    """Cut a list of elements into pieces whose work arrays stay within ``BATCH_BYTES``."""
+    """Cut a list of elements into pieces whose work arrays stay within ``BATCH_BYTES``.
+
+    Parameters
+    ----------
+    elements : (m,) ndarray of int
+    bytes_each : float
+        Work memory of one element.
+
+    Returns
+    -------
+    list of ndarray
+    """
     step = max(1, int(BATCH_BYTES / bytes_each))
     return [elements[i : i + step] for i in range(0, len(elements), step)]

@@ -41,7 +41,8 @@ def tie_rigidly(block: Block, ties: Sequence[tuple[int, float, np.ndarray]]) -> 
         tied += mask
     if tied.max() > 1:
         raise SolidgearError(
-            "two rigid seats share points of the surface; separate them or use the attachment 'average'"
+            "two rigid seats share points of the surface; "
+            "separate them or use the attachment 'average'"
         )
     free = np.flatnonzero(tied == 0)
     columns = [

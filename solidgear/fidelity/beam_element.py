@@ -1,10 +1,9 @@
 """Beam finite element for stepped, tapered and hollow shafts: Euler-Bernoulli and Timoshenko.
 
-One element serves both theories and any taper.  Its stiffness is the inverse of the tip
-flexibility of the element clamped at one end, integrated over the true section; its mass
-is consistent with the displacement field of that static problem.  A uniform element is
-the textbook one.  Nothing here is shared with the solid builders: that
-independence is what makes a comparison worth having.
+One element serves both theories and any taper. Its stiffness is the inverse of the tip flexibility
+of the element clamped at one end, integrated over the true section; its mass is consistent with the
+displacement field of that static problem. A uniform element is the textbook one. Nothing here is
+shared with the solid builders: that independence is what makes a comparison worth having.
 """
 
 from __future__ import annotations
@@ -29,8 +28,20 @@ def shear_coefficient(nu: float, outer, inner):
     Parameters
     ----------
     nu : float
+        Poisson's ratio.
     outer, inner : float or ndarray
         Radii, m.
+
+    Returns
+    -------
+    float or ndarray
+
+    Examples
+    --------
+    >>> round(float(shear_coefficient(0.3, outer=0.045, inner=0.0)), 4)
+    0.9252
+    >>> round(float(shear_coefficient(0.3, outer=0.045, inner=0.0449)), 3)  # a thin tube
+    0.565
     """
     a, b = np.asarray(outer, float), np.asarray(inner, float)
     a2, b2 = a * a, b * b
@@ -46,7 +57,32 @@ def shear_coefficient(nu: float, outer, inner):
 
 
 class Section:
-    """Section properties of one element at its Gauss points (distances s from the left end)."""
+    """Section properties of one element at its Gauss points (distances s from the left end).
+
+    Parameters
+    ----------
+    segment : Segment
+        That the element lies in.
+    left, right : float
+        Its ends, m.
+    head : {'cone', 'mean'}
+        Follow the taper, or take mean radii.
+    kappa : {'hutchinson', 'cowper'}
+        Shear coefficient.
+
+    Attributes
+    ----------
+    length : float
+        m.
+    s, w : (q,) ndarray
+        Gauss points and weights, m.
+    bend, shear, stretch, twist : (q,) ndarray
+        ``E I`` (N m^2), ``kappa G A`` (N), ``E A`` (N) and ``G J`` (N m^2).
+    mass, rotary, polar : (q,) ndarray
+        ``rho A`` (kg/m), ``rho I`` and ``rho J`` (kg m).
+    integral : (q, q) ndarray
+        Integrates values at the Gauss points from 0 to each of them.
+    """
 
     def __init__(self, segment, left, right, head, kappa):
         x, w = _GAUSS
@@ -79,9 +115,9 @@ class Section:
         self.polar = 2 * self.rotary
         # Integration from 0 to s at the Gauss points, exact for the polynomial through them.
         lagrange = np.linalg.inv(np.vander(x, increasing=True))
-        powers = np.array(
-            [[(xi ** (j + 1) - (-1.0) ** (j + 1)) / (j + 1) for j in range(len(x))] for xi in x]
-        )
+        powers = np.empty((len(x), len(x)))
+        for j in range(len(x)):
+            powers[:, j] = [(xi ** (j + 1) - (-1.0) ** (j + 1)) / (j + 1) for xi in x]
         self.integral = self.length / 2 * powers @ lagrange
 
 
@@ -89,9 +125,35 @@ def bending_matrices(c: Section, shear: bool, rotary: bool, mass: str):
     """Stiffness, mass and fields of one bending element on ``(z, thx)`` at both ends, then internal
     unknowns.
 
-    With shear the static field has constant shear in an element, which alone converges with the square of its
-    length.  Two internal fields, those of a clamped element under a uniform force and a uniform moment, lift
-    that to the fourth power; they store no energy together with the nodal fields.
+    With shear the static field has constant shear in an element, which alone converges with the
+    square of its length.  Two internal fields, those of a clamped element under a uniform force and
+    a uniform moment, lift that to the fourth power; they store no energy together with the nodal
+    fields.
+
+    Parameters
+    ----------
+    c : Section
+    shear : bool
+        Timoshenko, else Euler-Bernoulli.
+    rotary : bool
+        Whether sections carry rotary inertia.
+    mass : {'consistent', 'lumped'}
+
+    Returns
+    -------
+    stiffness, mass : (n, n) ndarray
+        n is 4, with internal unknowns 5 or 6; N/m, N, N m, and kg, kg m, kg m^2.
+    shape : (2, q, n) ndarray
+        Deflection and turn at the Gauss points.
+
+    Examples
+    --------
+    >>> from solidgear import Segment
+    >>> rod = Segment.cylinder("rod", length=0.6, diameter=0.02)
+    >>> section = Section(rod, 0.0, 0.6, head="cone", kappa="hutchinson")
+    >>> k, m, _ = bending_matrices(section, shear=False, rotary=False, mass="consistent")
+    >>> round(float(k[0, 0] * 0.6**3 / section.bend[0]), 9)  # 12 E I / L^3
+    12.0
     """
     L, s, w = c.length, c.s, c.w
     soft = np.stack([1 / c.bend, 1 / c.shear if shear else np.zeros_like(s)])
@@ -142,7 +204,23 @@ def bending_matrices(c: Section, shear: bool, rotary: bool, mass: str):
 
 
 def rod_matrices(c: Section, rigidity, inertia, mass: str):
-    """Stiffness and mass (2, 2) of a tapered bar in stretch or twist, and its field (q, 2)."""
+    """Stiffness, mass and field of a tapered bar in stretch or twist.
+
+    Parameters
+    ----------
+    c : Section
+    rigidity : (q,) ndarray
+        ``E A`` or ``G J``.
+    inertia : (q,) ndarray
+        ``rho A`` or ``rho J``.
+    mass : {'consistent', 'lumped'}
+
+    Returns
+    -------
+    stiffness, mass : (2, 2) ndarray
+    shape : (q, 2) ndarray
+        Motion at the Gauss points.
+    """
     compliance = (c.w / rigidity).sum()
     k = np.array([[1.0, -1.0], [-1.0, 1.0]]) / compliance
     right = c.integral @ (1 / rigidity) / compliance
@@ -155,11 +233,17 @@ def rod_matrices(c: Section, rigidity, inertia, mass: str):
 
 @dataclass(frozen=True)
 class Fields:
-    """Displacement fields of one element: unknowns and their shapes at the Gauss points of the
-    element.
+    """Displacement fields of one element, at its Gauss points.
 
-    ``bend`` has deflection and turn, (2, q, unknowns); ``stretch`` and ``twist`` one field each,
-    (q, unknowns).
+    Attributes
+    ----------
+    segment : Segment
+    left, right : float
+        Ends of the element, m.
+    bend : (ndarray of int, (2, q, n) ndarray)
+        Unknowns, and the deflection and turn that each makes.
+    stretch, twist : (ndarray of int, (q, n) ndarray)
+        Unknowns, and the motion that each makes.
     """
 
     segment: Segment
@@ -170,8 +254,21 @@ class Fields:
     twist: tuple[np.ndarray, np.ndarray]
 
     def part(self, lo: float, hi: float):
-        """Places y, radii, length weights on the surface from lo to hi, and the interpolation (q,
-        q) from the Gauss points.
+        """Quadrature on the outer surface of a part of the element.
+
+        Parameters
+        ----------
+        lo, hi : float
+            m.
+
+        Returns
+        -------
+        y, r : (q,) ndarray
+            Places along the shaft, and radii there, m.
+        weight : (q,) ndarray
+            Of the length along the surface, m.
+        lagrange : (q, q) ndarray
+            Interpolation from the Gauss points of the element.
         """
         x, w = _GAUSS
         middle, half = (lo + hi) / 2, (hi - lo) / 2

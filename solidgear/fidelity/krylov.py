@@ -1,10 +1,10 @@
 """Exact Euler-Bernoulli bending of a stepped shaft on point springs with lumped masses.
 
 The initial-parameter method with Krylov-Duncan functions, arranged so that it neither overflows nor
-loses roots; how is said in :mod:`solidgear.fidelity.krylov_shaft`.
+loses roots, as described in :mod:`solidgear.fidelity.krylov_shaft`.
 
 There is no shear, and no rotary inertia but that of lumped parts: that is the model of the thesis,
-and either would bring a second length into the functions.  Nothing is shared with the finite
+and either would bring a second length into the functions. Nothing is shared with the finite
 elements, which makes agreement with them worth having.
 """
 
@@ -22,8 +22,21 @@ from solidgear.fidelity.options import number
 
 @dataclass(frozen=True)
 class Span:
-    """A uniform length of shaft: `length` in m, `bending_stiffness` E I in N m^2, `mass_per_length`
-    in kg/m.
+    """A uniform length of shaft.
+
+    Attributes
+    ----------
+    length : float
+        m.
+    bending_stiffness : float
+        E I, N m^2.
+    mass_per_length : float
+        kg/m.
+
+    Raises
+    ------
+    SolidgearError
+        If one of them is not above zero.
     """
 
     length: float
@@ -37,10 +50,23 @@ class Span:
 
 @dataclass(frozen=True, eq=False)
 class Station:
-    """A point spring to ground and a lumped mass at `y` (m, from the left end of the first span).
+    """A point spring to ground and a lumped mass.
 
-    `spring` is (2, 2) on (z, thx), in N/m, N/rad and N m/rad, symmetric positive semidefinite;
-    `mass` is in kg, and `inertia`, about the x axis through the station, in kg m^2.
+    Attributes
+    ----------
+    y : float
+        m, from the left end of the first span.
+    spring : (2, 2) ndarray
+        On (z, thx), in N/m, N/rad and N m/rad, symmetric positive semidefinite.
+    mass : float
+        kg.
+    inertia : float
+        About the x axis through the station, kg m^2.
+
+    Raises
+    ------
+    SolidgearError
+        For a spring that is not symmetric or indefinite, or a negative mass or inertia.
     """
 
     y: float
@@ -81,13 +107,16 @@ class KrylovModes:
     rigid : int
         How many of them are rigid motions, of frequency zero.
     counts : (n, 2) ndarray of int
-        Modes counted below ``(1 - 1e-8) f`` and ``(1 + 1e-8) f``: none is missing up to mode k, from zero, when
-        ``counts[k, 0] <= k < counts[k, 1]``.  For rigid motions: 0 and their number, by the rank of the springs.
+        Modes counted below ``(1 - 1e-8) f`` and ``(1 + 1e-8) f``: none is missing up to mode k,
+        from zero, when ``counts[k, 0] <= k < counts[k, 1]``. For rigid motions: 0 and their number,
+        by the rank of the springs.
     distributed, lumped : (n,) ndarray
         Shares of the modal mass in the spans and in the lumped masses, in sum one.
     defect : (n,) ndarray
-        Largest violation of the equations at the joints `y` (m) between pieces, relative to the
-        largest term of each.
+        Largest violation of the equations at the joints between pieces, relative to the largest
+        term of each.
+    y : (j,) ndarray
+        Places of those joints, m.
     """
 
     frequency_hz: np.ndarray
@@ -98,16 +127,29 @@ class KrylovModes:
     defect: np.ndarray
     y: np.ndarray
     _pieces: tuple = field(repr=False)  # bending stiffness and mass per length of every piece
-    _states: np.ndarray = field(
-        repr=False
-    )  # (n, j, 6): z, thx, then Q, M before and Q, M after the joint
+    # (n, j, 6): z, thx, then Q, M before and Q, M after the joint
+    _states: np.ndarray = field(repr=False)
 
     def shape(self, k: int, y):
-        """Field ``z, phi, M, Q`` of mode `k`, from zero, at `y` (m, on the shaft); at a station
-        just beyond it, at the right end just before.
+        """Field of one mode.
 
-        Deflection, m; ``phi = dz/dy = thx``; ``M = E I d2z/dy2``, N m; ``Q = -dM/dy``, N, the force along z by which the part
-        beyond y acts on the part before it.  Each is an array like `y`.
+        Parameters
+        ----------
+        k : int
+            Number of the mode, from zero.
+        y : float or ndarray
+            Places on the shaft, m; at a station just beyond it, at the right end just before.
+
+        Returns
+        -------
+        z, phi, M, Q : ndarray
+            Each like `y`: deflection, m; ``phi = dz/dy = thx``; ``M = E I d2z/dy2``, N m; ``Q =
+            -dM/dy``, N, the force along z by which the part beyond y acts on the part before it.
+
+        Raises
+        ------
+        SolidgearError
+            For a mode that was not computed, or a place off the shaft.
         """
         y, end, omega = np.asarray(y, float), self.y[-1], 2 * np.pi * self.frequency_hz
         if not 0 <= k < len(omega):
@@ -131,7 +173,7 @@ def krylov(
     *,
     max_frequency: float | None = None,
 ) -> KrylovModes:
-    """Exact bending modes of a stepped shaft; `SolidgearError` for a station off the shaft.
+    """Exact bending modes of a stepped shaft.
 
     Parameters
     ----------
@@ -143,6 +185,23 @@ def krylov(
         How many modes, rigid ones included; None is all below `max_frequency`.
     max_frequency : float, optional
         Hz; modes from here on are left out.
+
+    Returns
+    -------
+    KrylovModes
+
+    Raises
+    ------
+    SolidgearError
+        For a station off the shaft, no span, or neither `n` nor `max_frequency`.
+
+    Examples
+    --------
+    A free uniform beam, ``k L = 4.730041`` (Hua 2010 uses the same functions):
+
+    >>> found = krylov([Span(length=1.0, bending_stiffness=1.0, mass_per_length=1.0)], n=3)
+    >>> found.rigid, round(float(np.sqrt(2 * np.pi * found.frequency_hz[2])), 6)
+    (2, 4.730041)
     """
     number("krylov", "n", n, least=1, whole=True)
     number("krylov", "max_frequency", max_frequency, above=0)
@@ -178,9 +237,28 @@ def krylov(
 def from_scene(scene, *, pieces: int = 1) -> tuple[tuple[Span, ...], tuple[Station, ...]]:
     """Spans and stations of a scene, for bending in the plane of z.
 
-    Cones become cylinders with the mean mass and the mean ``1 / (E I)`` of their pieces, so that mass, and the turn under a uniform
-    moment, are exact; the error falls with the square of `pieces`, the number to a cone.  Couplings of a bearing between
-    this plane and the rest are left out.  The lumped point is the first station, without a mass of its own; bearings follow.
+    Cones become cylinders with the mean mass and the mean ``1 / (E I)`` of their pieces, so that
+    mass, and the turn under a uniform moment, are exact; the error falls with the square of
+    `pieces`.  Couplings of a bearing between this plane and the rest are left out.
+
+    Parameters
+    ----------
+    scene : Scene
+    pieces : int
+        Number of cylinders to a cone.
+
+    Returns
+    -------
+    spans : tuple of Span
+    stations : tuple of Station
+        The lumped point first, without a mass of its own; bearings follow.
+
+    Examples
+    --------
+    >>> import solidgear as sg
+    >>> spans, stations = from_scene(sg.load("geometry/shaft_stepped.toml"))
+    >>> [round(span.length, 9) for span in spans], len(stations)
+    ([0.12, 0.16, 0.14], 3)
     """
     number("krylov", "pieces", pieces, least=1, whole=True)
     spans = []
@@ -204,6 +282,5 @@ def from_scene(scene, *, pieces: int = 1) -> tuple[tuple[Span, ...], tuple[Stati
 
 
 def _given(what, name, value, **limits):
-    number(
-        what, name, np.nan if value is None else value, **limits
-    )  # None, an option left out, would pass
+    # None, an option left out, would pass
+    number(what, name, np.nan if value is None else value, **limits)

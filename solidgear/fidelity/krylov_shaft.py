@@ -29,9 +29,8 @@ if TYPE_CHECKING:
 _REACH = 2.0
 #: series of the Krylov-Duncan functions in ``(k l)^4``; at ``k l = 2`` the first term left out is
 #: below 1e-20
-_SERIES = np.array(
-    [[1 / np.prod(np.arange(1.0, 4 * n + j + 1)) for n in range(7)] for j in range(4)]
-)
+_POWERS = 4 * np.arange(7) + np.arange(4)[:, None]
+_SERIES = np.vectorize(lambda power: 1 / np.prod(np.arange(1.0, power + 1)))(_POWERS)
 #: Gauss points of a piece: products of two shapes are integrated to rounding
 GAUSS = np.polynomial.legendre.leggauss(12)
 #: of the six numbers of a joint, those that start the piece beyond it
@@ -39,19 +38,52 @@ AFTER = [0, 1, 4, 5]
 
 
 def krylov_duncan(kl):
-    """S, T, U, V of ``kl``: ``(cosh + cos) / 2, (sinh + sin) / 2, (cosh - cos) / 2, (sinh - sin) /
-    2``, with ``k^4 = m w^2 / (E I)``.
+    """Krylov-Duncan functions S, T, U, V: ``(cosh + cos) / 2, (sinh + sin) / 2, (cosh - cos) / 2,
+    (sinh - sin) / 2``.
 
     Small arguments cost V its digits, and a determinant loses ``eps exp(kl) / kl`` to large ones:
-    :func:`krylov` meets neither.
+    :func:`~solidgear.fidelity.krylov.krylov` meets neither.
+
+    Parameters
+    ----------
+    kl : float or ndarray
+        ``k l`` with ``k^4 = m w^2 / (E I)``.
+
+    Returns
+    -------
+    tuple of ndarray
+
+    Examples
+    --------
+    >>> [float(value) for value in krylov_duncan(0.0)]
+    [1.0, 0.0, 0.0, 0.0]
     """
     ch, c, sh, s = np.cosh(kl), np.cos(kl), np.sinh(kl), np.sin(kl)
     return (ch + c) / 2, (sh + s) / 2, (ch - c) / 2, (sh - s) / 2
 
 
 def transfer(s, stiff, force):
-    """(4, 4, ...) transfer of (z, phi, Q, M) over a length `s`; `force` is ``m w^2``, ``k^4`` times
-    `stiff`.
+    """Transfer of (z, phi, Q, M) over a uniform length.
+
+    Parameters
+    ----------
+    s : float or ndarray
+        Length, m.
+    stiff : float or ndarray
+        E I, N m^2.
+    force : float or ndarray
+        ``m w^2``, N/m^2: ``k^4`` times `stiff`.
+
+    Returns
+    -------
+    (4, 4, ...) ndarray
+
+    Examples
+    --------
+    At rest a tilt of 1 lifts the far end by the length:
+
+    >>> transfer(2.0, 1.0, 0.0)[0]
+    array([ 1.        ,  2.        , -1.33333333,  2.        ])
     """
     k4 = force / stiff
     # All terms of the series are positive: nothing cancels, and w = 0 is no special case.
@@ -65,6 +97,7 @@ def transfer(s, stiff, force):
 
 
 def transferred(t, b):
+    """Solutions `b` (4, ...) at the far end of a transfer `t` (4, 4, ...)."""
     return (t * b[None]).sum(axis=1)
 
 
@@ -109,14 +142,30 @@ class _Joint:
 
 
 def joined_shaft(spans, stations):
-    """The shaft with a joint at the ends of every span and at every station."""
+    """The shaft with a joint at the ends of every span and at every station.
+
+    Parameters
+    ----------
+    spans : sequence of Span
+    stations : sequence of Station
+
+    Returns
+    -------
+    _Shaft
+
+    Raises
+    ------
+    SolidgearError
+        For a station off the shaft.
+    """
     ends = np.append(0.0, np.cumsum([s.length for s in spans]))
     length, near, marks = ends[-1], 1e-9 * ends[-1], list(ends)
     held: list[list[Station]] = [[] for _ in ends]
     for station in stations:
         if not -near <= station.y <= length + near:
             raise SolidgearError(
-                f"krylov: the station at y = {station.y:g} m is outside the shaft, 0 to {length:g} m"
+                f"krylov: the station at y = {station.y:g} m is outside the shaft, "
+                f"0 to {length:g} m"
             )
         at = int(np.argmin(abs(np.array(marks) - station.y)))
         if abs(marks[at] - station.y) > near:  # nearer than that, it is meant to be at the mark
@@ -144,13 +193,10 @@ class _Shaft:
     def rigid(self):
         """Number of rigid motions that no spring resists; by rank, not by a small frequency."""
         motions = [np.array([[1.0, y / self.y[-1]], [0.0, 1 / self.y[-1]]]) for y in self.y]
-        rows = np.vstack(
-            [np.zeros((1, 2))]
-            + [(joint.up @ r)[joint.d > 0] for joint, r in zip(self.joints, motions)]
-        )
-        rows /= np.maximum(
-            np.linalg.norm(rows, axis=1, keepdims=True), 1e-300
-        )  # how stiff a spring is does not matter
+        held = [(joint.up @ r)[joint.d > 0] for joint, r in zip(self.joints, motions)]
+        rows = np.vstack([np.zeros((1, 2)), *held])
+        # how stiff a spring is does not matter
+        rows /= np.maximum(np.linalg.norm(rows, axis=1, keepdims=True), 1e-300)
         return 2 - int(np.linalg.matrix_rank(rows, tol=1e-9))
 
     def weights(self, span, omega):
@@ -167,9 +213,8 @@ class _Shaft:
     def count(self, omega):
         """Number of modes below each frequency (rad/s, 1-d)."""
         total, sign = np.zeros(len(omega), int), np.ones(len(omega))
-        b = np.eye(4, 2)[:, :, None] + np.zeros(
-            len(omega)
-        )  # the left end is free until its joint acts
+        # the left end is free until its joint acts
+        b = np.eye(4, 2)[:, :, None] + np.zeros(len(omega))
         for i, parts in enumerate(self.parts(omega.max(initial=0.0))):
             w = self.weights(i, omega)
             b = _orthonormal(self.joints[i].act(b, omega), w)
@@ -250,9 +295,8 @@ class _Shaft:
         block[:-1, 2:, 6:10] = np.eye(4)
         block[-1, 2:4, 4:6] = np.eye(2)  # nothing pulls on the outer faces
         unit = self.weights(np.maximum(np.arange(nodes) - 1, 0), omega)[[0, 1, 2, 3, 2, 3]].T
-        block /= np.hstack([unit, np.roll(unit, -1, axis=0)])[
-            :, None
-        ]  # the last joint has no neighbour, and no entry there
+        # the last joint has no neighbour, and no entry there
+        block /= np.hstack([unit, np.roll(unit, -1, axis=0)])[:, None]
         block /= np.maximum(abs(block).max(axis=2, keepdims=True), 1e-300)
         i, row, column = np.nonzero(block)
         spots = np.append(6 * i + row + 2, [0, 1]), np.append(6 * i + column, [2, 3])
@@ -260,9 +304,8 @@ class _Shaft:
         v = np.random.default_rng(0).standard_normal((6 * nodes, many))
         try:
             lu = splu(a)
-        except (
-            RuntimeError
-        ):  # singular to the last bit: a step of a few bits away the solutions are the same
+        except RuntimeError:
+            # singular to the last bit: a step of a few bits away the solutions are the same
             lu = splu(sp.csc_matrix(a + 1e-15 * sp.identity(6 * nodes)))
         for _ in range(4):
             v = np.linalg.qr(lu.solve(v, trans="T"))[0]
@@ -290,7 +333,7 @@ class _Shaft:
         for g in _groups(omega, 1e-4):
             moved = states[g, :, :2].reshape(len(g), -1)
             spread, points = (z[g] * weight) @ z[g].T, (moved * mass) @ moved.T
-            # Solutions of frequencies this close know each other to fewer digits.
+            # Solutions of frequencies this close are separated to fewer digits.
             mix = np.linalg.inv(np.linalg.cholesky(spread + points))
             states[g] = np.tensordot(mix, states[g], 1)
             distributed[g], lumped[g] = np.diag(mix @ spread @ mix.T), np.diag(mix @ points @ mix.T)
@@ -313,7 +356,7 @@ def _negative(force, b, w, sign):
     over instead of computed twice, it cannot make a mode appear in both or in neither.
     """
     now = np.where(force[0, 0] * force[1, 1] < force[0, 1] * force[1, 0], -1.0, 1.0)
-    # The trace is enough: with the sign of the determinant it tells 0, 1 and 2 apart.
+    # The trace is enough: with the sign of the determinant it separates 0, 1 and 2.
     first = force[0, 0] * b[1, 1] - force[0, 1] * b[1, 0]
     second = force[1, 1] * b[0, 0] - force[1, 0] * b[0, 1]
     both_or_none = np.where(sign * (first + w[0] ** 2 * second) < 0, 2, 0)

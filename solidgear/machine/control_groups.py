@@ -7,8 +7,7 @@ from pathlib import Path
 
 
 def control_groups(root: Path, controller: str) -> Iterator[tuple[Path, bool]]:
-    """Folders of every group from that of this process up to the root, for each may carry the
-    limit; and whether it is of version 2.
+    """Groups of this process, from its own up to the root, for each may carry the limit.
 
     Parameters
     ----------
@@ -16,6 +15,12 @@ def control_groups(root: Path, controller: str) -> Iterator[tuple[Path, bool]]:
         Where ``proc`` and ``sys`` are looked for.
     controller : str
         ``cpu`` or ``memory``; version 1 has a tree for each.
+
+    Yields
+    ------
+    folder : Path
+    unified : bool
+        Whether it is of version 2.
     """
     for line in text_of(root / "proc/self/cgroup").splitlines():
         _, kinds, path = line.split(":", 2)
@@ -35,7 +40,7 @@ def control_groups(root: Path, controller: str) -> Iterator[tuple[Path, bool]]:
 
 
 def text_of(path: Path) -> str:
-    """Text of a file, empty where it cannot be read."""
+    """Text of a file (`path`), empty where it cannot be read."""
     try:
         return path.read_text()
     except OSError:

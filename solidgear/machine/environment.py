@@ -10,7 +10,13 @@ from solidgear.machine.threads import offered
 
 
 def environment() -> dict:
-    """Versions, processor and date, for results.json."""
+    """Versions, processor and date, for results.json.
+
+    Returns
+    -------
+    dict
+        Versions are None for packages that are not there; ``cores`` are those this process may use.
+    """
     out: dict = {"python": platform.python_version()}
     for name in ("solidgear", "numpy", "scipy", "scikit-fem", "gmsh", "pyvista", "pypardiso"):
         try:

@@ -3,7 +3,7 @@
 Python hears a signal between two of its own instructions, in the main thread; one call into C that
 takes a minute is one instruction.  So the call runs in a second thread and the main thread waits,
 where it hears Ctrl-C at once.  The call itself cannot be ended: it is abandoned, runs on at the
-lowest priority, and what it makes is thrown away.  The command line then ends the process without
+lowest priority, and its result is discarded.  The command line then ends the process without
 waiting for it (:func:`leave`).
 
 This needs a callee that lets go of Python's lock.  MKL and gmsh (through ctypes), SciPy's SuperLU
@@ -34,11 +34,22 @@ def call(function: Callable, *arguments, **options) -> Any:
     ----------
     function : callable
         After Ctrl-C it may still be running: what it works on must not be used again.
+    *arguments, **options
+        Passed to it.
+
+    Returns
+    -------
+    object
 
     Raises
     ------
     KeyboardInterrupt
         Or whatever else a signal handler raises meanwhile.
+
+    Examples
+    --------
+    >>> call(divmod, 7, 2)
+    (3, 1)
     """
     if threading.current_thread() is not threading.main_thread() or not callable(
         signal.getsignal(signal.SIGINT)
@@ -67,12 +78,22 @@ def leave(code: int | str | None) -> NoReturn:
     cannot be waited for.
 
     Libraries that run C code at exit would free what that call works on.
+
+    Parameters
+    ----------
+    code : int, str or None
+        As for ``sys.exit``.
+
+    Raises
+    ------
+    SystemExit
+        Where nothing is still running.
     """
     if abandoned() and (code is None or isinstance(code, int)):
         for stream in (sys.stdout, sys.stderr):
             try:
                 stream.flush()
-            except (OSError, ValueError):  # closed, or nobody reads
+            except (OSError, ValueError):  # closed, or not read
                 pass
         os._exit(code or 0)
     sys.exit(code)
@@ -89,7 +110,8 @@ class Made:
 
     Notes
     -----
-    Where that thread is the worker of :func:`call`, the worker is sent the value when this holder dies.  Nothing else may refer to it then.
+    Where that thread is the worker of :func:`call`, the worker is sent the value when this holder
+    dies.  Nothing else may refer to it then.
     """
 
     def __init__(self, value: object):
@@ -170,15 +192,15 @@ def _serve(jobs: queue.SimpleQueue) -> None:
 
 
 def _abandon(job: _Job) -> None:
-    """Leave a call to itself: another worker takes the next one, and this one gets out of the way."""
+    """Leave a call to itself: another worker takes the next one, and this one steps back."""
     global _worker
     if job.done.is_set() or _worker is None:
         return
     _worker.put(None)  # its last one
     _worker = None
     _lost.append(job)
-    # Threads of its own, of MKL for instance, are not told apart: all but this one step back
-    # (Linux).
+    # Which threads are its own (those of MKL, for instance) is not known: all but this one step
+    # back (Linux).
     own = threading.get_native_id()
     for place in Path("/proc/self/task").glob("*"):
         if int(place.name) != own:

@@ -38,7 +38,7 @@ UNLIMITED = 2**60
 
 
 def available_mb(root: str | Path = "/") -> float | None:
-    """Memory (MB of 2**20 bytes) that can still be taken; None where the system does not tell.
+    """Memory that can still be taken.
 
     The least of ``MemAvailable``, the room below the limit of every control group (v1 and v2) this
     process is in, and the environment variable ``SOLIDGEAR_MEMORY_MB``, which can only lower it
@@ -49,6 +49,11 @@ def available_mb(root: str | Path = "/") -> float | None:
     root : path
         Where ``proc`` and ``sys`` are looked for.
 
+    Returns
+    -------
+    float or None
+        MB of 2**20 bytes; None where the system does not show it.
+
     Raises
     ------
     SolidgearError
@@ -56,7 +61,8 @@ def available_mb(root: str | Path = "/") -> float | None:
     """
     root = Path(root)
     found = [*_machine(root), *_groups(root)]
-    if text := os.environ.get("SOLIDGEAR_MEMORY_MB", "").strip():
+    text = os.environ.get("SOLIDGEAR_MEMORY_MB", "").strip()
+    if text:
         try:
             allowed = float(text)
         except ValueError:
@@ -76,6 +82,10 @@ def available_mb(root: str | Path = "/") -> float | None:
 def one_run() -> Iterator[Run]:
     """Within it, ``SOLIDGEAR_MEMORY_MB`` limits what is taken from here on in all, not what each
     body may take by itself; a run within a run is part of it.
+
+    Yields
+    ------
+    Run
     """
     run = _run.get() or Run(resident_mb())
     token = _run.set(run)
@@ -93,7 +103,13 @@ def expect(more_mb: float) -> None:
 
 
 def resident_mb() -> float | None:
-    """Resident memory of this process, MB; None where the system does not tell."""
+    """Resident memory of this process.
+
+    Returns
+    -------
+    float or None
+        MB of 2**20 bytes; None where the system does not show it.
+    """
     try:
         pages = int(Path("/proc/self/statm").read_text().split()[1])
     except OSError:
@@ -119,10 +135,8 @@ def _groups(root: Path) -> Iterator[float]:
         ceiling, taken = (text_of(place / name).strip() for name in names[:2])
         if ceiling.isdigit() and taken.isdigit() and int(ceiling) < UNLIMITED:
             # Cached files count as used but are given back on demand.
-            yield (
-                max(0, int(ceiling) - int(taken) + _field(text_of(place / "memory.stat"), names[2]))
-                / 2**20
-            )
+            cached = _field(text_of(place / "memory.stat"), names[2])
+            yield max(0, int(ceiling) - int(taken) + cached) / 2**20
 
 
 def _field(text: str, name: str) -> int:

@@ -20,6 +20,15 @@ class Meter:
     ----------
     seconds : dict of str to float
     peak_mb : float or None
+        MB of 2**20 bytes.
+
+    Examples
+    --------
+    >>> meter = Meter()
+    >>> with meter.stage("solve"):
+    ...     _ = sum(range(1000))
+    >>> list(meter.total())
+    ['solve', 'total']
     """
 
     def __init__(self):
@@ -28,7 +37,17 @@ class Meter:
 
     @contextmanager
     def stage(self, name: str) -> Iterator[None]:
-        """Time a block of code under ``name``; stages of one name add up."""
+        """Time a block of code.
+
+        Parameters
+        ----------
+        name : str
+            Stages of one name add up.
+
+        Yields
+        ------
+        None
+        """
         stop = threading.Event()
 
         def watch():
@@ -51,10 +70,22 @@ class Meter:
             watcher.join()
 
     def move(self, source: str, target: str, seconds: float) -> None:
-        """Book some seconds of one stage under another name."""
+        """Book some seconds of one stage under another name.
+
+        Parameters
+        ----------
+        source, target : str
+            Stages.
+        seconds : float
+        """
         self.seconds[source] = self.seconds.get(source, 0.0) - seconds
         self.seconds[target] = self.seconds.get(target, 0.0) + seconds
 
     def total(self) -> dict[str, float]:
-        """Seconds per stage and their sum."""
+        """Seconds per stage, and their sum as ``total``.
+
+        Returns
+        -------
+        dict of str to float
+        """
         return {**self.seconds, "total": sum(self.seconds.values())}

@@ -1,4 +1,4 @@
-"""The one place that says how many threads the linear algebra may use.
+"""The one place that decides how many threads the linear algebra may use.
 
 ================= ================== ==============================================================
 pool              gets               why
@@ -48,7 +48,7 @@ VARIABLE = "OPENBLAS_NUM_THREADS"
 def pin() -> None:
     """Give OpenBLAS one thread for the life of this process, unless its variable is set.
 
-    Best before numpy is imported; a running OpenBLAS is told as well.
+    Best before numpy is imported; an OpenBLAS that is running already is set as well.
     """
     chosen = VARIABLE in os.environ
     os.environ.setdefault(VARIABLE, "1")
@@ -60,6 +60,23 @@ def pin() -> None:
 def pinned(function: Callable[P, R]) -> Callable[P, R]:
     """Decorator: OpenBLAS has one thread while the function runs, and what it had before
     afterwards.
+
+    Parameters
+    ----------
+    function : callable
+
+    Returns
+    -------
+    callable
+
+    Examples
+    --------
+    >>> @pinned
+    ... def inverse(matrix):
+    ...     import numpy as np
+    ...     return np.linalg.inv(matrix)
+    >>> inverse([[2.0]])
+    array([[0.5]])
     """
 
     @functools.wraps(function)
@@ -81,6 +98,10 @@ _before: list[tuple] = []
 def single() -> Iterator[None]:
     """OpenBLAS on one thread; costs a microsecond where it has no more, or where the user has
     chosen.
+
+    Yields
+    ------
+    None
     """
     global _inside
     if VARIABLE in os.environ:
@@ -122,6 +143,16 @@ def offered(root: str | Path = "/") -> int:
     ----------
     root : path
         Where ``proc`` and ``sys`` are looked for.
+
+    Returns
+    -------
+    int
+        At least 1.
+
+    Examples
+    --------
+    >>> offered() >= 1
+    True
     """
     return max(1, min([_affinity(), *(math.ceil(share) for share in _shares(Path(root)))]))
 

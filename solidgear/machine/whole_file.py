@@ -14,6 +14,27 @@ def whole(path: Path) -> Iterator[Path]:
     is gone if something was raised.
 
     A rename within a folder is all or nothing.
+
+    Parameters
+    ----------
+    path : Path
+        File to be made or replaced.
+
+    Yields
+    ------
+    Path
+        Where to write.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     target = Path(folder) / "rows.csv"
+    ...     with whole(target) as partial:
+    ...         _ = partial.write_text("1,2,3")
+    ...         early = target.exists()
+    ...     early, target.read_text()
+    (False, '1,2,3')
     """
     partial = path.with_name(f".{path.name}.{os.getpid()}.part")
     try:

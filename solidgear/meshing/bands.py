@@ -6,7 +6,20 @@ import numpy as np
 
 
 def first_of_run(bands, band: int, segment: int) -> int:
-    """First of the neighbours of a segment that have a band without a gap between them."""
+    """First of the neighbours of a segment that have a band without a gap between them.
+
+    Parameters
+    ----------
+    bands : sequence of (int, int)
+        Lowest band and end of every segment, from :func:`radial_bands`.
+    band : int
+    segment : int
+        One that has the band.
+
+    Returns
+    -------
+    int
+    """
     while segment > 0 and bands[segment - 1][0] <= band < bands[segment - 1][1]:
         segment -= 1
     return segment
@@ -17,6 +30,26 @@ def radial_bands(segments):
 
     Where the outer radius jumps, the larger side gets at least one band more than
     the smaller one, whose bands it continues; likewise inwards where the bore jumps.
+
+    Parameters
+    ----------
+    segments : sequence of Segment
+
+    Returns
+    -------
+    bands : tuple of (int, int)
+        Lowest band and end of every segment.
+    left, right : tuple of ndarray
+        Radii of the band boundaries at the two ends of every segment, m.
+
+    Examples
+    --------
+    >>> from solidgear import Segment
+    >>> thin = Segment.cylinder("thin", length=0.1, diameter=0.04)
+    >>> thick = Segment.cylinder("thick", length=0.1, diameter=0.06, y0=0.1)
+    >>> bands, left, right = radial_bands([thin, thick])
+    >>> bands, left[1]
+    (((0, 1), (0, 2)), array([0.  , 0.02, 0.03]))
     """
     n = len(segments)
     tol = 1e-9 * max(max(s.outer0, s.outer1) for s in segments)

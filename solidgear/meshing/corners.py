@@ -35,6 +35,11 @@ def corner_exponent(angle: float) -> float:
     -------
     float
         1.0 for corners that are not re-entrant.
+
+    Examples
+    --------
+    >>> round(corner_exponent(1.5 * np.pi), 4), round(corner_exponent(2 * np.pi), 3)
+    (0.5445, 0.5)
     """
     if angle <= np.pi * (1 + 1e-9):
         return 1.0
@@ -54,33 +59,30 @@ def corner_exponent(angle: float) -> float:
 
 
 def corner_angle(a: Segment, b: Segment) -> float:
-    """Largest material angle (rad) of the outline where segment ``b`` follows ``a``, outside or in
-    the bore; pi at least.
+    """Largest material angle of the outline where one segment follows another, outside or in the
+    bore.
+
+    Parameters
+    ----------
+    a, b : Segment
+        ``b`` begins where ``a`` ends.
+
+    Returns
+    -------
+    float
+        rad, pi at least.
     """
     worst = np.pi
-    for r_a, r_b, s_a, s_b, side in (
-        (
-            a.outer1,
-            b.outer0,
-            (a.outer1 - a.outer0) / a.length,
-            (b.outer1 - b.outer0) / b.length,
-            1.0,
-        ),
-        (
-            a.inner1,
-            b.inner0,
-            (a.inner1 - a.inner0) / a.length,
-            (b.inner1 - b.inner0) / b.length,
-            -1.0,
-        ),
-    ):
-        step = side * (r_b - r_a)
-        slope_a, slope_b = np.arctan(side * s_a), np.arctan(side * s_b)
+    for surface, side in (("outer", 1.0), ("inner", -1.0)):
+        a0, a1 = getattr(a, surface + "0"), getattr(a, surface + "1")
+        b0, b1 = getattr(b, surface + "0"), getattr(b, surface + "1")
+        step = side * (b0 - a1)
+        slope_a = np.arctan(side * ((a1 - a0) / a.length))
+        slope_b = np.arctan(side * ((b1 - b0) / b.length))
         if abs(step) < 1e-9 * a.length:
             angle = np.pi + (slope_b - slope_a)
-        elif (
-            step < 0
-        ):  # the face of the larger segment is vertical, the smaller one's surface leaves it
+        elif step < 0:
+            # the face of the larger segment is vertical, the smaller one's surface leaves it
             angle = 1.5 * np.pi + slope_b
         else:
             angle = 1.5 * np.pi - slope_a
@@ -89,8 +91,23 @@ def corner_angle(a: Segment, b: Segment) -> float:
 
 
 def sharpest_corner(scene: Shaft) -> tuple[float, float]:
-    """Largest material angle (rad) at a shoulder of a scene and its exponent; (pi, 1) when there is
-    none.
+    """Largest material angle at a shoulder of a scene, and its exponent.
+
+    Parameters
+    ----------
+    scene : Scene
+
+    Returns
+    -------
+    angle, exponent : float
+        rad, and by :func:`corner_exponent`; (pi, 1) when there is no shoulder.
+
+    Examples
+    --------
+    >>> import solidgear as sg
+    >>> angle, exponent = sharpest_corner(sg.load("geometry/shaft_stepped.toml"))
+    >>> round(float(np.degrees(angle))), round(exponent, 4)
+    (270, 0.5445)
     """
     pairs = zip(scene.segments, scene.segments[1:])
     worst = max((corner_angle(a, b) for a, b in pairs), default=np.pi)
@@ -98,11 +115,22 @@ def sharpest_corner(scene: Shaft) -> tuple[float, float]:
 
 
 def corner_layers(a: Segment, b: Segment, layers: int) -> int:
-    """Geometric layers that the corner between two segments needs where a right-angled shoulder
-    needs ``layers``.
+    """Geometric layers that the corner between two segments needs.
 
-    Layers of one ratio shrink the error by ``ratio ** (2 exponent)`` each, and what they have to shrink
-    grows with ``1 - exponent``, which is zero on a smooth outline.  A change of material counts as a shoulder.
+    Layers of one ratio shrink the error by ``ratio ** (2 exponent)`` each, and what they have to
+    shrink grows with ``1 - exponent``, which is zero on a smooth outline.  A change of material
+    counts as a shoulder.
+
+    Parameters
+    ----------
+    a, b : Segment
+        ``b`` begins where ``a`` ends.
+    layers : int
+        What a right-angled shoulder needs.
+
+    Returns
+    -------
+    int
     """
     if a.material != b.material:
         return layers

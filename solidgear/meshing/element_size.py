@@ -12,25 +12,37 @@ _GROWTH = 0.5  # element size gained per distance from a lateral surface
 def estimated_counts(
     segments, planes=(), circles=(), *, size, graded_size=None, reach=None, around=16
 ):
-    """Vertices, edges, faces and cells of :func:`tetrahedra` for the same arguments, without
-    meshing.
+    """Size of the mesh that :func:`~solidgear.meshing.tetrahedra.tetrahedra` makes of the same
+    arguments, without meshing.
 
-    Volume, surface and the rims that are graded towards are filled with elements of the size asked for.  The constants were fitted to 21 meshes
-    of 2,000 to 70,000 cells in shafts and tubes, whose cells they give within 17 %.
+    Volume, surface and the rims that are graded towards are filled with elements of the size asked
+    for.  The constants were fitted to 21 meshes of 2,000 to 70,000 cells in shafts and tubes, whose
+    cells they give within 17 %.
+
+    Parameters
+    ----------
+    segments, planes, circles, size, graded_size, reach, around
+        As there, m.
 
     Returns
     -------
-    tuple of float
+    vertices, edges, faces, cells : float
+
+    Examples
+    --------
+    >>> from solidgear import Segment
+    >>> rod = Segment.cylinder("rod", length=0.3, diameter=0.06)
+    >>> coarse, fine = (estimated_counts([rod], size=size)[3] for size in (0.01, 0.005))
+    >>> bool(4 < fine / coarse < 8)  # eight times as many, less what the surface takes
+    True
     """
-    segments = [Frustum(*(float(getattr(s, name)) for name in Frustum._fields)) for s in segments]
+    segments = [Frustum.of(s) for s in segments]
     tolerance = tolerance_of(segments)
     slabs = slabs_between(segments, [float(y) for y in planes], tolerance)
     corners = corners_of(slabs, [float(y) for y in circles], tolerance)
-    # the mesher's own formulas, so that there is one truth
-    fields = [
-        eval(f"lambda x, y, z: {f}".replace("^", "**"), _NUMPY)
-        for f in size_formulas(segments, corners, size, graded_size, reach, around)
-    ]
+    # the formulas that the mesher itself uses
+    formulas = size_formulas(segments, corners, size, graded_size, reach, around)
+    fields = [eval(f"lambda x, y, z: {f}".replace("^", "**"), _NUMPY) for f in formulas]
     least = min(size, graded_size or size)
 
     def edge(r, y):
@@ -46,9 +58,8 @@ def estimated_counts(
         for a, b in zip([s.y0, *inside], [*inside, s.y1]):
             y, along = _graded_points(a, b, least)
             t = (y - s.y0) / (s.y1 - s.y0)
-            bore, outer = (
-                (1 - t) * r0 + t * r1 for r0, r1 in ((s.inner0, s.inner1), (s.outer0, s.outer1))
-            )
+            bore = (1 - t) * s.inner0 + t * s.inner1
+            outer = (1 - t) * s.outer0 + t * s.outer1
             part, across = _graded_points(0.0, 1.0, least / max(s.outer0, s.outer1))
             r = bore[:, None] + (outer - bore)[:, None] * part
             h = edge(r, y[:, None])
@@ -56,19 +67,28 @@ def estimated_counts(
             # the outermost and innermost points lie a hair from the surfaces
             for at, radius in ((-1, outer), (0, bore)):
                 surface += (2 * pi * along * radius / h[:, at] ** 2).sum()
-    ends = [(s.y0, s.inner0, s.outer0, s.inner1, s.outer1, s.y1) for s in segments]
-    for below, above in zip([None, *ends], [*ends, None]):
-        rims = sorted({r for r in (*(below[3:5] if below else ()), *(above[1:3] if above else ()))})
-        for a, b in zip(rims, rims[1:]):
-            if (below is not None and below[3] <= a < below[4]) != (
-                above is not None and above[1] <= a < above[2]
-            ):
-                r, across = _graded_points(a, b, least)
-                surface += (
-                    2 * pi * across * r / edge(r, np.array(below[5] if below else ends[0][0])) ** 2
-                ).sum()
+    for y, inner, outer in _faces(segments):
+        r, across = _graded_points(inner, outer, least)
+        surface += (2 * pi * across * r / edge(r, np.array(y)) ** 2).sum()
     rim = sum(2 * pi * r / float(edge(np.array(r), np.array(y))) for y, r in set(corners))
     return tuple(np.array(_FILL) @ (volume, surface, rim))
+
+
+def _faces(segments):
+    """Place y and the two radii of every plane ring of the surface: end faces and shoulders."""
+    for below, above in zip([None, *segments], [*segments, None]):
+        y = below.y1 if below else above.y0
+        bottom = (below.inner1, below.outer1) if below else ()
+        top = (above.inner0, above.outer0) if above else ()
+        rims = sorted({*bottom, *top})
+        for a, b in zip(rims, rims[1:]):
+            # material on one side only
+            if _within(a, bottom) != _within(a, top):
+                yield y, a, b
+
+
+def _within(r, wall) -> bool:
+    return bool(wall) and wall[0] <= r < wall[1]
 
 
 _NUMPY = {"Sqrt": np.sqrt, "Max": np.maximum, "Min": np.minimum, "__builtins__": {}}
@@ -94,10 +114,25 @@ def _graded_points(a, b, least):
 
 
 def size_formulas(segments, corners, size, graded_size, reach, around):
-    """Formulas of the element edge in r = Sqrt(x^2+z^2) and y; the least one counts."""
+    """Formulas of the element edge; the least one counts.
+
+    Parameters
+    ----------
+    segments : sequence of Frustum
+    corners : list of (float, float)
+        (y, radius) to grade towards, m.
+    size, graded_size, reach, around
+        As for :func:`~solidgear.meshing.tetrahedra.tetrahedra`.
+
+    Returns
+    -------
+    list of str
+        In x, y, z, m, as gmsh's parser reads them.
+    """
     radius = "Sqrt(x^2+z^2)"
     formulas = []
-    for y, r in sorted(set(corners)) if graded_size is not None and graded_size < size else ():
+    is_graded = graded_size is not None and graded_size < size
+    for y, r in sorted(set(corners)) if is_graded else ():
         slope = (size - graded_size) / (reach or r)
         formulas.append(
             f"{_num(graded_size)}+{_num(slope)}*Sqrt(({radius}-{_num(r)})^2+(y-{_num(y)})^2)"
@@ -115,7 +150,10 @@ def size_formulas(segments, corners, size, graded_size, reach, around):
                 continue
             # foot of the point on the generator, as a fraction of its length
             dr, dy = r1 - r0, s.y1 - s.y0
-            along = f"({radius}-{_num(r0)})*{_num(dr / (dr**2 + dy**2))}+(y-{_num(s.y0)})*{_num(dy / (dr**2 + dy**2))}"
+            square = dr**2 + dy**2
+            along = (
+                f"({radius}-{_num(r0)})*{_num(dr / square)}+(y-{_num(s.y0)})*{_num(dy / square)}"
+            )
             foot = f"Max(0,Min(1,{along}))"
             near_r, near_y = f"({_num(r0)}+{_num(dr)}*{foot})", f"({_num(s.y0)}+{_num(dy)}*{foot})"
             formulas.append(
@@ -131,6 +169,17 @@ def _num(value):
 
 
 def set_size(gmsh, formulas, size):
+    """Make the least of some formulas the element size of a gmsh model.
+
+    Parameters
+    ----------
+    gmsh : module
+        With a model in it.
+    formulas : list of str
+        From :func:`size_formulas`.
+    size : float
+        Largest edge, m.
+    """
     field = gmsh.model.mesh.field
     tags = []
     for formula in [_num(size)] + formulas:

@@ -3,10 +3,24 @@
 from solidgear.machine.interruptible import abandoned
 from solidgear.meshing.quality import MeshError
 
-_APT = "apt-get install libglu1-mesa libgl1 libegl1 libegl-mesa0 libxft2 libxinerama1 libxcursor1 libgomp1"
+_APT = (
+    "apt-get install libglu1-mesa libgl1 libegl1 libegl-mesa0 libxft2 libxinerama1 libxcursor1 "
+    "libgomp1"
+)
 
 
 def import_gmsh():
+    """The module gmsh.
+
+    Returns
+    -------
+    module
+
+    Raises
+    ------
+    MeshError
+        If it or a system library it needs is missing; the message names what to install.
+    """
     try:
         import gmsh
     except (ImportError, OSError) as error:
@@ -18,7 +32,14 @@ def import_gmsh():
 
 
 class Session:
-    """A gmsh model of our own that leaves no trace in a gmsh the caller may already be using."""
+    """A gmsh model of our own that leaves no trace in a gmsh the caller may already be using.
+
+    A context manager; the options of gmsh are as they were afterwards.
+
+    Parameters
+    ----------
+    gmsh : module
+    """
 
     options = {
         "General.Terminal": 0,
@@ -49,16 +70,17 @@ class Session:
         if self.ours:
             # configuration files would make the mesh depend on the machine
             gmsh.initialize(["gmsh", "-v", "0"], readConfigFiles=False, interruptible=False)
-        self.before = (
-            {} if self.ours else {name: gmsh.option.getNumber(name) for name in self.options}
-        )
-        self.model = None if self.ours else gmsh.model.getCurrent()
+        self.before, self.model = {}, None
+        if not self.ours:
+            self.before = {name: gmsh.option.getNumber(name) for name in self.options}
+            self.model = gmsh.model.getCurrent()
         for name, value in self.options.items():
             gmsh.option.setNumber(name, value)
         taken = set(gmsh.model.list())
-        self.name = next(
-            name for name in (f"solidgear{i}" for i in range(len(taken) + 1)) if name not in taken
-        )
+        number = 0
+        while f"solidgear{number}" in taken:
+            number += 1
+        self.name = f"solidgear{number}"
         gmsh.model.add(self.name)
 
     def __exit__(self, *exception):

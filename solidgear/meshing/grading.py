@@ -29,7 +29,7 @@ class Grading:
         singularities.
     edge_layers : int
         The same towards the ends of averaged seats.
-    radial_layers : int
+    radial_layers : int or None
         As ``layers``, across the thickness, where a line costs more cells than along the shaft.
     ratio : float
         Size of a layer relative to the one before, 0.15 to 0.5.
@@ -67,41 +67,79 @@ class Grading:
         return min(self.edge_layers, self.layers)
 
     def cell(self, segment) -> tuple[float, float]:
-        """Cell size (m) beside singular points of a segment and away from them."""
+        """Cell size of a segment.
+
+        Parameters
+        ----------
+        segment : Segment
+
+        Returns
+        -------
+        near, far : float
+            Beside singular points and away from them, m.
+        """
         if self.size is not None:
             return self.size, self.size
-        far = self.relative_size * min(segment.outer0, segment.outer1)
+        far = self.relative_size * _radius(segment)
         return min(self.relative_size, 1.0) * local_length(segment), far
 
 
 def local_length(segment) -> float:
-    """Length (m) over which what happens at a line of the surface dies away: the radius, or a
-    shell's ``2 sqrt(r t)``.
+    """Length over which what happens at a line of the surface dies away: the radius, or a shell's
+    ``2 sqrt(r t)``.
+
+    Parameters
+    ----------
+    segment : Segment
+
+    Returns
+    -------
+    float
+        m.
+
+    Examples
+    --------
+    >>> from solidgear import Segment
+    >>> solid = Segment.cylinder("solid", length=0.3, diameter=0.1)
+    >>> tube = Segment.cylinder("tube", length=0.3, diameter=0.1, bore=0.096)
+    >>> local_length(solid), round(local_length(tube), 6)
+    (0.05, 0.02)
     """
-    wall = min(segment.outer0 - segment.inner0, segment.outer1 - segment.inner1)
-    radius = min(segment.outer0, segment.outer1)
-    return min(radius, SHELL * float(np.sqrt(radius * wall)))
+    radius = _radius(segment)
+    return min(radius, SHELL * float(np.sqrt(radius * _wall(segment))))
 
 
 def corner_length(segment) -> float:
-    """Length (m) over which stress at a corner is singular: the wall, or the radius of a solid
-    shaft.
+    """Length over which stress at a corner is singular: the wall, or the radius of a solid shaft.
+
+    Parameters
+    ----------
+    segment : Segment
+
+    Returns
+    -------
+    float
+        m.
     """
-    return min(
-        segment.outer0 - segment.inner0,
-        segment.outer1 - segment.inner1,
-        segment.outer0,
-        segment.outer1,
-    )
+    return min(_wall(segment), _radius(segment))
+
+
+def _radius(segment) -> float:
+    return min(segment.outer0, segment.outer1)
+
+
+def _wall(segment) -> float:
+    return min(segment.outer0 - segment.inner0, segment.outer1 - segment.inner1)
 
 
 def graded(length, size, ratio, reach, refinement, low: int, high: int) -> np.ndarray:
     """Positions 0 .. length of mesh lines with geometric layers towards the two ends.
 
-    Layers stand at ``reach ratio^k`` from their end, k = 0 .. layers, as far as there is room: a short interval between two
-    singular points is a layer itself and is not filled with more.  Beyond ``reach`` cells go on growing by the same ratio up to the
-    smaller size, from there with the distance.
-    The density is that of refinement 1; other refinements sample it with proportionally more cells, which keeps meshes similar.
+    Layers stand at ``reach ratio^k`` from their end, k = 0 .. layers, as far as there is room: a
+    short interval between two singular points is a layer itself and is not filled with more.
+    Beyond ``reach`` cells go on growing by the same ratio up to the smaller size, from there with
+    the distance. The density is that of refinement 1; other refinements sample it with
+    proportionally more cells, which keeps meshes similar.
 
     Parameters
     ----------
@@ -110,24 +148,35 @@ def graded(length, size, ratio, reach, refinement, low: int, high: int) -> np.nd
     size : float or (float, float)
         Largest cell, m; two sizes are those at the ends and far from them.
     ratio : float
+        Of a layer to the one before.
     reach : float or (float, float)
         Distance at which grading starts, m, at both ends or at each.
     refinement : float
+        Multiplies the number of cells.
     low, high : int
         Layers at the two ends.
+
+    Returns
+    -------
+    (n + 1,) ndarray
+        Ascending, m.
+
+    Examples
+    --------
+    Two layers towards the low end, at 0.1 x 0.2^k:
+
+    >>> lines = graded(1.0, size=0.5, ratio=0.2, reach=0.1, refinement=1.0, low=2, high=0)
+    >>> [round(float(y), 6) for y in lines[:4]]
+    [0.0, 0.004, 0.02, 0.1]
     """
     near, far = (size, size) if np.ndim(size) == 0 else size
     first, last = (reach, reach) if np.ndim(reach) == 0 else reach
     room = (ROOM_TWO if low and high else ROOM_ONE) * length
     places = {0.0, float(length)}
-    for layers, start, place in ((low, first, lambda d: d), (high, last, lambda d: length - d)):
-        if layers:
-            beyond = max(
-                0, int(np.ceil(np.log(near / start / (1 - ratio)) / -np.log(ratio) - 1e-6))
-            )
-            places |= {
-                float(place(d)) for d in start * ratio ** np.arange(-beyond, layers + 1) if d < room
-            }
+    if low:
+        places |= {float(d) for d in _layers(low, first, near, ratio) if d < room}
+    if high:
+        places |= {float(length - d) for d in _layers(high, last, near, ratio) if d < room}
     lines = np.array(distinct(sorted(places), 1e-9 * length))
     lines[-1] = length  # a last layer thinner than that must not move the end
     filled = [lines[:1]]
@@ -137,6 +186,12 @@ def graded(length, size, ratio, reach, refinement, low: int, high: int) -> np.nd
     n = len(lines) - 1
     m = max(1, int(round(n * refinement)))
     return lines if m == n else np.interp(np.linspace(0, n, m + 1), np.arange(n + 1), lines)
+
+
+def _layers(count: int, start: float, near: float, ratio: float) -> np.ndarray:
+    """Distances of lines from an end: the layers, and beyond ``start`` up to cells of ``near``."""
+    beyond = max(0, int(np.ceil(np.log(near / start / (1 - ratio)) / -np.log(ratio) - 1e-6)))
+    return start * ratio ** np.arange(-beyond, count + 1)
 
 
 def _filled(a: float, b: float, length: float, near: float, far: float) -> np.ndarray:
@@ -156,6 +211,24 @@ def _filled(a: float, b: float, length: float, near: float, far: float) -> np.nd
 
 
 def distinct(values, tol):
+    """Ascending values without those that repeat the one before.
+
+    Parameters
+    ----------
+    values : sequence of float
+        Ascending, at least one.
+    tol : float
+        Values no further apart than this are one.
+
+    Returns
+    -------
+    list of float
+
+    Examples
+    --------
+    >>> distinct([0.0, 1e-12, 0.5], 1e-9)
+    [0.0, 0.5]
+    """
     out = [values[0]]
     for v in values[1:]:
         if v - out[-1] > tol:

@@ -1,7 +1,7 @@
 """Structured hexahedral mesh of a shaft of revolution: an O-grid swept along the layout of mesh
 lines.
 
-The cross-section is a square core of k x k cells inside rings of 4k cells.  Nodes on circles lie a
+The cross-section is a square core of k x k cells inside rings of 4k cells. Nodes on circles lie a
 little outside them, such that the piecewise quadratic circle encloses the exact area: the leading
 error of volume and inertia then cancels (8 cells around: 8e-4 in area without it).
 """
@@ -44,10 +44,23 @@ def hexahedra(scene: Shaft, plan: Layout, around: int = 8) -> tuple[MeshHex2, np
     ------
     MeshError
         If ``around`` does not fit, or a bore closes to a point (use tetrahedra there).
+
+    Examples
+    --------
+    >>> from solidgear import Scene, Segment
+    >>> from solidgear.meshing.grading import Grading
+    >>> from solidgear.meshing.layout import layout
+    >>> from solidgear.meshing.quality import check_mesh, volume_of
+    >>> scene = Scene.from_parts([Segment.cylinder("rod", length=0.3, diameter=0.06)])
+    >>> mesh, segment = hexahedra(scene, layout(scene, Grading(layers=0, core=True)))
+    >>> quality = check_mesh(mesh, volume=volume_of(scene.segments))
+    >>> quality.n_elements == len(segment)
+    True
     """
     if around % 4 or around < 8:
         raise MeshError(
-            f"hexahedra: {around} cells around do not fit an O-grid; use a multiple of 4, at least 8"
+            f"hexahedra: {around} cells around do not fit an O-grid; "
+            "use a multiple of 4, at least 8"
         )
     k = around // 4
     half = np.pi / around
@@ -67,7 +80,8 @@ def hexahedra(scene: Shaft, plan: Layout, around: int = 8) -> tuple[MeshHex2, np
         solid = np.all(radii[:, 0] == 0.0)
         if not solid and np.any(radii[:, 0] == 0.0):
             raise MeshError(
-                f"segment {segment.name!r}: its bore closes to a point, which an O-grid cannot mesh; use element 'tet10'"
+                f"segment {segment.name!r}: its bore closes to a point, "
+                "which an O-grid cannot mesh; use element 'tet10'"
             )
         number = plan.ring_numbers(seg)
         if solid:

@@ -1,8 +1,8 @@
 """Where mesh lines go in a shaft of revolution.
 
-Stress is singular at every shoulder and at every edge of a seat, so structured meshes are
-graded geometrically towards all of them, axially and radially.  A refinement ``s`` multiplies the
-number of cells of a fixed density, so that meshes with different ``s`` are similar.
+Stress is singular at every shoulder and at every edge of a seat, so structured meshes are graded
+geometrically towards all of them, axially and radially. A refinement ``s`` multiplies the number of
+cells of a fixed density, so that meshes with different ``s`` are similar.
 """
 
 from __future__ import annotations
@@ -45,12 +45,36 @@ class Layout:
     fractions: dict[tuple[int, int], np.ndarray]
 
     def radii(self, segment: int, span: tuple[float, float], y: float) -> np.ndarray:
-        """Radii of all band boundaries of a segment at ``y`` (``span`` is its y0, y1)."""
+        """Radii of all band boundaries of a segment at one place.
+
+        Parameters
+        ----------
+        segment : int
+        span : (float, float)
+            Its y0 and y1, m.
+        y : float
+            m.
+
+        Returns
+        -------
+        (b + 1,) ndarray
+            From the inside, m.
+        """
         t = (y - span[0]) / (span[1] - span[0])
         return (1 - t) * self.left[segment] + t * self.right[segment]
 
     def divided(self, segment: int) -> list[np.ndarray]:
-        """Subdivision of every band of a segment, from the inside."""
+        """Subdivision of every band of a segment, from the inside.
+
+        Parameters
+        ----------
+        segment : int
+
+        Returns
+        -------
+        list of (m + 1,) ndarray
+            Each from 0 to 1.
+        """
         lowest, end = self.bands[segment]
         return [
             self.fractions[band, first_of_run(self.bands, band, segment)]
@@ -74,12 +98,20 @@ class Layout:
 
     @property
     def ring_lines(self) -> int:
-        """Ring lines are numbered below this."""
+        """Number of ring lines: every one of :meth:`ring_numbers` is below it."""
         return max(self._offsets.values()) + 1
 
     def ring_numbers(self, segment: int) -> np.ndarray:
-        """Numbers of a segment's ring lines from the inside, the same as its neighbours' where they
-        share a band.
+        """Numbers of a segment's ring lines, the same as its neighbours' where they share a band.
+
+        Parameters
+        ----------
+        segment : int
+
+        Returns
+        -------
+        (r,) ndarray of int
+            From the inside.
         """
         lowest = self.bands[segment][0]
         parts = [
@@ -89,7 +121,21 @@ class Layout:
         return np.concatenate([*parts, [self._offsets[self.bands[segment][1]]]])
 
     def rings(self, segment: int, span: tuple[float, float], y: float) -> np.ndarray:
-        """Radii of all ring lines of a segment at ``y``, from its bore (or the axis) outwards."""
+        """Radii of all ring lines of a segment at one place.
+
+        Parameters
+        ----------
+        segment : int
+        span : (float, float)
+            Its y0 and y1, m.
+        y : float
+            m.
+
+        Returns
+        -------
+        (r,) ndarray
+            From its bore (or the axis) outwards, m.
+        """
         b = self.radii(segment, span, y)
         parts = [
             b[k] + lines[1:] * (b[k + 1] - b[k]) for k, lines in enumerate(self.divided(segment))
@@ -105,8 +151,23 @@ def layout(scene, grading: Grading, attachments: tuple[str, ...] | None = None) 
     scene : Scene
     grading : Grading
     attachments : tuple of str, optional
-        Attachments every station will be built with; by default what the scene says.  Planes of section ties are lines of
-        the mesh and graded, ends of rigid seats are graded like shoulders.
+        Attachments every station will be built with; by default those of the scene. Planes of
+        section ties are lines of the mesh and graded, ends of rigid seats are graded like
+        shoulders.
+
+    Returns
+    -------
+    Layout
+
+    Examples
+    --------
+    Every shoulder is a line of the mesh:
+
+    >>> import solidgear as sg
+    >>> scene = sg.load("geometry/shaft_stepped.toml")
+    >>> plan = layout(scene, Grading(layers=2))
+    >>> all(np.abs(plan.y - step).min() < 1e-12 for step in scene.steps)
+    True
     """
     segments = scene.segments
     tol = 1e-9 * scene.length
@@ -115,29 +176,27 @@ def layout(scene, grading: Grading, attachments: tuple[str, ...] | None = None) 
     lines = [np.array([0.0])]
     for a, b in zip(marks, marks[1:]):
         owner = next(s for s in segments if (a.y + b.y) / 2 < s.y1 + tol)
-        reach = [
-            grading.reach
-            * min(corner_length(s) for s in segments if s.y0 < m.y + tol and m.y < s.y1 + tol)
-            for m in (a, b)
-        ]
-        lines.append(
-            a.y
-            + graded(
-                b.y - a.y,
-                grading.cell(owner),
-                grading.ratio,
-                reach,
-                grading.refinement,
-                a.layers,
-                b.layers,
-            )[1:]
+        between = graded(
+            b.y - a.y,
+            grading.cell(owner),
+            grading.ratio,
+            [grading.reach * _length_at(mark.y, segments, tol) for mark in (a, b)],
+            grading.refinement,
+            a.layers,
+            b.layers,
         )
+        lines.append(a.y + between[1:])
     y = np.concatenate(lines)
     middle = (y[1:] + y[:-1]) / 2
     segment = np.minimum(np.searchsorted([s.y1 for s in segments], middle), len(segments) - 1)
     return Layout(
         y, segment, bands, left, right, _fractions(scene, grading, attachments, bands, left, right)
     )
+
+
+def _length_at(y: float, segments, tol: float) -> float:
+    """Least of the corner lengths (m) of the segments that meet at y."""
+    return min(corner_length(s) for s in segments if s.y0 < y + tol and y < s.y1 + tol)
 
 
 @dataclass(frozen=True)
@@ -165,7 +224,10 @@ def _marks(scene, grading: Grading, attachments) -> list[_Mark]:
             at_face = min(abs(y), abs(y - scene.length)) <= tol
             # An averaged seat that ends at a face meets no edge there; a rigid one is clamped up to
             # the corner.
-            add(y, grading.layers if held else 0 if at_face else grading.edge)
+            if held:
+                add(y, grading.layers)
+            else:
+                add(y, 0 if at_face else grading.edge)
         planes = "section" in ties and tol < station.y < scene.length - tol
         add(station.y, max(grading.edge, grading.layers - 1) if planes else 0)
     for a, b in zip(segments, segments[1:]):
@@ -186,8 +248,9 @@ def _fractions(
     fractions = {}
     for band in range(min(b[0] for b in bands), max(b[1] for b in bands)):
         having = [k for k, b in enumerate(bands) if b[0] <= band < b[1]]
-        for first in sorted({first_of_run(bands, band, k) for k in having}):
-            run = [k for k in having if first_of_run(bands, band, k) == first]
+        first_of = {k: first_of_run(bands, band, k) for k in having}
+        for first in sorted(set(first_of.values())):
+            run = [k for k in having if first_of[k] == first]
             place = {k: band - bands[k][0] for k in run}
             thickness = max(
                 float(max(np.diff(left[k])[i], np.diff(right[k])[i])) for k, i in place.items()
@@ -196,14 +259,13 @@ def _fractions(
             on_axis = any(
                 i == 0 and left[k][0] == 0.0 and right[k][0] == 0.0 for k, i in place.items()
             )
-            sizes = [grading.cell(segments[k]) for k in run]
-            cell = min(s[0] for s in sizes), min(s[1] for s in sizes)
-            ends = [
-                max(needs.get((edge, k), (0, thickness)) for k in run) for edge in (band, band + 1)
-            ]
-            layers, reach = [n for n, _ in ends], [r for _, r in ends]
+            near, far = zip(*(grading.cell(segments[k]) for k in run))
+            cell = min(near), min(far)
+            inside = max(needs.get((band, k), (0, thickness)) for k in run)
+            outside = max(needs.get((band + 1, k), (0, thickness)) for k in run)
+            layers, reach = (inside[0], outside[0]), (inside[1], outside[1])
             if on_axis:
-                layers[0] = 0
+                layers = (0, outside[0])
             whole = not (on_axis and grading.core)
             part = thickness if whole else thickness / 2
             lines = graded(part, cell, grading.ratio, reach, grading.refinement, *layers)

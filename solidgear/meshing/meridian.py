@@ -39,7 +39,27 @@ class Meridian:
 
 
 def meridian(scene: Shaft, plan: Layout) -> Meridian:
-    """Mesh the meridian of a scene along a layout."""
+    """Mesh the meridian of a scene along a layout.
+
+    Parameters
+    ----------
+    scene : Scene
+    plan : Layout
+
+    Returns
+    -------
+    Meridian
+
+    Examples
+    --------
+    >>> from solidgear import Scene, Segment
+    >>> from solidgear.meshing.grading import Grading
+    >>> from solidgear.meshing.layout import layout
+    >>> scene = Scene.from_parts([Segment.cylinder("rod", length=0.3, diameter=0.06)])
+    >>> mesh = meridian(scene, layout(scene, Grading()))
+    >>> float(mesh.points[0].max()), float(mesh.points[1].max())
+    (0.03, 0.3)
+    """
     points: list[tuple[float, float]] = []
     index: dict[tuple[int, int], int] = {}
     cells: list[tuple[int, int, int, int]] = []

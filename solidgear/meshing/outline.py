@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 
 class Frustum(NamedTuple):
-    """The shape of a segment in plain floats, so that formulas can be written from them."""
+    """The shape of a segment in plain floats (m), so that formulas can be written from them."""
 
     y0: float
     y1: float
@@ -13,34 +13,88 @@ class Frustum(NamedTuple):
     inner0: float
     inner1: float
 
+    @classmethod
+    def of(cls, segment):
+        """The shape of a `segment`."""
+        return cls(*(float(getattr(segment, name)) for name in cls._fields))
+
 
 def tolerance_of(segments):
-    """Positions nearer than this are one."""
+    """Length (m) below which two positions are one."""
     return 1e-9 * (segments[-1].y1 - segments[0].y0)
 
 
 def cuts_of(slab, circles, tolerance):
-    """(radius, y) of the circles inside a slab, on its outer surface."""
+    """Circles inside a slab, on its outer surface.
+
+    Parameters
+    ----------
+    slab : tuple of float
+        From :func:`slabs_between`.
+    circles : sequence of float
+        Positions y, m.
+    tolerance : float
+        m.
+
+    Returns
+    -------
+    list of (float, float)
+        (radius, y), ascending in y.
+    """
     y0, y1, outer0, outer1 = slab[:4]
     cuts = sorted(y for y in circles if y0 + tolerance < y < y1 - tolerance)
     return [(outer0 + (outer1 - outer0) * (y - y0) / (y1 - y0), y) for y in cuts]
 
 
 def corners_of(slabs, circles, tolerance):
-    """(y, radius) to grade at: circles on the surface and kinks of the outline."""
+    """Points of the meridian to grade at: circles on the surface and kinks of the outline.
+
+    Parameters
+    ----------
+    slabs : list of tuple
+        From :func:`slabs_between`.
+    circles : sequence of float
+        Positions y, m.
+    tolerance : float
+        m.
+
+    Returns
+    -------
+    list of (float, float)
+        (y, radius), m.
+    """
     corners = [(y, r) for slab in slabs for r, y in cuts_of(slab, circles, tolerance)]
-    on_station = [y for y in circles if not any(abs(y - c) <= tolerance for c, _ in corners)]
+    cut = [y for y, _ in corners]
+    on_station = [y for y in circles if not _near(y, cut, tolerance)]
     return corners + _kinks(slabs, on_station, tolerance)
 
 
 def slabs_between(segments, planes, tolerance):
-    """Segments cut at the planes: tuples (y0, y1, outer0, outer1, inner0, inner1)."""
+    """Segments cut at planes.
+
+    Parameters
+    ----------
+    segments : sequence of Frustum
+    planes : sequence of float
+        Positions y, m.
+    tolerance : float
+        m.
+
+    Returns
+    -------
+    list of tuple
+        (y0, y1, outer0, outer1, inner0, inner1), m.
+
+    Examples
+    --------
+    >>> slabs_between([Frustum(0.0, 1.0, 0.2, 0.4, 0.0, 0.0)], [0.5], 1e-9)[0]
+    (0.0, 0.5, 0.2, 0.30000000000000004, 0.0, 0.0)
+    """
     slabs = []
     start = segments[0].y0
     for s in segments:
-        cuts = (
-            [s.y0] + sorted({y for y in planes if s.y0 + tolerance < y < s.y1 - tolerance}) + [s.y1]
-        )
+        inside = {y for y in planes if s.y0 + tolerance < y < s.y1 - tolerance}
+        cuts = [s.y0, *sorted(inside), s.y1]
         for a, b in zip(cuts, cuts[1:]):
             if b - a <= tolerance:
                 continue
@@ -62,6 +116,7 @@ def slabs_between(segments, planes, tolerance):
 
 
 def radii_between(low, high, others):
+    """Two radii and those of others that fall between them, ascending, m."""
     return sorted({low, high} | {r for r in others if low < r < high})
 
 
@@ -82,9 +137,13 @@ def _kinks(slabs, circles, tolerance):
                 or abs(r0 - r1) > tolerance
                 or abs(_slope(below, column) - _slope(above, column)) > 1e-6
             )
-            if turns or (outer and any(abs(y - c) <= tolerance for c in circles)):
+            if turns or (outer and _near(y, circles, tolerance)):
                 found += [(y, r) for r in {r0, r1} - {None, 0.0}]
     return found
+
+
+def _near(y, places, tolerance) -> bool:
+    return any(abs(y - place) <= tolerance for place in places)
 
 
 def _slope(slab, column):

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
     from solidgear.scene import Segment
 
-# Elements whose bound says that det J stays above this part of its greatest value need no closer
+# Elements in which det J is bounded from below by this part of its greatest value need no closer
 # look.
 _CLEAR = 0.1
 # The least det J of the others is found to this part of the greatest; each cut makes the bound four
@@ -34,7 +34,7 @@ _BATCH = 4000  # elements looked at at once
 
 
 class MeshError(SolidgearError):
-    """A mesh that cannot be made, or must not be used; the message says which element and what to
+    """A mesh that cannot be made, or must not be used; the message names the element and what to
     do.
     """
 
@@ -93,6 +93,13 @@ def check_mesh(
     ------
     MeshError
         Inverted or nearly folded elements, a volume off by more than `rtol`, or not a volume mesh.
+
+    Examples
+    --------
+    >>> from skfem import MeshTet1
+    >>> corner = MeshTet1(np.eye(3, 4, 1), np.arange(4)[:, None])  # of the unit cube
+    >>> round(check_mesh(corner).volume, 6)
+    0.166667
     """
     quality, low, high, ratio = _measure(mesh)
     # written so that a NaN coordinate counts as bad
@@ -101,7 +108,10 @@ def check_mesh(
         "or mesh finer where the surface curves"
     )
     if (high < 0.0).all():
-        cure = "the whole mesh is left-handed, so exchange two local axes of the elements or mirror the coordinates"
+        cure = (
+            "the whole mesh is left-handed, so exchange two local axes of the elements "
+            "or mirror the coordinates"
+        )
     _refuse(mesh, ~(low > 0.0), low, "inverted", "det J", "m^3", cure)
     _refuse(
         mesh,
@@ -122,7 +132,22 @@ def check_mesh(
 
 
 def element_ratios(mesh: Mesh) -> np.ndarray:
-    """(min det J) / (max det J) inside each element, -1 where no det J is positive; no gate."""
+    """(min det J) / (max det J) inside each element; no gate.
+
+    Parameters
+    ----------
+    mesh : skfem.MeshTet1, MeshTet2, MeshHex1 or MeshHex2
+
+    Returns
+    -------
+    (n_elements,) ndarray
+        1 for affine elements, -1 where no det J is positive.
+
+    Raises
+    ------
+    MeshError
+        Not a volume mesh, or one without elements.
+    """
     return _measure(mesh)[3]
 
 
@@ -137,9 +162,8 @@ def _measure(mesh):
         raise MeshError("the mesh has no elements: check the geometry it was made from")
 
     parts = [slice(i, i + _BATCH) for i in range(0, mesh.t.shape[1], _BATCH)]
-    low, high, volumes = (
-        np.concatenate(x) for x in zip(*(_extremes(mesh, part) for part in parts))
-    )
+    found = [_extremes(mesh, part) for part in parts]
+    low, high, volumes = (np.concatenate(x) for x in zip(*found))
     ratio = np.divide(low, high, out=np.full_like(low, -1.0), where=high > 0.0)
     quality = MeshQuality(
         n_elements=int(mesh.t.shape[1]),
@@ -153,6 +177,10 @@ def _measure(mesh):
     return quality, low, high, ratio
 
 
+# degree of det J: total on tetrahedra, in each coordinate on hexahedra; (tetrahedron, curved)
+_DEGREE = {(True, False): 0, (True, True): 3, (False, False): 2, (False, True): 5}
+
+
 def _extremes(mesh, part):
     """Least and greatest det J of some elements, and their volumes.
 
@@ -162,7 +190,7 @@ def _extremes(mesh, part):
     """
     element = mesh.elem()
     tet, curved = element.refdom.nnodes == 4, element.doflocs.shape[0] > element.refdom.nnodes
-    rule = _bernstein(tet, (3 if curved else 0) if tet else (5 if curved else 2))
+    rule = _bernstein(tet, _DEGREE[tet, curved])
     det = _determinants(mesh, element, rule.points, part)
     coefficients = rule.from_values @ det
     low, high = det.min(axis=0), det.max(axis=0)
@@ -172,12 +200,10 @@ def _extremes(mesh, part):
     for _ in range(_CUTS):
         if not len(owner):
             break
-        pieces = np.einsum(
-            "kij,je->kei", rule.children, piece, optimize=True
-        )  # (child, element, coefficient)
-        np.minimum.at(
-            low, owner, pieces[:, :, rule.corners].min(axis=(0, 2))
-        )  # at a corner a coefficient is the value
+        # (child, element, coefficient)
+        pieces = np.einsum("kij,je->kei", rule.children, piece, optimize=True)
+        # at a corner a coefficient is the value
+        np.minimum.at(low, owner, pieces[:, :, rule.corners].min(axis=(0, 2)))
         open_ = (pieces.min(axis=2) < low[owner] - _TOLERANCE * high[owner]) & (low[owner] > 0.0)
         child, at = np.nonzero(open_)
         owner, piece = owner[at], pieces[child, at].T
@@ -188,14 +214,9 @@ def _extremes(mesh, part):
 def _determinants(mesh, element, points, part):
     """det J, shape (points, elements)."""
     # one small dense product instead of scikit-fem's cached loop over nine Jacobian entries
-    gradients = np.stack(
-        [
-            np.broadcast_to(
-                np.stack(np.broadcast_arrays(*element.lbasis(points, i)[1])), points.shape
-            )
-            for i in range(element.doflocs.shape[0])
-        ]
-    )  # (node, 3, point)
+    gradients = np.empty((element.doflocs.shape[0], *points.shape))  # (node, 3, point)
+    for i, gradient in enumerate(gradients):
+        gradient[:] = np.stack(np.broadcast_arrays(*element.lbasis(points, i)[1]))
     location = mesh.doflocs[:, mesh.dofs.element_dofs[:, part]]  # (3, node, element)
     a, b, c = np.einsum("njq,ine->jiqe", gradients, location, optimize=True)  # columns of J
     return (
@@ -228,15 +249,16 @@ def _bernstein(tet: bool, degree: int) -> _Bernstein:
     )
     if tet:
         powers = np.column_stack([degree - powers.sum(axis=1), powers])
-        many = np.array(
-            [factorial(degree) / np.prod([factorial(int(i)) for i in p]) for p in powers]
-        )
+        many = np.array([_multinomial(degree, p) for p in powers])
         # the middles of the edges make four corner pieces and an octahedron of four more
         v = np.eye(4)
         m = {(i, j): (v[i] + v[j]) / 2 for i in range(4) for j in range(4)}
-        pieces = [[m[i, j] for j in range(4)] for i in range(4)]
         ring = [m[0, 1], m[1, 2], m[2, 3], m[0, 3]]
-        pieces += [[m[0, 2], m[1, 3], ring[i], ring[(i + 1) % 4]] for i in range(4)]
+        pieces = []
+        for i in range(4):
+            pieces.append([m[i, j] for j in range(4)])
+        for i in range(4):
+            pieces.append([m[0, 2], m[1, 3], ring[i], ring[(i + 1) % 4]])
         local = powers / max(degree, 1) + (degree == 0) * 0.25
 
         def basis(bary):
@@ -245,14 +267,7 @@ def _bernstein(tet: bool, degree: int) -> _Bernstein:
         places = [local @ np.array(p) for p in pieces]
         points = local[:, 1:].T
     else:
-        many = np.array(
-            [
-                np.prod(
-                    [factorial(degree) / factorial(int(i)) / factorial(degree - int(i)) for i in p]
-                )
-                for p in powers
-            ]
-        )
+        many = np.array([_binomials(degree, p) for p in powers])
         local = powers / degree
 
         def basis(x):
@@ -269,6 +284,15 @@ def _bernstein(tet: bool, degree: int) -> _Bernstein:
     )
 
 
+def _multinomial(degree: int, powers) -> float:
+    return float(factorial(degree) / np.prod([factorial(int(i)) for i in powers]))
+
+
+def _binomials(degree: int, powers) -> float:
+    each = [factorial(degree) / factorial(int(i)) / factorial(degree - int(i)) for i in powers]
+    return float(np.prod(each))
+
+
 def _refuse(mesh, bad, value, what, name, unit, cure):
     if not bad.any():
         return
@@ -276,18 +300,24 @@ def _refuse(mesh, bad, value, what, name, unit, cure):
     x, y, z = mesh.p[:, mesh.t[:, worst]].mean(axis=1)
     count = int(bad.sum())
     raise MeshError(
-        f"{count} of {len(bad)} elements {'is' if count == 1 else 'are'} {what}, the worst is element "
-        f"{worst} at ({x:.4g}, {y:.4g}, {z:.4g}) m with {name} {value[worst]:.3g} {unit}: {cure}"
+        f"{count} of {len(bad)} elements {'is' if count == 1 else 'are'} {what}, "
+        f"the worst is element {worst} at ({x:.4g}, {y:.4g}, {z:.4g}) m "
+        f"with {name} {value[worst]:.3g} {unit}: {cure}"
     )
 
 
 def volume_of(segments: Iterable[Segment]) -> float:
-    """Volume of hollow frusta end to end [m^3], closed form.
+    """Volume of hollow frusta end to end, closed form.
 
     Parameters
     ----------
-    segments : sequence
+    segments : iterable
         Objects with y0, y1, outer0, outer1, inner0, inner1 [m].
+
+    Returns
+    -------
+    float
+        [m^3]
     """
     return float(
         sum(
@@ -331,6 +361,13 @@ def mass_properties(segments: Sequence[Segment]) -> MassProperties:
     Returns
     -------
     MassProperties
+
+    Examples
+    --------
+    >>> from solidgear import Segment
+    >>> rod = mass_properties([Segment.cylinder("rod", length=0.6, diameter=0.02)])
+    >>> bool(np.isclose(rod.iyy, rod.mass * 0.01**2 / 2)), rod.centre
+    (True, 0.3)
     """
     parts = np.array(
         [_frustum(s.y0, s.y1, s.outer0, s.outer1, s.material.density) for s in segments]

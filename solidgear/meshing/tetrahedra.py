@@ -87,7 +87,7 @@ def tetrahedra(
     MeshError
         Geometry that cannot be meshed, gmsh missing or failing, inverted elements, wrong volume.
     """
-    segments = [Frustum(*(float(getattr(s, name)) for name in Frustum._fields)) for s in segments]
+    segments = [Frustum.of(s) for s in segments]
     planes, circles = [float(y) for y in planes], [float(y) for y in circles]
     _validate(segments, planes, circles, size, graded_size, reach, around)
     gmsh = import_gmsh()
@@ -128,7 +128,8 @@ def _validate(segments, planes, circles, size, graded_size, reach, around):
     for i, s in enumerate(segments):
         if not s.y1 > s.y0:
             raise MeshError(
-                f"segment {i} ends at y = {s.y1:g} m, not after its start {s.y0:g} m: order it along y"
+                f"segment {i} ends at y = {s.y1:g} m, not after its start {s.y0:g} m: "
+                "order it along y"
             )
         if not (
             s.outer0 >= s.inner0 >= 0.0
@@ -145,7 +146,8 @@ def _validate(segments, planes, circles, size, graded_size, reach, around):
             )
         if min(a.outer1, b.outer0) <= max(a.inner1, b.inner0) + tolerance:
             raise MeshError(
-                f"segments {i} and {i + 1} share no material at y = {a.y1:g} m: make their walls overlap"
+                f"segments {i} and {i + 1} share no material at y = {a.y1:g} m: "
+                "make their walls overlap"
             )
     for name, positions in (("plane", planes), ("circle", circles)):
         for y in positions:
@@ -162,7 +164,7 @@ def _validate(segments, planes, circles, size, graded_size, reach, around):
 
 
 def _revolve(gmsh, segments, planes, circles):
-    """Draw the meridian with shared edges and turn it about y; returns the (y, radius) to grade at."""
+    """Draw the meridian with shared edges and turn it about y; the (y, radius) to grade at."""
     occ = gmsh.model.occ
     tolerance = tolerance_of(segments)
     points: dict[tuple[float, float], int] = {}
@@ -226,8 +228,8 @@ def _to_skfem(gmsh):
     types, _, nodes = gmsh.model.mesh.getElements(3)
     if list(types) != [_TET10]:
         raise MeshError(
-            "gmsh made no second-order tetrahedra: look for a gap in the meridian, or finalize gmsh "
-            "if an earlier mesh failed in the same session"
+            "gmsh made no second-order tetrahedra: look for a gap in the meridian, "
+            "or finalize gmsh if an earlier mesh failed in the same session"
         )
     tags, coordinates, _ = gmsh.model.mesh.getNodes()
     position = np.empty((int(tags.max()) + 1, 3))

@@ -2,18 +2,18 @@
 total.
 
 In a bending plane the lumped model is ``K_a - w^2 D`` on (z, phi), with K_a the static stiffness at
-the lumped point and D its 2x2 mass.  Hua (2010) asks in equations 52 and 53 for ``D = diag(M, I)``
+the lumped point and D its 2x2 mass. Hua (2010) asks in equations 52 and 53 for ``D = diag(M, I)``
 such that
 
     M z^2 + I phi^2 = u'Mu  (= 1 here: kinetic energy of the first bending mode u)           (52)
     det(K_a - w1^2 D) = 0   with w1 the first natural frequency of the model                 (53)
 
-**These have no solution in general.**  Let v = (z, phi) be the motion of the lumped point in the mode.  Of all shapes
-with that motion at the lumped point the static one stores the least energy, so
+**These have no solution in general.**  Let v = (z, phi) be the motion of the lumped point in the
+mode.  Of all shapes with that motion at the lumped point the static one stores the least energy, so
 
     v' K_a v <= u'Ku = w1^2 u'Mu,
 
-with equality only if the mode *is* a static shape.  With (52), ``v' D v = u'Mu``, hence ``v'(K_a -
+with equality only if the mode *is* a static shape. With (52), ``v' D v = u'Mu``, hence ``v'(K_a -
 w1^2 D) v <= 0``: unless equality holds the matrix is indefinite or worse at w1, and w1 cannot be
 the first frequency of the model. In the scaled unknowns ``x = M z^2, y = I phi^2`` with ``A = K_zz
 z^2 / w1^2``, ``B = K_pp phi^2 / w1^2``, ``C = K_zp z phi / w1^2`` the inequality reads ``A + B + 2C
@@ -31,16 +31,13 @@ import numpy as np
 import scipy.linalg as sla
 
 from solidgear.body import Body, as_supports
-from solidgear.errors import SolidgearError
-from solidgear.reduction.receptance import modal_receptance, port_motion
-from solidgear.solve.modes import ModeSet, modes
-from solidgear.solve.statics import condense
-from solidgear.solve.supported import Supported, decoupled, groups
+from solidgear.reduction.lumped_point import LumpedPoint, lumped_point
+from solidgear.reduction.receptance import modal_receptance
+from solidgear.solve.modes import ModeSet
 
 if TYPE_CHECKING:
-    from solidgear.body.model import Holding
+    from solidgear.body.supports import Holding
 
-PLANE = (2, 3)  # z and thx
 METHODS = ("old", "thesis", "mode-matched", "guyan")
 # v' K_a v / w1^2 this close to 1 counts as a static shape: the quadratic's double root then is real
 # to rounding.
@@ -90,138 +87,6 @@ class Synthesis:
     valid_to_hz: float | None
     verdict: str
     numbers: dict = field(default_factory=dict)
-
-
-@dataclass(frozen=True)
-class LumpedPoint:
-    """What the synthesis needs to know of a body.
-
-    Attributes
-    ----------
-    stiffness : (2, 2) ndarray
-        Static, on (z, thx), everything else free to follow.
-    motion : (2,) ndarray
-        (z, phi) of the lumped point in the first bending mode of unit modal mass.
-    omega : float
-        rad/s.
-    total_mass, total_inertia : float
-        Of the body, the inertia transverse and about the lumped point.
-    guyan : (2, 2) ndarray
-        Mass condensed on the static shapes.
-    """
-
-    stiffness: np.ndarray
-    motion: np.ndarray
-    omega: float
-    total_mass: float
-    total_inertia: float
-    guyan: np.ndarray
-
-    @property
-    def static_share(self) -> float:
-        """``v' K_a v / w1^2``, never above 1; 1 when the mode is a static shape."""
-        return float(self.motion @ self.stiffness @ self.motion) / self.omega**2
-
-
-def lumped_point(
-    body: Body, supports: Holding, port: str, found: ModeSet | None = None
-) -> tuple[LumpedPoint, ModeSet]:
-    """Static stiffness, first bending motion and condensed mass of a body at its lumped point.
-
-    Raises
-    ------
-    SolidgearError
-        Without a first bending mode or a static stiffness at the port (a body that nothing holds).
-    """
-    supports = as_supports(supports)
-    condensed = condense(body, supports, port)
-    c = condensed.compliance[np.ix_(PLANE, PLANE)]
-    if not np.all(np.isfinite(c)):
-        raise SolidgearError(
-            f"port {port!r} has no static stiffness in bending: bearings leave it free; support the shaft first"
-        )
-    k = np.linalg.inv(c)
-    if np.linalg.eigvalsh(k)[0] <= 0:
-        raise SolidgearError(
-            f"the stiffness at port {port!r} is indefinite in bending: {k.tolist()}; check the bearings"
-        )
-    found = found if found is not None and found.named("bending 1") else modes(body, supports, 12)
-    index = body.port_index(port)
-    mode, motion = _first_in_plane(body, found, index)
-    if mode is None:
-        raise SolidgearError(
-            f"no bending mode in the z plane among the first 12 of the {body.fidelity} body; effective masses need one"
-        )
-    inertia = body.mass_matrix()
-    y = body.ports[index].y
-    about = inertia[3, 3] - 2 * y * inertia[2, 3] + y * y * inertia[2, 2]
-    return LumpedPoint(
-        k,
-        motion,
-        2 * np.pi * mode.frequency_hz,
-        float(inertia[2, 2]),
-        float(about),
-        _guyan(body, supports, index, c),
-    ), found
-
-
-def _first_in_plane(body: Body, found: ModeSet, index: int):
-    """First bending mode that moves the port in the z plane, and its (z, thx) there: unequal
-    bearings may put one of the x plane before it.
-    """
-    for mode in (*found.modes, *found.beyond):
-        if mode.family != "bending" or mode.frequency_hz == 0:
-            continue
-        motions = np.array([port_motion(body, v, index) for v in mode.vectors])
-        size = np.array([1.0, body.length])  # a rotation counts by what it moves at the other end
-        z, x = (np.linalg.norm(motions[:, c] * size) for c in (list(PLANE), [0, 5]))
-        if z >= 0.5 * x:
-            return mode, _in_plane(motions)
-    return None, None
-
-
-def _in_plane(motions: np.ndarray) -> np.ndarray:
-    """(z, thx) of the combination of a pair that moves in the z plane."""
-    if len(motions) == 1:
-        return motions[0][list(PLANE)]
-    # The pair spans both planes: take the unit combination without motion in the x plane.
-    scale = np.abs(motions).max(axis=0)
-    other = motions[:, [0, 5]] / np.where(scale[[0, 5]] > 0, scale[[0, 5]], 1.0)
-    u, _, _ = np.linalg.svd(other)
-    mix = u[:, -1]
-    motion = mix @ motions[:, list(PLANE)]
-    return motion if motion[0] >= 0 else -motion
-
-
-def _static_shapes(body: Body, supports, index: int):
-    """Group of the z plane and its displacements under unit (F_z, M_x) at a port."""
-    spring, _ = decoupled(body, supports, 1e-6)
-    for group in groups(body, supports, spring):
-        if any(2 in body.blocks[b].components for b in group):
-            supported = Supported(body, supports, spring, group)
-            parts = []
-            for b in group:
-                block = body.block(b)
-                rows = np.zeros((2, block.size))
-                n = len(block.components)
-                for r, c in enumerate(PLANE):
-                    if c in block.components:
-                        rows[r] = (
-                            block.ports[index * n + block.components.index(c)].toarray().ravel()
-                        )
-                parts.append(rows)
-            return supported, supported.static(np.hstack(parts).T)
-    raise SolidgearError(f"the {body.fidelity} body has no bending plane")
-
-
-def _guyan(body: Body, supports, index: int, compliance: np.ndarray) -> np.ndarray:
-    """Mass on the static shapes of unit (z, phi) at the lumped point, no load elsewhere (Guyan
-    1965).
-    """
-    supported, fields = _static_shapes(body, supports, index)
-    shapes = fields @ np.linalg.inv(compliance)
-    m = shapes.T @ supported.mass(shapes)
-    return (m + m.T) / 2
 
 
 def effective_masses(
@@ -363,7 +228,35 @@ def _valid_to(k, mass, receptance, omega, tolerance: float = 0.05) -> float:
 def synthesise(
     body: Body, supports: Holding, port: str, found: ModeSet | None = None
 ) -> tuple[LumpedPoint, dict[str, Synthesis]]:
-    """Lumped point and all four lumped models of a body, judged against the body itself."""
+    """Lumped point and all four lumped models of a body, judged against the body itself.
+
+    Parameters
+    ----------
+    body : Body
+    supports : Scene, Supports or iterable of bearings
+    port : str
+    found : ModeSet, optional
+        Solved if not given.
+
+    Returns
+    -------
+    point : LumpedPoint
+    models : dict of str to Synthesis
+        In the order of ``METHODS``.
+
+    Raises
+    ------
+    SolidgearError
+        As :func:`lumped_point`.
+
+    Examples
+    --------
+    >>> import solidgear as sg
+    >>> scene = sg.load("geometry/shaft_stepped.toml")
+    >>> point, models = synthesise(sg.build(scene, "timoshenko"), scene, "port")
+    >>> models["guyan"].feasible, point.static_share < 1
+    (True, True)
+    """
     point, found = lumped_point(body, supports, port, found)
     return point, effective_masses(
         point, modal_receptance(body, as_supports(supports), port, found)

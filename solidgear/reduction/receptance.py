@@ -1,4 +1,4 @@
-"""What a port of a body does under a force that oscillates, by its modes."""
+"""The motion of a port of a body under a force that oscillates, by its modes."""
 
 from __future__ import annotations
 
@@ -12,11 +12,24 @@ from solidgear.solve.modes import ModeSet
 from solidgear.solve.statics import condense
 
 if TYPE_CHECKING:
-    from solidgear.body.model import Holding
+    from solidgear.body.supports import Holding
 
 
 def port_motion(body: Body, vectors: dict[int, np.ndarray], index: int) -> np.ndarray:
-    """(6,) motion of a port in a mode shape."""
+    """Motion of a port in a mode shape.
+
+    Parameters
+    ----------
+    body : Body
+    vectors : dict of int to (n,) ndarray
+        Shape, by block index.
+    index : int
+        Of the port.
+
+    Returns
+    -------
+    (6,) ndarray
+    """
     out = np.zeros(6)
     for b, vector in vectors.items():
         block = body.block(b)
@@ -29,11 +42,40 @@ def port_motion(body: Body, vectors: dict[int, np.ndarray], index: int) -> np.nd
 def modal_receptance(
     body: Body, supports: Holding, port: str, found: ModeSet
 ) -> Callable[[float], float]:
-    """Receptance z/F_z at a port by modal superposition with the static remainder, as a function of
-    omega (rad/s).
+    """Receptance z/F_z at a port by modal superposition with the static remainder.
 
     The static part of the modes left out is exact, so the error is of the order of (omega /
     omega_left_out)^4.
+
+    Parameters
+    ----------
+    body : Body
+    supports : Scene, Supports or iterable of bearings
+    port : str
+    found : ModeSet
+        Modes of the body on these supports.
+
+    Returns
+    -------
+    callable
+        omega (rad/s) to m/N.
+
+    Raises
+    ------
+    SolidgearError
+        If the body lacks the port.
+
+    Examples
+    --------
+    At rest it is the static compliance:
+
+    >>> import solidgear as sg
+    >>> scene = sg.load("geometry/shaft_stepped.toml")
+    >>> body = sg.build(scene, "euler")
+    >>> receptance = modal_receptance(body, scene, "port", sg.modes(body, scene, n=4))
+    >>> static = sg.condense(body, scene, "port").compliance[2, 2]
+    >>> bool(np.isclose(receptance(0.0), static))
+    True
     """
     index = body.port_index(port)
     static = condense(body, supports, port).compliance[2, 2]

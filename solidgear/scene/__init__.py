@@ -1,16 +1,8 @@
 """What is modelled and what is asked: data only."""
 
-from solidgear.scene.model import (
-    STEEL,
-    Ask,
-    Bearing,
-    Material,
-    Port,
-    Quantity,
-    Scene,
-    SceneError,
-    Segment,
-)
+from solidgear.scene.model import Ask, Quantity, Scene
+from solidgear.scene.parts import STEEL, Material, Segment
+from solidgear.scene.stations import Bearing, Port
 
 __all__ = [
     "Ask",
@@ -20,6 +12,5 @@ __all__ = [
     "Quantity",
     "STEEL",
     "Scene",
-    "SceneError",
     "Segment",
 ]

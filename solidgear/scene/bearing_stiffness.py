@@ -19,8 +19,12 @@ def _entry_names() -> dict[str, tuple[int, int, str]]:
     names = {}
     for i, a in enumerate(DOF_NAMES):
         for j, b in enumerate(DOF_NAMES[i:], start=i):
-            dimension = "force_per_length" if j < 3 else "force" if i < 3 else "moment"
-            name = f"k{a}{b}" if j < 3 else f"k{a}" if i == j else f"k{a}_{b}"
+            if j < 3:  # both are translations
+                name, dimension = f"k{a}{b}", "force_per_length"
+            elif i < 3:
+                name, dimension = f"k{a}_{b}", "force"
+            else:
+                name, dimension = f"k{a}" if i == j else f"k{a}_{b}", "moment"
             names[name] = (i, j, dimension)
     return names
 
@@ -40,12 +44,19 @@ def stiffness_matrix(entries: Mapping[str, Any]) -> np.ndarray:
 
     Returns
     -------
-    (6, 6) ndarray, order x y z thx thy thz
+    (6, 6) ndarray
+        Order x y z thx thy thz.
 
     Raises
     ------
     SceneError
         Unknown name, or an entry that is not a quantity of its dimension.
+
+    Examples
+    --------
+    >>> K = stiffness_matrix({"kxx": "8.8e9 N/m", "kx_thz": 1.45e8})
+    >>> bool(K[0, 0] == 8.8e9 and K[0, 5] == K[5, 0] == 1.45e8)
+    True
     """
     K = np.zeros((6, 6))
     problems: list[SceneError] = []
@@ -70,14 +81,42 @@ def stiffness_matrix(entries: Mapping[str, Any]) -> np.ndarray:
 
 
 def stiffness_entries(K: Any) -> dict[str, float]:
-    """Named non-zero entries (SI) of a symmetric 6x6: the inverse of `stiffness_matrix`."""
+    """Named non-zero entries of a symmetric 6x6: the inverse of `stiffness_matrix`.
+
+    Parameters
+    ----------
+    K : (6, 6) array_like
+        SI.
+
+    Returns
+    -------
+    dict of str to float
+
+    Examples
+    --------
+    >>> stiffness_entries(stiffness_matrix({"kyy": 1e8, "kthx": 2e5}))
+    {'kyy': 100000000.0, 'kthx': 200000.0}
+    """
     K = np.asarray(K, dtype=float)
     return {name: float(K[i, j]) for name, (i, j, _) in STIFFNESS_NAMES.items() if K[i, j] != 0.0}
 
 
 def checked_matrix(value: Any) -> tuple[tuple[float, ...], ...]:
-    """A checked symmetric positive semidefinite 6x6 as nested tuples (hashable, comparable) from
-    entries or rows.
+    """A checked 6x6 stiffness, hashable and comparable.
+
+    Parameters
+    ----------
+    value : mapping, (6, 6) ndarray or sequence of rows
+        Named entries as for `stiffness_matrix`, or numbers in SI.
+
+    Returns
+    -------
+    tuple of tuple of float
+
+    Raises
+    ------
+    SceneError
+        Not 6 rows of 6 finite numbers, not symmetric (to 1e-9), or not positive semidefinite.
     """
     if isinstance(value, Mapping):
         K = stiffness_matrix(value)
@@ -98,14 +137,16 @@ def checked_matrix(value: Any) -> tuple[tuple[float, ...], ...]:
                     )
                 except SceneError:
                     raise SceneError(
-                        f"row {i + 1}, column {j + 1} must be a number in SI, finite and at most 1e24, not {show(entry)}"
+                        f"row {i + 1}, column {j + 1} must be a number in SI, "
+                        f"finite and at most 1e24, not {show(entry)}"
                     ) from None
     size = np.sqrt(np.abs(np.diag(K)))
     bound = 1e-9 * np.maximum(np.maximum(np.abs(K), np.abs(K.T)), np.outer(size, size))
     if np.any(np.abs(K - K.T) > bound):
         a, b = np.unravel_index(np.argmax(np.abs(K - K.T) - bound), (6, 6))
         raise SceneError(
-            f"the stiffness is not symmetric: ({DOF_NAMES[a]}, {DOF_NAMES[b]}) is {K[a, b]:.6g} and ({DOF_NAMES[b]}, {DOF_NAMES[a]}) is {K[b, a]:.6g}"
+            f"the stiffness is not symmetric: ({DOF_NAMES[a]}, {DOF_NAMES[b]}) is {K[a, b]:.6g} "
+            f"and ({DOF_NAMES[b]}, {DOF_NAMES[a]}) is {K[b, a]:.6g}"
         )
     K = (K + K.T) / 2
     # a matrix turned by a rotation couples what has no stiffness of its own by rounding only
@@ -126,7 +167,9 @@ def checked_matrix(value: Any) -> tuple[tuple[float, ...], ...]:
                 f"the stiffness in {DOF_NAMES[i]} is {K[i, i]:.6g}; it must not be negative"
             )
         raise SceneError(
-            f"the stiffness is indefinite in the pair ({DOF_NAMES[a]}, {DOF_NAMES[b]}): their entries are {K[a, a]:.6g} and {K[b, b]:.6g}, coupled by "
-            f"{K[a, b]:.6g}, and the smallest eigenvalue, with the diagonal scaled to 1, is {eigenvalue[0]:.3g}; it must not be negative"
+            f"the stiffness is indefinite in the pair ({DOF_NAMES[a]}, {DOF_NAMES[b]}): "
+            f"their entries are {K[a, a]:.6g} and {K[b, b]:.6g}, coupled by {K[a, b]:.6g}, "
+            "and the smallest eigenvalue, with the diagonal scaled to 1, "
+            f"is {eigenvalue[0]:.3g}; it must not be negative"
         )
-    return tuple(tuple(float(v) for v in row) for row in K)
+    return tuple(tuple(row) for row in K.tolist())

@@ -1,8 +1,8 @@
 """From a TOML file to a `Scene`, errors named by the keys of the file.
 
-The format is documented by the files in ``geometry``. Every problem of a file is told at once: of
-all tables on their own, of all names that they use of each other, and of the places of all that is
-sound so far.
+The format is documented by the files in ``geometry``. Every problem of a file is reported at once:
+each table by itself, the names by which tables refer to each other, and the places of all parts
+that are sound by themselves.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import Any
 
 from solidgear.errors import SceneError, listed, nearest
-from solidgear.scene import Scene
+from solidgear.scene.model import Scene
 from solidgear.scene.places import resolve
 from solidgear.scene.rules import MOST_BEARINGS, MOST_SEGMENTS, too_many
 from solidgear.scene.tables import KINDS, SceneTable, SoundTables
@@ -28,11 +28,27 @@ def _drop_tag(loc: tuple) -> tuple:
 def load(path: str | os.PathLike) -> Scene:
     """Read and resolve a scene file.
 
+    Parameters
+    ----------
+    path : str or path
+        A TOML file; ``geometry/pinion_overhung.toml`` describes the format.
+
+    Returns
+    -------
+    Scene
+
     Raises
     ------
     SceneError
         The file, the key (``bearing[2] "2".seat_width``, counted from one), the value as written,
         what would be right: one line for each problem, in the order of the file.
+
+    Examples
+    --------
+    >>> import solidgear as sg
+    >>> scene = sg.load("geometry/pinion_overhung.toml")
+    >>> [bearing.name for bearing in scene.bearings], scene.port.name
+    (['1', '2'], 'pinion')
     """
     where = os.fspath(path)
     raw = parse(where)
@@ -94,20 +110,19 @@ class _FileOrder:
         here = self.raw
         for key in path:
             if id(here) not in self.places:
-                keys = (
-                    here
-                    if isinstance(here, Mapping)
-                    else range(len(here))
-                    if isinstance(here, list)
-                    else ()
-                )
-                self.places[id(here)] = {key: place for place, key in enumerate(keys)}
+                self.places[id(here)] = {key: k for k, key in enumerate(_keys(here))}
             places = self.places[id(here)]
             if key not in places:
                 return [*out, len(places)]
             out.append(places[key])
             here = here[key]
         return out
+
+
+def _keys(table: Any) -> Iterable:
+    if isinstance(table, Mapping):
+        return table
+    return range(len(table)) if isinstance(table, list) else ()
 
 
 _PIECES = {"bevel_head": ("start", "end", "middle", "mid_face")}
@@ -126,7 +141,7 @@ def _unknown_names(raw: dict[str, Any]) -> Iterator[SceneError]:
         raw.get("port"),
     )
     if pieces is None or not all(isinstance(piece.get("name"), str) for piece in pieces):
-        return  # what is meant by a name cannot be told
+        return  # without sound names, what refers to them cannot be judged
     known, segments = ["start", "end"], []
     for i, piece in enumerate(pieces):
         if piece["name"] in segments:

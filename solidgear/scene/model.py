@@ -4,10 +4,6 @@ A shaft of cylinders and cones along y, bearings with 6x6 stiffness, one lumped 
 and the questions. Frozen and validated, SI inside, no numerics beyond geometry bookkeeping. Degrees
 of freedom are everywhere in the order (x, y, z, thx, thy, thz); y runs along the shaft and is 0 at
 its first end face.
-
->>> scene = solidgear.load("geometry/pinion_overhung.toml")
->>> stiff = scene.with_attachment("rigid").with_bearing_scale(10.0)
->>> rod = Scene.from_parts([Segment.cylinder("rod", length=0.3, diameter=0.06)])
 """
 
 from __future__ import annotations
@@ -19,8 +15,9 @@ from pydantic import Field, model_validator
 
 from solidgear.errors import SceneError
 from solidgear.scene.bearing_stiffness import stiffness_entries
-from solidgear.scene.parts import STEEL, Bearing, Material, Model, Port, Segment
+from solidgear.scene.parts import STEEL, Material, Model, Segment
 from solidgear.scene.rules import MOST_MODES, shaft_problems, station_problems, steps
+from solidgear.scene.stations import Bearing, Port
 from solidgear.scene.units import AxialSpring, Frequency, Tolerance
 
 #: what a model can be judged by: compliance and stiffness at the lumped point, first modes
@@ -41,11 +38,31 @@ Quantity = Literal[
 
 
 class Ask(Model):
-    """The questions: how many modes, up to what frequency (Hz; None is no limit), to what relative
-    tolerance.
+    """The questions: how many modes, up to what frequency, to what tolerance, judged by what.
 
-    `quantities` names what models are judged by; empty is the usual set, compliances with first
-    bending and first axial mode.
+    Attributes
+    ----------
+    modes : int
+        Elastic modes, 1 to `MOST_MODES`.
+    max_frequency : float or None
+        Hz; None is no limit.
+    tolerance : float
+        Relative, between 0 and 1.
+    quantities : tuple of str
+        What models are judged by, names of `Quantity`; empty is the usual set, compliances with
+        first bending and first axial mode.
+
+    Raises
+    ------
+    SceneError
+        A field out of its range.
+
+    Examples
+    --------
+    >>> from solidgear import Ask
+    >>> ask = Ask(max_frequency="10 kHz", tolerance=0.02)
+    >>> ask.modes, ask.max_frequency, ask.tolerance
+    (10, 10000.0, 0.02)
     """
 
     modes: Annotated[int, Field(strict=True, ge=1, le=MOST_MODES)] = 10
@@ -57,9 +74,36 @@ class Ask(Model):
 class Scene(Model):
     """A shaft on its bearings; read one with `solidgear.load`, or make one with `Scene.from_parts`.
 
-    `segments` lie end to end from y = 0; `port` is the lumped point; `housing_axial` (N/m or None)
-    is the spring along y between the common bearing housing and ground; `source` says where the
-    data come from.
+    Attributes
+    ----------
+    title, name, source : str
+        `source` holds where the data come from.
+    segments : tuple of Segment
+        End to end from y = 0.
+    material : Material
+        That of segments without one of their own.
+    bearings : tuple of Bearing
+    housing_axial : float or None
+        Spring along y between the common bearing housing and ground, N/m.
+    port : Port
+        The lumped point.
+    ask : Ask
+
+    Raises
+    ------
+    SceneError
+        Every problem of its parts, of segments that are no shaft, and of seats that do not lie on
+        it.
+
+    Examples
+    --------
+    >>> import solidgear as sg
+    >>> scene = sg.load("geometry/shaft_stepped.toml")
+    >>> [segment.name for segment in scene.segments], scene.length
+    (['left', 'middle', 'right'], 0.42)
+    >>> stiff = scene.with_attachment("rigid").with_bearing_scale(10.0)
+    >>> stiff.port.attachment, round(float(stiff.bearings[0].stiffness[0, 0]) / 1e9, 6)
+    ('rigid', 4.0)
     """
 
     title: str = ""
@@ -74,11 +118,11 @@ class Scene(Model):
 
     @model_validator(mode="after")
     def _hangs_together(self) -> Scene:
-        # a station can be judged only on a shaft that is sound
-        bearings = dict(enumerate(self.bearings))
-        if problems := [*shaft_problems(self.segments)] or [
-            *station_problems(self.segments, self.port, bearings)
-        ]:
+        problems = shaft_problems(self.segments)
+        if not problems:  # a station can be judged only on a shaft that is sound
+            bearings = dict(enumerate(self.bearings))
+            problems = list(station_problems(self.segments, self.port, bearings))
+        if problems:
             raise SceneError.of(problems)
         return self
 
@@ -105,9 +149,22 @@ class Scene(Model):
         **rest
             title, name, source, housing_axial, ask.
 
+        Returns
+        -------
+        Scene
+
         Raises
         ------
         SceneError
+            As for `Scene`.
+
+        Examples
+        --------
+        >>> from solidgear import Scene, Segment
+        >>> rod = Segment.cylinder("rod", length=0.3, diameter=0.06)
+        >>> scene = Scene.from_parts([rod])
+        >>> scene.length, scene.port.y
+        (0.3, 0.15)
         """
         segments = tuple(
             s if "material" in s.model_fields_set else s.with_changes(material=material)
@@ -126,7 +183,9 @@ class Scene(Model):
 
     @property
     def stations(self) -> tuple[Port | Bearing, ...]:
-        """Everything attached to the shaft, the port first: each has name, y, lo, hi, attachment."""
+        """Everything attached to the shaft, the port first: each has name, y, lo, hi (m),
+        attachment.
+        """
         return (self.port, *self.bearings)
 
     @property
@@ -135,8 +194,21 @@ class Scene(Model):
         return steps(self.segments)
 
     def with_changes(self, **changes: Any) -> Scene:
-        """A validated copy with some fields replaced; a new `material` also replaces the old
-        default in the segments.
+        """A validated copy with some fields replaced.
+
+        Parameters
+        ----------
+        **changes
+            Fields by name; a new `material` also replaces the old default in the segments.
+
+        Returns
+        -------
+        Scene
+
+        Raises
+        ------
+        SceneError
+            As for `Scene`.
         """
         if "material" in changes and "segments" not in changes:
             swap = {self.material: changes["material"]}
@@ -146,8 +218,20 @@ class Scene(Model):
         return super().with_changes(**changes)
 
     def with_attachment(self, attachment: str) -> Scene:
-        """The same scene with the port and every bearing attached by 'average', 'rigid' or
-        'section'.
+        """The same scene with the port and every bearing attached in one way.
+
+        Parameters
+        ----------
+        attachment : {'average', 'rigid', 'section'}
+
+        Returns
+        -------
+        Scene
+
+        Raises
+        ------
+        SceneError
+            An unknown attachment, or two rigid surfaces that overlap.
         """
         bearings = tuple(b.with_changes(attachment=attachment) for b in self.bearings)
         return self.with_changes(
@@ -155,14 +239,49 @@ class Scene(Model):
         )
 
     def with_seat_width(self, width: float | str) -> Scene:
-        """The same scene with every bearing seat `width` wide."""
+        """The same scene with every bearing seat of one width.
+
+        Parameters
+        ----------
+        width : float or str
+            m, or a text such as ``"20 mm"``.
+
+        Returns
+        -------
+        Scene
+
+        Raises
+        ------
+        SceneError
+            A width that is no positive length, or seats that then overlap or leave the shaft.
+        """
         return self.with_changes(
             bearings=tuple(b.with_changes(seat_width=width) for b in self.bearings)
         )
 
     def with_material(self, **changes: Any) -> Scene:
-        """The same scene with `E`, `nu` or `density` replaced in the default material and in every
-        segment.
+        """The same scene with constants replaced in the default material and in every segment.
+
+        Parameters
+        ----------
+        **changes
+            `E` (Pa), `nu` or `density` (kg/m3), as numbers or texts with units.
+
+        Returns
+        -------
+        Scene
+
+        Raises
+        ------
+        SceneError
+            A constant out of its range.
+
+        Examples
+        --------
+        >>> from solidgear import Scene, Segment
+        >>> rod = Segment.cylinder("rod", length=0.3, diameter=0.06)
+        >>> Scene.from_parts([rod]).with_material(E="70 GPa", density=2700).segments[0].material.E
+        70000000000.0
         """
         segments = tuple(
             s.with_changes(material=s.material.with_changes(**changes)) for s in self.segments
@@ -170,19 +289,50 @@ class Scene(Model):
         return self.with_changes(material=self.material.with_changes(**changes), segments=segments)
 
     def with_bearing_scale(self, factor: float) -> Scene:
-        """The same scene with every bearing's stiffness, series springs included, times `factor` >
-        0.
+        """The same scene with every bearing's stiffness, series springs included, multiplied.
+
+        Parameters
+        ----------
+        factor : float
+            Above zero.
+
+        Returns
+        -------
+        Scene
+
+        Raises
+        ------
+        SceneError
+            A factor that is not above zero.
         """
         return self.with_changes(bearings=tuple(b.scaled(factor) for b in self.bearings))
 
     def with_port(self, **changes: Any) -> Scene:
-        """The same scene with fields of its port replaced, such as ``y=0.03``; the span stays
-        unless given too.
+        """The same scene with fields of its port replaced.
+
+        Parameters
+        ----------
+        **changes
+            Such as ``y=0.03``; the span stays unless given too.
+
+        Returns
+        -------
+        Scene
+
+        Raises
+        ------
+        SceneError
+            A port off the shaft.
         """
         return self.with_changes(port=self.port.with_changes(**changes))
 
     def as_dict(self) -> dict[str, Any]:
-        """Everything resolved, in SI, as plain JSON-serialisable data."""
+        """Everything resolved, in SI, as plain data that JSON can hold.
+
+        Returns
+        -------
+        dict
+        """
         data = self.model_dump(mode="json")
         for row, segment in zip(data["segments"], self.segments):
             row["length"] = segment.length

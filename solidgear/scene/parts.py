@@ -1,21 +1,15 @@
-"""The parts of a scene, each frozen and validated: material, segment, bearing and port."""
+"""What a shaft is made of, each frozen and validated: material and segment."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Annotated, Any, Literal, TypeVar
+from typing import Any, Literal, TypeVar
 
-import numpy as np
-from pydantic import BaseModel, BeforeValidator, ConfigDict, ValidationError, model_validator
+from pydantic import BaseModel, ConfigDict, ValidationError, model_validator
 
-from solidgear.errors import TOLD, SceneError, did_you_mean, near, scene_error, show
-from solidgear.frames import DOF_NAMES
-from solidgear.scene.bearing_stiffness import checked_matrix
-from solidgear.scene.rules import MOST_SPRINGS, TOUCH
+from solidgear.errors import TOLD, SceneError, did_you_mean, near, scene_error
+from solidgear.scene.rules import TOUCH
 from solidgear.scene.units import (
-    POSITION_DECIMALS,
-    SOFTEST,
-    AxialSpring,
     Density,
     Modulus,
     Poisson,
@@ -25,24 +19,17 @@ from solidgear.scene.units import (
     quantity,
 )
 
-Attachment = Literal["average", "rigid", "section"]
-Status = Literal["published", "identified", "assumed", "measured"]
-
-
-def _few_springs(springs: Any) -> Any:
-    if isinstance(springs, (list, tuple)) and len(springs) > MOST_SPRINGS:
-        raise SceneError(
-            f"{len(springs)} springs in series are more than the {MOST_SPRINGS} there may be; write their sum: 1/k = 1/k1 + 1/k2 + ..."
-        )
-    return springs
-
-
-AxialSeries = Annotated[tuple[AxialSpring, ...], BeforeValidator(_few_springs)]
 _Self = TypeVar("_Self", bound="Model")
 
 
 class Model(BaseModel):
-    """Frozen, validated, and one sentence for each problem when it refuses."""
+    """Frozen and validated; a refusal names every problem in a sentence of its own.
+
+    Raises
+    ------
+    SceneError
+        By the constructor: unknown keys, missing ones, and values out of their range.
+    """
 
     model_config = ConfigDict(extra="forbid", frozen=True)
 
@@ -67,7 +54,23 @@ class Model(BaseModel):
             raise SceneError.of(one.located(data) for one in problems) from None
 
     def with_changes(self: _Self, **changes: Any) -> _Self:
-        """A validated copy with some fields replaced. Raises `SceneError` like the constructor."""
+        """A validated copy with some fields replaced.
+
+        Parameters
+        ----------
+        **changes
+            Fields by name.
+
+        Returns
+        -------
+        Model
+            Of the same class.
+
+        Raises
+        ------
+        SceneError
+            As by the constructor.
+        """
         return type(self)(
             **{name: getattr(self, name) for name in type(self).model_fields} | changes
         )
@@ -75,13 +78,33 @@ class Model(BaseModel):
     def model_copy(
         self: _Self, *, update: Mapping[str, Any] | None = None, deep: bool = False
     ) -> _Self:
-        """As `with_changes`: pydantic's own copy would skip validation."""
+        """As `with_changes` of `update`: pydantic's own copy would skip validation."""
         return self.with_changes(**(update or {}))
 
 
 class Material(Model):
-    """Isotropic linear elastic material: `E` in Pa, `nu`, `density` in kg/m3 (numbers in SI, or
-    texts with units).
+    """Isotropic linear elastic material; numbers in SI, or texts with units.
+
+    Attributes
+    ----------
+    E : float
+        Young's modulus, Pa.
+    nu : float
+        Poisson's ratio, between -1 and 0.5, both excluded.
+    density : float
+        kg/m3.
+
+    Raises
+    ------
+    SceneError
+        A constant out of its range, or of another dimension.
+
+    Examples
+    --------
+    >>> from solidgear import Material
+    >>> aluminium = Material(E="70 GPa", nu=0.33, density=2700)
+    >>> round(aluminium.shear_modulus / 1e9, 2)
+    26.32
     """
 
     E: Modulus
@@ -98,8 +121,31 @@ STEEL = Material(E=2.07e11, nu=0.3, density=7850.0)
 
 
 class Segment(Model):
-    """A cylinder or cone between `y0` and `y1` (m), with radii (m) at both ends; `inner` 0 is
-    solid.
+    """A cylinder or cone between two places on the axis.
+
+    Attributes
+    ----------
+    name : str
+    y0, y1 : float
+        Ends along the shaft, m.
+    outer0, outer1 : float
+        Outer radii at the two ends, m.
+    inner0, inner1 : float
+        Radii of the bore, m; 0 is solid.
+    material : Material
+    part : {'shaft', 'frustum', 'backcone'}
+
+    Raises
+    ------
+    SceneError
+        Ends in the wrong order, or a bore that leaves no wall.
+
+    Examples
+    --------
+    >>> from solidgear import Segment
+    >>> seat = Segment.cylinder("seat", length="40 mm", diameter="90 mm", bore="20 mm")
+    >>> seat.y1, seat.outer0, seat.inner0
+    (0.04, 0.045, 0.01)
     """
 
     name: str
@@ -117,9 +163,10 @@ class Segment(Model):
         if self.y1 <= self.y0:
             raise SceneError("must lie beyond y0", path=("y1",))
         for end in "01":
-            if getattr(self, "inner" + end) >= getattr(self, "outer" + end):
+            inner, outer = getattr(self, "inner" + end), getattr(self, "outer" + end)
+            if inner >= outer:
                 raise SceneError(
-                    f"the bore must be smaller than the outer radius {getattr(self, 'outer' + end):.6g} m",
+                    f"the bore must be smaller than the outer radius {outer:.6g} m",
                     path=("inner" + end,),
                 )
         return self
@@ -135,7 +182,27 @@ class Segment(Model):
         y0: float = 0.0,
         material: Material | None = None,
     ) -> Segment:
-        """A cylinder from `y0` on; without `material` it takes that of the scene it is put into."""
+        """A cylinder.
+
+        Parameters
+        ----------
+        name : str
+        length, diameter, bore : float or str
+            m, or texts with units; `bore` is a diameter, 0 is solid.
+        y0 : float
+            Start along the shaft, m.
+        material : Material, optional
+            Without it the segment takes that of the scene it is put into.
+
+        Returns
+        -------
+        Segment
+
+        Raises
+        ------
+        SceneError
+            A length that is not positive, or a bore that leaves no wall.
+        """
         return cls.cone(
             name,
             length=length,
@@ -158,7 +225,34 @@ class Segment(Model):
         y0: float = 0.0,
         material: Material | None = None,
     ) -> Segment:
-        """A cone with a constant bore from `y0` on; `cylinder` says the rest."""
+        """A cone with a constant bore.
+
+        Parameters
+        ----------
+        name : str
+        length, start_diameter, end_diameter, bore : float or str
+            m, or texts with units; the outer diameters are those at `y0` and at the far end.
+        y0 : float
+            Start along the shaft, m.
+        material : Material, optional
+            Without it the segment takes that of the scene it is put into.
+
+        Returns
+        -------
+        Segment
+
+        Raises
+        ------
+        SceneError
+            A length that is not positive, or a bore that leaves no wall.
+
+        Examples
+        --------
+        >>> from solidgear import Segment
+        >>> taper = Segment.cone("taper", length=0.2, start_diameter=0.04, end_diameter=0.08)
+        >>> taper.radius_at(0.1)
+        (0.0, 0.03)
+        """
         outer0, outer1, inner = (
             quantity(d, "length") / 2 for d in (start_diameter, end_diameter, bore)
         )
@@ -180,86 +274,26 @@ class Segment(Model):
         return self.y1 - self.y0
 
     def radius_at(self, y: float) -> tuple[float, float]:
-        """(inner, outer) radius in m at `y`; ValueError outside the segment."""
+        """Radii of the bore and of the outer surface at one place.
+
+        Parameters
+        ----------
+        y : float
+            m.
+
+        Returns
+        -------
+        inner, outer : float
+            m.
+
+        Raises
+        ------
+        ValueError
+            A place outside the segment.
+        """
         if not self.y0 - TOUCH <= y <= self.y1 + TOUCH:
             raise ValueError(
                 f'y = {y} m is outside segment "{self.name}" ({self.y0} to {self.y1} m)'
             )
         t = min(max((y - self.y0) / self.length, 0.0), 1.0)
         return (1 - t) * self.inner0 + t * self.inner1, (1 - t) * self.outer0 + t * self.outer1
-
-
-class Bearing(Model):
-    """A bearing: a 6x6 between ground and the seat it sits on.
-
-    `matrix` (or, as a constructor argument, `stiffness`: rows or named entries) is the bearing
-    alone, in SI; `axial_series` lists springs (N/m) in series with its axial stiffness. `y` is the
-    middle of the seat.
-    """
-
-    name: str
-    y: Position
-    seat_width: PositiveLength
-    matrix: Annotated[tuple[tuple[float, ...], ...], BeforeValidator(checked_matrix)]
-    axial_series: AxialSeries = ()
-    attachment: Attachment = "average"
-    status: Status = "assumed"
-    note: str = ""
-
-    def __init__(self, /, **data: Any):
-        if "stiffness" in data:
-            data["matrix"] = data.pop("stiffness")
-        super().__init__(**data)
-
-    @model_validator(mode="after")
-    def _springs_or_none(self) -> Bearing:
-        for name, k in zip(DOF_NAMES, np.diag(self.matrix)):
-            if 0 < k < SOFTEST:
-                raise SceneError(
-                    f"the stiffness in {name} is {k:.6g}, below {SOFTEST:g} in SI, which is no spring: write 0",
-                    path=("matrix",),
-                )
-        return self
-
-    @property
-    def lo(self) -> float:
-        """Seat end towards y = 0, in m."""
-        return round(self.y - self.seat_width / 2, POSITION_DECIMALS)
-
-    @property
-    def hi(self) -> float:
-        """Seat end away from y = 0, in m."""
-        return round(self.y + self.seat_width / 2, POSITION_DECIMALS)
-
-    @property
-    def stiffness(self) -> np.ndarray:
-        """(6, 6) read-only, SI, order x y z thx thy thz: the bearing with its axial series springs
-        condensed in.
-        """
-        K = np.array(self.matrix)
-        if self.axial_series:
-            # the ring between bearing and spring carries no load of its own: condense its y out,
-            # couplings included
-            spring = 1 / sum(1 / k for k in self.axial_series)
-            K -= np.outer(K[:, 1], K[1, :]) / (K[1, 1] + spring)
-        K.flags.writeable = False
-        return K
-
-    def scaled(self, factor: float) -> Bearing:
-        """The same bearing with every stiffness, series springs included, times `factor` > 0."""
-        if not factor > 0:
-            raise SceneError("must be greater than zero", field="factor", value=show(factor))
-        return self.with_changes(
-            matrix=np.array(self.matrix) * factor,
-            axial_series=tuple(k * factor for k in self.axial_series),
-        )
-
-
-class Port(Model):
-    """The lumped point on the axis at `y` (m), attached to the outer surface from `lo` to `hi` (m)."""
-
-    name: str = "port"
-    y: Position
-    lo: Position
-    hi: Position
-    attachment: Attachment = "average"

@@ -1,6 +1,6 @@
 """From the tables of a scene file to a `Scene`: segments laid end to end, datums resolved.
 
-A problem of a place is told by the key of the file that it came from.
+A problem of a place is reported under the key of the file that it came from.
 """
 
 from __future__ import annotations
@@ -8,14 +8,36 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from solidgear.errors import SceneError
-from solidgear.scene import Bearing, Port, Scene, Segment
-from solidgear.scene.parts import Attachment
+from solidgear.scene.model import Scene
+from solidgear.scene.parts import Material, Segment
 from solidgear.scene.rules import shaft_problems, station_problems
-from solidgear.scene.tables import BearingTable, PortTable, SceneTable
+from solidgear.scene.stations import Attachment, Bearing, Port
+from solidgear.scene.tables import BearingTable, Piece, PortTable, SceneTable
 
 
 def resolve(table: SceneTable, numbers: list[int], name: str, problems: list[SceneError]) -> Scene:
-    """The scene, if nothing is wrong with the places of its parts nor was before."""
+    """The scene of a file, once nothing is wrong with it.
+
+    Parameters
+    ----------
+    table : SceneTable
+        Tables that are sound each by itself.
+    numbers : list of int
+        Place in the file of every bearing of `table`.
+    name : str
+        Of the scene.
+    problems : list of SceneError
+        What was found before; problems of places are added to it.
+
+    Returns
+    -------
+    Scene
+
+    Raises
+    ------
+    SceneError
+        If anything is wrong with the places of its parts, or was before: all of it.
+    """
     if not table.segment:
         raise SceneError.of(
             [*problems, SceneError("a scene needs at least one [[segment]]", path=("segment",))]
@@ -29,7 +51,8 @@ def resolve(table: SceneTable, numbers: list[int], name: str, problems: list[Sce
         raise SceneError.of(problems)
     bearings = {}
     for index, item in zip(numbers, table.bearing):
-        if item.from_ in datums:  # else said before, or measured from a bearing that was refused
+        # a datum that is missing was reported before, or is a bearing that was refused
+        if item.from_ in datums:
             try:
                 bearings[index] = _bearing(item, index, table.attachment, datums)
             except SceneError as error:
@@ -66,44 +89,24 @@ def _lay_out(table: SceneTable, problems: list[SceneError]):
     for index, piece in enumerate(table.segment):
         material = table.material.with_changes(**piece.material.model_dump(exclude_none=True))
         start = y
-        for name, part, length, outer0, outer1 in piece.pieces():
-            if length <= 1e-9:
-                key = {"frustum": "face_width", "backcone": "backcone", "shaft": "length"}[part]
+        for part in piece.pieces():
+            if part.length <= 1e-9:
                 problems.append(
                     SceneError(
                         "is less than a nanometre along the shaft: probably wrong units",
-                        path=("segment", index, key),
+                        path=("segment", index, _LENGTH_KEY[part.part]),
                     )
                 )
                 continue
-            inner = piece.bore / 2
             try:
-                segments.append(
-                    Segment(
-                        name=name,
-                        y0=y,
-                        y1=y + length,
-                        outer0=outer0,
-                        outer1=outer1,
-                        inner0=inner,
-                        inner1=inner,
-                        material=material,
-                        part=part,
-                    )
-                )
+                segments.append(_segment(part, y, piece.bore / 2, material))
             except SceneError as error:
-                problems.append(
-                    error.located(
-                        None,
-                        path=_file_path(
-                            ("segments", index, error.path[0]), table, range(index + 1)
-                        ),
-                    )
-                )
+                key = _file_path(("segments", index, error.path[0]), table, range(index + 1))
+                problems.append(error.located(None, path=key))
                 continue
             owner.append(index)
             y = segments[-1].y1
-            if part != "backcone":
+            if part.part != "backcone":
                 surface[piece.name] = (segments[-1].y0, y)
                 if piece.kind == "bevel_head":
                     datums[f"{piece.name}.mid_face"] = (segments[-1].y0 + y) / 2
@@ -114,6 +117,23 @@ def _lay_out(table: SceneTable, problems: list[SceneError]):
         }
     whole = len(segments) == sum(len(piece.pieces()) for piece in table.segment)
     return segments if whole else None, owner, surface, datums | {"end": y}
+
+
+_LENGTH_KEY = {"frustum": "face_width", "backcone": "backcone", "shaft": "length"}
+
+
+def _segment(piece: Piece, y: float, bore_radius: float, material: Material) -> Segment:
+    return Segment(
+        name=piece.name,
+        y0=y,
+        y1=y + piece.length,
+        outer0=piece.outer0,
+        outer1=piece.outer1,
+        inner0=bore_radius,
+        inner1=bore_radius,
+        material=material,
+        part=piece.part,
+    )
 
 
 def _bearing(item: BearingTable, index: int, attachment: str, datums: dict[str, float]) -> Bearing:

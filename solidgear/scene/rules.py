@@ -34,15 +34,33 @@ MOST_SEGMENTS, MOST_BEARINGS, MOST_SPRINGS = 100, 50, 20
 
 
 def steps(segments: Sequence[Segment]) -> tuple[float, ...]:
-    """y (m) where the outer radius jumps, end faces left out."""
+    """Places where the outer radius jumps, end faces left out.
+
+    Parameters
+    ----------
+    segments : sequence of Segment
+
+    Returns
+    -------
+    tuple of float
+        y, m.
+    """
     return tuple(
         b.y0 for a, b in zip(segments, segments[1:]) if abs(a.outer1 - b.outer0) > 1e-9 * a.outer1
     )
 
 
 def shaft_problems(segments: Sequence[Segment]) -> list[SceneError]:
-    """What is wrong with segments as one shaft; their proportions are judged once they hang
-    together.
+    """What is wrong with segments as one shaft.
+
+    Parameters
+    ----------
+    segments : sequence of Segment
+
+    Returns
+    -------
+    list of SceneError
+        Proportions are judged only of segments that lie end to end and have a sensible size.
     """
     if not segments:
         return [SceneError("a scene needs at least one segment", path=("segments",))]
@@ -52,7 +70,18 @@ def shaft_problems(segments: Sequence[Segment]) -> list[SceneError]:
 
 
 def too_many(what: str, count: int, most: int) -> str:
-    """The reason to refuse a list that no shaft has."""
+    """The reason to refuse a list longer than that of any shaft.
+
+    Parameters
+    ----------
+    what : {'segments', 'bearings'}
+    count, most : int
+        How many there are, and how many there may be.
+
+    Returns
+    -------
+    str
+    """
     hint = (
         "; let pieces that are one be one segment, and a few cones stand for a curve"
         if what == "segments"
@@ -97,25 +126,34 @@ def _sized(segments: Sequence[Segment]) -> Iterator[SceneError]:
 def _proportioned(segments: Sequence[Segment]) -> Iterator[SceneError]:
     end = segments[-1].y1
     for i, segment in enumerate(segments):
-        if i and not max(segments[i - 1].inner1, segment.inner0) < min(
-            segments[i - 1].outer1, segment.outer0
-        ):
+        before = segments[i - 1] if i else None
+        if before and not (max(before.inner1, segment.inner0) < min(before.outer1, segment.outer0)):
             reason = (
-                f'shares no end face with "{segments[i - 1].name}" (radii {segments[i - 1].inner1:.6g} to {segments[i - 1].outer1:.6g} m there, '
+                f'shares no end face with "{before.name}" '
+                f"(radii {before.inner1:.6g} to {before.outer1:.6g} m there, "
                 f"{segment.inner0:.6g} to {segment.outer0:.6g} m here); they must overlap"
             )
             yield SceneError(reason, path=("segments", i, "outer0"))
         for at in "01":
             outer, inner = getattr(segment, "outer" + at), getattr(segment, "inner" + at)
             if 2 * outer < SLIMMEST * end:
-                reason = f"a diameter of {2 * outer:.6g} m is under a thousandth of the length of the shaft, {end:.6g} m: probably wrong units"
+                reason = (
+                    f"a diameter of {2 * outer:.6g} m is under a thousandth of the length "
+                    f"of the shaft, {end:.6g} m: probably wrong units"
+                )
                 yield SceneError(reason, path=("segments", i, "outer" + at))
             if outer - inner < THINNEST * outer:
-                reason = f"leaves a wall of {outer - inner:.3g} m at a radius of {outer:.6g} m, under one in ten thousand: probably wrong units"
+                reason = (
+                    f"leaves a wall of {outer - inner:.3g} m at a radius of {outer:.6g} m, "
+                    "under one in ten thousand: probably wrong units"
+                )
                 yield SceneError(reason, path=("segments", i, "inner" + at))
         yield from _unlike(segments[0].material, segment.material, i)
         if segment.length < SHORTEST * end:
-            reason = f"a segment of {segment.length:.6g} m is under a millionth of the length of the shaft, {end:.6g} m: probably wrong units"
+            reason = (
+                f"a segment of {segment.length:.6g} m is under a millionth of the length "
+                f"of the shaft, {end:.6g} m: probably wrong units"
+            )
             yield SceneError(reason, path=("segments", i, "y1"))
 
 
@@ -127,7 +165,10 @@ def _unlike(first: Material, here: Material, i: int) -> Iterator[SceneError]:
     ):
         a, b = value(here), value(first)
         if max(a, b) > MOST_UNLIKE * min(a, b):
-            reason = f"a {what} of {a:.3g} {unit} beside {b:.3g} in the first segment: unlike by more than {MOST_UNLIKE:g}, which costs digits; probably wrong units"
+            reason = (
+                f"a {what} of {a:.3g} {unit} beside {b:.3g} in the first segment: unlike by more "
+                f"than {MOST_UNLIKE:g}, which costs digits; probably wrong units"
+            )
             yield SceneError(reason, path=("segments", i, "material", key))
             return
 
@@ -135,8 +176,7 @@ def _unlike(first: Material, here: Material, i: int) -> Iterator[SceneError]:
 def station_problems(
     segments: Sequence[Segment], port: Port | None, bearings: Mapping[int, Bearing]
 ) -> Iterator[SceneError]:
-    """Ports and seats lie on the shaft, on one smooth surface each, and seats do not share any of
-    it.
+    """Ports and seats lie on the shaft, on one smooth surface each, and seats do not overlap.
 
     Parameters
     ----------
@@ -145,6 +185,11 @@ def station_problems(
     bearings : mapping of int to Bearing
         By their place in the scene; those that cannot be used for another reason may be left out,
         and so may the port.
+
+    Yields
+    ------
+    SceneError
+        One for each problem.
     """
     length, jumps = segments[-1].y1, steps(segments)
     if len(bearings) > MOST_BEARINGS:
@@ -168,7 +213,8 @@ def station_problems(
                 path=(*path[:-1], "name"),
             )
         names.add(here.name)
-        if reason := _misplaced(here, what, places[:k], length, jumps):
+        reason = _misplaced(here, what, places[:k], length, jumps)
+        if reason:
             yield SceneError(reason, path=path)
 
 
@@ -184,7 +230,10 @@ def _misplaced(
     if here.lo < -TOUCH or here.hi > length + TOUCH:
         return f"{reach}, which must lie inside the shaft (0 to {length:.6g} m)"
     if here.hi - here.lo < SHORTEST * length:
-        return f"{reach}, under a millionth of the length of the shaft, {length:.6g} m: probably wrong units"
+        return (
+            f"{reach}, under a millionth of the length of the shaft, {length:.6g} m: "
+            "probably wrong units"
+        )
     for step in jumps:
         if here.lo + TOUCH < step < here.hi - TOUCH:
             return (

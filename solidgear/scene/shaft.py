@@ -9,16 +9,19 @@ if TYPE_CHECKING:
 
 
 class Shaft(Protocol):
-    """Segments end to end, and what is attached to them: a `Scene`, or something like it."""
+    """Segments end to end, and what is attached to them: a `Scene`, or something like it.
+
+    Builders and meshers ask for no more than this.
+    """
 
     @property
     def segments(self) -> tuple[Segment, ...]:
-        """From y = 0 on."""
+        """Segments from y = 0 on."""
 
     @property
     def stations(self) -> tuple[Port | Bearing, ...]:
-        """Each has name, y, lo, hi, attachment."""
+        """What is attached, the port first; each has name, y, lo, hi (m) and attachment."""
 
     @property
     def length(self) -> float:
-        """m."""
+        """Overall length, m."""

@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 import math
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, Literal, NamedTuple
 
 from pydantic import AfterValidator, Field, model_validator
 
 from solidgear.errors import SceneError
-from solidgear.scene import Ask, Material
 from solidgear.scene.bearing_stiffness import stiffness_matrix
-from solidgear.scene.parts import Attachment, AxialSeries, Model, Status
+from solidgear.scene.model import Ask
+from solidgear.scene.parts import Material, Model
+from solidgear.scene.stations import Attachment, AxialSeries, Status
 from solidgear.scene.units import (
     Angle,
     AxialSpring,
@@ -53,7 +54,33 @@ class _MaterialChange(Model):
     density: Density | None = None
 
 
-class _Piece(Model):
+class Piece(NamedTuple):
+    """One frustum of a [[segment]], by its radii at both ends, m."""
+
+    name: str
+    part: Literal["shaft", "frustum", "backcone"]
+    length: float
+    outer0: float
+    outer1: float
+
+    def turned(self) -> Piece:
+        """End for end."""
+        return self._replace(outer0=self.outer1, outer1=self.outer0)
+
+
+class _Table(Model):
+    """A table of the file."""
+
+    def _one_of(self, first: str, other: str, how: str) -> None:
+        """Refuse neither of two keys, or both."""
+        given = [key for key in (first, other) if getattr(self, key) is not None]
+        if not given:
+            raise SceneError(f"this key is missing; {how}", path=(first,))
+        if len(given) == 2:
+            raise SceneError(f"give either {first} or {other}, not both", path=(other,))
+
+
+class _Piece(_Table):
     name: SegmentName
     bore: Thickness = 0.0
     material: _MaterialChange = _MaterialChange()
@@ -76,8 +103,9 @@ class _Cylinder(_Piece):
         self._check_bore("diameter")
         return self
 
-    def pieces(self):
-        return [(self.name, "shaft", self.length, self.diameter / 2, self.diameter / 2)]
+    def pieces(self) -> list[Piece]:
+        radius = self.diameter / 2
+        return [Piece(self.name, "shaft", self.length, radius, radius)]
 
 
 class _Cone(_Piece):
@@ -91,8 +119,9 @@ class _Cone(_Piece):
         self._check_bore("start_diameter", "end_diameter")
         return self
 
-    def pieces(self):
-        return [(self.name, "shaft", self.length, self.start_diameter / 2, self.end_diameter / 2)]
+    def pieces(self) -> list[Piece]:
+        start, end = self.start_diameter / 2, self.end_diameter / 2
+        return [Piece(self.name, "shaft", self.length, start, end)]
 
 
 class _BevelHead(_Piece):
@@ -112,37 +141,32 @@ class _BevelHead(_Piece):
         if self.small_radius <= 0:
             longest = self.pitch_radius / math.sin(self.pitch_angle)
             raise SceneError(
-                f"passes the apex of the pitch cone; it must be shorter than the cone distance {longest:.6g} m",
+                "passes the apex of the pitch cone; "
+                f"it must be shorter than the cone distance {longest:.6g} m",
                 path=("face_width",),
             )
-        if self.bore >= 2 * self.small_radius:
+        narrow = 2 * self.small_radius
+        if self.bore >= narrow:
             raise SceneError(
-                f"must be smaller than the small end of the head (diameter {2 * self.small_radius:.6g} m)",
+                f"must be smaller than the small end of the head (diameter {narrow:.6g} m)",
                 path=("bore",),
             )
         return self
 
-    def pieces(self):
+    def pieces(self) -> list[Piece]:
         axial = self.face_width * math.cos(self.pitch_angle)
-        rows = [(self.name, "frustum", axial, self.small_radius, self.pitch_radius)]
+        large = self.pitch_radius
+        pieces = [Piece(self.name, "frustum", axial, self.small_radius, large)]
         if self.backcone > 0:
-            rows.append(
-                (
-                    f"{self.name}.backcone",
-                    "backcone",
-                    self.backcone,
-                    self.pitch_radius,
-                    self.pitch_radius,
-                )
-            )
-        return (
-            rows
-            if self.toe == "start"
-            else [(n, p, a, r1, r0) for n, p, a, r0, r1 in reversed(rows)]
-        )
+            pieces.append(Piece(f"{self.name}.backcone", "backcone", self.backcone, large, large))
+        if self.toe == "end":
+            pieces = [piece.turned() for piece in reversed(pieces)]
+        return pieces
 
 
-class BearingTable(Model):
+class BearingTable(_Table):
+    """A [[bearing]], its datum not yet resolved."""
+
     name: Name
     position: Length
     from_: str = Field("start", alias="from")
@@ -156,13 +180,8 @@ class BearingTable(Model):
 
     @model_validator(mode="after")
     def _one_stiffness(self):
-        if self.stiffness is None and self.matrix is None:
-            raise SceneError(
-                "this key is missing; write stiffness = {kxx = ...} or matrix = 6 rows of 6 numbers",
-                path=("stiffness",),
-            )
-        if self.stiffness is not None and self.matrix is not None:
-            raise SceneError("give either stiffness or matrix, not both", path=("matrix",))
+        how = "write stiffness = {kxx = ...} or matrix = 6 rows of 6 numbers"
+        self._one_of("stiffness", "matrix", how)
         return self
 
 
@@ -170,7 +189,9 @@ class _Housing(Model):
     axial: AxialSpring
 
 
-class PortTable(Model):
+class PortTable(_Table):
+    """The [port], its datum and surface not yet resolved."""
+
     name: Name = "port"
     at: str | None = None
     position: Length | None = None
@@ -188,17 +209,14 @@ class PortTable(Model):
             )
         if self.at is not None and (self.position is not None or self.from_ is not None):
             raise SceneError("give either at, or position with from, not both", path=("at",))
-        if self.attach_to is None and self.span is None:
-            raise SceneError(
-                'this key is missing; name the segment whose surface carries the port, or write span = ["0 mm", "58 mm"]',
-                path=("attach_to",),
-            )
-        if self.attach_to is not None and self.span is not None:
-            raise SceneError("give either attach_to or span, not both", path=("span",))
+        how = 'name the segment whose surface carries the port, or write span = ["0 mm", "58 mm"]'
+        self._one_of("attach_to", "span", how)
         return self
 
 
 class SceneTable(Model):
+    """A whole file, each table sound by itself."""
+
     title: str = ""
     source: str = ""
     attachment: Attachment = "average"

@@ -1,4 +1,4 @@
-"""A TOML file as plain tables, or one sentence that says where it is wrong and what would be right."""
+"""A TOML file as plain tables, or one sentence on where it is wrong and what would be right."""
 
 from __future__ import annotations
 
@@ -20,6 +20,15 @@ MOST_DOTS = 100
 
 def parse(where: str) -> dict[str, Any]:
     """Tables of a TOML file.
+
+    Parameters
+    ----------
+    where : str
+        Path of the file.
+
+    Returns
+    -------
+    dict
 
     Raises
     ------
@@ -64,18 +73,20 @@ def _text(where: str) -> str:
         raise SceneError(f"this is no scene: it is larger than {LARGEST // 1000} kB")
     if data.startswith((b"\xff\xfe", b"\xfe\xff")) or b"\0" in data:
         raise SceneError(
-            f"not UTF-8 text (byte {max(data.find(0), 0)}): it is UTF-16 or no text at all; save the file as UTF-8"
+            f"not UTF-8 text (byte {max(data.find(0), 0)}): it is UTF-16 or no text at all; "
+            "save the file as UTF-8"
         )
     text = data.decode("utf-8-sig")
     for number, line in enumerate(text.split("\n"), start=1):
         if line.count(".") > MOST_DOTS:
             raise SceneError(
-                f"not a scene: line {number} has more than {MOST_DOTS} full stops, and no key or matrix that many parts"
+                f"not a scene: line {number} has more than {MOST_DOTS} full stops, "
+                "and no key or matrix that many parts"
             )
     return text
 
 
-# ------------------------------------------------------------------------------------------------- plain words
+# --------------------------------------------------------------------------- plain words
 _NUMBER = r"[+-]?\d[\d_]*"
 #: what people write, by the line the parser stopped in, the more telling first: pattern and plain
 #: words, with groups of the pattern
@@ -106,13 +117,19 @@ _PARSER = {
     "Unterminated string": "a text is not closed: its last quotes are missing",
     "Unclosed array": "a list is not closed: its ] is missing",
     "Unclosed inline table": "a table in one line is not closed, or a comma is missing in it",
-    "Unescaped '\\' in a string": "a \\ in quotes starts a code; write it twice, or use single quotes",
+    "Unescaped '\\' in a string": (
+        "a \\ in quotes starts a code; write it twice, or use single quotes"
+    ),
     "Illegal character '\\n'": "a text is not closed: its last quotes are missing",
-    "Illegal character '\\r'": "lines end in a lone carriage return; save the file with the line ends of Unix or Windows",
+    "Illegal character '\\r'": (
+        "lines end in a lone carriage return; save the file with the line ends of Unix or Windows"
+    ),
     "Invalid date or datetime": "a date that is none",
     "Expected '=' after a key in a key/value pair": "a key is followed by = and its value",
     "Invalid statement": "a line is a [table], a key = value or a # comment",
-    "Expected newline or end of document after a statement": "one key = value a line, and nothing behind it",
+    "Expected newline or end of document after a statement": (
+        "one key = value a line, and nothing behind it"
+    ),
 }
 
 
@@ -128,7 +145,8 @@ def _what_is_wrong(text: str, message: str) -> str:
 
 
 def _plain_words(words: str, line: str) -> str:
-    if twice := _TWICE.match(words):
+    twice = _TWICE.match(words)
+    if twice:
         keys = re.findall(r"'([^']*)'", twice[1])
         name = ".".join(keys)
         if len(keys) == 1 and keys[0] in _LISTS:

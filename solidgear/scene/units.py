@@ -18,8 +18,8 @@ from pydantic import AfterValidator, BeforeValidator
 from solidgear.errors import SceneError, show
 
 #: dimension -> (SI unit, example as text, allowed powers of the radian). pint holds the radian to
-#: be dimensionless, so N, N/rad and N*rad look alike to it; the power is what tells an angle from a
-#: ratio and rpm from Hz.
+#: be dimensionless, so N, N/rad and N*rad look alike to it; the power is what sets an angle apart
+#: from a ratio, and rpm from Hz.
 DIMENSIONS: dict[str, tuple[str, str, tuple[int, ...]]] = {
     "length": ("m", "90 mm", (0,)),
     "angle": ("rad", "22.4 deg", (1,)),
@@ -40,7 +40,8 @@ LARGEST, SOFTEST = 1e24, 1e-30
 LONGEST = 200
 
 _TEXT = re.compile(
-    r"\s*(?P<number>[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?|[+-]?(?:nan|inf)\b)\s*(?P<unit>.*?)\s*",
+    r"\s*(?P<number>[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?|[+-]?(?:nan|inf)\b)"
+    r"\s*(?P<unit>.*?)\s*",
     re.S | re.I,
 )
 _COMMA = re.compile(r"\s*[+-]?\d*,\d")
@@ -70,6 +71,15 @@ def quantity(value: Any, dimension: str) -> float:
     SceneError
         Not a number, NaN, infinite or larger than `LARGEST`, no unit or an unknown one, or a unit
         of another dimension.
+
+    Examples
+    --------
+    >>> quantity("208 mm", "length"), quantity(0.208, "length")
+    (0.208, 0.208)
+    >>> quantity("3 kHz", "length")
+    Traceback (most recent call last):
+    ...
+    solidgear.errors.SceneError: "3 kHz": "kHz" is not a unit of length; write for example "90 mm"
     """
     si, example, _ = DIMENSIONS[dimension]
     if isinstance(value, str):
@@ -88,7 +98,8 @@ def quantity(value: Any, dimension: str) -> float:
         raise SceneError(f'must be a finite number, for example "{example}"', value=show(value))
     if abs(number) > LARGEST:
         raise SceneError(
-            f'is larger than {LARGEST:g}{f" {si}" if si else ""}, beyond anything physical; write for example "{example}"',
+            f"is larger than {LARGEST:g}{f' {si}' if si else ''}, beyond anything physical; "
+            f'write for example "{example}"',
             value=show(value),
         )
     return number
@@ -99,7 +110,8 @@ def _read_text(text: str, dimension: str) -> float:
     value, name = show(text), dimension.replace("_", " ")
     if len(text) > LONGEST:  # before any pattern looks at it: their time grows with the square
         raise SceneError(
-            f'an unknown unit, or no quantity at all: {len(text)} letters; write for example "{example}"',
+            f"an unknown unit, or no quantity at all: {len(text)} letters; "
+            f'write for example "{example}"',
             value=value,
         )
     if _COMMA.match(text):
@@ -114,7 +126,8 @@ def _read_text(text: str, dimension: str) -> float:
     if not unit:
         if si:
             raise SceneError(
-                f'has no unit: write a plain number (without quotes) for SI ({si}), or add a unit as in "{example}"',
+                f"has no unit: write a plain number (without quotes) for SI ({si}), "
+                f'or add a unit as in "{example}"',
                 value=value,
             )
         return number

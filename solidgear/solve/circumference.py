@@ -1,9 +1,9 @@
 """What a shape of a 3D mesh does around the axis: its parts in cos nt and sin nt, whatever the
 mesh.
 
-Nodes are gathered in bins of like (r, y), divided until each has just enough of them to tell the
-waves apart, so that the profile over the meridian may be anything; in each bin the radial,
-tangential and axial motions are fitted by waves around.
+Nodes are gathered in bins of like (r, y), divided until each has just enough of them to separate
+the waves, so that the profile over the meridian may be anything; in each bin the radial, tangential
+and axial motions are fitted by waves around.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ import numpy as np
 
 from solidgear.body import Body
 
-MOST = 16  # waves around that are told apart, where the mesh has the nodes for them
+MOST = 16  # waves around that are separated, where the mesh has the nodes for them
 BINS = 512
 
 
@@ -31,7 +31,18 @@ class Circumference:
     Attributes
     ----------
     waves : int
-        Highest number of waves that the nodes can tell.
+        Highest number of waves that the nodes can resolve.
+
+    Examples
+    --------
+    A ring that moves sideways is one wave around, whatever its radius:
+
+    >>> t = np.linspace(0.0, 2 * np.pi, 16, endpoint=False)
+    >>> ring = np.array([0.1 * np.sin(t), 0 * t, 0.1 * np.cos(t)])
+    >>> fit = Circumference(ring, np.full(16, 1 / 16))
+    >>> profile, share = fit(np.tile([1.0, 0.0, 0.0], (16, 1)))
+    >>> int(np.argmax(share.sum(axis=1)))
+    1
     """
 
     def __init__(self, nodes: np.ndarray, weight: np.ndarray):
@@ -113,8 +124,17 @@ def _divided(key, own, least: int):
 
 
 def of_body(body: Body) -> tuple[Circumference, Callable[[np.ndarray], np.ndarray]] | None:
-    """The fit for a body of one 3D block that knows its mesh, and a function from its vectors to
-    nodal displacements; else None.
+    """The fit for a body of one 3D block that knows its mesh, kept with the body.
+
+    Parameters
+    ----------
+    body : Body
+
+    Returns
+    -------
+    (Circumference, callable) or None
+        The fit, and a function from the body's vectors (n,) to nodal displacements (nodes, 3); None
+        for any other body.
     """
     block = body.blocks[0]
     nodes = getattr(body.geometry, "nodes", None)

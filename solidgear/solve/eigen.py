@@ -15,7 +15,8 @@ import scipy.linalg as sla
 import scipy.sparse.linalg as spla
 
 from solidgear.errors import SolidgearError
-from solidgear.solve.factor import FactorError, indefinite
+from solidgear.solve.backends.matrix import FactorError
+from solidgear.solve.factor import indefinite
 from solidgear.solve.lanczos import block_lanczos
 from solidgear.solve.refine import refine
 from solidgear.solve.supported import Supported
@@ -84,7 +85,12 @@ def lowest(supported: Supported, n: int, method: str | None = None) -> Solved:
         Number of modes wanted; two more are found, so that a pair at the end of the list is seen
         whole.
     method : {None, 'lanczos', 'arpack', 'dense'}
-        None takes the quickest for the size and the back end.  If block Lanczos does not converge ARPACK takes over.
+        None takes the quickest for the size and the back end.  If block Lanczos does not converge
+        ARPACK takes over.
+
+    Returns
+    -------
+    Solved
 
     Raises
     ------
@@ -126,9 +132,8 @@ def _dense(supported: Supported, wanted: int):
     heavy = supported.mass(np.eye(supported.size))
     try:
         root = np.linalg.cholesky(heavy)
-    except (
-        np.linalg.LinAlgError
-    ):  # unknowns without mass, such as the turns of a lumped beam without rotary inertia
+    except np.linalg.LinAlgError:
+        # unknowns without mass, such as the turns of a lumped beam without rotary inertia
         w, v = np.linalg.eigh((heavy + heavy.T) / 2)
         keep = w > 1e-14 * w[-1]
         root = v[:, keep] * np.sqrt(w[keep])
@@ -138,9 +143,8 @@ def _dense(supported: Supported, wanted: int):
     theta, w = theta[::-1][:wanted], w[:, ::-1][:, :wanted]
     if root.shape[0] == root.shape[1]:
         return theta, sla.solve_triangular(root.T, w, lower=False), "dense"
-    full = (
-        theta > 1e-14 * theta[0]
-    )  # no more modes than there are masses, less those of free rigid motions
+    # no more modes than there are masses, less those of free rigid motions
+    full = theta > 1e-14 * theta[0]
     return theta[full], moved @ (w[:, full] / theta[full]), "dense"
 
 
@@ -185,7 +189,8 @@ def _arpack(supported: Supported, wanted: int):
         )
     except spla.ArpackNoConvergence as error:
         raise SolidgearError(
-            f"modes: ARPACK found only {len(error.eigenvalues)} of {wanted} modes; ask for fewer modes"
+            f"modes: ARPACK found only {len(error.eigenvalues)} of {wanted} modes; "
+            "ask for fewer modes"
         ) from error
     theta = 1.0 / (value + shift)
     order = np.argsort(-theta)

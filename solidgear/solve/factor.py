@@ -1,5 +1,4 @@
-"""Factorisation of sparse symmetric matrices: which back end, whether it will fit, and what came of
-it.
+"""Factorisation of sparse symmetric matrices: which back end, whether it will fit, and the result.
 
 ``factorise(matrix)`` is for positive definite matrices, ``indefinite(matrix)`` for those whose
 negative eigenvalues are counted. The back ends themselves are in :mod:`solidgear.solve.backends`.
@@ -35,8 +34,10 @@ __all__ = [
 LARGE_PLANAR = 30_000_000  # entries
 # Solids below this size: what PARDISO gains is what it costs to load MKL (0.2 s, once).
 SMALL = 6_000
-# Fastest first, for solids.  Factorisation against PARDISO at 41 000 (HEX20) and 93 000 unknowns (TET10), two runs in turn on two busy cores: CHOLMOD
-# 0.65 to 1.3, MUMPS 1.4 to 1.8 with OpenBLAS; 2.7 and 5 with the reference BLAS (TET10, one run); SuperLU about 14 (HEX20, one run apart from these).
+# Fastest first, for solids. Factorisation against PARDISO at 41 000 (HEX20) and 93 000 unknowns
+# (TET10), two runs in turn on two busy cores: CHOLMOD 0.65 to 1.3, MUMPS 1.4 to 1.8 with OpenBLAS;
+# 2.7 and 5 with the reference BLAS (TET10, one run); SuperLU about 14 (HEX20, one run apart from
+# these).
 FASTEST = ("pardiso", "cholmod", "mumps", "superlu")
 COUNTING = ("pardiso", "mumps", "superlu")
 # Unknowns from which on a call can take so long that Ctrl-C must be heard meanwhile; handing it
@@ -61,7 +62,7 @@ class Factor:
     estimate_mb : float or None
         Memory it was expected to need, MB.
     nnz : int or None
-        Entries of the factor, where the back end tells.
+        Entries of the factor, where the back end reports them.
     """
 
     backend: str
@@ -71,7 +72,17 @@ class Factor:
     nnz: int | None = None
 
     def solve(self, rhs: np.ndarray) -> np.ndarray:
-        """Solve for one (n,) or several (n, k) right-hand sides."""
+        """Solve with the factor.
+
+        Parameters
+        ----------
+        rhs : (n,) or (n, k) ndarray
+
+        Returns
+        -------
+        ndarray
+            Of the same shape.
+        """
         return _heard(len(rhs), self._solve, rhs)
 
 
@@ -108,14 +119,25 @@ def factorise(
     planar : bool
         The matrix comes from a 1D or 2D mesh: fill is small and SuperLU is the fastest.
     border : int
-        Unknowns at the end that couple to very many others.  They are eliminated by hand, as a dense Schur complement:
-        left to a fill-reducing ordering they cost ten times the rest.
+        Unknowns at the end that couple to very many others.  They are eliminated by hand, as a
+        dense Schur complement: left to a fill-reducing ordering they cost ten times the rest.
+
+    Returns
+    -------
+    Factor
 
     Raises
     ------
     FactorError
         If the matrix holds NaN, is not positive definite to the back end, will not fit into memory,
         or the back end is not there.
+
+    Examples
+    --------
+    >>> matrix = sp.csr_matrix(np.array([[4.0, 1.0], [1.0, 3.0]]))
+    >>> factor = factorise(matrix, backend="superlu")
+    >>> bool(np.allclose(matrix @ factor.solve(np.ones(2)), 1.0))
+    True
     """
     matrix = _canonical(matrix)
     if border:
@@ -133,8 +155,10 @@ def indefinite(
     """Factor a symmetric matrix of any sign and count its negative eigenvalues (Sylvester's law of
     inertia).
 
-    Every count is backed by the backward error of one solve with a random load: a stable factorisation counts exactly for a matrix within
-    its backward error, so a count is in doubt only for eigenvalues that close to zero (one load is a sample, not a bound).  A back end whose factor is not sound, or whose pivots do not tell, is passed over for the next.
+    Every count is backed by the backward error of one solve with a random load: a stable
+    factorisation counts exactly for a matrix within its backward error, so a count is in doubt only
+    for eigenvalues that close to zero (one load is a sample, not a bound).  A back end whose factor
+    is not sound, or whose pivots give no count, is passed over for the next.
 
     Parameters
     ----------
@@ -151,6 +175,11 @@ def indefinite(
     ------
     FactorError
         If the matrix holds NaN, will not fit into memory, or the back end is not there.
+
+    Examples
+    --------
+    >>> indefinite(sp.csr_matrix(np.diag([2.0, -1.0, 3.0]))).negative
+    1
     """
     matrix = _canonical(matrix)
     if border:
@@ -178,8 +207,18 @@ def indefinite(
 
 
 def negative_pivots(matrix: sp.spmatrix, backend: str | None = None) -> tuple[int, str] | None:
-    """Number of negative eigenvalues of a sparse symmetric matrix and the back end that counted
-    them; None as for :func:`indefinite`.
+    """Number of negative eigenvalues of a sparse symmetric matrix.
+
+    Parameters
+    ----------
+    matrix : (n, n) sparse
+    backend : str, optional
+        As for :func:`factorise`.
+
+    Returns
+    -------
+    (int, str) or None
+        The count and the back end that made it; None as for :func:`indefinite`.
     """
     found = indefinite(matrix, backend)
     return None if found is None else (found.negative, found.backend)
@@ -208,8 +247,28 @@ def _canonical(matrix):
 def choice(
     matrix: sp.csr_matrix, backend: str | None = None, planar: bool = False
 ) -> tuple[str, str]:
-    """Name of the back end that will factor a matrix of such a shape and number of entries, and the
-    reason for it.
+    """The back end that will factor a matrix.
+
+    Parameters
+    ----------
+    matrix : (n, n) sparse
+        Its size and number of entries count.
+    backend, planar
+        As for :func:`factorise`.
+
+    Returns
+    -------
+    name, reason : str
+
+    Raises
+    ------
+    FactorError
+        If the one asked for is unknown or not there.
+
+    Examples
+    --------
+    >>> choice(sp.identity(100, format="csr"), backend="superlu")
+    ('superlu', 'asked for')
     """
     backend = backend or os.environ.get("SOLIDGEAR_BACKEND") or None
     n = matrix.shape[0]
@@ -218,7 +277,8 @@ def choice(
             raise FactorError(
                 f"unknown back end {backend!r}; use " + ", ".join(map(repr, BACKENDS))
             )
-        if why := _missing(backend):
+        why = _missing(backend)
+        if why:
             raise FactorError(f"back end {backend} was asked for but {why}")
         return backend, FORCED
     if planar and matrix.nnz < LARGE_PLANAR:
@@ -227,7 +287,8 @@ def choice(
         return "superlu", f"{n} unknowns are not above {SMALL}"
     absent = []
     for name in FASTEST:
-        if not (why := _missing(name)):
+        why = _missing(name)
+        if not why:
             break
         absent.append(f"{why}; {INSTALL[name]}")
     return name, f"{n} unknowns are above {SMALL}" + "".join(
@@ -246,7 +307,8 @@ def _factored(name, matrix, planar, definite):
     work = _heard(n, BACKENDS[name], matrix, definite=definite, **options)
     if free is not None and work.estimate_mb > free:
         raise NoRoom(
-            f"{matrix.shape[0]} unknowns need about {_mb(work.estimate_mb)} MB to factor by {name}, {_mb(free)} MB are free; "
+            f"{n} unknowns need about {_mb(work.estimate_mb)} MB to factor by {name}, "
+            f"{_mb(free)} MB are free; "
             "use a coarser mesh, or the harmonic model, which needs far less"
         )
     _heard(n, work.factor)
@@ -267,15 +329,14 @@ def _backward_error(matrix, solve):
     x = solve(rhs)
     if not np.isfinite(x).all():
         return np.inf
-    largest = np.linalg.norm(
-        matrix.data
-    )  # Frobenius: bounds the 2-norm from above, by no more than the bandwidth's root
+    # Frobenius: bounds the 2-norm from above, by no more than the bandwidth's root
+    largest = np.linalg.norm(matrix.data)
     return np.linalg.norm(matrix @ x - rhs) / (largest * np.linalg.norm(x) + np.linalg.norm(rhs))
 
 
 # --------------------------------------------------------------------------- border
 def _bordered(matrix, border, factor, corner_of):
-    """Factor the inner part by `factor`, the Schur complement of the last unknowns by `corner_of`."""
+    """Factor the inner part by `factor`, the Schur complement of the border by `corner_of`."""
     n = matrix.shape[0] - border
     if n == 0:  # a shaft that rigid seats hold from end to end: nothing but border
         return factor(matrix)

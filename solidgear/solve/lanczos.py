@@ -1,8 +1,10 @@
 """Block Lanczos for the largest eigenvalues of ``A^-1 M``, started from a good guess.
 
-One factorisation of A is at hand and a solve with eight right-hand sides costs little more than one, so eight directions are driven at a
-time.  Twins are found together whatever their symmetry, because a block holds both.  The basis is kept orthogonal in the mass norm in full
-(Golub and Underwood 1977; Grimes, Lewis and Simon 1994): it has some tens of columns, and what that costs is small against the solves.
+One factorisation of A is at hand and a solve with eight right-hand sides costs little more than
+one, so eight directions are driven at a time. Twins are found together whatever their symmetry,
+because a block holds both. The basis is kept orthogonal in the mass norm in full (Golub and
+Underwood 1977; Grimes, Lewis and Simon 1994): it has some tens of columns, and what that costs is
+small against the solves.
 """
 
 from __future__ import annotations
@@ -52,7 +54,8 @@ def block_lanczos(
     operator, mass : callable
         ``A^-1 f`` and ``M u`` on (n, p) arrays.
     start : (n, p) ndarray
-        First block.  Shapes that are orthogonal to it (by symmetry, say) are found only through rounding: add random columns.
+        First block.  Shapes that are orthogonal to it (by symmetry, say) are found only through
+        rounding: add random columns.
     wanted : int
         Number of pairs.
     tolerance : float
@@ -62,6 +65,20 @@ def block_lanczos(
         Largest number of basis vectors; beyond it the result is returned as not converged.
     seed : int
         Of the directions that replace an exhausted block.
+
+    Returns
+    -------
+    Found
+
+    Examples
+    --------
+    Both of a pair of equal eigenvalues are found:
+
+    >>> value = np.array([9.0, 9.0, 4.0, 1.0, 0.5])
+    >>> start = np.random.default_rng(0).standard_normal((5, 2))
+    >>> found = block_lanczos(lambda f: value[:, None] * f, lambda u: u, start, wanted=3)
+    >>> np.round(found.theta, 9)
+    array([9., 9., 4.])
     """
     n, width = start.shape
     most = min(most, n)
@@ -114,7 +131,8 @@ def _outside(x, inside, basis, heavy, mass):
     """Mass-orthonormal columns of what of ``x`` lies outside the basis, with the coefficients of
     ``x`` on them.
 
-    ``inside = heavy.T @ x``.  Twice is enough (Parlett 1998, section 6.9), with the columns brought to unit length in between.
+    ``inside = heavy.T @ x``. Twice is enough (Parlett 1998, section 6.9), with the columns brought
+    to unit length in between.
     """
     rounding = 1e-13 * float(np.linalg.norm(inside))
     y, _, first = _orthonormal(x - basis @ inside, mass, rounding)

@@ -2,7 +2,7 @@
 
 Symmetric shift-invert (:mod:`solidgear.solve.eigen`) about a small negative shift, with the
 bearings added to the factor of the free body by the Woodbury identity, and values from the
-stiffness itself (:mod:`solidgear.solve.refine`).  Rigid motions that no spring resists are known
+stiffness itself (:mod:`solidgear.solve.refine`). Rigid motions that no spring resists are known
 exactly; they are projected out and reported as 0 Hz instead of as noise.
 """
 
@@ -21,22 +21,20 @@ from solidgear.solve.eigen import Raw
 from solidgear.solve.naming import Names, Projection, numbered
 from solidgear.solve.parts import (
     Part,
-    Uncounted,
     complete,
-    families,
+    family_rows,
     further_parts,
     reach_of,
     solved_parts,
 )
+from solidgear.solve.soundness import sound
 from solidgear.solve.statics import SHIFT, factors
 from solidgear.solve.supported import decoupled
 
 if TYPE_CHECKING:
-    from solidgear.body.model import Holding
+    from solidgear.body.supports import Holding
 
 STATIONS = 13
-#: Relative error of a frequency above which it is not told.
-WRONG = 1e-3
 
 
 @dataclass(frozen=True)
@@ -85,15 +83,20 @@ class ModeSet:
     ----------
     fidelity : str
     modes : tuple of Mode
-    stations, gram : ndarray
-        Where section motions are told, and their mass matrix.
+    stations : (s,) ndarray
+        Places of section motions, m.
+    gram : (6 s, 6 s) ndarray
+        Their mass matrix.
     evidence : dict
-        ``residual`` (largest ``|A^-1 r|_A / |u|_A`` of a mode and its residual force, brought back from the shifted to the true eigenvalue),
-        ``error`` (largest :attr:`Mode.error`), ``steps`` (corrections that were needed), ``orthogonality`` (largest entry of ``U'MU - I``),
-        ``rigid_modes``, ``shift_rad2``, ``coupling_bound``, ``backend``, ``method``; ``families``, a list of ``{family, n, counted, modes_below,
-        lowest_hz}`` with ``n`` None for a body that holds all motions in one and ``above`` where a row stands for all of more waves, which begin
-        at ``lowest_hz`` at the earliest; ``torn_pairs`` where the mesh has split twins too far apart to be taken for one pair.  Where asked for,
-        ``count``, ``count_seconds`` and ``complete_below_hz``, below which no mode of any family listed is missing.
+        ``residual`` (largest ``|A^-1 r|_A / |u|_A`` of a mode and its residual force, brought back
+        from the shifted to the true eigenvalue), ``error`` (largest :attr:`Mode.error`), ``steps``
+        (corrections that were needed), ``orthogonality`` (largest entry of ``U'MU - I``),
+        ``rigid_modes``, ``shift_rad2``, ``coupling_bound``, ``backend``, ``method``; ``families``,
+        a list of ``{family, n, counted, modes_below, lowest_hz}`` with ``n`` None for a body that
+        holds all motions in one and ``above`` where a row stands for all of more waves, which begin
+        at ``lowest_hz`` at the earliest; ``torn_pairs`` where the mesh has split twins too far
+        apart to be taken for one pair. Where asked for, ``count``, ``count_seconds`` and
+        ``complete_below_hz``, below which no mode of any family listed is missing.
     beyond : tuple of Mode
         Further modes of the body's own blocks that were solved and lie above the end of the list,
         because ovalising ones took their places.
@@ -108,7 +111,7 @@ class ModeSet:
 
     @property
     def frequency_hz(self) -> np.ndarray:
-        """Distinct natural frequencies, Hz."""
+        """(k,) distinct natural frequencies, Hz."""
         return np.array([m.frequency_hz for m in self.modes])
 
     @property
@@ -122,7 +125,17 @@ class ModeSet:
         return tuple(m.multiplicity for m in self.modes)
 
     def named(self, name: str) -> Mode | None:
-        """The mode of that name, also among those beyond the end of the list, or None."""
+        """The mode of that name, also among those beyond the end of the list.
+
+        Parameters
+        ----------
+        name : str
+            Such as ``bending 1``.
+
+        Returns
+        -------
+        Mode or None
+        """
         return next((m for m in (*self.modes, *self.beyond) if m.name == name), None)
 
 
@@ -159,8 +172,8 @@ def modes(
         Check by the inertia of another factor that no mode was missed (Sylvester's law); costs
         about one more factorisation.
     ovalising : bool
-        Solve the families of two waves around and more that begin below the highest mode told, for
-        a body that can build them (a harmonic solid).
+        Solve the families of two waves around and more that begin below the highest mode reported,
+        for a body that can build them (a harmonic solid).
 
     Returns
     -------
@@ -171,6 +184,22 @@ def modes(
     SolidgearError
         If ``n`` is not positive, the method unknown, a mode was missed and could not be found, or
         rounding leaves a frequency too few digits.
+
+    Examples
+    --------
+    A slender free rod, whose first bending is ``(4.73 / L)^2 sqrt(E I / rho A) / 2 pi``:
+
+    >>> import numpy as np
+    >>> import solidgear as sg
+    >>> rod = sg.Segment.cylinder("rod", length=0.6, diameter=0.02)
+    >>> scene = sg.Scene.from_parts([rod])
+    >>> found = sg.modes(sg.build(scene, "euler"), scene, n=2)
+    >>> found.names[-1], found.multiplicity[-1]
+    ('bending 1', 2)
+    >>> wave = np.sqrt(sg.STEEL.E / sg.STEEL.density) * 0.02 / 4
+    >>> formula = (4.730041 / 0.6) ** 2 * wave / (2 * np.pi)
+    >>> bool(np.isclose(found.named("bending 1").frequency_hz, formula, rtol=1e-6))
+    True
     """
     if n < 1:
         raise SolidgearError(f"modes: n = {n} is not a number of modes; ask for 1 or more")
@@ -193,10 +222,10 @@ def modes(
     project = Projection(body, np.linspace(0.0, body.length, STATIONS))
     names = Names(body, supports, project)
     rigid = [r for part in parts for r in part.everywhere(part.solved.free)]
-    told, beyond, torn, every = _named(body, names, parts, n, max_frequency)
+    listed, beyond, torn, every = _named(body, names, parts, n, max_frequency)
     evidence = {
         "residual": max((r.residual for r in _lowest(parts, n + 2)), default=0.0),
-        "error": max((m.error for m in told), default=0.0),
+        "error": max((m.error for m in listed), default=0.0),
         "steps": max(part.solved.steps for part in parts),
         "orthogonality": max(part.solved.orthogonality for part in parts),
         "rigid_modes": len(rigid),
@@ -204,7 +233,7 @@ def modes(
         "coupling_bound": bound,
         "backend": "+".join(sorted({f.backend for f in factors(body)})),
         "method": "+".join(dict.fromkeys(part.solved.method for part in parts)),
-        "families": _families(parts, left, every),
+        "families": family_rows(parts, left, every),
     }
     if count:
         evidence |= {"count": verdicts, "count_seconds": spent}
@@ -216,7 +245,7 @@ def modes(
         evidence["torn_pairs"] = torn
     return ModeSet(
         body.fidelity,
-        (*_rigid(names, rigid), *told),
+        (*_rigid(names, rigid), *listed),
         np.linspace(0.0, body.length, STATIONS),
         project.gram,
         evidence,
@@ -251,14 +280,14 @@ def _rigid(names: Names, raw: list[Raw]):
 
 
 def _named(body, names: Names, parts: list[Part], n: int, max_frequency: float | None):
-    """Modes told, own modes beyond the end of the list, torn pairs, and (family, frequency, shapes)
-    of all that was found: no pair is cut in two.
+    """Modes of the list, own modes beyond the end of the list, torn pairs, and (family, frequency,
+    shapes) of all that was found: no pair is cut in two.
     """
     raw = _lowest(parts, sum(len(part.everywhere(part.solved.elastic)) for part in parts))
     shapes = [names.describe(r.vectors) for r in raw]
     groups, torn = names.pairs(shapes, np.array([r.value for r in raw]))
     labels = numbered([shapes[group[0]].family for group in groups])
-    told: list[Mode] = []
+    listed: list[Mode] = []
     beyond: list[Mode] = []
     every: list[tuple[str, float, int]] = []
     of: dict[int, Mode] = {}
@@ -283,7 +312,7 @@ def _named(body, names: Names, parts: list[Part], n: int, max_frequency: float |
         )
         own = all(b < FURTHER for r in members for b in r.vectors)
         if room > 0:
-            told.append(_sound(body, mode, parts))
+            listed.append(sound(body, mode, parts))
             of |= dict.fromkeys(group, mode)
         elif own and own_room > 0:
             beyond.append(mode)
@@ -294,80 +323,4 @@ def _named(body, names: Names, parts: list[Part], n: int, max_frequency: float |
         for i, j in torn
         if i in of and j in of
     ]
-    return tuple(told), tuple(beyond), pairs, every
-
-
-def _sound(body, mode: Mode, parts: list[Part]) -> Mode:
-    """The mode, unless rounding leaves too little of its frequency."""
-    if mode.error > WRONG:
-        told = f"modes: rounding may move {mode.name} ({mode.frequency_hz:.6g} Hz) by {100 * mode.error:.2g} %"
-        if _by_springs(mode, parts) > mode.error / 2:
-            raise SolidgearError(
-                f"{told}: bearings resist it by the difference of far larger stiffnesses that couple, and its sixteen digits are not enough; give the bearing a "
-                "stiffness that is clearly positive in every direction, or zero"
-            )
-        highest = (
-            max(part.supported.highest for part in parts) / (2 * np.pi * mode.frequency_hz) ** 2
-        )
-        raise SolidgearError(
-            f"{told}: the smallest cell of the {body.fidelity} body is so stiff that the "
-            f"eigenvalues span {np.log10(highest):.0f} digits of the 16 there are; use a coarser mesh (lower order, fewer layers), or a beam for a shaft as slender as this"
-        )
-    return mode
-
-
-def _by_springs(mode: Mode, parts: list[Part]) -> float:
-    """Share of the relative error of a frequency that comes from the rounding of the bearings'
-    stiffness.
-    """
-    value, lost = (2 * np.pi * mode.frequency_hz) ** 2, 0.0
-    for part, vectors in (
-        (p, v) for p in parts for v in mode.vectors if set(v) & set(p.supported.group)
-    ):
-        u = np.concatenate(
-            [
-                vectors.get(b, np.zeros(block.size))
-                for b, block in zip(part.supported.group, part.supported.blocks)
-            ]
-        )
-        lost = max(lost, float(part.supported.spring_rounding(u[:, None])[0]))
-    return lost / (2 * value)
-
-
-def _families(
-    parts: list[Part], left: list[Uncounted], found: list[tuple[str, float, int]]
-) -> list[dict]:
-    """What was solved and counted, family by family, and what was left alone: see :class:`ModeSet`."""
-    below = min(
-        (p.verdict["below_hz"] for p in parts if p.verdict and p.verdict["checked"]), default=np.inf
-    )
-    rows = []
-    for family, waves, counted in families(parts):
-        mine = [
-            (hz, shapes)
-            for name, hz, shapes in found
-            if waves is None or name == family or (family, name) == ("axial", "breathing")
-        ]
-        lowest = min((hz for hz, _ in mine), default=None)
-        rows.append(
-            {
-                "family": family,
-                "n": waves,
-                "counted": counted,
-                "modes_below": sum(shapes for hz, shapes in mine if hz < below),
-                "lowest_hz": lowest,
-            }
-        )
-    rows.sort(key=lambda row: (row["n"] or 0, row["family"]))
-    for u in left:
-        rows.append(
-            {
-                "family": f"ovalising n={u.n}",
-                "n": u.n,
-                "counted": False,
-                "modes_below": 0,
-                "lowest_hz": u.begins_hz,
-                "above": u.and_above,
-            }
-        )
-    return rows
+    return tuple(listed), tuple(beyond), pairs, every

@@ -2,13 +2,13 @@
 numbers by frequency.
 
 Families are ``axial``, ``breathing`` and ``torsion`` (nothing varies around the axis: n = 0),
-``bending`` (n = 1) and ``ovalising n=2`` and so on. A body in blocks knows n by the block, whatever
-its sections do; a 3D mesh is asked by :mod:`solidgear.solve.circumference`.
+``bending`` (n = 1) and ``ovalising n=2`` and so on. For a body in blocks n is that of the block,
+whatever its sections do; a 3D mesh is asked by :mod:`solidgear.solve.circumference`.
 
 Two modes are one pair only where symmetry makes them so: the same profile over the meridian, a
 quarter of a wave further round, with bearings that a quarter turn leaves as they are, or with n >=
-2, which bearings do not touch.  Twins that the mesh has split beyond its tolerance stay apart and
-are told.
+2, which bearings do not touch. Twins that the mesh has split beyond its tolerance stay apart and
+are reported.
 """
 
 from __future__ import annotations
@@ -27,8 +27,8 @@ FAMILIES = {"bending": (0, 2, 3, 5), "axial": (1,), "torsion": (4,)}
 #: Bearings that a quarter turn changes by no more than this, relative, split a pair by half of it
 #: at most.
 ALIKE = 1e-6
-#: Eigenvalues of twins of two and more waves that a 3D mesh has split by this much are still told
-#: as one pair.
+#: Eigenvalues of twins of two and more waves that a 3D mesh has split by this much are still
+#: reported as one pair.
 OVAL_TOLERANCE = 1e-2
 
 
@@ -61,7 +61,19 @@ class Shape:
 
 
 class Projection:
-    """Mass-weighted projection of shapes onto section motions along the axis."""
+    """Mass-weighted projection of shapes onto section motions along the axis.
+
+    Parameters
+    ----------
+    body : Body
+    stations : (s,) ndarray
+        Axial positions, ascending, m; the first and the last at the ends of the shaft.
+
+    Attributes
+    ----------
+    gram : (6 s, 6 s) ndarray
+        Mass matrix of section motions.
+    """
 
     def __init__(self, body: Body, stations: np.ndarray):
         size = 6 * len(stations)
@@ -86,7 +98,17 @@ class Projection:
         return out.reshape(self.count, 6)
 
     def shares(self, motion: np.ndarray) -> dict[str, float]:
-        """Modal mass described by each family of section motions."""
+        """Modal mass described by each family of section motions.
+
+        Parameters
+        ----------
+        motion : (s, 6) ndarray
+
+        Returns
+        -------
+        dict of str to float
+            By the names of ``FAMILIES``.
+        """
         out = {}
         for family, components in FAMILIES.items():
             at = np.array([6 * s + c for s in range(self.count) for c in components])
@@ -96,11 +118,26 @@ class Projection:
 
 
 def alike(supports: Supports) -> float:
-    """Bound on the relative change of any eigenvalue by a quarter turn of the bearings; infinite
-    where it is not small.
+    """Bound on the relative change of any eigenvalue by a quarter turn of the bearings.
 
     If ``|v' D v| <= eps v' K v`` for the change D of the stiffness K, then no eigenvalue of the
     supported body moves by more than eps (Rayleigh).
+
+    Parameters
+    ----------
+    supports : Supports
+
+    Returns
+    -------
+    float
+        Infinite where the change is not small.
+
+    Examples
+    --------
+    >>> round(alike(Supports(("A",), np.diag([1e8, 0.0, 1e8, 0.0, 0.0, 0.0]))), 12)
+    0.0
+    >>> round(alike(Supports(("A",), np.diag([1e8, 0.0, 2e8, 0.0, 0.0, 0.0]))), 12)
+    1.0
     """
     k = supports.stiffness
     if not supports.ports:
@@ -138,7 +175,17 @@ class Names:
         self._round = of_body(body)
 
     def describe(self, vectors: dict[int, np.ndarray]) -> Shape:
-        """Family, waves around, section motions and profile of one shape."""
+        """Family, waves around, section motions and profile of one shape.
+
+        Parameters
+        ----------
+        vectors : dict of int to (n,) ndarray
+            By block index.
+
+        Returns
+        -------
+        Shape
+        """
         motion = self.project(vectors)
         shares = self.project.shares(motion)
         profile: np.ndarray | dict[int, np.ndarray] = vectors
@@ -196,8 +243,16 @@ class Names:
         return float(radial @ (block.mass @ radial)) / float(v @ (block.mass @ v))
 
     def overlap(self, a: Shape, b: Shape) -> float:
-        """How much one shape, a quarter of a wave further round, is like another: 1 for twins, 0
-        for modes of other profiles (a MAC).
+        """How much one shape, a quarter of a wave further round, is like another (a MAC).
+
+        Parameters
+        ----------
+        a, b : Shape
+
+        Returns
+        -------
+        float
+            1 for twins, 0 for modes of other profiles.
         """
         if (
             a.family != b.family
@@ -285,14 +340,33 @@ class Names:
 
 
 def waves_of(block: Block) -> int:
-    """Waves around the axis of the motions of a block."""
+    """Waves around the axis of the motions of a block.
+
+    Parameters
+    ----------
+    block : Block
+
+    Returns
+    -------
+    int
+    """
     if block.name.startswith("ovalising_"):
         return int(block.name.removeprefix("ovalising_"))
     return 1 if set(block.components) & set(FAMILIES["bending"]) else 0
 
 
 def family_of(block: Block) -> str:
-    """Family of the motions of a block, ``all`` for one that holds every motion."""
+    """Family of the motions of a block.
+
+    Parameters
+    ----------
+    block : Block
+
+    Returns
+    -------
+    str
+        ``all`` for a block that holds every motion.
+    """
     if len(block.components) == 6:
         return "all"
     if block.name.startswith("ovalising_"):
@@ -301,7 +375,21 @@ def family_of(block: Block) -> str:
 
 
 def numbered(families: list[str]) -> list[str]:
-    """``bending 1``, ``bending 2``, ``axial 1`` ... in the order given."""
+    """Names of modes from their families, in the order given.
+
+    Parameters
+    ----------
+    families : list of str
+
+    Returns
+    -------
+    list of str
+
+    Examples
+    --------
+    >>> numbered(["bending", "axial", "bending"])
+    ['bending 1', 'axial 1', 'bending 2']
+    """
     count: dict[str, int] = {}
     out = []
     for family in families:

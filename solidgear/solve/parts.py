@@ -1,7 +1,7 @@
 """The groups of blocks a supported body falls into, each solved as far as the modes asked for
 reach, and counted.
 
-Symmetry and bearings decide which blocks belong together.  A body that can build further
+Symmetry and bearings decide which blocks belong together. A body that can build further
 circumferential families (a harmonic solid) is asked for those that may begin below the highest mode
 wanted: by a closed form that no family undercuts and that grows with n, then by a light mesh.
 """
@@ -36,6 +36,7 @@ class Part:
     ----------
     supported : Supported
     ask : int
+        Number of modes to search for.
     solved : Solved
         Set by the first search.
     twins : list of int
@@ -44,7 +45,7 @@ class Part:
         Added to block indices: that of a further circumferential family stands apart from those of
         the body's own.
     verdict : dict or None
-        What the count says.
+        Result of the count, see :func:`complete`.
     """
 
     supported: Supported
@@ -65,26 +66,49 @@ class Part:
         return 2 if waves_of(self.blocks[0]) > 1 else 1 + len(self.twins)
 
     def everywhere(self, found: list[Raw]) -> list[Raw]:
-        """Eigenpairs of the group and of its twins."""
-        own = [
-            Raw(r.value, {self.first + b: v for b, v in r.vectors.items()}, r.residual, r.error)
-            for r in found
-        ]
-        return own + [
-            Raw(r.value, {twin: next(iter(r.vectors.values()))}, r.residual, r.error)
-            for twin in self.twins
-            for r in found
-        ]
+        """Eigenpairs of the group and of its twins.
+
+        Parameters
+        ----------
+        found : list of Raw
+            Of the group.
+
+        Returns
+        -------
+        list of Raw
+        """
+        out = []
+        for r in found:
+            vectors = {self.first + b: v for b, v in r.vectors.items()}
+            out.append(Raw(r.value, vectors, r.residual, r.error))
+        for twin in self.twins:
+            for r in found:
+                vectors = {twin: next(iter(r.vectors.values()))}
+                out.append(Raw(r.value, vectors, r.residual, r.error))
+        return out
 
     def values(self) -> list[float]:
-        """Elastic eigenvalues with every shape counted."""
+        """Elastic eigenvalues with every shape counted, rad^2/s^2.
+
+        Returns
+        -------
+        list of float
+        """
         return [r.value for r in self.solved.elastic for _ in range(self.copies)]
 
 
 @dataclass(frozen=True)
 class Uncounted:
-    """A family that was left alone, and the frequency (Hz) above which it begins; the last one
-    stands for all of more waves.
+    """A family that was left alone.
+
+    Attributes
+    ----------
+    n : int
+        Waves around the axis.
+    begins_hz : float
+        The family begins above this frequency.
+    and_above : bool
+        Whether it stands for all families of more waves too.
     """
 
     n: int
@@ -95,8 +119,27 @@ class Uncounted:
 def solved_parts(
     body: Body, supports: Supports, spring: np.ndarray, n: int, method: str | None
 ) -> list[Part]:
-    """Eigenpairs of all groups of a body's own blocks, each searched only as far as the ``n``
-    lowest of all reach.
+    """Eigenpairs of all groups of a body's own blocks, each searched only as far as the lowest of
+    all reach.
+
+    Parameters
+    ----------
+    body : Body
+    supports : Supports
+    spring : (6 m, 6 m) ndarray
+        From :func:`~solidgear.solve.supported.decoupled`.
+    n : int
+        Number of shapes wanted in all.
+    method : {None, 'lanczos', 'arpack', 'dense'}
+
+    Returns
+    -------
+    list of Part
+
+    Raises
+    ------
+    SolidgearError
+        As :func:`~solidgear.solve.eigen.lowest`.
     """
     parts: list[Part] = []
     for group in groups(body, supports, spring):
@@ -108,7 +151,7 @@ def solved_parts(
         else:
             parts.append(Part(Supported(body, supports, spring, group), n))
     if len(parts) > 1:
-        # Bending pairs make most of a spectrum; whoever is asked for too little is asked again.
+        # Bending pairs make most of a spectrum; a group searched too little is searched again.
         for part in parts:
             part.ask = n // 3 + 1 if part.copies > 1 else n // 4 + 1
     waiting = parts
@@ -128,7 +171,21 @@ def solved_parts(
 
 
 def reach_of(parts: list[Part], n: int, highest: float = np.inf) -> float:
-    """Highest eigenvalue that is used: that of the last of ``n`` shapes, or the highest allowed."""
+    """Highest eigenvalue that is used: that of the last of ``n`` shapes, or the highest allowed.
+
+    Parameters
+    ----------
+    parts : list of Part
+        Solved.
+    n : int
+    highest : float
+        rad^2/s^2.
+
+    Returns
+    -------
+    float
+        rad^2/s^2.
+    """
     values = sorted(v for part in parts for v in part.values())
     return min(values[min(n, len(values)) - 1], highest) if values else 0.0
 
@@ -177,7 +234,7 @@ def further_parts(
         )
         while True:
             part.solved = lowest(part.supported, part.ask, method)
-            # Two shapes for every value: half of n is all that can be told.
+            # Two shapes for every value: half of n is all that the list has room for.
             if part.solved.elastic[-1].value > 1.01 * limit or part.ask > n // 2 + 1:
                 break
             part.ask = min(2 * part.ask, n // 2 + 2)
@@ -190,8 +247,20 @@ def _hz(value: float) -> float:
 
 
 def complete(part: Part, reach: float, method: str | None) -> dict:
-    """Count the modes of a part, and search again with more vectors where one was missed; the
-    verdict, which the part keeps.
+    """Count the modes of a part, and search again with more vectors where one was missed.
+
+    Parameters
+    ----------
+    part : Part
+        Solved; it keeps the verdict.
+    reach : float
+        Highest eigenvalue that is used, rad^2/s^2.
+    method : {None, 'lanczos', 'arpack', 'dense'}
+
+    Returns
+    -------
+    dict
+        ``checked``, with ``below_hz``, ``modes`` and ``backend``, or with ``why`` not.
 
     Raises
     ------
@@ -213,11 +282,15 @@ def complete(part: Part, reach: float, method: str | None) -> dict:
         if EPS * stiffest > DOUBT * seen.distance:
             part.verdict = {
                 "checked": False,
-                "why": f"the stiffest cell lies {stiffest:.0e} times above the modes, so that rounding turns signs of the factor",
+                "why": (
+                    f"the stiffest cell lies {stiffest:.0e} times above the modes, "
+                    "so that rounding turns signs of the factor"
+                ),
             }
             return part.verdict
         raise SolidgearError(
-            f"modes: {seen.found} modes were found below {_hz(seen.below):.6g} Hz but the factor counts {seen.counted}; ask for more modes (n = {n})"
+            f"modes: {seen.found} modes were found below {_hz(seen.below):.6g} Hz "
+            f"but the factor counts {seen.counted}; ask for more modes (n = {n})"
         )
     if seen is None:
         part.verdict = {"checked": False, "why": f"no inertia from {supported.backend}"}
@@ -232,8 +305,16 @@ def complete(part: Part, reach: float, method: str | None) -> dict:
 
 
 def families(parts: list[Part]) -> list[tuple[str, int | None, bool]]:
-    """(family, waves around or None for all, whether counted) of everything that was solved, lowest
-    number of waves last among single ones.
+    """Everything that was solved, lowest number of waves last among single families.
+
+    Parameters
+    ----------
+    parts : list of Part
+
+    Returns
+    -------
+    list of (str, int or None, bool)
+        Family, waves around the axis (None for all), and whether it was counted.
     """
     rows: dict[str, tuple[int | None, bool]] = {}
     for part in parts:
@@ -244,6 +325,57 @@ def families(parts: list[Part]) -> list[tuple[str, int | None, bool]]:
             )
             rows[name] = (None if name == "all" else waves_of(block), counted)
     return [(name, *row) for name, row in rows.items()]
+
+
+def family_rows(
+    parts: list[Part], left: list[Uncounted], found: list[tuple[str, float, int]]
+) -> list[dict]:
+    """Which families were solved and counted, and which were left alone.
+
+    Parameters
+    ----------
+    parts : list of Part
+    left : list of Uncounted
+    found : list of (str, float, int)
+        Family, frequency (Hz) and number of shapes of every mode.
+
+    Returns
+    -------
+    list of dict
+        ``families`` of the evidence of :class:`~solidgear.solve.modes.ModeSet`.
+    """
+    checked = [p.verdict for p in parts if p.verdict and p.verdict["checked"]]
+    below = min((verdict["below_hz"] for verdict in checked), default=np.inf)
+    rows = []
+    for family, waves, counted in families(parts):
+        mine = [
+            (hz, shapes)
+            for name, hz, shapes in found
+            if waves is None or name == family or (family, name) == ("axial", "breathing")
+        ]
+        lowest = min((hz for hz, _ in mine), default=None)
+        rows.append(
+            {
+                "family": family,
+                "n": waves,
+                "counted": counted,
+                "modes_below": sum(shapes for hz, shapes in mine if hz < below),
+                "lowest_hz": lowest,
+            }
+        )
+    rows.sort(key=lambda row: (row["n"] or 0, row["family"]))
+    for u in left:
+        rows.append(
+            {
+                "family": f"ovalising n={u.n}",
+                "n": u.n,
+                "counted": False,
+                "modes_below": 0,
+                "lowest_hz": u.begins_hz,
+                "above": u.and_above,
+            }
+        )
+    return rows
 
 
 def _is_twin(body, supports, spring, group: list[int], other: list[int]) -> bool:

@@ -1,12 +1,12 @@
 """Ritz values on the stiffness itself, how wrong they can be, and the steps that mend them.
 
 An eigensolver that works with a computed inverse of ``A = K + L L' + sigma M`` finds the eigenpairs
-of what rounding has made of it.  Here nothing of a value comes from that inverse: energies are
-taken from K and from the springs L, with rigid motions split off first, so that no large stiffness
-has to cancel.  The residual ``r = K u + L L'u - lambda M u`` is measured where it bounds the error:
-with ``rho = |A^-1 r|_A / |u|_A`` an eigenvalue of ``A, M`` lies within ``rho`` of ``mu = lambda +
+of what rounding has made of it. Here nothing of a value comes from that inverse: energies are taken
+from K and from the springs L, with rigid motions split off first, so that no large stiffness has to
+cancel. The residual ``r = K u + L L'u - lambda M u`` is measured where it bounds the error: with
+``rho = |A^-1 r|_A / |u|_A`` an eigenvalue of ``A, M`` lies within ``rho`` of ``mu = lambda +
 sigma``, relative, and within ``rho^2 / gap`` if no other comes nearer than ``gap`` (Temple; Kato
-1949; Parlett 1998, section 11.7, for clusters).  Where that is not small enough, ``A^-1 r`` is the
+1949; Parlett 1998, section 11.7, for clusters). Where that is not small enough, ``A^-1 r`` is the
 correction itself: it joins the basis and the best of both is taken (Knyazev 2001).
 """
 
@@ -27,7 +27,7 @@ EPS = float(np.finfo(float).eps)
 #: Rounding of an energy from which on it is worth products in extended precision, where the
 #: processor has it.
 COARSE, EXTENDED = 1e-7, np.finfo(np.longdouble).eps < EPS
-#: Largest product of two shapes that are told as orthogonal.
+#: Largest product of two shapes that count as orthogonal.
 ASKEW = 1e-5
 
 
@@ -60,7 +60,17 @@ class Refined:
     steps: int
 
     def worst(self, needed: int) -> float:
-        """Largest error of the lowest pairs, rounding left out: no step would mend that."""
+        """Largest error of the lowest pairs, rounding left out: no step would mend that.
+
+        Parameters
+        ----------
+        needed : int
+            How many pairs.
+
+        Returns
+        -------
+        float
+        """
         return float((self.error - self.noise)[:needed].max(initial=0.0))
 
 
@@ -87,6 +97,10 @@ def refine(supported: Supported, vectors: np.ndarray, value: np.ndarray, needed:
         Their eigenvalues, roughly, ascending, rad^2/s^2.
     needed : int
         How many of the lowest must be right; the others are there to see gaps.
+
+    Returns
+    -------
+    Refined
     """
     carried = supported.mass_rigid.T @ vectors
     elastic = np.append(_columns(carried, carried) <= 1 - SOFT, True)
@@ -94,14 +108,10 @@ def refine(supported: Supported, vectors: np.ndarray, value: np.ndarray, needed:
     # an elastic mode is not in that danger.
     count = int(np.argmax(elastic))
     found = _corrected(supported, vectors, value, needed, count)
-    if (
-        count
-        and np.abs(found.vectors[:, :count].T @ supported.mass(found.vectors[:, count:])).max(
-            initial=0.0
-        )
-        > ASKEW
-    ):
-        found = _corrected(supported, vectors, value, needed, 0)
+    if count:
+        rigid, rest = found.vectors[:, :count], found.vectors[:, count:]
+        if np.abs(rigid.T @ supported.mass(rest)).max(initial=0.0) > ASKEW:
+            found = _corrected(supported, vectors, value, needed, 0)
     return found
 
 
@@ -115,9 +125,8 @@ def _corrected(supported, vectors, value, needed: int, count: int) -> Refined:
     wrong = np.zeros(len(value), bool)
     correction = forces = np.zeros_like(vectors)
     for step in range(STEPS + 1):
-        low, high = (
-            wrong & own for own in (np.arange(len(value)) < count, np.arange(len(value)) >= count)
-        )
+        nearly_rigid = np.arange(len(value)) < count
+        low, high = wrong & nearly_rigid, wrong & ~nearly_rigid
         stiffness = supported.elastic_extended if fine else supported.elastic
         slow = _soft_modes(supported, stiffness, vectors[:, :count], correction[:, low])
         quick = _modes(
@@ -133,10 +142,10 @@ def _corrected(supported, vectors, value, needed: int, count: int) -> Refined:
             np.append(slow.value, quick.value),
             np.append(slow.rounding, quick.rounding),
         )
-        if best is not None and value.min() <= 0.5 * best.value[0] * max(
-            0.0, 1 - 2 * best.error[0]
-        ):
-            return best  # a correction that is nothing but rounding
+        if best is not None:
+            least = 0.5 * best.value[0] * max(0.0, 1 - 2 * best.error[0])
+            if value.min() <= least:
+                return best  # a correction that is nothing but rounding
         vectors, forces = np.hstack([slow.u, quick.u]), np.hstack([slow.force, quick.force])
         correction = supported.inverse(forces)
         found = _judged(supported, value, vectors, forces, correction, rounding, step)
@@ -183,7 +192,7 @@ def _modes(supported, stiffness, u, value, correction, forces, below) -> _Pairs:
         stretch @ turn,
         heavy @ turn,
     )
-    # The small problem knows its eigenvalues to the rounding of the largest; quotients know each to
+    # The small problem gives its eigenvalues to the rounding of the largest; quotients give each to
     # its own.
     value = (_columns(rest, pull) + _columns(stretch, stretch)) / _columns(u, heavy)
     force = pull + supported.load @ stretch - heavy * value
@@ -231,9 +240,8 @@ def _soft_modes(supported, stiffness, u, correction) -> _Pairs:
         held = held @ (v[:, w > 1e-10] / np.sqrt(w[w > 1e-10]))
     rest = supported.without_rigid(supported.without_rigid(np.hstack([u, correction])))
     size = np.sqrt(_columns(rest, mass(rest)))
-    keep = size > 1e-9 * np.append(
-        np.ones(count), np.full(correction.shape[1], 1e-3)
-    )  # below that a remainder of a shape is rounding
+    # below that a remainder of a shape is rounding
+    keep = size > 1e-9 * np.append(np.ones(count), np.full(correction.shape[1], 1e-3))
     rest = rest[:, keep] / size[keep]
     w, v = np.linalg.eigh(rest.T @ mass(rest))
     good = w > 1e-12
@@ -284,7 +292,7 @@ def _judged(supported, value, u, force, back, rounding, step) -> Refined:
 
 def _quadratic(mu, rho):
     """``sum rho^2 / gap`` over the cluster around each value for which that is least; infinite
-    where it would need to know what lies above.
+    where that depends on eigenvalues above.
     """
     out = np.full(len(mu), np.inf)
     for i in range(len(mu)):

@@ -1,18 +1,18 @@
 """Elastic flexibility of a free body at its ports, and condensation to one port with bearings.
 
-The free body is factored once, as ``K + sigma M`` with a small sigma; everything about
-bearings happens in dense matrices of the size of the ports.  Derivation of the formulas:
+The free body is factored once, as ``K + sigma M`` with a small sigma; everything about bearings
+happens in dense matrices of the size of the ports. Derivation of the formulas:
 
 A free body under self-equilibrated port loads f moves its ports by ``d = F f + P a`` with F the
-inertia-relief flexibility and P the rigid motions.  With springs ``f_b = -Kb d_b`` on the
-bearing ports and equilibrium ``P_l' f_l = P_b' Kb d_b``, eliminating ``d_b`` gives
+inertia-relief flexibility and P the rigid motions. With springs ``f_b = -Kb d_b`` on the bearing
+ports and equilibrium ``P_l' f_l = P_b' Kb d_b``, eliminating ``d_b`` gives
 
     C = F_ll - F_lb S F_bl + (P_l - F_lb S P_b) H^-1 (P_l - F_lb S P_b)'
     S = L (I + L' F_bb L)^-1 L',   Kb = L L',   H = P_b' S P_b
 
-Nothing is subtracted that is larger than the result when springs are soft, and
-nothing overflows when they are stiff.  A rigid motion that no spring resists is
-taken out exactly, so a free torsion is an exact zero and not a penalty.
+Nothing is subtracted that is larger than the result when springs are soft, and nothing overflows
+when they are stiff. A rigid motion that no spring resists is taken out exactly, so a free torsion
+is an exact zero and not a penalty.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ from solidgear.solve.factor import Factor, factorise
 from solidgear.solve.relief import elastic_fields
 
 if TYPE_CHECKING:
-    from solidgear.body.model import Holding
+    from solidgear.body.supports import Holding
 
 # Of the lowest elastic eigenvalue.  Rounding in the factor is amplified by the highest eigenvalue
 # of the mesh over the shift: 1e-3 left 5e-3 of the frequencies of slender tubes wrong, 3e-2 leaves
@@ -94,11 +94,9 @@ class Condensed:
     @property
     def oblique(self) -> np.ndarray:
         """(6, k) free motions that no single component describes, largest entry 1."""
-        rest = self.free[
-            :,
-            np.abs(self.free[~self._alone()]).max(axis=0, initial=0.0)
-            > 1e-9 * np.abs(self.free).max(axis=0, initial=0.0),
-        ]
+        largest = np.abs(self.free).max(axis=0, initial=0.0)
+        others = np.abs(self.free[~self._alone()]).max(axis=0, initial=0.0)
+        rest = self.free[:, others > 1e-9 * largest]
         return rest / np.abs(rest).max(axis=0, initial=0.0)
 
     def _alone(self) -> np.ndarray:
@@ -107,7 +105,22 @@ class Condensed:
 
 
 def factors(body: Body) -> list[Factor]:
-    """One factor of ``K + sigma M`` per block (twins share theirs), kept with the body."""
+    """One factor of ``K + sigma M`` per block, kept with the body.
+
+    Parameters
+    ----------
+    body : Body
+
+    Returns
+    -------
+    list of Factor
+        Twins share theirs.
+
+    Raises
+    ------
+    FactorError
+        As :func:`~solidgear.solve.factor.factorise`.
+    """
     if "factors" not in body.memory:
         made: dict[int, Factor] = {}
         for block in body.blocks:
@@ -123,8 +136,23 @@ def factors(body: Body) -> list[Factor]:
 
 
 def flexibility(body: Body, tolerance: float = 1e-12) -> Flexibility:
-    """Flexibility of the free body at all its ports (inertia relief), by
+    """Flexibility of the free body at all its ports (inertia relief), kept with the body; by
     :func:`solidgear.solve.relief.elastic_fields`.
+
+    Parameters
+    ----------
+    body : Body
+    tolerance : float
+        Relative error of the energy at which refinement stops.
+
+    Returns
+    -------
+    Flexibility
+
+    Raises
+    ------
+    SolidgearError
+        If the static solution is not finite.
     """
     if "flexibility" in body.memory:
         return body.memory["flexibility"]
@@ -137,10 +165,8 @@ def flexibility(body: Body, tolerance: float = 1e-12) -> Flexibility:
             continue
         rows = body.rows(block)
         if block.mirror is not None:
-            original, signs = (
-                body.rows(body.blocks[block.mirror[0]]),
-                np.tile(block.mirror[1], len(body.ports)),
-            )
+            original = body.rows(body.blocks[block.mirror[0]])
+            signs = np.tile(block.mirror[1], len(body.ports))
             out[np.ix_(rows, rows)] = out[np.ix_(original, original)] * np.outer(signs, signs)
             continue
         k = block.stiffness
@@ -187,7 +213,19 @@ def condense(body: Body, supports: Holding, port: str, attachment: str | None = 
     Raises
     ------
     SolidgearError
-        If the body lacks the port.
+        If the body lacks the port, or the bearing stiffnesses leave no positive definite system.
+
+    Examples
+    --------
+    A shaft on two bearings that stop all but its rotation:
+
+    >>> import solidgear as sg
+    >>> scene = sg.load("geometry/shaft_stepped.toml")
+    >>> at_gear = sg.condense(sg.build(scene, "timoshenko"), scene, port="port")
+    >>> at_gear.free_names
+    ('thy',)
+    >>> bool(at_gear.stiffness[2, 2] < 4e8 + 5e8)  # softer than the bearings side by side
+    True
     """
     supports = as_supports(supports)
     flex = flexibility(body)

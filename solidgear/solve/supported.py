@@ -29,6 +29,19 @@ def decoupled(body: Body, supports: Supports, tolerance: float) -> tuple[np.ndar
 
     If ``|v' D v| <= eps v' K0 v`` for the removed part D and all v, then by Rayleigh's quotient no
     eigenvalue of the supported body moves by more than eps, relative.
+
+    Parameters
+    ----------
+    body : Body
+    supports : Supports
+    tolerance : float
+        Largest bound that is accepted.
+
+    Returns
+    -------
+    spring : (6 m, 6 m) ndarray
+    bound : float
+        Zero where nothing was removed.
     """
     k = supports.stiffness
     if not supports.ports or len(body.blocks) == 1:
@@ -55,7 +68,20 @@ def decoupled(body: Body, supports: Supports, tolerance: float) -> tuple[np.ndar
 
 
 def groups(body: Body, supports: Supports, spring: np.ndarray) -> list[list[int]]:
-    """Blocks that bearings couple, as lists of block indices."""
+    """Blocks that bearings couple.
+
+    Parameters
+    ----------
+    body : Body
+    supports : Supports
+    spring : (6 m, 6 m) ndarray
+        From :func:`decoupled`.
+
+    Returns
+    -------
+    list of list of int
+        Block indices.
+    """
     count = len(body.blocks)
     label = list(range(count))
     rows = [component_rows(range(len(supports.ports)), block.components) for block in body.blocks]
@@ -64,7 +90,10 @@ def groups(body: Body, supports: Supports, spring: np.ndarray) -> list[list[int]
             a, b = rows[i], rows[j]
             if a.size and b.size and np.any(spring[np.ix_(a, b)]):
                 label = [label[i] if x == label[j] else x for x in label]
-    return [[i for i in range(count) if label[i] == x] for x in sorted(set(label))]
+    out: dict[int, list[int]] = {}
+    for i in range(count):
+        out.setdefault(label[i], []).append(i)
+    return [out[x] for x in sorted(out)]
 
 
 class Supported:
@@ -142,17 +171,16 @@ class Supported:
         return np.vstack(parts)
 
     def spring_rounding(self, u: np.ndarray) -> np.ndarray:
-        """(k,) energy of shapes that the last digit of the stiffness entries of the springs stands
-        for, N m.
+        """(k,) energy of (n, k) shapes that the last digit of the stiffness entries of the springs
+        stands for, N m.
 
         A coupled bearing may be far softer in one direction than any of its entries: what it
         resists there is a difference of large numbers.
         """
         if not self._seats:
             return np.zeros(u.shape[1])
-        motion = np.abs(
-            np.vstack([seats @ part for seats, part in zip(self._seats, self.parts(u))])
-        )
+        motions = [seats @ part for seats, part in zip(self._seats, self.parts(u))]
+        motion = np.abs(np.vstack(motions))
         # as large a multiple as condensing springs in series and taking the root of the matrix may
         # make of it
         return 8 * EPS * np.einsum("ik,ij,jk->k", motion, np.abs(self._spring), motion)
@@ -163,7 +191,7 @@ class Supported:
         return "+".join(sorted({f.backend for f in self._factors}))
 
     def parts(self, x: np.ndarray) -> list[np.ndarray]:
-        """Rows of ``x`` block by block."""
+        """Rows of (n, ...) ``x``, block by block."""
         return [x[a:b] for a, b in zip(self._cuts, self._cuts[1:])]
 
     def _per_block(self, f: Callable[[int, np.ndarray], np.ndarray], x: np.ndarray) -> np.ndarray:
@@ -172,7 +200,11 @@ class Supported:
         return found[0] if len(found) == 1 else np.concatenate(found)
 
     def _free_inverse(self, x: np.ndarray) -> np.ndarray:
-        """``(K + shift M)^-1 x``.  Rigid motions answer with 1 / shift exactly, and the factor, which would round that, is left with the rest."""
+        """``(K + shift M)^-1 x``.
+
+        Rigid motions answer with 1 / shift exactly, and the factor, which would round that, is left
+        with the rest.
+        """
         carried = self.rigid.T @ x
         y = self._per_block(
             lambda i, part: self._factors[i].solve(part), x - self.mass_rigid @ carried
@@ -180,15 +212,15 @@ class Supported:
         return self.without_rigid(y) + self.rigid @ (carried / self.shift)
 
     def without_rigid(self, u: np.ndarray) -> np.ndarray:
-        """Displacements less their rigid part in the mass norm."""
+        """(n, k) displacements less their rigid part in the mass norm."""
         return u - self.rigid @ (self.mass_rigid.T @ u)
 
     def mass(self, x: np.ndarray) -> np.ndarray:
-        """``M x``."""
+        """``M x`` of (n, k) displacements."""
         return self._per_block(lambda i, part: self.blocks[i].mass @ part, x)
 
     def elastic(self, x: np.ndarray) -> np.ndarray:
-        """``K x`` of the free body."""
+        """``K x`` of the free body, of (n, k) displacements."""
         return self._per_block(lambda i, part: self.blocks[i].stiffness @ part, x)
 
     def elastic_extended(self, x: np.ndarray) -> np.ndarray:
@@ -203,17 +235,19 @@ class Supported:
         )
 
     def purge(self, x: np.ndarray) -> np.ndarray:
-        """Take unresisted rigid motions out of displacements."""
+        """(n, k) displacements without unresisted rigid motions."""
         return x - self.free @ (self._mass_free.T @ x) if self.free.shape[1] else x
 
     def inverse(self, x: np.ndarray) -> np.ndarray:
-        """Displacements ``(K + springs + shift M)^-1 x`` without unresisted rigid motions."""
+        """Displacements ``(K + springs + shift M)^-1 x`` under (n, k) loads, without unresisted
+        rigid motions.
+        """
         y = self._quick_inverse(x)
         return y + self._quick_inverse(x - self.forward(y)) if self.inaccuracy > REFINED else y
 
     def forward(self, u: np.ndarray) -> np.ndarray:
-        """``(K + springs + shift M) u``; the rigid part, which K resists by rounding only, is kept
-        from it.
+        """``(K + springs + shift M) u`` of (n, k) displacements; the rigid part, which K resists by
+        rounding only, is kept from it.
         """
         return (
             self.elastic(self.without_rigid(u))
@@ -230,20 +264,14 @@ class Supported:
             return 0.0  # no rounding could be seen
         rng = np.random.default_rng(0)
         x = self.mass(rng.standard_normal((self.size, 1)))
-        x = (
-            np.hstack([x, self.load @ rng.standard_normal((self.load.shape[1], 1))])
-            if self.load.shape[1]
-            else x
-        )
+        if self.load.shape[1]:
+            x = np.hstack([x, self.load @ rng.standard_normal((self.load.shape[1], 1))])
         x = x - self._mass_free @ (self.free.T @ x)
         y = self._quick_inverse(x)
         left = x - self.forward(y)
         step = self._quick_inverse(left)
-        return float(
-            np.sqrt(
-                np.abs(np.einsum("ij,ij->j", left, step)) / np.abs(np.einsum("ij,ij->j", x, y))
-            ).max()
-        )
+        changed = np.abs(np.einsum("ij,ij->j", left, step))
+        return float(np.sqrt(changed / np.abs(np.einsum("ij,ij->j", x, y))).max())
 
     def _quick_inverse(self, x: np.ndarray) -> np.ndarray:
         if self.free.shape[1]:
@@ -261,14 +289,12 @@ class Supported:
     @cached_property
     def highest(self) -> float:
         """Highest eigenvalue of the free body, from below and within a factor of ten, rad^2/s^2."""
-        stiff, heavy = (
-            np.concatenate([getattr(b, name).diagonal() for b in self.blocks])
-            for name in ("stiffness", "mass")
-        )
+        stiff = self.diagonal
+        heavy = np.concatenate([b.mass.diagonal() for b in self.blocks])
         return float((stiff[heavy > 0] / heavy[heavy > 0]).max())
 
     def stretch(self, u: np.ndarray, loads: np.ndarray) -> np.ndarray:
-        """Stretch ``L'u`` of the springs, the root of their energy.
+        """(r, k) stretch ``L'u`` of the springs, the root of their energy.
 
         Where the springs are so stiff that the motion of their seat is the rounding of ``u``, it
         comes from the load instead.
@@ -296,7 +322,7 @@ class Supported:
         return np.abs(self.load).sum(axis=0)[:, None] * np.abs(u).max(axis=0, initial=0.0)
 
     def rigid_motions(self) -> np.ndarray:
-        """All rigid motions of the group, one column per component, resisted or not."""
+        """(n, r) rigid motions of the group, one column per component, resisted or not."""
         return sla.block_diag(*(b.rigid for b in self.blocks))
 
     def _rigid_motions(self) -> np.ndarray:
@@ -313,15 +339,16 @@ class Supported:
         return rigid
 
     def split(self, x: np.ndarray) -> dict[int, np.ndarray]:
-        """A vector of the group as block index -> vector."""
+        """A vector (n,) of the group as block index -> vector."""
         return {b: x[a:c] for b, a, c in zip(self.group, self._cuts, self._cuts[1:])}
 
     def static(self, load: np.ndarray) -> np.ndarray:
-        """Static displacements under loads, springs included.
+        """(n, k) static displacements under loads, springs included.
 
-        The elastic and the rigid part are found apart, as in :mod:`solidgear.solve.statics`, so that springs may be as soft or as
-        stiff as they like.  With ``s = load_b' u`` the root of the spring energy, E the inertia-relief fields and R the rigid
-        motions, ``u = E_f - E_b s + R a`` and equilibrium ``R'(f - load_b s) = 0``.
+        The elastic and the rigid part are found apart, as in :mod:`solidgear.solve.statics`, so
+        that springs may be as soft or as stiff as they like. With ``s = load_b' u`` the root of the
+        spring energy, E the inertia-relief fields and R the rigid motions, ``u = E_f - E_b s + R
+        a`` and equilibrium ``R'(f - load_b s) = 0``.
 
         Parameters
         ----------

@@ -80,7 +80,7 @@ def compare(
     settings: dict[str, dict] | None = None,
     progress: Progress = lambda _: None,
 ) -> Comparison:
-    """Solve a scene with several fidelities and hold them against each other.
+    """Solve a scene with several fidelities and compare them.
 
     Solids are solved on ever finer meshes until their bands meet the tolerance of the scene: that
     of the harmonic solid, which judges, a twentieth of it, that of the 3D solid the whole.
@@ -92,20 +92,28 @@ def compare(
         Rungs of the ladder (lumped, euler, timoshenko, harmonic, solid); all by default. The
         lumped one needs one of the others to rest on.
     settings : dict, optional
-        Builder options per model, such as ``{"harmonic": {"order": 8}}``.  Options that speak of the mesh fix it: that mesh and two
-        coarser ones are solved.
+        Builder options per model, such as ``{"harmonic": {"order": 8}}``.  Options that concern the
+        mesh fix it: that mesh and two coarser ones are solved.
     progress : callable
-        Told in words what is going on.
+        Called with a sentence at every step.
 
     Returns
     -------
     Comparison
-        After Ctrl-C with what there was, ``record.complete`` False.
+        After Ctrl-C with the models solved so far, ``record.complete`` False.
 
     Raises
     ------
     SolidgearError
         For an unknown model.  A model that fails is reported as not valid, and the others go on.
+
+    Examples
+    --------
+    >>> import solidgear as sg
+    >>> rod = sg.Segment.cylinder("rod", length=0.6, diameter=0.02)
+    >>> comparison = sg.compare(sg.Scene.from_parts([rod]), models=("euler",))
+    >>> comparison.record.verdict.sentences
+    ['Not judged: no solid was run, and a beam cannot judge itself.']
     """
     models = LADDER.names if models is None else models
     check_models(models)

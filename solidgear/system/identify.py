@@ -1,8 +1,7 @@
 """Least-squares identification of what a source does not publish, from the frequencies it does.
 
-What comes out is `identified`, never `published`: every quantity carries its bounds, whether it
-rests on one of them, how strongly each frequency depends on it, and how well the frequencies fix
-it.
+The results are `identified`, never `published`: every quantity carries its bounds, whether it rests
+on one of them, how strongly each frequency depends on it, and how well the frequencies fix it.
 """
 
 from __future__ import annotations
@@ -35,6 +34,11 @@ class Unknown:
     unit : str
     log : bool
         Search on a logarithmic scale, for positive quantities whose order of magnitude is in doubt.
+
+    Raises
+    ------
+    SolidgearError
+        For bounds that are not finite and ascending, or not positive on a logarithmic scale.
     """
 
     name: str
@@ -46,7 +50,8 @@ class Unknown:
     def __post_init__(self):
         if not (np.isfinite(self.lower) and np.isfinite(self.upper) and self.lower < self.upper):
             raise SolidgearError(
-                f"{self.name}: the bounds {self.lower} and {self.upper} must be finite and in ascending order"
+                f"{self.name}: the bounds {self.lower} and {self.upper} must be finite "
+                "and in ascending order"
             )
         if self.log and self.lower <= 0:
             raise SolidgearError(
@@ -54,13 +59,13 @@ class Unknown:
             )
 
     def at(self, t: float) -> float:
-        """Value at the fraction t of the way between the bounds."""
+        """Value at the fraction `t` of the way between the bounds."""
         if self.log:
             return float(self.lower * (self.upper / self.lower) ** t)
         return float(self.lower + t * (self.upper - self.lower))
 
     def slope(self, t: float) -> float:
-        """d value / d t."""
+        """Derivative of :meth:`at` by `t`."""
         return (
             self.at(t) * float(np.log(self.upper / self.lower))
             if self.log
@@ -82,8 +87,9 @@ class Identified:
     sensitivity : (n,) ndarray
         ``d ln f_j / d ln p``.
     spread : float
-        Relative standard deviation of the value if the misfit of the frequencies is taken as independent noise; inf where
-        they do not fix it.  The misfit is mostly systematic, so this is a scale and not a confidence interval.
+        Relative standard deviation of the value if the misfit of the frequencies is taken as
+        independent noise; inf where they do not fix it. The misfit is mostly systematic, so this is
+        a scale and not a confidence interval.
     status : str
         Always ``identified``.
     """
@@ -163,7 +169,7 @@ def identify(
         name.
     unknowns : sequence of Unknown
     published_hz : (n,) array_like
-        Positive; leave out zero frequencies, which say nothing.
+        Positive; leave out zero frequencies, which hold no information.
     starts : int
         The middle of the bounds and ``starts - 1`` seeded random points.
     seed : int
@@ -175,13 +181,23 @@ def identify(
     Raises
     ------
     SolidgearError
-        If there are more unknowns than frequencies, names repeat, or the model does not answer in
-        kind.
+        If there are more unknowns than frequencies, names repeat, or the model does not return as
+        many finite, positive frequencies.
 
     Notes
     -----
     Frequencies are compared in ascending order, without mode shapes: where two modes of the model
     cross, each published frequency is met by whichever is next.
+
+    Examples
+    --------
+    The spring under a mass of 2 kg that swings at 10 Hz:
+
+    >>> def model(p):
+    ...     return np.array([np.sqrt(p["k"] / 2.0) / (2 * np.pi)])
+    >>> found = identify(model, [Unknown("k", 1e2, 1e6, "N/m")], [10.0], starts=2)
+    >>> bool(np.isclose(found.values["k"], 2.0 * (2 * np.pi * 10.0) ** 2))
+    True
     """
     unknowns = tuple(unknowns)
     published = np.asarray(published_hz, float)
@@ -192,13 +208,15 @@ def identify(
         or not (np.isfinite(published).all() and (published > 0).all())
     ):
         raise SolidgearError(
-            "the published frequencies must be a list of finite, positive numbers of Hz; leave out the zero ones"
+            "the published frequencies must be a list of finite, positive numbers of Hz; "
+            "leave out the zero ones"
         )
     if not names or len(set(names)) < len(names):
         raise SolidgearError(f"the unknowns need different names, at least one; got {names}")
     if len(names) > published.size:
         raise SolidgearError(
-            f"{len(names)} unknowns cannot be identified from {published.size} frequencies; fix some of them"
+            f"{len(names)} unknowns cannot be identified from {published.size} frequencies; "
+            "fix some of them"
         )
     if starts < 1:
         raise SolidgearError(f"starts is {starts}; at least one starting point is needed")
@@ -207,11 +225,13 @@ def identify(
         found = np.asarray(model({u.name: u.at(x) for u, x in zip(unknowns, t)}), float)
         if found.shape != published.shape:
             raise SolidgearError(
-                f"the model gives frequencies of shape {found.shape}, but {published.size} are published"
+                f"the model gives frequencies of shape {found.shape}, "
+                f"but {published.size} are published"
             )
         if not (np.isfinite(found).all() and (found > 0).all()):
             raise SolidgearError(
-                "the model gives frequencies that are not finite and positive; leave out its rigid modes"
+                "the model gives frequencies that are not finite and positive; "
+                "leave out its rigid modes"
             )
         return np.log(found / published)
 
@@ -258,7 +278,11 @@ def _report(log_ratio, unknowns, t, published, starts, agreeing) -> Identificati
         else np.full((len(unknowns),) * 2, np.inf)
     )
     for k, (u, x) in enumerate(zip(unknowns, t)):
-        side = "lower" if x < ON_BOUND else "upper" if x > 1 - ON_BOUND else ""
+        side = ""
+        if x < ON_BOUND:
+            side = "lower"
+        elif x > 1 - ON_BOUND:
+            side = "upper"
         spread = float(np.sqrt(covariance[k, k]) / abs(values[k])) if values[k] else np.inf
         quantities.append(
             Identified(
@@ -294,8 +318,8 @@ def torsion_springs(
         k1 (1/J1 + 1/J2) + k2 (1/J2 + 1/J3) = w1^2 + w2^2
         k1 k2 (J1 + J2 + J3) / (J1 J2 J3) = w1^2 w2^2
 
-    which is a quadratic: none, one or two pairs fit, and the frequencies alone cannot tell which of
-    two it is.
+    which is a quadratic: none, one or two pairs fit, and the frequencies alone do not decide which
+    of two it is.
 
     Parameters
     ----------

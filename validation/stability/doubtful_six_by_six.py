@@ -12,7 +12,8 @@ from __future__ import annotations
 import numpy as np
 
 import solidgear as sg
-from solidgear.body import DOF_NAMES, as_supports
+from solidgear.body import as_supports
+from solidgear.frames import DOF_NAMES
 from validation.stability.frame import ROOT, Finding, main
 
 K = 1e9

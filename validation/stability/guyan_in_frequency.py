@@ -15,7 +15,7 @@ import scipy.linalg as sla
 
 import solidgear as sg
 from solidgear.body import as_supports
-from solidgear.reduction.effective_mass import lumped_point
+from solidgear.reduction.lumped_point import lumped_point
 from validation.stability.bearing_extremes import assembled, block_of
 from validation.stability.frame import ROOT, Finding, crossing, main
 

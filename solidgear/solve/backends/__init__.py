@@ -1,17 +1,17 @@
 """Direct solvers for sparse symmetric matrices, all behind the same four names.
 
-A back end takes the matrix as CSR, sorted, and analyses it; then it knows ``estimate_mb``, the
-memory the numbers will need, and only ``factor()`` takes that memory.  After it ``solve(rhs)``,
+A back end takes the matrix as CSR, sorted, and analyses it; then it has ``estimate_mb``, the
+memory the numbers will need, and only ``factor()`` takes that memory. After it ``solve(rhs)``,
 ``negative`` and ``nnz`` can be asked for.
 
-======== =============================== ===================== ===========================================
-name     what it is                      indefinite matrices   memory estimate
-======== =============================== ===================== ===========================================
-pardiso  MKL PARDISO, LL' or LDL'        yes                   its own, from the analysis
-cholmod  SuiteSparse, supernodal LL'     no                    a law: scikit-sparse does not pass on the count
-mumps    MUMPS, LDL'                     yes                   its own, from the analysis
-superlu  SciPy's SuperLU, LU             unpivoted             a law: it has no separate analysis
-======== =============================== ===================== ===========================================
+======== ============================ ==================== ========================================
+name     what it is                   indefinite matrices  memory estimate
+======== ============================ ==================== ========================================
+pardiso  MKL PARDISO, LL' or LDL'     yes                  its own, from the analysis
+cholmod  SuiteSparse, supernodal LL'  no                   a law: scikit-sparse passes on no count
+mumps    MUMPS, LDL'                  yes                  its own, from the analysis
+superlu  SciPy's SuperLU, LU          unpivoted            a law: it has no separate analysis
+======== ============================ ==================== ========================================
 """
 
 from __future__ import annotations
@@ -36,11 +36,21 @@ INSTALL = {
 
 @lru_cache
 def missing(name: str) -> str:
-    """Empty if the back end can be used, else the reason why not.
+    """Whether a back end can be used.
 
     Parameters
     ----------
     name : {'pardiso', 'cholmod', 'mumps', 'superlu'}
+
+    Returns
+    -------
+    str
+        Empty if it can, else the reason why not.
+
+    Examples
+    --------
+    >>> missing("superlu")
+    ''
     """
     module = {
         "pardiso": "pypardiso",

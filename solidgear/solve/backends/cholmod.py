@@ -10,7 +10,17 @@ from solidgear.solve.backends.memory_law import law
 
 
 class Cholmod:
-    """SuiteSparse CHOLMOD through scikit-sparse: METIS ordering, supernodal LL'."""
+    """SuiteSparse CHOLMOD through scikit-sparse: METIS ordering, supernodal LL'.
+
+    Parameters
+    ----------
+    matrix : (n, n) sparse
+        Symmetric, sorted rows.
+    definite : bool
+        Positive definite; it takes no other.
+    planar : bool
+        Whether it comes from a 1D or 2D mesh, for the estimate of memory.
+    """
 
     name = "cholmod"
 
@@ -24,6 +34,7 @@ class Cholmod:
         self.symbolic = analyze(self.lower, mode="supernodal", ordering_method="metis")
 
     def factor(self):
+        """Factor; :class:`FactorError` if the matrix is not positive definite."""
         from sksparse.cholmod import CholmodError, CholmodNotPositiveDefiniteError
 
         try:
@@ -37,4 +48,5 @@ class Cholmod:
         del self.lower  # the factor does not need it
 
     def solve(self, rhs):
+        """Solution for one (n,) or several (n, k) right-hand sides."""
         return np.ascontiguousarray(self.symbolic(np.asarray(rhs, dtype=float)))

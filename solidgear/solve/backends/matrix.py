@@ -13,10 +13,24 @@ class FactorError(SolidgearError):
 
 
 def upper_triangle(matrix: sp.csr_matrix) -> sp.csr_matrix:
-    """Upper triangle with the diagonal, of a CSR matrix with sorted rows (five to ten times faster
-    than ``scipy.sparse.triu``).
+    """Upper triangle with the diagonal (five to ten times faster than ``scipy.sparse.triu``).
 
     Its arrays are those of the lower triangle by columns as well.
+
+    Parameters
+    ----------
+    matrix : (n, n) sparse
+        CSR with sorted rows.
+
+    Returns
+    -------
+    (n, n) sparse
+
+    Examples
+    --------
+    >>> upper_triangle(sp.csr_matrix(np.array([[2.0, 1.0], [1.0, 3.0]]))).toarray()
+    array([[2., 1.],
+           [0., 3.]])
     """
     n = matrix.shape[0]
     keep = matrix.indices >= np.repeat(
@@ -29,4 +43,5 @@ def upper_triangle(matrix: sp.csr_matrix) -> sp.csr_matrix:
 
 
 def size_mb(matrix):
+    """Memory of a sparse matrix, MB of 2**20 bytes."""
     return (matrix.data.nbytes + matrix.indices.nbytes + matrix.indptr.nbytes) / 2**20

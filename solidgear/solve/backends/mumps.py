@@ -11,7 +11,15 @@ from solidgear.solve.backends.matrix import FactorError, upper_triangle
 class Mumps:
     """MUMPS through python-mumps, LDL'.
 
-    The ordering is left to MUMPS.  PORD was a quarter faster on solids of revolution, but ends the process on some small dense matrices.
+    The ordering is left to MUMPS.  PORD was a quarter faster on solids of revolution, but ends the
+    process on some small dense matrices.
+
+    Parameters
+    ----------
+    matrix : (n, n) sparse
+        Symmetric, sorted rows.
+    definite : bool
+        Whether it is positive definite: then pivots stay on the diagonal.
     """
 
     name = "mumps"
@@ -23,9 +31,9 @@ class Mumps:
         upper = upper_triangle(matrix).tocoo()
         self.context.set_matrix(upper, symmetric=True)
         self._try(self.context.analyze, ordering="auto")
-        self.estimate_mb = (
-            float(self.context.analysis_stats.est_mem_incore) + 16 * upper.nnz / 2**20
-        )  # by coordinates: two indices and a number
+        # by coordinates: two indices and a number
+        by_coordinates = 16 * upper.nnz / 2**20
+        self.estimate_mb = float(self.context.analysis_stats.est_mem_incore) + by_coordinates
 
     def _try(self, step, **options):
         try:
@@ -34,6 +42,7 @@ class Mumps:
             raise FactorError(f"MUMPS could not factor the system matrix ({error})") from error
 
     def factor(self):
+        """Factor; :class:`FactorError` if the matrix is not what it should be."""
         self._try(
             self.context.factor, reuse_analysis=True, pivot_tol=0.0 if self.definite else 0.01
         )
@@ -44,6 +53,7 @@ class Mumps:
 
     @property
     def nnz(self) -> int:
+        """Entries of the factor."""
         return int(self.context.factor_stats.nonzeros)
 
     @property
@@ -56,4 +66,5 @@ class Mumps:
         )
 
     def solve(self, rhs):
+        """Solution for one (n,) or several (n, k) right-hand sides."""
         return np.ascontiguousarray(self.context.solve(np.asarray(rhs, dtype=float)))

@@ -19,9 +19,9 @@ from solidgear.solve.backends.matrix import FactorError, size_mb, upper_triangle
 def _mkl():
     """The library.
 
-    Its threads sleep as soon as a call is over, unless told otherwise: by default they spin for 0.2
-    s, which with both of two cores busy made ten modes of a 3D solid take 1.3 times as long (two
-    runs in turn: 1.36, 1.34).
+    Its threads sleep as soon as a call is over, unless the environment has it otherwise: by default
+    they spin for 0.2 s, which with both of two cores busy made ten modes of a 3D solid take 1.3
+    times as long (two runs in turn: 1.36, 1.34).
 
     pypardiso searches the whole environment for the library at every construction (1 s and more);
     the installed package ``mkl`` knows where its library is, and asking once is enough.
@@ -79,6 +79,18 @@ class Pardiso:
     every solve and refines twice.
 
     Parameter numbers and error codes: oneMKL developer reference, "pardiso iparm Parameter".
+
+    Parameters
+    ----------
+    matrix : (n, n) sparse
+        Symmetric, sorted rows.
+    definite : bool
+        Whether it is positive definite: LL', else LDL' with Bunch-Kaufman pivots.
+
+    Raises
+    ------
+    FactorError
+        If an entry of the diagonal is missing, or the analysis fails.
     """
 
     name = "pardiso"
@@ -97,9 +109,8 @@ class Pardiso:
         self.upper = upper_triangle(matrix)
         self.n = matrix.shape[0]
         # An empty row would end in a segmentation fault.
-        if np.diff(self.upper.indptr).min() == 0 or np.any(
-            self.upper.indices[self.upper.indptr[:-1]] != np.arange(self.n)
-        ):
+        empty = np.diff(self.upper.indptr).min() == 0
+        if empty or np.any(self.upper.indices[self.upper.indptr[:-1]] != np.arange(self.n)):
             raise FactorError(
                 "PARDISO failed on the system matrix: an entry of the diagonal is missing"
             )
@@ -117,7 +128,7 @@ class Pardiso:
         self._release = weakref.finalize(
             self, _release, _mkl_pardiso(), self.pt, self.iparm, 2 if definite else -2, self.n
         )
-        self._release.atexit = False  # a factorisation that was interrupted may still be at it
+        self._release.atexit = False  # a factorisation that was interrupted may still use it
         self._call(11)
         symbolic_peak, symbolic, numeric = (int(kb) for kb in self.iparm[14:17])
         self.estimate_mb = max(symbolic_peak, symbolic + numeric) / 1024 + size_mb(self.upper)
@@ -144,10 +155,12 @@ class Pardiso:
             )
 
     def factor(self):
+        """Factor; :class:`FactorError` if the matrix is not what it should be."""
         self._call(22)
 
     @property
     def nnz(self) -> int:
+        """Entries of the factor."""
         return int(self.iparm[17])
 
     @property
@@ -161,6 +174,7 @@ class Pardiso:
         return negative if not perturbed and positive + negative == self.n else None
 
     def solve(self, rhs):
+        """Solution for one (n,) or several (n, k) right-hand sides; `FactorError` for NaN."""
         rhs = np.asfortranarray(rhs, dtype=float)
         x = np.empty_like(rhs)
         if rhs.size:
@@ -200,8 +214,9 @@ def _node_order(matrix, components: int = 3) -> np.ndarray | None:
     """Fill-reducing order of a solid from the graph of its nodes, or None if unknowns do not come
     in threes.
 
-    The three motions of a node have the same neighbours: ordering nodes gives the same fill for a ninth of the graph, and the analysis takes
-    0.3 s instead of 1.0 s on 93,000 unknowns.  Only the cost depends on it, so the test may be a loose one.
+    The three motions of a node have the same neighbours: ordering nodes gives the same fill for a
+    ninth of the graph, and the analysis takes 0.3 s instead of 1.0 s on 93,000 unknowns. Only the
+    cost depends on it, so the test may be a loose one.
     """
     n, rest = divmod(matrix.shape[0], components)
     if rest or n < 1000:

@@ -10,13 +10,24 @@ from solidgear.machine.interruptible import Made
 from solidgear.solve.backends.matrix import FactorError
 from solidgear.solve.backends.memory_law import law
 
-# Reading SuperLU's pivots copies its factor.  That takes 1 to 4 % of the time on solids and 6 to 9 % on planar meshes, and as much memory again:
-# done where SuperLU is the automatic choice for a solid, and where a planar matrix is so small that nobody notices.
+# Reading SuperLU's pivots copies its factor. That takes 1 to 4 % of the time on solids and 6 to 9 %
+# on planar meshes, and as much memory again: done where SuperLU is the automatic choice for a
+# solid, and where a planar matrix is so small that it costs nothing.
 CHECKED, CHECKED_PLANAR = 12_000, 1_000
 
 
 class SuperLU:
-    """SciPy's SuperLU in symmetric mode; pivots stay on the diagonal unless one vanishes."""
+    """SciPy's SuperLU in symmetric mode; pivots stay on the diagonal unless one vanishes.
+
+    Parameters
+    ----------
+    matrix : (n, n) sparse
+        Symmetric, sorted rows.
+    definite : bool
+        Whether it must be positive definite.
+    planar : bool
+        Whether it comes from a 1D or 2D mesh, for the estimate of memory.
+    """
 
     name = "superlu"
 
@@ -30,6 +41,7 @@ class SuperLU:
         self.estimate_mb = copies * law("superlu", matrix, planar)
 
     def factor(self):
+        """Factor; :class:`FactorError` if memory ends, or the matrix is not what it should be."""
         n = self.matrix.shape[0]
         try:
             self._lu = Made(
@@ -44,7 +56,8 @@ class SuperLU:
             raise FactorError(f"SuperLU could not factor the system matrix ({error})") from error
         except MemoryError:
             raise FactorError(
-                f"SuperLU ran out of memory or of 32-bit indices on {n} unknowns; install the extra 'fast', or use a coarser model"
+                f"SuperLU ran out of memory or of 32-bit indices on {n} unknowns; "
+                "install the extra 'fast', or use a coarser model"
             ) from None
         self.nnz = int(self._lu.value.nnz)
         del self.matrix
@@ -57,11 +70,14 @@ class SuperLU:
 
     @property
     def negative(self) -> int | None:
-        """Negative pivots; None where a row was exchanged, so that the signs say nothing.  Copies the factor."""
+        """Negative pivots; None where a row was exchanged, so that the signs are not those of the
+        matrix.  Copies the factor.
+        """
         lu = self._lu.value
         if not np.array_equal(lu.perm_r, lu.perm_c):
             return None
         return int(np.count_nonzero(lu.U.diagonal() < 0))
 
     def solve(self, rhs):
+        """Solution for one (n,) or several (n, k) right-hand sides."""
         return self._lu.value.solve(rhs)

@@ -23,7 +23,8 @@ from solidgear.evidence.ties import rigid_seats
 from solidgear.evidence.verdict import deviations
 from solidgear.fidelity import build
 from solidgear.fidelity.levels import HARMONIC
-from solidgear.reduction.effective_mass import LumpedPoint, Synthesis, synthesise
+from solidgear.reduction.effective_mass import Synthesis, synthesise
+from solidgear.reduction.lumped_point import LumpedPoint
 from solidgear.scene.rules import TOUCH
 from solidgear.solve.modes import ModeSet, modes
 

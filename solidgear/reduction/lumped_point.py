@@ -1,0 +1,168 @@
+"""A body seen from its lumped point in a bending plane: stiffness, first bending, condensed mass."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from solidgear.body import Body, as_supports
+from solidgear.errors import SolidgearError
+from solidgear.reduction.receptance import port_motion
+from solidgear.solve.modes import ModeSet, modes
+from solidgear.solve.statics import condense
+from solidgear.solve.supported import Supported, decoupled, groups
+
+if TYPE_CHECKING:
+    from solidgear.body.supports import Holding
+
+PLANE = (2, 3)  # z and thx
+
+
+@dataclass(frozen=True)
+class LumpedPoint:
+    """Constants of a body that the synthesis of lumped models needs.
+
+    Attributes
+    ----------
+    stiffness : (2, 2) ndarray
+        Static, on (z, thx), everything else free to follow.
+    motion : (2,) ndarray
+        (z, phi) of the lumped point in the first bending mode of unit modal mass.
+    omega : float
+        rad/s.
+    total_mass, total_inertia : float
+        Of the body, the inertia transverse and about the lumped point.
+    guyan : (2, 2) ndarray
+        Mass condensed on the static shapes.
+    """
+
+    stiffness: np.ndarray
+    motion: np.ndarray
+    omega: float
+    total_mass: float
+    total_inertia: float
+    guyan: np.ndarray
+
+    @property
+    def static_share(self) -> float:
+        """``v' K_a v / w1^2``, never above 1; 1 when the mode is a static shape."""
+        return float(self.motion @ self.stiffness @ self.motion) / self.omega**2
+
+
+def lumped_point(
+    body: Body, supports: Holding, port: str, found: ModeSet | None = None
+) -> tuple[LumpedPoint, ModeSet]:
+    """Static stiffness, first bending motion and condensed mass of a body at its lumped point.
+
+    Parameters
+    ----------
+    body : Body
+    supports : Scene, Supports or iterable of bearings
+    port : str
+    found : ModeSet, optional
+        Solved if not given, or without a first bending mode.
+
+    Returns
+    -------
+    point : LumpedPoint
+    found : ModeSet
+
+    Raises
+    ------
+    SolidgearError
+        Without a first bending mode or a static stiffness at the port (a body that nothing holds).
+    """
+    supports = as_supports(supports)
+    condensed = condense(body, supports, port)
+    c = condensed.compliance[np.ix_(PLANE, PLANE)]
+    if not np.all(np.isfinite(c)):
+        raise SolidgearError(
+            f"port {port!r} has no static stiffness in bending: bearings leave it free; "
+            "support the shaft first"
+        )
+    k = np.linalg.inv(c)
+    if np.linalg.eigvalsh(k)[0] <= 0:
+        raise SolidgearError(
+            f"the stiffness at port {port!r} is indefinite in bending: {k.tolist()}; "
+            "check the bearings"
+        )
+    found = found if found is not None and found.named("bending 1") else modes(body, supports, 12)
+    index = body.port_index(port)
+    mode, motion = _first_in_plane(body, found, index)
+    if mode is None:
+        raise SolidgearError(
+            f"no bending mode in the z plane among the first 12 of the {body.fidelity} body; "
+            "effective masses need one"
+        )
+    inertia = body.mass_matrix()
+    y = body.ports[index].y
+    about = inertia[3, 3] - 2 * y * inertia[2, 3] + y * y * inertia[2, 2]
+    return LumpedPoint(
+        k,
+        motion,
+        2 * np.pi * mode.frequency_hz,
+        float(inertia[2, 2]),
+        float(about),
+        _guyan(body, supports, index, c),
+    ), found
+
+
+def _first_in_plane(body: Body, found: ModeSet, index: int):
+    """First bending mode that moves the port in the z plane, and its (z, thx) there: unequal
+    bearings may put one of the x plane before it.
+    """
+    for mode in (*found.modes, *found.beyond):
+        if mode.family != "bending" or mode.frequency_hz == 0:
+            continue
+        motions = np.array([port_motion(body, v, index) for v in mode.vectors])
+        size = np.array([1.0, body.length])  # a rotation counts by what it moves at the other end
+        z, x = (np.linalg.norm(motions[:, c] * size) for c in (list(PLANE), [0, 5]))
+        if z >= 0.5 * x:
+            return mode, _in_plane(motions)
+    return None, None
+
+
+def _in_plane(motions: np.ndarray) -> np.ndarray:
+    """(z, thx) of the combination of a pair that moves in the z plane."""
+    if len(motions) == 1:
+        return motions[0][list(PLANE)]
+    # The pair spans both planes: take the unit combination without motion in the x plane.
+    scale = np.abs(motions).max(axis=0)
+    other = motions[:, [0, 5]] / np.where(scale[[0, 5]] > 0, scale[[0, 5]], 1.0)
+    u, _, _ = np.linalg.svd(other)
+    mix = u[:, -1]
+    motion = mix @ motions[:, list(PLANE)]
+    return motion if motion[0] >= 0 else -motion
+
+
+def _static_shapes(body: Body, supports, index: int):
+    """Group of the z plane and its displacements under unit (F_z, M_x) at a port."""
+    spring, _ = decoupled(body, supports, 1e-6)
+    for group in groups(body, supports, spring):
+        if any(2 in body.blocks[b].components for b in group):
+            supported = Supported(body, supports, spring, group)
+            parts = []
+            for b in group:
+                block = body.block(b)
+                rows = np.zeros((2, block.size))
+                n = len(block.components)
+                for r, c in enumerate(PLANE):
+                    if c in block.components:
+                        rows[r] = (
+                            block.ports[index * n + block.components.index(c)].toarray().ravel()
+                        )
+                parts.append(rows)
+            return supported, supported.static(np.hstack(parts).T)
+    raise SolidgearError(f"the {body.fidelity} body has no bending plane")
+
+
+def _guyan(body: Body, supports, index: int, compliance: np.ndarray) -> np.ndarray:
+    """Mass on the static shapes of unit (z, phi) at the lumped point, no load elsewhere (Guyan
+    1965).
+    """
+    supported, fields = _static_shapes(body, supports, index)
+    shapes = fields @ np.linalg.inv(compliance)
+    m = shapes.T @ supported.mass(shapes)
+    return (m + m.T) / 2

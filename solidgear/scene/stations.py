@@ -1,0 +1,178 @@
+"""What is attached to a shaft, each frozen and validated: bearing and port."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any, Literal
+
+import numpy as np
+from pydantic import BeforeValidator, model_validator
+
+from solidgear.errors import SceneError, show
+from solidgear.frames import DOF_NAMES
+from solidgear.scene.bearing_stiffness import checked_matrix
+from solidgear.scene.parts import Model
+from solidgear.scene.rules import MOST_SPRINGS
+from solidgear.scene.units import (
+    POSITION_DECIMALS,
+    SOFTEST,
+    AxialSpring,
+    Position,
+    PositiveLength,
+)
+
+Attachment = Literal["average", "rigid", "section"]
+Status = Literal["published", "identified", "assumed", "measured"]
+
+
+def _few_springs(springs: Any) -> Any:
+    if isinstance(springs, (list, tuple)) and len(springs) > MOST_SPRINGS:
+        raise SceneError(
+            f"{len(springs)} springs in series are more than the {MOST_SPRINGS} there may be; "
+            "write their sum: 1/k = 1/k1 + 1/k2 + ..."
+        )
+    return springs
+
+
+AxialSeries = Annotated[tuple[AxialSpring, ...], BeforeValidator(_few_springs)]
+
+
+class Bearing(Model):
+    """A bearing: a 6x6 stiffness between ground and the seat it sits on.
+
+    Attributes
+    ----------
+    name : str
+    y : float
+        Middle of the seat, m.
+    seat_width : float
+        m.
+    matrix : tuple of tuple of float
+        6x6 of the bearing alone, SI, order (x, y, z, thx, thy, thz). The constructor also takes it
+        as `stiffness`: six rows, or named entries.
+    axial_series : tuple of float
+        Springs in series with its axial stiffness, N/m.
+    attachment : {'average', 'rigid', 'section'}
+        How the seat follows the bearing.
+    status : {'published', 'identified', 'assumed', 'measured'}
+        Where its numbers come from.
+    note : str
+
+    Raises
+    ------
+    SceneError
+        A matrix that is not symmetric, is indefinite, or holds springs too soft to be any.
+
+    Examples
+    --------
+    >>> from solidgear import Bearing
+    >>> front = Bearing(name="front", y=0.1, seat_width="40 mm", axial_series=[4e8],
+    ...                 stiffness={"kxx": 8e8, "kyy": "4e8 N/m", "kzz": 8e8})
+    >>> round(float(front.stiffness[1, 1]) / 1e8, 6)  # two equal springs in series
+    2.0
+    >>> front.lo, front.hi
+    (0.08, 0.12)
+    """
+
+    name: str
+    y: Position
+    seat_width: PositiveLength
+    matrix: Annotated[tuple[tuple[float, ...], ...], BeforeValidator(checked_matrix)]
+    axial_series: AxialSeries = ()
+    attachment: Attachment = "average"
+    status: Status = "assumed"
+    note: str = ""
+
+    def __init__(self, /, **data: Any):
+        if "stiffness" in data:
+            data["matrix"] = data.pop("stiffness")
+        super().__init__(**data)
+
+    @model_validator(mode="after")
+    def _springs_or_none(self) -> Bearing:
+        for name, k in zip(DOF_NAMES, np.diag(self.matrix)):
+            if 0 < k < SOFTEST:
+                raise SceneError(
+                    f"the stiffness in {name} is {k:.6g}, below {SOFTEST:g} in SI, "
+                    "which is no spring: write 0",
+                    path=("matrix",),
+                )
+        return self
+
+    @property
+    def lo(self) -> float:
+        """Seat end towards y = 0, in m."""
+        return round(self.y - self.seat_width / 2, POSITION_DECIMALS)
+
+    @property
+    def hi(self) -> float:
+        """Seat end away from y = 0, in m."""
+        return round(self.y + self.seat_width / 2, POSITION_DECIMALS)
+
+    @property
+    def stiffness(self) -> np.ndarray:
+        """(6, 6) read-only, SI, order x y z thx thy thz: the bearing with its axial series springs
+        condensed in.
+        """
+        K = np.array(self.matrix)
+        if self.axial_series:
+            # the ring between bearing and spring carries no load of its own: condense its y out,
+            # couplings included
+            spring = 1 / sum(1 / k for k in self.axial_series)
+            K -= np.outer(K[:, 1], K[1, :]) / (K[1, 1] + spring)
+        K.flags.writeable = False
+        return K
+
+    def scaled(self, factor: float) -> Bearing:
+        """The same bearing with every stiffness, series springs included, multiplied.
+
+        Parameters
+        ----------
+        factor : float
+            Above zero.
+
+        Returns
+        -------
+        Bearing
+
+        Raises
+        ------
+        SceneError
+            A factor that is not above zero.
+        """
+        if not factor > 0:
+            raise SceneError("must be greater than zero", field="factor", value=show(factor))
+        return self.with_changes(
+            matrix=np.array(self.matrix) * factor,
+            axial_series=tuple(k * factor for k in self.axial_series),
+        )
+
+
+class Port(Model):
+    """The lumped point on the axis, attached to a span of the outer surface.
+
+    Attributes
+    ----------
+    name : str
+    y : float
+        Its place, m; it need not lie within the span.
+    lo, hi : float
+        Span of the surface that carries it, m.
+    attachment : {'average', 'rigid', 'section'}
+
+    Raises
+    ------
+    SceneError
+        A field that is missing or of another dimension.
+
+    Examples
+    --------
+    >>> from solidgear import Port
+    >>> Port(y="29 mm", lo=0.0, hi="58 mm").hi
+    0.058
+    """
+
+    name: str = "port"
+    y: Position
+    lo: Position
+    hi: Position
+    attachment: Attachment = "average"

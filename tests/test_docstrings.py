@@ -1,0 +1,47 @@
+"""Examples in docstrings run, and every noun that the package exports has one."""
+
+import doctest
+import importlib
+import inspect
+from pathlib import Path
+
+import pytest
+
+import solidgear as sg
+
+ROOT = Path(__file__).parent.parent
+PACKAGE = ROOT / "solidgear"
+WITH_EXAMPLES = sorted(p for p in PACKAGE.rglob("*.py") if ">>>" in p.read_text())
+NOUNS = [name for name in sg.__all__ if callable(getattr(sg, name))]
+
+
+def examples_of(module):
+    """Docstrings of a module that hold examples."""
+    return [case for case in doctest.DocTestFinder().find(module) if case.examples]
+
+
+def module_of(path):
+    """The imported module of a file of the package."""
+    parts = path.relative_to(ROOT).with_suffix("").parts
+    return importlib.import_module(".".join(parts).removesuffix(".__init__"))
+
+
+@pytest.mark.parametrize(
+    "path", WITH_EXAMPLES, ids=lambda p: "-".join(p.relative_to(PACKAGE).with_suffix("").parts)
+)
+def test_examples_run(path, monkeypatch):
+    monkeypatch.chdir(ROOT)  # scenes are named as a user names them, geometry/...
+    runner = doctest.DocTestRunner(optionflags=doctest.NORMALIZE_WHITESPACE)
+    words = []
+    for case in examples_of(module_of(path)):
+        runner.run(case, out=words.append)
+    assert runner.tries > 0
+    assert runner.failures == 0, "".join(words)
+
+
+@pytest.mark.parametrize("name", NOUNS)
+def test_a_noun_that_is_exported_has_an_example(name):
+    noun = getattr(sg, name)
+    assert "\nExamples\n---" in inspect.getdoc(noun)
+    module = importlib.import_module(noun.__module__)
+    assert f"{module.__name__}.{noun.__qualname__}" in {case.name for case in examples_of(module)}
