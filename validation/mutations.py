@@ -260,7 +260,7 @@ MUTATIONS = (
     Mutation(
         "flexibility one per cent high",
         "solidgear/solve/statics.py",
-        "flexibility",
+        "_flexibility",
         "f_block = work + work.T - u.T @ (k @ u)",
         "f_block = 1.01 * work",
         "tests/test_condense.py::test_against_a_direct_dense_solution",

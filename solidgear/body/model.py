@@ -15,6 +15,7 @@ from typing import Any
 import numpy as np
 import scipy.sparse as sp
 
+from solidgear.body.kept import Kept
 from solidgear.body.mass import ScalarMass
 from solidgear.body.sections import Sections, from_points, signed
 from solidgear.body.surface import Drawing, Surface, mesh_unknowns
@@ -175,6 +176,10 @@ class Block:
         return loads, gram, np.array(columns, int)
 
 
+class _Families(dict[int, "Body"]):
+    """Circumferential families that were asked for, by their number of waves."""
+
+
 @dataclass(frozen=True, eq=False)
 class Body:
     """A free elastic shaft at one fidelity.
@@ -199,6 +204,8 @@ class Body:
         Builder of further circumferential families, such as
         :class:`solidgear.fidelity.circumferential.Families`; None where the blocks are all that the
         fidelity knows.
+    kept : Kept
+        What solvers have worked out about this body, such as its factors.
 
     Examples
     --------
@@ -219,9 +226,7 @@ class Body:
     mesh: dict[str, Any] = field(default_factory=dict)
     geometry: Drawing | None = None
     further: Any = None
-    # Factorisations and flexibilities are kept with the body they belong to, so that they die with
-    # it.
-    memory: dict[str, Any] = field(default_factory=dict, repr=False)
+    kept: Kept = field(default_factory=Kept, repr=False)
 
     @property
     def size(self) -> int:
@@ -269,7 +274,7 @@ class Body:
             raise SolidgearError(
                 f"the {self.fidelity} body has no motions of {n} waves around its axis"
             )
-        kept = self.memory.setdefault("families", {})
+        kept = self.kept.get(_Families, _Families)
         if n not in kept:
             scale = (2 * np.pi * self.further.light(n)) ** 2
             kept[n] = Body(

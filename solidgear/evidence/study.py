@@ -182,6 +182,8 @@ def _climbed(
     around: dict[str, dict[str, float]] = {}
     for k, level in enumerate(levels):
         progress(f"{model}: mesh {k + 1}")
+        if rung is not None:
+            rung.body.kept.clear()  # its factor need not be held beside the next one
         before = dict(meter.seconds)
         last = k == len(levels) - 1 if plan.fixed else k >= 2
         # the second level is counted as well where a third one may be too dear to be solved
@@ -199,7 +201,6 @@ def _climbed(
             break
         if rung is not None:
             _book_as_evidence(meter, before)
-            rung.body.memory.clear()
         solved.append({tie: _Level(a.quantities, a.solver) for tie, a in ties.items()})
         facts.append(_facts(ties[SCENE]))
         if plan.turned is not None and not around:

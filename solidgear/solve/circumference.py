@@ -140,13 +140,12 @@ def of_body(body: Body) -> tuple[Circumference, Callable[[np.ndarray], np.ndarra
     nodes = getattr(body.geometry, "nodes", None)
     if len(body.blocks) != 1 or nodes is None or getattr(body.geometry, "dofs", None) is None:
         return None
-    if "circumference" not in body.memory:
-        body.memory["circumference"] = Circumference(nodes, _volumes(body.geometry))
+    fit = body.kept.get(Circumference, lambda: Circumference(nodes, _volumes(body.geometry)))
 
     def displacements(vector):
         return (vector if block.expand is None else block.expand @ vector).reshape(-1, 3)
 
-    return body.memory["circumference"], displacements
+    return fit, displacements
 
 
 def _volumes(geometry) -> np.ndarray:

@@ -173,6 +173,7 @@ class Names:
         self.body, self.project = body, project
         self.promised = alike(supports)
         self._round = of_body(body)
+        self._moving_axially: dict[int, np.ndarray] = {}
 
     def describe(self, vectors: dict[int, np.ndarray]) -> Shape:
         """Family, waves around, section motions and profile of one shape.
@@ -234,12 +235,12 @@ class Names:
         directions, so they fall apart by themselves.
         """
         block = self.body.block(b)
-        name = f"axial part {b}"
-        if name not in self.body.memory:
+        known = self._moving_axially
+        if b not in known:
             count, label = connected_components(block.mass, directed=False)
             moving = np.unique(label[np.abs(block.rigid[:, 0]) > 0])
-            self.body.memory[name] = np.isin(label, moving)
-        radial = np.where(self.body.memory[name], 0.0, v)
+            known[b] = np.isin(label, moving)
+        radial = np.where(known[b], 0.0, v)
         return float(radial @ (block.mass @ radial)) / float(v @ (block.mass @ v))
 
     def overlap(self, a: Shape, b: Shape) -> float:

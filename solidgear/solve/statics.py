@@ -104,6 +104,19 @@ class Condensed:
         return np.array([not np.any(row) for row in self.stiffness])
 
 
+@dataclass(frozen=True)
+class Factored:
+    """Factors of the shifted stiffness of a body.
+
+    Attributes
+    ----------
+    of_block : list of Factor
+        One per block, twins sharing theirs.
+    """
+
+    of_block: list[Factor]
+
+
 def factors(body: Body) -> list[Factor]:
     """One factor of ``K + sigma M`` per block, kept with the body.
 
@@ -121,18 +134,20 @@ def factors(body: Body) -> list[Factor]:
     FactorError
         As :func:`~solidgear.solve.factor.factorise`.
     """
-    if "factors" not in body.memory:
-        made: dict[int, Factor] = {}
-        for block in body.blocks:
-            key = id(block.stiffness)
-            if key not in made:
-                made[key] = factorise(
-                    (block.stiffness + SHIFT * body.scale * block.mass).tocsr(),
-                    planar=block.planar,
-                    border=block.border,
-                )
-        body.memory["factors"] = [made[id(b.stiffness)] for b in body.blocks]
-    return body.memory["factors"]
+    return body.kept.get(Factored, lambda: _factored(body)).of_block
+
+
+def _factored(body: Body) -> Factored:
+    made: dict[int, Factor] = {}
+    for block in body.blocks:
+        key = id(block.stiffness)
+        if key not in made:
+            made[key] = factorise(
+                (block.stiffness + SHIFT * body.scale * block.mass).tocsr(),
+                planar=block.planar,
+                border=block.border,
+            )
+    return Factored([made[id(block.stiffness)] for block in body.blocks])
 
 
 def flexibility(body: Body, tolerance: float = 1e-12) -> Flexibility:
@@ -154,8 +169,10 @@ def flexibility(body: Body, tolerance: float = 1e-12) -> Flexibility:
     SolidgearError
         If the static solution is not finite.
     """
-    if "flexibility" in body.memory:
-        return body.memory["flexibility"]
+    return body.kept.get(Flexibility, lambda: _flexibility(body, tolerance))
+
+
+def _flexibility(body: Body, tolerance: float) -> Flexibility:
     n = 6 * len(body.ports)
     out = np.zeros((n, n))
     asymmetry = residual = 0.0
@@ -179,6 +196,7 @@ def flexibility(body: Body, tolerance: float = 1e-12) -> Flexibility:
         work = u.T @ load
         f_block = work + work.T - u.T @ (k @ u)
         size = np.sqrt(np.abs(np.diag(f_block)))
+        size[size == 0] = np.inf  # a motion without any flexibility is not asymmetric
         asymmetry = max(
             asymmetry, float((np.abs(f_block - f_block.T) / np.outer(size, size)).max())
         )
@@ -187,9 +205,7 @@ def flexibility(body: Body, tolerance: float = 1e-12) -> Flexibility:
         backends.append(factor.backend)
     if not np.all(np.isfinite(out)):
         raise SolidgearError(f"the static solution of the {body.fidelity} body is not finite")
-    result = Flexibility(out, asymmetry, residual, "+".join(sorted(set(backends))))
-    body.memory["flexibility"] = result
-    return result
+    return Flexibility(out, asymmetry, residual, "+".join(sorted(set(backends))))
 
 
 @pinned

@@ -34,6 +34,7 @@ def straightened(body, scene):
     from skfem import Basis, BilinearForm, ElementTetP2, MeshTet1
 
     from solidgear.body import Block
+    from solidgear.body.kept import Kept
 
     curved = body.geometry.mesh
     basis = Basis(MeshTet1(curved.p[:, : curved.t.max() + 1], curved.t), ElementTetP2(), intorder=4)
@@ -80,7 +81,7 @@ def straightened(body, scene):
         None,
         False,
     )
-    return replace(body, blocks=(block,), ports=(), geometry=None, memory={})
+    return replace(body, blocks=(block,), ports=(), geometry=None, kept=Kept())
 
 
 def _unit(a, b):

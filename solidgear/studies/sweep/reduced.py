@@ -25,10 +25,11 @@ import scipy.linalg as sla
 import scipy.sparse as sp
 
 from solidgear.body import Block, Body, Port
+from solidgear.body.kept import Kept
 from solidgear.machine.threads import pinned
 from solidgear.solve.modes import modes
 from solidgear.solve.naming import FAMILIES
-from solidgear.solve.statics import SHIFT, Flexibility, factors, flexibility
+from solidgear.solve.statics import SHIFT, Factored, factors, flexibility
 
 
 @dataclass(frozen=True)
@@ -159,7 +160,7 @@ def _reduce_block(body: Body, index: int, count: int, steps: int) -> ReducedBloc
         body.length,
         body.mesh,
         body.geometry,
-        memory={"factors": [factor]},
+        kept=Kept(Factored([factor])),
     )
     found = [
         (v[0], m.family)
@@ -236,7 +237,6 @@ def _frame(body: Body) -> Body:
             block.mirror,
         )
 
-    memory: dict[str, Flexibility] = {"flexibility": flexibility(body)}
     ports = tuple(Port(p.name, p.y, p.attachment) for p in body.ports)
     return Body(
         body.fidelity,
@@ -245,7 +245,7 @@ def _frame(body: Body) -> Body:
         body.scale,
         body.length,
         dict(body.mesh),
-        memory=memory,
+        kept=Kept(flexibility(body)),
     )
 
 
