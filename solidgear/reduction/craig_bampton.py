@@ -43,9 +43,8 @@ from solidgear.solve.modes import modes
 from solidgear.solve.relief import elastic_fields
 from solidgear.solve.statics import factors, flexibility
 
-#: Stiffness of the springs that hold ports fast, over that of the body there.  What they still
-#: give is taken out of the modes again.
-FAST = 1e10
+#: Stiffness of the springs that hold ports fast in a first step, over that of the body there.
+FAST = 1e6
 #: Ports whose compliances, scaled to a unit diagonal, have a direction below this move as one.
 TOGETHER = 1e-11
 
@@ -89,7 +88,7 @@ def craig_bampton(body: Body, n: int = 30, ports: PortChoice | None = None) -> S
     if not at:
         raise SolidgearError("craig_bampton: there is no port to hold fast; choose one or more")
     rows = np.concatenate([6 * p + np.arange(6) for p in at])
-    springs = np.diag(FAST / np.diag(flexibility(body).matrix)[rows])
+    springs = np.diag(FAST / _ease(body)[rows])
     attachments = tuple(body.ports[p].attachment for p in at)
     fixed = modes(
         body,
@@ -108,7 +107,9 @@ def craig_bampton(body: Body, n: int = 30, ports: PortChoice | None = None) -> S
                 block, index, at, twin.value, twin.shapes, twin.truncation
             )
             continue
-        own = [v[index] for v in shapes if index in v]
+        # The last of a coarse body are those of the springs, not of the fixed body.
+        most = block.size - len(at) * len(block.components)
+        own = [v[index] for v in shapes if index in v][: max(most, 0)]
         value, basis, truncation = _basis(body, block, factors(body)[index].solve, own, cut, at)
         blocks[index] = reduced_motions(block, index, at, value, basis, truncation)
     return assemble("craig_bampton", body, chosen, blocks.values())
@@ -132,21 +133,22 @@ def _basis(body: Body, block: Block, solve, fixed: list[np.ndarray], cut: float,
         )[1]
 
     attachment = field(g.T)
-    held = _Held(g @ attachment, g @ r, [body.ports[p].name for p in ports])
+    size = np.sqrt(_ease(body)[body.rows(block)[port_rows(block, ports)]])
+    held = _Held(g @ attachment, g @ r, size, [body.ports[p].name for p in ports])
 
-    def fixing(motion, resultant):
-        # What brings the ports back by -motion with loads of that resultant.
-        load, swing = held.solve(-motion, -resultant)
-        return attachment @ load + r @ swing
+    def still(loads):
+        # H0: what loads do while the ports are held.
+        moved = field(loads)
+        reaction, swing = held.solve(-g @ moved, -r.T @ loads)
+        return moved + attachment @ reaction + r @ swing
 
-    phi = np.column_stack(fixed) if fixed else np.zeros((block.size, 0))
-    phi = phi + fixing(g @ phi, np.zeros((r.shape[1], phi.shape[1])))
-    value = np.einsum("ij,ij->j", phi, block.stiffness @ phi)
-    value = value / np.einsum("ij,ij->j", phi, block.mass @ phi)
-
+    # Springs still give a little: a step of inverse iteration on ports held for good.
+    heavy_modes = block.mass @ (np.column_stack(fixed) if fixed else np.zeros((block.size, 0)))
+    phi = still(heavy_modes)
+    energy = heavy_modes.T @ phi
     balanced = attachment @ held.balanced
     elastic = np.hstack([balanced, phi])
-    stiffness = sla.block_diag(held.stiffness, np.diag(value))
+    stiffness = sla.block_diag(held.stiffness, (energy + energy.T) / 2)
     carried = heavy.T @ elastic
     elastic = elastic - r @ carried
     mass = elastic.T @ (block.mass @ elastic)
@@ -157,10 +159,8 @@ def _basis(body: Body, block: Block, solve, fixed: list[np.ndarray], cut: float,
 
     # Inertia forces of rigid motions and constraint modes, on what fixed ports leave free.
     loads = np.hstack([heavy, block.mass @ balanced])
-    still = field(loads)
-    still = still + fixing(g @ still, r.T @ loads)
     by_modes = phi.T @ loads
-    q = loads.T @ still - by_modes.T @ (by_modes / value[:, None])
+    q = loads.T @ still(loads) - by_modes.T @ np.linalg.solve(energy, by_modes)
     whole = np.zeros((shapes.shape[1], loads.shape[1]))
     count = r.shape[1]
     whole[:count, :count] = np.eye(count)
@@ -168,6 +168,16 @@ def _basis(body: Body, block: Block, solve, fixed: list[np.ndarray], cut: float,
     whole[count:, count:] = turn[: balanced.shape[1]].T
     defect = whole @ ((q + q.T) / 2) @ whole.T
     return np.r_[np.zeros(count), 1 / theta[::-1]], shapes, Truncation(cut, defect)
+
+
+def _ease(body: Body) -> np.ndarray:
+    """(6 p,) how far a unit load moves a port near the first frequency of the body, roughly.
+
+    Elastic and by inertia: the mean motion of a seat as long as the shaft is a rigid motion alone.
+    """
+    swing = body.rigid_ports
+    inertia = np.einsum("ij,ji->i", swing, np.linalg.solve(body.mass_matrix(), swing.T))
+    return np.diag(flexibility(body).matrix) + inertia / body.scale
 
 
 class _Held:
@@ -180,6 +190,8 @@ class _Held:
     flexibility : (q, q) ndarray
     swing : (q, r) ndarray
         P, rigid motions of the ports.
+    size : (q,) ndarray
+        Units in which motions of ports are alike.
     names : list of str
         For the message.
 
@@ -191,8 +203,7 @@ class _Held:
         ``N'F N``, the stiffness in the fields of these loads.
     """
 
-    def __init__(self, flexibility: np.ndarray, swing: np.ndarray, names: list[str]):
-        size = np.sqrt(np.diag(flexibility))
+    def __init__(self, flexibility, swing: np.ndarray, size: np.ndarray, names: list[str]):
         self._size = size
         scaled = flexibility / np.outer(size, size)
         self._swing = swing / size[:, None]

@@ -306,7 +306,7 @@ def orthonormal(gram: np.ndarray, width: int) -> np.ndarray:
     size = 1 / np.sqrt(np.diag(gram))
     gram = gram * np.outer(size, size)
     z = np.zeros((len(gram), 0))
-    for start in range(0, len(gram), width):
+    for start in range(0, len(gram), max(width, 1)):
         new = np.eye(len(gram))[:, start : start + width]
         for _ in range(2):  # twice is enough
             new = new - z @ (z.T @ gram @ new)

@@ -2,6 +2,7 @@
 source leaves out.
 """
 
+from solidgear.system.gear_mesh import MeshVector
 from solidgear.system.links import (
     BearingSpring,
     HousedSprings,
@@ -12,14 +13,16 @@ from solidgear.system.links import (
     mesh_spring,
     torsion_spring,
 )
+from solidgear.system.modes import SystemModes
 from solidgear.system.parts import Inertia, Part, Placed, RigidBody
-from solidgear.system.system import System, SystemModes
+from solidgear.system.system import System
 
 __all__ = [
     "BearingSpring",
     "HousedSprings",
     "Inertia",
     "Link",
+    "MeshVector",
     "Part",
     "Placed",
     "PortInertia",

@@ -9,7 +9,6 @@ Ends are written ``part.port``; a part with one port may be named alone.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Protocol
 
@@ -229,7 +228,8 @@ def grounded(part: str, supports) -> dict[str, Link]:
     Returns
     -------
     dict of str to Link
-        One a bearing, called ``part.port``; or ``part.bearings`` for all where they act on one another.
+        One a bearing, called ``part.port``, none for a bearing without stiffness, which is a free
+        station; or ``part.bearings`` for all where they act on one another.
     """
     supports = as_supports(supports)
     ends = tuple(f"{part}.{name}" for name in supports.ports)
@@ -239,7 +239,4 @@ def grounded(part: str, supports) -> dict[str, Link]:
         k[6 * i : 6 * i + 6, 6 * i : 6 * i + 6] = 0.0
     if k.any():
         return {f"{part}.bearings": HousedSprings(ends, supports)}
-    return {end: BearingSpring(end, matrix) for end, matrix in own.items()}
-
-
-Links = Mapping[str, Link]
+    return {end: BearingSpring(end, matrix) for end, matrix in own.items() if matrix.any()}

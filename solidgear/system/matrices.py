@@ -67,6 +67,25 @@ def not_negative(name: str, value: Any) -> float:
     ------
     SolidgearError
     """
-    if not (np.isscalar(value) and np.isfinite(value) and value >= 0):
+    number = _number(value)
+    if not (np.isfinite(number) and number >= 0):
         raise SolidgearError(f"{name} is {value}; it must be finite and not negative")
-    return float(value)
+    return number
+
+
+def positive(name: str, value: Any) -> float:
+    """A finite number above zero.
+
+    Raises
+    ------
+    SolidgearError
+    """
+    number = _number(value)
+    if not (np.isfinite(number) and number > 0):
+        raise SolidgearError(f"{name} is {value}; it must be finite and positive")
+    return number
+
+
+def _number(value: Any) -> float:
+    """A scalar as it is, anything else as no number."""
+    return float(value) if np.isscalar(value) and np.isreal(value) else np.nan

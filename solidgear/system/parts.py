@@ -18,7 +18,7 @@ from solidgear.body import Body
 from solidgear.errors import SolidgearError
 from solidgear.frames import DOF_NAMES, shift
 from solidgear.reduction.superelement import PortMotion, Truncation
-from solidgear.system.matrices import frozen, spd
+from solidgear.system.matrices import frozen, positive, spd
 
 
 class Part(Protocol):
@@ -57,7 +57,7 @@ class RigidBody:
     --------
     >>> import numpy as np
     >>> disc = RigidBody(np.diag([5, 5, 5, 0.01, 0.02, 0.01]), {"rim": (0.1, 0, 0)})
-    >>> disc.ports["rim"].rows[2]          # it rises as the disc does, and falls as it turns about y
+    >>> disc.ports["rim"].rows[2] + 0.0    # it rises as the disc does, and falls as it turns about y
     array([ 0. ,  0. ,  1. ,  0. , -0.1,  0. ])
     """
 
@@ -113,8 +113,7 @@ class Inertia:
             raise SolidgearError(
                 f"an inertia in {self.dof!r}; its motion is one of {' '.join(DOF_NAMES)}"
             )
-        if not (np.isscalar(self.value) and np.isfinite(self.value) and self.value > 0):
-            raise SolidgearError(f"an inertia is {self.value}; it must be finite and positive")
+        positive("an inertia", self.value)
 
     @property
     def mass(self) -> np.ndarray:

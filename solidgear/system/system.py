@@ -15,7 +15,7 @@ stiff a spring is; the rest is solved on their complement.  A free rotation is a
 ...     {"shaft": torsion_spring("motor", 400.0, "fan")},
 ... )
 >>> modes = train.modes()
->>> [round(2 * np.pi * f, 9) for f in modes.frequency_hz]       # 0 and sqrt(400 / 1)
+>>> [round(2 * np.pi * float(f), 9) for f in modes.frequency_hz]   # 0 and sqrt(400 / 1)
 [0.0, 20.0]
 """
 
@@ -27,60 +27,19 @@ from functools import cached_property
 
 import numpy as np
 import scipy.linalg as sla
+from numpy.typing import ArrayLike
 
 from solidgear.errors import SolidgearError
 from solidgear.machine.threads import pinned
-from solidgear.reduction.superelement import PortMotion, Truncation, joined
+from solidgear.reduction.superelement import PortMotion, Truncation
 from solidgear.system.bound import frequency_bound
 from solidgear.system.links import Link
+from solidgear.system.modes import TINY, SystemModes, relative_residual
 from solidgear.system.parts import Part
+from solidgear.system.response import UNBALANCED, response
 
 #: A row that moves rigid parts by less than this of what it moves at all is rounding.
 ROUNDING = 1e-9
-#: Entries of a unit vector below this are rounding, and no motion.
-TINY = 1e-13
-#: Work of a load on a free motion, relative to the largest it could do, that is rounding.
-UNBALANCED = 1e-9
-
-
-@dataclass(frozen=True, eq=False)
-class SystemModes:
-    """Undamped modes of a :class:`System`.
-
-    Attributes
-    ----------
-    frequency_hz : (k,) ndarray
-        Ascending; rigid motions are exactly 0.0.
-    shapes : (N, k) ndarray
-        On the coordinates of the system, mass-normalised.
-    energy : dict of str to (k,) ndarray
-        Fraction of each mode's strain energy in every elastic part and link; zero in rigid motions.
-    error_bound : (k,) ndarray
-        Largest relative error of each frequency that the reduction of parts leaves, proven
-        (:mod:`solidgear.system.bound`); infinite where nothing can be promised.
-    residual : float
-        Largest ``|K u - w^2 M u|`` relative to ``|K| |u|``.
-    """
-
-    frequency_hz: np.ndarray
-    shapes: np.ndarray
-    energy: Mapping[str, np.ndarray]
-    error_bound: np.ndarray
-    residual: float
-
-    @property
-    def rigid(self) -> int:
-        """Number of zero frequencies."""
-        return int((self.frequency_hz == 0).sum())
-
-    def dominant(self) -> list[str]:
-        """Part or link with most of the strain energy of every mode, ``rigid`` where there is none."""
-        names = list(self.energy)
-        if not names:
-            return ["rigid"] * len(self.frequency_hz)
-        shares = np.array([self.energy[name] for name in names])
-        most = shares.argmax(axis=0)
-        return [names[i] if shares[i, k] > 0 else "rigid" for k, i in enumerate(most)]
 
 
 @dataclass(frozen=True, eq=False)
@@ -187,7 +146,9 @@ class System:
     @cached_property
     def mass(self) -> np.ndarray:
         """(N, N)."""
-        out = sla.block_diag(*(part.mass for part in self.parts.values()))
+        out = np.zeros((self.size, self.size))
+        for name, part in self.parts.items():
+            out[self.place(name), self.place(name)] = part.mass
         for link in self.links.values():
             if hasattr(link, "mass"):
                 out = out + link.mass(*map(self.port, link.ends))
@@ -196,13 +157,11 @@ class System:
     @cached_property
     def strains(self) -> tuple[np.ndarray, dict[str, slice]]:
         """G with ``K = G'G``, and which rows belong to which part or link."""
-        blocks, where, start = [np.zeros((0, self.size))], {}, 0
+        found: dict[str, np.ndarray] = {}
         for name, part in self.parts.items():
-            own = np.zeros((len(part.strain), self.size))
-            own[:, self.place(name)] = part.strain
-            blocks.append(own)
-            where[name] = slice(start, start + len(own))
-            start += len(own)
+            if len(part.strain):
+                found[name] = np.zeros((len(part.strain), self.size))
+                found[name][:, self.place(name)] = part.strain
         for name, link in self.links.items():
             own = np.asarray(link.strain(*map(self.port, link.ends)), float)
             if own.ndim != 2 or own.shape[1] != self.size or not np.isfinite(own).all():
@@ -210,12 +169,10 @@ class System:
                     f"the link {name!r} gives strain rows of shape {own.shape}; they must be finite "
                     f"and (r, {self.size})"
                 )
-            blocks.append(own)
-            where[name] = slice(start, start + len(own))
-            start += len(own)
-        return np.vstack(blocks), {
-            name: rows for name, rows in where.items() if rows.stop > rows.start
-        }
+            found[name] = own
+        cuts = np.cumsum([0] + [len(rows) for rows in found.values()])
+        where = {name: slice(int(a), int(b)) for name, a, b in zip(found, cuts, cuts[1:])}
+        return np.vstack([np.zeros((0, self.size)), *found.values()]), where
 
     @property
     def stiffness(self) -> np.ndarray:
@@ -225,12 +182,13 @@ class System:
     @cached_property
     def truncation(self) -> Truncation:
         """What all reduced parts leave out."""
-        every = []
+        cut, defect = np.inf, np.zeros((self.size, self.size))
         for name, part in self.parts.items():
-            n = self.place(name).stop - self.place(name).start
             own = getattr(part, "truncation", None)
-            every.append(Truncation(np.inf, np.zeros((n, n))) if own is None else own)
-        return joined(every)
+            if own is not None:
+                cut = min(cut, own.cut)
+                defect[self.place(name), self.place(name)] = own.defect
+        return Truncation(cut, defect)
 
     @cached_property
     def _lower(self) -> np.ndarray:
@@ -244,10 +202,12 @@ class System:
     @cached_property
     def free(self) -> np.ndarray:
         """(N, z) mass-normalised motions that strain nothing."""
-        basis = []
-        for part in self.parts.values():
-            basis.append(_null(_unit(part.strain)))
-        rigid = sla.block_diag(*basis)
+        basis = [np.zeros((self.size, 0))]
+        for name, part in self.parts.items():
+            own = _null(_unit(part.strain)) if len(part.strain) else np.eye(part.mass.shape[0])
+            basis.append(np.zeros((self.size, own.shape[1])))
+            basis[-1][self.place(name)] = own
+        rigid = np.hstack(basis)
         if not rigid.shape[1]:
             return rigid
         lower = np.linalg.cholesky(rigid.T @ self.mass @ rigid)
@@ -263,8 +223,8 @@ class System:
         return rigid @ _null(_unit(rows))
 
     @cached_property
-    def _solved(self) -> tuple[np.ndarray, np.ndarray]:
-        """All elastic frequencies, ascending, rad/s, and their shapes."""
+    def elastic(self) -> tuple[np.ndarray, np.ndarray]:
+        """All elastic frequencies (m,), ascending, rad/s, and their shapes (N, m), mass-normalised."""
         g, _ = self.strains
         lower = self._lower
         rows = sla.solve_triangular(lower, g.T, lower=True).T
@@ -293,7 +253,7 @@ class System:
         """
         if n is not None and n < 1:
             raise SolidgearError(f"n = {n} is not a number of modes; ask for 1 or more")
-        omega, elastic = self._solved
+        omega, elastic = self.elastic
         count = len(omega) if n is None else min(n, len(omega))
         bound = frequency_bound(omega, elastic, self.truncation, count)
         zero = self.free.shape[1]
@@ -304,7 +264,7 @@ class System:
             shapes,
             self._energy(shapes, omega),
             np.r_[np.zeros(zero), bound],
-            self.residual(shapes, omega),
+            relative_residual(self.stiffness, self.mass, shapes, omega),
         )
 
     def signed(self, shapes: np.ndarray) -> np.ndarray:
@@ -315,14 +275,6 @@ class System:
             return shapes
         largest = np.argmax(np.abs(self._lower.T @ shapes), axis=0)
         return shapes * np.where(np.take_along_axis(shapes, largest[None, :], 0)[0] < 0, -1.0, 1.0)
-
-    def residual(self, shapes: np.ndarray, omega: np.ndarray) -> float:
-        """Largest ``|K u - w^2 M u|`` relative to ``|K| |u|``."""
-        k = self.stiffness
-        scale = (np.abs(k) @ np.abs(shapes)).max(axis=0, initial=0.0)
-        miss = np.abs(k @ shapes - self.mass @ shapes * omega**2).max(axis=0, initial=0.0)
-        # a rigid motion may touch no spring at all
-        return float((miss / np.where(scale > 0, scale, 1.0)).max(initial=0.0))
 
     def _energy(self, shapes: np.ndarray, omega: np.ndarray) -> dict[str, np.ndarray]:
         g, where = self.strains
@@ -357,86 +309,23 @@ class System:
             raise SolidgearError(
                 "the load works on a motion that nothing resists; balance it, or hold the system"
             )
-        omega, shapes = self._solved
+        omega, shapes = self.elastic
         return shapes @ ((shapes.T @ load).T / omega**2).T
 
     @pinned
     def response(
         self,
-        frequency_hz: np.ndarray,
+        frequency_hz: ArrayLike,
         load: np.ndarray,
         *,
         damping: float = 0.0,
         loss: Mapping[str, float] | None = None,
     ) -> np.ndarray:
-        """Steady motion under a load that oscillates.
+        """Steady motion under a load that oscillates: (f, N), complex.
 
-        Parameters
-        ----------
-        frequency_hz : (f,) array_like
-            Not negative.
-        load : (N,) array_like
-            Amplitudes, complex for phases; as from :meth:`load`.
-        damping : float
-            Damping ratio zeta of every elastic mode, taken as its loss factor 2 zeta: what viscous
-            damping is at resonance (structural modal damping).
-        loss : mapping of str to float
-            Loss factor eta of parts and links: stiffness ``(1 + i eta) K`` of each.  Exact, not by
-            shares of energy.
-
-        Returns
-        -------
-        (f, N) complex ndarray
-            Amplitudes q of ``q exp(i w t)``: ``response @ system.motion(end).T`` is what a port does.
-
-        Notes
-        -----
-        Superposition of all modes of the system, so that statics is in it; with loss factors, of complex ones.
-
-        Raises
-        ------
-        SolidgearError
-            At 0 Hz if a free motion is driven; for an unknown name, or numbers that are not.
+        See :func:`solidgear.system.response.response` for what the arguments are.
         """
-        w2 = (2 * np.pi * np.asarray(frequency_hz, float)) ** 2
-        given = dict(loss or {})
-        for name, eta in {"damping": damping, **given}.items():
-            if not (np.isfinite(eta) and eta >= 0):
-                raise SolidgearError(f"{name} is {eta}; damping is finite and not negative")
-        omega, elastic = self._solved
-        shapes = np.hstack([self.free, elastic])
-        zero = self.free.shape[1]
-        value = np.r_[np.zeros(zero), omega**2] * (1 + 2j * damping)
-        if given:
-            value, turn = np.linalg.eig(np.diag(value) + self._losses(given, shapes))
-            # Complex symmetric: modes are orthogonal without conjugation.
-            turn = turn / np.sqrt(np.einsum("ij,ij->j", turn, turn))
-            order = np.argsort(np.abs(value))
-            value, shapes = value[order], shapes @ turn[:, order]
-            value[:zero] = 0.0
-        push = shapes.T @ np.asarray(load)
-        if zero and np.any(w2 == 0):
-            if np.abs(push[:zero]).max() > UNBALANCED * np.linalg.norm(push):
-                raise SolidgearError(
-                    "at 0 Hz the load drives a motion that nothing resists; leave 0 Hz out"
-                )
-            push[:zero] = 0.0
-        gap = value[:, None] - w2[None, :]
-        gap[:zero, w2 == 0] = 1.0
-        return (shapes @ (push[:, None] / gap)).T
-
-    def _losses(self, loss: Mapping[str, float], shapes: np.ndarray) -> np.ndarray:
-        """``i sum eta_j K_j`` in modes; rigid ones strain nothing."""
-        g, where = self.strains
-        out = np.zeros((shapes.shape[1],) * 2, complex)
-        for name, eta in loss.items():
-            if name not in self.parts and name not in self.links:
-                raise SolidgearError(f"a loss factor for {name!r}, which is no part and no link")
-            if name in where:
-                stretch = g[where[name]] @ shapes
-                stretch[:, : self.free.shape[1]] = 0.0
-                out += 1j * eta * (stretch.T @ stretch)
-        return out
+        return response(self, np.asarray(frequency_hz, float), load, damping, loss or {})
 
 
 def _unit(rows: np.ndarray) -> np.ndarray:
