@@ -19,6 +19,8 @@ MESH = 8.6e8
 NORMAL = line_of_action(0.391, 0.478, np.radians(25), "left", "concave")
 ON_PINION = sg.MeshVector(NORMAL, mesh_point(0.055, 0.004))
 ON_GEAR = sg.MeshVector(to_gear_frame(NORMAL), mesh_point(0.055 * RATIO, -0.003, member="gear"))
+#: eigenvalues of full matrices are rounded by some 1e-16 of the highest, (1 MHz)^2 beside (700 Hz)^2
+LAPACK = 1e-9
 #: the frame of the gear in that of the pinion: axes cross at a right angle
 ACROSS = np.array([[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]])
 
@@ -79,26 +81,31 @@ def whole(beams):
 
 
 # -- two shafts and a mesh ---------------------------------------------------------------------------------------------------
-@pytest.mark.parametrize("reduction", [sg.rubin, sg.craig_bampton])
-@pytest.mark.parametrize("n", [6, 14, 24])
-def test_coupled_beams_against_the_full_matrices(beams, whole, reduction, n):
-    found = drive(*beams, reduction, n=n).modes(12)
+@pytest.mark.parametrize(
+    "reduction, options",
+    [
+        (sg.rubin, {"n": 6, "steps": 0}),
+        (sg.rubin, {"n": 12, "steps": 0}),
+        (sg.rubin, {"n": 24, "steps": 1}),
+        (sg.craig_bampton, {"n": 6}),
+        (sg.craig_bampton, {"n": 24}),
+    ],
+)
+def test_coupled_beams_against_the_full_matrices(beams, whole, reduction, options):
+    found = drive(*beams, reduction, **options).modes(12)
     assert found.rigid == 1 and found.frequency_hz[0] == 0.0
-    error = found.frequency_hz[1:] / whole[1][1:13] - 1
-    # LAPACK rounds by 1e-16 of the highest eigenvalue, (1 MHz)^2, against the (400 Hz)^2 of the lowest
-    assert error.min() > -1e-8
-    assert np.all(error <= found.error_bound[1:] + 1e-8)
+    error, bound = found.frequency_hz[1:] / whole[1][1:13] - 1, found.error_bound[1:]
+    assert error.min() > -LAPACK and np.all(error <= bound + LAPACK)
     # proven, and not far above
-    clear = np.isfinite(found.error_bound[1:]) & (error > 1e-6)
-    assert np.all(found.error_bound[1:][clear] < 12 * error[clear])
-    assert np.isfinite(found.error_bound[:5]).all() or n == 6
-    if n == 24 and reduction is sg.rubin:
-        assert found.error_bound.max() < 1e-4
+    clear = error > 1e-7
+    assert np.all(bound[clear] < 2 * error[clear])
+    # poor bases are seen to be poor, so that there is something to bound
+    assert clear.any() == (options.get("steps") != 1)
 
 
 def test_a_bound_falls_with_the_basis(beams):
-    few, more = (drive(*beams, n=n, steps=s).modes(8).error_bound for n, s in ((12, 0), (20, 1)))
-    assert np.all(more[1:] < few[1:]) and np.isfinite(more).all()
+    few, more = (drive(*beams, n=n, steps=s).modes(8).error_bound for n, s in ((6, 0), (20, 0)))
+    assert np.all(more[1:] < few[1:]) and np.isfinite(few).all()
 
 
 def test_coupled_harmonic_shafts_against_the_full_matrices():
@@ -110,9 +117,8 @@ def test_coupled_harmonic_shafts_against_the_full_matrices():
     value = spla.eigsh(full.stiffness, 9, full.mass, sigma=-shift_, return_eigenvectors=False)
     exact = np.sqrt(np.sort(value)[1:]) / (2 * np.pi)
     assert found.rigid == 1
-    # ARPACK on a matrix whose highest eigenvalue is 1e9 times the lowest
-    np.testing.assert_allclose(found.frequency_hz[1:], exact, rtol=1e-6)
-    assert found.error_bound.max() < 1e-6
+    np.testing.assert_allclose(found.frequency_hz[1:], exact, rtol=LAPACK)
+    assert found.error_bound.max() < LAPACK
 
 
 def test_shares_of_energy_are_those_of_the_full_matrices(beams, whole):
@@ -155,8 +161,7 @@ def test_response_on_four_thousand_frequencies(beams, whole):
     for i in (0, 700, 1999, sharp, 3999):
         w2 = (2 * np.pi * frequency[i]) ** 2
         exact = full.rows[1]["4"] @ spla.spsolve((k - w2 * full.mass).tocsc(), load)
-        # a frequency off by 1e-7 on a resonance of loss factor 1e-3
-        assert np.abs(moved[i] - exact).max() < 1e-3 * np.abs(exact).max()
+        assert np.abs(moved[i] - exact).max() < 1e-6 * np.abs(exact).max()
     assert moved.shape == (4000, 6)
 
 
@@ -247,7 +252,7 @@ def test_an_inertia_at_a_port_is_mass_of_the_part(beams, whole):
     exact = np.sqrt(sla.eigh(full.stiffness.toarray(), mass, eigvals_only=True)[1:9]) / (2 * np.pi)
     found = loaded.modes(8)
     error = found.frequency_hz[1:] / exact - 1
-    assert np.all((error > -1e-8) & (error <= found.error_bound[1:] + 1e-8))
+    assert np.all((error > -LAPACK) & (error <= found.error_bound[1:] + LAPACK))
     assert found.error_bound.max() < 1e-4
     assert np.all(exact < whole[1][1:9] * (1 + 1e-8)) and exact[0] < 0.9 * whole[1][1]
 
