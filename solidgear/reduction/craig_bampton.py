@@ -1,20 +1,21 @@
-r"""Fixed-interface reduction (Craig and Bampton 1968): motions of the ports, and modes with ports held fast.
+r"""Fixed-interface reduction (Craig and Bampton 1968): constraint modes, and modes with ports held.
 
-Constraint modes are the static shapes under motions of the ports.  They span the same as the rigid motions R and the
-elastic fields E N of port loads that are in equilibrium, ``P'N = 0`` with P = G R, and in those the
-stiffness needs no subtraction:
+Constraint modes are the static shapes under motions of the ports.  They span the same as the rigid
+motions R and the elastic fields E N of port loads that are in equilibrium, ``P'N = 0`` with P = G
+R, and in those the stiffness needs no subtraction:
 
     V = [R, E N, Phi],      K -> diag(0, N'F N, Lambda),      F = G E,
 
-Phi being the modes with all ports fixed (``G Phi = 0``, so that port loads do no work on them).  The mass is full and is
-diagonalised with K.
+Phi being the modes with all ports fixed (``G Phi = 0``, so that port loads do no work on them).
+The mass is full and is diagonalised with K.
 
-Fields Y left out (:mod:`solidgear.reduction.superelement`) move no port and are orthogonal to Phi, hence ``cut`` is
-the first fixed-interface eigenvalue that is not in Phi.  With H0 the inverse of K with fixed ports,
-``Y Y' = H0 - Phi Lambda^-1 Phi'``, hence the defect is that of ``M R`` and ``M E N``.
+Fields Y left out (:mod:`solidgear.reduction.superelement`) move no port and are orthogonal to Phi,
+hence ``cut`` is the first fixed-interface eigenvalue that is not in Phi.  With H0 the inverse of K
+with fixed ports, ``Y Y' = H0 - Phi Lambda^-1 Phi'``, hence the defect is that of ``M R`` and ``M E
+N``.
 
-For the same number of coordinates the free-interface basis is the better one for shafts on bearings, this one where
-neighbours hold the ports as fast as the part itself.
+For the same number of coordinates the free-interface basis is the better one for shafts on
+bearings, this one where neighbours hold the ports as fast as the part itself.
 
 References: R. R. Craig and M. C. C. Bampton, AIAA Journal 6 (1968), 1313-1319.
 """
@@ -183,7 +184,8 @@ def _ease(body: Body) -> np.ndarray:
 class _Held:
     """Loads on the ports of a free block that move them as told.
 
-    ``F f + P a = motion`` and ``P'f = resultant``: loads f move the ports by the flexibility F, and the block swings by a.
+    ``F f + P a = motion`` and ``P'f = resultant``: loads f move the ports by the flexibility F, and
+    the block swings by a.
 
     Parameters
     ----------

@@ -1,17 +1,20 @@
 r"""Free-interface reduction (Rubin 1975): rigid motions, free modes, residual fields of ports.
 
-With U the rigid motions and the free modes below a cut, and H the inverse of K on what is left (U taken out),
+With U the rigid motions and the free modes below a cut, and H the inverse of K on what is left (U
+taken out),
 
     V = [U, W_0, .., W_J],      W_0 = H G',      W_(j+1) = H M W_j.
 
-W_0 are the residual attachment fields: with them statics is exact.  W_1 is the first correction for their
-inertia (a Krylov step).  U and W are orthogonal in K and in M, so only W needs to be turned to its own
-modes, and from the moments ``mu_j = G (H M)^j H G'`` alone: with ``W z`` orthonormal in K,
+W_0 are the residual attachment fields: with them statics is exact.  W_1 is the first correction for
+their inertia (a Krylov step).  U and W are orthogonal in K and in M, so only W needs to be turned
+to its own modes, and from the moments ``mu_j = G (H M)^j H G'`` alone: with ``W z`` orthonormal in
+K,
 
     M -> z' [mu_(i+j+1)] z =: P,      M H M -> z' [mu_(i+j+2)] z =: Q.
 
-Fields Y left out (:mod:`solidgear.reduction.superelement`) are orthogonal to U, hence ``cut`` is the first free
-eigenvalue that is not in U; and ``Y Y' = H - W z z' W'``, hence the defect is ``Q - P P`` on W and zero on U.
+Fields Y left out (:mod:`solidgear.reduction.superelement`) are orthogonal to U, hence ``cut`` is
+the first free eigenvalue that is not in U; and ``Y Y' = H - W z z' W'``, hence the defect is ``Q -
+P P`` on W and zero on U.
 
 References: S. Rubin, AIAA Journal 13 (1975), 995-1006.
 """
@@ -64,8 +67,8 @@ def rubin(body: Body, n: int = 30, ports: PortChoice | None = None, steps: int =
         Ports to keep, by name or as (name, attachment); all names by default, each with its first
         attachment.
     steps : int
-        Krylov steps J on the residual fields.  Each adds up to six coordinates a port, and makes the
-        error about a power of ``(frequency / cut)^2`` smaller twice.
+        Krylov steps J on the residual fields.  Each adds up to six coordinates a port, and makes
+        the error about a power of ``(frequency / cut)^2`` smaller twice.
 
     Returns
     -------

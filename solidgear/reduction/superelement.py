@@ -1,22 +1,25 @@
 r"""A body seen from its ports: a few coordinates, and a way back to the mesh.
 
-Every reduction here is a Ritz basis V of the free body that holds its rigid motions.  In the span of V
-the free body has its own modes; written in them,
+Every reduction here is a Ritz basis V of the free body that holds its rigid motions.  In the span
+of V the free body has its own modes; written in them,
 
     u = V q,      M = 1,      K = diag(0, .., 0, w_1^2, .., w_m^2),      port motions = (G V) q,
 
-so that stiffness is a matter of strain rows ``diag(w)``, rigid motions are the coordinates that no row
-touches, exactly, and two superelements differ in nothing but which V they came from
-(:func:`solidgear.reduction.rubin.rubin`,
-:func:`solidgear.reduction.craig_bampton.craig_bampton`).
+so that stiffness is a matter of strain rows ``diag(w)``, rigid motions are the coordinates that no
+row touches, exactly, and two superelements differ in nothing but which V they came from
+(:func:`solidgear.reduction.rubin.rubin`, :func:`solidgear.reduction.craig_bampton.craig_bampton`).
 
 What V leaves out
------------------
-Let springs of any kind join ports of several bodies and ground, ``B = K + G' Kb G``, and let the masses
-``M`` carry further inertias at ports.  Both bases hold the static displacements of loads at the
-ports, which has a consequence: a field y with ``V' B y = 0`` moves no port.  (With Y for all such
-fields, ``V' B y = 0`` is then ``V' K y = 0``: they belong to the body alone, whatever holds it.)
-Two things about Y are kept with a superelement, as its :class:`Truncation`:
+----------------- Let springs of any kind join ports of several bodies and ground, ``B = K + G' Kb G``, and let the
+masses ``M`` carry further inertias at ports.  Every basis here holds the rigid motions R and the
+static displacements E N of port loads in equilibrium (``P'N = 0`` with P = G R).  A field y with
+``V' B y = 0`` then moves no port.  For with d = G y and f = Kb d, R gives ``P'f = 0``, so that
+f = N c; E N gives ``N'(d + F f) = 0`` with the flexibility F, hence ``d'Kb d + f'F f = 0``: no spring
+is stretched, and d is that of a rigid motion which nothing resists, known exactly and taken out
+beforehand.  So Y, all such fields, is what ``V' K y = 0`` says, whatever holds the body.
+
+Two things about Y are kept with a superelement, as its
+:class:`Truncation`:
 
 - ``cut``, the lowest eigenvalue in Y: ``y' M y <= y' K y / cut``;
 - ``defect``, ``V' M Y Y' M V`` for a K-orthonormal Y: what inertia forces of V do to Y.
@@ -132,7 +135,8 @@ class Superelement:
     >>> part = sg.rubin(body, n=12)
     >>> part.rigid, list(part.ports)
     (6, ['port'])
-    >>> bool(abs(part.frequency_hz[6] / sg.modes(body, n=1).named("bending 1").frequency_hz - 1) < 1e-9)
+    >>> bending = sg.modes(body, n=1).named("bending 1").frequency_hz
+    >>> bool(abs(part.frequency_hz[6] / bending - 1) < 1e-9)
     True
     """
 

@@ -1,8 +1,9 @@
 """What joins parts: springs between ports of any two parts, or of one and ground.
 
-A link kind is one class with the two members of :class:`Link`; nothing else needs to know of it.  A spring gives
-*strain rows* g on the coordinates of the system: its stiffness is ``g'g``, its energy the square of the stretch
-``g q`` over two.  So no spring has to cancel another, and what no row touches is free, exactly.
+A link kind is one class with the two members of :class:`Link`; nothing else needs to know of it.  A
+spring gives *strain rows* g on the coordinates of the system: its stiffness is ``g'g``, its energy
+the square of the stretch ``g q`` over two.  So no spring has to cancel another, and what no row
+touches is free, exactly.
 
 Ends are written ``part.port``; a part with one port may be named alone.
 """

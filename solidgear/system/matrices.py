@@ -53,7 +53,8 @@ def spd(name: str, value: Any, definite: bool = True) -> np.ndarray:
     if least < (ROUNDING if definite else -ROUNDING):
         kind = "definite" if definite else "semidefinite"
         raise SolidgearError(
-            f"{name} is not positive {kind}; its off-diagonal entries are too large for its diagonal"
+            f"{name} is not positive {kind}; "
+            "its off-diagonal entries are too large for its diagonal"
         )
     out = (out + out.T) / 2
     out.setflags(write=False)

@@ -42,7 +42,7 @@ class SystemModes:
         return int((self.frequency_hz == 0).sum())
 
     def dominant(self) -> list[str]:
-        """Part or link with most of the strain energy of every mode, ``rigid`` where there is none."""
+        """Part or link with most of the strain energy of every mode; ``rigid`` if none has any."""
         names = list(self.energy)
         if not names:
             return ["rigid"] * len(self.frequency_hz)

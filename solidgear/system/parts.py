@@ -1,7 +1,7 @@
 """What a system is built of: anything with a mass, strain rows and ports.
 
-A part kind is one class with the three attributes of :class:`Part`; nothing else needs to know of it.
-:class:`solidgear.reduction.Superelement` is one; here are the simpler ones.
+A part kind is one class with the three attributes of :class:`Part`; nothing else needs to know of
+it. :class:`solidgear.reduction.Superelement` is one; here are the simpler ones.
 """
 
 from __future__ import annotations
@@ -57,7 +57,7 @@ class RigidBody:
     --------
     >>> import numpy as np
     >>> disc = RigidBody(np.diag([5, 5, 5, 0.01, 0.02, 0.01]), {"rim": (0.1, 0, 0)})
-    >>> disc.ports["rim"].rows[2] + 0.0    # it rises as the disc does, and falls as it turns about y
+    >>> disc.ports["rim"].rows[2] + 0.0    # rises with the disc, falls as it turns about y
     array([ 0. ,  0. ,  1. ,  0. , -0.1,  0. ])
     """
 

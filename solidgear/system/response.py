@@ -1,13 +1,14 @@
 r"""Steady motion of a system under a load that oscillates.
 
-In modes, ``u = sum_r phi_r (phi_r' f) / (w_r^2 - w^2)`` over all modes of the system, those of residual fields
-among them, so that no static remainder is missing.  Damping is structural, a stiffness ``(1 + i eta) K``:
+In modes, ``u = sum_r phi_r (phi_r' f) / (w_r^2 - w^2)`` over all modes of the system, those of
+residual fields among them, so that no static remainder is missing.  Damping is structural, a
+stiffness ``(1 + i eta) K``:
 
-- a damping ratio zeta counts as loss factor 2 zeta of every mode, ``w_r^2 (1 + 2 i zeta)``, which is what viscous
-  damping is at resonance;
-- a loss factor of a part or link adds ``i eta K_j``, a full matrix in modes.  It does not depend on frequency, so
-  one complex symmetric eigenproblem ``(diag(w^2) + i H) v = mu v`` with ``v'v = 1`` (no conjugation) serves all
-  frequencies, exactly.
+- a damping ratio zeta counts as loss factor 2 zeta of every mode, ``w_r^2 (1 + 2 i zeta)``, which
+  is what viscous damping is at resonance;
+- a loss factor of a part or link adds ``i eta K_j``, a full matrix in modes.  It does not depend on
+  frequency, so one complex symmetric eigenproblem ``(diag(w^2) + i H) v = mu v`` with ``v'v = 1``
+  (no conjugation) serves all frequencies, exactly.
 """
 
 from __future__ import annotations
@@ -55,7 +56,8 @@ def response(
     Raises
     ------
     SolidgearError
-        At 0 Hz if a free motion is driven, on a resonance without damping, for an unknown name, or numbers that are not.
+        At 0 Hz if a free motion is driven, on a resonance without damping, for an unknown name, or
+        numbers that are not.
 
     Examples
     --------
