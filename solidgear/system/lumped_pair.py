@@ -25,7 +25,7 @@ from solidgear.frames import DOF_NAMES
 from solidgear.system.gear_mesh import MeshVector
 from solidgear.system.links import Link, RowSpring, mesh_spring, torsion_spring
 from solidgear.system.modes import relative_residual
-from solidgear.system.parts import Inertia, RigidBody
+from solidgear.system.parts import Inertia, Part, RigidBody
 from solidgear.system.system import System
 
 ENGINE, LOAD = 0, 13
@@ -211,7 +211,7 @@ class LumpedPair:
     @cached_property
     def system(self) -> System:
         """The pair as parts and links: ``engine``, ``pinion``, ``gear``, ``load``."""
-        parts = {
+        parts: dict[str, Part] = {
             "engine": Inertia(self.engine_inertia),
             "pinion": RigidBody(self.pinion_mass),
             "gear": RigidBody(self.gear_mass),

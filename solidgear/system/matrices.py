@@ -89,4 +89,7 @@ def positive(name: str, value: Any) -> float:
 
 def _number(value: Any) -> float:
     """A scalar as it is, anything else as no number."""
-    return float(value) if np.isscalar(value) and np.isreal(value) else np.nan
+    try:
+        return float(value)
+    except (TypeError, ValueError):
+        return np.nan

@@ -219,10 +219,7 @@ class System:
         lower = np.linalg.cholesky(rigid.T @ self.mass @ rigid)
         rigid = sla.solve_triangular(lower, rigid.T, lower=True).T
         g, where = self.strains
-        links = np.concatenate(
-            [np.arange(len(g))[where[n]] for n in self.links if n in where] or [[]]
-        )
-        rows = g[links.astype(int)]
+        rows = np.vstack([np.zeros((0, self.size)), *(g[where[name]] for name in self.links)])
         whole = np.linalg.norm(sla.solve_triangular(self._lower, rows.T, lower=True), axis=0)
         rows = rows @ rigid
         rows[np.linalg.norm(rows, axis=1) < ROUNDING * whole] = 0.0
