@@ -216,14 +216,30 @@ def bodies_joined(turn=None, origin=(0.0, 0.0, 0.0)):
 
 
 def test_a_bearing_between_two_parts_lets_them_move_together():
-    found = bodies_joined().modes()
-    assert found.rigid == 6 and found.frequency_hz[6] > 1
     turned = rotation(2, 1.1)[:3, :3] @ rotation(1, -0.4)[:3, :3]
-    elsewhere = bodies_joined(turned, (1.0, -2.0, 3.0)).modes()
+    system, other = bodies_joined(), bodies_joined(turned, (1.0, -2.0, 3.0))
+    for pair in (system, other):
+        # one rigid motion of both, told at the origin and in the axes of each
+        both = [
+            np.kron(np.eye(2), part.rotation.T) @ shift(part.origin) for part in pair.parts.values()
+        ]
+        strain = pair.strains[0]
+        assert np.abs(strain @ np.vstack(both)).max() < 1e-12 * np.abs(strain).max()
+    found, elsewhere = system.modes(), other.modes()
+    assert found.rigid == 6 and found.frequency_hz[6] > 1
     np.testing.assert_allclose(elsewhere.frequency_hz[6:], found.frequency_hz[6:], rtol=1e-9)
 
 
-@pytest.mark.parametrize("stiff", [1e-3, 1e8, 1e20])
+def test_a_rod_between_two_ports_of_one_shaft_holds_nothing(beams):
+    part = sg.rubin(beams[0], n=12)
+    rod = sg.BearingSpring("shaft.1", np.diag([0, 1e9, 1e9, 1e5, 1e5, 0]), "shaft.2")
+    free, tied = sg.System({"shaft": part}), sg.System({"shaft": part}, {"rod": rod})
+    assert free.modes(3).rigid == tied.modes(3).rigid == 6
+    # it stiffens one of the two bending planes
+    assert tied.modes(3).frequency_hz[7] > 1.001 * free.modes(3).frequency_hz[7]
+
+
+@pytest.mark.parametrize("stiff", [1e-22, 1e-3, 1e8, 1e20])
 def test_zero_frequencies_do_not_depend_on_how_stiff_springs_are(stiff):
     parts = {name: sg.Inertia(j) for name, j in zip("abcd", (1.0, 1e-4, 1e3, 2.0))}
     links = {

@@ -123,12 +123,10 @@ def _basis(block: Block, factor: Factor, free: FreeShapes, cut: float, ports, st
     u, value = free.shapes, free.value
     if u.shape[1] >= block.size or np.isinf(cut):
         return value, u, Truncation(np.inf, np.zeros((len(value),) * 2))
-    r = len(block.components)
     heavy = block.mass @ u
-    elastic = u[:, r:] / value[r:]
 
     def inverse(load):
-        # Displacements of a free body by its inertia relief, less what its free modes do.
+        # Displacements by inertia relief, less their part in U.
         _, field, _ = elastic_fields(
             factor.solve,
             block.mass.__matmul__,
@@ -137,7 +135,6 @@ def _basis(block: Block, factor: Factor, free: FreeShapes, cut: float, ports, st
             load,
             FINE,
         )
-        field = field - elastic @ (u[:, r:].T @ load)
         return field - u @ (heavy.T @ field)
 
     rows = block.ports[port_rows(block, ports)]
