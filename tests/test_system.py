@@ -244,11 +244,11 @@ def test_zero_frequencies_do_not_depend_on_how_stiff_springs_are(stiff):
     parts = {name: sg.Inertia(j) for name, j in zip("abcd", (1.0, 1e-4, 1e3, 2.0))}
     links = {
         "soft": sg.torsion_spring("a", 1.0, "b"),
-        "stiff": sg.torsion_spring("b", stiff, "c"),
+        "any": sg.torsion_spring("c", stiff, "d"),
         "twice": sg.torsion_spring("c", 1e7, "b"),
     }
     found = sg.System(parts, links).modes()
-    assert found.rigid == 2 and found.residual < 1e-12
+    assert found.rigid == 1 and found.residual < 1e-12
 
 
 def test_a_redundant_spring_takes_no_second_motion_away():
