@@ -175,6 +175,21 @@ def test_springs_far_from_the_shaft_cost_no_digits(scale):
     assert system.modes(4).rigid == 1
 
 
+@pytest.mark.parametrize("reduction", REDUCTIONS)
+def test_a_port_as_long_as_the_shaft(reduction):
+    """Its mean motion is a rigid motion alone: along the axis nothing is left over for fields."""
+    rod = sg.Scene.from_parts([sg.Segment.cylinder("rod", length=0.5, diameter=0.05)])
+    springs = sg.Supports(("port",), np.diag([1e7, 2e7, 1e7, 1e4, 2e4, 1e4]))
+    for attachment in ("average", "rigid"):
+        body = sg.build(rod.with_attachment(attachment), "timoshenko")
+        found = on_bearings(REDUCTIONS[reduction](body, n=20), springs).modes(6)
+        # a seat that is rigid from end to end leaves a rigid body
+        count = 6 if attachment == "rigid" else 8
+        exact = every(sg.modes(body, springs, count))
+        np.testing.assert_allclose(found.frequency_hz, exact[: len(found.frequency_hz)], rtol=1e-4)
+        assert found.rigid == 0
+
+
 def test_in_soft_springs_a_shaft_is_a_rigid_body():
     body = sg.build(SCENE, "timoshenko", elements=40)
     soft = SCENE.with_bearing_scale(1e-7)

@@ -37,12 +37,13 @@ from solidgear.reduction.superelement import (
     Truncation,
     assemble,
     chosen_ports,
+    ease,
     port_rows,
     reduced_motions,
 )
 from solidgear.solve.modes import modes
 from solidgear.solve.relief import elastic_fields
-from solidgear.solve.statics import factors, flexibility
+from solidgear.solve.statics import factors
 
 #: Stiffness of the springs that hold ports fast in a first step, over that of the body there.
 FAST = 1e6
@@ -89,7 +90,7 @@ def craig_bampton(body: Body, n: int = 30, ports: PortChoice | None = None) -> S
     if not at:
         raise SolidgearError("craig_bampton: there is no port to hold fast; choose one or more")
     rows = np.concatenate([6 * p + np.arange(6) for p in at])
-    springs = np.diag(FAST / _ease(body)[rows])
+    springs = np.diag(FAST / ease(body)[rows])
     attachments = tuple(body.ports[p].attachment for p in at)
     fixed = modes(
         body,
@@ -134,7 +135,7 @@ def _basis(body: Body, block: Block, solve, fixed: list[np.ndarray], cut: float,
         )[1]
 
     attachment = field(g.T)
-    size = np.sqrt(_ease(body)[body.rows(block)[port_rows(block, ports)]])
+    size = np.sqrt(ease(body)[body.rows(block)[port_rows(block, ports)]])
     held = _Held(g @ attachment, g @ r, size, [body.ports[p].name for p in ports])
 
     def still(loads):
@@ -169,16 +170,6 @@ def _basis(body: Body, block: Block, solve, fixed: list[np.ndarray], cut: float,
     whole[count:, count:] = turn[: balanced.shape[1]].T
     defect = whole @ ((q + q.T) / 2) @ whole.T
     return np.r_[np.zeros(count), 1 / theta[::-1]], shapes, Truncation(cut, defect)
-
-
-def _ease(body: Body) -> np.ndarray:
-    """(6 p,) how far a unit load moves a port near the first frequency of the body, roughly.
-
-    Elastic and by inertia: the mean motion of a seat as long as the shaft is a rigid motion alone.
-    """
-    swing = body.rigid_ports
-    inertia = np.einsum("ij,ji->i", swing, np.linalg.solve(body.mass_matrix(), swing.T))
-    return np.diag(flexibility(body).matrix) + inertia / body.scale
 
 
 class _Held:

@@ -39,6 +39,7 @@ from solidgear.reduction.superelement import (
     Truncation,
     assemble,
     chosen_ports,
+    ease,
     port_rows,
     reduced_motions,
 )
@@ -51,6 +52,8 @@ from solidgear.solve.statics import factors
 FINE = 1e-24
 #: Residual fields whose eigenvalue is this many times the softest of them have no mass to speak of.
 MASSLESS = 1e-13
+#: Residual flexibility of a port, over its `ease`, that is rounding.
+NOTHING = 1e-15
 
 
 @pinned
@@ -101,7 +104,8 @@ def rubin(body: Body, n: int = 30, ports: PortChoice | None = None, steps: int =
             )
             continue
         free = free_shapes(block, [v[index] for v in shapes if index in v])
-        value, basis, truncation = _basis(block, factors(body)[index], free, cut, at, steps)
+        size = ease(body)[body.rows(block)[port_rows(block, at)]]
+        value, basis, truncation = _basis(block, factors(body)[index], free, cut, at, size, steps)
         blocks[index] = reduced_motions(block, index, at, value, basis, truncation)
     return assemble("rubin", body, chosen, blocks.values())
 
@@ -118,7 +122,7 @@ def lowest_shapes(found: ModeSet, n: int) -> tuple[list[dict[int, np.ndarray]], 
     return [v for m in elastic[:-1] for v in m.vectors], cut
 
 
-def _basis(block: Block, factor: Factor, free: FreeShapes, cut: float, ports, steps: int):
+def _basis(block: Block, factor: Factor, free: FreeShapes, cut: float, ports, size, steps: int):
     """Eigenvalues, mass-normalised shapes and truncation of one block."""
     u, value = free.shapes, free.value
     if u.shape[1] >= block.size or np.isinf(cut):
@@ -139,11 +143,14 @@ def _basis(block: Block, factor: Factor, free: FreeShapes, cut: float, ports, st
 
     rows = block.ports[port_rows(block, ports)]
     moments, fields = residual_fields(inverse, block.mass, rows, steps)
-    z, mass, beyond = residual_basis(np.array(moments))
+    mu = np.array(moments)
+    # What the mean motion of a seat as long as the shaft leaves over is rounding.
+    left = np.diag(mu[0]) > NOTHING * size
+    z, mass, beyond = residual_basis(mu[:, left][:, :, left])
     theta, turn = np.linalg.eigh(mass)
-    kept = theta > MASSLESS * theta[-1]
+    kept = theta > MASSLESS * theta.max(initial=0.0)
     theta, turn = theta[kept][::-1], turn[:, kept][:, ::-1] / np.sqrt(theta[kept][::-1])
-    residual = np.hstack(fields) @ (z @ turn)
+    residual = np.hstack([w[:, left] for w in fields]) @ (z @ turn)
     defect = np.zeros((u.shape[1] + len(theta),) * 2)
     defect[u.shape[1] :, u.shape[1] :] = turn.T @ (beyond - mass @ mass) @ turn
     return np.concatenate([value, 1 / theta]), np.hstack([u, residual]), Truncation(cut, defect)

@@ -239,6 +239,18 @@ def port_rows(block: Block, ports: Iterable[int]) -> np.ndarray:
     return np.array([c * p + k for p in ports for k in range(c)], int)
 
 
+def ease(body: Body) -> np.ndarray:
+    """(6 p,) how far a unit load moves a port by inertia at the first frequency of the body, roughly:
+    units in which motions of ports are alike, SI.
+
+    Always positive; an elastic flexibility need not be, for the mean motion of a seat as long as
+    the shaft is a rigid motion alone.
+    """
+    swing = body.rigid_ports
+    inertia = np.einsum("ij,ji->i", swing, np.linalg.solve(body.mass_matrix(), swing.T))
+    return inertia / body.scale
+
+
 def assemble(
     kind: str, body: Body, chosen: Mapping[str, int], blocks: Iterable[ReducedMotions]
 ) -> Superelement:
