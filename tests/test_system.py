@@ -1,5 +1,7 @@
 """Systems of parts and links against answers by hand, and against matrices that share no code with them."""
 
+import doctest
+import importlib
 import re
 
 import numpy as np
@@ -363,3 +365,19 @@ def test_bad_systems_are_one_sentence(make, words):
     said = str(caught.value)
     assert any(word in said for word in words.split("|")), said
     assert "\n" not in said and len(re.findall(r"\.\s", said)) == 0
+
+
+@pytest.mark.parametrize(
+    "name",
+    [
+        "reduction.superelement",
+        "reduction.craig_bampton",
+        "system.parts",
+        "system.system",
+        "system.response",
+    ],
+)
+def test_what_the_docstrings_show(name):
+    module = importlib.import_module(f"solidgear.{name}")
+    failed, tried = doctest.testmod(module)
+    assert tried and not failed
