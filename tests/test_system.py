@@ -381,3 +381,9 @@ def test_what_the_docstrings_show(name):
     module = importlib.import_module(f"solidgear.{name}")
     failed, tried = doctest.testmod(module)
     assert tried and not failed
+
+
+def test_the_package_shows_parts_and_links():
+    nouns = {"Superelement", "System", "RigidBody", "Inertia", "Placed", "BearingSpring"}
+    verbs = {"rubin", "craig_bampton", "grounded", "mesh_spring", "torsion_spring"}
+    assert nouns | verbs | {"RowSpring", "PortInertia", "MeshVector"} <= set(sg.__all__)
