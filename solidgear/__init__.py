@@ -29,6 +29,20 @@ _WHERE = {
     "Body": "solidgear.body",
     "Supports": "solidgear.body",
     "build": "solidgear.fidelity",
+    "Superelement": "solidgear.reduction.superelement",
+    "rubin": "solidgear.reduction.rubin",
+    "craig_bampton": "solidgear.reduction.craig_bampton",
+    "System": "solidgear.system",
+    "RigidBody": "solidgear.system",
+    "Inertia": "solidgear.system",
+    "Placed": "solidgear.system",
+    "BearingSpring": "solidgear.system",
+    "RowSpring": "solidgear.system",
+    "PortInertia": "solidgear.system",
+    "MeshVector": "solidgear.system",
+    "grounded": "solidgear.system",
+    "mesh_spring": "solidgear.system",
+    "torsion_spring": "solidgear.system",
     "condense": "solidgear.solve.statics",
     "modes": "solidgear.solve.modes",
     "compare": "solidgear.studies.comparison",
@@ -39,31 +53,61 @@ __all__ = [
     "STEEL",
     "Ask",
     "Bearing",
+    "BearingSpring",
     "Body",
+    "Inertia",
     "Material",
+    "MeshVector",
+    "Placed",
     "Port",
+    "PortInertia",
+    "RigidBody",
+    "RowSpring",
     "Scene",
     "SceneError",
     "Segment",
     "SolidgearError",
+    "Superelement",
     "Supports",
+    "System",
     "__version__",
     "build",
     "compare",
     "condense",
+    "craig_bampton",
+    "grounded",
     "load",
+    "mesh_spring",
     "modes",
+    "rubin",
+    "torsion_spring",
 ]
 
 if TYPE_CHECKING:
     from solidgear.body import Body, Supports
     from solidgear.errors import SceneError, SolidgearError
     from solidgear.fidelity import build
+    from solidgear.reduction.craig_bampton import craig_bampton
+    from solidgear.reduction.rubin import rubin
+    from solidgear.reduction.superelement import Superelement
     from solidgear.scene import STEEL, Ask, Bearing, Material, Port, Scene, Segment
     from solidgear.scene.file import load
     from solidgear.solve.modes import modes
     from solidgear.solve.statics import condense
     from solidgear.studies.comparison import compare
+    from solidgear.system import (
+        BearingSpring,
+        Inertia,
+        MeshVector,
+        Placed,
+        PortInertia,
+        RigidBody,
+        RowSpring,
+        System,
+        grounded,
+        mesh_spring,
+        torsion_spring,
+    )
 
 
 def __getattr__(name: str):

@@ -81,6 +81,25 @@ def test_before_solving():
     assert found["euler"] == found["timoshenko"] == "will not hold" and found["solid"] == "holds"
 
 
+def test_two_shafts():
+    found = run("two_shafts")
+    modes = found["modes"]
+    assert modes.rigid == 1 and modes.error_bound.max() < 1e-9 and found["unknowns"] < 150
+    # of a double frequency of one shaft the mesh, a single spring, leaves one as it was
+    assert modes.frequency_hz[-1] == pytest.approx(2758.0, rel=1e-3)
+    # the mesh is loudest where a mode strains it most
+    strained = modes.frequency_hz[modes.energy["mesh"].argmax()]
+    assert found["loudest"] == pytest.approx(strained, rel=1e-3)
+
+
+def test_way_back():
+    found = run("way_back")
+    assert found["bound"]["rubin"] < 1e-9 < found["bound"]["craig_bampton"] < 1e-2
+    # the blank slows the shaft down, and carries what the shaft does not
+    assert found["bending"] < 2758.0 and 0.5 < found["share"] < 1
+    assert found["sensor"] > 0
+
+
 def test_every_example_is_tested_and_short():
     scripts = {p.stem: p.read_text() for p in FOLDER.glob("*.py")}
     tests = Path(__file__).read_text()

@@ -19,8 +19,8 @@ MAY_IMPORT = {
     "meshing": GROUND | {"machine", "scene"},
     "solve": GROUND | {"machine", "body"},
     "fidelity": GROUND | {"machine", "scene", "body", "meshing", "solve"},
-    "reduction": GROUND | {"body", "solve"},
-    "system": GROUND | {"body", "reduction"},
+    "reduction": GROUND | {"machine", "body", "solve"},
+    "system": GROUND | {"machine", "body", "reduction"},
     "evidence": GROUND | {"machine", "scene", "body", "meshing", "solve", "fidelity", "reduction"},
     "report": GROUND | {"machine", "body", "fidelity", "evidence"},
     "studies": GROUND

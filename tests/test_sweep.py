@@ -306,7 +306,7 @@ def test_two_processes_give_the_rows_of_one(finished, tmp_path):
 def test_workers_get_the_small_operators_only(monkeypatch):
     import pickle
 
-    from solidgear.studies.sweep.reduced import reduce
+    from solidgear.reduction.moments import reduce
 
     variants = variants_of(SCENE, VARY)
     body = sg.build(variants.shaft(), "harmonic", order=4, layers=2)

@@ -6,8 +6,8 @@ import scipy.linalg as sla
 
 import solidgear as sg
 from solidgear.body import Supports
-from solidgear.studies.sweep import reduced as reduction
-from solidgear.studies.sweep.reduced import reduce
+from solidgear.reduction import moments as reduction
+from solidgear.reduction.moments import reduce
 from solidgear.studies.sweep.ritz import Seats, _bound, _Group, ritz_modes
 from solidgear.studies.sweep.run import variants_of
 

@@ -1,3 +1,36 @@
-"""Geared systems: mesh vector, the 14-DOF lumped pair, and identification of what a source leaves
-out.
+"""Parts with ports and links between them; the geared pair, its mesh, and identification of what a
+source leaves out.
 """
+
+from solidgear.system.gear_mesh import MeshVector
+from solidgear.system.links import (
+    BearingSpring,
+    HousedSprings,
+    Link,
+    PortInertia,
+    RowSpring,
+    grounded,
+    mesh_spring,
+    torsion_spring,
+)
+from solidgear.system.modes import SystemModes
+from solidgear.system.parts import Inertia, Part, Placed, RigidBody
+from solidgear.system.system import System
+
+__all__ = [
+    "BearingSpring",
+    "HousedSprings",
+    "Inertia",
+    "Link",
+    "MeshVector",
+    "Part",
+    "Placed",
+    "PortInertia",
+    "RigidBody",
+    "RowSpring",
+    "System",
+    "SystemModes",
+    "grounded",
+    "mesh_spring",
+    "torsion_spring",
+]

@@ -7,11 +7,9 @@ Coordinates, in this order (Hua 2010, equations 15 and 16)::
     7 .. 12  gear   x y z thx thy thz     in the gear's frame, at its lumped point
     13       load thy
 
-Both frames are drawn in :mod:`solidgear.system.gear_mesh`.  Every spring is kept as rows of a
-strain matrix ``G`` with ``K = G'G``, and the natural frequencies are the singular values of ``G
-L^-T`` with ``M = L L'``. That halves the digits lost between the torsional modes at some ten Hz and
-the bending modes at some thousand, and makes zero frequencies a matter of counting rows: no spring
-has to cancel another one to give them.
+Both frames are drawn in :mod:`solidgear.system.gear_mesh`.  The pair is a
+:class:`solidgear.system.System` of two inertias and two rigid bodies, which keeps springs as strain
+rows and solves the modes; here are its checks, its matrices and the words of its energies.
 """
 
 from __future__ import annotations
@@ -21,11 +19,14 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
-import scipy.linalg as sla
 
 from solidgear.errors import SolidgearError
 from solidgear.frames import DOF_NAMES
 from solidgear.system.gear_mesh import MeshVector
+from solidgear.system.links import Link, RowSpring, mesh_spring, torsion_spring
+from solidgear.system.modes import relative_residual
+from solidgear.system.parts import Inertia, Part, RigidBody
+from solidgear.system.system import System
 
 ENGINE, LOAD = 0, 13
 PINION, GEAR = slice(1, 7), slice(7, 13)
@@ -208,28 +209,32 @@ class LumpedPair:
         return turn
 
     @cached_property
+    def system(self) -> System:
+        """The pair as parts and links: ``engine``, ``pinion``, ``gear``, ``load``."""
+        parts: dict[str, Part] = {
+            "engine": Inertia(self.engine_inertia),
+            "pinion": RigidBody(self.pinion_mass),
+            "gear": RigidBody(self.gear_mass),
+            "load": Inertia(self.load_inertia),
+        }
+        links: dict[str, Link] = {
+            "pinion support": RowSpring("pinion", _root(self.pinion_support)),
+            "gear support": RowSpring("gear", _root(self.gear_support)),
+        }
+        if self.pinion_torsion > 0:
+            links["pinion torsion"] = torsion_spring("engine", self.pinion_torsion, "pinion")
+        if self.gear_torsion > 0:
+            links["gear torsion"] = torsion_spring("gear", self.gear_torsion, "load")
+        if self.mesh_stiffness > 0:
+            links["mesh"] = mesh_spring(
+                "pinion", self.pinion_mesh, "gear", self.gear_mesh, self.mesh_stiffness
+            )
+        return System(parts, links)
+
+    @property
     def strains(self) -> tuple[np.ndarray, dict[str, slice]]:
         """``G`` with ``K = G'G``, and which rows belong to which spring."""
-        rows, where, start = [], {}, 0
-
-        def add(name, block, columns):
-            nonlocal start
-            g = np.zeros((len(block), 14))
-            g[:, columns] = block
-            rows.append(g)
-            where[name], start = slice(start, start + len(block)), start + len(block)
-
-        add("pinion support", _root(self.pinion_support), PINION)
-        add("gear support", _root(self.gear_support), GEAR)
-        for name, k, columns in (
-            ("pinion torsion", self.pinion_torsion, [ENGINE, PINION_THY]),
-            ("gear torsion", self.gear_torsion, [GEAR_THY, LOAD]),
-        ):
-            if k > 0:
-                add(name, np.sqrt(k) * np.array([[1.0, -1.0]]), columns)
-        if self.mesh_stiffness > 0:
-            add("mesh", np.sqrt(self.mesh_stiffness) * self.transmission[None, :], slice(0, 14))
-        return np.vstack(rows), where
+        return self.system.strains
 
     def matrices(self) -> tuple[np.ndarray, np.ndarray]:
         """Stiffness and mass (14, 14), SI (equations 17 and 18), assembled from the springs and not
@@ -249,30 +254,15 @@ class LumpedPair:
     def solve(self) -> PairModes:
         """All 14 undamped modes."""
         k, m = self.matrices()
-        strain, where = self.strains
-        chol = np.linalg.cholesky(m)
-        _, w, vt = np.linalg.svd(sla.solve_triangular(chol, strain.T, lower=True).T)
-        # Rows that cannot be told from dependent ones, e.g. a mesh that acts on supports only, add
-        # no frequency.
-        elastic = int((w > 1e-12 * w.max(initial=0.0)).sum())
-        order = np.r_[np.arange(14)[elastic:], np.arange(elastic)[::-1]]
-        omega = np.r_[np.zeros(14 - elastic), w[:elastic][::-1]]
-        shapes = sla.solve_triangular(chol.T, vt[order].T, lower=False)
-        if elastic == 13 and self.pinion_torsion * self.gear_torsion * self.mesh_stiffness > 0:
+        found = self.system.modes()
+        shapes, omega = found.shapes, 2 * np.pi * found.frequency_hz
+        if found.rigid == 1 and self.pinion_torsion * self.gear_torsion * self.mesh_stiffness > 0:
             # Known exactly, so not left to rounding.
             turn = self.train_rotation
             shapes[:, 0] = turn / np.sqrt(turn @ m @ turn)
-        # A sign that does not depend on the library: largest component (in energy) positive.
-        largest = np.argmax(np.abs(chol.T @ shapes), axis=0)
-        shapes *= np.where(np.take_along_axis(shapes, largest[None, :], 0)[0] < 0, -1.0, 1.0)
-        scale = (np.abs(k) @ np.abs(shapes)).max(axis=0)
-        miss = np.abs(k @ shapes - m @ shapes * omega**2).max(axis=0)
-        residual = float(
-            (miss / np.where(scale > 0, scale, 1.0)).max()
-        )  # a rigid motion may touch no spring at all
-        return PairModes(
-            omega / (2 * np.pi), shapes, self._energy(shapes, omega, strain, where), residual
-        )
+            shapes = self.system.signed(shapes)
+        energy = self._energy(shapes, omega, *self.strains)
+        return PairModes(found.frequency_hz, shapes, energy, relative_residual(k, m, shapes, omega))
 
     def _energy(self, shapes, omega, strain, where) -> np.ndarray:
         """(14, 7) fractions; see `PairModes.energy`."""

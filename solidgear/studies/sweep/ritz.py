@@ -1,7 +1,7 @@
 r"""Modes of one bearing set in the reduced basis, with a bound on their error.
 
 The supported body is ``B = A + G' Kb G`` with ``A = K + sigma M``, and its modes are those of ``B^-1 M`` with ``theta = 1 / (lambda + sigma)``.
-The Ritz values theta~ in the span of V (:mod:`solidgear.studies.sweep.reduced`) are too small.  By how much at most follows from what V holds:
+The Ritz values theta~ in the span of V (:mod:`solidgear.reduction.moments`) are too small.  By how much at most follows from what V holds:
 
 - V contains ``A^-1 G'`` of every occupied seat.  A field v with ``V' B v = 0`` therefore has ``(I + G A^-1 G' Kb) G v = 0``, so ``G v = 0``: its seats stand still.
 - V contains the free modes U up to a cut.  With the above, ``0 = U' B v = U' A v``, so v lies in the complement of U and ``v' M v <= theta_c v' B v``,
@@ -28,9 +28,9 @@ import numpy as np
 import scipy.linalg as sla
 
 from solidgear.body import Supports, component_rows
+from solidgear.reduction.moments import Reduced, ReducedBlock, residual_basis
 from solidgear.solve.naming import ALIKE, OVAL_TOLERANCE, alike
 from solidgear.solve.supported import decoupled, groups
-from solidgear.studies.sweep.reduced import Reduced, ReducedBlock
 
 #: As in `solidgear.solve.modes.modes`: relative change of an eigenvalue below which couplings
 #: between blocks are left out.
@@ -86,12 +86,8 @@ class _Occupied:
         rows = np.array([c * p + k for p in ports for k in range(c)], int)
         mu = mu[:, rows[:, None], rows]
 
-        def hankel(first):
-            return np.block([[mu[i + j + first] for j in range(steps)] for i in range(steps)])
-
         if steps and len(rows):
-            z = _orthonormal(hankel(0), len(rows))
-            mass, beyond = z.T @ hankel(1) @ z, z.T @ hankel(2) @ z
+            z, mass, beyond = residual_basis(mu)
             motions = np.hstack(list(mu[:steps])) @ z
         else:
             mass = beyond = np.zeros((0, 0))
@@ -134,25 +130,6 @@ class _Together:
         basis = np.eye(len(self.mass))
         basis[np.ix_(self.rigid, self.rigid)] = q
         return np.delete(basis, self.rigid[: int((s > 1e-6).sum())], axis=1)
-
-
-def _orthonormal(gram: np.ndarray, width: int) -> np.ndarray:
-    """Combinations of fields with unit Gram matrix: the first ``width`` fields are kept whole,
-    later ones where they add something.
-    """
-    size = 1 / np.sqrt(np.diag(gram))
-    gram = gram * np.outer(size, size)
-    z = np.zeros((len(gram), 0))
-    for start in range(0, len(gram), width):
-        new = np.eye(len(gram))[:, start : start + width]
-        for _ in range(2):  # twice is enough
-            new = new - z @ (z.T @ gram @ new)
-        value, vector = np.linalg.eigh(new.T @ gram @ new)
-        # What is below this is rounding of the moments; attachment fields must stay for the bound
-        # to hold.
-        keep = value > (1e-14 if start == 0 else 1e-10)
-        z = np.hstack([z, new @ (vector[:, keep] / np.sqrt(value[keep]))])
-    return size[:, None] * z
 
 
 @dataclass(frozen=True)

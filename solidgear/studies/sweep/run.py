@@ -14,9 +14,9 @@ from solidgear.fidelity import build as build_any
 from solidgear.fidelity.ladder import LADDER
 from solidgear.fidelity.options import number
 from solidgear.fidelity.size import refuse_too_large
+from solidgear.reduction.moments import LEVELS, Reduced, reduce
 from solidgear.scene import Scene
 from solidgear.studies.sweep import vary
-from solidgear.studies.sweep.reduced import LEVELS, Reduced, reduce
 from solidgear.studies.sweep.rows import RowFile, tell_in_log
 from solidgear.studies.sweep.task import Task, columns
 from solidgear.studies.sweep.variants import SeatedShaft, Variants

@@ -12,9 +12,9 @@ from solidgear.body import Body
 from solidgear.errors import SolidgearError
 from solidgear.frames import DOF_NAMES
 from solidgear.machine.threads import pinned
+from solidgear.reduction.moments import Reduced
 from solidgear.solve.modes import modes
 from solidgear.solve.statics import condense
-from solidgear.studies.sweep.reduced import Reduced
 from solidgear.studies.sweep.ritz import Seats, ritz_modes
 from solidgear.studies.sweep.variants import Variants
 

@@ -17,8 +17,9 @@ Any choice of seats is a choice of rows and columns of these.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from typing import TypeAlias
 
 import numpy as np
 import scipy.linalg as sla
@@ -26,10 +27,13 @@ import scipy.sparse as sp
 
 from solidgear.body import Block, Body, Port
 from solidgear.body.kept import Kept
+from solidgear.body.mass import ScalarMass
 from solidgear.machine.threads import pinned
 from solidgear.solve.modes import modes
 from solidgear.solve.naming import FAMILIES
 from solidgear.solve.statics import SHIFT, Factored, factors, flexibility
+
+Mass: TypeAlias = sp.csr_matrix | ScalarMass
 
 
 @dataclass(frozen=True)
@@ -114,6 +118,27 @@ class Reduced:
         return max(len(b.theta) + 2 * len(b.components) * b.steps for b in self.blocks)
 
 
+@dataclass(frozen=True)
+class FreeShapes:
+    """Mass-orthonormal shapes of a free block, rigid motions first.
+
+    Attributes
+    ----------
+    shapes : (n, r + k) ndarray
+    value : (r + k,) ndarray
+        Eigenvalues, ascending, rad^2/s^2; exactly 0 for the r rigid ones.
+    order : (k,) ndarray of int
+        Place of each elastic shape among those that were given.
+    lower : (r, r) ndarray
+        Cholesky factor of the rigid mass matrix: unit rigid motions are ``shapes[:, :r] @ lower.T``.
+    """
+
+    shapes: np.ndarray
+    value: np.ndarray
+    order: np.ndarray
+    lower: np.ndarray
+
+
 #: (free modes per wanted one, Krylov steps) from the first basis to the largest
 LEVELS = ((1.0, 1), (2.0, 1), (4.0, 2))
 
@@ -168,21 +193,11 @@ def _reduce_block(body: Body, index: int, count: int, steps: int) -> ReducedBloc
         if not m.name.startswith("rigid")
         for v in m.vectors
     ]
+    basis = free_shapes(block, [vector for vector, _ in found])
+    u, value = basis.shapes, basis.value
+    theta = 1 / (value + shift)
     families = [_family((c,)) for c in block.components]
-    lower = (
-        np.linalg.cholesky(block.rigid.T @ (block.mass @ block.rigid)) if r else np.zeros((0, 0))
-    )
-    u = (
-        np.column_stack([block.rigid @ sla.inv(lower).T] * bool(r) + [v for v, _ in found])
-        if r or found
-        else np.zeros((block.size, 0))
-    )
-    # Pairs come with their mean frequency; the quotient is that of the shape itself.
-    value = np.einsum("ij,ij->j", u, block.stiffness @ u) / np.einsum("ij,ij->j", u, block.mass @ u)
-    value[:r] = 0.0
-    order = np.concatenate([np.arange(r), r + np.argsort(value[r:], kind="stable")]).astype(int)
-    u, theta = u[:, order], 1 / (value[order] + shift)
-    families += [found[k - r][1] for k in order[r:]]
+    families += [found[k][1] for k in basis.order]
     whole = u.shape[1] >= block.size
     cut = 0.0 if whole else float(theta[-1])
     if not whole:
@@ -195,25 +210,113 @@ def _reduce_block(body: Body, index: int, count: int, steps: int) -> ReducedBloc
             w = factor.solve(load - heavy @ (u.T @ load))
             return w - u @ (heavy.T @ w)
 
-        moments = np.array(_moments(inverse, block, steps))
+        moments = np.array(residual_fields(inverse, block.mass, block.ports, steps)[0])
     own = _family(block.components) if block.components else ""
     scaled = u * np.sqrt(theta)
-    turn = lower.T * np.sqrt(1 / theta[:r])[:, None]
+    turn = basis.lower.T * np.sqrt(1 / theta[:r])[:, None]
     return ReducedBlock(
         block.components, turn, theta, block.ports @ scaled, moments, cut, (*families, own), None
     )
 
 
-def _moments(inverse, block: Block, steps: int) -> list[np.ndarray]:
-    """mu_0 .. mu_(2 steps + 2): even ones across a solve, odd ones as Gram matrices."""
-    w = inverse(block.ports.T.toarray())
-    out = [block.ports @ w]
-    for _ in range(steps + 1):
-        heavy = block.mass @ w
+def free_shapes(block: Block, elastic: Sequence[np.ndarray]) -> FreeShapes:
+    """Rigid motions of a free block and some of its elastic modes, ready to be a basis.
+
+    Parameters
+    ----------
+    block : Block
+    elastic : sequence of (n,) ndarray
+        Mode shapes of the free block, mass-normalised, in any order.
+    """
+    r = len(block.components)
+    lower = (
+        np.linalg.cholesky(block.rigid.T @ (block.mass @ block.rigid)) if r else np.zeros((0, 0))
+    )
+    columns = [block.rigid @ sla.inv(lower).T] * bool(r) + list(elastic)
+    u = np.column_stack(columns) if columns else np.zeros((block.size, 0))
+    # Pairs come with their mean frequency; the quotient is that of the shape itself.
+    value = np.einsum("ij,ij->j", u, block.stiffness @ u) / np.einsum("ij,ij->j", u, block.mass @ u)
+    value[:r] = 0.0
+    order = np.argsort(value[r:], kind="stable")
+    every = np.concatenate([np.arange(r), r + order]).astype(int)
+    return FreeShapes(u[:, every], value[every], order, lower)
+
+
+def residual_fields(
+    inverse: Callable[[np.ndarray], np.ndarray], mass: Mass, ports: sp.csr_matrix, steps: int
+) -> tuple[list[np.ndarray], list[np.ndarray]]:
+    """Fields W_0 .. W_(steps) of some ports and their moments mu_0 .. mu_(2 steps + 2).
+
+    Parameters
+    ----------
+    inverse : callable
+        H, the inverse of A (or of K) with U taken out.
+    mass : sparse or ScalarMass
+    ports : (q, n) sparse
+        Rows G.
+    steps : int
+        J.
+
+    Returns
+    -------
+    moments : list of (q, q) ndarray
+        Even ones across a solve, odd ones as Gram matrices.
+    fields : list of (n, q) ndarray
+    """
+    w = inverse(ports.T.toarray())
+    out, fields = [ports @ w], [w]
+    for step in range(steps + 1):
+        heavy = mass @ w
         after = inverse(heavy)
         out += [w.T @ heavy, heavy.T @ after]
         w = after
-    return [(m + m.T) / 2 for m in out]
+        if step < steps:
+            fields.append(w)
+    return [(m + m.T) / 2 for m in out], fields
+
+
+def residual_basis(mu: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Combinations of the fields W_0 .. W_J with unit energy, from their moments.
+
+    Parameters
+    ----------
+    mu : (2 J + 3, q, q) ndarray
+
+    Returns
+    -------
+    z : ((J + 1) q, w) ndarray
+        Coefficients; ``W z`` has unit Gram matrix in A (or K).
+    mass : (w, w) ndarray
+        Its Gram matrix in M.
+    beyond : (w, w) ndarray
+        Its Gram matrix in ``M H M``.
+    """
+    steps = (len(mu) - 1) // 2
+
+    def hankel(first):
+        return np.block([[mu[i + j + first] for j in range(steps)] for i in range(steps)])
+
+    z = orthonormal(hankel(0), mu.shape[1])
+    return z, z.T @ hankel(1) @ z, z.T @ hankel(2) @ z
+
+
+def orthonormal(gram: np.ndarray, width: int) -> np.ndarray:
+    """Combinations of fields with unit Gram matrix: the first ``width`` fields are kept whole,
+    later ones where they add something.
+    """
+    size = 1 / np.sqrt(np.diag(gram))
+    gram = gram * np.outer(size, size)
+    z = np.zeros((len(gram), 0))
+    for start in range(0, len(gram), max(width, 1)):
+        new = np.eye(len(gram))[:, start : start + width]
+        for _ in range(2):  # twice is enough
+            new = new - z @ (z.T @ gram @ new)
+        value, vector = np.linalg.eigh(new.T @ gram @ new)
+        # What is below this is rounding of the moments; attachment fields must stay for the bound
+        # to hold.
+        keep = value > (1e-14 if start == 0 else 1e-10)
+        z = np.hstack([z, new @ (vector[:, keep] / np.sqrt(value[keep]))])
+    return size[:, None] * z
 
 
 def _family(components: Sequence[int]) -> str:
@@ -249,4 +352,14 @@ def _frame(body: Body) -> Body:
     )
 
 
-__all__ = ["LEVELS", "Reduced", "ReducedBlock", "reduce"]
+__all__ = [
+    "LEVELS",
+    "FreeShapes",
+    "Reduced",
+    "ReducedBlock",
+    "free_shapes",
+    "orthonormal",
+    "reduce",
+    "residual_basis",
+    "residual_fields",
+]

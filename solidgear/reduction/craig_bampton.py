@@ -1,0 +1,224 @@
+r"""Fixed-interface reduction (Craig and Bampton 1968): constraint modes, and modes with ports held.
+
+Constraint modes are the static shapes under motions of the ports.  They span the same as the rigid
+motions R and the elastic fields E N of port loads that are in equilibrium, ``P'N = 0`` with P = G
+R, and in those the stiffness needs no subtraction:
+
+    V = [R, E N, Phi],      K -> diag(0, N'F N, Lambda),      F = G E,
+
+Phi being the modes with all ports fixed (``G Phi = 0``, so that port loads do no work on them).
+The mass is full and is diagonalised with K.
+
+Fields Y left out (:mod:`solidgear.reduction.superelement`) move no port and are orthogonal to Phi,
+hence ``cut`` is the first fixed-interface eigenvalue that is not in Phi.  With H0 the inverse of K
+with fixed ports, ``Y Y' = H0 - Phi Lambda^-1 Phi'``, hence the defect is that of ``M R`` and ``M E
+N``.
+
+For the same number of coordinates the free-interface basis is the better one for shafts on
+bearings, this one where neighbours hold the ports as fast as the part itself.
+
+References: R. R. Craig and M. C. C. Bampton, AIAA Journal 6 (1968), 1313-1319.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import scipy.linalg as sla
+
+from solidgear.body import Block, Body, Supports
+from solidgear.errors import SolidgearError
+from solidgear.machine.threads import pinned
+from solidgear.reduction.moments import free_shapes, orthonormal
+from solidgear.reduction.rubin import FINE, lowest_shapes
+from solidgear.reduction.superelement import (
+    PortChoice,
+    ReducedMotions,
+    Superelement,
+    Truncation,
+    assemble,
+    chosen_ports,
+    ease,
+    port_rows,
+    reduced_motions,
+)
+from solidgear.solve.modes import modes
+from solidgear.solve.relief import elastic_fields
+from solidgear.solve.statics import factors
+
+#: Stiffness of the springs that hold ports fast in a first step, over that of the body there.
+FAST = 1e6
+#: Ports whose compliances, scaled to a unit diagonal, have a direction below this move as one.
+TOGETHER = 1e-11
+
+
+@pinned
+def craig_bampton(body: Body, n: int = 30, ports: PortChoice | None = None) -> Superelement:
+    """Reduce a body to its ports by constraint modes and fixed-interface modes.
+
+    Parameters
+    ----------
+    body : Body
+        Of any fidelity.
+    n : int
+        Lowest modes with all chosen ports held fast to keep; twins count twice.
+    ports : iterable of str or (str, str), optional
+        Ports to keep, by name or as (name, attachment); all names by default, each with its first
+        attachment.
+
+    Returns
+    -------
+    Superelement
+        Of ``6 * ports + n`` coordinates, or as many as the body has.
+
+    Raises
+    ------
+    SolidgearError
+        For a port the body does not have, no port at all, or ports that cannot move apart.
+
+    Examples
+    --------
+    >>> import solidgear as sg
+    >>> rod = sg.Segment.cylinder("rod", length=0.5, diameter=0.05)
+    >>> body = sg.build(sg.Scene.from_parts([rod]), "euler")
+    >>> sg.craig_bampton(body, n=8).size
+    14
+    """
+    if n < 1:
+        raise SolidgearError(f"craig_bampton: n = {n} is not a number of modes; ask for 1 or more")
+    chosen = chosen_ports(body, ports)
+    at = list(chosen.values())
+    if not at:
+        raise SolidgearError("craig_bampton: there is no port to hold fast; choose one or more")
+    rows = np.concatenate([6 * p + np.arange(6) for p in at])
+    springs = np.diag(FAST / ease(body)[rows])
+    attachments = tuple(body.ports[p].attachment for p in at)
+    fixed = modes(
+        body,
+        Supports(tuple(chosen), springs, attachments),
+        n=min(n + 1, body.size),
+        ovalising=False,
+    )
+    shapes, cut = lowest_shapes(fixed, n)
+    blocks: dict[int, ReducedMotions] = {}
+    for index, block in enumerate(body.blocks):
+        if not block.components:
+            continue
+        if block.mirror is not None:
+            twin = blocks[block.mirror[0]]
+            blocks[index] = reduced_motions(
+                block, index, at, twin.value, twin.shapes, twin.truncation
+            )
+            continue
+        # The last of a coarse body are those of the springs, not of the fixed body.
+        most = block.size - len(at) * len(block.components)
+        own = [v[index] for v in shapes if index in v][: max(most, 0)]
+        value, basis, truncation = _basis(body, block, factors(body)[index].solve, own, cut, at)
+        blocks[index] = reduced_motions(block, index, at, value, basis, truncation)
+    return assemble("craig_bampton", body, chosen, blocks.values())
+
+
+def _basis(body: Body, block: Block, solve, fixed: list[np.ndarray], cut: float, ports: list[int]):
+    """Eigenvalues, mass-normalised shapes and truncation of one block."""
+    g = block.ports[port_rows(block, ports)].toarray()
+    free = free_shapes(block, [])
+    r = free.shapes
+    heavy = block.mass @ r
+
+    def field(load):
+        return elastic_fields(
+            solve,
+            block.mass.__matmul__,
+            block.stiffness.__matmul__,
+            block.rigid,
+            load,
+            FINE,
+        )[1]
+
+    attachment = field(g.T)
+    size = np.sqrt(ease(body)[body.rows(block)[port_rows(block, ports)]])
+    held = _Held(g @ attachment, g @ r, size, [body.ports[p].name for p in ports])
+
+    def still(loads):
+        # H0: what loads do while the ports are held.
+        moved = field(loads)
+        reaction, swing = held.solve(-g @ moved, -r.T @ loads)
+        return moved + attachment @ reaction + r @ swing
+
+    # Springs still give a little: a step of inverse iteration on ports held for good.
+    heavy_modes = block.mass @ (np.column_stack(fixed) if fixed else np.zeros((block.size, 0)))
+    phi = still(heavy_modes)
+    energy = heavy_modes.T @ phi
+    balanced = attachment @ held.balanced
+    elastic = np.hstack([balanced, phi])
+    stiffness = sla.block_diag(held.stiffness, (energy + energy.T) / 2)
+    carried = heavy.T @ elastic
+    elastic = elastic - r @ carried
+    mass = elastic.T @ (block.mass @ elastic)
+    z = orthonormal(stiffness, len(stiffness))
+    theta, turn = np.linalg.eigh(z.T @ mass @ z)
+    turn = z @ (turn[:, ::-1] / np.sqrt(theta[::-1]))
+    shapes = np.hstack([r, elastic @ turn])
+
+    # Inertia forces of rigid motions and constraint modes, on what fixed ports leave free.
+    loads = np.hstack([heavy, block.mass @ balanced])
+    by_modes = phi.T @ loads
+    q = loads.T @ still(loads) - by_modes.T @ np.linalg.solve(energy, by_modes)
+    whole = np.zeros((shapes.shape[1], loads.shape[1]))
+    count = r.shape[1]
+    whole[:count, :count] = np.eye(count)
+    whole[count:, :count] = -(carried @ turn).T
+    whole[count:, count:] = turn[: balanced.shape[1]].T
+    defect = whole @ ((q + q.T) / 2) @ whole.T
+    return np.r_[np.zeros(count), 1 / theta[::-1]], shapes, Truncation(cut, defect)
+
+
+class _Held:
+    """Loads on the ports of a free block that move them as told.
+
+    ``F f + P a = motion`` and ``P'f = resultant``: loads f move the ports by the flexibility F, and
+    the block swings by a.
+
+    Parameters
+    ----------
+    flexibility : (q, q) ndarray
+    swing : (q, r) ndarray
+        P, rigid motions of the ports.
+    size : (q,) ndarray
+        Units in which motions of ports are alike.
+    names : list of str
+        For the message.
+
+    Attributes
+    ----------
+    balanced : (q, q - r) ndarray
+        Loads N in equilibrium, orthonormal in units of the ports.
+    stiffness : (q - r, q - r) ndarray
+        ``N'F N``, the stiffness in the fields of these loads.
+    """
+
+    def __init__(self, flexibility, swing: np.ndarray, size: np.ndarray, names: list[str]):
+        self._size = size
+        scaled = flexibility / np.outer(size, size)
+        self._swing = swing / size[:, None]
+        left = np.linalg.svd(self._swing)[0]
+        self._q = left[:, swing.shape[1] :]
+        inner = self._q.T @ ((scaled + scaled.T) / 2) @ self._q
+        least = np.linalg.eigvalsh(inner)[0] if len(inner) else 1.0
+        if least < TOGETHER:
+            raise SolidgearError(
+                f"the ports {', '.join(names)} cannot all be moved apart; leave one out"
+            )
+        self._scaled, self._inner = scaled, sla.cho_factor(inner) if len(inner) else None
+        self.balanced = self._q / size[:, None]
+        self.stiffness = inner
+
+    def solve(self, motion: np.ndarray, resultant: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """f and a."""
+        motion = motion / self._size[:, None]
+        # f = f0 + N g with P'f0 = resultant, and N' of the first equation gives g.
+        load = np.linalg.pinv(self._swing.T) @ resultant
+        if self._inner is not None:
+            left = self._q.T @ (motion - self._scaled @ load)
+            load = load + self._q @ sla.cho_solve(self._inner, left)
+        swing = np.linalg.lstsq(self._swing, motion - self._scaled @ load, rcond=None)[0]
+        return load / self._size[:, None], swing

@@ -1,0 +1,156 @@
+r"""Free-interface reduction (Rubin 1975): rigid motions, free modes, residual fields of ports.
+
+With U the rigid motions and the free modes below a cut, and H the inverse of K on what is left (U
+taken out),
+
+    V = [U, W_0, .., W_J],      W_0 = H G',      W_(j+1) = H M W_j.
+
+W_0 are the residual attachment fields: with them statics is exact.  W_1 is the first correction for
+their inertia (a Krylov step).  U and W are orthogonal in K and in M, so only W needs to be turned
+to its own modes, and from the moments ``mu_j = G (H M)^j H G'`` alone: with ``W z`` orthonormal in
+K,
+
+    M -> z' [mu_(i+j+1)] z =: P,      M H M -> z' [mu_(i+j+2)] z =: Q.
+
+Fields Y left out (:mod:`solidgear.reduction.superelement`) are orthogonal to U, hence ``cut`` is
+the first free eigenvalue that is not in U; and ``Y Y' = H - W z z' W'``, hence the defect is ``Q -
+P P`` on W and zero on U.
+
+References: S. Rubin, AIAA Journal 13 (1975), 995-1006.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from solidgear.body import Block, Body
+from solidgear.errors import SolidgearError
+from solidgear.machine.threads import pinned
+from solidgear.reduction.moments import (
+    FreeShapes,
+    free_shapes,
+    residual_basis,
+    residual_fields,
+)
+from solidgear.reduction.superelement import (
+    PortChoice,
+    ReducedMotions,
+    Superelement,
+    Truncation,
+    assemble,
+    chosen_ports,
+    ease,
+    port_rows,
+    reduced_motions,
+)
+from solidgear.solve.factor import Factor
+from solidgear.solve.modes import ModeSet, modes
+from solidgear.solve.relief import elastic_fields
+from solidgear.solve.statics import factors
+
+#: Relative error of the energy of a field; displacements are good to its root.
+FINE = 1e-24
+#: Residual fields whose eigenvalue is this many times the softest of them have no mass to speak of.
+MASSLESS = 1e-13
+#: Residual flexibility of a port, over its `ease`, that is rounding.
+NOTHING = 1e-15
+
+
+@pinned
+def rubin(body: Body, n: int = 30, ports: PortChoice | None = None, steps: int = 1) -> Superelement:
+    """Reduce a body to its ports by free modes and residual attachment fields.
+
+    Parameters
+    ----------
+    body : Body
+        Of any fidelity.
+    n : int
+        Lowest elastic modes of the free body to keep; twins count twice.
+    ports : iterable of str or (str, str), optional
+        Ports to keep, by name or as (name, attachment); all names by default, each with its first
+        attachment.
+    steps : int
+        Krylov steps J on the residual fields.  Each adds up to six coordinates a port, and makes
+        the error about a power of ``(frequency / cut)^2`` smaller twice.
+
+    Returns
+    -------
+    Superelement
+        Motions that move no port (ovalising families of a harmonic solid) are not in it: no
+        spring on a port feels them.
+
+    Raises
+    ------
+    SolidgearError
+        For a port the body does not have, or numbers that are not.
+    """
+    if n < 1 or steps < 0:
+        raise SolidgearError(
+            f"rubin: n = {n} modes and {steps} steps; ask for one mode or more, and no negative steps"
+        )
+    chosen = chosen_ports(body, ports)
+    found = modes(body, (), n=min(n + 1, body.size), ovalising=False)
+    shapes, cut = lowest_shapes(found, n)
+    blocks: dict[int, ReducedMotions] = {}
+    at = list(chosen.values())
+    for index, block in enumerate(body.blocks):
+        if not block.components:
+            continue
+        if block.mirror is not None:
+            # The same matrices, so the same shapes; only what ports make of them differs.
+            twin = blocks[block.mirror[0]]
+            blocks[index] = reduced_motions(
+                block, index, at, twin.value, twin.shapes, twin.truncation
+            )
+            continue
+        free = free_shapes(block, [v[index] for v in shapes if index in v])
+        size = ease(body)[body.rows(block)[port_rows(block, at)]]
+        value, basis, truncation = _basis(block, factors(body)[index], free, cut, at, size, steps)
+        blocks[index] = reduced_motions(block, index, at, value, basis, truncation)
+    return assemble("rubin", body, chosen, blocks.values())
+
+
+def lowest_shapes(found: ModeSet, n: int) -> tuple[list[dict[int, np.ndarray]], float]:
+    """The ``n`` lowest elastic shapes, twins never torn apart, and the eigenvalue (rad^2/s^2) below
+    which there are no others; infinite where there are none at all.
+    """
+    elastic = [m for m in found.modes if m.frequency_hz > 0]
+    if sum(m.multiplicity for m in elastic) <= n:
+        return [v for m in elastic for v in m.vectors], np.inf
+    # Twins are told by their mean, which the lower one undercuts by less than this.
+    cut = (2 * np.pi * elastic[-1].frequency_hz) ** 2 * (1 - 1e-6)
+    return [v for m in elastic[:-1] for v in m.vectors], cut
+
+
+def _basis(block: Block, factor: Factor, free: FreeShapes, cut: float, ports, size, steps: int):
+    """Eigenvalues, mass-normalised shapes and truncation of one block."""
+    u, value = free.shapes, free.value
+    if u.shape[1] >= block.size or np.isinf(cut):
+        return value, u, Truncation(np.inf, np.zeros((len(value),) * 2))
+    heavy = block.mass @ u
+
+    def inverse(load):
+        # Displacements by inertia relief, less their part in U.
+        _, field, _ = elastic_fields(
+            factor.solve,
+            block.mass.__matmul__,
+            block.stiffness.__matmul__,
+            block.rigid,
+            load,
+            FINE,
+        )
+        return field - u @ (heavy.T @ field)
+
+    rows = block.ports[port_rows(block, ports)]
+    moments, fields = residual_fields(inverse, block.mass, rows, steps)
+    mu = np.array(moments)
+    # What the mean motion of a seat as long as the shaft leaves over is rounding.
+    left = np.diag(mu[0]) > NOTHING * size
+    z, mass, beyond = residual_basis(mu[:, left][:, :, left])
+    theta, turn = np.linalg.eigh(mass)
+    kept = theta > MASSLESS * theta.max(initial=0.0)
+    theta, turn = theta[kept][::-1], turn[:, kept][:, ::-1] / np.sqrt(theta[kept][::-1])
+    residual = np.hstack([w[:, left] for w in fields]) @ (z @ turn)
+    defect = np.zeros((u.shape[1] + len(theta),) * 2)
+    defect[u.shape[1] :, u.shape[1] :] = turn.T @ (beyond - mass @ mass) @ turn
+    return np.concatenate([value, 1 / theta]), np.hstack([u, residual]), Truncation(cut, defect)

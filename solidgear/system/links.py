@@ -1,0 +1,243 @@
+"""What joins parts: springs between ports of any two parts, or of one and ground.
+
+A link kind is one class with the two members of :class:`Link`; nothing else needs to know of it.  A
+spring gives *strain rows* g on the coordinates of the system: its stiffness is ``g'g``, its energy
+the square of the stretch ``g q`` over two.  So no spring has to cancel another, and what no row
+touches is free, exactly.
+
+Ends are written ``part.port``; a part with one port may be named alone.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from solidgear.body import Supports, as_supports
+from solidgear.errors import SolidgearError
+from solidgear.frames import DOF_NAMES
+from solidgear.reduction.superelement import PortMotion
+from solidgear.system.gear_mesh import MeshVector
+from solidgear.system.matrices import frozen, not_negative, spd
+
+
+class Link(Protocol):
+    """What a system asks of a link.
+
+    A link that carries mass may further have ``mass(*ends)``, (N, N) positive semidefinite.
+    """
+
+    @property
+    def ends(self) -> tuple[str, ...]:
+        """Ports it acts on, each ``part.port``; ground needs none."""
+
+    def strain(self, *ends: PortMotion) -> np.ndarray:
+        """(r, N) strain rows from the motion of every end, on the coordinates of the system."""
+
+
+@dataclass(frozen=True, eq=False)
+class BearingSpring:
+    """A 6x6 spring between a port and ground, or a port of another part.
+
+    Attributes
+    ----------
+    at : str
+    stiffness : (6, 6) array_like
+        Symmetric positive semidefinite, in the axes and at the point of `at`, SI.
+    to : str, optional
+        The other port, whose part is carried rigidly to the point of the first; ground without it.
+    """
+
+    at: str
+    stiffness: np.ndarray
+    to: str | None = None
+
+    def __post_init__(self):
+        checked = spd(f"the stiffness of the spring at {self.at}", self.stiffness, definite=False)
+        object.__setattr__(self, "stiffness", checked)
+
+    @property
+    def ends(self) -> tuple[str, ...]:
+        """One or two ports."""
+        return (self.at,) if self.to is None else (self.at, self.to)
+
+    def strain(self, *ends: PortMotion) -> np.ndarray:
+        """Root of the stiffness times the motion of one end relative to the other."""
+        here, *others = ends
+        motion = here.rows
+        for other in others:
+            motion = motion - other.seen_from(here)
+        return Supports(("spring",), self.stiffness).root.T @ motion
+
+
+@dataclass(frozen=True, eq=False)
+class RowSpring:
+    """A spring on one combination of the motions of a port, or of two.
+
+    Its stretch is ``row @ motion of at - to_row @ motion of to``, each motion in its own port's
+    axes.  :func:`torsion_spring` and :func:`mesh_spring` are such springs.
+
+    Attributes
+    ----------
+    at : str
+    row : (6,) or (r, 6) array_like
+        Several rows are as many springs.
+    stiffness : float
+        N per unit of stretch.
+    to : str, optional
+        Ground without it.
+    to_row : array_like, optional
+        By default ``row``.
+    """
+
+    at: str
+    row: ArrayLike
+    stiffness: float = 1.0
+    to: str | None = None
+    to_row: ArrayLike | None = None
+
+    def __post_init__(self):
+        name = f"the spring at {self.at}"
+        not_negative(f"the stiffness of {name}", self.stiffness)
+        for field in ("row", "to_row"):
+            given = getattr(self, field)
+            if given is None:
+                continue
+            rows = np.atleast_2d(np.asarray(given, float))
+            object.__setattr__(self, field, frozen(f"the row of {name}", rows, (len(rows), 6)))
+
+    @property
+    def ends(self) -> tuple[str, ...]:
+        """One or two ports."""
+        return (self.at,) if self.to is None else (self.at, self.to)
+
+    def strain(self, *ends: PortMotion) -> np.ndarray:
+        """Root of the stiffness times the stretch; no row for no stiffness."""
+        stretch = self.row @ ends[0].rows
+        if len(ends) > 1:
+            stretch = stretch - (self.row if self.to_row is None else self.to_row) @ ends[1].rows
+        return np.sqrt(self.stiffness) * stretch if self.stiffness > 0 else stretch[:0]
+
+
+def torsion_spring(at: str, stiffness: float, to: str | None = None, dof: str = "thy") -> RowSpring:
+    """A spring on one component of a port, against the same of another or ground.
+
+    Parameters
+    ----------
+    at : str
+    stiffness : float
+        N m/rad, or N/m for a translation.
+    to : str, optional
+    dof : str
+        Which of x y z thx thy thz, in each port's own axes.
+    """
+    if dof not in DOF_NAMES:
+        raise SolidgearError(f"a spring in {dof!r}; its motion is one of {' '.join(DOF_NAMES)}")
+    return RowSpring(at, np.eye(6)[DOF_NAMES.index(dof)], stiffness, to)
+
+
+def mesh_spring(
+    pinion: str, pinion_mesh: MeshVector, gear: str, gear_mesh: MeshVector, stiffness: float
+) -> RowSpring:
+    """The teeth of two gears: a spring on their transmission error ``h_p q_p - h_g q_g``.
+
+    Parameters
+    ----------
+    pinion, gear : str
+        Ports.
+    pinion_mesh, gear_mesh : MeshVector
+        Each in the axes of its own port, of *one* physical direction.
+    stiffness : float
+        N/m.
+
+    References
+    ----------
+    Hua (2010), equations 21 to 23.
+    """
+    return RowSpring(pinion, pinion_mesh.vector, stiffness, gear, gear_mesh.vector)
+
+
+@dataclass(frozen=True, eq=False)
+class PortInertia:
+    """A rigid mass fixed to a port: a coupling, a gear blank, a sensor.
+
+    Attributes
+    ----------
+    at : str
+    matrix : (6, 6) array_like
+        Symmetric positive semidefinite, in the axes and at the point of the port.
+    """
+
+    at: str
+    matrix: np.ndarray
+
+    def __post_init__(self):
+        checked = spd(f"the inertia at {self.at}", self.matrix, definite=False)
+        object.__setattr__(self, "matrix", checked)
+
+    @property
+    def ends(self) -> tuple[str, ...]:
+        """The port."""
+        return (self.at,)
+
+    def strain(self, *ends: PortMotion) -> np.ndarray:
+        """(0, N): nothing gives."""
+        return np.zeros((0, ends[0].rows.shape[1]))
+
+    def mass(self, *ends: PortMotion) -> np.ndarray:
+        """(N, N)."""
+        return ends[0].rows.T @ self.matrix @ ends[0].rows
+
+
+@dataclass(frozen=True, eq=False)
+class HousedSprings:
+    """Springs of several ports to ground that act on one another, such as bearings in one housing.
+
+    Attributes
+    ----------
+    at : tuple of str
+    supports : Supports
+        Of as many ports, in their order.
+    """
+
+    at: tuple[str, ...]
+    supports: Supports
+
+    @property
+    def ends(self) -> tuple[str, ...]:
+        """All ports."""
+        return self.at
+
+    def strain(self, *ends: PortMotion) -> np.ndarray:
+        """Root of the common stiffness times all motions."""
+        return self.supports.root.T @ np.vstack([end.rows for end in ends])
+
+
+def grounded(part: str, supports) -> dict[str, Link]:
+    """Supports of one shaft as links to ground.
+
+    Parameters
+    ----------
+    part : str
+        Name of the part in the system; its ports have the names that the supports use.
+    supports : Supports, Scene or iterable of bearings
+        A scene brings its housing spring along, which makes one link of all bearings.
+
+    Returns
+    -------
+    dict of str to Link
+        One a bearing, called ``part.port``, none for a bearing without stiffness, which is a free
+        station; or ``part.bearings`` for all where they act on one another.
+    """
+    supports = as_supports(supports)
+    ends = tuple(f"{part}.{name}" for name in supports.ports)
+    k = np.array(supports.stiffness)
+    own = {end: k[6 * i : 6 * i + 6, 6 * i : 6 * i + 6].copy() for i, end in enumerate(ends)}
+    for i in range(len(ends)):
+        k[6 * i : 6 * i + 6, 6 * i : 6 * i + 6] = 0.0
+    if k.any():
+        return {f"{part}.bearings": HousedSprings(ends, supports)}
+    return {end: BearingSpring(end, matrix) for end, matrix in own.items() if matrix.any()}

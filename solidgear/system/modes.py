@@ -1,0 +1,65 @@
+"""What the modes of a system are told as."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+#: Entries of a unit vector below this are rounding, and no motion.
+TINY = 1e-13
+
+
+@dataclass(frozen=True, eq=False)
+class SystemModes:
+    """Undamped modes of a :class:`System`.
+
+    Attributes
+    ----------
+    frequency_hz : (k,) ndarray
+        Ascending; rigid motions are exactly 0.0.
+    shapes : (N, k) ndarray
+        On the coordinates of the system, mass-normalised.
+    energy : dict of str to (k,) ndarray
+        Fraction of each mode's strain energy in every elastic part and link; zero in rigid motions.
+    error_bound : (k,) ndarray
+        Largest relative error of each frequency that the reduction of parts leaves, proven
+        (:mod:`solidgear.system.bound`); infinite where nothing can be promised.
+    residual : float
+        Largest ``|K u - w^2 M u|`` relative to ``|K| |u|``.
+    """
+
+    frequency_hz: np.ndarray
+    shapes: np.ndarray
+    energy: Mapping[str, np.ndarray]
+    error_bound: np.ndarray
+    residual: float
+
+    @property
+    def rigid(self) -> int:
+        """Number of zero frequencies."""
+        return int((self.frequency_hz == 0).sum())
+
+    def dominant(self) -> list[str]:
+        """Part or link with most of the strain energy of every mode; ``rigid`` if none has any."""
+        names = list(self.energy)
+        if not names:
+            return ["rigid"] * len(self.frequency_hz)
+        shares = np.array([self.energy[name] for name in names])
+        most = shares.argmax(axis=0)
+        return [names[i] if shares[i, k] > 0 else "rigid" for k, i in enumerate(most)]
+
+
+def relative_residual(
+    stiffness: np.ndarray, mass: np.ndarray, shapes: np.ndarray, omega: np.ndarray
+) -> float:
+    """Largest ``|K u - w^2 M u|`` relative to ``|K| |u|``."""
+    size = np.abs(stiffness)
+    scale = (size @ np.abs(shapes)).max(axis=0, initial=0.0)
+    # A rigid motion may touch no spring at all, or by rounding only.
+    least = TINY * size.max(initial=0.0) * np.abs(shapes).max(axis=0, initial=0.0)
+    scale = np.maximum(scale, least)
+    miss = stiffness @ shapes - mass @ shapes * omega**2
+    miss = np.abs(miss).max(axis=0, initial=0.0)
+    return float((miss / np.where(scale > 0, scale, 1.0)).max(initial=0.0))
