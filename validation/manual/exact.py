@@ -9,7 +9,6 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.linalg import expm
 from scipy.optimize import brentq
 
 
@@ -87,8 +86,8 @@ def beam_frequencies(
     """Bending frequencies, Hz, of a stepped beam with free ends on springs, rigid motions left out.
 
     State (w, phi, M, Q) with ``w' = phi + Q / kGA``, ``phi' = M / EI``, ``M' = -Q - rho I w^2 phi``
-    and ``Q' = -rho A w^2 w`` (Timoshenko, Phil. Mag. 41 (1921), 744), carried over each span by
-    the matrix exponential.  Free ends make a frequency a zero of the determinant of the block that
+    and ``Q' = -rho A w^2 w`` (Timoshenko, Phil. Mag. 41 (1921), 744), carried over each span
+    exactly.  Free ends make a frequency a zero of the determinant of the block that
     takes (w, phi) at one end to (M, Q) at the other.
 
     Parameters
@@ -106,7 +105,7 @@ def beam_frequencies(
     # in wave numbers over the length the roots lie about pi apart
     low, roots = 0.3, []
     while len(roots) < count:
-        roots += zeros(determinant, low, low + 2, 20)
+        roots += zeros(determinant, low, low + 2, 10)
         low += 2
     return [wave**2 * unit / (2 * np.pi) for wave in roots[:count]]
 
@@ -129,9 +128,26 @@ def _free_ends(omega, spans, springs, material, shear, rotary) -> float:
         field[2, 1] = -turning if rotary else 0
         field[2, 3] = -1
         field[3, 0] = -inertia
-        state = expm(field * span.length / length) @ state
+        state = _carried(field, span.length / length) @ state
     state = _sprung(len(spans), springs, unit, length) @ state
     return float(np.linalg.det(state[2:, :2]))
+
+
+def _carried(field: np.ndarray, length: float) -> np.ndarray:
+    """``exp(A s)`` of a span: its A has eigenvalues ``+-a`` and ``+-i b``.
+
+    So A^2 has a^2 and -b^2, each twice, and any function of it is linear in it; ``exp(A s)`` is
+    ``cosh(A s) + A (sinh(A s) / A)``, both functions of A^2.
+    """
+    square = field @ field
+    mean = np.trace(square) / 4
+    half = np.sqrt(mean**2 - np.linalg.det(field))
+    a, b = np.sqrt(half + mean), np.sqrt(half - mean)
+    rising = (square + b**2 * np.eye(4)) / (2 * half)
+    turning = np.eye(4) - rising
+    even = np.cosh(a * length) * rising + np.cos(b * length) * turning
+    odd = np.sinh(a * length) / a * rising + np.sin(b * length) / b * turning
+    return even + field @ odd
 
 
 def _sprung(number: int, springs: Sequence[Spring], unit: float, length: float) -> np.ndarray:
@@ -148,10 +164,66 @@ def zeros(f: Callable[[float], float], low: float, high: float, pieces: int) -> 
     grid = np.linspace(low, high, pieces + 1)
     values = [f(x) for x in grid]
     return [
-        float(brentq(f, x, y, xtol=1e-12 * y, rtol=1e-14))
+        float(brentq(f, x, y, xtol=1e-13 * y, rtol=1e-13))
         for x, y, a, b in zip(grid, grid[1:], values, values[1:])
         if a * b < 0
     ]
+
+
+def hinged_beam(span: Tube, number: int, material: Elastic = STEEL, shear: bool = True) -> float:
+    """Frequency, Hz, of a uniform beam between hinges: sines fit, so the equation is a quadratic.
+
+    With ``q = n pi / L``, ``rho^2 A I / kGA w^4 - (rho A + rho I q^2 + E I rho A q^2 / kGA) w^2 +
+    E I q^4 = 0`` (Timoshenko 1921); without shear and rotary inertia ``w = q^2 sqrt(EI / rho A)``.
+    """
+    q = number * np.pi / span.length
+    stiff, mass = material.E * span.second, material.density * span.area
+    if not shear:
+        return float(q**2 * np.sqrt(stiff / mass) / (2 * np.pi))
+    turning = material.density * span.second
+    kga = span.shear_coefficient(material.nu) * material.G * span.area
+    a = mass * turning / kga
+    b = mass + turning * q**2 + stiff * mass * q**2 / kga
+    c = stiff * q**4
+    # the smaller root, without the difference of near numbers
+    omega2 = 2 * c / (b + np.sqrt(b**2 - 4 * a * c))
+    return float(np.sqrt(omega2) / (2 * np.pi))
+
+
+def stepped_torsion(spans: Sequence[Tube], count: int, material: Elastic = STEEL) -> list[float]:
+    """Frequencies, Hz, of free torsion of a rod of two spans.
+
+    Angle and torque meet at the step where ``J1 tan k L1 + J2 tan k L2 = 0``, k = w / c_s.
+    """
+    one, two = spans
+
+    def equation(k: float) -> float:
+        left = one.second * np.sin(k * one.length) * np.cos(k * two.length)
+        return left + two.second * np.sin(k * two.length) * np.cos(k * one.length)
+
+    length = one.length + two.length
+    waves = zeros(equation, 0.1 / length, (count + 2) * np.pi / length, 50 * (count + 2))
+    return [k * material.shear_speed / (2 * np.pi) for k in waves[:count]]
+
+
+def rigid_on_springs(
+    body: Tube, places: Sequence[float], lateral: Sequence[float], material: Elastic = STEEL
+) -> list[float]:
+    """Two frequencies, Hz, of a rigid cylinder on lateral springs in one plane.
+
+    ``(k - w^2 m)(t - w^2 J) = c^2`` with ``k = sum k_i``, ``c = sum k_i s_i``, ``t = sum k_i s_i^2``,
+    s from the centre of mass, ``J = m (3 (a^2 + b^2) + L^2) / 12``.
+    """
+    mass = material.density * body.area * body.length
+    inertia = mass * (3 * (body.outer**2 + body.inner**2) + body.length**2) / 12
+    arms = [y - body.length / 2 for y in places]
+    k = sum(lateral)
+    c = sum(ki * s for ki, s in zip(lateral, arms))
+    t = sum(ki * s**2 for ki, s in zip(lateral, arms))
+    half = (k / mass + t / inertia) / 2
+    product = (k * t - c**2) / (mass * inertia)
+    root = np.sqrt(half**2 - product)
+    return [float(np.sqrt(w2) / (2 * np.pi)) for w2 in (product / (half + root), half + root)]
 
 
 def ring_frequency(waves: int, wall: float, radius: float, material: Elastic) -> float:
