@@ -1,6 +1,7 @@
 """Validation manual: cases with a known answer, their pages, and the command that writes them."""
 
 from validation.manual.case import Case
-from validation.manual.cases import free_beams, held_beams
+from validation.manual.cases import free_beams, held_beams, rods, solids, statics
 
-CASES: dict[str, Case] = {case.name: case for case in (*free_beams.CASES, *held_beams.CASES)}
+SUBJECTS = (statics, free_beams, held_beams, rods, solids)
+CASES: dict[str, Case] = {case.name: case for subject in SUBJECTS for case in subject.CASES}
