@@ -103,7 +103,8 @@ def beam_frequencies(
         return _free_ends(wave**2 * unit, spans, springs, material, shear, rotary)
 
     # in wave numbers over the length the roots lie about pi apart
-    low, roots = 0.3, []
+    low = 0.3
+    roots: list[float] = []
     while len(roots) < count:
         roots += zeros(determinant, low, low + 2, 10)
         low += 2

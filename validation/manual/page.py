@@ -121,8 +121,8 @@ def _references(case: Case) -> str:
         sources.setdefault(told, []).append(r.quantity)
     if len(sources) == 1:
         return "\n".join([*rows, "", *sources])
-    told = [f"- {', '.join(names)}: {source}" for source, names in sources.items()]
-    return "\n".join([*rows, "", *told])
+    listed = [f"- {', '.join(names)}: {source}" for source, names in sources.items()]
+    return "\n".join([*rows, "", *listed])
 
 
 def _modelling(case: Case, model: Model, answer: Answer) -> str:

@@ -33,7 +33,8 @@ def _slender_krylov() -> Answer:
 
 
 def _stubby(fidelity: str, **options) -> Answer:
-    values, size = {}, 0
+    values: dict[str, float] = {}
+    size = 0
     for name, span, count in (("rod", ROD, 3), ("tube", TUBE, 2)):
         body = sg.build(shaft([span]), fidelity, **options)
         found = sg.modes(body, n=12)

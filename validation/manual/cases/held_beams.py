@@ -90,9 +90,7 @@ Length between hinges 1 m, diameter 100 mm, solid: L/D 10.
         ),
         Model(
             "harmonic solid, order 4, section ties",
-            lambda: _hinged(
-                "harmonic", "Timoshenko", order=4, layers=0, edge_layers=0, size=0.05
-            ),
+            lambda: _hinged("harmonic", "Timoshenko", order=4, layers=0, edge_layers=0, size=0.05),
             _of("Timoshenko", 1e-3),
             "the beam leaves out terms of fourth order in k a, 0.47 in the third mode, and the "
             "solid bends its end faces",

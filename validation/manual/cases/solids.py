@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+import scipy.sparse as sp
 import scipy.sparse.linalg as spla
 from skfem import Basis
 
@@ -25,6 +26,7 @@ def _sliding(order: int) -> Answer:
     scene = shaft([CYLINDER])
     body = sg.build(scene, "harmonic", order=order, layers=1, edge_layers=1)
     block, geometry = body.blocks[0], body.geometry
+    mass_matrix = sp.csr_matrix(block.mass)
     basis = Basis(geometry.mesh, geometry.element)
 
     def on(place) -> np.ndarray:
@@ -37,7 +39,7 @@ def _sliding(order: int) -> Answer:
     free[on(lambda x: abs(x[1]) < 1e-9), 2] = False
     free[on(lambda x: abs(x[1] - CYLINDER.length) < 1e-9), 2] = False
     at = np.flatnonzero(free[kept])
-    stiffness, mass = (m[at][:, at].tocsc() for m in (block.stiffness, block.mass))
+    stiffness, mass = (m[at][:, at].tocsc() for m in (block.stiffness, mass_matrix))
     found = []
     for exact in EXACT:
         # other waves are many, and one motion is rigid: the one nearest to the reference
@@ -82,17 +84,17 @@ WAVES = Case(
     ),
     models=(
         Model(
-            "harmonic solid, order 8, end faces constrained",
-            lambda: _sliding(8),
+            "harmonic solid, order 6, end faces constrained",
+            lambda: _sliding(6),
             2e-8,
-            "polynomials of degree 8 on cells of a radius: the nine digits printed",
+            "polynomials of degree 6 on cells of a radius: the nine digits printed",
             2.0,
         ),
         Model(
             "harmonic solid, order 2, end faces constrained",
             lambda: _sliding(2),
-            5e-4,
-            "quadratic cells of about a radius; third mode 3e-4",
+            2.5e-3,
+            "quadratic cells of about a radius, a tenth of the shortest wave: 2e-3 in the third",
         ),
         Model(
             "Timoshenko beam, 40 elements, hinged",

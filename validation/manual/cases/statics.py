@@ -7,9 +7,9 @@ from collections.abc import Sequence
 import numpy as np
 
 import solidgear as sg
-from validation.manual.case import Answer, Case, Model, references
+from validation.manual.case import Answer, Case, Model, Reference, references
 from validation.manual.exact import STEEL, Tube
-from validation.manual.models import FIRM, bearing, compliances, shaft
+from validation.manual.models import FIRM, bearing, compliances
 
 MATERIAL = "E 207 GPa, Poisson's ratio 0.3."
 #: where the shaft is held (m from its left end): the bearing needs a seat around it
@@ -64,8 +64,8 @@ def _uniform_compliance() -> dict[str, float]:
     }
 
 
-def _closed(values: dict[str, float], source: str):
-    parts = []
+def _closed(values: dict[str, float], source: str) -> tuple[Reference, ...]:
+    parts: list[Reference] = []
     for name, value in values.items():
         unit = UNITS[name.split(", ")[0]]
         parts += references({name: value}, unit, "closed_form", source, 0.0, "closed form")
