@@ -1,7 +1,8 @@
 """Solve the cases, write their pages and the index, and say what is not within tolerance.
 
-    python -m validation.manual [--case NAME ...]
+    python -m validation.manual [--case NAME ...] [--words]
 
+With ``--words`` nothing is solved: pages are written anew with the values they have.
 The exit code is 1 if a number is out of its tolerance or missing.
 """
 
@@ -35,17 +36,19 @@ def solved(case: Case) -> dict[str, Answer]:
     return answers
 
 
-def write(folder: Path, names: Sequence[str]) -> list[str]:
+def write(folder: Path, names: Sequence[str], words: bool = False) -> list[str]:
     """Solve the named cases, write their pages and the index; returns what is out of tolerance.
 
-    Cases not named are told in the index as their pages on file have them.
+    Cases not named are told in the index as their pages on file have them; with ``words`` so are
+    the named ones on their pages.
     """
     answers = {}
     for name, case in CASES.items():
         page = folder / f"{name}.md"
-        if name in names:
-            page.write_text(render(case, solved(case)))
         answers[name] = read(page.read_text() if page.exists() else "", case)
+        if name in names:
+            page.write_text(render(case, answers[name] if words else solved(case)))
+            answers[name] = read(page.read_text(), case)
     (folder / INDEX).write_text(index(CASES, answers))
     return [
         f"{name} {letter}: {line.reference.quantity} is {line.value} {line.reference.unit}, "
@@ -68,7 +71,9 @@ def main(arguments: Sequence[str] | None = None, folder: Path = FOLDER) -> int:
         metavar="NAME",
         help="of " + ", ".join(CASES),
     )
-    wrong = write(folder, parser.parse_args(arguments).case)
+    parser.add_argument("--words", action="store_true", help="keep the values on the pages")
+    options = parser.parse_args(arguments)
+    wrong = write(folder, options.case, options.words)
     for sentence in wrong:
         print("NOT OK", sentence)
     return int(bool(wrong))

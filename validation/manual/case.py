@@ -14,7 +14,7 @@ Kind = Literal["closed_form", "literature", "cross_model", "golden"]
 #: relative tolerance that would accept anything, and one that nine printed digits cannot hold
 LOOSEST, TIGHTEST = 0.1, 1e-8
 #: a model that takes longer (declared seconds) is solved by the slow tests only
-SLOW = 3.0
+SLOW = 1.0
 LETTERS = "ABCDEFGHIJKLMNOP"
 
 
@@ -110,7 +110,7 @@ class Model:
     solve: Callable[[], Answer]
     tolerance: float | Mapping[str, float]
     why: str
-    seconds: float = 1.0
+    seconds: float = 0.3
     known: Mapping[str, float] = field(default_factory=dict)
 
     @property
