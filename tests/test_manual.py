@@ -8,9 +8,11 @@ import pytest
 
 import solidgear as sg
 from solidgear.fidelity import beam_element
+from solidgear.fidelity.krylov import from_scene
 from validation.manual import CASES
 from validation.manual import __main__ as command
-from validation.manual.case import Answer, CaseError, Model, Reference
+from validation.manual.case import SLOW, Answer, CaseError, Model, Reference
+from validation.manual.cases import free_beams, held_beams, thesis
 from validation.manual.page import FOLDER, INDEX, SAME_SIZE, index, lines, read, render
 
 MODELS = [
@@ -122,49 +124,49 @@ def test_numbers_do_not_depend_on_rounding():
 
 
 # --------------------------------------------------------------------------- cases that must fail
-#: models that know no material: two degrees of freedom on published or identified numbers
-NO_MATERIAL = {
-    ("thesis_geared_pair", "A"),
-    ("thesis_geared_pair", "B"),
-    ("thesis_geared_pair", "C"),
-}
-#: relative answers, in which a common factor cancels
-RATIOS = {"pinion_seat_ties", "pinion_beam_over_solid"}
+#: numbers that no material moves: published or identified stiffness and masses, ratios
+NO_MATERIAL = ("thesis_geared_pair", "pinion_seat_ties", "pinion_beam_over_solid")
+MATERIAL = [
+    pytest.param(
+        case,
+        letter,
+        id=f"{case.name}-{letter}",
+        marks=[pytest.mark.slow] if model.seconds >= SLOW else [],
+    )
+    for case in CASES.values()
+    for letter, model in case.lettered
+    if case.name not in NO_MATERIAL
+]
 
 
 def spoilt(monkeypatch, key, factor):
     """Every body and exact beam of a scene from now on has one property of its material scaled."""
-    built = sg.build
+    built, spans = sg.build, from_scene
 
     def other(scene):
         return scene.with_material(**{key: factor * getattr(scene.material, key)})
 
-    monkeypatch.setattr(
-        sg, "build", lambda scene, *args, **options: built(other(scene), *args, **options)
-    )
-    for module in ("free_beams", "held_beams"):
-        path = f"validation.manual.cases.{module}.from_scene"
-        from solidgear.fidelity.krylov import from_scene
+    def build(scene, *args, **options):
+        return built(other(scene), *args, **options)
 
-        monkeypatch.setattr(path, lambda scene: from_scene(other(scene)))
+    monkeypatch.setattr(sg, "build", build)
+    for module in (free_beams, held_beams):
+        monkeypatch.setattr(module, "from_scene", lambda scene: spans(other(scene)))
 
 
-@every_model
+@pytest.mark.parametrize("case, letter", MATERIAL)
 def test_another_material_is_not_ok(case, letter, monkeypatch):
-    if case.name in RATIOS or (case.name, letter) in NO_MATERIAL:
-        pytest.skip("no material in it")
     model = model_of(case, letter)
-    loosest = max(model.tolerances(case.quantities).values())
-    # a frequency sees half of it, and a deviation of either sign may be there already
-    factor = 1 + max(0.01, 5 * loosest)
-    shares = []
-    for key in ("density", "E"):
-        with monkeypatch.context() as change:
-            spoilt(change, key, factor)
-            shares.append(max(line.share for line in case.lines(model, model.solve().values)))
-        if shares[-1] > 1:
-            break
-    assert max(shares) > 1, shares
+    # A frequency sees half of a change, and the model may be near the other end of its tolerance:
+    # one per cent, or five tolerances where those are wider.
+    judged_by = model.tolerances(case.quantities)
+    factor = 1 + max(0.01, 5 * max(judged_by.values()))
+    frequencies = "Hz" in {r.unit for r in case.references}
+    # the thesis gives stiffness, or a mass that is not the scene's
+    key = "density" if frequencies and not case.name.startswith("thesis") else "E"
+    spoilt(monkeypatch, key, factor)
+    shares = [line.share for line in case.lines(model, model.solve().values)]
+    assert max(shares) > 1
 
 
 def test_one_per_cent_of_the_shear_coefficient_is_not_ok(monkeypatch):
@@ -178,7 +180,6 @@ def test_one_per_cent_of_the_shear_coefficient_is_not_ok(monkeypatch):
         ("stepped_shaft_on_springs", "C"),
         ("overhung_disc", "A"),
         ("overhung_pinion", "G"),
-        ("pinion_beam_over_solid", "B"),
     ):
         assert not all(line.ok for line in judged(name, letter)), name
 
@@ -223,11 +224,8 @@ def test_a_bearing_one_millimetre_off_is_not_ok(monkeypatch):
 
 
 def test_a_mesh_spring_a_quarter_off_is_not_ok(monkeypatch):
-    monkeypatch.setitem(
-        __import__("validation.manual.cases.thesis", fromlist=["SPRINGS"]).SPRINGS,
-        "mesh stiffness",
-        1.25 * 8.617e8,
-    )
+    stiffness = thesis.SPRINGS["mesh stiffness"]
+    monkeypatch.setitem(thesis.SPRINGS, "mesh stiffness", 1.25 * stiffness)
     assert not all(line.ok for line in judged("thesis_geared_pair", "A"))
 
 

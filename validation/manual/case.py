@@ -14,7 +14,7 @@ Kind = Literal["closed_form", "literature", "cross_model", "golden"]
 #: relative tolerance that would accept anything, and one that nine printed digits cannot hold
 LOOSEST, TIGHTEST = 0.1, 1e-8
 #: a model that takes longer (declared seconds) is solved by the slow tests only
-SLOW = 1.0
+SLOW = 0.5
 LETTERS = "ABCDEFGHIJKLMNOP"
 
 

@@ -69,9 +69,11 @@ def index(cases: Mapping[str, Case], answers: Mapping[str, Mapping[str, Answer]]
         "`python -m validation.manual` solves all, writes these pages and ends with exit code 1 if "
         "a number is out of tolerance; `tests/test_manual.py` runs the same cases.",
         "",
-        "A reference is a closed form, a published value or another program's; *golden* numbers, "
-        "which this program gave once, are none. *Most of a tolerance used* is the largest "
-        "deviation of a modelling over its tolerance; above 1 it is NOT OK.",
+        "A reference is a closed form, a published value or another program's: this is "
+        "verification, and comparison with published models; nothing is held against an "
+        "experiment. Where a model is known to deviate by its assumptions, the tolerance lies "
+        "around the known deviation. *Most of a tolerance used* is the largest of a case; above 1 "
+        "it is NOT OK.",
         "",
         "| case | references | modellings | most of a tolerance used | |",
         "| --- | --- | --- | --- | --- |",

@@ -122,6 +122,7 @@ FREE_TIMOSHENKO_BEAM = Case(
             lambda: _stubby("harmonic", order=4),
             1e-3,
             "what Hutchinson's beam leaves out is of fourth order in k a, 0.6 in the third mode",
+            0.5,
         ),
         Model(
             "3D solid, HEX20",

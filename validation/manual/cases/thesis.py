@@ -10,19 +10,7 @@ import numpy as np
 import solidgear as sg
 from validation.common import ROOT
 from validation.manual.case import Answer, Case, Model, Reference, references
-from validation.thesis.pair import (
-    CASES as MOUNTINGS,
-)
-from validation.thesis.pair import (
-    DATA,
-    MASSES,
-    PUBLISHED,
-    TORSION_AND_MESH,
-    bending_frequencies,
-    fit,
-    gear_support,
-    geared_pair,
-)
+from validation.thesis import pair
 
 HUA = "Hua (2010), spiral bevel geared rotor, gear-shaft-bearing structure"
 
@@ -41,7 +29,7 @@ def _published_stiffness() -> tuple[Reference, ...]:
     return tuple(
         Reference(
             f"{scene}, {name}",
-            abs(DATA["support"][mounting][key]),
+            abs(pair.DATA["support"][mounting][key]),
             unit,
             "literature",
             f"{HUA}, chapter 3: condensed stiffness at the pinion's lumped point, 2-bearing "
@@ -124,12 +112,12 @@ GEAR_HZ = (430.3, 1920.2)
 
 @cache
 def _gear_stiffness() -> np.ndarray:
-    return gear_support()
+    return pair.gear_support()
 
 
 def _gear() -> Answer:
-    gear = DATA["inertia"]["gear"]
-    found = bending_frequencies(gear_support(), gear["mass"], gear["bending"])
+    gear = pair.DATA["inertia"]["gear"]
+    found = pair.bending_frequencies(pair.gear_support(), gear["mass"], gear["bending"])
     return Answer(dict(zip(("gear, low", "gear, high"), map(float, found))), 2)
 
 
@@ -177,28 +165,28 @@ def _name(mounting: str, number: int) -> str:
 def _published_frequencies() -> dict[str, float]:
     return {
         _name(mounting, number): hz
-        for mounting in MOUNTINGS
-        for number, hz in enumerate(map(float, PUBLISHED[mounting]), start=1)
+        for mounting in pair.CASES
+        for number, hz in enumerate(map(float, pair.PUBLISHED[mounting]), start=1)
         if hz > 0
     }
 
 
 def _frequencies(values: Mapping[str, float]) -> Answer:
     out: dict[str, float] = {}
-    for mounting in MOUNTINGS:
-        found = geared_pair(dict(values), mounting, _gear_stiffness()).solve()
+    for mounting in pair.CASES:
+        found = pair.geared_pair(dict(values), mounting, _gear_stiffness()).solve()
         out |= {_name(mounting, k): float(hz) for k, hz in enumerate(found.frequency_hz, start=1)}
         out[f"{mounting}, free rotations"] = float(found.rigid)
     return Answer(out, 14)
 
 
 def _identified_afresh() -> Answer:
-    return _frequencies(fit((*TORSION_AND_MESH, *MASSES), _gear_stiffness()).values)
+    return _frequencies(pair.fit((*pair.TORSION_AND_MESH, *pair.MASSES), _gear_stiffness()).values)
 
 
 def _pair_tolerance() -> dict[str, float]:
     out = dict.fromkeys(_published_frequencies(), 0.055)
-    for mounting in MOUNTINGS:
+    for mounting in pair.CASES:
         out |= {_name(mounting, number): 0.01 for number in TORSIONAL}
         out[f"{mounting}, free rotations"] = 1e-6
     return out
@@ -236,7 +224,7 @@ PAIR = Case(
         for name, hz in _published_frequencies().items()
     )
     + references(
-        {f"{mounting}, free rotations": 1.0 for mounting in MOUNTINGS},
+        {f"{mounting}, free rotations": 1.0 for mounting in pair.CASES},
         "1",
         "literature",
         f"{HUA}, chapter 3: the first frequency is 0",
