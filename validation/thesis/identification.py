@@ -168,8 +168,9 @@ def blind_rows(gear_stiffness: np.ndarray, mass: float, inertia: float) -> list[
 def exact_masses(stiffness: np.ndarray, pair: tuple[float, float]) -> tuple[float, float]:
     """Mass and inertia that give one mounting's two mesh-blind frequencies exactly, kg and kg m^2.
 
-    ``kxx/M + kthz/I`` is the sum and ``det K / (M I)`` the product of the squared angular frequencies.  Of the two solutions
-    of that quadratic the one is taken whose mass belongs to the translation.
+    ``kxx/M + kthz/I`` is the sum and ``det K / (M I)`` the product of the squared angular
+    frequencies.  Of the two solutions of that quadratic the one is taken whose mass belongs to the
+    translation.
     """
     low, high = (2 * np.pi * np.array(pair)) ** 2
     k, t, c = stiffness[0, 0], stiffness[5, 5], stiffness[0, 5]
@@ -277,19 +278,24 @@ def main() -> None:
         print(
             f"({name}) rms {100 * f.rms:.2f} %, worst {100 * f.error[f.worst]:+.1f} % on {ELASTIC[f.worst]:.1f} Hz "
             f"({CASES[f.worst // len(PUBLISHED[CASES[0]][1:])]}); "
-            f"on bounds: {', '.join(f.on_bounds) or 'none'}; condition {f.condition:.0f}; {f.agreeing} of {f.starts} starts agree"
+            f"on bounds: {', '.join(f.on_bounds) or 'none'}; condition {f.condition:.0f}; "
+            f"{f.agreeing} of {f.starts} starts agree"
         )
     print(
-        "Not reproduced: with the published pinion mass and inertia the frequencies cannot come out, whatever the mesh, because "
+        "Not reproduced: with the published pinion mass and inertia the frequencies cannot "
+        "come out, whatever the mesh, because "
         "the published K_ll alone puts the highest one above the published one; and the mesh stiffness that fits, "
         f"{fits['ii'].values['mesh stiffness']:.3g} N/m, is not the plotted {low:.1e} to {high:.1e} N/m."
     )
     each = fits["iv"].values
     print(
-        f"With a mass and an inertia for each mounting the worst error is {100 * abs(fits['iv'].error).max():.1f} %, a gear mode; "
+        "With a mass and an inertia for each mounting the worst error is "
+        f"{100 * abs(fits['iv'].error).max():.1f} %, a gear mode; "
         "the inertias are "
-        f"{each['pinion bending inertia, 2-bearing']:.3f} (2-bearing; {DATA['inertia']['pinion']['bending']} is published) and "
-        f"{each['pinion bending inertia, 3-bearing']:.3f} kg m^2, so its two lists look as if made with two pinion inertias, not one."
+        f"{each['pinion bending inertia, 2-bearing']:.3f} (2-bearing; "
+        f"{DATA['inertia']['pinion']['bending']} is published) and "
+        f"{each['pinion bending inertia, 3-bearing']:.3f} kg m^2, so its two lists look as if "
+        "made with two pinion inertias, not one."
     )
 
 
