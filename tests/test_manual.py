@@ -12,7 +12,7 @@ from solidgear.fidelity.krylov import from_scene
 from validation.manual import CASES
 from validation.manual import __main__ as command
 from validation.manual.case import SLOW, Answer, CaseError, Model, Reference
-from validation.manual.cases import free_beams, held_beams, thesis
+from validation.manual.cases import free_beams, held_beams, pinion, thesis
 from validation.manual.page import FOLDER, INDEX, SAME_SIZE, index, lines, read, render
 
 MODELS = [
@@ -182,6 +182,15 @@ def test_one_per_cent_of_the_shear_coefficient_is_not_ok(monkeypatch):
         ("overhung_pinion", "G"),
     ):
         assert not all(line.ok for line in judged(name, letter)), name
+
+
+@pytest.mark.slow
+def test_ratios_notice_a_tie_and_a_shear_coefficient(monkeypatch):
+    right = beam_element.shear_coefficient
+    monkeypatch.setattr(beam_element, "shear_coefficient", lambda nu, a, b: 1.01 * right(nu, a, b))
+    assert not all(line.ok for line in judged("pinion_beam_over_solid", "B"))
+    monkeypatch.setattr(pinion, "rigid_seats", lambda scene: scene)
+    assert not any(line.ok for line in judged("pinion_seat_ties", "A"))
 
 
 def test_one_per_cent_of_the_rotary_inertia_is_not_ok(monkeypatch):

@@ -176,6 +176,19 @@ class Case:
         A, B, C ... in this order.
     remarks : str
         What comes of it.
+
+    Raises
+    ------
+    CaseError
+        For an empty text, an unnamed quantity, or a tolerance that accepts anything.
+
+    Examples
+    --------
+    >>> half = Reference("half", 0.5, "1", "closed_form", "a book, equation 1", 0.0, "closed form")
+    >>> near = Model("near", lambda: Answer({"half": 0.5004}, 1), 1e-3, "a thousandth")
+    >>> case = Case("a", "A", "What is it?", "none", "none", "none", "half", (half,), (near,))
+    >>> [line.ok for line in case.lines(near, near.solve().values)]
+    [True]
     """
 
     name: str
