@@ -87,11 +87,10 @@ FREE_ROD = Case(
             "two-node elements of consistent mass are high by (n pi / 40)^2 / 24: 2.6e-4 and 1.03e-3",
         ),
         Model(
-            "Timoshenko beam, 400 elements",
-            lambda: _rod("timoshenko", elements=400),
-            {"axial, bar 1": 3e-6, "axial, bar 2": 1.2e-5, "torsion 1": 3e-6, "torsion 2": 1.2e-5},
-            "as modelling A, a hundredth of it",
-            0.5,
+            "Timoshenko beam, 160 elements",
+            lambda: _rod("timoshenko", elements=160),
+            {"axial, bar 1": 2e-5, "axial, bar 2": 8e-5, "torsion 1": 2e-5, "torsion 2": 8e-5},
+            "as modelling A, a sixteenth of it",
         ),
         Model(
             "harmonic solid, order 5",
@@ -128,11 +127,10 @@ STEPPED_ROD = Case(
     ),
     models=(
         Model(
-            "Timoshenko beam, 400 elements",
-            lambda: _stepped("timoshenko", elements=400),
-            2e-5,
-            "two-node elements of consistent mass are high by (k h)^2 / 24, 8e-6 in the second mode",
-            0.5,
+            "Timoshenko beam, 160 elements",
+            lambda: _stepped("timoshenko", elements=160),
+            7e-5,
+            "two-node elements of consistent mass are high by (k h)^2 / 24, 5e-5 in the second mode",
         ),
         Model(
             "harmonic solid, order 3",
