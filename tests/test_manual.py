@@ -11,18 +11,20 @@ from solidgear.fidelity import beam_element
 from solidgear.fidelity.krylov import from_scene
 from validation.manual import CASES
 from validation.manual import __main__ as command
-from validation.manual.case import SLOW, Answer, CaseError, Model, Reference
+from validation.manual.case import Answer, CaseError, Model, Reference
 from validation.manual.cases import free_beams, held_beams, pinion, thesis
 from validation.manual.page import FOLDER, INDEX, SAME_SIZE, index, lines, read, render
 
-MODELS = [
-    pytest.param(
-        case, letter, id=f"{case.name}-{letter}", marks=[pytest.mark.slow] if model.slow else []
-    )
-    for case in CASES.values()
-    for letter, model in case.lettered
-]
-every_model = pytest.mark.parametrize("case, letter", MODELS)
+
+def models(without=()):
+    """Every case with every letter; the slow ones are left to the slow tests."""
+    for case in CASES.values():
+        for letter, model in case.lettered:
+            if case.name not in without:
+                marks = [pytest.mark.slow] if model.slow else []
+                yield pytest.param(case, letter, id=f"{case.name}-{letter}", marks=marks)
+
+
 every_case = pytest.mark.parametrize("case", CASES.values(), ids=CASES)
 
 
@@ -42,7 +44,7 @@ def judged(name, letter, solve=None):
 
 
 # --------------------------------------------------------------------------- the cases
-@every_model
+@pytest.mark.parametrize("case, letter", models())
 def test_case(case, letter):
     model = model_of(case, letter)
     answer = model.solve()
@@ -126,17 +128,6 @@ def test_numbers_do_not_depend_on_rounding():
 # --------------------------------------------------------------------------- cases that must fail
 #: numbers that no material moves: published or identified stiffness and masses, ratios
 NO_MATERIAL = ("thesis_geared_pair", "pinion_seat_ties", "pinion_beam_over_solid")
-MATERIAL = [
-    pytest.param(
-        case,
-        letter,
-        id=f"{case.name}-{letter}",
-        marks=[pytest.mark.slow] if model.seconds >= SLOW else [],
-    )
-    for case in CASES.values()
-    for letter, model in case.lettered
-    if case.name not in NO_MATERIAL
-]
 
 
 def spoilt(monkeypatch, key, factor):
@@ -154,7 +145,7 @@ def spoilt(monkeypatch, key, factor):
         monkeypatch.setattr(module, "from_scene", lambda scene: spans(other(scene)))
 
 
-@pytest.mark.parametrize("case, letter", MATERIAL)
+@pytest.mark.parametrize("case, letter", models(without=NO_MATERIAL))
 def test_another_material_is_not_ok(case, letter, monkeypatch):
     model = model_of(case, letter)
     # A frequency sees half of a change, and the model may be near the other end of its tolerance:

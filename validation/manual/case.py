@@ -13,7 +13,7 @@ from typing import Literal, get_args
 Kind = Literal["closed_form", "literature", "cross_model", "golden"]
 #: relative tolerance that would accept anything, and one that nine printed digits cannot hold
 LOOSEST, TIGHTEST = 0.1, 1e-8
-#: a model that takes longer (declared seconds) is solved by the slow tests only
+#: a model that takes this long (declared seconds) is solved by the slow tests only
 SLOW = 0.5
 LETTERS = "ABCDEFGHIJKLMNOP"
 
@@ -116,7 +116,7 @@ class Model:
     @property
     def slow(self) -> bool:
         """Whether only the slow tests solve it."""
-        return self.seconds > SLOW
+        return self.seconds >= SLOW
 
     def tolerances(self, quantities: tuple[str, ...]) -> dict[str, float]:
         """Relative tolerance by judged quantity, in the order of the case."""
