@@ -18,11 +18,13 @@ from validation.manual.page import FOLDER, INDEX, SAME_SIZE, index, lines, read,
 
 def models(without=()):
     """Every case with every letter; the slow ones are left to the slow tests."""
+    out = []
     for case in CASES.values():
         for letter, model in case.lettered:
             if case.name not in without:
                 marks = [pytest.mark.slow] if model.slow else []
-                yield pytest.param(case, letter, id=f"{case.name}-{letter}", marks=marks)
+                out.append(pytest.param(case, letter, id=f"{case.name}-{letter}", marks=marks))
+    return out
 
 
 every_case = pytest.mark.parametrize("case", CASES.values(), ids=CASES)
@@ -36,11 +38,11 @@ def on_file(case):
     return (FOLDER / f"{case.name}.md").read_text()
 
 
-def judged(name, letter, solve=None):
-    """Lines of one model of a case, solved now; or of other values."""
+def judged(name, letter):
+    """Lines of one model of a case, solved now."""
     case = CASES[name]
     model = model_of(case, letter)
-    return case.lines(model, (solve or model.solve)().values)
+    return case.lines(model, model.solve().values)
 
 
 # --------------------------------------------------------------------------- the cases
