@@ -380,7 +380,7 @@ def thesis_errors(thesis, values):
     return np.concatenate(found) / thesis.ELASTIC - 1
 
 
-# Identified from both lists at once; see validation/thesis/pair.py.
+# Identified from both lists at once; see validation/thesis/identification.py.
 THESIS = {"pinion torsion": 1.088e4, "gear torsion": 8.63e4, "mesh stiffness": 8.617e8}
 MASSES = {"pinion mass": 24.77, "pinion bending inertia": 0.4544}
 

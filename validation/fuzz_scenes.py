@@ -20,15 +20,12 @@ import io
 import json
 import os
 import re
-import resource
 import shlex
-import signal
 import sys
 import tempfile
 import traceback
-import warnings
 from collections import Counter
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -42,46 +39,12 @@ from solidgear.solve.statics import condense
 from solidgear.studies.check import check_scene
 from validation.common import ROOT, results_folder, show, write_rows
 from validation.fuzz_commands import ENVIRONMENT, command_line, put
+from validation.fuzz_limits import Overrun, watched
 from validation.fuzz_mutations import mutant
 
 # s of processor time, since wall time would blame the program for a busy machine; of a file, check
 # of a thin tube included, and of a command line
 LIMIT, COMMAND_LIMIT = 30.0, 30.0
-STUCK = 60.0  # s of wall time, for what waits without computing
-ROOM = 3 << 30  # bytes a case may add to the process
-
-
-class Overrun(BaseException):
-    """A case took too long; no handler of `Exception` may swallow it."""
-
-
-@contextlib.contextmanager
-def watched(limit: float) -> Iterator[None]:
-    """Time and memory limits on what runs inside, and warnings made errors."""
-
-    def stop(*_):
-        raise Overrun
-
-    old = {number: signal.signal(number, stop) for number in (signal.SIGPROF, signal.SIGALRM)}
-    soft, hard = resource.getrlimit(resource.RLIMIT_AS)
-    held = (
-        int(Path("/proc/self/statm").read_text().split()[0]) * resource.getpagesize()
-        if Path("/proc/self/statm").exists()
-        else 0
-    )
-    resource.setrlimit(resource.RLIMIT_AS, (held + ROOM if held else soft, hard))
-    signal.setitimer(signal.ITIMER_PROF, limit)
-    signal.setitimer(signal.ITIMER_REAL, max(STUCK, 2 * limit))
-    try:
-        with warnings.catch_warnings():
-            warnings.simplefilter("error")
-            yield
-    finally:
-        signal.setitimer(signal.ITIMER_PROF, 0)
-        signal.setitimer(signal.ITIMER_REAL, 0)
-        resource.setrlimit(resource.RLIMIT_AS, (soft, hard))
-        for number, handler in old.items():
-            signal.signal(number, handler)
 
 
 @dataclass(frozen=True)
@@ -409,7 +372,9 @@ def main() -> int:
     show(f"{options.cases} cases, seed {options.seed}", table)
     total = Counter(r["outcome"] for r in rows)
     print(
-        f"accepted {total['accepted']}, refused {total['refused']} in {sum(k[0] == 'refused' for k in kinds)} kinds of sentence, findings {total['finding']}"
+        f"accepted {total['accepted']}, refused {total['refused']} in "
+        f"{sum(k[0] == 'refused' for k in kinds)} kinds of sentence, findings "
+        f"{total['finding']}"
     )
     for row in (r for r in rows if r["outcome"] == "finding"):
         if not row["stage"].startswith("command") or row["case"] < options.cases * (

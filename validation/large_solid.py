@@ -55,7 +55,9 @@ def main() -> None:
     stage("flexibility of all ports", lambda: sg.condense(body, scene, scene.port.name))
     modes = stage("ten modes", lambda: sg.modes(body, scene, n=10))
     show(
-        f"{body.size} unknowns, {factor.backend}, factor estimated at {factor.estimate_mb:.0f} MB, first bending {modes.named('bending 1').frequency_hz:.3f} Hz",
+        f"{body.size} unknowns, {factor.backend}, factor estimated at "
+        f"{factor.estimate_mb:.0f} MB, first bending "
+        f"{modes.named('bending 1').frequency_hz:.3f} Hz",
         rows,
     )
     write_rows(results_folder("large_solid") / "rows.csv", rows)

@@ -23,64 +23,28 @@ import argparse
 import numpy as np
 
 from solidgear.machine.environment import environment
-from validation.common import ROOT, results_folder, show, write_rows
+from validation.common import results_folder, show, write_rows
 from validation.peers import calculix, ours, ross_peer, sfepy_peer
 from validation.peers import problem as peer_problem
+from validation.peers.entries import ccx, choose_threads, mine, process
 from validation.peers.lanes import Figure, Lane, Sample, compliance_gap, frequency_gap
-from validation.peers.process import PeerError, cores
+from validation.peers.process import PeerError
 from validation.peers.race import Race
-
-SCENE = ROOT / "geometry" / "pinion_overhung.toml"
-COUNTED = ("factor", "loads", "modes")
-TETRAHEDRA = {"element": "tet10", "size": 0.022, "graded_size": 0.0038}
-FEWER = {"element": "tet10", "size": 0.04, "graded_size": 0.012}
-COARSE = {"element": "tet10", "size": 0.04, "graded_size": 0.03}
-REFERENCE = {"order": 8, "layers": 4, "edge_layers": 2}
-TARGET, COARSE_TARGET = 1e-3, 3e-2
-
-# Of many settings tried, those near the target; the fastest that meets it in this run is raced.
-HARMONIC = (
-    {"order": 3, "layers": 2, "edge_layers": 0, "ratio": 0.2},
-    {"order": 3, "layers": 2, "edge_layers": 0, "ratio": 0.25},
-    {"order": 2, "layers": 4, "ratio": 0.4},
-    {"order": 3, "layers": 3, "edge_layers": 0, "ratio": 0.3},
-    {"order": 3, "layers": 2, "ratio": 0.2},
+from validation.peers.settings import (
+    COARSE,
+    COARSE_SOLID,
+    COARSE_TARGET,
+    COUNTED,
+    FEWER,
+    HARMONIC,
+    REDUCED,
+    REFERENCE,
+    SCENE,
+    SOLID,
+    TARGET,
+    TETRAHEDRA,
+    WHY,
 )
-SOLID = (
-    {"element": "hex20", "size": 0.015, "around": 8, "radial_layers": 4, "ratio": 0.4},
-    {"element": "hex20", "size": 0.012, "around": 8},
-    {"element": "hex20", "size": 0.01, "around": 8},
-    {"element": "hex27", "size": 0.0225, "around": 8, "layers": 3, "ratio": 0.4},
-)
-COARSE_SOLID = {"element": "hex20", "size": 0.03, "around": 8, "layers": 2, "radial_layers": 1}
-# Reduced integration makes an element softer, which here cancels part of the mesh's error: coarser
-# meshes of ours will do.
-REDUCED = (
-    {"element": "hex20", "size": 0.03, "around": 8, "layers": 3, "radial_layers": 2},
-    {"element": "hex20", "size": 0.0225, "around": 8, "layers": 3},
-    {"element": "hex20", "size": 0.01, "around": 8},
-)
-
-# Allowed differences of answers, and why.
-WHY = {
-    "C3D10": (
-        1e-4,
-        "C3D10 takes 4 points for stiffness and mass (1.4e-5 at the tenth mode), ours are exact; seven digits are printed",
-    ),
-    "C3D20": (
-        5e-5,
-        "27 points against our 64: the same on straight elements, not quite on curved ones; seven digits are printed",
-    ),
-    "coarse": (2e-3, "quadrature of CalculiX on the coarse curved elements of a quick run"),
-    "sfepy": (
-        1e-6,
-        "the same straight tetrahedra, integrated exactly by both: what is left is the eigensolvers' tolerance",
-    ),
-    "ross": (
-        1e-3,
-        "ROSS's elements average a tapered section and lack our internal unknowns: an error that falls with the square of the element length",
-    ),
-}
 
 
 # ------------------------------------------------------------------------------------------------- heats
@@ -172,7 +136,8 @@ def equal_error(race: Race) -> None:
     )
     reference = ours.solve(scene, "harmonic", {"order": 4} if race.quick else REFERENCE)
     race.say(
-        f"reference: C_zz {reference.compliance[2, 2]:.8e} m/N, first bending {_first(reference.modes):.4f} Hz; target {target:g}"
+        f"reference: C_zz {reference.compliance[2, 2]:.8e} m/N, first bending "
+        f"{_first(reference.modes):.4f} Hz; target {target:g}"
     )
 
     def errors(compliance, first):
@@ -190,7 +155,8 @@ def equal_error(race: Race) -> None:
             done = ours.solve(scene, fidelity, options)
             found, seconds = errors(done.compliance, _first(done.modes)), sum(done.stages.values())
             race.say(
-                f"  {_named(fidelity, options)}: {_told(found)}, {seconds:.2f} s{'' if _worst(found) <= target else ', above the target'}"
+                f"  {_named(fidelity, options)}: {_told(found)}, {seconds:.2f} "
+                f"s{'' if _worst(found) <= target else ', above the target'}"
             )
             able += [(seconds, options, done, found)] if _worst(found) <= target else []
         if not able:
@@ -382,72 +348,6 @@ def beams(race: Race) -> None:
         )
     )
     race.figures.append(Figure("beam: ROSS / ours, model and modes", slow, fast))
-
-
-# ------------------------------------------------------------------------------------------------- lanes
-def mine(race, heat, who, scene, fidelity, options, *, free=False, **rest) -> Lane:
-    """A lane of ours in this process: a fresh body each time."""
-
-    def call():
-        done = ours.solve(scene, fidelity, options, free=free)
-        lane.unknowns = done.body.size
-        return Sample(done.stages, done.cpu)
-
-    lane = race.add(Lane(heat, who, call, **rest))
-    return lane
-
-
-def process(race, heat, who, attachment, fidelity, options, **rest) -> Lane:
-    """A lane of ours as a whole process."""
-
-    def call():
-        return Sample(*ours.whole(SCENE, attachment, fidelity, options, limit=race.limit))
-
-    return race.add(Lane(heat, who, call, **rest))
-
-
-def ccx(race, heat, who, problem, kind, verify, *, loads) -> Lane:
-    """A lane of CalculiX: whole process, deck given."""
-
-    def call():
-        a = calculix.solve(
-            problem, kind, modes=10, loads=loads, limit=race.limit, threads=race.threads
-        )
-        race.versions["CalculiX"] = a.version
-        if not lane.samples:
-            verify(a)
-        return Sample({"whole process": a.seconds}, a.cpu)
-
-    lane = race.add(
-        Lane(
-            heat,
-            who,
-            call,
-            3 * len(problem.nodes),
-            note=f"{race.threads} thread{'s' * (race.threads > 1)}",
-        )
-    )
-    return lane
-
-
-def choose_threads(race, problem, kind) -> None:
-    """The number of threads CalculiX is fastest with here: its solver waits by spinning, so more
-    are not always better.
-    """
-    seconds = {}
-    for threads in sorted({1, cores()}):
-        try:
-            seconds[threads] = calculix.solve(
-                problem, kind, modes=10, limit=race.limit, threads=threads
-            ).seconds
-        except PeerError as error:
-            race.say(f"CalculiX with {threads} threads: {error}")
-    race.threads = min(seconds, key=seconds.get, default=1)
-    race.say(
-        "CalculiX, ten modes: "
-        + ", ".join(f"{s:.1f} s with {t} thread{'s' * (t > 1)}" for t, s in seconds.items())
-        + f"; raced with {race.threads}"
-    )
 
 
 def _first(modes) -> float:

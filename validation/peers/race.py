@@ -120,13 +120,15 @@ class Race:
     def sentences(self, ratios: list[dict], machine: dict) -> str:
         """What a reader should take home."""
         out = [
-            f"Measured in one interleaved run on {machine.get('cpu')}, {machine.get('cores')} cores, {machine.get('date')}."
+            f"Measured in one interleaved run on {machine.get('cpu')}, {machine.get('cores')} "
+            f"cores, {machine.get('date')}."
         ]
         if self.quick:
             out.append("This was a quick run on small meshes: its ratios say nothing about speed.")
         for check in self.checks.values():
             out.append(
-                f"{check['answers compared']}: {check['largest difference']:.1e} from ours, allowed {check['allowed']:g} ({check['because']})."
+                f"{check['answers compared']}: {check['largest difference']:.1e} from ours, allowed "
+                f"{check['allowed']:g} ({check['because']})."
             )
         for figure, row in zip(self.figures, ratios):
             if row["measured"] is None:
@@ -147,7 +149,8 @@ class Race:
                 ]
         out += [f"Not raced: {text}." for text in self.skipped]
         out.append(
-            "CalculiX is timed as a whole process with its deck given; ours within a running Python, as a workbench is used, where imports are "
+            "CalculiX is timed as a whole process with its deck given; ours within a running "
+            "Python, as a workbench is used, where imports are "
             "paid once a session.  The rows called whole process add imports, scene, mesh and assembly."
         )
         return "\n".join(out)

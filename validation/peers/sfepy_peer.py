@@ -1,7 +1,8 @@
 """sfepy as a peer for modes of a free shaft on quadratic tetrahedra.
 
-sfepy maps its tetrahedra linearly, so both sides take the mesh with straight sides; ours is then assembled by scikit-fem's own forms,
-for the check of the frequencies only.  Run in a process of its own:  python sfepy_peer.py problem.npz shift modes
+sfepy maps its tetrahedra linearly, so both sides take the mesh with straight sides; ours is then
+assembled by scikit-fem's own forms, for the check of the frequencies only.  Run in a process of its
+own:  python sfepy_peer.py problem.npz shift modes
 """
 
 from __future__ import annotations

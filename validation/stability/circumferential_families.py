@@ -237,11 +237,17 @@ def measure(quick: bool = False) -> Finding:
     return Finding(
         "circumferential_families",
         "Ovalising families",
-        "The lowest frequency over n = 2, 3, ... waves falls to a minimum and rises, but a shaft of several walls has several minima: whoever stops at the first rise misses modes.",
-        f"Of {len(rows)} shafts {len(late)} have their least above n = 2 and {len(again)} fall again after a rise; to stop at the first rise above the limit misses a family on "
-        f"{alone} of them, the program's rule on {program}. Its closed form lies at most {max(r['closed form / lowest'] for r in rows):.2f} times above a family's lowest "
+        "The lowest frequency over n = 2, 3, ... waves falls to a minimum and rises, but a "
+        "shaft of several walls has several minima: whoever stops at the first rise misses "
+        "modes.",
+        f"Of {len(rows)} shafts {len(late)} have their least above n = 2 and {len(again)} "
+        "fall again after a rise; to stop at the first rise above the limit misses a family "
+        "on "
+        f"{alone} of them, the program's rule on {program}. Its closed form lies at most "
+        f"{max(r['closed form / lowest'] for r in rows):.2f} times above a family's lowest "
         f"(margin {MARGIN:g}), its light mesh {max(r['light / lowest'] for r in rows):.2f} times (margin {LIGHT:g}).",
-        "`modes` on a harmonic solid solves every family that may begin below the highest mode told; its claim names those that were counted and where the others begin.",
+        "`modes` on a harmonic solid solves every family that may begin below the highest "
+        "mode told; its claim names those that were counted and where the others begin.",
         "tests/test_families.py::test_rule_misses_no_family",
         rows,
     )

@@ -155,15 +155,26 @@ def measure(quick: bool = False) -> Finding:
 
     def told(part):
         runs = sum(r["runs"] for r in part)
-        return f"{sum(r['failed runs'] for r in part)} of {runs} runs fail, {sum(r['wrong runs'] for r in part)} are wrong, with up to {max(r.get('elastic missing', 0) for r in part)} of 8 elastic modes missing"
+        return (
+            f"{sum(r['failed runs'] for r in part)} of {runs} runs fail, "
+            f"{sum(r['wrong runs'] for r in part)} are wrong, with up to "
+            f"{max(r.get('elastic missing', 0) for r in part)} of 8 elastic modes missing"
+        )
 
     return Finding(
         "free_body_shift",
         "Shift-invert of a free shaft",
-        "With a shift of 0, or too small a one, the factor of a free shaft is one of rounding: rigid motions come out as noise and elastic modes, among them one twin of a pair, go missing with no message.",
-        f"At shift 0 {told(zero)}; between -1e-16 and -1e-8 of the first elastic eigenvalue {told(near)}; from {max(good):.0e} to {min(good):g} all are there, with rigid motions at {noise['rigid f / f1']:.0e} f1 at best. "
-        f"The program finds {', '.join(str(r['zero modes']) for r in ours)} zeros, exact, and the elastic modes within {max(r['elastic error'] for r in ours):.0e}.",
-        "`solidgear modes` and `compare` shift by a thousandth of the first elastic eigenvalue to the negative side, take unresisted rigid motions out exactly and report them as 0 Hz.",
+        "With a shift of 0, or too small a one, the factor of a free shaft is one of "
+        "rounding: rigid motions come out as noise and elastic modes, among them one twin of "
+        "a pair, go missing with no message.",
+        f"At shift 0 {told(zero)}; between -1e-16 and -1e-8 of the first elastic eigenvalue "
+        f"{told(near)}; from {max(good):.0e} to {min(good):g} all are there, with rigid "
+        f"motions at {noise['rigid f / f1']:.0e} f1 at best. "
+        f"The program finds {', '.join(str(r['zero modes']) for r in ours)} zeros, exact, and "
+        f"the elastic modes within {max(r['elastic error'] for r in ours):.0e}.",
+        "`solidgear modes` and `compare` shift by a thousandth of the first elastic "
+        "eigenvalue to the negative side, take unresisted rigid motions out exactly and "
+        "report them as 0 Hz.",
         "tests/test_modes.py::test_free_cylinder_has_six_rigid_modes",
         rows,
     )

@@ -101,14 +101,23 @@ def measure(quick: bool = False) -> Finding:
             f"{model} {edges[name, model, 0.01]:.2f} / {edges[name, model, 0.1]:.2f}"
             for model in ("static", "Guyan")
         )
-        return f"{name}: {limits}; first mode at {share:.2f}, which Guyan puts {100 * one:+.1f} % off, the second {100 * two:+.0f} %"
+        return (
+            f"{name}: {limits}; first mode at {share:.2f}, which Guyan puts {100 * one:+.1f} % "
+            f"off, the second {100 * two:+.0f} %"
+        )
 
     return Finding(
         "guyan_in_frequency",
         "Guyan condensation over frequency",
-        "Static condensation holds the rest of the shaft to its static shape: the dynamic stiffness it leaves drifts from the exact one with frequency and knows nothing of the pole at the first mode with the lumped point held.",
-        f"In fractions of that fixed-interface frequency, 1 % and 10 % of the static stiffness are passed at: {'; '.join(told(name) for name in SCENES)}.",
-        "`solidgear compare` reports for every lumped model the frequency to which its receptance stays within 5 % (`valid_to_hz`) and holds its first bending against the body it came from; `solidgear check` cautions where the range asked for passes 0.39 of the fixed-interface frequency.",
+        "Static condensation holds the rest of the shaft to its static shape: the dynamic "
+        "stiffness it leaves drifts from the exact one with frequency and knows nothing of "
+        "the pole at the first mode with the lumped point held.",
+        "In fractions of that fixed-interface frequency, 1 % and 10 % of the static "
+        f"stiffness are passed at: {'; '.join(told(name) for name in SCENES)}.",
+        "`solidgear compare` reports for every lumped model the frequency to which its "
+        "receptance stays within 5 % (`valid_to_hz`) and holds its first bending against the "
+        "body it came from; `solidgear check` cautions where the range asked for passes 0.39 "
+        "of the fixed-interface frequency.",
         "tests/test_check_guards.py::test_guard[lumped to 5 kHz]",
         rows,
     )

@@ -135,13 +135,18 @@ def measure(quick: bool = False) -> Finding:
     return Finding(
         "linear_elements",
         "TET4 and HEX8",
-        "Linear elements are too stiff in bending, more so the longer they are, for they answer curvature with shear; their straight sides also lose mass.",
-        f"Error in first bending at {equal} unknowns: {tet}HEX8 {compared['hex8']['f1'] / compared['hex20']['f1']:.0f} times HEX20 ({100 * compared['hex8']['f1']:.1f} %); "
+        "Linear elements are too stiff in bending, more so the longer they are, for they "
+        "answer curvature with shear; their straight sides also lose mass.",
+        f"Error in first bending at {equal} unknowns: {tet}HEX8 "
+        f"{compared['hex8']['f1'] / compared['hex20']['f1']:.0f} times HEX20 "
+        f"({100 * compared['hex8']['f1']:.1f} %); "
         f"with four HEX8 across the diameter "
-        f"the bending compliance is 5 % too small from a length over width of {edge:.1f} and {abs(longest['C_thx']):.0%} at {longest['length over width']:.1f} (HEX20 "
+        f"the bending compliance is 5 % too small from a length over width of {edge:.1f} and "
+        f"{abs(longest['C_thx']):.0%} at {longest['length over width']:.1f} (HEX20 "
         f"{abs(straight['C_thx']):.2%}); "
         f"HEX8 lacks {abs(light[0]['mass']):.1%} of the mass with {light[0]['HEX8, cells around']} cells around.",
-        "`solidgear check --fidelity solid` cautions on element = tet4 or hex8 and calls the lost mass a fault; HEX20 is the default everywhere.",
+        "`solidgear check --fidelity solid` cautions on element = tet4 or hex8 and calls the "
+        "lost mass a fault; HEX20 is the default everywhere.",
         "tests/test_check_guards.py::test_guard[hex8]",
         rows
         + [{"at equal unknowns": e, "unknowns": equal} | v for e, v in compared.items()]

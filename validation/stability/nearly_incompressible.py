@@ -76,10 +76,16 @@ def measure(quick: bool = False) -> Finding:
     return Finding(
         "nearly_incompressible",
         "Elements near nu = 1/2",
-        "Linear elements lock as the material becomes incompressible; so do quadratic ones, later; high orders and the beam do not.",
-        f"Error of the bending compliance from {at[0]} to {at[-1][3:]}: {words(lambda m: m in LINEAR)}; {words(lambda m: m not in LINEAR + HIGH)}; {words(lambda m: m in HIGH)}; "
+        "Linear elements lock as the material becomes incompressible; so do quadratic ones, "
+        "later; high orders and the beam do not.",
+        f"Error of the bending compliance from {at[0]} to {at[-1][3:]}: "
+        f"{words(lambda m: m in LINEAR)}; {words(lambda m: m not in LINEAR + HIGH)}; "
+        f"{words(lambda m: m in HIGH)}; "
         f"at nu 0.49 HEX8 errs by {at_049['hex8']:.0f} %, HEX20 by {at_049['hex20']:.1f} %.",
-        "The scene refuses nu of 0.5 and above; `solidgear check` cautions where the element asked for errs by more than 1 % at this nu (hexahedra of order two from 0.496), says not to use it beyond the tolerance, and names the harmonic solid, whose default order does not lock.",
+        "The scene refuses nu of 0.5 and above; `solidgear check` cautions where the element "
+        "asked for errs by more than 1 % at this nu (hexahedra of order two from 0.496), "
+        "says not to use it beyond the tolerance, and names the harmonic solid, whose "
+        "default order does not lock.",
         "tests/test_check_guards.py::test_guard[hex20 locks]",
         rows,
     )

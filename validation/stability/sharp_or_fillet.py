@@ -175,15 +175,22 @@ def measure(quick: bool = False) -> Finding:
     return Finding(
         "sharp_or_fillet",
         "Solids at a sharp shoulder",
-        "At a sharp shoulder strain has no limit: the greatest strain grows with every refinement, and uniform meshes converge slowly whatever the order of their elements; "
+        "At a sharp shoulder strain has no limit: the greatest strain grows with every "
+        "refinement, and uniform meshes converge slowly whatever the order of their "
+        "elements; "
         "the global compliance does converge.",
-        f"Observed orders on uniform meshes {', '.join(f'{p:.2f} (Q{o})' for o, p in orders.items())} against {expected:.2f} expected of the corner; the greatest strain "
+        "Observed orders on uniform meshes "
+        f"{', '.join(f'{p:.2f} (Q{o})' for o, p in orders.items())} against {expected:.2f} "
+        "expected of the corner; the greatest strain "
         f"grows like h^{growth:.2f} (expected h^{expected / 2 - 1:.2f}), "
-        f"to {peaks[-1]:.0f} times nominal after {layers[-1]} layers; grading reaches {cheap['error of tilt']:.0e} with {cheap['unknowns']} unknowns, Q2 uniform "
+        f"to {peaks[-1]:.0f} times nominal after {layers[-1]} layers; grading reaches "
+        f"{cheap['error of tilt']:.0e} with {cheap['unknowns']} unknowns, Q2 uniform "
         f"{last['error of tilt']:.0e} with {last['unknowns']}; "
-        f"a fillet of {softer[0]['fillet over d']:g} d changes the tilt by {softer[0]['tilt over sharp']:+.1%}, one of {softer[-1]['fillet over d']:g} d by "
+        f"a fillet of {softer[0]['fillet over d']:g} d changes the tilt by "
+        f"{softer[0]['tilt over sharp']:+.1%}, one of {softer[-1]['fillet over d']:g} d by "
         f"{softer[-1]['tilt over sharp']:+.1%}.",
-        "All solid rungs grade their meshes towards shoulders; `solidgear compare` prints the expected order beside the observed one and widens its band by a factor of 3 "
+        "All solid rungs grade their meshes towards shoulders; `solidgear compare` prints "
+        "the expected order beside the observed one and widens its band by a factor of 3 "
         "when they do not agree; "
         "`solidgear check` cautions where a mesh is not graded towards one.",
         "tests/test_check_guards.py::test_guard[uniform mesh]",

@@ -111,14 +111,22 @@ def measure(quick: bool = False) -> Finding:
     return Finding(
         "shoulder_step",
         "Beam at a shoulder",
-        "A beam is too stiff at a sharp shoulder: it fills the thick section with stress at once, the solid needs a cone of length to do so.",
-        f"Ratio of diameters at which the deflection of an overhang of one diameter is too small by {passed('C_zz, 1 d', 0.01)}, {passed('C_zz, 1 d', 0.05)} "
-        f"(overhang of two: {passed('C_zz, 2 d', 0.01)}, {passed('C_zz, 2 d', 0.05)}); the shoulder is worth up to {last['missing length / d, 1 d']:.3f} d of thin shaft at "
+        "A beam is too stiff at a sharp shoulder: it fills the thick section with stress at "
+        "once, the solid needs a cone of length to do so.",
+        "Ratio of diameters at which the deflection of an overhang of one diameter is too "
+        f"small by {passed('C_zz, 1 d', 0.01)}, {passed('C_zz, 1 d', 0.05)} "
+        f"(overhang of two: {passed('C_zz, 2 d', 0.01)}, {passed('C_zz, 2 d', 0.05)}); the "
+        f"shoulder is worth up to {last['missing length / d, 1 d']:.3f} d of thin shaft at "
         f"ratio {last['ratio']:g}; "
-        f"a cone of {min(r['cone angle, deg'] for r in rows):.0f} to {max(r['cone angle, deg'] for r in rows):.0f} degrees from the axis gives the same tilt and the "
+        f"a cone of {min(r['cone angle, deg'] for r in rows):.0f} to "
+        f"{max(r['cone angle, deg'] for r in rows):.0f} degrees from the axis gives the same "
+        "tilt and the "
         f"deflection to {100 * cone:.1f} % "
-        f"(45 degrees leaves {100 * max(abs(r['C_zz with 45 deg']) for r in rows):.1f} %), a hinge of that length of thin shaft to {100 * hinge:.1f} %.",
-        "`solidgear check` cautions for every shoulder from 1 % on with the length it is worth, and measures the beam against a light harmonic solid on the scene itself; `solidgear compare` shows the shoulder's share in its table of causes.",
+        f"(45 degrees leaves {100 * max(abs(r['C_zz with 45 deg']) for r in rows):.1f} %), a "
+        f"hinge of that length of thin shaft to {100 * hinge:.1f} %.",
+        "`solidgear check` cautions for every shoulder from 1 % on with the length it is "
+        "worth, and measures the beam against a light harmonic solid on the scene itself; "
+        "`solidgear compare` shows the shoulder's share in its table of causes.",
         "tests/test_check_guards.py::test_guard[shoulder]",
         rows,
     )

@@ -140,13 +140,18 @@ def measure(quick: bool = False) -> Finding:
     return Finding(
         "thin_hollow_shaft",
         "Beam, thin hollow shaft",
-        "Beams and the bending block of the harmonic solid know no ovalising, and a thin tube ovalises at a lower frequency than it bends; a 3D mesh with few cells around "
+        "Beams and the bending block of the harmonic solid know no ovalising, and a thin "
+        "tube ovalises at a lower frequency than it bends; a 3D mesh with few cells around "
         "is too stiff for it.",
-        f"The wall, over the outer radius, below which n = 2 comes before bending (free): {edges}; at wall {thin['wall']:g} the harmonic n = 2 is "
+        "The wall, over the outer radius, below which n = 2 comes before bending (free): "
+        f"{edges}; at wall {thin['wall']:g} the harmonic n = 2 is "
         f"{thin['long tube, n = 2']:+.0e} from the closed form of a "
-        f"long ring and {thin['hoop, n = 2']:+.0e} from that of a hoop; at wall 0.1 the 3D solid is {solid[0]['n = 2']:+.0%} in n = 2 with 12 cells around and "
+        f"long ring and {thin['hoop, n = 2']:+.0e} from that of a hoop; at wall 0.1 the 3D "
+        f"solid is {solid[0]['n = 2']:+.0%} in n = 2 with 12 cells around and "
         f"{solid[-1]['n = 2']:+.1%} with {solid[-1]['3D solid, cells around']}.",
-        '`solidgear check` solves n = 2 and 3 where a wall is thin enough and says when they lie below or near first bending or the range asked for; `build(scene, "harmonic", ovalising=(2, 3))` and `solidgear modes --set ovalising=2,3` compute these modes.',
+        "`solidgear check` solves n = 2 and 3 where a wall is thin enough and says when they "
+        'lie below or near first bending or the range asked for; `build(scene, "harmonic", '
+        "ovalising=(2, 3))` and `solidgear modes --set ovalising=2,3` compute these modes.",
         "tests/test_check_guards.py::test_guard[tube, n = 2 below bending]",
         rows + limits + solid,
     )

@@ -189,13 +189,19 @@ def measure(quick: bool = False) -> Finding:
     return Finding(
         "wrong_units",
         "A scene in wrong units",
-        "A slip of a factor 1000 in units gives a shaft that solves without complaint: a scene of consistent numbers has no size of its own.",
-        f"Over {len({r['scene'] for r in rows})} shipped scenes the scene itself refuses in all cases: {', '.join(refused) or 'none'}; the criteria "
+        "A slip of a factor 1000 in units gives a shaft that solves without complaint: a "
+        "scene of consistent numbers has no size of its own.",
+        f"Over {len({r['scene'] for r in rows})} shipped scenes the scene itself refuses in "
+        f"all cases: {', '.join(refused) or 'none'}; the criteria "
         + ", ".join(f"{name} in {low:g} to {high:g}" for name, (low, high) in LIMITS.items())
-        + f" catch in every scene: {', '.join(only)}; only some of: {', '.join(part) or 'none'}; false alarms on sound scenes: {len(false)} (sound ones span "
+        + f" catch in every scene: {', '.join(only)}; only some of: "
+        f"{', '.join(part) or 'none'}; false alarms on sound scenes: {len(false)} (sound ones "
+        "span "
         + ", ".join(f"{name} {low:.2g} to {high:.2g}" for name, (low, high) in span.items())
         + ").",
-        "A scene longer than 20 m, shorter than 1 mm or thicker than 10 m in radius is refused by every command as probably in wrong units; `solidgear check` cautions on every criterion above.",
+        "A scene longer than 20 m, shorter than 1 mm or thicker than 10 m in radius is "
+        "refused by every command as probably in wrong units; `solidgear check` cautions on "
+        "every criterion above.",
         "tests/test_check_guards.py::test_guard[E in GPa read as Pa]",
         rows,
     )
