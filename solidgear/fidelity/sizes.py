@@ -6,7 +6,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from types import SimpleNamespace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -232,10 +231,10 @@ def _solid_factor_mb(unknowns: float, entries: float, fill: float) -> float:
     PARDISO needs its factor, its copy of the matrix and work by the entry: its own estimate for 47
     meshes within 1 % where the fill is known.
     """
-    from solidgear.solve.backends.memory_law import law
+    from solidgear.solve.backends.memory_law import Outline, law
     from solidgear.solve.factor import FactorError, choice
 
-    matrix = SimpleNamespace(shape=(unknowns, unknowns), nnz=entries)
+    matrix = Outline((unknowns, unknowns), entries)
     try:
         name, _ = choice(matrix)
     except FactorError:

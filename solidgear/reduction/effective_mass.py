@@ -31,6 +31,7 @@ import numpy as np
 import scipy.linalg as sla
 
 from solidgear.body import Body, as_supports
+from solidgear.machine.threads import pinned
 from solidgear.reduction.lumped_point import LumpedPoint, lumped_point
 from solidgear.reduction.receptance import modal_receptance
 from solidgear.solve.modes import ModeSet
@@ -225,6 +226,7 @@ def _valid_to(k, mass, receptance, omega, tolerance: float = 0.05) -> float:
     return float(last / (2 * np.pi))
 
 
+@pinned
 def synthesise(
     body: Body, supports: Holding, port: str, found: ModeSet | None = None
 ) -> tuple[LumpedPoint, dict[str, Synthesis]]:

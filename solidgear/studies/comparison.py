@@ -23,6 +23,7 @@ from solidgear.fidelity.levels import FREE, HARMONIC
 from solidgear.fidelity.rung import LUMPED, SOLID
 from solidgear.machine.memory import one_run
 from solidgear.machine.meter import Meter
+from solidgear.machine.threads import pinned
 
 if TYPE_CHECKING:
     from solidgear.scene import Scene
@@ -73,6 +74,7 @@ class Comparison:
         return write_all(self, out, renders=renders, progress=progress)
 
 
+@pinned
 def compare(
     scene: Scene,
     models: tuple[str, ...] | None = None,

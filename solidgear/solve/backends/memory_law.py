@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import scipy.sparse as sp
 
 # Peak memory of a factorisation in MB = c (n / 1e4)^a (entries / 1e6)^b, fitted to peaks of
@@ -19,13 +21,28 @@ LAWS = {
 }
 
 
-def law(name: str, matrix: sp.csr_matrix, planar: bool) -> float:
+@dataclass(frozen=True)
+class Outline:
+    """A matrix that is not there yet: how large it will be.
+
+    Attributes
+    ----------
+    shape : (float, float)
+    nnz : float
+        Entries.
+    """
+
+    shape: tuple[float, float]
+    nnz: float
+
+
+def law(name: str, matrix: sp.csr_matrix | Outline, planar: bool) -> float:
     """Estimated peak memory of a back end that gives no estimate itself.
 
     Parameters
     ----------
     name : {'superlu', 'cholmod'}
-    matrix : (n, n) sparse
+    matrix : (n, n) sparse or Outline
     planar : bool
         Whether it comes from a 1D or 2D mesh.
 

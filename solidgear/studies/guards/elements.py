@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import os
 from importlib.util import find_spec
-from types import SimpleNamespace
 
 import numpy as np
 
@@ -13,7 +12,7 @@ from solidgear.evidence.quantities import change
 from solidgear.machine.memory import available_mb
 from solidgear.meshing.corners import sharpest_corner
 from solidgear.solve.backends import BACKENDS, INSTALL, missing
-from solidgear.solve.backends.memory_law import law
+from solidgear.solve.backends.memory_law import Outline, law
 from solidgear.solve.factor import FASTEST, SMALL
 from solidgear.studies.guards.notice import Notice, Notices, beyond, everything, solids
 from solidgear.studies.guards.probe import Probe
@@ -152,7 +151,7 @@ def memory(probe: Probe) -> Notices:
         if not (why := missing(name)):
             break
         absent.append(f"{why}; {INSTALL[name]}")
-    matrix = SimpleNamespace(shape=(size, size), nnz=entries)
+    matrix = Outline((size, size), entries)
     need, free = (
         OVER_LAW.get(name, 1.0) * law("cholmod" if name in OVER_LAW else "superlu", matrix, False),
         available_mb(),

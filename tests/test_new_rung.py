@@ -1,0 +1,128 @@
+"""A rung is one object: added to the ladder it is in every command, table, chart and picture."""
+
+import dataclasses
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+import solidgear as sg
+from solidgear.evidence.cases import plan
+from solidgear.evidence.racing import race
+from solidgear.fidelity.ladder import LADDER
+from solidgear.report.html import render_page
+from solidgear.report.race_figure import figure
+from solidgear.report.terminal import final_table
+from solidgear.report.write import render_mode
+from solidgear.studies.check import check_scene
+
+ROOT = Path(__file__).parent.parent
+LIGHT = {"harmonic": {"order": 4, "layers": 2}}
+#: the Timoshenko beam on a quarter of its elements
+COARSE = dataclasses.replace(
+    LADDER["timoshenko"],
+    name="coarse",
+    title="coarse beam",
+    short="coarse",
+    preset={"elements": 6},
+    series=None,
+    colour="#123456",
+    marker="X",
+)
+
+
+@pytest.fixture(scope="module")
+def ladder():
+    patch = pytest.MonkeyPatch()
+    patch.setattr(LADDER, "rungs", (*LADDER.rungs[:1], COARSE, *LADDER.rungs[1:]))
+    yield LADDER
+    patch.undo()
+
+
+@pytest.fixture(scope="module")
+def scene():
+    return sg.load(ROOT / "geometry" / "shaft_stepped.toml")
+
+
+@pytest.fixture(scope="module")
+def found(ladder, scene):
+    return sg.compare(scene, ("coarse", "timoshenko", "harmonic"), settings=LIGHT)
+
+
+def printed(renderable):
+    from rich.console import Console
+
+    console = Console(width=100, record=True, file=open("/dev/null", "w"))
+    console.print(renderable)
+    return console.export_text()
+
+
+def test_it_is_compared_and_judged(found):
+    record = found.record
+    assert list(record.models) == ["coarse", "timoshenko", "harmonic"]
+    # fewer elements, marks of the scene included: measured 7 against 40
+    assert record.models["coarse"].dofs < 0.6 * record.models["timoshenko"].dofs
+    assert {d.model for d in record.deviations} == {"coarse", "timoshenko"}
+    # like for like both beams are within 5 % (measured 2 %), so the cheaper one is the one to take
+    judged = [m for m in record.models if record.models[m].valid]
+    assert "coarse" in judged or record.models["coarse"].why_not
+
+
+def test_it_is_in_the_tables_and_on_the_page(found, tmp_path):
+    assert "coarse" in printed(final_table(found.record))
+    page = render_page(found.record, tmp_path)
+    assert "Coarse beam" in page and "#123456" in page
+
+
+def test_it_is_drawn_and_written(found, ladder, tmp_path):
+    body, modes = found.rungs["coarse"].body, found.rungs["coarse"].modes
+    assert body.fidelity == "coarse"
+    assert len(body.surface(modes.named("bending 1").vectors[0]).points) > 100
+    try:
+        assert render_mode(body, modes, "bending 1", tmp_path / "mode.png").stat().st_size > 1000
+    except sg.SolidgearError as error:
+        pytest.skip(f"no pictures here: {error}")
+
+
+def test_guards_have_a_verdict_on_it(ladder, scene):
+    verdicts = check_scene(scene, sg.build(scene, "coarse"))["verdicts"]
+    assert set(verdicts) == set(ladder.names)
+
+
+def test_it_is_charted(ladder, scene):
+    rows = [row for row in plan(scene) if row.model == "coarse"]
+    assert [(row.family, row.series, row.options) for row in rows] == [("beam", "coarse beam", {})]
+    against = {"order": 4, "layers": 2, "edge_layers": 1}
+    done = race(scene, rows, runs=1, budget=100.0, against=against)
+    assert done.rows[0].status == "ok" and 0 < done.rows[0].errors["bending 1"] < 0.2
+    texts = [t.get_text() for ax in figure(done).axes for t in ax.texts]
+    assert any("coarse beam" in text for text in texts)
+
+
+def test_it_has_its_own_colour(found):
+    assert found.record.models["coarse"].colour == "#123456"
+    assert found.record.models["coarse"].marker == "X"
+
+
+def test_it_is_in_the_help_and_among_the_choices():
+    code = (
+        "import dataclasses, sys\n"
+        "from solidgear.fidelity.ladder import LADDER\n"
+        "beam = LADDER['timoshenko']\n"
+        "LADDER.rungs += (dataclasses.replace(beam, name='coarse', title='coarse beam'),)\n"
+        "from solidgear.cli import main\n"
+        "sys.argv = ['solidgear', *sys.argv[1:]]\n"
+        "main()\n"
+    )
+
+    def run(*arguments):
+        command = [sys.executable, "-c", code, *arguments]
+        done = subprocess.run(command, capture_output=True, text=True, timeout=120, cwd=ROOT)
+        return done.stdout + done.stderr
+
+    assert "coarse" in run("stiffness", "--help")
+    told = run("stiffness", "geometry/shaft_stepped.toml", "-f", "coarse")
+    assert "shaft_stepped: coarse" in told
+    assert "choose from" in run("compare", "geometry/shaft_stepped.toml", "--models", "x")
+    assert "coarse" in run("compare", "geometry/shaft_stepped.toml", "--models", "x")
