@@ -8,12 +8,16 @@ import copy
 import io
 import math
 import re
+from pathlib import Path
 
 import numpy as np
 import pytest
 from rich.console import Console
 
-from solidgear.evidence.record import SCHEMA
+import solidgear as sg
+from solidgear.errors import SolidgearError
+from solidgear.evidence.record import SCHEMA, Record
+from solidgear.evidence.recording import recorded
 from solidgear.report import charts
 from solidgear.report.html import render_page, write_report
 from solidgear.report.terminal import (
@@ -24,6 +28,7 @@ from solidgear.report.terminal import (
 )
 from solidgear.report.words import engineering, hertz, percent
 
+ROOT = Path(__file__).parent.parent
 LOOKS = {
     "euler": ("Euler beam", "Euler", "beam", "#c98a00", "v"),
     "timoshenko": ("Timoshenko beam", "Timoshenko", "beam", "#0072b2", "s"),
@@ -585,6 +590,49 @@ def test_chart_that_fails_costs_only_itself(monkeypatch):
     )
     page = render_page(fixture_results())
     assert "no pen" in page and page.count("<svg") == 1 and "</html>" in page
+
+
+def test_models_without_a_record_are_named_by_the_ladder():
+    scene = sg.load(ROOT / "geometry" / "shaft_stepped.toml")
+    record = recorded(scene, {}, {"euler": "no memory"}, [], {}, [], complete=False)
+    assert record.missing == ["Timoshenko beam", "harmonic solid", "3D solid"]
+    assert record.models["euler"].title == "Euler beam"
+
+
+def test_model_without_a_title_is_called_by_its_key(no_charts):
+    results = fixture_results()
+    for model in results["models"].values():
+        del model["title"], model["short"]
+    assert "harmonic: stiffness" in render_page(results).lower()
+    assert "Trust: harmonic\n" in verdict_text(results)
+    assert "timoshenko" in shown(final_table(results))
+
+
+# ------------------------------------------------------------------------------------------------- the border
+@pytest.mark.parametrize("version", [1, 2, SCHEMA + 1, "x"])
+def test_results_of_another_version_are_refused_in_a_sentence(tmp_path, version):
+    results = fixture_results() | {"schema": version}
+    which = "an older" if version in (1, 2) else "another"
+    for take in (final_table, verdict_text, render_page, lambda r: write_report(r, tmp_path)):
+        with pytest.raises(SolidgearError, match=f"written by {which} version") as refused:
+            take(results)
+        assert "run solidgear compare again" in str(refused.value)
+        assert "\n" not in str(refused.value)
+    assert not list(tmp_path.iterdir())
+
+
+def test_what_is_no_record_is_refused_with_the_place_of_the_fault():
+    results = fixture_results()
+    results["models"]["solid"]["dofs"] = "many"
+    with pytest.raises(SolidgearError, match=r"models\.solid\.dofs") as refused:
+        render_page(results)
+    assert "\n" not in str(refused.value)
+
+
+def test_a_record_is_taken_as_it_is(no_charts):
+    record = Record.model_validate(fixture_results())
+    assert render_page(record) == render_page(fixture_results())
+    assert Record.model_validate(record.as_dict()) == record
 
 
 # ------------------------------------------------------------------------------------------------- the file
