@@ -1,8 +1,8 @@
 """Pictures of mode shapes, drawn in a child process.
 
 Without the system's OpenGL libraries VTK does not raise, it takes the process down with a
-segmentation fault. So a child draws, the caller reads what came of it, and a failed picture never
-costs a number.
+segmentation fault. So a child draws, the caller reads how it ended, and a failed picture never costs
+a number.
 """
 
 from __future__ import annotations
@@ -56,7 +56,7 @@ class RenderJob:
 
 @dataclass(frozen=True)
 class RenderResult:
-    """What came of a :class:`RenderJob`.
+    """How a :class:`RenderJob` ended.
 
     Attributes
     ----------
