@@ -16,7 +16,7 @@ from solidgear import cli
 from solidgear.evidence import cases, racing
 from solidgear.evidence.pareto import Race, Row
 from solidgear.evidence.racing import race
-from solidgear.report import race_figure, race_rows
+from solidgear.report import race_figure, race_rows, race_style
 from solidgear.report.html import render_page, write_report
 from solidgear.report.race_figure import draw, figure
 from solidgear.report.race_rows import (
@@ -230,6 +230,15 @@ def test_left_out_names_the_first_level_of_each_series(raced):
     assert left_out(Race({}, raced.reference, rows, {}, 1, 10, 1.0)) == "HEX20 graded from level 2"
 
 
+def test_an_unknown_family_is_drawn_in_grey_and_named_in_the_legend(raced):
+    row = Row("shells", "S4 graded", 1, "shell", {}, "ok", "", 90, [0.3], {}, {"C_zz": 0.01})
+    found = figure(Race({}, raced.reference, [row], {}, 1, 10, 1.0))
+    (mark,) = marks(found.axes[0], "o")
+    assert mark.get_color() == race_style.GREY
+    words = [text.get_text() for text in found.legends[0].get_texts()]
+    assert words[:2] == ["SHELLS", "S4 graded"]
+
+
 # ------------------------------------------------------------------------------------------------- report
 def test_report_has_the_section_when_its_folder_has_a_race_of_the_scene(raced, tmp_path):
     results = {"scene": raced.scene, "models": {}}
@@ -282,6 +291,19 @@ def test_command_leaves_the_report_of_another_scene_alone(run, tmp_path, undrawn
     (tmp_path / "results.json").write_text(json.dumps({"scene": {"name": "another"}, "models": {}}))
     code, text, _ = run("chart", SCENE, "--out", tmp_path, "--runs", "1")
     assert code == 0 and "report.html" not in text and not (tmp_path / "report.html").exists()
+
+
+def test_command_refuses_a_comparison_of_an_older_version_before_it_times_anything(
+    run, tmp_path, monkeypatch
+):
+    monkeypatch.setattr(racing, "_run", lambda *_: pytest.fail("timed"))
+    old = {"schema": 2, "scene": json.loads(json.dumps(sg.load(SCENE).as_dict())), "models": {}}
+    text = json.dumps(old)
+    (tmp_path / "results.json").write_text(text)
+    code, out, err = run("chart", SCENE, "--out", tmp_path, "--runs", "1")
+    assert code == 1 and out == "" and "results.json: written by an older version" in err
+    assert {p.name for p in tmp_path.iterdir()} == {"results.json"}
+    assert (tmp_path / "results.json").read_text() == text
 
 
 def test_json_is_for_machines(run, tmp_path, undrawn):

@@ -22,7 +22,7 @@ MAY_IMPORT = {
     "reduction": GROUND | {"machine", "body", "solve"},
     "system": GROUND | {"machine", "body", "reduction"},
     "evidence": GROUND | {"machine", "scene", "body", "meshing", "solve", "fidelity", "reduction"},
-    "report": GROUND | {"machine", "body", "fidelity", "evidence"},
+    "report": GROUND | {"machine", "body", "evidence"},
     "studies": GROUND
     | {"machine", "scene", "body", "meshing", "solve", "fidelity", "reduction"}
     | {"system", "evidence", "report"},

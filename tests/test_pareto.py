@@ -4,6 +4,7 @@ can stop.
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -374,8 +375,7 @@ def test_whatever_stops_a_model_becomes_its_reason(scene, monkeypatch, stopped):
 
 def test_a_missing_first_bending_is_said_and_costs_only_that_number(scene, monkeypatch):
     stage = Stage(monkeypatch, scene, {"a1": 1.0})
-    body, condensed, values = stage.real
-    stage.real = body, condensed, {"C_zz": values["C_zz"]}
+    stage.real = replace(stage.real, quantities={"C_zz": stage.real.quantities["C_zz"]})
     found = race(scene, tagged("a1"), runs=1, budget=1e6)
     row = found.rows[0]
     assert row.status == "ok" and row.reason == "found no bending 1"

@@ -8,11 +8,16 @@ import copy
 import io
 import math
 import re
+from pathlib import Path
 
 import numpy as np
 import pytest
 from rich.console import Console
 
+import solidgear as sg
+from solidgear.errors import SolidgearError
+from solidgear.evidence.record import SCHEMA, Record
+from solidgear.evidence.recording import recorded
 from solidgear.report import charts
 from solidgear.report.html import render_page, write_report
 from solidgear.report.terminal import (
@@ -23,6 +28,19 @@ from solidgear.report.terminal import (
 )
 from solidgear.report.words import engineering, hertz, percent
 
+ROOT = Path(__file__).parent.parent
+LOOKS = {
+    "euler": ("Euler beam", "Euler", "beam", "#c98a00", "v"),
+    "timoshenko": ("Timoshenko beam", "Timoshenko", "beam", "#0072b2", "s"),
+    "harmonic": ("harmonic solid", "harmonic", "solid", "#00805e", "o"),
+    "solid": ("3D solid", "", "solid", "#5a3e8c", "D"),
+}
+LOOKS = {
+    key: dict(zip(("title", "short", "family", "colour", "marker"), look))
+    for key, look in LOOKS.items()
+}
+#: quantities of causes and attachments
+SHOWN = ("C_zz", "K_zz", "bending 1")
 ORDER = ["x", "y", "z", "thx", "thy", "thz"]
 #: K_zz, K_yy, K_z,thx, K_thx
 STIFFNESS = {
@@ -146,7 +164,7 @@ def _scene():
     }
 
 
-def _estimate(levels, column, limit, gci, observed):
+def _estimate(limit, gci, observed):
     return {
         "observed_order": observed,
         "expected_order": 1.09,
@@ -180,14 +198,17 @@ def fixture_results():
                 {
                     "dofs": int(facts[key][0] / r**2),
                     "h": 0.004 * r,
-                    "c_zz": c * (1 + s * 4e-4 * r**1.9),
-                    "bending_1_hz": FREQUENCY[key]["bending 1"] * (1 + 2e-4 * r**1.9),
+                    "quantities": {
+                        "C_zz": c * (1 + s * 4e-4 * r**1.9),
+                        "bending 1": FREQUENCY[key]["bending 1"] * (1 + 2e-4 * r**1.9),
+                    },
                 }
                 for r, s in ((1.97, -1), (1.4, -1), (1.0, -1))
             ]
         )
         dofs, total, peak = facts[key]
         models[key] = {
+            **LOOKS[key],
             "valid": key != "euler",
             "why_not": "shear: the shaft is stubby (overhang over diameter 1.1), and Euler leaves shear out"
             if key == "euler"
@@ -207,17 +228,17 @@ def fixture_results():
             if beam
             else {
                 "compliance": 0.0012 if key == "solid" else 0.0007,
-                "bending_1": 0.0005,
                 "method": "GCI on three meshes",
+                "each": {"bending 1": 0.0005},
             },
             "convergence": None
             if beam
             else {
                 "levels": levels,
-                "c_zz": _estimate(levels, "c_zz", c * (1 + 1e-4), 0.0012, 1.92),
-                "bending_1": _estimate(
-                    levels, "bending_1_hz", FREQUENCY[key]["bending 1"] * 0.9999, 0.0005, 1.87
-                ),
+                "quantities": {
+                    "C_zz": _estimate(c * (1 + 1e-4), 0.0012, 1.92),
+                    "bending 1": _estimate(FREQUENCY[key]["bending 1"] * 0.9999, 0.0005, 1.87),
+                },
             },
             "dofs": dofs,
             "seconds": {
@@ -292,7 +313,7 @@ def fixture_results():
         ]
 
     return {
-        "schema": 1,
+        "schema": SCHEMA,
         "complete": True,
         "scene": _scene(),
         "models": models,
@@ -305,7 +326,7 @@ def fixture_results():
             "free": ["thy"],
         },
         "attachments": {
-            k: {t: {"c_zz": v[0], "k_zz": v[1], "bending_1_hz": v[2]} for t, v in ties.items()}
+            k: {t: {"quantities": dict(zip(SHOWN, v))} for t, v in ties.items()}
             for k, ties in TIES.items()
         },
         "mac": {
@@ -321,33 +342,25 @@ def fixture_results():
                 "cause": "shear",
                 "change": "Euler -> Timoshenko",
                 "model": "beam",
-                "c_zz": 0.2603,
-                "k_zz": -0.4315,
-                "bending_1": -0.1678,
+                "quantities": {"C_zz": 0.2603, "K_zz": -0.4315, "bending 1": -0.1678},
             },
             {
                 "cause": "rotary inertia",
                 "change": "off -> on",
                 "model": "beam",
-                "c_zz": 0.0,
-                "k_zz": 0.0,
-                "bending_1": -0.0312,
+                "quantities": {"C_zz": 0.0, "K_zz": 0.0, "bending 1": -0.0312},
             },
             {
                 "cause": "attachment",
                 "change": "average -> section",
                 "model": "harmonic",
-                "c_zz": 0.0674,
-                "k_zz": -0.1862,
-                "bending_1": -0.0210,
+                "quantities": {"C_zz": 0.0674, "K_zz": -0.1862, "bending 1": -0.0210},
             },
             {
                 "cause": "shoulder flexibility",
                 "change": "beam -> solid, section ties",
                 "model": "harmonic",
-                "c_zz": 0.0698,
-                "k_zz": -0.0798,
-                "bending_1": -0.0297,
+                "quantities": {"C_zz": 0.0698, "K_zz": -0.0798, "bending 1": -0.0297},
             },
         ],
         "verdict": {
@@ -502,7 +515,7 @@ def test_names_from_a_scene_are_escaped():
 # ------------------------------------------------------------------------------------------------- missing parts
 def test_interrupted_run_has_a_banner(page, no_charts):
     assert "Interrupted run" not in page
-    results = fixture_results() | {"complete": False}
+    results = fixture_results() | {"complete": False, "missing": ["3D solid"]}
     del results["models"]["solid"], results["verdict"]
     page = render_page(results)
     assert (
@@ -559,11 +572,11 @@ def test_charts_draw_what_is_left_of_a_broken_off_run():
     del (
         results["models"]["solid"],
         results["models"]["harmonic"]["band"],
-        results["models"]["harmonic"]["convergence"]["bending_1"],
+        results["models"]["harmonic"]["convergence"]["quantities"]["bending 1"],
     )
     results["models"]["harmonic"]["convergence"]["levels"][0]["h"] = None
     results["scene"]["port"], results["scene"]["bearings"] = None, []
-    results["causes"][0]["c_zz"] = None
+    results["causes"][0]["quantities"]["C_zz"] = None
     for chart in charts.CHARTS.values():
         chart(results)
 
@@ -577,6 +590,49 @@ def test_chart_that_fails_costs_only_itself(monkeypatch):
     )
     page = render_page(fixture_results())
     assert "no pen" in page and page.count("<svg") == 1 and "</html>" in page
+
+
+def test_models_without_a_record_are_named_by_the_ladder():
+    scene = sg.load(ROOT / "geometry" / "shaft_stepped.toml")
+    record = recorded(scene, {}, {"euler": "no memory"}, [], {}, [], complete=False)
+    assert record.missing == ["Timoshenko beam", "harmonic solid", "3D solid"]
+    assert record.models["euler"].title == "Euler beam"
+
+
+def test_model_without_a_title_is_called_by_its_key(no_charts):
+    results = fixture_results()
+    for model in results["models"].values():
+        del model["title"], model["short"]
+    assert "harmonic: stiffness" in render_page(results).lower()
+    assert "Trust: harmonic\n" in verdict_text(results)
+    assert "timoshenko" in shown(final_table(results))
+
+
+# ------------------------------------------------------------------------------------------------- the border
+@pytest.mark.parametrize("version", [1, 2, SCHEMA + 1, "x"])
+def test_results_of_another_version_are_refused_in_a_sentence(tmp_path, version):
+    results = fixture_results() | {"schema": version}
+    which = "an older" if version in (1, 2) else "another"
+    for take in (final_table, verdict_text, render_page, lambda r: write_report(r, tmp_path)):
+        with pytest.raises(SolidgearError, match=f"written by {which} version") as refused:
+            take(results)
+        assert "run solidgear compare again" in str(refused.value)
+        assert "\n" not in str(refused.value)
+    assert not list(tmp_path.iterdir())
+
+
+def test_what_is_no_record_is_refused_with_the_place_of_the_fault():
+    results = fixture_results()
+    results["models"]["solid"]["dofs"] = "many"
+    with pytest.raises(SolidgearError, match=r"models\.solid\.dofs") as refused:
+        render_page(results)
+    assert "\n" not in str(refused.value)
+
+
+def test_a_record_is_taken_as_it_is(no_charts):
+    record = Record.model_validate(fixture_results())
+    assert render_page(record) == render_page(fixture_results())
+    assert Record.model_validate(record.as_dict()) == record
 
 
 # ------------------------------------------------------------------------------------------------- the file
@@ -642,7 +698,9 @@ def test_final_table_fits_eighty_columns():
 
 def test_final_table_survives_names_with_brackets():
     results = fixture_results()
-    results["models"]["[red]x[/nonsense]"] = copy.deepcopy(results["models"]["solid"])
+    odd = copy.deepcopy(results["models"]["solid"])
+    del odd["title"], odd["short"]
+    results["models"]["[red]x[/nonsense]"] = odd
     assert "[red]x" in shown(final_table(results))
 
 

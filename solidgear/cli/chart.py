@@ -14,6 +14,7 @@ from solidgear.errors import SolidgearError
 
 if TYPE_CHECKING:
     from solidgear.evidence.pareto import Race
+    from solidgear.evidence.record import Record
     from solidgear.scene import Scene
 
 
@@ -102,11 +103,13 @@ def run_chart(
     Raises
     ------
     SolidgearError
-        For a bad number, a folder that cannot be written, or a scene with nothing to chart.
+        For a bad number, a folder that cannot be written, a scene with nothing to chart, or a
+        comparison of it by another version of solidgear: before anything is timed.
     """
     from solidgear.evidence.cases import plan, setup_seconds
     from solidgear.evidence.racing import BUDGET, FULL_BUDGET, race
     from solidgear.report.folder import clear_halves, held
+    from solidgear.report.html import write_report
     from solidgear.report.race_figure import draw
     from solidgear.report.race_rows import PICTURE, write_rows
 
@@ -118,6 +121,7 @@ def run_chart(
     try:
         with held(out) as folder, Progress(quiet=quiet) as progress:
             clear_halves(folder)
+            earlier = _earlier(folder, scene)
             progress("set-up costs, in a fresh interpreter")
             once = setup_seconds()
             found = race(
@@ -131,24 +135,27 @@ def run_chart(
             )
             progress("chart")
             draw(found, folder / PICTURE)
-            return found, _refresh_report(folder, found.scene)
+            if earlier is not None:
+                write_report(earlier, folder)
+            return found, earlier is not None
     except OSError as error:
         raise SolidgearError(
             f"--out {out}: writing stopped ({error.strerror or error}); files already there are whole"
         ) from error
 
 
-def _refresh_report(folder: Path, scene: dict) -> bool:
-    """Write the report of an earlier comparison of the same scene again, now with the chart; False
+def _earlier(folder: Path, scene: Scene) -> Record | None:
+    """The record of an earlier comparison of the same scene, whose report gets the chart; None
     where there is none.
     """
-    from solidgear.report.html import write_report
+    from solidgear.report.border import as_record
 
+    path = folder / "results.json"
     try:
-        results = json.loads((folder / "results.json").read_text(encoding="utf-8"))
+        results = json.loads(path.read_text(encoding="utf-8"))
     except (FileNotFoundError, ValueError):
-        return False
-    if not isinstance(results, dict) or results.get("scene") != scene:
-        return False
-    write_report(results, folder)
-    return True
+        return None
+    same = json.loads(json.dumps(scene.as_dict()))
+    if not isinstance(results, dict) or results.get("scene") != same:
+        return None
+    return as_record(results, str(path))

@@ -11,7 +11,16 @@ from __future__ import annotations
 import math
 from typing import Annotated, Any
 
-from pydantic import BaseModel, BeforeValidator, ConfigDict, Field
+from pydantic import (
+    BaseModel,
+    BeforeValidator,
+    ConfigDict,
+    Field,
+    ValidationError,
+    ValidatorFunctionWrapHandler,
+    field_validator,
+)
+from pydantic_core import PydanticUseDefault
 
 #: version of this layout; it rises when a field is renamed or removed
 SCHEMA = 3
@@ -38,9 +47,21 @@ Quantities = dict[str, Number]
 
 
 class Part(BaseModel):
-    """Part of a record: fields that are missing have their default, unknown ones are kept."""
+    """Part of a record: fields that are missing, or None where None says nothing, have their
+    default; unknown ones are kept.
+    """
 
     model_config = ConfigDict(extra="allow")
+
+    @field_validator("*", mode="wrap")
+    @classmethod
+    def _none_is_missing(cls, value: Any, validate: ValidatorFunctionWrapHandler) -> Any:
+        try:
+            return validate(value)
+        except ValidationError:
+            if value is None:
+                raise PydanticUseDefault from None
+            raise
 
 
 class ModeRecord(Part):
@@ -264,6 +285,8 @@ class PortRecord(Part):
 class Record(Part):
     """Everything a comparison found.
 
+    ``missing`` are titles of rungs that have a body of their own and no record here.
+
     Examples
     --------
     >>> record = Record.model_validate({"verdict": {"trust": "harmonic"}})
@@ -278,6 +301,7 @@ class Record(Part):
     scene: Facts = {}
     port: PortRecord | None = None
     models: dict[str, ModelRecord] = {}
+    missing: list[str] = []
     attachments: dict[str, dict[str, VariantRecord]] = {}
     mac: MacRecord | None = None
     deviations: list[DeviationRecord] = []

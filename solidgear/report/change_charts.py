@@ -2,16 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from solidgear.evidence.record import CauseRecord, Record
+from solidgear.report.chart_style import as_svg, new_figure
+from solidgear.report.reading import model_name, relative_change
+from solidgear.report.words import percent
 
-from solidgear.report.chart_style import QUANTITY_NAME, as_svg, new_figure
-from solidgear.report.words import (
-    is_number,
-    model_name,
-    percent,
-)
-
-QUANTITY_COLOUR = {"c_zz": "#1f5f99", "k_zz": "#9db8d2", "bending_1": "#c4541c"}
+#: quantity -> colour of its bars
+SHOWN = {"C_zz": "#1f5f99", "K_zz": "#9db8d2", "bending 1": "#c4541c"}
+#: ways of tying that are held against averaged ones
+TIES = ("rigid", "section")
 
 
 def _bars(ax, labels: list[str], columns: dict[str, list[float | None]]) -> None:
@@ -19,17 +18,17 @@ def _bars(ax, labels: list[str], columns: dict[str, list[float | None]]) -> None
     from matplotlib.ticker import PercentFormatter
 
     height = 0.8 / max(len(columns), 1)
-    sizes = [v for column in columns.values() for v in column if is_number(v)]
+    sizes = [v for column in columns.values() for v in column if v is not None]
     reach = max((abs(v) for v in sizes), default=0) or 1.0
     for k, (name, values) in enumerate(columns.items()):
         shift = (k - (len(columns) - 1) / 2) * height
-        spots = [(i + shift, v) for i, v in enumerate(values) if is_number(v)]
+        spots = [(i + shift, v) for i, v in enumerate(values) if v is not None]
         ax.barh(
             [y for y, _ in spots],
             [v for _, v in spots],
             height=height * 0.86,
-            color=QUANTITY_COLOUR[name],
-            label=QUANTITY_NAME[name],
+            color=SHOWN[name],
+            label=name,
         )
         for y, v in spots:
             ax.annotate(
@@ -54,42 +53,43 @@ def _bars(ax, labels: list[str], columns: dict[str, list[float | None]]) -> None
 
 
 @as_svg
-def cause_chart(results):
+def cause_chart(record: Record):
     """What each assumption alone changes, as horizontal bars."""
-    causes = results.get("causes") or []
-    rows = [r for r in causes if any(is_number(r.get(q)) for q in QUANTITY_NAME)]
+    rows = []
+    for cause in record.causes:
+        if any(cause.quantities.get(name) is not None for name in SHOWN):
+            rows.append(cause)
     if not rows:
         return None
     figure = new_figure(10.4, 0.7 + 0.58 * len(rows))
     ax = figure.subplots()
-    columns = {q: [r.get(q) for r in rows] for q in QUANTITY_NAME}
-    _bars(ax, [_cause(r) for r in rows], columns)
+    columns = {name: [cause.quantities.get(name) for cause in rows] for name in SHOWN}
+    _bars(ax, [_label(record, cause) for cause in rows], columns)
     ax.set_xlabel("relative change when this alone is switched")
     ax.legend(ncols=3, loc="lower right", bbox_to_anchor=(1, 1), borderaxespad=0.1)
     return figure
 
 
-def _cause(row: Mapping) -> str:
-    model = row.get("model")
-    name = "beam" if model == "beam" else model_name(model)
-    return f"{row.get('cause', '')}, {name}\n({row.get('change', '')})"
+def _label(record: Record, cause: CauseRecord) -> str:
+    return f"{cause.cause}, {model_name(record, cause.model)}\n({cause.change})"
 
 
 @as_svg
-def attachment_chart(results):
+def attachment_chart(record: Record):
     """Rigid and section ties against averaged ones, for compliance and first bending."""
-    solids = {k: a for k, a in (results.get("attachments") or {}).items() if a and a.get("average")}
     labels = []
-    columns: dict[str, list[float | None]] = {"c_zz": [], "bending_1": []}
-    for key, ties in solids.items():
-        for tie in ("rigid", "section"):
-            if not ties.get(tie):
+    columns: dict[str, list[float | None]] = {"C_zz": [], "bending 1": []}
+    for key, ties in record.attachments.items():
+        if "average" not in ties:
+            continue
+        average = ties["average"].quantities
+        for tie in TIES:
+            if tie not in ties:
                 continue
-            labels.append(f"{model_name(key)}\n{tie}")
-            for column, value in (("c_zz", "c_zz"), ("bending_1", "bending_1_hz")):
-                base, here = ties["average"].get(value), ties[tie].get(value)
-                comparable = is_number(base) and base and is_number(here)
-                columns[column].append(here / base - 1 if comparable else None)
+            own = ties[tie].quantities
+            labels.append(f"{model_name(record, key)}\n{tie}")
+            for name, column in columns.items():
+                column.append(relative_change(own.get(name), average.get(name)))
     if not labels:
         return None
     figure = new_figure(10.4, 0.7 + 0.46 * len(labels))

@@ -8,13 +8,15 @@ import re
 from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, Any
 
-from solidgear.fidelity.ladder import LADDER
-from solidgear.report.words import plain
+from solidgear.report.border import as_record
 
 if TYPE_CHECKING:
     from matplotlib.typing import RcKeyType
 
-QUANTITY_NAME = {"c_zz": "C_zz", "k_zz": "K_zz", "bending_1": "bending 1"}
+    from solidgear.evidence.record import Record
+
+#: how the tolerance asked for is drawn
+TOLERANCE = "#aa2222"
 STYLE: dict[RcKeyType, Any] = {
     "svg.fonttype": "none",  # text stays text: it can be searched, copied and read aloud
     "font.family": "sans-serif",
@@ -35,20 +37,24 @@ STYLE: dict[RcKeyType, Any] = {
 }
 
 
-def as_svg(function: Callable[[dict], Any]) -> Callable[[Mapping], bytes | None]:
+#: a chart of the report: from what a run found to an SVG in bytes, None where there is nothing
+Chart = Callable[["Record | Mapping[str, Any]"], bytes | None]
+
+
+def as_svg(function: Callable[[Record], Any]) -> Chart:
     """From a function that makes a figure to one that returns its SVG, ready to stand in an HTML
     page.
     """
 
     @functools.wraps(function)
-    def drawn(results: Mapping) -> bytes | None:
+    def drawn(found: Record | Mapping[str, Any]) -> bytes | None:
         import matplotlib
 
         name = function.__name__
         with matplotlib.rc_context():
             matplotlib.rcdefaults()  # the user's own matplotlibrc must not change a report
             matplotlib.rcParams.update({**STYLE, "svg.hashsalt": f"solidgear {name}"})
-            figure = function(plain(results))
+            figure = function(as_record(found))
             if figure is None:
                 return None
             target = io.BytesIO()
@@ -76,14 +82,31 @@ def new_figure(width: float, height: float):
     return Figure(figsize=(width, height), layout="constrained")
 
 
-def colour_of(key: str) -> str:
-    """Colour of a model, apart from the others also for the colour-blind."""
-    return LADDER[key].colour if key in LADDER else "#777777"
+def tolerance_line(ax, tolerance: float, x: float = 0.99, size: float = 8, **line) -> None:
+    """The tolerance asked for as a line across a panel, named at its right end.
 
-
-def marker_of(key: str) -> str:
-    """Marker of a model, apart from the others also in grey."""
-    return LADDER[key].marker if key in LADDER else "P"
+    Parameters
+    ----------
+    ax : matplotlib.axes.Axes
+    tolerance : float
+    x : float
+        Where the name ends, as a share of the width.
+    size : float
+        Of the name, pt.
+    **line
+        Width and style.
+    """
+    ax.axhline(tolerance, color=TOLERANCE, **line)
+    ax.annotate(
+        f"tolerance {100 * tolerance:.4g} %",
+        (x, tolerance),
+        xycoords=("axes fraction", "data"),
+        xytext=(0, 2),
+        textcoords="offset points",
+        ha="right",
+        fontsize=size,
+        color=TOLERANCE,
+    )
 
 
 def percent_decades(ax) -> None:

@@ -1,4 +1,4 @@
-"""The list of charts in the report, each one SVG in bytes, or None where the run has nothing to draw.
+"""The list of charts in the report: each one SVG in bytes, None where there is nothing to draw.
 
 They are drawn through figure objects, never through a display, and the same results give the same
 bytes. matplotlib is imported when the first one is drawn: a terminal run has no use for it.
@@ -6,24 +6,22 @@ bytes. matplotlib is imported when the first one is drawn: a terminal run has no
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
-
 from solidgear.report import sketch as scene_sketch
 from solidgear.report.change_charts import attachment_chart, cause_chart
-from solidgear.report.chart_style import as_svg
+from solidgear.report.chart_style import Chart, as_svg
 from solidgear.report.convergence_chart import convergence_chart
 from solidgear.report.cost_chart import cost_chart
 from solidgear.report.mode_charts import mac_chart, mode_chart
 
 
 @as_svg
-def sketch(results):
+def sketch(record):
     """The scene as a dimensioned section: shaft, seats, springs, lumped point."""
-    return scene_sketch.draw(results)
+    return scene_sketch.draw(record.scene)
 
 
 #: heading -> chart, in the order of the report; what each picture says in words is up to the page
-CHARTS: dict[str, Callable[[Mapping], bytes | None]] = {
+CHARTS: dict[str, Chart] = {
     "sketch": sketch,
     "modes": mode_chart,
     "mac": mac_chart,

@@ -1,23 +1,14 @@
-"""Chart of how answers converge: distance from the extrapolated value over mesh size or unknowns."""
+"""Chart of how answers converge: distance from the extrapolated value over size or unknowns."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 
-from solidgear.report.chart_style import (
-    QUANTITY_NAME,
-    as_svg,
-    colour_of,
-    marker_of,
-    new_figure,
-    percent_decades,
-)
-from solidgear.report.words import (
-    is_number,
-    model_name,
-    percent,
-)
+from solidgear.evidence.pareto import CHARTED
+from solidgear.evidence.record import BandRecord, LevelRecord, ModelRecord, Record
+from solidgear.report.chart_style import as_svg, new_figure, percent_decades
+from solidgear.report.reading import model_name
+from solidgear.report.words import percent
 
 #: what the meshes differ in -> label of the axis
 AXIS = {
@@ -28,13 +19,13 @@ AXIS = {
 
 
 @as_svg
-def convergence_chart(results):
+def convergence_chart(record: Record):
     """Distance from the extrapolated value over mesh size or unknowns, log-log, with the band and
     both orders.
     """
     panels = []
-    for key, model in (results.get("models") or {}).items():
-        panels += _panels(key, model.get("convergence") or {})
+    for key, model in record.models.items():
+        panels += _panels(model_name(record, key), model)
     if not panels:
         return None
     columns = min(len(panels), 2)
@@ -56,35 +47,49 @@ class _Panel:
     the axis, distance from the extrapolated value), ascending.
     """
 
-    key: str
+    name: str
+    model: ModelRecord
     quantity: str
     along: str
     spots: list[tuple[float, float]]
-    estimate: Mapping
+    band: BandRecord
 
 
-def _panels(key: str, convergence: Mapping) -> list[_Panel]:
-    """The panels of one model: those of its quantities that two meshes or more tell apart."""
-    levels = convergence.get("levels") or []
-    along = _told_apart_by(levels)
+def _panels(name: str, model: ModelRecord) -> list[_Panel]:
+    """The panels of one model: those of its quantities that two meshes or more distinguish."""
+    if model.convergence is None:
+        return []
+    levels = model.convergence.levels
+    along = _distinguished_by(levels)
     panels = []
-    for quantity, column in (("c_zz", "c_zz"), ("bending_1", "bending_1_hz")):
-        estimate = convergence.get(quantity) or {}
-        limit = estimate.get("extrapolated")
-        if not is_number(limit) or limit == 0:
+    for quantity in CHARTED:
+        band = model.convergence.quantities.get(quantity, BandRecord())
+        if not band.extrapolated:
             continue
-        known = [v for v in levels if is_number(v.get(along)) and is_number(v.get(column))]
-        distances = [(v[along], abs(v[column] / limit - 1)) for v in known]
-        spots = [(_on_axis(along, x), y) for x, y in distances if y > 0]
+        spots = []
+        for level in levels:
+            place, value = _size(level, along), level.quantities.get(quantity)
+            if place is None or value is None:
+                continue
+            distance = abs(value / band.extrapolated - 1)
+            if distance > 0:
+                spots.append((_on_axis(along, place), distance))
         if len(spots) >= 2:
-            panels.append(_Panel(key, quantity, along, sorted(spots), estimate))
+            panels.append(_Panel(name, model, quantity, along, sorted(spots), band))
     return panels
 
 
-def _told_apart_by(levels: list[Mapping]) -> str:
-    """What tells the meshes apart: their size if all have one, else their order, else unknowns."""
+def _size(level: LevelRecord, along: str) -> float | None:
+    """What a mesh has along an axis."""
+    if along == "h":
+        return level.h
+    return level.order if along == "order" else level.dofs
+
+
+def _distinguished_by(levels: list[LevelRecord]) -> str:
+    """What the meshes differ in: their size if all have one, else their order, else unknowns."""
     for along in ("h", "order"):
-        if levels and all(is_number(v.get(along)) and v[along] > 0 for v in levels):
+        if levels and all((_size(level, along) or 0) > 0 for level in levels):
             return along
     return "dofs"
 
@@ -98,37 +103,40 @@ def _on_axis(along: str, value: float) -> float:
 
 def _draw(ax, panel: _Panel) -> None:
     xs, ys = zip(*panel.spots)
-    colour, estimate = colour_of(panel.key), panel.estimate
-    ax.loglog(xs, ys, marker_of(panel.key) + "-", color=colour, ms=6, lw=1.2)
+    colour, band = panel.model.colour, panel.band
+    ax.loglog(xs, ys, panel.model.marker + "-", color=colour, ms=6, lw=1.2)
     low, high = min(ys) / 3, max(ys) * 3
-    band = estimate.get("gci")
-    if is_number(band) and band > 0:
-        low, high = min(low, band / 3), max(high, band * 2)
-        ax.axhspan(low, band, color=colour, alpha=0.12, lw=0)
-        ax.axhline(band, color=colour, lw=0.8, ls="--")
-        ax.annotate(
-            f"band {percent(band, signed=False)}, factor {estimate.get('factor')}",
-            (0.01, band),
-            xycoords=("axes fraction", "data"),
-            xytext=(0, 2),
-            textcoords="offset points",
-            ha="left",
-            va="bottom",
-            fontsize=8,
-        )
-    expected = estimate.get("expected_order")
-    if is_number(expected) and panel.along != "dofs":
-        slope = [ys[-1] * (x / xs[-1]) ** expected for x in xs]
+    if band.gci is not None and band.gci > 0:
+        low, high = min(low, band.gci / 3), max(high, band.gci * 2)
+        _shade(ax, low, band, colour)
+    if band.expected_order is not None and panel.along != "dofs":
+        slope = [ys[-1] * (x / xs[-1]) ** band.expected_order for x in xs]
         ax.loglog(xs, slope, color="#888888", lw=0.9, ls=":")
     ax.set_ylim(low, high)
     _log_ticks(ax, xs, [_tick(panel.along, x) for x in xs])
     words = []
-    for label, key in (("observed order", "observed_order"), ("expected", "expected_order")):
-        if is_number(estimate.get(key)):
-            words.append(f"{label} {estimate[key]:.2f}")
-    title = f"{model_name(panel.key)}, {QUANTITY_NAME[panel.quantity]}"
-    ax.set_title(f"{title}\n{', '.join(words)}")
+    if band.observed_order is not None:
+        words.append(f"observed order {band.observed_order:.2f}")
+    if band.expected_order is not None:
+        words.append(f"expected {band.expected_order:.2f}")
+    ax.set_title(f"{panel.name}, {panel.quantity}\n{', '.join(words)}")
     ax.set(xlabel=AXIS[panel.along], ylabel="distance from extrapolated")
+
+
+def _shade(ax, low: float, band: BandRecord, colour: str) -> None:
+    """The band, from the bottom of the panel up."""
+    ax.axhspan(low, band.gci, color=colour, alpha=0.12, lw=0)
+    ax.axhline(band.gci, color=colour, lw=0.8, ls="--")
+    ax.annotate(
+        f"band {percent(band.gci, signed=False)}, factor {band.factor}",
+        (0.01, band.gci),
+        xycoords=("axes fraction", "data"),
+        xytext=(0, 2),
+        textcoords="offset points",
+        ha="left",
+        va="bottom",
+        fontsize=8,
+    )
 
 
 def _tick(along: str, x: float) -> str:

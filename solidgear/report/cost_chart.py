@@ -2,25 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 
-from solidgear.report.chart_style import as_svg, colour_of, marker_of, new_figure, percent_decades
-from solidgear.report.words import (
+from solidgear.evidence.pareto import CHARTED
+from solidgear.evidence.record import ModelRecord, Record
+from solidgear.report.chart_style import as_svg, new_figure, percent_decades, tolerance_line
+from solidgear.report.reading import (
     answer_seconds,
     headline,
-    is_number,
     is_resolved,
     model_name,
     reference_of,
 )
 
-#: quantity of a panel -> its band in the record of a model
-BAND = {"C_zz": "compliance", "bending 1": "bending_1"}
-
 
 @as_svg
-def cost_chart(results):
+def cost_chart(record: Record):
     """Seconds against deviation from the reference, log-log, one point a model.
 
     The reference has no deviation; it stands at its own band, hollow, like every deviation that is
@@ -28,12 +25,12 @@ def cost_chart(results):
     """
     from matplotlib.ticker import FuncFormatter, NullFormatter
 
-    spots = {quantity: _spots(results, quantity) for quantity in BAND}
+    spots = {quantity: _spots(record, quantity) for quantity in CHARTED}
     if not any(spots.values()):
         return None
     figure = new_figure(10.4, 3.6)
-    tolerance = (results.get("verdict") or {}).get("tolerance")
-    if not is_number(tolerance) or tolerance <= 0:
+    tolerance = record.verdict.tolerance
+    if tolerance is not None and tolerance <= 0:
         tolerance = None
     for ax, (quantity, points) in zip(figure.subplots(1, 2), spots.items()):
         for point in points:
@@ -48,17 +45,7 @@ def cost_chart(results):
         ax.xaxis.set_minor_formatter(NullFormatter())
         percent_decades(ax)
         if tolerance is not None:
-            ax.axhline(tolerance, color="#aa2222", lw=0.9, ls="--")
-            ax.annotate(
-                f"tolerance {100 * tolerance:.4g} %",
-                (0.99, tolerance),
-                xycoords=("axes fraction", "data"),
-                xytext=(0, 2),
-                textcoords="offset points",
-                ha="right",
-                fontsize=8,
-                color="#aa2222",
-            )
+            tolerance_line(ax, tolerance, lw=0.9, ls="--")
         if points:
             times, errors = [p.seconds for p in points], [p.error for p in points]
             if tolerance is not None:
@@ -72,48 +59,64 @@ def cost_chart(results):
 class _Spot:
     """One model in one panel: a hollow marker is a band and no deviation."""
 
-    key: str
+    name: str
+    model: ModelRecord
     seconds: float
     error: float
     hollow: bool
-    rejected: bool
-    remarks: tuple[str, ...]
+    remark: str
+
+    @property
+    def rejected(self) -> bool:
+        return self.model.valid is False
 
 
-def _spots(results: Mapping, quantity: str) -> list[_Spot]:
+def _spots(record: Record, quantity: str) -> list[_Spot]:
     """The models of which both the time and the distance from the reference are known."""
     out = []
-    for key, model in (results.get("models") or {}).items():
+    for key, model in record.models.items():
         total = answer_seconds(model)
-        if not is_number(total) or total <= 0:
+        if total is None or total <= 0:
             continue
-        rejected = model.get("valid") is False
-        last = ("rejected",) if rejected else ()
-        band = (model.get("band") or {}).get(BAND[quantity])
-        row = headline(results, key, quantity)
-        if key == reference_of(results) and is_number(band) and band > 0:
-            out.append(_Spot(key, total, band, True, rejected, ("own band", *last)))
-        elif row and is_number(row.get("relative")) and row["relative"] != 0:
+        name = model_name(record, key)
+        band = _own_band(model, quantity) if key == reference_of(record) else None
+        row = headline(record, key, quantity)
+        if band:
+            out.append(_Spot(name, model, total, band, True, "own band"))
+        elif row is not None and row.relative:
             hollow = not is_resolved(row)
-            first = ("not resolved",) if hollow else ()
-            out.append(_Spot(key, total, abs(row["relative"]), hollow, rejected, first + last))
+            remark = "not resolved" if hollow else ""
+            out.append(_Spot(name, model, total, abs(row.relative), hollow, remark))
     return out
 
 
+def _own_band(model: ModelRecord, quantity: str) -> float | None:
+    """The band of a quantity, for compliances that of the worst; None where there is none."""
+    if model.band is None:
+        return None
+    band = model.band.each.get(quantity)
+    if quantity.startswith("C_"):
+        band = model.band.compliance
+    return band if band is not None and band > 0 else None
+
+
 def _draw(ax, spot: _Spot) -> None:
-    colour = colour_of(spot.key)
+    colour = spot.model.colour
     ax.plot(
         [spot.seconds],
         [spot.error],
-        "x" if spot.rejected else marker_of(spot.key),
+        "x" if spot.rejected else spot.model.marker,
         ms=8,
         color=colour,
         mfc="white" if spot.hollow else colour,
         mew=2 if spot.rejected or spot.hollow else 1,
     )
-    remark = f"\n({', '.join(spot.remarks)})" if spot.remarks else ""
+    remarks = [spot.remark] if spot.remark else []
+    if spot.rejected:
+        remarks.append("rejected")
+    remark = f"\n({', '.join(remarks)})" if remarks else ""
     ax.annotate(
-        model_name(spot.key) + remark,
+        spot.name + remark,
         (spot.seconds, spot.error),
         xytext=(9, 0),
         textcoords="offset points",

@@ -1,36 +1,34 @@
-"""Tables of the evidence: deviations, causes, attachments, bands, algebraic checks, paired modes."""
+"""Tables of the evidence: deviations, causes, attachments, bands, algebraic checks, modes."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from typing import Any
 
-from solidgear.report.cells import DASH, capital, eng, mm, pct, short_percent, small, whole_number
-from solidgear.report.table import Table
-from solidgear.report.words import (
-    band_percent,
-    engineering,
-    hertz,
-    is_beam,
-    is_number,
-    is_resolved,
-    model_name,
+from solidgear.evidence.record import (
+    BandRecord,
+    DeviationRecord,
+    EvidenceRecord,
+    ModelRecord,
+    PartnerRecord,
+    Record,
 )
+from solidgear.evidence.ties import SCENE, SECTION
+from solidgear.report.cells import DASH, capital, eng, mm, pct, short_percent, small, whole_number
+from solidgear.report.reading import is_beam, is_resolved, model_name, relative_change
+from solidgear.report.table import Table
+from solidgear.report.words import band_percent, engineering, hertz
 
 #: rank of a frequency among the quantities
 FREQUENCY = 2
 #: whether a difference is within the tolerance -> cell
 INSIDE = {True: ("yes", "good"), False: ("no", "bad"), None: DASH}
-#: what an attachment changes -> how it is written
-TIED: dict[str, Callable[..., str]] = {
-    "c_zz": engineering,
-    "k_zz": engineering,
-    "bending_1_hz": hertz,
+#: quantities shown of causes and attachments -> how each is written
+SHOWN: dict[str, Callable[..., str]] = {
+    "C_zz": engineering,
+    "K_zz": engineering,
+    "bending 1": hertz,
 }
-
-
-def _unit(quantity: str) -> str:
-    return "Hz" if not quantity.startswith(("C_", "K_")) else ""
 
 
 def _rank(quantity: str) -> int:
@@ -40,75 +38,78 @@ def _rank(quantity: str) -> int:
     return 1 if quantity.startswith("K_") else FREQUENCY
 
 
-def deviations(r: Mapping) -> list[Table]:
+def _named(record: Record, key: str) -> str:
+    """The name of a model at the beginning of a cell."""
+    return capital(model_name(record, key))
+
+
+def deviations(record: Record) -> list[Table]:
     """One table for each (model, attachment), compliances first."""
-    tolerance = r["verdict"].get("tolerance")
-    groups: dict[tuple, list] = {}
-    for row in r.get("deviations") or []:
-        group = row.get("model"), row.get("reference"), row.get("attachment")
-        groups.setdefault(group, []).append(row)
+    tolerance = record.verdict.tolerance
+    groups: dict[tuple[str, str, str], list[DeviationRecord]] = {}
+    for row in record.deviations:
+        groups.setdefault((row.model, row.reference, row.attachment), []).append(row)
     tables = []
     for (model, reference, attachment), rows in groups.items():
+        one, other = model_name(record, model), model_name(record, reference)
         head = [
             "quantity",
             "unit",
-            model_name(model),
-            model_name(reference),
+            one,
+            other,
             "difference",
             "band",
             "resolved?",
             f"within {short_percent(tolerance) or 'tolerance'}",
         ]
-        ties = _ties(model, attachment)
-        caption = f"{capital(model_name(model))} against {model_name(reference)}, {ties}"
-        table = Table(caption, head)
-        for row in sorted(rows, key=lambda q: _rank(str(q.get("quantity", "")))):
+        ties = _ties(attachment, is_beam(record, model))
+        table = Table(f"{capital(one)} against {other}, {ties}", head)
+        for row in sorted(rows, key=lambda r: _rank(r.quantity)):
             table.rows.append(_deviation(row, tolerance))
         tables.append(table)
     return tables
 
 
-def _ties(model: str, attachment: str) -> str:
+def _ties(attachment: str, beam: bool) -> str:
     """How two models were held when they were compared."""
-    if attachment == "as scene":
+    if attachment == SCENE:
         return "attachments as in the scene"
-    like = ", like for like" if attachment == "section" and is_beam(model) else ""
+    like = ", like for like" if attachment == SECTION and beam else ""
     return f"{attachment} ties on both sides{like}"
 
 
-def _deviation(row: Mapping, tolerance: Any) -> list:
+def _deviation(row: DeviationRecord, tolerance: float | None) -> list:
     """The cells of one quantity."""
-    quantity = str(row.get("quantity", ""))
-    figure = hertz if _rank(quantity) == FREQUENCY else engineering
+    is_frequency = _rank(row.quantity) == FREQUENCY
+    figure = hertz if is_frequency else engineering
     resolved = ("not resolved", "word text unresolved")
     if is_resolved(row):
-        resolved = (str(row.get("verdict") or "resolved"), "word text")
+        resolved = (row.verdict or "resolved", "word text")
     inside = None
-    if is_number(row.get("relative")) and is_number(tolerance):
-        inside = abs(row["relative"]) <= tolerance
+    if row.relative is not None and tolerance is not None:
+        inside = abs(row.relative) <= tolerance
     return [
-        quantity,
-        (str(row.get("unit") or _unit(quantity)), "word text"),
-        figure(row.get("value"), nothing=DASH),
-        figure(row.get("reference_value"), nothing=DASH),
-        pct(row.get("relative")),
-        pct(row.get("band"), signed=False),
+        row.quantity,
+        (row.unit or ("Hz" if is_frequency else ""), "word text"),
+        figure(row.value, nothing=DASH),
+        figure(row.reference_value, nothing=DASH),
+        pct(row.relative),
+        pct(row.band, signed=False),
         resolved,
         INSIDE[inside],
     ]
 
 
-def causes(r: Mapping) -> Table:
+def causes(record: Record) -> Table:
     """What each assumption alone changes."""
     rows = []
-    for c in r.get("causes") or []:
-        model = c.get("model")
+    for cause in record.causes:
         rows.append(
             [
-                str(c.get("cause", "")),
-                (str(c.get("change", "")), "text"),
-                (model if model == "beam" else model_name(model), "text"),
-                *(pct(c.get(q)) for q in ("c_zz", "k_zz", "bending_1")),
+                cause.cause,
+                (cause.change, "text"),
+                (model_name(record, cause.model), "text"),
+                *(pct(cause.quantities.get(name)) for name in SHOWN),
             ]
         )
     return Table(
@@ -118,20 +119,17 @@ def causes(r: Mapping) -> Table:
     )
 
 
-def attachments(r: Mapping) -> Table:
+def attachments(record: Record) -> Table:
     """What the way of holding the seats changes."""
     rows = []
-    for key, ties in (r.get("attachments") or {}).items():
-        average = (ties or {}).get("average") or {}
-        for tie, v in (ties or {}).items():
-            if not v:
-                continue
-            cells: list[Any] = [f"{capital(model_name(key))}, {tie}"]
-            for name, figure in TIED.items():
-                value, base = v.get(name), average.get(name)
-                comparable = is_number(value) and is_number(base) and base
+    for key, ties in record.attachments.items():
+        average = ties["average"].quantities if "average" in ties else {}
+        for tie, variant in ties.items():
+            cells: list[Any] = [f"{_named(record, key)}, {tie}"]
+            for name, figure in SHOWN.items():
+                value = variant.quantities.get(name)
                 cells.append(figure(value, nothing=DASH))
-                cells.append(pct(value / base - 1) if comparable else DASH)
+                cells.append(pct(relative_change(value, average.get(name))))
             rows.append(cells)
     return Table(
         "Three ways to hold the same surfaces",
@@ -148,19 +146,21 @@ def attachments(r: Mapping) -> Table:
     )
 
 
-def levels(r: Mapping) -> Table:
+def levels(record: Record) -> Table:
     """The meshes that the bands come from."""
     rows = []
-    for key, model in r["models"].items():
-        for n, v in enumerate((model.get("convergence") or {}).get("levels") or [], start=1):
+    for key, model in record.models.items():
+        meshes = model.convergence.levels if model.convergence else []
+        for n, level in enumerate(meshes, start=1):
+            bending = level.quantities.get("bending 1")
             rows.append(
                 [
-                    f"{capital(model_name(key))}, {n}",
-                    whole_number(v.get("dofs")),
-                    mm(v.get("h")),
-                    str(v.get("order") or DASH),
-                    eng(v.get("c_zz"), 7),
-                    f"{v['bending_1_hz']:.3f}" if is_number(v.get("bending_1_hz")) else DASH,
+                    f"{_named(record, key)}, {n}",
+                    whole_number(level.dofs),
+                    mm(level.h),
+                    str(level.order or DASH),
+                    eng(level.quantities.get("C_zz"), 7),
+                    DASH if bending is None else f"{bending:.3f}",
                 ]
             )
     return Table(
@@ -177,29 +177,14 @@ def levels(r: Mapping) -> Table:
     )
 
 
-def orders(r: Mapping) -> Table:
+def orders(record: Record) -> Table:
     """Changes from mesh to mesh, and the bands made of them."""
     rows = []
-    for key, model in r["models"].items():
-        for name, e in (model.get("convergence") or {}).items():
-            if name == "levels" or not e:
-                continue
-            stiff = name.startswith(("c_", "k_"))
-            label = capital(name) if stiff else f"{name.replace('_', ' ')}, Hz"
-            observed, expected = e.get("observed_order"), e.get("expected_order")
-            both = is_number(observed) and is_number(expected)
-            rows.append(
-                [
-                    f"{capital(model_name(key))}: {label}",
-                    (str(e.get("method") or DASH), "word text"),
-                    pct(e.get("change"), signed=False),
-                    small(e.get("reduction")),
-                    f"{observed:.2f} of {expected:.2f}" if both else DASH,
-                    str(e.get("factor") or DASH),
-                    pct(e.get("solver"), signed=False),
-                    band_percent(e.get("gci"), DASH),
-                ]
-            )
+    for key, model in record.models.items():
+        bands = model.convergence.quantities if model.convergence else {}
+        for name, band in bands.items():
+            label = f"{name}, Hz" if _rank(name) == FREQUENCY else name
+            rows.append([f"{_named(record, key)}: {label}", *_band(band)])
     return Table(
         "Changes and bands",
         [
@@ -213,65 +198,97 @@ def orders(r: Mapping) -> Table:
             "band",
         ],
         rows,
-        "Layers: every mesh adds layers towards corners as well as order or cells, so errors shrink by a nearly fixed share; the factor is measured on random shafts. "
-        "A coupling's numbers are shares of the geometric mean of its two diagonal entries.",
+        "Layers: every mesh adds layers towards corners as well as order or cells, so errors "
+        "shrink by a nearly fixed share; the factor is measured on random shafts. A coupling's "
+        "numbers are shares of the geometric mean of its two diagonal entries.",
     )
 
 
-def algebra(r: Mapping) -> Table:
+def _band(band: BandRecord) -> list:
+    """The cells of the band of one quantity."""
+    orders = DASH
+    if band.observed_order is not None and band.expected_order is not None:
+        orders = f"{band.observed_order:.2f} of {band.expected_order:.2f}"
+    return [
+        (band.method or DASH, "word text"),
+        pct(band.change, signed=False),
+        small(band.reduction),
+        orders,
+        str(band.factor or DASH),
+        pct(band.solver, signed=False),
+        band_percent(band.gci, DASH),
+    ]
+
+
+def algebra(record: Record) -> Table:
     """Residuals and counts that need no second mesh."""
-    names = {
-        "asymmetry": "asymmetry of the flexibility",
-        "rigid_residual": "rigid motion, residual",
-        "modal_residual": "modes, residual",
-        "orthogonality": "modes, M-orthogonality",
-        "rigid_modes": "rigid modes found",
-    }
     rows = []
-    for key, model in r["models"].items():
-        evidence = model.get("evidence")
-        if evidence:
-            figures = [small(evidence.get(name)) for name in names]
-            rows.append([capital(model_name(key)), *figures, *_counted(evidence)])
+    for key, model in record.models.items():
+        if model.evidence != EvidenceRecord():
+            rows.append([_named(record, key), *_checks(model)])
+    head = [
+        "model",
+        "asymmetry of the flexibility",
+        "rigid motion, residual",
+        "modes, residual",
+        "modes, M-orthogonality",
+        "rigid modes found",
+        "eigensolver",
+        "no mode missed below, Hz",
+    ]
     return Table(
         "Algebraic checks of this run (relative; the smaller the better, but for the counts)",
-        ["model", *names.values(), "eigensolver", "no mode missed below, Hz"],
+        head,
         rows,
-        "No mode missed: as many eigenvalues lie below as were found, by the inertia of a second factor (Sylvester).",
+        "No mode missed: as many eigenvalues lie below as were found, by the inertia of a second "
+        "factor (Sylvester).",
     )
 
 
-def _counted(e: Mapping) -> list:
-    """Eigensolver, and the frequency up to which the inertia of a factor confirms that every mode
-    was found.
-    """
-    parts = e.get("mode_count") or []
-    sure = parts and all(p.get("checked") for p in parts)
-    below = f"{min(p['below_hz'] for p in parts):.0f}" if sure else "not counted"
-    return [(str(e.get("eigensolver") or DASH), "text"), below]
+def _checks(model: ModelRecord) -> list:
+    """The cells of the algebraic checks of one model."""
+    evidence = model.evidence
+    return [
+        small(evidence.asymmetry),
+        small(evidence.rigid_residual),
+        small(evidence.modal_residual),
+        small(evidence.orthogonality),
+        small(evidence.rigid_modes),
+        (evidence.eigensolver or DASH, "text"),
+        _counted_below(evidence),
+    ]
 
 
-def pairs(r: Mapping) -> list[Table]:
+def _counted_below(evidence: EvidenceRecord) -> str:
+    """The frequency up to which the inertia of a factor confirms that every mode was found."""
+    parts = evidence.mode_count
+    if not parts or not all(part.get("checked") for part in parts):
+        return "not counted"
+    return f"{min(part['below_hz'] for part in parts):.0f}"
+
+
+def pairs(record: Record) -> list[Table]:
     """One table for each model, its modes beside those of the reference."""
-    mac = r.get("mac") or {}
-    reference = model_name(mac.get("reference"))
+    if record.mac is None:
+        return []
+    reference = model_name(record, record.mac.reference)
+    head = ["mode", "partner", "MAC", "frequency, Hz", f"{reference}, Hz", "difference"]
     tables = []
-    for key, m in (mac.get("models") or {}).items():
-        rows = [_pair(p) for p in m.get("pairs") or []]
-        caption = f"{capital(model_name(key))}: modes and their partners in the {reference}"
-        head = ["mode", "partner", "MAC", "frequency, Hz", f"{reference}, Hz", "difference"]
+    for key, table in record.mac.models.items():
+        caption = f"{_named(record, key)}: modes and their partners in the {reference}"
+        rows = [_pair(pair) for pair in table.pairs]
         if rows:
             tables.append(Table(caption, head, rows))
     return tables
 
 
-def _pair(p: Mapping) -> list:
+def _pair(pair: PartnerRecord) -> list:
     """The cells of one mode and its partner."""
     return [
-        str(p.get("mode", "")),
-        (str(p.get("partner") or "none"), "text"),
-        f"{p['mac']:.4f}" if is_number(p.get("mac")) else DASH,
-        hertz(p.get("frequency_hz"), DASH),
-        hertz(p.get("reference_hz"), DASH),
-        pct(p.get("relative")),
+        pair.mode,
+        (pair.partner or "none", "text"),
+        DASH if pair.mac is None else f"{pair.mac:.4f}",
+        hertz(pair.frequency_hz, DASH),
+        hertz(pair.reference_hz, DASH),
+        pct(pair.relative),
     ]

@@ -63,8 +63,8 @@ def write_vtu(
     import meshio
 
     path = Path(path)
-    told: Any = getattr(modes, "modes", modes)
-    shapes = dict(_shapes(islice(told, most)))
+    chosen: Any = getattr(modes, "modes", modes)
+    shapes = dict(_shapes(islice(chosen, most)))
     volume = body.geometry.volume() if body.geometry is not None else None
     if volume is not None:
         points, cells, data = _volume(body, volume, shapes)
@@ -84,7 +84,7 @@ def write_vtu(
 
 
 def _shapes(modes: Iterable):
-    """Name and vectors of every shape; those of a pair are told apart by a letter."""
+    """Name and vectors of every shape; a letter distinguishes those of a pair."""
     for mode in modes:
         for k, vectors in enumerate(mode.vectors):
             letter = chr(ord("a") + k) if len(mode.vectors) > 1 else ""

@@ -26,9 +26,11 @@ except ImportError:  # Windows
 LOCK = ".solidgear.lock"
 #: what is ever listed, and so ever removed: a damaged list can name nothing else
 OWN = re.compile(r"(report\.html|mode_\w+\.png|modes_\w+\.vtu)")
-#: what a process that was killed can have left half written, see :func:`solidgear.machine.whole_file.whole`
+#: what a process that was killed can have left half written, see
+#: :func:`solidgear.machine.whole_file.whole`
 HALF = re.compile(
-    rf"\.({OWN.pattern}|results\.json|rows\.csv|machine\.json|speed_accuracy\.png)\.(?P<process>\d+)\.part"
+    rf"\.({OWN.pattern}|results\.json|rows\.csv|machine\.json|speed_accuracy\.png)"
+    r"\.(?P<process>\d+)\.part"
 )
 # Folders this process holds; it may enter them again.
 _held: set[Path] = set()
@@ -49,10 +51,14 @@ def prepare(out: str | os.PathLike) -> Path:
         probe.touch()
         probe.unlink()
     except OSError as error:
-        raise SolidgearError(
-            f"--out {out}: cannot write there ({error.strerror or error}); name a folder you may write"
-        ) from None
+        raise _unwritable(out, error) from None
     return folder
+
+
+def _unwritable(out: str | os.PathLike, error: OSError) -> SolidgearError:
+    return SolidgearError(
+        f"--out {out}: cannot write there ({error.strerror or error}); name a folder you may write"
+    )
 
 
 @contextmanager
@@ -88,9 +94,7 @@ def _locked(folder: Path, out) -> IO | None:
         try:
             file = (folder / LOCK).open("a+")
         except OSError as error:
-            raise SolidgearError(
-                f"--out {out}: cannot write there ({error.strerror or error}); name a folder you may write"
-            ) from None
+            raise _unwritable(out, error) from None
         try:
             fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except BlockingIOError:

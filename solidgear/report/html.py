@@ -1,7 +1,7 @@
 """One self-contained HTML page about one run.
 
-`write_report` turns the results of a run (the dict that is also ``results.json``) into tables and
-charts and fills ``report.html``, the template beside this file. The page needs no network, no
+`write_report` turns the record of a run into tables and charts and fills ``report.html``, the
+template beside this file. The page needs no network, no
 script and no other file.
 """
 
@@ -15,7 +15,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from solidgear.fidelity.ladder import LADDER
+from solidgear.evidence.record import Record, VerdictRecord
 from solidgear.machine.whole_file import whole
 from solidgear.report import (
     charts,
@@ -25,72 +25,82 @@ from solidgear.report import (
     result_tables,
     run_tables,
 )
+from solidgear.report.border import as_record
 from solidgear.report.cells import DASH, capital, short_percent
 from solidgear.report.lumped import lumped_tables
-from solidgear.report.words import model_name, plain, reference_of, seconds, validity
+from solidgear.report.reading import model_name, reference_of, validity
+from solidgear.report.words import seconds
 
 log = logging.getLogger(__name__)
 
 
+#: a picture: PNG, JPEG or SVG, in bytes or as a path
+Picture = bytes | str | os.PathLike
+
+
 def write_report(
-    results: Mapping,
+    found: Record | Mapping[str, Any],
     folder: str | os.PathLike,
-    images: Mapping[str, bytes | str | os.PathLike] | None = None,
+    images: Mapping[str, Picture] | None = None,
 ) -> Path:
     """Write ``report.html`` into `folder`.
 
     Parameters
     ----------
-    results : mapping
-        What a run found, as in ``results.json``; parts that are missing are said to be missing.
+    found : Record or mapping
+        What a run found; parts that are missing are said to be missing.
     folder : path
         Made if it is not there.
     images : mapping, optional
         Renders by model key: PNG, JPEG or SVG, as bytes or as a path. Without it the files that
-        ``results["images"]`` names are taken from `folder`.
+        the record names are taken from `folder`.
 
     Returns
     -------
     Path
         Of the page. It appears whole or not at all: an earlier one is replaced in one step.
+
+    Raises
+    ------
+    SolidgearError
+        For plain data that is no record of this version.
     """
+    record = as_record(found)
     folder = Path(folder)
     folder.mkdir(parents=True, exist_ok=True)
     target = folder / "report.html"
     with whole(target) as partial:
-        partial.write_text(render_page(results, folder, images), encoding="utf-8")
+        partial.write_text(render_page(record, folder, images), encoding="utf-8")
     return target
 
 
 def render_page(
-    results: Mapping,
+    found: Record | Mapping[str, Any],
     folder: str | os.PathLike | None = None,
-    images: Mapping[str, bytes | str | os.PathLike] | None = None,
+    images: Mapping[str, Picture] | None = None,
 ) -> str:
-    """The page as text; the parameters are those of `write_report`."""
+    """The page as text; parameters and errors are those of `write_report`."""
     from markupsafe import Markup
 
-    r = plain(results)
-    for part in ("models", "scene", "verdict"):
-        r[part] = r.get(part) or {}
-    warnings = [str(w) for w in r.get("warnings") or []]
-    drawn = _drawn(r, warnings)
+    record = as_record(found)
+    warnings = list(record.warnings)
+    drawn = _drawn(record, warnings)
     return _template().render(
-        **_opening(r),
+        **_opening(record),
         warnings=warnings,
         charts={name: Markup(svg.decode()) if svg else None for name, svg in drawn.items()},
-        renders=_renders(r, folder, images),
-        race=race_tables.section(folder, r["scene"]),
-        **_tables(r),
+        renders=_renders(record, folder, images),
+        race=race_tables.section(folder, record.scene),
+        **_tables(record),
     )
 
 
-def _drawn(r: Mapping, warnings: list[str]) -> dict[str, bytes | None]:
+def _drawn(record: Record, warnings: list[str]) -> dict[str, bytes | None]:
     """The charts by name; what could not be drawn is added to the warnings."""
     drawn = {}
     for name, chart in charts.CHARTS.items():
         try:
-            drawn[name] = chart(r)
+            drawn[name] = chart(record)
         except Exception as error:  # a picture must never cost the reader the numbers
             log.warning("chart %s: %s", name, error, exc_info=True)
             warnings.append(f"the chart of {name} could not be drawn: {error}")
@@ -98,57 +108,57 @@ def _drawn(r: Mapping, warnings: list[str]) -> dict[str, bytes | None]:
     return drawn
 
 
-def _opening(r: Mapping) -> dict[str, Any]:
+def _opening(record: Record) -> dict[str, Any]:
     """What the head of the page says: the scene, the verdict, and which models are out."""
-    scene, verdict, models = r["scene"], r["verdict"], r["models"]
+    scene, verdict = record.scene, record.verdict
     return {
         "title": scene.get("title") or scene.get("name") or "shaft",
         "scene": scene,
-        "verdict": verdict,
-        "port": r.get("port") or scene.get("port") or {},
-        "complete": r.get("complete", True),
-        "missing": [model_name(k) for k in LADDER.bodies if k not in models],
-        "trusted": _name_or_none(verdict.get("trust")),
-        "cheapest": _name_or_none(verdict.get("cheapest")),
-        "tolerance": short_percent(verdict.get("tolerance")),
-        "reference": _name_or_none(reference_of(r)),
-        "distrusted": _reasons(models, "no", "not valid for this scene"),
-        "undecided": _reasons(models, "open", "it cannot be told"),
+        "verdict": None if verdict == VerdictRecord() else verdict,
+        "free": record.port.free if record.port else [],
+        "complete": record.complete,
+        "missing": record.missing,
+        "trusted": _name_or_none(record, verdict.trust),
+        "cheapest": _name_or_none(record, verdict.cheapest),
+        "tolerance": short_percent(verdict.tolerance),
+        "reference": _name_or_none(record, reference_of(record)),
+        "distrusted": _reasons(record, "no", "not valid for this scene"),
+        "undecided": _reasons(record, "open", "not judged"),
     }
 
 
-def _name_or_none(key: str | None) -> str | None:
-    return model_name(key) if key else None
+def _name_or_none(record: Record, key: str | None) -> str | None:
+    return model_name(record, key) if key else None
 
 
-def _reasons(models: Mapping, worth: str, default: str) -> list[tuple[str, str]]:
+def _reasons(record: Record, worth: str, default: str) -> list[tuple[str, str]]:
     """Names of the models of one worth (see `validity`), each with the reason."""
-    chosen = {k: m for k, m in models.items() if validity(m) == worth}
-    return [(model_name(k), m.get("why_not") or default) for k, m in chosen.items()]
+    chosen = {key: model for key, model in record.models.items() if validity(model) == worth}
+    return [(model_name(record, key), m.why_not or default) for key, m in chosen.items()]
 
 
-def _tables(r: Mapping) -> dict[str, Any]:
+def _tables(record: Record) -> dict[str, Any]:
     """All tables of the page, by their names in the template."""
     return {
-        "scene_facts": input_tables.scene_facts(r),
-        "segments": input_tables.segments(r["scene"]),
-        "bearings": input_tables.bearings(r["scene"]),
-        "summary": result_tables.summary(r),
-        "matrices": result_tables.matrices(r),
-        "frequencies": result_tables.frequencies(r),
-        "deviations": evidence_tables.deviations(r),
-        "causes": evidence_tables.causes(r),
-        "lumped": lumped_tables(r),
-        "attachments": evidence_tables.attachments(r),
-        "levels": evidence_tables.levels(r),
-        "orders": evidence_tables.orders(r),
-        "algebra": evidence_tables.algebra(r),
-        "pairs": evidence_tables.pairs(r),
-        "cost": run_tables.cost(r),
-        "provenance": run_tables.provenance(r),
-        "environment": run_tables.pairs_of(r.get("environment"), "Environment of the run"),
-        "mesh": run_tables.mesh(r),
-        "total": seconds(r.get("seconds_total"), DASH),
+        "scene_facts": input_tables.scene_facts(record),
+        "segments": input_tables.segments(record.scene),
+        "bearings": input_tables.bearings(record.scene),
+        "summary": result_tables.summary(record),
+        "matrices": result_tables.matrices(record),
+        "frequencies": result_tables.frequencies(record),
+        "deviations": evidence_tables.deviations(record),
+        "causes": evidence_tables.causes(record),
+        "lumped": lumped_tables(record),
+        "attachments": evidence_tables.attachments(record),
+        "levels": evidence_tables.levels(record),
+        "orders": evidence_tables.orders(record),
+        "algebra": evidence_tables.algebra(record),
+        "pairs": evidence_tables.pairs(record),
+        "cost": run_tables.cost(record),
+        "provenance": run_tables.provenance(record),
+        "environment": run_tables.pairs_of(record.environment, "Environment of the run"),
+        "mesh": run_tables.mesh(record),
+        "total": seconds(record.seconds_total, DASH),
     }
 
 
@@ -166,21 +176,25 @@ def _template():
     ).get_template("report.html")
 
 
-def _renders(r: Mapping, folder: Any, images: Mapping | None) -> list[tuple[str, str | None]]:
+def _renders(
+    record: Record, folder: str | os.PathLike | None, images: Mapping[str, Picture] | None
+) -> list[tuple[str, str | None]]:
     """(caption, data URI or None when the picture could not be had)."""
     if images is None:
-        images = _named_images(r, folder)
-    return [(capital(model_name(key)), _data_uri(key, image)) for key, image in images.items()]
+        images = _named_images(record, folder)
+    renders = []
+    for key, image in images.items():
+        renders.append((capital(model_name(record, key)), _data_uri(key, image)))
+    return renders
 
 
-def _named_images(r: Mapping, folder: Any) -> dict[str, Path]:
-    """The files that a run names, only those inside the folder of the report: a results file must
-    not pull in others.
+def _named_images(record: Record, folder: str | os.PathLike | None) -> dict[str, Picture]:
+    """The files that a record names, only those inside the folder of the report: results must not
+    pull in others.
     """
     if folder is None:
         return {}
-    named = r.get("images") or {}
-    return {key: Path(folder) / Path(str(name)).name for key, name in named.items()}
+    return {key: Path(folder) / Path(name).name for key, name in record.images.items()}
 
 
 def _data_uri(key: str, image: Any) -> str | None:

@@ -3,30 +3,24 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from typing import Any
 
+from solidgear.evidence.record import Record
 from solidgear.report.cells import DASH, eng, mm, short_percent
 from solidgear.report.table import Table
 from solidgear.report.words import is_number
 
 
-def scene_facts(r: Mapping) -> Table:
+def scene_facts(record: Record) -> Table:
     """The scene in a few lines."""
-    scene = r["scene"]
-    port = scene.get("port") or r.get("port") or {}
+    scene = record.scene
     material, housing = scene.get("material") or {}, scene.get("housing_axial")
-    free = (r.get("port") or {}).get("free") or []
+    free = record.port.free if record.port else []
     rows = [
         ["source", scene.get("source") or "not given"],
         ["length", f"{mm(scene.get('length'))} mm"],
-        [
-            "material",
-            f"E = {eng(material.get('E'), 4)} Pa, nu = {material.get('nu', DASH)}, density = {material.get('density', DASH)} kg/m³",
-        ],
-        [
-            "lumped point",
-            f"{port.get('name', '')} on the axis at y = {mm(port.get('y'))} mm, carried by the outer surface from {mm(port.get('lo'))} to {mm(port.get('hi'))} mm, "
-            f"attachment {port.get('attachment', DASH)}",
-        ],
+        ["material", _material(material)],
+        ["lumped point", _lumped_point(record)],
         ["free motions there", ", ".join(free) or "none"],
         [
             "housing spring along y",
@@ -35,6 +29,24 @@ def scene_facts(r: Mapping) -> Table:
         ["asked for", _asked(scene.get("ask") or {})],
     ]
     return Table("Scene", ["item", "value"], rows if scene else [], css="facts")
+
+
+def _material(material: Mapping[str, Any]) -> str:
+    modulus = eng(material.get("E"), 4)
+    nu, density = material.get("nu", DASH), material.get("density", DASH)
+    return f"E = {modulus} Pa, nu = {nu}, density = {density} kg/m³"
+
+
+def _lumped_point(record: Record) -> str:
+    """Where the lumped point is and what carries it, by the scene, else by the solution."""
+    port = record.scene.get("port")
+    if not port:
+        port = record.port.model_dump(exclude_defaults=True) if record.port else {}
+    return (
+        f"{port.get('name', '')} on the axis at y = {mm(port.get('y'))} mm, "
+        f"carried by the outer surface from {mm(port.get('lo'))} to {mm(port.get('hi'))} mm, "
+        f"attachment {port.get('attachment', DASH)}"
+    )
 
 
 def _asked(ask: Mapping) -> str:
@@ -97,8 +109,8 @@ def bearings(scene: Mapping) -> Table:
     """The bearings with the stiffness they are solved with."""
     rows = []
     for b in scene.get("bearings") or []:
-        K = b.get("stiffness") or [[None] * 6] * 6
-        shown = [K[i][j] for i, j in ((0, 0), (1, 1), (2, 2), (2, 3), (3, 3), (5, 5))]
+        stiffness = b.get("stiffness") or [[None] * 6] * 6
+        shown = [stiffness[i][j] for i, j in ((0, 0), (1, 1), (2, 2), (2, 3), (3, 3), (5, 5))]
         status = b.get("status") or "not stated"
         rows.append(
             [
@@ -129,5 +141,8 @@ def bearings(scene: Mapping) -> Table:
         "Bearings, series springs included",
         head,
         rows,
-        note="Status says where the stiffness comes from: published, measured, identified (fitted), or assumed.",
+        note=(
+            "Status says where the stiffness comes from: published, measured, identified (fitted), "
+            "or assumed."
+        ),
     )

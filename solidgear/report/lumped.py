@@ -2,30 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-
+from solidgear.evidence.record import LumpedRecord, LumpedVariant, Record
+from solidgear.report.cells import DASH
+from solidgear.report.reading import entry, model_name
 from solidgear.report.table import Table
-from solidgear.report.words import (
-    engineering,
-    hertz,
-    is_number,
-    model_name,
-    percent,
-)
-
-DASH = "\u2013"
+from solidgear.report.words import engineering, hertz, percent
 
 
-def lumped_tables(results: Mapping) -> list[Table]:
+def lumped_tables(record: Record) -> list[Table]:
     """One table of first bending side by side, one of the synthesis in detail per body."""
-    lumped = {k: v for k, v in (results.get("lumped") or {}).items() if v.get("variants")}
+    lumped = {key: found for key, found in record.lumped.items() if found.variants}
     if not lumped:
         return []
-    methods = list(next(iter(lumped.values()))["variants"])
+    methods = list(next(iter(lumped.values())).variants)
     rows = []
-    for key, entry in lumped.items():
-        cells = [_first(entry["variants"].get(m) or {}) for m in methods]
-        rows.append([f"from the {model_name(key)}", hertz(entry.get("first_bending_hz")), *cells])
+    for key, found in lumped.items():
+        cells = [_first(found.variants.get(method)) for method in methods]
+        rows.append([f"from the {model_name(record, key)}", hertz(found.frequency_hz), *cells])
     out = [
         Table(
             "First bending, Hz: each body and the lumped models made from it",
@@ -33,40 +26,41 @@ def lumped_tables(results: Mapping) -> list[Table]:
             rows,
         )
     ]
-    for key, entry in lumped.items():
-        out.append(_detail(model_name(key), entry))
+    for key, found in lumped.items():
+        out.append(_detail(model_name(record, key), found))
     return out
 
 
-def _first(variant: Mapping) -> str:
-    if not variant.get("feasible"):
+def _first(variant: LumpedVariant | None) -> str:
+    """First bending of a variant, and its error."""
+    if variant is None or not variant.feasible:
         return "no solution"
-    text = hertz(variant.get("frequency_hz"))
-    error = variant.get("frequency_error")
-    return f"{text} ({percent(error)})" if is_number(error) else text
+    text = hertz(variant.frequency_hz)
+    if variant.frequency_error is None:
+        return text
+    return f"{text} ({percent(variant.frequency_error)})"
 
 
-def _detail(name: str, entry: Mapping) -> Table:
+def _detail(name: str, found: LumpedRecord) -> Table:
+    """The synthesis from one body, a method a row."""
     rows = []
-    for method, v in entry["variants"].items():
-        mass = v.get("mass")
-        values = [
-            engineering(mass[i][j], nothing=DASH) if mass else DASH
-            for i, j in ((0, 0), (1, 1), (0, 1))
-        ]
-        share = [
-            percent(v[k]) if is_number(v.get(k)) else DASH for k in ("slope_error", "kinetic_error")
-        ]
+    for method, variant in found.variants.items():
+        mass = [entry(variant.mass, i, j) for i, j in ((0, 0), (1, 1), (0, 1))]
         rows.append(
             [
                 method,
-                *values,
-                *share,
-                hertz(v.get("valid_to_hz")) if is_number(v.get("valid_to_hz")) else DASH,
-                (str(v.get("verdict", "")), "text"),
+                *(engineering(value, nothing=DASH) for value in mass),
+                percent(variant.slope_error, nothing=DASH),
+                percent(variant.kinetic_error, nothing=DASH),
+                hertz(variant.valid_to_hz, DASH),
+                (variant.verdict, "text"),
             ]
         )
-    note = f"Share of the mode's strain energy that a static shape with the same lumped-point motion holds: {entry['static_share']:.4f}; equations 52 and 53 need exactly 1."
+    share = DASH if found.static_share is None else f"{found.static_share:.4f}"
+    note = (
+        "Share of the mode's strain energy that a static shape with the same lumped-point motion "
+        f"holds: {share}; equations 52 and 53 need exactly 1."
+    )
     head = [
         "mass matrix",
         "M, kg",

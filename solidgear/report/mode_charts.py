@@ -4,30 +4,28 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from solidgear.report.chart_style import as_svg, colour_of, marker_of, new_figure
-from solidgear.report.words import (
-    is_number,
-    model_name,
-    reference_of,
-)
+from solidgear.evidence.record import MacTable, ModelRecord, ModeRecord, Record
+from solidgear.report.chart_style import as_svg, new_figure
+from solidgear.report.reading import model_name, model_of, reference_of, relative_change
 
 #: families of modes along the axis
 FAMILIES = {"bending": 0, "axial": 1, "torsion": 2}
 
 
 @as_svg
-def mode_chart(results):
+def mode_chart(record: Record):
     """Natural frequencies of all models side by side, and below them how far each is from the
     reference.
     """
-    models = [k for k, m in (results.get("models") or {}).items() if m.get("modes")]
-    modes = {key: _elastic_by_name(results["models"][key]) for key in models}
-    reference = reference_of(results)
+    models = [key for key, model in record.models.items() if model.modes]
+    modes = {key: _elastic_by_name(record.models[key]) for key in models}
+    reference = reference_of(record)
     known = _known(modes, reference)
     names = sorted(known, key=lambda name: _place(known[name]))
     if not names:
         return None
-    relative = reference in modes and len(models) > 1
+    base = modes.get(reference or "")
+    relative = base is not None and len(models) > 1
     if relative:
         figure = new_figure(10.4, 5.0)
         axes = list(figure.subplots(2, 1, sharex=True, height_ratios=(3, 2)))
@@ -38,16 +36,18 @@ def mode_chart(results):
     for k, key in enumerate(models):
         shift = (k - (len(models) - 1) / 2) * step
         spots = [(i + shift, name) for i, name in enumerate(names) if name in modes[key]]
-        frequencies = [modes[key][name]["frequency_hz"] for _, name in spots]
-        _stems(axes[0], key, [x for x, _ in spots], frequencies, label=model_name(key))
-        if relative and key != reference:
-            _differences(axes[1], key, spots, modes[key], modes[reference])
+        model = record.models[key]
+        places = [x for x, _ in spots]
+        frequencies = [modes[key][name].frequency_hz for _, name in spots]
+        _stems(axes[0], model, places, frequencies, label=model_name(record, key))
+        if relative and base is not None and key != reference:
+            _differences(axes[1], model, spots, modes[key], base)
     axes[0].set(ylabel="frequency, Hz", ylim=(0, None))
     axes[0].legend(ncols=4, loc="upper left", bbox_to_anchor=(0, 1.14), borderaxespad=0)
     if relative and reference is not None:
-        _as_differences(axes[1], reference)
+        _as_differences(axes[1], record, reference)
     for ax in axes:
-        _part_families(ax, [_family(known[name]) for name in names])
+        _part_families(ax, [known[name].family for name in names])
     pairs = {name for key in models for name in _pairs(modes[key])}
     axes[-1].set_xticks(
         range(len(names)),
@@ -59,50 +59,54 @@ def mode_chart(results):
     return figure
 
 
-def _elastic_by_name(model: Mapping) -> dict[str, Mapping]:
-    frequencies = {m["name"]: m for m in model["modes"] if is_number(m.get("frequency_hz"))}
-    return {name: m for name, m in frequencies.items() if m["frequency_hz"] > 0}
+def _elastic_by_name(model: ModelRecord) -> dict[str, ModeRecord]:
+    return {mode.name: mode for mode in model.modes if (mode.frequency_hz or 0.0) > 0}
 
 
-def _known(modes: Mapping[str, dict], reference: str | None) -> dict[str, Mapping]:
+def _known(
+    modes: Mapping[str, dict[str, ModeRecord]], reference: str | None
+) -> dict[str, ModeRecord]:
     """Every mode by its name, as the reference has it, else the last model that has it."""
-    known: dict[str, Mapping] = {}
+    known: dict[str, ModeRecord] = {}
     for found in modes.values():
         known |= found
     return known if reference is None else known | modes.get(reference, {})
 
 
-def _family(mode: Mapping) -> str:
-    return mode.get("family", "")
-
-
-def _place(mode: Mapping) -> tuple:
+def _place(mode: ModeRecord) -> tuple:
     """Order along the axis: by family, the usual ones first, then by frequency."""
-    family = _family(mode)
-    return FAMILIES.get(family, len(FAMILIES)), family, mode["frequency_hz"]
+    return FAMILIES.get(mode.family, len(FAMILIES)), mode.family, mode.frequency_hz
 
 
-def _pairs(modes: Mapping[str, Mapping]) -> list[str]:
-    return [name for name, mode in modes.items() if (mode.get("multiplicity") or 1) > 1]
+def _pairs(modes: Mapping[str, ModeRecord]) -> list[str]:
+    return [name for name, mode in modes.items() if mode.multiplicity > 1]
 
 
-def _stems(ax, key: str, xs: list, ys: list, **label) -> None:
-    ax.vlines(xs, 0, ys, color=colour_of(key), lw=1.4)
-    ax.plot(xs, ys, marker_of(key), color=colour_of(key), ms=5, lw=0, **label)
+def _stems(ax, model: ModelRecord, xs: list, ys: list, **label) -> None:
+    ax.vlines(xs, 0, ys, color=model.colour, lw=1.4)
+    ax.plot(xs, ys, model.marker, color=model.colour, ms=5, lw=0, **label)
 
 
-def _differences(ax, key: str, spots: list, own: Mapping, reference: Mapping) -> None:
+def _differences(
+    ax,
+    model: ModelRecord,
+    spots: list[tuple[float, str]],
+    own: Mapping[str, ModeRecord],
+    reference: Mapping[str, ModeRecord],
+) -> None:
     """Stems of the differences of one model from the reference, where both have a mode."""
     shared = [(x, name) for x, name in spots if name in reference]
-    apart = [own[name]["frequency_hz"] / reference[name]["frequency_hz"] - 1 for _, name in shared]
-    _stems(ax, key, [x for x, _ in shared], apart)
+    apart = []
+    for _, name in shared:
+        apart.append(relative_change(own[name].frequency_hz, reference[name].frequency_hz))
+    _stems(ax, model, [x for x, _ in shared], apart)
 
 
-def _as_differences(ax, reference: str) -> None:
+def _as_differences(ax, record: Record, reference: str) -> None:
     from matplotlib.ticker import PercentFormatter
 
-    ax.axhline(0, color=colour_of(reference), lw=1.2)
-    ax.set_ylabel(f"against {model_name(reference)}")
+    ax.axhline(0, color=model_of(record, reference).colour, lw=1.2)
+    ax.set_ylabel(f"against {model_name(record, reference)}")
     ax.yaxis.set_major_formatter(PercentFormatter(1.0, decimals=None, symbol=" %"))
 
 
@@ -115,56 +119,60 @@ def _part_families(ax, families: list[str]) -> None:
 
 
 @as_svg
-def mac_chart(results):
+def mac_chart(record: Record):
     """MAC matrices against the reference as annotated heat maps."""
-    mac = results.get("mac") or {}
-    compared = mac.get("models") or {}
-    models = {k: m for k, m in compared.items() if m.get("values") and m["values"][0]}
+    if record.mac is None:
+        return None
+    models = {key: m for key, m in record.mac.models.items() if m.values and m.values[0]}
     if not models:
         return None
     columns = min(len(models), 3)
     rows = -(-len(models) // columns)
-    widest = max(len(m["values"][0]) for m in models.values())
-    tallest = max(len(m["values"]) for m in models.values())
+    widest = max(len(m.values[0]) for m in models.values())
+    tallest = max(len(m.values) for m in models.values())
     figure = new_figure(10.4, rows * min(max(1.2 + 0.33 * tallest, 2.6), 6.5))
     axes = figure.subplots(rows, columns, squeeze=False).ravel()
     size = _text_size(widest)
-    for ax, (key, m) in zip(axes, models.items()):
-        values = [[v if is_number(v) else float("nan") for v in row] for row in m["values"]]
-        ax.pcolormesh(values, cmap="Blues", vmin=0, vmax=1, edgecolors="white", linewidth=0.5)
-        ax.invert_yaxis()
-        for i, row in enumerate(values):
-            for j, v in enumerate(row):
-                if v >= 0.005:
-                    ax.text(
-                        j + 0.5,
-                        i + 0.5,
-                        _mac_text(v),
-                        ha="center",
-                        va="center",
-                        fontsize=size,
-                        color="white" if v > 0.6 else "#222222",
-                    )
-        ax.set_xticks(
-            [j + 0.5 for j in range(len(values[0]))],
-            [str(n) for n in m.get("columns") or [""] * len(values[0])],
-            rotation=60,
-            ha="right",
-            rotation_mode="anchor",
-            fontsize=7.5,
-        )
-        ax.set_yticks(
-            [i + 0.5 for i in range(len(values))],
-            [str(n) for n in m.get("rows") or [""] * len(values)],
-            fontsize=7.5,
-        )
-        ax.grid(visible=False)
-        ax.set_title(
-            f"{model_name(key)} (rows) against {model_name(mac.get('reference'))}", fontsize=8.5
-        )
+    reference = model_name(record, record.mac.reference)
+    for ax, (key, found) in zip(axes, models.items()):
+        _draw_mac(ax, found, size)
+        ax.set_title(f"{model_name(record, key)} (rows) against {reference}", fontsize=8.5)
     for ax in axes[len(models) :]:
         ax.axis("off")
     return figure
+
+
+def _draw_mac(ax, found: MacTable, size: float) -> None:
+    """One matrix, a mode of the model a row; figures of `size` pt in its cells."""
+    values = [[float("nan") if v is None else v for v in row] for row in found.values]
+    ax.pcolormesh(values, cmap="Blues", vmin=0, vmax=1, edgecolors="white", linewidth=0.5)
+    ax.invert_yaxis()
+    for i, row in enumerate(values):
+        for j, value in enumerate(row):
+            if value >= 0.005:
+                ax.text(
+                    j + 0.5,
+                    i + 0.5,
+                    _mac_text(value),
+                    ha="center",
+                    va="center",
+                    fontsize=size,
+                    color="white" if value > 0.6 else "#222222",
+                )
+    ax.set_xticks(
+        [j + 0.5 for j in range(len(values[0]))],
+        found.columns or [""] * len(values[0]),
+        rotation=60,
+        ha="right",
+        rotation_mode="anchor",
+        fontsize=7.5,
+    )
+    ax.set_yticks(
+        [i + 0.5 for i in range(len(values))],
+        found.rows or [""] * len(values),
+        fontsize=7.5,
+    )
+    ax.grid(visible=False)
 
 
 def _text_size(columns: int) -> float:

@@ -3,42 +3,19 @@
 from __future__ import annotations
 
 import io
-import textwrap
 from pathlib import Path
 from typing import Any
 
 from solidgear.evidence.pareto import Race, Row
-from solidgear.report.chart_style import STYLE
-from solidgear.report.race_rows import COSTS, left_out, replace_file
-from solidgear.report.words import count, is_number, percent, seconds
+from solidgear.report.chart_style import STYLE, percent_decades, tolerance_line
+from solidgear.report.race_legend import FRONT, footer, legend
+from solidgear.report.race_rows import COSTS, replace_file
+from solidgear.report.race_style import REFERENCE, Look
+from solidgear.report.words import count, is_number, percent
 
-COLOUR = {
-    "lumped": "#b3305c",
-    "beam": "#0072b2",
-    "harmonic": "#00805e",
-    "tetrahedra": "#d08a00",
-    "hexahedra": "#5a3e8c",
-}
-FAMILY_NAME = {
-    "lumped": "lumped",
-    "beam": "beams",
-    "harmonic": "harmonic solid",
-    "tetrahedra": "3D, tetrahedra",
-    "hexahedra": "3D, hexahedra",
-}
-MARKER = {
-    "lumped": "P",
-    "Euler": "v",
-    "Timoshenko": "s",
-    "harmonic h": "o",
-    "harmonic p": "D",
-    "TET4": "<",
-    "TET10": "^",
-    "HEX8": "s",
-    "HEX20": "D",
-    "HEX27": "h",
-}
 QUANTITY = {"C_zz": "port compliance C_zz", "bending 1": "first bending frequency"}
+#: the series whose orders are written beside its points
+ORDERS = "harmonic p graded"
 
 
 def draw(race: Race, path) -> Path:
@@ -69,7 +46,7 @@ def figure(race: Race):
     for line, quantity in zip(axes, quantities):
         for ax, cost in zip(line, COSTS):
             _panel(ax, race, quantity, cost)
-        line[0].set_ylabel(f"error of {QUANTITY[quantity]}")
+        line[0].set_ylabel(f"error of {QUANTITY.get(quantity, quantity)}")
     for ax, words in zip(axes[-1], COSTS.values()):
         ax.set_xlabel(words)
     title = race.scene.get("title") or race.scene.get("name", "")
@@ -81,288 +58,212 @@ def figure(race: Race):
         weight="bold",
     )
     out.legend(
-        handles=_legend(race),
+        handles=legend(race),
         loc="outside right upper",
         fontsize=8.5,
         handlelength=3.2,
         labelspacing=0.45,
     )
-    out.supxlabel(_footer(race), x=0.01, ha="left", fontsize=8, color="#444444", linespacing=1.45)
+    out.supxlabel(footer(race), x=0.01, ha="left", fontsize=8, color="#444444", linespacing=1.45)
     return out
 
 
 def _panel(ax, race: Race, quantity: str, cost: str) -> None:
-    from matplotlib.ticker import FuncFormatter, NullFormatter
-
     ax.set(xscale="log", yscale="log")
-    band = race.reference["bands"][quantity]
-    shown = [r for r in race.rows if race.error(r, quantity) is not None]
-    steps = race.front(quantity, cost)
-    costs = [
-        getattr(r, cost) for r in race.rows if r.status in ("ok", "failed") and getattr(r, cost)
-    ] or [1.0]
-    left, right = min(costs) / 2.2, max(costs) * 2.2
-    errors = [race.error(r, quantity) for r in shown] + [
-        race.error(r, quantity) and r.like_for_like.get(quantity) or band for r in shown
-    ]
-    errors = [e for e in errors if e > 0] or [1e-3]
-    top, low = max(errors) * 4, max(band / 2.5, min(e for e in errors if e > 0) / 40)
+    left, right = _reach(race, cost)
+    low, top = _heights(race, quantity)
+    floor = max(race.reference["bands"][quantity], low)
+    _band(ax, race.reference["bands"][quantity], low)
+    tolerance = (race.scene.get("ask") or {}).get("tolerance")
+    if is_number(tolerance) and low < tolerance < top:
+        tolerance_line(ax, tolerance, x=0.995, size=7.5, lw=0.8, ls=":")
+    _front(ax, race, quantity, cost, (right, top))
+    for name in dict.fromkeys(row.series for row in race.rows):
+        rows = [row for row in race.rows if row.series == name]
+        _series(ax, race, rows, quantity, cost)
+        _crosses(ax, rows, quantity, cost, top / 1.5)
+    if cost in race.reference:
+        place = race.reference[cost]
+        style: dict[str, Any] = {"ms": 11, "color": REFERENCE, "mfc": "white"}
+        ax.plot([place], [floor], "*", zorder=4, clip_on=False, **style)
+        right = max(right, 1.5 * place)
+    ax.set(xlim=(left, right), ylim=(low, top))
+    _ticks(ax, cost)
+    setup = sum(race.setup.values())
+    if cost == "seconds" and left < setup < right:
+        _setup(ax, setup)
 
-    # a band far below every error is named at the bottom, so that it does not squeeze what there is
-    # to see
+
+def _reach(race: Race, cost: str) -> tuple[float, float]:
+    """Both ends of the axis of a cost."""
+    costs = [getattr(row, cost) for row in race.rows if row.status in ("ok", "failed")]
+    known = [value for value in costs if value] or [1.0]
+    return min(known) / 2.2, max(known) * 2.2
+
+
+def _heights(race: Race, quantity: str) -> tuple[float, float]:
+    """Both ends of the axis of errors.
+
+    A band far below every error is named at the bottom, so that it does not squeeze what there is
+    to see.
+    """
+    band = race.reference["bands"][quantity]
+    errors = []
+    for row in race.rows:
+        error = race.error(row, quantity)
+        if error is None:
+            continue
+        like = row.like_for_like.get(quantity) if error else None
+        errors += [error, like or band]
+    known = [error for error in errors if error > 0] or [1e-3]
+    return max(band / 2.5, min(known) / 40), max(known) * 4
+
+
+def _band(ax, band: float, low: float) -> None:
+    """What the reference does not resolve."""
+    floor = max(band, low)
     if band > 0:
-        ax.axhspan(low, max(band, low), color="#00805e", alpha=0.13, lw=0)
+        ax.axhspan(low, floor, color="#00805e", alpha=0.13, lw=0)
+    below = "" if band > low else ", below this axis"
     ax.annotate(
-        f"band of the reference {percent(band, signed=False)}"
-        + ("" if band > low else ", below this axis"),
-        (0.01, max(band, low)),
+        f"band of the reference {percent(band, signed=False)}{below}",
+        (0.01, floor),
         xycoords=("axes fraction", "data"),
         xytext=(0, 3),
         textcoords="offset points",
         fontsize=7.5,
-        color="#00603f",
+        color=REFERENCE,
         va="bottom",
     )
-    tolerance = (race.scene.get("ask") or {}).get("tolerance")
-    if is_number(tolerance) and low < tolerance < top:
-        ax.axhline(tolerance, color="#aa2222", lw=0.8, ls=":")
-        ax.annotate(
-            f"tolerance {100 * tolerance:.4g} %",
-            (0.995, tolerance),
-            xycoords=("axes fraction", "data"),
-            xytext=(0, 2),
-            textcoords="offset points",
-            ha="right",
-            fontsize=7.5,
-            color="#aa2222",
-        )
-    if steps:
-        xs, ys = [getattr(r, cost) for r in steps], [race.sure_error(r, quantity) for r in steps]
-        ax.step(
-            [xs[0], *xs, right],
-            [top, *ys, ys[-1]],
-            where="post",
-            color="#9a9a9a",
-            lw=5,
-            alpha=0.45,
-            solid_joinstyle="miter",
-            zorder=1.5,
-        )
-    for name in dict.fromkeys(r.series for r in race.rows):
-        _series(ax, race, [r for r in race.rows if r.series == name], quantity, cost, top)
-    if cost in race.reference:
-        ax.plot(
-            [race.reference[cost]],
-            [max(band, low)],
-            "*",
-            ms=11,
-            color="#00603f",
-            mfc="white",
-            zorder=4,
-            clip_on=False,
-        )
-        right = max(right, 1.5 * race.reference[cost])
-    ax.set(xlim=(left, right), ylim=(low, top))
-    ax.xaxis.set_major_formatter(
-        FuncFormatter(lambda v, _: f"{v:g}" if cost == "seconds" else count(v))
+
+
+def _front(ax, race: Race, quantity: str, cost: str, corner: tuple[float, float]) -> None:
+    """The Pareto front as steps, from the top of the panel to its right end."""
+    steps = race.front(quantity, cost)
+    if not steps:
+        return
+    right, top = corner
+    xs = [getattr(row, cost) for row in steps]
+    ys = [race.sure_error(row, quantity) for row in steps]
+    ax.step(
+        [xs[0], *xs, right],
+        [top, *ys, ys[-1]],
+        where="post",
+        color=FRONT,
+        lw=5,
+        alpha=0.45,
+        solid_joinstyle="miter",
+        zorder=1.5,
     )
+
+
+def _ticks(ax, cost: str) -> None:
+    from matplotlib.ticker import FuncFormatter, NullFormatter
+
+    def figures(value: float, _) -> str:
+        return f"{value:g}" if cost == "seconds" else count(value)
+
+    ax.xaxis.set_major_formatter(FuncFormatter(figures))
     ax.xaxis.set_minor_formatter(NullFormatter())
-    ax.yaxis.set_major_formatter(FuncFormatter(lambda v, _: f"{100 * v:.6g} %"))
-    ax.yaxis.set_minor_formatter(NullFormatter())
-    setup = sum(race.setup.values())
-    if cost == "seconds" and left < setup < right:
-        ax.axvline(setup, color="#777777", lw=0.9, ls=(0, (1, 2)))
-        ax.annotate(
-            "set-up, once a process",
-            (setup, 0.985),
-            xycoords=("data", "axes fraction"),
-            xytext=(-3, 0),
-            textcoords="offset points",
-            rotation=90,
-            ha="right",
-            va="top",
-            fontsize=7.5,
-            color="#666666",
-        )
+    percent_decades(ax)
 
 
-def _series(ax, race: Race, rows: list[Row], quantity: str, cost: str, top: float) -> None:
-    colour, marker = COLOUR[rows[0].family], MARKER.get(_kind(rows[0].series), "o")
-    dashed = rows[0].series.endswith("uniform")
-    good = [r for r in rows if race.error(r, quantity) is not None]
-    xs, ys = [getattr(r, cost) for r in good], [race.error(r, quantity) for r in good]
+def _setup(ax, spent: float) -> None:
+    """What a process pays once, as an upright line."""
+    ax.axvline(spent, color="#777777", lw=0.9, ls=(0, (1, 2)))
+    ax.annotate(
+        "set-up, once a process",
+        (spent, 0.985),
+        xycoords=("data", "axes fraction"),
+        xytext=(-3, 0),
+        textcoords="offset points",
+        rotation=90,
+        ha="right",
+        va="top",
+        fontsize=7.5,
+        color="#666666",
+    )
+
+
+def _series(ax, race: Race, rows: list[Row], quantity: str, cost: str) -> None:
+    """A line through the levels of a series, and their points."""
+    look = Look(rows[0].series, rows[0].family)
+    spots = []
+    for row in rows:
+        error = race.error(row, quantity)
+        if error is not None:
+            spots.append((row, getattr(row, cost), error))
     ax.plot(
-        xs,
-        ys,
-        ls="--" if dashed else "-",
-        color=colour,
-        lw=1.0 if dashed else 1.5,
-        alpha=0.75 if dashed else 1.0,
+        [x for _, x, _ in spots],
+        [y for _, _, y in spots],
+        ls=look.dashes,
+        color=look.colour,
+        lw=look.width,
+        alpha=0.75 if look.uniform else 1.0,
         zorder=2,
     )
-    for r, x, y in zip(good, xs, ys):
-        ax.plot(
-            [x], [y], marker, ms=5.5, color=colour, mfc=_fill(colour, dashed), mew=1.0, zorder=3
-        )
-        if not race.resolved(r, quantity):
-            ax.annotate(
-                "",
-                (x, y),
-                xytext=(0, -13),
-                textcoords="offset points",
-                zorder=3,
-                arrowprops={"arrowstyle": "<|-", "color": colour, "lw": 1.1, "shrinkB": 3},
+    for row, x, y in spots:
+        ax.plot([x], [y], look.marker, ms=5.5, color=look.colour, mfc=look.fill, mew=1.0, zorder=3)
+        if not race.resolved(row, quantity):
+            _arrow(ax, (x, y), look.colour)
+        if cost == "seconds" and len(row.samples) > 1:
+            fastest, slowest = min(row.samples), max(row.samples)
+            ax.hlines(y, fastest, slowest, color=look.colour, lw=0.9, alpha=0.45, zorder=1.8)
+        if look.series == ORDERS:
+            _order(ax, (x, y), row.options["order"], look.colour)
+        like = row.like_for_like.get(quantity)
+        if like and not look.converges:
+            ax.plot([x, x], [y, like], ":", color=look.colour, lw=1.1, zorder=1.9)
+            ax.plot(
+                [x], [like], look.marker, ms=5.5, color=look.colour, mfc="white", mew=1.1, zorder=3
             )
-        if cost == "seconds" and len(r.samples) > 1:
-            ax.hlines(
-                y, min(r.samples), max(r.samples), color=colour, lw=0.9, alpha=0.45, zorder=1.8
-            )
-        if rows[0].series == "harmonic p graded":
-            ax.annotate(
-                f"p{r.options['order']}",
-                (x, y),
-                xytext=(-4, -3),
-                textcoords="offset points",
-                ha="right",
-                va="top",
-                fontsize=7,
-                color=colour,
-            )
-        like = r.like_for_like.get(quantity)
-        if rows[0].family in ("lumped", "beam") and like:
-            ax.plot([x, x], [y, like], ":", color=colour, lw=1.1, zorder=1.9)
-            ax.plot([x], [like], marker, ms=5.5, color=colour, mfc="white", mew=1.1, zorder=3)
-    if rows[0].family in ("lumped", "beam") and good:
-        # beams do not converge to the reference: their levels coincide, one name will do
-        place = (
-            {"xytext": (0, -8), "ha": "center", "va": "top"}
-            if rows[0].family == "lumped"
-            else {"xytext": (6, 5)}
-        )
-        ax.annotate(
-            rows[0].series,
-            (xs[-1], ys[-1]),
-            textcoords="offset points",
-            fontsize=8,
-            color=colour,
-            **place,
-        )
-    for r in rows:
-        failed = r.status == "failed" or (r.status == "ok" and quantity not in r.errors)
-        if failed and getattr(r, cost):
-            ax.plot([getattr(r, cost)], [top / 1.5], "x", ms=8, mew=2, color=colour, zorder=4)
+    if spots and not look.converges:
+        # levels that do not converge to the reference coincide: one name will do
+        _, x, y = spots[-1]
+        _name(ax, look, (x, y))
 
 
-def _fill(colour: str, pale: bool):
-    """A pale fill for uniform meshes; an empty marker means like for like."""
-    from matplotlib.colors import to_rgb
-
-    return tuple(0.35 * c + 0.65 for c in to_rgb(colour)) if pale else colour
-
-
-def _kind(series: str) -> str:
-    return series.removesuffix(" uniform").removesuffix(" graded")
-
-
-def _legend(race: Race) -> list:
-    from matplotlib.lines import Line2D
-
-    handles = []
-    for family, name in FAMILY_NAME.items():
-        series = list(dict.fromkeys(r.series for r in race.rows if r.family == family))
-        if not series:
-            continue
-        if family != "lumped":
-            handles.append(Line2D([], [], ls="", label=name.upper()))
-        for s in series:
-            dashed = s.endswith("uniform")
-            line: dict[str, Any] = {
-                "ls": "" if family in ("lumped", "beam") else "--" if dashed else "-",
-                "lw": 1.0 if dashed else 1.5,
-            }
-            name = (
-                s.replace("harmonic ", "")
-                .replace("h ", "h, order 2, ")
-                .replace("p ", "p, order 1 up, ")
-            )
-            handles.append(
-                Line2D(
-                    [],
-                    [],
-                    color=COLOUR[family],
-                    mfc=_fill(COLOUR[family], dashed),
-                    marker=MARKER.get(_kind(s), "o"),
-                    ms=5.5,
-                    label=name,
-                    **line,
-                )
-            )
-    handles += [
-        Line2D([], [], ls="", label=""),
-        Line2D(
-            [],
-            [],
-            ls=":",
-            marker="s",
-            mfc="white",
-            color=COLOUR["beam"],
-            ms=5.5,
-            label="like for like:\nsection ties on both sides",
-        ),
-        Line2D(
-            [],
-            [],
-            color="#9a9a9a",
-            lw=5,
-            alpha=0.45,
-            label="Pareto front,\ncancellations not counted",
-        ),
-        Line2D(
-            [],
-            [],
-            ls="",
-            marker="*",
-            ms=11,
-            mfc="white",
-            color="#00603f",
-            label="the reference itself",
-        ),
-        Line2D(
-            [], [], ls="", marker=7, ms=8, color="#555555", label="below the band: not resolved"
-        ),
-        Line2D(
-            [],
-            [],
-            ls="",
-            marker="x",
-            ms=8,
-            mew=2,
-            color="#555555",
-            label="failed, or no such number",
-        ),
-    ]
-    return handles
+def _arrow(ax, spot: tuple[float, float], colour: str) -> None:
+    """Below a point on the band: the error may be smaller."""
+    ax.annotate(
+        "",
+        spot,
+        xytext=(0, -13),
+        textcoords="offset points",
+        zorder=3,
+        arrowprops={"arrowstyle": "<|-", "color": colour, "lw": 1.1, "shrinkB": 3},
+    )
 
 
-def _footer(race: Race) -> str:
-    reference, machine = race.reference, race.environment
-    runs = [len(r.samples) for r in race.rows if r.status == "ok"]
-    lines = [
-        f"Reference: harmonic solid, {', '.join(f'{k} {v}' for k, v in reference['options'].items())}, {reference['unknowns']} unknowns, {seconds(reference['seconds'])} s; "
-        f"its band is the grid convergence index of orders {reference['options']['order'] - 2} to {reference['options']['order']}.",
-        f"Time: new body, six loads, {race.modes} modes; median of {race.runs} interleaved runs"
-        + (f" (slow cases down to {min(runs)})" if runs and min(runs) < race.runs else "")
-        + (
-            ". Set-up, not in it: "
-            + ", ".join(f"{k} {seconds(v)} s" for k, v in race.setup.items())
-            if race.setup
-            else ""
-        )
-        + ".",
-        f"{machine.get('cpu')}, {machine.get('cores')} cores, {machine.get('date')}; the whole chart took {race.seconds:.0f} s.",
-    ]
-    if left_out(race):
-        lines += textwrap.wrap(
-            f"Left out ({race.budget:g} s allowed): {left_out(race)}; reasons in rows.csv.", 190
-        )
-    return "\n".join(lines)
+def _order(ax, spot: tuple[float, float], order: int, colour: str) -> None:
+    ax.annotate(
+        f"p{order}",
+        spot,
+        xytext=(-4, -3),
+        textcoords="offset points",
+        ha="right",
+        va="top",
+        fontsize=7,
+        color=colour,
+    )
+
+
+def _name(ax, look: Look, spot: tuple[float, float]) -> None:
+    """The name of a series beside its last point; a lumped model's, which lies close to that of a
+    beam, below it.
+    """
+    place: dict[str, Any] = {"xytext": (6, 5)}
+    if look.family == "lumped":
+        place = {"xytext": (0, -8), "ha": "center", "va": "top"}
+    ax.annotate(
+        look.series, spot, textcoords="offset points", fontsize=8, color=look.colour, **place
+    )
+
+
+def _crosses(ax, rows: list[Row], quantity: str, cost: str, height: float) -> None:
+    """Rows that failed, or have no such number, at the top."""
+    colour = Look(rows[0].series, rows[0].family).colour
+    for row in rows:
+        failed = row.status == "failed" or (row.status == "ok" and quantity not in row.errors)
+        if failed and getattr(row, cost):
+            ax.plot([getattr(row, cost)], [height], "x", ms=8, mew=2, color=colour, zorder=4)

@@ -6,7 +6,7 @@ import csv
 import io
 import json
 import logging
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import asdict, fields
 from pathlib import Path
 
@@ -16,6 +16,8 @@ from solidgear.machine.whole_file import whole
 log = logging.getLogger(__name__)
 ROWS, MACHINE, PICTURE = "rows.csv", "machine.json", "speed_accuracy.png"
 COSTS = {"seconds": "wall time from scene to both answers, s (median)", "unknowns": "unknowns"}
+#: fields of a row that are spread over several columns, or written as text
+FOLDED = ("options", "samples", "values", "errors", "like_for_like")
 #: kinds of error in rows.csv besides those charted
 WHOLE = "C 6x6"
 
@@ -55,38 +57,40 @@ def records(race: Race) -> list[dict]:
     fronts = {(q, cost): race.front(q, cost) for q in race.reference["values"] for cost in COSTS}
     out = []
     for row in race.rows:
-        r = {
-            k: v
-            for k, v in asdict(row).items()
-            if k not in ("options", "samples", "values", "errors", "like_for_like")
-        }
-        r |= {
-            "options": options_text(row),
-            "runs": len(row.samples),
-            "seconds_min": min(row.samples, default=None),
-            "seconds_median": row.seconds,
-            "seconds_max": max(row.samples, default=None),
-        }
-        r["samples"] = " ".join(repr(s) for s in row.samples)
-        r |= {_column(q): row.values.get(q) for q in CHARTED}
-        r |= {f"error_{_column(q)}": row.errors.get(q) for q in (*CHARTED, WHOLE)}
-        r |= {f"like_for_like_{_column(q)}": row.like_for_like.get(q) for q in CHARTED}
+        record = {name: value for name, value in asdict(row).items() if name not in FOLDED}
+        record["options"] = options_text(row)
+        record["runs"] = len(row.samples)
+        record["seconds_min"] = min(row.samples, default=None)
+        record["seconds_median"] = row.seconds
+        record["seconds_max"] = max(row.samples, default=None)
+        record["samples"] = " ".join(repr(s) for s in row.samples)
+        for q in CHARTED:
+            record[_column(q)] = row.values.get(q)
+        for q in (*CHARTED, WHOLE):
+            record[f"error_{_column(q)}"] = row.errors.get(q)
+        for q in CHARTED:
+            record[f"like_for_like_{_column(q)}"] = row.like_for_like.get(q)
         for q in race.reference["values"]:
-            r[f"resolved_{_column(q)}"] = (
-                "" if q not in row.errors else "yes" if race.resolved(row, q) else "no"
-            )
-            r[f"front_{_column(q)}"] = " ".join(
-                cost for cost in COSTS if any(row is other for other in fronts[q, cost])
-            )
-        out.append(r)
+            record[f"resolved_{_column(q)}"] = _resolved(race, row, q)
+            on = [cost for cost in COSTS if any(row is other for other in fronts[q, cost])]
+            record[f"front_{_column(q)}"] = " ".join(on)
+        out.append(record)
     return out
+
+
+def _resolved(race: Race, row: Row, quantity: str) -> str:
+    """Whether the error of a row lies above the band of the reference; empty where it has none."""
+    if quantity not in row.errors:
+        return ""
+    return "yes" if race.resolved(row, quantity) else "no"
 
 
 def options_text(row: Row) -> str:
     """Builder options as they follow ``--set``."""
-    return " ".join(
-        f"{k}={v:.6g}" if isinstance(v, float) else f"{k}={v}" for k, v in row.options.items()
-    )
+    parts = []
+    for name, value in row.options.items():
+        parts.append(f"{name}={value:.6g}" if isinstance(value, float) else f"{name}={value}")
+    return " ".join(parts)
 
 
 def _column(quantity: str) -> str:
@@ -103,24 +107,31 @@ def _csv(race: Race) -> str:
 
 
 def _row(line: Mapping[str, str]) -> Row:
-    def numbers(names, prefix):
-        return {q: float(line[prefix + _column(q)]) for q in names if line.get(prefix + _column(q))}
-
     options = dict(pair.split("=", 1) for pair in line["options"].split())
     return Row(
-        line["family"],
-        line["series"],
-        int(line["level"]),
-        line["model"],
-        {k: _value(v) for k, v in options.items()},
-        line["status"],
-        line["reason"],
-        int(line["unknowns"]) if line["unknowns"] else None,
-        [float(s) for s in line["samples"].split()],
-        numbers(CHARTED, ""),
-        numbers((*CHARTED, WHOLE), "error_"),
-        numbers(CHARTED, "like_for_like_"),
+        family=line["family"],
+        series=line["series"],
+        level=int(line["level"]),
+        model=line["model"],
+        options={name: _value(text) for name, text in options.items()},
+        status=line["status"],
+        reason=line["reason"],
+        unknowns=int(line["unknowns"]) if line["unknowns"] else None,
+        samples=[float(s) for s in line["samples"].split()],
+        values=_numbers(line, CHARTED, ""),
+        errors=_numbers(line, (*CHARTED, WHOLE), "error_"),
+        like_for_like=_numbers(line, CHARTED, "like_for_like_"),
     )
+
+
+def _numbers(line: Mapping[str, str], quantities: Iterable[str], prefix: str) -> dict[str, float]:
+    """The numbers of a line, by quantity; empty cells are left out."""
+    found = {}
+    for quantity in quantities:
+        text = line.get(prefix + _column(quantity))
+        if text:
+            found[quantity] = float(text)
+    return found
 
 
 def _value(text: str):

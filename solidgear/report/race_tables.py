@@ -7,27 +7,35 @@ from collections.abc import Mapping
 from pathlib import Path
 
 from solidgear.evidence.pareto import Race, Row
+from solidgear.report.cells import whole_number
 from solidgear.report.race_rows import PICTURE, options_text, read_race
 from solidgear.report.table import Table
 from solidgear.report.words import count, percent, seconds
 
 CAPTION = (
-    "Error against the refined harmonic solid with the attachments of the scene, over wall time and over unknowns. Solid lines: meshes graded to shoulders and seat ends; "
-    "dashed and pale: uniform. Thin bars: fastest and slowest run. Beams tie to nodes and cannot average over a seat: filled is the error a user of this scene makes, tie "
-    "included; hollow, at the other end of the dotted line, the error against the solid with section ties, like for like; where the hollow one lies higher, errors cancel. "
-    "A sharp dip of a curve is a change of sign, not a good mesh. The grey steps are the Pareto front, on which no cancellation counts: a beam stands there with the "
-    "larger of its two errors, a mesh with the largest of its own and those of finer meshes of its series. Points with an arrow, on the edge of the shaded band, lie below "
-    "what the reference resolves. Crosses at the top failed, or found no such number; the reason is in rows.csv."
+    "Error against the refined harmonic solid with the attachments of the scene, over wall time "
+    "and over unknowns. Solid lines: meshes graded to shoulders and seat ends; dashed and pale: "
+    "uniform. Thin bars: fastest and slowest run. Beams tie to nodes and cannot average over a "
+    "seat: filled is the error a user of this scene makes, tie included; hollow, at the other end "
+    "of the dotted line, the error against the solid with section ties, like for like; where the "
+    "hollow one lies higher, errors cancel. A sharp dip of a curve is a change of sign, not a "
+    "good mesh. The grey steps are the Pareto front, on which no cancellation counts: a beam "
+    "stands there with the larger of its two errors, a mesh with the largest of its own and those "
+    "of finer meshes of its series. Points with an arrow, on the edge of the shaded band, lie "
+    "below what the reference resolves. Crosses at the top failed, or found no such number; the "
+    "reason is in rows.csv."
 )
 
 
 def front_rows(race: Race) -> list[tuple[Row, list[str]]]:
     """Rows on a front over seconds, cheapest first, and of which quantities."""
     on = {q: race.front(q) for q in race.reference["values"]}
-    rows = [(r, [q for q in on if any(r is other for other in on[q])]) for r in race.rows]
-    return sorted(
-        ((r, names) for r, names in rows if names), key=lambda pair: pair[0].seconds or 0.0
-    )
+    rows = []
+    for row in race.rows:
+        names = [q for q, front in on.items() if any(row is other for other in front)]
+        if names:
+            rows.append((row, names))
+    return sorted(rows, key=lambda pair: pair[0].seconds or 0.0)
 
 
 def error_text(race: Race, row: Row, quantity: str) -> str:
@@ -37,16 +45,11 @@ def error_text(race: Race, row: Row, quantity: str) -> str:
     found = race.error(row, quantity)
     if found is None:
         return "-"
-    text = (
-        percent(found, signed=False)
-        if race.resolved(row, quantity)
-        else f"< {percent(found, signed=False)}"
-    )
-    return text + (
-        f" / {percent(row.like_for_like[quantity], signed=False)}"
-        if quantity in row.like_for_like
-        else ""
-    )
+    text = percent(found, signed=False)
+    if not race.resolved(row, quantity):
+        text = f"< {text}"
+    like = row.like_for_like.get(quantity)
+    return text if like is None else f"{text} / {percent(like, signed=False)}"
 
 
 def front_table(race: Race):
@@ -70,10 +73,10 @@ def front_table(race: Race):
     for head in ("DOFs", "s", *(f"error {names.get(q, q)}" for q in race.reference["values"])):
         table.add_column(head, justify="right", no_wrap=True)
     for row, on in front_rows(race):
-        errors = (
-            error_text(race, row, q).replace(" %", "%") + ("*" if q in on else " ")
-            for q in race.reference["values"]
-        )
+        errors = []
+        for q in race.reference["values"]:
+            mark = "*" if q in on else " "
+            errors.append(error_text(race, row, q).replace(" %", "%") + mark)
         table.add_row(
             Text(row.series),
             Text(options_text(row) or "default"),
@@ -81,7 +84,10 @@ def front_table(race: Race):
             seconds(row.seconds),
             *errors,
         )
-    notes = "*: on the front of this quantity; <: below the band of the reference\nafter the stroke: like for like, section ties on both sides; no cancellation counts"
+    notes = (
+        "*: on the front of this quantity; <: below the band of the reference\n"
+        "after the stroke: like for like, section ties on both sides; no cancellation counts"
+    )
     return Group(table, Text(notes))
 
 
@@ -90,7 +96,10 @@ def section(folder, scene: Mapping) -> dict | None:
     none of this scene.
     """
     race = read_race(folder) if folder is not None else None
-    if race is None or race.scene != scene or not (picture := Path(folder) / PICTURE).exists():
+    if race is None or race.scene != scene:
+        return None
+    picture = Path(folder) / PICTURE
+    if not picture.exists():
         return None
     head = [
         "model",
@@ -100,7 +109,10 @@ def section(folder, scene: Mapping) -> dict | None:
         *(f"error of {q}" for q in race.reference["values"]),
         "on the front of",
     ]
-    note = "“<”: below the band of the reference, which is shown instead. After the stroke: like for like, with section ties on both sides. No cancellation counts on the front."
+    note = (
+        "“<”: below the band of the reference, which is shown instead. After the stroke: "
+        "like for like, with section ties on both sides. No cancellation counts on the front."
+    )
     rows = []
     for r, on in front_rows(race):
         errors = (error_text(race, r, q) for q in race.reference["values"])
@@ -108,7 +120,7 @@ def section(folder, scene: Mapping) -> dict | None:
             [
                 r.series,
                 (options_text(r) or "default", "text"),
-                f"{r.unknowns:,}".replace(",", " "),
+                whole_number(r.unknowns),
                 seconds(r.seconds),
                 *errors,
                 (", ".join(on), "text"),

@@ -1,8 +1,8 @@
 """Pictures of mode shapes, drawn in a child process.
 
 Without the system's OpenGL libraries VTK does not raise, it takes the process down with a
-segmentation fault. So a child draws, the caller reads what came of it, and a failed picture never
-costs a number.
+segmentation fault. So a child draws, the caller reads how it ended, and a failed picture never costs
+a number.
 """
 
 from __future__ import annotations
@@ -27,7 +27,10 @@ if TYPE_CHECKING:  # the child starts quickly because it imports nothing else of
 SIZE = (1200, 700)
 #: largest drawn displacement, as a share of the length of the shaft
 SWING = 0.08
-PACKAGES = "apt-get install libgl1 libegl1 libegl-mesa0 libglu1-mesa libxft2 libxinerama1 libxcursor1 libgomp1"
+PACKAGES = (
+    "apt-get install libgl1 libegl1 libegl-mesa0 libglu1-mesa "
+    "libxft2 libxinerama1 libxcursor1 libgomp1"
+)
 WINDOW = "VTK_DEFAULT_OPENGL_WINDOW"
 OUTLINE = "#5c6b7a"
 ARRAYS = ("points", "displacement", "faces", "triangles", "lines")
@@ -53,7 +56,7 @@ class RenderJob:
 
 @dataclass(frozen=True)
 class RenderResult:
-    """What came of a :class:`RenderJob`.
+    """How a :class:`RenderJob` ended.
 
     Attributes
     ----------
@@ -179,7 +182,8 @@ def _collect(
         return RenderResult(
             False,
             path,
-            f"the picture {path.name} was not drawn within {timeout:g} s; allow more time, or on Debian and Ubuntu mend OpenGL by `{PACKAGES}`",
+            f"the picture {path.name} was not drawn within {timeout:g} s; allow more time, "
+            f"or on Debian and Ubuntu mend OpenGL by `{PACKAGES}`",
         )
     what = end or "left no picture"
     return RenderResult(
@@ -190,7 +194,7 @@ def _collect(
     )
 
 
-# ------------------------------------------------------------------------------------------------- in the child
+# --------------------------------------------------------------------------- in the child
 def _main(room: Path) -> int:
     if os.environ.get("SOLIDGEAR_RENDERER") == "none":
         print("SOLIDGEAR_RENDERER=none", file=sys.stderr)

@@ -2,37 +2,35 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable
 from typing import Any
 
-from solidgear.fidelity.ladder import LADDER
-from solidgear.fidelity.rung import LUMPED
+from solidgear.evidence.record import Matrix, ModelRecord, ModeRecord, Record
 from solidgear.frames import DOF_NAMES
 from solidgear.report.cells import DASH, capital, eng, megabytes, pct, whole_number
-from solidgear.report.table import Table
-from solidgear.report.words import (
-    BLOCK_UNITS,
+from solidgear.report.reading import (
+    LUMPED,
     answer_seconds,
-    band_percent,
     entry,
-    first_mode,
+    first_frequency,
     headline,
-    hertz,
     is_beam,
-    is_number,
     is_resolved,
     model_name,
     reference_of,
-    seconds,
+    relative_change,
     validity,
 )
+from solidgear.report.table import Table
+from solidgear.report.words import BLOCK_UNITS, band_percent, hertz, seconds
 
 #: below this share of the geometric mean of its diagonal entries a coupling is printed faint
 FAINT = 1e-6
-
+#: a text, or a text and its css class
+Cell = str | tuple[str, str]
 
 #: validity -> cell
-WORTH = {
+WORTH: dict[str, Cell] = {
     "yes": ("yes", "good"),
     "no": ("no", "bad"),
     "open": ("not judged", "quiet"),
@@ -40,135 +38,153 @@ WORTH = {
 }
 
 
-def summary(r: Mapping) -> Table:
+def summary(record: Record) -> Table:
     """Quantities down, models across: four models fit a page, thirteen columns do not."""
-    models, reference = r["models"], reference_of(r)
 
-    def row(label, cell):
-        return [label, *(cell(k, m) for k, m in models.items())]
+    def row(label: str, cell: Callable[[ModelRecord], Cell]) -> list[Cell]:
+        return [label, *(cell(model) for model in record.models.values())]
 
-    def frequency(family):
-        return lambda k, m: hertz((first_mode(m, family) or {}).get("frequency_hz"), DASH)
+    def apart(label: str, quantity: str) -> list[Cell]:
+        return [label, *(_apart(record, key, quantity) for key in record.models)]
 
-    def apart(quantity):
-        def cell(key, m):
-            if key == reference:
-                return ("reference", "quiet")
-            found = headline(r, key, quantity)
-            if found is None:
-                return DASH
-            difference = pct(found.get("relative"))
-            return difference if is_resolved(found) else (f"not resolved ({difference})", "quiet")
+    def band(label: str, values: list[float | None]) -> list[Cell]:
+        pairs = zip(record.models, values)
+        return [label, *(_band(record, key, value) for key, value in pairs)]
 
-        return cell
-
-    def band(name):
-        def cell(key, m):
-            if m.get("band"):
-                return band_percent(m["band"].get(name), DASH)
-            return ("none given", "quiet") if is_beam(key) else DASH
-
-        return cell
-
+    bands = [model.band for model in record.models.values()]
     rows = [
-        row("valid for this scene", lambda k, m: WORTH[validity(m)]),
-        row("K_zz, N/m", lambda k, m: eng(entry(m, "stiffness", 2, 2))),
-        row("C_zz, m/N", lambda k, m: eng(entry(m, "compliance", 2, 2))),
-        row("K_yy, N/m", lambda k, m: eng(entry(m, "stiffness", 1, 1))),
-        row("K_thx, N m/rad", lambda k, m: eng(entry(m, "stiffness", 3, 3))),
-        row("first bending, Hz", frequency("bending")),
-        row("first axial, Hz", frequency("axial")),
-        row("first torsion, Hz", frequency("torsion")),
-        row("C_zz against reference", apart("C_zz")),
-        row("first bending against reference", apart("bending 1")),
-        row("band of the worst compliance (mesh)", band("compliance")),
-        row("band of first bending (mesh)", band("bending_1")),
-        row("degrees of freedom", lambda k, m: whole_number(m.get("dofs"))),
-        row("building and solving, s", lambda k, m: seconds(answer_seconds(m), DASH)),
-        row("peak memory, MB", lambda k, m: megabytes(m.get("peak_mb"))),
+        row("valid for this scene", lambda m: WORTH[validity(m)]),
+        row("K_zz, N/m", lambda m: eng(entry(m.stiffness, 2, 2))),
+        row("C_zz, m/N", lambda m: eng(entry(m.compliance, 2, 2))),
+        row("K_yy, N/m", lambda m: eng(entry(m.stiffness, 1, 1))),
+        row("K_thx, N m/rad", lambda m: eng(entry(m.stiffness, 3, 3))),
+        row("first bending, Hz", lambda m: hertz(first_frequency(m, "bending"), DASH)),
+        row("first axial, Hz", lambda m: hertz(first_frequency(m, "axial"), DASH)),
+        row("first torsion, Hz", lambda m: hertz(first_frequency(m, "torsion"), DASH)),
+        apart("C_zz against reference", "C_zz"),
+        apart("first bending against reference", "bending 1"),
+        band("band of the worst compliance (mesh)", [b.compliance if b else None for b in bands]),
+        band(
+            "band of first bending (mesh)", [b.each.get("bending 1") if b else None for b in bands]
+        ),
+        row("degrees of freedom", lambda m: whole_number(m.dofs)),
+        row("building and solving, s", lambda m: seconds(answer_seconds(m), DASH)),
+        row("peak memory, MB", lambda m: megabytes(m.peak_mb)),
     ]
-    note = "Stiffness and compliance with the attachments of the scene. “Against reference” compares beams with section ties on both sides, where they have a like-for-like partner, and solids as the scene has them."
+    note = (
+        "Stiffness and compliance with the attachments of the scene. “Against reference” compares "
+        "beams with section ties on both sides, where they have a like-for-like partner, and "
+        "solids as the scene has them."
+    )
     return Table(
         "Results at the lumped point",
-        ["quantity", *(capital(model_name(k)) for k in models)],
-        rows if models else [],
+        ["quantity", *(capital(model_name(record, key)) for key in record.models)],
+        rows if record.models else [],
         note,
         css="summary",
     )
 
 
-def matrices(r: Mapping) -> list[tuple[str, list[dict]]]:
-    """The matrices of every model; the lumped model stands on those of another model, shown there."""
+def _apart(record: Record, key: str, quantity: str) -> Cell:
+    """How far a model is from the reference."""
+    if key == reference_of(record):
+        return ("reference", "quiet")
+    found = headline(record, key, quantity)
+    if found is None:
+        return DASH
+    difference = pct(found.relative)
+    return difference if is_resolved(found) else (f"not resolved ({difference})", "quiet")
+
+
+def _band(record: Record, key: str, value: float | None) -> Cell:
+    """A band of a model; beams are solved on one mesh and have none."""
+    if record.models[key].band is None and is_beam(record, key):
+        return ("none given", "quiet")
+    return band_percent(value, DASH)
+
+
+def matrices(record: Record) -> list[tuple[str, list[dict]]]:
+    """The matrices of every model; the lumped one stands on those of another, shown there."""
     out = []
-    for key, model in r["models"].items():
-        kinds = [kind for kind in BLOCK_UNITS if model.get(kind)]
-        if key not in LADDER.of(LUMPED):
-            out.append((model_name(key), [_matrix(r, key, model, kind) for kind in kinds]))
+    for key, model in record.models.items():
+        if model.family == LUMPED:
+            continue
+        name = model_name(record, key)
+        both = (("stiffness", model.stiffness), ("compliance", model.compliance))
+        shown = [_matrix(record, name, kind, values) for kind, values in both if values]
+        out.append((name, shown))
     return out
 
 
-def _matrix(r: Mapping, key: str, model: Mapping, kind: str) -> dict:
+def _matrix(record: Record, name: str, kind: str, values: Matrix) -> dict:
     """A 6x6 with a unit over each of its four blocks."""
-    free = (r.get("port") or {}).get("free") or []
-    values = model[kind]
+    free = record.port.free if record.port else []
     rows = []
-    for i, name in enumerate(DOF_NAMES):
+    for i, direction in enumerate(DOF_NAMES):
         cells = []
         for j, other in enumerate(DOF_NAMES):
-            value = entry(model, kind, i, j)
-            if value is None or name in free or other in free:
+            value = entry(values, i, j)
+            if value is None or direction in free or other in free:
                 cells.append((DASH, "quiet"))
                 continue
-            faint = i != j and _is_faint(value, values[i][i], values[j][j])
+            faint = i != j and _is_faint(value, entry(values, i, i), entry(values, j, j))
             cells.append((eng(value), "faint" if faint else ""))
-        rows.append((name, cells))
+        rows.append((direction, cells))
     same, mixed, turn = BLOCK_UNITS[kind]
     return {
-        "caption": f"{capital(model_name(key))}: {kind}",
+        "caption": f"{capital(name)}: {kind}",
         "names": DOF_NAMES,
         "blocks": [((same, mixed), rows[:3]), ((mixed, turn), rows[3:])],
     }
 
 
-def _is_faint(coupling: float, first: Any, second: Any) -> bool:
+def _is_faint(coupling: float, first: float | None, second: float | None) -> bool:
     """Whether a coupling is next to nothing beside its two diagonal entries."""
-    if not (is_number(first) and is_number(second)):
+    if first is None or second is None:
         return False
     return abs(coupling) <= FAINT * abs(first * second) ** 0.5
 
 
-def frequencies(r: Mapping) -> Table:
+def frequencies(record: Record) -> Table:
     """Natural frequencies, a mode a row and a model a column."""
-    models, reference = r["models"], reference_of(r)
-    by_name = {key: _modes_by_name(model) for key, model in models.items()}
+    reference = reference_of(record)
+    modes = {key: {m.name: m for m in model.modes} for key, model in record.models.items()}
     # a mode stands where the reference has it, else where the first model that has it does
-    ordered: dict[str, Mapping] = {}
-    for key in sorted(models, key=lambda k: k != reference):
-        for name, mode in by_name[key].items():
+    ordered: dict[str, ModeRecord] = {}
+    for key in sorted(modes, key=lambda k: k != reference):
+        for name, mode in modes[key].items():
             ordered.setdefault(name, mode)
     rows = []
-    for name, mode in sorted(ordered.items(), key=lambda item: item[1].get("frequency_hz") or 0.0):
+    for mode in sorted(ordered.values(), key=lambda m: m.frequency_hz or 0.0):
+        base = modes.get(reference or "", {}).get(mode.name)
         cells: list[Any] = [
-            name,
-            (mode.get("family", DASH), "word text"),
-            str(mode.get("multiplicity") or 1),
+            mode.name,
+            (mode.family or DASH, "word text"),
+            str(mode.multiplicity),
         ]
-        base = (by_name.get(reference, {}).get(name) or {}).get("frequency_hz")
-        for key in models:
-            f = (by_name[key].get(name) or {}).get("frequency_hz")
-            apart = f" ({pct(f / base - 1)})" if key != reference and is_number(f) and base else ""
-            cells.append("0 (rigid)" if f == 0 else hertz(f, DASH) + apart)
+        for key, own in modes.items():
+            partner = None if key == reference else base
+            cells.append(_frequency(own.get(mode.name), partner))
         rows.append(cells)
     note = ""
     if reference:
-        note = f"In brackets: against the {model_name(reference)}. Two shapes: a pair of the same frequency in two planes. A dash: not among the modes asked for."
+        note = (
+            f"In brackets: against the {model_name(record, reference)}. Two shapes: a pair of the "
+            "same frequency in two planes. A dash: not among the modes asked for."
+        )
     return Table(
         "Natural frequencies in Hz, attachments as in the scene",
-        ["mode", "family", "shapes", *(capital(model_name(k)) for k in models)],
+        ["mode", "family", "shapes", *(capital(model_name(record, key)) for key in modes)],
         rows,
         note,
     )
 
 
-def _modes_by_name(model: Mapping) -> dict[str, Mapping]:
-    return {str(mode.get("name")): mode for mode in model.get("modes") or []}
+def _frequency(mode: ModeRecord | None, base: ModeRecord | None) -> str:
+    """The frequency of a mode, and in brackets how far it is from that of `base`."""
+    if mode is None:
+        return DASH
+    if mode.frequency_hz == 0:
+        return "0 (rigid)"
+    apart = relative_change(mode.frequency_hz, base.frequency_hz if base else None)
+    return hertz(mode.frequency_hz, DASH) + ("" if apart is None else f" ({pct(apart)})")

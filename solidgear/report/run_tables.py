@@ -5,25 +5,28 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
+from solidgear.evidence.record import ModelRecord, Record
 from solidgear.report.cells import DASH, capital, megabytes
+from solidgear.report.reading import model_name, reference_of
 from solidgear.report.table import Table
-from solidgear.report.words import model_name, reference_of, seconds
+from solidgear.report.words import seconds
 
 
-def cost(r: Mapping) -> Table:
+def cost(record: Record) -> Table:
     """Seconds of every stage and peak memory."""
     stages: list[str] = []
-    for m in r["models"].values():
-        stages += [s for s in m.get("seconds") or {} if s not in stages and s != "total"]
-    rows = [
-        [
-            capital(model_name(k)),
-            *_times(m, [*stages, "total"]),
-            megabytes(m.get("peak_mb")),
-            (str(m.get("backend") or DASH), "text"),
-        ]
-        for k, m in r["models"].items()
-    ]
+    for model in record.models.values():
+        stages += [s for s in model.seconds if s not in stages and s != "total"]
+    rows = []
+    for key, model in record.models.items():
+        rows.append(
+            [
+                capital(model_name(record, key)),
+                *_times(model, [*stages, "total"]),
+                megabytes(model.peak_mb),
+                (model.backend or DASH, "text"),
+            ]
+        )
     return Table(
         "Wall time in s and peak memory",
         ["model", *stages, "total", "peak MB", "linear algebra"],
@@ -32,24 +35,25 @@ def cost(r: Mapping) -> Table:
     )
 
 
-def _times(model: Mapping, stages: list[str]) -> list[str]:
-    spent = model.get("seconds") or {}
-    return [seconds(spent.get(stage), DASH) for stage in stages]
+def _times(model: ModelRecord, stages: list[str]) -> list[str]:
+    return [seconds(model.seconds.get(stage), DASH) for stage in stages]
 
 
-def provenance(r: Mapping) -> Table:
+def provenance(record: Record) -> Table:
     """Where each class of number comes from."""
-    models, reference = r["models"], model_name(reference_of(r))
-    ran = ", ".join(model_name(k) for k in models) or "no model"
+    reference = model_name(record, reference_of(record))
+    ran = ", ".join(model_name(record, key) for key in record.models) or "no model"
+    source = record.scene.get("source") or "source not given"
     rows: list[list[Any]] = [
         [
             "geometry, material, bearings",
-            f"input: {r['scene'].get('source') or 'source not given'}; each bearing carries its status, section 1",
+            f"input: {source}; each bearing carries its status, section 1",
         ],
         ["stiffness, compliance, frequencies, mode shapes", f"computed in this run, by: {ran}"],
         [
             "differences",
-            f"this run against another model of this run ({reference}); a model-form comparison, not an error against reality",
+            f"this run against another model of this run ({reference}); "
+            "a model-form comparison, not an error against reality",
         ],
         ["mode correlation", f"this run; partners in the {reference}"],
         ["causes, attachments", "this run; the same model solved again with one thing switched"],
@@ -83,14 +87,17 @@ def _flat(value: Any) -> str:
     return f"{value:.5g}" if isinstance(value, float) else str(value)
 
 
-def pairs_of(mapping: Mapping | None, caption: str) -> Table:
+def pairs_of(mapping: Mapping[str, Any], caption: str) -> Table:
     """A table of a mapping, an entry a row."""
-    rows = [[str(k), (_flat(v), "text")] for k, v in (mapping or {}).items()]
+    rows = [[str(key), (_flat(value), "text")] for key, value in mapping.items()]
     return Table(caption, ["item", "value"], rows, css="facts")
 
 
-def mesh(r: Mapping) -> list[Table]:
+def mesh(record: Record) -> list[Table]:
     """One table for each model, of what is known of its mesh."""
-    captions = {key: f"{capital(model_name(key))}: mesh" for key in r["models"]}
-    tables = [pairs_of(model.get("mesh"), captions[key]) for key, model in r["models"].items()]
-    return [table for table in tables if table]
+    tables = []
+    for key, model in record.models.items():
+        if model.mesh:
+            name = capital(model_name(record, key))
+            tables.append(pairs_of(model.mesh, f"{name}: mesh"))
+    return tables

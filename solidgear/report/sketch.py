@@ -15,7 +15,7 @@ WIDTH, DRAWN, TALLEST, FLATTEST = 10.6, 8.8, 1.75, 0.45
 CHAR = 0.075  # of a letter at the size of the labels
 
 
-def draw(results: Mapping) -> Any:
+def draw(scene: Mapping[str, Any]) -> Any:
     """The figure, or None when the scene has no segments.
 
     The upper half is cut (hatched), the lower half shows the surface. Radii are to the same scale
@@ -24,7 +24,6 @@ def draw(results: Mapping) -> Any:
     """
     from matplotlib.figure import Figure
 
-    scene = results.get("scene") or {}
     segments = scene.get("segments") or []
     if not segments:
         return None
@@ -35,9 +34,9 @@ def draw(results: Mapping) -> Any:
     top = radius * inch * enlarged
     left = (WIDTH - length * inch) / 2
 
-    stations = [(b, False) for b in scene.get("bearings") or []] + (
-        [(scene["port"], True)] if scene.get("port") else []
-    )
+    stations = [(b, False) for b in scene.get("bearings") or []]
+    if scene.get("port"):
+        stations.append((scene["port"], True))
     labels = _labels(stations, lambda y: left + y * inch)
     ordinates = _staggered([(left + y * inch, f"{1e3 * y:.1f}") for y in _marks(scene, length)])
     above = top + 0.62 + 0.34 * (1 + max((level for *_, level in labels), default=0))
@@ -129,7 +128,8 @@ def _labels(stations, at):
         name = str(s.get("name", ""))
         name = name if len(name) <= 22 else name[:21] + "…"
         what = f"lumped point {name}" if is_port else f"bearing {name}"
-        below = f"{s.get('attachment', '')}, {'span' if is_port else 'seat'} {1e3 * (s['hi'] - s['lo']):.1f} mm"
+        surface = "span" if is_port else "seat"
+        below = f"{s.get('attachment', '')}, {surface} {1e3 * (s['hi'] - s['lo']):.1f} mm"
         texts.append((at(s["y"]), f"{what}\n{below}", is_port, s["y"]))
     placed = _staggered([(x, text) for x, text, *_ in texts])
     by_place = {(x, text): level for x, text, level in placed}
@@ -181,12 +181,11 @@ class _Pen:
     def _diameter(self, s, x0, x1, room):
         d0, d1 = (f"⌀{2e3 * s[k]:.5g}" for k in ("outer0", "outer1"))
         text = d0 if d0 == d1 else f"{d0} – {d1}"
-        bore = (
-            ""
-            if not (s["inner0"] or s["inner1"])
-            else f"\nbore {2e3 * s['inner0']:.5g}"
-            + ("" if s["inner0"] == s["inner1"] else f" – {2e3 * s['inner1']:.5g}")
-        )
+        bore = ""
+        if s["inner0"] or s["inner1"]:
+            bore = f"\nbore {2e3 * s['inner0']:.5g}"
+            if s["inner0"] != s["inner1"]:
+                bore += f" – {2e3 * s['inner1']:.5g}"
         size = CHAR * max(len(line) for line in (text + bore).splitlines()) * 0.95
         upright = size > x1 - x0
         if upright and (size > 0.95 * room or x1 - x0 < 0.14):

@@ -7,163 +7,159 @@ Everything fits 80 columns and says the same without colour. Texts out of a scen
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from rich import box
 from rich.console import Group, RenderableType
 from rich.table import Table
 from rich.text import Text
 
+from solidgear.evidence.record import ModelRecord, ModeRecord, Record, VerdictRecord
 from solidgear.frames import DOF_NAMES
-from solidgear.report.words import (
-    BLOCK_UNITS,
-    NOTHING,
-    answer_seconds,
-    band_percent,
-    count,
-    engineering,
-    entry,
-    first_mode,
-    heading,
-    headline,
-    hertz,
-    is_number,
-    is_resolved,
-    model_name,
-    percent,
-    plain,
-    reference_of,
-    seconds,
-    validity,
-)
+from solidgear.report import reading, words
+from solidgear.report.border import as_record
+from solidgear.report.words import NOTHING, engineering
 
 if TYPE_CHECKING:
     import numpy as np
 
 NOT_RESOLVED = "n.r."
-#: how the worth of a model is told in a narrow column
+#: validity -> how it is written in a narrow column
 VALID = {"yes": "yes", "no": "NO", "open": "?", "unknown": "?"}
+#: heads of the columns of numbers in the final table
+COLUMNS = ("K_zz\nN/m", "C_zz\nm/N", "f1\nHz", "dC_zz\n", "df1\n", "band\nC", "DOFs\n", "time\ns")
 
 
-def final_table(results: Mapping) -> RenderableType:
+def final_table(found: Record | Mapping[str, Any]) -> RenderableType:
     """One line a model: validity, K_zz, C_zz, first bending, deviation from the reference, band,
     size, time.
 
     Parameters
     ----------
-    results : mapping
-        The results of a run, as in ``results.json``; missing parts show as a dash.
+    found : Record or mapping
+        What a run found; missing parts show as a dash.
 
     Returns
     -------
     rich renderable
         A table of at most 80 columns, and below it what its marks mean and why a model must not be
         trusted.
+
+    Raises
+    ------
+    SolidgearError
+        For plain data that is no record of this version.
     """
-    results = plain(results)
-    reference = reference_of(results)
+    record = as_record(found)
     table = Table(box=box.SIMPLE_HEAD, padding=0, pad_edge=False)
     table.add_column("model", no_wrap=True)
     table.add_column("valid", justify="center", no_wrap=True)
-    for head in (
-        "K_zz\nN/m",
-        "C_zz\nm/N",
-        "f1\nHz",
-        "dC_zz\n",
-        "df1\n",
-        "band\nC",
-        "DOFs\n",
-        "time\ns",
-    ):
+    for head in COLUMNS:
         table.add_column(head, justify="right", no_wrap=True)
-    models = results.get("models") or {}
-    unresolved, reasons = False, []
-    for key, model in models.items():
-        cells = [_against_reference(results, key, quantity) for quantity in ("C_zz", "bending 1")]
+    unresolved = False
+    for key, model in record.models.items():
+        cells = [_against_reference(record, key, quantity) for quantity in ("C_zz", "bending 1")]
         unresolved = unresolved or NOT_RESOLVED in cells
-        bending = first_mode(model, "bending") or {}
         table.add_row(
-            Text(heading(key)[:10]),
-            VALID[validity(model)],
-            engineering(entry(model, "stiffness", 2, 2), 4),
-            engineering(entry(model, "compliance", 2, 2), 4),
-            hertz(bending.get("frequency_hz")),
+            Text(reading.heading(record, key)[:10]),
+            VALID[reading.validity(model)],
+            engineering(reading.entry(model.stiffness, 2, 2), 4),
+            engineering(reading.entry(model.compliance, 2, 2), 4),
+            words.hertz(reading.first_frequency(model, "bending")),
             *cells,
-            band_percent((model.get("band") or {}).get("compliance")),
-            count(model.get("dofs")),
-            seconds(answer_seconds(model)),
+            words.band_percent(model.band.compliance if model.band else None),
+            words.count(model.dofs),
+            words.seconds(reading.answer_seconds(model)),
         )
-        if validity(model) in ("no", "open"):
-            why = model.get("why_not") or "not valid for this scene"
-            reasons.append(Text(f"{VALID[validity(model)]:<4}{model_name(key)}: {why}"))
+    notes = [Text(note) for note in _notes(record, unresolved)]
+    reasons = [_reason(record, key, model) for key, model in record.models.items()]
+    return Group(table, *notes, *(reason for reason in reasons if reason is not None))
+
+
+def _notes(record: Record, unresolved: bool) -> list[str]:
+    """What the marks of the final table mean."""
     notes = []
+    reference = reading.reference_of(record)
     if reference:
         notes.append(
-            Text(
-                f"d: difference from the {model_name(reference)} (ref.); a beam's is taken with section ties on both sides"
-            )
+            f"d: difference from the {reading.model_name(record, reference)} (ref.); "
+            "a beam's is taken with section ties on both sides"
         )
-    if any(validity(m) == "open" for m in models.values()):
-        notes.append(Text("?: not judged, or too close to the tolerance to tell"))
+    if any(reading.validity(m) == "open" for m in record.models.values()):
+        notes.append("?: not judged, or too close to the tolerance to tell")
     if unresolved:
+        notes.append("n.r.: not resolved, the difference lies inside the bands of the two models")
+    if record.models:
         notes.append(
-            Text("n.r.: not resolved, the difference lies inside the bands of the two models")
+            "band: mesh uncertainty of the worst compliance; "
+            "time: building and solving, without the evidence"
         )
-    if table.row_count:
-        notes.append(
-            Text(
-                "band: mesh uncertainty of the worst compliance; time: building and solving, without the evidence"
-            )
-        )
-    if results.get("complete") is False:
-        notes.append(Text("INCOMPLETE: the run was interrupted; what is missing shows as a dash"))
-    return Group(table, *notes, *reasons)
+    if not record.complete:
+        notes.append("INCOMPLETE: the run was interrupted; what is missing shows as a dash")
+    return notes
 
 
-def _against_reference(results: Mapping, key: str, quantity: str) -> str:
+def _reason(record: Record, key: str, model: ModelRecord) -> Text | None:
+    """Why a model must not be trusted, or cannot be judged."""
+    worth = reading.validity(model)
+    if worth not in ("no", "open"):
+        return None
+    why = model.why_not or "not valid for this scene"
+    return Text(f"{VALID[worth]:<4}{reading.model_name(record, key)}: {why}")
+
+
+def _against_reference(record: Record, key: str, quantity: str) -> str:
     """The difference of a model from the reference, for one cell."""
-    if key == reference_of(results):
+    if key == reading.reference_of(record):
         return "ref."
-    row = headline(results, key, quantity)
+    row = reading.headline(record, key, quantity)
     if row is None:
         return NOTHING
-    return percent(row.get("relative")) if is_resolved(row) else NOT_RESOLVED
+    return words.percent(row.relative) if reading.is_resolved(row) else NOT_RESOLVED
 
 
-def closing_lines(results: Mapping) -> list[str]:
+def closing_lines(found: Record | Mapping[str, Any]) -> list[str]:
     """What else a reader must know: cautions, which modes were counted, seconds and peak memory
     (plain text).
     """
-    results = plain(results)
-    lines = [f"caution: {w}" for w in results.get("warnings") or ()]
-    trusted = (results.get("verdict") or {}).get("trust")
-    evidence = ((results.get("models") or {}).get(trusted) or {}).get("evidence") or {}
-    if evidence.get("complete"):
-        name, counted = model_name(trusted), evidence["complete"]
+    record = as_record(found)
+    lines = [f"caution: {w}" for w in record.warnings]
+    trusted = record.verdict.trust
+    counted = reading.model_of(record, trusted).evidence.complete
+    if counted:
+        name = reading.model_name(record, trusted)
         lines.append(f"{name[0].upper()}{name[1:]}: {counted[0].lower()}{counted[1:]}")
-    if is_number(results.get("seconds_total")):
-        peak = ""
-        if is_number(results.get("peak_mb")):
-            peak = f", peak memory {results['peak_mb']:.0f} MB"
-        if peak and is_number(results.get("expected_peak_mb")):
-            peak += f" ({results['expected_peak_mb']:.0f} MB estimated)"
-        lines.append(f"Solved in {seconds(results['seconds_total'])} s{peak}.")
+    if record.seconds_total is not None:
+        lines.append(f"Solved in {words.seconds(record.seconds_total)} s{_memory(record)}.")
     return lines
 
 
-def verdict_text(results: Mapping) -> str:
+def _memory(record: Record) -> str:
+    """Peak memory beside its estimate."""
+    if record.peak_mb is None:
+        return ""
+    peak = f", peak memory {record.peak_mb:.0f} MB"
+    if record.expected_peak_mb is not None:
+        peak += f" ({record.expected_peak_mb:.0f} MB estimated)"
+    return peak
+
+
+def verdict_text(found: Record | Mapping[str, Any]) -> str:
     """The verdict in plain words, one statement a line (plain text: print it without markup)."""
-    verdict = plain(results).get("verdict") or {}
-    if not verdict:
+    record = as_record(found)
+    verdict = record.verdict
+    if verdict == VerdictRecord():
         return "No verdict: the run did not get that far."
-    trusted = verdict.get("trust")
-    lines = [f"Trust: {model_name(trusted) if trusted else 'none of the models that ran'}"]
-    if is_number(verdict.get("tolerance")):
-        tolerance = f"{100 * verdict['tolerance']:.4g} %"
-        cheapest = verdict.get("cheapest")
-        name = model_name(cheapest) if cheapest else "none below the reference"
-        lines.append(f"Cheapest model within {tolerance}: {name}")
-    return "\n".join(lines + [f"- {s}" for s in verdict.get("sentences") or ()])
+    trusted = "none of the models that ran"
+    if verdict.trust:
+        trusted = reading.model_name(record, verdict.trust)
+    lines = [f"Trust: {trusted}"]
+    if verdict.tolerance is not None:
+        cheapest = "none below the reference"
+        if verdict.cheapest:
+            cheapest = reading.model_name(record, verdict.cheapest)
+        lines.append(f"Cheapest model within {100 * verdict.tolerance:.4g} %: {cheapest}")
+    return "\n".join(lines + [f"- {s}" for s in verdict.sentences])
 
 
 def matrix_table(matrix: np.ndarray | Sequence[Sequence[float | None]], kind: str) -> Table:
@@ -179,8 +175,8 @@ def matrix_table(matrix: np.ndarray | Sequence[Sequence[float | None]], kind: st
     -------
     rich.table.Table
     """
-    same, mixed, turn = BLOCK_UNITS[kind]
-    rows = plain(matrix) or [[None] * 6] * 6
+    same, mixed, turn = words.BLOCK_UNITS[kind]
+    rows = matrix.tolist() if hasattr(matrix, "tolist") else matrix
     table = Table(
         box=box.SIMPLE_HEAD, padding=0, pad_edge=False, title=f"{kind}, SI", title_justify="left"
     )
@@ -194,18 +190,18 @@ def matrix_table(matrix: np.ndarray | Sequence[Sequence[float | None]], kind: st
     return table
 
 
-def modes_table(modes: Sequence[Mapping]) -> Table:
+def modes_table(modes: Sequence[ModeRecord | Mapping[str, Any]]) -> Table:
     """Natural frequencies with names and multiplicity."""
     table = Table(box=box.SIMPLE_HEAD, pad_edge=False)
     table.add_column("mode")
     table.add_column("family")
     table.add_column("frequency, Hz", justify="right")
     table.add_column("shapes", justify="right")
-    for mode in plain(list(modes or ())):
+    for mode in map(ModeRecord.model_validate, modes):
         table.add_row(
-            Text(str(mode.get("name", NOTHING))),
-            Text(str(mode.get("family", NOTHING))),
-            hertz(mode.get("frequency_hz")),
-            str(mode.get("multiplicity") or 1),
+            Text(mode.name or NOTHING),
+            Text(mode.family or NOTHING),
+            words.hertz(mode.frequency_hz),
+            str(mode.multiplicity),
         )
     return table

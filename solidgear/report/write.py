@@ -6,7 +6,7 @@ import json
 import os
 from collections.abc import Callable
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from solidgear.errors import SolidgearError
 from solidgear.machine.whole_file import whole
@@ -14,6 +14,7 @@ from solidgear.report.folder import clear, held, prepare
 
 if TYPE_CHECKING:
     from solidgear.body import Body
+    from solidgear.evidence.record import Record
     from solidgear.solve.modes import ModeSet
     from solidgear.studies.comparison import Comparison
 
@@ -30,15 +31,15 @@ def write_all(
     """Write results.json, renders, vtu files and the report; see
     :meth:`solidgear.studies.comparison.Comparison.write_report`.
 
-    ``results`` gains ``files``, what was written beside it, and ``left_out``, a sentence for what
+    The record gains ``files``, what was written beside it, and ``left_out``, a sentence for what
     could not be drawn or written. After an interrupt there are numbers and a report, and no shapes:
     who has pressed Ctrl-C does not want to wait for them.
     """
     from solidgear.report.html import write_report
 
-    results = comparison.results
-    results["left_out"] = []
-    shapes = comparison.rungs if results["complete"] else {}
+    record = comparison.record
+    record.left_out = []
+    shapes = comparison.rungs if record.complete else {}
     with held(out) as folder:
         try:
             # Nothing of an earlier run must stand beside the numbers of this one, should it end
@@ -47,56 +48,51 @@ def write_all(
             (folder / "report.html").unlink(missing_ok=True)
             # Numbers first: whatever happens to pictures, they are there.  What is about to be
             # written is listed before it is.
-            results["files"] = [
+            record.files = [
                 "report.html",
                 *(f"modes_{m}.vtu" for m in shapes),
                 *(f"mode_{m}.png" for m in shapes if renders),
             ]
-            _write_json(folder / "results.json", results)
+            _write_json(folder / "results.json", record)
             for model, rung in shapes.items():
-                _try(
-                    results,
-                    f"vtu of {model}",
-                    _write_vtu,
-                    rung,
-                    folder / f"modes_{model}.vtu",
-                )
+                target = folder / f"modes_{model}.vtu"
+                _try(record, f"vtu of {model}", _write_vtu, rung, target)
             if renders and shapes:
                 progress("renders")
                 _draw(comparison, folder)
             progress("report")
-            results["files"] = [
-                name
-                for name in results["files"]
-                if name == "report.html" or (folder / name).exists()
+            record.files = [
+                name for name in record.files if name == "report.html" or (folder / name).exists()
             ]
-            _write_json(folder / "results.json", results)
-            write_report(results, folder)
+            _write_json(folder / "results.json", record)
+            write_report(record, folder)
         except OSError as error:
             raise SolidgearError(
-                f"--out {out}: writing stopped ({error.strerror or error}); files already there are whole"
+                f"--out {out}: writing stopped ({error.strerror or error}); "
+                "files already there are whole"
             ) from error
     return folder
 
 
-def _write_json(path: Path, data: dict) -> None:
+def _write_json(path: Path, record: Record) -> None:
+    text = json.dumps(record.as_dict(), indent=1, allow_nan=False)
     with whole(path) as partial:
-        partial.write_text(json.dumps(data, indent=1, allow_nan=False) + "\n", encoding="utf-8")
+        partial.write_text(text + "\n", encoding="utf-8")
 
 
-def _try(results: dict, what: str, action, *arguments) -> None:
+def _try(record: Record, what: str, action: Callable[..., None], *arguments: Any) -> None:
     """Run something the numbers do not depend on; a failure becomes a warning."""
     try:
         action(*arguments)
     except OSError:
         raise
     except Exception as error:
-        _leave_out(results, f"{what} left out: {error}")
+        _leave_out(record, f"{what} left out: {error}")
 
 
-def _leave_out(results: dict, sentence: str) -> None:
-    results["left_out"].append(sentence)
-    results["warnings"].append(sentence)
+def _leave_out(record: Record, sentence: str) -> None:
+    record.left_out.append(sentence)
+    record.warnings.append(sentence)
 
 
 def _write_vtu(rung, path: Path) -> None:
@@ -118,33 +114,40 @@ def _job(body, modes, name: str, path: Path):
     return RenderJob(body.surface(mode.vectors[0]), title, path)
 
 
-def _draw(comparison, folder: Path) -> None:
-    from solidgear.report.render import render_modes
+def _draw(comparison: Comparison, folder: Path) -> None:
+    from solidgear.report.render import RenderJob, render_modes
 
-    results, jobs = comparison.results, {}
+    record = comparison.record
+    jobs: dict[str, RenderJob] = {}
     for model, rung in comparison.rungs.items():
-        name = (
-            MODE
-            if rung.modes.named(MODE)
-            else next((m.name for m in rung.modes.modes if m.frequency_hz > 0), None)
-        )
+        name = _drawn_mode(rung.modes)
         if name is None:
             continue
         path = folder / f"mode_{model}.png"
         path.unlink(missing_ok=True)  # whoever made it, it must not pass for this run's
-        _try(
-            results,
-            f"render of {model}",
-            lambda m=model, r=rung, n=name, p=path: jobs.update({m: _job(r.body, r.modes, n, p)}),
-        )
+
+        def add(model=model, rung=rung, name=name, path=path) -> None:
+            jobs[model] = _job(rung.body, rung.modes, name, path)
+
+        _try(record, f"render of {model}", add)
     reasons: dict[str, list[str]] = {}
     for model, done in zip(jobs, render_modes(jobs.values())):
         if done.ok:
-            results["images"][model] = done.path.name
+            record.images[model] = done.path.name
         else:
             reasons.setdefault(done.reason, []).append(model)
     for reason, models in reasons.items():
-        _leave_out(results, f"render of {', '.join(models)} left out: {reason}")
+        _leave_out(record, f"render of {', '.join(models)} left out: {reason}")
+
+
+def _drawn_mode(modes: ModeSet) -> str | None:
+    """The mode that a report shows: first bending, else the lowest elastic one."""
+    if modes.named(MODE):
+        return MODE
+    for mode in modes.modes:
+        if mode.frequency_hz > 0:
+            return mode.name
+    return None
 
 
 def render_mode(body: Body, modes: ModeSet, name: str, path: str | os.PathLike) -> Path:
@@ -164,7 +167,8 @@ def render_mode(body: Body, modes: ModeSet, name: str, path: str | os.PathLike) 
         (done,) = render_modes([job])
     except OSError as error:  # the drawing process is handed its shape in a temporary file
         raise SolidgearError(
-            f"--out {path}: drawing stopped ({error.strerror or error}); free some space there and in the folder for temporary files"
+            f"--out {path}: drawing stopped ({error.strerror or error}); "
+            "free some space there and in the folder for temporary files"
         ) from error
     if not done.ok:
         raise SolidgearError(done.reason)

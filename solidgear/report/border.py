@@ -1,0 +1,54 @@
+"""Where a record comes in: the report reads typed records, whatever it is given."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from pydantic import ValidationError
+
+from solidgear.errors import SolidgearError
+from solidgear.evidence.record import SCHEMA, Record
+
+
+def as_record(found: Record | Mapping[str, Any], name: str = "the results") -> Record:
+    """A record as it is, and plain data, such as ``results.json`` has it, as a record.
+
+    Parameters
+    ----------
+    found : Record or mapping
+        Parts may be missing.  Plain data without a ``schema`` is taken for current.
+    name : str
+        What an error calls it.
+
+    Raises
+    ------
+    SolidgearError
+        For data of another version of the layout, or data that is no record.
+
+    Examples
+    --------
+    >>> as_record({"verdict": {"trust": "harmonic"}}).verdict.trust
+    'harmonic'
+    >>> as_record({"schema": 2}, "out/results.json")
+    Traceback (most recent call last):
+    solidgear.errors.SolidgearError: out/results.json: written by an older version of solidgear \
+(layout 2; this version reads 3); run solidgear compare again
+    """
+    if isinstance(found, Record):
+        return found
+    version = found.get("schema")
+    if version is not None and version != SCHEMA:
+        older = isinstance(version, int) and version < SCHEMA
+        raise SolidgearError(
+            f"{name}: written by {'an older' if older else 'another'} version of solidgear "
+            f"(layout {version}; this version reads {SCHEMA}); run solidgear compare again"
+        )
+    try:
+        return Record.model_validate(found)
+    except ValidationError as error:
+        first = error.errors()[0]
+        place = ".".join(str(part) for part in first["loc"])
+        raise SolidgearError(
+            f"{name}: {place} cannot be read ({first['msg']}); run solidgear compare again"
+        ) from None

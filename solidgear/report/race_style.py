@@ -1,0 +1,101 @@
+"""How the families and series of a race are drawn: colours, markers and names."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+from solidgear.evidence.pareto import Race
+
+#: of a family that is not listed
+GREY = "#777777"
+#: the reference itself and its band
+REFERENCE = "#00603f"
+#: families, in the order of the legend: name there, colour
+FAMILIES = {
+    "lumped": ("lumped", "#b3305c"),
+    "beam": ("beams", "#0072b2"),
+    "harmonic": ("harmonic solid", "#00805e"),
+    "tetrahedra": ("3D, tetrahedra", "#d08a00"),
+    "hexahedra": ("3D, hexahedra", "#5a3e8c"),
+}
+#: series without its grading -> marker
+MARKERS = {
+    "lumped": "P",
+    "Euler": "v",
+    "Timoshenko": "s",
+    "harmonic h": "o",
+    "harmonic p": "D",
+    "TET4": "<",
+    "TET10": "^",
+    "HEX8": "s",
+    "HEX20": "D",
+    "HEX27": "h",
+}
+#: families that have no mesh to refine: they do not converge to the reference
+SCATTERED = ("lumped", "beam")
+
+
+@dataclass(frozen=True)
+class Look:
+    """How a series is drawn: one of uniform meshes is dashed and pale."""
+
+    series: str
+    family: str
+
+    @property
+    def colour(self) -> str:
+        return FAMILIES[self.family][1] if self.family in FAMILIES else GREY
+
+    @property
+    def marker(self) -> str:
+        kind = self.series.removesuffix(" uniform").removesuffix(" graded")
+        return MARKERS.get(kind, "o")
+
+    @property
+    def uniform(self) -> bool:
+        return self.series.endswith("uniform")
+
+    @property
+    def converges(self) -> bool:
+        """Whether its levels refine one mesh."""
+        return self.family not in SCATTERED
+
+    @property
+    def width(self) -> float:
+        return 1.0 if self.uniform else 1.5
+
+    @property
+    def dashes(self) -> str:
+        return "--" if self.uniform else "-"
+
+    @property
+    def fill(self) -> Any:
+        """Inside of its markers; an empty one means like for like."""
+        from matplotlib.colors import to_rgb
+
+        if not self.uniform:
+            return self.colour
+        return tuple(0.35 * c + 0.65 for c in to_rgb(self.colour))
+
+    @property
+    def name(self) -> str:
+        """As the legend has it, under the name of the family."""
+        name = self.series.replace("harmonic ", "")
+        return name.replace("h ", "h, order 2, ").replace("p ", "p, order 1 up, ")
+
+
+def looks(race: Race) -> dict[str, list[Look]]:
+    """The series of a race by family, in the order of the legend."""
+    found: dict[str, list[Look]] = {family: [] for family in FAMILIES}
+    for row in race.rows:
+        look = Look(row.series, row.family)
+        same = found.setdefault(row.family, [])
+        if look not in same:
+            same.append(look)
+    return {family: series for family, series in found.items() if series}
+
+
+def family_name(family: str) -> str:
+    """As the legend has it."""
+    return FAMILIES[family][0] if family in FAMILIES else family

@@ -1,0 +1,117 @@
+"""What tables and charts read out of a record."""
+
+from __future__ import annotations
+
+from solidgear.evidence.record import DeviationRecord, ModelRecord, ModeRecord, Record
+from solidgear.evidence.ties import SCENE, SECTION
+from solidgear.report.words import NOTHING, is_number
+
+#: families of models, as the ladder has them
+LUMPED, BEAM = "lumped", "beam"
+
+
+def model_of(record: Record, key: str | None) -> ModelRecord:
+    """The record of a model; an empty one where there is none."""
+    return record.models.get(key or "") or ModelRecord()
+
+
+def model_name(record: Record, key: str | None) -> str:
+    """The name of a model in a sentence; one without a title is called by its key."""
+    return model_of(record, key).title or key or NOTHING
+
+
+def heading(record: Record, key: str) -> str:
+    """The name of a model at the head of a narrow column."""
+    model = model_of(record, key)
+    return model.short or model.title or key
+
+
+def is_beam(record: Record, key: str) -> bool:
+    """Whether a model is a beam."""
+    return model_of(record, key).family == BEAM
+
+
+def entry(matrix: list[list[float | None]] | None, i: int, j: int) -> float | None:
+    """One entry of a matrix; None if there is none."""
+    if matrix is None or i >= len(matrix) or j >= len(matrix[i]):
+        return None
+    return matrix[i][j]
+
+
+def first_mode(model: ModelRecord, family: str) -> ModeRecord | None:
+    """The lowest elastic mode of a family ('bending', 'axial', 'torsion'), or None."""
+    for mode in model.modes:
+        of_family = mode.family == family or mode.name.startswith(family)
+        elastic = not mode.name.startswith("rigid")
+        if of_family and elastic and mode.frequency_hz is not None:
+            return mode
+    return None
+
+
+def first_frequency(model: ModelRecord, family: str) -> float | None:
+    """The frequency of `first_mode`, Hz."""
+    mode = first_mode(model, family)
+    return mode.frequency_hz if mode else None
+
+
+def headline(record: Record, model: str, quantity: str) -> DeviationRecord | None:
+    """The deviation that stands for a model where there is room for one.
+
+    A beam has no seat surface: its fair partner is the solid with section ties. A solid is compared
+    as the scene has it.
+    """
+    rows = [r for r in record.deviations if r.model == model and r.quantity == quantity]
+    wanted = SECTION if is_beam(record, model) else SCENE
+    for row in rows:
+        if row.attachment == wanted:
+            return row
+    return rows[0] if rows else None
+
+
+def is_resolved(row: DeviationRecord) -> bool:
+    """Whether a deviation may be read as one: False only where it lies inside the bands of the
+    models compared.
+    """
+    if row.verdict is not None:
+        return row.verdict != "not resolved"
+    if row.band is None or row.relative is None:
+        return True
+    return abs(row.relative) > row.band
+
+
+def answer_seconds(model: ModelRecord) -> float | None:
+    """What an answer costs: building and solving. Bands and variants are evidence on top, and in
+    the total only.
+    """
+    total = 0.0
+    for stage in ("build", "statics", "modes"):
+        spent = model.seconds.get(stage)
+        if spent is None:
+            return model.seconds.get("total")
+        total += spent
+    return total
+
+
+def validity(model: ModelRecord) -> str:
+    """``yes``, ``no``, ``open`` (not judged, or too close to the tolerance) or ``unknown`` where
+    the record says nothing.
+    """
+    if model.valid is True:
+        return "yes"
+    if model.open:
+        return "open"
+    return "no" if model.valid is False else "unknown"
+
+
+def reference_of(record: Record) -> str | None:
+    """The key of the model that the others are measured against."""
+    if record.verdict.reference:
+        return record.verdict.reference
+    return record.mac.reference if record.mac else None
+
+
+def relative_change(value: float | None, base: float | None) -> float | None:
+    """`value` over `base` less one; None where either is missing, or the base is zero."""
+    if not is_number(value) or not is_number(base) or base == 0:
+        return None
+    return value / base - 1
