@@ -83,6 +83,13 @@ def rubin(body: Body, n: int = 30, ports: PortChoice | None = None, steps: int =
     ------
     SolidgearError
         For a port the body does not have, or numbers that are not.
+
+    Examples
+    --------
+    >>> import solidgear as sg
+    >>> part = sg.rubin(sg.build(sg.load("geometry/shaft_stepped.toml"), "timoshenko"), n=10)
+    >>> part.kind, part.rigid
+    ('rubin', 6)
     """
     if n < 1 or steps < 0:
         raise SolidgearError(

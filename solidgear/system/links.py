@@ -49,6 +49,16 @@ class BearingSpring:
         Symmetric positive semidefinite, in the axes and at the point of `at`, SI.
     to : str, optional
         The other port, whose part is carried rigidly to the point of the first; ground without it.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import solidgear as sg
+    >>> flywheel = sg.RigidBody(np.diag([2.0, 2.0, 2.0, 0.01, 0.02, 0.01]), {"hub": (0, 0, 0)})
+    >>> held = sg.BearingSpring("flywheel.hub", np.diag([8e6, 8e6, 8e6, 0.0, 0.0, 0.0]))
+    >>> modes = sg.System({"flywheel": flywheel}, {"bearing": held}).modes(6)
+    >>> np.round(modes.frequency_hz * 2 * np.pi)  # three rotations are free; sqrt(8e6 / 2) = 2000
+    array([   0.,    0.,    0., 2000., 2000., 2000.])
     """
 
     at: str
@@ -91,6 +101,13 @@ class RowSpring:
         Ground without it.
     to_row : array_like, optional
         By default ``row``.
+
+    Examples
+    --------
+    >>> import solidgear as sg
+    >>> diagonal = sg.RowSpring("shaft.end", [1, 0, 1, 0, 0, 0], 1e6)  # resists x + z
+    >>> diagonal.ends
+    ('shaft.end',)
     """
 
     at: str
@@ -133,6 +150,21 @@ def torsion_spring(at: str, stiffness: float, to: str | None = None, dof: str = 
     to : str, optional
     dof : str
         Which of x y z thx thy thz, in each port's own axes.
+
+    Raises
+    ------
+    SolidgearError
+        For another name of a motion.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import solidgear as sg
+    >>> engine, load = sg.Inertia(0.02, "thy"), sg.Inertia(0.08, "thy")
+    >>> coupling = sg.torsion_spring("engine", 1.6e4, "load")
+    >>> modes = sg.System({"engine": engine, "load": load}, {"coupling": coupling}).modes(2)
+    >>> np.round(modes.frequency_hz * 2 * np.pi)  # sqrt(1.6e4 (1 / 0.02 + 1 / 0.08)) = 1000
+    array([   0., 1000.])
     """
     if dof not in DOF_NAMES:
         raise SolidgearError(f"a spring in {dof!r}; its motion is one of {' '.join(DOF_NAMES)}")
@@ -153,6 +185,14 @@ def mesh_spring(
     stiffness : float
         N/m.
 
+    Examples
+    --------
+    >>> import solidgear as sg
+    >>> down = sg.MeshVector([0, 0, -1], [0.05, 0, 0])  # at a lever of 50 mm
+    >>> mesh = sg.mesh_spring("pinion.pinion", down, "gear.gear", down, 4e8)
+    >>> mesh.ends
+    ('pinion.pinion', 'gear.gear')
+
     References
     ----------
     Hua (2010), equations 21 to 23.
@@ -169,6 +209,14 @@ class PortInertia:
     at : str
     matrix : (6, 6) array_like
         Symmetric positive semidefinite, in the axes and at the point of the port.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import solidgear as sg
+    >>> blank = sg.PortInertia("shaft.pinion", np.diag([4.0, 4.0, 4.0, 0.02, 0.03, 0.02]))
+    >>> blank.ends
+    ('shaft.pinion',)
     """
 
     at: str
@@ -231,6 +279,12 @@ def grounded(part: str, supports) -> dict[str, Link]:
     dict of str to Link
         One a bearing, called ``part.port``, none for a bearing without stiffness, which is a free
         station; or ``part.bearings`` for all where they act on one another.
+
+    Examples
+    --------
+    >>> import solidgear as sg
+    >>> list(sg.grounded("shaft", sg.load("geometry/shaft_stepped.toml")))
+    ['shaft.A', 'shaft.B']
     """
     supports = as_supports(supports)
     ends = tuple(f"{part}.{name}" for name in supports.ports)

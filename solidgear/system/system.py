@@ -60,6 +60,16 @@ class System:
     ------
     SolidgearError
         For a name twice, an end that is not there, or a mass that is not positive definite.
+
+    Examples
+    --------
+    >>> import solidgear as sg
+    >>> scene = sg.load("geometry/shaft_stepped.toml")
+    >>> shaft = sg.rubin(sg.build(scene, "timoshenko"))
+    >>> system = sg.System({"shaft": shaft}, sg.grounded("shaft", scene))
+    >>> first = sg.modes(sg.build(scene, "timoshenko"), scene, 4).named("bending 1").frequency_hz
+    >>> bool(min(abs(system.modes(6).frequency_hz / first - 1)) < 1e-8)
+    True
     """
 
     parts: Mapping[str, Part]
