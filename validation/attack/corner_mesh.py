@@ -38,7 +38,13 @@ class CornerMesh:
     segment: np.ndarray
 
 
-def corner_mesh(scene: Scene, layers: int, size: float, ratio: float) -> CornerMesh:
+class TooFine(ValueError):
+    """A mesh of more cells than were allowed."""
+
+
+def corner_mesh(
+    scene: Scene, layers: int, size: float, ratio: float, most: int = 10_000
+) -> CornerMesh:
     """Mesh of a scene with `layers` corner cuts at every singular vertex.
 
     Parameters
@@ -49,6 +55,13 @@ def corner_mesh(scene: Scene, layers: int, size: float, ratio: float) -> CornerM
         Longest edge of a cell in outer radii of the shaft where it lies.
     ratio : float
         Size of a copy relative to the cell it is cut from.
+    most : int
+        Cells before corners are cut.
+
+    Raises
+    ------
+    TooFine
+        If it takes more cells.
     """
     least = min(min(s.outer0, s.outer1) for s in scene.segments)
     # one cell where one will do: all that is asked of this mesh is that it knows the outline
@@ -70,7 +83,7 @@ def corner_mesh(scene: Scene, layers: int, size: float, ratio: float) -> CornerM
     def longest(y: float) -> float:
         return size * max(_radii(scene, y, below)[1] for below in (True, False))
 
-    mesh = _spread(mesh, corners, longest)
+    mesh = _spread(mesh, corners, longest, most)
     for _ in range(layers):
         mesh = _cut(mesh, corners, ratio)
     return mesh
@@ -124,7 +137,9 @@ def _vertices(points, wanted, tol) -> np.ndarray:
 
 # ------------------------------------------------------------------------------------------------
 # - chords
-def _spread(mesh: CornerMesh, corners: np.ndarray, longest: Callable[[float], float]) -> CornerMesh:
+def _spread(
+    mesh: CornerMesh, corners: np.ndarray, longest: Callable[[float], float], most: int
+) -> CornerMesh:
     """Split chords until cells are small enough, have one singular vertex at most, and are not
     too slender there.
     """
@@ -133,6 +148,8 @@ def _spread(mesh: CornerMesh, corners: np.ndarray, longest: Callable[[float], fl
         found = _worst_edge(mesh, special, longest)
         if found is None:
             return mesh
+        if len(mesh.cells) > most:
+            raise TooFine(f"the mesh of the meridian takes more than {most} cells")
         mesh = _split_chord(mesh, *found)
     raise ValueError("the mesh of the meridian does not settle")
 

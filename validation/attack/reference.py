@@ -32,7 +32,7 @@ from solidgear.machine.whole_file import whole
 from solidgear.scene import Ask, Scene
 from solidgear.solve.modes import modes
 from solidgear.solve.statics import condense
-from validation.attack.corner_mesh import corner_mesh
+from validation.attack.corner_mesh import TooFine, corner_mesh
 from validation.attack.spectral import spectral
 
 FOLDER = Path(__file__).resolve().parent.parent / "results" / "attack" / "reference"
@@ -117,7 +117,10 @@ def reference(
     start = time.process_time()
     for level in range(first, len(LEVELS)):
         order, layers = LEVELS[level]
-        mesh = corner_mesh(scene, layers, SIZE, RATIO)
+        try:
+            mesh = corner_mesh(scene, layers, SIZE, RATIO, limit // (3 * (order + 2) ** 2))
+        except TooFine:
+            break
         # without the lightest level there is nothing to judge by; the others are worth less
         if 3 * len(mesh.cells) * (order + 2) ** 2 > (limit if level == 0 else limit // 2):
             break
