@@ -107,7 +107,8 @@ def main() -> int:
     parser.add_argument("--relative", type=float, default=1e-12)
     options = parser.parse_args()
     wrong = 0
-    for scene in sorted((ROOT / "geometry").glob(f"*{options.only}*.toml")):
+    scenes = sorted((ROOT / "geometry").glob("*.toml"))
+    for scene in (s for s in scenes if options.only in s.stem):
         with tempfile.TemporaryDirectory() as one, tempfile.TemporaryDirectory() as two:
             before = results(options.before.resolve(), scene, Path(one))
             after = results(ROOT, scene, Path(two))
