@@ -45,6 +45,7 @@ _WHERE = {
     "torsion_spring": "solidgear.system",
     "condense": "solidgear.solve.statics",
     "modes": "solidgear.solve.modes",
+    "answer": "solidgear.studies.answering",
     "compare": "solidgear.studies.comparison",
     "SolidgearError": "solidgear.errors",
     "SceneError": "solidgear.errors",
@@ -71,6 +72,7 @@ __all__ = [
     "Supports",
     "System",
     "__version__",
+    "answer",
     "build",
     "compare",
     "condense",
@@ -94,6 +96,7 @@ if TYPE_CHECKING:
     from solidgear.scene.file import load
     from solidgear.solve.modes import modes
     from solidgear.solve.statics import condense
+    from solidgear.studies.answering import answer
     from solidgear.studies.comparison import compare
     from solidgear.system import (
         BearingSpring,

@@ -75,6 +75,7 @@ def renamed(record: dict) -> dict:
             model["convergence"] = {"levels": levels, "quantities": each}
     for variants in out["attachments"].values():
         for name, found in variants.items():
+            found = {k: v for k, v in found.items() if v is not None}
             variants[name] = _gathered(found, "c_zz", "k_zz", "bending_1_hz")
     out["causes"] = [_gathered(cause, "c_zz", "k_zz", "bending_1") for cause in out["causes"]]
     for lumped in out["lumped"].values():

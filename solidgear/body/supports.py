@@ -105,6 +105,22 @@ class Supports:
         """
         return Supports(self.ports, self.stiffness, (attachment,) * len(self.ports))
 
+    def on(self, components: Iterable[int]) -> Supports:
+        """The same springs on some components of the ports only; couplings to others are left out.
+
+        Parameters
+        ----------
+        components : iterable of int
+            Of x y z thx thy thz, by place.
+
+        Returns
+        -------
+        Supports
+        """
+        keep = np.tile(np.isin(np.arange(6), list(components)), len(self.ports))
+        stiffness = np.where(np.outer(keep, keep), self.stiffness, 0.0)
+        return Supports(self.ports, stiffness, self.attachments)
+
     def unresisted(self, body: Body) -> np.ndarray:
         """Rigid motions about the origin that no spring resists.
 

@@ -25,6 +25,7 @@ if _hears:
 
 
 from solidgear.cli import (
+    answer,
     chart,
     solve,
     sweep,

@@ -37,16 +37,17 @@ COUPLINGS = {"C_z,thx": ("C_zz", "C_thx"), "K_z,thx": ("K_zz", "K_thx")}
 JUDGED = ("C_zz", "C_z,thx", "C_thx", "C_yy", "bending 1", "axial 1")
 
 
-def measure(condensed: Condensed, modes: ModeSet) -> dict[str, float]:
+def measure(condensed: Condensed | None, modes: ModeSet | None) -> dict[str, float]:
     """The compared numbers of one solution; those that do not exist (free motions, missing modes)
-    are left out.
+    or were not solved (None) are left out.
     """
     out = {}
     for name, (kind, place, _) in QUANTITIES.items():
+        value = np.nan
         if isinstance(place, str):
-            mode = modes.named(place)
+            mode = modes.named(place) if modes is not None else None
             value = mode.frequency_hz if mode else np.nan
-        else:
+        elif condensed is not None:
             value = getattr(condensed, kind)[place]
         if np.isfinite(value) and (value != 0.0 or name in COUPLINGS):
             out[name] = float(value)

@@ -57,6 +57,7 @@ def harmonic(
     size: float | None = None,
     refinement: float = 1.0,
     attachments: tuple[str, ...] | None = None,
+    families: tuple[str, ...] | None = None,
     ovalising: tuple[int, ...] = (),
 ) -> Body:
     """Free harmonic solid of a scene.
@@ -80,6 +81,10 @@ def harmonic(
     attachments : tuple of str, optional
         Attachments to build for every station, the first being the default one; by
         default what the scene says.
+    families : tuple of str, optional
+        Which of bending, axial and torsion to build; all by default. A body without one of them
+        knows nothing of its motions, and must be given supports that do not couple it
+        (:meth:`solidgear.body.Supports.on`).
     ovalising : tuple of int
         Further harmonics n >= 2 to build at once; they carry no port motion.  Others are built when modes need them.
 
@@ -102,10 +107,17 @@ def harmonic(
     }
     given = checked(
         "harmonic",
-        {"order": order, **grading, "attachments": attachments, "ovalising": ovalising},
+        {
+            "order": order,
+            **grading,
+            "attachments": attachments,
+            "families": families,
+            "ovalising": ovalising,
+        },
         HARMONIC_OPTIONS,
     )
     attachments, ovalising = given["attachments"], given["ovalising"]
+    families = given["families"]
     plan = harmonic_layout(scene, attachments, **grading)
     flat = meridian(scene, plan)
     mesh = MeshQuad1(flat.points, flat.cells, sort_t=False)
@@ -118,13 +130,15 @@ def harmonic(
             ports.append(Port(station.name, station.y, attachment))
             wanted.append((station, attachment))
 
-    bending = work.bending_block("bending_z", (2, 3), 1, wanted)
-    blocks = [
-        bending,
-        bending.mirrored("bending_x", (0, 5), 0, (1.0, -1.0)),
-        work.bending_block("axial", (1,), 0, wanted),
-        work.torsion_block(wanted),
-    ]
+    chosen = families or HARMONIC_OPTIONS["families"].choices
+    blocks = []
+    if "bending" in chosen:
+        bending = work.bending_block("bending_z", (2, 3), 1, wanted)
+        blocks += [bending, bending.mirrored("bending_x", (0, 5), 0, (1.0, -1.0))]
+    if "axial" in chosen:
+        blocks.append(work.bending_block("axial", (1,), 0, wanted))
+    if "torsion" in chosen:
+        blocks.append(work.torsion_block(wanted))
     blocks += [work.bending_block(f"ovalising_{n}", (), n, wanted) for n in ovalising]
     facts = {
         "element": f"Q{order}",

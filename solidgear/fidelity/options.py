@@ -25,7 +25,7 @@ class Option:
     Attributes
     ----------
     meaning : str
-    kind : {'number', 'whole', 'choice', 'flag', 'harmonics', 'attachments'}
+    kind : {'number', 'whole', 'choice', 'flag', 'harmonics', 'several'}
     least, most : float, optional
         Limits that may be met.
     above, below : float, optional
@@ -64,7 +64,7 @@ _REFINEMENT = Option(
 )
 _TIES = Option(
     "attachments to build at every station, the default one first",
-    "attachments",
+    "several",
     choices=ATTACHMENTS,
     optional=True,
 )
@@ -136,6 +136,12 @@ HARMONIC_OPTIONS = {
     "size": _SIZE,
     "refinement": _REFINEMENT,
     "attachments": _TIES,
+    "families": Option(
+        "families of motion to build; what needs the others is then not answered",
+        "several",
+        choices=("bending", "axial", "torsion"),
+        optional=True,
+    ),
     "ovalising": Option(
         "further harmonics, that is waves around",
         "harmonics",
@@ -279,7 +285,7 @@ def _usable_harmonics(model: str, name: str, value: Any, option: Option) -> tupl
     )
 
 
-def _usable_attachments(model: str, name: str, value: Any, option: Option) -> tuple[str, ...]:
+def _usable_several(model: str, name: str, value: Any, option: Option) -> tuple[str, ...]:
     values = tuple(value) if isinstance(value, (tuple, list)) else (value,)
     if (
         values
@@ -299,7 +305,7 @@ _USABLE = {
     "choice": _usable_choice,
     "flag": _usable_flag,
     "harmonics": _usable_harmonics,
-    "attachments": _usable_attachments,
+    "several": _usable_several,
 }
 
 

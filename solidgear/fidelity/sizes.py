@@ -84,13 +84,15 @@ def harmonic_size(scene: Shaft, given: Mapping[str, Any]) -> Size:
     inner_vertices = vertices - (edges - inner_edges)
     pairs = int(cells * (order + 1) ** 4 - inner_edges * (order + 1) ** 2 + inner_vertices)
     axis = order * int(plan.solid_rows.sum()) + int((np.diff(np.r_[0, plan.solid_rows]) > 0).sum())
-    # components, conditions on the axis; bending, axial motion, torsion and all further waves
-    blocks = [(3, 2), (2, 1), (1, 0)] + [(3, 3)] * len(given["ovalising"])
-    sizes = [(c, c * n - on_axis * axis, c * c * pairs) for c, on_axis in blocks]
-    unknowns, entries = (
-        sizes[0][1] + sum(size for _, size, _ in sizes),
-        sum(nnz for *_, nnz in sizes),
-    )
+    # components, conditions on the axis, motions of a port; all further waves move none
+    known = {"bending": (3, 2, 2), "axial": (2, 1, 1), "torsion": (1, 0, 1)}
+    blocks = [known[family] for family in given["families"] or known]
+    blocks += [(3, 3, 0)] * len(given["ovalising"])
+    sizes = [(c, c * n - on_axis * axis, c * c * pairs) for c, on_axis, _ in blocks]
+    entries = sum(nnz for *_, nnz in sizes)
+    # the other bending plane has the same matrices and unknowns of its own
+    twice = sum(size for (*_, motions), (_, size, _) in zip(blocks, sizes) if motions == 2)
+    unknowns = twice + sum(size for _, size, _ in sizes)
     built = (18.2 * entries + 300.0 * unknowns) / MB + min(35.0, 12.0 * entries / MB)
     held = peak = 0.0
     for c, size, nnz in sizes:
@@ -102,7 +104,7 @@ def harmonic_size(scene: Shaft, given: Mapping[str, Any]) -> Size:
     solved = (
         16.0
         * _ports(scene, given)
-        * sum(motions * size for motions, (_, size, _) in zip((2, 1, 1), sizes))
+        * sum(motions * size for (*_, motions), (_, size, _) in zip(blocks, sizes))
         / MB
     )
     lower = (
@@ -112,7 +114,7 @@ def harmonic_size(scene: Shaft, given: Mapping[str, Any]) -> Size:
     return Size(
         int(unknowns),
         int(entries),
-        int(max(cells * (order + 1) ** 4, sizes[0][2])),
+        int(max(cells * (order + 1) ** 4, max(nnz for *_, nnz in sizes))),
         float(built),
         float(built + peak + solved),
         lower,

@@ -47,7 +47,7 @@ def decoupled(body: Body, supports: Supports, tolerance: float) -> tuple[np.ndar
     if not supports.ports or len(body.blocks) == 1:
         return k, 0.0
     owner = {c: b for b, block in enumerate(body.blocks) for c in block.components}
-    of = np.array([owner[c] for c in list(range(6)) * len(supports.ports)])
+    of = np.array([owner.get(c, -1) for c in list(range(6)) * len(supports.ports)])
     same = of[:, None] == of[None, :]
     kept, removed = np.where(same, k, 0.0), np.where(same, 0.0, k)
     if not removed.any():

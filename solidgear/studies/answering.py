@@ -1,0 +1,195 @@
+"""The cheapest answer to a question, with an error that it can be held to.
+
+A solid is solved on ever finer meshes until the band of every quantity asked for
+(:mod:`solidgear.evidence.bands`) is within the tolerance; only the families of motion that the
+question needs are built, statics only if a compliance or a stiffness is asked for, modes only if a
+frequency is.  A beam has no error of its own to show: what it lacks is known from a solid only,
+whose two coarsest meshes cost about as much as the beam, so they are the answer as well.  Rungs
+that were passed over, and why, are part of the answer.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+import time
+from collections.abc import Iterable
+from dataclasses import asdict, dataclass
+from typing import TYPE_CHECKING, Any
+
+from solidgear.errors import SolidgearError, nearest, show
+from solidgear.evidence.quantities import JUDGED, QUANTITIES
+from solidgear.fidelity.ladder import LADDER
+from solidgear.fidelity.rung import BEAM, SOLID
+from solidgear.machine.memory import one_run
+from solidgear.machine.threads import pinned
+from solidgear.studies.climb import Climb, Progress, Step, Value
+
+if TYPE_CHECKING:
+    from solidgear.scene import Scene
+
+#: short words for quantities
+WORDS = {"bending": "bending 1", "axial": "axial 1", "torsion": "torsion 1"}
+#: below this, rounding of stiffness matrices decides what an answer is worth
+LEAST_TOLERANCE = 1e-9
+
+
+@dataclass(frozen=True)
+class Answered:
+    """An answer and the way to it.
+
+    Attributes
+    ----------
+    scene : str
+    tolerance : float
+    values : tuple of Value
+        In the order asked for.
+    steps : tuple of Step
+    reached : bool
+        Whether every bar is within the tolerance.
+    rung : str
+        That the values come from.
+    missing : tuple of str
+        Quantities that do not exist for this scene, such as the compliance of a free motion.
+    seconds : float
+    """
+
+    scene: str
+    tolerance: float
+    values: tuple[Value, ...]
+    steps: tuple[Step, ...]
+    reached: bool
+    rung: str
+    missing: tuple[str, ...]
+    seconds: float
+
+    def __getitem__(self, quantity: str) -> float:
+        return next(v.value for v in self.values if v.quantity == quantity)
+
+    @property
+    def bar(self) -> float:
+        """The largest bar; infinite where nothing that was asked for exists."""
+        return max((v.bar for v in self.values), default=math.inf)
+
+    def as_dict(self) -> dict[str, Any]:
+        """Plain data."""
+        out = asdict(self)
+        for row in (*out["values"], *out["steps"]):
+            if row["bar"] is not None and not math.isfinite(row["bar"]):
+                row["bar"] = None
+        return out
+
+
+@pinned
+def answer(
+    scene: Scene,
+    tol: float | None = None,
+    ask: Iterable[str] | str = (),
+    *,
+    progress: Progress = lambda _: None,
+) -> Answered:
+    """Numbers within a tolerance, from the cheapest rung and mesh that can show it.
+
+    Parameters
+    ----------
+    scene : Scene
+    tol : float, optional
+        Relative error that every quantity may have; by default the tolerance of the scene.
+    ask : str or iterable of str, optional
+        Quantities (:data:`solidgear.evidence.quantities.QUANTITIES`), or ``bending``, ``axial``,
+        ``torsion`` for the first frequency of a family; by default those the scene asks for.
+    progress : callable
+        Called with a sentence at every step.
+
+    Returns
+    -------
+    Answered
+        After the last mesh that could be solved; ``reached`` says whether it will do.
+
+    Raises
+    ------
+    SolidgearError
+        For a tolerance that is none or that arithmetic does not allow, an unknown quantity, or a
+        scene that no rung can answer.
+
+    Examples
+    --------
+    >>> import solidgear as sg
+    >>> scene = sg.load("geometry/shaft_stepped.toml")
+    >>> found = sg.answer(scene, tol=0.01, ask=["C_zz"])
+    >>> found.reached, found.rung, found.bar <= 0.01
+    (True, 'harmonic', True)
+    """
+    start = time.perf_counter()
+    tol = _tolerance(scene.ask.tolerance if tol is None else tol)
+    wanted = _quantities(scene, ask)
+    steps = [
+        Step(
+            name,
+            "",
+            False,
+            "has no error of its own to show; the coarsest solid, which could tell it, "
+            "costs as much and is better",
+        )
+        for name in LADDER.of(BEAM)
+    ]
+    with one_run():
+        for name in LADDER.of(SOLID):
+            rung = LADDER[name]
+            climb = Climb(scene, rung, wanted, tol, progress)
+            try:
+                climb.run()
+            except (SolidgearError, MemoryError) as error:
+                if not climb.levels:
+                    steps.append(Step(name, "", False, str(error) or "not enough memory"))
+                    continue
+                climb.stop(str(error) or "not enough memory")
+            steps += climb.steps
+            values = climb.values()
+            known = {v.quantity for v in values}
+            return Answered(
+                scene.name,
+                tol,
+                values,
+                tuple(steps),
+                bool(values) and all(v.bar <= tol for v in values),
+                name,
+                tuple(q for q in wanted if q not in known),
+                time.perf_counter() - start,
+            )
+    raise SolidgearError(
+        f"no model can answer: {'; '.join(s.why for s in steps if s.setting == '')}"
+    )
+
+
+def _tolerance(tol: float) -> float:
+    usable = isinstance(tol, (int, float)) and not isinstance(tol, bool) and math.isfinite(tol)
+    if not usable or not 0 < tol <= 1:
+        raise SolidgearError(
+            f"tol = {show(tol)} is not usable; give a number above 0 and at most 1"
+        )
+    if tol < LEAST_TOLERANCE:
+        raise SolidgearError(
+            f"tol = {tol:g} is below what arithmetic of sixteen digits allows; "
+            f"give at least {LEAST_TOLERANCE:g}"
+        )
+    return float(tol)
+
+
+def _quantities(scene: Scene, ask: Iterable[str] | str) -> tuple[str, ...]:
+    # C_z,thx has a comma of its own
+    given = re.split(r",(?!\s*thx)", ask) if isinstance(ask, str) else list(ask)
+    given = [name.strip() for name in given if name.strip()]
+    if not given:
+        return tuple(scene.ask.quantities or JUDGED)
+    out = []
+    for name in given:
+        word = WORDS.get(name, name.replace("_1", " 1").replace("_2", " 2"))
+        if word not in QUANTITIES:
+            known = (*QUANTITIES, *WORDS)
+            raise SolidgearError(
+                f"ask: there is no quantity {show(name, 40)}{nearest(name, known)}; "
+                f"there are {', '.join(known)}"
+            )
+        out.append(word)
+    return tuple(dict.fromkeys(out))

@@ -1,0 +1,259 @@
+"""One solid on ever finer meshes, until the bands of what is asked are within a tolerance."""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any
+
+from solidgear.body import Body, as_supports
+from solidgear.evidence.bands import Band, layered_bands
+from solidgear.evidence.quantities import QUANTITIES, measure
+from solidgear.fidelity import build
+from solidgear.fidelity.rung import Rung
+from solidgear.solve.modes import ModeSet, modes
+from solidgear.solve.naming import FAMILIES
+from solidgear.solve.statics import Condensed, condense
+from solidgear.solve.supported import decoupled, groups
+
+if TYPE_CHECKING:
+    from solidgear.scene import Scene
+
+Progress = Callable[[str], None]
+
+#: modes that hold the first of every family of anything that looks like a shaft
+ENOUGH = 10
+#: couplings by bearings may be left out where they move nothing by more than this part of the
+#: tolerance
+COUPLING = 0.01
+#: options of a mesh that are told, and how
+SETTINGS = {"order": "order", "layers": "layers", "around": "cells around"}
+#: a frequency that rises with a finer mesh, by more than the eigensolver leaves, is rounding: the
+#: bar is this many times the rise
+RISE = 2.0
+
+
+@dataclass(frozen=True)
+class Value:
+    """A number with its bar.
+
+    Attributes
+    ----------
+    quantity, unit : str
+    value : float
+        SI.
+    bar : float
+        Relative; of couplings, to the geometric mean of their diagonal entries. Infinite where
+        nothing is known.
+    how : str
+        Where the bar comes from.
+    """
+
+    quantity: str
+    value: float
+    unit: str
+    bar: float
+    how: str
+
+
+@dataclass(frozen=True)
+class Step:
+    """Something that was tried, or passed over.
+
+    Attributes
+    ----------
+    rung : str
+    setting : str
+        Of the mesh, in words.
+    valid : bool
+        Whether it could be an answer at all.
+    why : str
+        Why it was passed over, or what came after it.
+    bar : float or None
+        The largest over the quantities asked for; None where there is none yet.
+    unknowns : int or None
+    seconds : float
+    chosen : bool
+    """
+
+    rung: str
+    setting: str
+    valid: bool
+    why: str = ""
+    bar: float | None = None
+    unknowns: int | None = None
+    seconds: float = 0.0
+    chosen: bool = False
+
+
+def _family_of(quantity: str) -> str:
+    """The family of motion that a quantity belongs to."""
+    _, place, _ = QUANTITIES[quantity]
+    if isinstance(place, str):
+        return place.split()[0]
+    return next(name for name, components in FAMILIES.items() if set(place) <= set(components))
+
+
+@dataclass(frozen=True)
+class Level:
+    """Numbers of one mesh, and what the solver may have left in each."""
+
+    quantities: dict[str, float]
+    solver: dict[str, float]
+
+
+class Climb:
+    """One solid on ever finer meshes."""
+
+    def __init__(
+        self,
+        scene: Scene,
+        rung: Rung,
+        wanted: tuple[str, ...],
+        tol: float,
+        progress: Progress,
+    ):
+        self.scene, self.rung, self.wanted, self.tol = scene, rung, wanted, tol
+        self.progress = progress
+        self.levels: list[Level] = []
+        self.steps: list[Step] = []
+        self.bands: dict[str, Band] = {}
+        self.families: tuple[str, ...] | None = None
+
+    def run(self) -> None:
+        """Climb until every band is within the tolerance, or there is no finer mesh."""
+        assert self.rung.meshes is not None  # as every solid
+        plan = self.rung.meshes({})
+        for level in plan.levels:
+            start = time.perf_counter()
+            self.progress(f"{self.rung.title}: {_words(level)}")
+            body = self._body(level)
+            self.levels.append(self._level(body))
+            if len(self.levels) == 1:
+                self.families = self._needed(body)
+            bar = self.judge()
+            self.steps.append(
+                Step(
+                    self.rung.name,
+                    _words(level),
+                    True,
+                    "",
+                    bar,
+                    body.size,
+                    time.perf_counter() - start,
+                )
+            )
+            if len(self.levels) == 2 and not self.values():
+                self._choose("nothing that was asked for exists in this scene")
+                return
+            if bar is not None and bar <= self.tol:
+                self._choose("")
+                return
+        self._choose("no finer mesh is calibrated")
+
+    def stop(self, why: str) -> None:
+        """End with what there is."""
+        self._choose(f"the next mesh could not be solved: {why}")
+
+    def values(self) -> tuple[Value, ...]:
+        """What was asked for, from the finest mesh."""
+        finest = self.levels[-1].quantities
+        out = []
+        for name in self.wanted:
+            if name in finest:
+                bar = self.bar(name)
+                how = f"{len(self.levels)} meshes" if math.isfinite(bar) else "one mesh only"
+                out.append(Value(name, finest[name], QUANTITIES[name][2], bar, how))
+        return tuple(out)
+
+    def _body(self, level: Mapping[str, Any]) -> Body:
+        options = dict(level)
+        if self.families is not None and "families" in self.rung.options:
+            options["families"] = self.families
+        return build(self.scene, self.rung.name, **options)
+
+    def _needed(self, body: Body) -> tuple[str, ...] | None:
+        """Families that the question is about, and those that bearings couple to them."""
+        if len(body.blocks) < len(FAMILIES):
+            return None  # one block holds all motions
+        supports = as_supports(self.scene)
+        spring, _ = decoupled(body, supports, COUPLING * self.tol)
+        asked = {_family_of(q) for q in self.wanted}
+        out: set[str] = set()
+        for group in groups(body, supports, spring):
+            components = {c for b in group for c in body.blocks[b].components}
+            here = {name for name, own in FAMILIES.items() if components & set(own)}
+            if here & asked:
+                out |= here
+        return tuple(name for name in FAMILIES if name in out)
+
+    def _level(self, body: Body) -> Level:
+        supports = as_supports(self.scene)
+        if self.families is not None:
+            supports = supports.on(c for f in self.families for c in FAMILIES[f])
+        kinds = {QUANTITIES[q][0] for q in self.wanted}
+        statics: Condensed | None = None
+        found: ModeSet | None = None
+        if kinds & {"compliance", "stiffness"}:
+            statics = condense(body, supports, self.scene.port.name)
+        if "frequency" in kinds:
+            found = modes(body, supports, self._shapes(), ovalising=False)
+        return Level(measure(statics, found), _solver(statics, found))
+
+    def _shapes(self) -> int:
+        """Elastic shapes that hold the modes asked for."""
+        if self.families is None or len(self.families) > 1:
+            return ENOUGH
+        numbers = [int(q.split()[1]) for q in self.wanted if QUANTITIES[q][0] == "frequency"]
+        return 2 * max(numbers) + 2
+
+    def judge(self) -> float | None:
+        """Bands of the finest mesh, and the largest bar of what was asked for."""
+        if len(self.levels) < 2:
+            return None
+        assert self.rung.factors is not None  # as every solid
+        rigid = any(s.attachment == "rigid" for s in self.scene.stations)
+        values = [level.quantities for level in self.levels]
+        solver = self.levels[-1].solver
+        self.bands = layered_bands(values, solver, self.rung.factors, rigid=rigid)
+        bars = [self.bar(q) for q in self.wanted if q in values[-1]]
+        return max(bars, default=None)
+
+    def bar(self, name: str) -> float:
+        if name not in self.bands:
+            return math.inf
+        return max(self.bands[name].gci, RISE * self._rise(name))
+
+    def _rise(self, name: str) -> float:
+        """How much a frequency has risen at the last step, beyond what the solver leaves."""
+        if QUANTITIES[name][0] != "frequency" or len(self.levels) < 2:
+            return 0.0
+        before, last = self.levels[-2], self.levels[-1]
+        if name not in before.quantities:
+            return 0.0
+        rise = last.quantities[name] / before.quantities[name] - 1
+        allowed = before.solver.get(name, 0.0) + last.solver.get(name, 0.0)
+        return max(0.0, rise - allowed)
+
+    def _choose(self, why: str) -> None:
+        if self.steps:
+            self.steps[-1] = replace(self.steps[-1], why=why, chosen=True)
+
+
+def _solver(statics: Condensed | None, found: ModeSet | None) -> dict[str, float]:
+    out = {}
+    for name, (kind, place, _) in QUANTITIES.items():
+        if kind == "frequency":
+            mode = found.named(place) if found is not None and isinstance(place, str) else None
+            if mode is not None:
+                out[name] = mode.error
+        elif statics is not None:
+            out[name] = statics.evidence["residual"]
+    return out
+
+
+def _words(level: Mapping[str, Any]) -> str:
+    """A mesh in a few words."""
+    return ", ".join(f"{word} {level[name]}" for name, word in SETTINGS.items() if name in level)

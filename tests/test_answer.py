@@ -1,0 +1,194 @@
+"""The cheapest answer with a bar: whether the bar holds, what it costs, and what is passed over."""
+
+import dataclasses
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+import solidgear as sg
+from solidgear.body import as_supports
+from solidgear.evidence.answer import solve
+from solidgear.evidence.quantities import change
+from solidgear.fidelity.ladder import LADDER
+from solidgear.fidelity.levels import HARMONIC, Sequence
+from solidgear.scene import Bearing
+from solidgear.studies import climb as climbing
+from solidgear.studies.answering import answer
+from solidgear.studies.climb import Climb, Level
+
+ROOT = Path(__file__).parent.parent
+SCENES = ["pinion_overhung", "shaft_stepped", "shaft_hollow", "pinion_straddle"]
+ALL = ("C_zz", "C_z,thx", "C_thx", "C_yy", "K_zz", "bending 1", "bending 2", "axial 1")
+
+
+@pytest.fixture(scope="module")
+def scenes():
+    return {name: sg.load(ROOT / "geometry" / f"{name}.toml") for name in SCENES}
+
+
+@pytest.fixture(scope="module")
+def truth(scenes):
+    """Two orders and two layers above what a tolerance of 1e-3 takes: measured within 1e-5."""
+    found = {}
+    for name, scene in scenes.items():
+        found[name] = solve(scene, "harmonic", 12, **HARMONIC[4]).quantities
+    return found
+
+
+@pytest.mark.parametrize("tol", [0.1, 0.01, 1e-3])
+@pytest.mark.parametrize("name", SCENES)
+def test_the_truth_is_within_the_bar_and_the_bar_within_the_tolerance(scenes, truth, name, tol):
+    found = answer(scenes[name], tol, ALL)
+    assert found.reached and found.rung == "harmonic"
+    values = {v.quantity: v.value for v in found.values}
+    assert set(values) == {q for q in ALL if q in truth[name]}
+    for row in found.values:
+        assert row.bar <= tol
+        # the reference is a mesh too: a hundredth of the tightest tolerance
+        assert abs(change(values, truth[name], row.quantity)) <= row.bar + 1e-5
+
+
+def test_a_looser_tolerance_costs_less(scenes):
+    costs = [
+        sum(s.unknowns for s in answer(scenes["pinion_overhung"], tol, "C_thx").steps if s.valid)
+        for tol in (0.1, 1e-3, 1e-4)
+    ]
+    assert costs[0] < costs[1] < costs[2]
+
+
+def test_only_what_is_asked_is_built_and_the_numbers_are_the_same(scenes):
+    scene = scenes["pinion_overhung"]
+    all_of_it, part = answer(scene, 1e-3, ALL), answer(scene, 1e-3, ["bending 1", "C_zz"])
+    last = [s for s in part.steps if s.chosen][0]
+    same = [s for s in all_of_it.steps if s.setting == last.setting][0]
+    # three of four blocks' unknowns are bending's, in two planes
+    assert last.unknowns < 0.8 * same.unknowns
+    full = solve(scene, "harmonic", **HARMONIC[1]).quantities
+    at = [s.setting for s in part.steps if s.valid].index(last.setting)
+    assert at == 1  # so the mesh is HARMONIC[1]
+    # the bearings of this scene couple planes by 1e-8 of their stiffness, left out at this tolerance
+    assert part["C_zz"] == pytest.approx(full["C_zz"], rel=1e-7)
+    assert part["bending 1"] == pytest.approx(full["bending 1"], rel=1e-7)
+
+
+def test_bearings_that_couple_families_keep_them_together(scenes):
+    scene = scenes["shaft_stepped"]
+    stiffness = {"kxx": 4e8, "kyy": 3e8, "kzz": 4e8, "kyz": 2e8}
+    first = scene.bearings[0]
+    tilted = Bearing(name=first.name, y=first.y, seat_width=first.seat_width, stiffness=stiffness)
+    coupled = scene.with_changes(bearings=(tilted, *scene.bearings[1:]))
+    found = answer(coupled, 0.01, "C_zz")
+    full = solve(coupled, "harmonic", **HARMONIC[1]).quantities
+    assert found["C_zz"] == pytest.approx(full["C_zz"], rel=1e-9)  # the same system: rounding
+    # and the coupling is no trifle: measured 4 %
+    alone = sg.condense(
+        sg.build(coupled, "harmonic", **HARMONIC[1]),
+        as_supports(coupled).on((0, 2, 3, 5)),
+        coupled.port.name,
+    )
+    assert abs(alone.compliance[2, 2] / full["C_zz"] - 1) > 0.01
+
+
+def test_beams_are_passed_over_with_the_reason(scenes):
+    found = answer(scenes["shaft_stepped"], 0.1, "bending")
+    passed = {s.rung: s.why for s in found.steps if not s.valid}
+    assert set(passed) == set(LADDER.of("beam"))
+    assert all("no error of its own" in why for why in passed.values())
+    assert sum(s.chosen for s in found.steps) == 1
+
+
+def test_past_the_finest_mesh_the_best_is_given_and_not_called_reached(scenes, monkeypatch):
+    short = dataclasses.replace(
+        LADDER["harmonic"], meshes=lambda options: Sequence(HARMONIC[:2], False, True)
+    )
+    rungs = tuple(short if r.name == "harmonic" else r for r in LADDER)
+    monkeypatch.setattr(LADDER, "rungs", rungs)
+    found = answer(scenes["pinion_overhung"], 1e-5, "C_zz")
+    assert not found.reached and found.bar > 1e-5
+    assert "no finer mesh" in found.steps[-1].why and found.steps[-1].chosen
+
+
+def test_a_finer_mesh_that_fails_leaves_the_coarser_answer(scenes, monkeypatch):
+    real, calls = climbing.build, []
+
+    def build(scene, rung, **options):
+        calls.append(rung)
+        if len(calls) > 2:
+            raise sg.SolidgearError("12000 MB are needed, 3000 MB are free")
+        return real(scene, rung, **options)
+
+    monkeypatch.setattr(climbing, "build", build)
+    found = answer(scenes["pinion_overhung"], 1e-4, "C_thx")
+    assert not found.reached and found.values and "3000 MB are free" in found.steps[-1].why
+
+
+def test_a_rung_that_cannot_be_built_is_passed_over(scenes, monkeypatch):
+    real = climbing.build
+
+    def build(scene, rung, **options):
+        if rung == "harmonic":
+            raise sg.SolidgearError("a keyway is no body of revolution")
+        return real(scene, rung, **options)
+
+    monkeypatch.setattr(climbing, "build", build)
+    found = answer(scenes["shaft_stepped"], 0.3, "C_zz")
+    assert found.rung == "solid"
+    assert any(s.rung == "harmonic" and "keyway" in s.why for s in found.steps)
+
+
+def test_a_frequency_that_rises_is_rounding_and_widens_the_bar(scenes):
+    climb = Climb(scenes["shaft_stepped"], LADDER["harmonic"], ("bending 1",), 1e-6, lambda _: None)
+    known = {"bending 1": 1e-12}
+    for value in (101.0, 100.0, 100.1):
+        climb.levels.append(Level({"bending 1": value}, known))
+    climb.judge()
+    assert climb.bar("bending 1") >= 2 * 1e-3 * 0.99  # twice a rise of 0.1 %
+    climb.levels[-1] = Level({"bending 1": 99.999}, known)
+    climb.judge()
+    assert climb.bar("bending 1") < 1e-3
+
+
+@pytest.mark.parametrize("tol", [0, -1e-3, 1.5, float("nan"), "x", True])
+def test_a_tolerance_that_is_none_is_refused(scenes, tol):
+    with pytest.raises(sg.SolidgearError, match="give a number above 0 and at most 1"):
+        answer(scenes["shaft_stepped"], tol)
+
+
+def test_a_tolerance_below_arithmetic_is_refused(scenes):
+    with pytest.raises(sg.SolidgearError, match="sixteen digits"):
+        answer(scenes["shaft_stepped"], 1e-12)
+
+
+def test_an_unknown_quantity_is_refused_and_the_nearest_offered(scenes):
+    with pytest.raises(sg.SolidgearError, match='did you mean "C_zz"'):
+        answer(scenes["shaft_stepped"], 0.1, "C_zx")
+
+
+def test_couplings_may_be_asked_for_by_name(scenes):
+    found = answer(scenes["pinion_overhung"], 0.1, "C_z,thx,bending")
+    assert [v.quantity for v in found.values] == ["C_z,thx", "bending 1"]
+
+
+def test_what_does_not_exist_is_said_to_be_missing():
+    free = sg.load(ROOT / "geometry" / "cylinder_free.toml")
+    found = answer(free, 0.1, "C_zz,bending")
+    assert found.missing == ("C_zz",) and [v.quantity for v in found.values] == ["bending 1"]
+    nothing = answer(free, 0.1, "C_zz")
+    assert not nothing.reached and nothing.values == () and "exists" in nothing.steps[-1].why
+
+
+def test_command_line():
+    def run(*arguments):
+        command = [sys.executable, "-m", "solidgear.cli", "answer", *arguments]
+        return subprocess.run(command, capture_output=True, text=True, timeout=120, cwd=ROOT)
+
+    done = run("geometry/shaft_stepped.toml", "--tol", "0.05", "--ask", "bending", "--json")
+    found = json.loads(done.stdout)
+    assert done.returncode == 0 and found["reached"] and found["values"][0]["bar"] <= 0.05
+    told = run("geometry/cylinder_free.toml", "--ask", "C_zz")
+    assert told.returncode == 3 and "Not there: C_zz" in told.stdout
+    wrong = run("geometry/shaft_stepped.toml", "--tol", "0")
+    assert wrong.returncode == 1 and "tol = 0" in wrong.stderr
