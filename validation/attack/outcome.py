@@ -76,7 +76,7 @@ def _model(record: dict, rung) -> dict:
     each = (record.get("band") or {}).get("each") or {}
     for name, band in each.items():
         if name in out["values"] and band is not None:
-            out["bands"][name] = float(band) * _told_of(record, out["values"], name)
+            out["bands"][name] = float(band) * coupling_scale(out["values"], name)
     for name in out["bands"]:
         found = (record["convergence"] or {}).get("quantities", {}).get(name)
         if found:
@@ -119,12 +119,3 @@ def values(record: dict) -> dict[str, float]:
         if value:
             out[name] = float(value)
     return out
-
-
-def _told_of(record: dict, found: dict, name: str) -> float:
-    """What a band is relative to: the scale the record names, or the value itself."""
-    details = (record["convergence"] or {}).get("quantities", {}).get(name) or {}
-    scale = details.get("scale")
-    if isinstance(scale, float):
-        return scale
-    return coupling_scale(found, name) if scale == "direct" else abs(found[name])
