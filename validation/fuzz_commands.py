@@ -13,6 +13,17 @@ from pathlib import Path
 
 from validation.fuzz_mutations import SCENES, mutant
 
+#: how often each is drawn
+COMMANDS = {
+    "answer": 12,
+    "stiffness": 30,
+    "modes": 30,
+    "check": 12,
+    "sweep": 8,
+    "render": 3,
+    "compare": 4,
+    "chart": 1,
+}
 ENVIRONMENT = {"SOLIDGEAR_MEMORY_MB": "120"}
 
 #: a shaft on two bearings for which every model is small
@@ -240,18 +251,21 @@ def command_line(seed: int, number: int) -> tuple[list[str], dict[str, bytes]]:
         ("euler", "timoshenko", "harmonic", "solid", rng.choice(WILD)), (25, 40, 18, 14, 3)
     )[0]
     name = rng.choices(
-        ("stiffness", "modes", "check", "sweep", "render", "compare", "chart", rng.choice(WILD)),
-        (34, 34, 14, 9, 3, 4, 1, 1),
+        (*COMMANDS, rng.choice(WILD)),
+        (*COMMANDS.values(), 1),
     )[0]
     arguments = [name, scene]
     if name in ("stiffness", "modes", "check", "sweep", "render"):
         arguments += ["-f", model, *_settings(rng, model)]
-    if name in ("stiffness", "modes", "check", "sweep", "compare"):
+    if name in ("answer", "stiffness", "modes", "check", "sweep", "compare"):
         arguments += _maybe(rng, 0.3, "--json")
     if name == "stiffness":
         arguments += _maybe(
             rng, 0.3, "--attachment", _value(rng, ("average", "rigid", "section", "welded"))
         )
+    elif name == "answer":
+        arguments += _maybe(rng, 0.8, "--tol", _value(rng, ("0.1", "1e-2", "1e-9", "0", "2")))
+        arguments += _maybe(rng, 0.6, "--ask", _value(rng, ("bending", "C_z,thx", "C_zx", ",")))
     elif name == "modes":
         arguments += (
             _maybe(rng, 0.5, "-n", _value(rng, ("1", "3", "12", "0", "500", "501")))
