@@ -39,12 +39,14 @@ class Place:
     reach: float
 
 
-def singular_places(scene: Scene) -> tuple[Place, ...]:
+def singular_places(scene: Scene, attachments: tuple[str, ...] | None = None) -> tuple[Place, ...]:
     """All of a scene, those that are listed first naming a point that several share.
 
     Parameters
     ----------
     scene : Scene
+    attachments : tuple of str, optional
+        How every station is tied; by default as the scene says.
 
     Returns
     -------
@@ -55,7 +57,7 @@ def singular_places(scene: Scene) -> tuple[Place, ...]:
     >>> import solidgear as sg
     >>> places = singular_places(sg.load("geometry/shaft_stepped.toml"))
     >>> [(p.what, round(1e3 * p.y), round(1e3 * p.r)) for p in places[:2]]
-    [('shoulder', 200, 20), ('shoulder', 400, 20)]
+    [('shoulder', 120, 25), ('shoulder', 280, 30)]
     """
     found: list[Place] = []
     for a, b in zip(scene.segments, scene.segments[1:]):
@@ -65,19 +67,19 @@ def singular_places(scene: Scene) -> tuple[Place, ...]:
             reach = min(corner_length(a), corner_length(b))
             found += _around("change of material", a.y1, min(a.outer1, b.outer0), a, b, reach)
     for station in scene.stations:
-        if station.attachment == "section":
+        ties = attachments or (station.attachment,)
+        if "section" in ties:
             here = _segment(scene, station.y)
             r = _outer(here, station.y)
             what = f"section plane of {station.name}"
             found += _around(what, station.y, r, here, here, corner_length(here))
-            continue
-        for y in (station.lo, station.hi):
-            at_face = min(abs(y), abs(y - scene.length)) <= 1e-9 * scene.length
-            # an averaged seat that ends at a face meets no edge there
-            if station.attachment == "rigid" or not at_face:
-                here = _segment(scene, y, inside=station.y)
-                what = f"seat end of {station.name}"
-                found.append(Place(what, y, _outer(here, y), corner_length(here)))
+        if {"average", "rigid"} & set(ties):
+            for y in (station.lo, station.hi):
+                # an averaged seat that reaches up to the end of its surface meets no edge there
+                if "rigid" in ties or not _ends_at_edge(scene, y, station.y):
+                    here = _segment(scene, y, inside=station.y)
+                    what = f"seat end of {station.name}"
+                    found.append(Place(what, y, _outer(here, y), corner_length(here)))
     return _distinct(found, 1e-9 * scene.length)
 
 
@@ -115,6 +117,18 @@ def _segment(scene: Scene, y: float, inside: float | None = None) -> Segment:
     """The segment at a place; of two that meet there, the one towards `inside`."""
     toward = y if inside is None else y + 1e-6 * (inside - y)
     return next((s for s in scene.segments if toward <= s.y1), scene.segments[-1])
+
+
+def _ends_at_edge(scene: Scene, y: float, inside: float) -> bool:
+    """Whether the surface that a seat is on ends at y in a corner that sticks out."""
+    tolerance = 1e-9 * scene.length
+    if min(abs(y), abs(y - scene.length)) <= tolerance:
+        return True
+    for a, b in zip(scene.segments, scene.segments[1:]):
+        if abs(y - a.y1) <= tolerance:
+            own, other = (a.outer1, b.outer0) if inside < y else (b.outer0, a.outer1)
+            return own > other + tolerance
+    return False
 
 
 def _outer(segment: Segment, y: float) -> float:

@@ -56,7 +56,7 @@ class Row:
         ``shoulder``, ``seat end of A``, ...; ``elsewhere``, and ``bearings`` for what their springs
         take up.
     y, r : float or None
-        m.
+        m; of ``elsewhere`` the middle of the cell with most of it, of ``bearings`` None.
     share : float
         Of the sum over all places; of a coupling, of the sum of magnitudes.
     """
@@ -89,6 +89,13 @@ class Whereabouts:
     shares : (m,) ndarray
         Of every cell.
     seconds : float
+
+    Examples
+    --------
+    >>> rows = (Row("shoulder", 0.186, 0.03, 0.97), Row(ELSEWHERE, 0.05, 0.02, 0.03))
+    >>> none = np.zeros((0, 0))
+    >>> print(Whereabouts("C_zz", 3, 4e-4, 1.0, rows, none, none, none, 0.1).sentence)
+    97 % of what is left in C_zz sits at the shoulder at y = 186 mm
     """
 
     quantity: str
@@ -100,6 +107,15 @@ class Whereabouts:
     cells: np.ndarray
     shares: np.ndarray
     seconds: float
+
+    @property
+    def sentence(self) -> str:
+        """Where most of it sits."""
+        first, *rest = self.rows
+        said = f"{_percent(first)} of what is left in {self.quantity} sits {_at(first)}"
+        if abs(first.share) >= 0.5 or not rest:
+            return said
+        return f"{said}, {_percent(rest[0])} {_at(rest[0])}"
 
 
 @pinned
@@ -160,7 +176,8 @@ def where(
         )
     energy, spring = points.energy[place], float(springs[place])
     difference = high.compliance[place] - low.compliance[place]
-    rows, size = _rows(singular_places(scene), points, energy, spring)
+    places = singular_places(scene, options.get("attachments"))
+    rows, size = _rows(places, points, energy, spring)
     return Whereabouts(
         quantity,
         order,
@@ -172,6 +189,19 @@ def where(
         energy.sum(axis=1) / size,
         time.perf_counter() - start,
     )
+
+
+def _percent(row: Row) -> str:
+    return f"{100 * abs(row.share):.0f} %"
+
+
+def _at(row: Row) -> str:
+    if row.y is None:
+        return "in the springs of the bearings"
+    place = f"y = {1e3 * row.y:.4g} mm"
+    if row.what == ELSEWHERE:
+        return f"away from shoulders and seat ends, most of it around {place}"
+    return f"at the {row.what} at {place}"
 
 
 def _order(options: Mapping[str, Any]) -> int:
@@ -283,8 +313,10 @@ def _rows(
     sums = [float(energy[owner == k].sum()) for k in range(len(places))]
     away = float(energy[owner == -1].sum())
     size = sum(abs(x) for x in (*sums, away, spring))
-    rows = [Row(p.what, p.y, p.r, x / size) for p, x in zip(places, sums)]
-    rows.append(Row(ELSEWHERE, None, None, away / size))
-    if spring:
-        rows.append(Row(SPRINGS, None, None, spring / size))
+    rows = [Row(p.what, p.y, p.r, float(x / size)) for p, x in zip(places, sums)]
+    cell = int(np.abs(np.where(owner == -1, energy, 0.0).sum(axis=1)).argmax())
+    rows.append(
+        Row(ELSEWHERE, float(points.y[cell].mean()), float(points.r[cell].mean()), away / size)
+    )
+    rows.append(Row(SPRINGS, None, None, spring / size))
     return tuple(sorted(rows, key=lambda row: -abs(row.share))), size
