@@ -192,9 +192,11 @@ def _where_table(places: Whereabouts) -> Table:
     table.add_column(f"error of {places.quantity}")
     table.add_column("y, mm", justify="right")
     table.add_column("r, mm", justify="right")
+    table.add_column("within, mm", justify="right")
     table.add_column("share", justify="right")
     for row in _shown(places):
-        at = [f"{1e3 * x:.4g}" if x is not None else "" for x in (row.y, row.r)]
+        lengths = (row.y, row.r, row.reach)
+        at = [f"{1e3 * x:.4g}" if x is not None else "" for x in lengths]
         table.add_row(row.what, *at, f"{100 * row.share:.1f} %")
     return table
 

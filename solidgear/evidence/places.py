@@ -30,7 +30,7 @@ class Place:
         m.
     reach : float
         How far it rules the displacements around it, m: the wall there, or the radius of a solid
-        shaft.
+        shaft; for the end of a seat the width of the seat, if that is less.
     """
 
     what: str
@@ -79,7 +79,8 @@ def singular_places(scene: Scene, attachments: tuple[str, ...] | None = None) ->
                 if "rigid" in ties or not _ends_at_edge(scene, y, station.y):
                     here = _segment(scene, y, inside=station.y)
                     what = f"seat end of {station.name}"
-                    found.append(Place(what, y, _outer(here, y), corner_length(here)))
+                    reach = min(corner_length(here), station.hi - station.lo)
+                    found.append(Place(what, y, _outer(here, y), reach))
     return _distinct(found, 1e-9 * scene.length)
 
 

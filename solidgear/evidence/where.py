@@ -59,12 +59,15 @@ class Row:
         m; of ``elsewhere`` the middle of the cell with most of it, of ``bearings`` None.
     share : float
         Of the sum over all places; of a coupling, of the sum of magnitudes.
+    reach : float or None
+        What lies within this of the place counts as its, where no other place is nearer, m.
     """
 
     what: str
     y: float | None
     r: float | None
     share: float
+    reach: float | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -301,19 +304,20 @@ def _error(low: _Solved, high: _Solved) -> tuple[PointEnergies, np.ndarray]:
 def _rows(
     places: tuple[Place, ...], points: PointEnergies, energy: np.ndarray, spring: float
 ) -> tuple[tuple[Row, ...], float]:
-    """Shares of the places, every point of the shaft going to the nearest whose reach it is in; and
-    what they are shares of.
+    """Shares of the places, every point of the shaft going to the nearest if that reaches so far;
+    and what they are shares of.
     """
     nearest_yet = np.full(energy.shape, np.inf)
     owner = np.full(energy.shape, -1)
     for k, place in enumerate(places):
         distance = np.hypot(points.y - place.y, points.r - place.r)
-        closer = (distance < nearest_yet) & (distance <= place.reach)
-        nearest_yet[closer], owner[closer] = distance[closer], k
+        closer = distance < nearest_yet
+        nearest_yet[closer] = distance[closer]
+        owner[closer] = np.where(distance[closer] <= place.reach, k, -1)
     sums = [float(energy[owner == k].sum()) for k in range(len(places))]
     away = float(energy[owner == -1].sum())
     size = sum(abs(x) for x in (*sums, away, spring))
-    rows = [Row(p.what, p.y, p.r, float(x / size)) for p, x in zip(places, sums)]
+    rows = [Row(p.what, p.y, p.r, float(x / size), p.reach) for p, x in zip(places, sums)]
     cell = int(np.abs(np.where(owner == -1, energy, 0.0).sum(axis=1)).argmax())
     rows.append(
         Row(ELSEWHERE, float(points.y[cell].mean()), float(points.r[cell].mean()), away / size)

@@ -17,7 +17,8 @@ from solidgear.report.chart_style import STYLE, new_figure
 LEAST = 1e-4
 #: a shaft that is more slender than this is drawn with its radius stretched
 SLENDEREST = 7.0
-WIDTH = 9.0
+#: in; and the most that a half section gets
+WIDTH, HIGHEST = 9.0, 4.0
 FORMATS = (".png", ".svg")
 
 
@@ -97,7 +98,8 @@ def _figure(points, cells, shares, places, title: str):
     r, y = 1e3 * points
     length, radius = np.ptp(y), r.max()
     stretch = max(1.0, length / (SLENDEREST * radius))
-    figure = new_figure(WIDTH, 1.5 + WIDTH * 0.8 * stretch * radius / length)
+    height = min(0.8 * WIDTH * 1.25 * stretch * radius / length, HIGHEST)
+    figure = new_figure(WIDTH, max(height, 1.0) + 1.0 + 0.16 * len(places))
     ax = figure.add_subplot()
     corners = np.stack([y[cells], r[cells]], axis=-1).transpose(1, 0, 2)
     drawn = PolyCollection(
