@@ -19,6 +19,8 @@ LEAST = 1e-4
 SLENDEREST = 7.0
 #: in; and the most that a half section gets
 WIDTH, HIGHEST = 9.0, 4.0
+#: in; the names of the places need so much
+NARROWEST = 4.0
 FORMATS = (".png", ".svg")
 
 
@@ -98,8 +100,10 @@ def _figure(points, cells, shares, places, title: str):
     r, y = 1e3 * points
     length, radius = np.ptp(y), r.max()
     stretch = max(1.0, length / (SLENDEREST * radius))
-    height = min(0.8 * WIDTH * 1.25 * stretch * radius / length, HIGHEST)
-    figure = new_figure(WIDTH, max(height, 1.0) + 1.0 + 0.16 * len(places))
+    shape = 1.25 * stretch * radius / length
+    height = min(0.8 * WIDTH * shape, HIGHEST)
+    width = min(WIDTH, max(height / shape + 2.0, NARROWEST))
+    figure = new_figure(width, max(height, 1.0) + 1.0 + 0.16 * len(places))
     ax = figure.add_subplot()
     corners = np.stack([y[cells], r[cells]], axis=-1).transpose(1, 0, 2)
     drawn = PolyCollection(
