@@ -3,19 +3,35 @@
 from __future__ import annotations
 
 import json
-from typing import TYPE_CHECKING, Annotated
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
 from solidgear.cli.app import JsonFlag, Progress, SceneFile, command, console
+from solidgear.errors import SolidgearError
 
 if TYPE_CHECKING:
     from rich.table import Table
 
+    from solidgear.evidence.where import Row, Whereabouts
+    from solidgear.scene import Scene
     from solidgear.studies.answering import Answered, Step
 
 #: exit code where the tolerance is not reached: the numbers are there, with their bars
 NOT_REACHED = 3
+#: rows of the table of places
+PLACES = 5
+#: compliances whose error is placed for numbers that have no places of their own
+STANDS_FOR = {
+    "K_zz": "C_zz",
+    "K_z,thx": "C_z,thx",
+    "K_thx": "C_thx",
+    "K_yy": "C_yy",
+    "bending 1": "C_zz",
+    "bending 2": "C_zz",
+    "axial 1": "C_yy",
+}
 
 
 @command
@@ -32,23 +48,55 @@ def answer(
             help="Comma-separated: C_zz, K_thx, bending, ...; by default what the scene asks for.",
         ),
     ] = "",
+    where: Annotated[
+        bool,
+        typer.Option("--where", help="Also say where in the shaft the error of the answer sits."),
+    ] = False,
+    picture: Annotated[
+        Path | None,
+        typer.Option("--picture", help="The same as a picture: a file that ends in .png or .svg."),
+    ] = None,
     as_json: JsonFlag = False,
 ) -> None:
     """Numbers within a tolerance, each with its bar, from the cheapest model that can show it."""
     from solidgear.scene.file import load
     from solidgear.studies.answering import answer as solve
 
+    if picture is not None:
+        from solidgear.report.where_chart import check_ending
+
+        check_ending(picture)  # before anything is solved
     loaded = load(scene)
+    places: Whereabouts | None = None
+    unplaced = ""
     with Progress(quiet=as_json) as progress:
         found = solve(loaded, tol, ask, progress=progress)
+        if where or picture is not None:
+            progress("where the error sits")
+            try:
+                places = _places(loaded, found)
+            except SolidgearError as error:
+                unplaced = str(error)
+    if places is not None and picture is not None:
+        _draw(places, picture)
     if as_json:
-        print(json.dumps(found.as_dict(), allow_nan=False))
+        out = found.as_dict()
+        if where or picture is not None:
+            out["where"] = {"error": unplaced} if places is None else _plain(places)
+        print(json.dumps(out, allow_nan=False))
     else:
         terminal = console()
         terminal.print(_values(found))
         terminal.print(_path(found))
         for line in sentences(found):
             terminal.print(line, markup=False, soft_wrap=True)
+        if places is not None:
+            terminal.print(_where_table(places))
+            terminal.print(_told(places), markup=False, soft_wrap=True)
+        if unplaced:
+            terminal.print(f"Where the error sits: {unplaced}.", markup=False, soft_wrap=True)
+        if places is not None and picture is not None:
+            terminal.print(f"Picture: {picture}", markup=False, soft_wrap=True)
     if not found.reached:
         raise typer.Exit(NOT_REACHED)
 
@@ -113,3 +161,70 @@ def sentences(found: Answered) -> list[str]:
     why = next((step.why for step in found.steps if step.chosen and step.why), "")
     lines.append(f"Not reached: {asked} was asked for{f'; {why}' if why else ''}.")
     return lines
+
+
+def _places(scene: Scene, found: Answered) -> Whereabouts:
+    """Places of the least certain of the numbers that have some, on the mesh they come from."""
+    from solidgear.evidence.where import PLACED, where
+    from solidgear.fidelity.ladder import LADDER
+
+    if found.rung != "harmonic":
+        raise SolidgearError(f"only known of the harmonic solid; this answer is the {found.rung}'s")
+    least_certain = sorted(found.values, key=lambda value: -value.bar)
+    named = [STANDS_FOR.get(value.quantity, value.quantity) for value in least_certain]
+    known = [name for name in named if name in PLACED]
+    if not known:
+        raise SolidgearError(f"only known of {', '.join(PLACED)}; ask for one of them")
+    meshes = LADDER["harmonic"].meshes
+    assert meshes is not None  # as every solid
+    return where(scene, known[0], meshes({}).levels[len(_solved(found)) - 1])
+
+
+def _shown(places: Whereabouts) -> tuple[Row, ...]:
+    return tuple(row for row in places.rows[:PLACES] if abs(row.share) >= 5e-4)
+
+
+def _where_table(places: Whereabouts) -> Table:
+    from rich import box
+    from rich.table import Table
+
+    table = Table(box=box.SIMPLE_HEAD, pad_edge=False)
+    table.add_column(f"error of {places.quantity}")
+    table.add_column("y, mm", justify="right")
+    table.add_column("r, mm", justify="right")
+    table.add_column("within, mm", justify="right")
+    table.add_column("share", justify="right")
+    for row in _shown(places):
+        lengths = (row.y, row.r, row.reach)
+        at = [f"{1e3 * x:.4g}" if x is not None else "" for x in lengths]
+        table.add_row(row.what, *at, f"{100 * row.share:.1f} %")
+    return table
+
+
+def _told(places: Whereabouts) -> str:
+    from solidgear.report.words import percent, seconds
+
+    return (
+        f"{places.sentence} (by what order {places.order + 1} moves on this mesh, "
+        f"{percent(places.total, signed=False)}; {seconds(places.seconds)} s)."
+    )
+
+
+def _plain(places: Whereabouts) -> dict[str, Any]:
+    """Plain data, without the picture."""
+    from dataclasses import asdict
+
+    names = ("quantity", "order", "total", "check", "sentence", "seconds")
+    rows = [asdict(row) for row in places.rows]
+    return {name: getattr(places, name) for name in names} | {"rows": rows}
+
+
+def _draw(places: Whereabouts, picture: Path) -> None:
+    from solidgear.report.where_chart import draw_where
+
+    points = []
+    for row in _shown(places):
+        if row.y is not None and row.r is not None:
+            points.append((row.what, row.y, row.r, row.share))
+    title = f"Error of {places.quantity} at order {places.order}, by cell"
+    draw_where(picture, places.points, places.cells, places.shares, points, title)

@@ -49,6 +49,18 @@ def _energy(n: int):
     return product([rr + tt + yy]), product([rr, tt, yy]), product([rt, ty, ry])
 
 
+def _weight(n: int, t, dv: np.ndarray) -> np.ndarray:
+    """(ne, nq) weights of the points in integrals of harmonic n over the body."""
+    return (2 * np.pi if n == 0 else np.pi) * dv * t.x[0]
+
+
+def _functions(t, weight: np.ndarray) -> np.ndarray:
+    """(ne, 3, nb, nq) values of phi / r, phi,r and phi,y, times the root of the weights."""
+    root = np.sqrt(weight)
+    around = (t.value * (root / t.x[0])[:, None])[:, None]
+    return np.concatenate([around, t.gradient(root)], axis=1)
+
+
 class _Work:
     """Tabulated basis, materials and surface integrals shared by the blocks of one body."""
 
@@ -126,12 +138,8 @@ class _Work:
         trace, normal, shear = (part.transpose(1, 3, 0, 2).reshape(c * c, 9) for part in _energy(n))
         for part, material, t, dv in self._batches():
             area += dv.sum()
-            r = t.x[0]
-            w = (2 * np.pi if n == 0 else np.pi) * dv * r
-            root = np.sqrt(w)
-            f = np.concatenate(
-                [(t.value * (root / r)[:, None])[:, None], t.gradient(root)], axis=1
-            ).reshape(len(part), 3 * nb, -1)
+            w = _weight(n, t, dv)
+            f = _functions(t, w).reshape(len(part), 3 * nb, -1)
             gram = (
                 (f @ f.transpose(0, 2, 1))
                 .reshape(-1, 3, nb, 3, nb)
@@ -147,14 +155,7 @@ class _Work:
         share = np.ones(2) if n == 0 else np.array([2.0, 2.0, 1.0])
         m = sp.kron(heavy.matrix(), sp.diags(share)).tocsr()
 
-        keep: np.ndarray = np.ones((self.n, c), bool)
-        if n == 0:
-            keep[self.on_axis, 0] = False
-        elif n == 1:
-            keep[self.on_axis, 1:] = False
-        else:
-            keep[self.on_axis] = False
-        keep = keep.ravel()
+        keep = self.kept(n)
         y = np.repeat(self.y, c)[keep]
         rigid = np.zeros((self.n, c, len(components)))
         on = self.point
@@ -181,6 +182,19 @@ class _Work:
         ports = sp.csr_matrix(np.vstack(rows))
         sections = self._sections(BENDING if n else AXIAL, c, keep)
         return tie_rigidly(Block(name, components, k, m, rigid, y, ports, sections=sections), ties)
+
+    def kept(self, n: int) -> np.ndarray:
+        """Mask of the unknowns of harmonic n, numbered together at each node, that the axis leaves
+        free.
+        """
+        keep = np.ones((self.n, 2 if n == 0 else 3), bool)
+        if n == 0:
+            keep[self.on_axis, 0] = False
+        elif n == 1:
+            keep[self.on_axis, 1:] = False
+        else:
+            keep[self.on_axis] = False
+        return keep.ravel()
 
     def torsion_block(self, wanted) -> Block:
         """Block of torsion in the unknown ``u_t / r``; no condition on the axis."""

@@ -1,0 +1,144 @@
+"""Picture of the half section of a shaft, every cell in the colour of its share of the error."""
+
+from __future__ import annotations
+
+import io
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from solidgear.errors import SolidgearError
+from solidgear.machine.whole_file import whole
+from solidgear.report.chart_style import STYLE, new_figure
+
+#: shares below this are all of one colour
+LEAST = 1e-4
+#: a shaft that is more slender than this is drawn with its radius stretched
+SLENDEREST = 7.0
+#: in; and the most that a half section gets
+WIDTH, HIGHEST = 9.0, 4.0
+#: in; the names of the places need so much
+NARROWEST = 4.0
+FORMATS = (".png", ".svg")
+
+
+def draw_where(
+    file: Path,
+    points: np.ndarray,
+    cells: np.ndarray,
+    shares: np.ndarray,
+    places: Sequence[tuple[str, float, float, float]] = (),
+    title: str = "",
+) -> None:
+    """Write the picture.
+
+    Parameters
+    ----------
+    file : Path
+        Its ending, ``.png`` or ``.svg``, says what it becomes.
+    points : (2, n) ndarray
+        r and y of the corners of the cells, m.
+    cells : (4, m) ndarray of int
+    shares : (m,) ndarray
+        Of every cell; their magnitudes are drawn.
+    places : sequence of (what, y, r, share)
+        Points to name, m.
+    title : str
+
+    Raises
+    ------
+    SolidgearError
+        For another ending, or a file that cannot be written.
+    """
+    import matplotlib
+
+    ending = check_ending(file)
+    with matplotlib.rc_context():
+        matplotlib.rcdefaults()  # the user's own matplotlibrc must not change a picture
+        matplotlib.rcParams.update({**STYLE, "svg.hashsalt": "solidgear where"})
+        picture = _figure(points, cells, shares, places, title)
+        target = io.BytesIO()
+        without: dict[str, Any] = {"Date": None} if ending == ".svg" else {"Software": None}
+        picture.savefig(target, format=ending[1:], dpi=150, metadata=without)
+    try:
+        with whole(file) as half:
+            half.write_bytes(target.getvalue())
+    except OSError as error:
+        raise SolidgearError(f"{file}: cannot be written ({error.strerror or error})") from error
+
+
+def check_ending(file: Path) -> str:
+    """The ending of a picture's name.
+
+    Parameters
+    ----------
+    file : Path
+
+    Raises
+    ------
+    SolidgearError
+        For one that is no picture.
+
+    Examples
+    --------
+    >>> check_ending(Path("error.PNG"))
+    '.png'
+    """
+    ending = file.suffix.lower()
+    if ending not in FORMATS:
+        raise SolidgearError(f"{file}: no picture ends like that; use {' or '.join(FORMATS)}")
+    return ending
+
+
+def _figure(points, cells, shares, places, title: str):
+    from matplotlib.collections import PolyCollection
+    from matplotlib.colors import LogNorm
+    from matplotlib.ticker import FuncFormatter
+
+    r, y = 1e3 * points
+    length, radius = np.ptp(y), r.max()
+    stretch = max(1.0, length / (SLENDEREST * radius))
+    shape = 1.25 * stretch * radius / length
+    height = min(0.8 * WIDTH * shape, HIGHEST)
+    width = min(WIDTH, max(height / shape + 2.0, NARROWEST))
+    figure = new_figure(width, max(height, 1.0) + 1.0 + 0.16 * len(places))
+    ax = figure.add_subplot()
+    corners = np.stack([y[cells], r[cells]], axis=-1).transpose(1, 0, 2)
+    drawn = PolyCollection(
+        list(corners),
+        array=np.abs(shares).clip(LEAST, None),
+        norm=LogNorm(LEAST, 1.0),
+        cmap="YlOrRd",
+        edgecolor="#00000030",
+        linewidth=0.3,
+    )
+    ax.add_collection(drawn)
+    ax.set_aspect(stretch)
+    ax.set_xlim(y.min() - 0.02 * length, y.max() + 0.02 * length)
+    ax.set_ylim(0, 1.25 * radius)
+    ax.grid(False)
+    for number, (_, at, height, _) in enumerate(places, 1):
+        ax.annotate(
+            str(number),
+            (1e3 * at, 1e3 * height),
+            xytext=(0, 12),
+            textcoords="offset points",
+            ha="center",
+            fontsize=9,
+            fontweight="bold",
+            arrowprops={"arrowstyle": "-", "lw": 0.6},
+        )
+    names = [
+        f"{number}: {what}, y = {1e3 * at:.4g} mm, {100 * abs(share):.2g} %"
+        for number, (what, at, _, share) in enumerate(places, 1)
+    ]
+    drawn_as = "" if stretch == 1.0 else f"; radius drawn {stretch:.2g} times as large"
+    ax.set_xlabel("\n".join(["y, mm", *names]))
+    ax.set_ylabel("r, mm")
+    ax.set_title(title + drawn_as)
+    bar = figure.colorbar(drawn, ax=ax, pad=0.01, aspect=12)
+    bar.ax.yaxis.set_major_formatter(FuncFormatter(lambda v, _: f"{100 * v:g} %"))
+    bar.set_label("share of the cell")
+    return figure
