@@ -289,20 +289,35 @@ def run(
     lines = round(cases * commands)
     before = {key: os.environ.get(key) for key in ENVIRONMENT}
     for number in range(cases):
-        with tempfile.TemporaryDirectory() as place:
-            if number < cases - lines:
-                row = _file_case(Path(place), seed, number, every_command, every_harmonic)
-            else:
-                os.environ.update(ENVIRONMENT)
-                try:
-                    row = _command_case(Path(place), seed, number)
-                finally:
-                    for key, value in before.items():
-                        os.environ.pop(key) if value is None else os.environ.update({key: value})
+        try:
+            with tempfile.TemporaryDirectory() as place:
+                if number < cases - lines:
+                    row = _file_case(Path(place), seed, number, every_command, every_harmonic)
+                else:
+                    os.environ.update(ENVIRONMENT)
+                    try:
+                        row = _command_case(Path(place), seed, number)
+                    finally:
+                        for key, value in before.items():
+                            os.environ.pop(key) if value is None else os.environ.update(
+                                {key: value}
+                            )
+        except KeyboardInterrupt:
+            if progress:
+                progress(f"interrupted at case {number}; reporting what there is")
+            return rows
         rows.append(row)
+        if progress and row["outcome"] == "finding":
+            progress(told(row))
         if progress and number % 500 == 499:
             progress(f"{number + 1} cases, {sum(r['outcome'] == 'finding' for r in rows)} findings")
     return rows
+
+
+def told(row: dict) -> str:
+    """A finding in one line that any terminal can show."""
+    text = f"case {row['case']}: {row['what']}: {row['sentence']}"
+    return text.encode("unicode_escape").decode()
 
 
 def _file_case(
@@ -383,11 +398,7 @@ def main() -> int:
             (folder / f"finding_{options.seed}_{row['case']}.toml").write_bytes(
                 mutant(options.seed, row["case"])[2]
             )
-        print(
-            f"case {row['case']}: {row['what']}: {row['sentence']}".encode(
-                "unicode_escape"
-            ).decode()
-        )
+        print(told(row))
     return 1 if total["finding"] else 0
 
 
