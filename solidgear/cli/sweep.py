@@ -51,7 +51,7 @@ def sweep(
             "--sample", help="Draw so many points (Latin hypercube) instead of all combinations."
         ),
     ] = None,
-    seed: Annotated[int, typer.Option("--seed", help="Of the draw.")] = 0,
+    seed: Annotated[int, typer.Option("--seed", help="Of the random sample.")] = 0,
     tolerance: Annotated[
         float,
         typer.Option(

@@ -38,7 +38,7 @@ DIAGONAL = 0.2
 #: safety on what the cells around leave: in thin walls the coarsest mesh, where it is measured,
 #: shows half of it
 SURE_AROUND = 2.5
-#: rounding, below which nothing is told apart
+#: rounding: smaller differences mean nothing
 LEAST = 1e-10
 
 

@@ -51,7 +51,7 @@ def _ranges(numbers: list[int]) -> list[str]:
 
 
 def _left(rows: list[dict]) -> str:
-    """Families left alone; those at the end of the row are told as one."""
+    """Families left alone; those at the end of the row are reported as one."""
     rows = sorted(rows, key=lambda row: row["n"])
     last = [row for row in rows if row.get("above")]
     if not last:

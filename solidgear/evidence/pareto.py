@@ -20,7 +20,7 @@ CHARTED = ("C_zz", "bending 1")
 
 @dataclass
 class Row:
-    """One discretisation, and what came of it.
+    """One discretisation and its result.
 
     Attributes
     ----------

@@ -27,7 +27,7 @@ QUANTITIES: dict[str, tuple[str, tuple[int, int] | str, str]] = {
 }
 
 
-#: a coupling passes through zero where symmetry wants it to: it is told against the geometric mean
+#: a coupling passes through zero where symmetry wants it to: it is related to the geometric mean
 #: of these two
 COUPLINGS = {"C_z,thx": ("C_zz", "C_thx"), "K_z,thx": ("K_zz", "K_thx")}
 

@@ -275,7 +275,7 @@ def _warm_up(scene, rows: list[Row], n: int, progress) -> dict[tuple, float]:
         start = time.perf_counter()
         try:
             answer(scene, row.model, row.options, n)
-        except Exception as error:  # its own turn will tell
+        except Exception as error:  # reported when its own turn comes
             log.debug("warm-up of %s: %s", row.series, error)
         spent[_kind(row)] = time.perf_counter() - start
     return spent

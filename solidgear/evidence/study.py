@@ -135,7 +135,7 @@ def study(
     Raises
     ------
     SolidgearError
-        If the first mesh cannot be solved; later ones that cannot are told in ``failed``.
+        If the first mesh cannot be solved; later ones that cannot are in ``failed``.
     """
     options = dict(options or {})
     meter = Meter()

@@ -30,8 +30,8 @@ TIES = {
 
 @dataclass(frozen=True)
 class Judgement:
-    """What a rung is worth: ``valid`` only if nothing speaks against it, ``open`` if that cannot be
-    told.
+    """What a rung is worth: ``valid`` only if nothing speaks against it, ``open`` if that is not
+    decided.
     """
 
     valid: bool

@@ -37,7 +37,7 @@ if TYPE_CHECKING:
 
 #: compliances that can be placed, and the components of the loads they belong to
 PLACED = ("C_zz", "C_z,thx", "C_thx", "C_yy")
-#: where the mesh comes from unless told otherwise: the coarsest one that an answer may rest on
+#: where the mesh comes from by default: the coarsest one that an answer may rest on
 USUAL = {"order": 3, "layers": 1, "edge_layers": 1, "relative_size": 4.0}
 #: couplings by bearings may be left out where they move nothing by more than this
 COUPLING = 1e-6

@@ -128,7 +128,7 @@ def answer(
             name,
             "",
             False,
-            "has no error of its own to show; the coarsest solid, which could tell it, "
+            "has no error of its own to show; the coarsest solid, which could show it, "
             "costs as much and is better",
         )
         for name in LADDER.of(BEAM)

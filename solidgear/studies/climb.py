@@ -28,7 +28,7 @@ ENOUGH = 10
 #: couplings by bearings may be left out where they move nothing by more than this part of the
 #: tolerance
 COUPLING = 0.01
-#: options of a mesh that are told, and how
+#: options of a mesh that are reported, and in which words
 SETTINGS = {"order": "order", "layers": "layers", "around": "cells around"}
 #: a frequency that rises with a finer mesh, by more than the eigensolver leaves, is rounding: the
 #: bar is this many times the rise

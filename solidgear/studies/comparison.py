@@ -177,7 +177,7 @@ def _run(scene: Scene, models, options, found: _Found, progress: Progress) -> No
         if lumped and not _after_a_solid(model, found.lumped):
             progress(f"lumped: synthesis from {model}")
             found.lumped |= synthesise_all(scene, {model: rung}, log.info)
-        # Factors are the largest thing a body holds, and nobody asks for another solution.
+        # Factors are the largest thing a body holds, and no further solution is needed.
         rung.body.kept.clear()
     if found.rungs:
         progress("guards")

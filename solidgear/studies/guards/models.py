@@ -60,7 +60,7 @@ def beam_against_solid(probe: Probe) -> Notices:
             yield Notice(
                 "open",
                 concerned,
-                f"{text}, and the light solid is too coarse to tell whether that is within the {100 * tolerance:g} % asked for; compare tells",
+                f"{text}, and the light solid is too coarse to tell whether that is within the {100 * tolerance:g} % asked for; run compare to find out",
             )
         else:
             yield Notice("fact", concerned, f"{text}, the largest gap of what is compared")
@@ -216,7 +216,7 @@ def ovalising(probe: Probe) -> Notices:
         )
 
 
-#: cells around of the 3D solid unless told otherwise
+#: cells around of the 3D solid by default
 DEFAULT_AROUND = 12
 #: cells to a wave of a wall that is thin (below a quarter of the radius) or not:
 #: thin_hollow_shaft.py, n = 2 of a wall of 0.1 is 2.3 % too high with twelve; a thick disc needs
@@ -321,7 +321,7 @@ def lumped_against_solid(probe: Probe) -> Notices:
             "open",
             ("lumped",),
             f"{text}, and the light solid is too coarse to tell whether that is within the "
-            f"{100 * tolerance:g} % asked for; compare tells",
+            f"{100 * tolerance:g} % asked for; run compare to find out",
         )
 
 

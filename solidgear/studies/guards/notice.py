@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from solidgear.fidelity.ladder import LADDER
 from solidgear.fidelity.rung import BEAM, LUMPED, SOLID
 
-#: good to know; holds worse than one might think; cannot be told here; out of the tolerance asked
+#: good to know; holds worse than one might think; cannot be decided here; out of the tolerance asked
 #: for; wrong
 LEVELS = ("fact", "caution", "open", "avoid", "fault")
 
