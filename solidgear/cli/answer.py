@@ -7,15 +7,13 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from solidgear.cli.app import JsonFlag, Progress, SceneFile, command, console
+from solidgear.cli.app import NOT_REACHED, JsonFlag, Progress, SceneFile, command, console
 
 if TYPE_CHECKING:
     from rich.table import Table
 
     from solidgear.studies.answering import Answered, Step
-
-#: exit code where the tolerance is not reached: the numbers are there, with their bars
-NOT_REACHED = 3
+    from solidgear.studies.settle import Settled
 
 
 @command
@@ -94,7 +92,7 @@ def _solved(found: Answered) -> list[Step]:
     return [step for step in found.steps if step.unknowns is not None]
 
 
-def sentences(found: Answered) -> list[str]:
+def sentences(found: Answered | Settled) -> list[str]:
     """What was chosen, what was passed over and why, in plain text."""
     from solidgear.report.words import percent
 

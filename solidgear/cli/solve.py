@@ -9,17 +9,21 @@ from typing import Annotated
 import typer
 
 from solidgear.cli.app import (
+    AUTO,
     FIDELITY,
+    AutoFidelityOption,
     FidelityOption,
     JsonFlag,
     Progress,
     SceneFile,
     Settings,
+    Tolerance,
     build_body,
     command,
     console,
     options_by_model,
 )
+from solidgear.cli.settled import body_for, ended, heading, told
 from solidgear.errors import SolidgearError, show
 from solidgear.fidelity.ladder import LADDER
 
@@ -100,7 +104,8 @@ def compare(
 @command
 def stiffness(
     scene: SceneFile,
-    fidelity: FidelityOption = FIDELITY,
+    fidelity: AutoFidelityOption = AUTO,
+    tol: Tolerance = None,
     attachment: Annotated[
         str | None,
         typer.Option(
@@ -121,7 +126,7 @@ def stiffness(
     loaded = load(scene)
     if attachment:
         loaded = loaded.with_attachment(attachment)
-    body = build_body(loaded, fidelity, settings)
+    body, settled = body_for(loaded, fidelity, settings, tol, "stiffness")
     found = condense(body, loaded, loaded.port.name)
     said = cautions(loaded, body)
 
@@ -132,7 +137,7 @@ def stiffness(
 
         record = {
             "scene": loaded.name,
-            "fidelity": fidelity,
+            "fidelity": body.fidelity,
             "port": found.port,
             "attachment": found.attachment,
             "order": DOF_NAMES,
@@ -144,13 +149,16 @@ def stiffness(
             "evidence": found.evidence,
             "cautions": said,
         }
+        if settled is not None:
+            record |= settled.as_dict()
         print(json.dumps(record))
+        ended(settled)
         return
     from solidgear.report.terminal import matrix_table
 
     terminal = console()
     terminal.print(
-        f"{loaded.name}: {fidelity}, {body.size} unknowns, port {found.port!r} at y = {1e3 * loaded.port.y:.3f} mm ({found.attachment})",
+        f"{heading(loaded, body, settled)}, port {found.port!r} at y = {1e3 * loaded.port.y:.3f} mm ({found.attachment})",
         markup=False,
     )
     terminal.print(matrix_table(found.stiffness, "stiffness"))
@@ -167,7 +175,8 @@ def stiffness(
 @command
 def modes(
     scene: SceneFile,
-    fidelity: FidelityOption = FIDELITY,
+    fidelity: AutoFidelityOption = AUTO,
+    tol: Tolerance = None,
     n: Annotated[
         int | None, typer.Option("-n", help="Number of elastic shapes; twins count twice.")
     ] = None,
@@ -194,7 +203,7 @@ def modes(
             f"-n {show(n)} is not a number of modes that can be asked for; give 1 to {MOST_MODES}"
         )
     loaded = load(scene)
-    body = build_body(loaded, fidelity, settings)
+    body, settled = body_for(loaded, fidelity, settings, tol, "modes")
     found = solve(
         body,
         loaded,
@@ -218,7 +227,7 @@ def modes(
             json.dumps(
                 {
                     "scene": loaded.name,
-                    "fidelity": fidelity,
+                    "fidelity": body.fidelity,
                     "dofs": body.size,
                     "modes": rows,
                     "evidence": found.evidence,
@@ -231,7 +240,7 @@ def modes(
     from solidgear.report.terminal import modes_table
 
     terminal = console()
-    terminal.print(f"{loaded.name}: {fidelity}, {body.size} unknowns", markup=False)
+    terminal.print(heading(loaded, body, settled), markup=False)
     terminal.print(modes_table(rows))
     e = found.evidence
     terminal.print(
