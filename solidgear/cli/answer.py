@@ -102,7 +102,9 @@ def sentences(found: Answered | Settled) -> list[str]:
             passed.setdefault(step.why, []).append(step.rung)
     lines = [f"Passed over: {', '.join(names)}: {why}." for why, names in passed.items()]
     if found.missing:
-        lines.append(f"Not there: {', '.join(found.missing)} (a free motion, or no such mode).")
+        lines.append(
+            f"Not there: {', '.join(found.missing)} (a free motion, or no such mode among the lowest)."
+        )
     asked = percent(found.tolerance, signed=False)
     cost = sum(step.seconds for step in found.steps)
     if found.reached:

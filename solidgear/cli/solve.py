@@ -23,7 +23,7 @@ from solidgear.cli.app import (
     console,
     options_by_model,
 )
-from solidgear.cli.settled import body_for, ended, heading, told
+from solidgear.cli.settled import body_for, ended, heading, told, unjudged, without_bar
 from solidgear.errors import SolidgearError, show
 from solidgear.fidelity.ladder import LADDER
 
@@ -168,8 +168,11 @@ def stiffness(
     for motion in found.oblique.T:
         parts = ", ".join(f"{v:.4g} {n}" for v, n in zip(motion, DOF_NAMES) if abs(v) > 1e-9)
         terminal.print(f"Free: the motion ({parts}), m and rad; a compliance does not exist.")
+    for line in told(settled):
+        terminal.print(line, markup=False, soft_wrap=True)
     for sentence in said:
         terminal.print(f"caution: {sentence}", markup=False)
+    ended(settled)
 
 
 @command
@@ -223,19 +226,18 @@ def modes(
         for m in found.modes
     ]
     if as_json:
-        print(
-            json.dumps(
-                {
-                    "scene": loaded.name,
-                    "fidelity": body.fidelity,
-                    "dofs": body.size,
-                    "modes": rows,
-                    "evidence": found.evidence,
-                    "cautions": said,
-                },
-                default=float,
-            )
-        )
+        record = {
+            "scene": loaded.name,
+            "fidelity": body.fidelity,
+            "dofs": body.size,
+            "modes": rows,
+            "evidence": found.evidence,
+            "cautions": said,
+        }
+        if settled is not None:
+            record |= settled.as_dict() | {"without_bar": without_bar(found, settled)}
+        print(json.dumps(record, default=float))
+        ended(settled)
         return
     from solidgear.report.terminal import modes_table
 
@@ -257,9 +259,15 @@ def modes(
     if count:
         from solidgear.evidence.completeness import completeness
 
-        terminal.print(completeness(e, fidelity), markup=False)
+        terminal.print(completeness(e, body.fidelity), markup=False)
+    lines = told(settled)
+    if settled is not None:
+        lines += unjudged(without_bar(found, settled))
+    for line in lines:
+        terminal.print(line, markup=False, soft_wrap=True)
     for sentence in said:
         terminal.print(f"caution: {sentence}", markup=False)
+    ended(settled)
 
 
 @command
