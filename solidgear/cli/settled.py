@@ -74,16 +74,27 @@ def heading(scene: Scene, body: Body, settled: Settled | None) -> str:
 
 def told(settled: Settled | None) -> list[str]:
     """The largest bar, what was passed over and whether the tolerance is kept, in plain text."""
-    from solidgear.report.words import percent
-
     if settled is None:
         return []
-    lines = []
-    if settled.largest is not None:
-        quantity, bar = settled.largest
-        width = percent(bar, signed=False, nothing="unknown")
-        lines.append(f"Largest bar: +- {width}, of {quantity}.")
-    return lines + sentences(settled)
+    return [*_largest(settled, ""), *sentences(settled)]
+
+
+def on_the_base(settled: Settled | None) -> list[str]:
+    """The same of a sweep, whose mesh is chosen on the bearings that the scene has."""
+    if settled is None:
+        return []
+    mesh = f"Mesh: {settled.rung}, {settled.setting}; with stiffer bearings its errors count more."
+    return [mesh, *_largest(settled, " on the base scene"), *sentences(settled)]
+
+
+def _largest(settled: Settled, where: str) -> list[str]:
+    from solidgear.report.words import percent
+
+    if settled.largest is None:
+        return []
+    quantity, bar = settled.largest
+    width = percent(bar, signed=False, nothing="unknown")
+    return [f"Largest mesh bar{where}: +- {width}, of {quantity}."]
 
 
 def without_bar(found: ModeSet, settled: Settled) -> list[str]:

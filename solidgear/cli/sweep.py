@@ -20,7 +20,7 @@ from solidgear.cli.app import (
     command,
     options,
 )
-from solidgear.cli.settled import ended, refuse_tolerance, settled_for, told
+from solidgear.cli.settled import ended, on_the_base, refuse_tolerance, settled_for
 
 
 @command
@@ -164,8 +164,6 @@ def sweep(
             f"{found.unknowns} unknowns with {found.seats} seats solved once in {found.seconds_once:.1f} s; {new} variants of up to {found.basis} unknowns, "
             f"{1e3 * found.seconds_each:.1f} ms each; {found.refused} refused, {found.full} solved in full."
         )
-    if settled is not None:
-        print(f"{settled.rung}, {settled.setting} (auto), settled on the scene's own bearings.")
-    for sentence in told(settled):
+    for sentence in on_the_base(settled):
         print(sentence)
     ended(settled)

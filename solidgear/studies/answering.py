@@ -186,9 +186,8 @@ def climbed(
                     continue
                 climb.stop(str(error) or "not enough memory")
             return climb, steps + climb.steps
-    raise SolidgearError(
-        f"no model can answer: {'; '.join(s.why for s in steps if s.setting == '')}"
-    )
+    failed = [f"{step.rung}: {step.why}" for step in steps if step.rung in LADDER.of(SOLID)]
+    raise SolidgearError(f"no model can answer: {'; '.join(failed)}")
 
 
 def usable(tol: float) -> float:
