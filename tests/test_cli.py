@@ -15,6 +15,7 @@ import pytest
 from solidgear import cli
 from solidgear.fidelity.ladder import LADDER
 from solidgear.solve.factor import pardiso_missing
+from solidgear.studies import climb
 
 ROOT = Path(__file__).parent.parent
 SCENE = str(ROOT / "geometry" / "pinion_overhung.toml")
@@ -25,6 +26,8 @@ LIGHT = {
     "harmonic": ["--set", "order=3", "--set", "layers=1"],
     "solid": ["--set", "refinement=0.35"],
 }
+HARMONIC = ["-f", "harmonic"]
+FIXED = [*HARMONIC, *LIGHT["harmonic"]]
 ORDER = ["x", "y", "z", "thx", "thy", "thz"]
 
 
@@ -163,7 +166,7 @@ def test_free_body_has_no_compliance_but_json(run):
 
 def test_attachment_for_every_port(run):
     found = {
-        a: strict(run("stiffness", SCENE, *LIGHT["harmonic"], "--attachment", a, "--json").out)
+        a: strict(run("stiffness", SCENE, *FIXED, "--attachment", a, "--json").out)
         for a in ("average", "rigid", "section")
     }
     assert all(f["attachment"] == a for a, f in found.items())
@@ -173,7 +176,9 @@ def test_attachment_for_every_port(run):
 
 def test_builder_options(run):
     sizes = {
-        order: strict(run("stiffness", SCENE, "--set", f"order={order}", "--json").out)["dofs"]
+        order: strict(run("stiffness", SCENE, *HARMONIC, "--set", f"order={order}", "--json").out)[
+            "dofs"
+        ]
         for order in (2, 3)
     }
     assert sizes[3] > sizes[2]
@@ -301,14 +306,17 @@ REFUSED = {
     ),
     "value without an option": (["stiffness", SCENE, "--set", "=3"], ["key=value"]),
     "option of no builder": (
-        ["stiffness", SCENE, "--set", "banana=3"],
+        ["stiffness", SCENE, *HARMONIC, "--set", "banana=3"],
         ["banana", "harmonic", "no such option"],
     ),
     "option of another builder": (
         ["modes", SCENE, "-f", "euler", "--set", "order=3"],
         ["order", "euler", "no such option"],
     ),
-    "order out of range": (["modes", SCENE, "--set", "order=13"], ["order 13", "1 and 12"]),
+    "order out of range": (
+        ["modes", SCENE, *HARMONIC, "--set", "order=13"],
+        ["order 13", "1 and 12"],
+    ),
     "unknown element": (
         ["check", SCENE, "-f", "solid", "--set", "element=tet7"],
         ["tet7", "tet10"],
@@ -322,18 +330,18 @@ REFUSED = {
         ["render", SCENE, "-f", "euler", "--mode", "banana 7", "--out", "x.png"],
         ["banana 7", "bending 1"],
     ),
-    "not a number": (["stiffness", SCENE, "--set", "order=abc"], ["order"]),
-    "broken order": (["stiffness", SCENE, "--set", "order=2.5"], ["order"]),
-    "NaN": (["stiffness", SCENE, "--set", "refinement=nan"], ["refinement"]),
-    "no refinement": (["stiffness", SCENE, "--set", "refinement=0"], ["refinement"]),
+    "not a number": (["stiffness", SCENE, *HARMONIC, "--set", "order=abc"], ["order"]),
+    "broken order": (["stiffness", SCENE, *HARMONIC, "--set", "order=2.5"], ["order"]),
+    "NaN": (["stiffness", SCENE, *HARMONIC, "--set", "refinement=nan"], ["refinement"]),
+    "no refinement": (["stiffness", SCENE, *HARMONIC, "--set", "refinement=0"], ["refinement"]),
     "negative refinement": (
         ["stiffness", SCENE, "-f", "solid", "--set", "refinement=-1"],
         ["refinement"],
     ),
-    "negative size": (["stiffness", SCENE, "--set", "size=-1"], ["size"]),
-    "layers that grow": (["stiffness", SCENE, "--set", "ratio=2"], ["ratio"]),
+    "negative size": (["stiffness", SCENE, *HARMONIC, "--set", "size=-1"], ["size"]),
+    "layers that grow": (["stiffness", SCENE, *HARMONIC, "--set", "ratio=2"], ["ratio"]),
     "harmonic that carries ports": (
-        ["stiffness", SCENE, "--set", "order=2", "--set", "ovalising=1"],
+        ["stiffness", SCENE, *HARMONIC, "--set", "order=2", "--set", "ovalising=1"],
         ["ovalising", "at least 2"],
     ),
     "negative elements": (
@@ -416,6 +424,8 @@ def test_memory_that_runs_out_is_a_sentence(run, tmp_path, monkeypatch):
         raise MemoryError
 
     monkeypatch.setattr("solidgear.fidelity.build", broken)
+    refused(run("stiffness", SCENE, *HARMONIC), tmp_path, "not enough memory")
+    monkeypatch.setattr(climb, "build", broken)
     refused(run("stiffness", SCENE), tmp_path, "not enough memory")
 
 
@@ -435,7 +445,7 @@ def test_backends_give_the_same_stiffness(run, monkeypatch):
         if backend == "pardiso" and pardiso_missing():
             pytest.skip(pardiso_missing())
         monkeypatch.setenv("SOLIDGEAR_BACKEND", backend)
-        record = strict(run("stiffness", SCENE, *LIGHT["harmonic"], "--json").out)
+        record = strict(run("stiffness", SCENE, *FIXED, "--json").out)
         assert record["evidence"]["backend"] == backend
         found[backend] = record["stiffness"][2][2]
     # two factorisations of one matrix, each refined to 1e-10 and better

@@ -68,7 +68,7 @@ def test_every_problem_by_every_command(run, tmp_path, command):
 REFUSED = {
     "modes without end": (["modes", SCENE, "-n", "1000000000"], "give 1 to 500"),
     "an argument for an option": (
-        ["stiffness", SCENE, "--set", "scene=1"],
+        ["stiffness", SCENE, "-f", "harmonic", "--set", "scene=1"],
         'no such option as "scene"',
     ),
     "an option twice": (

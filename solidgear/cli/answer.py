@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from solidgear.cli.app import JsonFlag, Progress, SceneFile, command, console
+from solidgear.cli.app import NOT_REACHED, JsonFlag, Progress, SceneFile, command, console
 from solidgear.errors import SolidgearError
 
 if TYPE_CHECKING:
@@ -17,9 +17,8 @@ if TYPE_CHECKING:
     from solidgear.evidence.where import Row, Whereabouts
     from solidgear.scene import Scene
     from solidgear.studies.answering import Answered, Step
+    from solidgear.studies.settle import Settled
 
-#: exit code where the tolerance is not reached: the numbers are there, with their bars
-NOT_REACHED = 3
 #: rows of the table of places
 PLACES = 5
 #: compliances whose error is placed for numbers that have no places of their own
@@ -142,7 +141,7 @@ def _solved(found: Answered) -> list[Step]:
     return [step for step in found.steps if step.unknowns is not None]
 
 
-def sentences(found: Answered) -> list[str]:
+def sentences(found: Answered | Settled) -> list[str]:
     """What was chosen, what was passed over and why, in plain text."""
     from solidgear.report.words import percent
 
@@ -152,7 +151,9 @@ def sentences(found: Answered) -> list[str]:
             passed.setdefault(step.why, []).append(step.rung)
     lines = [f"Passed over: {', '.join(names)}: {why}." for why, names in passed.items()]
     if found.missing:
-        lines.append(f"Not there: {', '.join(found.missing)} (a free motion, or no such mode).")
+        lines.append(
+            f"Not there: {', '.join(found.missing)} (a free motion, or no such mode among the lowest)."
+        )
     asked = percent(found.tolerance, signed=False)
     cost = sum(step.seconds for step in found.steps)
     if found.reached:

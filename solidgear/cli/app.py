@@ -35,6 +35,10 @@ app = typer.Typer(
 
 #: the rung that commands solve with unless told otherwise
 FIDELITY = "harmonic"
+#: the word for the cheapest mesh that keeps a tolerance, instead of a rung
+AUTO = "auto"
+#: exit code where the tolerance is not reached: the numbers are there, with their bars
+NOT_REACHED = 3
 
 
 SceneFile = Annotated[
@@ -42,9 +46,23 @@ SceneFile = Annotated[
 ]
 if TYPE_CHECKING:
     Choice = str
+    AutoChoice = str
 else:
     Choice = StrEnum("Choice", [(name, name) for name in LADDER.bodies])
+    AutoChoice = StrEnum("AutoChoice", [(name, name) for name in (AUTO, *LADDER.bodies)])
 FidelityOption = Annotated[Choice, typer.Option("--fidelity", "-f", help="Model to solve with.")]
+AutoFidelityOption = Annotated[
+    AutoChoice,
+    typer.Option(
+        "--fidelity",
+        "-f",
+        help="Model to solve with; auto: the cheapest whose bars are within --tol.",
+    ),
+]
+Tolerance = Annotated[
+    float | None,
+    typer.Option("--tol", help="Of -f auto: relative error allowed; else the scene's own."),
+]
 JsonFlag = Annotated[
     bool, typer.Option("--json", help="Print JSON for machines instead of tables.")
 ]

@@ -9,17 +9,21 @@ from typing import Annotated
 import typer
 
 from solidgear.cli.app import (
+    AUTO,
     FIDELITY,
+    AutoFidelityOption,
     FidelityOption,
     JsonFlag,
     Progress,
     SceneFile,
     Settings,
+    Tolerance,
     build_body,
     command,
     console,
     options_by_model,
 )
+from solidgear.cli.settled import body_for, ended, heading, told, unjudged, without_bar
 from solidgear.errors import SolidgearError, show
 from solidgear.fidelity.ladder import LADDER
 
@@ -100,7 +104,8 @@ def compare(
 @command
 def stiffness(
     scene: SceneFile,
-    fidelity: FidelityOption = FIDELITY,
+    fidelity: AutoFidelityOption = AUTO,
+    tol: Tolerance = None,
     attachment: Annotated[
         str | None,
         typer.Option(
@@ -121,7 +126,7 @@ def stiffness(
     loaded = load(scene)
     if attachment:
         loaded = loaded.with_attachment(attachment)
-    body = build_body(loaded, fidelity, settings)
+    body, settled = body_for(loaded, fidelity, settings, tol, "stiffness")
     found = condense(body, loaded, loaded.port.name)
     said = cautions(loaded, body)
 
@@ -132,7 +137,7 @@ def stiffness(
 
         record = {
             "scene": loaded.name,
-            "fidelity": fidelity,
+            "fidelity": body.fidelity,
             "port": found.port,
             "attachment": found.attachment,
             "order": DOF_NAMES,
@@ -144,13 +149,16 @@ def stiffness(
             "evidence": found.evidence,
             "cautions": said,
         }
+        if settled is not None:
+            record |= settled.as_dict()
         print(json.dumps(record))
+        ended(settled)
         return
     from solidgear.report.terminal import matrix_table
 
     terminal = console()
     terminal.print(
-        f"{loaded.name}: {fidelity}, {body.size} unknowns, port {found.port!r} at y = {1e3 * loaded.port.y:.3f} mm ({found.attachment})",
+        f"{heading(loaded, body, settled)}, port {found.port!r} at y = {1e3 * loaded.port.y:.3f} mm ({found.attachment})",
         markup=False,
     )
     terminal.print(matrix_table(found.stiffness, "stiffness"))
@@ -160,14 +168,18 @@ def stiffness(
     for motion in found.oblique.T:
         parts = ", ".join(f"{v:.4g} {n}" for v, n in zip(motion, DOF_NAMES) if abs(v) > 1e-9)
         terminal.print(f"Free: the motion ({parts}), m and rad; a compliance does not exist.")
+    for line in told(settled):
+        terminal.print(line, markup=False, soft_wrap=True)
     for sentence in said:
         terminal.print(f"caution: {sentence}", markup=False)
+    ended(settled)
 
 
 @command
 def modes(
     scene: SceneFile,
-    fidelity: FidelityOption = FIDELITY,
+    fidelity: AutoFidelityOption = AUTO,
+    tol: Tolerance = None,
     n: Annotated[
         int | None, typer.Option("-n", help="Number of elastic shapes; twins count twice.")
     ] = None,
@@ -194,7 +206,7 @@ def modes(
             f"-n {show(n)} is not a number of modes that can be asked for; give 1 to {MOST_MODES}"
         )
     loaded = load(scene)
-    body = build_body(loaded, fidelity, settings)
+    body, settled = body_for(loaded, fidelity, settings, tol, "modes")
     found = solve(
         body,
         loaded,
@@ -214,24 +226,23 @@ def modes(
         for m in found.modes
     ]
     if as_json:
-        print(
-            json.dumps(
-                {
-                    "scene": loaded.name,
-                    "fidelity": fidelity,
-                    "dofs": body.size,
-                    "modes": rows,
-                    "evidence": found.evidence,
-                    "cautions": said,
-                },
-                default=float,
-            )
-        )
+        record = {
+            "scene": loaded.name,
+            "fidelity": body.fidelity,
+            "dofs": body.size,
+            "modes": rows,
+            "evidence": found.evidence,
+            "cautions": said,
+        }
+        if settled is not None:
+            record |= settled.as_dict() | {"without_bar": without_bar(found, settled)}
+        print(json.dumps(record, default=float))
+        ended(settled)
         return
     from solidgear.report.terminal import modes_table
 
     terminal = console()
-    terminal.print(f"{loaded.name}: {fidelity}, {body.size} unknowns", markup=False)
+    terminal.print(heading(loaded, body, settled), markup=False)
     terminal.print(modes_table(rows))
     e = found.evidence
     terminal.print(
@@ -248,9 +259,15 @@ def modes(
     if count:
         from solidgear.evidence.completeness import completeness
 
-        terminal.print(completeness(e, fidelity), markup=False)
+        terminal.print(completeness(e, body.fidelity), markup=False)
+    lines = told(settled)
+    if settled is not None:
+        lines += unjudged(without_bar(found, settled))
+    for line in lines:
+        terminal.print(line, markup=False, soft_wrap=True)
     for sentence in said:
         terminal.print(f"caution: {sentence}", markup=False)
+    ended(settled)
 
 
 @command

@@ -10,15 +10,17 @@ from typing import Annotated
 import typer
 
 from solidgear.cli.app import (
+    AUTO,
     FIDELITY,
-    FidelityOption,
+    AutoFidelityOption,
     JsonFlag,
     SceneFile,
     Settings,
-    build_body,
+    Tolerance,
     command,
     options,
 )
+from solidgear.cli.settled import ended, on_the_base, refuse_tolerance, settled_for
 
 
 @command
@@ -41,7 +43,8 @@ def sweep(
             "a database beside it (rows.csv.sqlite), from which the file is written in one step.",
         ),
     ] = Path("rows.csv"),
-    fidelity: FidelityOption = FIDELITY,
+    fidelity: AutoFidelityOption = FIDELITY,
+    tol: Tolerance = None,
     n: Annotated[
         int | None, typer.Option("-n", help="Number of elastic shapes; twins count twice.")
     ] = None,
@@ -91,7 +94,14 @@ def sweep(
     from solidgear.studies.sweep import sweep as run
 
     loaded = load(scene)
-    given = LADDER[fidelity].checked(options(settings))  # before a file of rows is begun
+    # before a file of rows is begun
+    settled = None
+    if fidelity == AUTO:
+        settled = settled_for(loaded, settings, tol, "all")
+        rung, given = settled.rung, settled.options
+    else:
+        refuse_tolerance(fidelity, tol)
+        rung, given = str(fidelity), LADDER[fidelity].checked(options(settings))
     terminal = Console(stderr=True, highlight=False)
     bar = Progress(
         TextColumn("{task.description}"),
@@ -117,7 +127,7 @@ def sweep(
                 loaded,
                 vary,
                 out,
-                fidelity=fidelity,
+                fidelity=rung,
                 options=given,
                 n=n,
                 sample=sample,
@@ -126,7 +136,7 @@ def sweep(
                 jobs=jobs,
                 dask=dask,
                 overwrite=overwrite,
-                build=lambda shaft, *_, **__: build_body(shaft, fidelity, settings),
+                build=build,
                 progress=show,
                 tell=tell,
             )
@@ -138,9 +148,13 @@ def sweep(
             )
         raise
     if as_json:
-        print(json.dumps(asdict(found), default=str))
+        record = asdict(found)
+        if settled is not None:
+            record |= settled.as_dict()
+        print(json.dumps(record, default=str))
+        ended(settled)
         return
-    for sentence in cautions(loaded, build(loaded, "timoshenko"), fidelity):
+    for sentence in cautions(loaded, build(loaded, "timoshenko"), rung):
         print(f"caution: {sentence}", file=sys.stderr)
     new = found.total - found.skipped
     path = str(found.path).encode("utf-8", "backslashreplace").decode()  # bytes that are no text
@@ -150,3 +164,6 @@ def sweep(
             f"{found.unknowns} unknowns with {found.seats} seats solved once in {found.seconds_once:.1f} s; {new} variants of up to {found.basis} unknowns, "
             f"{1e3 * found.seconds_each:.1f} ms each; {found.refused} refused, {found.full} solved in full."
         )
+    for sentence in on_the_base(settled):
+        print(sentence)
+    ended(settled)

@@ -15,7 +15,7 @@ import re
 import time
 from collections.abc import Iterable
 from dataclasses import asdict, dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from solidgear.errors import SolidgearError, nearest, show
 from solidgear.evidence.quantities import JUDGED, QUANTITIES
@@ -27,6 +27,8 @@ from solidgear.studies.climb import Climb, Progress, Step, Value
 
 if TYPE_CHECKING:
     from solidgear.scene import Scene
+
+C = TypeVar("C", bound=Climb)
 
 #: short words for quantities
 WORDS = {"bending": "bending 1", "axial": "axial 1", "torsion": "torsion 1"}
@@ -121,8 +123,48 @@ def answer(
     (True, 'harmonic', True)
     """
     start = time.perf_counter()
-    tol = _tolerance(scene.ask.tolerance if tol is None else tol)
+    tol = usable(scene.ask.tolerance if tol is None else tol)
     wanted = _quantities(scene, ask)
+    climb, steps = climbed(scene, tol, wanted, Climb, progress)
+    values = climb.values()
+    known = {v.quantity for v in values}
+    return Answered(
+        scene.name,
+        tol,
+        values,
+        tuple(steps),
+        bool(values) and all(v.bar <= tol for v in values),
+        climb.rung.name,
+        tuple(q for q in wanted if q not in known),
+        time.perf_counter() - start,
+    )
+
+
+def climbed(
+    scene: Scene, tol: float, wanted: tuple[str, ...], kind: type[C], progress: Progress
+) -> tuple[C, list[Step]]:
+    """The first solid of the ladder that can be solved at all, on the meshes that it takes.
+
+    Parameters
+    ----------
+    scene : Scene
+    tol : float
+    wanted : tuple of str
+    kind : type of Climb
+    progress : callable
+
+    Returns
+    -------
+    climb : Climb
+        After its last mesh.
+    steps : list of Step
+        What was passed over and tried, in the order of the ladder.
+
+    Raises
+    ------
+    SolidgearError
+        If no rung can be solved.
+    """
     steps = [
         Step(
             name,
@@ -135,8 +177,7 @@ def answer(
     ]
     with one_run():
         for name in LADDER.of(SOLID):
-            rung = LADDER[name]
-            climb = Climb(scene, rung, wanted, tol, progress)
+            climb = kind(scene, LADDER[name], wanted, tol, progress)
             try:
                 climb.run()
             except (SolidgearError, MemoryError) as error:
@@ -144,27 +185,21 @@ def answer(
                     steps.append(Step(name, "", False, str(error) or "not enough memory"))
                     continue
                 climb.stop(str(error) or "not enough memory")
-            steps += climb.steps
-            values = climb.values()
-            known = {v.quantity for v in values}
-            return Answered(
-                scene.name,
-                tol,
-                values,
-                tuple(steps),
-                bool(values) and all(v.bar <= tol for v in values),
-                name,
-                tuple(q for q in wanted if q not in known),
-                time.perf_counter() - start,
-            )
-    raise SolidgearError(
-        f"no model can answer: {'; '.join(s.why for s in steps if s.setting == '')}"
-    )
+            return climb, steps + climb.steps
+    failed = [f"{step.rung}: {step.why}" for step in steps if step.rung in LADDER.of(SOLID)]
+    raise SolidgearError(f"no model can answer: {'; '.join(failed)}")
 
 
-def _tolerance(tol: float) -> float:
-    usable = isinstance(tol, (int, float)) and not isinstance(tol, bool) and math.isfinite(tol)
-    if not usable or not 0 < tol <= 1:
+def usable(tol: float) -> float:
+    """A tolerance that can be held.
+
+    Raises
+    ------
+    SolidgearError
+        Unless it is above 0, at most 1, and not below what arithmetic allows.
+    """
+    number = isinstance(tol, (int, float)) and not isinstance(tol, bool) and math.isfinite(tol)
+    if not number or not 0 < tol <= 1:
         raise SolidgearError(
             f"tol = {show(tol)} is not usable; give a number above 0 and at most 1"
         )

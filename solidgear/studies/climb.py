@@ -105,7 +105,7 @@ class Level:
 
 
 class Climb:
-    """One solid on ever finer meshes."""
+    """One solid on ever finer meshes; what the finest of them was solved with is kept."""
 
     def __init__(
         self,
@@ -121,6 +121,9 @@ class Climb:
         self.steps: list[Step] = []
         self.bands: dict[str, Band] = {}
         self.families: tuple[str, ...] | None = None
+        self.body: Body | None = None
+        self.options: dict[str, Any] = {}
+        self.statics: Condensed | None = None
 
     def run(self) -> None:
         """Climb until every band is within the tolerance, or there is no finer mesh."""
@@ -131,6 +134,7 @@ class Climb:
             self.progress(f"{self.rung.title}: {_words(level)}")
             body = self._body(level)
             self.levels.append(self._level(body))
+            self.body, self.options = body, dict(level)
             if len(self.levels) == 1:
                 self.families = self._needed(body)
             bar = self.judge()
@@ -198,6 +202,7 @@ class Climb:
         found: ModeSet | None = None
         if kinds & {"compliance", "stiffness"}:
             statics = condense(body, supports, self.scene.port.name)
+            self.statics = statics
         if "frequency" in kinds:
             found = modes(body, supports, self._shapes(), ovalising=False)
         return Level(measure(statics, found), _solver(statics, found))

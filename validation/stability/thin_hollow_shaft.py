@@ -151,7 +151,7 @@ def measure(quick: bool = False) -> Finding:
         f"{solid[-1]['n = 2']:+.1%} with {solid[-1]['3D solid, cells around']}.",
         "`solidgear check` solves n = 2 and 3 where a wall is thin enough and says when they "
         'lie below or near first bending or the range asked for; `build(scene, "harmonic", '
-        "ovalising=(2, 3))` and `solidgear modes --set ovalising=2,3` compute these modes.",
+        "ovalising=(2, 3))` and `solidgear modes -f harmonic --set ovalising=2,3` compute them.",
         "tests/test_check_guards.py::test_guard[tube, n = 2 below bending]",
         rows + limits + solid,
     )

@@ -1,0 +1,117 @@
+"""What commands share that choose the mesh by themselves: ``-f auto``."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+import typer
+
+from solidgear.cli.answer import sentences
+from solidgear.cli.app import AUTO, FIDELITY, NOT_REACHED, Progress, build_body, options
+from solidgear.errors import SolidgearError, show
+
+if TYPE_CHECKING:
+    from solidgear.body import Body
+    from solidgear.scene import Scene
+    from solidgear.solve.modes import ModeSet
+    from solidgear.studies.settle import Settled
+
+
+def body_for(
+    scene: Scene, fidelity: str, pairs: list[str] | None, tol: float | None, ask: str
+) -> tuple[Body, Settled | None]:
+    """The body that a command solves with, and how it was chosen where it was.
+
+    Parameters
+    ----------
+    scene : Scene
+    fidelity : str
+        A rung, or ``auto``.
+    pairs : list of str or None
+        ``--set`` options.
+    tol : float or None
+        ``--tol``.
+    ask : str
+        As for :func:`solidgear.studies.settle.settle`.
+    """
+    if fidelity != AUTO:
+        refuse_tolerance(fidelity, tol)
+        return build_body(scene, fidelity, pairs), None
+    settled = settled_for(scene, pairs, tol, ask)
+    return settled.body, settled
+
+
+def refuse_tolerance(fidelity: str, tol: float | None) -> None:
+    """A fixed model has no use for ``--tol``, and must not look as if it kept it."""
+    if tol is not None:
+        raise SolidgearError(
+            f"--tol {tol:g} needs -f auto; the mesh of -f {fidelity} is set by --set"
+        )
+
+
+def settled_for(scene: Scene, pairs: list[str] | None, tol: float | None, ask: str) -> Settled:
+    """What ``-f auto`` chooses; parameters as for :func:`body_for`."""
+    from solidgear.studies.settle import settle
+
+    if options(pairs):  # which says so where one is no key=value
+        raise SolidgearError(
+            f"--set {show((pairs or [''])[0], 40)} needs a fixed model: add -f {FIDELITY}"
+        )
+    # A second or less for most scenes: lines are for those who watch.
+    with Progress(quiet=not sys.stderr.isatty()) as progress:
+        return settle(scene, tol, ask, progress=progress)
+
+
+def heading(scene: Scene, body: Body, settled: Settled | None) -> str:
+    """Scene, model, mesh and size."""
+    model = body.fidelity
+    if settled is not None:
+        model = f"{model}, {settled.setting} (auto)"
+    return f"{scene.name}: {model}, {body.size} unknowns"
+
+
+def told(settled: Settled | None) -> list[str]:
+    """The largest bar, what was passed over and whether the tolerance is kept, in plain text."""
+    if settled is None:
+        return []
+    return [*_largest(settled, ""), *sentences(settled)]
+
+
+def on_the_base(settled: Settled | None) -> list[str]:
+    """The same of a sweep, whose mesh is chosen on the bearings that the scene has."""
+    if settled is None:
+        return []
+    mesh = f"Mesh: {settled.rung}, {settled.setting}; with stiffer bearings its errors count more."
+    return [mesh, *_largest(settled, " on the base scene"), *sentences(settled)]
+
+
+def _largest(settled: Settled, where: str) -> list[str]:
+    from solidgear.report.words import percent
+
+    if settled.largest is None:
+        return []
+    quantity, bar = settled.largest
+    width = percent(bar, signed=False, nothing="unknown")
+    return [f"Largest mesh bar{where}: +- {width}, of {quantity}."]
+
+
+def without_bar(found: ModeSet, settled: Settled) -> list[str]:
+    """Names of modes that were not judged."""
+    return [m.name for m in found.modes if m.frequency_hz > 0 and m.name not in settled.bars]
+
+
+def unjudged(names: Sequence[str]) -> list[str]:
+    """What is to be said of them."""
+    if not names:
+        return []
+    few = ", ".join(names[:3])
+    more = f" and {len(names) - 3} more" if len(names) > 3 else ""
+    return [f"No bar of their own: {few}{more}; the higher a mode, the more it asks of a mesh."]
+
+
+def ended(settled: Settled | None) -> None:
+    """An exit code of its own where the tolerance is not kept."""
+    if settled is not None and not settled.reached:
+        raise typer.Exit(NOT_REACHED)

@@ -1,0 +1,225 @@
+"""The cheapest body that answers a whole question within a tolerance.
+
+:func:`solidgear.studies.answering.answer` gives single numbers and builds no more than they need.
+Here the body itself is wanted, with all families of motion: for the 6x6 at the lumped point, for a
+list of modes, or for a sweep over its bearings.
+
+The error of a compliance matrix of displacement elements is positive semidefinite, and so is that
+of a stiffness matrix, from the other side: no entry errs by more than the geometric mean of its two
+diagonal entries' errors.  Bands of all six diagonal entries therefore hold all of the matrix.
+:data:`~solidgear.evidence.quantities.QUANTITIES` names one bending plane and axial motion; where
+bearings differ between planes, the other one may rest on the mesh far more than the first, so it is
+measured as well, by a quarter turn of the same matrix, and torsion with it.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from solidgear.body import Body
+from solidgear.errors import SolidgearError, show
+from solidgear.evidence.bands import layered_bands
+from solidgear.evidence.quantities import QUANTITIES, measure
+from solidgear.machine.threads import pinned
+from solidgear.studies.answering import climbed, usable
+from solidgear.studies.climb import Climb, Level, Progress, Step
+
+if TYPE_CHECKING:
+    from solidgear.scene import Scene
+
+#: what may be asked of a body, and the kinds of quantities by which it is judged
+QUESTIONS: dict[str, tuple[str, ...]] = {
+    "stiffness": ("compliance", "stiffness"),
+    "modes": ("frequency",),
+    "all": ("compliance", "stiffness", "frequency"),
+}
+#: components in whose place others stand for a moment: a quarter turn about the axis takes x to z
+#: and thz to thx, and torsion takes the place of axial motion (signs do not matter to a band)
+TURN = (2, 4, 0, 5, 1, 3)
+#: what the quantities of the turned matrix are
+TURNED = {
+    "C_zz": "C_xx",
+    "C_z,thx": "C_x,thz",
+    "C_thx": "C_thz",
+    "C_yy": "C_thy",
+    "K_zz": "K_xx",
+    "K_z,thx": "K_x,thz",
+    "K_thx": "K_thz",
+    "K_yy": "K_thy",
+}
+
+
+@dataclass(frozen=True)
+class Settled:
+    """A body, and how sure it is of what was asked.
+
+    Attributes
+    ----------
+    scene : str
+    tolerance : float
+    rung : str
+    options : dict
+        Of the builder: with these, the rung gives the same body again.
+    body : Body
+        With all families of motion.
+    bars : dict of str to float
+        By quantity, relative; of couplings, to the geometric mean of their diagonal entries.
+        Infinite where nothing is known.
+    steps : tuple of Step
+        What was passed over and tried.
+    reached : bool
+        Whether every bar is within the tolerance. A scene that nothing holds has a stiffness of
+        exactly zero, and no bar to meet.
+    missing : tuple of str
+        Quantities that do not exist for this scene.
+    """
+
+    scene: str
+    tolerance: float
+    rung: str
+    options: dict[str, Any]
+    body: Body
+    bars: dict[str, float]
+    steps: tuple[Step, ...]
+    reached: bool
+    missing: tuple[str, ...]
+
+    @property
+    def setting(self) -> str:
+        """The mesh in words."""
+        return next(step.setting for step in self.steps if step.chosen)
+
+    @property
+    def largest(self) -> tuple[str, float] | None:
+        """The quantity with the largest bar, and the bar; None where nothing is judged."""
+        return max(self.bars.items(), key=lambda item: item[1], default=None)
+
+    def as_dict(self) -> dict[str, Any]:
+        """Plain data, without the body."""
+        return {
+            "rung": self.rung,
+            "setting": self.setting,
+            "options": self.options,
+            "tolerance": self.tolerance,
+            "bars": {q: bar if math.isfinite(bar) else None for q, bar in self.bars.items()},
+            "reached": self.reached,
+        }
+
+
+@pinned
+def settle(
+    scene: Scene,
+    tol: float | None = None,
+    ask: str = "all",
+    *,
+    progress: Progress = lambda _: None,
+) -> Settled:
+    """The cheapest body whose bands of all that is asked are within a tolerance.
+
+    Parameters
+    ----------
+    scene : Scene
+    tol : float, optional
+        Relative; by default the tolerance of the scene.
+    ask : {'all', 'stiffness', 'modes'}
+        Compliances and stiffnesses at the lumped point in all six directions, the first frequencies
+        of every family, or both.
+    progress : callable
+        Called with a sentence at every step.
+
+    Returns
+    -------
+    Settled
+        After the last mesh that could be solved; ``reached`` says whether it will do.
+
+    Raises
+    ------
+    SolidgearError
+        For a tolerance that is none or that arithmetic does not allow, another question, or a scene
+        that no rung can answer.
+
+    Examples
+    --------
+    >>> import solidgear as sg
+    >>> scene = sg.load("geometry/shaft_stepped.toml")
+    >>> found = settle(scene, 0.01, "stiffness")
+    >>> found.rung, found.reached, found.largest[1] <= 0.01
+    ('harmonic', True, True)
+    >>> found.body.size == sg.build(scene, found.rung, **found.options).size
+    True
+    """
+    tol = usable(scene.ask.tolerance if tol is None else tol)
+    if ask not in QUESTIONS:
+        raise SolidgearError(f"settle: ask = {show(ask, 40)}; use one of {', '.join(QUESTIONS)}")
+    wanted = tuple(q for q, (kind, _, _) in QUANTITIES.items() if kind in QUESTIONS[ask])
+    climb, steps = climbed(scene, tol, wanted, Whole, progress)
+    assert climb.body is not None  # a rung without a single mesh is passed over
+    bars = climb.bars()
+    judged = bool(bars) or ask == "stiffness"
+    return Settled(
+        scene.name,
+        tol,
+        climb.rung.name,
+        climb.options,
+        climb.body,
+        bars,
+        tuple(steps),
+        judged and all(bar <= tol for bar in bars.values()),
+        tuple(q for q in wanted if q not in bars),
+    )
+
+
+class Whole(Climb):
+    """A climb on which every mesh carries all families, judged in all six directions."""
+
+    def __init__(self, *args: Any) -> None:
+        super().__init__(*args)
+        self.turned: list[Level] = []
+
+    def bars(self) -> dict[str, float]:
+        """Relative bars by quantity, those of the other plane and of torsion by names of their
+        own.
+        """
+        out = {v.quantity: v.bar for v in self.values()}
+        if self.turned:
+            finest = self.turned[-1].quantities
+            known = self._turned_bands()
+            out |= {TURNED[name]: known.get(name, math.inf) for name in finest}
+        return out
+
+    def judge(self) -> float | None:
+        super().judge()
+        if len(self.levels) < 2:
+            return None
+        return max(self.bars().values(), default=None)
+
+    def _needed(self, _: Body) -> None:
+        return None
+
+    def _level(self, body: Body) -> Level:
+        level = super()._level(body)
+        if self.statics is not None:
+            other = replace(
+                self.statics,
+                stiffness=self.statics.stiffness[np.ix_(TURN, TURN)],
+                compliance=self.statics.compliance[np.ix_(TURN, TURN)],
+            )
+            self.turned.append(Level(measure(other, None), level.solver))
+        return level
+
+    def _turned_bands(self) -> Mapping[str, float]:
+        if len(self.turned) < 2:
+            return {}
+        assert self.rung.factors is not None  # as every solid
+        found = layered_bands(
+            [level.quantities for level in self.turned],
+            self.turned[-1].solver,
+            self.rung.factors,
+            rigid=any(s.attachment == "rigid" for s in self.scene.stations),
+        )
+        return {name: band.gci for name, band in found.items()}
