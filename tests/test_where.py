@@ -170,7 +170,7 @@ def test_places_of_bores_cones_and_materials():
     found = [(p.what, p.y, p.r) for p in singular_places(scene) if "port" not in p.what]
     expected = [
         ("step of the bore", 0.1, 0.015),
-        ("hollow turn of the surface", 0.3, 0.03),
+        ("concave kink of the surface", 0.3, 0.03),
         ("change of material", 0.2, 0.03),
         ("change of material in the bore", 0.2, 0.015),
     ]

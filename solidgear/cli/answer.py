@@ -149,7 +149,7 @@ def sentences(found: Answered | Settled) -> list[str]:
     for step in found.steps:
         if not step.valid:
             passed.setdefault(step.why, []).append(step.rung)
-    lines = [f"Passed over: {', '.join(names)}: {why}." for why, names in passed.items()]
+    lines = [f"Passed over: {', '.join(names)} ({why})." for why, names in passed.items()]
     if found.missing:
         lines.append(
             f"Not there: {', '.join(found.missing)} (a free motion, or no such mode among the lowest)."

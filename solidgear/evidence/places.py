@@ -91,11 +91,11 @@ def _corners(a: Segment, b: Segment) -> list[Place]:
     if abs(a.outer1 - b.outer0) > 1e-9 * a.length:
         out.append(Place("shoulder", a.y1, min(a.outer1, b.outer0), reach))
     elif _slope(b, "outer") - _slope(a, "outer") > SMOOTH:
-        out.append(Place("hollow turn of the surface", a.y1, b.outer0, reach))
+        out.append(Place("concave kink of the surface", a.y1, b.outer0, reach))
     if abs(a.inner1 - b.inner0) > 1e-9 * a.length:
         out.append(Place("step of the bore", a.y1, max(a.inner1, b.inner0), reach))
     elif max(b.inner0, a.inner1) > 0 and _slope(a, "inner") - _slope(b, "inner") > SMOOTH:
-        out.append(Place("hollow turn of the bore", a.y1, b.inner0, reach))
+        out.append(Place("concave kink of the bore", a.y1, b.inner0, reach))
     return out
 
 

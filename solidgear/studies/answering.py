@@ -170,7 +170,7 @@ def climbed(
             name,
             "",
             False,
-            "has no error of its own to show; the coarsest solid, which could show it, "
+            "no error of their own to show; the coarsest solid, which could show it, "
             "costs as much and is better",
         )
         for name in LADDER.of(BEAM)
