@@ -31,10 +31,10 @@ def scenes():
 
 @pytest.fixture(scope="module")
 def truth(scenes):
-    """Two orders and two layers above what a tolerance of 1e-3 takes: measured within 1e-5."""
+    """A mesh or two above what a tolerance of 1e-3 takes: measured within 4e-5 of the next one."""
     found = {}
     for name, scene in scenes.items():
-        found[name] = solve(scene, "harmonic", 12, **HARMONIC[4]).quantities
+        found[name] = solve(scene, "harmonic", 12, **HARMONIC[3]).quantities
     return found
 
 
@@ -47,8 +47,8 @@ def test_the_truth_is_within_the_bar_and_the_bar_within_the_tolerance(scenes, tr
     assert set(values) == {q for q in ALL if q in truth[name]}
     for row in found.values:
         assert row.bar <= tol
-        # the reference is a mesh too: a hundredth of the tightest tolerance
-        assert abs(change(values, truth[name], row.quantity)) <= row.bar + 1e-5
+        # the reference is a mesh too: a twentieth of the tightest tolerance
+        assert abs(change(values, truth[name], row.quantity)) <= row.bar + 5e-5
 
 
 def test_a_looser_tolerance_costs_less(scenes):

@@ -124,7 +124,7 @@ MUTATIONS = (
     Mutation(
         "axis condition of bending dropped",
         "solidgear/fidelity/harmonic_blocks.py",
-        "_Work.bending_block",
+        "_Work.kept",
         "keep[self.on_axis, 1:] = False",
         "keep[self.on_axis, 2:] = False",
         "tests/test_harmonic.py::test_bending_wave_of_a_cylinder_between_sliding_ends",
