@@ -175,7 +175,9 @@ held = int(open("/proc/self/statm").read().split()[1]) * resource.getpagesize() 
 body = sg.build(scene, model, **options)
 sg.condense(body, scene, scene.port.name)
 sg.modes(body, scene, n=10)
-peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024 - held
+# of this program alone: ru_maxrss is inherited from the process that started it
+status = open("/proc/self/status").read()
+peak = int(status.split("VmHWM:")[1].split()[0]) / 1024 - held
 print(json.dumps([estimated_size(scene, model, options).peak_mb, peak]))
 """
 
