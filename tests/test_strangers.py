@@ -18,6 +18,7 @@ from solidgear.fidelity.size import estimated_size
 from solidgear.scene import Bearing, Port, Scene, Segment
 from solidgear.studies.check import check_scene
 from solidgear.studies.comparison import compare
+from solidgear.studies.guards.probe import Probe
 
 SCENES = Path(__file__).parent / "scenes"
 COARSE = HARMONIC[1]
@@ -172,3 +173,45 @@ def test_a_lumped_model_without_the_first_bending_is_not_valid():
     assert not lumped["valid"] and "in the z plane" in lumped["why_not"]
     checked = check_scene(scene, sg.build(scene, "timoshenko"))["verdicts"]["lumped"]["verdict"]
     assert checked != "holds"
+
+
+def test_a_beam_that_cannot_be_made_says_nothing_of_the_other(monkeypatch):
+    real = Probe.rung
+
+    def rung(probe, model):
+        if model == "euler":
+            raise sg.SolidgearError("an element is 5e-08 m long, and loses its digits")
+        return real(probe, model)
+
+    monkeypatch.setattr(Probe, "rung", rung)
+    scene = sg.load(Path(__file__).parent.parent / "geometry" / "pinion_overhung.toml")
+    verdicts = check_scene(scene, sg.build(scene, "timoshenko"))["verdicts"]
+    assert verdicts["euler"]["verdict"] == "will not hold"
+    # its tilt compliance is 15 % off, and nothing else than this guard says so to four digits
+    assert "beam_against_solid" in verdicts["timoshenko"]["guards"]
+
+
+def test_what_could_not_be_checked_does_not_hold(monkeypatch):
+    def gaps(probe, model):
+        raise MemoryError("not enough memory")
+
+    monkeypatch.setattr(Probe, "_gaps", gaps)
+    # slender and plain: no other guard speaks against its beams
+    rod = sg.Segment.cylinder("rod", length=2.0, diameter=0.02)
+    scene = sg.Scene.from_parts([rod])
+    verdicts = check_scene(scene, sg.build(scene, "timoshenko"))["verdicts"]
+    assert verdicts["timoshenko"]["verdict"] == "uncertain"
+
+
+def test_a_shaft_that_is_one_rigid_seat_is_free():
+    rod = sg.Segment.cylinder("rod", length=0.3, diameter=0.02)
+    held = sg.Bearing(
+        name="sleeve",
+        y=0.15,
+        seat_width=0.3,
+        attachment="rigid",
+        stiffness={"kxx": 1e7, "kyy": 1e7, "kzz": 1e7},
+    )
+    body = sg.build(sg.Scene.from_parts([rod], bearings=[held]), "timoshenko")
+    # its stiffness is rounding alone, which is small beside what its mass would feel
+    assert body.rigid_residual() < 1e-9

@@ -367,8 +367,10 @@ class Body:
         for block in self.blocks:
             if not block.components:
                 continue
-            scale = abs(block.stiffness) @ abs(block.rigid)
-            worst = max(
-                worst, float((abs(block.stiffness @ block.rigid) / scale.max(axis=0)).max())
-            )
+            scale = (abs(block.stiffness) @ abs(block.rigid)).max(axis=0)
+            # A shaft that is one rigid seat has no stiffness but rounding: it is held against what
+            # its mass would feel at the lowest elastic frequency.
+            inertia = self.scale * abs(block.mass @ block.rigid).max(axis=0)
+            met = abs(block.stiffness @ block.rigid) / np.maximum(scale, inertia)
+            worst = max(worst, float(met.max()))
         return worst

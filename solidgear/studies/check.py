@@ -15,7 +15,7 @@ from solidgear.fidelity.rung import BEAM, LUMPED
 from solidgear.machine.threads import pinned
 from solidgear.meshing.quality import mass_properties
 from solidgear.studies.guards import GUARDS, LEVELS, Notice, Probe
-from solidgear.studies.guards.notice import everything
+from solidgear.studies.guards.notice import beams, everything
 
 if TYPE_CHECKING:
     from solidgear.scene import Scene
@@ -36,6 +36,8 @@ NOT_IN_COMPARISONS = (
     "memory",
     "renderer",
 )
+#: guards that hold beams and lumped models against a light solid
+COMPARES = ("beam_against_solid", "lumped_against_solid")
 #: what is about other models than a body, or about the machine
 NOT_HEARD_ALONE = (
     "rigid_seats",
@@ -168,7 +170,10 @@ def _heard(name: str, probe: Probe) -> list[Notice]:
         MemoryError,
         np.linalg.LinAlgError,
     ) as error:
-        return [Notice("caution", (), f"not checked ({name.replace('_', ' ')}): {error}")]
+        text = f"not checked ({name.replace('_', ' ')}): {error}"
+        # What a comparison would have found out is open; nothing holds for want of a check.
+        concerned = beams() if name in COMPARES else ()
+        return [Notice("open" if concerned else "caution", concerned, text)]
 
 
 def _verdict(model: str, records: list[dict]) -> dict:

@@ -30,7 +30,13 @@ def beam_against_solid(probe: Probe) -> Notices:
     """
     tolerance = probe.scene.ask.tolerance
     for model, concerned in (("euler", ("euler",)), ("timoshenko", ("timoshenko", "lumped"))):
-        if not (gaps := probe.gaps(model)):
+        try:
+            gaps = probe.gaps(model)
+        except SolidgearError as error:
+            # One beam that cannot be made says nothing of the other.
+            yield Notice("avoid", (model,), f"there is no {model} beam of this shaft: {error}")
+            continue
+        if not gaps:
             continue
         found = {
             kind: [
