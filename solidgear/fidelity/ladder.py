@@ -52,11 +52,11 @@ LADDER = Ladder(
         size=Later("solidgear.fidelity.sizes", "harmonic_size"),
         meshes=harmonic_meshes,
         factors=BandFactors(
-            # error over last change of 39 random scenes, at most 0.063 and 0.075 after two meshes,
-            # 0.095 and 0.24 after three (without and with rigid seats)
-            usual=0.15,
-            rigid=0.26,
-            first=((0.07, 0.0, 0.07), (0.09, 0.0, 0.09)),
+            # From 58 random scenes: they hold 99 % of 830 errors after two to four meshes. A first
+            # fit on 39 of them held 84 % on the others: a few scenes are not enough.
+            usual=0.25,
+            rigid=0.45,
+            first=((0.075, 0.0, 0.075), (0.15, 0.0, 0.15)),
             earlier=0.06,
             ahead=0.12,
         ),
