@@ -92,6 +92,18 @@ def test_bearings_that_couple_families_keep_them_together(scenes):
     assert abs(alone.compliance[2, 2] / full["C_zz"] - 1) > 0.01
 
 
+def test_springs_on_motions_that_a_body_lacks_are_refused(scenes):
+    # it would be rigid there: C_yy came out 7 % too small without a word
+    scene = scenes["pinion_overhung"]
+    body = sg.build(scene, "harmonic", order=2, layers=0, families=("bending",))
+    with pytest.raises(sg.SolidgearError, match="without the motions y, which bearings hold"):
+        sg.condense(body, scene, "pinion")
+    with pytest.raises(sg.SolidgearError, match="without the motions y"):
+        sg.modes(body, scene, 4)
+    bending = as_supports(scene).on((0, 2, 3, 5))
+    assert sg.condense(body, bending, "pinion").compliance[2, 2] > 0
+
+
 def test_beams_are_passed_over_with_the_reason(scenes):
     found = answer(scenes["shaft_stepped"], 0.1, "bending")
     passed = {s.rung: s.why for s in found.steps if not s.valid}

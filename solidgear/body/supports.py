@@ -10,6 +10,8 @@ from typing import TYPE_CHECKING, TypeAlias
 import numpy as np
 
 from solidgear.body.model import Body
+from solidgear.errors import SolidgearError
+from solidgear.frames import DOF_NAMES
 
 if TYPE_CHECKING:
     from solidgear.scene import Bearing, Scene
@@ -86,11 +88,23 @@ class Supports:
         Raises
         ------
         SolidgearError
-            If the body lacks a port.
+            If the body lacks a port, or motions that springs hold.
         """
+        self._refuse_absent(body)
         wanted = self.attachments or (None,) * len(self.ports)
         places = [6 * body.port_index(n, a) + np.arange(6) for n, a in zip(self.ports, wanted)]
         return np.concatenate(places) if places else np.zeros(0, int)
+
+    def _refuse_absent(self, body: Body) -> None:
+        """Springs on motions that a body was built without would find it rigid there."""
+        held = {int(row) % 6 for row in np.flatnonzero(self.stiffness.any(axis=1))}
+        absent = held - {c for block in body.blocks for c in block.components}
+        if absent:
+            names = " ".join(DOF_NAMES[c] for c in sorted(absent))
+            raise SolidgearError(
+                f"the {body.fidelity} body was built without the motions {names}, "
+                "which bearings hold; build all families, or leave these springs out"
+            )
 
     def with_attachment(self, attachment: str | None) -> Supports:
         """The same springs acting on another attachment of the same ports.
