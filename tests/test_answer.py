@@ -10,14 +10,14 @@ import pytest
 
 import solidgear as sg
 from solidgear.body import as_supports
-from solidgear.evidence.answer import solve
+from solidgear.evidence.answer import Numbers, solve
 from solidgear.evidence.quantities import change
 from solidgear.fidelity.ladder import LADDER
 from solidgear.fidelity.levels import HARMONIC, Sequence
 from solidgear.scene import Bearing
 from solidgear.studies import climb as climbing
 from solidgear.studies.answering import answer
-from solidgear.studies.climb import Climb, Level
+from solidgear.studies.climb import Climb
 
 ROOT = Path(__file__).parent.parent
 SCENES = ["pinion_overhung", "shaft_stepped", "shaft_hollow", "pinion_straddle"]
@@ -155,10 +155,10 @@ def test_a_frequency_that_rises_is_rounding_and_widens_the_bar(scenes):
     climb = Climb(scenes["shaft_stepped"], LADDER["harmonic"], ("bending 1",), 1e-6, lambda _: None)
     known = {"bending 1": 1e-12}
     for value in (101.0, 100.0, 100.1):
-        climb.levels.append(Level({"bending 1": value}, known))
+        climb.levels.append(Numbers({"bending 1": value}, known))
     climb.judge()
     assert climb.bar("bending 1") >= 2 * 1e-3 * 0.99  # twice a rise of 0.1 %
-    climb.levels[-1] = Level({"bending 1": 99.999}, known)
+    climb.levels[-1] = Numbers({"bending 1": 99.999}, known)
     climb.judge()
     assert climb.bar("bending 1") < 1e-3
 

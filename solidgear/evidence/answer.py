@@ -20,6 +20,40 @@ if TYPE_CHECKING:
 ENOUGH = 10
 
 
+@dataclass(frozen=True)
+class Numbers:
+    """What an answer says, without the body behind it.
+
+    Attributes
+    ----------
+    quantities : dict of str to float
+        The compared numbers; see :mod:`solidgear.evidence.quantities`.
+    solver : dict of str to float
+        Relative error that the solver may have left in every one of them.
+    """
+
+    quantities: dict[str, float]
+    solver: dict[str, float]
+
+
+def numbers(statics: Condensed | None, found: ModeSet | None) -> Numbers:
+    """The compared numbers of statics and modes, either of which may not have been solved."""
+    return Numbers(measure(statics, found), _left(statics, found))
+
+
+def _left(statics: Condensed | None, found: ModeSet | None) -> dict[str, float]:
+    """Relative error that the solver may have left in every quantity."""
+    solver = {}
+    for name, (kind, place, _) in QUANTITIES.items():
+        if kind == "frequency":
+            mode = found.named(place) if found is not None and isinstance(place, str) else None
+            if mode is not None:
+                solver[name] = mode.error
+        elif statics is not None:
+            solver[name] = statics.evidence["residual"]
+    return solver
+
+
 @dataclass
 class Answer:
     """A body on its bearings, tied in one way.
@@ -40,17 +74,9 @@ class Answer:
     quantities: dict[str, float]
 
     @property
-    def solver(self) -> dict[str, float]:
-        """Relative error that the solver may have left in every quantity."""
-        out = {}
-        for name, (kind, place, _) in QUANTITIES.items():
-            mode = self.modes.named(place) if isinstance(place, str) else None
-            out[name] = (
-                getattr(mode, "error", 0.0)
-                if kind == "frequency"
-                else self.condensed.evidence["residual"]
-            )
-        return out
+    def numbers(self) -> Numbers:
+        """Its numbers and what the solver may have left in them; they outlive the body."""
+        return Numbers(self.quantities, _left(self.condensed, self.modes))
 
 
 def solve(

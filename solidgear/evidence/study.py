@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, Any
 
 from solidgear.body import Body, Supports, as_supports
 from solidgear.errors import SolidgearError
-from solidgear.evidence.answer import ENOUGH, Answer, answered
+from solidgear.evidence.answer import ENOUGH, Answer, Numbers, answered
 from solidgear.evidence.bands import Band, layered_bands, refined_bands
 from solidgear.evidence.quantities import JUDGED, change
 from solidgear.evidence.ties import SCENE, SECTION, rigid_seats
@@ -176,7 +176,7 @@ def _climbed(
     """The finest of the levels that were needed, or that could be had."""
     levels = plan.levels if plan.fixed else plan.levels[:most]
     rung: Solution | None = None
-    solved: list[dict[str, _Level]] = []
+    solved: list[dict[str, Numbers]] = []
     facts: list[dict] = []
     failed: dict[str, str] = {}
     around: dict[str, dict[str, float]] = {}
@@ -201,7 +201,7 @@ def _climbed(
             break
         if rung is not None:
             _book_as_evidence(meter, before)
-        solved.append({tie: _Level(a.quantities, a.solver) for tie, a in ties.items()})
+        solved.append({tie: found.numbers for tie, found in ties.items()})
         facts.append(_facts(ties[SCENE]))
         if plan.turned is not None and not around:
             progress(f"{model}: mesh {k + 1} with more cells around")
@@ -229,14 +229,6 @@ def _book_as_evidence(meter: Meter, before: dict[str, float]) -> None:
         meter.move(stage, "band", seconds)
 
 
-@dataclass(frozen=True)
-class _Level:
-    """Numbers of one mesh; its body and shapes need not outlive the next one."""
-
-    quantities: dict[str, float]
-    solver: dict[str, float]
-
-
 def _facts(found: Answer) -> dict:
     body = found.body
     order = body.mesh.get("order")
@@ -254,7 +246,7 @@ def _facts(found: Answer) -> dict:
 
 
 def _around(
-    scene: Scene, model: str, plan: Sequence, ties: dict[str, _Level], meter: Meter
+    scene: Scene, model: str, plan: Sequence, ties: dict[str, Numbers], meter: Meter
 ) -> dict[str, dict[str, float]]:
     """Relative error that the cells around leave, per way of tying and quantity."""
     spare = Meter()
@@ -272,7 +264,7 @@ def _bands(
     scene: Scene,
     model: str,
     plan: Sequence,
-    solved: list[dict[str, _Level]],
+    solved: list[dict[str, Numbers]],
     facts: list[dict],
     around,
 ) -> dict[str, dict[str, Band]]:

@@ -9,8 +9,9 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 from solidgear.body import Body, as_supports
+from solidgear.evidence.answer import ENOUGH, Numbers, numbers
 from solidgear.evidence.bands import Band, layered_bands
-from solidgear.evidence.quantities import QUANTITIES, measure
+from solidgear.evidence.quantities import QUANTITIES
 from solidgear.fidelity import build
 from solidgear.fidelity.rung import Rung
 from solidgear.solve.modes import ModeSet, modes
@@ -23,8 +24,6 @@ if TYPE_CHECKING:
 
 Progress = Callable[[str], None]
 
-#: modes that hold the first of every family of anything that looks like a shaft
-ENOUGH = 10
 #: couplings by bearings may be left out where they move nothing by more than this part of the
 #: tolerance
 COUPLING = 0.01
@@ -96,14 +95,6 @@ def _family_of(quantity: str) -> str:
     return next(name for name, components in FAMILIES.items() if set(place) <= set(components))
 
 
-@dataclass(frozen=True)
-class Level:
-    """Numbers of one mesh, and what the solver may have left in each."""
-
-    quantities: dict[str, float]
-    solver: dict[str, float]
-
-
 class Climb:
     """One solid on ever finer meshes; what the finest of them was solved with is kept."""
 
@@ -117,7 +108,7 @@ class Climb:
     ):
         self.scene, self.rung, self.wanted, self.tol = scene, rung, wanted, tol
         self.progress = progress
-        self.levels: list[Level] = []
+        self.levels: list[Numbers] = []
         self.steps: list[Step] = []
         self.bands: dict[str, Band] = {}
         self.families: tuple[str, ...] | None = None
@@ -193,7 +184,7 @@ class Climb:
                 out |= here
         return tuple(name for name in FAMILIES if name in out)
 
-    def _level(self, body: Body) -> Level:
+    def _level(self, body: Body) -> Numbers:
         supports = as_supports(self.scene)
         if self.families is not None:
             supports = supports.on(c for f in self.families for c in FAMILIES[f])
@@ -205,26 +196,29 @@ class Climb:
             self.statics = statics
         if "frequency" in kinds:
             found = modes(body, supports, self._shapes(), ovalising=False)
-        return Level(measure(statics, found), _solver(statics, found))
+        return numbers(statics, found)
 
     def _shapes(self) -> int:
         """Elastic shapes that hold the modes asked for."""
         if self.families is None or len(self.families) > 1:
             return ENOUGH
-        numbers = [int(q.split()[1]) for q in self.wanted if QUANTITIES[q][0] == "frequency"]
-        return 2 * max(numbers) + 2
+        places = [int(q.split()[1]) for q in self.wanted if QUANTITIES[q][0] == "frequency"]
+        return 2 * max(places) + 2
 
     def judge(self) -> float | None:
         """Bands of the finest mesh, and the largest bar of what was asked for."""
         if len(self.levels) < 2:
             return None
+        self.bands = self.bands_of(self.levels)
+        bars = [self.bar(q) for q in self.wanted if q in self.levels[-1].quantities]
+        return max(bars, default=None)
+
+    def bands_of(self, levels: list[Numbers]) -> dict[str, Band]:
+        """Bands of the finest of two or more meshes of this rung."""
         assert self.rung.factors is not None  # as every solid
         rigid = any(s.attachment == "rigid" for s in self.scene.stations)
-        values = [level.quantities for level in self.levels]
-        solver = self.levels[-1].solver
-        self.bands = layered_bands(values, solver, self.rung.factors, rigid=rigid)
-        bars = [self.bar(q) for q in self.wanted if q in values[-1]]
-        return max(bars, default=None)
+        values = [level.quantities for level in levels]
+        return layered_bands(values, levels[-1].solver, self.rung.factors, rigid=rigid)
 
     def bar(self, name: str) -> float:
         if name not in self.bands:
@@ -245,18 +239,6 @@ class Climb:
     def _choose(self, why: str) -> None:
         if self.steps:
             self.steps[-1] = replace(self.steps[-1], why=why, chosen=True)
-
-
-def _solver(statics: Condensed | None, found: ModeSet | None) -> dict[str, float]:
-    out = {}
-    for name, (kind, place, _) in QUANTITIES.items():
-        if kind == "frequency":
-            mode = found.named(place) if found is not None and isinstance(place, str) else None
-            if mode is not None:
-                out[name] = mode.error
-        elif statics is not None:
-            out[name] = statics.evidence["residual"]
-    return out
 
 
 def _words(level: Mapping[str, Any]) -> str:

@@ -23,11 +23,11 @@ import numpy as np
 
 from solidgear.body import Body
 from solidgear.errors import SolidgearError, show
-from solidgear.evidence.bands import layered_bands
+from solidgear.evidence.answer import Numbers
 from solidgear.evidence.quantities import QUANTITIES, measure
 from solidgear.machine.threads import pinned
 from solidgear.studies.answering import climbed, usable
-from solidgear.studies.climb import Climb, Level, Progress, Step
+from solidgear.studies.climb import Climb, Progress, Step
 
 if TYPE_CHECKING:
     from solidgear.scene import Scene
@@ -38,6 +38,8 @@ QUESTIONS: dict[str, tuple[str, ...]] = {
     "modes": ("frequency",),
     "all": ("compliance", "stiffness", "frequency"),
 }
+#: bars closer than this part of themselves are equal
+SAME = 1e-6
 #: components in whose place others stand for a moment: a quarter turn about the axis takes x to z
 #: and thz to thx, and torsion takes the place of axial motion (signs do not matter to a band)
 TURN = (2, 4, 0, 5, 1, 3)
@@ -96,8 +98,14 @@ class Settled:
 
     @property
     def largest(self) -> tuple[str, float] | None:
-        """The quantity with the largest bar, and the bar; None where nothing is judged."""
-        return max(self.bars.items(), key=lambda item: item[1], default=None)
+        """The quantity with the largest bar, and the bar; None where nothing is judged.
+
+        Twins of the two planes have equal bars but for rounding: the first listed is named.
+        """
+        if not self.bars:
+            return None
+        top = max(self.bars.values())
+        return next((q, bar) for q, bar in self.bars.items() if bar >= top * (1 - SAME))
 
     def as_dict(self) -> dict[str, Any]:
         """Plain data, without the body."""
@@ -179,7 +187,7 @@ class Whole(Climb):
 
     def __init__(self, *args: Any) -> None:
         super().__init__(*args)
-        self.turned: list[Level] = []
+        self.turned: list[Numbers] = []
 
     def bars(self) -> dict[str, float]:
         """Relative bars by quantity, those of the other plane and of torsion by names of their
@@ -201,7 +209,7 @@ class Whole(Climb):
     def _needed(self, _: Body) -> None:
         return None
 
-    def _level(self, body: Body) -> Level:
+    def _level(self, body: Body) -> Numbers:
         level = super()._level(body)
         if self.statics is not None:
             other = replace(
@@ -209,17 +217,10 @@ class Whole(Climb):
                 stiffness=self.statics.stiffness[np.ix_(TURN, TURN)],
                 compliance=self.statics.compliance[np.ix_(TURN, TURN)],
             )
-            self.turned.append(Level(measure(other, None), level.solver))
+            self.turned.append(Numbers(measure(other, None), level.solver))
         return level
 
     def _turned_bands(self) -> Mapping[str, float]:
         if len(self.turned) < 2:
             return {}
-        assert self.rung.factors is not None  # as every solid
-        found = layered_bands(
-            [level.quantities for level in self.turned],
-            self.turned[-1].solver,
-            self.rung.factors,
-            rigid=any(s.attachment == "rigid" for s in self.scene.stations),
-        )
-        return {name: band.gci for name, band in found.items()}
+        return {name: band.gci for name, band in self.bands_of(self.turned).items()}
