@@ -482,6 +482,15 @@ def test_importing_the_command_line_is_cheap():
     assert done.stdout.strip() == "[]", done.stderr
 
 
+def test_an_answer_imports_nothing_that_it_does_not_use():
+    code = (
+        "import solidgear, sys; solidgear.answer(solidgear.load(sys.argv[1]), tol=0.1); "
+        "print(sorted({'scipy.optimize', 'pint', 'gmsh', 'matplotlib', 'pyvista'} & set(sys.modules)))"
+    )
+    done = python("-c", code, SCENE)
+    assert done.stdout.strip() == "[]", done.stderr
+
+
 def test_unknown_name_of_the_package():
     import solidgear
 

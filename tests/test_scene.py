@@ -13,7 +13,7 @@ from solidgear.errors import SceneError
 from solidgear.scene import STEEL, Bearing, Material, Port, Scene, Segment
 from solidgear.scene.bearing_stiffness import STIFFNESS_NAMES, stiffness_entries, stiffness_matrix
 from solidgear.scene.file import load
-from solidgear.scene.units import quantity
+from solidgear.scene.units import COMMON, _by_pint, quantity
 
 GEOMETRY = Path(__file__).parents[1] / "geometry"
 NEAR = dict(rel=0, abs=1e-9)
@@ -202,6 +202,11 @@ def test_a_scene_does_not_depend_on_the_units_it_is_written_in(pinion, tmp_path)
     other = load(path)
     assert other.segments[2].outer0 == pytest.approx(0.045, rel=1e-14)
     assert other.with_changes(segments=pinion.segments) == pinion
+
+
+@pytest.mark.parametrize("unit", COMMON)
+def test_units_known_by_heart_are_what_pint_says(unit):
+    assert COMMON[unit] == _by_pint(unit)
 
 
 def test_plain_numbers_do_not_import_pint():

@@ -9,8 +9,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 
-from scipy.optimize import brentq
-
 from solidgear.meshing.corners import corner_exponent, sharpest_corner
 
 __all__ = ["Convergence", "corner_exponent", "gci", "sharpest_corner"]
@@ -125,6 +123,8 @@ def gci(
             return (h1**p - h2**p) / (h2**p - h3**p) - coarse / fine
 
         if gap(1e-3) < 0 < gap(20.0):
+            from scipy.optimize import brentq  # slow to import, and seldom needed
+
             observed = float(brentq(gap, 1e-3, 20.0))
     if observed is not None and 0.7 * expected <= observed <= highest + 0.5:
         plausible, order = True, min(observed, max(cap, expected))

@@ -8,7 +8,6 @@ from dataclasses import dataclass
 from itertools import combinations
 
 import numpy as np
-from scipy.optimize import linear_sum_assignment
 from scipy.sparse.csgraph import connected_components
 
 from solidgear.solve.modes import Mode, ModeSet
@@ -184,6 +183,8 @@ def _by_shape(mine: list[Mode], theirs: list[Mode], gram) -> list[Pairing]:
     columns = np.repeat(np.arange(len(theirs)), [m.multiplicity for m in theirs])
     # Among equals the nearer frequency; it decides nothing else.
     gain = like - 0.01 * np.minimum(apart, 1.0)
+    from scipy.optimize import linear_sum_assignment  # slow to import, and not always needed
+
     taken = [
         (int(rows[r]), int(columns[c]))
         for r, c in zip(*linear_sum_assignment(-gain[np.ix_(rows, columns)]))

@@ -9,7 +9,6 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
-from scipy.optimize import brentq
 
 if TYPE_CHECKING:
     from solidgear.scene import Segment
@@ -48,14 +47,23 @@ def corner_exponent(angle: float) -> float:
         grid = np.linspace(0.3, 0.9999, 400)
         f = np.sin(grid * angle) + sign * grid * np.sin(angle)
         for i in np.flatnonzero(f[:-1] * f[1:] < 0):
-            roots.append(
-                brentq(
-                    lambda x, s=sign: np.sin(x * angle) + s * x * np.sin(angle),
-                    grid[i],
-                    grid[i + 1],
-                )
-            )
+            roots.append(_root(angle, sign, grid[i], grid[i + 1]))
     return min(roots, default=1.0)
+
+
+def _root(angle: float, sign: float, low: float, high: float) -> float:
+    """Root of ``sin(x angle) + sign x sin(angle)`` between two ends of different sign, by halving.
+
+    SciPy's root finders would do the same and take a tenth of a second to import, in every command.
+    """
+    rising = np.sin(high * angle) + sign * high * np.sin(angle) > 0
+    for _ in range(60):
+        middle = 0.5 * (low + high)
+        if (np.sin(middle * angle) + sign * middle * np.sin(angle) > 0) == rising:
+            high = middle
+        else:
+            low = middle
+    return 0.5 * (low + high)
 
 
 def corner_angle(a: Segment, b: Segment) -> float:

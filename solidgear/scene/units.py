@@ -32,6 +32,45 @@ DIMENSIONS: dict[str, tuple[str, str, tuple[int, ...]]] = {
     "dimensionless": ("", "0.3", (0,)),
 }
 
+#: base dimensions with their powers, by name
+Dimension = tuple[tuple[str, float], ...]
+
+
+def _dimension(*, length: int = 0, mass: int = 0, time: int = 0) -> Dimension:
+    powers = {"[length]": length, "[mass]": mass, "[time]": time}
+    return tuple((name, float(power)) for name, power in powers.items() if power)
+
+
+_LENGTH, _ANGLE, _RATE = _dimension(length=1), _dimension(), _dimension(time=-1)
+_STRESS, _DENSITY = _dimension(mass=1, length=-1, time=-2), _dimension(mass=1, length=-3)
+_PER_LENGTH, _FORCE = _dimension(mass=1, time=-2), _dimension(mass=1, length=1, time=-2)
+_MOMENT = _dimension(mass=1, length=2, time=-2)
+#: units that nearly every scene is written in: (SI units in one, power of the radian, dimension).
+#: What pint says of each (a test compares), without the half second that pint takes to start
+COMMON: dict[str, tuple[float, float, Dimension]] = {
+    "m": (1.0, 0.0, _LENGTH),
+    "mm": (1e-3, 0.0, _LENGTH),
+    "cm": (1e-2, 0.0, _LENGTH),
+    "um": (1e-6, 0.0, _LENGTH),
+    "rad": (1.0, 1.0, _ANGLE),
+    "deg": (0.0174532925199433, 1.0, _ANGLE),
+    "Pa": (1.0, 0.0, _STRESS),
+    "MPa": (1e6, 0.0, _STRESS),
+    "GPa": (1e9, 0.0, _STRESS),
+    "kg/m^3": (1.0, 0.0, _DENSITY),
+    "g/cm^3": (1e3, 0.0, _DENSITY),
+    "N/m": (1.0, 0.0, _PER_LENGTH),
+    "N/mm": (1e3, 0.0, _PER_LENGTH),
+    "N/um": (1e6, 0.0, _PER_LENGTH),
+    "N": (1.0, 0.0, _FORCE),
+    "N/rad": (1.0, -1.0, _FORCE),
+    "N*m": (1.0, 0.0, _MOMENT),
+    "N*m/rad": (1.0, -1.0, _MOMENT),
+    "N m/rad": (1.0, -1.0, _MOMENT),
+    "Hz": (1.0, 0.0, _RATE),
+    "kHz": (1e3, 0.0, _RATE),
+}
+
 #: no quantity of a scene is larger than this in SI, and no spring softer: squares and products of
 #: such numbers neither overflow nor vanish
 LARGEST, SOFTEST = 1e24, 1e-30
@@ -136,7 +175,7 @@ def _read_text(text: str, dimension: str) -> float:
         raise SceneError(f'unknown unit {show(unit)}; write for example "{example}"', value=value)
     factor, radians, dimensionality = known
     own = _si_factor(si) if si else None
-    if dimensionality != (own[2] if own else "dimensionless") or radians not in powers:
+    if dimensionality != (own[2] if own else ()) or radians not in powers:
         wrong = f"not a unit of {name}" if si else "a unit, but this is a plain ratio"
         raise SceneError(f'{show(unit)} is {wrong}; write for example "{example}"', value=value)
     # dividing by 1000 is exact where multiplying by 0.001 is not: "208 mm" must be the same float
@@ -147,10 +186,16 @@ def _read_text(text: str, dimension: str) -> float:
 
 
 @functools.lru_cache(maxsize=256)
-def _si_factor(unit: str) -> tuple[float, float, str] | None:
+def _si_factor(unit: str) -> tuple[float, float, Dimension] | None:
     """(SI units in one `unit`, power of the radian in it, its dimensionality), or None when pint
     does not know it.
     """
+    if unit in COMMON:
+        return COMMON[unit]
+    return _by_pint(unit)
+
+
+def _by_pint(unit: str) -> tuple[float, float, Dimension] | None:
     # pint evaluates exponents as it parses; a chain such as m**9**9**9 would never return
     if (
         len(unit) > 60
@@ -167,7 +212,7 @@ def _si_factor(unit: str) -> tuple[float, float, str] | None:
         return (
             float(f"{factor * 1e-3**mass:.15g}"),
             radians,
-            str(parsed.dimensionality),
+            tuple(sorted((name, float(power)) for name, power in parsed.dimensionality.items())),
         )  # pint's root of mass is the gram
     except Exception:  # pint raises a dozen kinds, some its own, some of the tokenizer underneath
         return None
