@@ -13,9 +13,10 @@ import scipy.linalg as sla
 
 import solidgear as sg
 from solidgear.cli import main
+from solidgear.evidence.study import study
 from solidgear.scene import STEEL, Ask, Bearing, Port, Scene, Segment
 from solidgear.studies import check, guards
-from solidgear.studies.check import check_scene
+from solidgear.studies.check import cautions, check_scene, notices
 from solidgear.studies.guards import GUARDS, Notice, elements, models
 from solidgear.studies.guards.notice import everything
 from solidgear.studies.guards.probe import Probe
@@ -635,3 +636,15 @@ def test_two_waves_in_closed_form_are_never_far_above_the_solution(here):
     # stiffer than the closed form
     probe = Probe(here, sg.build(here, "euler"))
     assert probe.ovalising[2] / 2 < models._two_waves(probe) < models.SUSPECT * probe.ovalising[2]
+
+
+def test_a_beam_with_soft_shoulders_is_not_told_of_them_and_is_judged_as_asked():
+    scene = head(1.6)
+    plain, soft = (
+        cautions(scene, sg.build(scene, "timoshenko", shoulder=s)) for s in (False, True)
+    )
+    assert any("ratio of diameters 1.60" in text for text in plain)
+    assert not any("ratio of diameters" in text for text in soft)
+    models = {"timoshenko": study(scene, "timoshenko", {"shoulder": True}, evidence=False)}
+    told = notices(scene, models, ("shoulder",))
+    assert told == []

@@ -66,6 +66,14 @@ MUTATIONS = (
         "tests/test_harmonic.py::test_bending_wave_of_a_cylinder_between_sliding_ends",
     ),
     Mutation(
+        "shoulder as soft in stretch as in bending",
+        "solidgear/fidelity/shoulder.py",
+        "hinges",
+        "float(stretch / (material.E * area))",
+        "float(bend / (material.E * area))",
+        "tests/test_stability_models.py::test_a_beam_with_soft_shoulders_is_the_solid_under_a_moment_a_pull_and_a_twist",
+    ),
+    Mutation(
         "shear coefficient of a rectangle, 5/6",
         "solidgear/fidelity/beam_element.py",
         "Section.__init__",

@@ -20,6 +20,7 @@ from solidgear.fidelity.beam_drawing import BeamLine
 from solidgear.fidelity.beam_element import Fields, Section, bending_matrices, rod_matrices
 from solidgear.fidelity.options import BEAM_OPTIONS, checked
 from solidgear.fidelity.scale import elastic_scale
+from solidgear.fidelity.shoulder import Hinge, hinges
 
 # Shortest Euler element over the length of the shaft.
 SHORTEST = 3e-4
@@ -34,6 +35,7 @@ def beam(
     mass: str = "consistent",
     kappa: str = "hutchinson",
     elements: int | None = None,
+    shoulder: bool = False,
     attachments: tuple[str, ...] | None = None,
 ) -> Body:
     """Free beam model of a scene.
@@ -52,6 +54,10 @@ def beam(
         Shear coefficient; Cowper's for comparison with older work, solid sections only.
     elements : int, optional
         Least number of elements along the shaft; by default eight to a diameter.
+    shoulder : bool
+        Whether steps of the outer radius are as soft as in the solid
+        (:mod:`solidgear.fidelity.shoulder`), where a plain beam fills the thick part with stress at
+        once.
     attachments : tuple of str, optional
         Attachments to build for every station, the first being the default one; by default those of
         the scene.
@@ -82,6 +88,7 @@ def beam(
             "mass": mass,
             "kappa": kappa,
             "elements": elements,
+            "shoulder": shoulder,
             "attachments": attachments,
         },
         BEAM_OPTIONS,
@@ -101,9 +108,12 @@ def beam(
     size = {"bending": 2 * n + inner * (n - 1), "axial": n, "torsion": n}
     entries: dict[str, tuple[list, list, list, list]] = {name: ([], [], [], []) for name in size}
     fields: list[Fields] = []
+    soft = _softened(nodes, hinges(scene.segments)) if shoulder else {}
     for e, segment in enumerate(owner):
         left, right = nodes[e], nodes[e + 1]
         section = Section(segment, left, right, head, kappa)
+        for step in soft.get(e, ()):
+            section.soften(step.bend, step.stretch, step.twist)
         bend = bending_matrices(section, shear, rotary_inertia, mass)
         stretch = rod_matrices(section, section.stretch, section.mass, mass)
         twist = rod_matrices(section, section.twist, section.polar, mass)
@@ -164,8 +174,9 @@ def beam(
         "elements": n - 1,
         "rotary_inertia": rotary_inertia,
         "head": head,
+        "mass": mass,
+        "shoulder": shoulder,
     }
-    facts["mass"] = mass
     return Body(
         "timoshenko" if shear else "euler",
         blocks,
@@ -212,6 +223,15 @@ def mesh(scene, elements: int | None, wanted=()):
     ends = np.array([s.y1 for s in scene.segments])
     owner = [scene.segments[i] for i in np.minimum(np.searchsorted(ends, middle), len(ends) - 1)]
     return nodes, owner
+
+
+def _softened(nodes, steps: tuple[Hinge, ...]) -> dict[int, list[Hinge]]:
+    """Shoulders by the element that they soften: the first one of the thick part."""
+    out: dict[int, list[Hinge]] = {}
+    for step in steps:
+        at = int(np.argmin(abs(nodes - step.y)))
+        out.setdefault(at if step.ahead else at - 1, []).append(step)
+    return out
 
 
 def _long_enough(nodes):

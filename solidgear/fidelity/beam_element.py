@@ -120,6 +120,18 @@ class Section:
             powers[:, j] = [(xi ** (j + 1) - (-1.0) ** (j + 1)) / (j + 1) for xi in x]
         self.integral = self.length / 2 * powers @ lagrange
 
+    def soften(self, bend: float, stretch: float, twist: float) -> None:
+        """Add compliance, spread evenly over the length; shear and inertia stay.
+
+        Parameters
+        ----------
+        bend, stretch, twist : float
+            rad/(N m), m/N and rad/(N m).
+        """
+        self.bend = 1 / (1 / self.bend + bend / self.length)
+        self.stretch = 1 / (1 / self.stretch + stretch / self.length)
+        self.twist = 1 / (1 / self.twist + twist / self.length)
+
 
 def bending_matrices(c: Section, shear: bool, rotary: bool, mass: str):
     """Stiffness, mass and fields of one bending element on ``(z, thx)`` at both ends, then internal

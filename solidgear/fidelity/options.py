@@ -117,6 +117,7 @@ BEAM_OPTIONS = {
         optional=True,
         why="frequencies of 100 elements have six digits, and more than 5000 add rounding only",
     ),
+    "shoulder": Option("steps of the outer radius as soft as in the solid", "flag"),
     "attachments": _TIES,
 }
 

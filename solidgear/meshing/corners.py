@@ -63,7 +63,7 @@ def _root(angle: float, sign: float, low: float, high: float) -> float:
             high = middle
         else:
             low = middle
-    return 0.5 * (low + high)
+    return float(0.5 * (low + high))
 
 
 def corner_angle(a: Segment, b: Segment) -> float:

@@ -13,6 +13,9 @@ from solidgear.evidence import verdict
 from solidgear.evidence.lumped import preferred
 from solidgear.evidence.ties import SCENE
 from solidgear.evidence.verdict import TIES, gap_verdict
+from solidgear.fidelity.ladder import LADDER
+from solidgear.fidelity.rung import BEAM, LUMPED
+from solidgear.fidelity.shoulder import MISSING
 from solidgear.meshing.corners import sharpest_corner
 from solidgear.studies.guards.notice import Notice, Notices, beams, beyond, everything
 from solidgear.studies.guards.probe import Probe
@@ -93,18 +96,17 @@ def slenderness(probe: Probe) -> Notices:
             )
 
 
-# shoulder_step.py: ratio of diameters, missing length of thin shaft over its diameter, what the
-# deflection of an overhang of one diameter lacks
+# shoulder_step.py: ratio of diameters, what the deflection of an overhang of one diameter lacks
 STEPS = np.array(
     [
-        [1.0, 0.0, 0.0],
-        [1.1, 0.022, 0.0049],
-        [1.2, 0.055, 0.0132],
-        [1.3, 0.086, 0.0238],
-        [1.5, 0.134, 0.0473],
-        [1.75, 0.173, 0.0766],
-        [2.0, 0.197, 0.1036],
-        [3.0, 0.234, 0.1836],
+        [1.0, 0.0],
+        [1.1, 0.0049],
+        [1.2, 0.0132],
+        [1.3, 0.0238],
+        [1.5, 0.0473],
+        [1.75, 0.0766],
+        [2.0, 0.1036],
+        [3.0, 0.1836],
     ]
 )
 STEP, STEEP = 1.17, 1.53
@@ -112,20 +114,23 @@ STEP, STEEP = 1.17, 1.53
 
 def shoulder(probe: Probe) -> Notices:
     """Steps of the outer radius beyond which stress does not fill the thick part at once."""
+    soft = {model for model in LADDER.of(BEAM) if probe.asked(model).get("shoulder")}
+    if "timoshenko" in soft:
+        soft |= {*LADDER.of(LUMPED)}  # which rest on it
+    stiff = tuple(model for model in beams() if model not in soft)
     segments, degrees = probe.scene.segments, np.degrees(sharpest_corner(probe.scene)[0])
     for a, b in zip(segments, segments[1:]):
         thin, thick = sorted((a.outer1, b.outer0))
-        if thick / thin < STEP:
+        if thick / thin < STEP or not stiff:
             continue
-        missing, lacking = (
-            float(np.interp(thick / thin, STEPS[:, 0], column)) for column in STEPS.T[1:]
-        )
+        missing = float(np.interp(thick / thin, MISSING[:, 0], MISSING[:, 1]))
+        lacking = float(np.interp(thick / thin, STEPS[:, 0], STEPS[:, 1]))
         yield Notice(
             "caution",
-            beams(),
+            stiff,
             f"shoulder between {a.name!r} and {b.name!r} at y = {1e3 * b.y0:.6g} mm (sharpest corner {degrees:.0f} degrees), ratio of diameters {thick / thin:.2f}: a beam lacks "
             f"{2e3 * thin * missing:.2g} mm of thin shaft, {100 * lacking:.1f} % of the deflection of an overhang of one diameter; 1 % is passed at {STEP:g}, 5 % at {STEEP:g}; "
-            "use the harmonic solid",
+            "use the harmonic solid, or the beam's option shoulder",
         )
 
 

@@ -6,10 +6,11 @@ Everything is solved when a guard first asks for it, and once.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import replace
 from functools import cache, cached_property
 from itertools import pairwise
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import scipy.linalg as sla
@@ -35,6 +36,9 @@ if TYPE_CHECKING:
 FEW = 8
 #: a clamp this much stiffer than the shaft on its bearings moves a frequency by about the inverse
 CLAMP = 1e6
+
+#: options of beams that guards have to know of
+SOFT = ("shoulder",)
 
 #: components of the two bending planes, and the signs by which one matrix is the other
 X, Z, SIGNS = [0, 5], [2, 3], np.array([[1.0, -1.0], [-1.0, 1.0]])
@@ -84,8 +88,15 @@ class Probe:
     def rung(self, model: str) -> Solution:
         """A beam, or the harmonic solid on its two coarsest meshes."""
         if model not in self.rungs:
-            self.rungs[model] = study(self.scene, model, most=2, evidence=False)
+            options = {name: True for name in SOFT if self.asked(model).get(name)}
+            self.rungs[model] = study(self.scene, model, options, most=2, evidence=False)
         return self.rungs[model]
+
+    def asked(self, model: str) -> Mapping[str, Any]:
+        """Facts of the mesh of a model, as far as the user has asked for it."""
+        if self.body.fidelity == model:
+            return self.body.mesh
+        return self.rungs[model].body.mesh if model in self.rungs else {}
 
     def beam(self, model: str) -> tuple[Body, ModeSet, dict[str, float]]:
         """A beam tied as in the scene: body, modes and compared numbers."""
