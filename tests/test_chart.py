@@ -6,7 +6,7 @@ import csv
 import json
 import re
 import sys
-from dataclasses import asdict
+from dataclasses import asdict, replace
 from pathlib import Path
 
 import pytest
@@ -29,6 +29,7 @@ from solidgear.report.race_rows import (
     write_rows,
 )
 from solidgear.report.race_tables import error_text, front_rows, section
+from solidgear.studies import automatic
 
 ROOT = Path(__file__).parent.parent
 SCENE = ROOT / "geometry" / "shaft_stepped.toml"
@@ -62,7 +63,11 @@ def light():
         patch.setattr(racing, "REFERENCE", COARSE)
         patch.setattr(racing, "LIKE_FOR_LIKE", COARSE)
         patch.setattr(cases, "setup_seconds", lambda: SETUP)
+        patch.setattr(automatic, "automatic_rows", list)
         yield
+
+
+AUTOMATIC = automatic.automatic_rows()
 
 
 @pytest.fixture(scope="module")
@@ -208,6 +213,20 @@ def test_beams_show_like_for_like_beside_their_own_error(raced):
         row.errors["C_zz"],
         row.like_for_like["C_zz"],
     ]
+
+
+def test_the_automatic_choice_is_a_line_of_its_own_and_within_its_tolerance():
+    rows = [replace(row) for row in AUTOMATIC[:2]]
+    found = race(
+        sg.load(SCENE), rows, runs=1, against={"order": 6, "layers": 4}, solver=automatic.solved
+    )
+    assert [row.status for row in found.rows] == ["ok", "ok"]
+    for row in found.rows:
+        # the reference is good to 1e-4: what is beyond the tolerance by less says nothing
+        assert max(row.errors.values()) < row.options["tol"]
+        assert row.unknowns > 0
+    panel = figure(found).axes[0]
+    assert {"10 %", "1 %"} <= {text.get_text() for text in panel.texts}
 
 
 def test_picture_is_a_png(raced, tmp_path):

@@ -112,6 +112,7 @@ def run_chart(
     from solidgear.report.html import write_report
     from solidgear.report.race_figure import draw
     from solidgear.report.race_rows import PICTURE, write_rows
+    from solidgear.studies.automatic import automatic_rows, solved
 
     if runs < 1:
         raise SolidgearError(f"--runs {runs}: give a whole number of at least 1")
@@ -126,7 +127,8 @@ def run_chart(
             once = setup_seconds()
             found = race(
                 scene,
-                plan(scene, full),
+                sorted([*plan(scene, full), *automatic_rows()], key=lambda row: row.level),
+                solver=solved,
                 runs=runs,
                 budget=budget,
                 setup=once,

@@ -13,6 +13,7 @@ import logging
 import time
 from collections.abc import Callable
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
@@ -37,10 +38,15 @@ FEWER_RUNS = ((20.0, 1), (8.0, 3))
 GROWTH = 3.0
 
 
+#: solves a scene as a row asks for it: scene, name of the model, its options, elastic shapes
+Solve = Callable[[Any, str, dict, int], Answer]
+
+
 def race(
     scene,
     rows: list[Row],
     *,
+    solver: Solve | None = None,
     runs: int = 5,
     budget: float = BUDGET,
     against: dict | None = None,
@@ -55,6 +61,9 @@ def race(
     scene : Scene
     rows : list of Row
         Such as :func:`solidgear.evidence.cases.plan` makes; they are filled in.
+    solver : callable, optional
+        Of the rows, where they have models that the ladder does not know; by default
+        :func:`answer`.
     runs : int
         Of each case; cases above 8 s get at most three, above 20 s one.
     budget : float
@@ -84,6 +93,7 @@ def race(
     if not budget > 0 or not np.isfinite(budget):
         raise SolidgearError(f"budget = {budget:g} is not usable; give seconds above 0")
     start = time.perf_counter()
+    solver = solver or answer
     n = max(scene.ask.modes, 10)
     against, compliance = _reference(scene, against or REFERENCE, n, progress)
     found = Race(
@@ -96,12 +106,12 @@ def race(
 
     def timed(row: Row, turn: int) -> None:
         progress(f"run {turn + 1} of {runs}: {row.series}, level {row.level}")
-        _run(scene, row, n, against, compliance)
+        _run(scene, row, n, against, compliance, solver)
         spent()
         keep(found)
 
     try:
-        first = _warm_up(scene, found.rows, n, progress)
+        first = _warm_up(scene, found.rows, n, progress, solver)
         while waiting := [row for row in found.rows if row.status == "waiting"]:
             # Cheapest first, so that one large solid does not use up the budget of many small
             # models.
@@ -207,12 +217,12 @@ def _reference(scene, options: dict, n: int, progress) -> tuple[dict, np.ndarray
     return record, compliance
 
 
-def _run(scene, row: Row, n: int, against: dict, compliance: np.ndarray) -> None:
+def _run(scene, row: Row, n: int, against: dict, compliance: np.ndarray, solver: Solve) -> None:
     """One more run of a row; the first fills in its numbers."""
     gc.collect()
     start = time.perf_counter()
     try:
-        found = answer(scene, row.model, row.options, n)
+        found = solver(scene, row.model, row.options, n)
     except Exception as error:  # whatever stops a model is a finding about it, and the others go on
         row.samples = [time.perf_counter() - start]
         row.status, row.reason = "failed", _why(error)
@@ -228,11 +238,11 @@ def _run(scene, row: Row, n: int, against: dict, compliance: np.ndarray) -> None
     if row.status == "ok":
         return
     row.status, values = "ok", found.quantities
-    row.unknowns = 6 if LADDER[row.model].family == LUMPED else found.body.size
+    row.unknowns = 6 if row.family == LUMPED else found.body.size
     row.values = {q: values[q] for q in against["values"] if q in values}
     row.errors = {q: abs(v / against["values"][q] - 1) for q, v in row.values.items()}
-    if LADDER[row.model].family in (LUMPED, BEAM):
-        like = answer(scene.with_attachment("section"), row.model, row.options, n).quantities
+    if row.family in (LUMPED, BEAM):
+        like = solver(scene.with_attachment("section"), row.model, row.options, n).quantities
         row.like_for_like = {
             q: abs(like[q] / v - 1) for q, v in against["like_for_like"].items() if q in like
         }
@@ -263,7 +273,7 @@ def _kind(row: Row) -> tuple:
     return row.model, row.options.get("element"), row.options.get("order", 0) > 2
 
 
-def _warm_up(scene, rows: list[Row], n: int, progress) -> dict[tuple, float]:
+def _warm_up(scene, rows: list[Row], n: int, progress, solver: Solve) -> dict[tuple, float]:
     """The first case of every kind once, outside the rows: first calls pay for imports and caches;
     seconds by kind.
     """
@@ -274,7 +284,7 @@ def _warm_up(scene, rows: list[Row], n: int, progress) -> dict[tuple, float]:
         progress(f"warm-up: {row.series}")
         start = time.perf_counter()
         try:
-            answer(scene, row.model, row.options, n)
+            solver(scene, row.model, row.options, n)
         except Exception as error:  # reported when its own turn comes
             log.debug("warm-up of %s: %s", row.series, error)
         spent[_kind(row)] = time.perf_counter() - start

@@ -10,7 +10,7 @@ from solidgear.evidence.pareto import Race, Row
 from solidgear.report.chart_style import STYLE, percent_decades, tolerance_line
 from solidgear.report.race_legend import FRONT, footer, legend
 from solidgear.report.race_rows import COSTS, replace_file
-from solidgear.report.race_style import REFERENCE, Look
+from solidgear.report.race_style import AUTOMATIC, REFERENCE, Look
 from solidgear.report.words import count, is_number, percent
 
 QUANTITY = {"C_zz": "port compliance C_zz", "bending 1": "first bending frequency"}
@@ -210,7 +210,9 @@ def _series(ax, race: Race, rows: list[Row], quantity: str, cost: str) -> None:
             fastest, slowest = min(row.samples), max(row.samples)
             ax.hlines(y, fastest, slowest, color=look.colour, lw=0.9, alpha=0.45, zorder=1.8)
         if look.series == ORDERS:
-            _order(ax, (x, y), row.options["order"], look.colour)
+            _beside(ax, (x, y), f"p{row.options['order']}", look.colour)
+        if look.family == AUTOMATIC:
+            _beside(ax, (x, y), f"{100 * row.options['tol']:g} %", look.colour)
         like = row.like_for_like.get(quantity)
         if like and not look.converges:
             ax.plot([x, x], [y, like], ":", color=look.colour, lw=1.1, zorder=1.9)
@@ -235,9 +237,9 @@ def _arrow(ax, spot: tuple[float, float], colour: str) -> None:
     )
 
 
-def _order(ax, spot: tuple[float, float], order: int, colour: str) -> None:
+def _beside(ax, spot: tuple[float, float], text: str, colour: str) -> None:
     ax.annotate(
-        f"p{order}",
+        text,
         spot,
         xytext=(-4, -3),
         textcoords="offset points",

@@ -7,7 +7,7 @@ from typing import Any
 
 from solidgear.evidence.pareto import Race
 from solidgear.report.race_rows import left_out
-from solidgear.report.race_style import FAMILIES, REFERENCE, Look, family_name, looks
+from solidgear.report.race_style import AUTOMATIC, FAMILIES, REFERENCE, Look, family_name, looks
 from solidgear.report.words import seconds
 
 #: grey of the Pareto front, and of marks that any family may have
@@ -22,7 +22,7 @@ def legend(race: Race) -> list:
 
     handles = []
     for family, series in looks(race).items():
-        if family != "lumped":  # its one series has its name
+        if family not in ("lumped", AUTOMATIC):  # their one series has their name
             handles.append(Line2D([], [], ls="", label=family_name(family).upper()))
         handles += [_series(look) for look in series]
     handles.append(Line2D([], [], ls="", label=""))

@@ -11,6 +11,8 @@ from solidgear.evidence.pareto import Race
 GREY = "#777777"
 #: the reference itself and its band
 REFERENCE = "#00603f"
+#: the family of the automatic choice
+AUTOMATIC = "automatic"
 #: families, in the order of the legend: name there, colour
 FAMILIES = {
     "lumped": ("lumped", "#b3305c"),
@@ -18,10 +20,12 @@ FAMILIES = {
     "harmonic": ("harmonic solid", "#00805e"),
     "tetrahedra": ("3D, tetrahedra", "#d08a00"),
     "hexahedra": ("3D, hexahedra", "#5a3e8c"),
+    AUTOMATIC: ("automatic choice", "#111111"),
 }
 #: series without its grading -> marker
 MARKERS = {
     "lumped": "P",
+    AUTOMATIC: "*",
     "Euler": "v",
     "Timoshenko": "s",
     "harmonic h": "o",
@@ -81,6 +85,8 @@ class Look:
     @property
     def name(self) -> str:
         """As the legend has it, under the name of the family."""
+        if self.family == AUTOMATIC:
+            return "automatic, by tolerance:\nall meshes tried"
         name = self.series.replace("harmonic ", "")
         return name.replace("h ", "h, order 2, ").replace("p ", "p, order 1 up, ")
 

@@ -115,6 +115,7 @@ class Climb:
         self.body: Body | None = None
         self.options: dict[str, Any] = {}
         self.statics: Condensed | None = None
+        self.modes: ModeSet | None = None
 
     def run(self) -> None:
         """Climb until every band is within the tolerance, or there is no finer mesh."""
@@ -195,7 +196,7 @@ class Climb:
             statics = condense(body, supports, self.scene.port.name)
             self.statics = statics
         if "frequency" in kinds:
-            found = modes(body, supports, self._shapes(), ovalising=False)
+            found = self.modes = modes(body, supports, self._shapes(), ovalising=False)
         return numbers(statics, found)
 
     def _shapes(self) -> int:

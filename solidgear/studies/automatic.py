@@ -1,0 +1,54 @@
+"""The automatic choice as one more line in a chart of error against cost.
+
+What it costs is the whole climb, every mesh that was tried included; what the other lines cost is
+one mesh, of which nobody has shown that it will do.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from solidgear.evidence.answer import Answer
+from solidgear.evidence.pareto import Row
+from solidgear.evidence.quantities import QUANTITIES
+from solidgear.evidence.racing import answer
+from solidgear.studies.answering import climbed
+from solidgear.studies.climb import Climb
+
+if TYPE_CHECKING:
+    from solidgear.scene import Scene
+
+#: name of the model in rows of a chart
+AUTO = "auto"
+TOLERANCES = (1e-1, 1e-2, 1e-3, 1e-4)
+
+
+def automatic_rows() -> list[Row]:
+    """One row a tolerance.
+
+    Examples
+    --------
+    >>> [(row.level, row.options["tol"]) for row in automatic_rows()]
+    [(1, 0.1), (2, 0.01), (3, 0.001), (4, 0.0001)]
+    """
+    return [
+        Row("automatic", "automatic", level, AUTO, {"tol": tol})
+        for level, tol in enumerate(TOLERANCES, start=1)
+    ]
+
+
+def solved(scene: Scene, model: str, options: dict, n: int) -> Answer:
+    """What a row of a chart answers, the automatic ones included; a solver for
+    :func:`solidgear.evidence.racing.race`.
+
+    Raises
+    ------
+    SolidgearError
+        Where the model cannot be made.
+    """
+    if model != AUTO:
+        return answer(scene, model, options, n)
+    climb, _ = climbed(scene, options["tol"], tuple(QUANTITIES), Climb, lambda _: None)
+    body, statics, modes = climb.body, climb.statics, climb.modes
+    assert body is not None and statics is not None and modes is not None  # everything was asked
+    return Answer(body, statics, modes, climb.levels[-1].quantities)
