@@ -5,8 +5,11 @@ truth is asked by validation/attack.
 import numpy as np
 import pytest
 
+import solidgear as sg
 from solidgear.evidence.bands import DIAGONAL, LEAST, SURE_AROUND, layered_bands
+from solidgear.fidelity.edges import sharpest_edge
 from solidgear.fidelity.ladder import LADDER
+from solidgear.fidelity.rung import HELD, HELD_AT_A_STEP, SMOOTH, STEPPED
 
 FINEST = {"C_zz": 2.0, "C_thx": 8.0, "C_z,thx": 1.0, "bending 1": 100.0}
 
@@ -31,12 +34,12 @@ def test_a_step_that_is_small_by_accident_is_not_believed():
     assert all(band.gci > 1e-3 * 0.1 for band in lucky.values())
 
 
-@pytest.mark.parametrize("rigid", [False, True])
-def test_after_two_levels_of_hexahedra_larger_steps_give_larger_bands_and_lesser_shares(rigid):
+@pytest.mark.parametrize("edge", [SMOOTH, STEPPED, HELD, HELD_AT_A_STEP])
+def test_after_two_levels_of_hexahedra_larger_steps_give_larger_bands_and_lesser_shares(edge):
     steps = np.geomspace(1e-5, 0.3, 60)
     bands = np.array(
         [
-            layered_bands(levels(s), {}, LADDER["solid"].factors, rigid=rigid)["C_zz"].gci
+            layered_bands(levels(s), {}, LADDER["solid"].factors, edge=edge)["C_zz"].gci
             for s in steps
         ]
     )
@@ -47,8 +50,8 @@ def test_after_two_levels_of_hexahedra_larger_steps_give_larger_bands_and_lesser
 
 def test_a_rigid_seat_costs_more():
     free, rigid = (
-        layered_bands(levels(0.05, 0.02), {}, LADDER[model].factors, rigid=held)["C_zz"].gci
-        for model, held in (("solid", False), ("solid", True))
+        layered_bands(levels(0.05, 0.02), {}, LADDER[model].factors, edge=edge)["C_zz"].gci
+        for model, edge in (("solid", STEPPED), ("solid", HELD))
     )
     assert rigid > free
 
@@ -78,3 +81,30 @@ def test_cells_around_and_the_solver_are_added():
     assert added["bending 1"] == pytest.approx(
         SURE_AROUND * 4e-3
     )  # not measured: as much as in the worst
+
+
+def test_what_is_sharpest_on_a_shaft():
+    def shaft(attachment, lo, second=0.08):
+        width = 0.04
+        return sg.Scene.from_parts(
+            [
+                sg.Segment.cylinder("a", length=0.2, diameter=0.05),
+                sg.Segment.cylinder("b", y0=0.2, length=0.2, diameter=second),
+            ],
+            bearings=[
+                sg.Bearing(
+                    name="1",
+                    y=lo + width / 2,
+                    seat_width=width,
+                    matrix=np.eye(6) * 1e8,
+                    attachment=attachment,
+                )
+            ],
+            port=sg.Port(y=0.3, lo=0.29, hi=0.31),
+        )
+
+    assert sharpest_edge(shaft("average", 0.05, second=0.05)) == SMOOTH
+    assert sharpest_edge(shaft("average", 0.05)) == STEPPED
+    assert sharpest_edge(shaft("rigid", 0.05)) == HELD
+    assert sharpest_edge(shaft("rigid", 0.16)) == HELD_AT_A_STEP  # ends where the step is
+    assert sharpest_edge(shaft("rigid", 0.20)) == HELD_AT_A_STEP

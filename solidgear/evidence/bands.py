@@ -27,6 +27,7 @@ from typing import TYPE_CHECKING
 
 from solidgear.evidence.converge import gci
 from solidgear.evidence.quantities import COUPLINGS, QUANTITIES, change
+from solidgear.fidelity.rung import STEPPED
 
 if TYPE_CHECKING:
     from solidgear.fidelity.rung import BandFactors
@@ -93,7 +94,7 @@ def layered_bands(
     solver: Values,
     factors: BandFactors,
     *,
-    rigid: bool = False,
+    edge: str = STEPPED,
     around: Values | None = None,
 ) -> dict[str, Band]:
     """Bands of the finest of two or more levels of a layered sequence.
@@ -106,13 +107,13 @@ def layered_bands(
         Relative error the solver may have left in each quantity of the finest level.
     factors : BandFactors
         Of the rung.
-    rigid : bool
-        Whether a seat is rigid.
+    edge : str
+        What is sharpest on the shaft (:func:`solidgear.fidelity.edges.sharpest_edge`).
     around : mapping, optional
         Relative error that the cells around leave in each quantity.
     """
     around = around or {}
-    usual = factors.rigid if rigid else factors.usual
+    usual = factors.usual[edge]
     out = {}
     finest, before = levels[-1], levels[-2]
     for name in QUANTITIES:
@@ -125,7 +126,7 @@ def layered_bands(
                 (change(levels[-3], finest, name) or 0.0) - (change(before, finest, name) or 0.0)
             )
         rests_on = max(last, factors.earlier * (earlier or 0.0))
-        factor = usual if len(levels) > 2 else _first(factors.first[rigid], rests_on)
+        factor = usual if len(levels) > 2 else _first(factors.first[edge], rests_on)
         if earlier and len(levels) > 3:  # the step off the coarsest mesh is no regular one
             ratio = min(last / earlier, SLOWEST)
             factor = max(usual, OBSERVED * ratio / (1 - ratio))

@@ -22,6 +22,7 @@ from solidgear.evidence.bands import Band, layered_bands, refined_bands
 from solidgear.evidence.quantities import JUDGED, change
 from solidgear.evidence.ties import SCENE, SECTION, rigid_seats
 from solidgear.fidelity import build
+from solidgear.fidelity.edges import sharpest_edge
 from solidgear.fidelity.ladder import LADDER
 from solidgear.fidelity.levels import HEAVY, LIGHT_JUDGE, Sequence
 from solidgear.fidelity.options import ATTACHMENTS
@@ -278,8 +279,9 @@ def _bands(
             continue
         values, solver = [s[tie].quantities for s in known], known[-1][tie].solver
         if plan.layered:
-            held = tie == SCENE and any(s.attachment == "rigid" for s in scene.stations)
-            out[tie] = layered_bands(values, solver, factors, rigid=held, around=around.get(tie))
+            tied = scene if tie == SCENE else scene.with_attachment("section")
+            edge = sharpest_edge(tied)
+            out[tie] = layered_bands(values, solver, factors, edge=edge, around=around.get(tie))
         elif len(known) > 2:
             sizes = [f["mesh"]["representative_size"] for f in facts[-3:]]
             held = any(s.attachment == "rigid" for s in scene.stations)

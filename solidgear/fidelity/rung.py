@@ -40,22 +40,24 @@ class Later:
         return self.load()(*args, **kwargs)
 
 
+#: what is sharpest on a shaft, from nothing at all to a rigid seat that ends at a shoulder
+SMOOTH, STEPPED = "smooth", "shoulder"
+HELD, HELD_AT_A_STEP = "rigid seat", "rigid seat at a shoulder"
+
+
 @dataclass(frozen=True)
 class BandFactors:
     """Calibration of the bands of a solid; see :mod:`solidgear.evidence.bands` for what each does.
 
     Attributes
     ----------
-    usual : float
-        Band over the last change.
-    rigid : float
-        The same where seats are rigid: their ends are singular like a crack, and a layer of ratio q
-        leaves the share q.
-    first : pair of (float, float, float)
-        The same after two levels only, without and with rigid seats: the step off the coarsest mesh
-        tells less where it is small, perhaps by accident, and more where it is large. Factor of
-        small steps, the band they reach at most before the factor of large steps takes over, and
-        that factor.
+    usual : dict of str to float
+        Band over the last change, by what is sharpest on the shaft
+        (:func:`solidgear.fidelity.edges.sharpest_edge`).
+    first : dict of str to (float, float, float)
+        The same after two levels only: the step off the coarsest mesh tells less where it is small,
+        perhaps by accident, and more where it is large. Factor of small steps, the band they reach
+        at most before the factor of large steps takes over, and that factor.
     earlier : float
         The last change counts for at least this share of the one before it.
     ahead : float
@@ -64,9 +66,8 @@ class BandFactors:
         Whether plain refinement stays at the order of the sharpest corner.
     """
 
-    usual: float
-    rigid: float
-    first: tuple[tuple[float, float, float], tuple[float, float, float]]
+    usual: Mapping[str, float]
+    first: Mapping[str, tuple[float, float, float]]
     earlier: float
     ahead: float
     singular: bool = False

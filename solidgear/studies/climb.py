@@ -13,6 +13,7 @@ from solidgear.evidence.answer import ENOUGH, Numbers, numbers
 from solidgear.evidence.bands import Band, layered_bands
 from solidgear.evidence.quantities import QUANTITIES
 from solidgear.fidelity import build
+from solidgear.fidelity.edges import sharpest_edge
 from solidgear.fidelity.rung import Rung
 from solidgear.solve.modes import ModeSet, modes
 from solidgear.solve.naming import FAMILIES
@@ -217,9 +218,9 @@ class Climb:
     def bands_of(self, levels: list[Numbers]) -> dict[str, Band]:
         """Bands of the finest of two or more meshes of this rung."""
         assert self.rung.factors is not None  # as every solid
-        rigid = any(s.attachment == "rigid" for s in self.scene.stations)
         values = [level.quantities for level in levels]
-        return layered_bands(values, levels[-1].solver, self.rung.factors, rigid=rigid)
+        edge = sharpest_edge(self.scene)
+        return layered_bands(values, levels[-1].solver, self.rung.factors, edge=edge)
 
     def bar(self, name: str) -> float:
         if name not in self.bands:

@@ -1,0 +1,41 @@
+"""What is sharpest on a shaft: it limits how fast meshes of a solid converge."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from solidgear.fidelity.rung import HELD, HELD_AT_A_STEP, SMOOTH, STEPPED
+from solidgear.meshing.corners import corner_angle
+from solidgear.scene.rules import TOUCH
+
+if TYPE_CHECKING:
+    from solidgear.scene import Scene
+
+
+def sharpest_edge(scene: Scene) -> str:
+    """What limits how fast meshes converge: one of `SMOOTH`, `STEPPED`, `HELD`, `HELD_AT_A_STEP`.
+
+    Exponents of displacement there are 1 (the jump of the load at the end of a seat), 0.54, 0.50
+    and 0.33, so that a layer of ratio q leaves the shares ``q^2``, ``q^1.09``, ``q`` and
+    ``q^0.67``.  Williams (1952), J. Appl. Mech. 19, 526, free and clamped-free corners.
+
+    Parameters
+    ----------
+    scene : Scene
+
+    Examples
+    --------
+    >>> import solidgear as sg
+    >>> scene = sg.load("geometry/shaft_stepped.toml")
+    >>> sharpest_edge(scene), sharpest_edge(scene.with_attachment("rigid"))
+    ('shoulder', 'rigid seat at a shoulder')
+    """
+    pairs = zip(scene.segments, scene.segments[1:])
+    corners = [b.y0 for a, b in pairs if corner_angle(a, b) > np.pi * (1 + 1e-9)]
+    seats = [s for s in scene.stations if s.attachment == "rigid"]
+    touched = any(s.lo - TOUCH <= y <= s.hi + TOUCH for s in seats for y in corners)
+    if seats:
+        return HELD_AT_A_STEP if touched else HELD
+    return STEPPED if corners else SMOOTH
