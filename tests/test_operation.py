@@ -36,7 +36,7 @@ factor.LONG = 0
 real = SuperLU.factor
 
 def endless(self):
-    if self.matrix.shape[0] < 3000:
+    if self.matrix.shape[0] < 1000:
         return real(self)
     os.write(2, b"now in C\\n")
     hashlib.pbkdf2_hmac("sha256", b"", b"", 2**31 - 1)

@@ -21,6 +21,7 @@ from solidgear.scene import Bearing
 from solidgear.studies import climb as climbing
 from solidgear.studies.answering import answer
 from solidgear.studies.settle import settle
+from solidgear.studies.sweep.choice import settled_for_sweep
 
 ROOT = Path(__file__).parent.parent
 SCENE = str(ROOT / "geometry" / "pinion_overhung.toml")
@@ -237,7 +238,7 @@ REFUSED = {
         "--tol 0.1 needs -f auto",
     ),
     "the same of a sweep": (
-        ["sweep", SCENE, "--vary", "bearing.1.scale=1,2", "--tol", "0.1"],
+        ["sweep", SCENE, "-f", "harmonic", "--vary", "bearing.1.scale=1,2", "--tol", "0.1"],
         "--tol 0.1 needs -f auto",
     ),
     "no tolerance": (["modes", SCENE, "--tol", "0"], "tol = 0"),
@@ -260,11 +261,11 @@ def test_another_question_is_refused(scene):
 
 
 # --------------------------------------------------------------------------- sweep
-def test_a_sweep_settles_once_on_the_bearings_of_the_scene(run, scene, tmp_path):
-    words = ["sweep", SCENE, "-f", "auto", "--tol", "0.02", "-n", "3", "-o", "rows.csv"]
+def test_a_sweep_settles_on_the_scene_and_at_the_ends_of_what_varies(run, scene, tmp_path):
+    words = ["sweep", SCENE, "--tol", "0.02", "-n", "3", "-o", "rows.csv"]
     words += ["--vary", "bearing.1.scale=0.5,1"]
     code, out, _ = run(*words)
-    assert code == 0 and "Largest mesh bar on the base scene: +- 0." in out
+    assert code == 0 and "Largest mesh bar over 3 bearing sets (the scene's and" in out
     rows = list(csv.DictReader((tmp_path / "rows.csv").open()))
     body = settle(scene, 0.02, "all").body
     base = sg.condense(body, scene, scene.port.name)
@@ -274,3 +275,14 @@ def test_a_sweep_settles_once_on_the_bearings_of_the_scene(run, scene, tmp_path)
     found = json.loads(out)
     assert code == 0 and found["skipped"] == 2 and found["reached"]
     assert found["options"]["order"] == 3 and {"C_zz", "bending 1"} <= set(found["bars"])
+
+
+def test_a_sweep_takes_the_mesh_that_its_hardest_bearings_need(scene):
+    """Clamped as hard as this, a compliance is all shaft, and errs as the shaft does."""
+    hard = settled_for_sweep(scene, ["bearing.1.scale=1,1e4", "bearing.2.scale=1,1e4"], 0.003)
+    base = settle(scene, 0.003, "all")
+    assert hard.judged_on > 1 and hard.reached
+    for quantity, bar in base.bars.items():
+        if hard.options == base.options:
+            assert hard.bars[quantity] >= bar
+    assert hard.largest[1] > base.largest[1] or hard.body.size > base.body.size

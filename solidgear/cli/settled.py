@@ -55,13 +55,18 @@ def settled_for(scene: Scene, pairs: list[str] | None, tol: float | None, ask: s
     """What ``-f auto`` chooses; parameters as for :func:`body_for`."""
     from solidgear.studies.settle import settle
 
+    refuse_settings(pairs)
+    # A second or less for most scenes: lines are for those who watch.
+    with Progress(quiet=not sys.stderr.isatty()) as progress:
+        return settle(scene, tol, ask, progress=progress)
+
+
+def refuse_settings(pairs: list[str] | None) -> None:
+    """A mesh that is chosen cannot be set as well."""
     if options(pairs):  # which says so where one is no key=value
         raise SolidgearError(
             f"--set {show((pairs or [''])[0], 40)} needs a fixed model: add -f {FIDELITY}"
         )
-    # A second or less for most scenes: lines are for those who watch.
-    with Progress(quiet=not sys.stderr.isatty()) as progress:
-        return settle(scene, tol, ask, progress=progress)
 
 
 def heading(scene: Scene, body: Body, settled: Settled | None) -> str:
@@ -79,12 +84,14 @@ def told(settled: Settled | None) -> list[str]:
     return [*_largest(settled, ""), *sentences(settled)]
 
 
-def on_the_base(settled: Settled | None) -> list[str]:
-    """The same of a sweep, whose mesh is chosen on the bearings that the scene has."""
+def over_the_sweep(settled: Settled | None) -> list[str]:
+    """The same of a sweep, whose mesh is judged on the scene and at the ends of what varies."""
     if settled is None:
         return []
-    mesh = f"Mesh: {settled.rung}, {settled.setting}; with stiffer bearings its errors count more."
-    return [mesh, *_largest(settled, " on the base scene"), *sentences(settled)]
+    sets = "set" if settled.judged_on == 1 else "sets"
+    mesh = f"Mesh: {settled.rung}, {settled.setting}."
+    where = f" over {settled.judged_on} bearing {sets} (the scene's and those at the ends)"
+    return [mesh, *_largest(settled, where), *sentences(settled)]
 
 
 def _largest(settled: Settled, where: str) -> list[str]:

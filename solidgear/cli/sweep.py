@@ -11,7 +11,6 @@ import typer
 
 from solidgear.cli.app import (
     AUTO,
-    FIDELITY,
     AutoFidelityOption,
     JsonFlag,
     SceneFile,
@@ -20,7 +19,8 @@ from solidgear.cli.app import (
     command,
     options,
 )
-from solidgear.cli.settled import ended, on_the_base, refuse_tolerance, settled_for
+from solidgear.cli.app import Progress as Steps
+from solidgear.cli.settled import ended, over_the_sweep, refuse_settings, refuse_tolerance
 
 
 @command
@@ -43,7 +43,7 @@ def sweep(
             "a database beside it (rows.csv.sqlite), from which the file is written in one step.",
         ),
     ] = Path("rows.csv"),
-    fidelity: AutoFidelityOption = FIDELITY,
+    fidelity: AutoFidelityOption = AUTO,
     tol: Tolerance = None,
     n: Annotated[
         int | None, typer.Option("-n", help="Number of elastic shapes; twins count twice.")
@@ -92,12 +92,15 @@ def sweep(
     from solidgear.scene.file import load
     from solidgear.studies.check import cautions
     from solidgear.studies.sweep import sweep as run
+    from solidgear.studies.sweep.choice import settled_for_sweep
 
     loaded = load(scene)
     # before a file of rows is begun
     settled = None
     if fidelity == AUTO:
-        settled = settled_for(loaded, settings, tol, "all")
+        refuse_settings(settings)
+        with Steps(quiet=not sys.stderr.isatty()) as steps:
+            settled = settled_for_sweep(loaded, vary, tol, sample=sample, seed=seed, progress=steps)
         rung, given = settled.rung, settled.options
     else:
         refuse_tolerance(fidelity, tol)
@@ -164,6 +167,6 @@ def sweep(
             f"{found.unknowns} unknowns with {found.seats} seats solved once in {found.seconds_once:.1f} s; {new} variants of up to {found.basis} unknowns, "
             f"{1e3 * found.seconds_each:.1f} ms each; {found.refused} refused, {found.full} solved in full."
         )
-    for sentence in on_the_base(settled):
+    for sentence in over_the_sweep(settled):
         print(sentence)
     ended(settled)

@@ -79,6 +79,8 @@ class Settled:
         exactly zero, and no bar to meet.
     missing : tuple of str
         Quantities that do not exist for this scene.
+    judged_on : int
+        Bearing sets that the bars were taken over.
     """
 
     scene: str
@@ -90,6 +92,7 @@ class Settled:
     steps: tuple[Step, ...]
     reached: bool
     missing: tuple[str, ...]
+    judged_on: int = 1
 
     @property
     def setting(self) -> str:
@@ -116,6 +119,7 @@ class Settled:
             "tolerance": self.tolerance,
             "bars": {q: bar if math.isfinite(bar) else None for q, bar in self.bars.items()},
             "reached": self.reached,
+            "judged_on": self.judged_on,
         }
 
 

@@ -1,0 +1,106 @@
+"""The mesh of a sweep: the cheapest whose bars are within a tolerance wherever the sweep goes.
+
+How much a mesh errs depends on the bearings: the stiffer they are, the more of the compliance is
+the shaft's.  So the mesh is judged on the scene and at both ends of everything that varies, and the
+finest that one of these needs serves all.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from solidgear.errors import SceneError
+from solidgear.studies.settle import Settled, settle
+from solidgear.studies.sweep.run import variants_of
+
+if TYPE_CHECKING:
+    from solidgear.scene import Scene
+    from solidgear.studies.climb import Progress
+    from solidgear.studies.sweep.variants import Variants
+
+#: bearing sets, beside that of the scene, on which a mesh is judged
+MOST = 8
+
+
+def settled_for_sweep(
+    scene: Scene,
+    vary_texts: Iterable[str],
+    tol: float | None = None,
+    *,
+    sample: int | None = None,
+    seed: int = 0,
+    progress: Progress = lambda _: None,
+) -> Settled:
+    """The cheapest body whose bands are within a tolerance on the scene and at the ends of a sweep.
+
+    Parameters
+    ----------
+    scene : Scene
+    vary_texts : iterable of str
+        See :mod:`solidgear.studies.sweep.vary`.
+    tol : float, optional
+        Relative; by default the tolerance of the scene.
+    sample, seed : int, optional
+        As for :func:`solidgear.studies.sweep.sweep`.
+    progress : callable
+        Called with a sentence at every step.
+
+    Returns
+    -------
+    Settled
+        Of the finest mesh that one of the bearing sets needs, with the largest bar of each quantity
+        over all of them; ``judged_on`` says how many there were.
+
+    Raises
+    ------
+    SolidgearError
+        As :func:`solidgear.studies.settle.settle`, and for texts that cannot be read.
+
+    Examples
+    --------
+    >>> import solidgear as sg
+    >>> scene = sg.load("geometry/shaft_stepped.toml")
+    >>> vary = [f"bearing.{scene.bearings[0].name}.scale=log:0.1:10:9"]
+    >>> found = settled_for_sweep(scene, vary, 0.05)
+    >>> found.judged_on, found.reached
+    (3, True)
+    """
+    scenes = [scene, *_ends(variants_of(scene, vary_texts, sample, seed))]
+    found: list[Settled] = []
+    for k, one in enumerate(scenes, start=1):
+        found.append(settle(one, tol, "all", progress=_numbered(progress, k, len(scenes))))
+    finest = max(found, key=lambda settled: settled.body.size)
+    bars: dict[str, float] = {}
+    for settled in found:
+        for quantity, bar in settled.bars.items():
+            bars[quantity] = max(bar, bars.get(quantity, 0.0))
+    return replace(
+        finest,
+        bars=bars,
+        reached=all(settled.reached for settled in found),
+        judged_on=len(found),
+    )
+
+
+def _ends(variants: Variants) -> list[Scene]:
+    """Scenes of the variants with the lowest and the highest value of everything that varies."""
+    # the ends of all at once first, then of one after the other
+    ranks = variants.values.argsort(axis=0).argsort(axis=0).sum(axis=1)
+    wanted = [int(ranks.argmin()), int(ranks.argmax())]
+    for column in variants.values.T:
+        wanted += [int(np.argmin(column)), int(np.argmax(column))]
+    out: list[Scene] = []
+    for index in list(dict.fromkeys(wanted))[:MOST]:
+        try:
+            out.append(variants.of(index))
+        except SceneError:
+            continue  # its row will say why
+    return out
+
+
+def _numbered(progress: Progress, k: int, count: int) -> Progress:
+    return lambda text: progress(f"bearing set {k} of {count}: {text}")
