@@ -383,6 +383,20 @@ def fixture_results():
             "cores": 2,
             "date": "2026-01-05",
         },
+        "where": {
+            "model": "harmonic",
+            "quantity": "C_zz",
+            "order": 3,
+            "total": 4e-4,
+            "sentence": "97 % of what is left in C_zz sits at the shoulder at y = 186 mm",
+            "rows": [
+                {"what": "shoulder", "y": 0.186, "r": 0.03, "share": 0.97},
+                {"what": "elsewhere", "y": 0.05, "r": 0.02, "share": 0.03},
+            ],
+            "points": [[0.0, 0.03, 0.03, 0.0], [0.0, 0.0, 0.2, 0.2]],
+            "cells": [[0], [1], [2], [3]],
+            "shares": [1.0],
+        },
         "images": {},
         "warnings": ["made-up figures: a test fixture, not a run"],
         "seconds_total": 41.2,
@@ -415,7 +429,7 @@ def test_page_needs_no_other_file_and_no_network(page):
     assert not re.search(r"""(src|href)\s*=\s*["'](?!data:|#)""", page)
     assert "<script" not in page and "@import" not in page and "<link" not in page
     assert not re.search(r"url\((?!#)", page)
-    assert page.count("<svg") == 7, "one for each chart"
+    assert page.count("<svg") == 8, "one for each chart"
 
 
 def test_identifiers_of_the_charts_do_not_collide(page):
@@ -457,6 +471,11 @@ def test_identifiers_of_the_charts_do_not_collide(page):
 )
 def test_figures_of_the_run_are_on_the_page(page, figure):
     assert figure in text_of(page)
+
+
+def test_page_says_where_the_error_sits(page):
+    assert "97 % of what is left in C_zz sits at the shoulder at y = 186 mm" in page
+    assert "1: shoulder, y = 186 mm, 97 %" in page  # beside the picture
 
 
 def test_every_matrix_names_its_units(page):
@@ -509,7 +528,7 @@ def test_names_from_a_scene_are_escaped():
     results["warnings"], results["verdict"]["sentences"] = [evil], [evil]
     page = render_page(results)
     assert "<script" not in page and "<img" not in page and "&lt;script&gt;" in page
-    assert page.count("<svg") == 7
+    assert page.count("<svg") == 8
 
 
 # ------------------------------------------------------------------------------------------------- missing parts
@@ -557,6 +576,7 @@ def test_any_part_of_a_model_may_be_missing(no_charts, gone):
         ("modes", "models"),
         ("mac", "mac"),
         ("convergence", "models"),
+        ("where", "where"),
         ("causes", "causes"),
         ("cost", "models"),
         ("attachments", "attachments"),

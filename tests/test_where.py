@@ -12,7 +12,7 @@ import solidgear as sg
 from solidgear.cli.app import app
 from solidgear.errors import SolidgearError
 from solidgear.evidence.places import singular_places
-from solidgear.evidence.where import ELSEWHERE, USUAL, where
+from solidgear.evidence.where import ELSEWHERE, PLACED, USUAL, where
 from solidgear.fidelity import harmonic_energy
 from solidgear.fidelity.harmonic_energy import Meridional
 from solidgear.report.where_chart import draw_where
@@ -81,7 +81,8 @@ def test_the_energies_add_up_to_the_change_of_the_compliance(scenes, name, quant
 
 def test_the_error_is_at_the_only_shoulder_and_moves_with_it():
     for at in (150.0, 220.0):
-        found = where(shaft((at, 60), (400 - at, 40)), "C_zz")
+        # with a layer at seat ends, whose share is as large as the shoulder's without one
+        found = where(shaft((at, 60), (400 - at, 40)), "C_zz", {"edge_layers": 1})
         first = found.rows[0]
         assert first.what == "shoulder" and first.share > 0.8
         assert (first.y, first.r) == pytest.approx((at / 1e3, 0.020))
@@ -218,3 +219,11 @@ def test_command_line(tmp_path):
     assert "Where the error sits: only known of C_zz" in none.stdout
     wrong = run(scene, "--picture", tmp_path / "error.gif")
     assert wrong.exit_code != 0
+
+
+def test_a_comparison_keeps_where_the_error_of_its_judge_sits(scenes):
+    found = sg.compare(scenes["shaft_stepped"], models=("harmonic",)).record.where
+    assert found.model == "harmonic" and found.quantity in PLACED
+    assert found.check == pytest.approx(1, abs=0.01)  # energies sum to the change to two digits
+    assert "shoulder" in found.sentence and found.sentence.count("mm") >= 1
+    assert len(found.shares) == len(found.cells[0])

@@ -19,8 +19,6 @@ if TYPE_CHECKING:
     from solidgear.studies.answering import Answered, Step
     from solidgear.studies.settle import Settled
 
-#: rows of the table of places
-PLACES = 5
 #: compliances whose error is placed for numbers that have no places of their own
 STANDS_FOR = {
     "K_zz": "C_zz",
@@ -182,7 +180,9 @@ def _places(scene: Scene, found: Answered) -> Whereabouts:
 
 
 def _shown(places: Whereabouts) -> tuple[Row, ...]:
-    return tuple(row for row in places.rows[:PLACES] if abs(row.share) >= 5e-4)
+    from solidgear.report.where_chart import MOST_PLACES, WORTH_NAMING
+
+    return tuple(row for row in places.rows[:MOST_PLACES] if abs(row.share) >= WORTH_NAMING)
 
 
 def _where_table(places: Whereabouts) -> Table:

@@ -282,6 +282,32 @@ class PortRecord(Part):
     free: list[str] = []
 
 
+class PlaceRecord(Part):
+    """A place and its share of the error; see :class:`solidgear.evidence.where.Row`."""
+
+    what: str = ""
+    y: Number = None
+    r: Number = None
+    share: Number = None
+    reach: Number = None
+
+
+class WhereRecord(Part):
+    """Where the error of a solid sits; see :class:`solidgear.evidence.where.Whereabouts`."""
+
+    model: str = ""
+    quantity: str = ""
+    order: int = 0
+    total: Number = None
+    check: Number = None
+    sentence: str = ""
+    rows: list[PlaceRecord] = []
+    points: list[list[float]] = []
+    cells: list[list[int]] = []
+    shares: list[float] = []
+    seconds: Number = None
+
+
 class Record(Part):
     """Everything a comparison found.
 
@@ -309,6 +335,7 @@ class Record(Part):
     lumped: dict[str, LumpedRecord] = {}
     verdict: VerdictRecord = VerdictRecord()
     guards: list[GuardRecord] = []
+    where: WhereRecord | None = None
     environment: Facts = {}
     images: dict[str, str] = {}
     warnings: list[str] = []

@@ -11,9 +11,10 @@ ch. 5.
 
 from __future__ import annotations
 
+import logging
 import time
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -22,8 +23,11 @@ from solidgear.body import Body, as_supports
 from solidgear.errors import SolidgearError, nearest, show
 from solidgear.evidence.places import Place, singular_places
 from solidgear.evidence.quantities import QUANTITIES, change
+from solidgear.evidence.record import PlaceRecord, WhereRecord
+from solidgear.evidence.ties import SCENE
 from solidgear.fidelity import build
 from solidgear.fidelity.harmonic_energy import Meridional, PointEnergies
+from solidgear.fidelity.levels import HARMONIC
 from solidgear.fidelity.options import HARMONIC_OPTIONS
 from solidgear.machine.memory import one_run
 from solidgear.machine.threads import pinned
@@ -33,12 +37,17 @@ from solidgear.solve.supported import Supported, decoupled, groups
 
 if TYPE_CHECKING:
     from solidgear.body import Supports
+    from solidgear.evidence.study import Solution
     from solidgear.scene import Scene
+
+log = logging.getLogger(__name__)
 
 #: compliances that can be placed, and the components of the loads they belong to
 PLACED = ("C_zz", "C_z,thx", "C_thx", "C_yy")
-#: where the mesh comes from by default: the coarsest one that an answer may rest on
-USUAL = {"order": 3, "layers": 1, "edge_layers": 1, "relative_size": 4.0}
+#: the mesh by default: the coarsest one that an answer may rest on
+USUAL = HARMONIC[1]
+#: options that make a mesh
+OF_A_MESH = ("order", "layers", "edge_layers", "ratio", "relative_size", "size", "refinement")
 #: couplings by bearings may be left out where they move nothing by more than this
 COUPLING = 1e-6
 #: changes of a compliance below this are rounding, and have no place
@@ -191,6 +200,45 @@ def where(
         low.meridional.flat.cells,
         energy.sum(axis=1) / size,
         time.perf_counter() - start,
+    )
+
+
+def recorded_places(scene: Scene, rung: Solution) -> WhereRecord | None:
+    """Places of the error of the least certain compliance of a harmonic solid, for the record.
+
+    Parameters
+    ----------
+    scene : Scene
+    rung : Solution
+        Of the harmonic solid.
+
+    Returns
+    -------
+    WhereRecord or None
+        None where the error has no place: nothing holds the shaft, or what is left is rounding.
+    """
+    bands = {q: band.gci for q, band in rung.bands.get(SCENE, {}).items() if q in PLACED}
+    if not bands:
+        return None
+    quantity = max(bands, key=bands.__getitem__)
+    mesh = {name: value for name, value in rung.options.items() if name in OF_A_MESH}
+    try:
+        found = where(scene, quantity, mesh)
+    except SolidgearError as error:
+        log.info("places of the error left out: %s", error)
+        return None
+    return WhereRecord(
+        model=rung.model,
+        quantity=quantity,
+        order=found.order,
+        total=found.total,
+        check=found.check,
+        sentence=found.sentence,
+        rows=[PlaceRecord(**asdict(row)) for row in found.rows],
+        points=found.points.tolist(),
+        cells=found.cells.tolist(),
+        shares=found.shares.tolist(),
+        seconds=found.seconds,
     )
 
 

@@ -12,6 +12,7 @@ from solidgear.report.chart_style import Chart, as_svg
 from solidgear.report.convergence_chart import convergence_chart
 from solidgear.report.cost_chart import cost_chart
 from solidgear.report.mode_charts import mac_chart, mode_chart
+from solidgear.report.where_chart import where_chart
 
 
 @as_svg
@@ -26,6 +27,7 @@ CHARTS: dict[str, Chart] = {
     "modes": mode_chart,
     "mac": mac_chart,
     "convergence": convergence_chart,
+    "where": where_chart,
     "causes": cause_chart,
     "cost": cost_chart,
     "attachments": attachment_chart,

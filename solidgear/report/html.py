@@ -29,7 +29,7 @@ from solidgear.report.border import as_record
 from solidgear.report.cells import DASH, capital, short_percent
 from solidgear.report.lumped import lumped_tables
 from solidgear.report.reading import model_name, reference_of, validity
-from solidgear.report.words import seconds
+from solidgear.report.words import percent, seconds
 
 log = logging.getLogger(__name__)
 
@@ -116,6 +116,7 @@ def _opening(record: Record) -> dict[str, Any]:
         "scene": scene,
         "verdict": None if verdict == VerdictRecord() else verdict,
         "free": record.port.free if record.port else [],
+        "where": _where(record),
         "complete": record.complete,
         "missing": record.missing,
         "trusted": _name_or_none(record, verdict.trust),
@@ -124,6 +125,19 @@ def _opening(record: Record) -> dict[str, Any]:
         "reference": _name_or_none(record, reference_of(record)),
         "distrusted": _reasons(record, "no", "not valid for this scene"),
         "undecided": _reasons(record, "open", "not judged"),
+    }
+
+
+def _where(record: Record) -> dict[str, Any] | None:
+    """What is said of where the error of the judge sits."""
+    found = record.where
+    if found is None:
+        return None
+    return {
+        "sentence": found.sentence,
+        "order": found.order,
+        "name": model_name(record, found.model),
+        "total": percent(found.total, signed=False),
     }
 
 

@@ -5,13 +5,16 @@ from __future__ import annotations
 import io
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from solidgear.errors import SolidgearError
 from solidgear.machine.whole_file import whole
-from solidgear.report.chart_style import STYLE, new_figure
+from solidgear.report.chart_style import STYLE, as_svg, new_figure
+
+if TYPE_CHECKING:
+    from solidgear.evidence.record import Record
 
 #: shares below this are all of one colour
 LEAST = 1e-4
@@ -22,6 +25,8 @@ WIDTH, HIGHEST = 9.0, 4.0
 #: in; the names of the places need so much
 NARROWEST = 4.0
 FORMATS = (".png", ".svg")
+#: places that are named, and the share from which on they are
+MOST_PLACES, WORTH_NAMING = 5, 5e-4
 
 
 def draw_where(
@@ -134,11 +139,28 @@ def _figure(points, cells, shares, places, title: str):
         f"{number}: {what}, y = {1e3 * at:.4g} mm, {100 * abs(share):.2g} %"
         for number, (what, at, _, share) in enumerate(places, 1)
     ]
-    drawn_as = "" if stretch == 1.0 else f"; radius drawn {stretch:.2g} times as large"
+    drawn_as = "" if stretch == 1.0 else f"radius drawn {stretch:.2g} times as large"
     ax.set_xlabel("\n".join(["y, mm", *names]))
     ax.set_ylabel("r, mm")
-    ax.set_title(title + drawn_as)
+    ax.set_title("; ".join(filter(None, (title, drawn_as))))
     bar = figure.colorbar(drawn, ax=ax, pad=0.01, aspect=12)
     bar.ax.yaxis.set_major_formatter(FuncFormatter(lambda v, _: f"{100 * v:g} %"))
     bar.set_label("share of the cell")
     return figure
+
+
+@as_svg
+def where_chart(record: Record):
+    """Where the error of the judge sits; None without a record of it."""
+    where = record.where
+    if where is None or not where.cells:
+        return None
+    places = [
+        (row.what, row.y, row.r, row.share)
+        for row in where.rows[:MOST_PLACES]
+        if row.y is not None and row.r is not None and row.share is not None
+        if abs(row.share) >= WORTH_NAMING
+    ]
+    return _figure(
+        np.array(where.points), np.array(where.cells), np.array(where.shares), places, ""
+    )

@@ -14,10 +14,11 @@ from solidgear.errors import SolidgearError
 from solidgear.evidence.causes import SHOWN, Cause, attachment_causes, beam_causes, shoulder_cause
 from solidgear.evidence.lumped import synthesise_all
 from solidgear.evidence.quantities import change
-from solidgear.evidence.record import LumpedRecord, Record
+from solidgear.evidence.record import LumpedRecord, Record, WhereRecord
 from solidgear.evidence.recording import recorded
 from solidgear.evidence.study import Solution, study
 from solidgear.evidence.ties import SECTION
+from solidgear.evidence.where import recorded_places
 from solidgear.fidelity.ladder import LADDER
 from solidgear.fidelity.levels import FREE, HARMONIC
 from solidgear.fidelity.rung import LUMPED, SOLID
@@ -132,6 +133,7 @@ def compare(
     record = recorded(
         scene, found.rungs, found.failed, found.causes, found.lumped, found.guards, complete
     )
+    record.where = found.where
     record.seconds_total = overall.seconds["all"]
     record.peak_mb = overall.peak_mb
     record.expected_peak_mb = run.expected_mb
@@ -147,6 +149,7 @@ class _Found:
     causes: list[Cause]
     lumped: dict[str, LumpedRecord]
     guards: list[dict]
+    where: WhereRecord | None = None
 
 
 def _run(scene: Scene, models, options, found: _Found, progress: Progress) -> None:
@@ -182,6 +185,9 @@ def _run(scene: Scene, models, options, found: _Found, progress: Progress) -> No
     if found.rungs:
         progress("guards")
         found.guards = notices(scene, found.rungs)
+    if "harmonic" in found.rungs:
+        progress("where the error sits")
+        found.where = recorded_places(scene, found.rungs["harmonic"])
     found.causes = _causes(scene, found.rungs, options, progress)
 
 
