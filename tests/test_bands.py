@@ -108,3 +108,5 @@ def test_what_is_sharpest_on_a_shaft():
     assert sharpest_edge(shaft("rigid", 0.05)) == HELD
     assert sharpest_edge(shaft("rigid", 0.16)) == HELD_AT_A_STEP  # ends where the step is
     assert sharpest_edge(shaft("rigid", 0.20)) == HELD_AT_A_STEP
+    assert sharpest_edge(shaft("rigid", 0.2 + 5e-8)) == HELD_AT_A_STEP  # but for rounding
+    assert sharpest_edge(shaft("rigid", 0.21)) == HELD

@@ -8,10 +8,12 @@ import numpy as np
 
 from solidgear.fidelity.rung import HELD, HELD_AT_A_STEP, SMOOTH, STEPPED
 from solidgear.meshing.corners import corner_angle
-from solidgear.scene.rules import TOUCH
 
 if TYPE_CHECKING:
     from solidgear.scene import Scene
+
+#: a seat that ends this near to a step, in least outer radii, ends at it: no mesh tells them apart
+NEAR = 0.01
 
 
 def sharpest_edge(scene: Scene) -> str:
@@ -35,7 +37,8 @@ def sharpest_edge(scene: Scene) -> str:
     pairs = zip(scene.segments, scene.segments[1:])
     corners = [b.y0 for a, b in pairs if corner_angle(a, b) > np.pi * (1 + 1e-9)]
     seats = [s for s in scene.stations if s.attachment == "rigid"]
-    touched = any(s.lo - TOUCH <= y <= s.hi + TOUCH for s in seats for y in corners)
+    near = NEAR * min(min(s.outer0, s.outer1) for s in scene.segments)
+    touched = any(s.lo - near <= y <= s.hi + near for s in seats for y in corners)
     if seats:
         return HELD_AT_A_STEP if touched else HELD
     return STEPPED if corners else SMOOTH
