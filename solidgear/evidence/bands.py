@@ -34,6 +34,9 @@ if TYPE_CHECKING:
 
 #: safety on the observed reduction of two regular steps, where that is the worse news
 OBSERVED, SLOWEST = 1.5, 0.7
+#: least factor from the fourth level on, where what is left may lie where layers do not reach, such
+#: as the planes of section ties
+LATE = 0.5
 #: the change of a coupling counts for at least this share of those of its diagonal entries
 DIAGONAL = 0.2
 #: safety on what the cells around leave: in thin walls the coarsest mesh, where it is measured,
@@ -129,7 +132,7 @@ def layered_bands(
         factor = usual if len(levels) > 2 else _first(factors.first[edge], rests_on)
         if earlier and len(levels) > 3:  # the step off the coarsest mesh is no regular one
             ratio = min(last / earlier, SLOWEST)
-            factor = max(usual, OBSERVED * ratio / (1 - ratio))
+            factor = max(usual, LATE, OBSERVED * ratio / (1 - ratio))
         if name in COUPLINGS:
             own = [
                 abs(change(before, finest, d) or 0.0)

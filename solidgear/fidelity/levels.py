@@ -37,8 +37,8 @@ HARMONIC: tuple[Options, ...] = (
     _harmonic(2, 0, 0, 4.0),
     _harmonic(3, 1, 0, 4.0),
     _harmonic(4, 2, 1, 4.0),
-    _harmonic(5, 3, 1, 4.0),
-    _harmonic(6, 4, 2, 4.0),
+    _harmonic(5, 3, 2, 4.0),
+    _harmonic(6, 4, 3, 4.0),
     _harmonic(7, 5, 3, 2.0),
 )
 HEXAHEDRA: tuple[Options, ...] = (
