@@ -1,44 +1,78 @@
 """What judges automatic choice sees an answer that is wrong and a bar that is too short."""
 
-from types import SimpleNamespace
+import copy
 
 import pytest
 
-from solidgear.studies.climb import Value
-from validation.choice import Tally, judge, main
+from solidgear.fidelity.levels import HARMONIC
+from validation.choice.__main__ import main
+from validation.choice.members import MEMBERS, options_of
+from validation.choice.walk import Tally, cheapest, levels_of, walk
 
-TRUTH = SimpleNamespace(values={"C_zz": 2.0e-9, "C_thx": 1e-7}, uncertainty={"C_zz": 1e-6})
-
-
-def answered(value, bar, reached=True):
-    row = Value("C_zz", value, "m/N", bar, "2 meshes")
-    return SimpleNamespace(values=(row,), reached=reached)
+TRUE = {"C_zz": 2.0e-9, "bending 1": 1000.0}
 
 
-@pytest.mark.parametrize(
-    ("value", "bar", "wrong", "short"),
-    [
-        (2.001e-9, 1e-3, 0, 0),  # 5e-4 off, within both
-        (2.001e-9, 4e-4, 0, 1),  # beyond its bar
-        (2.01e-9, 4e-3, 1, 1),  # 5e-3 off: beyond the tolerance as well
-        (2.01e-9, 6e-3, 1, 0),
-    ],
-)
-def test_errors_beyond_bar_and_tolerance_are_counted(value, bar, wrong, short):
+def member(which, away, seconds):
+    """A mesh whose numbers are so far from the truth."""
+    numbers = {"C_zz": TRUE["C_zz"] * (1 - away), "bending 1": TRUE["bending 1"] * (1 + away)}
+    return {"member": which, "size": 1000, "q": numbers, "solver": {}, "t": [seconds]}
+
+
+def row(*away):
+    meshes = ((2, 0, 0, 4), (3, 1, 0, 4), (4, 2, 1, 4))
+    members = [member(m, a, 10.0**k) for k, (m, a) in enumerate(zip(meshes, away))]
+    truth = {"values": TRUE, "uncertainty": dict.fromkeys(TRUE, 1e-9)}
+    return {"seed": 3, "members": members, "ref": truth}
+
+
+def walked(one, tol):
     tally = Tally()
-    judge(1, 1e-3, answered(value, bar), TRUTH, tally)
-    assert (len(tally.wrong), len(tally.short), tally.numbers) == (wrong, short, 1)
+    walk(one, tol, tally)
+    return tally
+
+
+def test_a_climb_ends_where_its_bars_are_within_the_tolerance():
+    found = walked(row(1e-2, 1e-4, 1e-6), 0.1)
+    assert (found.scenes, found.reached, found.first) == (1, 1, [2])
+    assert found.cost == [pytest.approx(11.0)]  # both meshes over the first, which would have done
+    assert not found.wrong and not found.short and min(found.ratios) > 1
+    assert walked(row(1e-2, 1e-4, 1e-6), 1e-4).first == [3]
+
+
+def test_an_error_beyond_bar_and_tolerance_is_counted():
+    # the second step is small by accident, and what is left is large
+    found = walked(row(5.0e-2, 4.9e-2, 4.9e-2), 1e-2)
+    assert len(found.wrong) == len(found.short) == 2
+    assert "error 4.90e-02" in found.wrong[0]
 
 
 def test_what_was_not_reached_is_not_called_wrong():
-    tally = Tally()
-    judge(1, 1e-3, answered(2.01e-9, 6e-3, reached=False), TRUTH, tally)
-    assert not tally.wrong
+    found = walked(row(0.9, 0.5, 0.3), 1e-3)
+    assert found.reached == 0 and not found.wrong
+
+
+def test_a_truth_that_is_not_known_well_enough_judges_nothing():
+    one = copy.deepcopy(row(1e-2, 1e-4, 1e-6))
+    one["ref"]["uncertainty"]["C_zz"] = 1e-3
+    assert walked(one, 1e-3).scenes == 0
+
+
+def test_the_cheapest_mesh_is_looked_for_among_all():
+    one = row(1e-2, 1e-4, 1e-6)
+    one["members"].append(member((3, 2, 0, 4), 5e-7, 0.5))
+    assert cheapest(one, 1e-6) == 0.5 and cheapest(one, 1e-9) is None
+    assert [m["member"] for m in levels_of(one)] == [(2, 0, 0, 4), (3, 1, 0, 4), (4, 2, 1, 4)]
+
+
+def test_members_hold_the_ladder():
+    known = [options_of(m) for m in MEMBERS]
+    assert all(level in known for level in HARMONIC[:4])
 
 
 @pytest.mark.slow
 def test_two_random_scenes(tmp_path):
     # bars hold in 98 % of numbers; of some fifty here none should be beyond the tolerance
-    out = tmp_path / "choice.md"
-    assert main(["--scenes", "2", "--seed", "3", "--tolerance", "0.01", "--out", str(out)]) == 0
+    out, rows = tmp_path / "choice.md", tmp_path / "rows.jsonl"
+    words = ["--scenes", "2", "--seed", "3", "--tolerance", "0.01", "--live", "1"]
+    assert main([*words, "--rows", str(rows), "--out", str(out)]) == 0
     assert "0 of" in out.read_text()

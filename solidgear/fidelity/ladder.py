@@ -68,8 +68,8 @@ LADDER = Ladder(
             # q**(2 a) / (1 - q**(2 a)): 0.04, 0.21, 0.25 and 0.53 for q = 0.2.
             usual={SMOOTH: 0.22, STEPPED: 0.22, HELD: 0.3, HELD_AT_A_STEP: 0.5},
             first={
-                SMOOTH: (1.8, 5e-4, 0.6),
-                STEPPED: (1.8, 5e-4, 0.13),
+                SMOOTH: (1.8, 7e-4, 0.6),
+                STEPPED: (1.8, 7e-4, 0.13),
                 HELD: (1.8, 5e-4, 0.16),
                 HELD_AT_A_STEP: (1.8, 5e-4, 0.13),
             },

@@ -1,0 +1,144 @@
+"""The program's climb, walked over numbers that are there already."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from solidgear.evidence.answer import Numbers
+from solidgear.evidence.quantities import QUANTITIES
+from solidgear.fidelity.edges import sharpest_edge
+from solidgear.fidelity.ladder import LADDER
+from solidgear.fidelity.levels import HARMONIC
+from solidgear.studies.climb import Climb
+from validation.attack.reference import coupling_scale
+from validation.attack.scenes import random_scene
+from validation.choice.members import options_of
+
+#: errors below this are rounding, and say nothing of a bar
+LEAST = 1e-7
+#: the truth must be known this much better than an error to judge its bar
+KNOWN = 0.2
+
+
+@dataclass
+class Tally:
+    """What became of the answers at one tolerance; ``worst`` are largest bars over largest errors of
+    a scene.
+    """
+
+    scenes: int = 0
+    reached: int = 0
+    wrong: list[str] = field(default_factory=list)
+    short: list[str] = field(default_factory=list)
+    ratios: list[float] = field(default_factory=list)
+    worst: list[float] = field(default_factory=list)
+    numbers: int = 0
+    cost: list[float] = field(default_factory=list)
+    first: list[int] = field(default_factory=list)
+
+
+def error_of(values: dict[str, float], truth: dict[str, float], name: str) -> float:
+    """True relative error of a quantity, couplings on the scale of their diagonal entries."""
+    return abs(values[name] - truth[name]) / coupling_scale(truth, name)
+
+
+def levels_of(row: dict[str, Any]) -> list[dict[str, Any]]:
+    """Members of a row that the ladder climbs, as far as they are there, in its order."""
+    found = [m for m in row["members"] if "error" not in m]
+    out = []
+    for level in HARMONIC:
+        same = [m for m in found if options_of(m["member"]) == level]
+        if not same:
+            break
+        out.append(same[0])
+    return out
+
+
+def cheapest(row: dict[str, Any], tol: float) -> float | None:
+    """Seconds of the cheapest mesh that is within a tolerance; None where none is."""
+    truth = row["ref"]["values"]
+    good = []
+    for member in row["members"]:
+        if "error" in member:
+            continue
+        known = [q for q in member["q"] if q in truth]
+        if all(error_of(member["q"], truth, q) <= tol for q in known):
+            good.append(sum(member["t"]))
+    return min(good, default=None)
+
+
+def walk(row: dict[str, Any], tol: float, tally: Tally) -> None:
+    """Climb until the bars are within the tolerance, and judge what comes out."""
+    truth, unsure = row["ref"]["values"], row["ref"]["uncertainty"]
+    if max(unsure.get(q, 0.0) for q in truth) > tol / 3:
+        return  # the truth is not known well enough
+    scene = random_scene(row["seed"])
+    climb = Climb(scene, LADDER["harmonic"], tuple(QUANTITIES), tol, lambda _: None)
+    tally.scenes += 1
+    spent, bar = 0.0, None
+    for member in levels_of(row):
+        climb.levels.append(Numbers(member["q"], member["solver"]))
+        spent += sum(member["t"])
+        bar = climb.judge()
+        if bar is not None and bar <= tol:
+            break
+    if bar is None:
+        return
+    reached = bar <= tol
+    tally.reached += reached
+    best = cheapest(row, tol)
+    if reached and best is not None:
+        tally.cost.append(spent / best)
+        tally.first.append(len(climb.levels))
+    edge = sharpest_edge(scene)
+    errors, bars = [LEAST], [0.0]
+    for name, value in climb.levels[-1].quantities.items():
+        if name not in truth:
+            continue
+        error, known = error_of({name: value}, truth, name), unsure.get(name, 0.0)
+        tally.numbers += 1
+        own = climb.bar(name)
+        errors.append(error)
+        bars.append(own)
+        words = f"seed {row['seed']} ({edge}), {name}: error {error:.2e}, bar {own:.2e}"
+        if reached and error - known > tol:
+            tally.wrong.append(words)
+        if error < LEAST or known > KNOWN * error:
+            continue
+        tally.ratios.append(own / error)
+        if error - known > own:
+            tally.short.append(words)
+    tally.worst.append(max(bars) / max(errors))
+
+
+def table(tallies: dict[float, Tally]) -> list[str]:
+    """Markdown of all tolerances."""
+    rows = [
+        "| tolerance | scenes | reached | numbers beyond it | beyond their bar | bar over error: "
+        "5 %, median, 95 % | the same, largest of a scene | meshes tried, median | cost over the cheapest mesh that will do: "
+        "median, 90 % |",
+        "| --- | --- | --- | --- | --- | --- | --- | --- | --- |",
+    ]
+    for tol, tally in tallies.items():
+        if not tally.scenes:
+            continue
+        low, middle, high = quantiles(tally.ratios, (0.05, 0.5, 0.95))
+        shortest, usual, longest = quantiles(tally.worst, (0.05, 0.5, 0.95))
+        half, most = quantiles(tally.cost, (0.5, 0.9))
+        tried = quantiles(tally.first, (0.5,))[0]
+        rows.append(
+            f"| {tol:g} | {tally.scenes} | {tally.reached} | {len(tally.wrong)} of {tally.numbers} "
+            f"| {len(tally.short)} of {len(tally.ratios)} | {low:.2g}, {middle:.2g}, {high:.2g} "
+            f"| {shortest:.2g}, {usual:.2g}, {longest:.2g} "
+            f"| {tried:g} | {half:.2g}, {most:.2g} |"
+        )
+    return rows
+
+
+def quantiles(values: Sequence[float], at: Sequence[float]) -> list[float]:
+    """Quantiles; NaN of nothing."""
+    return [float(v) for v in np.quantile(list(values) or [np.nan], at)]
