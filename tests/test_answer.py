@@ -6,6 +6,7 @@ import subprocess
 import sys
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 import solidgear as sg
@@ -204,3 +205,18 @@ def test_command_line():
     assert told.returncode == 3 and "Not there: C_zz" in told.stdout
     wrong = run("geometry/shaft_stepped.toml", "--tol", "0")
     assert wrong.returncode == 1 and "tol = 0" in wrong.stderr
+
+
+def test_a_coupling_that_symmetry_forbids_is_zero_and_others_are_not(scenes):
+    shaft = sg.Scene.from_parts(
+        [sg.Segment.cylinder("shaft", length=0.3, diameter=0.04)],
+        bearings=[
+            sg.Bearing(name=n, y=y, seat_width=0.02, matrix=np.eye(6) * 1e8)
+            for n, y in (("A", 0.03), ("B", 0.27))
+        ],
+    )
+    even = answer(shaft, 0.05, "C_zz, C_z,thx, C_thx").values
+    assert [v.zero for v in even] == [False, True, False]
+    assert even[1].size == pytest.approx((even[0].value * even[2].value) ** 0.5)
+    odd = answer(scenes["pinion_overhung"], 0.05, "C_z,thx").values
+    assert not odd[0].zero

@@ -102,6 +102,7 @@ def _values(found: Answered) -> Table:
     from rich import box
     from rich.table import Table
 
+    from solidgear.evidence.quantities import COUPLINGS
     from solidgear.report.words import engineering, percent
 
     table = Table(box=box.SIMPLE_HEAD, pad_edge=False)
@@ -112,7 +113,11 @@ def _values(found: Answered) -> Table:
     table.add_column("from")
     for row in found.values:
         bar = f"+- {percent(row.bar, signed=False)}"
-        table.add_row(row.quantity, engineering(row.value, 6), row.unit, bar, row.how)
+        value = "0" if row.zero else engineering(row.value, 6)
+        table.add_row(row.quantity, value, row.unit, bar, row.how)
+    if any(row.quantity in COUPLINGS for row in found.values):
+        table.caption = "bars of couplings are relative to the mean of both diagonal entries"
+        table.caption_justify = "left"
     return table
 
 

@@ -55,6 +55,17 @@ def measure(condensed: Condensed | None, modes: ModeSet | None) -> dict[str, flo
     return {name: v for name, v in out.items() if all(d in out for d in COUPLINGS.get(name, ()))}
 
 
+def size(values: Mapping[str, float], name: str) -> float:
+    """What errors of a quantity are relative to: of couplings the geometric mean of their diagonal
+    entries (`COUPLINGS`), of all else the value itself.
+    """
+    if name in COUPLINGS:
+        one, two = COUPLINGS[name]
+        if one in values and two in values:
+            return float((values[one] * values[two]) ** 0.5)
+    return abs(values[name])
+
+
 def change(new: Mapping[str, float], old: Mapping[str, float], name: str) -> float | None:
     """Relative change of one quantity, or None where either lacks it; rounding (below 1e-11) counts
     as none.
@@ -64,11 +75,7 @@ def change(new: Mapping[str, float], old: Mapping[str, float], name: str) -> flo
     """
     if name not in new or name not in old:
         return None
-    scale = abs(old[name])
-    if name in COUPLINGS:
-        one, two = COUPLINGS[name]
-        if one in old and two in old:
-            scale = (old[one] * old[two]) ** 0.5
+    scale = size(old, name)
     if scale == 0.0:
         return 0.0 if new[name] == 0.0 else None
     relative = (new[name] - old[name]) / scale

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 from solidgear.body import Body, as_supports
 from solidgear.evidence.answer import ENOUGH, Numbers, numbers
 from solidgear.evidence.bands import Band, layered_bands
-from solidgear.evidence.quantities import QUANTITIES
+from solidgear.evidence.quantities import QUANTITIES, size
 from solidgear.fidelity import build
 from solidgear.fidelity.edges import sharpest_edge
 from solidgear.fidelity.rung import Rung
@@ -33,6 +33,8 @@ SETTINGS = {"order": "order", "layers": "layers", "around": "cells around"}
 #: a frequency that rises with a finer mesh, by more than the eigensolver leaves, is rounding: the
 #: bar is this many times the rise
 RISE = 2.0
+#: a coupling this small against its diagonal entries is zero
+ROUNDING = 1e-9
 
 
 @dataclass(frozen=True)
@@ -49,6 +51,8 @@ class Value:
         nothing is known.
     how : str
         Where the bar comes from.
+    size : float
+        What the bar is relative to, SI.
     """
 
     quantity: str
@@ -56,6 +60,12 @@ class Value:
     unit: str
     bar: float
     how: str
+    size: float
+
+    @property
+    def zero(self) -> bool:
+        """Whether it is nothing but rounding, as a coupling that symmetry forbids."""
+        return abs(self.value) <= ROUNDING * self.size
 
 
 @dataclass(frozen=True)
@@ -162,7 +172,8 @@ class Climb:
             if name in finest:
                 bar = self.bar(name)
                 how = f"{len(self.levels)} meshes" if math.isfinite(bar) else "one mesh only"
-                out.append(Value(name, finest[name], QUANTITIES[name][2], bar, how))
+                unit = QUANTITIES[name][2]
+                out.append(Value(name, finest[name], unit, bar, how, size(finest, name)))
         return tuple(out)
 
     def _body(self, level: Mapping[str, Any]) -> Body:
