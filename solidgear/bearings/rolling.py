@@ -25,9 +25,6 @@ class Row(Protocol):
     def pitch(self) -> float:
         """Diameter of the circle of the elements' centres, m."""
 
-    def energy(self, motion: np.ndarray) -> np.ndarray:
-        """Elastic energy at motions (..., 6), J."""
-
     def load(self, motion: np.ndarray) -> np.ndarray:
         """Load (..., 6) that holds the inner ring at motions (..., 6)."""
 
@@ -70,10 +67,6 @@ class RollingBearing:
         """(6,) motions that count alike: metres, and metres at the pitch radius."""
         turn = 2 / max(row.pitch for row in self.rows)
         return np.array([1.0, 1.0, 1.0, turn, turn, turn])
-
-    def energy(self, motion: np.ndarray) -> np.ndarray:
-        """Elastic energy at motions (..., 6), J."""
-        return sum((row.energy(motion) for row in self.rows), np.zeros(()))
 
     def load(self, motion: np.ndarray) -> np.ndarray:
         """Load (..., 6) at motions (..., 6)."""

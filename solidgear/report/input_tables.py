@@ -143,6 +143,6 @@ def bearings(scene: Mapping) -> Table:
         rows,
         note=(
             "Status says where the stiffness comes from: published, measured, identified (fitted), "
-            "or assumed."
+            "assumed, or from catalogue data: calculated, or estimated where the inner geometry is."
         ),
     )

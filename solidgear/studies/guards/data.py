@@ -74,7 +74,7 @@ def doubtful_data(probe: Probe) -> Notices:
     doubtful = [
         f"bearing {b.name!r} ({b.status})"
         for b in probe.scene.bearings
-        if b.status in ("identified", "assumed")
+        if b.status in ("identified", "assumed", "estimated")
     ]
     if doubtful:
         yield Notice("caution", (), "data not measured or published: " + ", ".join(doubtful))
