@@ -155,6 +155,8 @@ def reference_load(row, motion):
             if isinstance(row, BallRow):
                 radial += free * np.cos(row.angle) - row.clearance / 2
                 axial += row.side * free * np.sin(row.angle)
+                if row.angle and (row.side * axial).real < 0:
+                    axial = 0.0
                 length = np.sqrt(radial**2 + axial**2)
                 direction, approach = np.array([radial, axial]) / length, length - free
                 constant, power = row.constant, 3 / 2

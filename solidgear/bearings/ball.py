@@ -9,6 +9,9 @@ the ball presses along s with ``Q = c delta^(3/2)``.  This is Jones's and ISO/TS
 of de Mul, Vree and Maas (1989) and of Lim and Singh (1990) is the same formula in other symbols.  Of
 the tangent ``Q' n n' + (Q / |s|) (1 - n n')`` the second part is the turning of the contact angle.
 
+A groove with a contact angle has one shoulder: beyond its bottom it runs on as a cylinder, so that a
+ball is then pressed radially, and nothing holds the shaft the other way.  A deep groove has both.
+
 The load acts on the inner ring along the line through both centres, so that its moment has the
 lever of the inner groove's centre.  ISO/TS 16281 takes half the pitch diameter in its moment
 equation and the groove's centre in its kinematics: its stiffness is not symmetric, by
@@ -135,8 +138,10 @@ class BallRow:
     def _stretch(self, motion: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
         """Unit vector between the centres, its length and the approach of every ball."""
         own = np.asarray(motion, float)[..., FELT]
-        radial = self.start[0] + own @ self._felt[0].T
+        radial = np.maximum(self.start[0] + own @ self._felt[0].T, 0.0)
         axial = self.start[1] + own @ self._felt[1].T
+        if self.angle:
+            axial = self.side * np.maximum(self.side * axial, 0.0)
         length = np.hypot(radial, axial)
         safe = np.where(length > 0, length, 1.0)
         return radial / safe, axial / safe, safe, np.maximum(length - self.free, 0.0)
@@ -158,11 +163,14 @@ class BallRow:
         root = np.sqrt(approach)
         along = POINT_POWER * self.constant * root
         turning = self.constant * approach * root / length
+        # where the groove has ended nothing turns
+        outwards = radial > 0
+        along_y = (self.side * axial > 0) if self.angle else np.ones_like(outwards)
         weights = np.concatenate(
             [
-                along * radial**2 + turning * axial**2,
+                along * radial**2 + turning * axial**2 * outwards,
                 (along - turning) * radial * axial,
-                along * axial**2 + turning * radial**2,
+                along * axial**2 + turning * radial**2 * along_y,
             ],
             axis=-1,
         )

@@ -33,7 +33,7 @@ from solidgear.errors import SolidgearError
 #: kg/m^3, bearing steel
 DENSITY = 7800.0
 #: of the largest force on a ball; and N, below which rounding of positions is felt
-_BALANCED, _NEGLIGIBLE, _MOST = 1e-12, 1e-9, 60
+_BALANCED, _NEGLIGIBLE, _MOST = 1e-11, 1e-9, 200
 
 
 @dataclass(frozen=True)
@@ -163,7 +163,7 @@ class SpinningBalls:
         way = np.where(open_, 1.0, 0.0)
         for _ in range(12):
             trial = np.abs(self._balance(s, o + way[..., None] * step)[0]).max(axis=-1)
-            better = open_ & (trial < 0.9 * left)
+            better = open_ & (trial < (1 - 1e-3 * way) * left)
             if np.array_equal(better, open_):
                 break
             way = np.where(open_ & ~better, way / 2, way)

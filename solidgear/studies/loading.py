@@ -7,9 +7,11 @@ data mean is worked out here, once, so that all that follows sees a 6x6 like any
 from __future__ import annotations
 
 import os
+from collections.abc import Iterator
+from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
-from solidgear.errors import SceneError, SolidgearError
+from solidgear.errors import SceneError
 from solidgear.scene import file
 from solidgear.scene.toml_file import parse
 
@@ -78,12 +80,17 @@ def read(path: str | os.PathLike, scene: Scene | None = None) -> Solved:
     from solidgear.bearings.solved import solved
 
     scene = file.load(path) if scene is None else scene
-    try:
+    with explained(path):
         return solved(scene, shaft(scene))
+
+
+@contextmanager
+def explained(path: str | os.PathLike) -> Iterator[None]:
+    """Errors of bearings told with the file, the key and the value they come from."""
+    try:
+        yield
     except SceneError as error:
         raise error.located(parse(os.fspath(path)), where=os.fspath(path)) from None
-    except SolidgearError as error:
-        raise SolidgearError(f"{os.fspath(path)}: {error}") from None
 
 
 def shaft(scene: Scene) -> Body | None:
