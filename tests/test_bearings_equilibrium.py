@@ -196,6 +196,13 @@ def test_bad_options_end_in_one_sentence(args, sentence):
     assert done.exit_code != 0 and sentence in str(done.exception)
 
 
+def test_a_pair_that_is_pushed_apart_is_told(tmp_path):
+    path = tmp_path / "loose.toml"
+    path.write_text(open(SCENE).read().replace('preload = "400 N"', 'load = {y = "2 kN"}'))
+    done = run("bearing", path, "--bearing", "B")
+    assert "the row at the upper end of y carries nothing" in " ".join(done.output.split())
+
+
 def test_scenes_without_catalogue_bearings_say_so():
     done = run("bearing", "geometry/shaft_stepped.toml")
     assert "no bearing is described by catalogue data" in str(done.exception)

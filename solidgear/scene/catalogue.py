@@ -336,6 +336,11 @@ def _belongs(data: Catalogue):
             yield SceneError(
                 f"belongs to {owner}; a {what} bearing has none: leave it out", path=(key,)
             )
+    if data.preload_spring is not None and data.speed:
+        yield SceneError(
+            "a pair on a preload spring is solved at rest only: leave out speed, or the spring",
+            path=("speed",),
+        )
     if data.preload_spring is not None and (
         data.arrangement not in ("back_to_back", "face_to_face")
         or data.preload is None

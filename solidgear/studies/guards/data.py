@@ -33,6 +33,8 @@ def units(probe: Probe) -> Notices:
             for name, value in zip(SOUND, (m.E, m.density, np.sqrt(m.E / m.density)))
         ]
     for b in scene.bearings:
+        if b.catalogue is not None:  # worked out at its load, which may be light
+            continue
         k = np.diag(b.stiffness)
         for axis, tilt in ((0, 5), (2, 3)):
             if k[axis] > 0:
