@@ -167,6 +167,21 @@ def test_range_holds_what_the_scene_says():
     assert all(b.low == pytest.approx(b.high, rel=1e-9) for b in torsion)
 
 
+def test_the_report_tells_the_range_beside_the_models():
+    found = sg.compare(sg.load(SCENE), ("timoshenko",))
+    told = found.record.bearing_range
+    (first,) = (b for b in told["bounds"] if b["mode"] == "bending 1")
+    own = found.rungs["timoshenko"].modes
+    assert first["low"] < first["frequency_hz"] < first["high"]
+    assert first["frequency_hz"] == pytest.approx(
+        next(m.frequency_hz for m in own.modes if m.name == "bending 1"), rel=1e-2
+    )
+    assert "clearance over its class" in told["varied"]
+    assert not sg.compare(
+        sg.load("geometry/shaft_stepped.toml"), ("euler",)
+    ).record.bearing_range  # springs as given have none
+
+
 def run(*args):
     return CliRunner().invoke(app, [str(a) for a in args], catch_exceptions=True)
 

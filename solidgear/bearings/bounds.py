@@ -50,6 +50,20 @@ class Ranges:
                     "such as 0.5:1.2"
                 )
 
+    @property
+    def told(self) -> str:
+        """What varies, in words."""
+        parts = [
+            f"{key} {low:g} to {high:g} times"
+            for key, (low, high) in (("load", self.load), ("preload", self.preload))
+            if low != high
+        ]
+        if self.clearance[0] != self.clearance[1]:
+            parts.append("clearance over its class")
+        if self.inside:
+            parts.append("estimated insides from softer to stiffer")
+        return ", ".join(parts) or "nothing of the bearings varies"
+
     def for_scene(self, scene: Scene) -> Ranges:
         """Without what does not vary in a scene.
 
@@ -71,6 +85,10 @@ class Ranges:
             else (0.5, 0.5),
             inside=self.inside and any(data.estimated for data in known),
         )
+
+
+#: what the torque of a gearbox and the preload of a bearing usually do
+USUAL = Ranges(load=(0.2, 1.2), preload=(0.7, 1.3))
 
 
 def choices(ranges: Ranges, sample: int = SAMPLE) -> Iterable[Choice]:

@@ -80,7 +80,7 @@ def bearing(
     if as_json:
         record: dict[str, Any] = {"scene": loaded.name, "bearings": [_plain(f) for f in facts]}
         if found is not None:
-            record["range"] = _plain_range(found)
+            record["range"] = found.as_dict()
         print(json.dumps(record, allow_nan=False))
         return
     terminal = console()
@@ -215,17 +215,7 @@ def _print_range(terminal, found: BearingRange) -> None:
         band = f"{100 * (b.low / b.middle - 1):+.1f} / {100 * (b.high / b.middle - 1):+.1f} %"
         table.add_row(b.mode, f"{b.middle:.1f}", f"{b.low:.1f}", f"{b.high:.1f}", band)
     terminal.print(table)
-    ranges = found.ranges
-    parts = [
-        f"{key} {low:g} to {high:g} times"
-        for key, (low, high) in (("load", ranges.load), ("preload", ranges.preload))
-        if low != high
-    ]
-    if ranges.clearance[0] != ranges.clearance[1]:
-        parts.append("clearance over its class")
-    if ranges.inside:
-        parts.append("estimated insides from softer to stiffer")
-    said = ", ".join(parts) or "nothing of the bearings varies"
+    said = found.ranges.told
     terminal.print(f"Over {found.points} points: {said}.", markup=False, soft_wrap=True)
     for name in found.lost:
         terminal.print(f"caution: bearing {name!r} carries nothing somewhere in this range.")
@@ -262,16 +252,4 @@ def _plain(fact: BearingFacts) -> dict[str, Any]:
             for row in fact.rows
         ],
         "notes": fact.notes,
-    }
-
-
-def _plain_range(found: BearingRange) -> dict[str, Any]:
-    return {
-        "points": found.points,
-        "bounds": [
-            {"mode": b.mode, "frequency_hz": b.middle, "low": b.low, "high": b.high}
-            for b in found.bounds
-        ],
-        "lost": found.lost,
-        "refused": found.refused,
     }

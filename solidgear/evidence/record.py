@@ -309,6 +309,7 @@ class Record(Part):
     lumped: dict[str, LumpedRecord] = {}
     verdict: VerdictRecord = VerdictRecord()
     guards: list[GuardRecord] = []
+    bearing_range: Facts = {}
     environment: Facts = {}
     images: dict[str, str] = {}
     warnings: list[str] = []

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -250,6 +251,8 @@ class BearingRange:
         Bearings that carry nothing somewhere in the range.
     refused : tuple of str
         Why points could not be solved, each reason once.
+    model : str
+        Rung that was solved.
     """
 
     bounds: tuple[Bound, ...]
@@ -257,6 +260,21 @@ class BearingRange:
     points: int
     lost: tuple[str, ...]
     refused: tuple[str, ...]
+    model: str = SHAFT
+
+    def as_dict(self) -> dict[str, Any]:
+        """Plain data that JSON can hold."""
+        return {
+            "model": self.model,
+            "points": self.points,
+            "varied": self.ranges.told,
+            "bounds": [
+                {"mode": b.mode, "frequency_hz": b.middle, "low": b.low, "high": b.high}
+                for b in self.bounds
+            ],
+            "lost": list(self.lost),
+            "refused": list(self.refused),
+        }
 
 
 def bearing_range(
@@ -316,7 +334,9 @@ def bearing_range(
         )
         for name in names
     )
-    return BearingRange(bounds, ranges, len(frequencies), tuple(lost), tuple(refused))
+    return BearingRange(
+        bounds, ranges, len(frequencies), tuple(lost), tuple(refused), body.fidelity
+    )
 
 
 def with_load(scene: Scene, load: dict[str, str | float], bearing: str | None) -> Scene:
