@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING
 __version__ = "0.1.0"
 
 _WHERE = {
-    "load": "solidgear.scene.file",
+    "load": "solidgear.studies.loading",
     "Scene": "solidgear.scene",
     "Segment": "solidgear.scene",
     "Bearing": "solidgear.scene",
@@ -93,11 +93,11 @@ if TYPE_CHECKING:
     from solidgear.reduction.rubin import rubin
     from solidgear.reduction.superelement import Superelement
     from solidgear.scene import STEEL, Ask, Bearing, Material, Port, Scene, Segment
-    from solidgear.scene.file import load
     from solidgear.solve.modes import modes
     from solidgear.solve.statics import condense
     from solidgear.studies.answering import answer
     from solidgear.studies.comparison import compare
+    from solidgear.studies.loading import load
     from solidgear.system import (
         BearingSpring,
         Inertia,

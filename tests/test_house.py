@@ -20,12 +20,13 @@ MAY_IMPORT = {
     "solve": GROUND | {"machine", "body"},
     "fidelity": GROUND | {"machine", "scene", "body", "meshing", "solve"},
     "reduction": GROUND | {"machine", "body", "solve"},
+    "bearings": GROUND | {"scene", "body", "solve"},
     "system": GROUND | {"machine", "body", "reduction"},
     "evidence": GROUND | {"machine", "scene", "body", "meshing", "solve", "fidelity", "reduction"},
     "report": GROUND | {"machine", "body", "evidence"},
     "studies": GROUND
     | {"machine", "scene", "body", "meshing", "solve", "fidelity", "reduction"}
-    | {"system", "evidence", "report"},
+    | {"bearings", "system", "evidence", "report"},
 }
 #: lines of a file
 LONGEST = 400

@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+import solidgear as sg
 from solidgear.errors import SceneError
 from solidgear.scene import STEEL, Bearing, Material, Port, Scene, Segment
 from solidgear.scene.bearing_stiffness import STIFFNESS_NAMES, stiffness_entries, stiffness_matrix
@@ -315,13 +316,13 @@ def test_head_with_its_toe_to_the_end(tmp_path):
 
 @pytest.mark.parametrize("path", sorted(GEOMETRY.glob("*.toml")), ids=lambda p: p.stem)
 def test_shipped_scenes_load_and_are_json(path):
-    scene = load(path)
+    scene = sg.load(path)
     data = json.loads(json.dumps(scene.as_dict(), allow_nan=False))
     assert scene.name == path.stem and scene.title and scene.source
     assert data["length"] == scene.length and len(data["segments"]) == len(scene.segments)
     for row, bearing in zip(data["bearings"], scene.bearings, strict=True):
         np.testing.assert_array_equal(row["stiffness"], bearing.stiffness)
-    assert scene == load(path)
+    assert scene == sg.load(path)
 
 
 def test_the_six_scenes_are_there():

@@ -26,6 +26,7 @@ if _hears:
 
 from solidgear.cli import (
     answer,
+    bearing,
     chart,
     solve,
     sweep,

@@ -66,9 +66,9 @@ def compare(
 ) -> None:
     """Solve a scene with every model and write a report on which to trust."""
     from solidgear.report.folder import held
-    from solidgear.scene.file import load
     from solidgear.studies.comparison import check_models
     from solidgear.studies.comparison import compare as run
+    from solidgear.studies.loading import load
 
     loaded = load(scene)
     wanted = tuple(m.strip() for m in models.split(",") if m.strip())
@@ -119,9 +119,9 @@ def stiffness(
     import numpy as np
 
     from solidgear.frames import DOF_NAMES
-    from solidgear.scene.file import load
     from solidgear.solve.statics import condense
     from solidgear.studies.check import cautions
+    from solidgear.studies.loading import load
 
     loaded = load(scene)
     if attachment:
@@ -194,10 +194,10 @@ def modes(
     settings: Settings = None,
 ) -> None:
     """Natural frequencies on the bearings, with the evidence for them."""
-    from solidgear.scene.file import load
     from solidgear.scene.rules import MOST_MODES
     from solidgear.solve.modes import modes as solve
     from solidgear.studies.check import cautions
+    from solidgear.studies.loading import load
 
     if max_frequency is not None and not max_frequency > 0:
         raise SolidgearError(f"--max-frequency {max_frequency:g}: must be greater than zero, in Hz")
@@ -282,8 +282,8 @@ def render(
 ) -> None:
     """Draw one mode shape off-screen."""
     from solidgear.report.write import render_mode
-    from solidgear.scene.file import load
     from solidgear.solve.modes import modes as solve
+    from solidgear.studies.loading import load
 
     loaded = load(scene)
     body = build_body(loaded, fidelity, settings)
@@ -300,8 +300,8 @@ def check(
     settings: Settings = None,
 ) -> None:
     """Say what will be modelled and what will not hold; a light mesh is the heaviest solved."""
-    from solidgear.scene.file import load
     from solidgear.studies.check import VERDICTS, check_scene
+    from solidgear.studies.loading import load
 
     loaded = load(scene)
     body = build_body(loaded, fidelity, settings)

@@ -89,8 +89,8 @@ def sweep(
 
     from solidgear.fidelity import build
     from solidgear.fidelity.ladder import LADDER
-    from solidgear.scene.file import load
     from solidgear.studies.check import cautions
+    from solidgear.studies.loading import load
     from solidgear.studies.sweep import sweep as run
     from solidgear.studies.sweep.choice import settled_for_sweep
 

@@ -336,6 +336,7 @@ class Record(Part):
     verdict: VerdictRecord = VerdictRecord()
     guards: list[GuardRecord] = []
     where: WhereRecord | None = None
+    bearing_range: Facts = {}
     environment: Facts = {}
     images: dict[str, str] = {}
     warnings: list[str] = []

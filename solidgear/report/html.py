@@ -157,6 +157,7 @@ def _tables(record: Record) -> dict[str, Any]:
         "scene_facts": input_tables.scene_facts(record),
         "segments": input_tables.segments(record.scene),
         "bearings": input_tables.bearings(record.scene),
+        "bearing_range": input_tables.bearing_range(record.bearing_range),
         "summary": result_tables.summary(record),
         "matrices": result_tables.matrices(record),
         "frequencies": result_tables.frequencies(record),

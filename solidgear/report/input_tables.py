@@ -8,7 +8,7 @@ from typing import Any
 from solidgear.evidence.record import Record
 from solidgear.report.cells import DASH, eng, mm, short_percent
 from solidgear.report.table import Table
-from solidgear.report.words import is_number
+from solidgear.report.words import is_number, percent
 
 
 def scene_facts(record: Record) -> Table:
@@ -143,6 +143,28 @@ def bearings(scene: Mapping) -> Table:
         rows,
         note=(
             "Status says where the stiffness comes from: published, measured, identified (fitted), "
-            "or assumed."
+            "assumed, or from catalogue data: calculated, or estimated where the inner geometry is."
         ),
+    )
+
+
+def bearing_range(found: Mapping) -> Table:
+    """What is not known of catalogue bearings, as bands on natural frequencies: beside these stand
+    those of mesh and model.
+    """
+    rows = []
+    for b in found.get("bounds") or []:
+        middle, low, high = b["frequency_hz"], b["low"], b["high"]
+        band = f"{percent(low / middle - 1)} / {percent(high / middle - 1)}"
+        rows.append([(b["mode"], "word text"), *(eng(f, 5) for f in (middle, low, high)), band])
+    lost = [f"Bearing {name} carries nothing somewhere in it." for name in found.get("lost") or []]
+    note = (
+        f"Of the {found.get('model')} model over {found.get('points')} points: "
+        f"{found.get('varied')}. {' '.join(lost)}"
+    )
+    return Table(
+        "What the bearings leave open, natural frequencies in Hz",
+        ["mode", "at the scene's load", "from", "to", "band"],
+        rows,
+        note=note.strip(),
     )

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import io
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -57,16 +57,35 @@ def draw_where(
     SolidgearError
         For another ending, or a file that cannot be written.
     """
+    write_picture(file, lambda: _figure(points, cells, shares, places, title), "where")
+
+
+def write_picture(file: Path, make: Callable[[], Any], name: str) -> None:
+    """Write a figure as a picture.
+
+    Parameters
+    ----------
+    file : Path
+        Its ending, ``.png`` or ``.svg``, says what it becomes.
+    make : callable
+        Returns a matplotlib figure.
+    name : str
+        Of the kind of picture, for identifiers in an SVG.
+
+    Raises
+    ------
+    SolidgearError
+        For another ending, or a file that cannot be written.
+    """
     import matplotlib
 
     ending = check_ending(file)
     with matplotlib.rc_context():
         matplotlib.rcdefaults()  # the user's own matplotlibrc must not change a picture
-        matplotlib.rcParams.update({**STYLE, "svg.hashsalt": "solidgear where"})
-        picture = _figure(points, cells, shares, places, title)
+        matplotlib.rcParams.update({**STYLE, "svg.hashsalt": f"solidgear {name}"})
         target = io.BytesIO()
         without: dict[str, Any] = {"Date": None} if ending == ".svg" else {"Software": None}
-        picture.savefig(target, format=ending[1:], dpi=150, metadata=without)
+        make().savefig(target, format=ending[1:], dpi=150, metadata=without)
     try:
         with whole(file) as half:
             half.write_bytes(target.getvalue())

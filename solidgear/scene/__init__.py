@@ -1,5 +1,6 @@
 """What is modelled and what is asked: data only."""
 
+from solidgear.scene.catalogue import BearingDisplacement, BearingLoad, Catalogue
 from solidgear.scene.model import Ask, Quantity, Scene
 from solidgear.scene.parts import STEEL, Material, Segment
 from solidgear.scene.stations import Bearing, Port
@@ -7,6 +8,9 @@ from solidgear.scene.stations import Bearing, Port
 __all__ = [
     "Ask",
     "Bearing",
+    "BearingDisplacement",
+    "BearingLoad",
+    "Catalogue",
     "Material",
     "Port",
     "Quantity",

@@ -15,6 +15,7 @@ from pydantic import Field, model_validator
 
 from solidgear.errors import SceneError
 from solidgear.scene.bearing_stiffness import stiffness_entries
+from solidgear.scene.catalogue import BearingLoad
 from solidgear.scene.parts import STEEL, Material, Model, Segment
 from solidgear.scene.rules import MOST_MODES, shaft_problems, station_problems, steps
 from solidgear.scene.stations import Bearing, Port
@@ -87,6 +88,8 @@ class Scene(Model):
         Spring along y between the common bearing housing and ground, N/m.
     port : Port
         The lumped point.
+    load : BearingLoad or None
+        Load on the shaft at the port, under which bearings of catalogue data settle.
     ask : Ask
 
     Raises
@@ -114,6 +117,7 @@ class Scene(Model):
     bearings: tuple[Bearing, ...] = ()
     housing_axial: AxialSpring | None = None
     port: Port
+    load: BearingLoad | None = None
     ask: Ask = Ask()
 
     @model_validator(mode="after")
@@ -343,4 +347,8 @@ class Scene(Model):
                 "stiffness": bearing.stiffness.tolist(),
                 "entries": stiffness_entries(row.pop("matrix")),
             }
+            if bearing.catalogue is None:
+                del row["catalogue"]
+        if self.load is None:
+            del data["load"]
         return data | {"length": self.length, "steps": list(self.steps)}

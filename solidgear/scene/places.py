@@ -11,7 +11,7 @@ from solidgear.errors import SceneError
 from solidgear.scene.model import Scene
 from solidgear.scene.parts import Material, Segment
 from solidgear.scene.rules import shaft_problems, station_problems
-from solidgear.scene.stations import Attachment, Bearing, Port
+from solidgear.scene.stations import Attachment, Bearing, Port, Status
 from solidgear.scene.tables import BearingTable, Piece, PortTable, SceneTable
 
 
@@ -77,6 +77,7 @@ def resolve(table: SceneTable, numbers: list[int], name: str, problems: list[Sce
         name=name,
         source=table.source,
         housing_axial=table.housing.axial if table.housing else None,
+        load=table.load,
         ask=table.ask,
     )
 
@@ -144,10 +145,11 @@ def _bearing(item: BearingTable, index: int, attachment: str, datums: dict[str, 
             name=item.name,
             y=y,
             seat_width=item.seat_width,
-            stiffness=given,
+            matrix=given,
+            catalogue=item.catalogue,
             axial_series=item.axial_series,
             attachment=item.attachment or attachment,
-            status=item.status,
+            status=item.status or _status(item),
             note=item.note,
         )
     except SceneError as error:
@@ -155,6 +157,13 @@ def _bearing(item: BearingTable, index: int, attachment: str, datums: dict[str, 
         raise SceneError(error.reason, path=("bearing", index, key), value=error.value) from None
     datums[f"bearing.{item.name}"] = bearing.y
     return bearing
+
+
+def _status(item: BearingTable) -> Status:
+    """Of a bearing that does not say where its numbers come from."""
+    if item.catalogue is None:
+        return "assumed"
+    return "estimated" if item.catalogue.estimated else "calculated"
 
 
 def _port(

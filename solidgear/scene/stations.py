@@ -10,6 +10,7 @@ from pydantic import BeforeValidator, model_validator
 from solidgear.errors import SceneError, show
 from solidgear.frames import DOF_NAMES
 from solidgear.scene.bearing_stiffness import checked_matrix
+from solidgear.scene.catalogue import Catalogue
 from solidgear.scene.parts import Model
 from solidgear.scene.rules import MOST_SPRINGS
 from solidgear.scene.units import (
@@ -21,7 +22,7 @@ from solidgear.scene.units import (
 )
 
 Attachment = Literal["average", "rigid", "section"]
-Status = Literal["published", "identified", "assumed", "measured"]
+Status = Literal["published", "identified", "assumed", "measured", "calculated", "estimated"]
 
 
 def _few_springs(springs: Any) -> Any:
@@ -36,6 +37,10 @@ def _few_springs(springs: Any) -> Any:
 AxialSeries = Annotated[tuple[AxialSpring, ...], BeforeValidator(_few_springs)]
 
 
+def _matrix(value: Any) -> Any:
+    return None if value is None else checked_matrix(value)
+
+
 class Bearing(Model):
     """A bearing: a 6x6 stiffness between ground and the seat it sits on.
 
@@ -46,15 +51,18 @@ class Bearing(Model):
         Middle of the seat, m.
     seat_width : float
         m.
-    matrix : tuple of tuple of float
+    matrix : tuple of tuple of float, or None
         6x6 of the bearing alone, SI, order (x, y, z, thx, thy, thz). The constructor also takes it
-        as `stiffness`: six rows, or named entries.
+        as `stiffness`: six rows, or named entries. None as long as catalogue data are not solved.
+    catalogue : Catalogue or None
+        What the stiffness comes from, where it was not given.
     axial_series : tuple of float
         Springs in series with its axial stiffness, N/m.
     attachment : {'average', 'rigid', 'section'}
         How the seat follows the bearing.
-    status : {'published', 'identified', 'assumed', 'measured'}
-        Where its numbers come from.
+    status : str
+        Where its numbers come from: published, identified, assumed, measured, or of catalogue data
+        calculated (inner geometry given) or estimated.
     note : str
 
     Raises
@@ -76,7 +84,8 @@ class Bearing(Model):
     name: str
     y: Position
     seat_width: PositiveLength
-    matrix: Annotated[tuple[tuple[float, ...], ...], BeforeValidator(checked_matrix)]
+    matrix: Annotated[tuple[tuple[float, ...], ...] | None, BeforeValidator(_matrix)] = None
+    catalogue: Catalogue | None = None
     axial_series: AxialSeries = ()
     attachment: Attachment = "average"
     status: Status = "assumed"
@@ -89,6 +98,10 @@ class Bearing(Model):
 
     @model_validator(mode="after")
     def _springs_or_none(self) -> Bearing:
+        if self.matrix is None:
+            if self.catalogue is None:
+                raise SceneError("this key is missing", path=("matrix",))
+            return self
         for name, k in zip(DOF_NAMES, np.diag(self.matrix)):
             if 0 < k < SOFTEST:
                 raise SceneError(
@@ -112,8 +125,13 @@ class Bearing(Model):
     def stiffness(self) -> np.ndarray:
         """(6, 6) read-only, SI, order x y z thx thy thz: the bearing with its axial series springs
         condensed in.
+
+        Raises
+        ------
+        SceneError
+            If it is to come from catalogue data that are not solved yet.
         """
-        K = np.array(self.matrix)
+        K = np.array(self._solved_matrix())
         if self.axial_series:
             # the ring between bearing and spring carries no load of its own: condense its y out,
             # couplings included
@@ -121,6 +139,14 @@ class Bearing(Model):
             K -= np.outer(K[:, 1], K[1, :]) / (K[1, 1] + spring)
         K.flags.writeable = False
         return K
+
+    def _solved_matrix(self) -> tuple[tuple[float, ...], ...]:
+        if self.matrix is None:
+            raise SceneError(
+                f"bearing {show(self.name)} is described by catalogue data whose stiffness is not "
+                "worked out yet: read the scene with solidgear.load, which does"
+            )
+        return self.matrix
 
     def scaled(self, factor: float) -> Bearing:
         """The same bearing with every stiffness, series springs included, multiplied.
@@ -142,7 +168,7 @@ class Bearing(Model):
         if not factor > 0:
             raise SceneError("must be greater than zero", field="factor", value=show(factor))
         return self.with_changes(
-            matrix=np.array(self.matrix) * factor,
+            matrix=np.array(self._solved_matrix()) * factor,
             axial_series=tuple(k * factor for k in self.axial_series),
         )
 

@@ -9,6 +9,7 @@ from pydantic import AfterValidator, Field, model_validator
 
 from solidgear.errors import SceneError
 from solidgear.scene.bearing_stiffness import stiffness_matrix
+from solidgear.scene.catalogue import BearingLoad, Catalogue
 from solidgear.scene.model import Ask
 from solidgear.scene.parts import Material, Model
 from solidgear.scene.stations import Attachment, AxialSeries, Status
@@ -173,14 +174,20 @@ class BearingTable(_Table):
     seat_width: PositiveLength
     stiffness: Annotated[dict[str, Any], AfterValidator(_entries)] | None = None
     matrix: list[Any] | None = None
+    catalogue: Catalogue | None = None
     axial_series: AxialSeries = ()
     attachment: Attachment | None = None
-    status: Status = "assumed"
+    status: Status | None = None
     note: str = ""
 
     @model_validator(mode="after")
     def _one_stiffness(self):
-        how = "write stiffness = {kxx = ...} or matrix = 6 rows of 6 numbers"
+        if self.catalogue is not None:
+            for key in ("stiffness", "matrix"):
+                if getattr(self, key) is not None:
+                    raise SceneError(f"give either {key} or catalogue, not both", path=(key,))
+            return self
+        how = "write stiffness = {kxx = ...}, matrix = 6 rows of 6 numbers, or catalogue = {...}"
         self._one_of("stiffness", "matrix", how)
         return self
 
@@ -225,6 +232,7 @@ class SceneTable(Model):
     bearing: list[BearingTable] = []
     housing: _Housing | None = None
     port: PortTable
+    load: BearingLoad | None = None
     ask: Ask = Ask()
 
 

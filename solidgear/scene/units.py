@@ -29,6 +29,10 @@ DIMENSIONS: dict[str, tuple[str, str, tuple[int, ...]]] = {
     "force": ("N/rad", "1.45e8 N/rad", (0, -1)),
     "moment": ("N*m/rad", "3.6e6 N*m/rad", (0, -1)),
     "frequency": ("Hz", "10 kHz", (0,)),
+    "load": ("N", "2 kN", (0,)),
+    "torque": ("N*m", "15 N*m", (0,)),
+    "speed": ("rad/s", "3000 rpm", (1,)),
+    "temperature": ("K", "10 K", (0,)),
     "dimensionless": ("", "0.3", (0,)),
 }
 
@@ -98,7 +102,7 @@ def quantity(value: Any, dimension: str) -> float:
     dimension : str
         One of `DIMENSIONS`: length (m), angle (rad), pressure (Pa), density (kg/m3),
         force_per_length (N/m), force (N or N/rad), moment (N m or N m/rad), frequency (Hz),
-        dimensionless.
+        load (N), torque (N m), speed (rad/s), temperature (K, a difference), dimensionless.
 
     Returns
     -------
@@ -289,6 +293,12 @@ AxialSpring = Annotated[
         lambda v: v >= SOFTEST, f"is softer than {SOFTEST:g} N/m, which is no spring: leave it out"
     ),
 ]
+Newtons = Annotated[float, _in("load")]
+PositiveLoad = Annotated[Newtons, _POSITIVE]
+Torque = Annotated[float, _in("torque")]
+SignedAngle = Annotated[float, _in("angle")]
+Speed = Annotated[float, _in("speed"), _NOT_NEGATIVE]
+TemperatureRise = Annotated[float, _in("temperature")]
 Frequency = Annotated[float, _in("frequency"), _POSITIVE]
 Tolerance = Annotated[
     float,

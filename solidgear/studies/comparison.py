@@ -8,7 +8,7 @@ import os
 from collections.abc import Callable, Collection
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from solidgear.errors import SolidgearError
 from solidgear.evidence.causes import SHOWN, Cause, attachment_causes, beam_causes, shoulder_cause
@@ -123,10 +123,12 @@ def compare(
     options = {m: dict((settings or {}).get(m, {})) for m in LADDER.bodies}
     found = _Found({}, {}, [], {}, [])
     complete = True
+    ranged: dict[str, Any] = {}
     overall = Meter()
     with overall.stage("all"), one_run() as run:
         try:
             _run(scene, models, options, found, progress)
+            ranged = _bearing_range(scene, progress)
         except KeyboardInterrupt:
             complete = False
             progress("interrupted; keeping what is there")
@@ -134,10 +136,25 @@ def compare(
         scene, found.rungs, found.failed, found.causes, found.lumped, found.guards, complete
     )
     record.where = found.where
+    record.bearing_range = ranged
     record.seconds_total = overall.seconds["all"]
     record.peak_mb = overall.peak_mb
     record.expected_peak_mb = run.expected_mb
     return Comparison(scene, record, found.rungs)
+
+
+def _bearing_range(scene: Scene, progress) -> dict[str, Any]:
+    """What the loads, preloads and insides of catalogue bearings leave open, as plain data."""
+    if all(bearing.catalogue is None for bearing in scene.bearings):
+        return {}
+    from solidgear.bearings.bounds import USUAL
+    from solidgear.studies.bearing_study import bearing_range
+
+    progress("what the bearings leave open")
+    try:
+        return bearing_range(scene, USUAL, n=scene.ask.modes).as_dict()
+    except SolidgearError as error:
+        return {"refused": [str(error)]}
 
 
 @dataclass

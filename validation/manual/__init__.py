@@ -1,7 +1,16 @@
 """Validation manual: cases with a known answer, their pages, and the command that writes them."""
 
 from validation.manual.case import Case
-from validation.manual.cases import free_beams, held_beams, pinion, rods, solids, statics, thesis
+from validation.manual.cases import (
+    bearings,
+    free_beams,
+    held_beams,
+    pinion,
+    rods,
+    solids,
+    statics,
+    thesis,
+)
 
-SUBJECTS = (statics, free_beams, held_beams, rods, solids, thesis, pinion)
+SUBJECTS = (statics, free_beams, held_beams, rods, solids, bearings, thesis, pinion)
 CASES: dict[str, Case] = {case.name: case for subject in SUBJECTS for case in subject.CASES}

@@ -1,0 +1,185 @@
+"""A row of balls: Hertz point contact, contact angle by geometry at every ball.
+
+The centres of curvature of both grooves are ``A = (f_i + f_o - 1) D`` apart when a ball just touches
+both rings.  With s the vector between them in the plane of a ball, radial and axial,
+
+    s = s0 + (radial, axial) motion of the inner groove's centre,     delta = |s| - A,
+
+the ball presses along s with ``Q = c delta^(3/2)``.  This is Jones's and ISO/TS 16281's statics; that
+of de Mul, Vree and Maas (1989) and of Lim and Singh (1990) is the same formula in other symbols.  Of
+the tangent ``Q' n n' + (Q / |s|) (1 - n n')`` the second part is the turning of the contact angle.
+
+A groove with a contact angle has one shoulder: beyond its bottom it runs on as a cylinder, so that a
+ball is then pressed radially, and nothing holds the shaft the other way.  A deep groove has both.
+
+The load acts on the inner ring along the line through both centres, so that its moment has the
+lever of the inner groove's centre.  ISO/TS 16281 takes half the pitch diameter in its moment
+equation and the groove's centre in its kinematics: its stiffness is not symmetric, by
+``(2 f_i - 1) D / D_pw``, 1 % of the tilt.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from solidgear.bearings.hertz import (
+    POINT_POWER,
+    STEEL_E,
+    STEEL_NU,
+    Point,
+    point_contact,
+)
+from solidgear.bearings.row import FELT, Contacts, azimuths, felt, products, six, unfolded
+
+
+@dataclass(frozen=True)
+class BallRow:
+    """One row of balls; lengths in m, angles in rad, order (x, y, z, thx, thy, thz).
+
+    Attributes
+    ----------
+    count : int
+        Balls.
+    diameter, pitch : float
+        Of a ball, and of the circle of their centres.
+    angle : float
+        Nominal contact angle; 0 for a deep groove.
+    side : {1, -1}
+        Which way the shaft is held by a contact angle: towards +y or -y.
+    inner, outer : float
+        Groove radius over ball diameter; above 0.5.
+    clearance : float
+        Radial internal clearance (diametral, as catalogues give it); negative is an interference.
+    preload : float
+        How far the inner ring has been pushed into contact along y, m.
+    height : float
+        Of the balls' centres along y from the reference point.
+    first : float
+        Azimuth of the first ball, from x towards z.
+    E, nu : float
+        Of balls and rings.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> row = BallRow(count=7, diameter=11.5e-3, pitch=43.5e-3)
+    >>> push = np.array([15.11e-6, 0, 0, 0, 0, 0])
+    >>> round(float(row.load(push)[0]))
+    1000
+    >>> bool(np.all(row.tangent(push)[4] == 0))  # no torsion
+    True
+    """
+
+    count: int
+    diameter: float
+    pitch: float
+    angle: float = 0.0
+    side: int = 1
+    inner: float = 0.52
+    outer: float = 0.53
+    clearance: float = 0.0
+    preload: float = 0.0
+    height: float = 0.0
+    first: float = 0.0
+    E: float = STEEL_E
+    nu: float = STEEL_NU
+
+    @cached_property
+    def azimuth(self) -> np.ndarray:
+        """(count,) rad."""
+        return azimuths(self.count, self.first)
+
+    @property
+    def free(self) -> float:
+        """Distance of the centres of curvature when a ball just touches, m."""
+        return (self.inner + self.outer - 1) * self.diameter
+
+    @cached_property
+    def start(self) -> np.ndarray:
+        """(2,) vector from the outer to the inner centre of curvature at rest, radial and axial."""
+        radial = self.free * np.cos(self.angle) - self.clearance / 2
+        axial = self.side * (self.free * np.sin(self.angle) + self.preload)
+        return np.array([radial, axial])
+
+    @cached_property
+    def rings(self) -> tuple[Point, Point]:
+        """Contacts at the inner and the outer ring."""
+        gamma = self.diameter * np.cos(self.angle) / self.pitch
+        ball = 2 / self.diameter
+        found = []
+        for groove, ring in ((self.inner, gamma / (1 - gamma)), (self.outer, -gamma / (1 + gamma))):
+            rolling = ball * (1 + ring)
+            across = ball * (1 - 1 / (2 * groove))
+            found.append(point_contact(rolling, across, self.E, self.nu))
+        return found[0], found[1]
+
+    @cached_property
+    def constant(self) -> float:
+        """Of both contacts in series, N/m^(3/2)."""
+        power = -1 / POINT_POWER
+        return sum(ring.constant**power for ring in self.rings) ** -POINT_POWER
+
+    @cached_property
+    def _felt(self) -> np.ndarray:
+        out = (self.inner - 0.5) * self.diameter
+        radius = self.pitch / 2 + out * np.cos(self.angle)
+        height = self.height + self.side * out * np.sin(self.angle)
+        return felt(radius, height, self.azimuth)
+
+    @cached_property
+    def _products(self) -> np.ndarray:
+        radial, axial = self._felt
+        mixed = products(radial, axial)
+        return np.concatenate([products(radial, radial), 2 * mixed, products(axial, axial)])
+
+    def _stretch(self, motion: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+        """Unit vector between the centres, its length and the approach of every ball."""
+        own = np.asarray(motion, float)[..., FELT]
+        radial = np.maximum(self.start[0] + own @ self._felt[0].T, 0.0)
+        axial = self.start[1] + own @ self._felt[1].T
+        if self.angle:
+            axial = self.side * np.maximum(self.side * axial, 0.0)
+        length = np.hypot(radial, axial)
+        safe = np.where(length > 0, length, 1.0)
+        return radial / safe, axial / safe, safe, np.maximum(length - self.free, 0.0)
+
+    def energy(self, motion: np.ndarray) -> np.ndarray:
+        """Elastic energy of the contacts, J, of motions (..., 6)."""
+        approach = self._stretch(motion)[3]
+        return self.constant / (POINT_POWER + 1) * (approach ** (POINT_POWER + 1)).sum(axis=-1)
+
+    def load(self, motion: np.ndarray) -> np.ndarray:
+        """Load that holds the inner ring at motions (..., 6), N and N m."""
+        radial, axial, _, approach = self._stretch(motion)
+        press = self.constant * approach**POINT_POWER
+        return six((press * radial) @ self._felt[0] + (press * axial) @ self._felt[1])
+
+    def tangent(self, motion: np.ndarray) -> np.ndarray:
+        """Derivative of the load, (..., 6, 6), exact."""
+        radial, axial, length, approach = self._stretch(motion)
+        root = np.sqrt(approach)
+        along = POINT_POWER * self.constant * root
+        turning = self.constant * approach * root / length
+        # where the groove has ended nothing turns
+        outwards = radial > 0
+        along_y = (self.side * axial > 0) if self.angle else np.ones_like(outwards)
+        weights = np.concatenate(
+            [
+                along * radial**2 + turning * axial**2 * outwards,
+                (along - turning) * radial * axial,
+                along * axial**2 + turning * radial**2 * along_y,
+            ],
+            axis=-1,
+        )
+        return unfolded(weights @ self._products)
+
+    def contacts(self, motion: np.ndarray) -> Contacts:
+        """Loads, angles and pressures of the balls at motions (..., 6)."""
+        radial, axial, _, approach = self._stretch(motion)
+        load = self.constant * approach**POINT_POWER
+        angle = np.where(load > 0, np.arctan2(axial, radial), np.nan)
+        inner, outer = (ring.pressure(load) for ring in self.rings)
+        return Contacts(self.azimuth, load, angle, inner, outer)

@@ -1,0 +1,209 @@
+"""From catalogue data to a bearing that carries load."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from typing import Any, Literal
+
+import numpy as np
+
+from solidgear.bearings.ball import BallRow
+from solidgear.bearings.clearance import clearance_at_work
+from solidgear.bearings.geometry import Geometry, Inside, inner_geometry
+from solidgear.bearings.preload import SprungRow, pushed
+from solidgear.bearings.roller import RollerRow
+from solidgear.bearings.rolling import RollingBearing, Row
+from solidgear.bearings.spinning import SpinningBalls
+from solidgear.errors import SceneError, SolidgearError
+from solidgear.scene.catalogue import Catalogue
+
+End = Literal["middle", "softer", "stiffer"]
+
+#: which way the rows hold the shaft, from lower to upper y
+_SIDES = {
+    "back_to_back": (1, -1),
+    "face_to_face": (-1, 1),
+}
+
+
+@dataclass(frozen=True)
+class Catalogued:
+    """A bearing made from catalogue data.
+
+    Attributes
+    ----------
+    bearing : RollingBearing
+    inside : Inside
+        Inner geometry of a row that it was made with.
+    estimated : tuple of str
+        What of the inside was not given.
+    clearance : float
+        Radial, at work, m.
+
+    Examples
+    --------
+    >>> from solidgear.scene.catalogue import Catalogue
+    >>> made = catalogued(Catalogue(designation="7208 B", arrangement="back_to_back",
+    ...                             preload="300 N", load_rating="34.5 kN"))
+    >>> len(made.bearing.rows), made.estimated
+    (2, ('elements', 'element_diameter', 'pitch_diameter', 'conformity'))
+    """
+
+    bearing: RollingBearing
+    inside: Inside
+    estimated: tuple[str, ...]
+    clearance: float
+
+
+def catalogued(
+    data: Catalogue,
+    end: End = "middle",
+    *,
+    clearance_share: float = 0.5,
+    preload_factor: float = 1.0,
+    geometry: Geometry | None = None,
+) -> Catalogued:
+    """The bearing that catalogue data describe.
+
+    Parameters
+    ----------
+    data : Catalogue
+    end : {'middle', 'softer', 'stiffer'}
+        Of an estimated inner geometry.
+    clearance_share : float
+        Place in the range of a clearance class, 0 to 1.
+    preload_factor : float
+        Times the preload, force or displacement.
+    geometry : Geometry, optional
+        As :func:`solidgear.bearings.geometry.inner_geometry` found it before.
+
+    Returns
+    -------
+    Catalogued
+
+    Raises
+    ------
+    SceneError
+        Data that describe no bearing, or a preload beyond its static rating.
+    """
+    geometry = geometry or inner_geometry(data)
+    inside: Inside = getattr(geometry, end)
+    clearance = clearance_at_work(data, inside, clearance_share)
+    _within_rating(data, inside, preload_factor)
+    rows = _placed(data, inside, clearance)
+    try:
+        preloaded = _preloaded(data, rows, preload_factor)
+    except SolidgearError as error:
+        raise SceneError(str(error), path=("preload",)) from None
+    return Catalogued(RollingBearing(preloaded), inside, geometry.estimated, clearance)
+
+
+def _placed(data: Catalogue, inside: Inside, clearance: float) -> list[BallRow | RollerRow]:
+    """Rows at their places along y, each turned by half a pitch against the one before."""
+    first = 1 if data.holds == "+y" else -1
+    if data.arrangement == "single":
+        return [_row(data, inside, clearance, first, 0.0, 0.0)]
+    distance = data.row_distance or data.width * (0.5 if data.arrangement == "double_row" else 1.0)
+    sides = _SIDES.get(data.arrangement, (first, first))
+    turn = math.pi / inside.elements
+    return [
+        _row(data, inside, clearance, side, height, start)
+        for side, height, start in zip(sides, (-distance / 2, distance / 2), (0.0, turn))
+    ]
+
+
+def _row(
+    data: Catalogue, inside: Inside, clearance: float, side: int, height: float, first: float
+) -> BallRow | RollerRow:
+    common: dict[str, Any] = {
+        "count": inside.elements,
+        "diameter": inside.diameter,
+        "pitch": inside.pitch,
+        "angle": inside.angle,
+        "side": side,
+        "clearance": clearance,
+        "height": height,
+        "first": first,
+    }
+    if data.balls:
+        inner, outer = inside.conformity
+        return BallRow(inner=inner, outer=outer, **common)
+    return RollerRow(length=inside.length, profile=data.profile, **common)
+
+
+def _preloaded(data: Catalogue, rows: list[BallRow | RollerRow], factor: float) -> tuple[Row, ...]:
+    preload = data.preload
+    if preload is not None and preload.force is not None:
+        # of tandems, every row takes its share
+        share = len(rows) if data.arrangement == "tandem" else 1
+        rows = [pushed(row, factor * preload.force / share) for row in rows]
+    elif preload is not None and preload.displacement is not None:
+        share = 1 if data.one_sided else len(rows)
+        rows = [replace(row, preload=factor * preload.displacement / share) for row in rows]
+    if data.speed:
+        made = [SpinningBalls(row, data.speed) for row in rows if isinstance(row, BallRow)]
+        return tuple(made)
+    if data.preload_spring is not None:
+        return (rows[0], SprungRow(rows[1], data.preload_spring))
+    return tuple(rows)
+
+
+def _within_rating(data: Catalogue, inside: Inside, factor: float) -> None:
+    """ISO 76: the equivalent static load of a preload, P0 = 0.22 cot(a) F, against C0."""
+    if data.preload is None or data.preload.force is None or data.static_rating is None:
+        return
+    equivalent = 0.22 / math.tan(inside.angle) * factor * data.preload.force
+    if data.arrangement == "tandem":
+        equivalent /= 2
+    if equivalent > data.static_rating:
+        raise SceneError(
+            f"a preload of {factor * data.preload.force:.6g} N is an equivalent static load of "
+            f"{equivalent:.6g} N, beyond the static rating of {data.static_rating:.6g} N",
+            path=("preload",),
+        )
+
+
+def state(
+    data: Catalogue, made: Catalogued, factor: float = 1.0, start: np.ndarray | None = None
+) -> np.ndarray:
+    """Motion at which the data ask for the stiffness.
+
+    Parameters
+    ----------
+    data : Catalogue
+    made : Catalogued
+    factor : float
+        Times its load.
+    start : (6,) ndarray, optional
+        Where to begin.
+
+    Returns
+    -------
+    (6,) ndarray
+        m and rad: the given displacement, that under the given load, or rest.
+
+    Raises
+    ------
+    SolidgearError
+        A load that the bearing cannot carry.
+
+    Examples
+    --------
+    >>> from solidgear.scene.catalogue import Catalogue
+    >>> data = Catalogue(designation="6206", load_rating="19.5 kN", load={"z": "2 kN"})
+    >>> round(float(state(data, catalogued(data))[2]) * 1e6, 1)  # micrometres
+    21.8
+    """
+    if data.displacement is not None:
+        return np.array(data.displacement.six)
+    if data.load is None:
+        return np.zeros(6)
+    wanted = factor * np.array(data.load.six)
+    if data.one_sided:  # what another bearing preloads it with stays
+        wanted += made.bearing.load(np.zeros(6))
+    try:
+        return made.bearing.motion(wanted, held=data.load.held, start=start)
+    except SolidgearError as error:
+        way = f"; it holds the shaft towards {data.holds} only" if data.one_sided else ""
+        raise SceneError(f"{error}{way}", path=("load",)) from None

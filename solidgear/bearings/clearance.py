@@ -1,0 +1,130 @@
+"""Clearance at work: class, fits and temperature.
+
+A fit widens the inner ring, or narrows the outer one, by what Lame's thick rings say.  With one
+material throughout, a ring of inner diameter d and raceway F that is pressed with an interference I
+on a shaft with a bore b widens at its raceway by
+
+    I (d / F) (1 - (b/d)^2) / (1 - (b/F)^2),
+
+which is ``I d / F`` on a solid shaft (Harris and Kotzalas, Essential Concepts, ch. 3; it follows from
+equal radial stress and the interference shared at d).  A housing is taken as very thick: its ring
+narrows by ``I G / D`` at the raceway G.
+"""
+
+from __future__ import annotations
+
+import math
+
+from solidgear.bearings.geometry import Inside
+from solidgear.errors import SceneError
+from solidgear.scene.catalogue import Catalogue
+
+#: 1/K, bearing steel
+EXPANSION = 11.5e-6
+
+_BORES = (10, 18, 24, 30, 40, 50, 65, 80, 100, 120)
+#: ISO 5753-1:2009, radial internal clearance in micrometres by bore over .. up to; below 10 mm the
+#: first holds
+_BALLS = {
+    "C2": "0-9 0-10 1-11 1-11 1-11 1-15 1-15 1-18 2-20",
+    "CN": "3-18 5-20 5-20 6-20 6-23 8-28 10-30 12-36 15-41",
+    "C3": "11-25 13-28 13-28 15-33 18-36 23-43 25-51 30-58 36-66",
+    "C4": "18-33 20-36 23-41 28-46 30-51 38-61 46-71 53-84 61-97",
+}
+_ROLLERS = {
+    "C2": "0-25 0-25 0-25 5-30 5-35 10-40 10-45 15-50 15-55",
+    "CN": "20-45 20-45 20-45 25-50 30-60 40-70 40-75 50-85 50-90",
+    "C3": "35-60 35-60 35-60 45-70 50-80 60-90 65-100 75-110 85-125",
+    "C4": "50-75 50-75 50-75 60-85 70-100 80-110 90-125 105-140 125-165",
+}
+
+
+def clearance_range(data: Catalogue) -> tuple[float, float]:
+    """Least and largest radial internal clearance before mounting, m.
+
+    Parameters
+    ----------
+    data : Catalogue
+
+    Returns
+    -------
+    float, float
+        Equal where the clearance is a length.
+
+    Raises
+    ------
+    SceneError
+        A class of a bearing that has none.
+
+    Examples
+    --------
+    >>> from solidgear.scene.catalogue import Catalogue
+    >>> clearance_range(Catalogue(designation="6208", clearance="C3"))
+    (1.5e-05, 3.3e-05)
+    """
+    if not isinstance(data.clearance, str):
+        return data.clearance, data.clearance
+    table = _BALLS if data.kind == "deep_groove" else _ROLLERS
+    if data.kind not in ("deep_groove", "cylindrical", "needle"):
+        raise SceneError(
+            f"{data.kind.replace('_', ' ')} bearings have no clearance class; write a length, or a "
+            "preload",
+            path=("clearance",),
+        )
+    bore = data.bore * 1e3
+    place = sum(bore > edge + 1e-9 for edge in _BORES[1:])
+    if place >= len(_BORES) - 1:
+        raise SceneError(
+            f"classes are known up to a bore of {_BORES[-1]} mm; write a length",
+            path=("clearance",),
+        )
+    low, high = table[data.clearance].split()[place].split("-")
+    return round(float(low) * 1e-6, 9), round(float(high) * 1e-6, 9)
+
+
+def mounting_change(data: Catalogue, inside: Inside) -> float:
+    """What fits and temperature add to the clearance, m; negative for a tight fit or a warm shaft.
+
+    Parameters
+    ----------
+    data : Catalogue
+    inside : Inside
+
+    Returns
+    -------
+    float
+
+    Examples
+    --------
+    >>> from solidgear.bearings.geometry import inner_geometry
+    >>> from solidgear.scene.catalogue import Catalogue
+    >>> data = Catalogue(designation="6206", load_rating="19.5 kN", shaft_interference="10 um")
+    >>> round(mounting_change(data, inner_geometry(data).middle) * 1e6, 1)
+    -8.2
+    """
+    reach = inside.diameter * math.cos(inside.angle)
+    inner, outer = inside.pitch - reach, inside.pitch + reach
+    # interference only: a loose fit changes nothing
+    on_shaft = max(data.shaft_interference, 0.0) * data.bore / inner
+    in_housing = max(data.housing_interference, 0.0) * outer / data.outer_diameter
+    # elements half way between the rings' temperatures
+    warm = EXPANSION * data.inner_ring_warmer * (inner + reach)
+    return -(on_shaft + in_housing + warm)
+
+
+def clearance_at_work(data: Catalogue, inside: Inside, share: float = 0.5) -> float:
+    """Radial internal clearance once mounted and warm, m.
+
+    Parameters
+    ----------
+    data : Catalogue
+    inside : Inside
+    share : float
+        Place in the range of a clearance class, 0 to 1.
+
+    Returns
+    -------
+    float
+    """
+    low, high = clearance_range(data)
+    return low + share * (high - low) + mounting_change(data, inside)

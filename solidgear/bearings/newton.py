@@ -1,0 +1,152 @@
+"""Newton with a line search, for the equilibrium of what presses and never pulls.
+
+The energy of contacts and elastic parts is convex (:mod:`solidgear.bearings.row`), so the slope of
+the whole energy along any direction only grows: a step is too long when the slope at its end has
+turned positive, and the search needs no energy, only loads.  Where nothing presses yet the tangent
+is singular; motions without stiffness take a step of bounded length along the load that is not
+balanced, until a contact meets it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import NamedTuple
+
+import numpy as np
+
+from solidgear.errors import SolidgearError
+
+#: iterations; a dozen is common, contacts that come and go take some more
+MOST = 200
+#: m; a first step, and the way after which nothing is taken to hold
+FIRST_STEP, LOST = 2e-4, 0.05
+#: of the largest stiffness: softer directions have none
+SOFT = 1e-11
+#: of the load: what may stay unbalanced
+UNBALANCED = 1e-12
+
+
+class Settled(NamedTuple):
+    """An equilibrium.
+
+    Attributes
+    ----------
+    motion : (n,) ndarray
+    unbalanced : float
+        Largest part of the load that is left, of the largest load, in scaled units.
+    iterations : int
+    """
+
+    motion: np.ndarray
+    unbalanced: float
+    iterations: int
+
+
+class NothingHolds(SolidgearError):
+    """A load that nothing balances, however far its point moves.
+
+    Attributes
+    ----------
+    direction : (n,) ndarray
+        Where the motion went.
+    """
+
+    def __init__(self, reason: str, direction: np.ndarray):
+        super().__init__(reason)
+        self.direction = direction
+
+
+def settle(
+    load: Callable[[np.ndarray], np.ndarray],
+    tangent: Callable[[np.ndarray], np.ndarray],
+    target: np.ndarray,
+    size: np.ndarray,
+    start: np.ndarray | None = None,
+) -> Settled:
+    """Motion at which a convex system carries a load.
+
+    Parameters
+    ----------
+    load, tangent : callable
+        Load (n,) and its derivative (n, n) at a motion (n,).
+    target : (n,) ndarray
+        N and N m.
+    size : (n,) ndarray
+        Motion of each unknown that counts as one metre: 1 for translations, one over a length for
+        rotations.
+    start : (n,) ndarray, optional
+
+    Returns
+    -------
+    Settled
+
+    Raises
+    ------
+    NothingHolds
+        A motion of `LOST` metres has not balanced the load.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> hertz = lambda x: 8e9 * np.maximum(x - 1e-5, 0) ** 1.5
+    >>> slope = lambda x: np.diag(1.2e10 * np.maximum(x - 1e-5, 0) ** 0.5)
+    >>> found = settle(hertz, slope, np.array([1.0]), np.ones(1))
+    >>> round(float(found.motion[0]) * 1e6, 6)
+    10.25
+    """
+    at = np.zeros(len(target)) if start is None else np.array(start, float)
+    goal, reach = size * target, FIRST_STEP
+    missing = goal - size * load(at)
+    scale = max(float(np.abs(goal).max(initial=0.0)), float(np.abs(missing).max(initial=0.0)))
+    if scale == 0.0:
+        return Settled(at, 0.0, 0)
+    best, best_at, stalled = np.inf, at, 0
+    iterations = 0
+    while iterations < MOST:
+        iterations += 1
+        left = float(np.abs(missing).max())
+        if left < best:
+            best, best_at, stalled = left, at, stalled if left > 0.5 * best else 0
+        stalled += 1
+        if left <= UNBALANCED * scale or stalled > 25:
+            break
+        step = size * _step(size[:, None] * tangent(at) * size, missing, scale, reach)
+        way, missing, still_falling = _searched(load, goal, size, at, step, missing)
+        if way == 0.0:
+            break
+        at = at + way * step
+        reach = 4 * reach if still_falling else reach
+        if np.abs(at / size).max() > LOST:
+            raise NothingHolds("nothing holds this load", step / size)
+    # a tangent that is steep where contact begins turns rounding of motions into load
+    return Settled(best_at, best / scale, iterations)
+
+
+def _step(stiffness: np.ndarray, missing: np.ndarray, scale: float, reach: float) -> np.ndarray:
+    value, vector = np.linalg.eigh((stiffness + stiffness.T) / 2)
+    part = vector.T @ missing
+    part[np.abs(part) < 1e-3 * UNBALANCED * scale] = 0.0
+    floor = max(SOFT * float(value.max(initial=0.0)), 1e-3 * scale)
+    step = vector @ (part / np.maximum(value, floor))
+    length = float(np.abs(step).max())
+    return step * min(1.0, reach / length) if length > 0 else step
+
+
+def _searched(load, goal, size, at, step, missing):
+    """Length of the step, what is then missing, and whether the energy still falls steeply."""
+    direction = step / size
+    first = float(missing @ direction)
+    low, high, way = 0.0, np.inf, 1.0
+    best = (0.0, missing, False)
+    if not first > 0:
+        return best
+    for _ in range(60):
+        here = goal - size * load(at + way * step)
+        slope = float(here @ direction)
+        if abs(slope) <= 0.5 * first:
+            return way, here, False
+        if slope > 0:  # the energy still falls beyond
+            return way, here, True
+        high = way
+        way = (low + high) / 2
+    return best

@@ -1,0 +1,141 @@
+"""Preload: by force, by displacement, by a spring."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from scipy.optimize import brentq
+
+from solidgear.bearings.ball import BallRow
+from solidgear.bearings.roller import RollerRow
+from solidgear.bearings.row import Contacts
+from solidgear.errors import SolidgearError
+
+#: m; no bearing is pushed further
+FURTHEST = 5e-3
+#: relative; of the sum of forces on a sprung ring
+BALANCED = 1e-13
+
+
+def pushed(row: BallRow | RollerRow, force: float) -> BallRow | RollerRow:
+    """A row whose rings are pushed together until it presses with a force along y.
+
+    Parameters
+    ----------
+    row : BallRow or RollerRow
+        With a contact angle.
+    force : float
+        N.
+
+    Returns
+    -------
+    BallRow or RollerRow
+
+    Raises
+    ------
+    SolidgearError
+        If no push brings that force.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> row = BallRow(count=14, diameter=12e-3, pitch=60e-3, angle=0.436)
+    >>> tight = pushed(row, 500.0)
+    >>> round(float(tight.load(np.zeros(6))[1]), 6)
+    500.0
+    """
+
+    def miss(push: float) -> float:
+        pressed = replace(row, preload=push)
+        return float(row.side * pressed.load(np.zeros(6))[1]) - force
+
+    if miss(FURTHEST) < 0:
+        raise SolidgearError(f"no push along y preloads this row with {force:g} N")
+    return replace(row, preload=float(brentq(miss, 0.0, FURTHEST, xtol=1e-18, rtol=1e-14)))
+
+
+@dataclass(frozen=True)
+class SprungRow:
+    """A row whose outer ring slides along y on a spring.
+
+    The ring goes where contacts and spring balance; at rest they do with the row as it is pushed.
+    With the ring's motion w the energy is that of the row at ``q - w e_y`` and of the spring, least
+    in w: the load is the row's there, the tangent the row's with y condensed.
+
+    Attributes
+    ----------
+    row : BallRow or RollerRow
+        Pushed by the spring's force.
+    spring : float
+        N/m.
+
+    Examples
+    --------
+    The softer the spring, the more the force stays what it was:
+
+    >>> import numpy as np
+    >>> row = pushed(BallRow(count=14, diameter=12e-3, pitch=60e-3, angle=0.436), 500.0)
+    >>> away = np.array([0.0, -2e-6, 0.0, 0.0, 0.0, 0.0])
+    >>> [round(float(SprungRow(row, k).load(away)[1])) for k in (1e4, 1e12)]
+    [500, 340]
+    """
+
+    row: BallRow | RollerRow
+    spring: float
+
+    @property
+    def pitch(self) -> float:
+        """As of the row."""
+        return self.row.pitch
+
+    def _seen(self, motion: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Motion of the inner ring as the sliding outer ring sees it, and that ring's own."""
+        motion = np.asarray(motion, float)
+        rest = float(self.row.load(np.zeros(6))[1])
+        # the spring takes what the row presses beyond its preload: k w = F(q - w) - F(0).  The
+        # right side falls with w and the left side grows: one root, between none and all of q
+        y = motion[..., 1]
+        low, high = np.minimum(y, 0.0) - abs(rest) / self.spring, np.maximum(y, 0.0)
+        high = high + abs(rest) / self.spring
+        ring = np.zeros_like(y)
+        for _ in range(200):
+            seen = motion.copy()
+            seen[..., 1] = y - ring
+            load = self.row.load(seen)[..., 1] - rest
+            miss = self.spring * ring - load
+            low, high = np.where(miss < 0, ring, low), np.where(miss > 0, ring, high)
+            if np.all(np.abs(miss) <= BALANCED * (np.abs(load) + abs(rest))):
+                break
+            slope = self.spring + self.row.tangent(seen)[..., 1, 1]
+            step = ring - miss / slope
+            inside = (step > low) & (step < high)
+            following = np.where(inside, step, (low + high) / 2)
+            if np.array_equal(following, ring):
+                break
+            ring = following
+        seen = motion.copy()
+        seen[..., 1] = y - ring
+        return seen, ring
+
+    def energy(self, motion: np.ndarray) -> np.ndarray:
+        """Elastic energy of contacts and spring, J, from the state at rest."""
+        seen, ring = self._seen(motion)
+        rest = float(self.row.load(np.zeros(6))[1])
+        return self.row.energy(seen) + self.spring / 2 * ring**2 + rest * ring
+
+    def load(self, motion: np.ndarray) -> np.ndarray:
+        """Load that holds the inner ring at motions (..., 6)."""
+        return self.row.load(self._seen(motion)[0])
+
+    def tangent(self, motion: np.ndarray) -> np.ndarray:
+        """Its derivative, (..., 6, 6)."""
+        stiffness = self.row.tangent(self._seen(motion)[0])
+        column = stiffness[..., :, 1]
+        soft = stiffness[..., 1, 1] + self.spring
+        outer = column[..., :, None] * column[..., None, :]
+        return stiffness - outer / soft[..., None, None]
+
+    def contacts(self, motion: np.ndarray) -> Contacts:
+        """What every element carries."""
+        return self.row.contacts(self._seen(motion)[0])

@@ -1,0 +1,146 @@
+"""A bearing as its rows of rolling elements: displacement to load, load to displacement, tangent."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Protocol
+
+import numpy as np
+
+from solidgear.bearings.newton import NothingHolds, settle
+from solidgear.bearings.row import Contacts
+from solidgear.errors import SolidgearError
+from solidgear.frames import DOF_NAMES
+
+#: what the unit of each component is, and its load's
+UNITS = ("N", "N", "N", "N m", "N m", "N m")
+
+
+class Row(Protocol):
+    """What a bearing asks of a row of rolling elements; see :mod:`solidgear.bearings.row`."""
+
+    @property
+    def pitch(self) -> float:
+        """Diameter of the circle of the elements' centres, m."""
+
+    def load(self, motion: np.ndarray) -> np.ndarray:
+        """Load (..., 6) that holds the inner ring at motions (..., 6)."""
+
+    def tangent(self, motion: np.ndarray) -> np.ndarray:
+        """Its derivative, (..., 6, 6)."""
+
+    def contacts(self, motion: np.ndarray) -> Contacts:
+        """What every element carries."""
+
+
+@dataclass(frozen=True)
+class RollingBearing:
+    """Rows of rolling elements between one inner and one outer ring, or rings that move as one.
+
+    Motions are those of the inner ring, with the shaft, against the outer one; loads are those that
+    act on the inner ring from outside, and that the bearing carries.  Both at one reference point on
+    the axis, order (x, y, z, thx, thy, thz), SI.
+
+    Attributes
+    ----------
+    rows : tuple of Row
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from solidgear.bearings.ball import BallRow
+    >>> bearing = RollingBearing((BallRow(count=7, diameter=11.5e-3, pitch=43.5e-3),))
+    >>> motion = bearing.motion([1000.0, 0, 0, 0, 0, 0])
+    >>> round(float(motion[0]) * 1e6, 2)
+    15.11
+    >>> stiffness = bearing.tangent(motion)
+    >>> bool(np.array_equal(stiffness, stiffness.T))
+    True
+    """
+
+    rows: tuple[Row, ...]
+
+    @cached_property
+    def size(self) -> np.ndarray:
+        """(6,) motions that count alike: metres, and metres at the pitch radius."""
+        turn = 2 / max(row.pitch for row in self.rows)
+        return np.array([1.0, 1.0, 1.0, turn, turn, turn])
+
+    def load(self, motion: np.ndarray) -> np.ndarray:
+        """Load (..., 6) at motions (..., 6)."""
+        return sum((row.load(motion) for row in self.rows), np.zeros(()))
+
+    def tangent(self, motion: np.ndarray) -> np.ndarray:
+        """Tangent stiffness (..., 6, 6) at motions (..., 6): symmetric, with a zero row of thy."""
+        return sum((row.tangent(motion) for row in self.rows), np.zeros(()))
+
+    def contacts(self, motion: np.ndarray) -> tuple[Contacts, ...]:
+        """What every element of every row carries at one motion."""
+        return tuple(row.contacts(motion) for row in self.rows)
+
+    def motion(
+        self, load: Sequence[float] | np.ndarray, held: Sequence[int] = (), start=None
+    ) -> np.ndarray:
+        """Motion at which the bearing carries a load.
+
+        Parameters
+        ----------
+        load : (6,) array_like
+            N and N m; the torque about y must be zero.
+        held : sequence of int
+            Components that stand still and take what load they must, such as ``(3, 5)`` for a shaft
+            that cannot tilt.
+        start : (6,) ndarray, optional
+            Where to begin.
+
+        Returns
+        -------
+        (6,) ndarray
+            m and rad; components that nothing asks for stay at `start`.
+
+        Raises
+        ------
+        SolidgearError
+            If the bearing cannot carry the load.
+        """
+        wanted = np.array(load, float)
+        if wanted[4] != 0.0:
+            raise SolidgearError(
+                f"a bearing carries no torque about its axis, but {wanted[4]:g} N m are asked of it"
+            )
+        begin = np.zeros(6) if start is None else np.array(start, float)
+        move = [k for k in range(6) if k != 4 and k not in held]
+
+        def whole(x: np.ndarray) -> np.ndarray:
+            full = begin.copy()
+            full[move] = x
+            return full
+
+        try:
+            found = settle(
+                lambda x: self.load(whole(x))[move],
+                lambda x: self.tangent(whole(x))[np.ix_(move, move)],
+                wanted[move],
+                self.size[move],
+                begin[move],
+            )
+        except NothingHolds as error:
+            raise SolidgearError(_not_carried(wanted, move, error.direction)) from None
+        if found.unbalanced > 1e-6:
+            raise SolidgearError(
+                f"no equilibrium under {_told(wanted)}: {found.unbalanced:.1e} of it is left over"
+            )
+        return whole(found.motion)
+
+
+def _not_carried(load: np.ndarray, move: Sequence[int], direction: np.ndarray) -> str:
+    name = DOF_NAMES[move[int(np.argmax(np.abs(direction)))]]
+    return f"the bearing cannot carry {_told(load)}: nothing holds it in {name}"
+
+
+def _told(load: np.ndarray) -> str:
+    """A load in words, its zeros left out."""
+    parts = [f"{v:.6g} {u} in {n}" for v, u, n in zip(load, UNITS, DOF_NAMES) if v != 0.0]
+    return " and ".join(parts) or "no load"

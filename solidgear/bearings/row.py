@@ -1,0 +1,119 @@
+"""What rows of balls and of rollers share: how a ring's motion is felt at an azimuth.
+
+Axes are those of the shaft: y along it, order ``(x, y, z, thx, thy, thz)``.  The azimuth phi counts
+from x towards z.  A motion q of the inner ring (with the shaft) against the outer one moves a point
+of the inner ring at radius R, height a along y and azimuth phi by
+
+    radially   cos(phi) x + sin(phi) z + a (sin(phi) thx - cos(phi) thz)
+    along y    y + R (cos(phi) thz - sin(phi) thx),
+
+the components of ``u + th x r``.  Its motion around the axis presses on no rolling element, so that
+thy has no part: the torsional row of every stiffness here is exactly zero.
+
+The load of a row is the gradient of the energy of its contacts, and its tangent the Hessian, so the
+latter is symmetric.  Contacts can only press, their force grows with the approach and the distance
+of two points is a convex function: the energy is convex in q, and the tangent positive
+semidefinite.  Whatever minimises it, alone or with a shaft, is the one equilibrium there is.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+#: of (x, y, z, thx, thy, thz), those that contacts feel
+FELT = [0, 1, 2, 3, 5]
+_UPPER = np.triu_indices(5)
+_PLACE = np.array(FELT)
+
+
+class Contacts(NamedTuple):
+    """What the rolling elements of a row carry.
+
+    Attributes
+    ----------
+    azimuth : (n,) ndarray
+        From x towards z, rad.
+    load : (..., n) ndarray
+        N; along the contact normal.
+    angle : (..., n) ndarray
+        Contact angle, rad, positive where the shaft is pressed towards +y; NaN where unloaded.
+    inner, outer : (..., n) ndarray
+        Largest pressure at both rings, Pa.
+    """
+
+    azimuth: np.ndarray
+    load: np.ndarray
+    angle: np.ndarray
+    inner: np.ndarray
+    outer: np.ndarray
+
+
+def azimuths(count: int, first: float) -> np.ndarray:
+    """(count,) azimuths of evenly spaced elements, rad."""
+    return first + 2 * np.pi * np.arange(count) / count
+
+
+def felt(radius: np.ndarray, height: np.ndarray, azimuth: np.ndarray) -> np.ndarray:
+    """Radial and axial motion of points of the inner ring under unit motions of it.
+
+    Parameters
+    ----------
+    radius, height, azimuth : (n,) array_like
+        m, m along y from the reference point, rad.
+
+    Returns
+    -------
+    (2, n, 5) ndarray
+        First radial, then axial; columns x, y, z, thx, thz.
+
+    Examples
+    --------
+    A tilt about x lifts the point on z by its radius towards -y:
+
+    >>> import numpy as np
+    >>> axial = felt(0.02, 0.0, np.pi / 2)[1, 0]
+    >>> bool(np.allclose(axial, [0, 1, 0, -0.02, 0]))
+    True
+    """
+    radius, height, azimuth = np.broadcast_arrays(
+        np.atleast_1d(radius), np.atleast_1d(height), np.atleast_1d(azimuth)
+    )
+    c, s, zero = np.cos(azimuth), np.sin(azimuth), np.zeros_like(azimuth)
+    radial = np.stack([c, zero, s, height * s, -height * c], axis=-1)
+    axial = np.stack([zero, zero + 1.0, zero, -radius * s, radius * c], axis=-1)
+    return np.stack([radial, axial])
+
+
+def products(a: np.ndarray, b: np.ndarray) -> np.ndarray:
+    """Symmetric products of rows, upper triangles flattened: with weights on the left one matrix
+    product makes any number of tangents.
+
+    Parameters
+    ----------
+    a, b : (n, 5) ndarray
+
+    Returns
+    -------
+    (n, 15) ndarray
+        ``(a b' + b a') / 2``; for equal arguments ``a a'``.
+    """
+    i, j = _UPPER
+    return (a[:, i] * b[:, j] + a[:, j] * b[:, i]) / 2
+
+
+def unfolded(upper: np.ndarray) -> np.ndarray:
+    """(..., 6, 6) from upper triangles (..., 15) of what is felt; the row of thy is zero."""
+    out = np.zeros((*upper.shape[:-1], 6, 6))
+    i, j = _PLACE[_UPPER[0]], _PLACE[_UPPER[1]]
+    out[..., i, j] = upper
+    out[..., j, i] = upper
+    return out
+
+
+def six(load: np.ndarray) -> np.ndarray:
+    """(..., 6) from what is felt (..., 5)."""
+    out = np.zeros((*load.shape[:-1], 6))
+    out[..., _PLACE] = load
+    return out

@@ -1,0 +1,200 @@
+"""Scenes with catalogue bearings: the stiffness of each, at its own load or in equilibrium."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from solidgear.bearings.catalogued import Catalogued, End, catalogued, state
+from solidgear.bearings.equilibrium import Equilibrium, Linear, Mounted, equilibrium
+from solidgear.errors import SceneError
+from solidgear.scene import Scene
+
+if TYPE_CHECKING:
+    from solidgear.body import Body
+    from solidgear.scene import Bearing
+
+
+@dataclass(frozen=True)
+class Choice:
+    """Where in the ranges of catalogue data a solution is taken.
+
+    Attributes
+    ----------
+    end : {'middle', 'softer', 'stiffer'}
+        Of an estimated inner geometry.
+    clearance : float
+        Place in the range of a clearance class, 0 to 1.
+    preload, load : float
+        Times what the scene says.
+    """
+
+    end: End = "middle"
+    clearance: float = 0.5
+    preload: float = 1.0
+    load: float = 1.0
+
+
+AS_TOLD = Choice()
+
+
+@dataclass(frozen=True)
+class Solved:
+    """A scene whose catalogue bearings have their stiffness.
+
+    Attributes
+    ----------
+    scene : Scene
+        With a 6x6 for every bearing.
+    made : dict of str to Catalogued
+        Bearings of catalogue data by name.
+    motion : dict of str to (6,) ndarray
+        Motion of the inner ring of each at which the stiffness is taken.
+    equilibrium : Equilibrium or None
+        Of shaft and bearings, where the scene has a load of its own.
+    """
+
+    scene: Scene
+    made: dict[str, Catalogued]
+    motion: dict[str, np.ndarray]
+    equilibrium: Equilibrium | None = None
+
+
+def wants_equilibrium(scene: Scene) -> bool:
+    """Whether a bearing of the scene waits for the load that the shaft brings."""
+    return scene.load is not None and any(
+        b.catalogue is not None and b.catalogue.load is None and b.catalogue.displacement is None
+        for b in scene.bearings
+    )
+
+
+def solved(
+    scene: Scene,
+    body: Body | None = None,
+    choice: Choice = AS_TOLD,
+    start: Equilibrium | None = None,
+) -> Solved:
+    """Stiffness of every catalogue bearing of a scene.
+
+    Parameters
+    ----------
+    scene : Scene
+        Loads are those of its bearings, or its own at the port.
+    body : Body, optional
+        The shaft; without one, bearings that wait for its load are taken at rest.
+    choice : Choice
+    start : Equilibrium, optional
+        To begin at.
+
+    Returns
+    -------
+    Solved
+
+    Raises
+    ------
+    SceneError
+        Data that make no bearing, loads that one cannot carry, and bearings that hold nothing.
+
+    Examples
+    --------
+    >>> import solidgear as sg
+    >>> scene = sg.load("geometry/gearbox_catalogue.toml")
+    >>> found = solved(scene, sg.build(scene, "timoshenko"))
+    >>> carried = found.equilibrium.load  # all that [load] says, in N
+    >>> round(float(sum(load[2] for load in carried.values())), 6)
+    1400.0
+    """
+    places = {b.name: k for k, b in enumerate(scene.bearings) if b.catalogue is not None}
+    made: dict[str, Catalogued] = {}
+    for name, k in places.items():
+        data = scene.bearings[k].catalogue
+        assert data is not None
+        try:
+            made[name] = catalogued(
+                data, choice.end, clearance_share=choice.clearance, preload_factor=choice.preload
+            )
+        except SceneError as error:
+            raise located(error, k) from None
+    settled = None
+    if body is not None and wants_equilibrium(scene):
+        settled = _settled(scene, body, made, choice, start)
+    motion, tangent = {}, {}
+    for name, k in places.items():
+        data = scene.bearings[k].catalogue
+        assert data is not None
+        waits = settled is not None and data.load is None and data.displacement is None
+        try:
+            at = (
+                settled.relative[name]
+                if waits and settled
+                else state(data, made[name], choice.load)
+            )
+        except SceneError as error:
+            raise located(error, k) from None
+        motion[name] = at
+        tangent[name] = made[name].bearing.tangent(at)
+        if not tangent[name].any() and not waits:
+            raise located(_unloaded(), k)
+    bearings = tuple(_with(b, tangent) for b in scene.bearings)
+    return Solved(scene.with_changes(bearings=bearings), made, motion, settled)
+
+
+def _unloaded() -> SceneError:
+    return SceneError(
+        "without load a bearing has no stiffness: give load or displacement, a preload, a negative "
+        "clearance, or a [load] on the port",
+    )
+
+
+def located(error: SceneError, index: int) -> SceneError:
+    """The same error under the key of a bearing of a file."""
+    return SceneError.of(
+        one.located(None, path=("bearing", index, "catalogue", *one.path)) for one in error.problems
+    )
+
+
+def _with(bearing: Bearing, tangent: Mapping[str, np.ndarray]) -> Bearing:
+    if bearing.name not in tangent:
+        return bearing
+    stiffness = tangent[bearing.name]
+    # friction at speed leaves a part that is no spring
+    return bearing.with_changes(matrix=(stiffness + stiffness.T) / 2)
+
+
+def mounted(scene: Scene, made: Mapping[str, Catalogued]) -> list[Mounted]:
+    """Bearings of a scene as the equilibrium takes them.
+
+    Parameters
+    ----------
+    scene : Scene
+    made : mapping of str to Catalogued
+
+    Returns
+    -------
+    list of Mounted
+    """
+    out = []
+    for bearing in scene.bearings:
+        if bearing.name not in made:
+            out.append(Mounted(bearing.name, Linear(np.array(bearing.stiffness))))
+            continue
+        spring = None
+        if bearing.axial_series:
+            spring = 1 / sum(1 / k for k in bearing.axial_series)
+        out.append(Mounted(bearing.name, made[bearing.name].bearing, spring=spring))
+    return out
+
+
+def _settled(
+    scene: Scene,
+    body: Body,
+    made: Mapping[str, Catalogued],
+    choice: Choice,
+    start: Equilibrium | None,
+) -> Equilibrium:
+    assert scene.load is not None
+    loads = {scene.port.name: choice.load * np.array(scene.load.six)}
+    return equilibrium(body, mounted(scene, made), loads, scene.housing_axial, start)

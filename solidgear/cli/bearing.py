@@ -1,0 +1,255 @@
+"""The command on bearings of catalogue data."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from solidgear.cli.app import JsonFlag, SceneFile, command, console
+from solidgear.errors import SceneError, SolidgearError, show
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from solidgear.bearings.bounds import Ranges
+    from solidgear.scene import Scene
+    from solidgear.studies.bearing_study import BearingFacts, BearingRange
+
+#: what a torque of a gearbox and the preload of a bearing do, unless told
+USUAL_LOAD, USUAL_PRELOAD = "0.2:1.2", "0.7:1.3"
+
+
+@command
+def bearing(
+    scene: SceneFile,
+    load: Annotated[
+        str | None,
+        typer.Option(
+            "--load",
+            help='Another load, such as "x=2 kN, z=-500 N, thx=10 N*m": on the port, or with --bearing on that one.',
+        ),
+    ] = None,
+    name: Annotated[
+        str | None, typer.Option("--bearing", help="Only this bearing; --load is then its own.")
+    ] = None,
+    out: Annotated[
+        Path | None,
+        typer.Option(
+            "--out", "-o", help="Chart of stiffness over load: a file that ends in .png or .svg."
+        ),
+    ] = None,
+    ranged: Annotated[
+        bool,
+        typer.Option(
+            "--range", help="Also bounds on natural frequencies from what is not known of bearings."
+        ),
+    ] = False,
+    load_range: Annotated[str, typer.Option(help="Of --range: factors of the load.")] = USUAL_LOAD,
+    preload_range: Annotated[
+        str, typer.Option(help="Of --range: factors of the preload.")
+    ] = USUAL_PRELOAD,
+    as_json: JsonFlag = False,
+) -> None:
+    """Bearings of catalogue data: stiffness at load, load of every element, angles, pressure."""
+    from solidgear.scene.file import load as read
+    from solidgear.studies.bearing_study import bearing_facts, bearing_range, with_load
+    from solidgear.studies.loading import explained, shaft
+
+    if out is not None:
+        from solidgear.report.where_chart import check_ending
+
+        check_ending(out)
+    ranges = _ranges(load_range, preload_range)
+    loaded = read(scene)
+    if load is not None:
+        try:
+            loaded = with_load(loaded, _components(load), name)
+        except SceneError as error:
+            raise SolidgearError(f"--load {show(load)}: {error}") from None
+    with explained(scene):
+        body = shaft(loaded)
+        facts = [fact for fact in bearing_facts(loaded, body) if name in (None, fact.name)]
+        if not facts:
+            raise SolidgearError(f"--bearing {name}: no bearing of catalogue data has this name")
+        found = bearing_range(loaded, ranges) if ranged else None
+        if out is not None:
+            _draw(out, loaded, body, facts)
+    if as_json:
+        record: dict[str, Any] = {"scene": loaded.name, "bearings": [_plain(f) for f in facts]}
+        if found is not None:
+            record["range"] = found.as_dict()
+        print(json.dumps(record, allow_nan=False))
+        return
+    terminal = console()
+    for fact in facts:
+        _print(terminal, fact)
+    if found is not None:
+        _print_range(terminal, found)
+    if out is not None:
+        terminal.print(f"Chart: {out}", markup=False, soft_wrap=True)
+
+
+def _components(text: str) -> dict[str, str | float]:
+    """Components of a load from ``x=2 kN, z=500``."""
+    found: dict[str, str | float] = {}
+    for part in text.split(","):
+        key, sep, value = (piece.strip() for piece in part.partition("="))
+        if not sep or not value:
+            raise SolidgearError(
+                f'--load {show(text)}: write components such as "x=2 kN, z=-500 N, thx=10 N*m"'
+            )
+        try:
+            found[key] = float(value)
+        except ValueError:
+            found[key] = value
+    return found
+
+
+def _ranges(load: str, preload: str) -> Ranges:
+    from solidgear.bearings.bounds import Ranges
+
+    pairs: dict[str, tuple[float, float]] = {}
+    for key, text in (("load", load), ("preload", preload)):
+        try:
+            low, high = (float(part) for part in text.split(":"))
+        except ValueError:
+            raise SolidgearError(
+                f"--{key}-range {show(text)}: write two factors, such as 0.5:1.2"
+            ) from None
+        pairs[key] = (low, high)
+    return Ranges(load=pairs["load"], preload=pairs["preload"])
+
+
+def _draw(out: Path, scene: Scene, body, facts: Sequence[BearingFacts]) -> None:
+    from solidgear.report.bearing_chart import BearingPanel, draw_bearings
+    from solidgear.studies.bearing_study import over_load
+
+    curves = over_load(scene, body)
+    panels = [
+        BearingPanel(
+            f"bearing {fact.name}, {fact.designation or fact.kind.replace('_', ' ')}",
+            curves[fact.name].factors,
+            curves[fact.name].middle[:, :3],
+            curves[fact.name].low[:, :3],
+            curves[fact.name].high[:, :3],
+            [(row.azimuth, row.load) for row in fact.rows],
+        )
+        for fact in facts
+    ]
+    draw_bearings(out, panels)
+
+
+def _print(terminal, fact: BearingFacts) -> None:
+    import numpy as np
+
+    from solidgear.bearings.rolling import UNITS
+    from solidgear.frames import DOF_NAMES
+    from solidgear.report.terminal import matrix_table
+    from solidgear.report.words import engineering
+
+    def say(text: str) -> None:
+        terminal.print(text, markup=False, soft_wrap=True)
+
+    what = fact.designation or fact.kind.replace("_", " ")
+    say(f"Bearing {fact.name!r}: {what}, {fact.status}")
+    i = fact.inside
+    size = f"{i['elements']} elements of {1e3 * i['element_diameter']:.4g}"
+    if "element_length" in i:
+        size += f" x {1e3 * i['element_length']:.4g}"
+    inside = f"{size} mm a row on {1e3 * i['pitch_diameter']:.5g} mm"
+    if i["contact_angle"]:
+        inside += f", contact angle {np.degrees(i['contact_angle']):.4g} deg"
+    say(f"{inside}; radial clearance at work {1e6 * fact.clearance:.3g} um")
+    if fact.estimated:
+        words = ", ".join(fact.estimated).replace("_", " ")
+        say(f"Estimated from boundary dimensions and ratings: {words}.")
+    parts = [
+        f"{n} {engineering(v, 4)} {u}"
+        for n, v, u in zip(DOF_NAMES, fact.load, UNITS)
+        if abs(v) > 1e-9 * np.abs(fact.load).max()
+    ]
+    say(f"Load: {', '.join(parts) or 'none'}")
+    moved = [
+        f"{n} {1e6 * v:.4g} {'um' if k < 3 else 'urad'}"
+        for k, (n, v) in enumerate(zip(DOF_NAMES, fact.motion))
+        if abs(v) > 1e-12
+    ]
+    say(f"Displacement: {', '.join(moved) or 'none'}")
+    terminal.print(matrix_table(fact.stiffness, "stiffness"))
+    if fact.spread is not None:
+        ends = [
+            f"{n} {engineering(low, 3)} to {engineering(high, 3)}"
+            for n, low, high in zip(DOF_NAMES, *fact.spread)
+            if high > 0
+        ]
+        say(f"With the estimated inside from its softer to its stiffer end: {', '.join(ends)}.")
+    for k, row in enumerate(fact.rows):
+        place = "" if len(fact.rows) == 1 else f" of the {'lower' if k == 0 else 'upper'} row"
+        carrying = row.load > 0
+        if not carrying.any():
+            continue
+        angle = np.degrees(row.angle[carrying])
+        turned = (
+            f", contact angle {angle.min():.2f} to {angle.max():.2f} deg" if angle.any() else ""
+        )
+        say(
+            f"{int(carrying.sum())} of {len(row.load)} elements{place} carry, at most "
+            f"{engineering(float(row.load.max()), 4)} N{turned}, pressure "
+            f"{row.inner.max() / 1e6:.0f} MPa inside, {row.outer.max() / 1e6:.0f} MPa outside"
+        )
+    for note in fact.notes:
+        say(f"caution: bearing {fact.name!r}: {note}")
+
+
+def _print_range(terminal, found: BearingRange) -> None:
+    from rich import box
+    from rich.table import Table
+
+    table = Table(box=box.SIMPLE_HEAD, pad_edge=False)
+    for head in ("mode", "Hz", "from", "to", "band"):
+        table.add_column(head, justify="left" if head == "mode" else "right")
+    for b in found.bounds:
+        band = f"{100 * (b.low / b.middle - 1):+.1f} / {100 * (b.high / b.middle - 1):+.1f} %"
+        table.add_row(b.mode, f"{b.middle:.1f}", f"{b.low:.1f}", f"{b.high:.1f}", band)
+    terminal.print(table)
+    said = found.ranges.told
+    terminal.print(f"Over {found.points} points: {said}.", markup=False, soft_wrap=True)
+    for name in found.lost:
+        terminal.print(f"caution: bearing {name!r} carries nothing somewhere in this range.")
+    for reason in found.refused:
+        terminal.print(f"caution: left out: {reason}", markup=False, soft_wrap=True)
+
+
+def _plain(fact: BearingFacts) -> dict[str, Any]:
+    import numpy as np
+
+    def numbers(values) -> list:
+        return [float(v) if np.isfinite(v) else None for v in values]
+
+    return {
+        "name": fact.name,
+        "kind": fact.kind,
+        "designation": fact.designation,
+        "status": fact.status,
+        "inside": fact.inside,
+        "estimated": fact.estimated,
+        "clearance": fact.clearance,
+        "load": fact.load.tolist(),
+        "displacement": fact.motion.tolist(),
+        "stiffness": fact.stiffness.tolist(),
+        "spread": None if fact.spread is None else [end.tolist() for end in fact.spread],
+        "rows": [
+            {
+                "azimuth": numbers(row.azimuth),
+                "load": numbers(row.load),
+                "contact_angle": numbers(row.angle),
+                "pressure_inner": numbers(row.inner),
+                "pressure_outer": numbers(row.outer),
+            }
+            for row in fact.rows
+        ],
+        "notes": fact.notes,
+    }

@@ -1,0 +1,393 @@
+"""A bearing by its catalogue data: what a user knows of it, checked, and nothing computed.
+
+The 6x6 at a load is worked out from these data by :mod:`solidgear.bearings`.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Annotated, Any, Literal
+
+from pydantic import BeforeValidator, Field, model_validator
+
+from solidgear.errors import SceneError, show
+from solidgear.scene.designation import boundary
+from solidgear.scene.parts import Model
+from solidgear.scene.units import (
+    Angle,
+    AxialSpring,
+    Length,
+    Newtons,
+    PositiveLength,
+    PositiveLoad,
+    SignedAngle,
+    Speed,
+    TemperatureRise,
+    Torque,
+    quantity,
+)
+
+Kind = Literal["deep_groove", "angular_contact", "cylindrical", "tapered", "needle"]
+Arrangement = Literal["single", "double_row", "tandem", "back_to_back", "face_to_face"]
+#: clearance classes of ISO 5753-1
+ClearanceClass = Literal["C2", "CN", "C3", "C4"]
+CLASSES = ("C2", "CN", "C3", "C4")
+BALLS = ("deep_groove", "angular_contact")
+#: kinds whose rows hold the shaft in one direction along y
+ONE_SIDED = ("angular_contact", "tapered")
+#: rolling elements of a row
+FEWEST, MOST = 3, 300
+
+
+class BearingLoad(Model):
+    """Load of the shaft on a bearing, or on the port: forces in N, moments in N m.
+
+    Attributes
+    ----------
+    x, y, z : float
+    thx, thz : float or None
+        Moments; where none is given a bearing's ring is held against tilting.
+
+    Examples
+    --------
+    >>> BearingLoad(y="2 kN", z=500).y
+    2000.0
+    """
+
+    x: Newtons = 0.0
+    y: Newtons = 0.0
+    z: Newtons = 0.0
+    thx: Torque | None = None
+    thz: Torque | None = None
+
+    @property
+    def six(self) -> list[float]:
+        """In the order (x, y, z, thx, thy, thz), N and N m."""
+        return [self.x, self.y, self.z, self.thx or 0.0, 0.0, self.thz or 0.0]
+
+    @property
+    def held(self) -> tuple[int, ...]:
+        """Tilts without a moment of their own, by their place among the six."""
+        return tuple(k for k, moment in ((3, self.thx), (5, self.thz)) if moment is None)
+
+
+class BearingDisplacement(Model):
+    """Displacement of the inner ring against the outer one, m and rad.
+
+    Attributes
+    ----------
+    x, y, z, thx, thz : float
+
+    Examples
+    --------
+    >>> BearingDisplacement(z="5 um").six
+    [0.0, 0.0, 5e-06, 0.0, 0.0, 0.0]
+    """
+
+    x: Length = 0.0
+    y: Length = 0.0
+    z: Length = 0.0
+    thx: SignedAngle = 0.0
+    thz: SignedAngle = 0.0
+
+    @property
+    def six(self) -> list[float]:
+        """In the order (x, y, z, thx, thy, thz)."""
+        return [self.x, self.y, self.z, self.thx, 0.0, self.thz]
+
+
+class Preload(Model):
+    """How a bearing is preloaded: by a force or by a displacement.
+
+    Attributes
+    ----------
+    force : float or None
+        N along y, felt by every row while the shaft carries nothing else.
+    displacement : float or None
+        m along y by which the rings are pushed together from where they just touch; of a pair, by
+        which both rows together are.
+    """
+
+    force: float | None = None
+    displacement: float | None = None
+
+
+def _preload(value: Any) -> Any:
+    if isinstance(value, (Preload, dict)) or value is None:
+        return value
+    if not isinstance(value, str):
+        raise SceneError(
+            'write a force such as "500 N" or a displacement such as "10 um"', value=show(value)
+        )
+    for key, dimension in (("force", "load"), ("displacement", "length")):
+        try:
+            found = quantity(value, dimension)
+        except SceneError:
+            continue
+        if found <= 0:
+            raise SceneError("must be greater than zero; leave it out for none", value=show(value))
+        return {key: found}
+    raise SceneError(
+        'is neither a force such as "500 N" nor a displacement such as "10 um"', value=show(value)
+    )
+
+
+def _clearance(value: Any) -> Any:
+    if value in CLASSES:
+        return value
+    if isinstance(value, str) and value[:1].upper() == "C":
+        raise SceneError(
+            f'must be one of the classes {", ".join(CLASSES)} or a length such as "10 um"',
+            value=show(value),
+        )
+    return quantity(value, "length")
+
+
+def _conformity(value: Any) -> Any:
+    pair = value if isinstance(value, (list, tuple)) else [value, value]
+    if len(pair) != 2:
+        raise SceneError("write one number, or two: inner and outer ring", value=show(value))
+    for one in (quantity(v, "dimensionless") for v in pair):
+        if not 0.5 < one <= 0.6:
+            raise SceneError(
+                "is groove radius over ball diameter: above 0.5, or the ball would not fit its "
+                "groove, and at most 0.6; usual is 0.52",
+                value=show(value),
+            )
+    return tuple(pair)
+
+
+class Catalogue(Model):
+    """A bearing by its catalogue data; numbers in SI, or texts with units.
+
+    Attributes
+    ----------
+    kind : str
+        deep_groove, angular_contact, cylindrical, tapered or needle.
+    designation : str
+        Such as ``6208``: gives kind, bore, outer_diameter and width where these are left out.
+    bore, outer_diameter, width : float
+        Boundary dimensions, m; the bore of a drawn cup is the diameter under its rollers.
+    load_rating, static_rating : float or None
+        Basic dynamic and static radial load rating, N.
+    elements : int or None
+        Rolling elements of one row.
+    element_diameter, element_length, pitch_diameter : float or None
+        m; of tapered rollers the mean diameter.
+    contact_angle : float or None
+        rad.
+    conformity : (float, float) or None
+        Groove radius over ball diameter, inner and outer.
+    profile : {'logarithmic', 'straight'}
+        Of rollers, by ISO/TS 16281.
+    arrangement : str
+        single, double_row (of bearings that hold no shaft along y, or both ways), tandem,
+        back_to_back or face_to_face.
+    row_distance : float or None
+        Of the rows' middles, m; the width where not given.
+    holds : {'+y', '-y'}
+        Which way single rows and tandems with a contact angle hold the shaft.
+    clearance : float or str
+        Radial internal clearance, m, or a class of ISO 5753-1, taken in its middle.
+    shaft_interference, housing_interference : float
+        Of the fits, on the diameter, m.
+    inner_ring_warmer : float
+        K above the outer ring.
+    preload : Preload or None
+        A text with a unit in a file: ``"500 N"`` or ``"10 um"``.
+    preload_spring : float or None
+        N/m, of the spring by which the upper row of a pair is preloaded.
+    speed : float
+        Of the inner ring, rad/s; of balls, whose inertia it brings in.
+    load : BearingLoad or None
+        At which the stiffness is taken.
+    displacement : BearingDisplacement or None
+        At which the stiffness is taken.
+
+    Raises
+    ------
+    SceneError
+        Data that contradict each other, one sentence each.
+
+    Examples
+    --------
+    >>> data = Catalogue(designation="6208", load={"z": "2 kN"})
+    >>> data.kind, data.bore, data.estimated
+    ('deep_groove', 0.04, ('elements', 'element_diameter', 'pitch_diameter', 'conformity'))
+    """
+
+    kind: Kind
+    designation: str = ""
+    bore: PositiveLength
+    outer_diameter: PositiveLength
+    width: PositiveLength
+    load_rating: PositiveLoad | None = None
+    static_rating: PositiveLoad | None = None
+    elements: Annotated[int, Field(strict=True, ge=FEWEST, le=MOST)] | None = None
+    element_diameter: PositiveLength | None = None
+    element_length: PositiveLength | None = None
+    pitch_diameter: PositiveLength | None = None
+    contact_angle: Angle | None = None
+    conformity: Annotated[tuple[float, float], BeforeValidator(_conformity)] | None = None
+    profile: Literal["logarithmic", "straight"] = "logarithmic"
+    arrangement: Arrangement = "single"
+    row_distance: PositiveLength | None = None
+    holds: Literal["+y", "-y"] = "+y"
+    clearance: Annotated[float | ClearanceClass, BeforeValidator(_clearance)] = 0.0
+    shaft_interference: Length = 0.0
+    housing_interference: Length = 0.0
+    inner_ring_warmer: TemperatureRise = 0.0
+    preload: Annotated[Preload | None, BeforeValidator(_preload)] = None
+    preload_spring: AxialSpring | None = None
+    speed: Speed = 0.0
+    load: BearingLoad | None = None
+    displacement: BearingDisplacement | None = None
+
+    def __init__(self, /, **data: Any):
+        if isinstance(data.get("designation"), str) and data["designation"]:
+            data = _with_boundary(data)
+        super().__init__(**data)
+
+    @property
+    def one_sided(self) -> bool:
+        """Whether it holds the shaft in one direction along y only."""
+        return self.kind in ONE_SIDED and self.arrangement in ("single", "tandem")
+
+    @property
+    def balls(self) -> bool:
+        """Whether its elements are balls."""
+        return self.kind in BALLS
+
+    @property
+    def estimated(self) -> tuple[str, ...]:
+        """Inner dimensions that are not given, by their names here."""
+        inner = ["elements", "element_diameter", "pitch_diameter"]
+        inner.append("conformity" if self.balls else "element_length")
+        if self.kind in ONE_SIDED:
+            inner.append("contact_angle")
+        return tuple(name for name in inner if getattr(self, name) is None)
+
+    @model_validator(mode="after")
+    def _hangs_together(self) -> Catalogue:
+        problems = list(_problems(self))
+        if problems:
+            raise SceneError.of(problems)
+        return self
+
+
+def _with_boundary(data: dict[str, Any]) -> dict[str, Any]:
+    """Data with what the designation tells, where they are silent."""
+    try:
+        known = boundary(data["designation"])
+    except SceneError as error:
+        raise SceneError(error.reason, path=("designation",), value=error.value) from None
+    told = {key: value for key, value in known._asdict().items() if value is not None}
+    if "kind" in data and data["kind"] != known.kind:
+        raise SceneError(
+            f"does not fit the designation {show(data['designation'])}, which is {known.kind}",
+            path=("kind",),
+            value=show(data["kind"]),
+        )
+    return {key: value for key, value in told.items() if data.get(key) is None} | {
+        key: value for key, value in data.items() if value is not None or key not in told
+    }
+
+
+def _problems(data: Catalogue):
+    if data.outer_diameter <= data.bore:
+        yield SceneError(
+            f"must be larger than the bore ({data.bore:.6g} m)", path=("outer_diameter",)
+        )
+        return
+    yield from _belongs(data)
+    yield from _fits(data)
+    if data.load is not None and data.displacement is not None:
+        yield SceneError("give either load or displacement, not both", path=("displacement",))
+
+
+def _belongs(data: Catalogue):
+    """Keys that the kind or the arrangement has no use for."""
+    what = data.kind.replace("_", " ")
+    if data.kind not in ONE_SIDED:
+        if data.contact_angle is not None:
+            yield SceneError(
+                f"a {what} bearing has no contact angle of its own: leave it out, or write "
+                f'kind = "{"angular_contact" if data.balls else "tapered"}"',
+                path=("contact_angle",),
+            )
+        if data.arrangement not in ("single", "double_row"):
+            yield SceneError(
+                f"{what} bearings have no contact angle to pair: write single or double_row",
+                path=("arrangement",),
+            )
+        if data.preload is not None:
+            yield SceneError(
+                f"a {what} bearing is not preloaded along y: write a negative clearance",
+                path=("preload",),
+            )
+    elif data.arrangement == "double_row":
+        yield SceneError(
+            f"two rows of {what} bearings are back_to_back, face_to_face or tandem",
+            path=("arrangement",),
+        )
+    for key, wanted in (("conformity", True), ("element_length", False), ("speed", True)):
+        if getattr(data, key) and data.balls is not wanted:
+            owner = "balls" if wanted else "rollers"
+            yield SceneError(
+                f"belongs to {owner}; a {what} bearing has none: leave it out", path=(key,)
+            )
+    if data.preload_spring is not None and data.speed:
+        yield SceneError(
+            "a pair on a preload spring is solved at rest only: leave out speed, or the spring",
+            path=("speed",),
+        )
+    if data.preload_spring is not None and (
+        data.arrangement not in ("back_to_back", "face_to_face")
+        or data.preload is None
+        or data.preload.force is None
+    ):
+        yield SceneError(
+            'presses one row of a pair with a force: it needs arrangement = "back_to_back" or '
+            '"face_to_face" and a preload such as "500 N"',
+            path=("preload_spring",),
+        )
+
+
+def _fits(data: Catalogue):
+    """Sizes that leave no room for each other."""
+    room = (data.outer_diameter - data.bore) / 2
+    if data.element_diameter is not None and data.element_diameter >= room:
+        yield SceneError(
+            f"does not fit between bore and outer_diameter, {room:.6g} m apart",
+            path=("element_diameter",),
+        )
+        return
+    if data.element_length is not None and data.element_length > data.width:
+        yield SceneError(
+            f"must not be longer than the width ({data.width:.6g} m)", path=("element_length",)
+        )
+    pitch = data.pitch_diameter or (data.bore + data.outer_diameter) / 2
+    if not data.bore < pitch < data.outer_diameter:
+        yield SceneError(
+            f"must lie between bore and outer_diameter ({data.bore:.6g} and "
+            f"{data.outer_diameter:.6g} m)",
+            path=("pitch_diameter",),
+        )
+    elif data.elements is not None and data.element_diameter is not None:
+        most = int(math.pi / math.asin(min(data.element_diameter / pitch, 1.0)) + 1e-9)
+        if data.elements > most:
+            yield SceneError(
+                f"more than fit on the pitch circle of {pitch:.6g} m: at most {most} elements of "
+                f"{data.element_diameter:.6g} m",
+                path=("elements",),
+            )
+
+
+__all__ = [
+    "Arrangement",
+    "BearingDisplacement",
+    "BearingLoad",
+    "Catalogue",
+    "Kind",
+    "Preload",
+]

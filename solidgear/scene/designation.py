@@ -1,0 +1,175 @@
+"""Boundary dimensions behind a catalogue designation: ISO 15, ISO 355 and drawn cups, in mm.
+
+Only what is standard: bore, outside diameter, width.  What is inside is the maker's, and estimated
+in :mod:`solidgear.bearings.geometry`.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from typing import NamedTuple
+
+from solidgear.errors import SceneError, show
+
+_BORES = (10, 12, 15, 17, *range(20, 105, 5), 110, 120)
+
+
+def _series(text: str, first: int = 10) -> dict[int, tuple[float, float]]:
+    """Bore to outside diameter and width, from ``D x B`` in the order of bores."""
+    pairs = [pair.split("x") for pair in text.split()]
+    bores = _BORES[_BORES.index(first) :]
+    return {d: (float(D), float(B)) for d, (D, B) in zip(bores, pairs)}
+
+
+#: ISO 15:2017, diameter series 0, 2 and 3, usual width
+_LIGHT = _series(
+    "26x8 28x8 32x9 35x10 42x12 47x12 55x13 62x14 68x15 75x16 80x16 90x18 95x18 100x18 110x20 "
+    "115x20 125x22 130x22 140x24 145x24 150x24 170x28 180x28"
+)
+_MEDIUM = _series(
+    "30x9 32x10 35x11 40x12 47x14 52x15 62x16 72x17 80x18 85x19 90x20 100x21 110x22 120x23 125x24 "
+    "130x25 140x26 150x28 160x30 170x32 180x34 200x38 215x40"
+)
+_HEAVY = _series(
+    "35x11 37x12 42x13 47x14 52x15 62x17 72x19 80x21 90x23 100x25 110x27 120x29 130x31 140x33 "
+    "150x35 160x37 170x39 180x41 190x43 200x45 215x47 240x50 260x55"
+)
+#: ISO 15:2017, series 22 of cylindrical rollers
+_WIDE = _series(
+    "47x18 52x18 62x20 72x23 80x23 85x23 90x23 100x25 110x28 120x31 125x31 130x31 140x33 150x36 "
+    "160x40 170x43 180x46",
+    20,
+)
+#: ISO 355:2019, outside diameter x assembled width of the series 302, 303, 320, 322, 323
+_TAPERED = {
+    "302": _series(
+        "62x17.25 72x18.25 80x19.75 85x20.75 90x21.75 100x22.75 110x23.75 120x24.75 125x26.25 "
+        "130x27.25 140x28.25 150x30.5 160x32.5 170x34.5 180x37",
+        30,
+    ),
+    "303": _series(
+        "72x20.75 80x22.75 90x25.25 100x27.25 110x29.25 120x31.5 130x33.5 140x36 150x38 160x40 "
+        "170x42.5 180x44.5 190x46.5 200x49.5 215x51.5",
+        30,
+    ),
+    "320": _series(
+        "42x15 47x15 55x17 62x18 68x19 75x20 80x20 90x23 95x23 100x23 110x25 115x25 125x29 130x29 "
+        "140x32 145x32 150x32",
+        20,
+    ),
+    "322": _series(
+        "62x21.25 72x24.25 80x24.75 85x24.75 90x24.75 100x26.75 110x29.75 120x32.75 125x33.25 "
+        "130x33.25 140x35.25 150x38.5 160x42.5 170x45.5 180x49",
+        30,
+    ),
+    "323": _series(
+        "72x28.75 80x32.75 90x35.25 100x38.25 110x42.25 120x45.5 130x48.5 140x51 150x54 160x58 "
+        "170x61.5 180x63.5 190x67.5 200x71.5 215x77.5",
+        30,
+    ),
+}
+#: degrees, the middle of what makers give for a series of ISO 355
+_ANGLES = {"302": 15.0, "303": 12.95, "320": 16.0, "322": 15.0, "323": 12.95}
+_BALLS = {"60": _LIGHT, "62": _MEDIUM, "63": _HEAVY}
+_ANGULAR = {"70": _LIGHT, "72": _MEDIUM, "73": _HEAVY}
+_ROLLERS = {"10": _LIGHT, "2": _MEDIUM, "3": _HEAVY, "22": _WIDE}
+_SUFFIX = {"": None, "C": 15.0, "AC": 25.0, "A5": 25.0, "B": 40.0, "BE": 40.0}
+#: under the rollers to outside diameter of drawn cups, ISO 3245
+_CUPS = {4: 8, 5: 9, 6: 10, 7: 11, 8: 12, 9: 13, 10: 14, 12: 18, 13: 19, 14: 20, 15: 21, 16: 22}
+_CUPS |= {18: 24, 20: 26, 22: 28, 25: 32, 28: 35, 30: 37, 35: 42, 40: 47, 45: 52, 50: 58}
+
+_WRITTEN = (
+    ("deep_groove", r"(?P<series>60|62|63)(?P<code>\d\d)", _BALLS),
+    ("angular_contact", r"(?P<series>70|72|73)(?P<code>\d\d)(?P<angle>C|AC|A5|BE?)?", _ANGULAR),
+    ("cylindrical", r"(?:NU|NJ|NUP|N)(?P<series>10|22|2|3)(?P<code>\d\d)(?:EC?)?", _ROLLERS),
+    ("tapered", r"(?P<series>302|303|320|322|323)(?P<code>\d\d)X?", _TAPERED),
+)
+
+
+class Boundary(NamedTuple):
+    """What a designation stands for.
+
+    Attributes
+    ----------
+    kind : str
+    bore, outer_diameter, width : float
+        m; the bore of a drawn cup is the diameter under its rollers.
+    contact_angle : float or None
+        rad, where a suffix tells it.
+    """
+
+    kind: str
+    bore: float
+    outer_diameter: float
+    width: float
+    contact_angle: float | None = None
+
+
+def boundary(designation: str) -> Boundary:
+    """Kind and boundary dimensions of a bearing by its designation.
+
+    Parameters
+    ----------
+    designation : str
+        Such as ``6208``, ``7210 B``, ``NU 206``, ``32018 X`` or ``BK0810``.
+
+    Returns
+    -------
+    Boundary
+
+    Raises
+    ------
+    SceneError
+        A designation that is not understood.
+
+    Examples
+    --------
+    >>> boundary("NU 206 E")
+    Boundary(kind='cylindrical', bore=0.03, outer_diameter=0.062, width=0.016, contact_angle=None)
+    """
+    plain = re.sub(r"[\s-]", "", designation.upper())
+    for kind, pattern, table in _WRITTEN:
+        match = re.fullmatch(pattern, plain)
+        if not match:
+            continue
+        bore = _bore(match["code"])
+        sizes = table[match["series"]]
+        if bore not in sizes:
+            raise _unknown(designation)
+        outer, width = sizes[bore]
+        degrees = _SUFFIX[match["angle"] or ""] if kind == "angular_contact" else None
+        angle = None if degrees is None else math.radians(degrees)
+        return Boundary(kind, bore / 1e3, outer / 1e3, width / 1e3, angle)
+    cup = re.fullmatch(r"[BH]K(\d\d)(\d\d)", plain)
+    if cup and int(cup[1]) in _CUPS and int(cup[2]) > 0:
+        under, width = int(cup[1]), int(cup[2])
+        outer = 16 if under == 12 and width <= 10 else _CUPS[under]
+        return Boundary("needle", under / 1e3, outer / 1e3, width / 1e3)
+    raise _unknown(designation)
+
+
+def usual_angle(designation: str) -> float | None:
+    """Contact angle that tapered bearings of a series usually have, rad; None where none is known.
+
+    Examples
+    --------
+    >>> round(math.degrees(usual_angle("30310")), 2)
+    12.95
+    """
+    match = re.match(r"(302|303|320|322|323)\d\d", re.sub(r"[\s-]", "", designation))
+    return math.radians(_ANGLES[match[1]]) if match else None
+
+
+def _bore(code: str) -> int:
+    number = int(code)
+    return _BORES[number] if number < 4 else 5 * number
+
+
+def _unknown(designation: str) -> SceneError:
+    return SceneError(
+        "this designation is not understood; known are deep groove 60, 62, 63, angular contact 70, "
+        "72, 73 (C, AC, B), cylindrical N, NU, NJ, NUP 10, 2, 3, 22, tapered 302, 303, 320, 322, "
+        "323 and drawn cups HK, BK, bores 10 to 120 mm; or write kind, bore, outer_diameter, width",
+        value=show(designation),
+    )

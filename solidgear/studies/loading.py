@@ -1,0 +1,104 @@
+"""Reading a scene: catalogue bearings get their stiffness at their load.
+
+A scene file is data, and stays so: :mod:`solidgear.scene` reads it, and what a bearing's catalogue
+data mean is worked out here, once, so that all that follows sees a 6x6 like any other.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import TYPE_CHECKING
+
+from solidgear.errors import SceneError
+from solidgear.scene import file
+from solidgear.scene.toml_file import parse
+
+if TYPE_CHECKING:
+    from solidgear.bearings.solved import Solved
+    from solidgear.body import Body
+    from solidgear.scene import Scene
+
+#: rung on which bearings and shaft find their equilibrium: loads in a shaft hang little on how its
+#: shoulders are modelled
+SHAFT = "timoshenko"
+
+
+def load(path: str | os.PathLike) -> Scene:
+    """Read and resolve a scene file, and work out the stiffness of its catalogue bearings.
+
+    Parameters
+    ----------
+    path : str or path
+        A TOML file; ``geometry/pinion_overhung.toml`` describes the format, and
+        ``geometry/gearbox_catalogue.toml`` that of catalogue bearings.
+
+    Returns
+    -------
+    Scene
+        Every bearing with a 6x6. Where it came from catalogue data these are kept as its
+        `catalogue`.
+
+    Raises
+    ------
+    SceneError
+        The file, the key (``bearing[2] "2".seat_width``, counted from one), the value as written,
+        what would be right: one line for each problem, in the order of the file.
+
+    Examples
+    --------
+    >>> import solidgear as sg
+    >>> scene = sg.load("geometry/pinion_overhung.toml")
+    >>> [bearing.name for bearing in scene.bearings], scene.port.name
+    (['1', '2'], 'pinion')
+    """
+    scene = file.load(path)
+    if all(bearing.catalogue is None for bearing in scene.bearings):
+        return scene
+    return read(path, scene).scene
+
+
+def read(path: str | os.PathLike, scene: Scene | None = None) -> Solved:
+    """A scene file with all that was found out about its catalogue bearings.
+
+    Parameters
+    ----------
+    path : str or path
+    scene : Scene, optional
+        As read from it.
+
+    Returns
+    -------
+    Solved
+
+    Raises
+    ------
+    SceneError
+        As :func:`load`.
+    """
+    from solidgear.bearings.solved import solved
+
+    scene = file.load(path) if scene is None else scene
+    with explained(path):
+        return solved(scene, shaft(scene))
+
+
+@contextmanager
+def explained(path: str | os.PathLike) -> Iterator[None]:
+    """Errors of bearings told with the file, the key and the value they come from."""
+    try:
+        yield
+    except SceneError as error:
+        raise error.located(parse(os.fspath(path)), where=os.fspath(path)) from None
+
+
+def shaft(scene: Scene) -> Body | None:
+    """Body on which bearings settle, or None where none of them waits for the shaft's load."""
+    from solidgear.bearings.solved import wants_equilibrium
+
+    if not wants_equilibrium(scene):
+        return None
+    from solidgear.fidelity import build
+
+    return build(scene, SHAFT)

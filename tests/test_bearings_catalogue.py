@@ -1,0 +1,229 @@
+"""Bearings made from catalogue data: inside, clearance, preload, pairs, speed."""
+
+import math
+
+import numpy as np
+import pytest
+
+from solidgear.bearings.ball import BallRow
+from solidgear.bearings.catalogued import catalogued, state
+from solidgear.bearings.clearance import clearance_range, mounting_change
+from solidgear.bearings.geometry import Inside, ball_rating, inner_geometry, roller_rating
+from solidgear.bearings.preload import SprungRow, pushed
+from solidgear.bearings.roller import RollerRow
+from solidgear.bearings.rolling import RollingBearing
+from solidgear.bearings.spinning import SpinningBalls
+from solidgear.errors import SceneError
+from solidgear.frames import move_stiffness
+from solidgear.scene.catalogue import Catalogue
+
+#: designation, rating makers give, and the inside as published: balls, diameter, pitch, mm
+KNOWN_BALLS = (
+    ("6203", 9.95e3, 8, 6.747, 28.5),
+    ("6204", 13.5e3, 8, 7.938, 33.5),
+    ("6206", 19.5e3, 9, 9.525, 46.0),
+    ("6208", 30.7e3, 9, 12.0, 60.0),
+    ("6305", 22.5e3, 7, 11.5, 43.5),
+    ("6307", 33.5e3, 8, 13.494, 57.5),
+)
+BACK_TO_BACK = {
+    "designation": "7208 B",
+    "arrangement": "back_to_back",
+    "elements": 14,
+    "element_diameter": "11.9 mm",
+    "pitch_diameter": "60 mm",
+    "conformity": 0.52,
+}
+INSIDE = Inside(14, 11.9e-3, 0.0, 60e-3, math.radians(40), (0.52, 0.52))
+
+
+@pytest.mark.parametrize("designation, rating, count, diameter, pitch", KNOWN_BALLS)
+def test_estimated_inside_of_known_bearings(designation, rating, count, diameter, pitch):
+    # ISO 281 and the usual room: the number of balls exactly, their size within the spread
+    found = inner_geometry(Catalogue(designation=designation, load_rating=rating))
+    assert found.middle.elements == count
+    assert found.middle.diameter * 1e3 == pytest.approx(diameter, rel=0.03)
+    own = ball_rating(Inside(count, diameter / 1e3, 0.0, pitch / 1e3, 0.0, (0.52, 0.53)))
+    assert own == pytest.approx(rating, rel=0.035)
+
+
+def test_static_and_dynamic_rating_of_rollers_agree():
+    # the inside is read off C0; that C then follows within 5 % says that both formulas are right
+    for name, dynamic, static in (
+        ("NU208", 53e3, 53e3),
+        ("30206", 40.5e3, 44e3),
+        ("32018", 168e3, 270e3),
+        ("32318", 457e3, 610e3),
+    ):
+        found = inner_geometry(Catalogue(designation=name, static_rating=static))
+        assert roller_rating(found.middle) == pytest.approx(dynamic, rel=0.05), name
+
+
+def test_nothing_is_estimated_where_all_is_given():
+    data = Catalogue(**BACK_TO_BACK)
+    found = inner_geometry(data)
+    assert found.estimated == () and found.softer == found.stiffer == found.middle
+    assert found.middle == INSIDE
+
+
+@pytest.mark.parametrize(
+    "data",
+    [
+        {"designation": "6208", "load": {"z": 3000.0}},
+        {"designation": "NU 208", "load": {"z": 3000.0}, "static_rating": "53 kN"},
+        {"designation": "32018", "load": {"y": 9000.0}},
+    ],
+)
+def test_the_spread_holds_the_middle(data):
+    data = Catalogue(**data)
+    ends = []
+    for end in ("softer", "middle", "stiffer"):
+        made = catalogued(data, end)
+        ends.append(np.trace(made.bearing.tangent(state(data, made))[:3, :3]))
+    assert ends[0] < ends[1] < ends[2] < 2 * ends[0]
+
+
+def test_clearance_by_class_fit_and_temperature():
+    data = Catalogue(designation="6208", clearance="C3", load_rating="30.7 kN")
+    assert clearance_range(data) == (15e-6, 33e-6)
+    inside = inner_geometry(data).middle
+    raceway = inside.pitch - inside.diameter
+    tight = data.with_changes(shaft_interference="10 um")
+    # Lame, one material, solid shaft: the raceway widens by I d / F
+    assert mounting_change(tight, inside) == pytest.approx(-10e-6 * 0.04 / raceway)
+    warm = data.with_changes(inner_ring_warmer="20 K")
+    assert mounting_change(warm, inside) == pytest.approx(-11.5e-6 * 20 * inside.pitch)
+    assert catalogued(data).clearance == pytest.approx(24e-6)
+
+
+def single(side, height, preload=0.0, first=0.0):
+    return BallRow(
+        14, 11.9e-3, 60e-3, math.radians(40), side, 0.52, 0.52, 0.0, preload, height, first
+    )
+
+
+@pytest.mark.parametrize(
+    "arrangement, sides", [("back_to_back", (1, -1)), ("face_to_face", (-1, 1))]
+)
+def test_a_pair_is_two_single_bearings_joined_rigidly(arrangement, sides):
+    data = Catalogue(**BACK_TO_BACK | {"arrangement": arrangement, "preload": "20 um"})
+    pair = catalogued(data).bearing
+    motion = np.array([4e-6, -3e-6, 5e-6, 6e-5, 0.0, -4e-5])
+    load, stiffness = np.zeros(6), np.zeros((6, 6))
+    for side, height, first in zip(sides, (-9e-3, 9e-3), (0.0, np.pi / 14)):
+        alone = RollingBearing((single(side, 0.0, 10e-6, first),))
+        to = np.array([0.0, height, 0.0])
+        there = motion + np.concatenate([np.cross(motion[3:], to), np.zeros(3)])
+        own = alone.load(there)
+        load += own + np.concatenate([np.zeros(3), np.cross(to, own[:3])])
+        stiffness += move_stiffness(alone.tangent(there), -to)
+    load[4] = 0.0
+    assert pair.load(motion) == pytest.approx(load, rel=1e-10, abs=1e-7)
+    size = np.sqrt(np.outer(np.diag(stiffness) + 1, np.diag(stiffness) + 1))
+    assert np.all(np.abs(pair.tangent(motion) - stiffness)[np.ix_([0, 1, 2, 3, 5], [0, 1, 2, 3, 5])]
+                  <= 1e-10 * size[np.ix_([0, 1, 2, 3, 5], [0, 1, 2, 3, 5])])  # fmt: skip
+
+
+def test_back_to_back_resists_tilting_more():
+    tilt = [
+        catalogued(Catalogue(**BACK_TO_BACK | {"arrangement": a, "preload": "500 N"}))
+        .bearing.tangent(np.zeros(6))[3, 3]
+        for a in ("back_to_back", "face_to_face")
+    ]  # fmt: skip
+    assert tilt[0] > 3 * tilt[1]
+
+
+def test_preload_by_force_presses_every_row_with_it():
+    pair = catalogued(Catalogue(**BACK_TO_BACK | {"preload": "500 N"})).bearing
+    at_rest = [row.load(np.zeros(6))[1] for row in pair.rows]
+    assert at_rest == pytest.approx([500.0, -500.0], rel=1e-12)
+    # twice the displacement of a point contact at rest is the preload of a pair by displacement
+    assert pushed(single(1, 0.0), 500.0).preload * 2 == pytest.approx(9.1e-6, rel=0.2)
+
+
+def test_a_preloaded_pair_is_linear_for_small_loads():
+    # to first order both rows change alike and opposite: k grows as the square of load over preload
+    pair = catalogued(Catalogue(**BACK_TO_BACK | {"preload": "2 kN"})).bearing
+    k0 = pair.tangent(np.zeros(6))[1, 1]
+    gaps = [abs(f / k0 / pair.motion([0, f, 0, 0, 0, 0])[1] - 1) for f in (20.0, 200.0)]
+    assert gaps[0] < 1e-5 and gaps[1] == pytest.approx(100 * gaps[0], rel=0.05)
+
+
+def test_a_spring_keeps_its_force():
+    row = pushed(single(-1, 9e-3), 500.0)
+    stiff, soft = SprungRow(row, 1e15), SprungRow(row, 1e3)
+    motions = np.random.default_rng(0).normal(size=(20, 6)) * [2e-6, 2e-6, 2e-6, 3e-5, 0, 3e-5]
+    assert np.allclose(stiff.load(motions), row.load(motions), rtol=1e-5, atol=1e-3)
+    assert soft.load(motions)[:, 1] == pytest.approx(-500.0, abs=0.02)
+    sprung = SprungRow(row, 3e7)
+    step = 1e-9
+    for k in (0, 1, 2):
+        shift = step * np.eye(6)[k]
+        slope = (sprung.load(motions + shift) - sprung.load(motions - shift)) / (2 * step)
+        assert np.allclose(slope, sprung.tangent(motions)[:, :, k], rtol=1e-6, atol=1e-6 * 1e8)
+
+
+def test_spinning_balls_without_speed_are_still():
+    row = single(1, 5e-3)
+    motions = np.random.default_rng(1).normal(size=(20, 6)) * [1e-5, 1e-5, 1e-5, 2e-4, 0, 2e-4]
+    slow = SpinningBalls(row, 1e-3)
+    assert np.allclose(slow.load(motions), row.load(motions), rtol=1e-7, atol=1e-6)
+    loaded = np.all(row.contacts(motions).load > 0, axis=1)
+    assert np.allclose(slow.tangent(motions)[loaded], row.tangent(motions)[loaded], rtol=1e-5)
+
+
+def test_tangent_at_speed_is_exact():
+    fast = SpinningBalls(single(1, 5e-3, 5e-6), 1500.0)
+    motions = np.random.default_rng(2).normal(size=(30, 6)) * [5e-6, 5e-6, 5e-6, 1e-4, 0, 1e-4]
+    tangent = fast.tangent(motions)
+    size = np.sqrt(tangent.diagonal(axis1=1, axis2=2).max(axis=0))
+    for k, step in ((0, 1e-9), (1, 1e-9), (2, 1e-9), (3, 3e-8), (5, 3e-8)):
+        shift = step * np.eye(6)[k]
+        slope = (fast.load(motions + shift) - fast.load(motions - shift)) / (2 * step)
+        gap = np.abs(slope - tangent[:, :, k])[:, [0, 1, 2, 3, 5]] / size[[0, 1, 2, 3, 5]]
+        assert gap.max() < 1e-6 * size[k]
+
+
+def test_speed_presses_the_outer_ring_and_flattens_its_angle():
+    row = single(1, 0.0)
+    for speed in (500.0, 1500.0):
+        bearing = RollingBearing((SpinningBalls(row, speed),))
+        motion = bearing.motion([0, 2e3, 0, 0, 0, 0])
+        inner, outer = SpinningBalls(row, speed).angles(motion)
+        assert np.all(inner > math.radians(40)) and np.all(outer < inner)
+        # along y the balls hand on what they get; the gyroscopic couple is the outer ring's alone
+        (balls,) = bearing.contacts(motion)
+        assert 14 * balls.load[0] * np.sin(balls.angle[0]) == pytest.approx(2e3, rel=1e-9)
+
+
+def test_needle_of_the_reducer():
+    # INA BK0810: 8 x 12 x 10 mm; nothing along y, its stiffness by its load
+    data = Catalogue(designation="BK0810", load={"z": "300 N"})
+    made = catalogued(data)
+    stiffness = made.bearing.tangent(state(data, made))
+    assert not stiffness[1].any() and isinstance(made.bearing.rows[0], RollerRow)
+    assert 1e8 < stiffness[2, 2] < 4e8
+
+
+BAD = (
+    ({"designation": "6208", "contact_angle": "15 deg"}, "no contact angle of its own"),
+    ({"designation": "NU 206", "elements": 40, "element_diameter": "9 mm"}, "more than fit on"),
+    ({"designation": "6208", "conformity": 0.49}, "above 0.5"),
+    ({"designation": "hurz"}, "not understood"),
+    (BACK_TO_BACK | {"preload": "90 kN", "static_rating": "20 kN"}, "beyond the static rating"),
+    ({"designation": "7208 B", "load": {"y": "-1 kN"}}, r"holds the shaft towards \+y only"),
+    ({"designation": "6206", "load_rating": "195 kN"}, "has a rating of"),
+    ({"designation": "6208", "preload": "10 N"}, "not preloaded along y"),
+    ({"designation": "NU 206", "speed": "3000 rpm"}, "belongs to balls"),
+    ({"designation": "7208 B", "preload_spring": "1e6 N/m"}, "needs arrangement"),
+    ({"designation": "7208 B", "clearance": "C3"}, "no clearance class"),
+    ({"kind": "tapered", "bore": 0.05, "outer_diameter": 0.04, "width": 0.02}, "larger than the bore"),
+)  # fmt: skip
+
+
+@pytest.mark.parametrize("data, sentence", BAD, ids=[s for _, s in BAD])
+def test_bad_data_end_in_one_sentence(data, sentence):
+    with pytest.raises(SceneError, match=sentence) as refused:
+        made = catalogued(Catalogue(**data))
+        state(Catalogue(**data), made)
+    assert len(refused.value.problems) == 1

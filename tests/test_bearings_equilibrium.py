@@ -1,0 +1,242 @@
+"""Shafts in equilibrium with their bearings, scenes with catalogue bearings, and their command."""
+
+import json
+
+import numpy as np
+import pytest
+from typer.testing import CliRunner
+
+import solidgear as sg
+from solidgear.bearings.ball import BallRow
+from solidgear.bearings.bounds import Ranges
+from solidgear.bearings.equilibrium import Linear, Mounted, equilibrium
+from solidgear.bearings.roller import RollerRow
+from solidgear.bearings.rolling import RollingBearing
+from solidgear.bearings.solved import solved
+from solidgear.cli import app
+from solidgear.errors import SceneError, SolidgearError
+from solidgear.scene.file import load as read
+from solidgear.studies.bearing_study import bearing_range, over_load
+
+SCENE = "geometry/gearbox_catalogue.toml"
+BALLS = RollingBearing((BallRow(count=9, diameter=9.525e-3, pitch=46e-3, clearance=8e-6),))
+ROLLERS = RollingBearing((RollerRow(13, 9e-3, 10e-3, 46.5e-3, clearance=15e-6),))
+PAIR = RollingBearing(
+    tuple(
+        BallRow(14, 11.9e-3, 60e-3, 0.698, side, preload=4e-6, height=9e-3 * -side)
+        for side in (1, -1)
+    )
+)
+
+
+@pytest.fixture(autouse=True)
+def at_the_root(monkeypatch, request):
+    monkeypatch.chdir(request.config.rootpath)
+
+
+@pytest.fixture(scope="module")
+def three():
+    """A shaft on three seats: statically indeterminate."""
+    rod = sg.Segment.cylinder("rod", length=0.4, diameter=0.03)
+    seat = {"seat_width": 0.01, "stiffness": {"kxx": 1e8}}
+    seats = [sg.Bearing(name=n, y=y, **seat) for n, y in (("A", 0.02), ("B", 0.2), ("C", 0.38))]
+    port = sg.Port(name="mesh", y=0.29, lo=0.28, hi=0.3)
+    return sg.Scene.from_parts([rod], bearings=seats, port=port)
+
+
+def by_hand(body, bearings, port, load):
+    """Picard's iteration on the full matrices of a beam: springs stand still, what contacts press
+    beyond them is a load.
+    """
+    size = sum(block.size for block in body.blocks)
+    stiffness, ports = np.zeros((size, size)), np.zeros((6 * len(body.ports), size))
+    at = 0
+    for block in body.blocks:
+        here = slice(at, at + block.size)
+        stiffness[here, here] = block.stiffness.toarray()
+        ports[body.rows(block), here] = block.ports.toarray()
+        at += block.size
+    rows = {p.name: ports[6 * k : 6 * k + 6] for k, p in enumerate(body.ports)}
+    turning = np.zeros(6)
+    turning[4] = 1e3  # thy is free: a spring that takes nothing
+    held = stiffness + rows[port].T @ np.diag(turning) @ rows[port]
+    # no stiffer than needed, or the iteration crawls; no softer than half, or it runs away
+    springs = {n: b.tangent(b.motion(np.array(f, float))) for n, (b, f) in bearings.items()}
+    for name, spring in springs.items():
+        held = held + rows[name].T @ spring @ rows[name]
+    inverse = np.linalg.inv(held)
+    u = np.zeros(size)
+    for _ in range(4000):
+        force = rows[port].T @ np.asarray(load, float)
+        for name, (bearing, _) in bearings.items():
+            q = rows[name] @ u
+            force += rows[name].T @ (springs[name] @ q - bearing.load(q))
+        following = u + 0.6 * (inverse @ force - u)
+        if np.abs(following - u).max() < 1e-19:
+            break
+        u = following
+    return {name: row @ u for name, row in rows.items()}
+
+
+def test_three_bearings_against_springs_iterated_by_hand(three):
+    body = sg.build(three, "euler")
+    load = np.array([300.0, 500.0, 2500.0, 20.0, 0, -5.0])
+    mounts = {"A": (BALLS, [0, 0, 3e3, 0, 0, 0]), "B": (ROLLERS, [0, 0, 9e3, 0, 0, 0])}
+    mounts["C"] = (PAIR, [0, 0, 4e3, 0, 0, 0])
+    found = equilibrium(body, [Mounted(n, b) for n, (b, _) in mounts.items()], {"mesh": load})
+    hand = by_hand(body, mounts, "mesh", load)
+    for name in ("A", "B", "C", "mesh"):
+        keep = [0, 1, 2, 3, 5]
+        scale = np.abs(hand[name][keep]) + 1e-3 * np.array([1e-5, 1e-5, 1e-5, 1e-4, 1e-4])
+        assert np.all(np.abs(found.motion[name] - hand[name])[keep] < 1e-8 * scale + 1e-14)
+    total = sum(found.load.values())[:3]
+    assert total == pytest.approx(load[:3], rel=1e-9)
+
+
+def test_linear_bearings_give_what_condense_gives(three):
+    body = sg.build(three, "timoshenko")
+    stiffness = np.diag([1e8, 5e7, 2e8, 1e4, 0, 1e4])
+    linear = [Mounted(n, Linear(stiffness)) for n in ("A", "B", "C")]
+    load = np.array([100.0, -50.0, 700.0, 3.0, 0, 1.0])
+    found = equilibrium(body, linear, {"mesh": load}, housing=4e8)
+    scene = three.with_changes(
+        bearings=[b.with_changes(matrix=stiffness) for b in three.bearings], housing_axial=4e8
+    )
+    at = sg.condense(body, scene, port="mesh")
+    keep = [0, 1, 2, 3, 5]
+    expected = at.compliance[np.ix_(keep, keep)] @ load[keep]
+    assert found.motion["mesh"][keep] == pytest.approx(expected, rel=1e-8)
+
+
+def test_series_spring_and_housing_take_the_bearings_load(three):
+    body = sg.build(three, "timoshenko")
+    mounts = [Mounted("A", ROLLERS), Mounted("C", PAIR, spring=2e7)]
+    load = {"mesh": [0, 800.0, 1500.0, 0, 0, 0]}
+    found = equilibrium(body, mounts, load, housing=5e7)
+    ring = found.motion["C"][1] - found.relative["C"][1]
+    assert ring == pytest.approx(800.0 / 2e7 + 800.0 / 5e7, rel=1e-8)
+
+
+def test_lost_load_is_told(three):
+    body = sg.build(three, "timoshenko")
+    loose = RollingBearing((BallRow(9, 9.525e-3, 46e-3, clearance=2e-3),))
+    mounts = [Mounted("A", BALLS), Mounted("B", loose), Mounted("C", BALLS)]
+    assert equilibrium(body, mounts, {"mesh": [0, 0, 300.0, 0, 0, 0]}).lost == ("B",)
+    with pytest.raises(SolidgearError, match="no bearing holds the shaft in y under 500 N in y"):
+        equilibrium(body, [Mounted(n, ROLLERS) for n in "ABC"], {"mesh": [0, 500.0, 0, 0, 0, 0]})
+
+
+def test_a_scene_is_data_until_it_is_loaded():
+    scene = read(SCENE)
+    assert scene.bearings[0].matrix is None and scene.bearings[0].status == "estimated"
+    assert scene.bearings[1].status == "calculated"
+    with pytest.raises(SceneError, match="read the scene with solidgear.load"):
+        _ = scene.bearings[0].stiffness
+    loaded = sg.load(SCENE)
+    assert loaded.bearings[0].catalogue == scene.bearings[0].catalogue
+    again = json.loads(json.dumps(loaded.as_dict(), allow_nan=False))
+    assert again["bearings"][1]["catalogue"]["preload"]["force"] == 400.0
+
+
+def test_the_equilibrium_carries_the_load_of_the_scene():
+    scene = read(SCENE)
+    body = sg.build(scene, "timoshenko")
+    found = solved(scene, body).equilibrium
+    assert sum(found.load.values())[:3] == pytest.approx([3800.0, -1000.0, 1400.0], rel=1e-9)
+    assert found.lost == () and found.unbalanced < 1e-9
+    # solids find the same loads: those of a shaft on two seats are statics
+    light = sg.build(scene, "harmonic", order=2, layers=1)
+    other = solved(scene, light).equilibrium
+    assert other.load["A"][:3] == pytest.approx(found.load["A"][:3], rel=0.02)
+
+
+def test_more_load_makes_stiffer_bearings():
+    scene = read(SCENE)
+    curves = over_load(scene, sg.build(scene, "timoshenko"), factors=(0.25, 0.5, 1.0, 2.0))
+    for k in (0, 2):
+        assert np.all(np.diff(curves["A"].middle[:, k]) > 0)
+        assert np.all(curves["A"].low[:, k] <= curves["A"].middle[:, k])
+
+
+def test_range_holds_what_the_scene_says():
+    scene = read(SCENE)
+    found = bearing_range(scene, Ranges(load=(0.5, 1.2)), n=4)
+    first = next(b for b in found.bounds if b.mode == "bending 1")
+    assert first.low < 0.9 * first.middle and first.high > 1.01 * first.middle
+    torsion = [b for b in found.bounds if "torsion" in b.mode]
+    assert all(b.low == pytest.approx(b.high, rel=1e-9) for b in torsion)
+
+
+def test_the_report_tells_the_range_beside_the_models():
+    found = sg.compare(sg.load(SCENE), ("timoshenko",))
+    told = found.record.bearing_range
+    (first,) = (b for b in told["bounds"] if b["mode"] == "bending 1")
+    own = found.rungs["timoshenko"].modes
+    assert first["low"] < first["frequency_hz"] < first["high"]
+    assert first["frequency_hz"] == pytest.approx(
+        next(m.frequency_hz for m in own.modes if m.name == "bending 1"), rel=1e-2
+    )
+    assert "clearance over its class" in told["varied"]
+    assert not sg.compare(
+        sg.load("geometry/shaft_stepped.toml"), ("euler",)
+    ).record.bearing_range  # springs as given have none
+
+
+def run(*args):
+    return CliRunner().invoke(app, [str(a) for a in args], catch_exceptions=True)
+
+
+def test_the_command(tmp_path):
+    chart = tmp_path / "bearings.png"
+    done = run("bearing", SCENE, "--out", chart)
+    assert done.exit_code == 0, done.output
+    assert "4 of 13 elements carry" in done.output and chart.stat().st_size > 20_000
+    other = run("bearing", SCENE, "--bearing", "A", "--load", "z=9 kN", "--json")
+    (row,) = json.loads(other.stdout)["bearings"]
+    assert row["load"][2] == pytest.approx(9e3) and row["status"] == "estimated"
+
+
+@pytest.mark.parametrize(
+    "args, sentence",
+    [
+        (("--load", "z"), "write components such as"),
+        (("--load", "w=3"), "unknown key"),
+        (("--bearing", "Q"), "no bearing of catalogue data has this name"),
+        (("--out", "a.pdf"), "no picture ends like that"),
+        (("--load-range", "2:1"), "the lower first"),
+    ],
+)
+def test_bad_options_end_in_one_sentence(args, sentence):
+    done = run("bearing", SCENE, *args)
+    assert done.exit_code != 0 and sentence in str(done.exception)
+
+
+def test_a_pair_that_is_pushed_apart_is_told(tmp_path):
+    path = tmp_path / "loose.toml"
+    path.write_text(open(SCENE).read().replace('preload = "400 N"', 'load = {y = "2 kN"}'))
+    done = run("bearing", path, "--bearing", "B")
+    assert "the row at the upper end of y carries nothing" in " ".join(done.output.split())
+
+
+def test_scenes_without_catalogue_bearings_say_so():
+    done = run("bearing", "geometry/shaft_stepped.toml")
+    assert "no bearing is described by catalogue data" in str(done.exception)
+
+
+def test_a_bad_file_names_the_key(tmp_path):
+    text = open(SCENE).read()
+    for old, new, sentence in (
+        ('clearance = "CN"', 'clearance = "C7"', 'bearing[1] "A".catalogue.clearance = "C7"'),
+        ('preload = "400 N"', 'preload = "2 s"', 'bearing[2] "B".catalogue.preload = "2 s"'),
+        ('load_rating = "48 kN"', 'load_rating = "4 N"', 'bearing[1] "A".catalogue.static'),
+        ('x = "3.8 kN"', 'thy = "3 N*m"', "load.thy"),
+    ):
+        path = tmp_path / "bad.toml"
+        path.write_text(text.replace(old, new))
+        with pytest.raises(SceneError) as refused:
+            if "static" in sentence:
+                path.write_text(
+                    path.read_text().replace('static_rating = "48 kN"', 'static_rating = "4 N"')
+                )
+            sg.load(path)
+        assert sentence in str(refused.value), str(refused.value)

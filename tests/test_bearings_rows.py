@@ -1,0 +1,296 @@
+"""Rows of balls and rollers: published cases, closed forms, and what a tangent has to be."""
+
+import numpy as np
+import pytest
+
+from solidgear.bearings.ball import BallRow
+from solidgear.bearings.hertz import line_constant, point_contact
+from solidgear.bearings.roller import RollerRow
+from solidgear.bearings.rolling import RollingBearing
+from solidgear.errors import SolidgearError
+from solidgear.frames import rotation
+
+#: a commercial program's ISO/TS 16281 results for seven balls of 11.5 mm on 43.5 mm, 210 GPa, as
+#: tabulated in the public repository minzhun/ISO16281, Test_BallBearing.py: clearance, load (x, y),
+#: displacement (x, y), m
+PUBLISHED = (
+    (0.0, (1000.0, 0.0), (15.1101e-6, None)),
+    (0.0, (0.0, 1000.0), (None, 133.5381e-6)),
+    (10e-6, (1000.0, 0.0), (21.223e-6, None)),
+    (10e-6, (0.0, 1000.0), (None, 149.1717e-6)),
+    (10e-6, (1000.0, 1000.0), (19.5923e-6, 146.4603e-6)),
+)
+
+ANGULAR_218 = BallRow(
+    count=16,
+    diameter=22.225e-3,
+    pitch=125.26e-3,
+    angle=np.radians(40.0),
+    inner=11.6281 / 22.225,
+    outer=11.6281 / 22.225,
+    E=206.844e9,
+)
+TAPERED = RollerRow(
+    count=16, diameter=12e-3, length=18e-3, pitch=100e-3, angle=np.radians(15), side=-1
+)
+ROWS = {
+    "angular": ANGULAR_218,
+    "groove": BallRow(count=7, diameter=11.5e-3, pitch=43.5e-3, clearance=10e-6, height=0.01),
+    "tapered": TAPERED,
+    "cylindrical": RollerRow(
+        count=13, diameter=9e-3, length=10e-3, pitch=46.5e-3, clearance=10e-6, height=-0.02
+    ),
+}
+row_of_each_kind = pytest.mark.parametrize("row", ROWS.values(), ids=ROWS.keys())
+
+
+def groove(clearance):
+    return RollingBearing((BallRow(count=7, diameter=11.5e-3, pitch=43.5e-3, clearance=clearance),))
+
+
+def random_motions(n, seed=0):
+    """Motions that load some elements and leave others."""
+    size = np.array([2e-5, 2e-5, 2e-5, 4e-4, 0.0, 4e-4])
+    return np.random.default_rng(seed).normal(size=(n, 6)) * size
+
+
+@pytest.mark.parametrize("clearance, load, expected", PUBLISHED)
+def test_published_displacements(clearance, load, expected):
+    motion = groove(clearance).motion([*load, 0, 0, 0, 0])
+    for found, known in zip(motion, expected):
+        if known is not None:  # the same integrals on both sides
+            assert found == pytest.approx(known, rel=5e-5)
+
+
+def test_published_tilt():
+    # the reference takes half the pitch diameter for the lever of the moment, we the centre of the
+    # groove: (2 f_i - 1) D / D_pw = 1.06 % apart, and half as much again where load turns angles
+    alone = groove(0.0).motion([0, 0, 0, 0, 0, 1.0])
+    both = groove(10e-6).motion([1000.0, 1000.0, 0, 0, 0, 0])
+    skew = groove(10e-6).motion([1000.0, 1000.0, 0, 1.0, 0, 0])
+    assert np.hypot(skew[0], skew[2]) == pytest.approx(19.7144e-6, rel=1e-3)
+    assert skew[1] == pytest.approx(146.3084e-6, rel=1e-3)
+    assert np.hypot(skew[3], skew[5]) == pytest.approx(2.7239e-3, rel=0.015)
+    assert abs(alone[5]) == pytest.approx(3.6957e-3, rel=0.015)
+    assert abs(both[5]) == pytest.approx(2.6872e-3, rel=0.015)
+
+
+def test_angular_contact_218():
+    # Harris and Kotzalas: 41.5 degrees; Ricci (2009) gives 36.02 micrometres and 1679 N
+    bearing = RollingBearing((ANGULAR_218,))
+    motion = bearing.motion([0, 17.8e3, 0, 0, 0, 0])
+    (balls,) = bearing.contacts(motion)
+    assert np.degrees(balls.angle) == pytest.approx(41.50, rel=1e-3)
+    assert motion[1] == pytest.approx(36.02e-6, rel=1e-3)
+    assert balls.load == pytest.approx(1679.0, rel=1e-3)
+
+
+def test_contact_constant_between_sphere_and_cylinder():
+    # crossed cylinders are a sphere on a plane; a slender ellipse approaches its own limit slowly
+    sphere = point_contact(200.0, 200.0)
+    assert sphere.long == sphere.short
+    nearly = point_contact(200.0, 200.0 * (1 + 1e-7))
+    assert nearly.constant == pytest.approx(sphere.constant, rel=1e-6)
+    slender = point_contact(200.0, 2e-4)
+    assert slender.long / slender.short > 1e3
+
+
+def test_rollers_in_closed_form():
+    # pushed along y all slices of straight rollers press alike
+    straight = RollingBearing(
+        (RollerRow(16, 12e-3, 18e-3, 0.1, angle=0.25, side=-1, profile="straight"),)
+    )
+    push, s, c = 11e-6, np.sin(0.25), np.cos(0.25)
+    motion = np.array([0, -push, 0, 0, 0, 0])
+    press = line_constant(18e-3) * (push * s) ** (10 / 9)
+    assert straight.load(motion)[1] == pytest.approx(-16 * press * s, rel=1e-12)
+    slope = 10 / 9 * press / (push * s)
+    found = straight.tangent(motion)
+    assert found[1, 1] == pytest.approx(16 * slope * s**2, rel=1e-12)
+    assert found[0, 0] == pytest.approx(8 * slope * c**2, rel=1e-12)
+    # the mean normal passes R tan(angle) from the reference point
+    assert found[0, 5] / found[0, 0] == pytest.approx(-0.05 * np.tan(0.25), rel=1e-12)
+    # and slices off the middle add l^2 / 12 (1 - 1/n^2) / cos^2
+    own = 18e-3**2 / 12 * (1 - 1 / 30**2) / c**2
+    assert found[5, 5] / found[0, 0] == pytest.approx((0.05 * np.tan(0.25)) ** 2 + own, rel=1e-12)
+
+
+def test_a_radial_row_of_many_rollers_meets_the_load_integral():
+    # J of Sjovall: F = n c d^p (1 / 2 pi) integral of cos^(p + 1) over the loaded half
+    from scipy.integrate import quad
+
+    row = RollerRow(400, 1e-3, 10e-3, 0.2, profile="straight")
+    integral = quad(lambda t: np.cos(t) ** (19 / 9), -np.pi / 2, np.pi / 2, epsabs=1e-13)[0]
+    load = 400 * line_constant(10e-3) * 5e-6 ** (10 / 9) * integral / (2 * np.pi)
+    assert row.load(np.array([5e-6, 0, 0, 0, 0, 0]))[0] == pytest.approx(load, rel=1e-6)
+
+
+@row_of_each_kind
+def test_load_is_the_slope_of_energy(row):
+    motions, h = random_motions(50), 1e-9
+    for k, step in enumerate(np.eye(6) * h):
+        slope = (row.energy(motions + step) - row.energy(motions - step)) / (2 * h)
+        # truncation of a central difference over a nanometre, where contacts come and go
+        assert np.allclose(slope, row.load(motions)[:, k], atol=0.3)
+
+
+def reference_load(row, motion):
+    """The same physics written anew, one element at a time, of complex motions as well."""
+    x, y, z, tx, _, tz = motion
+    total = np.zeros(6, complex)
+    for turn in row.azimuth:
+        c, s = np.cos(turn), np.sin(turn)
+        if isinstance(row, BallRow):
+            free = (row.inner + row.outer - 1) * row.diameter
+            out = (row.inner - 0.5) * row.diameter
+            points = [(out * np.cos(row.angle), out * np.sin(row.angle) * row.side, 0.0)]
+        else:
+            normal = np.array([np.cos(row.angle), row.side * np.sin(row.angle)])
+            points = [(-a * normal[1], a * normal[0], d) for a, d in zip(row.along, row.drop)]
+        for outwards, up, drop in points:
+            place = np.array([c * (row.pitch / 2 + outwards), row.height + up, 0.0])
+            place[2] = s * (row.pitch / 2 + outwards)
+            moved = np.array([x, y, z]) + np.cross([tx, 0, tz], place)
+            radial, axial = moved[0] * c + moved[2] * s, moved[1]
+            if isinstance(row, BallRow):
+                radial += free * np.cos(row.angle) - row.clearance / 2
+                axial += row.side * free * np.sin(row.angle)
+                if row.angle and (row.side * axial).real < 0:
+                    axial = 0.0
+                length = np.sqrt(radial**2 + axial**2)
+                direction, approach = np.array([radial, axial]) / length, length - free
+                constant, power = row.constant, 3 / 2
+            else:
+                approach = normal @ [radial, axial] - row.clearance / 2 * normal[0] - 2 * drop
+                direction, constant, power = normal, row.constant / row.slices, 10 / 9
+            if approach.real > 0:
+                press = constant * approach**power
+                force = press * np.array([direction[0] * c, direction[1], direction[0] * s])
+                total += np.concatenate([force, np.cross(place, force)])
+    return total
+
+
+@row_of_each_kind
+def test_tangent_is_the_derivative_of_a_load_written_anew(row):
+    # a complex step of 1e-30 has no truncation and no cancellation
+    for motion in random_motions(3, seed=1):
+        own = row.load(motion)
+        anew = reference_load(row, motion.astype(complex))
+        assert np.allclose(own, np.where(np.arange(6) == 4, 0, anew.real), rtol=1e-9, atol=1e-6)
+        for k in (0, 1, 2, 3, 5):
+            stepped = motion.astype(complex)
+            stepped[k] += 1e-30j
+            column = reference_load(row, stepped).imag / 1e-30
+            column[4] = 0.0  # of thy by rounding
+            scale = np.sqrt(np.diag(row.tangent(motion))) * np.sqrt(row.tangent(motion)[k, k])
+            assert np.all(np.abs(row.tangent(motion)[:, k] - column) <= 1e-9 * scale.max() + 1e-6)
+
+
+@row_of_each_kind
+def test_tangent_equals_differences_over_random_loads(row):
+    motions = random_motions(10_000)
+    tangent = row.tangent(motions)
+    step = np.array([1e-10] * 3 + [3e-9] * 3)
+    # a contact that begins within the step has no derivative there: those motions are left out
+    pressed = [row.contacts(motions + d * step).load > 0 for d in (-1, 0, 1)]
+    usable = np.all(pressed[0] == pressed[2], axis=1) & np.any(pressed[1], axis=1)
+    if isinstance(row, RollerRow):  # of a slice at its onset the slope itself is not smooth
+        nearest = np.abs(row._start + motions[:, [0, 1, 2, 3, 5]] @ row._normal.T).min(axis=1)
+        usable &= nearest > 1e-8
+    else:
+        *_, approach = row._stretch(motions)
+        usable &= np.where(approach > 0, approach, 1.0).min(axis=1) > 1e-8
+    assert usable.sum() > 1000
+    scale = np.sqrt(tangent.diagonal(axis1=1, axis2=2).max(axis=0))
+    scale[scale == 0] = np.inf  # cylindrical rollers along y
+    for k in (0, 1, 2, 3, 5):
+        shift = np.zeros(6)
+        shift[k] = step[k]
+        slope = (row.load(motions + shift) - row.load(motions - shift)) / (2 * step[k])
+        gap = np.abs(slope - tangent[:, :, k])[usable] / scale / scale[k]
+        assert gap.max() < 1e-6
+
+
+@row_of_each_kind
+def test_tangent_is_symmetric_semidefinite_and_free_in_torsion(row):
+    tangent = row.tangent(random_motions(10_000, seed=2))
+    assert np.array_equal(tangent, tangent.swapaxes(1, 2))
+    assert not tangent[:, 4].any() and not tangent[:, :, 4].any()
+    size = np.array([1, 1, 1, 20.0, 20.0, 20.0])  # a radian at 50 mm
+    value = np.linalg.eigvalsh(tangent * np.outer(size, size))
+    assert np.all(value[:, 0] >= -1e-12 * value[:, -1])
+    loaded = np.abs(row.load(random_motions(10_000, seed=2))).max(axis=1) > 0
+    assert np.all(value[loaded, -1] > 0) and not value[~loaded].any()
+
+
+@row_of_each_kind
+def test_turning_the_frame_by_one_pitch_changes_nothing(row):
+    q = rotation(1, 2 * np.pi / row.count)
+    motions = random_motions(20)
+    assert np.allclose(row.load(motions @ q.T), row.load(motions) @ q.T, rtol=1e-9, atol=1e-6)
+    turned = q @ row.tangent(motions) @ q.T
+    assert np.allclose(row.tangent(motions @ q.T), turned, rtol=1e-9, atol=1e-3)
+
+
+@row_of_each_kind
+def test_energy_is_conserved_around_a_closed_path(row):
+    t, weight = np.polynomial.legendre.leggauss(40)
+    corners = random_motions(5, seed=3)
+    corners = np.vstack([corners, corners[:1]])
+    work = gross = 0.0
+    for a, b in zip(corners, corners[1:]):
+        pieces = np.linspace(0, 1, 41)
+        for low, high in zip(pieces, pieces[1:]):
+            along = low + (high - low) * (t + 1) / 2
+            power = row.load(a + along[:, None] * (b - a)) @ (b - a)
+            part = weight @ power * (high - low) / 2
+            work, gross = work + part, gross + abs(part)
+    # what the quadrature leaves where contacts begin inside a piece
+    assert abs(work) < 1e-8 * gross
+
+
+@pytest.mark.parametrize("name, power", [("angular", 1 / 3), ("tapered", 1 / 10)])
+def test_stiffness_grows_with_load(name, power):
+    # balls: k ~ F^(1/3), until the contact angle turns; rollers: F^(1/10), once the profile is
+    # small beside the approach, so straight ones are taken
+    row = ROWS[name]
+    if name == "tapered":
+        row = RollerRow(16, 12e-3, 18e-3, 0.1, angle=np.radians(15), side=-1, profile="straight")
+    bearing = RollingBearing((row,))
+    loads = row.side * np.geomspace(1e-3, 1e3, 13)
+    along = [bearing.tangent(bearing.motion([0, f, 0, 0, 0, 0]))[1, 1] for f in loads]
+    assert np.all(np.diff(along) > 0)
+    exponent = np.diff(np.log(along)) / np.diff(np.log(np.abs(loads)))
+    assert exponent[:2] == pytest.approx(power, rel=2e-3)
+
+
+def test_what_a_bearing_cannot_carry():
+    with pytest.raises(SolidgearError, match="nothing holds it in y"):
+        RollingBearing((TAPERED,)).motion([0, 5e3, 0, 0, 0, 0])
+    with pytest.raises(SolidgearError, match="no torque about its axis"):
+        RollingBearing((TAPERED,)).motion([0, -5e3, 0, 0, 1.0, 0])
+
+
+def test_random_loads_are_carried():
+    pair = RollingBearing(
+        tuple(
+            RollerRow(16, 12e-3, 18e-3, 0.1, angle=0.26, side=side, height=0.02 * side)
+            for side in (-1, 1)
+        )
+    )
+    rng = np.random.default_rng(5)
+    for _ in range(50):
+        load = rng.normal(size=6) * [1e4, 1e4, 1e4, 2e2, 0, 2e2] * 10 ** rng.uniform(-3, 1)
+        left = np.abs(pair.load(pair.motion(load)) - load).max()
+        assert left < 1e-9 * np.abs(load).max()
+
+
+@pytest.mark.parametrize("case", ["ball_bearing_displacement", "angular_contact_218", "roller_row"])
+def test_one_per_cent_of_a_contact_is_not_ok(case, monkeypatch):
+    from validation.manual import CASES
+
+    stiffer = {"BallRow": BallRow.constant.func, "RollerRow": RollerRow.constant.func}
+    for kind, right in ((BallRow, stiffer["BallRow"]), (RollerRow, stiffer["RollerRow"])):
+        monkeypatch.setattr(kind, "constant", property(lambda row, right=right: 1.01 * right(row)))
+    (model,) = CASES[case].models
+    assert not all(line.ok for line in CASES[case].lines(model, model.solve().values))
