@@ -1,1 +1,1 @@
-"""Rolling bearings from catalogue data: load, tangent stiffness at load, equilibrium with a shaft."""
+"""Rolling bearings from catalogue data: load, stiffness at load, equilibrium with a shaft."""

@@ -1,16 +1,17 @@
 """A row of balls: Hertz point contact, contact angle by geometry at every ball.
 
-The centres of curvature of both grooves are ``A = (f_i + f_o - 1) D`` apart when a ball just touches
-both rings.  With s the vector between them in the plane of a ball, radial and axial,
+The centres of curvature of both grooves are ``A = (f_i + f_o - 1) D`` apart when a ball just
+touches both rings.  With s the vector between them in the plane of a ball, radial and axial,
 
     s = s0 + (radial, axial) motion of the inner groove's centre,     delta = |s| - A,
 
-the ball presses along s with ``Q = c delta^(3/2)``.  This is Jones's and ISO/TS 16281's statics; that
-of de Mul, Vree and Maas (1989) and of Lim and Singh (1990) is the same formula in other symbols.  Of
-the tangent ``Q' n n' + (Q / |s|) (1 - n n')`` the second part is the turning of the contact angle.
+the ball presses along s with ``Q = c delta^(3/2)``.  This is Jones's and ISO/TS 16281's statics;
+that of de Mul, Vree and Maas (1989) and of Lim and Singh (1990) is the same formula in other
+symbols.  Of the tangent ``Q' n n' + (Q / |s|) (1 - n n')`` the second part is the turning of the
+contact angle.
 
-A groove with a contact angle has one shoulder: beyond its bottom it runs on as a cylinder, so that a
-ball is then pressed radially, and nothing holds the shaft the other way.  A deep groove has both.
+A groove with a contact angle has one shoulder: beyond its bottom it runs on as a cylinder, so that
+a ball is then pressed radially, and nothing holds the shaft the other way.  A deep groove has both.
 
 The load acts on the inner ring along the line through both centres, so that its moment has the
 lever of the inner groove's centre.  ISO/TS 16281 takes half the pitch diameter in its moment

@@ -1,8 +1,8 @@
 """From ranges of what is not known of bearings to the points where a range of answers is sought.
 
-Corners of the box first: stiffness grows with load and preload and falls with clearance, so the ends
-of a frequency mostly sit there. A low-discrepancy sample (Sobol) looks inside for what the corners
-miss, such as a row that comes into contact half way.
+Corners of the box first: stiffness grows with load and preload and falls with clearance, so the
+ends of a frequency mostly sit there. A low-discrepancy sample (Sobol) looks inside for what the
+corners miss, such as a row that comes into contact half way.
 """
 
 from __future__ import annotations
@@ -46,8 +46,8 @@ class Ranges:
             low, high = getattr(self, name)
             if not 0 < low <= high:
                 raise SolidgearError(
-                    f"range of {name} {show([low, high])}: two factors above zero, the lower first, "
-                    "such as 0.5:1.2"
+                    f"range of {name} {show([low, high])}: two factors above zero, the lower "
+                    "first, such as 0.5:1.2"
                 )
 
     @property

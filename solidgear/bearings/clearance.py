@@ -6,9 +6,9 @@ on a shaft with a bore b widens at its raceway by
 
     I (d / F) (1 - (b/d)^2) / (1 - (b/F)^2),
 
-which is ``I d / F`` on a solid shaft (Harris and Kotzalas, Essential Concepts, ch. 3; it follows from
-equal radial stress and the interference shared at d).  A housing is taken as very thick: its ring
-narrows by ``I G / D`` at the raceway G.
+which is ``I d / F`` on a solid shaft (Harris and Kotzalas, Essential Concepts, ch. 3; it follows
+from equal radial stress and the interference shared at d).  A housing is taken as very thick: its
+ring narrows by ``I G / D`` at the raceway G.
 """
 
 from __future__ import annotations

@@ -6,8 +6,8 @@ the stiffness between ports
     K = Q (Q' F Q)^-1 Q',      Q a basis of the loads in equilibrium, P' Q = 0,
 
 without any rigid motion in it; torques about y are left out, and with them the free turning: they
-leave by the drive, and no bearing feels them.  Unknown are the motions d of the ports, of a ring w on
-a spring in series with a bearing, and of the housing h on its own.  With the contacts' energy V
+leave by the drive, and no bearing feels them.  Unknown are the motions d of the ports, of a ring w
+on a spring in series with a bearing, and of the housing h on its own.  With the contacts' energy V
 
     K d + sum of V'(d - w - h) = load,      k_w w = V',      k_h h = sum of V',
 

@@ -9,8 +9,9 @@ ISO 76:2006 say how it is computed from them,
     rollers   C = b_m f_c (l cos(a))^(7/9) Z^(3/4) Dw^(29/27),    C_0 = 44 (1 - g) Z l Dw cos(a)
 
 (N, mm; g = Dw cos(a) / Dpw).  The shares were read off bearings whose inside is published (6203 to
-6311, 7208, 218, NU205 to NU312, 30206 to 32310): :data:`SHARES` holds their middle and their spread.
-What is estimated is marked, and comes with a softer and a stiffer inside at the ends of the spread.
+6311, 7208, 218, NU205 to NU312, 30206 to 32310): :data:`SHARES` holds their middle and their
+spread. What is estimated is marked, and comes with a softer and a stiffer inside at the ends of the
+spread.
 """
 
 from __future__ import annotations
@@ -60,8 +61,8 @@ SHARES = {
     "tapered": Shares(Share(0.245, 0.015), Share(0.70, 0.08), Share(0.92, 0.04), 1.1),
     "needle": Shares(Share(0.40, 0.05), Share(0.72, 0.08), Share(0.65, 0.10), 1.0),
 }
-#: rad; of a contact angle that nothing tells.  It has no spread here: a steeper one is stiffer along
-#: y and softer across it
+#: rad; of a contact angle that nothing tells.  It has no spread here: a steeper one is stiffer
+#: along y and softer across it
 ANGLE = {"angular_contact": math.radians(40), "tapered": math.radians(15)}
 #: groove radius over ball diameter: ISO 281's own, and the range in use
 CONFORMITY = {"middle": (0.52, 0.53), "softer": (0.53, 0.53), "stiffer": (0.515, 0.515)}

@@ -6,8 +6,8 @@ axes ratio ``k = a / b``, the root of
     ((k^2 + 1) E(m) - 2 K(m)) / ((k^2 - 1) E(m)) = F,      m = 1 - 1/k^2,
 
 with the complete elliptic integrals K, E.  A load Q then brings them together by delta with
-``Q = c delta^(3/2)``, ``c = pi k E' sqrt(E(m) / (4.5 S K(m)^3))`` and ``E' = E / (1 - nu^2)`` for two
-bodies of one material (Harris and Kotzalas, Essential Concepts of Bearing Technology, 5th ed.,
+``Q = c delta^(3/2)``, ``c = pi k E' sqrt(E(m) / (4.5 S K(m)^3))`` and ``E' = E / (1 - nu^2)`` for
+two bodies of one material (Harris and Kotzalas, Essential Concepts of Bearing Technology, 5th ed.,
 ch. 6; Hamrock and Brewe fit the same integrals).  Nothing is fitted here: the integrals are
 evaluated.
 

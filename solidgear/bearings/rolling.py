@@ -1,4 +1,4 @@
-"""A bearing as its rows of rolling elements: displacement to load, load to displacement, tangent."""
+"""A bearing as its rows of rolling elements: displacement to load and back, and tangent."""
 
 from __future__ import annotations
 
@@ -40,8 +40,8 @@ class RollingBearing:
     """Rows of rolling elements between one inner and one outer ring, or rings that move as one.
 
     Motions are those of the inner ring, with the shaft, against the outer one; loads are those that
-    act on the inner ring from outside, and that the bearing carries.  Both at one reference point on
-    the axis, order (x, y, z, thx, thy, thz), SI.
+    act on the inner ring from outside, and that the bearing carries.  Both at one reference point
+    on the axis, order (x, y, z, thx, thy, thz), SI.
 
     Attributes
     ----------

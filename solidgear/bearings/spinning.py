@@ -6,8 +6,8 @@ groove's, ``i + o = s`` (:mod:`solidgear.bearings.ball`), it is in equilibrium w
 
     Q_i n_i - Q_o n_o + (F_c, 0) + (2 M_g / D) (-sin a, cos a) = 0        (radial, axial)
 
-(Jones 1960; Harris and Kotzalas, Advanced Concepts, 5th ed., ch. 3, outer raceway control: the outer
-ring alone takes the gyroscopic moment).  With g = D / Dpw and the inner ring turning,
+(Jones 1960; Harris and Kotzalas, Advanced Concepts, 5th ed., ch. 3, outer raceway control: the
+outer ring alone takes the gyroscopic moment).  With g = D / Dpw and the inner ring turning,
 
     w_m / w = (1 - g cos a) / 2,            F_c = m (Dpw / 2) w_m^2,
     tan b   = sin a / (cos a + g),
@@ -15,8 +15,9 @@ ring alone takes the gyroscopic moment).  With g = D / Dpw and the inner ring tu
     P       = (cos a + tan b sin a) (1 / (1 + g cos a) + 1 / (1 - g cos a)).
 
 The angle a of the ball's own motion is that of s, between the two contact angles: a ball that has
-left the inner ring has no angle there.  For a given s the rest is a convex problem of the ball.  The
-tangent is implicit differentiation of its equilibrium, with the turning of a in F_c and M_g.
+left the inner ring has no angle there.  (With both angles in these formulas a 218 at 10,000 r/min
+under 17.8 kN comes out at 45.4 and 37.4 degrees instead of 45.1 and 37.7.)  For a given s the rest is a convex problem of the ball.
+The tangent is implicit differentiation of its equilibrium, with the turning of a in F_c and M_g.
 Inertia is no spring: the tangent is not quite symmetric.
 """
 
@@ -108,7 +109,8 @@ class SpinningBalls:
         return force, by_angle[..., :, None] * angle_by_s[..., None, :]
 
     def _contacts(self, s: np.ndarray, o: np.ndarray, nearly: float = 0.0):
-        """Forces (..., n, 2) along both contacts, and their stiffnesses, `nearly` metres further."""
+        """Forces (..., n, 2) along both contacts, and their stiffnesses, `nearly` metres
+        further."""
         (inner, free_i), (outer, free_o) = self._grooves()
         q_i, k_i = _contact(s - o, inner.constant, free_i, nearly)
         q_o, k_o = _contact(o, outer.constant, free_o, nearly)
@@ -143,7 +145,8 @@ class SpinningBalls:
         raise SolidgearError(f"no equilibrium of the balls at {self.speed:.6g} rad/s")
 
     def _shortened(self, s, o, step, miss, inertia) -> np.ndarray:
-        """Part of the step that every ball takes: not beyond where the force along it has turned."""
+        """Part of the step that every ball takes: not beyond where the force along it has
+        turned."""
         first = (miss * step).sum(axis=-1)
         way = np.ones_like(first)
         for _ in range(30):
@@ -190,7 +193,8 @@ class SpinningBalls:
 
 
 def _moved(o: np.ndarray, step: np.ndarray) -> np.ndarray:
-    """A ball's centre moved around and across its groove: a straight step would leave the groove."""
+    """A ball's centre moved around and across its groove: a straight step would leave the
+    groove."""
     length = np.linalg.norm(o, axis=-1, keepdims=True)
     normal = o / length
     across = np.stack([-normal[..., 1], normal[..., 0]], axis=-1)

@@ -8,7 +8,7 @@ from typing import Any
 from solidgear.evidence.record import Record
 from solidgear.report.cells import DASH, eng, mm, short_percent
 from solidgear.report.table import Table
-from solidgear.report.words import is_number, percent
+from solidgear.report.words import hertz, is_number, percent
 
 
 def scene_facts(record: Record) -> Table:
@@ -156,7 +156,7 @@ def bearing_range(found: Mapping) -> Table:
     for b in found.get("bounds") or []:
         middle, low, high = b["frequency_hz"], b["low"], b["high"]
         band = f"{percent(low / middle - 1)} / {percent(high / middle - 1)}"
-        rows.append([(b["mode"], "word text"), *(eng(f, 5) for f in (middle, low, high)), band])
+        rows.append([str(b["mode"]), *(hertz(f) for f in (middle, low, high)), band])
     lost = [f"Bearing {name} carries nothing somewhere in it." for name in found.get("lost") or []]
     note = (
         f"Of the {found.get('model')} model over {found.get('points')} points: "

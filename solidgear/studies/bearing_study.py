@@ -1,4 +1,5 @@
-"""What a scene's catalogue bearings do: at their load, over load, and what their ranges leave open."""
+"""What a scene's catalogue bearings do: at their load, over load, and what their ranges leave
+open."""
 
 from __future__ import annotations
 
@@ -90,8 +91,8 @@ def bearing_facts(scene: Scene, body: Body | None = None) -> list[BearingFacts]:
     known = [b for b in scene.bearings if b.catalogue is not None]
     if not known:
         raise SolidgearError(
-            f"{scene.name}: no bearing is described by catalogue data; write [bearing.catalogue] in "
-            "place of [bearing.stiffness], as in geometry/gearbox_catalogue.toml"
+            f"{scene.name}: no bearing is described by catalogue data; write [bearing.catalogue] "
+            "in place of [bearing.stiffness], as in geometry/gearbox_catalogue.toml"
         )
     middle = solved(scene, body)
     ends: dict[str, Solved] = {}
@@ -154,8 +155,8 @@ def _notes(rows: Sequence[Contacts], balls: bool):
     most = max(float(max(row.inner.max(), row.outer.max())) for row in rows)
     if most > STATIC_PRESSURE[balls]:
         yield (
-            f"a contact pressure of {most / 1e6:.0f} MPa is beyond the {STATIC_PRESSURE[balls] / 1e6:.0f} "
-            "MPa of its static rating (ISO 76)"
+            f"a contact pressure of {most / 1e6:.0f} MPa is beyond the "
+            f"{STATIC_PRESSURE[balls] / 1e6:.0f} MPa of its static rating (ISO 76)"
         )
 
 

@@ -1,7 +1,7 @@
 """Which bearings could have the matrices of Table 1 of Hua (2010)? An inverse question.
 
-A row of rollers that all press alike, Z of them on a pitch radius R at a contact angle a, each with a
-stiffness k over an effective length l, has in closed form (case ``roller_row`` of the manual)
+A row of rollers that all press alike, Z of them on a pitch radius R at a contact angle a, each with
+a stiffness k over an effective length l, has in closed form (case ``roller_row`` of the manual)
 
     kxx = Z k cos(a)^2 / 2,                kyy = Z k sin(a)^2,
     kx,thz = kxx R tan(a),                 kthz = kxx ((R tan(a))^2 + l^2 / (12 cos(a)^2)).
