@@ -143,6 +143,7 @@ def _tables(record: Record) -> dict[str, Any]:
         "scene_facts": input_tables.scene_facts(record),
         "segments": input_tables.segments(record.scene),
         "bearings": input_tables.bearings(record.scene),
+        "masses": input_tables.masses(record.scene),
         "summary": result_tables.summary(record),
         "matrices": result_tables.matrices(record),
         "frequencies": result_tables.frequencies(record),

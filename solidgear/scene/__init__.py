@@ -2,12 +2,14 @@
 
 from solidgear.scene.model import Ask, Quantity, Scene
 from solidgear.scene.parts import STEEL, Material, Segment
+from solidgear.scene.point_mass import PointMass
 from solidgear.scene.stations import Bearing, Port
 
 __all__ = [
     "Ask",
     "Bearing",
     "Material",
+    "PointMass",
     "Port",
     "Quantity",
     "STEEL",

@@ -10,9 +10,10 @@ from collections.abc import Sequence
 from solidgear.errors import SceneError
 from solidgear.scene.model import Scene
 from solidgear.scene.parts import Material, Segment
-from solidgear.scene.rules import shaft_problems, station_problems
+from solidgear.scene.point_mass import PointMass
+from solidgear.scene.rules import mass_problems, shaft_problems, station_problems
 from solidgear.scene.stations import Attachment, Bearing, Port
-from solidgear.scene.tables import BearingTable, Piece, PortTable, SceneTable
+from solidgear.scene.tables import BearingTable, MassTable, Piece, PortTable, SceneTable
 
 
 def resolve(table: SceneTable, numbers: list[int], name: str, problems: list[SceneError]) -> Scene:
@@ -52,7 +53,7 @@ def resolve(table: SceneTable, numbers: list[int], name: str, problems: list[Sce
     bearings = {}
     for index, item in zip(numbers, table.bearing):
         # a datum that is missing was reported before, or is a bearing that was refused
-        if item.from_ in datums:
+        if (item.from_ or "start") in datums:
             try:
                 bearings[index] = _bearing(item, index, table.attachment, datums)
             except SceneError as error:
@@ -62,9 +63,20 @@ def resolve(table: SceneTable, numbers: list[int], name: str, problems: list[Sce
         port = _port(table.port, table.attachment, datums, surface) if table.port else None
     except SceneError as error:
         problems.append(error)
+    masses = {}
+    for index, heavy in enumerate(table.mass):
+        if (heavy.from_ or "start") in datums:
+            try:
+                masses[index] = _mass(heavy, table.attachment, datums)
+            except SceneError as error:
+                problems.append(error.located(None, path=("mass", index, *error.path)))
+    whole = len(bearings) == len(numbers) and table.port is not None
     problems += [
         one.located(None, path=_file_path(one.path, table, owner))
-        for one in station_problems(segments, port, bearings)
+        for one in (
+            *station_problems(segments, port, bearings, masses),
+            *(mass_problems(port, bearings, masses) if whole else ()),
+        )
     ]
     if problems:
         raise SceneError.of(problems)
@@ -76,6 +88,7 @@ def resolve(table: SceneTable, numbers: list[int], name: str, problems: list[Sce
         title=table.title,
         name=name,
         source=table.source,
+        masses=tuple(masses.values()),
         housing_axial=table.housing.axial if table.housing else None,
         ask=table.ask,
     )
@@ -137,24 +150,43 @@ def _segment(piece: Piece, y: float, bore_radius: float, material: Material) -> 
 
 
 def _bearing(item: BearingTable, index: int, attachment: str, datums: dict[str, float]) -> Bearing:
-    y = item.position + datums[item.from_]
+    if item.face is None:
+        y = (item.position or 0.0) + datums[item.from_ or "start"]
+    else:
+        y = datums[item.face]
+    # the middle of an end face is a section; a seat would be the rim beside it
+    usual = attachment if item.face is None else "section"
     given = item.stiffness if item.matrix is None else item.matrix
+    held = {"stiffness": given} if item.hold is None else {"hold": item.hold}
     try:
         bearing = Bearing(
             name=item.name,
             y=y,
             seat_width=item.seat_width,
-            stiffness=given,
             axial_series=item.axial_series,
-            attachment=item.attachment or attachment,
+            attachment=item.attachment or usual,
             status=item.status,
             note=item.note,
+            face=item.face,
+            **held,
         )
     except SceneError as error:
         key = "stiffness" if item.matrix is None else "matrix"
         raise SceneError(error.reason, path=("bearing", index, key), value=error.value) from None
     datums[f"bearing.{item.name}"] = bearing.y
     return bearing
+
+
+def _mass(item: MassTable, attachment: Attachment, datums: dict[str, float]) -> PointMass:
+    place = {}
+    if item.on is None:
+        place = {
+            "y": (item.position or 0.0) + datums[item.from_ or "start"],
+            "seat_width": item.seat_width,
+            "attachment": item.attachment or attachment,
+        }
+    given = {key: getattr(item, key) for key in ("inertia", "offset") if getattr(item, key)}
+    return PointMass(name=item.name, mass=item.mass, on=item.on, **place, **given)
 
 
 def _port(
@@ -204,6 +236,8 @@ def _file_path(path: tuple, table: SceneTable, owner: Sequence[int]) -> tuple:
             return ("segment", owner[index], "material", key) if own else ("material", key)
         case ("bearings", index, key):
             return ("bearing", index, {"y": "position"}.get(key, key))
+        case ("masses", index, key):
+            return ("mass", index, {"y": "position"}.get(key, key))
         case ("port", "y"):
             return ("port", "at" if table.port.at is not None else "position")
         case ("port", "lo" | "hi"):

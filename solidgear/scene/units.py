@@ -28,6 +28,8 @@ DIMENSIONS: dict[str, tuple[str, str, tuple[int, ...]]] = {
     "force_per_length": ("N/m", "8.6e9 N/m", (0,)),
     "force": ("N/rad", "1.45e8 N/rad", (0, -1)),
     "moment": ("N*m/rad", "3.6e6 N*m/rad", (0, -1)),
+    "mass": ("kg", "8 kg", (0,)),
+    "inertia": ("kg*m^2", "0.02 kg*m^2", (0,)),
     "frequency": ("Hz", "10 kHz", (0,)),
     "dimensionless": ("", "0.3", (0,)),
 }
@@ -58,8 +60,8 @@ def quantity(value: Any, dimension: str) -> float:
         N/m"``.
     dimension : str
         One of `DIMENSIONS`: length (m), angle (rad), pressure (Pa), density (kg/m3),
-        force_per_length (N/m), force (N or N/rad), moment (N m or N m/rad), frequency (Hz),
-        dimensionless.
+        force_per_length (N/m), force (N or N/rad), moment (N m or N m/rad), mass (kg), inertia
+        (kg m2), frequency (Hz), dimensionless.
 
     Returns
     -------
@@ -245,6 +247,7 @@ AxialSpring = Annotated[
     ),
 ]
 Frequency = Annotated[float, _in("frequency"), _POSITIVE]
+Mass = Annotated[float, _in("mass"), _POSITIVE]
 Tolerance = Annotated[
     float,
     _in("dimensionless"),

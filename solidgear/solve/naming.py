@@ -20,8 +20,8 @@ import numpy as np
 from scipy.sparse.csgraph import connected_components
 
 from solidgear.body import Block, Body, Supports
-from solidgear.frames import rotation
 from solidgear.solve.circumference import Circumference, of_body
+from solidgear.solve.quarter_turn import alike
 
 FAMILIES = {"bending": (0, 2, 3, 5), "axial": (1,), "torsion": (4,)}
 #: Bearings that a quarter turn changes by no more than this, relative, split a pair by half of it
@@ -117,47 +117,6 @@ class Projection:
         return out
 
 
-def alike(supports: Supports) -> float:
-    """Bound on the relative change of any eigenvalue by a quarter turn of the bearings.
-
-    If ``|v' D v| <= eps v' K v`` for the change D of the stiffness K, then no eigenvalue of the
-    supported body moves by more than eps (Rayleigh).
-
-    Parameters
-    ----------
-    supports : Supports
-
-    Returns
-    -------
-    float
-        Infinite where the change is not small.
-
-    Examples
-    --------
-    >>> round(alike(Supports(("A",), np.diag([1e8, 0.0, 1e8, 0.0, 0.0, 0.0]))), 12)
-    0.0
-    >>> round(alike(Supports(("A",), np.diag([1e8, 0.0, 2e8, 0.0, 0.0, 0.0]))), 12)
-    1.0
-    """
-    k = supports.stiffness
-    if not supports.ports:
-        return 0.0
-    turn = np.kron(np.eye(len(supports.ports)), rotation(1, np.pi / 2))
-    change = turn @ k @ turn.T - k
-    size = np.sqrt(np.abs(np.diag(k)))
-    on = size > 0
-    scale = np.outer(size[on], size[on])
-    if np.abs(change[~on]).max(initial=0.0) > 1e-12 * np.abs(k).max(initial=0.0):
-        return np.inf
-    w, v = np.linalg.eigh(k[np.ix_(on, on)] / scale)
-    relative = change[np.ix_(on, on)] / scale
-    good = w > 1e-9
-    if np.abs(v[:, ~good].T @ relative).max(initial=0.0) > 1e-12:
-        return np.inf
-    half = v[:, good] / np.sqrt(w[good])
-    return float(np.abs(np.linalg.eigvalsh(half.T @ relative @ half)).max(initial=0.0))
-
-
 class Names:
     """Families, twins and numbers of the shapes of one body on its bearings.
 
@@ -171,6 +130,7 @@ class Names:
 
     def __init__(self, body: Body, supports: Supports, project: Projection):
         self.body, self.project = body, project
+        self._laden = supports.inertia is not None
         self.promised = alike(supports)
         self._round = of_body(body)
         self._moving_axially: dict[int, np.ndarray] = {}
@@ -201,9 +161,12 @@ class Names:
         waves, family = max(energy, key=energy.__getitem__)
         if self._round is not None:
             profile = profile[waves]
-        return Shape(
-            family, waves, motion, sum(shares.values()), profile, self._round is None and waves > 1
-        )
+        captured = sum(shares.values())
+        if self._laden:
+            # shares are of the mass of the shaft, of which unit shapes have less than one
+            moved = (v @ (self.body.block(b).mass @ v) for b, v in vectors.items())
+            captured /= float(sum(moved))
+        return Shape(family, waves, motion, captured, profile, self._round is None and waves > 1)
 
     @staticmethod
     def _around(

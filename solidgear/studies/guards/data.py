@@ -33,6 +33,8 @@ def units(probe: Probe) -> Notices:
             for name, value in zip(SOUND, (m.E, m.density, np.sqrt(m.E / m.density)))
         ]
     for b in scene.bearings:
+        if b.hold:
+            continue
         k = np.diag(b.stiffness)
         for axis, tilt in ((0, 5), (2, 3)):
             if k[axis] > 0:
@@ -74,7 +76,7 @@ def doubtful_data(probe: Probe) -> Notices:
     doubtful = [
         f"bearing {b.name!r} ({b.status})"
         for b in probe.scene.bearings
-        if b.status in ("identified", "assumed")
+        if b.status in ("identified", "assumed") and not b.hold
     ]
     if doubtful:
         yield Notice("caution", (), "data not measured or published: " + ", ".join(doubtful))
