@@ -149,7 +149,7 @@ def study(
         rung = _climbed(
             scene,
             model,
-            own.meshes(options),
+            own.meshes_of(scene, options),
             meter,
             scene.ask.tolerance / (share or own.share),
             most,

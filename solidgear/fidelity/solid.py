@@ -30,6 +30,7 @@ def solid(
     graded_size: float | None = None,
     refinement: float = 1.0,
     attachments: tuple[str, ...] | None = None,
+    half: bool = True,
 ) -> Body:
     """Free 3D solid of a scene.
 
@@ -58,11 +59,14 @@ def solid(
     attachments : tuple of str, optional
         Attachments to build at every station, the first being the default one; by default what the
         scene says.
+    half : bool
+        For a scene with features that share a mirror plane: solve two half models.
 
     Returns
     -------
     Body
-        One block with all six components.
+        One block with all six components; of a part with features and a mirror plane two, of the
+        motions that are symmetric about it and of the others.
 
     Raises
     ------
@@ -89,6 +93,22 @@ def solid(
             f"solid: around = {around} does not fit an O-grid; use a multiple of 4"
         )
     wanted = [(s, a) for s in scene.stations for a in (attachments or (s.attachment,))]
+    if getattr(scene, "features", ()):
+        if element != "tet10":
+            raise SolidgearError(
+                f"solid: element = {element} cannot hold features of the scene; use tet10"
+            )
+        from solidgear.fidelity.featured import featured_body, meshed
+
+        plan = tetrahedra_plan(
+            scene,
+            wanted,
+            size=size,
+            graded_size=graded_size,
+            refinement=refinement,
+            around=around,
+        )
+        return featured_body(scene, wanted, meshed(scene, plan, refinement, half), refinement)
     tet = element.startswith("tet")
     if tet:
         mesh, segment, quality = _tets(

@@ -1,5 +1,6 @@
 """What is modelled and what is asked: data only."""
 
+from solidgear.scene.features import CrossHole, Feature, Flat, Keyway
 from solidgear.scene.model import Ask, Quantity, Scene
 from solidgear.scene.parts import STEEL, Material, Segment
 from solidgear.scene.point_mass import PointMass
@@ -8,6 +9,10 @@ from solidgear.scene.stations import Bearing, Port
 __all__ = [
     "Ask",
     "Bearing",
+    "CrossHole",
+    "Feature",
+    "Flat",
+    "Keyway",
     "Material",
     "PointMass",
     "Port",

@@ -16,13 +16,14 @@ from solidgear.errors import SceneError, listed, nearest
 from solidgear.scene.model import Scene
 from solidgear.scene.places import resolve
 from solidgear.scene.rules import MOST_BEARINGS, MOST_MASSES, MOST_SEGMENTS, too_many
-from solidgear.scene.tables import KINDS, SceneTable, SoundTables
+from solidgear.scene.tables import FEATURES, KINDS, SceneTable, SoundTables
 from solidgear.scene.toml_file import parse
 
 
 def _drop_tag(loc: tuple) -> tuple:
     """pydantic puts the kind of a segment into its location; the file has no such key."""
-    return (*loc[:2], *loc[3:]) if loc[:1] == ("segment",) and loc[2:3] and loc[2] in KINDS else loc
+    tags = {"segment": KINDS, "feature": FEATURES}.get(loc[0], ()) if loc else ()
+    return (*loc[:2], *loc[3:]) if loc[2:3] and loc[2] in tags else loc
 
 
 def load(path: str | os.PathLike) -> Scene:
@@ -163,6 +164,8 @@ def _unknown_names(raw: dict[str, Any]) -> Iterator[SceneError]:
         known.append(f"bearing.{bearing.get('name')}")
     for i, mass in enumerate(masses or () if bearings is not None else ()):
         yield from _unknown_datum(mass.get("from"), known, ("mass", i, "from"))
+    for i, feature in enumerate(_list_of_tables(raw.get("feature", [])) or ()):
+        yield from _unknown_datum(feature.get("from"), known, ("feature", i, "from"))
     if isinstance(port, Mapping) and bearings is not None:
         for key in ("at", "from"):
             yield from _unknown_datum(port.get(key), known, ("port", key))

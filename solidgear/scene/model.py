@@ -15,6 +15,7 @@ from pydantic import Field, model_validator
 
 from solidgear.errors import SceneError
 from solidgear.scene.bearing_stiffness import stiffness_entries
+from solidgear.scene.features import Feature, feature_problems
 from solidgear.scene.parts import STEEL, Material, Model, Segment
 from solidgear.scene.point_mass import PointMass
 from solidgear.scene.rules import (
@@ -91,6 +92,8 @@ class Scene(Model):
         That of segments without one of their own.
     bearings : tuple of Bearing
     masses : tuple of PointMass
+    features : tuple of Keyway, Flat or CrossHole
+        What is cut out of the shaft and is not of revolution.
     housing_axial : float or None
         Spring along y between the common bearing housing and ground, N/m.
     port : Port
@@ -121,6 +124,7 @@ class Scene(Model):
     material: Material = STEEL
     bearings: tuple[Bearing, ...] = ()
     masses: tuple[PointMass, ...] = ()
+    features: tuple[Feature, ...] = ()
     housing_axial: AxialSpring | None = None
     port: Port
     ask: Ask = Ask()
@@ -132,6 +136,7 @@ class Scene(Model):
             bearings, masses = dict(enumerate(self.bearings)), dict(enumerate(self.masses))
             problems = list(station_problems(self.segments, self.port, bearings, masses))
             problems += mass_problems(self.port, bearings, masses)
+            problems += feature_problems(self.segments, self.features)
         if problems:
             raise SceneError.of(problems)
         return self
@@ -197,6 +202,11 @@ class Scene(Model):
         their own: each has name, y, lo, hi (m), attachment.
         """
         return (self.port, *self.bearings, *(m for m in self.masses if m.on is None))
+
+    @property
+    def plain(self) -> Scene:
+        """The same scene without features: a body of revolution."""
+        return self.with_changes(features=()) if self.features else self
 
     @property
     def steps(self) -> tuple[float, ...]:
@@ -346,8 +356,9 @@ class Scene(Model):
         dict
         """
         data = self.model_dump(mode="json")
-        if not self.masses:
-            del data["masses"]
+        for key in ("masses", "features"):
+            if not data[key]:
+                del data[key]
         for row, segment in zip(data["segments"], self.segments):
             row["length"] = segment.length
         for row, bearing in zip(data["bearings"], self.bearings):

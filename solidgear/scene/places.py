@@ -8,12 +8,20 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from solidgear.errors import SceneError
+from solidgear.scene.features import CrossHole, Feature, Flat, Keyway, feature_problems
 from solidgear.scene.model import Scene
 from solidgear.scene.parts import Material, Segment
 from solidgear.scene.point_mass import PointMass
 from solidgear.scene.rules import mass_problems, shaft_problems, station_problems
 from solidgear.scene.stations import Attachment, Bearing, Port
-from solidgear.scene.tables import BearingTable, MassTable, Piece, PortTable, SceneTable
+from solidgear.scene.tables import (
+    BearingTable,
+    FeatureTable,
+    MassTable,
+    Piece,
+    PortTable,
+    SceneTable,
+)
 
 
 def resolve(table: SceneTable, numbers: list[int], name: str, problems: list[SceneError]) -> Scene:
@@ -70,12 +78,18 @@ def resolve(table: SceneTable, numbers: list[int], name: str, problems: list[Sce
                 masses[index] = _mass(heavy, table.attachment, datums)
             except SceneError as error:
                 problems.append(error.located(None, path=("mass", index, *error.path)))
+    features = [
+        _feature(cut, k, datums)
+        for k, cut in enumerate(table.feature)
+        if cut.from_ is None or cut.from_ in datums
+    ]
     whole = len(bearings) == len(numbers) and table.port is not None
     problems += [
         one.located(None, path=_file_path(one.path, table, owner))
         for one in (
             *station_problems(segments, port, bearings, masses),
             *(mass_problems(port, bearings, masses) if whole else ()),
+            *feature_problems(segments, features),
         )
     ]
     if problems:
@@ -89,6 +103,7 @@ def resolve(table: SceneTable, numbers: list[int], name: str, problems: list[Sce
         name=name,
         source=table.source,
         masses=tuple(masses.values()),
+        features=tuple(features),
         housing_axial=table.housing.axial if table.housing else None,
         ask=table.ask,
     )
@@ -189,6 +204,17 @@ def _mass(item: MassTable, attachment: Attachment, datums: dict[str, float]) -> 
     return PointMass(name=item.name, mass=item.mass, on=item.on, **place, **given)
 
 
+_FEATURES = {"keyway": Keyway, "flat": Flat, "cross_hole": CrossHole}
+
+
+def _feature(item: FeatureTable, index: int, datums: dict[str, float]) -> Feature:
+    given = item.model_dump(exclude={"name", "kind", "from_", "position"})
+    # along the segment, unless another datum is given
+    start = datums.get(item.from_ or f"{item.segment}.start", 0.0)
+    name = item.name or f"{item.kind.replace('_', ' ')} {index + 1}"
+    return _FEATURES[item.kind](name=name, y=start + item.position, **given)
+
+
 def _port(
     item: PortTable,
     attachment: Attachment,
@@ -238,6 +264,8 @@ def _file_path(path: tuple, table: SceneTable, owner: Sequence[int]) -> tuple:
             return ("bearing", index, {"y": "position"}.get(key, key))
         case ("masses", index, key):
             return ("mass", index, {"y": "position"}.get(key, key))
+        case ("features", index, key):
+            return ("feature", index, {"y": "position"}.get(key, key))
         case ("port", "y"):
             return ("port", "at" if table.port.at is not None else "position")
         case ("port", "lo" | "hi"):

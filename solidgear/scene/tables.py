@@ -292,6 +292,47 @@ class PortTable(_Table):
         return self
 
 
+class _FeatureTable(_Table):
+    """A [[feature]], its datum not yet resolved."""
+
+    name: Name | None = None
+    segment: str
+    from_: str | None = Field(None, alias="from")
+    position: Length = 0.0
+    angle: Any = 0.0
+
+    @model_validator(mode="after")
+    def _angle(self):
+        try:
+            quantity(self.angle, "angle")
+        except SceneError as error:
+            raise SceneError(error.reason, path=("angle",), value=error.value) from None
+        return self
+
+
+class _KeywayTable(_FeatureTable):
+    kind: Literal["keyway"]
+    length: PositiveLength
+    width: PositiveLength
+    depth: PositiveLength
+    ends: Literal["round", "square"] = "round"
+
+
+class _FlatTable(_FeatureTable):
+    kind: Literal["flat"]
+    length: PositiveLength
+    depth: PositiveLength
+
+
+class _CrossHoleTable(_FeatureTable):
+    kind: Literal["cross_hole"]
+    diameter: PositiveLength
+
+
+FeatureTable = _KeywayTable | _FlatTable | _CrossHoleTable
+FEATURES = ("keyway", "flat", "cross_hole")
+
+
 class SceneTable(Model):
     """A whole file, each table sound by itself."""
 
@@ -302,6 +343,7 @@ class SceneTable(Model):
     segment: list[Annotated[_Cylinder | _Cone | _BevelHead, Field(discriminator="kind")]]
     bearing: list[BearingTable] = []
     mass: list[MassTable] = []
+    feature: list[Annotated[FeatureTable, Field(discriminator="kind")]] = []
     housing: _Housing | None = None
     port: PortTable
     ask: Ask = Ask()

@@ -50,6 +50,9 @@ class Shape:
     double : bool
         Whether it stands for its twin as well, as a block of two waves and more does for its cosine
         and its sine form.
+    plane : str
+        ``z`` or ``x`` where bending stays in one plane of a part that has a mirror plane but is not
+        round, else empty.
     """
 
     family: str
@@ -58,6 +61,12 @@ class Shape:
     captured: float
     profile: np.ndarray | dict[int, np.ndarray]
     double: bool = False
+    plane: str = ""
+
+    @property
+    def label(self) -> str:
+        """Family and plane: what modes are numbered by."""
+        return f"{self.family} {self.plane}" if self.plane else self.family
 
 
 class Projection:
@@ -132,6 +141,9 @@ class Names:
         self.body, self.project = body, project
         self._laden = supports.inertia is not None
         self.promised = alike(supports)
+        # a part that is not round promises no twins, however near its frequencies lie
+        self._split = not body.mesh.get("round", True)
+        self._planes = self._split and len(body.blocks) > 1
         self._round = of_body(body)
         self._moving_axially: dict[int, np.ndarray] = {}
 
@@ -152,7 +164,7 @@ class Names:
         profile: np.ndarray | dict[int, np.ndarray] = vectors
         if self._round is not None:
             energy, profile = self._around(*self._round, vectors)
-        elif len(self.body.blocks) == 1 and len(self.body.blocks[0].components) == 6:
+        elif self._planes or len(self.body.blocks[0].components) == 6:
             energy = {
                 (1 if name == "bending" else 0, name): share for name, share in shares.items()
             }
@@ -166,7 +178,21 @@ class Names:
             # shares are of the mass of the shaft, of which unit shapes have less than one
             moved = (v @ (self.body.block(b).mass @ v) for b, v in vectors.items())
             captured /= float(sum(moved))
-        return Shape(family, waves, motion, captured, profile, self._round is None and waves > 1)
+        whole = self._round is None and waves > 1
+        return Shape(family, waves, motion, captured, profile, whole, self._plane(motion, family))
+
+    def _plane(self, motion: np.ndarray, family: str) -> str:
+        """The plane of bending of a part with a mirror plane, unless bearings couple both."""
+        if not self._planes or family != "bending":
+            return ""
+        at = [self._energy(motion, components) for components in ((2, 3), (0, 5))]
+        share = at[0] / sum(at)
+        return "z" if share > 0.99 else "x" if share < 0.01 else ""
+
+    def _energy(self, motion: np.ndarray, components: tuple[int, ...]) -> float:
+        at = np.array([6 * s + c for s in range(len(motion)) for c in components])
+        part = motion.ravel()[at]
+        return float(part @ self.project.gram[np.ix_(at, at)] @ part)
 
     @staticmethod
     def _around(
@@ -271,7 +297,7 @@ class Names:
         torn = []
         for i, shape in enumerate(shapes):
             double = shape.waves >= 1 and (shape.waves > 1 or self.promised <= ALIKE)
-            if not double or shape.double or i in partner:
+            if self._split or not double or shape.double or i in partner:
                 continue
             tolerance = (
                 2 * max(own, self.promised) if shape.waves == 1 else max(2 * own, OVAL_TOLERANCE)
@@ -335,7 +361,9 @@ def family_of(block: Block) -> str:
         return "all"
     if block.name.startswith("ovalising_"):
         return block.name.replace("_", " n=")
-    return next(name for name, own in FAMILIES.items() if set(block.components) <= set(own))
+    own = [name for name, known in FAMILIES.items() if set(block.components) & set(known)]
+    # a block of a part with a mirror plane holds several
+    return " and ".join(own)
 
 
 def numbered(families: list[str]) -> list[str]:

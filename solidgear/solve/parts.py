@@ -351,7 +351,9 @@ def family_rows(
         mine = [
             (hz, shapes)
             for name, hz, shapes in found
-            if waves is None or name == family or (family, name) == ("axial", "breathing")
+            if waves is None
+            or name in family.split(" and ")
+            or (family, name) == ("axial", "breathing")
         ]
         lowest = min((hz for hz, _ in mine), default=None)
         rows.append(

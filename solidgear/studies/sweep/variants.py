@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import functools
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from solidgear.body import Supports, as_supports
 from solidgear.errors import SceneError, SolidgearError
-from solidgear.scene import Bearing, PointMass, Port, Scene, Segment
+from solidgear.scene import Bearing, Feature, PointMass, Port, Scene, Segment
 from solidgear.scene.bearing_stiffness import STIFFNESS_NAMES
 from solidgear.studies.sweep.vary import Axis
 
@@ -23,6 +23,12 @@ class SeatedShaft:
 
     segments: tuple[Segment, ...]
     stations: tuple[Port | Bearing | PointMass, ...]
+    features: tuple[Feature, ...] = ()
+
+    @property
+    def plain(self) -> SeatedShaft:
+        """The same shaft without features."""
+        return replace(self, features=())
 
     @property
     def length(self) -> float:
@@ -127,7 +133,9 @@ class Variants:
         }
         ordered = sorted(seats.values(), key=lambda b: b.y)
         own = (m for m in self.scene.masses if m.on is None)
-        return SeatedShaft(self.scene.segments, (self.scene.port, *ordered, *own))
+        return SeatedShaft(
+            self.scene.segments, (self.scene.port, *ordered, *own), self.scene.features
+        )
 
 
 def _port_name(station: Port | Bearing | PointMass) -> str:
