@@ -82,11 +82,12 @@ LADDER = Ladder(
         size=Later("solidgear.fidelity.sizes", "corrected_size"),
         meshes=corrected_meshes,
         factors=BandFactors(
-            # Of both parts at once, whose meshes are finer from level to level. Few scenes so far:
-            # set so that the keyed pinion's errors are held three times over.
-            usual=1.5,
-            rigid=2.0,
-            first=((1.5, 0.0, 1.5), (2.0, 0.0, 2.0)),
+            # Of both parts at once, whose meshes are finer from level to level. From one scene
+            # only: on the keyed pinion an error is 1.6 to 2.3 times the last change
+            # (validation/keyed_speed_accuracy.py).
+            usual=3.5,
+            rigid=5.0,
+            first=((3.5, 0.0, 3.5), (5.0, 0.0, 5.0)),
             earlier=0.5,
             ahead=0.5,
         ),
