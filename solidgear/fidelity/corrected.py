@@ -46,6 +46,8 @@ KEPT, SPARE = 16, 10
 ALIKE, SAME = 0.9, 0.1
 #: share of the largest flexibility of a port that is none
 NOTHING = 1e-9
+#: eigenvalues nearer than this, relative, are those of a pair
+TWIN = 1e-6
 #: fewest of them that are worth a body
 FEWEST = 2
 
@@ -109,7 +111,7 @@ def corrected(
     exact = _recognised(exact, before)
     numbers = _corrected(exact, before, after)
     while not _positive_enough(numbers.static) and exact.motions.shape[1] > FEWEST:
-        exact = exact.first(exact.motions.shape[1] - 1)
+        exact = exact.first(_fewer(exact))
         numbers = _corrected(exact, before, after)
     blocks = _blocks(numbers, base, exact, made.plane)
     return Body(
@@ -168,10 +170,19 @@ def _positive_enough(static: np.ndarray) -> bool:
     return bool(w[0] > -NOTHING * w[-1])
 
 
+def _fewer(exact: Modal) -> int:
+    """Number of modes without the highest, or without the highest pair."""
+    value = np.diag(exact.value)
+    return len(value) - (2 if value[-1] < value[-2] * (1 + TWIN) else 1)
+
+
 def _recognised(exact: Modal, before: Modal) -> Modal:
     """The lowest of the harmonic modes, as far as each is found among those of the 3D mesh."""
     count = 0
-    for k in range(1, exact.motions.shape[1] + 1):
+    value = np.diag(exact.value)
+    for k in range(1, len(value) + 1):
+        if k < len(value) and value[k] < value[k - 1] * (1 + TWIN):
+            continue  # a pair is turned as one, and not cut in two
         own = exact.first(k)
         turn = alike_turn(before.sections, own.sections, exact.gram)
         theirs = np.diag(turn.T @ before.value @ turn)
@@ -182,10 +193,6 @@ def _recognised(exact: Modal, before: Modal) -> Modal:
         if (shared < ALIKE * size).any() or (apart > SAME).any():
             break
         count = k
-    # a pair is not cut in two
-    value = np.diag(exact.value)
-    if 0 < count < len(value) and value[count] < value[count - 1] * (1 + 1e-6):
-        count -= 1
     if count < FEWEST:
         raise SolidgearError(
             "corrected: the free modes of the plain shaft are not recognised on the 3D mesh; "
