@@ -22,6 +22,7 @@ _WHERE = {
     "Scene": "solidgear.scene",
     "Segment": "solidgear.scene",
     "Bearing": "solidgear.scene",
+    "PointMass": "solidgear.scene",
     "Port": "solidgear.scene",
     "Material": "solidgear.scene",
     "Ask": "solidgear.scene",
@@ -60,6 +61,7 @@ __all__ = [
     "Material",
     "MeshVector",
     "Placed",
+    "PointMass",
     "Port",
     "PortInertia",
     "RigidBody",
@@ -92,7 +94,7 @@ if TYPE_CHECKING:
     from solidgear.reduction.craig_bampton import craig_bampton
     from solidgear.reduction.rubin import rubin
     from solidgear.reduction.superelement import Superelement
-    from solidgear.scene import STEEL, Ask, Bearing, Material, Port, Scene, Segment
+    from solidgear.scene import STEEL, Ask, Bearing, Material, PointMass, Port, Scene, Segment
     from solidgear.solve.modes import modes
     from solidgear.solve.statics import condense
     from solidgear.studies.answering import answer

@@ -1,11 +1,11 @@
-"""What holds a body: springs between its ports and ground."""
+"""What is attached to a body: springs between its ports and ground, and rigid masses on its ports."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-from dataclasses import dataclass
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import TYPE_CHECKING, TypeAlias
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 
@@ -14,7 +14,7 @@ from solidgear.errors import SolidgearError
 from solidgear.frames import DOF_NAMES
 
 if TYPE_CHECKING:
-    from solidgear.scene import Bearing, Scene
+    from solidgear.scene import Bearing, PointMass, Scene
 
     #: what :func:`as_supports` takes
     Holding: TypeAlias = "Supports | Scene | Iterable[Bearing]"
@@ -22,17 +22,20 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, eq=False)
 class Supports:
-    """Springs between ports and ground.
+    """Springs between ports and ground, and rigid masses that move with ports.
 
     Attributes
     ----------
     ports : tuple of str
-        Names of the supported ports.
+        Names of the ports that carry a spring or a mass.
     stiffness : (6 m, 6 m) ndarray
         Symmetric positive semidefinite, SI, port by port; off-diagonal blocks only where a common
         housing ties bearings together.
     attachments : tuple of (str or None)
         Attachment asked for at each port; None takes the body's first.
+    inertia : (6 m, 6 m) ndarray or None
+        Mass matrix of what moves with the ports, symmetric positive semidefinite, SI; None where
+        nothing does.
 
     Examples
     --------
@@ -48,31 +51,34 @@ class Supports:
     ports: tuple[str, ...]
     stiffness: np.ndarray
     attachments: tuple[str | None, ...] = ()
+    inertia: np.ndarray | None = None
 
     @cached_property
     def root(self) -> np.ndarray:
-        """(6 m, r) matrix ``L`` with ``L L' = stiffness`` and r its rank.
+        """(6 m, r) matrix ``L`` with ``L L' = stiffness`` and r its rank."""
+        return root_of(self.stiffness) if self.ports else np.zeros((0, 0))
 
-        Cholesky's factor with the stiffest pivots first, of the matrix scaled to a unit diagonal: a
-        spring of 1e-3 N/m beside one of 1e24 keeps its own precision, in a column of its own.
-        (Eigenvectors would mix equal entries of the scaled matrix, whatever they couple.)
+    @cached_property
+    def masses(self) -> np.ndarray:
+        """(6 m, 6 m) mass matrix of what moves with the ports; zero where nothing does."""
+        return np.zeros_like(self.stiffness) if self.inertia is None else self.inertia
+
+    def rigid_mass(self, body: Body) -> np.ndarray:
+        """Mass matrix of the masses on the ports under rigid motions about the origin.
+
+        Parameters
+        ----------
+        body : Body
+
+        Returns
+        -------
+        (6, 6) ndarray
+            kg, kg m, kg m^2.
         """
-        if not self.ports:
-            return np.zeros((0, 0))
-        d = np.sqrt(np.abs(np.diag(self.stiffness)))
-        order = np.argsort(-d, kind="stable")
-        unit = np.where(d > 0, d, 1.0)[order]
-        left = self.stiffness[np.ix_(order, order)] / np.outer(unit, unit)
-        columns = []
-        for j in range(len(left)):
-            if left[j, j] > 1e-12:
-                column = left[:, j] / np.sqrt(left[j, j])
-                column[:j] = 0.0
-                columns.append(column)
-                left = left - np.outer(column, column)
-        out = np.zeros((len(d), len(columns)))
-        out[order] = d[order, None] * np.array(columns).reshape(len(columns), len(d)).T
-        return out
+        if self.inertia is None:
+            return np.zeros((6, 6))
+        moved = body.rigid_ports[self.rows(body)]
+        return moved.T @ self.inertia @ moved
 
     def rows(self, body: Body) -> np.ndarray:
         """Places of the supported components among the port components of a body.
@@ -117,10 +123,11 @@ class Supports:
         -------
         Supports
         """
-        return Supports(self.ports, self.stiffness, (attachment,) * len(self.ports))
+        return replace(self, attachments=(attachment,) * len(self.ports))
 
     def on(self, components: Iterable[int]) -> Supports:
-        """The same springs on some components of the ports only; couplings to others are left out.
+        """The same springs and masses on some components of the ports only; couplings to others are
+        left out.
 
         Parameters
         ----------
@@ -132,8 +139,28 @@ class Supports:
         Supports
         """
         keep = np.tile(np.isin(np.arange(6), list(components)), len(self.ports))
-        stiffness = np.where(np.outer(keep, keep), self.stiffness, 0.0)
-        return Supports(self.ports, stiffness, self.attachments)
+        kept = np.outer(keep, keep)
+        inertia = None if self.inertia is None else np.where(kept, self.inertia, 0.0)
+        return replace(self, stiffness=np.where(kept, self.stiffness, 0.0), inertia=inertia)
+
+    def on_stations(self, stations: Iterable[Any], name: Callable[[Any], str] | None = None):
+        """The same on ports as they are attached in a scene whose body carries several attachments.
+
+        Parameters
+        ----------
+        stations : iterable of Port, Bearing or PointMass
+        name : callable, optional
+            Gives the name of a station's port in the body; by default its own.
+
+        Returns
+        -------
+        Supports
+        """
+        known = {station.name: station for station in stations}
+        carriers = [known[port] for port in self.ports]
+        if name is not None:
+            return replace(self, ports=tuple(map(name, carriers)))
+        return replace(self, attachments=tuple(s.attachment for s in carriers))
 
     def unresisted(self, body: Body) -> np.ndarray:
         """Rigid motions about the origin that no spring resists.
@@ -166,8 +193,46 @@ class Supports:
         return size[:, None] * null
 
 
+def root_of(matrix: np.ndarray) -> np.ndarray:
+    """Root of a symmetric positive semidefinite matrix: ``L L' = matrix``.
+
+    Cholesky's factor with the largest pivots first, of the matrix scaled to a unit diagonal: a
+    spring of 1e-3 N/m beside one of 1e24 keeps its own precision, in a column of its own.
+    (Eigenvectors would mix equal entries of the scaled matrix, whatever they couple.)
+
+    Parameters
+    ----------
+    matrix : (n, n) ndarray
+
+    Returns
+    -------
+    (n, r) ndarray
+        r is its rank.
+
+    Examples
+    --------
+    >>> root_of(np.array([[4.0, 0.0], [0.0, 0.0]]))
+    array([[2.],
+           [0.]])
+    """
+    d = np.sqrt(np.abs(np.diag(matrix)))
+    order = np.argsort(-d, kind="stable")
+    unit = np.where(d > 0, d, 1.0)[order]
+    left = matrix[np.ix_(order, order)] / np.outer(unit, unit)
+    columns = []
+    for j in range(len(left)):
+        if left[j, j] > 1e-12:
+            column = left[:, j] / np.sqrt(left[j, j])
+            column[:j] = 0.0
+            columns.append(column)
+            left = left - np.outer(column, column)
+    out = np.zeros((len(d), len(columns)))
+    out[order] = d[order, None] * np.array(columns).reshape(len(columns), len(d)).T
+    return out
+
+
 def as_supports(source: Holding) -> Supports:
-    """Supports of a scene (housing included), of bearings (no housing), or as they are.
+    """Supports of a scene (housing and masses included), of bearings (neither), or as they are.
 
     A housing spring sits between ground and the axially rigid ring that carries all outer races:
     eliminating that ring leaves ``K - K e (e'K e + k)^-1 e'K`` with e the common axial motion.
@@ -201,4 +266,17 @@ def as_supports(source: Holding) -> Supports:
         e[1::6] = 1.0
         ke = k @ e
         k = k - np.outer(ke, ke) / (e @ ke + housing)
-    return Supports(tuple(b.name for b in bearings), k)
+    names = tuple(b.name for b in bearings)
+    masses = tuple(getattr(source, "masses", ()))
+    return _laden(names, k, masses) if masses else Supports(names, k)
+
+
+def _laden(names: tuple[str, ...], k: np.ndarray, masses: Iterable[PointMass]) -> Supports:
+    """Springs of bearings, with masses on their ports and on further ones."""
+    ports = tuple(dict.fromkeys((*names, *(mass.station for mass in masses))))
+    stiffness, inertia = np.zeros((2, 6 * len(ports), 6 * len(ports)))
+    stiffness[: len(k), : len(k)] = k
+    for mass in masses:
+        at = 6 * ports.index(mass.station) + np.arange(6)
+        inertia[np.ix_(at, at)] += mass.matrix
+    return Supports(ports, stiffness, (), inertia)

@@ -304,7 +304,9 @@ def check(
     from solidgear.studies.loading import load
 
     loaded = load(scene)
-    body = build_body(loaded, fidelity, settings)
+    # a model of revolution is looked at on the plain part, and the check says so
+    shown = loaded.plain if LADDER[fidelity].features == "none" else loaded
+    body = build_body(shown, fidelity, settings)
     found = check_scene(loaded, body)
     if as_json:
         print(json.dumps(found, default=float))

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from solidgear.body import as_supports
 from solidgear.errors import SolidgearError
 from solidgear.evidence.record import LumpedRecord, LumpedVariant, ModelRecord, ModeRecord
 from solidgear.evidence.verdict import BEYOND, OPEN, Judgement, gap_verdict, spoken_against
@@ -44,7 +45,8 @@ def synthesise_all(
     for model, rung in rungs.items():
         start = time.perf_counter()
         try:
-            point, found = synthesise(rung.body, scene, scene.port.name, rung.modes)
+            supports = as_supports(scene).on_stations(scene.stations)
+            point, found = synthesise(rung.body, supports, scene.port.name, rung.modes)
         except SolidgearError as error:
             tell(f"lumped from {model}: {error}")
             out[model] = LumpedRecord(why_not=str(error))

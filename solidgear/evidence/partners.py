@@ -30,6 +30,9 @@ class Partners:
         ascending order, twins counted twice: eigenvalues of two models of one shaft are ordered
         alike (Courant and Fischer) whatever their shapes are called.
         """
+        # bending may be called by its plane
+        asked = self.reference.named(name)
+        name = name if asked is None else asked.name
         pair = self.pairs.get(name)
         if pair is None:
             return None, ""

@@ -93,7 +93,11 @@ def recorded(
         guards=[GuardRecord(**g) for g in guards],
         environment=environment(),
         models=models,
-        missing=[LADDER[model].title for model in LADDER.bodies if model not in models],
+        missing=[
+            LADDER[model].title
+            for model in LADDER.bodies
+            if model not in models and (LADDER[model].features != "only" or scene.features)
+        ],
     )
     if lumped and reference:
         _add_lumped(out, rungs[reference], guards, scene.ask.tolerance)

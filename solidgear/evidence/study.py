@@ -12,7 +12,7 @@ from __future__ import annotations
 import logging
 import math
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 from solidgear.body import Body, Supports, as_supports
@@ -150,7 +150,7 @@ def study(
         rung = _climbed(
             scene,
             model,
-            own.meshes(options),
+            own.meshes_of(scene, options),
             meter,
             scene.ask.tolerance / (share or own.share),
             most,
@@ -312,7 +312,7 @@ def _solved(
     body = _built(scene, model, {**options, **extra}, meter)
     supports, count = as_supports(scene), body.size >= counted_from
     if together:
-        supports = replace(supports, attachments=tuple(b.attachment for b in scene.bearings))
+        supports = supports.on_stations(scene.stations)
     ties = {
         SCENE: _tied(
             scene, body, supports, scene.port.attachment if together else None, meter, count

@@ -56,6 +56,12 @@ def build(scene: Shaft, fidelity: str, **options) -> Body:
             f"use one of {', '.join(LADDER.bodies)}"
         )
     rung = LADDER[fidelity]
+    unfit = rung.unfit(scene)
+    if unfit:
+        fit = [r.name for r in LADDER if r.build is not None and not r.unfit(scene)]
+        raise SolidgearError(f"{unfit}; use {' or '.join(fit)}")
+    if getattr(scene, "features", ()):
+        options = {**rung.featured, **options}
     options = rung.checked(options)
     refuse_too_large(scene, fidelity, options)
     assert rung.build is not None  # as every rung of LADDER.bodies

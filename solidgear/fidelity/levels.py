@@ -98,6 +98,27 @@ class Sequence:
         return 1 / (1 - ratio**ORDER_AROUND)
 
 
+#: defect correction: the harmonic solid and the 3D mesh finer together
+CORRECTED: tuple[Options, ...] = tuple(
+    {"order": order, "layers": layers, "edge_layers": edges, "refinement": refinement}
+    for order, layers, edges, refinement in (
+        (3, 1, 1, 0.25),
+        (4, 2, 2, 0.35),
+        (5, 3, 2, 0.5),
+        (6, 4, 3, 0.7),
+    )
+)
+
+
+def corrected_meshes(options: Mapping[str, Any]) -> Sequence:
+    """Meshes on which to correct a harmonic solid; options as for :func:`harmonic_meshes`."""
+    if set(options) - set(FREE):
+        finest = {**CORRECTED[1], **options}
+        coarser = {**finest, "refinement": finest["refinement"] / 1.4}
+        return Sequence((coarser, finest), True, True)
+    return Sequence(tuple({**level, **options} for level in CORRECTED), False, True)
+
+
 def _turned(level: Options) -> Options:
     return {**level, "around": 4 * -(-3 * level["around"] // 8)}
 

@@ -152,6 +152,16 @@ HARMONIC_OPTIONS = {
     ),
 }
 
+CORRECTED_OPTIONS = {
+    **{name: HARMONIC_OPTIONS[name] for name in ("order", "layers", "edge_layers")},
+    "harmonic_size": _RELATIVE,
+    "refinement": _REFINEMENT,
+    "modes": Option(
+        "free modes that the body keeps", "whole", least=4, most=60, why="higher ones ovalise"
+    ),
+    "attachments": _TIES,
+}
+
 SOLID_OPTIONS = {
     "element": Option(
         "element type", "choice", choices=("hex20", "hex27", "hex8", "tet10", "tet4")
@@ -174,6 +184,7 @@ SOLID_OPTIONS = {
     ),
     "refinement": _REFINEMENT,
     "attachments": _TIES,
+    "half": Option("whether a part with a mirror plane is solved in halves", "flag"),
 }
 
 

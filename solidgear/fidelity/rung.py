@@ -116,6 +116,11 @@ class Rung:
     series : callable, optional
         ``series(scene, full)`` gives the lines of a chart of error against cost; by default its
         one usual mesh.
+    features : {'none', 'any', 'only'}
+        Whether its body holds features that are not of revolution: it cannot, it may, or it is
+        made for them alone.
+    featured : mapping
+        Options of the builder for a scene with features.
     colour, marker : str
         In charts.
     """
@@ -136,6 +141,8 @@ class Rung:
     mass_tolerance: float = 1e-9
     most_seats: int = 12
     series: Callable[[Any, bool], list[Series]] | None = None
+    features: str = "none"
+    featured: Mapping[str, Any] = field(default_factory=dict)
     colour: str = "#777777"
     marker: str = "P"
 
@@ -143,6 +150,37 @@ class Rung:
     def heading(self) -> str:
         """Its name at the head of a narrow column."""
         return self.short or self.title
+
+    def unfit(self, scene: Any) -> str:
+        """Why it does not model a scene, or nothing.
+
+        Parameters
+        ----------
+        scene : Scene
+        """
+        features = getattr(scene, "features", ())
+        if features and self.features == "none":
+            names = ", ".join(f'{f.what} "{f.name}"' for f in features)
+            return (
+                f"the {self.title} is of revolution and the scene has {names}: "
+                "it would answer for the plain part"
+            )
+        if not features and self.features == "only":
+            return f"the {self.title} is made for features, and the scene has none"
+        return ""
+
+    def meshes_of(self, scene: Any, options: Mapping[str, Any]) -> Sequence:
+        """Meshes for a scene, coarse to fine; see ``meshes``.
+
+        Parameters
+        ----------
+        scene : Scene
+        options : mapping
+            Builder options that were asked for.
+        """
+        assert self.meshes is not None  # asked of rungs that have them
+        given = self.featured if getattr(scene, "features", ()) else {}
+        return self.meshes({**given, **options})
 
     def checked(self, options: Mapping[str, Any]) -> dict[str, Any]:
         """Options for the builder within their limits; see

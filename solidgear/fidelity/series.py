@@ -6,6 +6,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from solidgear.fidelity.levels import CORRECTED
+
 if TYPE_CHECKING:
     from solidgear.fidelity.rung import Series
     from solidgear.scene.shaft import Shaft
@@ -93,3 +95,11 @@ def _least_radius(scene: Shaft) -> float:
 
 def _levels(quick: tuple, more: tuple, full: bool) -> tuple:
     return quick + more if full else quick
+
+
+def corrected_series(scene: Shaft, full: bool) -> list[Series]:
+    """The meshes of defect correction, for a scene with features."""
+    if not getattr(scene, "features", ()):
+        return []
+    levels = CORRECTED if full else CORRECTED[:3]
+    return [("solid", "corrected harmonic solid", [dict(level) for level in levels])]

@@ -146,6 +146,30 @@ def solid_size(scene: Shaft, given: Mapping[str, Any]) -> Size:
     return _hexahedra(scene, given)
 
 
+def corrected_size(scene: Shaft, given: Mapping[str, Any]) -> Size:
+    """Size of a defect correction: that of its 3D solids, estimated, beside the harmonic one.
+
+    The body itself is small; what it is made of decides.
+    """
+    from solidgear.fidelity.ladder import LADDER
+
+    plain = {**LADDER["harmonic"].defaults(), "attachments": given["attachments"]}
+    plain |= {name: given[name] for name in ("order", "layers", "edge_layers")}
+    plain["relative_size"] = given["harmonic_size"]
+    round_part = harmonic_size(scene, plain)
+    solid_part = {**LADDER["solid"].defaults(), "element": "tet10"}
+    solid_part |= {"refinement": given["refinement"], "attachments": given["attachments"]}
+    cut = solid_size(scene, solid_part)
+    return Size(
+        cut.unknowns,
+        cut.entries,
+        max(cut.largest, round_part.largest),
+        cut.build_mb + round_part.build_mb,
+        2 * cut.peak_mb + round_part.peak_mb,
+        "lower refinement, order or layers",
+    )
+
+
 def _hexahedra(scene: Shaft, given: Mapping[str, Any]) -> Size:
     from solidgear.fidelity.solid import hexahedra_layout
 

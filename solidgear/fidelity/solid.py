@@ -6,15 +6,12 @@ blocks from one Gram matrix of basis gradients per element.
 
 from __future__ import annotations
 
-import numpy as np
-import scipy.sparse as sp
-
-from solidgear.body import Block, Body, Port
+from solidgear.body import Body, Port
 from solidgear.errors import SolidgearError
 from solidgear.fidelity.attachment import tie_rigidly
 from solidgear.fidelity.options import SOLID_OPTIONS, checked, countable
 from solidgear.fidelity.scale import elastic_scale
-from solidgear.fidelity.solid_matrices import _matrices, _mean
+from solidgear.fidelity.solid_block import free_block, seat_facets
 from solidgear.fidelity.solid_mesh import _isoparametric
 from solidgear.meshing.grading import Grading
 
@@ -33,6 +30,7 @@ def solid(
     graded_size: float | None = None,
     refinement: float = 1.0,
     attachments: tuple[str, ...] | None = None,
+    half: bool = True,
 ) -> Body:
     """Free 3D solid of a scene.
 
@@ -61,11 +59,14 @@ def solid(
     attachments : tuple of str, optional
         Attachments to build at every station, the first being the default one; by default what the
         scene says.
+    half : bool
+        For a scene with features that share a mirror plane: solve two half models.
 
     Returns
     -------
     Body
-        One block with all six components.
+        One block with all six components; of a part with features and a mirror plane two, of the
+        motions that are symmetric about it and of the others.
 
     Raises
     ------
@@ -92,6 +93,22 @@ def solid(
             f"solid: around = {around} does not fit an O-grid; use a multiple of 4"
         )
     wanted = [(s, a) for s in scene.stations for a in (attachments or (s.attachment,))]
+    if getattr(scene, "features", ()):
+        if element != "tet10":
+            raise SolidgearError(
+                f"solid: element = {element} cannot hold features of the scene; use tet10"
+            )
+        from solidgear.fidelity.featured import featured_body, meshed
+
+        plan = tetrahedra_plan(
+            scene,
+            wanted,
+            size=size,
+            graded_size=graded_size,
+            refinement=refinement,
+            around=around,
+        )
+        return featured_body(scene, wanted, meshed(scene, plan, refinement, half), refinement)
     tet = element.startswith("tet")
     if tet:
         mesh, segment, quality = _tets(
@@ -100,43 +117,12 @@ def solid(
     else:
         mesh, segment, quality = _hexes(scene, wanted, grading)
     body_mesh = _isoparametric(mesh, element, segment)
-    k, m = _matrices(body_mesh, scene)
-    n = body_mesh.nodes.shape[1]
-    rigid: np.ndarray = np.zeros((n, 3, 6))
-    rigid[:, :, :3] = np.eye(3)
-    x, y, z = body_mesh.nodes
-    zero = np.zeros(n)
-    # th x r, column by column
-    rigid[:, :, 3] = np.column_stack([zero, -z, y])
-    rigid[:, :, 4] = np.column_stack([z, zero, -x])
-    rigid[:, :, 5] = np.column_stack([-y, x, zero])
-    rigid = rigid.reshape(3 * n, 6)
-    rows, ties = [], []
-    tol = 1e-7 * scene.length
-    for i, (station, attachment) in enumerate(wanted):
-        facets = (
-            body_mesh.section(station.y, tol)
-            if attachment == "section"
-            else body_mesh.seat(station, scene.segments, tol)
-        )
-        if not len(facets):
-            raise SolidgearError(
-                f"port {station.name!r}: no element faces lie on its {'section' if attachment == 'section' else 'seat'}"
-            )
-        if attachment == "rigid":
-            mask = np.zeros((n, 3), bool)
-            mask[body_mesh.facet_unknowns(facets)] = True
-            ties.append((i, station.y, mask.ravel()))
-            rows.append(sp.csr_matrix((6, 3 * n)))
-        else:
-            rows.append(_mean(body_mesh, facets, station.y, n))
-    block = Block(
-        "full", tuple(range(6)), k, m, rigid, np.repeat(y, 3), sp.vstack(rows).tocsr(), None, False
-    )
+    facets = seat_facets(body_mesh, scene.segments, 1e-7 * scene.length)
+    block, ties = free_block(body_mesh, scene, wanted, facets)
     facts = {
         "element": element,
         "elements": int(body_mesh.dofs.shape[1]),
-        "nodes": int(n),
+        "nodes": int(body_mesh.nodes.shape[1]),
         "refinement": refinement,
         "volume": quality.volume,
         "min_jacobian_ratio": quality.min_ratio,

@@ -60,8 +60,10 @@ def _elastic(gram, lame: float, mu: float):
     return out
 
 
-def _mean(m: SolidMesh, facets, y0, n) -> sp.csr_matrix:
-    """(6, 3n) area-weighted least-squares rigid motion of facets about the axis point at y0."""
+def _mean(m: SolidMesh, facets, y0, n, components=range(6)) -> sp.csr_matrix:
+    """(6, 3n) area-weighted least-squares rigid motion of facets about the axis point at y0, or
+    only some components of it.
+    """
     a = np.zeros((6, 6))
     b = np.zeros((n, 3, 6))
     for value, x, area, dofs in m.over_facets(facets):
@@ -71,7 +73,8 @@ def _mean(m: SolidMesh, facets, y0, n) -> sp.csr_matrix:
         motion[..., 3:] = -np.einsum("abc,eqc->eqab", _CROSS, offset)
         a += np.einsum("eq,eqci,eqcj->ij", area, motion, motion)
         np.add.at(b, dofs.T, np.einsum("bq,eq,eqci->ebci", value, area, motion, optimize=True))
-    g = np.linalg.solve(a, b.reshape(3 * n, 6).T)
+    own = list(components)
+    g = np.linalg.solve(a[np.ix_(own, own)], b.reshape(3 * n, 6).T[own])
     g[np.abs(g) < 1e-14 * np.abs(g).max(axis=1, keepdims=True)] = 0.0
     return sp.csr_matrix(g)
 

@@ -95,13 +95,13 @@ def tetrahedra(
 
     with Session(gmsh):
         report(0.0, "drawing the meridian")
-        corners = _revolve(gmsh, segments, planes, circles)
+        corners = draw_revolved(gmsh, segments, planes, circles)
         set_size(gmsh, size_formulas(segments, corners, size, graded_size, reach, around), size)
         try:
             for dimension, fraction in ((1, 0.05), (2, 0.1), (3, 0.3)):
                 report(fraction, f"meshing dimension {dimension}")
                 call(gmsh.model.mesh.generate, dimension)
-            mesh = _relaxed(_to_skfem(gmsh))
+            mesh = relaxed(to_skfem(gmsh))
         except MeshError:
             raise
         except Exception as error:
@@ -163,8 +163,24 @@ def _validate(segments, planes, circles, size, graded_size, reach, around):
         raise MeshError(f"around is {around}: at least 6 elements are needed around a circle")
 
 
-def _revolve(gmsh, segments, planes, circles):
-    """Draw the meridian with shared edges and turn it about y; the (y, radius) to grade at."""
+def draw_revolved(gmsh, segments, planes, circles, start=0.0, turn=2.0 * pi):
+    """Draw the meridian with shared edges and turn it about y; the (y, radius) to grade at.
+
+    Parameters
+    ----------
+    gmsh : module
+    segments : list of Frustum
+    planes, circles : list of float
+        As for :func:`tetrahedra`.
+    start, turn : float
+        Angle about y from +x towards -z at which the meridian is drawn, and by which it is turned,
+        rad.
+
+    Returns
+    -------
+    list of (float, float)
+        (y, radius) to grade at, m.
+    """
     occ = gmsh.model.occ
     tolerance = tolerance_of(segments)
     points: dict[tuple[float, float], int] = {}
@@ -201,8 +217,11 @@ def _revolve(gmsh, segments, planes, circles):
                 tags.append(tag)
         curves = [line(a, b) for a, b in zip(tags, tags[1:] + tags[:1])]
         faces.append((2, occ.addPlaneSurface([occ.addCurveLoop(curves)])))
-    occ.revolve(faces, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 2.0 * pi)
-    occ.remove(faces, recursive=True)
+    if start:
+        occ.rotate(faces, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, start)
+    occ.revolve(faces, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, turn)
+    if turn == 2.0 * pi:  # else they bound the volumes
+        occ.remove(faces, recursive=True)
     occ.synchronize()
     _embed_tips(gmsh, tolerance)
     return corners_of(slabs, circles, tolerance)
@@ -221,7 +240,7 @@ def _embed_tips(gmsh, tolerance):
             gmsh.model.mesh.embed(0, touching, 2, face)
 
 
-def _to_skfem(gmsh):
+def to_skfem(gmsh):
     """The gmsh mesh as a scikit-fem one, mid-edge nodes matched by the pair of corners they lie
     between.
     """
@@ -254,7 +273,7 @@ def _to_skfem(gmsh):
     return replace(mesh, doflocs=doflocs)
 
 
-def _relaxed(mesh):
+def relaxed(mesh):
     """The mesh with the mid nodes of folded elements drawn towards the middle of their edges, as
     far as needed.
 

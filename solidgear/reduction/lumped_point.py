@@ -96,7 +96,7 @@ def lumped_point(
             f"no bending mode in the z plane among the first 12 of the {body.fidelity} body; "
             "effective masses need one"
         )
-    inertia = body.mass_matrix()
+    inertia = body.mass_matrix() + supports.rigid_mass(body)
     y = body.ports[index].y
     about = inertia[3, 3] - 2 * y * inertia[2, 3] + y * y * inertia[2, 2]
     return LumpedPoint(

@@ -158,6 +158,7 @@ def _tables(record: Record) -> dict[str, Any]:
         "segments": input_tables.segments(record.scene),
         "bearings": input_tables.bearings(record.scene),
         "bearing_range": input_tables.bearing_range(record.bearing_range),
+        "masses": input_tables.masses(record.scene),
         "summary": result_tables.summary(record),
         "matrices": result_tables.matrices(record),
         "frequencies": result_tables.frequencies(record),

@@ -111,6 +111,8 @@ def bearings(scene: Mapping) -> Table:
     for b in scene.get("bearings") or []:
         stiffness = b.get("stiffness") or [[None] * 6] * 6
         shown = [stiffness[i][j] for i, j in ((0, 0), (1, 1), (2, 2), (2, 3), (3, 3), (5, 5))]
+        # what is held has the stiffness of nothing real
+        cells = [b["hold"] if value else DASH for value in shown] if b.get("hold") else None
         status = b.get("status") or "not stated"
         rows.append(
             [
@@ -118,7 +120,7 @@ def bearings(scene: Mapping) -> Table:
                 mm(b.get("y")),
                 mm(b.get("seat_width")),
                 (b.get("attachment", DASH), "word text"),
-                *(eng(value, 4) for value in shown),
+                *(cells or (eng(value, 4) for value in shown)),
                 (status, f"word text mark {status}"),
                 (str(b.get("note") or ""), "text"),
             ]
@@ -167,4 +169,26 @@ def bearing_range(found: Mapping) -> Table:
         ["mode", "at the scene's load", "from", "to", "band"],
         rows,
         note=note.strip(),
+    )
+
+
+def masses(scene: Mapping) -> Table:
+    """The rigid masses on ports."""
+    rows = [
+        [
+            str(mass.get("name", "")),
+            str(mass.get("on") or "a seat of its own"),
+            mm(mass.get("y")),
+            eng(mass.get("mass"), 4),
+            ", ".join(eng(value, 4) for value in mass.get("inertia", ())),
+            ", ".join(mm(value) for value in mass.get("offset", ())),
+        ]
+        for mass in scene.get("masses") or []
+    ]
+    head = ["mass", "moves with", "y, mm", "mass, kg", "inertia x, y, z, kg m²", "offset, mm"]
+    return Table(
+        "Rigid masses",
+        head,
+        rows,
+        note="Inertia about the centre of mass; offset of that centre from the station.",
     )

@@ -1,8 +1,10 @@
 """What is modelled and what is asked: data only."""
 
 from solidgear.scene.catalogue import BearingDisplacement, BearingLoad, Catalogue
+from solidgear.scene.features import CrossHole, Feature, Flat, Keyway
 from solidgear.scene.model import Ask, Quantity, Scene
 from solidgear.scene.parts import STEEL, Material, Segment
+from solidgear.scene.point_mass import PointMass
 from solidgear.scene.stations import Bearing, Port
 
 __all__ = [
@@ -11,7 +13,12 @@ __all__ = [
     "BearingDisplacement",
     "BearingLoad",
     "Catalogue",
+    "CrossHole",
+    "Feature",
+    "Flat",
+    "Keyway",
     "Material",
+    "PointMass",
     "Port",
     "Quantity",
     "STEEL",

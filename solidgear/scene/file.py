@@ -15,14 +15,15 @@ from typing import Any
 from solidgear.errors import SceneError, listed, nearest
 from solidgear.scene.model import Scene
 from solidgear.scene.places import resolve
-from solidgear.scene.rules import MOST_BEARINGS, MOST_SEGMENTS, too_many
-from solidgear.scene.tables import KINDS, SceneTable, SoundTables
+from solidgear.scene.rules import MOST_BEARINGS, MOST_MASSES, MOST_SEGMENTS, too_many
+from solidgear.scene.tables import FEATURES, KINDS, SceneTable, SoundTables
 from solidgear.scene.toml_file import parse
 
 
 def _drop_tag(loc: tuple) -> tuple:
     """pydantic puts the kind of a segment into its location; the file has no such key."""
-    return (*loc[:2], *loc[3:]) if loc[:1] == ("segment",) and loc[2:3] and loc[2] in KINDS else loc
+    tags = {"segment": KINDS, "feature": FEATURES}.get(loc[0], ()) if loc else ()
+    return (*loc[:2], *loc[3:]) if loc[2:3] and loc[2] in tags else loc
 
 
 def load(path: str | os.PathLike) -> Scene:
@@ -64,9 +65,13 @@ def load(path: str | os.PathLike) -> Scene:
 
 
 def _read(raw: dict[str, Any], name: str) -> Scene:
-    for what, most in (("segment", MOST_SEGMENTS), ("bearing", MOST_BEARINGS)):
+    most_of = (("segment", MOST_SEGMENTS), ("bearing", MOST_BEARINGS), ("mass", MOST_MASSES))
+    for what, most in most_of:
         if isinstance(raw.get(what), list) and len(raw[what]) > most:
-            raise SceneError(too_many(f"{what}s", len(raw[what]), most), path=(what,))
+            raise SceneError(
+                too_many("masses" if what == "mass" else f"{what}s", len(raw[what]), most),
+                path=(what,),
+            )
     problems: list[SceneError] = []
     table, numbers = _tables(raw, problems)
     problems += _unknown_names(raw)
@@ -79,6 +84,7 @@ def _tables(raw: dict[str, Any], problems: list[SceneError]) -> tuple[SceneTable
     """The tables that are sound each by itself, and which bearings of the file are among them; None
     without a whole shaft.
     """
+    # masses are judged only where all of them are sound
     count = len(raw["bearing"]) if isinstance(raw.get("bearing"), list) else 0
     try:
         return SceneTable(**raw), list(range(count))
@@ -135,9 +141,10 @@ def _unknown_names(raw: dict[str, Any]) -> Iterator[SceneError]:
 
     Read from the file as it stands, since a segment of a wrong length still has its name.
     """
-    pieces, bearings, port = (
+    pieces, bearings, masses, port = (
         _list_of_tables(raw.get("segment")),
         _list_of_tables(raw.get("bearing", [])),
+        _list_of_tables(raw.get("mass", [])),
         raw.get("port"),
     )
     if pieces is None or not all(isinstance(piece.get("name"), str) for piece in pieces):
@@ -155,6 +162,10 @@ def _unknown_names(raw: dict[str, Any]) -> Iterator[SceneError]:
     for i, bearing in enumerate(bearings or ()):
         yield from _unknown_datum(bearing.get("from"), known, ("bearing", i, "from"))
         known.append(f"bearing.{bearing.get('name')}")
+    for i, mass in enumerate(masses or () if bearings is not None else ()):
+        yield from _unknown_datum(mass.get("from"), known, ("mass", i, "from"))
+    for i, feature in enumerate(_list_of_tables(raw.get("feature", [])) or ()):
+        yield from _unknown_datum(feature.get("from"), known, ("feature", i, "from"))
     if isinstance(port, Mapping) and bearings is not None:
         for key in ("at", "from"):
             yield from _unknown_datum(port.get(key), known, ("port", key))

@@ -16,8 +16,16 @@ from pydantic import Field, model_validator
 from solidgear.errors import SceneError
 from solidgear.scene.bearing_stiffness import stiffness_entries
 from solidgear.scene.catalogue import BearingLoad
+from solidgear.scene.features import Feature, feature_problems
 from solidgear.scene.parts import STEEL, Material, Model, Segment
-from solidgear.scene.rules import MOST_MODES, shaft_problems, station_problems, steps
+from solidgear.scene.point_mass import PointMass
+from solidgear.scene.rules import (
+    MOST_MODES,
+    mass_problems,
+    shaft_problems,
+    station_problems,
+    steps,
+)
 from solidgear.scene.stations import Bearing, Port
 from solidgear.scene.units import AxialSpring, Frequency, Tolerance
 
@@ -84,6 +92,9 @@ class Scene(Model):
     material : Material
         That of segments without one of their own.
     bearings : tuple of Bearing
+    masses : tuple of PointMass
+    features : tuple of Keyway, Flat or CrossHole
+        What is cut out of the shaft and is not of revolution.
     housing_axial : float or None
         Spring along y between the common bearing housing and ground, N/m.
     port : Port
@@ -115,6 +126,8 @@ class Scene(Model):
     segments: tuple[Segment, ...]
     material: Material = STEEL
     bearings: tuple[Bearing, ...] = ()
+    masses: tuple[PointMass, ...] = ()
+    features: tuple[Feature, ...] = ()
     housing_axial: AxialSpring | None = None
     port: Port
     load: BearingLoad | None = None
@@ -124,8 +137,10 @@ class Scene(Model):
     def _hangs_together(self) -> Scene:
         problems = shaft_problems(self.segments)
         if not problems:  # a station can be judged only on a shaft that is sound
-            bearings = dict(enumerate(self.bearings))
-            problems = list(station_problems(self.segments, self.port, bearings))
+            bearings, masses = dict(enumerate(self.bearings)), dict(enumerate(self.masses))
+            problems = list(station_problems(self.segments, self.port, bearings, masses))
+            problems += mass_problems(self.port, bearings, masses)
+            problems += feature_problems(self.segments, self.features)
         if problems:
             raise SceneError.of(problems)
         return self
@@ -186,11 +201,16 @@ class Scene(Model):
         return self.segments[-1].y1
 
     @property
-    def stations(self) -> tuple[Port | Bearing, ...]:
-        """Everything attached to the shaft, the port first: each has name, y, lo, hi (m),
-        attachment.
+    def stations(self) -> tuple[Port | Bearing | PointMass, ...]:
+        """Everything attached to the shaft, the port first, then bearings and masses on seats of
+        their own: each has name, y, lo, hi (m), attachment.
         """
-        return (self.port, *self.bearings)
+        return (self.port, *self.bearings, *(m for m in self.masses if m.on is None))
+
+    @property
+    def plain(self) -> Scene:
+        """The same scene without features: a body of revolution."""
+        return self.with_changes(features=()) if self.features else self
 
     @property
     def steps(self) -> tuple[float, ...]:
@@ -237,10 +257,12 @@ class Scene(Model):
         SceneError
             An unknown attachment, or two rigid surfaces that overlap.
         """
-        bearings = tuple(b.with_changes(attachment=attachment) for b in self.bearings)
-        return self.with_changes(
-            bearings=bearings, port=self.port.with_changes(attachment=attachment)
+        bearings, masses = (
+            tuple(one.with_changes(attachment=attachment) for one in some)
+            for some in (self.bearings, self.masses)
         )
+        port = self.port.with_changes(attachment=attachment)
+        return self.with_changes(bearings=bearings, masses=masses, port=port)
 
     def with_seat_width(self, width: float | str) -> Scene:
         """The same scene with every bearing seat of one width.
@@ -338,6 +360,9 @@ class Scene(Model):
         dict
         """
         data = self.model_dump(mode="json")
+        for key in ("masses", "features"):
+            if not data[key]:
+                del data[key]
         for row, segment in zip(data["segments"], self.segments):
             row["length"] = segment.length
         for row, bearing in zip(data["bearings"], self.bearings):
@@ -347,8 +372,13 @@ class Scene(Model):
                 "stiffness": bearing.stiffness.tolist(),
                 "entries": stiffness_entries(row.pop("matrix")),
             }
-            if bearing.catalogue is None:
-                del row["catalogue"]
+            for key in ("catalogue", "hold", "face"):
+                if row[key] is None:
+                    del row[key]
         if self.load is None:
             del data["load"]
+        for row, mass in zip(data.get("masses", ()), self.masses):
+            carrier = next(s for s in self.stations if s.name == mass.station)
+            row |= {"y": carrier.y, "lo": carrier.lo, "hi": carrier.hi}
+            row |= {"attachment": carrier.attachment, "matrix": mass.matrix.tolist()}
         return data | {"length": self.length, "steps": list(self.steps)}

@@ -8,11 +8,20 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from solidgear.errors import SceneError
+from solidgear.scene.features import CrossHole, Feature, Flat, Keyway, feature_problems
 from solidgear.scene.model import Scene
 from solidgear.scene.parts import Material, Segment
-from solidgear.scene.rules import shaft_problems, station_problems
+from solidgear.scene.point_mass import PointMass
+from solidgear.scene.rules import mass_problems, shaft_problems, station_problems
 from solidgear.scene.stations import Attachment, Bearing, Port, Status
-from solidgear.scene.tables import BearingTable, Piece, PortTable, SceneTable
+from solidgear.scene.tables import (
+    BearingTable,
+    FeatureTable,
+    MassTable,
+    Piece,
+    PortTable,
+    SceneTable,
+)
 
 
 def resolve(table: SceneTable, numbers: list[int], name: str, problems: list[SceneError]) -> Scene:
@@ -52,7 +61,7 @@ def resolve(table: SceneTable, numbers: list[int], name: str, problems: list[Sce
     bearings = {}
     for index, item in zip(numbers, table.bearing):
         # a datum that is missing was reported before, or is a bearing that was refused
-        if item.from_ in datums:
+        if (item.from_ or "start") in datums:
             try:
                 bearings[index] = _bearing(item, index, table.attachment, datums)
             except SceneError as error:
@@ -62,9 +71,26 @@ def resolve(table: SceneTable, numbers: list[int], name: str, problems: list[Sce
         port = _port(table.port, table.attachment, datums, surface) if table.port else None
     except SceneError as error:
         problems.append(error)
+    masses = {}
+    for index, heavy in enumerate(table.mass):
+        if (heavy.from_ or "start") in datums:
+            try:
+                masses[index] = _mass(heavy, table.attachment, datums)
+            except SceneError as error:
+                problems.append(error.located(None, path=("mass", index, *error.path)))
+    features = [
+        _feature(cut, k, datums)
+        for k, cut in enumerate(table.feature)
+        if cut.from_ is None or cut.from_ in datums
+    ]
+    whole = len(bearings) == len(numbers) and table.port is not None
     problems += [
         one.located(None, path=_file_path(one.path, table, owner))
-        for one in station_problems(segments, port, bearings)
+        for one in (
+            *station_problems(segments, port, bearings, masses),
+            *(mass_problems(port, bearings, masses) if whole else ()),
+            *feature_problems(segments, features),
+        )
     ]
     if problems:
         raise SceneError.of(problems)
@@ -76,6 +102,8 @@ def resolve(table: SceneTable, numbers: list[int], name: str, problems: list[Sce
         title=table.title,
         name=name,
         source=table.source,
+        masses=tuple(masses.values()),
+        features=tuple(features),
         housing_axial=table.housing.axial if table.housing else None,
         load=table.load,
         ask=table.ask,
@@ -138,19 +166,26 @@ def _segment(piece: Piece, y: float, bore_radius: float, material: Material) -> 
 
 
 def _bearing(item: BearingTable, index: int, attachment: str, datums: dict[str, float]) -> Bearing:
-    y = item.position + datums[item.from_]
+    if item.face is None:
+        y = (item.position or 0.0) + datums[item.from_ or "start"]
+    else:
+        y = datums[item.face]
+    # the middle of an end face is a section; a seat would be the rim beside it
+    usual = attachment if item.face is None else "section"
     given = item.stiffness if item.matrix is None else item.matrix
+    held = {"matrix": given} if item.hold is None else {"hold": item.hold}
     try:
         bearing = Bearing(
             name=item.name,
             y=y,
             seat_width=item.seat_width,
-            matrix=given,
             catalogue=item.catalogue,
             axial_series=item.axial_series,
-            attachment=item.attachment or attachment,
+            attachment=item.attachment or usual,
             status=item.status or _status(item),
             note=item.note,
+            face=item.face,
+            **held,
         )
     except SceneError as error:
         key = "stiffness" if item.matrix is None else "matrix"
@@ -164,6 +199,29 @@ def _status(item: BearingTable) -> Status:
     if item.catalogue is None:
         return "assumed"
     return "estimated" if item.catalogue.estimated else "calculated"
+
+
+def _mass(item: MassTable, attachment: Attachment, datums: dict[str, float]) -> PointMass:
+    place = {}
+    if item.on is None:
+        place = {
+            "y": (item.position or 0.0) + datums[item.from_ or "start"],
+            "seat_width": item.seat_width,
+            "attachment": item.attachment or attachment,
+        }
+    given = {key: getattr(item, key) for key in ("inertia", "offset") if getattr(item, key)}
+    return PointMass(name=item.name, mass=item.mass, on=item.on, **place, **given)
+
+
+_FEATURES = {"keyway": Keyway, "flat": Flat, "cross_hole": CrossHole}
+
+
+def _feature(item: FeatureTable, index: int, datums: dict[str, float]) -> Feature:
+    given = item.model_dump(exclude={"name", "kind", "from_", "position"})
+    # along the segment, unless another datum is given
+    start = datums.get(item.from_ or f"{item.segment}.start", 0.0)
+    name = item.name or f"{item.kind.replace('_', ' ')} {index + 1}"
+    return _FEATURES[item.kind](name=name, y=start + item.position, **given)
 
 
 def _port(
@@ -213,6 +271,10 @@ def _file_path(path: tuple, table: SceneTable, owner: Sequence[int]) -> tuple:
             return ("segment", owner[index], "material", key) if own else ("material", key)
         case ("bearings", index, key):
             return ("bearing", index, {"y": "position"}.get(key, key))
+        case ("masses", index, key):
+            return ("mass", index, {"y": "position"}.get(key, key))
+        case ("features", index, key):
+            return ("feature", index, {"y": "position"}.get(key, key))
         case ("port", "y"):
             return ("port", "at" if table.port.at is not None else "position")
         case ("port", "lo" | "hi"):

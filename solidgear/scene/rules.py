@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 from solidgear.errors import SceneError
 
 if TYPE_CHECKING:
-    from solidgear.scene import Bearing, Material, Port, Segment
+    from solidgear.scene import Bearing, Material, PointMass, Port, Segment
 
 #: m; two edges nearer than this are one edge
 TOUCH = 1e-9
@@ -30,7 +30,7 @@ MOST_UNLIKE = 1e5
 MOST_MODES = 500
 
 #: every segment takes at least a line of cells, and every bearing six ports
-MOST_SEGMENTS, MOST_BEARINGS, MOST_SPRINGS = 100, 50, 20
+MOST_SEGMENTS, MOST_BEARINGS, MOST_SPRINGS, MOST_MASSES = 100, 50, 20, 50
 
 
 def steps(segments: Sequence[Segment]) -> tuple[float, ...]:
@@ -74,7 +74,7 @@ def too_many(what: str, count: int, most: int) -> str:
 
     Parameters
     ----------
-    what : {'segments', 'bearings'}
+    what : {'segments', 'bearings', 'masses'}
     count, most : int
         How many there are, and how many there may be.
 
@@ -174,7 +174,10 @@ def _unlike(first: Material, here: Material, i: int) -> Iterator[SceneError]:
 
 
 def station_problems(
-    segments: Sequence[Segment], port: Port | None, bearings: Mapping[int, Bearing]
+    segments: Sequence[Segment],
+    port: Port | None,
+    bearings: Mapping[int, Bearing],
+    masses: Mapping[int, PointMass] | None = None,
 ) -> Iterator[SceneError]:
     """Ports and seats lie on the shaft, on one smooth surface each, and seats do not overlap.
 
@@ -185,6 +188,8 @@ def station_problems(
     bearings : mapping of int to Bearing
         By their place in the scene; those that cannot be used for another reason may be left out,
         and so may the port.
+    masses : mapping of int to PointMass, optional
+        Likewise; those that move with another station have no place of their own.
 
     Yields
     ------
@@ -195,8 +200,13 @@ def station_problems(
     if len(bearings) > MOST_BEARINGS:
         yield SceneError(too_many("bearings", len(bearings), MOST_BEARINGS), path=("bearings",))
         return
-    places: list[tuple[tuple[str | int, ...], Port | Bearing, str]] = [
+    places: list[tuple[tuple[str | int, ...], Port | Bearing | PointMass, str]] = [
         (("bearings", i, "seat_width"), bearing, "seat") for i, bearing in bearings.items()
+    ]
+    places += [
+        (("masses", i, "seat_width"), mass, "seat")
+        for i, mass in (masses or {}).items()
+        if mass.on is None
     ]
     if port is not None:
         if not -TOUCH <= port.y <= length + TOUCH:
@@ -218,8 +228,46 @@ def station_problems(
             yield SceneError(reason, path=path)
 
 
+def mass_problems(
+    port: Port | None, bearings: Mapping[int, Bearing], masses: Mapping[int, PointMass]
+) -> Iterator[SceneError]:
+    """Masses sit on a station that there is, and not too many of them.
+
+    Parameters
+    ----------
+    port : Port or None
+        None where it cannot be used; then its name may be the one that is missing.
+    bearings, masses : mapping of int to Bearing or PointMass
+        By their place in the scene.
+
+    Yields
+    ------
+    SceneError
+        One for each problem.
+    """
+    if len(masses) > MOST_MASSES:
+        yield SceneError(too_many("masses", len(masses), MOST_MASSES), path=("masses",))
+        return
+    known = [*([port.name] if port else []), *(b.name for b in bearings.values())]
+    named = set()
+    for i, mass in masses.items():
+        if mass.on is not None and mass.on not in known and port is not None:
+            reason = f"no lumped point or bearing has this name; there are {', '.join(known)}"
+            yield SceneError(reason, path=("masses", i, "on"))
+        # on seats of their own they are stations, whose names are compared there
+        if mass.name in named or (mass.on is not None and mass.name in known):
+            reason = "the port, a bearing or another mass has this name; each needs its own"
+            yield SceneError(reason, path=("masses", i, "name"))
+        if mass.on is not None:
+            named.add(mass.name)
+
+
 def _misplaced(
-    here: Port | Bearing, what: str, before: Sequence[tuple], length: float, jumps: Sequence[float]
+    here: Port | Bearing | PointMass,
+    what: str,
+    before: Sequence[tuple],
+    length: float,
+    jumps: Sequence[float],
 ) -> str:
     """Why a station cannot be where it is, or nothing: the first reason, of which others may be a
     consequence.

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Protocol
 
 if TYPE_CHECKING:
-    from solidgear.scene import Bearing, Port, Segment
+    from solidgear.scene import Bearing, PointMass, Port, Segment
 
 
 class Shaft(Protocol):
@@ -19,7 +19,7 @@ class Shaft(Protocol):
         """Segments from y = 0 on."""
 
     @property
-    def stations(self) -> tuple[Port | Bearing, ...]:
+    def stations(self) -> tuple[Port | Bearing | PointMass, ...]:
         """What is attached, the port first; each has name, y, lo, hi (m) and attachment."""
 
     @property

@@ -12,16 +12,19 @@ from solidgear.scene.bearing_stiffness import stiffness_matrix
 from solidgear.scene.catalogue import BearingLoad, Catalogue
 from solidgear.scene.model import Ask
 from solidgear.scene.parts import Material, Model
-from solidgear.scene.stations import Attachment, AxialSeries, Status
+from solidgear.scene.point_mass import check_inertia
+from solidgear.scene.stations import Attachment, AxialSeries, Face, Hold, Status
 from solidgear.scene.units import (
     Angle,
     AxialSpring,
     Density,
     Length,
+    Mass,
     Modulus,
     Poisson,
     PositiveLength,
     Thickness,
+    quantity,
 )
 
 _WORDS = ("start", "end", "bearing")  # first words of datums, so no segment may be called that
@@ -169,9 +172,11 @@ class BearingTable(_Table):
     """A [[bearing]], its datum not yet resolved."""
 
     name: Name
-    position: Length
-    from_: str = Field("start", alias="from")
+    position: Length | None = None
+    from_: str | None = Field(None, alias="from")
+    face: Face | None = None
     seat_width: PositiveLength
+    hold: Hold | None = None
     stiffness: Annotated[dict[str, Any], AfterValidator(_entries)] | None = None
     matrix: list[Any] | None = None
     catalogue: Catalogue | None = None
@@ -181,15 +186,85 @@ class BearingTable(_Table):
     note: str = ""
 
     @model_validator(mode="after")
-    def _one_stiffness(self):
-        if self.catalogue is not None:
-            for key in ("stiffness", "matrix"):
-                if getattr(self, key) is not None:
-                    raise SceneError(f"give either {key} or catalogue, not both", path=(key,))
+    def _one_place_one_stiffness(self):
+        _place(self)
+        given = [k for k in ("stiffness", "matrix", "catalogue") if getattr(self, k) is not None]
+        if self.hold is not None:
+            given.append("hold")
+        if not {"catalogue", "hold"} & set(given):
+            how = "write stiffness = {kxx = ...}, matrix = 6 rows of 6 numbers, catalogue = {...}"
+            self._one_of("stiffness", "matrix", f'{how}, or hold = "clamped"')
             return self
-        how = "write stiffness = {kxx = ...}, matrix = 6 rows of 6 numbers, or catalogue = {...}"
-        self._one_of("stiffness", "matrix", how)
+        if len(given) > 1:
+            raise SceneError(f"give either {given[0]} or {given[-1]}, not both", path=(given[0],))
+        if self.hold is not None and self.axial_series:
+            raise SceneError(
+                "a spring in series needs a stiffness beside it; leave one of hold and "
+                "axial_series out",
+                path=("axial_series",),
+            )
         return self
+
+
+def _place(table: BearingTable) -> None:
+    """A seat is somewhere along the shaft, or beside an end face."""
+    if table.face is None and table.position is None:
+        raise SceneError(
+            'this key is missing; write position = "28 mm" with from, or face = "start"',
+            path=("position",),
+        )
+    given = next((k for k in ("position", "from_") if getattr(table, k) is not None), None)
+    if table.face is not None and given:
+        raise SceneError(
+            "give either face, or position with from, not both", path=(given.rstrip("_"),)
+        )
+
+
+class MassTable(_Table):
+    """A [[mass]], its datum not yet resolved."""
+
+    name: Name
+    mass: Mass
+    inertia: list[Any] = Field(default_factory=list)
+    offset: list[Any] = Field(default_factory=list)
+    on: str | None = None
+    position: Length | None = None
+    from_: str | None = Field(None, alias="from")
+    seat_width: PositiveLength | None = None
+    attachment: Attachment | None = None
+
+    @model_validator(mode="after")
+    def _one_place_one_body(self):
+        how = 'name the port or bearing that carries it, or write position = "28 mm"'
+        self._one_of("on", "position", how)
+        for key in ("from_", "seat_width", "attachment"):
+            if self.on is not None and getattr(self, key) is not None:
+                raise SceneError(
+                    "belongs to a seat of its own; a mass on a station has that of the station",
+                    path=(key.rstrip("_"),),
+                )
+        if self.on is None and self.seat_width is None:
+            raise SceneError(
+                "this key is missing: the width of the seat that carries the mass",
+                path=("seat_width",),
+            )
+        self._three("inertia", "inertia", "about x, y and z")
+        self._three("offset", "length", "along x, y and z")
+        if self.inertia:
+            x, y, z = (quantity(entry, "inertia") for entry in self.inertia)
+            check_inertia((x, y, z))
+        return self
+
+    def _three(self, key: str, dimension: str, what: str) -> None:
+        """Refuse a list that is not three quantities of one dimension."""
+        given = getattr(self, key)
+        if given and len(given) != 3:
+            raise SceneError(f"must be three quantities, {what}", path=(key,))
+        for k, entry in enumerate(given):
+            try:
+                quantity(entry, dimension)
+            except SceneError as error:
+                raise SceneError(error.reason, path=(key, k), value=error.value) from None
 
 
 class _Housing(Model):
@@ -221,6 +296,47 @@ class PortTable(_Table):
         return self
 
 
+class _FeatureTable(_Table):
+    """A [[feature]], its datum not yet resolved."""
+
+    name: Name | None = None
+    segment: str
+    from_: str | None = Field(None, alias="from")
+    position: Length = 0.0
+    angle: Any = 0.0
+
+    @model_validator(mode="after")
+    def _angle(self):
+        try:
+            quantity(self.angle, "angle")
+        except SceneError as error:
+            raise SceneError(error.reason, path=("angle",), value=error.value) from None
+        return self
+
+
+class _KeywayTable(_FeatureTable):
+    kind: Literal["keyway"]
+    length: PositiveLength
+    width: PositiveLength
+    depth: PositiveLength
+    ends: Literal["round", "square"] = "round"
+
+
+class _FlatTable(_FeatureTable):
+    kind: Literal["flat"]
+    length: PositiveLength
+    depth: PositiveLength
+
+
+class _CrossHoleTable(_FeatureTable):
+    kind: Literal["cross_hole"]
+    diameter: PositiveLength
+
+
+FeatureTable = _KeywayTable | _FlatTable | _CrossHoleTable
+FEATURES = ("keyway", "flat", "cross_hole")
+
+
 class SceneTable(Model):
     """A whole file, each table sound by itself."""
 
@@ -230,6 +346,8 @@ class SceneTable(Model):
     material: Material
     segment: list[Annotated[_Cylinder | _Cone | _BevelHead, Field(discriminator="kind")]]
     bearing: list[BearingTable] = []
+    mass: list[MassTable] = []
+    feature: list[Annotated[FeatureTable, Field(discriminator="kind")]] = []
     housing: _Housing | None = None
     port: PortTable
     load: BearingLoad | None = None

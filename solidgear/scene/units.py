@@ -28,6 +28,8 @@ DIMENSIONS: dict[str, tuple[str, str, tuple[int, ...]]] = {
     "force_per_length": ("N/m", "8.6e9 N/m", (0,)),
     "force": ("N/rad", "1.45e8 N/rad", (0, -1)),
     "moment": ("N*m/rad", "3.6e6 N*m/rad", (0, -1)),
+    "mass": ("kg", "8 kg", (0,)),
+    "inertia": ("kg*m^2", "0.02 kg*m^2", (0,)),
     "frequency": ("Hz", "10 kHz", (0,)),
     "load": ("N", "2 kN", (0,)),
     "torque": ("N*m", "15 N*m", (0,)),
@@ -101,8 +103,9 @@ def quantity(value: Any, dimension: str) -> float:
         N/m"``.
     dimension : str
         One of `DIMENSIONS`: length (m), angle (rad), pressure (Pa), density (kg/m3),
-        force_per_length (N/m), force (N or N/rad), moment (N m or N m/rad), frequency (Hz),
-        load (N), torque (N m), speed (rad/s), temperature (K, a difference), dimensionless.
+        force_per_length (N/m), force (N or N/rad), moment (N m or N m/rad), mass (kg), inertia
+        (kg m2), frequency (Hz), load (N), torque (N m), speed (rad/s), temperature (K, a
+        difference), dimensionless.
 
     Returns
     -------
@@ -300,6 +303,7 @@ SignedAngle = Annotated[float, _in("angle")]
 Speed = Annotated[float, _in("speed"), _NOT_NEGATIVE]
 TemperatureRise = Annotated[float, _in("temperature")]
 Frequency = Annotated[float, _in("frequency"), _POSITIVE]
+Mass = Annotated[float, _in("mass"), _POSITIVE]
 Tolerance = Annotated[
     float,
     _in("dimensionless"),

@@ -224,7 +224,9 @@ def count_below(supported: Supported, solved: Solved, reach: float) -> Count | N
     """Sylvester's law of inertia: how many modes lie below the first gap behind ``reach``.
 
     With bearings ``L L'`` kept outside the factor (Haynsworth's additivity on the bordered matrix),
-    ``neg(K + L L' - mu M) = neg(K - mu M) - neg(I + L' (K - mu M)^-1 L)``.
+    ``neg(K + L L' - mu M) = neg(K - mu M) - neg(I + L' (K - mu M)^-1 L)``. Masses ``J J'`` on ports
+    are outside it too: with ``B = [L, J]`` and ``D = diag(I, -mu I)`` the same theorem gives
+    ``neg(K + L L' - mu (M + J J')) = neg(K - mu M) + neg(-D^-1 - B' (K - mu M)^-1 B) - rank(L)``.
 
     Parameters
     ----------
@@ -248,7 +250,9 @@ def count_below(supported: Supported, solved: Solved, reach: float) -> Count | N
     at = int(clear[0]) if len(clear) else int(np.argmax(np.diff(np.log(value))))
     below = float((start[at] if len(clear) else value[at]) ** 0.6 * value[at + 1] ** 0.4)
     negative = 0
-    load, inner = supported.load, np.eye(supported.load.shape[1])
+    springs, masses = supported.load.shape[1], supported.heavy.shape[1]
+    load = np.hstack([supported.load, supported.heavy])
+    inner = -np.diag(np.append(np.ones(springs), np.full(masses, -1 / below)))
     backends = set()
     for block, part in zip(supported.blocks, supported.parts(load)):
         try:
@@ -264,8 +268,11 @@ def count_below(supported: Supported, solved: Solved, reach: float) -> Count | N
         negative += factor.negative
         backends.add(factor.backend)
         if load.shape[1]:
-            inner = inner + part.T @ factor.solve(part)
+            inner = inner - part.T @ factor.solve(part)
     if load.shape[1]:
-        negative -= int((np.linalg.eigvalsh((inner + inner.T) / 2) < 0).sum())
+        # rows brought to one size: what one of 1e24 N/m leaves of rounding has the sign of nothing
+        size = 1 / np.sqrt(np.abs(np.diag(inner)))
+        inner = (inner + inner.T) / 2 * np.outer(size, size)
+        negative += int((np.linalg.eigvalsh(inner) < 0).sum()) - springs
     distance = float(np.abs(value / below - 1).min())
     return Count(below, at + 1 + len(solved.free), negative, "+".join(sorted(backends)), distance)

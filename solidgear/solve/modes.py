@@ -130,13 +130,15 @@ class ModeSet:
         Parameters
         ----------
         name : str
-            Such as ``bending 1``.
+            Such as ``bending 1``. Where bending is named by its plane, ``bending 1`` is ``bending z
+            1``: that of the plane of C_zz.
 
         Returns
         -------
         Mode or None
         """
-        return next((m for m in (*self.modes, *self.beyond) if m.name == name), None)
+        every = {m.name: m for m in reversed((*self.modes, *self.beyond))}
+        return every.get(name) or every.get(name.replace("bending ", "bending z ", 1))
 
 
 @pinned
@@ -286,7 +288,7 @@ def _named(body, names: Names, parts: list[Part], n: int, max_frequency: float |
     raw = _lowest(parts, sum(len(part.everywhere(part.solved.elastic)) for part in parts))
     shapes = [names.describe(r.vectors) for r in raw]
     groups, torn = names.pairs(shapes, np.array([r.value for r in raw]))
-    labels = numbered([shapes[group[0]].family for group in groups])
+    labels = numbered([shapes[group[0]].label for group in groups])
     listed: list[Mode] = []
     beyond: list[Mode] = []
     every: list[tuple[str, float, int]] = []

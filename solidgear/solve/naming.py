@@ -20,8 +20,8 @@ import numpy as np
 from scipy.sparse.csgraph import connected_components
 
 from solidgear.body import Block, Body, Supports
-from solidgear.frames import rotation
 from solidgear.solve.circumference import Circumference, of_body
+from solidgear.solve.quarter_turn import alike
 
 FAMILIES = {"bending": (0, 2, 3, 5), "axial": (1,), "torsion": (4,)}
 #: Bearings that a quarter turn changes by no more than this, relative, split a pair by half of it
@@ -50,6 +50,9 @@ class Shape:
     double : bool
         Whether it stands for its twin as well, as a block of two waves and more does for its cosine
         and its sine form.
+    plane : str
+        ``z`` or ``x`` where bending stays in one plane of a part that has a mirror plane but is not
+        round, else empty.
     """
 
     family: str
@@ -58,6 +61,12 @@ class Shape:
     captured: float
     profile: np.ndarray | dict[int, np.ndarray]
     double: bool = False
+    plane: str = ""
+
+    @property
+    def label(self) -> str:
+        """Family and plane: what modes are numbered by."""
+        return f"{self.family} {self.plane}" if self.plane else self.family
 
 
 class Projection:
@@ -117,47 +126,6 @@ class Projection:
         return out
 
 
-def alike(supports: Supports) -> float:
-    """Bound on the relative change of any eigenvalue by a quarter turn of the bearings.
-
-    If ``|v' D v| <= eps v' K v`` for the change D of the stiffness K, then no eigenvalue of the
-    supported body moves by more than eps (Rayleigh).
-
-    Parameters
-    ----------
-    supports : Supports
-
-    Returns
-    -------
-    float
-        Infinite where the change is not small.
-
-    Examples
-    --------
-    >>> round(alike(Supports(("A",), np.diag([1e8, 0.0, 1e8, 0.0, 0.0, 0.0]))), 12)
-    0.0
-    >>> round(alike(Supports(("A",), np.diag([1e8, 0.0, 2e8, 0.0, 0.0, 0.0]))), 12)
-    1.0
-    """
-    k = supports.stiffness
-    if not supports.ports:
-        return 0.0
-    turn = np.kron(np.eye(len(supports.ports)), rotation(1, np.pi / 2))
-    change = turn @ k @ turn.T - k
-    size = np.sqrt(np.abs(np.diag(k)))
-    on = size > 0
-    scale = np.outer(size[on], size[on])
-    if np.abs(change[~on]).max(initial=0.0) > 1e-12 * np.abs(k).max(initial=0.0):
-        return np.inf
-    w, v = np.linalg.eigh(k[np.ix_(on, on)] / scale)
-    relative = change[np.ix_(on, on)] / scale
-    good = w > 1e-9
-    if np.abs(v[:, ~good].T @ relative).max(initial=0.0) > 1e-12:
-        return np.inf
-    half = v[:, good] / np.sqrt(w[good])
-    return float(np.abs(np.linalg.eigvalsh(half.T @ relative @ half)).max(initial=0.0))
-
-
 class Names:
     """Families, twins and numbers of the shapes of one body on its bearings.
 
@@ -171,7 +139,11 @@ class Names:
 
     def __init__(self, body: Body, supports: Supports, project: Projection):
         self.body, self.project = body, project
+        self._laden = supports.inertia is not None
         self.promised = alike(supports)
+        # a part that is not round promises no twins, however near its frequencies lie
+        self._split = not body.mesh.get("round", True)
+        self._planes = self._split and len(body.blocks) > 1
         self._round = of_body(body)
         self._moving_axially: dict[int, np.ndarray] = {}
 
@@ -192,7 +164,7 @@ class Names:
         profile: np.ndarray | dict[int, np.ndarray] = vectors
         if self._round is not None:
             energy, profile = self._around(*self._round, vectors)
-        elif len(self.body.blocks) == 1 and len(self.body.blocks[0].components) == 6:
+        elif self._planes or len(self.body.blocks[0].components) == 6:
             energy = {
                 (1 if name == "bending" else 0, name): share for name, share in shares.items()
             }
@@ -201,9 +173,26 @@ class Names:
         waves, family = max(energy, key=energy.__getitem__)
         if self._round is not None:
             profile = profile[waves]
-        return Shape(
-            family, waves, motion, sum(shares.values()), profile, self._round is None and waves > 1
-        )
+        captured = sum(shares.values())
+        if self._laden:
+            # shares are of the mass of the shaft, of which unit shapes have less than one
+            moved = (v @ (self.body.block(b).mass @ v) for b, v in vectors.items())
+            captured /= float(sum(moved))
+        whole = self._round is None and waves > 1
+        return Shape(family, waves, motion, captured, profile, whole, self._plane(motion, family))
+
+    def _plane(self, motion: np.ndarray, family: str) -> str:
+        """The plane of bending of a part with a mirror plane, unless bearings couple both."""
+        if not self._planes or family != "bending":
+            return ""
+        at = [self._energy(motion, components) for components in ((2, 3), (0, 5))]
+        share = at[0] / sum(at)
+        return "z" if share > 0.99 else "x" if share < 0.01 else ""
+
+    def _energy(self, motion: np.ndarray, components: tuple[int, ...]) -> float:
+        at = np.array([6 * s + c for s in range(len(motion)) for c in components])
+        part = motion.ravel()[at]
+        return float(part @ self.project.gram[np.ix_(at, at)] @ part)
 
     @staticmethod
     def _around(
@@ -308,7 +297,7 @@ class Names:
         torn = []
         for i, shape in enumerate(shapes):
             double = shape.waves >= 1 and (shape.waves > 1 or self.promised <= ALIKE)
-            if not double or shape.double or i in partner:
+            if self._split or not double or shape.double or i in partner:
                 continue
             tolerance = (
                 2 * max(own, self.promised) if shape.waves == 1 else max(2 * own, OVAL_TOLERANCE)
@@ -372,7 +361,9 @@ def family_of(block: Block) -> str:
         return "all"
     if block.name.startswith("ovalising_"):
         return block.name.replace("_", " n=")
-    return next(name for name, own in FAMILIES.items() if set(block.components) <= set(own))
+    own = [name for name, known in FAMILIES.items() if set(block.components) & set(known)]
+    # a block of a part with a mirror plane holds several
+    return " and ".join(own)
 
 
 def numbered(families: list[str]) -> list[str]:

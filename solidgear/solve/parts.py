@@ -351,7 +351,9 @@ def family_rows(
         mine = [
             (hz, shapes)
             for name, hz, shapes in found
-            if waves is None or name == family or (family, name) == ("axial", "breathing")
+            if waves is None
+            or name in family.split(" and ")
+            or (family, name) == ("axial", "breathing")
         ]
         lowest = min((hz for hz, _ in mine), default=None)
         rows.append(
@@ -379,7 +381,7 @@ def family_rows(
 
 
 def _is_twin(body, supports, spring, group: list[int], other: list[int]) -> bool:
-    """Whether a lone block mirrors another one, springs included."""
+    """Whether a lone block mirrors another one, springs and masses included."""
     block = body.blocks[group[0]]
     if len(group) != 1 or block.mirror is None or other != [block.mirror[0]]:
         return False
@@ -387,5 +389,9 @@ def _is_twin(body, supports, spring, group: list[int], other: list[int]) -> bool
     m = len(supports.ports)
     mine, theirs = (component_rows(range(m), b.components) for b in (block, body.blocks[index]))
     sign = np.tile(signs, m)
-    a, b = spring[np.ix_(mine, mine)], spring[np.ix_(theirs, theirs)] * np.outer(sign, sign)
-    return bool(np.abs(a - b).max(initial=0.0) <= 1e-14 * np.abs(b).max(initial=0.0))
+    signs = np.outer(sign, sign)
+    for matrix in (spring, supports.masses):
+        a, b = matrix[np.ix_(mine, mine)], matrix[np.ix_(theirs, theirs)] * signs
+        if np.abs(a - b).max(initial=0.0) > 1e-14 * np.abs(b).max(initial=0.0):
+            return False
+    return True

@@ -1,6 +1,9 @@
-"""A body with its bearings, as linear operators on the blocks that belong together.
+"""A body with its bearings and the masses on its ports, as linear operators on the blocks that
+belong together.
 
-The factor of the free body does all the work; bearings enter by the Woodbury identity.
+The factor of the free body does all the work; bearings and masses enter by the Woodbury identity.
+With J the root of the masses, ``K + sigma (M + J J')`` is the factored matrix and an addition of low
+rank, and so is the mass itself: nothing is factored again.
 """
 
 from __future__ import annotations
@@ -12,6 +15,9 @@ import numpy as np
 import scipy.linalg as sla
 
 from solidgear.body import Body, Supports, component_rows
+from solidgear.body.supports import root_of
+from solidgear.solve.coupling import decoupled, groups
+from solidgear.solve.laden import Laden
 from solidgear.solve.relief import elastic_fields
 from solidgear.solve.statics import SHIFT, factors
 
@@ -21,79 +27,11 @@ ROUNDED = 1e-12
 # Relative error of an inverse from which on it is refined.
 REFINED = 1e-7
 EPS = float(np.finfo(float).eps)
+# N/m or N m/rad above which a spring stands for a constraint.
+FAST = 1e18
 
 
-def decoupled(body: Body, supports: Supports, tolerance: float) -> tuple[np.ndarray, float]:
-    """Bearing matrix with negligible couplings between blocks removed, and the bound that allows
-    it.
-
-    If ``|v' D v| <= eps v' K0 v`` for the removed part D and all v, then by Rayleigh's quotient no
-    eigenvalue of the supported body moves by more than eps, relative.
-
-    Parameters
-    ----------
-    body : Body
-    supports : Supports
-    tolerance : float
-        Largest bound that is accepted.
-
-    Returns
-    -------
-    spring : (6 m, 6 m) ndarray
-    bound : float
-        Zero where nothing was removed.
-    """
-    k = supports.stiffness
-    if not supports.ports or len(body.blocks) == 1:
-        return k, 0.0
-    owner = {c: b for b, block in enumerate(body.blocks) for c in block.components}
-    of = np.array([owner.get(c, -1) for c in list(range(6)) * len(supports.ports)])
-    same = of[:, None] == of[None, :]
-    kept, removed = np.where(same, k, 0.0), np.where(same, 0.0, k)
-    if not removed.any():
-        return k, 0.0
-    d = np.sqrt(np.abs(np.diag(k)))
-    if removed[d == 0].any():
-        return k, 0.0
-    on = d > 0
-    scale = np.outer(d[on], d[on])
-    w, v = np.linalg.eigh(kept[np.ix_(on, on)] / scale)
-    if w[0] < 1e-9:
-        return k, 0.0
-    half = v / np.sqrt(w)
-    bound = float(
-        np.abs(np.linalg.eigvalsh(half.T @ (removed[np.ix_(on, on)] / scale) @ half)).max()
-    )
-    return (kept, bound) if bound <= tolerance else (k, 0.0)
-
-
-def groups(body: Body, supports: Supports, spring: np.ndarray) -> list[list[int]]:
-    """Blocks that bearings couple.
-
-    Parameters
-    ----------
-    body : Body
-    supports : Supports
-    spring : (6 m, 6 m) ndarray
-        From :func:`decoupled`.
-
-    Returns
-    -------
-    list of list of int
-        Block indices.
-    """
-    count = len(body.blocks)
-    label = list(range(count))
-    rows = [component_rows(range(len(supports.ports)), block.components) for block in body.blocks]
-    for i in range(count):
-        for j in range(i + 1, count):
-            a, b = rows[i], rows[j]
-            if a.size and b.size and np.any(spring[np.ix_(a, b)]):
-                label = [label[i] if x == label[j] else x for x in label]
-    out: dict[int, list[int]] = {}
-    for i in range(count):
-        out.setdefault(label[i], []).append(i)
-    return [out[x] for x in sorted(out)]
+__all__ = ["EPS", "FAST", "REFINED", "ROUNDED", "Supported", "decoupled", "groups"]
 
 
 class Supported:
@@ -121,6 +59,8 @@ class Supported:
         Mass-orthonormal rigid motions, resisted or not.
     load : (n, r) ndarray
         ``load @ load.T`` is the stiffness of the springs.
+    heavy : (n, q) ndarray
+        ``heavy @ heavy.T`` is the mass of what moves with the ports.
     """
 
     def __init__(self, body: Body, supports: Supports, spring: np.ndarray, group: list[int]):
@@ -130,7 +70,14 @@ class Supported:
         self._cuts = np.cumsum([0] + [b.size for b in self.blocks])
         self.size = int(self._cuts[-1])
         self.scale, self.shift = body.scale, SHIFT * body.scale
-        self.rigid = self._rigid_motions()
+        self._spring, self._seats = self._on_seats(body, supports, spring)
+        self.heavy = np.zeros((self.size, 0))
+        self._alone: Laden | None = None
+        masses = self._root_on_ports(body, supports, supports.masses)
+        if masses.shape[1]:
+            self._alone = Laden(self, masses)
+            self.heavy = masses
+        self.rigid = self.orthonormal_rigid()
         self.mass_rigid = self.mass(self.rigid)
         null = supports.unresisted(body)
         self.free = np.vstack(
@@ -147,28 +94,38 @@ class Supported:
             keep = w > 1e-10 * w.max()
             self.free = self.free @ (v[:, keep] / np.sqrt(w[keep]))
         self._mass_free = self.mass(self.free) if self.free.shape[1] else self.free
-        self.load = self._spring_root(body, supports, spring)
+        self.load = self._root_on_ports(body, supports, spring)
+        self._fast = np.abs(spring).max(initial=0.0) > FAST
         if self.load.shape[1]:
             self._through = self._free_inverse(self.load)
             self._inner = sla.cho_factor(np.eye(self.load.shape[1]) + self.load.T @ self._through)
 
-    def _spring_root(self, body, supports, spring) -> np.ndarray:
+    def _on_seats(self, body, supports, matrix) -> tuple[np.ndarray, list]:
+        """A matrix of the ports on the components of the group, and for every block the rows of
+        those ports.
+        """
         m = len(supports.ports)
         components = [list(b.components) for b in self.blocks]
         place = np.concatenate([component_rows(range(m), cs) for cs in components])
-        self._spring, self._seats = spring[np.ix_(place, place)], []
+        own = matrix[np.ix_(place, place)]
         if not place.size:
-            return np.zeros((self.size, 0))
-        root = Supports(supports.ports, self._spring).root
+            return own, []
         wanted = supports.attachments or (None,) * m
         index = [body.port_index(name, a) for name, a in zip(supports.ports, wanted)]
-        parts, start = [], 0
+        seats = []
         for block, cs in zip(self.blocks, components):
             at = np.array([len(cs) * p + i for p in index for i in range(len(cs))], int)
-            self._seats.append(block.ports[at])
-            parts.append(self._seats[-1].T @ root[start : start + len(at)])
-            start += len(at)
-        return np.vstack(parts)
+            seats.append(block.ports[at])
+        return own, seats
+
+    def _root_on_ports(self, body, supports, matrix) -> np.ndarray:
+        """(n, r) root of a matrix of the ports, in the unknowns of the group."""
+        own, seats = self._on_seats(body, supports, matrix)
+        if not seats:
+            return np.zeros((self.size, 0))
+        root = root_of(own)
+        cuts = np.cumsum([0] + [seat.shape[0] for seat in seats])
+        return np.vstack([seat.T @ root[a:b] for seat, a, b in zip(seats, cuts, cuts[1:])])
 
     def spring_rounding(self, u: np.ndarray) -> np.ndarray:
         """(k,) energy of (n, k) shapes that the last digit of the stiffness entries of the springs
@@ -206,18 +163,22 @@ class Supported:
         with the rest.
         """
         carried = self.rigid.T @ x
-        y = self._per_block(
-            lambda i, part: self._factors[i].solve(part), x - self.mass_rigid @ carried
-        )
+        balanced = x - self.mass_rigid @ carried
+        y = self.factored(balanced) if self._alone is None else self._alone.inverse(balanced)
         return self.without_rigid(y) + self.rigid @ (carried / self.shift)
+
+    def factored(self, x: np.ndarray) -> np.ndarray:
+        """Solution by the factors of the blocks, which know nothing of masses on ports."""
+        return self._per_block(lambda i, part: self._factors[i].solve(part), x)
 
     def without_rigid(self, u: np.ndarray) -> np.ndarray:
         """(n, k) displacements less their rigid part in the mass norm."""
         return u - self.rigid @ (self.mass_rigid.T @ u)
 
     def mass(self, x: np.ndarray) -> np.ndarray:
-        """``M x`` of (n, k) displacements."""
-        return self._per_block(lambda i, part: self.blocks[i].mass @ part, x)
+        """``M x`` of (n, k) displacements, masses on ports included."""
+        own = self._per_block(lambda i, part: self.blocks[i].mass @ part, x)
+        return own + self.heavy @ (self.heavy.T @ x) if self.heavy.shape[1] else own
 
     def elastic(self, x: np.ndarray) -> np.ndarray:
         """``K x`` of the free body, of (n, k) displacements."""
@@ -243,15 +204,26 @@ class Supported:
         rigid motions.
         """
         y = self._quick_inverse(x)
-        return y + self._quick_inverse(x - self.forward(y)) if self.inaccuracy > REFINED else y
+        if self.inaccuracy <= REFINED:
+            return y
+        return y + self._quick_inverse(x - self.forward(y, self._reaction(x)))
 
-    def forward(self, u: np.ndarray) -> np.ndarray:
+    def _reaction(self, x: np.ndarray) -> np.ndarray | None:
+        """(r, k) stretch of springs that stand for constraints, from the loads; None where it is
+        better taken from the motions.
+        """
+        if not self._fast:
+            return None
+        return sla.cho_solve(self._inner, self._through.T @ self._without_free(x))
+
+    def forward(self, u: np.ndarray, stretch: np.ndarray | None = None) -> np.ndarray:
         """``(K + springs + shift M) u`` of (n, k) displacements; the rigid part, which K resists by
-        rounding only, is kept from it.
+        rounding only, is kept from it. The (r, k) stretch of the springs may be known better than
+        from ``u``.
         """
         return (
             self.elastic(self.without_rigid(u))
-            + self.load @ (self.load.T @ u)
+            + self.load @ (self.load.T @ u if stretch is None else stretch)
             + self.shift * self.mass(u)
         )
 
@@ -268,17 +240,24 @@ class Supported:
             x = np.hstack([x, self.load @ rng.standard_normal((self.load.shape[1], 1))])
         x = x - self._mass_free @ (self.free.T @ x)
         y = self._quick_inverse(x)
-        left = x - self.forward(y)
+        left = x - self.forward(y, self._reaction(x))
         step = self._quick_inverse(left)
         changed = np.abs(np.einsum("ij,ij->j", left, step))
         return float(np.sqrt(changed / np.abs(np.einsum("ij,ij->j", x, y))).max())
 
+    def _without_free(self, x: np.ndarray) -> np.ndarray:
+        """(n, k) loads less those that unresisted rigid motions carry."""
+        return x - self._mass_free @ (self.free.T @ x) if self.free.shape[1] else x
+
     def _quick_inverse(self, x: np.ndarray) -> np.ndarray:
-        if self.free.shape[1]:
-            x = x - self._mass_free @ (self.free.T @ x)
+        x = self._without_free(x)
         y = self._free_inverse(x)
         if self.load.shape[1]:
-            y = y - self._through @ sla.cho_solve(self._inner, self._through.T @ x)
+            # A computed inverse is not quite symmetric. Of what holds a seat fast that difference
+            # would be a motion of the seat, and its energy a part of the frequency: there the
+            # stretch is that of y itself.
+            pulled = self.load.T @ y if self._fast else self._through.T @ x
+            y = y - self._through @ sla.cho_solve(self._inner, pulled)
         return self.purge(y)
 
     @cached_property
@@ -325,8 +304,8 @@ class Supported:
         """(n, r) rigid motions of the group, one column per component, resisted or not."""
         return sla.block_diag(*(b.rigid for b in self.blocks))
 
-    def _rigid_motions(self) -> np.ndarray:
-        """The same, mass-orthonormal."""
+    def orthonormal_rigid(self) -> np.ndarray:
+        """(n, r) rigid motions, mass-orthonormal."""
         rigid = self.rigid_motions()
         # A block of a body whose seats are all one rigid piece may move less than its components
         # say.

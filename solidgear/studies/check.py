@@ -70,8 +70,9 @@ def check_scene(scene: Scene, body: Body) -> dict:
         ``models`` and ``sentence``; ``verdicts``: by model, ``verdict`` and the names of the guards
         it rests on.
     """
-    probe = Probe(scene, body)
+    probe = Probe(scene.plain, body)
     said = [("body", notice) for notice in _of_the_body(scene, body)]
+    said += [("features", notice) for notice in _of_features(scene)]
     for name in GUARDS:
         said += [(name, notice) for notice in _heard(name, probe)]
     records = [
@@ -88,7 +89,11 @@ def check_scene(scene: Scene, body: Body) -> dict:
     }
     return out | {
         "records": records,
-        "verdicts": {model: _verdict(model, records) for model in everything()},
+        "verdicts": {
+            model: _verdict(model, records)
+            for model in everything()
+            if LADDER[model].features != "only" or scene.features
+        },
     }
 
 
@@ -110,7 +115,10 @@ def notices(
         ``guard``, ``level``, ``models`` (those that are solved; empty where it is about the data)
         and ``sentence``.
     """
-    probes = [Probe(scene, r.body, rungs) for r in rungs.values()]
+    plain = scene.plain
+    # quick solutions are of the plain part; what is solved with features is no stand-in for them
+    known = rungs if plain is scene else {}
+    probes = [Probe(plain, r.body, known) for r in rungs.values()]
     solved = {*rungs, *LADDER.of(LUMPED)}
     out: dict[str, dict] = {}
     for name in names or tuple(n for n in GUARDS if n not in NOT_IN_COMPARISONS):
@@ -143,7 +151,7 @@ def cautions(scene: Scene, body: Body, fidelity: str | None = None) -> list[str]
         Another model than that of ``body``, whose mesh is then not judged.
     """
     model = fidelity or body.fidelity
-    probe, out = Probe(scene, body), []
+    probe, out = Probe(scene.plain, body), []
     silent = set(NOT_HEARD_ALONE)
     if LADDER[model].family != BEAM:
         silent.add("beam_against_solid")
@@ -187,6 +195,25 @@ def _verdict(model: str, records: list[dict]) -> dict:
     }
 
 
+def _of_features(scene: Scene) -> Iterator[Notice]:
+    """Which models answer for the plain part only."""
+    if not scene.features:
+        return
+    names = ", ".join(f'{f.what} "{f.name}"' for f in scene.features)
+    yield Notice(
+        "fact",
+        (),
+        f"not of revolution: {names}; all that is told of the shaft is of its plain part",
+    )
+    blind = tuple(m for m in everything() if LADDER[m].features == "none")
+    yield Notice(
+        "avoid",
+        blind,
+        f"the scene has {names}, of which a model of revolution knows nothing: it would answer for "
+        "the plain part; use corrected, or solid",
+    )
+
+
 def _of_the_body(scene: Scene, body: Body) -> Iterator[Notice]:
     """Mass and inertia against the closed form, and no stiffness against rigid motions."""
     exact, matrix, own = mass_properties(scene.segments), body.mass_matrix(), (body.fidelity,)
@@ -201,8 +228,12 @@ def _of_the_body(scene: Scene, body: Body) -> Iterator[Notice]:
         f"mass {exact.mass:.6g} kg, centre at y = {1e3 * exact.centre:.6g} mm, polar inertia {exact.iyy:.6g}, transverse {exact.ixx:.6g} kg m^2 (closed form)",
     )
     for name, got, want in (
-        ("mass", matrix[0, 0], exact.mass),
-        ("polar inertia", matrix[4, 4], exact.iyy),
+        ()
+        if body.mesh.get("features")
+        else (
+            ("mass", matrix[0, 0], exact.mass),
+            ("polar inertia", matrix[4, 4], exact.iyy),
+        )
     ):
         error, limit = got / want - 1, LADDER[body.fidelity].mass_tolerance
         yield Notice("fact", own, f"{name} of the mesh against closed form: {error:+.1e}")

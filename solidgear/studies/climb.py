@@ -131,7 +131,7 @@ class Climb:
     def run(self) -> None:
         """Climb until every band is within the tolerance, or there is no finer mesh."""
         assert self.rung.meshes is not None  # as every solid
-        plan = self.rung.meshes({})
+        plan = self.rung.meshes_of(self.scene, {})
         for level in plan.levels:
             start = time.perf_counter()
             self.progress(f"{self.rung.title}: {_words(level)}")

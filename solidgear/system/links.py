@@ -278,7 +278,8 @@ def grounded(part: str, supports) -> dict[str, Link]:
     -------
     dict of str to Link
         One a bearing, called ``part.port``, none for a bearing without stiffness, which is a free
-        station; or ``part.bearings`` for all where they act on one another.
+        station; or ``part.bearings`` for all where they act on one another. And one a mass on a
+        port, called ``part.port.mass``.
 
     Examples
     --------
@@ -292,6 +293,12 @@ def grounded(part: str, supports) -> dict[str, Link]:
     own = {end: k[6 * i : 6 * i + 6, 6 * i : 6 * i + 6].copy() for i, end in enumerate(ends)}
     for i in range(len(ends)):
         k[6 * i : 6 * i + 6, 6 * i : 6 * i + 6] = 0.0
+    masses: dict[str, Link] = {}
+    for i, end in enumerate(ends):
+        inertia = supports.masses[6 * i : 6 * i + 6, 6 * i : 6 * i + 6]
+        if inertia.any():
+            masses[f"{end}.mass"] = PortInertia(end, inertia)
     if k.any():
-        return {f"{part}.bearings": HousedSprings(ends, supports)}
-    return {end: BearingSpring(end, matrix) for end, matrix in own.items() if matrix.any()}
+        return {f"{part}.bearings": HousedSprings(ends, supports), **masses}
+    springs = {end: BearingSpring(end, matrix) for end, matrix in own.items() if matrix.any()}
+    return {**springs, **masses}

@@ -33,7 +33,7 @@ def units(probe: Probe) -> Notices:
             for name, value in zip(SOUND, (m.E, m.density, np.sqrt(m.E / m.density)))
         ]
     for b in scene.bearings:
-        if b.catalogue is not None:  # worked out at its load, which may be light
+        if b.catalogue is not None or b.hold:  # worked out at its load, or nothing real
             continue
         k = np.diag(b.stiffness)
         for axis, tilt in ((0, 5), (2, 3)):
@@ -76,7 +76,7 @@ def doubtful_data(probe: Probe) -> Notices:
     doubtful = [
         f"bearing {b.name!r} ({b.status})"
         for b in probe.scene.bearings
-        if b.status in ("identified", "assumed", "estimated")
+        if b.status in ("identified", "assumed", "estimated") and not b.hold
     ]
     if doubtful:
         yield Notice("caution", (), "data not measured or published: " + ", ".join(doubtful))

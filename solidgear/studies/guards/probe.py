@@ -57,7 +57,8 @@ class Probe:
     """
 
     def __init__(self, scene: Scene, body: Body, rungs: dict[str, Solution] | None = None):
-        self.scene, self.body, self.supports = scene, body, as_supports(scene)
+        self.scene, self.body = scene, body
+        self.supports = as_supports(scene).on_stations(scene.stations)
         self.rungs = dict(rungs or {})
         self.tied, self.gaps = cache(self._tied), cache(self._gaps)
 

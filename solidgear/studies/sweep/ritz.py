@@ -17,6 +17,8 @@ of V with P = ``V'MV``, g = ``V'G'L``, ``L L' = Kb`` and the root ``R = (I + g g
     E'E = R (V' M A^-1 M V - P P) R,
 
 where the bracket has nothing to do with the bearings and is zero on U.  (``B^-1`` by Woodbury; ``L'G A^-1 G'L = g'g`` because V holds ``A^-1 G'``.)
+Masses m on ports change little of it: with ``M' = M + G'm G`` and ``B = A + G'(Kb + sigma m) G`` the complement, whose seats and
+masses stand still, is the same, and so are C and E; in V the mass is ``P + h h'`` with ``h = V'G'N``, ``N N' = m``.
 The bound is one in exact arithmetic; rounding adds about 1e-16 times the ratio of the largest to the wanted theta.
 """
 
@@ -28,6 +30,7 @@ import numpy as np
 import scipy.linalg as sla
 
 from solidgear.body import Supports, component_rows
+from solidgear.body.supports import root_of
 from solidgear.reduction.moments import Reduced, ReducedBlock, residual_basis
 from solidgear.solve.naming import ALIKE, OVAL_TOLERANCE, alike
 from solidgear.solve.supported import decoupled, groups
@@ -117,9 +120,11 @@ class _Together:
         names = np.array([name for p in parts for name in p.families])
         self.families = {str(name): names == name for name in dict.fromkeys(names) if name}
 
-    def resisted(self, null: np.ndarray) -> np.ndarray | None:
+    def resisted(self, null: np.ndarray, heavy: np.ndarray) -> np.ndarray | None:
         """Orthonormal basis without the rigid motions ``null`` (6, k) that no spring resists; None
         if there are none.
+
+        What is left is orthogonal to them with the masses on ports, ``shift m = heavy heavy'``.
         """
         free = np.vstack([turn @ null[c] for turn, c in zip(self.turns, self.components)])
         norm = np.linalg.norm(free, axis=0)
@@ -127,6 +132,10 @@ class _Together:
         if not free.shape[1]:
             return None
         q, s, _ = np.linalg.svd(free)
+        if heavy.shape[1]:
+            gone = np.zeros((len(self.mass), int((s > 1e-6).sum())))
+            gone[self.rigid] = q[:, : gone.shape[1]]
+            return sla.null_space((gone + heavy @ (heavy.T @ gone)).T)
         basis = np.eye(len(self.mass))
         basis[np.ix_(self.rigid, self.rigid)] = q
         return np.delete(basis, self.rigid[: int((s > 1e-6).sum())], axis=1)
@@ -208,25 +217,29 @@ def _twin(reduced, supports, spring, group):
         component_rows(range(m), reduced.blocks[b].components) for b in (group[0], mirror[0])
     )
     sign = np.tile(mirror[1], m)
-    a, b = spring[np.ix_(mine, mine)], spring[np.ix_(theirs, theirs)] * np.outer(sign, sign)
-    return (
-        (mirror[0],)
-        if np.abs(a - b).max(initial=0.0) <= 1e-14 * np.abs(b).max(initial=0.0)
-        else None
-    )
+    for matrix in (spring, supports.masses):
+        a, b = matrix[np.ix_(mine, mine)], matrix[np.ix_(theirs, theirs)] * np.outer(sign, sign)
+        if np.abs(a - b).max(initial=0.0) > 1e-14 * np.abs(b).max(initial=0.0):
+            return None
+    return (mirror[0],)
 
 
 def _solve(reduced: Reduced, seats: Seats, supports: Supports, spring, group, null) -> _Group:
     held_by = seats.group(tuple(group))
     at = np.concatenate([component_rows(range(len(supports.ports)), c) for c in held_by.components])
-    root = Supports(supports.ports, spring[np.ix_(at, at)]).root if len(at) else np.zeros((0, 0))
-    held, mass, defect = held_by.motions.T @ root, held_by.mass, held_by.defect
-    basis = held_by.resisted(null)
+    held, heavy = (
+        held_by.motions.T @ root_of(matrix[np.ix_(at, at)]) for matrix in (spring, supports.masses)
+    )
+    mass, defect = held_by.mass, held_by.defect
+    basis = held_by.resisted(null, np.sqrt(reduced.shift) * heavy)
     if basis is not None:
-        held, mass, defect = basis.T @ held, basis.T @ mass @ basis, basis.T @ defect @ basis
-    left, s, _ = np.linalg.svd(held, full_matrices=False)
+        held, heavy = basis.T @ held, basis.T @ heavy
+        mass, defect = basis.T @ mass @ basis, basis.T @ defect @ basis
+    laden = mass + heavy @ heavy.T if heavy.shape[1] else mass
+    both = np.hstack([held, np.sqrt(reduced.shift) * heavy]) if heavy.shape[1] else held
+    left, s, _ = np.linalg.svd(both, full_matrices=False)
     half = np.eye(len(mass)) + left @ ((1 / np.sqrt(1 + s * s) - 1)[:, None] * left.T)
-    small = half @ mass @ half
+    small = half @ laden @ half
     theta, vector = np.linalg.eigh((small + small.T) / 2)
     theta, vector = theta[::-1], vector[:, ::-1]
     good = theta > 0
@@ -236,14 +249,14 @@ def _solve(reduced: Reduced, seats: Seats, supports: Supports, spring, group, nu
     # step gives.
     soft = value < 1e-3 * reduced.shift
     if soft.any():
-        value[soft] = _soft(shape[:, soft], mass, held, reduced.shift)
+        value[soft] = _soft(shape[:, soft], mass, held, heavy, reduced.shift)
     full = shape if basis is None else basis @ shape
     weight = full * (held_by.mass @ full)
     share = {name: weight[own].sum(axis=0) for name, own in held_by.families.items()}
     return _Group(value, theta, shape.T @ defect @ shape, held_by.cut, share)
 
 
-def _soft(shape, mass, held, shift) -> np.ndarray:
+def _soft(shape, mass, held, heavy, shift) -> np.ndarray:
     """Ritz values of nearly rigid modes, with the rigid part split off exactly (as in
     :mod:`solidgear.solve.modes`).
     """
@@ -258,8 +271,10 @@ def _soft(shape, mass, held, shift) -> np.ndarray:
     rest = rest @ (v[:, keep] / np.sqrt(w[keep]))
     small = np.zeros((r + rest.shape[1],) * 2)
     small[r:, r:] = rest.T @ rest - shift * rest.T @ mass @ rest
-    reach = held.T @ np.hstack([np.eye(len(mass))[:, rigid] * np.sqrt(shift), rest])
-    return np.linalg.eigvalsh(small + reach.T @ reach)[: shape.shape[1]]
+    basis = np.hstack([np.eye(len(mass))[:, rigid] * np.sqrt(shift), rest])
+    reach, moved = held.T @ basis, heavy.T @ basis
+    laden = np.eye(len(small)) + moved.T @ moved if heavy.shape[1] else None
+    return sla.eigh(small + reach.T @ reach, laden, eigvals_only=True)[: shape.shape[1]]
 
 
 def _bound(part: _Group, count: int, last: float, shift: float, slack: float) -> float:

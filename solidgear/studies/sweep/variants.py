@@ -9,7 +9,7 @@ import numpy as np
 
 from solidgear.body import Supports, as_supports
 from solidgear.errors import SceneError, SolidgearError
-from solidgear.scene import Bearing, Port, Scene, Segment
+from solidgear.scene import Bearing, Feature, PointMass, Port, Scene, Segment
 from solidgear.scene.bearing_stiffness import STIFFNESS_NAMES
 from solidgear.studies.sweep.vary import Axis
 
@@ -22,7 +22,13 @@ class SeatedShaft:
     """
 
     segments: tuple[Segment, ...]
-    stations: tuple[Port | Bearing, ...]
+    stations: tuple[Port | Bearing | PointMass, ...]
+    features: tuple[Feature, ...] = ()
+
+    @property
+    def plain(self) -> SeatedShaft:
+        """The same shaft without features."""
+        return replace(self, features=())
 
     @property
     def length(self) -> float:
@@ -99,7 +105,7 @@ class Variants:
         :meth:`of`.
         """
         scene = self.of(index)
-        return scene, replace(as_supports(scene), ports=tuple(map(seat_name, scene.bearings)))
+        return scene, as_supports(scene).on_stations(scene.stations, _port_name)
 
     def shaft(self) -> SeatedShaft:
         """The shaft with the seats of all placements that can be.
@@ -126,7 +132,15 @@ class Variants:
             for b in scene.bearings
         }
         ordered = sorted(seats.values(), key=lambda b: b.y)
-        return SeatedShaft(self.scene.segments, (self.scene.port, *ordered))
+        own = (m for m in self.scene.masses if m.on is None)
+        return SeatedShaft(
+            self.scene.segments, (self.scene.port, *ordered, *own), self.scene.features
+        )
+
+
+def _port_name(station: Port | Bearing | PointMass) -> str:
+    """Name of the port of a station in the shaft of a sweep: seats of bearings are shared."""
+    return seat_name(station) if isinstance(station, Bearing) else station.name
 
 
 def seat_name(bearing: Bearing) -> str:

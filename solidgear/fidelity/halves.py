@@ -1,0 +1,192 @@
+"""A part with a mirror plane from one half of it: two blocks that cannot mix.
+
+Motions that are symmetric about the plane keep the nodes on it in the plane; antisymmetric ones move
+them at right angles to it. Energies and integrals over seats are twice those of the half.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import scipy.sparse as sp
+
+from solidgear.body import Block
+from solidgear.body.surface import Surface, Volume
+from solidgear.errors import SolidgearError
+from solidgear.fidelity.attachment import tie_rigidly
+from solidgear.fidelity.solid_block import Facets, rigid_motions
+from solidgear.fidelity.solid_matrices import _matrices, _mean
+from solidgear.fidelity.solid_mesh import SolidMesh
+
+#: by the axis at right angles to the plane: name and port components of the symmetric and of the
+#: antisymmetric motions
+PARTS: dict[int, tuple[tuple[str, tuple[int, ...]], tuple[str, tuple[int, ...]]]] = {
+    0: (("plane_z", (1, 2, 3)), ("across_x", (0, 4, 5))),
+    2: (("plane_x", (0, 1, 5)), ("across_z", (2, 3, 4))),
+}
+
+
+def half_blocks(
+    mesh: SolidMesh, scene, wanted: Sequence, facets_of: Facets, axis: int
+) -> tuple[Block, Block]:
+    """Blocks of a whole part from the mesh of its half.
+
+    Parameters
+    ----------
+    mesh : SolidMesh
+        Of one half, with the cut faces in the plane.
+    scene : Scene
+    wanted : sequence of (station, attachment)
+    facets_of : callable
+        Facets of the half that carry a station.
+    axis : {0, 2}
+        At right angles to the plane.
+
+    Returns
+    -------
+    symmetric, antisymmetric : Block
+
+    Raises
+    ------
+    SolidgearError
+        If no face lies on a seat.
+    """
+    k, m = _matrices(mesh, scene)
+    m = m.tocsr()
+    n = mesh.nodes.shape[1]
+    rigid, y = rigid_motions(mesh.nodes), np.repeat(mesh.nodes[1], 3)
+    on_plane = np.abs(mesh.nodes[axis]) < 1e-9 * scene.length
+    facets = [facets_of(station, attachment) for station, attachment in wanted]
+    for (station, _), found in zip(wanted, facets):
+        if not len(found):
+            raise SolidgearError(f"port {station.name!r}: no element faces lie on its seat")
+    across = np.zeros(3, bool)
+    across[axis] = True
+    blocks = []
+    for (name, own), held in zip(PARTS[axis], (across, ~across)):
+        free = np.flatnonzero(~(on_plane[:, None] & held).ravel())
+        rows, ties = [], []
+        for i, ((station, attachment), found) in enumerate(zip(wanted, facets)):
+            if attachment == "rigid":
+                mask = np.zeros((n, 3), bool)
+                mask[mesh.facet_unknowns(found)] = True
+                ties.append((i, station.y, mask.ravel()[free]))
+                rows.append(sp.csr_matrix((len(own), len(free))))
+            else:
+                rows.append(_mean(mesh, found, station.y, n, own)[:, free])
+        block = Block(
+            name,
+            own,
+            (2 * k[free][:, free]).tocsr(),
+            (2 * m[free][:, free]).tocsr(),
+            rigid[free][:, list(own)],
+            y[free],
+            sp.vstack(rows).tocsr(),
+            None,
+            False,
+            expand=_into(3 * n, free),
+        )
+        tied = tie_rigidly(block, ties)
+        if ties:
+            assert tied.expand is not None  # of the ties
+            object.__setattr__(tied, "expand", (block.expand @ tied.expand).tocsr())
+        blocks.append(tied)
+    return blocks[0], blocks[1]
+
+
+def _into(size: int, free: np.ndarray) -> sp.csr_matrix:
+    ones = np.ones(len(free))
+    return sp.csr_matrix((ones, (free, np.arange(len(free)))), shape=(size, len(free)))
+
+
+@dataclass(frozen=True, eq=False)
+class HalfDrawing:
+    """A whole part drawn from the mesh of its half.
+
+    Attributes
+    ----------
+    mesh : SolidMesh
+    axis : int
+        At right angles to the plane.
+    """
+
+    mesh: SolidMesh
+    axis: int
+
+    def surface(self, moved: Mapping[str, np.ndarray]) -> Surface:
+        """Both halves, the second as a mirror image of the first."""
+        kinds = dict(zip((name for name, _ in PARTS[self.axis]), (1.0, -1.0)))
+        zero = np.zeros(3 * self.mesh.nodes.shape[1])
+        first = sum((vector for name, vector in moved.items() if name in kinds), zero)
+        second = sum((kinds[name] * v for name, v in moved.items() if name in kinds), zero)
+        here, image = self.mesh.surface({"full": first}), self.mesh.surface({"full": second})
+        flip = np.ones(3)
+        flip[self.axis] = -1.0
+        count = len(here.points)
+        return Surface(
+            np.vstack([here.points, image.points * flip]),
+            np.vstack([here.displacement, image.displacement * flip]),
+            np.vstack([here.faces, count + image.faces[:, ::-1]]),
+            np.vstack([here.triangles, count + image.triangles[:, ::-1]]),
+            np.vstack([here.lines, count + image.lines]),
+        )
+
+    def volume(self) -> Volume | None:
+        """No single mesh of the whole part."""
+        return None
+
+
+def seat_on_cylinder(mesh: SolidMesh, segments, tolerance: float) -> Facets:
+    """Facets of seats on what is left of the surface of revolution, and of sections.
+
+    A facet counts whose corners and edge nodes lie on the surface: floors and walls of features,
+    which may have all corners on it, do not.
+
+    Parameters
+    ----------
+    mesh : SolidMesh
+        Curved, of second order.
+    segments : sequence of Segment
+    tolerance : float
+        m.
+
+    Returns
+    -------
+    callable
+        ``facets(station, attachment)``.
+    """
+    boundary = mesh.boundary
+    corners = mesh.mesh.facets[:, boundary]
+    y, r = mesh.mesh.p[1, corners], np.hypot(*mesh.mesh.p[[0, 2]][:, corners])
+    places = mesh.mesh.doflocs[:, mesh.mesh.dofs.edge_dofs[0]]
+    vertices = mesh.mesh.p.shape[1]
+    edges = np.sort(mesh.mesh.edges.astype(np.int64), axis=0)
+    key = edges[0] * vertices + edges[1]
+    order = np.argsort(key)
+
+    def middle(a, b):
+        low, high = np.minimum(a, b).astype(np.int64), np.maximum(a, b).astype(np.int64)
+        return places[:, order[np.searchsorted(key[order], low * vertices + high)]]
+
+    mids = np.stack([middle(corners[i], corners[j]) for i, j in ((0, 1), (1, 2), (0, 2))], axis=1)
+    every_y = np.vstack([y, mids[1]])
+    every_r = np.vstack([r, np.hypot(mids[0], mids[2])])
+
+    def facets(station, attachment):
+        if attachment == "section":
+            return mesh.section(station.y, tolerance)
+        inside = (y.min(axis=0) >= station.lo - tolerance) & (
+            y.max(axis=0) <= station.hi + tolerance
+        )
+        on = np.zeros(len(boundary), bool)
+        for s in segments:
+            t = (every_y - s.y0) / (s.y1 - s.y0)
+            outer = s.outer0 + (s.outer1 - s.outer0) * t
+            here = (t > -1e-9).all(axis=0) & (t < 1 + 1e-9).all(axis=0)
+            on |= here & (np.abs(every_r - outer) < 1e-6 * outer.max(initial=1.0)).all(axis=0)
+        steep = y.max(axis=0) - y.min(axis=0) > tolerance
+        return boundary[inside & steep & on]
+
+    return facets

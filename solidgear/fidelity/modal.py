@@ -1,0 +1,206 @@
+"""A free body seen from its ports: rigid motions, lowest free modes, and what else ports feel.
+
+Rubin's representation (1975, AIAA J. 13, 996): with U the free elastic modes, G the rows of the
+ports and H the inverse of K without rigid motions and without U, a body is
+
+    u = R a + U q + H G' f,    rigid mass, lambda, G U,    mu_0 = G H G',    mu_1 = G H M H G',
+
+numbers of the ports alone, whatever mesh they came from. Two meshes of one part have nearly the same
+ones, so that those of one can be corrected by the difference of two others.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from scipy.optimize import linear_sum_assignment
+
+from solidgear.body import Body
+from solidgear.solve.modes import modes
+from solidgear.solve.naming import Projection
+from solidgear.solve.relief import elastic_fields
+from solidgear.solve.statics import factors
+
+#: stations by whose motions modes of two meshes are recognised
+STATIONS = 25
+#: share of a mode that sections must hold to be one of a shaft: what ovalises is left to mu_0
+SHAFT = 0.5
+
+
+@dataclass
+class Modal:
+    """Port numbers of a free body.
+
+    Attributes
+    ----------
+    rigid_mass : (6, 6) ndarray
+    value : (k, k) ndarray
+        Stiffness among the modes, rad^2/s^2: diagonal before it is corrected.
+    motions : (6 p, k) ndarray
+        G U.
+    sections : (6 s, k) ndarray
+        Motions of sections in every mode.
+    gram : (6 s, 6 s) ndarray
+        Mass matrix of sections.
+    static, inert : (6 p, 6 p) ndarray
+        mu_0 and mu_1 before any mode is taken out of H.
+    vectors : list of dict of int to ndarray
+        The modes on the mesh.
+    fields : dict of int to ndarray
+        ``H G'`` on the mesh likewise, by block, columns of that block's port components.
+    """
+
+    rigid_mass: np.ndarray
+    value: np.ndarray
+    motions: np.ndarray
+    sections: np.ndarray
+    gram: np.ndarray
+    static: np.ndarray
+    inert: np.ndarray
+    vectors: list[dict[int, np.ndarray]]
+    fields: dict[int, np.ndarray]
+
+    def residual(self, turn: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """mu_0 and mu_1 with some combinations of the modes taken out.
+
+        Parameters
+        ----------
+        turn : (k, l) ndarray
+            The combinations, orthonormal.
+
+        Returns
+        -------
+        static, inert : (6 p, 6 p) ndarray
+        """
+        motions, value = self.motions @ turn, turn.T @ self.value @ turn
+        reached = np.linalg.solve(value, motions.T)
+        return self.static - motions @ reached, self.inert - reached.T @ reached
+
+    def without_modes(self, fields: np.ndarray, index: int, rows: np.ndarray) -> np.ndarray:
+        """Fields of unit port loads of a block, the modes taken out.
+
+        Parameters
+        ----------
+        fields : (n, q) ndarray
+        index : int
+            Of the block.
+        rows : (q,) ndarray of int
+            Port components of the loads.
+        """
+        for i, vector in enumerate(self.vectors):
+            if index in vector:
+                reached = self.motions[rows, i] / self.value[i, i]
+                fields = fields - np.outer(vector[index], reached)
+        return fields
+
+    def first(self, count: int) -> Modal:
+        """The same with its lowest modes only."""
+        return replace(
+            self,
+            value=self.value[:count, :count],
+            motions=self.motions[:, :count],
+            sections=self.sections[:, :count],
+            vectors=self.vectors[:count],
+        )
+
+
+def modal(body: Body, count: int) -> Modal:
+    """Port numbers of a free body with its ``count`` lowest modes, twins counted twice.
+
+    Parameters
+    ----------
+    body : Body
+    count : int
+
+    Returns
+    -------
+    Modal
+    """
+    found = modes(body, (), n=count, ovalising=False)
+    project = Projection(body, np.linspace(0.0, body.length, STATIONS))
+    vectors, values = [], []
+    for mode in found.modes:
+        if mode.frequency_hz == 0.0 or mode.captured < SHAFT:
+            continue
+        for vector in mode.vectors:
+            vectors.append(vector)
+            values.append(sum(v @ (body.blocks[b].stiffness @ v) for b, v in vector.items()))
+    motions = np.array([_port_motions(body, v) for v in vectors]).T
+    sections = np.array([project(v).ravel() for v in vectors]).T
+    static, inert, fields = _static(body)
+    return Modal(
+        body.mass_matrix(),
+        np.diag(values),
+        motions.reshape(6 * len(body.ports), len(vectors)),
+        sections.reshape(6 * STATIONS, len(vectors)),
+        project.gram,
+        static,
+        inert,
+        vectors,
+        fields,
+    )
+
+
+def _port_motions(body: Body, vectors: dict[int, np.ndarray]) -> np.ndarray:
+    out = np.zeros(6 * len(body.ports))
+    for b, vector in vectors.items():
+        block = body.blocks[b]
+        out[body.rows(block)] += block.ports @ vector
+    return out
+
+
+def _static(body: Body) -> tuple[np.ndarray, np.ndarray, dict[int, np.ndarray]]:
+    """mu_0, mu_1 and the fields of unit port loads, rigid motions taken out."""
+    n = 6 * len(body.ports)
+    static, inert = np.zeros((2, n, n))
+    fields: dict[int, np.ndarray] = {}
+    for index, (block, factor) in enumerate(zip(body.blocks, factors(body))):
+        load = block.ports.T.toarray()
+        load, u, _ = elastic_fields(
+            factor.solve,
+            block.mass.__matmul__,
+            block.stiffness.__matmul__,
+            block.rigid,
+            load,
+            1e-20,
+        )
+        rows = np.ix_(body.rows(block), body.rows(block))
+        # stationary at the solution (Clapeyron)
+        work = u.T @ load
+        static[rows] = work + work.T - u.T @ (block.stiffness @ u)
+        inert[rows] = u.T @ (block.mass @ u)
+        fields[index] = u
+    return (static + static.T) / 2, (inert + inert.T) / 2, fields
+
+
+def alike_turn(sections: np.ndarray, other: np.ndarray, gram: np.ndarray) -> np.ndarray:
+    """The rotation of some modes that makes them most like others, by what sections do.
+
+    Parameters
+    ----------
+    sections : (6 s, k) ndarray
+    other : (6 s, l) ndarray
+    gram : (6 s, 6 s) ndarray
+
+    Returns
+    -------
+    (k, l) ndarray
+        With orthonormal columns (k >= l). Every one of the others is given a mode of its own, by
+        the squared cosine between them; these are turned among themselves so that ``sections @
+        turn`` is nearest to ``other`` (the orthogonal Procrustes problem). Modes that stand for
+        none take no part: the span stays one of modes.
+
+    Examples
+    --------
+    >>> alike_turn(np.eye(2), -np.eye(2)[:, ::-1], np.eye(2)).round(12)
+    array([[ 0., -1.],
+           [-1.,  0.]])
+    """
+    product = sections.T @ gram @ other
+    size, wanted = (np.einsum("ik,ij,jk->k", s, gram, s) for s in (sections, other))
+    _, chosen = linear_sum_assignment(-(product.T**2) / np.outer(wanted, size))
+    u, _, vt = np.linalg.svd(product[chosen])
+    turn = np.zeros(product.shape)
+    turn[chosen] = u @ vt
+    return turn

@@ -1,0 +1,112 @@
+"""From a volume mesh, whatever made it, to a free block with ports."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import Any
+
+import numpy as np
+import scipy.sparse as sp
+
+from solidgear.body import Block
+from solidgear.errors import SolidgearError
+from solidgear.fidelity.solid_matrices import _matrices, _mean
+from solidgear.fidelity.solid_mesh import SolidMesh
+
+#: facets of a mesh that carry a station attached in some way
+Facets = Callable[[Any, str], np.ndarray]
+
+
+def seat_facets(mesh: SolidMesh, segments: Sequence[Any], tolerance: float) -> Facets:
+    """Facets of the seats and sections of a body of revolution.
+
+    Parameters
+    ----------
+    mesh : SolidMesh
+    segments : sequence of Segment
+    tolerance : float
+        m.
+
+    Returns
+    -------
+    callable
+        ``facets(station, attachment)``.
+    """
+
+    def facets(station, attachment):
+        if attachment == "section":
+            return mesh.section(station.y, tolerance)
+        return mesh.seat(station, segments, tolerance)
+
+    return facets
+
+
+def rigid_motions(nodes: np.ndarray) -> np.ndarray:
+    """Unit rigid motions about the origin.
+
+    Parameters
+    ----------
+    nodes : (3, n) ndarray
+        m.
+
+    Returns
+    -------
+    (3 n, 6) ndarray
+        Unknowns node by node.
+    """
+    n = nodes.shape[1]
+    rigid: np.ndarray = np.zeros((n, 3, 6))
+    rigid[:, :, :3] = np.eye(3)
+    x, y, z = nodes
+    zero = np.zeros(n)
+    # th x r, column by column
+    rigid[:, :, 3] = np.column_stack([zero, -z, y])
+    rigid[:, :, 4] = np.column_stack([z, zero, -x])
+    rigid[:, :, 5] = np.column_stack([-y, x, zero])
+    return rigid.reshape(3 * n, 6)
+
+
+def free_block(
+    mesh: SolidMesh, scene, wanted: Sequence[tuple[Any, str]], facets_of: Facets
+) -> tuple[Block, list[tuple[int, float, np.ndarray]]]:
+    """The free block of a mesh with the rows of its ports.
+
+    Parameters
+    ----------
+    mesh : SolidMesh
+        Each element with the segment whose material it has.
+    scene : Scene
+    wanted : sequence of (station, attachment)
+    facets_of : callable
+        From :func:`seat_facets`, say.
+
+    Returns
+    -------
+    block : Block
+        All six components.
+    ties : list of (port index, y, mask)
+        Rigid seats, for :func:`solidgear.fidelity.attachment.tie_rigidly`.
+
+    Raises
+    ------
+    SolidgearError
+        If no face lies on a seat.
+    """
+    k, m = _matrices(mesh, scene)
+    n = mesh.nodes.shape[1]
+    rows, ties = [], []
+    for i, (station, attachment) in enumerate(wanted):
+        facets = facets_of(station, attachment)
+        if not len(facets):
+            where = "section" if attachment == "section" else "seat"
+            raise SolidgearError(f"port {station.name!r}: no element faces lie on its {where}")
+        if attachment == "rigid":
+            mask = np.zeros((n, 3), bool)
+            mask[mesh.facet_unknowns(facets)] = True
+            ties.append((i, station.y, mask.ravel()))
+            rows.append(sp.csr_matrix((6, 3 * n)))
+        else:
+            rows.append(_mean(mesh, facets, station.y, n))
+    rigid, y = rigid_motions(mesh.nodes), np.repeat(mesh.nodes[1], 3)
+    ports = sp.vstack(rows).tocsr()
+    return Block("full", tuple(range(6)), k, m, rigid, y, ports, None, False), ties

@@ -1,0 +1,172 @@
+"""Tetrahedra in a shaft with features, each feature a volume of its own in the mesh.
+
+The shaft of revolution is cut into pieces by what its features remove (OCC's general fuse), and all
+pieces are meshed together. Leaving out the elements of the features gives the part, keeping them
+the plain shaft: two bodies on one mesh, whose difference is free of what they have in common.
+Where all features share a mirror plane, only one half is drawn.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from math import pi
+from typing import Any
+
+import numpy as np
+from skfem import MeshTet1, MeshTet2
+
+from solidgear.machine.interruptible import call
+from solidgear.meshing.cuts import feature_size, mirror_plane, tool
+from solidgear.meshing.element_size import set_size, size_formulas
+from solidgear.meshing.gmsh_session import Session, import_gmsh
+from solidgear.meshing.outline import Frustum
+from solidgear.meshing.quality import MeshError, MeshQuality, check_mesh, volume_of
+from solidgear.meshing.tetrahedra import draw_revolved, relaxed, to_skfem
+
+#: angle about y at which half a shaft begins, so that the other end of the half turn lies in the
+#: same plane
+_START = {0: -pi / 2, 2: 0.0}
+
+
+@dataclass(frozen=True)
+class FeaturedMesh:
+    """A meshed shaft with the volumes of its features.
+
+    Attributes
+    ----------
+    mesh : skfem.MeshTet2
+        Of the plain shaft, or of half of it.
+    segment : (ne,) ndarray of int
+        Segment each element lies in.
+    cut : (ne,) ndarray of bool
+        Elements that features remove.
+    plane : int or None
+        Axis at right angles to the mirror plane: 0 for x = 0, 2 for z = 0; None for a whole shaft.
+    quality : MeshQuality
+    removed : float
+        Volume that OCC says the features remove from the whole shaft, m^3.
+    """
+
+    mesh: MeshTet2
+    segment: np.ndarray
+    cut: np.ndarray
+    plane: int | None
+    quality: MeshQuality
+    removed: float
+
+
+def featured_mesh(
+    segments: tuple[Any, ...],
+    features: tuple[Any, ...],
+    planes: list[float],
+    circles: list[float],
+    *,
+    size: float,
+    graded_size: float | None,
+    around: int,
+    refinement: float,
+    half: bool = True,
+) -> FeaturedMesh:
+    """Mesh a shaft with features.
+
+    Parameters
+    ----------
+    segments : tuple of Segment
+    features : tuple of Keyway, Flat or CrossHole
+    planes, circles, size, graded_size, around
+        As for :func:`solidgear.meshing.tetrahedra.tetrahedra`.
+    refinement : float
+        Divides the sizes at features; those above are given refined.
+    half : bool
+        Whether to draw half of the shaft where features have a mirror plane.
+
+    Returns
+    -------
+    FeaturedMesh
+
+    Raises
+    ------
+    MeshError
+        Geometry that cannot be cut or meshed, inverted elements, or a wrong volume.
+    """
+    gmsh = import_gmsh()
+    shapes = [Frustum.of(s) for s in segments]
+    plane = mirror_plane(features) if half else None
+    start, turn = (0.0, 2 * pi) if plane is None else (_START[plane], pi)
+    radii = {s.name: float(s.outer0) for s in segments}
+    with Session(gmsh):
+        corners = draw_revolved(gmsh, shapes, planes, circles, start, turn)
+        pieces = _cut(gmsh, features, radii)
+        formulas = size_formulas(shapes, corners, size, graded_size, None, around)
+        formulas += [feature_size(f, radii[f.segment], refinement)[0] for f in features]
+        set_size(gmsh, formulas, size)
+        removed = sum(gmsh.model.occ.getMass(3, piece) for piece in pieces)
+        try:
+            for dimension in (1, 2, 3):
+                call(gmsh.model.mesh.generate, dimension)
+            mesh = relaxed(to_skfem(gmsh))
+        except MeshError:
+            raise
+        except Exception as error:
+            raise MeshError(
+                f"gmsh could not mesh the shaft with its features ({error}): "
+                "change refinement a little, or look for features that all but touch"
+            ) from error
+        every = gmsh.model.mesh.getElements(3)[1][0]
+        own = [gmsh.model.mesh.getElements(3, piece)[1][0] for piece in pieces]
+        cut = np.isin(every, np.concatenate(own))
+    share = turn / (2 * pi)
+    arcs = 4.0 * (pi / around) ** 4 / 30.0
+    quality = check_mesh(mesh, volume=share * volume_of(segments), rtol=max(1e-3, arcs))
+    y = mesh.p[1][mesh.t].mean(axis=0)
+    segment = np.searchsorted([s.y1 for s in segments[:-1]], y)
+    return FeaturedMesh(mesh, segment, cut, plane, quality, removed / share)
+
+
+def _cut(gmsh, features, radii) -> list[int]:
+    """Cut the shaft by the tools of its features; the volumes that are inside both."""
+    occ = gmsh.model.occ
+    shaft = occ.getEntities(3)
+    tools = [(3, tool(occ, feature, radii[feature.segment])) for feature in features]
+    try:
+        _, made = occ.fragment(shaft, tools)
+    except Exception as error:
+        raise MeshError(f"the features cannot be cut into the shaft ({error})") from error
+    kept = {piece for pieces in made[: len(shaft)] for piece in pieces}
+    drawn = {piece for pieces in made[len(shaft) :] for piece in pieces}
+    occ.remove(sorted(drawn - kept), recursive=True)
+    occ.synchronize()
+    for feature, pieces in zip(features, made[len(shaft) :]):
+        if not kept & set(pieces):
+            raise MeshError(f'feature "{feature.name}" cuts nothing out of the shaft')
+    return [tag for _, tag in sorted(kept & drawn)]
+
+
+def without(mesh: MeshTet2, keep: np.ndarray) -> MeshTet2:
+    """The elements of a curved mesh that are kept, with the nodes in the middle of their edges.
+
+    Parameters
+    ----------
+    mesh : skfem.MeshTet2
+    keep : (ne,) ndarray of bool
+
+    Returns
+    -------
+    skfem.MeshTet2
+    """
+    corners = mesh.t[:, keep]
+    used, small = np.unique(corners, return_inverse=True)
+    straight = MeshTet1(
+        np.ascontiguousarray(mesh.p[:, used]),
+        np.ascontiguousarray(small.reshape(corners.shape).astype(np.int32)),
+    )
+    part = MeshTet2.from_mesh(straight)
+    count = mesh.p.shape[1]
+    old = np.sort(mesh.edges.astype(np.int64), axis=0)
+    new = np.sort(used[part.edges.astype(np.int64)], axis=0)
+    key = old[0] * count + old[1]
+    order = np.argsort(key)
+    at = order[np.searchsorted(key[order], new[0] * count + new[1])]
+    doflocs = part.doflocs.copy()
+    doflocs[:, part.dofs.edge_dofs[0]] = mesh.doflocs[:, mesh.dofs.edge_dofs[0][at]]
+    return replace(part, doflocs=doflocs)

@@ -1,0 +1,144 @@
+"""A rigid mass on a shaft: a disc, a coupling half, a gear blank, a mass without extent."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any
+
+import numpy as np
+from pydantic import BeforeValidator, model_validator
+
+from solidgear.errors import SceneError
+from solidgear.frames import shift
+from solidgear.scene.parts import Model
+from solidgear.scene.stations import Attachment
+from solidgear.scene.units import (
+    POSITION_DECIMALS,
+    Mass,
+    Position,
+    PositiveLength,
+    quantity,
+)
+
+
+def _three(dimension: str, what: str) -> BeforeValidator:
+    def read(value: Any) -> tuple[float, ...]:
+        if not isinstance(value, (list, tuple)) or len(value) != 3:
+            raise SceneError(f"must be three quantities, {what}")
+        return tuple(quantity(entry, dimension) for entry in value)
+
+    return BeforeValidator(read)
+
+
+class PointMass(Model):
+    """A rigid mass that moves with a port, a bearing seat or a seat of its own.
+
+    Attributes
+    ----------
+    name : str
+    mass : float
+        kg.
+    inertia : tuple of float
+        Moments of inertia about axes x, y, z through its own centre of mass, kg m^2; y is the polar
+        one. Zero for a mass without extent.
+    offset : tuple of float
+        From the station to the centre of mass, along x, y, z, m.
+    on : str or None
+        Name of the lumped point or the bearing that it moves with; None for a seat of its own.
+    y : float
+        Middle of its own seat, m.
+    seat_width : float or None
+        m.
+    attachment : {'average', 'rigid', 'section'}
+        How its own seat follows it.
+
+    Raises
+    ------
+    SceneError
+        A mass that is not positive, moments of inertia that no body has, or neither a station nor a
+        seat.
+
+    Examples
+    --------
+    >>> from solidgear import PointMass
+    >>> disc = PointMass(name="disc", mass="8 kg", inertia=[0.02, 0.035, 0.02],
+    ...                  offset=["0 mm", "100 mm", "0 mm"], on="pinion")
+    >>> round(float(disc.matrix[3, 3]), 6), round(float(disc.matrix[2, 3]), 6)
+    (0.1, 0.8)
+    """
+
+    name: str
+    mass: Mass
+    inertia: Annotated[tuple[float, float, float], _three("inertia", "about x, y and z")] = (
+        0.0,
+        0.0,
+        0.0,
+    )
+    offset: Annotated[tuple[float, float, float], _three("length", "along x, y and z")] = (
+        0.0,
+        0.0,
+        0.0,
+    )
+    on: str | None = None
+    y: Position = 0.0
+    seat_width: PositiveLength | None = None
+    attachment: Attachment = "average"
+
+    @model_validator(mode="after")
+    def _is_a_body_somewhere(self) -> PointMass:
+        check_inertia(self.inertia)
+        if self.on is None and self.seat_width is None:
+            raise SceneError(
+                "a mass sits on a station or on a seat of its own: "
+                "give on, or a position and a seat_width",
+                path=("on",),
+            )
+        return self
+
+    @property
+    def station(self) -> str:
+        """Name of the station that it moves with."""
+        return self.on or self.name
+
+    @property
+    def lo(self) -> float:
+        """End of its own seat towards y = 0, m."""
+        assert self.seat_width is not None  # asked of own seats only
+        return round(self.y - self.seat_width / 2, POSITION_DECIMALS)
+
+    @property
+    def hi(self) -> float:
+        """End of its own seat away from y = 0, m."""
+        assert self.seat_width is not None  # asked of own seats only
+        return round(self.y + self.seat_width / 2, POSITION_DECIMALS)
+
+    @property
+    def matrix(self) -> np.ndarray:
+        """(6, 6) mass matrix about the point of its station, order x y z thx thy thz: kg, kg m and
+        kg m^2.
+        """
+        own = np.diag([*[self.mass] * 3, *self.inertia])
+        to_centre = shift(self.offset)
+        return to_centre.T @ own @ to_centre
+
+
+def check_inertia(inertia: tuple[float, float, float]) -> None:
+    """Refuse moments of inertia that no distribution of mass has.
+
+    Parameters
+    ----------
+    inertia : (float, float, float)
+        About three axes at right angles, kg m^2.
+
+    Raises
+    ------
+    SceneError
+        A negative one, or one larger than the sum of the other two.
+    """
+    if min(inertia) < 0:
+        raise SceneError("a moment of inertia must not be negative", path=("inertia",))
+    if 2 * max(inertia) > (1 + 1e-9) * sum(inertia):
+        raise SceneError(
+            "one moment of inertia is larger than the sum of the other two, which no body has; "
+            "a thin disc across the shaft has [I, 2 I, I]",
+            path=("inertia",),
+        )

@@ -1,0 +1,81 @@
+"""Which blocks of a body belong together, by what bearings and masses on ports couple."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from solidgear.body import Body, Supports, component_rows
+
+
+def decoupled(body: Body, supports: Supports, tolerance: float) -> tuple[np.ndarray, float]:
+    """Bearing matrix with negligible couplings between blocks removed, and the bound that allows
+    it.
+
+    If ``|v' D v| <= eps v' K0 v`` for the removed part D and all v, then by Rayleigh's quotient no
+    eigenvalue of the supported body moves by more than eps, relative.
+
+    Parameters
+    ----------
+    body : Body
+    supports : Supports
+    tolerance : float
+        Largest bound that is accepted.
+
+    Returns
+    -------
+    spring : (6 m, 6 m) ndarray
+    bound : float
+        Zero where nothing was removed.
+    """
+    k = supports.stiffness
+    if not supports.ports or len(body.blocks) == 1:
+        return k, 0.0
+    owner = {c: b for b, block in enumerate(body.blocks) for c in block.components}
+    of = np.array([owner.get(c, -1) for c in list(range(6)) * len(supports.ports)])
+    same = of[:, None] == of[None, :]
+    kept, removed = np.where(same, k, 0.0), np.where(same, 0.0, k)
+    if not removed.any():
+        return k, 0.0
+    d = np.sqrt(np.abs(np.diag(k)))
+    if removed[d == 0].any():
+        return k, 0.0
+    on = d > 0
+    scale = np.outer(d[on], d[on])
+    w, v = np.linalg.eigh(kept[np.ix_(on, on)] / scale)
+    if w[0] < 1e-9:
+        return k, 0.0
+    half = v / np.sqrt(w)
+    bound = float(
+        np.abs(np.linalg.eigvalsh(half.T @ (removed[np.ix_(on, on)] / scale) @ half)).max()
+    )
+    return (kept, bound) if bound <= tolerance else (k, 0.0)
+
+
+def groups(body: Body, supports: Supports, spring: np.ndarray) -> list[list[int]]:
+    """Blocks that bearings couple, or masses on ports.
+
+    Parameters
+    ----------
+    body : Body
+    supports : Supports
+    spring : (6 m, 6 m) ndarray
+        From :func:`decoupled`.
+
+    Returns
+    -------
+    list of list of int
+        Block indices.
+    """
+    count = len(body.blocks)
+    label = list(range(count))
+    rows = [component_rows(range(len(supports.ports)), block.components) for block in body.blocks]
+    for i in range(count):
+        for j in range(i + 1, count):
+            a, b = rows[i], rows[j]
+            at = np.ix_(a, b)
+            if a.size and b.size and (np.any(spring[at]) or np.any(supports.masses[at])):
+                label = [label[i] if x == label[j] else x for x in label]
+    out: dict[int, list[int]] = {}
+    for i in range(count):
+        out.setdefault(label[i], []).append(i)
+    return [out[x] for x in sorted(out)]

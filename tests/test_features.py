@@ -1,0 +1,222 @@
+"""Keyways, flats and cross holes: volume, mass and symmetry against closed forms, halves against the
+whole, and the scenes that are refused.
+"""
+
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import solidgear as sg
+from solidgear.fidelity.featured import featured_body, meshed
+from solidgear.fidelity.halves import half_blocks, seat_on_cylinder
+from solidgear.fidelity.solid import tetrahedra_plan
+from solidgear.fidelity.solid_block import free_block
+from solidgear.fidelity.solid_mesh import _isoparametric
+from solidgear.meshing.cuts import volume
+from solidgear.meshing.featured import FeaturedMesh
+from solidgear.scene import CrossHole, Flat, Keyway
+
+ROOT = Path(__file__).parent.parent
+KEYED = ROOT / "geometry" / "pinion_keyed.toml"
+STEEL = sg.Material(E=2.07e11, nu=0.3, density=7850.0)
+
+
+def shaft(*features, bore=0.0):
+    rod = sg.Segment.cylinder("rod", length=0.2, diameter=0.06, bore=bore, material=STEEL)
+    return sg.Scene.from_parts(
+        [rod],
+        STEEL,
+        [
+            sg.Bearing(
+                name=name, y=y, seat_width=0.03, stiffness={"kxx": 1e9, "kyy": 1e8, "kzz": 1e9}
+            )
+            for name, y in (("a", 0.02), ("b", 0.18))
+        ],
+        sg.Port(name="gear", y=0.1, lo=0.04, hi=0.055),
+        features=features,
+    )
+
+
+KEY = Keyway(name="key", segment="rod", y=0.07, length=0.06, width=0.018, depth=0.007)
+FLAT = Flat(name="flat", segment="rod", y=0.08, length=0.04, depth=0.006)
+
+
+def mesh_of(scene, refinement=0.6, half=True):
+    wanted = [(s, s.attachment) for s in scene.stations]
+    plan = tetrahedra_plan(
+        scene, wanted, size=None, graded_size=None, refinement=refinement, around=16
+    )
+    return wanted, meshed(scene, plan, refinement, half)
+
+
+@pytest.mark.parametrize("feature", [KEY, KEY.with_changes(ends="square"), FLAT], ids=str)
+def test_volume_against_closed_form(feature):
+    """OCC's own volume to 1e-6, the mesh to what its curved elements leave of an arc."""
+    scene = shaft(feature)
+    wanted, made = mesh_of(scene)
+    exact = volume(feature, 0.03, 0.0)
+    assert made.removed == pytest.approx(exact, rel=2e-6)
+    body = featured_body(scene, wanted, made, 0.6)
+    whole = math.pi * 0.03**2 * 0.2
+    # ten elements around lose (pi/10)^4/30 of the volume at most
+    assert body.mesh["volume"] == pytest.approx(whole - exact, rel=3e-4)
+    # nothing is lost or doubled between the two blocks of the halves
+    mass = body.mass_matrix()
+    for c in range(3):
+        assert mass[c, c] == pytest.approx(7850 * body.mesh["volume"], rel=1e-12)
+    assert body.rigid_residual() < 1e-14
+
+
+def test_centre_of_mass_moves_away_from_the_key():
+    wanted, made = mesh_of(shaft(KEY))
+    mass = featured_body(shaft(KEY), wanted, made, 0.6).mass_matrix()
+    assert mass[1, 3] > 0  # -m z_c: the centre lies towards -z
+    plain = featured_body(shaft(KEY), wanted, made, 0.6, plain=True).mass_matrix()
+    assert abs(plain[1, 3]) < 1e-3 * abs(mass[1, 3])
+
+
+def mirrored_whole(made: FeaturedMesh) -> FeaturedMesh:
+    """The whole part made of the elements of its half and their images, joined on the plane."""
+    from dataclasses import replace
+
+    from skfem import MeshTet1, MeshTet2
+
+    mesh, axis = made.mesh, made.plane
+    flip = np.ones((3, 1))
+    flip[axis] = -1
+    n = mesh.p.shape[1]
+    on = np.abs(mesh.p[axis]) < 1e-10
+    number = np.where(on, np.arange(n), n + np.cumsum(~on) - 1)
+    points = np.hstack([mesh.p, (mesh.p * flip)[:, ~on]])
+    image = number[mesh.t][[1, 0, 2, 3]]  # right-handed again
+    joined = MeshTet2.from_mesh(
+        MeshTet1(
+            np.ascontiguousarray(points),
+            np.ascontiguousarray(np.hstack([mesh.t, image]).astype(np.int32)),
+        )
+    )
+    middles = mesh.doflocs[:, mesh.dofs.edge_dofs[0]]
+    total = points.shape[1]
+    known = {}
+    for ends, places in ((mesh.edges, middles), (number[mesh.edges], middles * flip)):
+        for key, place in zip(np.sort(ends, axis=0).T @ [total, 1], places.T):
+            known[key] = place
+    doflocs = joined.doflocs.copy()
+    keys = np.sort(joined.edges.astype(np.int64), axis=0).T @ [total, 1]
+    doflocs[:, joined.dofs.edge_dofs[0]] = np.array([known[key] for key in keys]).T
+    both = replace(joined, doflocs=doflocs)
+    return FeaturedMesh(
+        both, np.tile(made.segment, 2), np.tile(made.cut, 2), None, made.quality, made.removed
+    )
+
+
+@pytest.mark.parametrize("angle", [0.0, math.pi / 2])
+def test_two_halves_equal_the_whole(angle):
+    """The same elements mirrored and joined: compliance and frequencies to rounding."""
+    scene = shaft(KEY.with_changes(angle=angle))
+    wanted, made = mesh_of(scene, 0.4)
+    halves = featured_body(scene, wanted, made, 0.4)
+    whole = featured_body(scene, wanted, mirrored_whole(made), 0.4)
+    assert [b.components for b in halves.blocks] == (
+        [(1, 2, 3), (0, 4, 5)] if angle == 0 else [(0, 1, 5), (2, 3, 4)]
+    )
+    a, b = (sg.condense(body, scene, "gear") for body in (halves, whole))
+    on = np.isfinite(a.compliance)
+    scale = np.sqrt(np.outer(*[np.nan_to_num(np.diag(b.compliance))] * 2)) + 1e-30
+    difference = np.abs(np.nan_to_num(a.compliance) - np.nan_to_num(b.compliance)) / scale
+    assert difference[on].max() < 1e-12
+    one, other = (sg.modes(body, scene, n=8) for body in (halves, whole))
+    f, g = (np.repeat(m.frequency_hz, m.multiplicity)[1:9] for m in (one, other))
+    assert np.abs(f / g - 1).max() < 1e-11
+    assert {"bending z 1", "bending x 1"} <= set(one.names)
+    assert max(one.multiplicity) == max(other.multiplicity) == 1  # a split pair stays split
+
+
+def test_the_plane_of_the_key_is_the_softer_one():
+    scene = shaft(KEY)
+    body = sg.build(scene, "solid", refinement=0.6)
+    found = sg.modes(body, scene, n=6)
+    compliance = sg.condense(body, scene, "gear").compliance
+    assert compliance[2, 2] > 1.001 * compliance[0, 0]
+    assert found.named("bending 1") is found.named("bending z 1")
+    assert found.named("bending z 1").family == "bending"
+    turned = shaft(KEY.with_changes(angle=math.pi / 2))
+    other = sg.condense(sg.build(turned, "solid", refinement=0.6), turned, "gear").compliance
+    # a quarter turn of the part takes x to z; meshes of the two differ, by less than 5 % of the
+    # effect
+    assert other[0, 0] == pytest.approx(compliance[2, 2], rel=1e-3)
+
+
+def test_no_plane_no_halves():
+    crossed = shaft(KEY, Keyway(**KEY.model_dump() | {"name": "k2", "angle": "50 deg", "y": 0.075}))
+    body = sg.build(crossed, "solid", refinement=0.4)
+    assert len(body.blocks) == 1 and body.mesh["mirror_plane"] == "none"
+    assert body.rigid_residual() < 1e-14
+    assert max(sg.modes(body, crossed, n=6).multiplicity) == 1
+
+
+def test_a_cross_hole_and_a_bore():
+    hole = CrossHole(name="oil", segment="rod", y=0.1, diameter=0.008)
+    scene = shaft(hole, bore=0.02)
+    wanted, made = mesh_of(scene, 0.5)
+    # two cylinders of unequal radius: the hole less its crossing with the bore, by quadrature
+    x = (np.polynomial.legendre.leggauss(60)[0] + 1) / 2 * 0.004
+    w = np.polynomial.legendre.leggauss(60)[1] / 2 * 0.004
+    chord = 2 * np.sqrt(0.004**2 - x**2)
+    exact = 2 * w @ (chord * 2 * (np.sqrt(0.03**2 - x**2) - np.sqrt(0.01**2 - x**2)))
+    assert made.removed == pytest.approx(exact, rel=1e-3)
+    assert made.plane == 0
+    body = sg.build(scene, "solid", refinement=0.5)
+    assert body.mesh["volume"] < math.pi * (0.03**2 - 0.01**2) * 0.2
+
+
+def test_seats_do_not_take_floors_of_keyways_for_their_own():
+    """Area of a seat that the keyway crosses: the cylinder less the opening of the slot."""
+    key = KEY.with_changes(y=0.02, length=0.05, ends="square")
+    scene = shaft(key)
+    wanted, made = mesh_of(scene)
+    from solidgear.meshing.featured import without
+
+    solid = _isoparametric(without(made.mesh, ~made.cut), "tet10", made.segment[~made.cut])
+    facets = seat_on_cylinder(solid, scene.segments, 1e-8)(scene.bearings[0], "average")
+    area = 2 * sum(a.sum() for _, _, a, _ in solid.over_facets(facets))
+    opening = 2 * math.asin(0.009 / 0.03) * 0.03 * (0.035 - 0.02)
+    assert area == pytest.approx(2 * math.pi * 0.03 * 0.03 - opening, rel=1e-4)
+    assert half_blocks(solid, scene, wanted, seat_on_cylinder(solid, scene.segments, 1e-8), 0)
+    assert free_block  # the whole uses the same seats
+
+
+@pytest.mark.parametrize("rung", ["euler", "timoshenko", "harmonic"])
+def test_models_of_revolution_refuse_it_in_one_sentence(rung):
+    with pytest.raises(sg.SolidgearError, match='of revolution and the scene has keyway "key"'):
+        sg.build(shaft(KEY), rung)
+    assert sg.build(shaft(KEY).plain, rung).size > 0
+
+
+BAD = {
+    'depth = "9 mm"': ('depth = "46 mm"', "cuts through the radius"),
+    'length = "100 mm"': ('length = "160 mm"', "reaches from"),
+    'width = "25 mm"': ('width = "110 mm"', "wider than the radius"),
+    'ends = "round"': ('ends = "oval"', "ends"),
+    'segment = "shaft"': ('segment = "shift"', "unknown segment"),
+    'kind = "keyway"': ('kind = "slot"', "kind"),
+    'angle = "0 deg"': ('angle = "12 mm"', "not a unit of angle"),
+    'segment = "shaft"\n': ('segment = "head"\n', "is a cone"),
+    'length = "100 mm"\n': ('length = "20 mm"\n', "longer than it is wide"),
+    'depth = "9 mm"\n': ('depth = "1 mm"\n', "below its floor"),
+    'name = "key"': ('name = "k.ey"', "name"),
+}
+
+
+@pytest.mark.parametrize("old", BAD)
+def test_a_bad_feature_is_one_sentence(old, tmp_path):
+    text = KEYED.read_text()
+    new, says = BAD[old]
+    assert old in text
+    file = tmp_path / "bad.toml"
+    file.write_text(text.replace(old, new))
+    with pytest.raises(sg.SceneError) as caught:
+        sg.load(file)
+    assert says in str(caught.value) and len(str(caught.value).splitlines()) == 1
