@@ -166,7 +166,8 @@ def test_baseline(entry):
 
 
 def test_baselines_cover_what_they_must():
-    names = {p.stem for p in (HERE.parent / "geometry").glob("*.toml")}
+    paths = (HERE.parent / "geometry").glob("*.toml")
+    names = {p.stem for p in paths if not sg.load(p).features}  # none of these models has them
     golden = {
         (e["scene"], e["fidelity"])
         for e in ENTRIES

@@ -22,7 +22,7 @@ from solidgear.studies.guards.notice import everything
 from solidgear.studies.guards.probe import Probe
 
 ROOT = Path(__file__).parent.parent
-SHIPPED = sorted((ROOT / "geometry").glob("*.toml"))
+SHIPPED = [p for p in sorted((ROOT / "geometry").glob("*.toml")) if not sg.load(p).features]
 D = 0.06
 LIGHT = {"order": 2, "layers": 1, "edge_layers": 0}
 COARSE = {"refinement": 0.3, "layers": 1}
@@ -254,11 +254,11 @@ CASES = {
     ),
     "tolerance": Case(
         "beam_against_solid",
-        "1 % asked for",
+        "2 % asked for",
         ("euler",),
         "avoid",
-        uniform(16, tolerance=0.01),
-        uniform(25, tolerance=0.01),
+        uniform(10, tolerance=0.02),
+        uniform(20, tolerance=0.02),
     ),
     "Euler, L/D 17.9": Case(
         "slenderness", "17.90", ("euler",), "caution", uniform(17.9), uniform(18.1)

@@ -16,7 +16,8 @@ import solidgear as sg
 from solidgear.meshing.quality import mass_properties
 from solidgear.scene import STEEL, Port, Scene, Segment
 
-SCENES = sorted((Path(__file__).parent.parent / "geometry").glob("*.toml"))
+GEOMETRY = Path(__file__).parent.parent / "geometry"
+SCENES = [p for p in sorted(GEOMETRY.glob("*.toml")) if not sg.load(p).features]
 RADIUS, LENGTH = 0.03, 0.3
 E, NU, RHO = STEEL.E, STEEL.nu, STEEL.density
 G = E / (2 * (1 + NU))

@@ -106,7 +106,8 @@ def _largest(settled: Settled, where: str) -> list[str]:
 
 def without_bar(found: ModeSet, settled: Settled) -> list[str]:
     """Names of modes that were not judged."""
-    return [m.name for m in found.modes if m.frequency_hz > 0 and m.name not in settled.bars]
+    judged = {mode.name for mode in map(found.named, settled.bars) if mode is not None}
+    return [m.name for m in found.modes if m.frequency_hz > 0 and m.name not in judged]
 
 
 def unjudged(names: Sequence[str]) -> list[str]:

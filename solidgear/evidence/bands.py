@@ -36,7 +36,7 @@ if TYPE_CHECKING:
 OBSERVED, SLOWEST = 1.5, 0.7
 #: least factor from the fourth level on, where what is left may lie where layers do not reach, such
 #: as the planes of section ties
-LATE = 0.8
+LATE = 1.2
 #: the change of a coupling counts for at least this share of those of its diagonal entries
 DIAGONAL = 0.2
 #: safety on what the cells around leave: in thin walls the coarsest mesh, where it is measured,

@@ -244,6 +244,13 @@ class Ladder:
         """Rungs that build a body of their own."""
         return tuple(rung.name for rung in self.rungs if rung.build is not None)
 
+    def fit(self, scene: Any) -> tuple[str, ...]:
+        """Those with a body of their own, without rungs that are made for features where a scene
+        has none.
+        """
+        features = bool(getattr(scene, "features", ()))
+        return tuple(n for n in self.bodies if features or self[n].features != "only")
+
     @property
     def judges(self) -> tuple[str, ...]:
         """Rungs from the one that judges best to the one that judges worst: solids, the cheaper

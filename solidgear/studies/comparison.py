@@ -173,10 +173,7 @@ def _run(scene: Scene, models, options, found: _Found, progress: Progress) -> No
     from solidgear.studies.check import notices
 
     lumped = bool(set(LADDER.of(LUMPED)) & set(models))
-    # what is made for features alone has nothing to say of a scene without
-    asked = (m for m in LADDER.bodies if m in models)
-    fit = (m for m in asked if LADDER[m].features != "only" or scene.features)
-    for model in fit:
+    for model in (m for m in LADDER.fit(scene) if m in models):
         try:
             chosen = _circumference(scene, model, options[model], found)
             # A count takes a second factor.  One by a cheaper solid counts for a dearer one, whose

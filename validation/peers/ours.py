@@ -115,9 +115,9 @@ def _assembly_seconds(fidelity: str):
     if fidelity != "solid":
         yield spent
         return
-    from solidgear.fidelity import solid
+    from solidgear.fidelity import solid_block
 
-    plain = solid._matrices
+    plain = solid_block._matrices
 
     def timed(*args, **kwargs):
         start = time.perf_counter()
@@ -126,11 +126,11 @@ def _assembly_seconds(fidelity: str):
         finally:
             spent[0] += time.perf_counter() - start
 
-    solid._matrices = timed
+    solid_block._matrices = timed
     try:
         yield spent
     finally:
-        solid._matrices = plain
+        solid_block._matrices = plain
 
 
 def whole(
