@@ -117,17 +117,17 @@ def test_the_plane_that_rests_on_the_mesh_decides(scene):
         stiffness = {"kxx": 4e9, "kyy": 4e6, "kzz": 4e6, "kthx": 1e3, "kthz": 1e6}
         bearings.append(Bearing(name=b.name, y=b.y, seat_width=b.seat_width, stiffness=stiffness))
     uneven = scene.with_changes(bearings=tuple(bearings))
-    found = settle(uneven, 1e-3, "stiffness")
-    soft_plane = answer(uneven, 1e-3, ("C_zz", "C_thx", "C_yy", "K_zz", "K_thx", "K_yy"))
+    found = settle(uneven, 1.5e-3, "stiffness")
+    soft_plane = answer(uneven, 1.5e-3, ("C_zz", "C_thx", "C_yy", "K_zz", "K_thx", "K_yy"))
     assert found.reached and found.largest[0] == "K_thz"
     coarse, mine, exact = (
         sg.condense(sg.build(uneven, "harmonic", **options), uneven, "pinion").stiffness[5, 5]
         for options in (HARMONIC[1], found.options, HARMONIC[3])
     )
     assert abs(mine / exact - 1) <= found.bars["K_thz"]
-    # the mesh that suits the soft plane is outside the tolerance here: measured 2.3e-3
+    # the mesh that suits the soft plane is outside the tolerance here
     assert soft_plane.reached and len([s for s in soft_plane.steps if s.valid]) == 2
-    assert abs(coarse / exact - 1) > 1e-3
+    assert abs(coarse / exact - 1) > 1.5e-3
 
 
 def test_attachments_are_honoured(run):
@@ -171,7 +171,7 @@ def test_modes_for_people(run):
     code, out, err = run("modes", SCENE, "--max-frequency", "9000", "-n", "14")
     assert code == 0 and err == ""
     assert "pinion_overhung: harmonic, order 3, layers 1 (auto), " in out
-    assert "Largest mesh bar: +- 0.0" in out and "Passed over: euler, timoshenko (" in out
+    assert "Largest mesh bar: +- 0." in out and "Passed over: euler, timoshenko (" in out
     assert "No bar of their own: bending 3, axial 2; " in out
 
 
