@@ -19,6 +19,8 @@ __version__ = "0.1.0"
 
 _WHERE = {
     "load": "solidgear.scene.file",
+    "load_train": "solidgear.scene.train_file",
+    "Train": "solidgear.scene.train",
     "Scene": "solidgear.scene",
     "Segment": "solidgear.scene",
     "Bearing": "solidgear.scene",
@@ -71,6 +73,7 @@ __all__ = [
     "Superelement",
     "Supports",
     "System",
+    "Train",
     "__version__",
     "answer",
     "build",
@@ -79,6 +82,7 @@ __all__ = [
     "craig_bampton",
     "grounded",
     "load",
+    "load_train",
     "mesh_spring",
     "modes",
     "rubin",
@@ -94,6 +98,8 @@ if TYPE_CHECKING:
     from solidgear.reduction.superelement import Superelement
     from solidgear.scene import STEEL, Ask, Bearing, Material, Port, Scene, Segment
     from solidgear.scene.file import load
+    from solidgear.scene.train import Train
+    from solidgear.scene.train_file import load_train
     from solidgear.solve.modes import modes
     from solidgear.solve.statics import condense
     from solidgear.studies.answering import answer
