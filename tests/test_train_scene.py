@@ -62,7 +62,7 @@ BAD = {
     "ratio": (LINE, LINE + "\nratio = 3.0", "a ratio of 3.2143"),
     "teeth": ("teeth = 14 ", "teeth = 14.5 ", "pinion.teeth"),
     "no spring": ("[engine.spring]", "[engine.sprint]", "torsional spring between the engine"),
-    "no stiffness of it": ('stiffness = "1.41e4 N*m/rad"', "", "stiffness"),
+    "no stiffness of it": ('stiffness = "1.159e4 N*m/rad"', "", "stiffness"),
     "port": ('at = "gear"', 'at = "5"', "known here: gear, 3, 4"),
     "one name": ('"gear_shaft.toml"', '"pinion_overhung.toml"', "needs its own"),
     "per cent": ("mesh = 0.12", "mesh = 12", "12 per cent is written 0.12"),
@@ -85,6 +85,8 @@ def test_bad_input_is_told_in_one_sentence(case, tmp_path):
         changes = [(old, new), ("spiral_angle", "# spiral_angle")]
     else:
         changes = [(old, new)]
+    if case == "one name":
+        changes.append(('at = "gear"', 'at = "1"'))  # or the spring has lost its port as well
     with pytest.raises(sg.SceneError) as caught:
         contact(load_train(written(tmp_path, *changes)))
     text = str(caught.value)
