@@ -83,3 +83,117 @@ def _modes_table(found):
             mode.name, f"{mode.frequency_hz:.2f}", f"{mode.rpm:.0f}", mode.strained, bound
         )
     return table
+
+
+@command
+def response(
+    train: TrainFile,
+    out: Annotated[
+        Path, typer.Option("--out", "-o", help="Folder for response.csv and its chart.")
+    ] = Path("out"),
+    pinion: PinionRung = "harmonic",
+    gear: GearRung = "harmonic",
+    against: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--against",
+            help="Further model to draw, as PINION+GEAR, such as euler+euler; repeatable.",
+        ),
+    ] = None,
+    max_frequency: Annotated[
+        float | None, typer.Option(help="Hz; as the file says by default.")
+    ] = None,
+    damping: Annotated[
+        str,
+        typer.Option(
+            help="hysteretic, viscous (with --matched-at), modal, or literal (C = zeta K)."
+        ),
+    ] = "hysteretic",
+    matched_at: Annotated[
+        float | None, typer.Option("--matched-at", help="Hz at which viscous losses match.")
+    ] = None,
+    force: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--force",
+            help="Force on a port instead of the transmission error, such as gear.gear:z=100 in N; repeatable.",
+        ),
+    ] = None,
+    reduction: Reduction = "rubin",
+    kept: Kept = 24,
+    as_json: JsonFlag = False,
+) -> None:
+    """Steady response to the transmission error: mesh force, reactions, motions, and a chart."""
+    from solidgear.report.folder import held
+    from solidgear.report.train_files import write_response
+    from solidgear.studies.axle.modes import unpublished_lines
+    from solidgear.studies.axle.respond import respond
+
+    if max_frequency is not None and not max_frequency > 0:
+        raise SolidgearError(f"--max-frequency {max_frequency:g}: must be greater than zero, in Hz")
+    shop = _shop(train, reduction, kept)
+    mixes = [(pinion, gear), *map(_mix, against or [])]
+    forces = _forces(force)
+    with held(out):
+        found = [
+            respond(shop, *mix, max_frequency, damping, matched_at or 0.0, forces) for mix in mixes
+        ]
+        unpublished = shop.train.unpublished()
+        notes = {"damping": damping, "unpublished": unpublished, "cautions": found[0].cautions}
+        title = shop.train.title or shop.train.name
+        teeth, band = shop.train.pinion.teeth, shop.train.ask.decibels
+        files = write_response(out, found, title, teeth, band, notes)
+    if as_json:
+        print((out / "response.json").read_text(encoding="utf-8"))
+        return
+    terminal = console()
+    terminal.print(f"{title}: pinion {pinion}, gear {gear}, {damping} losses", markup=False)
+    terminal.print(_peaks_table(found[0], teeth))
+    if not found[0].peaks:
+        terminal.print("The mesh force has no peak in this range.", markup=False)
+    for line in unpublished_lines(unpublished):
+        terminal.print(line, markup=False, soft_wrap=True)
+    for text in found[0].cautions:
+        terminal.print(f"caution: {text}", markup=False, soft_wrap=True)
+    terminal.print(f"Written: {', '.join(map(str, files))}", markup=False, soft_wrap=True)
+
+
+def _mix(text: str) -> tuple[str, str]:
+    pinion, plus, gear = text.partition("+")
+    if not plus:
+        raise SolidgearError(f"--against {show(text, 40)}: write PINION+GEAR, such as euler+euler")
+    return pinion.strip(), gear.strip()
+
+
+def _forces(texts: list[str] | None) -> dict:
+    """Six components at ports, from texts such as ``gear.gear:z=100``."""
+    from solidgear.frames import DOF_NAMES
+
+    out: dict = {}
+    for text in texts or []:
+        port, _, rest = text.partition(":")
+        dof, _, value = rest.partition("=")
+        try:
+            number = float(value)
+        except ValueError:
+            number = float("nan")
+        if dof not in DOF_NAMES or not abs(number) < float("inf"):
+            raise SolidgearError(
+                f"--force {show(text, 40)}: write PORT:COMPONENT=VALUE, such as gear.gear:z=100; "
+                f"components are {' '.join(DOF_NAMES)}"
+            )
+        out.setdefault(port, [0.0] * 6)[DOF_NAMES.index(dof)] += number
+    return out
+
+
+def _peaks_table(found, teeth: int):
+    from rich.table import Table
+
+    table = Table(title="Peaks of the mesh force", title_justify="left", show_edge=False)
+    table.add_column("mode")
+    for head in ("Hz", "pinion rpm", "mesh force N"):
+        table.add_column(head, justify="right")
+    for peak in found.peaks:
+        hz = peak.frequency_hz
+        table.add_row(peak.mode, f"{hz:.1f}", f"{60 * hz / teeth:.0f}", f"{peak.force:.1f}")
+    return table
