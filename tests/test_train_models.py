@@ -23,11 +23,14 @@ TRAIN_DATA = sg.load_train(OVERHUNG)
 COARSE = {"timoshenko": {"elements": 8}, "euler": {"elements": 8}}
 
 
-def assembled(shop, rungs):
-    """K, M and the names of what is where: blocks of the bodies side by side, every spring added
-    to K by hand; nothing of reduction/ or system/.
+def assembled(shop, rungs, losses=None):
+    """K, M, motions of ports and the row of the mesh: blocks of the bodies side by side, every
+    spring added to K by hand, complex with losses; nothing of reduction/ or system/.
     """
     train = shop.train
+    lost = {"shafts": 0.0, "bearings": 0.0, "mesh": 0.0, "springs": 0.0}
+    if losses is not None:
+        lost = {name: 1j * getattr(losses, name) for name in lost}
     k, m, ports = [], [], {}
     start = 0
     for side, rung in rungs.items():
@@ -44,7 +47,7 @@ def assembled(shop, rungs):
             start += block.size
     k += [np.zeros((1, 1))] * 2
     m += [np.array([[train.engine.inertia]]), np.array([[train.load.inertia]])]
-    k, m = sla.block_diag(*k), sla.block_diag(*m)
+    k, m = (1 + lost["shafts"]) * sla.block_diag(*k), sla.block_diag(*m)
     size = len(k)
 
     def motion(port):
@@ -61,13 +64,13 @@ def assembled(shop, rungs):
             # the housing gives way along y under the sum of the axial forces of its bearings
             axial = held[:, 1::6].sum(axis=1)
             held = held - np.outer(axial, axial) / (scene.housing_axial + axial[1::6].sum())
-        k += seats.T @ held @ seats
+        k = k + (1 + lost["bearings"]) * (seats.T @ held @ seats)
         twist = motion(f"{side}.{train.spring_port(side)}")[4]
         twist[at] -= 1.0
-        k += rotor.spring.stiffness * np.outer(twist, twist)
+        k = k + (1 + lost["springs"]) * rotor.spring.stiffness * np.outer(twist, twist)
     met = shop.contact
     row = met.pinion.vector @ motion("pinion.pinion") - met.gear.vector @ motion("gear.gear")
-    return k + met.stiffness * np.outer(row, row), m, motion, row
+    return k + (1 + lost["mesh"]) * met.stiffness * np.outer(row, row), m, motion, row
 
 
 @pytest.fixture(scope="module")
