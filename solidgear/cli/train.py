@@ -197,3 +197,93 @@ def _peaks_table(found, teeth: int):
         hz = peak.frequency_hz
         table.add_row(peak.mode, f"{hz:.1f}", f"{60 * hz / teeth:.0f}", f"{peak.force:.1f}")
     return table
+
+
+@command
+def judge_system(
+    train: TrainFile,
+    out: Annotated[
+        Path | None, typer.Option("--out", "-o", help="Folder for the chart and the table.")
+    ] = None,
+    max_frequency: Annotated[
+        float | None, typer.Option(help="Hz; as the file says by default.")
+    ] = None,
+    against: Annotated[
+        list[str] | None,
+        typer.Option("--against", help="Further mix to judge, as PINION+GEAR; repeatable."),
+    ] = None,
+    reduction: Reduction = "rubin",
+    kept: Kept = 24,
+    as_json: JsonFlag = False,
+) -> None:
+    """Which shaft needs the solid, and from which frequency on: every mix against both solid."""
+    from contextlib import nullcontext
+
+    from solidgear.report.folder import held
+    from solidgear.report.train_files import write_response
+    from solidgear.studies.axle.judge import judge_train
+    from solidgear.studies.axle.modes import unpublished_lines
+
+    if max_frequency is not None and not max_frequency > 0:
+        raise SolidgearError(f"--max-frequency {max_frequency:g}: must be greater than zero, in Hz")
+    shop = _shop(train, reduction, kept)
+    with held(out) if out else nullcontext():
+        found = judge_train(shop, max_frequency, [_mix(text) for text in against or []])
+        if out:
+            drawn = [r for r in found.responses if (r.pinion, r.gear) in DRAWN]
+            marks = {m.label: m.force_to_hz for m in found.mixes if m.force_to_hz is not None}
+            teeth = shop.train.pinion.teeth
+            write_response(
+                out, drawn, found.train, teeth, found.decibels, {"verdict": found.as_dict()}, marks
+            )
+    if as_json:
+        print(json.dumps(found.as_dict(), allow_nan=False))
+        return
+    terminal = console()
+    terminal.print(f"{found.train}, up to {found.highest_hz:g} Hz", markup=False)
+    terminal.print(_verdict_table(found))
+    for line in found.sentences() + unpublished_lines(found.unpublished):
+        terminal.print(line, markup=False, soft_wrap=True)
+    for text in found.cautions:
+        terminal.print(f"caution: {text}", markup=False, soft_wrap=True)
+
+
+#: mixes in the chart of a verdict; more would hide one another
+DRAWN = (
+    ("harmonic", "harmonic"),
+    ("timoshenko", "harmonic"),
+    ("harmonic", "timoshenko"),
+    ("euler", "euler"),
+    ("lumped", "lumped"),
+    ("lumped-old", "lumped-old"),
+)
+
+
+def _verdict_table(found):
+    from rich.table import Table
+
+    title = "Within the band up to, in Hz"
+    table = Table(title=title, title_justify="left", show_edge=False)
+    table.add_column("pinion")
+    table.add_column("gear")
+    for head in (
+        f"modes {100 * found.tolerance:g} %",
+        f"force {found.decibels:g} dB",
+        f"force {100 * found.tolerance:g} %",
+    ):
+        table.add_column(head, justify="right")
+    table.add_column("first mode off")
+    table.add_column("by")
+    table.add_column("unknowns", justify="right")
+    table.add_column("s", justify="right")
+    for mix in found.mixes:
+        ends = [
+            f"{found.highest_hz:.0f}+" if hz is None else f"{hz:.0f}"
+            for hz in (mix.modes_to_hz, mix.force_to_hz, mix.close_to_hz)
+        ]
+        off = "" if not mix.mode else f"{mix.mode}, missing"
+        if mix.error is not None:
+            off = f"{mix.mode} {100 * mix.error:+.1f} %"
+        row = (mix.pinion, mix.gear, *ends, off, mix.cause)
+        table.add_row(*row, f"{mix.unknowns}", f"{mix.seconds:.1f}")
+    return table
