@@ -144,6 +144,24 @@ class Workshop:
                 self._made[side, rung] = ShaftModel(side, rung, part, body, body.size, seconds)
         return self._made[side, rung]
 
+    def put(self, side: str, name: str, part: Part, like: str) -> None:
+        """Take in a part of one's own as a further model of a shaft.
+
+        Parameters
+        ----------
+        side : str
+        name : str
+            What it is asked for by.
+        part : Part
+            With the ports of the shaft.
+        like : str
+            Rung of the body it stands for.
+        """
+        under = self.shaft(side, like)
+        self._made[side, name] = ShaftModel(
+            side, name, part, under.body, under.unknowns, under.seconds
+        )
+
     def _from_body(self, side: str, rung: str, kind: str, base: str) -> ShaftModel:
         under = self.shaft(side, base)
         start = perf_counter()
