@@ -192,6 +192,29 @@ def test_names_are_one_a_mode_and_say_what_moves():
     assert names[1].startswith("load torsion") and names[2].split()[1] == "torsion"
 
 
+def test_a_solid_has_modes_that_the_mesh_does_not_drive():
+    coarse = {"solid": {"around": 8, "refinement": 0.3}, **COARSE}
+    shop = Workshop(TRAIN_DATA, kept=16, settings=coarse)
+    found = train_modes(shop, "euler", "solid", 3000.0)
+    named = [mode.name for mode in found.modes if "ovalising" in mode.name]
+    assert named == ["gear ovalising 1", "gear ovalising 2"]  # two nodal diameters, near 1.9 kHz
+    assert any("not driven by this mesh model" in line for line in found.remarks())
+
+
+def test_a_shaft_that_nothing_holds_along_its_axis_is_told():
+    scene = TRAIN_DATA.gear.scene
+    bearings = []
+    for bearing in scene.bearings:
+        k = np.array(bearing.matrix)
+        k[1] = k[:, 1] = 0.0
+        bearings.append(bearing.with_changes(matrix=tuple(map(tuple, k))))
+    loose = scene.with_changes(bearings=tuple(bearings), housing_axial=None)
+    train = TRAIN_DATA.with_changes(gear=TRAIN_DATA.gear.with_changes(scene=loose))
+    found = train_modes(Workshop(train, settings=COARSE), "timoshenko", "timoshenko", 500.0)
+    assert found.rigid == 2
+    assert "gear's shaft do not hold it in y" in found.remarks()[0]
+
+
 def test_a_frequency_beyond_the_reduction_is_refused():
     shop = Workshop(TRAIN_DATA, kept=4, settings=COARSE)
     with pytest.raises(sg.SolidgearError, match="beyond what the reduction resolves"):

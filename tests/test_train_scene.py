@@ -9,6 +9,7 @@ import solidgear as sg
 from solidgear.frames import cross_matrix
 from solidgear.scene.train_file import load_train
 from solidgear.studies.axle.contact import contact
+from solidgear.studies.axle.modes import wrench_lines
 from solidgear.system.contact_cells import contact_wrench
 from solidgear.system.gear_mesh import to_gear_frame
 
@@ -150,6 +151,8 @@ def test_a_mesh_from_contact_cells(tmp_path):
     wrench = contact_wrench(CELLS, ANGLES, FORCES)
     assert found.stiffness == pytest.approx(np.linalg.norm(wrench.force) / 11e-6)
     assert np.allclose(found.pinion.point, wrench.point, atol=1e-12)
+    told = wrench_lines(found)
+    assert "No mesh point balances" in told[1] and "thesis's formulas" in told[2]
 
 
 @pytest.mark.parametrize(

@@ -263,27 +263,25 @@ def _verdict_table(found):
     from rich.table import Table
 
     title = "Within the band up to, in Hz"
-    table = Table(title=title, title_justify="left", show_edge=False)
-    table.add_column("pinion")
-    table.add_column("gear")
+    table = Table(title=title, title_justify="left", box=None, padding=(0, 1, 0, 0))
+    table.add_column("pinion + gear")
     for head in (
-        f"modes {100 * found.tolerance:g} %",
-        f"force {found.decibels:g} dB",
-        f"force {100 * found.tolerance:g} %",
+        f"modes\n{100 * found.tolerance:g} %",
+        f"force\n{found.decibels:g} dB",
+        f"force\n{100 * found.tolerance:g} %",
     ):
         table.add_column(head, justify="right")
     table.add_column("first mode off")
     table.add_column("by")
-    table.add_column("unknowns", justify="right")
     table.add_column("s", justify="right")
     for mix in found.mixes:
         ends = [
             f"{found.highest_hz:.0f}+" if hz is None else f"{hz:.0f}"
             for hz in (mix.modes_to_hz, mix.force_to_hz, mix.close_to_hz)
         ]
-        off = "" if not mix.mode else f"{mix.mode}, missing"
+        off = "" if not mix.mode else f"{mix.mode} gone"
         if mix.error is not None:
             off = f"{mix.mode} {100 * mix.error:+.1f} %"
-        row = (mix.pinion, mix.gear, *ends, off, mix.cause)
-        table.add_row(*row, f"{mix.unknowns}", f"{mix.seconds:.1f}")
+        name = f"{mix.pinion} + {mix.gear}" if mix.pinion != mix.gear else f"both {mix.gear}"
+        table.add_row(name, *ends, off, mix.cause, f"{mix.seconds:.1f}")
     return table

@@ -231,6 +231,8 @@ def _with_cause(found: dict[tuple[str, str], Departure], mix: tuple[str, str]) -
         return own
     pinion, gear = mix
     if pinion == gear and pinion in RELAXED:
+        if "torsion" in own.mode:
+            return replace(own, cause="rigid twist")
         milder, words = RELAXED[pinion]
         further = (milder, milder) in found and _further(found[milder, milder], own)
         return replace(own, cause=words if further else "six motions")

@@ -7,8 +7,11 @@ from dataclasses import asdict, dataclass
 import numpy as np
 
 from solidgear.errors import SolidgearError
+from solidgear.frames import DOF_NAMES
+from solidgear.scene.train import SIDES
+from solidgear.studies.axle.contact import Contact
 from solidgear.studies.axle.models import Workshop
-from solidgear.studies.axle.naming import mode_names
+from solidgear.studies.axle.naming import OVALISING, mode_names
 from solidgear.system.system import System
 
 #: a frequency whose bound is above this is not resolved by the reduction
@@ -58,6 +61,8 @@ class TrainModes:
         Motions at exactly 0 Hz.
     free : tuple of str
         What moves freely beside the train, in words.
+    contact : tuple of str
+        What contact cells leave over, in words; empty without any.
     unpublished : dict of str to str
     cautions : tuple of str
     """
@@ -73,6 +78,7 @@ class TrainModes:
     modes: tuple[TrainMode, ...]
     rigid: int
     free: tuple[str, ...]
+    contact: tuple[str, ...]
     unpublished: dict[str, str]
     cautions: tuple[str, ...]
 
@@ -94,11 +100,18 @@ class TrainModes:
         if self.rigid == 1 and not self.free:
             lines.append("The whole train turns freely: one motion at exactly 0 Hz.")
         lines += list(self.free)
+        still = [mode for mode in self.modes if OVALISING in mode.name]
+        if still:
+            places = ", ".join(f"{mode.frequency_hz:.0f}" for mode in still)
+            lines.append(
+                f"Ovalising, not driven by this mesh model: {places} Hz; "
+                "seats and teeth act on mean motions, which these modes have none of."
+            )
         lines.append(
             "Bound: largest relative error that the reduction leaves, proven; "
             "it says nothing of the meshes of the shafts."
         )
-        lines += unpublished_lines(self.unpublished)
+        lines += list(self.contact) + unpublished_lines(self.unpublished)
         return lines + [f"caution: {text}" for text in self.cautions]
 
 
@@ -110,6 +123,34 @@ def unpublished_lines(unpublished: dict[str, str]) -> list[str]:
         if names:
             lines.append(f"{status.capitalize()}, not published: {', '.join(names)}.")
     return lines
+
+
+def wrench_lines(met: Contact) -> tuple[str, ...]:
+    """What contact cells come to, and the moment that no mesh point carries."""
+    wrench = met.wrench
+    if wrench is None:
+        return ()
+
+    def millimetres(point):
+        return ", ".join(f"{1e3 * v:.2f}" for v in point)
+
+    normal = ", ".join(f"{v:.4f}" for v in wrench.normal)
+    least = wrench.left_over(wrench.point)
+    lines = [
+        f"Contact cells: {np.linalg.norm(wrench.force):.1f} N along ({normal}); point on the "
+        f"central axis ({millimetres(wrench.point)}) mm.",
+        f"No mesh point balances {least:.3g} N m about the line of action "
+        f"(pitch {1e3 * wrench.pitch:.3f} mm).",
+    ]
+    try:
+        point = wrench.thesis_point
+    except SolidgearError:
+        return tuple(lines)
+    lines.append(
+        f"By the thesis's formulas the point is ({millimetres(point)}) mm and leaves "
+        f"{wrench.left_over(point):.3g} N m."
+    )
+    return tuple(lines)
 
 
 def train_modes(
@@ -149,7 +190,6 @@ def train_modes(
         strained = "" if hz == 0 else f"{most[k]} {100 * found.energy[most[k]][k]:.0f} %"
         rpm = 60 * float(hz) / workshop.train.pinion.teeth
         modes.append(TrainMode(name, float(hz), rpm, strained, float(found.error_bound[k])))
-    sides = ("pinion", "gear")
     rungs = {"pinion": pinion, "gear": gear}
     return TrainModes(
         workshop.train.title or workshop.train.name,
@@ -157,12 +197,13 @@ def train_modes(
         gear,
         workshop.reduction,
         system.size,
-        {side: system.parts[side].mass.shape[0] for side in sides},
-        {side: workshop.shaft(side, rungs[side]).unknowns for side in sides},
+        {side: system.parts[side].mass.shape[0] for side in SIDES},
+        {side: workshop.shaft(side, rungs[side]).unknowns for side in SIDES},
         workshop.seconds(pinion, gear),
         tuple(modes),
         found.rigid,
         free_motions(workshop, system),
+        wrench_lines(workshop.contact),
         workshop.train.unpublished(),
         workshop.contact.cautions,
     )
@@ -195,7 +236,14 @@ def free_motions(workshop: Workshop, system: System) -> tuple[str, ...]:
     if count == 1:
         still = [part for part in system.parts if part not in turning]
         return (f"Only {', '.join(turning)} turn freely; {', '.join(still)} do not turn along.",)
-    return (
-        f"{count} motions are free, where a train has one: a shaft is not held by its bearings "
-        f"(moving: {', '.join(turning)}).",
-    )
+    loose = [words for side in SIDES for words in _loose(workshop, system, side)]
+    where = "; ".join(loose) or f"free to turn by themselves: {', '.join(turning)}"
+    return (f"{count} motions are free, where a train has one: {where}.",)
+
+
+def _loose(workshop: Workshop, system: System, side: str) -> list[str]:
+    """Directions in which the bearings do not hold a shaft, its rotation apart."""
+    port = workshop.scenes[side].port.name
+    size = np.abs(system.motion(f"{side}.{port}") @ system.free).max(axis=1)
+    names = [d for d, s in zip(DOF_NAMES, size) if d != "thy" and s > 1e-6 * size.max()]
+    return [f"the bearings of the {side}'s shaft do not hold it in {' '.join(names)}"] * bool(names)

@@ -2,8 +2,11 @@
 
 Kinetic energy is shared among the four parts; what a shaft has goes to bending, axial motion and
 torsion as the energies its rigid mass would have in the motions of its lumped point.  A mode is
-called after the largest share, and counted: ``gear bending 2``.  Where no share has a third of the
+called after the largest share, and counted: ``gear bending 2``.  Where no share has 40 % of the
 whole, after the two largest: ``pinion axial + gear bending 1``.
+
+A solid also has modes with two and more nodal diameters, whose mean motion over any seat is zero:
+no averaged port drives or feels them.  They are called ``gear ovalising``.
 """
 
 from __future__ import annotations
@@ -20,6 +23,10 @@ FAMILIES = {"bending": (0, 2, 3, 5), "axial": (1,), "torsion": (4,)}
 #: a share of the kinetic energy that names a mode alone
 ALONE = 0.4
 TRAIN = "train rotation"
+#: a shaft all of whose ports move with less than this of the energy of the mode does not move
+#: there: cells around a ring let some 1e-6 through
+UNDRIVEN = 1e-4
+OVALISING = "ovalising"
 
 
 def shares(workshop: Workshop, system: System, shapes: np.ndarray) -> dict[str, np.ndarray]:
@@ -38,10 +45,26 @@ def shares(workshop: Workshop, system: System, shapes: np.ndarray) -> dict[str, 
         mass = np.diag(back.T @ body.mass_matrix() @ back)
         energy = mass[:, None] * (system.motion(f"{part}.{port.name}") @ shapes) ** 2
         whole = energy.sum(axis=0)
+        still = _still(workshop, system, part, mass, own, shapes)
+        out[f"{part} {OVALISING}"] = np.where(still, own, 0.0)
         for family, rows in FAMILIES.items():
-            out[f"{part} {family}"] = own * energy[list(rows)].sum(axis=0) / (whole + 1e-300)
+            share = energy[list(rows)].sum(axis=0) / (whole + 1e-300)
+            out[f"{part} {family}"] = np.where(still, 0.0, own * share)
     total = sum(out.values())
     return {name: value / total for name, value in out.items()}
+
+
+def _still(workshop: Workshop, system: System, part: str, mass, own, shapes) -> np.ndarray:
+    """Which modes move no port of a shaft by anything beside their own energy."""
+    moved = np.zeros(shapes.shape[1])
+    for station in workshop.scenes[part].stations:
+        motion = system.motion(f"{part}.{station.name}") @ shapes
+        moved = np.maximum(moved, mass @ motion**2)
+    return (own > ALONE * _total(system, shapes)) & (moved < UNDRIVEN * own)
+
+
+def _total(system: System, shapes: np.ndarray) -> np.ndarray:
+    return (shapes * (system.mass @ shapes)).sum(axis=0)
 
 
 def workshop_rung(workshop: Workshop, side: str) -> str:
