@@ -254,3 +254,15 @@ def test_the_command_prints_a_table_and_json():
     assert data["rigid"] == 1 and data["reduction"] == "rubin"
     assert data["modes"][0]["frequency_hz"] == 0.0
     assert data["unpublished"]["mesh.stiffness"] == "identified"
+
+
+def test_a_mesh_that_cannot_be_names_the_file_and_the_key(tmp_path):
+    text = OVERHUNG.read_text().replace('face_width = "63 mm"', 'face_width = "630 mm"')
+    for name in ("pinion_overhung", "gear_shaft"):
+        text = text.replace(f'"{name}.toml"', f'"{OVERHUNG.parent / name}.toml"')
+    path = tmp_path / "wide.toml"
+    path.write_text(text)
+    done = CliRunner().invoke(app, ["system-modes", str(path)])
+    assert done.exit_code != 0
+    assert "wide.toml: pinion.face_width" in str(done.exception)
+    assert "reaches past the apex" in str(done.exception)

@@ -9,7 +9,7 @@ from typing import Annotated
 import typer
 
 from solidgear.cli.app import JsonFlag, command, console
-from solidgear.errors import SolidgearError, show
+from solidgear.errors import SceneError, SolidgearError, show
 
 TrainFile = Annotated[
     Path, typer.Argument(help="Train file (TOML), such as geometry/axle_overhung.toml.")
@@ -30,12 +30,17 @@ ROUNDING = 1e-12
 
 
 def _shop(path: Path, reduction: str, kept: int):
+    from solidgear.scene.toml_file import parse
     from solidgear.scene.train_file import load_train
     from solidgear.studies.axle.models import Workshop
 
     if not 1 <= kept <= MOST_KEPT:
         raise SolidgearError(f"--kept {show(kept)}: give 1 to {MOST_KEPT} modes")
-    return Workshop(load_train(path), reduction, kept)
+    loaded = load_train(path)
+    try:
+        return Workshop(loaded, reduction, kept)
+    except SceneError as error:  # what the mesh of a sound file cannot be
+        raise error.located(parse(str(path)), where=str(path)) from None
 
 
 @command

@@ -162,7 +162,7 @@ class Train(Model):
         """
         mesh, out = self.mesh, {}
         line = "line_of_action" if mesh.line_of_action else "contact_cells"
-        line = "pressure_angle" if not (mesh.line_of_action or mesh.cells) else line
+        line = "pressure_angle" if not (mesh.line_of_action or mesh.contact_cells) else line
         for key, status in (
             ("mesh.stiffness", mesh.status),
             (f"mesh.{line}", mesh.line_of_action_status),

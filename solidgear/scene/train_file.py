@@ -100,7 +100,7 @@ def _with_cells(table: Mapping[str, Any], folder: Path) -> dict[str, Any]:
     if not isinstance(name, str):
         reason = "names a CSV file with the columns " + ", ".join(CELL_COLUMNS)
         raise SceneError(reason, path=("mesh", "contact_cells"))
-    return {**rest, "cells": read_cells(folder / name)}
+    return {**rest, "contact_cells": read_cells(folder / name)}
 
 
 def read_cells(path: str | os.PathLike) -> tuple[dict[str, Any], ...]:

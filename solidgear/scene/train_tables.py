@@ -197,7 +197,7 @@ class Mesh(Model):
         For a line of action from gear geometry, rad.
     line_of_action, point : tuple of float or None
         Given instead, in the pinion's frame, from its lumped point.
-    cells : tuple of Cell
+    contact_cells : tuple of Cell
         Given instead: contact cells.
     gear_position : tuple of float or None
         The gear's lumped point from the pinion's, in the pinion's frame, m; by default both lie at
@@ -216,7 +216,7 @@ class Mesh(Model):
     line_of_action: tuple[float, float, float] | None = None
     line_of_action_status: Status = "assumed"
     point: Vector | None = None
-    cells: tuple[Cell, ...] = ()
+    contact_cells: tuple[Cell, ...] = ()
     gear_position: Vector | None = None
     loaded_error: Ordinate | None = None
     unloaded_error: Ordinate | None = None
@@ -228,13 +228,13 @@ class Mesh(Model):
         given = {
             "pressure_angle": self.pressure_angle is not None,
             "line_of_action": self.line_of_action is not None,
-            "contact_cells": bool(self.cells),
+            "contact_cells": bool(self.contact_cells),
         }
         ways = [key for key, there in given.items() if there]
         if not ways:
             how = "give pressure_angle (line of action from gear geometry), or line_of_action with"
             raise SceneError(f"{how} point, or contact_cells", path=("pressure_angle",))
-        if self.cells and self.line_of_action is not None:
+        if self.contact_cells and self.line_of_action is not None:
             how = "contact cells have a line of action of their own; give either"
             raise SceneError(how, path=("line_of_action",))
         if (self.point is None) != (self.line_of_action is None):
@@ -247,7 +247,7 @@ class Mesh(Model):
 
     def _from_errors(self) -> bool:
         both = self.loaded_error is not None and self.unloaded_error is not None
-        return both and bool(self.cells) and self.loaded_error != self.unloaded_error
+        return both and bool(self.contact_cells) and self.loaded_error != self.unloaded_error
 
 
 class Losses(Model):

@@ -26,6 +26,8 @@ def _read(value: Any, units: dict[str, float], example: str) -> float:
                 value=show(value),
             )
         value = float(found[1]) * units[found[2]]
+    if isinstance(value, bool) or not isinstance(value, (int, float)):
+        raise SceneError(f'must be a number in SI or a text such as "{example}"', value=show(value))
     number = quantity(value, "dimensionless")
     if not number > 0:
         raise SceneError("must be greater than zero")

@@ -7,7 +7,7 @@ from math import pi, tan
 
 import numpy as np
 
-from solidgear.errors import SceneError
+from solidgear.errors import SceneError, SolidgearError
 from solidgear.scene.train import Train
 from solidgear.system.contact_cells import ContactWrench, contact_wrench
 from solidgear.system.gear_mesh import (
@@ -83,11 +83,11 @@ def contact(train: Train) -> Contact:
     """
     mesh, cautions = train.mesh, []
     wrench = None
-    if mesh.cells:
+    if mesh.contact_cells:
         wrench = contact_wrench(
-            [c.point for c in mesh.cells],
-            [c.normal for c in mesh.cells],
-            [c.force for c in mesh.cells],
+            [c.point for c in mesh.contact_cells],
+            [c.normal for c in mesh.contact_cells],
+            [c.force for c in mesh.contact_cells],
         )
         normal, point = wrench.normal, wrench.point
     elif mesh.line_of_action is not None:
@@ -137,7 +137,10 @@ def _mean_radius(train: Train) -> float:
     _needs(train, "pitch_radius", "pitch_angle", "face_width", what=what)
     p = train.pinion
     assert p.pitch_radius is not None and p.pitch_angle is not None and p.face_width is not None
-    return mean_radius(p.pitch_radius, p.pitch_angle, p.face_width)
+    try:
+        return mean_radius(p.pitch_radius, p.pitch_angle, p.face_width)
+    except SolidgearError as error:
+        raise SceneError(str(error), path=("pinion", "face_width")) from None
 
 
 def _gear_position(train: Train, point: np.ndarray) -> np.ndarray:
