@@ -163,6 +163,20 @@ def test_a_force_on_a_port_instead_of_the_transmission_error(shop):
     assert moved == pytest.approx(row @ u, rel=1e-5)
 
 
+def test_a_force_of_rounding_alone_is_refused():
+    mesh = TRAIN.mesh.with_changes(stiffness=1e24)
+    stiff = Workshop(TRAIN.with_changes(mesh=mesh), kept=4, settings=COARSE)
+    with pytest.raises(sg.SolidgearError, match="check their units"):
+        respond(stiff, *MIX, damping="viscous", matched_hz=500.0)
+
+
+def test_without_any_loss_a_peak_has_no_height():
+    none = TRAIN.losses.with_changes(shafts=0, bearings=0, mesh=0, springs=0)
+    bare = Workshop(TRAIN.with_changes(losses=none), settings=COARSE)
+    with pytest.raises(sg.SolidgearError, match="give it a loss"):
+        respond(bare, *MIX)
+
+
 ARGS = ["response", str(OVERHUNG), "--pinion", "euler", "--gear", "timoshenko"]
 
 

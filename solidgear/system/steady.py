@@ -38,7 +38,9 @@ PER_DECADE = 60
 #: a middle that is foretold within this needs no halving, dB
 FORETOLD = 0.25
 #: halvings of an interval, and points, at most
-HALVINGS, MOST_POINTS = 12, 40_000
+HALVINGS, MOST_POINTS = 12, 6_000
+#: motions this much smaller than the largest are rounding
+NOISE = 1e-10
 #: frequencies that are solved at once, one by one in modes
 BATCH = 64
 
@@ -207,14 +209,16 @@ class SteadyState:
         count = int(np.ceil(PER_DECADE * np.log10(highest_hz / lowest_hz))) + 2
         points = np.concatenate([np.geomspace(lowest_hz, highest_hz, count), around])
         points = np.unique(points[(points >= lowest_hz) & (points <= highest_hz)])
-        level = _decibels(seen(points))
+        first = seen(points)
+        largest = np.abs(first).max(axis=0)
+        level = _decibels(first, largest)
         fresh = np.ones(len(points) - 1, bool)
         for _ in range(HALVINGS):
             left = np.flatnonzero(fresh)
             if not len(left) or len(points) + len(left) > MOST_POINTS:
                 break
             middle = (points[left] + points[left + 1]) / 2
-            found = _decibels(seen(middle))
+            found = _decibels(seen(middle), largest)
             off = np.abs(found - (level[left] + level[left + 1]) / 2).max(axis=1)
             # an interval whose middle was foretold is left with it, and not halved again
             again = np.zeros(len(points) - 1, bool)
@@ -232,5 +236,6 @@ def peaks(size: np.ndarray) -> np.ndarray:
     return 1 + np.flatnonzero((inner > size[:-2]) & (inner >= size[2:]))
 
 
-def _decibels(motions: np.ndarray) -> np.ndarray:
-    return 20 * np.log10(np.abs(motions) + 1e-300)
+def _decibels(motions: np.ndarray, largest: np.ndarray) -> np.ndarray:
+    """Levels under the largest; what is rounding beside it is all one level."""
+    return 20 * np.log10(np.maximum(np.abs(motions), NOISE * largest) + 1e-300)

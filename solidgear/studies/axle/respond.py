@@ -29,6 +29,8 @@ FORCE_UNITS = ("N",) * 3 + ("N m",) * 3
 MOTION_UNITS = ("m",) * 3 + ("rad",) * 3
 #: the first frequency of a response, over the first elastic one
 BEGIN = 0.25
+#: peaks of a mesh force; a train has some tens of modes in any range
+MOST_PEAKS = 400
 #: points between the neighbours of the top of a peak
 TOP = 17
 #: a peak that stands out from the dip beside it by less than this is a ripple, dB
@@ -188,6 +190,11 @@ class Drive:
 
         points = self.steady.grid(lowest, highest_hz, seen)
         tops = peaks(np.abs(self.mesh(points)[1]))
+        if len(tops) > MOST_PEAKS:
+            raise SolidgearError(
+                f"the mesh force has {len(tops)} peaks, which is rounding: a spring or an inertia "
+                "is so large or small beside the others that no digit is left; check their units"
+            )
         fine = [np.linspace(points[k - 1], points[k + 1], TOP) for k in tops]
         return np.unique(np.concatenate([points, *fine]))
 
