@@ -1,7 +1,13 @@
-"""Two shafts that mesh: modes with a beam and with a solid gear, and where the beam gear fails.
+"""A geared rotor from its file, with the ring gear as a beam and as a solid.
+
+It illustrates how to:
+
+* read a train of two shafts, and model each at a rung of its own,
+* see named modes of the whole, with what is not published and how sure the reduction is,
+* ask for the dynamic mesh force at a frequency.
 
 The ring gear of this rotor is a flat plate.  As a beam it keeps its shape, and the modes in which it
-bends come out too high; the pinion may be a beam far longer.
+bends come out too high.
 """
 
 from pathlib import Path
