@@ -8,14 +8,15 @@ from typing import Annotated
 
 import typer
 
-from solidgear.cli.app import JsonFlag, command, console
+from solidgear.cli.app import FIDELITY, JsonFlag, command, console
 from solidgear.errors import SceneError, SolidgearError, show
+from solidgear.fidelity.ladder import LADDER
 
 TrainFile = Annotated[
     Path, typer.Argument(help="Train file (TOML), such as geometry/axle_overhung.toml.")
 ]
 RUNGS = (
-    "euler, timoshenko, harmonic, solid, rigid, lumped, lumped-bending, lumped-matched, "
+    f"{', '.join(LADDER.bodies)}, rigid, lumped, lumped-bending, lumped-matched, "
     "lumped-old; a lumped one may name its body, lumped/euler."
 )
 PinionRung = Annotated[str, typer.Option("--pinion", help=f"Model of the pinion's shaft: {RUNGS}")]
@@ -46,8 +47,8 @@ def _shop(path: Path, reduction: str, kept: int):
 @command
 def system_modes(
     train: TrainFile,
-    pinion: PinionRung = "harmonic",
-    gear: GearRung = "harmonic",
+    pinion: PinionRung = FIDELITY,
+    gear: GearRung = FIDELITY,
     max_frequency: Annotated[
         float | None, typer.Option(help="Hz; as the file says by default.")
     ] = None,
@@ -96,8 +97,8 @@ def response(
     out: Annotated[
         Path, typer.Option("--out", "-o", help="Folder for response.csv and its chart.")
     ] = Path("out"),
-    pinion: PinionRung = "harmonic",
-    gear: GearRung = "harmonic",
+    pinion: PinionRung = FIDELITY,
+    gear: GearRung = FIDELITY,
     against: Annotated[
         list[str] | None,
         typer.Option(
@@ -226,7 +227,7 @@ def judge_system(
 
     from solidgear.report.folder import held
     from solidgear.report.train_files import write_response
-    from solidgear.studies.axle.judge import judge_train
+    from solidgear.studies.axle.judge import DRAWN, judge_train
     from solidgear.studies.axle.modes import unpublished_lines
 
     if max_frequency is not None and not max_frequency > 0:
@@ -251,17 +252,6 @@ def judge_system(
         terminal.print(line, markup=False, soft_wrap=True)
     for text in found.cautions:
         terminal.print(f"caution: {text}", markup=False, soft_wrap=True)
-
-
-#: mixes in the chart of a verdict; more would hide one another
-DRAWN = (
-    ("harmonic", "harmonic"),
-    ("timoshenko", "harmonic"),
-    ("harmonic", "timoshenko"),
-    ("euler", "euler"),
-    ("lumped", "lumped"),
-    ("lumped-old", "lumped-old"),
-)
 
 
 def _verdict_table(found):

@@ -16,6 +16,8 @@ from dataclasses import asdict, dataclass, replace
 import numpy as np
 from scipy.optimize import linear_sum_assignment
 
+from solidgear.fidelity.ladder import LADDER
+from solidgear.fidelity.rung import BEAM
 from solidgear.scene.train import SIDES
 from solidgear.studies.axle.models import JUDGE, LUMPED, Workshop, checked_rung
 from solidgear.studies.axle.naming import mode_names
@@ -23,7 +25,16 @@ from solidgear.studies.axle.respond import Drive, TrainResponse, respond
 from solidgear.system.system import System
 
 #: models of one shaft that are mixed, cheapest first
-MIXED = ("euler", "timoshenko", JUDGE)
+MIXED = (*LADDER.of(BEAM), JUDGE)
+#: mixes that a chart of the verdict shows; more would hide one another
+DRAWN = (
+    (JUDGE, JUDGE),
+    (MIXED[-2], JUDGE),
+    (JUDGE, MIXED[-2]),
+    (MIXED[0], MIXED[0]),
+    (LUMPED[0], LUMPED[0]),
+    (LUMPED[-1], LUMPED[-1]),
+)
 #: two modes whose motions of the ports are less alike than this are different ones
 ALIKE = 0.3
 #: modes of a mix are looked for up to this times the highest frequency

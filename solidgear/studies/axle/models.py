@@ -37,12 +37,12 @@ from solidgear.system.system import System
 RIGID = "rigid"
 LUMPED = ("lumped", "lumped-bending", "lumped-matched", "lumped-old")
 #: body that lumped models come from unless one is named, and the judge of a system
-JUDGE = "harmonic"
+JUDGE = LADDER.judges[0]
 REDUCTIONS = {"rubin": rubin, "craig_bampton": craig_bampton}
 #: free modes of a shaft that are kept: with residuals, enough for 1e-5 to 4 kHz; the bound tells
 KEPT = 24
 #: a mesh for systems: frequencies move by some 1e-5 against order 5
-MESH: dict[str, dict] = {"harmonic": {"order": 4}}
+MESH: dict[str, dict] = {JUDGE: {"order": 4}}
 
 
 def checked_rung(name: str) -> tuple[str, str]:
