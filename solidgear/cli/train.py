@@ -276,7 +276,8 @@ def _verdict_table(found):
         ]
         off = "" if not mix.mode else f"{mix.mode} gone"
         if mix.error is not None:
-            off = f"{mix.mode} {100 * mix.error:+.1f} %"
+            digits = 1 if abs(mix.error) < 0.0995 else 0
+            off = f"{mix.mode} {100 * mix.error:+.{digits}f} %"
         name = f"{mix.pinion} + {mix.gear}" if mix.pinion != mix.gear else f"both {mix.gear}"
         table.add_row(name, *ends, off, mix.cause, f"{mix.seconds:.1f}")
     return table
