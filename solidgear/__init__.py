@@ -19,6 +19,8 @@ __version__ = "0.1.0"
 
 _WHERE = {
     "load": "solidgear.studies.loading",
+    "load_train": "solidgear.scene.train_file",
+    "Train": "solidgear.scene.train",
     "Scene": "solidgear.scene",
     "Segment": "solidgear.scene",
     "Bearing": "solidgear.scene",
@@ -73,6 +75,7 @@ __all__ = [
     "Superelement",
     "Supports",
     "System",
+    "Train",
     "__version__",
     "answer",
     "build",
@@ -81,6 +84,7 @@ __all__ = [
     "craig_bampton",
     "grounded",
     "load",
+    "load_train",
     "mesh_spring",
     "modes",
     "rubin",
@@ -95,6 +99,8 @@ if TYPE_CHECKING:
     from solidgear.reduction.rubin import rubin
     from solidgear.reduction.superelement import Superelement
     from solidgear.scene import STEEL, Ask, Bearing, Material, PointMass, Port, Scene, Segment
+    from solidgear.scene.train import Train
+    from solidgear.scene.train_file import load_train
     from solidgear.solve.modes import modes
     from solidgear.solve.statics import condense
     from solidgear.studies.answering import answer

@@ -100,6 +100,13 @@ def test_way_back():
     assert found["sensor"] > 0
 
 
+def test_geared_train():
+    first, force = run("geared_train")
+    # a plate kept flat: some 14 % in the frequency
+    assert first["timoshenko"] / first["harmonic"] - 1 == pytest.approx(0.137, abs=0.01)
+    assert force["harmonic"] > 1.5 * force["timoshenko"]
+
+
 def test_every_example_is_tested_and_short():
     scripts = {p.stem: p.read_text() for p in FOLDER.glob("*.py")}
     tests = Path(__file__).read_text()

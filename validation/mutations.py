@@ -353,6 +353,46 @@ MUTATIONS = (
         "read[1, -1], self.own[-1] = 0.0, housing",
         "tests/test_bearings_equilibrium.py::test_series_spring_and_housing_take_the_bearings_load",
     ),
+    Mutation(
+        "transmission error added to the stretch of the teeth",
+        "solidgear/studies/axle/respond.py",
+        "Drive.mesh",
+        "factor * (dte - error)",
+        "factor * (dte + error)",
+        "tests/test_train_response.py::test_the_reduced_response_is_that_of_the_full_matrices",
+    ),
+    Mutation(
+        "bearing reactions from the diagonal alone",
+        "solidgear/studies/axle/respond.py",
+        "Drive.reactions",
+        "force = -np.array(supports.stiffness) @ seats",
+        "force = -np.diag(np.diag(supports.stiffness)) @ seats",
+        "tests/test_train_response.py::test_the_reduced_response_is_that_of_the_full_matrices",
+    ),
+    Mutation(
+        "no grid points at the poles",
+        "solidgear/system/steady.py",
+        "SteadyState.grid",
+        "width[near, None] * AROUND",
+        "width[near, None] * 1e9",
+        "tests/test_train_response.py::test_no_peak_is_missed_between_two_grid_points",
+    ),
+    Mutation(
+        "bearings 1 % stiff in the condensed shaft",
+        "solidgear/reduction/condensed.py",
+        "condensed_shaft",
+        "np.diag(elastic.astype(float)) + seats.T @ supports @ seats",
+        "np.diag(elastic.astype(float)) + 1.01 * seats.T @ supports @ seats",
+        "tests/test_train_models.py::test_a_lumped_shaft_has_the_condensed_stiffness",
+    ),
+    Mutation(
+        "central axis of contact cells on the wrong side",
+        "solidgear/system/contact_cells.py",
+        "ContactWrench.point",
+        "np.cross(self.force, self.moment)",
+        "np.cross(self.moment, self.force)",
+        "tests/test_train_scene.py::test_a_wrench_leaves_its_pitch_and_nothing_else",
+    ),
 )
 
 

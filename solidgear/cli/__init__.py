@@ -30,6 +30,7 @@ from solidgear.cli import (
     chart,
     solve,
     sweep,
+    train,
 )
 from solidgear.cli.app import app
 from solidgear.errors import SolidgearError, for_terminal

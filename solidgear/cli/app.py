@@ -172,4 +172,4 @@ def command(function: Callable[P, R]) -> Callable[P, R]:
             print("solidgear: interrupted", file=sys.stderr)
             raise typer.Exit(130) from None
 
-    return app.command(name=function.__name__)(quiet)
+    return app.command(name=function.__name__.replace("_", "-"))(quiet)

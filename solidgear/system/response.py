@@ -73,7 +73,7 @@ def response(
     omega, elastic = system.elastic
     value, shapes = omega**2 * (1 + 2j * damping), elastic
     if loss:
-        value, turn = np.linalg.eig(np.diag(value) + 1j * _losses(system, loss))
+        value, turn = np.linalg.eig(np.diag(value) + 1j * lost_stiffness(system, loss))
         shapes = elastic @ (turn / np.sqrt(np.einsum("ij,ij->j", turn, turn)))
     w2 = (2 * np.pi * frequency_hz) ** 2
     load = np.asarray(load)
@@ -82,10 +82,10 @@ def response(
         raise SolidgearError(
             "a frequency is that of a mode, and nothing damps it; give damping or loss"
         )
-    return (shapes @ ((shapes.T @ load)[:, None] / gap) + _free(system, w2, load)).T
+    return (shapes @ ((shapes.T @ load)[:, None] / gap) + free_motion(system, w2, load)).T
 
 
-def _free(system: System, w2: np.ndarray, load: np.ndarray) -> np.ndarray:
+def free_motion(system: System, w2: np.ndarray, load: np.ndarray) -> np.ndarray:
     """Accelerations of free motions, twice integrated."""
     push = system.free.T @ load
     if np.any(w2 == 0):
@@ -97,7 +97,7 @@ def _free(system: System, w2: np.ndarray, load: np.ndarray) -> np.ndarray:
     return system.free @ (push[:, None] * (w2 > 0) / -moving)
 
 
-def _losses(system: System, loss: Mapping[str, float]) -> np.ndarray:
+def lost_stiffness(system: System, loss: Mapping[str, float]) -> np.ndarray:
     """``sum eta_j K_j`` in elastic modes."""
     g, where = system.strains
     shapes = system.elastic[1]

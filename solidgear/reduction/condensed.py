@@ -1,0 +1,98 @@
+r"""A shaft on its bearings reduced to the six motions of its lumped point (Guyan 1965).
+
+The static shapes of unit motions d of the lumped point, nothing else loaded, are
+
+    [K  P'] [Phi]   [0]
+    [P  0 ] [ L ] = [I],      K_ll = Phi'K Phi = -L,      M_ll = Phi'M Phi,
+
+with P the rows of the lumped point, K that of the shaft *with* its bearings.  A free rotation is
+one of the shapes; nothing has to hold it.  Of all masses on these six motions M_ll is the one that
+a shaft has that moves in its static shapes: an *effective* mass, in the axial direction too, where
+the end behind the bearing moves less than the head.
+
+Seats follow as ``P_b Phi``, so that bearings stay outside, with their own losses and reactions.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+
+import numpy as np
+import scipy.linalg as sla
+
+from solidgear.errors import SolidgearError
+from solidgear.reduction.superelement import PortMotion, Superelement
+
+
+@dataclass(frozen=True, eq=False)
+class CondensedShaft:
+    """A part of six coordinates: the motion of the lumped point.
+
+    Attributes
+    ----------
+    mass : (6, 6) ndarray
+    strain : (r, 6) ndarray
+        Of the shaft alone, without bearings.
+    ports : mapping of str to PortMotion
+        All ports of the shaft, as they follow the lumped point statically.
+    """
+
+    mass: np.ndarray
+    strain: np.ndarray
+    ports: Mapping[str, PortMotion]
+
+    def with_mass(self, mass: np.ndarray) -> CondensedShaft:
+        """The same stiffness with another mass at the lumped point."""
+        return replace(self, mass=np.asarray(mass, float))
+
+
+def condensed_shaft(
+    shaft: Superelement, supports: np.ndarray, held: tuple[str, ...], port: str
+) -> CondensedShaft:
+    """Reduce a superelement on its supports to one port.
+
+    Parameters
+    ----------
+    shaft : Superelement
+    supports : (6 p, 6 p) ndarray
+        Stiffness of all bearings together, in the order of ``held``.
+    held : tuple of str
+        Ports that the bearings are on.
+    port : str
+        The lumped point.
+
+    Raises
+    ------
+    SolidgearError
+        If the shapes are not determined, as where a shaft swings on one bearing.
+    """
+    rows = np.vstack([np.zeros((0, shaft.size)), *(shaft.ports[name].rows for name in held)])
+    value = shaft.value
+    elastic = value > 0
+    # Coordinates of unit strain energy, so that the stiffness of the free shaft is one.
+    scale = np.where(elastic, 1 / np.sqrt(np.where(elastic, value, 1.0)), 1.0)
+    seats, lumped = rows * scale, shaft.ports[port].rows * scale
+    unit = np.sqrt(np.trace(seats.T @ supports @ seats) or 1.0)
+    stiffness = np.diag(elastic.astype(float)) + seats.T @ supports @ seats
+    size = np.linalg.norm(lumped, axis=1) / unit
+    n = len(value)
+    whole = np.zeros((n + 6, n + 6))
+    whole[:n, :n] = stiffness
+    whole[n:, :n] = lumped / size[:, None]
+    whole[:n, n:] = whole[n:, :n].T
+    right = np.vstack([np.zeros((n, 6)), np.diag(1 / size)])
+    try:
+        found = sla.solve(whole, right, assume_a="sym")[:n]
+    except (sla.LinAlgError, np.linalg.LinAlgError):
+        raise SolidgearError(
+            f"the shaft is not held by the port {port!r} and its bearings together; "
+            "a lumped model needs bearings that hold it"
+        ) from None
+    shapes = scale[:, None] * found
+    ports = {
+        name: PortMotion(motion.rows @ shapes, motion.point, motion.axes)
+        for name, motion in shaft.ports.items()
+    }
+    mass = shapes.T @ shapes
+    return CondensedShaft((mass + mass.T) / 2, shaft.strain @ shapes, ports)

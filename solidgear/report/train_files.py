@@ -1,0 +1,64 @@
+"""The files of a response: a table, and its chart as PNG and SVG."""
+
+from __future__ import annotations
+
+import csv
+import json
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from solidgear.machine.whole_file import whole
+from solidgear.report.train_chart import response_figure
+
+
+def write_response(
+    folder: Path,
+    responses: Sequence[Any],
+    title: str,
+    teeth: int,
+    band: float,
+    notes: Mapping[str, Any],
+    marks: Mapping[str, float] | None = None,
+) -> list[Path]:
+    """``response.csv`` of the first response, ``response.png``, ``response.svg`` of all, and
+    ``response.json`` with peaks and what else is told.
+
+    Returns
+    -------
+    list of Path
+    """
+    folder.mkdir(parents=True, exist_ok=True)
+    files = [folder / name for name in ("response.csv", "response.json")]
+    with whole(files[0]) as partial:
+        _csv(partial, responses[0], teeth)
+    peaks = [
+        {"pinion": r.pinion, "gear": r.gear, "peaks": [vars(p) for p in r.peaks]} for r in responses
+    ]
+    with whole(files[1]) as partial:
+        data = {"title": title, "responses": peaks, **notes}
+        partial.write_text(json.dumps(data, indent=1, allow_nan=False), encoding="utf-8")
+    figure = response_figure(responses, title, teeth, band, marks or {})
+    for kind in ("png", "svg"):
+        target = folder / f"response.{kind}"
+        with whole(target) as partial:
+            figure.savefig(partial, format=kind, dpi=150)
+        files.append(target)
+    return files
+
+
+def _csv(path: Path, response: Any, teeth: int) -> None:
+    """Amplitude and phase of every column; the unit stands in brackets."""
+    hz = response.frequency_hz
+    head, rows = ["frequency [Hz]", "pinion speed [rpm]"], [hz, 60 * hz / teeth]
+    for name, value in response.columns.items():
+        text, _, unit = name.partition(" [")
+        head += [f"{text} [{unit}", f"{text} phase [deg]"]
+        rows += [np.abs(value), np.degrees(np.angle(value))]
+    with path.open("w", newline="", encoding="utf-8") as file:
+        writer = csv.writer(file)
+        writer.writerow(head)
+        for line in np.column_stack(rows):
+            writer.writerow([f"{v:.9g}" if np.isfinite(v) else "" for v in line])

@@ -1,0 +1,183 @@
+"""Two shafts that mesh, with what drives them and what they drive: data only.
+
+The two shafts are scenes of their own.  Vectors of the mesh are told in the *pinion's frame*: y
+along its shaft from the pitch apex towards its back, the mesh on its -x side, z up
+(:mod:`solidgear.system.gear_mesh` draws it), from the pinion's lumped point.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from math import isclose
+
+from pydantic import model_validator
+
+from solidgear.errors import SceneError, listed, nearest
+from solidgear.scene.model import Scene
+from solidgear.scene.parts import Model
+from solidgear.scene.stations import Bearing
+from solidgear.scene.train_tables import Losses, Member, Mesh, Rotor, TrainAsk
+
+SIDES = ("pinion", "gear")
+#: a ratio that is typed with four digits may differ from that of the teeth by this
+RATIO_TYPED = 1e-3
+
+
+class Train(Model):
+    """Engine, pinion shaft, mesh, gear shaft, load; read one with `solidgear.load_train`.
+
+    Attributes
+    ----------
+    title, name, source : str
+    pinion, gear : Member
+    mesh : Mesh
+    engine, load : Rotor
+    losses : Losses
+    ask : TrainAsk
+
+    Raises
+    ------
+    SceneError
+        Every problem of its parts, names that both shafts use, hands that cannot mesh, a ratio
+        that is not that of the teeth, and springs on ports that are not there.
+
+    Examples
+    --------
+    >>> import solidgear as sg
+    >>> train = sg.load_train("geometry/axle_overhung.toml")
+    >>> train.pinion.teeth, train.gear.teeth, [b.name for b in train.gear.scene.bearings]
+    (14, 45, ['3', '4'])
+    >>> train.unpublished()["engine.spring.stiffness"]
+    'identified'
+    """
+
+    title: str = ""
+    name: str = "train"
+    source: str = ""
+    pinion: Member
+    gear: Member
+    mesh: Mesh
+    engine: Rotor
+    load: Rotor
+    losses: Losses = Losses()
+    ask: TrainAsk = TrainAsk()
+
+    @model_validator(mode="after")
+    def _hangs_together(self) -> Train:
+        problems = [*self._names(), *self._teeth(), *self._springs()]
+        if problems:
+            raise SceneError.of(problems)
+        return self
+
+    def _names(self) -> Iterator[SceneError]:
+        taken = {s.name for s in self.pinion.scene.stations}
+        twice = [s.name for s in self.gear.scene.stations if s.name in taken]
+        if twice:
+            yield SceneError(
+                f"bearings or lumped points of both shafts are called {listed(twice)}; "
+                "each carries one shaft and needs its own name",
+                path=("gear", "scene"),
+            )
+
+    def _teeth(self) -> Iterator[SceneError]:
+        hands = (self.pinion.hand, self.gear.hand)
+        curved = any(m.spiral_angle for m in (self.pinion, self.gear))
+        if curved and None not in hands and hands[0] == hands[1]:
+            yield SceneError(
+                f"both wheels are {hands[0]}-handed and cannot mesh; "
+                "a spiral bevel pair has one of each",
+                path=("gear", "hand"),
+            )
+        ratio = self.gear.teeth / self.pinion.teeth
+        given = self.mesh.ratio
+        if given is not None and not isclose(given, ratio, rel_tol=RATIO_TYPED):
+            yield SceneError(
+                f"{self.gear.teeth} over {self.pinion.teeth} teeth are a ratio of {ratio:.4f}; "
+                "correct it or leave it out",
+                path=("mesh", "ratio"),
+            )
+
+    def _springs(self) -> Iterator[SceneError]:
+        for rotor, side in (("engine", "pinion"), ("load", "gear")):
+            spring, scene = getattr(self, rotor).spring, getattr(self, side).scene
+            ports = [s.name for s in scene.stations]
+            key, word = ("at", spring.at) if spring.at is not None else ("from", spring.from_)
+            known = ports if key == "at" else ["start", "end", *ports]
+            if word not in known:
+                yield SceneError(
+                    f"unknown port of the {side}'s shaft{nearest(word, known)}; "
+                    f"known here: {listed(known)}",
+                    path=(rotor, "spring", key),
+                )
+            elif key == "from":
+                yield from self._on_the_shaft(rotor, side)
+
+    def _on_the_shaft(self, rotor: str, side: str) -> Iterator[SceneError]:
+        try:
+            self.shaft(side)
+        except SceneError as error:
+            reason = f"is no place on the {side}'s shaft: {error.problems[0].reason}"
+            yield SceneError(reason, path=(rotor, "spring", "position"))
+
+    @property
+    def ratio(self) -> float:
+        """Teeth of the gear over teeth of the pinion."""
+        return self.gear.teeth / self.pinion.teeth
+
+    def member(self, side: str) -> Member:
+        """``pinion`` or ``gear``."""
+        return {"pinion": self.pinion, "gear": self.gear}[side]
+
+    def rotor(self, side: str) -> tuple[str, Rotor]:
+        """What turns with a shaft, and its name: the engine with the pinion, the load with the
+        gear.
+        """
+        return ("engine", self.engine) if side == "pinion" else ("load", self.load)
+
+    def spring_port(self, side: str) -> str:
+        """Port of a shaft that its torsional spring acts on."""
+        name, rotor = self.rotor(side)
+        return rotor.spring.at or f"{name} spring"
+
+    def shaft(self, side: str) -> Scene:
+        """Scene of a shaft, with the place of its torsional spring as a free station if that is
+        none of its ports.
+        """
+        scene, spring = self.member(side).scene, self.rotor(side)[1].spring
+        if spring.position is None:
+            return scene
+        datum = {"start": 0.0, "end": scene.length} | {s.name: s.y for s in scene.stations}
+        station = Bearing(
+            name=self.spring_port(side),
+            y=datum[spring.from_] + spring.position,
+            seat_width=spring.seat_width or 0.0,
+            stiffness=[[0.0] * 6] * 6,
+            status=spring.status,
+        )
+        return scene.with_changes(bearings=(*scene.bearings, station))
+
+    def unpublished(self) -> dict[str, str]:
+        """Every value of the file that no source gives, by its key: ``identified`` or
+        ``assumed``.
+        """
+        mesh, out = self.mesh, {}
+        line = "line_of_action" if mesh.line_of_action else "contact_cells"
+        line = "pressure_angle" if not (mesh.line_of_action or mesh.contact_cells) else line
+        for key, status in (
+            ("mesh.stiffness", mesh.status),
+            (f"mesh.{line}", mesh.line_of_action_status),
+            ("mesh.transmission_error", mesh.transmission_error_status),
+            ("engine.inertia", self.engine.status),
+            ("engine.spring.stiffness", self.engine.spring.status),
+            ("load.inertia", self.load.status),
+            ("load.spring.stiffness", self.load.spring.status),
+            ("losses", self.losses.status),
+        ):
+            out[key] = str(status)
+        for side in SIDES:
+            member = self.member(side)
+            if member.head is not None:
+                out[f"{side}.head"] = str(member.head.status)
+            for bearing in member.scene.bearings:
+                out[f"{side} bearing {bearing.name}"] = str(bearing.status)
+        return {key: status for key, status in out.items() if status in ("identified", "assumed")}

@@ -1,0 +1,164 @@
+"""From a TOML file of a train to a `Train`, errors named by the keys of the file.
+
+The format is documented by ``geometry/axle_overhung.toml``.
+"""
+
+from __future__ import annotations
+
+import csv
+import os
+from collections.abc import Mapping
+from math import isfinite, sqrt
+from pathlib import Path
+from typing import Any
+
+from solidgear.errors import SceneError, show
+from solidgear.scene.file import load
+from solidgear.scene.toml_file import parse
+from solidgear.scene.train import SIDES, Train
+
+CELL_COLUMNS = ("x", "y", "z", "nx", "ny", "nz", "force")
+#: a normal typed with four digits has a length off by this; it is brought to unit length
+NORMAL_TYPED = 1e-3
+MOST_CELLS = 100_000
+
+
+def load_train(path: str | os.PathLike) -> Train:
+    """Read a train file; the shafts it names lie relative to it.
+
+    Parameters
+    ----------
+    path : str or path
+        A TOML file; ``geometry/axle_overhung.toml`` describes the format.
+
+    Returns
+    -------
+    Train
+
+    Raises
+    ------
+    SceneError
+        The file, the key, the value as written, what would be right: one line for each problem.
+
+    Examples
+    --------
+    >>> import solidgear as sg
+    >>> train = sg.load_train("geometry/axle_straddle.toml")
+    >>> [bearing.name for bearing in train.pinion.scene.bearings]
+    ['0', '1', '2']
+    """
+    where = os.fspath(path)
+    raw = parse(where)
+    folder = Path(where).parent
+    try:
+        if "segment" in raw:
+            raise SceneError(
+                "this is the scene of one shaft, not of a train; name a file with [pinion] and "
+                "[gear], such as geometry/axle_overhung.toml",
+                path=("segment",),
+            )
+        data = {**raw}
+        for side in SIDES:
+            if isinstance(raw.get(side), Mapping):
+                data[side] = _with_scene(raw[side], folder, side)
+        if isinstance(raw.get("mesh"), Mapping) and "contact_cells" in raw["mesh"]:
+            data["mesh"] = _with_cells(raw["mesh"], folder)
+        for rotor in ("engine", "load"):
+            _whole_rotor(raw, rotor)
+        return Train(**{"name": Path(where).stem} | data)
+    except SceneError as error:
+        if error.where:
+            raise
+        raise error.located(raw, where=where) from None
+
+
+def _with_scene(table: Mapping[str, Any], folder: Path, side: str) -> dict[str, Any]:
+    name = table.get("scene")
+    if not isinstance(name, str):
+        reason = 'names the file of the shaft, such as "gear_shaft.toml"'
+        raise SceneError(reason, path=(side, "scene"))
+    return {**table, "scene": load(folder / name)}
+
+
+def _whole_rotor(raw: Mapping[str, Any], rotor: str) -> None:
+    """The spring is what is most often left out: say what it is for."""
+    table, side = raw.get(rotor), "pinion" if rotor == "engine" else "gear"
+    if not isinstance(table, Mapping):
+        reason = f"this table is missing; write [{rotor}] with its inertia, and [{rotor}.spring]"
+        raise SceneError(reason, path=(rotor,))
+    if not isinstance(table.get("spring"), Mapping):
+        raise SceneError(
+            f"the torsional spring between the {rotor} and the {side}'s shaft is missing; write "
+            f"[{rotor}.spring] with stiffness and where it sits (at)",
+            path=(rotor, "spring"),
+        )
+
+
+def _with_cells(table: Mapping[str, Any], folder: Path) -> dict[str, Any]:
+    rest = {key: value for key, value in table.items() if key != "contact_cells"}
+    name = table["contact_cells"]
+    if not isinstance(name, str):
+        reason = "names a CSV file with the columns " + ", ".join(CELL_COLUMNS)
+        raise SceneError(reason, path=("mesh", "contact_cells"))
+    return {**rest, "contact_cells": read_cells(folder / name)}
+
+
+def read_cells(path: str | os.PathLike) -> tuple[dict[str, Any], ...]:
+    """Contact cells of a CSV file with the columns x, y, z (m), nx, ny, nz and force (N), as a
+    `Mesh` takes them.
+
+    Parameters
+    ----------
+    path : str or path
+
+    Returns
+    -------
+    tuple of dict
+        ``point``, ``normal`` (of unit length) and ``force``.
+
+    Raises
+    ------
+    SceneError
+        No such file, a column that is missing, a number that is none, a normal that is no unit
+        vector, a negative force, or no force at all.
+    """
+    where = os.fspath(path)
+    try:
+        with open(path, newline="", encoding="utf-8-sig") as file:
+            rows = list(csv.DictReader(file, skipinitialspace=True))
+    except (OSError, UnicodeDecodeError, csv.Error) as error:
+        said = getattr(error, "strerror", None) or "not a CSV file in UTF-8"
+        raise SceneError(f"the contact cells cannot be read: {said}", where=where) from None
+    if not rows or len(rows) > MOST_CELLS:
+        raise SceneError(f"{len(rows)} contact cells; there must be 1 to {MOST_CELLS}", where=where)
+    missing = [c for c in CELL_COLUMNS if c not in rows[0]]
+    if missing:
+        reason = f"no column {missing[0]}; the first line must name {', '.join(CELL_COLUMNS)}"
+        raise SceneError(reason, where=where)
+    cells = tuple(_cell(row, k, where) for k, row in enumerate(rows, start=2))
+    if not sum(cell["force"] for cell in cells) > 0:
+        raise SceneError("no cell carries a force; the sum must be above zero", where=where)
+    return cells
+
+
+def _cell(row: Mapping[str, Any], line: int, where: str) -> dict[str, Any]:
+    value = []
+    for column in CELL_COLUMNS:
+        try:
+            number = float(row[column])
+        except (TypeError, ValueError):
+            number = float("nan")
+        if not isfinite(number):
+            reason = f"line {line}, {column} = {show(row[column], 30)}: must be a number in SI"
+            raise SceneError(reason, where=where)
+        value.append(number)
+    normal, force = value[3:6], value[6]
+    length = sqrt(sum(v * v for v in normal))
+    if abs(length - 1) > NORMAL_TYPED:
+        reason = f"line {line}: the normal has length {length:.6g}; it must be a unit vector"
+        raise SceneError(reason, where=where)
+    if force < 0:
+        reason = f"line {line}, force = {force:g}: teeth push and do not pull; must not be negative"
+        raise SceneError(reason, where=where)
+    unit = tuple(v / length for v in normal)
+    return {"point": tuple(value[:3]), "normal": unit, "force": force}

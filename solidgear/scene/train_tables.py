@@ -1,0 +1,285 @@
+"""The tables of a train file, each checked by itself: shafts, mesh, engine and load, losses."""
+
+from __future__ import annotations
+
+from math import pi
+from typing import Annotated, Any, Literal
+
+from pydantic import BeforeValidator, Field, model_validator
+
+from solidgear.errors import SceneError
+from solidgear.scene.model import Scene
+from solidgear.scene.parts import Model
+from solidgear.scene.stations import Status
+from solidgear.scene.train_units import (
+    Inertia,
+    Loss,
+    Mass,
+    MeshSpring,
+    Ordinate,
+    PressureAngle,
+    ShaftAngle,
+    SpiralAngle,
+    TorsionSpring,
+    Vector,
+)
+from solidgear.scene.units import Angle, Frequency, Length, PositiveLength, Tolerance
+
+#: teeth that a wheel may have
+FEWEST_TEETH, MOST_TEETH = 3, 2000
+
+Teeth = Annotated[int, Field(strict=True, ge=FEWEST_TEETH, le=MOST_TEETH)]
+
+
+class HeadInertia(Model):
+    """A rigid mass at the lumped point of a shaft, beside the mass of its segments.
+
+    Attributes
+    ----------
+    mass : float
+        kg.
+    torsional, bending : float
+        About the shaft and across it, at the lumped point, kg m^2.
+    status : {'published', 'identified', 'assumed', 'measured'}
+    """
+
+    mass: Mass
+    torsional: Inertia
+    bending: Inertia
+    status: Status = "assumed"
+
+
+class Member(Model):
+    """One of the two shafts, and its teeth.
+
+    Attributes
+    ----------
+    scene : Scene
+    teeth : int
+    hand : {'left', 'right'} or None
+    loaded_side : {'concave', 'convex'} or None
+    pitch_radius, face_width : float or None
+        At the heel and along the cone, m.
+    pitch_angle, spiral_angle : float or None
+        rad.
+    apex : {'start', 'end'}
+        Towards which end of the shaft the pitch apex lies.
+    head : HeadInertia or None
+    """
+
+    scene: Scene
+    teeth: Teeth
+    hand: Literal["left", "right"] | None = None
+    loaded_side: Literal["concave", "convex"] | None = None
+    pitch_radius: PositiveLength | None = None
+    face_width: PositiveLength | None = None
+    pitch_angle: Angle | None = None
+    spiral_angle: SpiralAngle | None = None
+    apex: Literal["start", "end"] = "start"
+    head: HeadInertia | None = None
+
+
+class TorsionSpringTable(Model):
+    """The spring between a shaft and what turns with it, and where on the shaft it sits.
+
+    Attributes
+    ----------
+    stiffness : float
+        N m/rad.
+    at : str or None
+        A port of the shaft: its lumped point or a bearing.
+    position : float or None
+        Elsewhere on the shaft, m from ``from``: ``start``, ``end`` or a port.
+    seat_width : float or None
+        Of that place, m.
+    status : {'published', 'identified', 'assumed', 'measured'}
+    """
+
+    stiffness: TorsionSpring
+    at: str | None = None
+    position: Length | None = None
+    from_: str = Field("start", alias="from")
+    seat_width: PositiveLength | None = None
+    status: Status = "assumed"
+
+    @model_validator(mode="after")
+    def _one_place(self):
+        if (self.at is None) == (self.position is None):
+            how = "say where on the shaft the spring sits: at = a port of the shaft, or position"
+            raise SceneError(f"{how} with from and seat_width, one of the two", path=("at",))
+        if self.position is not None and self.seat_width is None:
+            raise SceneError("a position needs a seat_width as well", path=("seat_width",))
+        return self
+
+
+class Rotor(Model):
+    """The engine or the load: an inertia behind a torsional spring.
+
+    Attributes
+    ----------
+    inertia : float
+        About the shaft, kg m^2.
+    spring : TorsionSpringTable
+    status : {'published', 'identified', 'assumed', 'measured'}
+    """
+
+    inertia: Inertia
+    spring: TorsionSpringTable
+    status: Status = "assumed"
+
+
+class ErrorTable(Model):
+    """A transmission error that is not the same everywhere.
+
+    Attributes
+    ----------
+    frequency : tuple of float
+        Ascending, Hz; amplitudes between are linear, and constant beyond.
+    amplitude : tuple of float
+        m, at each frequency.
+    orders : tuple of float
+        Instead: amplitudes of the first, second, ... harmonic of the mesh, m.
+    """
+
+    frequency: tuple[Frequency, ...] = ()
+    amplitude: tuple[Ordinate, ...] = ()
+    orders: tuple[Ordinate, ...] = ()
+
+    @model_validator(mode="after")
+    def _one_kind(self):
+        if bool(self.orders) == bool(self.frequency):
+            how = "give either orders, or frequency with amplitude"
+            raise SceneError(how, path=("orders",))
+        if len(self.frequency) != len(self.amplitude):
+            counts = f"{len(self.amplitude)} amplitudes for {len(self.frequency)} frequencies"
+            raise SceneError(f"there are {counts}; give as many", path=("amplitude",))
+        if any(b <= a for a, b in zip(self.frequency, self.frequency[1:])):
+            raise SceneError("frequencies must ascend", path=("frequency",))
+        return self
+
+
+def _constant_or_table(value: Any) -> Any:
+    return value if isinstance(value, (dict, ErrorTable)) else {"orders": (value,)}
+
+
+class Cell(Model):
+    """One cell of a loaded tooth contact, in the pinion's frame from its lumped point.
+
+    Attributes
+    ----------
+    point : tuple of float
+        m.
+    normal : tuple of float
+        Unit, the direction of the force on the pinion.
+    force : float
+        N, not negative.
+    """
+
+    point: tuple[float, float, float]
+    normal: tuple[float, float, float]
+    force: float
+
+
+class Mesh(Model):
+    """The teeth in contact.
+
+    Attributes
+    ----------
+    stiffness : float or None
+        N/m; with contact cells it may follow from ``loaded_error`` and ``unloaded_error``.
+    status : {'published', 'identified', 'assumed', 'measured'}
+        Of the stiffness.
+    shaft_angle : float
+        rad.
+    ratio : float or None
+        Teeth of the gear over teeth of the pinion, where a source gives it.
+    pressure_angle : float or None
+        For a line of action from gear geometry, rad.
+    line_of_action, point : tuple of float or None
+        Given instead, in the pinion's frame, from its lumped point.
+    contact_cells : tuple of Cell
+        Given instead: contact cells.
+    gear_position : tuple of float or None
+        The gear's lumped point from the pinion's, in the pinion's frame, m; by default both lie at
+        the middle of the face.
+    loaded_error, unloaded_error : float or None
+        Static transmission error under the load of the cells and without it, m.
+    transmission_error : ErrorTable
+        A single number is a constant amplitude, m.
+    """
+
+    stiffness: MeshSpring | None = None
+    status: Status = "assumed"
+    shaft_angle: ShaftAngle = pi / 2
+    ratio: Annotated[float, Field(gt=0)] | None = None
+    pressure_angle: PressureAngle | None = None
+    line_of_action: tuple[float, float, float] | None = None
+    line_of_action_status: Status = "assumed"
+    point: Vector | None = None
+    contact_cells: tuple[Cell, ...] = ()
+    gear_position: Vector | None = None
+    loaded_error: Ordinate | None = None
+    unloaded_error: Ordinate | None = None
+    transmission_error: Annotated[ErrorTable, BeforeValidator(_constant_or_table)]
+    transmission_error_status: Status = "assumed"
+
+    @model_validator(mode="after")
+    def _one_line(self):
+        given = {
+            "pressure_angle": self.pressure_angle is not None,
+            "line_of_action": self.line_of_action is not None,
+            "contact_cells": bool(self.contact_cells),
+        }
+        ways = [key for key, there in given.items() if there]
+        if not ways:
+            how = "give pressure_angle (line of action from gear geometry), or line_of_action with"
+            raise SceneError(f"{how} point, or contact_cells", path=("pressure_angle",))
+        if self.contact_cells and self.line_of_action is not None:
+            how = "contact cells have a line of action of their own; give either"
+            raise SceneError(how, path=("line_of_action",))
+        if (self.point is None) != (self.line_of_action is None):
+            missing = "point" if self.point is None else "line_of_action"
+            raise SceneError("line_of_action and point go together; give both", path=(missing,))
+        if self.stiffness is None and not self._from_errors():
+            how = "this key is missing; give it, or contact_cells with loaded_error and"
+            raise SceneError(f"{how} unloaded_error, which must differ", path=("stiffness",))
+        return self
+
+    def _from_errors(self) -> bool:
+        both = self.loaded_error is not None and self.unloaded_error is not None
+        return both and bool(self.contact_cells) and self.loaded_error != self.unloaded_error
+
+
+class Losses(Model):
+    """Loss factors eta, dissipated energy over ``2 pi`` times the stored: twice a damping ratio.
+
+    Attributes
+    ----------
+    shafts, bearings, mesh, springs : float
+        Of the material of both shafts, all bearings, the teeth, and the torsional springs.
+    status : {'published', 'identified', 'assumed', 'measured'}
+    """
+
+    shafts: Loss = 0.04
+    bearings: Loss = 0.04
+    mesh: Loss = 0.12
+    springs: Loss = 0.04
+    status: Status = "assumed"
+
+
+class TrainAsk(Model):
+    """The questions: up to what frequency, and what counts as the same answer.
+
+    Attributes
+    ----------
+    max_frequency : float
+        Hz.
+    tolerance : float
+        Of natural frequencies, relative.
+    decibels : float
+        Of the mesh force.
+    """
+
+    max_frequency: Frequency = 4000.0
+    tolerance: Tolerance = 0.02
+    decibels: Annotated[float, Field(gt=0, le=60)] = 3.0

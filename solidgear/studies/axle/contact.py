@@ -1,0 +1,238 @@
+"""Where the teeth of a train touch and along which line they push, on both shafts."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import pi, tan
+
+import numpy as np
+
+from solidgear.errors import SceneError, SolidgearError
+from solidgear.scene.train import Train
+from solidgear.system.contact_cells import ContactWrench, contact_wrench
+from solidgear.system.gear_mesh import (
+    MeshVector,
+    line_of_action,
+    mean_radius,
+    mesh_point,
+    to_gear_frame,
+)
+
+#: a typed line of action with six digits
+UNIT = 1e-6
+#: lever arms off the ratio of the teeth by this are told, by that refused
+LEVER_TOLD, LEVER_REFUSED = 5e-3, 5e-2
+#: pitch angles whose tangents are off the ratio of the teeth by this are told
+CONE_TOLD = 2e-2
+#: a line that is this much nearer (cosine) to the one of the teeth when it is turned back was
+#: given in the gear's frame
+TURNED = 0.2
+#: the mesh point may lie outside the head by this share of its radius and of its length
+OUTSIDE_RADIUS, OUTSIDE_LENGTH = 0.02, 0.5
+#: which of the pinion's data geometry needs
+GEOMETRY = ("hand", "loaded_side", "pitch_radius", "pitch_angle", "spiral_angle", "face_width")
+#: pressure angle to judge a given line with, where the file has none
+USUAL_PRESSURE_ANGLE = np.radians(20.0)
+
+
+@dataclass(frozen=True, eq=False)
+class Contact:
+    """The mesh on both shafts, each vector in the axes of that shaft's scene.
+
+    Attributes
+    ----------
+    pinion, gear : MeshVector
+        Points from each lumped point.
+    stiffness : float
+        N/m.
+    origin : (3,) ndarray
+        The gear's lumped point from the pinion's, in the pinion's frame, m.
+    wrench : ContactWrench or None
+        Of contact cells.
+    cautions : tuple of str
+        What does not fit together but can be solved.
+    """
+
+    pinion: MeshVector
+    gear: MeshVector
+    stiffness: float
+    origin: np.ndarray
+    wrench: ContactWrench | None
+    cautions: tuple[str, ...]
+
+
+def contact(train: Train) -> Contact:
+    """Mesh vectors of a train.
+
+    Parameters
+    ----------
+    train : Train
+
+    Raises
+    ------
+    SceneError
+        For missing gear data, a line of action that is no unit vector or lies in the wrong frame,
+        a mesh point off the gears, or lever arms that are not in the ratio of the teeth.
+
+    Examples
+    --------
+    >>> import solidgear as sg
+    >>> found = contact(sg.load_train("geometry/axle_overhung.toml"))
+    >>> round(abs(found.gear.lever / found.pinion.lever), 4), found.cautions[0][:43]
+    (3.2143, 'the pitch angle of 0.391 rad is not that of')
+    """
+    mesh, cautions = train.mesh, []
+    wrench = None
+    if mesh.contact_cells:
+        wrench = contact_wrench(
+            [c.point for c in mesh.contact_cells],
+            [c.normal for c in mesh.contact_cells],
+            [c.force for c in mesh.contact_cells],
+        )
+        normal, point = wrench.normal, wrench.point
+    elif mesh.line_of_action is not None:
+        normal, point = _given_line(train), np.array(mesh.point)
+    else:
+        normal, point = _of_teeth(train, mesh.pressure_angle), mesh_point(_mean_radius(train))
+    origin = _gear_position(train, point)
+    n_gear = to_gear_frame(normal, mesh.shaft_angle)
+    r_gear = to_gear_frame(point - origin, mesh.shaft_angle)
+    found = MeshVector(normal, point), MeshVector(n_gear, r_gear)
+    cautions += _cones(train)
+    for side, vector in zip(("pinion", "gear"), found):
+        _on_the_head(train, side, vector.point)
+    cautions += _levers(train, *found)
+    stiffness = mesh.stiffness
+    if stiffness is None:
+        assert wrench and mesh.loaded_error is not None and mesh.unloaded_error is not None
+        stiffness = wrench.mesh_stiffness(mesh.loaded_error, mesh.unloaded_error)
+    own = [_in_scene(train.member(s).apex, v) for s, v in zip(("pinion", "gear"), found)]
+    return Contact(own[0], own[1], stiffness, origin, wrench, tuple(cautions))
+
+
+def _in_scene(apex: str, vector: MeshVector) -> MeshVector:
+    """In the axes of the scene, whose y may run towards the apex: half a turn about z."""
+    if apex == "start":
+        return vector
+    turn = np.array([-1.0, -1.0, 1.0])
+    return MeshVector(turn * vector.normal, turn * vector.point)
+
+
+def _needs(train: Train, *keys: str, what: str) -> None:
+    for key in keys:
+        if getattr(train.pinion, key) is None:
+            raise SceneError(f"is missing; {what} needs it", path=("pinion", key))
+
+
+def _of_teeth(train: Train, pressure_angle: float | None) -> np.ndarray:
+    _needs(train, *GEOMETRY, what="a line of action from gear geometry")
+    p = train.pinion
+    assert p.pitch_angle is not None and p.spiral_angle is not None
+    assert p.hand is not None and p.loaded_side is not None and pressure_angle is not None
+    return line_of_action(p.pitch_angle, p.spiral_angle, pressure_angle, p.hand, p.loaded_side)
+
+
+def _mean_radius(train: Train) -> float:
+    what = "a mesh point from gear geometry"
+    _needs(train, "pitch_radius", "pitch_angle", "face_width", what=what)
+    p = train.pinion
+    assert p.pitch_radius is not None and p.pitch_angle is not None and p.face_width is not None
+    try:
+        return mean_radius(p.pitch_radius, p.pitch_angle, p.face_width)
+    except SolidgearError as error:
+        raise SceneError(str(error), path=("pinion", "face_width")) from None
+
+
+def _gear_position(train: Train, point: np.ndarray) -> np.ndarray:
+    """The gear's lumped point from the pinion's; with both at the middle of the face, where the
+    middles of the faces touch and radii are in the ratio of the teeth.
+    """
+    if train.mesh.gear_position is not None:
+        return np.array(train.mesh.gear_position)
+    radius = _mean_radius(train)
+    at_gear = mesh_point(train.ratio * radius, member="gear")
+    # from the gear's frame back to the pinion's: the opposite turn
+    return mesh_point(radius) - to_gear_frame(at_gear, -train.mesh.shaft_angle)
+
+
+def _given_line(train: Train) -> np.ndarray:
+    normal = np.array(train.mesh.line_of_action)
+    length = float(np.linalg.norm(normal))
+    path = ("mesh", "line_of_action")
+    if not abs(length - 1) < UNIT:
+        unit = [round(float(v), 7) for v in normal / length] if length > 0 else [0.0, 0.0, 1.0]
+        raise SceneError(
+            f"has length {length:.6g}; the unit vector of this direction is {unit}", path=path
+        )
+    if all(getattr(train.pinion, key) is not None for key in GEOMETRY):
+        teeth = _of_teeth(train, train.mesh.pressure_angle or USUAL_PRESSURE_ANGLE)
+        turned = to_gear_frame(normal, -train.mesh.shaft_angle)
+        if turned @ teeth > normal @ teeth + TURNED:
+            raise SceneError(
+                "is given in the gear's frame: it fits the teeth only when turned back by the "
+                f"shaft angle; in the pinion's frame it is {np.round(turned, 7).tolist()}",
+                path=path,
+            )
+    return normal
+
+
+def _cones(train: Train) -> list[str]:
+    """Whether the pitch angle is that of the teeth."""
+    angle, shaft = train.pinion.pitch_angle, train.mesh.shaft_angle
+    if angle is None or abs(shaft - pi / 2) > 1e-9:
+        return []
+    of_teeth = float(np.arctan(1 / train.ratio))
+    if abs(tan(angle) * train.ratio - 1) < CONE_TOLD:
+        return []
+    return [
+        f"the pitch angle of {angle:.4g} rad is not that of {train.pinion.teeth} and "
+        f"{train.gear.teeth} teeth ({of_teeth:.4g} rad); radii are taken in the ratio of the teeth"
+    ]
+
+
+def _on_the_head(train: Train, side: str, point: np.ndarray) -> None:
+    scene, apex = train.member(side).scene, train.member(side).apex
+    port = scene.port
+    most = max(max(s.outer0, s.outer1) for s in scene.segments)
+    radius = float(np.hypot(point[0], point[2]))
+    y = port.y + (point[1] if apex == "start" else -point[1])
+    slack = OUTSIDE_LENGTH * (port.hi - port.lo)
+    path = ("mesh", "point") if train.mesh.point is not None else ("mesh",)
+    if radius > most * (1 + OUTSIDE_RADIUS):
+        raise SceneError(
+            f"the mesh point lies {1e3 * radius:.1f} mm from the axis of the {side}, off the "
+            f"{side}, whose largest radius is {1e3 * most:.1f} mm",
+            path=path,
+        )
+    if not port.lo - slack <= y <= port.hi + slack:
+        raise SceneError(
+            f"the mesh point lies at y = {1e3 * y:.1f} mm of the {side}'s shaft, off its head "
+            f"from {1e3 * port.lo:.1f} to {1e3 * port.hi:.1f} mm",
+            path=path,
+        )
+
+
+def _levers(train: Train, pinion: MeshVector, gear: MeshVector) -> list[str]:
+    path = ("mesh", "point") if train.mesh.point is not None else ("mesh",)
+    for side, vector in (("pinion", pinion), ("gear", gear)):
+        if abs(vector.lever) < 1e-6 * np.linalg.norm(vector.point):
+            raise SceneError(
+                f"the line of action meets the axis of the {side}, so that the mesh transmits no "
+                "rotation; turn it, or move the mesh point",
+                path=path,
+            )
+    levers = abs(gear.lever / pinion.lever)
+    off = levers / train.ratio - 1
+    if abs(off) > LEVER_REFUSED:
+        raise SceneError(
+            f"the lever arms are {1e3 * abs(pinion.lever):.2f} mm on the pinion and "
+            f"{1e3 * abs(gear.lever):.2f} mm on the gear, a ratio of {levers:.4f}; "
+            f"the teeth ask for {train.ratio:.4f}",
+            path=path,
+        )
+    if abs(off) > LEVER_TOLD:
+        return [
+            f"the lever arms have a ratio of {levers:.4f}, the teeth of {train.ratio:.4f}: "
+            f"{100 * off:+.1f} %"
+        ]
+    return []

@@ -1,0 +1,268 @@
+"""Each shaft of a train at any rung, and the system that any two of them make.
+
+A rung of a shaft is that of a body (``euler``, ``timoshenko``, ``harmonic``, ``solid``), ``rigid``,
+or ``lumped``: six degrees of freedom at the lumped point, condensed from a body that may be named
+(``lumped/euler``), with one of these masses:
+
+- ``lumped``: Guyan's, of all six motions;
+- ``lumped-bending``: Guyan's in bending, the total mass along the shaft (Hua 2010, equation 55);
+- ``lumped-matched``: the mode-matched pair in bending, the total mass along the shaft;
+- ``lumped-old``: total mass and inertia.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from time import perf_counter
+
+import numpy as np
+
+from solidgear.body import Body, as_supports
+from solidgear.errors import SolidgearError, nearest, show
+from solidgear.fidelity import build
+from solidgear.fidelity.ladder import LADDER
+from solidgear.reduction.condensed import condensed_shaft
+from solidgear.reduction.craig_bampton import craig_bampton
+from solidgear.reduction.effective_mass import synthesise
+from solidgear.reduction.rubin import rubin
+from solidgear.reduction.superelement import Superelement
+from solidgear.scene import Scene
+from solidgear.scene.train import SIDES, Train
+from solidgear.studies.axle.contact import Contact, contact
+from solidgear.system.links import Link, PortInertia, grounded, mesh_spring, torsion_spring
+from solidgear.system.parts import Inertia, Part, Placed, RigidBody
+from solidgear.system.system import System
+
+RIGID = "rigid"
+LUMPED = ("lumped", "lumped-bending", "lumped-matched", "lumped-old")
+#: body that lumped models come from unless one is named, and the judge of a system
+JUDGE = LADDER.judges[0]
+REDUCTIONS = {"rubin": rubin, "craig_bampton": craig_bampton}
+#: free modes of a shaft that are kept: with residuals, enough for 1e-5 to 4 kHz; the bound tells
+KEPT = 24
+#: a mesh for systems: frequencies move by some 1e-5 against order 5
+MESH: dict[str, dict] = {JUDGE: {"order": 4}}
+
+
+def checked_rung(name: str) -> tuple[str, str]:
+    """Kind of a shaft's model, and the body it rests on (empty for a body of its own).
+
+    Raises
+    ------
+    SolidgearError
+        For a model that there is not.
+    """
+    kind, _, body = name.partition("/")
+    known = [*LADDER.bodies, RIGID, *LUMPED]
+    if kind not in known:
+        raise SolidgearError(
+            f"model {show(name, 40)} of a shaft is unknown{nearest(kind, known)}; "
+            f"use one of {', '.join(known)}"
+        )
+    if body and (kind not in (*LUMPED, RIGID) or body not in LADDER.bodies):
+        raise SolidgearError(
+            f"model {show(name, 40)}: write a lumped model and the body it comes from, "
+            f"such as lumped/{JUDGE}"
+        )
+    if kind in LADDER.bodies:
+        return kind, ""
+    return kind, body or JUDGE
+
+
+@dataclass(frozen=True, eq=False)
+class ShaftModel:
+    """One shaft at one rung, a part of a system.
+
+    Attributes
+    ----------
+    side, rung : str
+    part : Part
+    body : Body
+        What the part was made of.
+    unknowns : int
+        Of the body's mesh.
+    seconds : float
+        To build and reduce it.
+    """
+
+    side: str
+    rung: str
+    part: Part
+    body: Body
+    unknowns: int
+    seconds: float
+
+
+@dataclass(eq=False)
+class Workshop:
+    """Models of the shafts of a train, each made once.
+
+    Attributes
+    ----------
+    train : Train
+    reduction : {'rubin', 'craig_bampton'}
+    kept : int
+        Modes of each shaft.
+    settings : mapping
+        Builder options of rungs.
+
+    Examples
+    --------
+    >>> import solidgear as sg
+    >>> shop = Workshop(sg.load_train("geometry/axle_overhung.toml"))
+    >>> system = shop.system("timoshenko", "euler")
+    >>> list(system.parts), system.modes(3).frequency_hz.round(1)
+    (['engine', 'pinion', 'gear', 'load'], array([  0. ,  16.3,  55.4, 732.4]))
+    """
+
+    train: Train
+    reduction: str = "rubin"
+    kept: int = KEPT
+    settings: Mapping[str, Mapping] = field(default_factory=dict)
+
+    def __post_init__(self):
+        if self.reduction not in REDUCTIONS:
+            raise SolidgearError(
+                f"reduction {show(self.reduction, 30)} is unknown; use {' or '.join(REDUCTIONS)}"
+            )
+        self._made: dict[tuple[str, str], ShaftModel] = {}
+        self.scenes: dict[str, Scene] = {side: self.train.shaft(side) for side in SIDES}
+        self.contact: Contact = contact(self.train)
+
+    def shaft(self, side: str, rung: str) -> ShaftModel:
+        """Model of a shaft, made when it is first asked for."""
+        if (side, rung) not in self._made:
+            kind, base = checked_rung(rung)
+            if base:
+                self._made[side, rung] = self._from_body(side, rung, kind, base)
+            else:
+                start = perf_counter()
+                body = build(self.scenes[side], rung, **self.settings.get(rung, MESH.get(rung, {})))
+                part = REDUCTIONS[self.reduction](body, n=self.kept)
+                seconds = perf_counter() - start
+                self._made[side, rung] = ShaftModel(side, rung, part, body, body.size, seconds)
+        return self._made[side, rung]
+
+    def put(self, side: str, name: str, part: Part, like: str) -> None:
+        """Take in a part of one's own as a further model of a shaft.
+
+        Parameters
+        ----------
+        side : str
+        name : str
+            What it is asked for by.
+        part : Part
+            With the ports of the shaft.
+        like : str
+            Rung of the body it stands for.
+        """
+        under = self.shaft(side, like)
+        self._made[side, name] = ShaftModel(
+            side, name, part, under.body, under.unknowns, under.seconds
+        )
+
+    def _from_body(self, side: str, rung: str, kind: str, base: str) -> ShaftModel:
+        under = self.shaft(side, base)
+        start = perf_counter()
+        part: Part
+        if kind == RIGID:
+            part = RigidBody.of(under.body)
+        else:
+            part = self._lumped(side, kind, under)
+        seconds = under.seconds + perf_counter() - start
+        return ShaftModel(side, rung, part, under.body, under.unknowns, seconds)
+
+    def _lumped(self, side: str, kind: str, under: ShaftModel) -> Part:
+        scene, shaft = self.scenes[side], under.part
+        supports, port = as_supports(scene), scene.port.name
+        assert isinstance(shaft, Superelement)
+        whole = condensed_shaft(shaft, np.array(supports.stiffness), supports.ports, port)
+        if kind == "lumped":
+            return whole
+        rigid = _mass_about(under.body, scene.port.y)
+        if kind == "lumped-old":
+            return whole.with_mass(np.diag(np.diag(rigid)))
+        mass = np.diag(np.diag(rigid))
+        if kind == "lumped-bending":
+            for plane in ([0, 5], [2, 3]):
+                mass[np.ix_(plane, plane)] = whole.mass[np.ix_(plane, plane)]
+            return whole.with_mass(mass)
+        _, models = synthesise(under.body, supports, port)
+        matched = models["mode-matched"]
+        if matched.mass is None or not matched.feasible:
+            raise SolidgearError(
+                f"the {side} has no mode-matched masses: {matched.verdict}; use lumped"
+            )
+        for plane in ([0, 5], [2, 3]):
+            mass[np.ix_(plane, plane)] = np.diag(np.diag(matched.mass))
+        return whole.with_mass(mass)
+
+    def system(self, pinion: str, gear: str) -> System:
+        """The train with its shafts at two rungs.
+
+        Parameters
+        ----------
+        pinion, gear : str
+            Rungs.
+
+        Returns
+        -------
+        System
+            Parts ``engine``, ``pinion``, ``gear``, ``load``; links ``engine spring``, ``load
+            spring``, ``mesh``, and the bearings.
+        """
+        train, met = self.train, self.contact
+        ports = {side: f"{side}.{self.scenes[side].port.name}" for side in SIDES}
+        parts: dict[str, Part] = {
+            "engine": Inertia(train.engine.inertia),
+            "pinion": self.shaft("pinion", pinion).part,
+            "gear": self.placed(self.shaft("gear", gear).part),
+            "load": Inertia(train.load.inertia),
+        }
+        links: dict[str, Link] = {}
+        for side in SIDES:
+            links |= grounded(side, self.scenes[side])
+            name, rotor = train.rotor(side)
+            at = f"{side}.{train.spring_port(side)}"
+            links[f"{name} spring"] = torsion_spring(at, rotor.spring.stiffness, name)
+            head = train.member(side).head
+            if head is not None:
+                diagonal = [head.mass] * 3 + [head.bending, head.torsional, head.bending]
+                links[f"{side} head"] = PortInertia(ports[side], np.diag(diagonal))
+        links["mesh"] = mesh_spring(
+            ports["pinion"], met.pinion, ports["gear"], met.gear, met.stiffness
+        )
+        return System(parts, links)
+
+    def placed(self, part: Part) -> Placed:
+        """The gear where the teeth meet, in the axes of the pinion's scene."""
+        flip = {"start": np.eye(3), "end": np.diag([-1.0, -1.0, 1.0])}
+        train = self.train
+        c, s = np.cos(train.mesh.shaft_angle), np.sin(train.mesh.shaft_angle)
+        turn = np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
+        turn = flip[train.pinion.apex] @ turn @ flip[train.gear.apex]
+        pinion = np.array([0.0, self.scenes["pinion"].port.y, 0.0]) + self.contact.pinion.point
+        gear = np.array([0.0, self.scenes["gear"].port.y, 0.0]) + self.contact.gear.point
+        return Placed(part, turn, pinion - turn @ gear)
+
+    def losses(self) -> dict[str, float]:
+        """Loss factors of all parts and links."""
+        train, loss = self.train, self.train.losses
+        out = {side: loss.shafts for side in SIDES}
+        for side in SIDES:
+            out |= dict.fromkeys(grounded(side, self.scenes[side]), loss.bearings)
+            out[f"{train.rotor(side)[0]} spring"] = loss.springs
+        return out | {"mesh": loss.mesh}
+
+    def seconds(self, pinion: str, gear: str) -> float:
+        """To build and reduce both shafts."""
+        return self.shaft("pinion", pinion).seconds + self.shaft("gear", gear).seconds
+
+
+def _mass_about(body: Body, y: float) -> np.ndarray:
+    """(6, 6) rigid mass about a point of the axis."""
+    from solidgear.frames import shift
+
+    back = shift([0.0, -y, 0.0])
+    return back.T @ body.mass_matrix() @ back

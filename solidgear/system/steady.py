@@ -1,0 +1,241 @@
+r"""Steady motion over many frequencies, with losses of several kinds, and a grid that misses no peak.
+
+A loss factor eta_j of a part or link makes its stiffness complex,
+
+    K_j (1 + i eta_j)              hysteretic: no frequency in it
+    K_j (1 + i eta_j w / w0)       viscous, with the same loss at w0
+    w_r^2 (1 + i eta_r)            modal: eta_r = sum_j eta_j (share of mode r's energy in j)
+
+``C = zeta K`` with a *ratio* zeta, as Hua (2010) writes it (equations 8 and 19), is viscous damping
+with the loss factor zeta at w0 = 1 rad/s, so that zeta counts as seconds.
+
+Hysteretic and modal losses have complex modes ``mu_r`` that serve all frequencies: what is asked
+for is ``sum_r a_r / (mu_r - w^2)``, smooth but within some half-widths ``Im mu_r / (2 sqrt(Re
+mu_r))`` of a pole.  So a grid with points at every pole and around it can miss no peak; between
+them intervals are halved until their middles are foretold.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from functools import cached_property
+
+import numpy as np
+
+from solidgear.errors import SolidgearError
+from solidgear.machine.threads import pinned
+from solidgear.system.response import free_motion, lost_stiffness
+from solidgear.system.system import System
+
+KINDS = ("hysteretic", "viscous", "modal")
+#: grid points around a pole, in half-widths
+AROUND = np.array([-16, -8, -4, -2, -1, -0.5, -0.25, 0, 0.25, 0.5, 1, 2, 4, 8, 16])
+#: least half-width over frequency, so that points around a pole differ
+SHARPEST = 1e-7
+#: points a decade between poles before any halving
+PER_DECADE = 60
+#: a middle that is foretold within this needs no halving, dB
+FORETOLD = 0.25
+#: halvings of an interval, and points, at most
+HALVINGS, MOST_POINTS = 12, 6_000
+#: motions this much smaller than the largest are rounding
+NOISE = 1e-10
+#: frequencies that are solved at once, one by one in modes
+BATCH = 64
+
+
+@dataclass(frozen=True, eq=False)
+class SteadyState:
+    """A system with its losses, ready for many loads and frequencies.
+
+    Attributes
+    ----------
+    system : System
+    loss : mapping of str to float
+        Loss factor eta of parts and links.
+    kind : {'hysteretic', 'viscous', 'modal'}
+    matched_hz : float
+        Where viscous losses have their loss factor, Hz.
+
+    Raises
+    ------
+    SolidgearError
+        For an unknown kind, negative losses or names, or viscous losses matched nowhere.
+
+    Examples
+    --------
+    >>> from solidgear.system import Inertia, System, torsion_spring
+    >>> fan = System({"fan": Inertia(2.0)}, {"shaft": torsion_spring("fan", 800.0)})
+    >>> steady = SteadyState(fan, {"shaft": 0.1})
+    >>> push = fan.load({"fan": [0, 0, 0, 0, 1, 0]})
+    >>> at = np.array([20 / (2 * np.pi)])  # its resonance: 1 / (eta k)
+    >>> round(float(abs(steady.motion(at, push, fan.motion("fan")[4:5])[0, 0])) * 80.0, 9)
+    1.0
+    """
+
+    system: System
+    loss: Mapping[str, float] = field(default_factory=dict)
+    kind: str = "hysteretic"
+    matched_hz: float = 0.0
+
+    def __post_init__(self):
+        if self.kind not in KINDS:
+            raise SolidgearError(
+                f"losses of the kind {self.kind!r} are unknown; use {', '.join(KINDS)}"
+            )
+        if self.kind == "viscous" and not (np.isfinite(self.matched_hz) and self.matched_hz > 0):
+            raise SolidgearError(
+                "viscous losses grow with frequency; say at which one, in Hz, they are to have "
+                "the loss factors given"
+            )
+        for name, eta in self.loss.items():
+            if not (np.isfinite(eta) and eta >= 0):
+                raise SolidgearError(f"{name} is {eta}; a loss factor is finite and not negative")
+
+    def factor(self, name: str, frequency_hz: np.ndarray) -> np.ndarray:
+        """(f,) complex factor on the stiffness of a part or link."""
+        eta, ones = self.loss.get(name, 0.0), np.ones(len(frequency_hz))
+        return 1 + 1j * eta * (frequency_hz / self.matched_hz if self._grows else ones)
+
+    @property
+    def _grows(self) -> bool:
+        return self.kind == "viscous"
+
+    @cached_property
+    def _lost(self) -> np.ndarray:
+        """(m, m) ``sum eta_j K_j`` in elastic modes; its diagonal alone for modal losses."""
+        lost = lost_stiffness(self.system, self.loss)
+        return np.diag(np.diag(lost)) if self.kind == "modal" else lost
+
+    @cached_property
+    def _complex(self) -> tuple[np.ndarray, np.ndarray]:
+        """mu (m,) and shapes (N, m) with ``v'v = 1``, no conjugation."""
+        omega, elastic = self.system.elastic
+        value, turn = np.linalg.eig(np.diag(omega**2) + 1j * self._lost)
+        return value, elastic @ (turn / np.sqrt(np.einsum("ij,ij->j", turn, turn)))
+
+    @cached_property
+    def poles(self) -> tuple[np.ndarray, np.ndarray]:
+        """Frequencies (m,) around which motions peak, ascending, and half-widths (m,), Hz."""
+        omega = self.system.elastic[0]
+        if self._grows:
+            hz = omega / (2 * np.pi)
+            lost = np.diag(self._lost) / omega**2 * hz / self.matched_hz
+            # overcritical motions have no peak; their place does no harm
+            return hz, np.maximum(lost / 2, SHARPEST) * hz
+        value = self._complex[0]
+        hz = np.sqrt(np.abs(value.real)) / (2 * np.pi)
+        order = np.argsort(hz)
+        width = np.maximum(np.abs(value.imag / value.real) / 2, SHARPEST)
+        return hz[order], (width * hz)[order]
+
+    @pinned
+    def motion(self, frequency_hz: np.ndarray, load: np.ndarray, rows: np.ndarray) -> np.ndarray:
+        """Amplitudes of some motions under a load that has the same amplitude at all frequencies.
+
+        Parameters
+        ----------
+        frequency_hz : (f,) ndarray
+            Above zero where the load drives a free motion.
+        load : (N,) ndarray
+        rows : (q, N) ndarray
+            Such as ``system.motion(end)``.
+
+        Returns
+        -------
+        (f, q) complex ndarray
+
+        Raises
+        ------
+        SolidgearError
+            On a resonance without damping, or at 0 Hz if a free motion is driven.
+        """
+        frequency_hz, load = np.asarray(frequency_hz, float), np.asarray(load)
+        w2 = (2 * np.pi * frequency_hz) ** 2
+        if self._grows:
+            out = self._one_by_one(frequency_hz, load, rows)
+        else:
+            value, shapes = self._complex
+            gap = value[:, None] - w2
+            if np.any(gap == 0):
+                raise SolidgearError(
+                    "a frequency is that of a mode, and nothing damps it; give it a loss"
+                )
+            out = ((rows @ shapes) @ ((shapes.T @ load)[:, None] / gap)).T
+        return out + (rows @ free_motion(self.system, w2, load)).T
+
+    def _one_by_one(self, frequency_hz, load, rows) -> np.ndarray:
+        """Where the loss depends on frequency, one solution in elastic modes for each."""
+        omega, shapes = self.system.elastic
+        # unit strain energy, so that equations of very stiff and soft modes are alike
+        scale = 1 / omega
+        push, seen = scale * (shapes.T @ load), (rows @ shapes) * scale
+        lost = scale[:, None] * self._lost * scale
+        out = np.empty((len(frequency_hz), len(rows)), complex)
+        for start in range(0, len(frequency_hz), BATCH):
+            part = slice(start, start + BATCH)
+            hz = frequency_hz[part, None, None]
+            left = 1j * hz / self.matched_hz * lost
+            diagonal = 1 - (2 * np.pi * frequency_hz[part, None]) ** 2 * scale**2
+            left[:, np.arange(len(omega)), np.arange(len(omega))] += diagonal
+            right = np.broadcast_to(push[:, None].astype(complex), (len(left), len(push), 1))
+            out[part] = np.linalg.solve(left, right)[:, :, 0] @ seen.T
+        return out
+
+    def grid(
+        self, lowest_hz: float, highest_hz: float, seen: Callable[[np.ndarray], np.ndarray]
+    ) -> np.ndarray:
+        """Frequencies between two ends on which no peak of some motions is missed.
+
+        Parameters
+        ----------
+        lowest_hz, highest_hz : float
+        seen : callable
+            ``seen(frequency_hz)`` gives the motions (f, q) that are looked at.
+
+        Returns
+        -------
+        (f,) ndarray
+            Ascending, both ends among them.
+        """
+        if not 0 < lowest_hz < highest_hz:
+            raise SolidgearError(
+                f"frequencies from {lowest_hz:g} to {highest_hz:g} Hz; give ascending ends above 0"
+            )
+        hz, width = self.poles
+        near = (hz > lowest_hz * 0.5) & (hz < highest_hz * 2)
+        around = (hz[near, None] + width[near, None] * AROUND).ravel()
+        count = int(np.ceil(PER_DECADE * np.log10(highest_hz / lowest_hz))) + 2
+        points = np.concatenate([np.geomspace(lowest_hz, highest_hz, count), around])
+        points = np.unique(points[(points >= lowest_hz) & (points <= highest_hz)])
+        first = seen(points)
+        largest = np.abs(first).max(axis=0)
+        level = _decibels(first, largest)
+        fresh = np.ones(len(points) - 1, bool)
+        for _ in range(HALVINGS):
+            left = np.flatnonzero(fresh)
+            if not len(left) or len(points) + len(left) > MOST_POINTS:
+                break
+            middle = (points[left] + points[left + 1]) / 2
+            found = _decibels(seen(middle), largest)
+            off = np.abs(found - (level[left] + level[left + 1]) / 2).max(axis=1)
+            # an interval whose middle was foretold is left with it, and not halved again
+            again = np.zeros(len(points) - 1, bool)
+            again[left] = off > FORETOLD
+            points = np.insert(points, left + 1, middle)
+            level = np.insert(level, left + 1, found, axis=0)
+            was = np.repeat(again, 1 + np.isin(np.arange(len(again)), left))
+            fresh = was
+        return points
+
+
+def peaks(size: np.ndarray) -> np.ndarray:
+    """Places of local maxima of a curve, ends left out; the first of equal neighbours."""
+    inner = size[1:-1]
+    return 1 + np.flatnonzero((inner > size[:-2]) & (inner >= size[2:]))
+
+
+def _decibels(motions: np.ndarray, largest: np.ndarray) -> np.ndarray:
+    """Levels under the largest; what is rounding beside it is all one level."""
+    return 20 * np.log10(np.maximum(np.abs(motions), NOISE * largest) + 1e-300)

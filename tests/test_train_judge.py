@@ -1,0 +1,85 @@
+"""The verdict on a train: mixes of models against both shafts solid, on coarse solids."""
+
+import json
+
+import numpy as np
+import pytest
+from typer.testing import CliRunner
+
+import solidgear as sg
+from solidgear.cli import app
+from solidgear.studies.axle import judge as judging
+from solidgear.studies.axle.judge import JUDGE, judge_train
+from solidgear.studies.axle.models import Workshop
+from solidgear.studies.axle.respond import Drive
+
+TRAIN = sg.load_train("geometry/axle_overhung.toml")
+COARSE = {"harmonic": {"order": 2, "layers": 1}}
+
+
+@pytest.fixture(scope="module")
+def verdict():
+    shop = Workshop(TRAIN, kept=12, settings=COARSE)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(judging, "COARSER", {"harmonic": {"order": 1, "layers": 1}})
+        found = judge_train(shop, 3000.0)
+    return shop, found
+
+
+def test_the_ring_gear_decides_and_not_the_pinion(verdict):
+    _, found = verdict
+    gear, pinion = found.of(JUDGE, "timoshenko"), found.of("timoshenko", JUDGE)
+    # the flat ring bends like a plate: its first bending mode rises by more than a tenth
+    assert gear.mode == "gear bending 1" and 0.1 < gear.error < 0.2
+    assert gear.to_hz < 600 and pinion.to_hz > 2000
+    assert found.of("euler", "euler").cause == found.of("timoshenko", "timoshenko").cause == "gear"
+
+
+def test_the_departures_are_where_the_numbers_say(verdict):
+    shop, found = verdict
+    mix = found.of(JUDGE, "timoshenko")
+    mine, own = Drive(shop, JUDGE, "timoshenko"), Drive(shop, JUDGE, JUDGE)
+    hz = np.linspace(5, 3000, 60_001)
+    ratio = np.abs(mine.mesh(hz)[1] / own.mesh(hz)[1])
+    off = np.abs(20 * np.log10(ratio)) > 3
+    assert mix.force_to_hz == pytest.approx(hz[off][0], rel=5e-3)
+    apart = np.abs(ratio - 1) > 0.02
+    assert mix.close_to_hz == pytest.approx(hz[apart][0], rel=5e-3)
+
+
+def test_total_mass_along_the_shaft_is_the_largest_error_left_in_the_lumped_model(verdict):
+    _, found = verdict
+    bending, whole = (found.of(n, n) for n in ("lumped-bending", "lumped"))
+    assert bending.mode == "gear axial 1" and bending.error == pytest.approx(-0.10, abs=0.01)
+    assert bending.cause == "axial mass"
+    assert whole.to_hz > bending.to_hz
+    assert found.of("lumped-old", "lumped-old").cause == "bending mass"
+
+
+def test_the_cheapest_mix_holds_up_to_the_frequency_asked(verdict):
+    _, found = verdict
+    assert found.cheapest is found.mixes[-1]  # to 3 kHz both shafts must be solid
+    assert any("gear needs the solid from" in text for text in found.sentences())
+    # up to 500 Hz a beam will do, and the cheapest that does is chosen
+    low = judging.Verdict(**{**vars(found), "highest_hz": 500.0})
+    assert (low.cheapest.pinion, low.cheapest.gear) == ("euler", "euler")
+    middle = judging.Verdict(**{**vars(found), "highest_hz": 2000.0})
+    assert middle.cheapest.gear == JUDGE and middle.cheapest.pinion in ("euler", "timoshenko")
+
+
+def test_the_judge_tells_how_far_its_own_mesh_has_converged(verdict):
+    _, found = verdict
+    assert 0 < found.judge_change < 0.1
+
+
+def test_the_command_writes_the_verdict(tmp_path, monkeypatch):
+    from solidgear.studies.axle import models
+
+    monkeypatch.setattr(models, "MESH", COARSE)
+    monkeypatch.setattr(judging, "COARSER", {"harmonic": {"order": 1, "layers": 1}})
+    args = ["judge-system", "geometry/axle_overhung.toml", "--kept", "12", "--max-frequency", "900"]
+    done = CliRunner().invoke(app, [*args, "--json", "--out", str(tmp_path)])
+    assert done.exit_code == 0, done.output
+    data = json.loads(done.stdout)
+    assert data["cheapest"]["gear"] == "harmonic"
+    assert (tmp_path / "response.png").stat().st_size > 10_000

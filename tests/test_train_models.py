@@ -1,0 +1,268 @@
+"""Systems made from a train file, against matrices put together by hand and against exact limits."""
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+import scipy.linalg as sla
+from typer.testing import CliRunner
+
+import solidgear as sg
+from solidgear.cli import app
+from solidgear.frames import move_stiffness, shift
+from solidgear.solve.statics import condense
+from solidgear.studies.axle.models import Workshop
+from solidgear.studies.axle.modes import train_modes
+from solidgear.studies.axle.naming import TRAIN, mode_names
+from solidgear.system.lumped_pair import LumpedPair
+
+OVERHUNG = Path(__file__).parent.parent / "geometry" / "axle_overhung.toml"
+TRAIN_DATA = sg.load_train(OVERHUNG)
+#: coarse, so that all modes can be kept and solved in full
+COARSE = {"timoshenko": {"elements": 8}, "euler": {"elements": 8}}
+
+
+def assembled(shop, rungs, losses=None):
+    """K, M, motions of ports and the row of the mesh: blocks of the bodies side by side, every
+    spring added to K by hand, complex with losses; nothing of reduction/ or system/.
+    """
+    train = shop.train
+    lost = {"shafts": 0.0, "bearings": 0.0, "mesh": 0.0, "springs": 0.0}
+    if losses is not None:
+        lost = {name: 1j * getattr(losses, name) for name in lost}
+    k, m, ports = [], [], {}
+    start = 0
+    for side, rung in rungs.items():
+        body = sg.build(shop.scenes[side], rung, **COARSE[rung])
+        for block in body.blocks:
+            rows = block.ports.toarray()
+            c = len(block.components)
+            for i, port in enumerate(body.ports):
+                target = ports.setdefault(f"{side}.{port.name}", {})
+                for j, component in enumerate(block.components):
+                    target[component] = (start, rows[i * c + j])
+            k.append(block.stiffness.toarray())
+            m.append(block.mass.toarray())
+            start += block.size
+    k += [np.zeros((1, 1))] * 2
+    m += [np.array([[train.engine.inertia]]), np.array([[train.load.inertia]])]
+    k, m = (1 + lost["shafts"]) * sla.block_diag(*k), sla.block_diag(*m)
+    size = len(k)
+
+    def motion(port):
+        out = np.zeros((6, size))
+        for component, (place, row) in ports[port].items():
+            out[component, place : place + len(row)] = row
+        return out
+
+    for side, rotor, at in (("pinion", train.engine, size - 2), ("gear", train.load, size - 1)):
+        scene = shop.scenes[side]
+        seats = np.vstack([motion(f"{side}.{b.name}") for b in scene.bearings])
+        held = sla.block_diag(*(b.stiffness for b in scene.bearings))
+        if scene.housing_axial:
+            # the housing gives way along y under the sum of the axial forces of its bearings
+            axial = held[:, 1::6].sum(axis=1)
+            held = held - np.outer(axial, axial) / (scene.housing_axial + axial[1::6].sum())
+        k = k + (1 + lost["bearings"]) * (seats.T @ held @ seats)
+        twist = motion(f"{side}.{train.spring_port(side)}")[4]
+        twist[at] -= 1.0
+        k = k + (1 + lost["springs"]) * rotor.spring.stiffness * np.outer(twist, twist)
+    met = shop.contact
+    row = met.pinion.vector @ motion("pinion.pinion") - met.gear.vector @ motion("gear.gear")
+    return k + (1 + lost["mesh"]) * met.stiffness * np.outer(row, row), m, motion, row
+
+
+@pytest.fixture(scope="module")
+def coarse():
+    """The whole train in full: frequencies by LAPACK."""
+    shop = Workshop(TRAIN_DATA, kept=24, settings=COARSE)
+    k, m, *_ = assembled(shop, {"pinion": "timoshenko", "gear": "timoshenko"})
+    hz = np.sqrt(np.maximum(sla.eigh(k, m, eigvals_only=True), 0)) / (2 * np.pi)
+    return shop, hz[1:]
+
+
+def test_reduced_as_by_default_the_frequencies_are_those_of_the_whole(coarse):
+    shop, hz = coarse
+    found = shop.system("timoshenko", "timoshenko").modes(20).frequency_hz
+    assert found[0] == 0.0 and found[1] > 1  # one exact zero
+    wanted = hz[:20][hz[:20] < 4000]
+    # 1e-4 is what a reduction may cost; rounding of the full matrices stays below 1e-6
+    assert np.allclose(found[1 : 1 + len(wanted)], wanted, rtol=1e-6)
+
+
+def test_all_modes_kept_is_no_reduction_at_all(coarse):
+    _, hz = coarse
+    shop = Workshop(TRAIN_DATA, kept=10_000, settings=COARSE)
+    system = shop.system("timoshenko", "timoshenko")
+    assert np.isinf(system.truncation.cut)
+    found = system.modes(12).frequency_hz[1:]
+    # the torsion of the train has the least digits in the full matrices: (1e6 / 16 Hz)^2 eps
+    assert np.allclose(found[2:], hz[2:12], rtol=1e-8)
+    assert np.allclose(found[:2], hz[:2], rtol=1e-5)
+
+
+@pytest.mark.parametrize(("reduction", "kept", "within"), [("rubin", 3, 2e-3), ("rubin", 8, 1e-5)])
+def test_the_bound_holds_and_few_modes_will_do(coarse, reduction, kept, within):
+    _, hz = coarse
+    shop = Workshop(TRAIN_DATA, reduction=reduction, kept=kept, settings=COARSE)
+    found = shop.system("timoshenko", "timoshenko").modes(8)
+    error = found.frequency_hz[1:] / hz[:8] - 1
+    assert np.all(error[2:] >= -1e-9)  # Rayleigh: never too low
+    assert np.all(error[2:] <= found.error_bound[3:] + 1e-9)
+    assert np.abs(error[2:]).max() < within
+
+
+def test_craig_bampton_gives_the_same(coarse):
+    _, hz = coarse
+    shop = Workshop(TRAIN_DATA, reduction="craig_bampton", kept=30, settings=COARSE)
+    found = shop.system("timoshenko", "timoshenko").modes(8).frequency_hz
+    assert np.allclose(found[3:], hz[2:8], rtol=1e-3)
+
+
+def lumped_pair(shop, masses, stiffness):
+    train, met = shop.train, shop.contact
+    return LumpedPair(
+        train.engine.inertia,
+        train.load.inertia,
+        masses["pinion"],
+        masses["gear"],
+        stiffness["pinion"],
+        stiffness["gear"],
+        train.engine.spring.stiffness,
+        train.load.spring.stiffness,
+        met.stiffness,
+        met.pinion,
+        met.gear,
+    )
+
+
+def test_rigid_shafts_are_the_fourteen_degrees_with_rigid_masses():
+    shop = Workshop(TRAIN_DATA, settings=COARSE)
+    masses, stiffness = {}, {}
+    for side, scene in shop.scenes.items():
+        body = sg.build(scene, "timoshenko", elements=8)
+        y = scene.port.y
+        back = shift([0.0, -y, 0.0])
+        masses[side] = back.T @ body.mass_matrix() @ back
+        total = sum(move_stiffness(b.stiffness, [0, y - b.y, 0]) for b in scene.bearings)
+        if scene.housing_axial:
+            total = total - np.outer(total[1], total[1]) / (scene.housing_axial + total[1, 1])
+        stiffness[side] = total
+    exact = lumped_pair(shop, masses, stiffness).solve().frequency_hz
+    found = shop.system("rigid/timoshenko", "rigid/timoshenko").modes().frequency_hz
+    assert found[0] == exact[0] == 0.0
+    assert np.allclose(found[1:], exact[1:], rtol=1e-10)
+
+
+def test_a_lumped_shaft_has_the_condensed_stiffness():
+    shop = Workshop(TRAIN_DATA, settings=COARSE)
+    masses, stiffness = {}, {}
+    for side, scene in shop.scenes.items():
+        model = shop.shaft(side, "lumped/timoshenko")
+        stiffness[side] = np.array(condense(model.body, scene, scene.port.name).stiffness)
+        masses[side] = model.part.mass
+    exact = lumped_pair(shop, masses, stiffness).solve().frequency_hz
+    found = shop.system("lumped/timoshenko", "lumped/timoshenko").modes().frequency_hz
+    assert np.allclose(found[1:], exact[1:], rtol=1e-9)
+
+
+def test_the_effective_axial_mass_is_less_than_the_total():
+    shop = Workshop(TRAIN_DATA, settings=COARSE)
+    part = shop.shaft("gear", "lumped/timoshenko").part
+    total = shop.shaft("gear", "timoshenko").body.mass_matrix()[1, 1]
+    assert total == pytest.approx(79.82, abs=0.01)
+    assert part.mass[1, 1] < total
+
+
+def test_the_train_turns_in_the_ratio_of_its_teeth():
+    system = Workshop(TRAIN_DATA, settings=COARSE).system("timoshenko", "euler")
+    turn = system.modes(1).shapes[:, 0]
+    engine, load = (system.motion(name)[4] @ turn for name in ("engine", "load"))
+    assert abs(engine / load) == pytest.approx(45 / 14, rel=1e-12)
+
+
+def test_names_are_one_a_mode_and_say_what_moves():
+    shop = Workshop(TRAIN_DATA, settings=COARSE)
+    system = shop.system("timoshenko", "timoshenko")
+    found = system.modes(10)
+    names = mode_names(shop, system, found)
+    assert len(set(names)) == len(names)
+    assert names[0] == TRAIN
+    assert names[1].startswith("load torsion") and names[2].split()[1] == "torsion"
+
+
+def test_a_solid_has_modes_that_the_mesh_does_not_drive():
+    coarse = {"solid": {"around": 8, "refinement": 0.3}, **COARSE}
+    shop = Workshop(TRAIN_DATA, kept=16, settings=coarse)
+    found = train_modes(shop, "euler", "solid", 3000.0)
+    named = [mode.name for mode in found.modes if "ovalising" in mode.name]
+    assert named == ["gear ovalising 1", "gear ovalising 2"]  # two nodal diameters, near 1.9 kHz
+    assert any("not driven by this mesh model" in line for line in found.remarks())
+
+
+def test_a_shaft_that_nothing_holds_along_its_axis_is_told():
+    scene = TRAIN_DATA.gear.scene
+    bearings = []
+    for bearing in scene.bearings:
+        k = np.array(bearing.matrix)
+        k[1] = k[:, 1] = 0.0
+        bearings.append(bearing.with_changes(matrix=tuple(map(tuple, k))))
+    loose = scene.with_changes(bearings=tuple(bearings), housing_axial=None)
+    train = TRAIN_DATA.with_changes(gear=TRAIN_DATA.gear.with_changes(scene=loose))
+    found = train_modes(Workshop(train, settings=COARSE), "timoshenko", "timoshenko", 500.0)
+    assert found.rigid == 2
+    assert "gear's shaft do not hold it in y" in found.remarks()[0]
+
+
+def test_a_frequency_beyond_the_reduction_is_refused():
+    shop = Workshop(TRAIN_DATA, kept=4, settings=COARSE)
+    with pytest.raises(sg.SolidgearError, match="beyond what the reduction resolves"):
+        train_modes(shop, "timoshenko", "timoshenko", 20_000.0)
+
+
+@pytest.mark.parametrize(
+    ("rung", "words"),
+    [
+        ("timoschenko", 'did you mean "timoshenko"'),
+        ("euler/harmonic", "such as lumped/harmonic"),
+        ("lumped/stiff", "such as lumped/harmonic"),
+    ],
+)
+def test_an_unknown_rung_is_told(rung, words):
+    with pytest.raises(sg.SolidgearError, match=words):
+        Workshop(TRAIN_DATA).system(rung, "euler")
+
+
+def test_an_unknown_reduction_is_told():
+    with pytest.raises(sg.SolidgearError, match="rubin or craig_bampton"):
+        Workshop(TRAIN_DATA, reduction="guyan")
+
+
+def test_a_reduced_body_is_asked_for_a_port_it_does_not_have():
+    system = Workshop(TRAIN_DATA, settings=COARSE).system("timoshenko", "euler")
+    with pytest.raises(sg.SolidgearError, match="no port; pinion has pinion.pinion"):
+        system.motion("pinion.9")
+
+
+def test_the_command_prints_a_table_and_json():
+    args = ["system-modes", str(OVERHUNG), "--pinion", "euler", "--gear", "timoshenko"]
+    table = CliRunner().invoke(app, args)
+    assert table.exit_code == 0
+    assert "train rotation" in table.stdout and "Identified, not published" in table.stdout
+    data = json.loads(CliRunner().invoke(app, [*args, "--json"]).stdout)
+    assert data["rigid"] == 1 and data["reduction"] == "rubin"
+    assert data["modes"][0]["frequency_hz"] == 0.0
+    assert data["unpublished"]["mesh.stiffness"] == "identified"
+
+
+def test_a_mesh_that_cannot_be_names_the_file_and_the_key(tmp_path):
+    text = OVERHUNG.read_text().replace('face_width = "63 mm"', 'face_width = "630 mm"')
+    for name in ("pinion_overhung", "gear_shaft"):
+        text = text.replace(f'"{name}.toml"', f'"{OVERHUNG.parent / name}.toml"')
+    path = tmp_path / "wide.toml"
+    path.write_text(text)
+    done = CliRunner().invoke(app, ["system-modes", str(path)])
+    assert done.exit_code != 0
+    assert "wide.toml: pinion.face_width" in str(done.exception)
+    assert "reaches past the apex" in str(done.exception)

@@ -1,0 +1,182 @@
+"""Files of geared trains: what they hold, and one sentence for each thing they cannot mean."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import solidgear as sg
+from solidgear.frames import cross_matrix
+from solidgear.scene.train_file import load_train
+from solidgear.studies.axle.contact import contact
+from solidgear.studies.axle.modes import wrench_lines
+from solidgear.system.contact_cells import contact_wrench
+from solidgear.system.gear_mesh import to_gear_frame
+
+GEOMETRY = Path(__file__).parent.parent / "geometry"
+OVERHUNG = (GEOMETRY / "axle_overhung.toml").read_text()
+
+
+def written(folder, *changes, text=OVERHUNG):
+    """A train file with some texts replaced, in a folder of its own."""
+    for old, new in changes:
+        assert old in text, old
+        text = text.replace(old, new, 1)
+    for name in ("pinion_overhung", "gear_shaft"):
+        text = text.replace(f'"{name}.toml"', f'"{GEOMETRY / name}.toml"')
+    path = folder / "train.toml"
+    path.write_text(text)
+    return path
+
+
+@pytest.mark.parametrize("name", ["overhung", "straddle", "thesis"])
+def test_shipped_trains_load_and_mesh_in_the_ratio_of_their_teeth(name):
+    train = load_train(GEOMETRY / f"axle_{name}.toml")
+    found = contact(train)
+    assert abs(found.gear.lever / found.pinion.lever) == pytest.approx(45 / 14, rel=1e-12)
+    # one physical point and line, seen from both lumped points
+    back = to_gear_frame(found.gear.point, -train.mesh.shaft_angle) + found.origin
+    assert np.allclose(back, found.pinion.point, atol=1e-15)
+    assert np.allclose(to_gear_frame(found.gear.normal, -np.pi / 2), found.pinion.normal)
+
+
+def test_values_that_no_source_gives_are_listed():
+    found = load_train(GEOMETRY / "axle_overhung.toml").unpublished()
+    assert found["mesh.stiffness"] == found["engine.spring.stiffness"] == "identified"
+    assert found["mesh.transmission_error"] == "assumed"
+    assert "engine.inertia" not in found
+
+
+LINE = 'pressure_angle = "25 deg"'
+GIVEN = (
+    "line_of_action = [{}]\n"
+    'point = ["{} mm", "0 mm", "0 mm"]\ngear_position = [-0.05499494, -0.17676944, 0.0]'
+)
+NORMAL = "0.23183445, 0.5465063, 0.80472583"
+# file text to replace, by what, and what the sentence must hold
+BAD = {
+    "off the gears": (LINE, GIVEN.format(NORMAL, -90.0), "off the pinion"),
+    "levers": (LINE, GIVEN.format(NORMAL, -45.0), "the teeth ask for 3.2143"),
+    "no unit": (LINE, GIVEN.format("0.24, 0.54, 0.80", -55), "unit vector of this direction is"),
+    "wrong frame": (LINE, GIVEN.format("0.5465063, -0.23183445, 0.80472583", -55), "gear's frame"),
+    "hands": ('hand = "right"', 'hand = "left"', "cannot mesh"),
+    "ratio": (LINE, LINE + "\nratio = 3.0", "a ratio of 3.2143"),
+    "teeth": ("teeth = 14 ", "teeth = 14.5 ", "pinion.teeth"),
+    "no spring": ("[engine.spring]", "[engine.sprint]", "torsional spring between the engine"),
+    "no stiffness of it": ('stiffness = "1.159e4 N*m/rad"', "", "stiffness"),
+    "port": ('at = "gear"', 'at = "5"', "known here: gear, 3, 4"),
+    "one name": ('"gear_shaft.toml"', '"pinion_overhung.toml"', "needs its own"),
+    "per cent": ("mesh = 0.12", "mesh = 12", "12 per cent is written 0.12"),
+    "unit of an inertia": ('"2.734 kg*m^2"', '"2.734 kg"', "kg*m^2"),
+    "nothing turns": (LINE, GIVEN.format("1, 0, 0", -55), "transmits no rotation"),
+    "no file": ('"gear_shaft.toml"', '"gear_shift.toml"', "no such file"),
+    "no key of geometry": ("spiral_angle =", "# spiral_angle =", "spiral_angle: is missing"),
+    "a table that descends": (
+        '"2 um" ',
+        '{frequency = [200, 100], amplitude = ["1 um", "2 um"]} ',
+        "must ascend",
+    ),
+}
+
+
+@pytest.mark.parametrize("case", BAD)
+def test_bad_input_is_told_in_one_sentence(case, tmp_path):
+    old, new, words = BAD[case]
+    if case == "nothing turns":  # a flat line cannot be judged by the teeth: they are left out
+        changes = [(old, new), ("spiral_angle", "# spiral_angle")]
+    else:
+        changes = [(old, new)]
+    if case == "one name":
+        changes.append(('at = "gear"', 'at = "1"'))  # or the spring has lost its port as well
+    with pytest.raises(sg.SceneError) as caught:
+        contact(load_train(written(tmp_path, *changes)))
+    text = str(caught.value)
+    assert words in text
+    assert "\n" not in text
+
+
+def test_a_given_line_and_point_are_those_of_the_geometry(tmp_path):
+    path = written(tmp_path, (LINE, GIVEN.format(NORMAL, -54.99494)))
+    found, usual = contact(load_train(path)), contact(load_train(GEOMETRY / "axle_overhung.toml"))
+    assert np.allclose(found.gear.vector, usual.gear.vector, atol=1e-7)
+
+
+def test_an_apex_at_the_other_end_turns_the_mesh_with_the_shaft(tmp_path):
+    usual = contact(load_train(written(tmp_path)))
+    text = OVERHUNG.replace('apex = "start"', 'apex = "end"')
+    turned = contact(load_train(written(tmp_path, text=text)))
+    half = np.array([-1, -1, 1])
+    assert np.array_equal(turned.pinion.normal, half * usual.pinion.normal)
+    assert turned.pinion.lever == pytest.approx(-usual.pinion.lever)
+
+
+CELLS = np.array([[-0.052, -0.004, 0.001], [-0.055, 0.001, 0.0], [-0.058, 0.006, -0.002]])
+ANGLES = np.array([[0.23, 0.55, 0.80], [0.20, 0.58, 0.79], [0.28, 0.50, 0.82]])
+ANGLES = ANGLES / np.linalg.norm(ANGLES, axis=1)[:, None]
+FORCES = np.array([800.0, 1100.0, 800.0])
+
+
+def test_a_wrench_leaves_its_pitch_and_nothing_else():
+    wrench = contact_wrench(CELLS, ANGLES, FORCES)
+    # by hand, one cell at a time, by the matrix of the cross product
+    moment = sum(f * cross_matrix(r) @ n for r, n, f in zip(CELLS, ANGLES, FORCES))
+    assert np.allclose(wrench.moment, moment)
+    must = abs(wrench.pitch) * np.linalg.norm(wrench.force)
+    assert wrench.left_over(wrench.point) == pytest.approx(must, rel=1e-9)
+    assert must > 1e-3  # different normals: no point carries it all
+    around = wrench.point + 1e-3 * np.random.default_rng(1).normal(size=(50, 3))
+    assert min(map(wrench.left_over, around)) >= must * (1 - 1e-12)
+    assert wrench.left_over(wrench.thesis_point) > must
+
+
+def test_cells_of_one_normal_close_to_rounding():
+    wrench = contact_wrench(CELLS, np.tile(ANGLES[0], (3, 1)), FORCES)
+    assert wrench.left_over(wrench.point) < 1e-12 * np.linalg.norm(wrench.moment)
+    assert wrench.left_over(wrench.thesis_point) < 1e-12 * np.linalg.norm(wrench.moment)
+
+
+def cells_file(folder, rows):
+    path = folder / "cells.csv"
+    path.write_text("x,y,z,nx,ny,nz,force\n" + "\n".join(rows))
+    return path
+
+
+def test_a_mesh_from_contact_cells(tmp_path):
+    rows = [",".join(f"{v:.12g}" for v in (*r, *n, f)) for r, n, f in zip(CELLS, ANGLES, FORCES)]
+    cells_file(tmp_path, rows)
+    old = 'stiffness = "2.5e8 N/m" '
+    new = 'loaded_error = "25 um"\nunloaded_error = "14 um" '
+    cells = 'contact_cells = "cells.csv"'
+    found = contact(load_train(written(tmp_path, (LINE, cells), (old, new))))
+    wrench = contact_wrench(CELLS, ANGLES, FORCES)
+    assert found.stiffness == pytest.approx(np.linalg.norm(wrench.force) / 11e-6)
+    assert np.allclose(found.pinion.point, wrench.point, atol=1e-12)
+    told = wrench_lines(found)
+    assert "No mesh point balances" in told[1] and "thesis's formulas" in told[2]
+
+
+@pytest.mark.parametrize(
+    ("row", "words"),
+    [
+        ("0,0,0,0,0,2,1", "line 2: the normal has length 2"),
+        ("0,0,0,0,0,1,-1", "teeth push"),
+        ("0,0,0,0,0,1,one", 'force = "one"'),
+        ("0,0,0,0,0,1,0", "no cell carries a force"),
+        ("", "0 contact cells"),
+    ],
+)
+def test_bad_cells_are_told_in_one_sentence(row, words, tmp_path):
+    cells_file(tmp_path, [row] if row else [])
+    with pytest.raises(sg.SceneError, match=words):
+        load_train(written(tmp_path, (LINE, 'contact_cells = "cells.csv"')))
+
+
+def test_a_spring_may_sit_anywhere_on_its_shaft(tmp_path):
+    place = 'position = "-5 mm"\nfrom = "end"\nseat_width = "8 mm"'
+    train = load_train(written(tmp_path, ('at = "gear"', place)))
+    station = train.shaft("gear").bearings[-1]
+    assert station.y == pytest.approx(train.gear.scene.length - 0.005)
+    assert not station.stiffness.any()
+    off = place.replace("-5", "5")
+    with pytest.raises(sg.SceneError, match="no place on the gear's shaft"):
+        load_train(written(tmp_path, ('at = "gear"', off)))
