@@ -14,6 +14,7 @@ import pytest
 
 import solidgear as sg
 from solidgear.frames import DOF_NAMES
+from validation.shipped import shipped_shafts
 
 HERE = Path(__file__).parent
 REQUIRED = (
@@ -166,7 +167,7 @@ def test_baseline(entry):
 
 
 def test_baselines_cover_what_they_must():
-    paths = (HERE.parent / "geometry").glob("*.toml")
+    paths = shipped_shafts()
     names = {p.stem for p in paths if not sg.load(p).features}  # none of these models has them
     golden = {
         (e["scene"], e["fidelity"])

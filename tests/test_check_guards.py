@@ -20,9 +20,10 @@ from solidgear.studies.check import cautions, check_scene, notices
 from solidgear.studies.guards import GUARDS, Notice, elements, models
 from solidgear.studies.guards.notice import everything
 from solidgear.studies.guards.probe import Probe
+from validation.shipped import shipped_shafts
 
 ROOT = Path(__file__).parent.parent
-SHIPPED = [p for p in sorted((ROOT / "geometry").glob("*.toml")) if not sg.load(p).features]
+SHIPPED = [p for p in shipped_shafts() if not sg.load(p).features]
 D = 0.06
 LIGHT = {"order": 2, "layers": 1, "edge_layers": 0}
 COARSE = {"refinement": 0.3, "layers": 1}

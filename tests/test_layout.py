@@ -17,9 +17,10 @@ from solidgear.meshing.grading import Grading, graded
 from solidgear.meshing.layout import layout
 from solidgear.meshing.meridian import meridian
 from solidgear.scene import Bearing, Port, Scene, Segment
+from validation.shipped import shipped_shafts
 
 GEOMETRY = Path(__file__).parent.parent / "geometry"
-SHIPPED = sorted(p.stem for p in GEOMETRY.glob("*.toml"))
+SHIPPED = [p.stem for p in shipped_shafts()]
 PLAN = {"size": 0.02, "layers": 3, "edge_layers": 1, "ratio": 0.3}
 
 

@@ -15,6 +15,7 @@ from solidgear.scene import STEEL, Bearing, Material, Port, Scene, Segment
 from solidgear.scene.bearing_stiffness import STIFFNESS_NAMES, stiffness_entries, stiffness_matrix
 from solidgear.scene.file import load
 from solidgear.scene.units import COMMON, _by_pint, quantity
+from validation.shipped import shipped_shafts
 
 GEOMETRY = Path(__file__).parents[1] / "geometry"
 NEAR = dict(rel=0, abs=1e-9)
@@ -314,7 +315,7 @@ def test_head_with_its_toe_to_the_end(tmp_path):
     assert scene.port.y == pytest.approx(0.32 + 0.04 * math.cos(math.pi / 6))
 
 
-@pytest.mark.parametrize("path", sorted(GEOMETRY.glob("*.toml")), ids=lambda p: p.stem)
+@pytest.mark.parametrize("path", shipped_shafts(), ids=lambda p: p.stem)
 def test_shipped_scenes_load_and_are_json(path):
     scene = sg.load(path)
     data = json.loads(json.dumps(scene.as_dict(), allow_nan=False))
@@ -347,3 +348,8 @@ def test_straddled_pinion():
         1 / (1 / 1.721e9 + 1 / 4.1e8), rel=1e-9
     )
     assert scene.bearings[0].stiffness[1, 1] == 0.0
+
+
+def test_a_train_is_told_from_a_shaft():
+    with pytest.raises(SceneError, match="describes a train of two shafts and not a shaft"):
+        load(GEOMETRY / "axle_overhung.toml")

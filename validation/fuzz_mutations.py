@@ -8,12 +8,11 @@ from collections.abc import Callable
 
 import numpy as np
 
-from validation.common import ROOT
+from validation.shipped import shipped_shafts
 
 #: without comments, where a mutation would be wasted
 SCENES = {
-    path.stem: re.sub(rb"(?m)\s*#.*$", b"", path.read_bytes()).lstrip()
-    for path in sorted((ROOT / "geometry").glob("*.toml"))
+    path.stem: re.sub(rb"(?m)\s*#.*$", b"", path.read_bytes()).lstrip() for path in shipped_shafts()
 }
 
 # ------------------------------------------------------------------------------------------------- mutations

@@ -20,6 +20,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from validation.common import ROOT
+from validation.shipped import shipped_shafts
 
 #: what may differ between two runs of one source
 #: seconds in a sentence
@@ -108,7 +109,7 @@ def main() -> int:
     parser.add_argument("--relative", type=float, default=1e-12)
     options = parser.parse_args()
     wrong = 0
-    scenes = sorted((ROOT / "geometry").glob("*.toml"))
+    scenes = shipped_shafts()
     for scene in (s for s in scenes if options.only in s.stem):
         with tempfile.TemporaryDirectory() as one, tempfile.TemporaryDirectory() as two:
             before = results(options.before.resolve(), scene, Path(one))

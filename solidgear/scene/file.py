@@ -53,6 +53,11 @@ def load(path: str | os.PathLike) -> Scene:
     """
     where = os.fspath(path)
     raw = parse(where)
+    if "segment" not in raw and {"pinion", "gear"} <= set(raw):
+        raise SceneError(
+            "describes a train of two shafts and not a shaft; read it with solidgear.load_train, "
+            "or run solidgear system-modes, response or judge-system on it"
+        ).located(raw, where=where)
     try:
         return _read(raw, Path(where).stem)
     except SceneError as error:
