@@ -55,6 +55,17 @@ def test_the_effect_of_a_keyway(scene, plain, body):
     assert ours.multiplicity == (1,) * len(ours.modes)
 
 
+def test_check_judges_it_where_there_are_features(scene, plain, body):
+    """Models made for features are judged with them, and not named without them."""
+    from solidgear.studies.check import check_scene
+
+    keyed = check_scene(scene, body)["verdicts"]
+    bare = check_scene(scene.plain, plain)["verdicts"]
+    assert keyed["corrected"]["verdict"] == keyed["solid"]["verdict"] == "holds"
+    assert keyed["harmonic"]["verdict"] == "will not hold"
+    assert "corrected" not in bare
+
+
 def test_it_is_a_free_body_with_the_mass_of_the_part(scene, plain, body):
     assert body.rigid_residual() < 1e-14
     from solidgear.meshing.cuts import volume

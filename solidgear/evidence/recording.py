@@ -93,11 +93,7 @@ def recorded(
         guards=[GuardRecord(**g) for g in guards],
         environment=environment(),
         models=models,
-        missing=[
-            LADDER[model].title
-            for model in LADDER.bodies
-            if model not in models and (LADDER[model].features != "only" or scene.features)
-        ],
+        missing=[LADDER[model].title for model in LADDER.fit(scene) if model not in models],
     )
     if lumped and reference:
         _add_lumped(out, rungs[reference], guards, scene.ask.tolerance)

@@ -11,7 +11,7 @@ from solidgear.body import Body
 from solidgear.errors import SolidgearError
 from solidgear.evidence.study import Solution
 from solidgear.fidelity.ladder import LADDER
-from solidgear.fidelity.rung import BEAM, LUMPED
+from solidgear.fidelity.rung import BEAM, LUMPED, SOLID
 from solidgear.machine.threads import pinned
 from solidgear.meshing.quality import mass_properties
 from solidgear.studies.guards import GUARDS, LEVELS, Notice, Probe
@@ -91,8 +91,7 @@ def check_scene(scene: Scene, body: Body) -> dict:
         "records": records,
         "verdicts": {
             model: _verdict(model, records)
-            for model in everything()
-            if LADDER[model].features != "only" or scene.features
+            for model in (*beams(), *(m for m in LADDER.of(SOLID) if m in LADDER.fit(scene)))
         },
     }
 
