@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 
 from solidgear.body import as_supports
+from solidgear.evidence.quantities import size
 from solidgear.fidelity import build
 from solidgear.meshing.quality import mass_properties
 from solidgear.scene import Bearing, Port, Scene, Segment
@@ -187,7 +188,7 @@ def test_the_reference_is_as_good_as_it_says(tmp_path, monkeypatch):
     fine = reference(scene, light.uncertainty["C_zz"] / 2, folder=tmp_path)
     assert light.setting == [4, 2] and fine.setting == [5, 3]
     for name, value in light.values.items():
-        scale = finest.coupling_scale(fine.values, name)
+        scale = size(fine.values, name)
         assert (
             abs(value - fine.values[name])
             <= (light.uncertainty[name] + fine.uncertainty[name]) * scale

@@ -10,10 +10,11 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 
 from solidgear.errors import SolidgearError
+from solidgear.evidence.quantities import size
 from solidgear.scene import Scene
 from validation.attack import judge
 from validation.attack.outcome import SOLIDS, outcome, stamp
-from validation.attack.reference import FOLDER, Reference, coupling_scale, reference, section_ties
+from validation.attack.reference import FOLDER, Reference, reference, section_ties
 from validation.attack.scenes import random_scene, traits
 from validation.attack.worker import Worker
 
@@ -109,7 +110,7 @@ def truth_for(row: dict, ties: str = "scene") -> Reference | None:
         found = row.get("models", {}).get(model, {})
         for name, band in found.get("bands", {}).items():
             goal[name] = min(
-                goal.get(name, 1.0), max(0.1 * band / coupling_scale(found["values"], name), FINEST)
+                goal.get(name, 1.0), max(0.1 * band / size(found["values"], name), FINEST)
             )
     return reference(scene, goal)
 

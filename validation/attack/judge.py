@@ -9,7 +9,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from solidgear.evidence.correlate import subspace_mac
-from validation.attack.reference import Reference, coupling_scale
+from solidgear.evidence.quantities import size
+from validation.attack.reference import Reference
 
 #: errors below this are rounding and are not judged
 SMALL = 1e-7
@@ -41,7 +42,7 @@ def truth_of(name: str, model: dict, reference: Reference) -> Truth | None:
             return None
         return Truth(
             reference.values[name],
-            reference.uncertainty[name] * coupling_scale(reference.values, name),
+            reference.uncertainty[name] * size(reference.values, name),
         )
     mode = next((m for m in model["modes"] if m["name"] == name), None)
     if mode is None:
@@ -104,7 +105,7 @@ def band_of(name: str, model: dict, reference: Reference) -> Band | None:
     truth = truth_of(name, model, reference)
     if truth is None:
         return None
-    scale = coupling_scale(model["values"], name)
+    scale = size(model["values"], name)
     error, band, doubt = (
         (model["values"][name] - truth.value) / scale,
         model["bands"][name] / scale,
@@ -124,7 +125,7 @@ def errors_of(model: dict, reference: Reference, names=JUDGED) -> dict[str, tupl
             continue
         truth = truth_of(name, model, reference)
         if truth is not None:
-            scale = truth.value if name in FREQUENCIES else coupling_scale(reference.values, name)
+            scale = truth.value if name in FREQUENCIES else size(reference.values, name)
             out[name] = (model["values"][name] - truth.value) / scale, truth.uncertainty / scale
     return out
 

@@ -10,12 +10,11 @@ from pathlib import Path
 import numpy as np
 
 import solidgear
-from solidgear.evidence.quantities import QUANTITIES
+from solidgear.evidence.quantities import QUANTITIES, size
 from solidgear.fidelity import build
 from solidgear.scene import Scene
 from solidgear.studies.check import check_scene
 from solidgear.studies.comparison import compare
-from validation.attack.reference import coupling_scale
 
 SOLIDS = ("harmonic", "solid")
 
@@ -76,7 +75,7 @@ def _model(record: dict, rung) -> dict:
     each = (record.get("band") or {}).get("each") or {}
     for name, band in each.items():
         if name in out["values"] and band is not None:
-            out["bands"][name] = float(band) * coupling_scale(out["values"], name)
+            out["bands"][name] = float(band) * size(out["values"], name)
     for name in out["bands"]:
         found = (record["convergence"] or {}).get("quantities", {}).get(name)
         if found:

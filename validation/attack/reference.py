@@ -27,7 +27,7 @@ from pathlib import Path
 import numpy as np
 
 from solidgear.body import as_supports
-from solidgear.evidence.quantities import QUANTITIES, measure
+from solidgear.evidence.quantities import QUANTITIES, measure, size
 from solidgear.machine.whole_file import whole
 from solidgear.scene import Ask, Scene
 from solidgear.solve.modes import modes
@@ -141,9 +141,7 @@ def _level(scene: Scene, mesh, order: int, layers: int) -> Reference:
     for name in QUANTITIES:
         if all(name in r["values"] for r in (*runs, shallow)):
             four = [r["values"][name] for r in (*runs, shallow)]
-            values[name], uncertainty[name] = settle(
-                *four, coupling_scale(runs[-1]["values"], name), noise
-            )
+            values[name], uncertainty[name] = settle(*four, size(runs[-1]["values"], name), noise)
     return Reference(
         values,
         uncertainty,
@@ -185,17 +183,6 @@ def settle(
     else:
         tail, doubt = 0.0, abs(first) + abs(second)
     return c + tail, (SURE * doubt + deeper) / scale + noise
-
-
-def coupling_scale(values: dict, name: str) -> float:
-    """What the errors of a quantity are relative to: a coupling has no size of its own, symmetry
-    can make it zero.
-    """
-    for kind in "CK":
-        direct = [values.get(f"{kind}_zz"), values.get(f"{kind}_thx")]
-        if name == f"{kind}_z,thx" and None not in direct:
-            return float(np.sqrt(direct[0] * direct[1]))
-    return abs(values[name])
 
 
 def _spectrum(runs: list[dict], shallow: dict, noise: float) -> list[dict]:

@@ -9,12 +9,11 @@ from typing import Any
 import numpy as np
 
 from solidgear.evidence.answer import Numbers
-from solidgear.evidence.quantities import QUANTITIES
+from solidgear.evidence.quantities import QUANTITIES, size
 from solidgear.fidelity.edges import sharpest_edge
 from solidgear.fidelity.ladder import LADDER
 from solidgear.fidelity.levels import HARMONIC
 from solidgear.studies.climb import Climb
-from validation.attack.reference import coupling_scale
 from validation.attack.scenes import random_scene
 from validation.choice.members import options_of
 
@@ -43,7 +42,7 @@ class Tally:
 
 def error_of(values: dict[str, float], truth: dict[str, float], name: str) -> float:
     """True relative error of a quantity, couplings on the scale of their diagonal entries."""
-    return abs(values[name] - truth[name]) / coupling_scale(truth, name)
+    return abs(values[name] - truth[name]) / size(truth, name)
 
 
 def levels_of(row: dict[str, Any]) -> list[dict[str, Any]]:
