@@ -12,7 +12,7 @@ import solidgear as sg
 from solidgear.cli.app import app
 from solidgear.errors import SolidgearError
 from solidgear.evidence.places import singular_places
-from solidgear.evidence.where import ELSEWHERE, PLACED, USUAL, where
+from solidgear.evidence.where import ELSEWHERE, PLACED, USUAL, Row, where
 from solidgear.fidelity import harmonic_energy
 from solidgear.fidelity.harmonic_energy import Meridional
 from solidgear.report.where_chart import draw_where
@@ -196,7 +196,7 @@ def test_the_picture_is_of_the_cells_and_names_the_places(tmp_path):
     points = np.array([[0.0, 0.02, 0.02, 0.0, 0.02, 0.0], [0.0, 0.0, 0.1, 0.1, 0.3, 0.3]])
     cells = np.array([[0, 1, 2, 3], [3, 2, 4, 5]]).T
     file = tmp_path / "a.svg"
-    draw_where(file, points, cells, np.array([0.9, 0.1]), [("shoulder", 0.1, 0.02, 0.9)], "E")
+    draw_where(file, points, cells, np.array([0.9, 0.1]), [Row("shoulder", 0.1, 0.02, 0.9)], "E")
     text = file.read_text()
     assert "1: shoulder, y = 100 mm, 90 %" in text and "radius drawn 2.1 times" in text
     with pytest.raises(SolidgearError, match=r"use .png or .svg"):

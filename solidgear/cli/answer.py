@@ -14,7 +14,7 @@ from solidgear.errors import SolidgearError
 if TYPE_CHECKING:
     from rich.table import Table
 
-    from solidgear.evidence.where import Row, Whereabouts
+    from solidgear.evidence.where import Whereabouts
     from solidgear.scene import Scene
     from solidgear.studies.answering import Answered, Step
     from solidgear.studies.settle import Settled
@@ -184,15 +184,11 @@ def _places(scene: Scene, found: Answered) -> Whereabouts:
     return where(scene, known[0], meshes({}).levels[len(_solved(found)) - 1])
 
 
-def _shown(places: Whereabouts) -> tuple[Row, ...]:
-    from solidgear.report.where_chart import MOST_PLACES, WORTH_NAMING
-
-    return tuple(row for row in places.rows[:MOST_PLACES] if abs(row.share) >= WORTH_NAMING)
-
-
 def _where_table(places: Whereabouts) -> Table:
     from rich import box
     from rich.table import Table
+
+    from solidgear.report.where_chart import worth_naming
 
     table = Table(box=box.SIMPLE_HEAD, pad_edge=False)
     table.add_column(f"error of {places.quantity}")
@@ -200,7 +196,7 @@ def _where_table(places: Whereabouts) -> Table:
     table.add_column("r, mm", justify="right")
     table.add_column("within, mm", justify="right")
     table.add_column("share", justify="right")
-    for row in _shown(places):
+    for row in worth_naming(places.rows):
         lengths = (row.y, row.r, row.reach)
         at = [f"{1e3 * x:.4g}" if x is not None else "" for x in lengths]
         table.add_row(row.what, *at, f"{100 * row.share:.1f} %")
@@ -228,9 +224,5 @@ def _plain(places: Whereabouts) -> dict[str, Any]:
 def _draw(places: Whereabouts, picture: Path) -> None:
     from solidgear.report.where_chart import draw_where
 
-    points = []
-    for row in _shown(places):
-        if row.y is not None and row.r is not None:
-            points.append((row.what, row.y, row.r, row.share))
     title = f"Error of {places.quantity} at order {places.order}, by cell"
-    draw_where(picture, places.points, places.cells, places.shares, points, title)
+    draw_where(picture, places.points, places.cells, places.shares, places.rows, title)

@@ -24,19 +24,23 @@ GearRung = Annotated[str, typer.Option("--gear", help="Model of the gear's shaft
 Reduction = Annotated[
     str, typer.Option("--reduction", help="rubin (free modes and residuals) or craig_bampton.")
 ]
+MaxFrequency = Annotated[float | None, typer.Option(help="Hz; as the file says by default.")]
 Kept = Annotated[int, typer.Option("--kept", help="Modes of each shaft kept in its reduction.")]
 MOST_KEPT = 200
 #: relative; no frequency is printed with a smaller bound, whatever the proof says
 ROUNDING = 1e-12
 
 
-def _shop(path: Path, reduction: str, kept: int):
+def _shop(path: Path, reduction: str, kept: int, max_frequency: float | None):
+    """Where the bodies of a train are built, once the options that all commands share are sound."""
     from solidgear.scene.toml_file import parse
     from solidgear.scene.train_file import load_train
     from solidgear.studies.axle.models import Workshop
 
     if not 1 <= kept <= MOST_KEPT:
         raise SolidgearError(f"--kept {show(kept)}: give 1 to {MOST_KEPT} modes")
+    if max_frequency is not None and not max_frequency > 0:
+        raise SolidgearError(f"--max-frequency {max_frequency:g}: must be greater than zero, in Hz")
     loaded = load_train(path)
     try:
         return Workshop(loaded, reduction, kept)
@@ -49,9 +53,7 @@ def system_modes(
     train: TrainFile,
     pinion: PinionRung = FIDELITY,
     gear: GearRung = FIDELITY,
-    max_frequency: Annotated[
-        float | None, typer.Option(help="Hz; as the file says by default.")
-    ] = None,
+    max_frequency: MaxFrequency = None,
     reduction: Reduction = "rubin",
     kept: Kept = 24,
     as_json: JsonFlag = False,
@@ -59,19 +61,24 @@ def system_modes(
     """Natural frequencies of a geared rotor system, each with its name and its proven bound."""
     from solidgear.studies.axle.modes import train_modes
 
-    if max_frequency is not None and not max_frequency > 0:
-        raise SolidgearError(f"--max-frequency {max_frequency:g}: must be greater than zero, in Hz")
-    shop = _shop(train, reduction, kept)
+    shop = _shop(train, reduction, kept, max_frequency)
     found = train_modes(shop, pinion, gear, max_frequency)
     if as_json:
         print(json.dumps(found.as_dict(), allow_nan=False))
         return
+    _say(*found.heading())
+    console().print(_modes_table(found))
+    _say(*found.remarks())
+
+
+def _say(*sentences: str) -> None:
     terminal = console()
-    for line in found.heading():
-        terminal.print(line, markup=False, soft_wrap=True)
-    terminal.print(_modes_table(found))
-    for line in found.remarks():
-        terminal.print(line, markup=False, soft_wrap=True)
+    for sentence in sentences:
+        terminal.print(sentence, markup=False, soft_wrap=True)
+
+
+def _caution(text: str) -> str:
+    return f"caution: {text}"
 
 
 def _modes_table(found):
@@ -106,9 +113,7 @@ def response(
             help="Further model to draw, as PINION+GEAR, such as euler+euler; repeatable.",
         ),
     ] = None,
-    max_frequency: Annotated[
-        float | None, typer.Option(help="Hz; as the file says by default.")
-    ] = None,
+    max_frequency: MaxFrequency = None,
     damping: Annotated[
         str,
         typer.Option(
@@ -135,9 +140,7 @@ def response(
     from solidgear.studies.axle.modes import unpublished_lines
     from solidgear.studies.axle.respond import respond
 
-    if max_frequency is not None and not max_frequency > 0:
-        raise SolidgearError(f"--max-frequency {max_frequency:g}: must be greater than zero, in Hz")
-    shop = _shop(train, reduction, kept)
+    shop = _shop(train, reduction, kept, max_frequency)
     mixes = [(pinion, gear), *map(_mix, against or [])]
     forces = _forces(force)
     with held(out):
@@ -157,11 +160,8 @@ def response(
     terminal.print(_peaks_table(found[0], teeth))
     if not found[0].peaks:
         terminal.print("The mesh force has no peak in this range.", markup=False)
-    for line in unpublished_lines(unpublished):
-        terminal.print(line, markup=False, soft_wrap=True)
-    for text in found[0].cautions:
-        terminal.print(f"caution: {text}", markup=False, soft_wrap=True)
-    terminal.print(f"Written: {', '.join(map(str, files))}", markup=False, soft_wrap=True)
+    _say(*unpublished_lines(unpublished), *map(_caution, found[0].cautions))
+    _say(f"Written: {', '.join(map(str, files))}")
 
 
 def _mix(text: str) -> tuple[str, str]:
@@ -211,9 +211,7 @@ def judge_system(
     out: Annotated[
         Path | None, typer.Option("--out", "-o", help="Folder for the chart and the table.")
     ] = None,
-    max_frequency: Annotated[
-        float | None, typer.Option(help="Hz; as the file says by default.")
-    ] = None,
+    max_frequency: MaxFrequency = None,
     against: Annotated[
         list[str] | None,
         typer.Option("--against", help="Further mix to judge, as PINION+GEAR; repeatable."),
@@ -230,9 +228,7 @@ def judge_system(
     from solidgear.studies.axle.judge import DRAWN, judge_train
     from solidgear.studies.axle.modes import unpublished_lines
 
-    if max_frequency is not None and not max_frequency > 0:
-        raise SolidgearError(f"--max-frequency {max_frequency:g}: must be greater than zero, in Hz")
-    shop = _shop(train, reduction, kept)
+    shop = _shop(train, reduction, kept, max_frequency)
     with held(out) if out else nullcontext():
         found = judge_train(shop, max_frequency, [_mix(text) for text in against or []])
         if out:
@@ -248,10 +244,7 @@ def judge_system(
     terminal = console()
     terminal.print(f"{found.train}, up to {found.highest_hz:g} Hz", markup=False)
     terminal.print(_verdict_table(found))
-    for line in found.sentences() + unpublished_lines(found.unpublished):
-        terminal.print(line, markup=False, soft_wrap=True)
-    for text in found.cautions:
-        terminal.print(f"caution: {text}", markup=False, soft_wrap=True)
+    _say(*found.sentences(), *unpublished_lines(found.unpublished), *map(_caution, found.cautions))
 
 
 def _verdict_table(found):

@@ -16,6 +16,8 @@ from solidgear.machine.environment import environment
 
 #: what is charted, as named in `quantities`
 CHARTED = ("C_zz", "bending 1")
+#: the family and the series of the automatic choice
+AUTOMATIC = "automatic"
 
 
 @dataclass

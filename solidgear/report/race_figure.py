@@ -6,11 +6,11 @@ import io
 from pathlib import Path
 from typing import Any
 
-from solidgear.evidence.pareto import Race, Row
+from solidgear.evidence.pareto import AUTOMATIC, Race, Row
 from solidgear.report.chart_style import STYLE, percent_decades, tolerance_line
 from solidgear.report.race_legend import FRONT, footer, legend
 from solidgear.report.race_rows import COSTS, replace_file
-from solidgear.report.race_style import AUTOMATIC, REFERENCE, Look
+from solidgear.report.race_style import REFERENCE, Look
 from solidgear.report.words import count, is_number, percent
 
 QUANTITY = {"C_zz": "port compliance C_zz", "bending 1": "first bending frequency"}

@@ -5,9 +5,9 @@ from __future__ import annotations
 import textwrap
 from typing import Any
 
-from solidgear.evidence.pareto import Race
+from solidgear.evidence.pareto import AUTOMATIC, Race
 from solidgear.report.race_rows import left_out
-from solidgear.report.race_style import AUTOMATIC, FAMILIES, REFERENCE, Look, family_name, looks
+from solidgear.report.race_style import FAMILIES, REFERENCE, Look, family_name, looks
 from solidgear.report.words import seconds
 
 #: grey of the Pareto front, and of marks that any family may have

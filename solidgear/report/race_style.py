@@ -5,14 +5,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
-from solidgear.evidence.pareto import Race
+from solidgear.evidence.pareto import AUTOMATIC, Race
 
 #: of a family that is not listed
 GREY = "#777777"
 #: the reference itself and its band
 REFERENCE = "#00603f"
-#: the family of the automatic choice
-AUTOMATIC = "automatic"
 #: families, in the order of the legend: name there, colour
 FAMILIES = {
     "lumped": ("lumped", "#b3305c"),

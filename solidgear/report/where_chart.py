@@ -34,7 +34,7 @@ def draw_where(
     points: np.ndarray,
     cells: np.ndarray,
     shares: np.ndarray,
-    places: Sequence[tuple[str, float, float, float]] = (),
+    rows: Sequence[Any] = (),
     title: str = "",
 ) -> None:
     """Write the picture.
@@ -48,8 +48,8 @@ def draw_where(
     cells : (4, m) ndarray of int
     shares : (m,) ndarray
         Of every cell; their magnitudes are drawn.
-    places : sequence of (what, y, r, share)
-        Points to name, m.
+    rows : sequence of Row or PlaceRecord
+        Places, the largest share first; those worth it are named.
     title : str
 
     Raises
@@ -57,7 +57,7 @@ def draw_where(
     SolidgearError
         For another ending, or a file that cannot be written.
     """
-    write_picture(file, lambda: _figure(points, cells, shares, places, title), "where")
+    write_picture(file, lambda: _figure(points, cells, shares, rows, title), "where")
 
 
 def write_picture(file: Path, make: Callable[[], Any], name: str) -> None:
@@ -116,11 +116,13 @@ def check_ending(file: Path) -> str:
     return ending
 
 
-def _figure(points, cells, shares, places, title: str):
+def _figure(points, cells, shares, rows, title: str):
     from matplotlib.collections import PolyCollection
     from matplotlib.colors import LogNorm
     from matplotlib.ticker import FuncFormatter
 
+    # what the bearings take up sits nowhere in the section
+    places = [p for p in worth_naming(rows) if p.y is not None and p.r is not None]
     r, y = 1e3 * points
     length, radius = np.ptp(y), r.max()
     stretch = max(1.0, length / (SLENDEREST * radius))
@@ -143,10 +145,10 @@ def _figure(points, cells, shares, places, title: str):
     ax.set_xlim(y.min() - 0.02 * length, y.max() + 0.02 * length)
     ax.set_ylim(0, 1.25 * radius)
     ax.grid(False)
-    for number, (_, at, height, _) in enumerate(places, 1):
+    for number, place in enumerate(places, 1):
         ax.annotate(
             str(number),
-            (1e3 * at, 1e3 * height),
+            (1e3 * place.y, 1e3 * place.r),
             xytext=(0, 12),
             textcoords="offset points",
             ha="center",
@@ -155,8 +157,8 @@ def _figure(points, cells, shares, places, title: str):
             arrowprops={"arrowstyle": "-", "lw": 0.6},
         )
     names = [
-        f"{number}: {what}, y = {1e3 * at:.4g} mm, {100 * abs(share):.2g} %"
-        for number, (what, at, _, share) in enumerate(places, 1)
+        f"{number}: {place.what}, y = {1e3 * place.y:.4g} mm, {100 * abs(place.share):.2g} %"
+        for number, place in enumerate(places, 1)
     ]
     drawn_as = "" if stretch == 1.0 else f"radius drawn {stretch:.2g} times as large"
     ax.set_xlabel("\n".join(["y, mm", *names]))
@@ -174,12 +176,16 @@ def where_chart(record: Record):
     where = record.where
     if where is None or not where.cells:
         return None
-    places = [
-        (row.what, row.y, row.r, row.share)
-        for row in where.rows[:MOST_PLACES]
-        if row.y is not None and row.r is not None and row.share is not None
-        if abs(row.share) >= WORTH_NAMING
-    ]
-    return _figure(
-        np.array(where.points), np.array(where.cells), np.array(where.shares), places, ""
-    )
+    cells = np.array(where.points), np.array(where.cells), np.array(where.shares)
+    return _figure(*cells, where.rows, "")
+
+
+def worth_naming(rows: Sequence[Any]) -> list[Any]:
+    """The first few places whose share is worth a word.
+
+    Parameters
+    ----------
+    rows : sequence of Row or PlaceRecord
+        Places with a ``share``, the largest first.
+    """
+    return [r for r in rows[:MOST_PLACES] if r.share is not None and abs(r.share) >= WORTH_NAMING]

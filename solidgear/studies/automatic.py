@@ -9,7 +9,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from solidgear.evidence.answer import Answer
-from solidgear.evidence.pareto import Row
+from solidgear.evidence.pareto import AUTOMATIC, Row
 from solidgear.evidence.quantities import QUANTITIES
 from solidgear.evidence.racing import answer
 from solidgear.studies.answering import climbed
@@ -32,7 +32,7 @@ def automatic_rows() -> list[Row]:
     [(1, 0.1), (2, 0.01), (3, 0.001), (4, 0.0001)]
     """
     return [
-        Row("automatic", "automatic", level, AUTO, {"tol": tol})
+        Row(AUTOMATIC, AUTOMATIC, level, AUTO, {"tol": tol})
         for level, tol in enumerate(TOLERANCES, start=1)
     ]
 
