@@ -12,7 +12,12 @@ import pytest
 import solidgear as sg
 from solidgear.errors import SceneError
 from solidgear.scene import STEEL, Bearing, Material, Port, Scene, Segment
-from solidgear.scene.bearing_stiffness import STIFFNESS_NAMES, stiffness_entries, stiffness_matrix
+from solidgear.scene.bearing_stiffness import (
+    STIFFNESS_NAMES,
+    checked_matrix,
+    stiffness_entries,
+    stiffness_matrix,
+)
 from solidgear.scene.file import load
 from solidgear.scene.units import COMMON, _by_pint, quantity
 from validation.shipped import shipped_shafts
@@ -100,6 +105,16 @@ def test_stiffness_cannot_be_written_to(pinion):
     for bearing in pinion.bearings:
         with pytest.raises(ValueError):
             bearing.stiffness[0, 0] = 1.0
+
+
+def test_a_stiffness_below_all_numbers_is_read_or_refused_in_a_sentence():
+    """The product of two such entries is zero, and nothing may be divided by it."""
+    tiny = np.diag([1e-310, 1e-310, 1e-310, 0.0, 0.0, 0.0])
+    with np.errstate(divide="raise", invalid="raise"):
+        assert checked_matrix(tiny)[0][0] == 1e-310
+        tiny[0, 4] = tiny[4, 0] = 1e-319
+        with pytest.raises(SceneError, match="indefinite in the pair"):
+            checked_matrix(tiny)
 
 
 def test_stiffness_names_and_matrix_are_inverse():

@@ -158,7 +158,8 @@ def checked_matrix(value: Any) -> tuple[tuple[float, ...], ...]:
         coupled = np.abs(K[own])
         coupling = coupled / np.where(size > 0, size, np.sqrt(coupled) + (coupled == 0))
         size[own] = coupling.max() or 1.0
-    eigenvalue, vector = np.linalg.eigh(K / np.outer(size, size))
+    # one size after the other: the product of two tiny ones is zero
+    eigenvalue, vector = np.linalg.eigh(K / size[:, None] / size)
     if eigenvalue[0] < -1e-9:
         a, b = sorted(np.argsort(-np.abs(vector[:, 0]), kind="stable")[:2])
         if K[a, a] < 0 or K[b, b] < 0:
