@@ -239,7 +239,8 @@ def _thick_enough(model: str, options: Mapping[str, Any]) -> None:
             )
 
 
-def _limits(option: Option) -> str:
+def limits(option: Option) -> str:
+    """Between what a number must lie, and why."""
     if option.least is not None and option.most is not None:
         words = f"between {option.least:g} and {option.most:g}"
     else:
@@ -267,7 +268,7 @@ def _usable_number(model: str, name: str, value: Any, option: Option) -> Any:
         else ""
     )
     raise SolidgearError(
-        f"{model}: {name} {show(value)} is not usable; give a {'whole ' if whole else ''}number {_limits(option)}{hint}"
+        f"{model}: {name} {show(value)} is not usable; give a {'whole ' if whole else ''}number {limits(option)}{hint}"
     )
 
 

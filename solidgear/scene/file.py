@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterable, Iterator, Mapping
-from pathlib import Path
 from typing import Any
 
 from solidgear.errors import SceneError, listed, nearest
@@ -17,7 +16,7 @@ from solidgear.scene.model import Scene
 from solidgear.scene.places import resolve
 from solidgear.scene.rules import MOST_BEARINGS, MOST_MASSES, MOST_SEGMENTS, too_many
 from solidgear.scene.tables import FEATURES, KINDS, SceneTable, SoundTables
-from solidgear.scene.toml_file import parse
+from solidgear.scene.toml_file import name_of, parse, place_of
 
 
 def _drop_tag(loc: tuple) -> tuple:
@@ -57,16 +56,16 @@ def load(path: str | os.PathLike) -> Scene:
         raise SceneError(
             "describes a train of two shafts and not a shaft; read it with solidgear.load_train, "
             "or run solidgear system-modes, response or judge-system on it"
-        ).located(raw, where=where)
+        ).located(raw, where=place_of(where))
     try:
-        return _read(raw, Path(where).stem)
+        return _read(raw, name_of(where))
     except SceneError as error:
         problems = {
             (one.path, one.reason): one for one in error.problems
         }  # both ends of a cylinder are one diameter
         order = _FileOrder(raw)
         ordered = sorted(problems.values(), key=lambda one: order.of(one.path))
-        raise SceneError.of(ordered).located(raw, where=where) from None
+        raise SceneError.of(ordered).located(raw, where=place_of(where)) from None
 
 
 def _read(raw: dict[str, Any], name: str) -> Scene:

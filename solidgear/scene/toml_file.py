@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import re
 import stat
+import sys
 import tomllib
+from functools import lru_cache
 from pathlib import Path
-from typing import Any
+from typing import Any, TextIO
 
 from solidgear.errors import SceneError, printable
 
@@ -16,6 +18,8 @@ LARGEST = 300_000
 #: full stops in one line: a 6x6 matrix has 36. The parser's time grows with the cube of the parts
 #: of a key
 MOST_DOTS = 100
+#: in place of a path
+STANDARD_INPUT = "-"
 
 
 def parse(where: str) -> dict[str, Any]:
@@ -55,10 +59,40 @@ def parse(where: str) -> dict[str, Any]:
             if long
             else f"cannot be read: {getattr(error, 'strerror', None) or error}"
         )
-    raise SceneError(reason, where=where)
+    raise SceneError(reason, where=place_of(where))
 
 
-def _text(where: str) -> str:
+def name_of(where: str) -> str:
+    """Name of the scene in a file: that of the file.
+
+    Examples
+    --------
+    >>> name_of("geometry/axle.toml"), name_of(STANDARD_INPUT)
+    ('axle', 'scene')
+    """
+    return "scene" if where == STANDARD_INPUT else Path(where).stem
+
+
+def place_of(where: str) -> str:
+    """A path as errors name it.
+
+    Examples
+    --------
+    >>> place_of(STANDARD_INPUT)
+    'standard input'
+    """
+    return "standard input" if where == STANDARD_INPUT else where
+
+
+@lru_cache(maxsize=1)
+def _standard_input(stream: TextIO) -> bytes:
+    """What standard input holds; a file is read more than once, to say where it is wrong."""
+    return stream.buffer.read(LARGEST + 1)
+
+
+def _bytes(where: str) -> bytes:
+    if where == STANDARD_INPUT:
+        return _standard_input(sys.stdin)
     kind = Path(where).stat().st_mode
     if stat.S_ISDIR(kind):
         raise SceneError("this is a folder; give the TOML file in it")
@@ -68,7 +102,11 @@ def _text(where: str) -> str:
             "this is a pipe or a device, not a file; write the scene into a file and give that"
         )
     with Path(where).open("rb") as file:
-        data = file.read(LARGEST + 1)
+        return file.read(LARGEST + 1)
+
+
+def _text(where: str) -> str:
+    data = _bytes(where)
     if len(data) > LARGEST:
         raise SceneError(f"this is no scene: it is larger than {LARGEST // 1000} kB")
     if data.startswith((b"\xff\xfe", b"\xfe\xff")) or b"\0" in data:

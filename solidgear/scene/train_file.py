@@ -14,7 +14,7 @@ from typing import Any
 
 from solidgear.errors import SceneError, show
 from solidgear.scene.file import load
-from solidgear.scene.toml_file import parse
+from solidgear.scene.toml_file import name_of, parse
 from solidgear.scene.train import SIDES, Train
 
 CELL_COLUMNS = ("x", "y", "z", "nx", "ny", "nz", "force")
@@ -65,7 +65,7 @@ def load_train(path: str | os.PathLike) -> Train:
             data["mesh"] = _with_cells(raw["mesh"], folder)
         for rotor in ("engine", "load"):
             _whole_rotor(raw, rotor)
-        return Train(**{"name": Path(where).stem} | data)
+        return Train(**{"name": name_of(where)} | data)
     except SceneError as error:
         if error.where:
             raise

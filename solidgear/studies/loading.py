@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 
 from solidgear.errors import SceneError
 from solidgear.scene import file
-from solidgear.scene.toml_file import parse
+from solidgear.scene.toml_file import parse, place_of
 
 if TYPE_CHECKING:
     from solidgear.bearings.solved import Solved
@@ -90,7 +90,8 @@ def explained(path: str | os.PathLike) -> Iterator[None]:
     try:
         yield
     except SceneError as error:
-        raise error.located(parse(os.fspath(path)), where=os.fspath(path)) from None
+        where = os.fspath(path)
+        raise error.located(parse(where), where=place_of(where)) from None
 
 
 def shaft(scene: Scene) -> Body | None:

@@ -1,0 +1,137 @@
+"""Commands that give files to begin with: new, scenes; and the options of the models."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from solidgear.cli.app import command, console
+from solidgear.cli.starts import STARTS, start
+from solidgear.errors import SolidgearError, nearest, show
+from solidgear.fidelity.ladder import LADDER
+
+if TYPE_CHECKING:
+    from solidgear.fidelity.options import Option
+
+KINDS = "; ".join(f"{kind}: {what}" for kind, what in STARTS.items())
+
+
+@command
+def new(
+    name: Annotated[Path, typer.Argument(help="Scene file to write, with or without .toml.")],
+    kind: Annotated[str, typer.Option(help=f"{KINDS}.")] = "overhung",
+) -> None:
+    """Write a short, commented scene that runs, to change into one's own."""
+    path = name if name.suffix == ".toml" else name.with_name(f"{name.name}.toml")
+    text = start(kind, path.stem)
+    _write(path, text)
+    typer.echo(f"{path}: {STARTS[kind]}. Next: solidgear check {path}")
+
+
+@command
+def scenes(
+    names: Annotated[
+        list[str] | None, typer.Argument(help="Scenes to copy; all of them by default.")
+    ] = None,
+    to: Annotated[
+        Path | None, typer.Option("--to", help="Folder to copy them into, with what they refer to.")
+    ] = None,
+) -> None:
+    """List the scenes that come with solidgear, or copy them into a folder."""
+    from solidgear.cli.shipped import needed, shipped, title
+
+    there = shipped()
+    for one in names or []:
+        if one.removesuffix(".toml") not in there:
+            raise SolidgearError(
+                f"scene {show(one, 60)} does not come with solidgear{nearest(one, there)}; "
+                f"there are {', '.join(there)}"
+            )
+    asked = [one.removesuffix(".toml") for one in names or there]
+    if to is None:
+        from rich.table import Table
+
+        table = Table(show_edge=False)
+        table.add_column("scene")
+        table.add_column("what it is")
+        for one in asked:
+            table.add_row(one, title(there[one]))
+        console().print(table)
+        return
+    files = sorted({file for one in asked for file in needed(there[one])})
+    for file in files:
+        _refuse_existing(to / file.name)
+    for file in files:
+        _write(to / file.name, file.read_bytes())
+    typer.echo(f"{to}: {', '.join(file.name for file in files)}")
+
+
+@command
+def options(
+    model: Annotated[
+        str, typer.Argument(help=f"{', '.join(LADDER.bodies)}; all of them by default.")
+    ] = "",
+) -> None:
+    """List what --set takes: every builder option, its default, its limits and what it means."""
+    from rich import box
+    from rich.table import Table
+
+    for name in (LADDER[model].name,) if model else LADDER.bodies:
+        rung = LADDER[name]
+        defaults = rung.defaults()
+        table = Table(
+            title=f"{name}: {rung.title}", title_justify="left", box=box.SIMPLE_HEAD, pad_edge=False
+        )
+        table.add_column("option", no_wrap=True)
+        table.add_column("default", no_wrap=True)
+        table.add_column("may be")
+        table.add_column("what it is")
+        for key, option in rung.options.items():
+            table.add_row(key, _default(defaults.get(key)), _may_be(option), option.meaning)
+        console().print(table)
+
+
+def _may_be(option: Option) -> str:
+    from solidgear.fidelity.options import limits
+
+    match option.kind:
+        case "flag":
+            return "true or false"
+        case "choice":
+            return " or ".join(option.choices)
+        case "several":
+            return f"one or more of {', '.join(option.choices)}"
+        case "whole":
+            return f"a whole number {limits(option)}"
+        case "harmonics":
+            return f"whole numbers {limits(option)}"
+    return f"a number {limits(option)}"
+
+
+def _default(value: object) -> str:
+    """A value as ``--set`` would take it."""
+    if value is None or value == ():
+        return "-"
+    if isinstance(value, bool):
+        return str(value).lower()
+    return ",".join(map(str, value)) if isinstance(value, tuple) else str(value)
+
+
+def _refuse_existing(path: Path) -> None:
+    if path.exists():
+        raise SolidgearError(f"{path}: there is such a file already; give another name")
+
+
+def _write(path: Path, content: str | bytes) -> None:
+    from solidgear.machine.whole_file import whole
+
+    _refuse_existing(path)
+    data = content.encode() if isinstance(content, str) else content
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        with whole(path) as partial:
+            partial.write_bytes(data)
+    except OSError as error:
+        raise SolidgearError(f"{path}: cannot be written ({error.strerror or error})") from error
