@@ -7,12 +7,13 @@ from pathlib import Path
 import pytest
 
 PACKAGE = Path(__file__).parent.parent / "solidgear"
-GROUND = {"errors", "frames"}
+GROUND = {"errors", "frames", "display"}
 
 #: room: what it may import, from the ground up
 MAY_IMPORT = {
     "errors": set(),
     "frames": {"errors"},
+    "display": set(),
     "machine": GROUND,
     "scene": GROUND,
     "body": GROUND,

@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 import scipy.sparse as sp
@@ -19,6 +19,7 @@ from solidgear.body.kept import Kept
 from solidgear.body.mass import ScalarMass
 from solidgear.body.sections import Sections, from_points, signed
 from solidgear.body.surface import Drawing, Surface, mesh_unknowns
+from solidgear.display import Displayed
 from solidgear.errors import SolidgearError
 from solidgear.frames import shift
 
@@ -180,8 +181,8 @@ class _Families(dict[int, "Body"]):
     """Circumferential families that were asked for, by their number of waves."""
 
 
-@dataclass(frozen=True, eq=False)
-class Body:
+@dataclass(frozen=True, eq=False, repr=False)
+class Body(Displayed):
     """A free elastic shaft at one fidelity.
 
     Attributes
@@ -217,6 +218,8 @@ class Body:
     >>> body.rigid_residual() < 1e-9  # no force holds it
     True
     """
+
+    shown: ClassVar[str] = "body"
 
     fidelity: str
     blocks: tuple[Block, ...]

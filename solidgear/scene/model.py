@@ -9,10 +9,11 @@ its first end face.
 from __future__ import annotations
 
 from collections.abc import Iterable
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import Field, model_validator
 
+from solidgear.display import Displayed
 from solidgear.errors import SceneError
 from solidgear.scene.bearing_stiffness import stiffness_entries
 from solidgear.scene.catalogue import BearingLoad
@@ -80,7 +81,7 @@ class Ask(Model):
     quantities: tuple[Quantity, ...] = ()
 
 
-class Scene(Model):
+class Scene(Displayed, Model):
     """A shaft on its bearings; read one with `solidgear.load`, or make one with `Scene.from_parts`.
 
     Attributes
@@ -119,6 +120,8 @@ class Scene(Model):
     >>> stiff.port.attachment, round(float(stiff.bearings[0].stiffness[0, 0]) / 1e9, 6)
     ('rigid', 4.0)
     """
+
+    shown: ClassVar[str] = "scene"
 
     title: str = ""
     name: str = "scene"

@@ -10,11 +10,12 @@ from __future__ import annotations
 
 import time
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
 from solidgear.body import FURTHER, Body, as_supports
+from solidgear.display import Displayed
 from solidgear.errors import SolidgearError
 from solidgear.machine.threads import pinned
 from solidgear.solve.eigen import Raw
@@ -75,8 +76,8 @@ class Mode:
     error: float = 0.0
 
 
-@dataclass(frozen=True)
-class ModeSet:
+@dataclass(frozen=True, repr=False)
+class ModeSet(Displayed):
     """Modes in ascending order of frequency, and the evidence for them.
 
     Attributes
@@ -101,6 +102,8 @@ class ModeSet:
         Further modes of the body's own blocks that were solved and lie above the end of the list,
         because ovalising ones took their places.
     """
+
+    shown: ClassVar[str] = "mode_set"
 
     fidelity: str
     modes: tuple[Mode, ...]

@@ -18,13 +18,14 @@ is an exact zero and not a penalty.
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 import scipy.linalg as sla
 import scipy.sparse as sp
 
 from solidgear.body import Body, as_supports
+from solidgear.display import Displayed
 from solidgear.errors import SolidgearError
 from solidgear.frames import DOF_NAMES
 from solidgear.machine.threads import pinned
@@ -61,8 +62,8 @@ class Flexibility:
     backend: str
 
 
-@dataclass(frozen=True)
-class Condensed:
+@dataclass(frozen=True, repr=False)
+class Condensed(Displayed):
     """Static behaviour seen from one port, bearings included.
 
     Attributes
@@ -78,6 +79,8 @@ class Condensed:
     evidence : dict
         Asymmetry, refinement residual, back end.
     """
+
+    shown: ClassVar[str] = "condensed"
 
     port: str
     attachment: str

@@ -15,8 +15,9 @@ import re
 import time
 from collections.abc import Iterable
 from dataclasses import asdict, dataclass
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import TYPE_CHECKING, Any, ClassVar, TypeVar
 
+from solidgear.display import Displayed
 from solidgear.errors import SolidgearError, nearest, show
 from solidgear.evidence.quantities import JUDGED, QUANTITIES
 from solidgear.fidelity.ladder import LADDER
@@ -36,8 +37,8 @@ WORDS = {"bending": "bending 1", "axial": "axial 1", "torsion": "torsion 1"}
 LEAST_TOLERANCE = 1e-9
 
 
-@dataclass(frozen=True)
-class Answered:
+@dataclass(frozen=True, repr=False)
+class Answered(Displayed):
     """An answer and the way to it.
 
     Attributes
@@ -55,6 +56,8 @@ class Answered:
         Quantities that do not exist for this scene, such as the compliance of a free motion.
     seconds : float
     """
+
+    shown: ClassVar[str] = "answered"
 
     scene: str
     tolerance: float

@@ -8,8 +8,9 @@ import os
 from collections.abc import Callable, Collection
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, ClassVar
 
+from solidgear.display import Displayed
 from solidgear.errors import SolidgearError
 from solidgear.evidence.causes import SHOWN, Cause, attachment_causes, beam_causes, shoulder_cause
 from solidgear.evidence.lumped import synthesise_all
@@ -33,8 +34,8 @@ log = logging.getLogger(__name__)
 Progress = Callable[[str], None]
 
 
-@dataclass
-class Comparison:
+@dataclass(repr=False)
+class Comparison(Displayed):
     """Everything a comparison found.
 
     Attributes
@@ -45,6 +46,8 @@ class Comparison:
     rungs : dict of str to Solution
         The bodies and mode shapes behind it.
     """
+
+    shown: ClassVar[str] = "comparison"
 
     scene: Scene
     record: Record
