@@ -5,11 +5,12 @@ from __future__ import annotations
 import math
 from typing import Annotated, Any, Literal, NamedTuple
 
-from pydantic import AfterValidator, Field, model_validator
+from pydantic import AfterValidator, BeforeValidator, Field, model_validator
 
 from solidgear.errors import SceneError
 from solidgear.scene.bearing_stiffness import stiffness_matrix
 from solidgear.scene.catalogue import BearingLoad, Catalogue
+from solidgear.scene.materials import by_name
 from solidgear.scene.model import Ask
 from solidgear.scene.parts import Material, Model
 from solidgear.scene.point_mass import check_inertia
@@ -87,7 +88,7 @@ class _Table(Model):
 class _Piece(_Table):
     name: SegmentName
     bore: Thickness = 0.0
-    material: _MaterialChange = _MaterialChange()
+    material: Annotated[_MaterialChange, BeforeValidator(by_name)] = _MaterialChange()
 
     def _check_bore(self, *keys: str) -> None:
         for key in keys:
@@ -343,7 +344,7 @@ class SceneTable(Model):
     title: str = ""
     source: str = ""
     attachment: Attachment = "average"
-    material: Material
+    material: Annotated[Material, BeforeValidator(by_name)]
     segment: list[Annotated[_Cylinder | _Cone | _BevelHead, Field(discriminator="kind")]]
     bearing: list[BearingTable] = []
     mass: list[MassTable] = []
