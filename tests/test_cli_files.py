@@ -109,3 +109,10 @@ def test_every_option_is_listed_with_its_default(monkeypatch):
         for key, option in LADDER[name].options.items():
             assert key in said and option.meaning[:40] in said
     assert "a whole number between 1 and 12" in run("options", "harmonic").stdout
+
+
+def test_one_version_everywhere():
+    version = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]["version"]
+    assert sg.__version__ == version
+    assert f"version: {version}\n" in (ROOT / "CITATION.cff").read_text()
+    assert f"\n## {version}" in (ROOT / "CHANGELOG.md").read_text()
