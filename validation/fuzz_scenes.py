@@ -33,10 +33,10 @@ import numpy as np
 
 from solidgear.errors import TOLD, SceneError, SolidgearError
 from solidgear.fidelity import build
-from solidgear.scene.file import load
 from solidgear.solve.modes import modes
 from solidgear.solve.statics import condense
 from solidgear.studies.check import check_scene
+from solidgear.studies.loading import load
 from validation.common import ROOT, results_folder, show, write_rows
 from validation.fuzz_commands import ENVIRONMENT, command_line, put
 from validation.fuzz_limits import Overrun, watched
