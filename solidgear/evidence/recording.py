@@ -96,7 +96,7 @@ def recorded(
         missing=[
             LADDER[model].title
             for model in LADDER.bodies
-            if model not in models and (LADDER[model].features != "only" or scene.features)
+            if model not in models and model in LADDER.fit(scene)
         ],
     )
     if lumped and reference:

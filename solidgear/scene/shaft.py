@@ -7,6 +7,10 @@ from typing import TYPE_CHECKING, Protocol
 if TYPE_CHECKING:
     from solidgear.scene import Bearing, PointMass, Port, Segment
 
+#: what a scene is beyond its segments: nothing, features cut out of them, or a part from a file of
+#: which they are the round part
+ROUND, CUT, PART = "round", "cut", "part"
+
 
 class Shaft(Protocol):
     """Segments end to end, and what is attached to them: a `Scene`, or something like it.
@@ -25,3 +29,36 @@ class Shaft(Protocol):
     @property
     def length(self) -> float:
         """Overall length, m."""
+
+
+def shapes(scene: Shaft) -> tuple[str, ...]:
+    """Shapes that a model may hold to stand for a scene.
+
+    Parameters
+    ----------
+    scene : Shaft
+
+    Returns
+    -------
+    tuple of {'round', 'cut', 'part'}
+        What the scene is first.
+
+    Examples
+    --------
+    >>> from solidgear import Scene, Segment
+    >>> shapes(Scene.from_parts([Segment.cylinder("rod", length=0.3, diameter=0.06)]))
+    ('round',)
+    """
+    if getattr(scene, "features", ()):
+        return (CUT,)
+    return (ROUND,)
+
+
+def extras(scene: Shaft) -> str:
+    """What a scene has that its segments do not show, in words; empty for a body of revolution.
+
+    Parameters
+    ----------
+    scene : Shaft
+    """
+    return ", ".join(f'{f.what} "{f.name}"' for f in getattr(scene, "features", ()))

@@ -14,6 +14,7 @@ from solidgear.fidelity.ladder import LADDER
 from solidgear.fidelity.rung import BEAM, LUMPED
 from solidgear.machine.threads import pinned
 from solidgear.meshing.quality import mass_properties
+from solidgear.scene.shaft import ROUND, extras, shapes
 from solidgear.studies.guards import GUARDS, LEVELS, Notice, Probe
 from solidgear.studies.guards.notice import beams, everything
 
@@ -72,7 +73,7 @@ def check_scene(scene: Scene, body: Body) -> dict:
     """
     probe = Probe(scene.plain, body)
     said = [("body", notice) for notice in _of_the_body(scene, body)]
-    said += [("features", notice) for notice in _of_features(scene)]
+    said += [("features", notice) for notice in _beyond_the_segments(scene)]
     for name in GUARDS:
         said += [(name, notice) for notice in _heard(name, probe)]
     records = [
@@ -89,11 +90,7 @@ def check_scene(scene: Scene, body: Body) -> dict:
     }
     return out | {
         "records": records,
-        "verdicts": {
-            model: _verdict(model, records)
-            for model in everything()
-            if LADDER[model].features != "only" or scene.features
-        },
+        "verdicts": {model: _verdict(model, records) for model in everything()},
     }
 
 
@@ -195,22 +192,24 @@ def _verdict(model: str, records: list[dict]) -> dict:
     }
 
 
-def _of_features(scene: Scene) -> Iterator[Notice]:
+def _beyond_the_segments(scene: Scene) -> Iterator[Notice]:
     """Which models answer for the plain part only."""
-    if not scene.features:
+    shape = shapes(scene)
+    if shape[0] == ROUND:
         return
-    names = ", ".join(f'{f.what} "{f.name}"' for f in scene.features)
+    names = extras(scene)
     yield Notice(
         "fact",
         (),
         f"not of revolution: {names}; all that is told of the shaft is of its plain part",
     )
-    blind = tuple(m for m in everything() if LADDER[m].features == "none")
+    holds = [r for r in LADDER if set(shape) & set(r.shapes)]
+    blind = tuple(m for m in everything() if LADDER[m] not in holds)
     yield Notice(
         "avoid",
         blind,
         f"the scene has {names}, of which a model of revolution knows nothing: it would answer for "
-        "the plain part; use corrected, or solid",
+        f"the plain part; use {', or '.join(r.name for r in holds)}",
     )
 
 
