@@ -22,7 +22,7 @@ from solidgear.fidelity.rung import (
     Later,
     Rung,
 )
-from solidgear.scene.shaft import CUT, ROUND
+from solidgear.scene.shaft import CUT, PART, ROUND
 
 LADDER = Ladder(
     Rung(
@@ -145,7 +145,7 @@ LADDER = Ladder(
             singular=True,
         ),
         section_ties=False,
-        shapes=(ROUND, CUT),
+        shapes=(ROUND, CUT, PART),
         beyond_round={"element": "tet10"},
         mass_tolerance=1e-3,
         series=Later("solidgear.fidelity.series", "solid_series"),

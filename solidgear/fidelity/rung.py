@@ -165,7 +165,7 @@ class Rung:
                 f"the {self.title} is of revolution and the scene has {extras(scene)}: "
                 "it would answer for the plain part"
             )
-        return f"the {self.title} is made for features, and the scene has none"
+        return f"the {self.title} is made for features cut out of segments, and the scene has none"
 
     def meshes_of(self, scene: Any, options: Mapping[str, Any]) -> Sequence:
         """Meshes for a scene, coarse to fine; see ``meshes``.
@@ -176,8 +176,13 @@ class Rung:
         options : mapping
             Builder options that were asked for.
         """
+        from solidgear.fidelity.levels import Sequence
+
         assert self.meshes is not None  # asked of rungs that have them
-        return self.meshes(self.given(scene, options))
+        given = self.given(scene, options)
+        if getattr(getattr(scene, "body", None), "one_mesh", False):
+            return Sequence((given,), True, False)
+        return self.meshes(given)
 
     def given(self, scene: Any, options: Mapping[str, Any]) -> dict[str, Any]:
         """Options for the builder of a scene: those asked for over those of its shape.

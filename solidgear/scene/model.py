@@ -15,6 +15,7 @@ from pydantic import Field, model_validator
 
 from solidgear.errors import SceneError
 from solidgear.scene.bearing_stiffness import stiffness_entries
+from solidgear.scene.body_file import BodyFile
 from solidgear.scene.catalogue import BearingLoad
 from solidgear.scene.features import Feature, feature_problems
 from solidgear.scene.parts import STEEL, Material, Model, Segment
@@ -95,6 +96,8 @@ class Scene(Model):
     masses : tuple of PointMass
     features : tuple of Keyway, Flat or CrossHole
         What is cut out of the shaft and is not of revolution.
+    body : BodyFile or None
+        The part from a file of which the segments are the round part.
     housing_axial : float or None
         Spring along y between the common bearing housing and ground, N/m.
     port : Port
@@ -128,6 +131,7 @@ class Scene(Model):
     bearings: tuple[Bearing, ...] = ()
     masses: tuple[PointMass, ...] = ()
     features: tuple[Feature, ...] = ()
+    body: BodyFile | None = None
     housing_axial: AxialSpring | None = None
     port: Port
     load: BearingLoad | None = None
@@ -209,8 +213,10 @@ class Scene(Model):
 
     @property
     def plain(self) -> Scene:
-        """The same scene without features: a body of revolution."""
-        return self.with_changes(features=()) if self.features else self
+        """The same scene as its segments alone: a body of revolution."""
+        if not self.features and self.body is None:
+            return self
+        return self.with_changes(features=(), body=None)
 
     @property
     def steps(self) -> tuple[float, ...]:
@@ -375,8 +381,9 @@ class Scene(Model):
             for key in ("catalogue", "hold", "face"):
                 if row[key] is None:
                     del row[key]
-        if self.load is None:
-            del data["load"]
+        for key in ("load", "body"):
+            if data[key] is None:
+                del data[key]
         for row, mass in zip(data.get("masses", ()), self.masses):
             carrier = next(s for s in self.stations if s.name == mass.station)
             row |= {"y": carrier.y, "lo": carrier.lo, "hi": carrier.hi}

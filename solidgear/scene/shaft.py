@@ -49,9 +49,10 @@ def shapes(scene: Shaft) -> tuple[str, ...]:
     >>> shapes(Scene.from_parts([Segment.cylinder("rod", length=0.3, diameter=0.06)]))
     ('round',)
     """
-    if getattr(scene, "features", ()):
-        return (CUT,)
-    return (ROUND,)
+    body = getattr(scene, "body", None)
+    if body is not None:
+        return (PART, ROUND) if body.round else (PART,)
+    return (CUT,) if getattr(scene, "features", ()) else (ROUND,)
 
 
 def extras(scene: Shaft) -> str:
@@ -61,4 +62,6 @@ def extras(scene: Shaft) -> str:
     ----------
     scene : Shaft
     """
-    return ", ".join(f'{f.what} "{f.name}"' for f in getattr(scene, "features", ()))
+    body = getattr(scene, "body", None)
+    more = (*getattr(scene, "features", ()), *([body] if body is not None else []))
+    return ", ".join(f'{one.what} "{one.name}"' for one in more)
