@@ -4,6 +4,7 @@ return, ends that one.
 
 from __future__ import annotations
 
+import importlib
 import os
 import pickle
 import subprocess
@@ -55,7 +56,7 @@ def apart(function: Callable, *arguments: Any, seconds: float, memory_mb: float 
     place = os.pathsep.join(filter(None, (_ROOT, os.environ.get("PYTHONPATH"))))
     with tempfile.TemporaryDirectory(prefix="solidgear") as folder:
         given, made = Path(folder) / "given", Path(folder) / "made"
-        given.write_bytes(pickle.dumps((function, arguments, memory_mb)))
+        given.write_bytes(pickle.dumps((_name(function), arguments, memory_mb)))
         try:
             # what the library prints is no message of ours
             done = subprocess.run(
@@ -77,12 +78,22 @@ def apart(function: Callable, *arguments: Any, seconds: float, memory_mb: float 
     return value
 
 
+def _name(function: Callable) -> tuple[str, str]:
+    """Module and name of a function; of one that is run as a script, its module."""
+    module = function.__module__
+    if module == "__main__":
+        spec = getattr(sys.modules["__main__"], "__spec__", None)
+        module = spec.name if spec is not None else module
+    return module, function.__qualname__
+
+
 def _serve() -> None:
     """In the process itself: call what was given and leave what it made."""
     given, made = (Path(name) for name in sys.argv[1:3])
-    function, arguments, memory_mb = pickle.loads(given.read_bytes())
+    (module, name), arguments, memory_mb = pickle.loads(given.read_bytes())
     _limit(memory_mb)
     try:
+        function = getattr(importlib.import_module(module), name)
         out = (True, function(*arguments))
     except Exception as error:
         out = (False, error)
