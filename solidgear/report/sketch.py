@@ -50,14 +50,8 @@ def draw(scene: Mapping[str, Any]) -> Any:
     pen = _Pen(ax, left, inch, enlarged, top)
     for s in segments:
         pen.segment(s)
-    ax.plot(
-        [left - 0.3, left + length * inch + 0.3],
-        [0, 0],
-        color=INK,
-        lw=0.8,
-        dashes=(12, 3, 2, 3),
-        zorder=4,
-    )
+    ends = [left - 0.3, left + length * inch + 0.3]
+    ax.plot(ends, [0, 0], color=INK, lw=0.8, dashes=(12, 3, 2, 3), zorder=4)
     for cut in scene.get("features") or []:
         pen.feature(cut, segments)
     for b in scene.get("bearings") or []:
@@ -97,17 +91,22 @@ def draw(scene: Mapping[str, Any]) -> Any:
             fontsize=8,
             style="italic",
         )
-    if is_number(scene.get("housing_axial")):
-        ax.text(
-            0.15,
-            -top - 1.04,
-            "not drawn: housing on\nan axial spring",
-            va="center",
-            fontsize=8,
-            style="italic",
-        )
+    for x, side, note in _notes(scene):
+        how = {"ha": side, "va": "center", "fontsize": 8, "style": "italic"}
+        ax.text(x, -top - 1.04, note, parse_math=False, **how)
     _legend(ax, segments, scene, -below + 0.1)
     return figure
+
+
+def _notes(scene: Mapping) -> list[tuple[float, str, str]]:
+    """What is not drawn: place, side and text."""
+    notes = []
+    if is_number(scene.get("housing_axial")):
+        notes.append((0.15, "left", "not drawn: housing on\nan axial spring"))
+    if body := scene.get("body"):
+        share = f"{100 * body['round_share']:.3g} % of its surface"
+        notes.append((WIDTH - 0.15, "right", f"round part of\n{body['name']},\n{share}"))
+    return notes
 
 
 def _marks(scene: Mapping, length: float) -> list[float]:
