@@ -1,6 +1,6 @@
 """Writes shafts as STEP files: `geometry/shaft_step.step` when run, others for tests.
 
-    python -m validation.step_parts
+python -m validation.step_parts
 """
 
 from __future__ import annotations
@@ -128,6 +128,29 @@ def shaft_step() -> tuple[list[Segment], list[Any]]:
         name="key", segment="right", y="85 mm", length="36 mm", width="12 mm", depth="5 mm"
     )
     return segments, [key]
+
+
+def write_two(path: str) -> None:
+    """Write two cylinders that do not touch."""
+    gmsh = import_gmsh()
+    with Session(gmsh):
+        for y in (0.0, 200.0):
+            gmsh.model.occ.addCylinder(0, y, 0, 0, 100, 0, 20)
+        gmsh.model.occ.synchronize()
+        gmsh.write(path)
+
+
+def write_open(path: str) -> None:
+    """Write the lateral face of a cylinder and one of its ends."""
+    gmsh = import_gmsh()
+    with Session(gmsh):
+        occ = gmsh.model.occ
+        solid = occ.addCylinder(0, 0, 0, 0, 100, 0, 20)
+        occ.remove([(3, solid)])
+        occ.synchronize()
+        occ.remove([occ.getEntities(2)[-1]])
+        occ.synchronize()
+        gmsh.write(path)
 
 
 def main() -> None:

@@ -222,6 +222,7 @@ def _with_middles(mesh: Any, corners, edges, middles) -> Any:
     own = np.sort(mesh.edges.astype(np.int64), axis=0)
     doflocs = mesh.doflocs.copy()
     at = first[np.searchsorted(key, own[0] * total + own[1])]
+    # nodes are listed cell by cell for each edge
     doflocs[:, mesh.dofs.edge_dofs[0]] = middles.reshape(3, -1)[:, at]
     return replace(mesh, doflocs=doflocs)
 

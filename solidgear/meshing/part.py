@@ -56,8 +56,8 @@ def recognise(table: BodyTable, folder: Path) -> Recognised:
         unit = _unit(table, content)
         foot = _foot(table)
         place = Placing(unit, TURNS[table.axis], foot)
-        points, triangles, volume = _surface(table, path, place)
-        _sizes(table, points, volume)
+        points, triangles, volume, own_mesh = _surface(table, path, place)
+        _sizes(table, points)
         found = round_part(points, triangles)
         if not found.share >= LEAST_ROUND:
             raise SceneError(_not_round(table, place, points, triangles, found), path=("axis",))
@@ -85,6 +85,7 @@ def recognise(table: BodyTable, folder: Path) -> Recognised:
         volume=volume,
         round_share=found.share,
         round_volume=volume_of(walls) / volume,  # type: ignore[arg-type]
+        **own_mesh,
     )
     cylinders = tuple(
         (s.r0 + s.r1, s.y0 - start, s.y1 - start) for s in found.surfaces if s.r0 == s.r1
@@ -154,21 +155,25 @@ def _foot(table: BodyTable) -> Triple:
 
 
 def _surface(table: BodyTable, path: Path, place: Placing):
-    """Points and triangles on the surface in the scene, and the volume of the part."""
+    """Points and triangles on the surface in the scene, the volume of the part, and what is known
+    of its own mesh.
+    """
     try:
         if table.step is not None:
             seen = apart(look, str(path), place, seconds=LOOK_SECONDS)
-            return seen.points, seen.triangles, seen.volume
+            return seen.points, seen.triangles, seen.volume, {}
         found = apart(mesh_from, str(path), place, seconds=LOOK_SECONDS)
     except (ApartError, MemoryError) as error:
         raise MeshError(
             f"cannot be read: the reader {error or 'ran out of memory'}; the file is broken or too "
             "large"
         ) from None
-    return *found.skin(), found.volume
+    mesh = found.mesh
+    counts = tuple(int(a.shape[1]) for a in (mesh.p, mesh.edges, mesh.facets, mesh.t))
+    return *found.skin(), found.volume, {"element": found.element, "counts": counts}
 
 
-def _sizes(table: BodyTable, points, volume: float) -> None:
+def _sizes(table: BodyTable, points) -> None:
     """Hold length, largest diameter and mass against what the table says."""
     length = float(np.ptp(points[1]))
     diameter = float(2 * np.hypot(points[0], points[2]).max())

@@ -91,22 +91,21 @@ def draw(scene: Mapping[str, Any]) -> Any:
             fontsize=8,
             style="italic",
         )
-    for x, side, note in _notes(scene):
-        how = {"ha": side, "va": "center", "fontsize": 8, "style": "italic"}
-        ax.text(x, -top - 1.04, note, parse_math=False, **how)
+    if body := scene.get("body"):
+        note = f"round part of {body['name']}, {100 * body['round_share']:.3g} % of its surface"
+        how = {"va": "top", "fontsize": 8, "style": "italic", "parse_math": False}
+        ax.text(0.15, above - 0.1, note, **how)
+    if is_number(scene.get("housing_axial")):
+        ax.text(
+            0.15,
+            -top - 1.04,
+            "not drawn: housing on\nan axial spring",
+            va="center",
+            fontsize=8,
+            style="italic",
+        )
     _legend(ax, segments, scene, -below + 0.1)
     return figure
-
-
-def _notes(scene: Mapping) -> list[tuple[float, str, str]]:
-    """What is not drawn: place, side and text."""
-    notes = []
-    if is_number(scene.get("housing_axial")):
-        notes.append((0.15, "left", "not drawn: housing on\nan axial spring"))
-    if body := scene.get("body"):
-        share = f"{100 * body['round_share']:.3g} % of its surface"
-        notes.append((WIDTH - 0.15, "right", f"round part of\n{body['name']},\n{share}"))
-    return notes
 
 
 def _marks(scene: Mapping, length: float) -> list[float]:

@@ -122,6 +122,10 @@ class BodyFile(Model):
         Share of its surface, faces across the axis left out, that is of revolution.
     round_volume : float
         Of the segments over that of the part.
+    element : str
+        Of a mesh file.
+    counts : tuple of int or None
+        Vertices, edges, faces and cells of a mesh file.
 
     Raises
     ------
@@ -146,6 +150,8 @@ class BodyFile(Model):
     volume: float
     round_share: float
     round_volume: float
+    element: str = ""
+    counts: tuple[int, int, int, int] | None = None
 
     @property
     def what(self) -> str:
