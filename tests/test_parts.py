@@ -2,6 +2,7 @@
 
 import math
 import pickle
+from dataclasses import replace
 from pathlib import Path
 
 import meshio
@@ -20,7 +21,7 @@ from validation.step_parts import shaft_step, with_unit, write_step
 
 ROOT = Path(__file__).parent.parent
 SCENE = ROOT / "geometry" / "shaft_step.toml"
-COARSE = {"refinement": 0.3}
+COARSE = {"refinement": 0.25}
 
 
 def numbers(body, scene):
@@ -31,10 +32,10 @@ def numbers(body, scene):
 
 def scene_text(**body):
     """The shipped scene with another [body]."""
-    head, rest = SCENE.read_text().split("[body]")
+    head, rest = SCENE.read_text().split("\n[body]\n")
     tail = rest[rest.index("# A seat is") :]
     lines = "".join(f"{k} = {v if isinstance(v, list) else repr(v)}\n" for k, v in body.items())
-    return f"{head}[body]\n{lines.replace(chr(39), chr(34))}\n{tail}"
+    return f"{head}\n[body]\n{lines.replace(chr(39), chr(34))}\n{tail}"
 
 
 def load(folder, **body):
@@ -111,7 +112,7 @@ def load_pinion(folder, **body):
     return sg.load(path)
 
 
-@pytest.mark.parametrize("unit, axis", [("inch", "z"), ("m", "x")])
+@pytest.mark.parametrize("unit, axis", [("inch", "z")])
 def test_unit_and_axis_change_no_number(unit, axis, shipped, tmp_path):
     """The same cuts and sizes: what differs is the mesher's way around a turned part, less than
     the mesh leaves, which is 1 % here.
@@ -123,8 +124,8 @@ def test_unit_and_axis_change_no_number(unit, axis, shipped, tmp_path):
 
 
 def test_a_part_of_revolution_is_its_segments(tmp_path):
-    """Every model fits, and 3D tetrahedra meet the harmonic solid: what is left is their mesh,
-    1.2 % of C_zz and 0.4 % of a frequency, and always too stiff.
+    """Every model fits, and 3D tetrahedra meet the harmonic solid: what is left is their coarse
+    mesh, half a per cent of C_zz and a quarter of a frequency, and always too stiff.
     """
     segments, _ = shaft_step()
     write_step(tmp_path / "part.step", segments)
@@ -132,10 +133,11 @@ def test_a_part_of_revolution_is_its_segments(tmp_path):
     assert scene.body.round
     assert not LADDER["harmonic"].unfit(scene)
     assert LADDER["corrected"].unfit(scene)
-    exact = numbers(sg.build(scene, "harmonic"), scene)
-    part = numbers(sg.build(scene, "solid", **COARSE), scene)
+    # the first axial mode and the first bending pair, of which the harmonic solid has one
+    exact = numbers(sg.build(scene, "harmonic"), scene)[:3]
+    part = numbers(sg.build(scene, "solid", **COARSE), scene)[:3]
     error = part / exact - 1
-    assert -0.012 < error[0] < 0 and (0 < error[1:]).all() and (error[1:] < 6e-3).all()
+    assert -7e-3 < error[0] < 0 and (0 < error[1:]).all() and (error[1:] < 4e-3).all()
 
 
 def test_rungs_say_whether_they_hold_a_part(shipped):
@@ -184,6 +186,8 @@ def test_other_elements_of_a_mesh_file(element, tmp_path):
     coarse = {"layers": 0, "edge_layers": 0, "radial_layers": 0, "relative_size": 1.0}
     options = {"refinement": 0.3} if element == "tet4" else {**coarse, "around": 8}
     body = sg.build(plain, "solid", element=element, **options)
+    # no twins are promised by a file
+    body = replace(body, mesh=body.mesh | {"round": False, "pair_tolerance": 0.0})
     written(body, tmp_path / "part.vtu")
     scene = load(tmp_path, mesh="part.vtu", unit="mm")
     assert scene.body.element == element
@@ -201,12 +205,12 @@ def test_a_seat_ends_where_it_is_said_to(tmp_path):
     from solidgear.meshing.tetrahedra import tetrahedra
 
     cuts = sorted({y for s in scene.stations for y in (s.lo, s.hi)})
-    sizes = {"size": 0.008, "graded_size": 0.003}
+    sizes = {"size": 0.012, "graded_size": 0.006}
     cut, uncut = (tetrahedra(scene.segments, (), c, **sizes).mesh for c in (cuts, ()))
     reference = numbers(solid_body(cut, scene, element="tet10"), scene)
     clipped = numbers(solid_body(uncut, scene, element="tet10"), scene)
     whole = numbers(solid_body(uncut, scene, element="tet10", clipped=False), scene)
-    assert abs(clipped[0] / reference[0] - 1) < 3e-3
+    assert abs(clipped[0] / reference[0] - 1) < 1.5e-3
     assert abs(whole[0] / reference[0] - 1) > 1e-2
     # where faces end at the seats there is nothing to clip
     same = numbers(solid_body(cut, scene, element="tet10", clipped=False), scene)

@@ -123,6 +123,8 @@ def _unit(table: BodyTable, content: bytes) -> float:
     if b"END-ISO-10303-21" not in content[-2000:]:
         raise MeshError('is cut off: it does not end with "END-ISO-10303-21;"')
     said = {unit for unit in map(_unit_of, _LENGTHS.findall(content)) if unit}
+    if "inch" in said:  # which is told in another unit, and that one is there too
+        said = {"inch"}
     if len(said) != 1:
         what = (
             f"several units of length ({', '.join(sorted(said))})" if said else "no unit of length"
@@ -214,11 +216,16 @@ def _not_round(table: BodyTable, place: Placing, points, triangles, found: Round
     words = f"{100 * found.share:.0f} % of the surface is round about this axis"
     if shares[best] >= LEAST_ROUND:
         return f'{words}, and {100 * shares[best]:.0f} % about "{best}"'
+    # points on a circle miss its outermost places by a little, and axes lie at round numbers
     middle = (raw.max(axis=1) + raw.min(axis=1)) / 2
-    x, y, z = (float(v) for v in middle)
-    off = round_part(Placing(1.0, place.turn, (x, y, z)).of(raw), triangles).share
+    off = 0.0
+    for digits in (4, 5, 8):
+        x, y, z = (round(float(v), digits) for v in middle)
+        off = round_part(Placing(1.0, place.turn, (x, y, z)).of(raw), triangles).share
+        if off >= LEAST_ROUND:
+            break
     if off >= LEAST_ROUND:
-        x, y, z = 1e3 * middle
+        x, y, z = 1e3 * x, 1e3 * y, 1e3 * z
         return (
             f"{words}, which goes through ({', '.join(f'{1e3 * v:.4g}' for v in place.foot)}) mm of "
             f"the file, and {100 * off:.0f} % about one through ({x:.5g}, {y:.5g}, {z:.5g}) mm: "

@@ -181,7 +181,7 @@ def _no_solid(gmsh, solids: list[int]) -> str:
 
 
 def _mm(at) -> str:
-    return "({:.4g}, {:.4g}, {:.4g}) mm".format(*(1e3 * float(v) for v in at))
+    return "({:.4g}, {:.4g}, {:.4g}) mm".format(*(round(1e3 * float(v), 6) + 0.0 for v in at))
 
 
 def _extent(gmsh) -> float:

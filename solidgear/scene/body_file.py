@@ -25,7 +25,7 @@ LEAST_SEAT = 0.5
 #: relative difference of the mass of a part from what it is checked against
 MASS_CHECK = 1e-2
 #: relative difference of diameters that are one
-SAME_DIAMETER = 2e-4
+SAME_DIAMETER = 1e-3
 #: share of the surface and relative difference of volume to which a part is its segments
 ALL_ROUND, SAME_VOLUME = 1 - 1e-9, 1e-6
 
