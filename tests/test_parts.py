@@ -73,7 +73,11 @@ PINION = sg.load(ROOT / "geometry" / "pinion_keyed.toml")
 
 @pytest.mark.parametrize(
     "unit, axis, shift",
-    [("inch", "z", (0, 0, 0)), ("m", "-x", (0, 0, 0)), ("mm", "y", (0.05, 0.3, -0.02))],
+    [
+        ("inch", "z", (0, 0, 0)),
+        pytest.param("m", "-x", (0, 0, 0), marks=pytest.mark.slow),
+        ("mm", "y", (0.05, 0.3, -0.02)),
+    ],
 )
 def test_a_pinion_out_and_in_again(unit, axis, shift, tmp_path):
     """Cone, backcone, shaft and keyway, in three units, turned and shifted."""
@@ -112,7 +116,8 @@ def load_pinion(folder, **body):
     return sg.load(path)
 
 
-@pytest.mark.parametrize("unit, axis", [("inch", "z")])
+@pytest.mark.slow
+@pytest.mark.parametrize("unit, axis", [("inch", "z"), ("m", "-x")])
 def test_unit_and_axis_change_no_number(unit, axis, shipped, tmp_path):
     """The same cuts and sizes: what differs is the mesher's way around a turned part, less than
     the mesh leaves, which is 1 % here.
@@ -177,7 +182,9 @@ def test_a_mesh_file_gives_the_same_numbers(ending, digits, shipped, tmp_path):
     )
 
 
-@pytest.mark.parametrize("element", ["hex8", "hex20", "tet4"])
+@pytest.mark.parametrize(
+    "element", ["hex20", *(pytest.param(e, marks=pytest.mark.slow) for e in ("hex8", "tet4"))]
+)
 def test_other_elements_of_a_mesh_file(element, tmp_path):
     """The same as the in-memory mesh, whose seats are whole faces."""
     segments, _ = shaft_step()
@@ -411,3 +418,16 @@ def test_the_shipped_scene_has_a_sequence_of_meshes(shipped):
     plan = LADDER["solid"].meshes_of(shipped[0], {})
     assert len(plan.levels) > 3 and not plan.layered
     assert all(level["element"] == "tet10" for level in plan.levels)
+
+
+@pytest.mark.parametrize(
+    "cases, seed", [(10, 7), pytest.param(30, 8, marks=pytest.mark.slow)], ids=["few", "many"]
+)
+def test_broken_files_end_in_a_sentence(cases, seed, tmp_path):
+    """Nothing that a process of its own does not catch, and no traceback."""
+    from validation.fuzz_parts import campaign, cut_off, emptied, garbled, lines_left_out, rescaled
+
+    quick = (cut_off, emptied, garbled, lines_left_out, rescaled)
+    found = list(campaign(cases, seed, tmp_path, changes=quick))
+    assert not [one for one in found if one.fault]
+    assert sum(one.refused for one in found) > cases / 2

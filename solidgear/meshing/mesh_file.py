@@ -146,14 +146,17 @@ def _read(path: str) -> tuple[np.ndarray, str, np.ndarray]:
 def _parsed(path: str, ending: str) -> Any:
     import importlib
 
+    import meshio
+
     read: Callable = importlib.import_module(f"meshio.{FORMATS[ending]}").read
     try:
         return read(path)
     except OSError as error:
         raise MeshError(f"cannot be read ({error.strerror or error})") from error
     except (Exception, SystemExit) as error:  # whatever a parser meets in a file that is none
-        what = " ".join(str(error).split())[:120] or type(error).__name__
-        raise MeshError(f"cannot be read as {FORMATS[ending]} ({what})") from error
+        said = str(error) if isinstance(error, (ValueError, meshio.ReadError)) else ""
+        what = f" ({' '.join(said.split())[:120]})" if said else ": it is broken or cut off"
+        raise MeshError(f"cannot be read as {FORMATS[ending]}{what}") from error
 
 
 def _sound(points, cells, corners: int) -> None:

@@ -108,7 +108,7 @@ def _read(gmsh, path: str, place: Placing) -> int:
         occ.importShapes(path, highestDimOnly=False)
         occ.synchronize()
     except Exception as error:
-        raise MeshError(f"cannot be read as STEP ({error})") from error
+        raise MeshError("cannot be read as STEP: it is broken or cut off") from error
     solids = [tag for _, tag in gmsh.model.getEntities(3)]
     if len(solids) != 1:
         raise MeshError(_no_solid(gmsh, solids))
@@ -226,7 +226,9 @@ def _triangles(gmsh) -> tuple[np.ndarray, np.ndarray]:
     corners = [n.reshape(-1, 3) for kind, n in zip(types, nodes) if kind == 2]
     if not corners:
         return np.zeros((3, 0)), np.zeros((3, 0), int)
-    return places.reshape(-1, 3).T, at[np.concatenate(corners)].T
+    # points that belong to no face are none of the part
+    used, triangles = np.unique(at[np.concatenate(corners)].T, return_inverse=True)
+    return places.reshape(-1, 3).T[:, used], triangles.reshape(3, -1)
 
 
 def mesh(path: str, place: Placing, plan: dict[str, Any]):
