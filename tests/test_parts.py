@@ -139,7 +139,7 @@ def test_a_part_of_revolution_is_its_segments(tmp_path):
     assert not LADDER["harmonic"].unfit(scene)
     assert LADDER["corrected"].unfit(scene)
     # the first axial mode and the first bending pair, of which the harmonic solid has one
-    exact = numbers(sg.build(scene, "harmonic"), scene)[:3]
+    exact = numbers(sg.build(scene, "harmonic", order=4, layers=2, edge_layers=2), scene)[:3]
     part = numbers(sg.build(scene, "solid", **COARSE), scene)[:3]
     error = part / exact - 1
     assert -7e-3 < error[0] < 0 and (0 < error[1:]).all() and (error[1:] < 4e-3).all()
@@ -214,14 +214,16 @@ def test_a_seat_ends_where_it_is_said_to(tmp_path):
     cuts = sorted({y for s in scene.stations for y in (s.lo, s.hi)})
     sizes = {"size": 0.012, "graded_size": 0.006}
     cut, uncut = (tetrahedra(scene.segments, (), c, **sizes).mesh for c in (cuts, ()))
-    reference = numbers(solid_body(cut, scene, element="tet10"), scene)
-    clipped = numbers(solid_body(uncut, scene, element="tet10"), scene)
-    whole = numbers(solid_body(uncut, scene, element="tet10", clipped=False), scene)
-    assert abs(clipped[0] / reference[0] - 1) < 1.5e-3
-    assert abs(whole[0] / reference[0] - 1) > 1e-2
+
+    def compliance(mesh, clipped):
+        body = solid_body(mesh, scene, element="tet10", clipped=clipped)
+        return sg.condense(body, scene, port="gear").compliance[2, 2]
+
+    reference = compliance(cut, True)
+    assert abs(compliance(uncut, True) / reference - 1) < 1.5e-3
+    assert abs(compliance(uncut, False) / reference - 1) > 1e-2
     # where faces end at the seats there is nothing to clip
-    same = numbers(solid_body(cut, scene, element="tet10", clipped=False), scene)
-    assert same == pytest.approx(reference, rel=1e-9)
+    assert compliance(cut, False) == pytest.approx(reference, rel=1e-9)
 
 
 def test_the_area_of_a_clipped_seat(tmp_path):
@@ -421,7 +423,7 @@ def test_the_shipped_scene_has_a_sequence_of_meshes(shipped):
 
 
 @pytest.mark.parametrize(
-    "cases, seed", [(10, 7), pytest.param(30, 8, marks=pytest.mark.slow)], ids=["few", "many"]
+    "cases, seed", [(6, 7), pytest.param(30, 8, marks=pytest.mark.slow)], ids=["few", "many"]
 )
 def test_broken_files_end_in_a_sentence(cases, seed, tmp_path):
     """Nothing that a process of its own does not catch, and no traceback."""

@@ -93,7 +93,7 @@ def draw(scene: Mapping[str, Any]) -> Any:
         )
     if body := scene.get("body"):
         note = f"round part of {body['name']}, {100 * body['round_share']:.3g} % of its surface"
-        how = {"va": "top", "fontsize": 8, "style": "italic", "parse_math": False}
+        how: dict[str, Any] = {"va": "top", "fontsize": 8, "style": "italic", "parse_math": False}
         ax.text(0.15, above - 0.1, note, **how)
     if is_number(scene.get("housing_axial")):
         ax.text(
