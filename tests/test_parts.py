@@ -116,6 +116,15 @@ def load_pinion(folder, **body):
     return sg.load(path)
 
 
+@pytest.mark.parametrize("axis", TURNS)
+def test_the_axis_named_is_turned_to_y(axis):
+    """By a rotation: a mirror image would have keyways on the other side."""
+    turn, named = np.array(TURNS[axis]), np.zeros(3)
+    named["xyz".index(axis[-1])] = -1.0 if axis.startswith("-") else 1.0
+    assert (turn @ named == [0, 1, 0]).all()
+    assert (turn @ turn.T == np.eye(3)).all() and np.linalg.det(turn) == pytest.approx(1.0)
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("unit, axis", [("inch", "z"), ("m", "-x")])
 def test_unit_and_axis_change_no_number(unit, axis, shipped, tmp_path):
