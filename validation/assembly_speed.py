@@ -85,7 +85,11 @@ def solid_case(scene, element, options):
         )
 
     return Case(
-        lambda: solid_matrices._matrices(geometry, scene), basis, stiffness, mass, slice(None)
+        lambda: solid_matrices._matrices(geometry, [s.material for s in scene.segments]),
+        basis,
+        stiffness,
+        mass,
+        slice(None),
     )
 
 

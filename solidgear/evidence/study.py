@@ -18,16 +18,15 @@ from typing import TYPE_CHECKING, Any
 from solidgear.body import Body, Supports, as_supports
 from solidgear.errors import SolidgearError
 from solidgear.evidence.answer import ENOUGH, Answer, Numbers, answered
-from solidgear.evidence.bands import Band, layered_bands, refined_bands
+from solidgear.evidence.bands import Band
 from solidgear.evidence.quantities import JUDGED, change
+from solidgear.evidence.sequence_bands import sequence_bands
 from solidgear.evidence.ties import SCENE, SECTION, rigid_seats
 from solidgear.fidelity import build
-from solidgear.fidelity.edges import sharpest_edge
 from solidgear.fidelity.ladder import LADDER
 from solidgear.fidelity.levels import HEAVY, LIGHT_JUDGE, Sequence
 from solidgear.fidelity.options import ATTACHMENTS
 from solidgear.machine.meter import Meter
-from solidgear.meshing.corners import sharpest_corner
 from solidgear.solve.modes import ModeSet
 from solidgear.solve.statics import Condensed
 
@@ -36,10 +35,6 @@ if TYPE_CHECKING:
 
 log = logging.getLogger(__name__)
 Progress = Callable[[str], None]
-
-#: exponent at the end of a rigid seat, a clamp on a smooth surface (Williams 1952, clamped-free at
-#: 180 degrees)
-RIGID_EDGE = 0.5
 
 
 @dataclass
@@ -278,16 +273,11 @@ def _bands(
         if len(known) < 2 or tie not in solved[-1]:
             continue
         values, solver = [s[tie].quantities for s in known], known[-1][tie].solver
-        if plan.layered:
-            tied = scene if tie == SCENE else scene.with_attachment("section")
-            edge = sharpest_edge(tied)
-            out[tie] = layered_bands(values, solver, factors, edge=edge, around=around.get(tie))
-        elif len(known) > 2:
-            sizes = [f["mesh"]["representative_size"] for f in facts[-3:]]
-            held = any(s.attachment == "rigid" for s in scene.stations)
-            exponent = min(sharpest_corner(scene)[1], RIGID_EDGE if held else 1.0)
-            if sizes[0] > sizes[1] > sizes[2]:
-                out[tie] = refined_bands(values, solver, sizes, exponent, singular=factors.singular)
+        sizes = [f["mesh"].get("representative_size") for f in facts]
+        tied = scene if tie == SCENE else scene.with_attachment("section")
+        found = sequence_bands(tied, plan, factors, values, solver, sizes, around.get(tie))
+        if found:
+            out[tie] = found
     return out
 
 

@@ -60,9 +60,7 @@ def build(scene: Shaft, fidelity: str, **options) -> Body:
     if unfit:
         fit = [r.name for r in LADDER if r.build is not None and not r.unfit(scene)]
         raise SolidgearError(f"{unfit}; use {' or '.join(fit)}")
-    if getattr(scene, "features", ()):
-        options = {**rung.featured, **options}
-    options = rung.checked(options)
+    options = rung.checked(rung.given(scene, options))
     refuse_too_large(scene, fidelity, options)
     assert rung.build is not None  # as every rung of LADDER.bodies
     body = rung.build(scene, **{**rung.preset, **options})

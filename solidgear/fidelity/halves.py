@@ -53,7 +53,7 @@ def half_blocks(
     SolidgearError
         If no face lies on a seat.
     """
-    k, m = _matrices(mesh, scene)
+    k, m = _matrices(mesh, [segment.material for segment in scene.segments])
     m = m.tocsr()
     n = mesh.nodes.shape[1]
     rigid, y = rigid_motions(mesh.nodes), np.repeat(mesh.nodes[1], 3)

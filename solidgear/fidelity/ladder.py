@@ -22,6 +22,7 @@ from solidgear.fidelity.rung import (
     Later,
     Rung,
 )
+from solidgear.scene.shaft import CUT, PART, ROUND
 
 LADDER = Ladder(
     Rung(
@@ -115,7 +116,7 @@ LADDER = Ladder(
         ),
         share=3.0,
         section_ties=False,
-        features="only",
+        shapes=(CUT,),
         mass_tolerance=1e-3,
         series=Later("solidgear.fidelity.series", "corrected_series"),
         most_seats=12,
@@ -144,8 +145,8 @@ LADDER = Ladder(
             singular=True,
         ),
         section_ties=False,
-        features="any",
-        featured={"element": "tet10"},
+        shapes=(ROUND, CUT, PART),
+        beyond_round={"element": "tet10"},
         mass_tolerance=1e-3,
         series=Later("solidgear.fidelity.series", "solid_series"),
         most_seats=12,

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 from solidgear.errors import SolidgearError, nearest, show
 from solidgear.fidelity.options import Option, checked
+from solidgear.scene.shaft import ROUND, extras, shapes
 
 if TYPE_CHECKING:
     from solidgear.body import Body
@@ -116,11 +117,10 @@ class Rung:
     series : callable, optional
         ``series(scene, full)`` gives the lines of a chart of error against cost; by default its
         one usual mesh.
-    features : {'none', 'any', 'only'}
-        Whether its body holds features that are not of revolution: it cannot, it may, or it is
-        made for them alone.
-    featured : mapping
-        Options of the builder for a scene with features.
+    shapes : tuple of {'round', 'cut', 'part'}
+        What its body holds: segments, features cut out of them, a part from a file.
+    beyond_round : mapping
+        Options of the builder for a scene that is more than its segments.
     colour, marker : str
         In charts.
     """
@@ -141,8 +141,8 @@ class Rung:
     mass_tolerance: float = 1e-9
     most_seats: int = 12
     series: Callable[[Any, bool], list[Series]] | None = None
-    features: str = "none"
-    featured: Mapping[str, Any] = field(default_factory=dict)
+    shapes: tuple[str, ...] = (ROUND,)
+    beyond_round: Mapping[str, Any] = field(default_factory=dict)
     colour: str = "#777777"
     marker: str = "P"
 
@@ -158,16 +158,14 @@ class Rung:
         ----------
         scene : Scene
         """
-        features = getattr(scene, "features", ())
-        if features and self.features == "none":
-            names = ", ".join(f'{f.what} "{f.name}"' for f in features)
+        if set(shapes(scene)) & set(self.shapes):
+            return ""
+        if ROUND in self.shapes:
             return (
-                f"the {self.title} is of revolution and the scene has {names}: "
+                f"the {self.title} is of revolution and the scene has {extras(scene)}: "
                 "it would answer for the plain part"
             )
-        if not features and self.features == "only":
-            return f"the {self.title} is made for features, and the scene has none"
-        return ""
+        return f"the {self.title} is made for features cut out of segments, and the scene has none"
 
     def meshes_of(self, scene: Any, options: Mapping[str, Any]) -> Sequence:
         """Meshes for a scene, coarse to fine; see ``meshes``.
@@ -178,9 +176,23 @@ class Rung:
         options : mapping
             Builder options that were asked for.
         """
+        from solidgear.fidelity.levels import Sequence
+
         assert self.meshes is not None  # asked of rungs that have them
-        given = self.featured if getattr(scene, "features", ()) else {}
-        return self.meshes({**given, **options})
+        given = self.given(scene, options)
+        if getattr(getattr(scene, "body", None), "one_mesh", False):
+            return Sequence((given,), True, False)
+        return self.meshes(given)
+
+    def given(self, scene: Any, options: Mapping[str, Any]) -> dict[str, Any]:
+        """Options for the builder of a scene: those asked for over those of its shape.
+
+        Parameters
+        ----------
+        scene : Scene
+        options : mapping
+        """
+        return {**({} if shapes(scene)[0] == ROUND else self.beyond_round), **options}
 
     def checked(self, options: Mapping[str, Any]) -> dict[str, Any]:
         """Options for the builder within their limits; see
@@ -245,11 +257,9 @@ class Ladder:
         return tuple(rung.name for rung in self.rungs if rung.build is not None)
 
     def fit(self, scene: Any) -> tuple[str, ...]:
-        """Those with a body of their own, without rungs that are made for features where a scene
-        has none.
-        """
-        features = bool(getattr(scene, "features", ()))
-        return tuple(n for n in self.bodies if features or self[n].features != "only")
+        """Those with a body of their own that hold the scene, or at least a plain shaft."""
+        held = {ROUND, *shapes(scene)}
+        return tuple(n for n in self.bodies if held & set(self[n].shapes))
 
     @property
     def judges(self) -> tuple[str, ...]:

@@ -7,6 +7,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from solidgear.fidelity.levels import CORRECTED
+from solidgear.scene.shaft import CUT, shapes
 
 if TYPE_CHECKING:
     from solidgear.fidelity.rung import Series
@@ -99,7 +100,7 @@ def _levels(quick: tuple, more: tuple, full: bool) -> tuple:
 
 def corrected_series(scene: Shaft, full: bool) -> list[Series]:
     """The meshes of defect correction, for a scene with features."""
-    if not getattr(scene, "features", ()):
+    if CUT not in shapes(scene):
         return []
     levels = CORRECTED if full else CORRECTED[:3]
     return [("solid", "corrected harmonic solid", [dict(level) for level in levels])]

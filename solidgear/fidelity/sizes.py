@@ -5,7 +5,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -14,6 +14,7 @@ from solidgear.fidelity.counts import KINDS, nodes, sections
 from solidgear.fidelity.size import Size
 
 if TYPE_CHECKING:
+    from solidgear.scene.body_file import BodyFile
     from solidgear.scene.shaft import Shaft
 
 MB = 2.0**20
@@ -141,6 +142,9 @@ def _planar_factor_mb(components: int, unknowns: int, entries: int) -> float:
 # ------------------------------------------------------------------------------------------------- solids
 def solid_size(scene: Shaft, given: Mapping[str, Any]) -> Size:
     """Size of a 3D solid; counted for hexahedra, estimated for tetrahedra."""
+    body = getattr(scene, "body", None)
+    if body is not None and body.counts is not None:
+        return _given_mesh(scene, given, body)
     if given["element"].startswith("tet"):
         return _tetrahedra(scene, given)
     return _hexahedra(scene, given)
@@ -199,6 +203,16 @@ def _hexahedra(scene: Shaft, given: Mapping[str, Any]) -> Size:
         np.exp(1.448) * (unknowns - bubbles) ** 1.233 * (entries / unknowns) ** 0.165 * width**0.305
     )
     return _solid(scene, given, unknowns, entries, counts[3], fill)
+
+
+def _given_mesh(scene: Shaft, given: Mapping[str, Any], body: BodyFile) -> Size:
+    """Of a mesh that is what it is: counted, but for the fill of its factor."""
+    assert body.counts is not None  # asked before
+    own = {**given, "element": body.element}
+    unknowns, entries = nodes(body.element, body.counts, 4 if body.element[0] == "h" else 3)
+    fill = np.exp(0.519) * unknowns**1.313 * (entries / unknowns) ** 0.448
+    size = _solid(scene, own, unknowns, entries, body.counts[3], fill)
+    return replace(size, lower="mesh the part coarser, or use the harmonic model of its round part")
 
 
 def _tetrahedra(scene: Shaft, given: Mapping[str, Any]) -> Size:

@@ -14,6 +14,7 @@ from solidgear.fidelity.scale import elastic_scale
 from solidgear.fidelity.solid_block import free_block, seat_facets
 from solidgear.fidelity.solid_mesh import _isoparametric
 from solidgear.meshing.grading import Grading
+from solidgear.scene.shaft import CUT, PART, ROUND, extras, shapes
 
 
 def solid(
@@ -60,7 +61,8 @@ def solid(
         Attachments to build at every station, the first being the default one; by default what the
         scene says.
     half : bool
-        For a scene with features that share a mirror plane: solve two half models.
+        For a scene with features that share a mirror plane: solve two half models. A part from a
+        file is solved whole.
 
     Returns
     -------
@@ -93,11 +95,23 @@ def solid(
             f"solid: around = {around} does not fit an O-grid; use a multiple of 4"
         )
     wanted = [(s, a) for s in scene.stations for a in (attachments or (s.attachment,))]
-    if getattr(scene, "features", ()):
-        if element != "tet10":
-            raise SolidgearError(
-                f"solid: element = {element} cannot hold features of the scene; use tet10"
-            )
+    shape = shapes(scene)[0]
+    if shape != ROUND and element != "tet10":
+        raise SolidgearError(
+            f"solid: element = {element} cannot hold {extras(scene)} of the scene; use tet10"
+        )
+    if shape == PART:
+        from solidgear.fidelity.part import part_body
+
+        return part_body(
+            scene,
+            wanted,
+            size=size,
+            graded_size=graded_size,
+            refinement=refinement,
+            around=around,
+        )
+    if shape == CUT:
         from solidgear.fidelity.featured import featured_body, meshed
 
         plan = tetrahedra_plan(

@@ -67,7 +67,12 @@ def rigid_motions(nodes: np.ndarray) -> np.ndarray:
 
 
 def free_block(
-    mesh: SolidMesh, scene, wanted: Sequence[tuple[Any, str]], facets_of: Facets
+    mesh: SolidMesh,
+    scene,
+    wanted: Sequence[tuple[Any, str]],
+    facets_of: Facets,
+    *,
+    clipped: bool = False,
 ) -> tuple[Block, list[tuple[int, float, np.ndarray]]]:
     """The free block of a mesh with the rows of its ports.
 
@@ -79,6 +84,8 @@ def free_block(
     wanted : sequence of (station, attachment)
     facets_of : callable
         From :func:`seat_facets`, say.
+    clipped : bool
+        Facets may reach beyond the ends of their seat, which then end where they are said to.
 
     Returns
     -------
@@ -92,7 +99,7 @@ def free_block(
     SolidgearError
         If no face lies on a seat.
     """
-    k, m = _matrices(mesh, scene)
+    k, m = _matrices(mesh, [segment.material for segment in scene.segments])
     n = mesh.nodes.shape[1]
     rows, ties = [], []
     for i, (station, attachment) in enumerate(wanted):
@@ -100,13 +107,17 @@ def free_block(
         if not len(facets):
             where = "section" if attachment == "section" else "seat"
             raise SolidgearError(f"port {station.name!r}: no element faces lie on its {where}")
+        within = (station.lo, station.hi) if clipped and attachment != "section" else None
         if attachment == "rigid":
             mask = np.zeros((n, 3), bool)
             mask[mesh.facet_unknowns(facets)] = True
+            if within is not None:
+                y, hair = mesh.nodes[1], 1e-7 * scene.length
+                mask[(y < within[0] - hair) | (y > within[1] + hair)] = False
             ties.append((i, station.y, mask.ravel()))
             rows.append(sp.csr_matrix((6, 3 * n)))
         else:
-            rows.append(_mean(mesh, facets, station.y, n))
+            rows.append(_mean(mesh, facets, station.y, n, within=within))
     rigid, y = rigid_motions(mesh.nodes), np.repeat(mesh.nodes[1], 3)
     ports = sp.vstack(rows).tocsr()
     return Block("full", tuple(range(6)), k, m, rigid, y, ports, None, False), ties

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
 import numpy as np
 import scipy.sparse as sp
 from skfem.quadrature import get_quadrature
@@ -12,9 +15,12 @@ from solidgear.fidelity.assembly import Pattern, Tabulation, batches, inverted, 
 from solidgear.fidelity.solid_mesh import SolidMesh
 from solidgear.frames import cross_matrix
 
+if TYPE_CHECKING:
+    from solidgear.scene import Material
 
-def _matrices(m: SolidMesh, scene):
-    """Stiffness (3n, 3n) and consistent mass of an isotropic solid."""
+
+def _matrices(m: SolidMesh, materials: Sequence[Material]):
+    """Stiffness (3n, 3n) and consistent mass of a solid of isotropic materials."""
     points, weights = _cell_rule(m.name)
     basis = Tabulation(m.element, m.element, points)
     nb, nq = basis.value.shape
@@ -27,8 +33,8 @@ def _matrices(m: SolidMesh, scene):
         9, nb * nb
     )
     is_straight, jac = straight(m.element, m.nodes[:, m.dofs])
-    for index, segment in enumerate(scene.segments):
-        nu, mu, rho = segment.material.nu, segment.material.shear_modulus, segment.material.density
+    for index, material in enumerate(materials):
+        nu, mu, rho = material.nu, material.shear_modulus, material.density
         lame = 2 * mu * nu / (1 - 2 * nu)
         here = m.segment == index
         for part in batches(np.flatnonzero(here & is_straight), 8 * 20 * nb * nb):
@@ -60,13 +66,13 @@ def _elastic(gram, lame: float, mu: float):
     return out
 
 
-def _mean(m: SolidMesh, facets, y0, n, components=range(6)) -> sp.csr_matrix:
+def _mean(m: SolidMesh, facets, y0, n, components=range(6), within=None) -> sp.csr_matrix:
     """(6, 3n) area-weighted least-squares rigid motion of facets about the axis point at y0, or
-    only some components of it.
+    only some components of it; of their parts between two places along y where these are given.
     """
     a = np.zeros((6, 6))
     b = np.zeros((n, 3, 6))
-    for value, x, area, dofs in m.over_facets(facets):
+    for value, x, area, dofs in m.over_facets(facets, within):
         offset = np.moveaxis(x, 0, -1) - np.array([0.0, y0, 0.0])  # (e, q, 3)
         motion = np.zeros((*offset.shape, 6))
         motion[..., :3] = np.eye(3)

@@ -22,6 +22,8 @@ ELEMENTS = {
     "hex20": ElementHexS2,
     "hex27": ElementHex2,
 }
+#: pieces to an edge of a facet that the end of a seat crosses
+PIECES = 12
 
 
 @dataclass(frozen=True, eq=False)
@@ -74,11 +76,22 @@ class SolidMesh:
         """Tabulate basis and geometry on some elements."""
         return tabulate(self.element, self.nodes[:, self.dofs[:, elements]], self.element, points)
 
-    def over_facets(self, facets: np.ndarray):
+    def over_facets(self, facets: np.ndarray, within: tuple[float, float] | None = None):
         """Quadrature on facets: yields (values (nb, q), x (3, e, q), area weights (e, q), unknowns
         (nb, e)).
+
+        Of facets that reach beyond the two places ``within`` along y, only the part between counts:
+        they are divided into pieces, and of a piece its share between.
         """
-        ref, weights = _facet_rule(self.mesh.refdom)
+        if within is not None:
+            y = self.mesh.p[1, self.mesh.facets[:, facets]]
+            hair = 1e-7 * (within[1] - within[0])
+            across = (y.min(axis=0) < within[0] - hair) | (y.max(axis=0) > within[1] + hair)
+            yield from self.over_facets(facets[~across])
+            facets = facets[across]
+        ref, weights = (
+            _facet_rule(self.mesh.refdom) if within is None else _pieces(self.mesh.refdom)
+        )
         for place, elements in self.local_facets(facets):
             corners = self.mesh.refdom.p[:, self.mesh.refdom.facets[place]]
             s = corners[:, 1] - corners[:, 0]
@@ -86,6 +99,14 @@ class SolidMesh:
             points = corners[:, :1] + np.outer(s, ref[0]) + np.outer(t, ref[1])
             tab = self.tabulate(points, elements)
             area = np.linalg.norm(np.cross(tab.tangent @ s, tab.tangent @ t), axis=2) * weights
+            if within is not None:
+                lo, hi = within
+                slopes = np.abs((tab.tangent @ s)[..., 1]) + np.abs((tab.tangent @ t)[..., 1])
+                reach = np.maximum(slopes / PIECES, 1e-300)
+                y = tab.x[1]
+                area = area * (
+                    np.clip((y - lo) / reach + 0.5, 0, 1) * np.clip((hi - y) / reach + 0.5, 0, 1)
+                )
             yield tab.value, tab.x, area, self.dofs[:, elements]
 
     def facet_unknowns(self, facets: np.ndarray) -> np.ndarray:
@@ -139,6 +160,18 @@ def _facet_rule(refdom):
     x, w = np.polynomial.legendre.leggauss(4)
     x, w = (x + 1) / 2, w / 2
     return np.array([g.ravel() for g in np.meshgrid(x, x, indexing="ij")]), np.outer(w, w).ravel()
+
+
+def _pieces(refdom):
+    """Middles and sizes of equal pieces of a facet, in two local coordinates."""
+    if refdom is RefTet:
+        i, j, third = np.meshgrid(*(range(PIECES),) * 2, (1 / 3, 2 / 3), indexing="ij")
+        inside = (i + j < PIECES - 1) | ((i + j == PIECES - 1) & (third < 0.5))
+        middles = np.array([i[inside] + third[inside], j[inside] + third[inside]]) / PIECES
+        return middles, np.full(PIECES**2, 0.5 / PIECES**2)
+    x = (np.arange(PIECES) + 0.5) / PIECES
+    middles = np.array([g.ravel() for g in np.meshgrid(x, x, indexing="ij")])
+    return middles, np.full(PIECES**2, 1.0 / PIECES**2)
 
 
 def _profile(segments, inner: bool = False):

@@ -50,14 +50,8 @@ def draw(scene: Mapping[str, Any]) -> Any:
     pen = _Pen(ax, left, inch, enlarged, top)
     for s in segments:
         pen.segment(s)
-    ax.plot(
-        [left - 0.3, left + length * inch + 0.3],
-        [0, 0],
-        color=INK,
-        lw=0.8,
-        dashes=(12, 3, 2, 3),
-        zorder=4,
-    )
+    ends = [left - 0.3, left + length * inch + 0.3]
+    ax.plot(ends, [0, 0], color=INK, lw=0.8, dashes=(12, 3, 2, 3), zorder=4)
     for cut in scene.get("features") or []:
         pen.feature(cut, segments)
     for b in scene.get("bearings") or []:
@@ -97,6 +91,10 @@ def draw(scene: Mapping[str, Any]) -> Any:
             fontsize=8,
             style="italic",
         )
+    if body := scene.get("body"):
+        note = f"round part of {body['name']}, {100 * body['round_share']:.3g} % of its surface"
+        how: dict[str, Any] = {"va": "top", "fontsize": 8, "style": "italic", "parse_math": False}
+        ax.text(0.15, above - 0.1, note, **how)
     if is_number(scene.get("housing_axial")):
         ax.text(
             0.15,

@@ -9,13 +9,16 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterable, Iterator, Mapping
+from pathlib import Path
 from typing import Any
 
 from solidgear.errors import SceneError, listed, nearest
+from solidgear.scene.body_file import Reader, Recognised, unread
 from solidgear.scene.model import Scene
 from solidgear.scene.places import resolve
 from solidgear.scene.rules import MOST_BEARINGS, MOST_MASSES, MOST_SEGMENTS, too_many
-from solidgear.scene.tables import FEATURES, KINDS, SceneTable, SoundTables
+from solidgear.scene.segment_tables import KINDS
+from solidgear.scene.tables import FEATURES, PartTable, SceneTable, SoundTables
 from solidgear.scene.toml_file import name_of, parse, place_of
 
 
@@ -25,13 +28,15 @@ def _drop_tag(loc: tuple) -> tuple:
     return (*loc[:2], *loc[3:]) if loc[2:3] and loc[2] in tags else loc
 
 
-def load(path: str | os.PathLike) -> Scene:
+def load(path: str | os.PathLike, part_of: Reader = unread) -> Scene:
     """Read and resolve a scene file.
 
     Parameters
     ----------
     path : str or path
         A TOML file; ``geometry/pinion_overhung.toml`` describes the format.
+    part_of : callable
+        Reads the part that a [body] names, and recognises the body of revolution inside it.
 
     Returns
     -------
@@ -58,7 +63,7 @@ def load(path: str | os.PathLike) -> Scene:
             "or run solidgear system-modes, response or judge-system on it"
         ).located(raw, where=place_of(where))
     try:
-        return _read(raw, name_of(where))
+        return _read(raw, where, part_of)
     except SceneError as error:
         problems = {
             (one.path, one.reason): one for one in error.problems
@@ -68,7 +73,7 @@ def load(path: str | os.PathLike) -> Scene:
         raise SceneError.of(ordered).located(raw, where=place_of(where)) from None
 
 
-def _read(raw: dict[str, Any], name: str) -> Scene:
+def _read(raw: dict[str, Any], where: str, part_of: Reader) -> Scene:
     most_of = (("segment", MOST_SEGMENTS), ("bearing", MOST_BEARINGS), ("mass", MOST_MASSES))
     for what, most in most_of:
         if isinstance(raw.get(what), list) and len(raw[what]) > most:
@@ -78,10 +83,16 @@ def _read(raw: dict[str, Any], name: str) -> Scene:
             )
     problems: list[SceneError] = []
     table, numbers = _tables(raw, problems)
-    problems += _unknown_names(raw)
+    part = None
+    if table is not None and table.body is not None:
+        try:
+            part = part_of(table.body, Path(where).parent)
+        except SceneError as error:
+            raise SceneError.of([*problems, error]) from None
+    problems += _unknown_names(raw, part)
     if table is None:
         raise SceneError.of(problems)
-    return resolve(table, numbers, name, problems)
+    return resolve(table, numbers, name_of(where), problems, part)
 
 
 def _tables(raw: dict[str, Any], problems: list[SceneError]) -> tuple[SceneTable | None, list[int]]:
@@ -91,17 +102,19 @@ def _tables(raw: dict[str, Any], problems: list[SceneError]) -> tuple[SceneTable
     # masses are judged only where all of them are sound
     count = len(raw["bearing"]) if isinstance(raw.get("bearing"), list) else 0
     try:
-        return SceneTable(**raw), list(range(count))
+        return (PartTable if "body" in raw else SceneTable)(**raw), list(range(count))
     except SceneError as error:
         found = [one.located(raw, path=_drop_tag(one.path)) for one in error.problems]
     problems += found
     spoilt = {one.path[: 2 if one.path[0] in ("segment", "bearing") else 1] for one in found}
-    if ("bearing",) in spoilt or any(place[0] in ("segment", "material") for place in spoilt):
+    if ("bearing",) in spoilt or any(
+        place[0] in ("segment", "material", "body") for place in spoilt
+    ):
         return None, []
     numbers = [k for k in range(count) if ("bearing", k) not in spoilt]
     sound = {
         key: raw[key]
-        for key in ("material", "segment", "attachment", "port")
+        for key in ("material", "segment", "body", "attachment", "port")
         if key in raw and (key,) not in spoilt
     }
     return SoundTables(**sound, bearing=[raw["bearing"][k] for k in numbers]), numbers
@@ -139,21 +152,23 @@ _PIECES = {"bevel_head": ("start", "end", "middle", "mid_face")}
 _EVERY_PIECE = ("start", "end", "middle")
 
 
-def _unknown_names(raw: dict[str, Any]) -> Iterator[SceneError]:
+def _unknown_names(raw: dict[str, Any], part: Recognised | None) -> Iterator[SceneError]:
     """Names of segments that are taken twice, and datums and segments that are asked for but are
     not there.
 
     Read from the file as it stands, since a segment of a wrong length still has its name.
     """
     pieces, bearings, masses, port = (
-        _list_of_tables(raw.get("segment")),
+        _list_of_tables(raw.get("segment"))
+        if part is None
+        else [{"name": f"s{k}"} for k in range(1, len(part.walls) + 1)],
         _list_of_tables(raw.get("bearing", [])),
         _list_of_tables(raw.get("mass", [])),
         raw.get("port"),
     )
     if pieces is None or not all(isinstance(piece.get("name"), str) for piece in pieces):
         return  # without sound names, what refers to them cannot be judged
-    known, segments = ["start", "end"], []
+    known, segments = ["start", "end", *(["origin"] if part is not None else [])], []
     for i, piece in enumerate(pieces):
         if piece["name"] in segments:
             yield SceneError(

@@ -16,6 +16,7 @@ from pydantic import Field, model_validator
 from solidgear.display import Displayed
 from solidgear.errors import SceneError
 from solidgear.scene.bearing_stiffness import stiffness_entries
+from solidgear.scene.body_file import BodyFile
 from solidgear.scene.catalogue import BearingLoad
 from solidgear.scene.features import Feature, feature_problems
 from solidgear.scene.parts import STEEL, Material, Model, Segment
@@ -96,6 +97,8 @@ class Scene(Displayed, Model):
     masses : tuple of PointMass
     features : tuple of Keyway, Flat or CrossHole
         What is cut out of the shaft and is not of revolution.
+    body : BodyFile or None
+        The part from a file of which the segments are the round part.
     housing_axial : float or None
         Spring along y between the common bearing housing and ground, N/m.
     port : Port
@@ -131,6 +134,7 @@ class Scene(Displayed, Model):
     bearings: tuple[Bearing, ...] = ()
     masses: tuple[PointMass, ...] = ()
     features: tuple[Feature, ...] = ()
+    body: BodyFile | None = None
     housing_axial: AxialSpring | None = None
     port: Port
     load: BearingLoad | None = None
@@ -212,8 +216,10 @@ class Scene(Displayed, Model):
 
     @property
     def plain(self) -> Scene:
-        """The same scene without features: a body of revolution."""
-        return self.with_changes(features=()) if self.features else self
+        """The same scene as its segments alone: a body of revolution."""
+        if not self.features and self.body is None:
+            return self
+        return self.with_changes(features=(), body=None)
 
     @property
     def steps(self) -> tuple[float, ...]:
@@ -378,8 +384,9 @@ class Scene(Displayed, Model):
             for key in ("catalogue", "hold", "face"):
                 if row[key] is None:
                     del row[key]
-        if self.load is None:
-            del data["load"]
+        for key in ("load", "body"):
+            if data[key] is None:
+                del data[key]
         for row, mass in zip(data.get("masses", ()), self.masses):
             carrier = next(s for s in self.stations if s.name == mass.station)
             row |= {"y": carrier.y, "lo": carrier.lo, "hi": carrier.hi}

@@ -5,26 +5,34 @@ A problem of a place is reported under the key of the file that it came from.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 
 from solidgear.errors import SceneError
+from solidgear.scene.body_file import MASS_CHECK, Recognised
 from solidgear.scene.features import CrossHole, Feature, Flat, Keyway, feature_problems
 from solidgear.scene.model import Scene
 from solidgear.scene.parts import Material, Segment
 from solidgear.scene.point_mass import PointMass
 from solidgear.scene.rules import mass_problems, shaft_problems, station_problems
+from solidgear.scene.segment_tables import Piece
 from solidgear.scene.stations import Attachment, Bearing, Port, Status
 from solidgear.scene.tables import (
     BearingTable,
     FeatureTable,
     MassTable,
-    Piece,
     PortTable,
     SceneTable,
+    SeatTable,
 )
 
 
-def resolve(table: SceneTable, numbers: list[int], name: str, problems: list[SceneError]) -> Scene:
+def resolve(
+    table: SceneTable,
+    numbers: list[int],
+    name: str,
+    problems: list[SceneError],
+    part: Recognised | None = None,
+) -> Scene:
     """The scene of a file, once nothing is wrong with it.
 
     Parameters
@@ -37,6 +45,8 @@ def resolve(table: SceneTable, numbers: list[int], name: str, problems: list[Sce
         Of the scene.
     problems : list of SceneError
         What was found before; problems of places are added to it.
+    part : Recognised, optional
+        In place of segments.
 
     Returns
     -------
@@ -47,11 +57,15 @@ def resolve(table: SceneTable, numbers: list[int], name: str, problems: list[Sce
     SceneError
         If anything is wrong with the places of its parts, or was before: all of it.
     """
-    if not table.segment:
+    if not table.segment and part is None:
         raise SceneError.of(
             [*problems, SceneError("a scene needs at least one [[segment]]", path=("segment",))]
         )
-    segments, owner, surface, datums = _lay_out(table, problems)
+    if part is None:
+        segments, owner, surface, datums = _lay_out(table, problems)
+    else:
+        segments, owner, surface, datums = _recognised(table, part)
+        problems += _weighed(table, part)
     if segments is not None:
         shaft = shaft_problems(segments)
         problems += [one.located(None, path=_file_path(one.path, table, owner)) for one in shaft]
@@ -63,12 +77,12 @@ def resolve(table: SceneTable, numbers: list[int], name: str, problems: list[Sce
         # a datum that is missing was reported before, or is a bearing that was refused
         if (item.from_ or "start") in datums:
             try:
-                bearings[index] = _bearing(item, index, table.attachment, datums)
+                bearings[index] = _bearing(item, index, table.attachment, datums, part)
             except SceneError as error:
                 problems.append(error)
     port = None
     try:
-        port = _port(table.port, table.attachment, datums, surface) if table.port else None
+        port = _port(table.port, table.attachment, datums, surface, part) if table.port else None
     except SceneError as error:
         problems.append(error)
     masses = {}
@@ -104,6 +118,7 @@ def resolve(table: SceneTable, numbers: list[int], name: str, problems: list[Sce
         source=table.source,
         masses=tuple(masses.values()),
         features=tuple(features),
+        body=part.body if part is not None else None,
         housing_axial=table.housing.axial if table.housing else None,
         load=table.load,
         ask=table.ask,
@@ -148,6 +163,37 @@ def _lay_out(table: SceneTable, problems: list[SceneError]):
     return segments if whole else None, owner, surface, datums | {"end": y}
 
 
+def _recognised(table: SceneTable, part: Recognised):
+    """What :func:`_lay_out` gives, of a part from a file."""
+    segments = part.segments(table.material)
+    datums = {"start": 0.0, "end": segments[-1].y1, "origin": part.origin}
+    for s in segments:
+        middle = (s.y0 + s.y1) / 2
+        datums |= {f"{s.name}.start": s.y0, f"{s.name}.end": s.y1, f"{s.name}.middle": middle}
+    return segments, None, {s.name: (s.y0, s.y1) for s in segments}, datums
+
+
+def _weighed(table: SceneTable, part: Recognised) -> Iterator[SceneError]:
+    """The mass of a part against what the file says."""
+    assert table.body is not None  # it was read from there
+    said, mass = table.body.mass_check, table.material.density * part.body.volume
+    if said is not None and abs(mass / said - 1) > MASS_CHECK:
+        yield SceneError(
+            f"the part has {mass:.5g} kg ({1e6 * part.body.volume:.5g} cm^3 of "
+            f"{table.material.density:.5g} kg/m^3), {100 * (mass / said - 1):+.3g} % from that",
+            path=("body", "mass_check"),
+        )
+
+
+def _on_part(part: Recognised | None, seat: SeatTable, *place: str | int) -> tuple[float, float]:
+    """Ends of a seat on a part."""
+    assert part is not None  # tables refuse it without one
+    try:
+        return part.span(seat)
+    except SceneError as error:
+        raise error.located(None, prefix=(*place, "seat")) from None
+
+
 _LENGTH_KEY = {"frustum": "face_width", "backcone": "backcone", "shaft": "length"}
 
 
@@ -165,8 +211,18 @@ def _segment(piece: Piece, y: float, bore_radius: float, material: Material) -> 
     )
 
 
-def _bearing(item: BearingTable, index: int, attachment: str, datums: dict[str, float]) -> Bearing:
-    if item.face is None:
+def _bearing(
+    item: BearingTable,
+    index: int,
+    attachment: str,
+    datums: dict[str, float],
+    part: Recognised | None = None,
+) -> Bearing:
+    width = item.seat_width
+    if item.seat is not None:
+        lo, hi = _on_part(part, item.seat, "bearing", index)
+        y, width = (lo + hi) / 2, hi - lo
+    elif item.face is None:
         y = (item.position or 0.0) + datums[item.from_ or "start"]
     else:
         y = datums[item.face]
@@ -178,7 +234,7 @@ def _bearing(item: BearingTable, index: int, attachment: str, datums: dict[str, 
         bearing = Bearing(
             name=item.name,
             y=y,
-            seat_width=item.seat_width,
+            seat_width=width,
             catalogue=item.catalogue,
             axial_series=item.axial_series,
             attachment=item.attachment or usual,
@@ -229,26 +285,34 @@ def _port(
     attachment: Attachment,
     datums: dict[str, float],
     surface: dict[str, tuple[float, float]],
+    part: Recognised | None = None,
 ) -> Port | None:
     """The port, or None where it names what is not there."""
     datum = item.at or item.from_ or "start"
     span: Sequence[float] | None = item.span
-    if span is None and item.attach_to is not None:
+    if item.seat is not None:
+        span = _on_part(part, item.seat, "port")
+    elif span is None and item.attach_to is not None:
         span = surface.get(item.attach_to)
     if datum not in datums or span is None:
         return None
     lo, hi = span
+    placed = item.at is not None or item.position is not None
     return Port(
         name=item.name,
-        y=datums[datum] + (item.position or 0.0),
+        y=datums[datum] + (item.position or 0.0) if placed else (lo + hi) / 2,
         lo=lo,
         hi=hi,
         attachment=item.attachment or attachment,
     )
 
 
-def _file_path(path: tuple, table: SceneTable, owner: Sequence[int]) -> tuple:
+def _file_path(path: tuple, table: SceneTable, owner: Sequence[int] | None) -> tuple:
     """The key in the file that an entry of the resolved scene came from."""
+    if owner is None:
+        assert table.body is not None  # in place of segments
+        path = _part_path(path, table)
+        owner = ()
     match path:
         case ("segments", index, key):
             kind = table.segment[owner[index]].kind
@@ -281,4 +345,18 @@ def _file_path(path: tuple, table: SceneTable, owner: Sequence[int]) -> tuple:
             return ("port", "span" if table.port.span is not None else "attach_to")
         case ("housing_axial",):
             return ("housing", "axial")
+    return path
+
+
+def _part_path(path: tuple, table: SceneTable) -> tuple:
+    """Of an entry that was recognised on a part, the key that named the file or the seat."""
+    match path:
+        case ("segments", _, "material", key):
+            return ("material", key)
+        case ("segments", *_):
+            return ("body", table.body.key if table.body is not None else "step")
+        case ("bearings", index, "seat_width") if table.bearing[index].seat is not None:
+            return ("bearings", index, "seat")
+        case ("port", "lo" | "hi") if table.port.seat is not None:
+            return ("port", "seat")
     return path

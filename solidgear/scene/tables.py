@@ -1,47 +1,28 @@
-"""The tables of a scene file, each checked by itself: segments, bearings, housing, port."""
+"""The tables of a scene file, each checked by itself: bearings, masses, port, the whole."""
 
 from __future__ import annotations
 
-import math
-from typing import Annotated, Any, Literal, NamedTuple
+from typing import Annotated, Any, Literal
 
 from pydantic import AfterValidator, BeforeValidator, Field, model_validator
 
 from solidgear.errors import SceneError
 from solidgear.scene.bearing_stiffness import stiffness_matrix
+from solidgear.scene.body_file import BodyTable, SeatTable
 from solidgear.scene.catalogue import BearingLoad, Catalogue
 from solidgear.scene.materials import by_name
 from solidgear.scene.model import Ask
 from solidgear.scene.parts import Material, Model
 from solidgear.scene.point_mass import check_inertia
+from solidgear.scene.segment_tables import BevelHead, Cone, Cylinder, Name, Table
 from solidgear.scene.stations import Attachment, AxialSeries, Face, Hold, Status
 from solidgear.scene.units import (
-    Angle,
     AxialSpring,
-    Density,
     Length,
     Mass,
-    Modulus,
-    Poisson,
     PositiveLength,
-    Thickness,
     quantity,
 )
-
-_WORDS = ("start", "end", "bearing")  # first words of datums, so no segment may be called that
-KINDS = ("cylinder", "cone", "bevel_head")
-
-
-def _plain_name(name: str) -> str:
-    if not name.strip() or "." in name or len(name) > 60 or not name.isprintable():
-        raise SceneError("a name is a short text without a dot")
-    return name
-
-
-def _segment_name(name: str) -> str:
-    if name in _WORDS:
-        raise SceneError("this name is kept for datums; choose another")
-    return _plain_name(name)
 
 
 def _entries(entries: dict) -> dict:
@@ -49,134 +30,15 @@ def _entries(entries: dict) -> dict:
     return entries
 
 
-Name = Annotated[str, AfterValidator(_plain_name)]
-SegmentName = Annotated[str, AfterValidator(_segment_name)]
-
-
-class _MaterialChange(Model):
-    E: Modulus | None = None
-    nu: Poisson | None = None
-    density: Density | None = None
-
-
-class Piece(NamedTuple):
-    """One frustum of a [[segment]], by its radii at both ends, m."""
-
-    name: str
-    part: Literal["shaft", "frustum", "backcone"]
-    length: float
-    outer0: float
-    outer1: float
-
-    def turned(self) -> Piece:
-        """End for end."""
-        return self._replace(outer0=self.outer1, outer1=self.outer0)
-
-
-class _Table(Model):
-    """A table of the file."""
-
-    def _one_of(self, first: str, other: str, how: str) -> None:
-        """Refuse neither of two keys, or both."""
-        given = [key for key in (first, other) if getattr(self, key) is not None]
-        if not given:
-            raise SceneError(f"this key is missing; {how}", path=(first,))
-        if len(given) == 2:
-            raise SceneError(f"give either {first} or {other}, not both", path=(other,))
-
-
-class _Piece(_Table):
-    name: SegmentName
-    bore: Thickness = 0.0
-    material: Annotated[_MaterialChange, BeforeValidator(by_name)] = _MaterialChange()
-
-    def _check_bore(self, *keys: str) -> None:
-        for key in keys:
-            if self.bore >= getattr(self, key):
-                raise SceneError(
-                    f"must be smaller than {key} ({getattr(self, key):.6g} m)", path=("bore",)
-                )
-
-
-class _Cylinder(_Piece):
-    kind: Literal["cylinder"]
-    length: PositiveLength
-    diameter: PositiveLength
-
-    @model_validator(mode="after")
-    def _wall(self):
-        self._check_bore("diameter")
-        return self
-
-    def pieces(self) -> list[Piece]:
-        radius = self.diameter / 2
-        return [Piece(self.name, "shaft", self.length, radius, radius)]
-
-
-class _Cone(_Piece):
-    kind: Literal["cone"]
-    length: PositiveLength
-    start_diameter: PositiveLength
-    end_diameter: PositiveLength
-
-    @model_validator(mode="after")
-    def _wall(self):
-        self._check_bore("start_diameter", "end_diameter")
-        return self
-
-    def pieces(self) -> list[Piece]:
-        start, end = self.start_diameter / 2, self.end_diameter / 2
-        return [Piece(self.name, "shaft", self.length, start, end)]
-
-
-class _BevelHead(_Piece):
-    kind: Literal["bevel_head"]
-    pitch_radius: PositiveLength
-    pitch_angle: Angle
-    face_width: PositiveLength
-    backcone: Thickness = 0.0
-    toe: Literal["start", "end"] = "start"
-
-    @property
-    def small_radius(self) -> float:
-        return self.pitch_radius - self.face_width * math.sin(self.pitch_angle)
-
-    @model_validator(mode="after")
-    def _wall(self):
-        if self.small_radius <= 0:
-            longest = self.pitch_radius / math.sin(self.pitch_angle)
-            raise SceneError(
-                "passes the apex of the pitch cone; "
-                f"it must be shorter than the cone distance {longest:.6g} m",
-                path=("face_width",),
-            )
-        narrow = 2 * self.small_radius
-        if self.bore >= narrow:
-            raise SceneError(
-                f"must be smaller than the small end of the head (diameter {narrow:.6g} m)",
-                path=("bore",),
-            )
-        return self
-
-    def pieces(self) -> list[Piece]:
-        axial = self.face_width * math.cos(self.pitch_angle)
-        large = self.pitch_radius
-        pieces = [Piece(self.name, "frustum", axial, self.small_radius, large)]
-        if self.backcone > 0:
-            pieces.append(Piece(f"{self.name}.backcone", "backcone", self.backcone, large, large))
-        if self.toe == "end":
-            pieces = [piece.turned() for piece in reversed(pieces)]
-        return pieces
-
-
-class BearingTable(_Table):
+class BearingTable(Table):
     """A [[bearing]], its datum not yet resolved."""
 
     name: Name
     position: Length | None = None
     from_: str | None = Field(None, alias="from")
     face: Face | None = None
-    seat_width: PositiveLength
+    seat: SeatTable | None = None
+    seat_width: PositiveLength | None = None
     hold: Hold | None = None
     stiffness: Annotated[dict[str, Any], AfterValidator(_entries)] | None = None
     matrix: list[Any] | None = None
@@ -208,7 +70,17 @@ class BearingTable(_Table):
 
 
 def _place(table: BearingTable) -> None:
-    """A seat is somewhere along the shaft, or beside an end face."""
+    """A seat is somewhere along the shaft, beside an end face, or a cylinder of a part."""
+    if table.seat is not None:
+        for key in ("position", "from_", "face", "seat_width"):
+            if getattr(table, key) is not None:
+                raise SceneError(
+                    "a seat has its place and width in seat; leave one of both out",
+                    path=(key.rstrip("_"),),
+                )
+        return
+    if table.seat_width is None:
+        raise SceneError("this key is missing", path=("seat_width",))
     if table.face is None and table.position is None:
         raise SceneError(
             'this key is missing; write position = "28 mm" with from, or face = "start"',
@@ -221,7 +93,7 @@ def _place(table: BearingTable) -> None:
         )
 
 
-class MassTable(_Table):
+class MassTable(Table):
     """A [[mass]], its datum not yet resolved."""
 
     name: Name
@@ -272,7 +144,7 @@ class _Housing(Model):
     axial: AxialSpring
 
 
-class PortTable(_Table):
+class PortTable(Table):
     """The [port], its datum and surface not yet resolved."""
 
     name: Name = "port"
@@ -281,11 +153,16 @@ class PortTable(_Table):
     from_: str | None = Field(None, alias="from")
     attach_to: str | None = None
     span: Annotated[list[Length], Field(min_length=2, max_length=2)] | None = None
+    seat: SeatTable | None = None
     attachment: Attachment | None = None
 
     @model_validator(mode="after")
     def _one_place_one_surface(self):
-        if self.at is None and self.position is None:
+        if self.seat is not None:
+            for key in ("attach_to", "span"):
+                if getattr(self, key) is not None:
+                    raise SceneError(f"give either seat or {key}, not both", path=(key,))
+        elif self.at is None and self.position is None:
             raise SceneError(
                 'this key is missing; write at = "<segment>.middle", or position with from',
                 path=("at",),
@@ -293,11 +170,12 @@ class PortTable(_Table):
         if self.at is not None and (self.position is not None or self.from_ is not None):
             raise SceneError("give either at, or position with from, not both", path=("at",))
         how = 'name the segment whose surface carries the port, or write span = ["0 mm", "58 mm"]'
-        self._one_of("attach_to", "span", how)
+        if self.seat is None:
+            self._one_of("attach_to", "span", how)
         return self
 
 
-class _FeatureTable(_Table):
+class _FeatureTable(Table):
     """A [[feature]], its datum not yet resolved."""
 
     name: Name | None = None
@@ -345,7 +223,8 @@ class SceneTable(Model):
     source: str = ""
     attachment: Attachment = "average"
     material: Annotated[Material, BeforeValidator(by_name)]
-    segment: list[Annotated[_Cylinder | _Cone | _BevelHead, Field(discriminator="kind")]]
+    body: BodyTable | None = None
+    segment: list[Annotated[Cylinder | Cone | BevelHead, Field(discriminator="kind")]]
     bearing: list[BearingTable] = []
     mass: list[MassTable] = []
     feature: list[Annotated[FeatureTable, Field(discriminator="kind")]] = []
@@ -354,8 +233,36 @@ class SceneTable(Model):
     load: BearingLoad | None = None
     ask: Ask = Ask()
 
+    @model_validator(mode="after")
+    def _one_shaft(self):
+        if self.body is None:
+            seats: list[tuple[str | int, ...]]
+            seats = [("bearing", k) for k, one in enumerate(self.bearing) if one.seat is not None]
+            seats += [("port",)] if self.port is not None and self.port.seat is not None else []
+            if seats:
+                raise SceneError(
+                    "a seat by diameter is looked for on a part from a file ([body]); on segments "
+                    "write position and seat_width, or span",
+                    path=(*seats[0], "seat"),
+                )
+        for key, what in (("segment", "describes the shaft"), ("feature", "is cut into segments")):
+            if self.body is not None and getattr(self, key):
+                raise SceneError(
+                    f"a [[{key}]] {what}, which a [body] does itself; leave one of both out",
+                    path=(key,),
+                )
+        return self
+
+
+class PartTable(SceneTable):
+    """A whole file with a part from another file in place of segments."""
+
+    body: BodyTable
+    segment: list[Annotated[Cylinder | Cone | BevelHead, Field(discriminator="kind")]] = []
+
 
 class SoundTables(SceneTable):
     """What is left of a file without the tables that cannot be used."""
 
+    segment: list[Annotated[Cylinder | Cone | BevelHead, Field(discriminator="kind")]] = []
     port: PortTable | None = None  # type: ignore[assignment]  # it may be what is missing

@@ -14,8 +14,10 @@ from solidgear.fidelity.ladder import LADDER
 from solidgear.fidelity.rung import BEAM, LUMPED, SOLID
 from solidgear.machine.threads import pinned
 from solidgear.meshing.quality import mass_properties
+from solidgear.scene.shaft import ROUND, extras, shapes
 from solidgear.studies.guards import GUARDS, LEVELS, Notice, Probe
 from solidgear.studies.guards.notice import beams, everything
+from solidgear.studies.round_part import against_the_part, described
 
 if TYPE_CHECKING:
     from solidgear.scene import Scene
@@ -72,7 +74,8 @@ def check_scene(scene: Scene, body: Body) -> dict:
     """
     probe = Probe(scene.plain, body)
     said = [("body", notice) for notice in _of_the_body(scene, body)]
-    said += [("features", notice) for notice in _of_features(scene)]
+    said += [("features", notice) for notice in _beyond_the_segments(scene)]
+    said += [("round_part", notice) for notice in described(scene)]
     for name in GUARDS:
         said += [(name, notice) for notice in _heard(name, probe)]
     records = [
@@ -120,6 +123,15 @@ def notices(
     probes = [Probe(plain, r.body, known) for r in rungs.values()]
     solved = {*rungs, *LADDER.of(LUMPED)}
     out: dict[str, dict] = {}
+    if names is None and scene.body is not None and probes:
+        heard = [*described(scene), *against_the_part(scene, rungs, probes[-1])]
+        for notice in (n for n in heard if n.level != "fact"):
+            out[notice.sentence] = {
+                "guard": "round_part",
+                "level": notice.level,
+                "models": [m for m in notice.models if m in solved],
+                "sentence": notice.sentence,
+            }
     for name in names or tuple(n for n in GUARDS if n not in NOT_IN_COMPARISONS):
         for probe in probes if name in OF_A_MESH else probes[-1:]:
             for notice in _heard(name, probe):
@@ -194,28 +206,38 @@ def _verdict(model: str, records: list[dict]) -> dict:
     }
 
 
-def _of_features(scene: Scene) -> Iterator[Notice]:
+def _beyond_the_segments(scene: Scene) -> Iterator[Notice]:
     """Which models answer for the plain part only."""
-    if not scene.features:
+    shape = shapes(scene)
+    if shape[0] == ROUND:
         return
-    names = ", ".join(f'{f.what} "{f.name}"' for f in scene.features)
+    names = extras(scene)
     yield Notice(
         "fact",
         (),
         f"not of revolution: {names}; all that is told of the shaft is of its plain part",
     )
-    blind = tuple(m for m in everything() if LADDER[m].features == "none")
+    holds = [r for r in LADDER if set(shape) & set(r.shapes)]
+    blind = tuple(m for m in everything() if LADDER[m] not in holds)
     yield Notice(
         "avoid",
         blind,
         f"the scene has {names}, of which a model of revolution knows nothing: it would answer for "
-        "the plain part; use corrected, or solid",
+        f"the plain part; use {', or '.join(r.name for r in holds)}",
     )
 
 
 def _of_the_body(scene: Scene, body: Body) -> Iterator[Notice]:
     """Mass and inertia against the closed form, and no stiffness against rigid motions."""
     exact, matrix, own = mass_properties(scene.segments), body.mass_matrix(), (body.fidelity,)
+    # of what is cut there is no closed form; of a part there is what its file says
+    closed = [("mass", matrix[0, 0], exact.mass), ("polar inertia", matrix[4, 4], exact.iyy)]
+    where, off = "closed form", "the closed form"
+    if not body.mesh.get("round", True):
+        whole = scene.body
+        closed, where, off = [], "the part", "that of the part"
+        if whole is not None:
+            closed = [("mass", matrix[0, 0], scene.material.density * whole.volume)]
     yield Notice(
         "fact",
         (),
@@ -224,23 +246,16 @@ def _of_the_body(scene: Scene, body: Body) -> Iterator[Notice]:
     yield Notice(
         "fact",
         (),
-        f"mass {exact.mass:.6g} kg, centre at y = {1e3 * exact.centre:.6g} mm, polar inertia {exact.iyy:.6g}, transverse {exact.ixx:.6g} kg m^2 (closed form)",
+        f"mass {exact.mass:.6g} kg, centre at y = {1e3 * exact.centre:.6g} mm, polar inertia {exact.iyy:.6g}, transverse {exact.ixx:.6g} kg m^2 (closed form{' of the round part' * (scene.body is not None)})",
     )
-    for name, got, want in (
-        ()
-        if body.mesh.get("features")
-        else (
-            ("mass", matrix[0, 0], exact.mass),
-            ("polar inertia", matrix[4, 4], exact.iyy),
-        )
-    ):
+    for name, got, want in closed:
         error, limit = got / want - 1, LADDER[body.fidelity].mass_tolerance
-        yield Notice("fact", own, f"{name} of the mesh against closed form: {error:+.1e}")
+        yield Notice("fact", own, f"{name} of the mesh against {where}: {error:+.1e}")
         if abs(error) > limit:
             yield Notice(
                 "fault",
                 own,
-                f"{name} of the {body.fidelity} mesh is {error:+.2e} off the closed form, limit {limit:g}: mesh finer",
+                f"{name} of the {body.fidelity} mesh is {error:+.2e} off {off}, limit {limit:g}: mesh finer",
             )
     residual = body.rigid_residual()
     yield Notice(

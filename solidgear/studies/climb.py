@@ -10,10 +10,10 @@ from typing import TYPE_CHECKING, Any
 
 from solidgear.body import Body, as_supports
 from solidgear.evidence.answer import ENOUGH, Numbers, numbers
-from solidgear.evidence.bands import Band, layered_bands
+from solidgear.evidence.bands import Band
 from solidgear.evidence.quantities import QUANTITIES, size
+from solidgear.evidence.sequence_bands import sequence_bands
 from solidgear.fidelity import build
-from solidgear.fidelity.edges import sharpest_edge
 from solidgear.fidelity.rung import Rung
 from solidgear.solve.modes import ModeSet, modes
 from solidgear.solve.naming import FAMILIES
@@ -29,7 +29,12 @@ Progress = Callable[[str], None]
 #: tolerance
 COUPLING = 0.01
 #: options of a mesh that are reported, and in which words
-SETTINGS = {"order": "order", "layers": "layers", "around": "cells around"}
+SETTINGS = {
+    "order": "order",
+    "layers": "layers",
+    "around": "cells around",
+    "refinement": "refinement",
+}
 #: a frequency that rises with a finer mesh, by more than the eigensolver leaves, is rounding: the
 #: bar is this many times the rise
 RISE = 2.0
@@ -119,7 +124,10 @@ class Climb:
     ):
         self.scene, self.rung, self.wanted, self.tol = scene, rung, wanted, tol
         self.progress = progress
+        assert rung.meshes is not None  # as every solid
+        self.plan = rung.meshes_of(scene, {})
         self.levels: list[Numbers] = []
+        self.sizes: list[float | None] = []
         self.steps: list[Step] = []
         self.bands: dict[str, Band] = {}
         self.families: tuple[str, ...] | None = None
@@ -130,12 +138,11 @@ class Climb:
 
     def run(self) -> None:
         """Climb until every band is within the tolerance, or there is no finer mesh."""
-        assert self.rung.meshes is not None  # as every solid
-        plan = self.rung.meshes_of(self.scene, {})
-        for level in plan.levels:
+        for level in self.plan.levels:
             start = time.perf_counter()
             self.progress(f"{self.rung.title}: {_words(level)}")
             body = self._body(level)
+            self.sizes.append(body.mesh.get("representative_size"))
             self.levels.append(self._level(body))
             self.body, self.options = body, dict(level)
             if len(self.levels) == 1:
@@ -158,7 +165,12 @@ class Climb:
             if bar is not None and bar <= self.tol:
                 self._choose("")
                 return
-        self._choose("no finer mesh is calibrated")
+        only = self.plan.fixed and len(self.plan.levels) == 1
+        self._choose(
+            "the mesh is that of the file, and nothing finer tells how good it is"
+            if only
+            else "no finer mesh is calibrated"
+        )
 
     def stop(self, why: str) -> None:
         """End with what there is."""
@@ -171,7 +183,8 @@ class Climb:
         for name in self.wanted:
             if name in finest:
                 bar = self.bar(name)
-                how = f"{len(self.levels)} meshes" if math.isfinite(bar) else "one mesh only"
+                count = len(self.levels)
+                how = f"{count} meshes" if count > 1 else "one mesh only, not judged"
                 unit = QUANTITIES[name][2]
                 out.append(Value(name, finest[name], unit, bar, how, size(finest, name)))
         return tuple(out)
@@ -224,14 +237,15 @@ class Climb:
             return None
         self.bands = self.bands_of(self.levels)
         bars = [self.bar(q) for q in self.wanted if q in self.levels[-1].quantities]
-        return max(bars, default=None)
+        return max(bars, default=None) if self.bands else None
 
     def bands_of(self, levels: list[Numbers]) -> dict[str, Band]:
         """Bands of the finest of two or more meshes of this rung."""
         assert self.rung.factors is not None  # as every solid
         values = [level.quantities for level in levels]
-        edge = sharpest_edge(self.scene)
-        return layered_bands(values, levels[-1].solver, self.rung.factors, edge=edge)
+        return sequence_bands(
+            self.scene, self.plan, self.rung.factors, values, levels[-1].solver, self.sizes
+        )
 
     def bar(self, name: str) -> float:
         if name not in self.bands:

@@ -9,6 +9,7 @@ from __future__ import annotations
 import os
 from collections.abc import Iterator
 from contextlib import contextmanager
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from solidgear.errors import SceneError
@@ -19,6 +20,7 @@ if TYPE_CHECKING:
     from solidgear.bearings.solved import Solved
     from solidgear.body import Body
     from solidgear.scene import Scene
+    from solidgear.scene.body_file import BodyTable, Recognised
 
 #: rung on which bearings and shaft find their equilibrium: loads in a shaft hang little on how its
 #: shoulders are modelled
@@ -53,7 +55,7 @@ def load(path: str | os.PathLike) -> Scene:
     >>> [bearing.name for bearing in scene.bearings], scene.port.name
     (['1', '2'], 'pinion')
     """
-    scene = file.load(path)
+    scene = file.load(path, _part)
     if all(bearing.catalogue is None for bearing in scene.bearings):
         return scene
     return read(path, scene).scene
@@ -79,9 +81,16 @@ def read(path: str | os.PathLike, scene: Scene | None = None) -> Solved:
     """
     from solidgear.bearings.solved import solved
 
-    scene = file.load(path) if scene is None else scene
+    scene = file.load(path, _part) if scene is None else scene
     with explained(path):
         return solved(scene, shaft(scene))
+
+
+def _part(table: BodyTable, folder: Path) -> Recognised:
+    """The part that a scene file names; read apart from scenes that have none."""
+    from solidgear.meshing.part import recognise
+
+    return recognise(table, folder)
 
 
 @contextmanager

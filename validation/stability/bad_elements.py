@@ -51,7 +51,8 @@ def spoilt(scene, geometry, mesh) -> dict:
         "least at Gauss points": least_at_gauss_points(mesh, "tet10"),
     }
     with np.errstate(invalid="ignore"):
-        k, m = _matrices(_isoparametric(mesh, "tet10", geometry.segment), scene)
+        materials = [segment.material for segment in scene.segments]
+        k, m = _matrices(_isoparametric(mesh, "tet10", geometry.segment), materials)
     k, m = k.tocsr(), m.tocsr()
     if np.isfinite(k.data).all():
         row["greatest eigenvalue"] = float(

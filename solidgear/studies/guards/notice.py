@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 from solidgear.fidelity.ladder import LADDER
 from solidgear.fidelity.rung import BEAM, LUMPED, SOLID
+from solidgear.scene.shaft import ROUND
 
 #: good to know; holds worse than one might think; cannot be decided here; out of the tolerance asked
 #: for; wrong
@@ -42,7 +43,7 @@ def beams() -> tuple[str, ...]:
 
 def solids() -> tuple[str, ...]:
     """Solids that model a plain shaft: guards look at nothing else."""
-    return tuple(name for name in LADDER.of(SOLID) if LADDER[name].features != "only")
+    return tuple(name for name in LADDER.of(SOLID) if ROUND in LADDER[name].shapes)
 
 
 def everything() -> tuple[str, ...]:

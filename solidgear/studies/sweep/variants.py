@@ -11,6 +11,7 @@ from solidgear.body import Supports, as_supports
 from solidgear.errors import SceneError, SolidgearError
 from solidgear.scene import Bearing, Feature, PointMass, Port, Scene, Segment
 from solidgear.scene.bearing_stiffness import STIFFNESS_NAMES
+from solidgear.scene.body_file import BodyFile
 from solidgear.studies.sweep.vary import Axis
 
 
@@ -24,11 +25,12 @@ class SeatedShaft:
     segments: tuple[Segment, ...]
     stations: tuple[Port | Bearing | PointMass, ...]
     features: tuple[Feature, ...] = ()
+    body: BodyFile | None = None
 
     @property
     def plain(self) -> SeatedShaft:
-        """The same shaft without features."""
-        return replace(self, features=())
+        """The same shaft as its segments alone."""
+        return replace(self, features=(), body=None)
 
     @property
     def length(self) -> float:
@@ -134,7 +136,10 @@ class Variants:
         ordered = sorted(seats.values(), key=lambda b: b.y)
         own = (m for m in self.scene.masses if m.on is None)
         return SeatedShaft(
-            self.scene.segments, (self.scene.port, *ordered, *own), self.scene.features
+            self.scene.segments,
+            (self.scene.port, *ordered, *own),
+            self.scene.features,
+            self.scene.body,
         )
 
 

@@ -1,0 +1,185 @@
+"""A solid body from a mesh of one's own."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from solidgear.body import Body, Port
+from solidgear.errors import SolidgearError
+from solidgear.fidelity.attachment import tie_rigidly
+from solidgear.fidelity.scale import elastic_scale
+from solidgear.fidelity.solid_block import Facets, free_block
+from solidgear.fidelity.solid_mesh import SolidMesh, _isoparametric
+from solidgear.meshing.quality import check_mesh
+
+if TYPE_CHECKING:
+    from skfem import Mesh
+
+    from solidgear.scene.shaft import Shaft
+
+#: distance of a node from a surface of revolution, over its radius, at which it is on it
+ON_SURFACE = 2e-5
+#: share of the faces with all corners on a surface whose middle nodes are there too, above which
+#: the mesh is taken for curved, and the others for faces of something else
+CURVED = 0.3
+
+
+def solid_body(
+    mesh: Mesh,
+    shaft: Shaft,
+    *,
+    element: str,
+    wanted: Sequence[tuple[Any, str]] | None = None,
+    clipped: bool = True,
+    facts: Mapping[str, Any] | None = None,
+) -> Body:
+    """The free body of a mesh, with ports on cylinders and cones of its surface.
+
+    Parameters
+    ----------
+    mesh : skfem mesh
+        Of tetrahedra or hexahedra, m; y is the axis.
+    shaft : Shaft
+        A scene, or what has the same ``segments``, ``stations`` and ``length``: stations are looked
+        for on the outer surface of the segments, and each element has the material of the segment
+        that its middle lies in.
+    element : {'tet4', 'tet10', 'hex8', 'hex20', 'hex27'}
+    wanted : sequence of (station, attachment), optional
+        Ports; by default the stations with the attachments they have.
+    clipped : bool
+        Where faces reach beyond the ends of a seat, integrals stop there; else only whole faces
+        within the seat count.
+    facts : mapping, optional
+        More of them for ``body.mesh``.
+
+    Returns
+    -------
+    Body
+
+    Raises
+    ------
+    SolidgearError
+        If no face lies on a seat; MeshError for inverted elements.
+
+    Examples
+    --------
+    >>> import solidgear as sg
+    >>> from solidgear.meshing.tetrahedra import tetrahedra
+    >>> rod = sg.Segment.cylinder("rod", length=0.3, diameter=0.06)
+    >>> scene = sg.Scene.from_parts([rod])
+    >>> body = solid_body(tetrahedra([rod], size=0.03).mesh, scene, element="tet10")
+    >>> bool(np.isclose(body.mass_matrix()[0, 0], 7850 * np.pi * 0.03**2 * 0.3, rtol=1e-3))  # kg
+    True
+    """
+    wanted = wanted or [(s, s.attachment) for s in shaft.stations]
+    quality = check_mesh(mesh)
+    y = mesh.p[1][mesh.t].mean(axis=0)
+    segment = np.searchsorted([s.y1 for s in shaft.segments[:-1]], y)
+    solid = _isoparametric(mesh, element, segment)
+    facets = faces_on(solid, shaft.segments, clipped)
+    block, ties = free_block(solid, shaft, wanted, facets, clipped=clipped)
+    own = {
+        "element": element,
+        "elements": int(solid.dofs.shape[1]),
+        "nodes": int(solid.nodes.shape[1]),
+        "volume": quality.volume,
+        "min_jacobian_ratio": quality.min_ratio,
+        "representative_size": float((quality.volume / solid.dofs.shape[1]) ** (1 / 3)),
+        # nothing promises twins: what is split is split
+        "round": False,
+        "pair_tolerance": 0.0,
+    }
+    ports = tuple(Port(s.name, s.y, a) for s, a in wanted)
+    return Body(
+        "solid",
+        (tie_rigidly(block, ties),),
+        ports,
+        elastic_scale(shaft),
+        shaft.length,
+        {**own, **(facts or {})},
+        solid,
+    )
+
+
+def faces_on(mesh: SolidMesh, segments: Sequence[Any], clipped: bool) -> Facets:
+    """Facets of seats on what there is of a surface of revolution, and of sections.
+
+    Parameters
+    ----------
+    mesh : SolidMesh
+    segments : sequence of Segment
+    clipped : bool
+        Whether to take facets that reach beyond the ends of a seat.
+
+    Returns
+    -------
+    callable
+        ``facets(station, attachment)``.
+    """
+    boundary = mesh.boundary
+    corners = mesh.mesh.facets[:, boundary]
+    y, r = mesh.mesh.p[1, corners], np.hypot(*mesh.mesh.p[[0, 2]][:, corners])
+    middle_y, middle_r = _middles(mesh, corners)
+
+    def on_surface(at_y, at_r, s) -> np.ndarray:
+        outer = s.outer0 + (s.outer1 - s.outer0) * (at_y - s.y0) / (s.y1 - s.y0)
+        hair = 1e-7 * segments[-1].y1
+        inside = (at_y > s.y0 - hair) & (at_y < s.y1 + hair)
+        return (inside & (np.abs(at_r - outer) < ON_SURFACE * outer)).all(axis=0)
+
+    def facets(station, attachment):
+        if attachment == "section":
+            found = mesh.section(station.y, 1e-7 * segments[-1].y1)
+            if not len(found):
+                raise SolidgearError(
+                    f"port {station.name!r}: the mesh has no section at y = {station.y:.6g} m; "
+                    "use attachment 'average' or 'rigid'"
+                )
+            return found
+        hair = 1e-7 * (station.hi - station.lo)
+        low, high = y.min(axis=0), y.max(axis=0)
+        if clipped:
+            near = (high > station.lo + hair) & (low < station.hi - hair)
+        else:
+            near = (low > station.lo - hair) & (high < station.hi + hair)
+        near &= high - low > 1e-7 * segments[-1].y1
+        out = np.zeros(len(boundary), bool)
+        for s in segments:
+            if s.y1 > station.lo + hair and s.y0 < station.hi - hair:
+                own = near & on_surface(y, r, s)
+                if middle_y is not None:
+                    true = own & on_surface(middle_y, middle_r, s)
+                    own = true if true.sum() > CURVED * own.sum() else own
+                out |= own
+        return boundary[out]
+
+    return facets
+
+
+def _middles(mesh: SolidMesh, corners) -> tuple[Any, Any]:
+    """Place y and radius of the middle nodes of facets; None for elements without."""
+    if not mesh.element.edge_dofs:
+        return None, None
+    vertices = mesh.mesh.p.shape[1]
+    edges = np.sort(mesh.mesh.edges.astype(np.int64), axis=0)
+    key = edges[0] * vertices + edges[1]
+    order = np.argsort(key)
+    at = np.zeros(edges.shape[1], int)
+    at[mesh.mesh.t2e] = mesh.dofs[len(mesh.mesh.t) : len(mesh.mesh.t) + len(mesh.mesh.t2e)]
+    found = []
+    # of four corners of a quadrilateral two pairs are its diagonals, which are no edges
+    for i in range(len(corners)):
+        for j in range(i):
+            a, b = np.sort(corners[[i, j]].astype(np.int64), axis=0)
+            pair = a * vertices + b
+            place = np.minimum(np.searchsorted(key[order], pair), len(key) - 1)
+            edge = order[place]
+            real = key[edge] == pair
+            spot = mesh.nodes[:, at[edge]]
+            ends = mesh.mesh.p[:, corners[i]]
+            found.append(np.where(real, spot, ends))
+    places = np.stack(found, axis=1)
+    return places[1], np.hypot(places[0], places[2])

@@ -1,0 +1,267 @@
+"""A part from a STEP or mesh file: read, turned, and the body of revolution inside it recognised."""
+
+from __future__ import annotations
+
+import hashlib
+import re
+from functools import partial
+from pathlib import Path
+
+import numpy as np
+
+from solidgear.errors import SceneError
+from solidgear.machine.apart import ApartError, apart
+from solidgear.meshing.mesh_file import mesh_from
+from solidgear.meshing.placing import TURNS, Placing, Triple
+from solidgear.meshing.quality import MeshError, volume_of
+from solidgear.meshing.round_part import ON_LINE, RoundPart, Wall, round_part
+from solidgear.meshing.step import look
+from solidgear.scene.body_file import UNITS, BodyFile, BodyTable, Recognised
+
+#: seconds after which a file is given up
+LOOK_SECONDS = 25.0
+#: least share of the surface that is round about the axis, for a part to be a shaft
+LEAST_ROUND = 0.2
+#: relative difference of a size from what it is checked against
+SIZE_CHECK = 1e-3
+#: factors between units that are taken for one another
+SLIPS = {1e3: "mm taken for m", 1e-3: "m taken for mm", 25.4: "mm taken for inch"}
+SLIPS |= {1 / 25.4: "inch taken for mm", 39.37: "m taken for inch", 1 / 39.37: "inch taken for m"}
+#: largest STEP or mesh file, bytes
+LARGEST = 500_000_000
+
+
+def recognise(table: BodyTable, folder: Path) -> Recognised:
+    """Read a part and recognise the body of revolution inside it.
+
+    Parameters
+    ----------
+    table : BodyTable
+    folder : Path
+        That the name of the file is relative to.
+
+    Returns
+    -------
+    Recognised
+
+    Raises
+    ------
+    SceneError
+        A file that is no part, another unit or size than the table says, or a part that is not
+        round about the axis.
+    """
+    path = (folder / table.file).resolve()
+    try:
+        content = _content(path)
+        unit = _unit(table, content)
+        foot = _foot(table)
+        place = Placing(unit, TURNS[table.axis], foot)
+        points, triangles, volume, own_mesh = _surface(table, path, place)
+        _sizes(table, points)
+        found = round_part(points, triangles)
+        if not found.share >= LEAST_ROUND:
+            raise SceneError(_not_round(table, place, points, triangles, found), path=("axis",))
+    except MeshError as error:
+        raise SceneError(str(error), path=("body", table.key)) from None
+    except SceneError as error:
+        raise error.located(None, prefix=("body",)) from None
+    # the lower end comes to y = 0; the origin that was asked for is a place like any other
+    start = float(points[1].min())
+    lower = np.array(foot) + np.array(place.turn).T @ (0.0, start, 0.0)
+    x, y, z = (float(v) for v in lower)
+    points = points - [[0.0], [start], [0.0]]
+    walls = tuple(
+        Wall(_rounded(w.y0 - start), _rounded(w.y1 - start), *map(_rounded, w[2:]))
+        for w in found.walls
+    )
+    body = BodyFile(
+        kind="step" if table.step is not None else "mesh",
+        name=path.name,
+        path=str(path),
+        sha256=hashlib.sha256(content).hexdigest(),
+        unit=unit,
+        turn=place.turn,
+        foot=(x, y, z),
+        volume=volume,
+        round_share=found.share,
+        round_volume=volume_of(walls) / volume,  # type: ignore[arg-type]
+        **own_mesh,
+    )
+    cylinders = tuple(
+        (s.r0 + s.r1, s.y0 - start, s.y1 - start) for s in found.surfaces if s.r0 == s.r1
+    )
+    origin = 0.0 if table.origin is None else -start
+    return Recognised(body, walls, origin, cylinders, partial(seat_share, points, triangles))
+
+
+def _rounded(value: float) -> float:
+    return round(float(value), 13) + 0.0
+
+
+def _content(path: Path) -> bytes:
+    try:
+        if path.stat().st_size > LARGEST:
+            raise SceneError(
+                f"the file is larger than {LARGEST / 1e6:.0f} MB: simplify the part", path=("file",)
+            )
+        return path.read_bytes()
+    except OSError as error:
+        raise MeshError(f"cannot be opened: {error.strerror or error}") from None
+
+
+_LENGTHS = re.compile(rb"\(([^;]*?LENGTH_UNIT\s*\(\s*\)[^;]*?)\)\s*;", re.S)
+_PREFIX = {b"MILLI": "mm", b"CENTI": "cm", b"": "m"}
+
+
+def _unit(table: BodyTable, content: bytes) -> float:
+    """Metres for each unit of the file; what a STEP file says of itself is held against the table."""
+    if table.step is None:
+        return UNITS[str(table.unit)]
+    head = content[:200].lstrip()
+    if not head.startswith(b"ISO-10303-21"):
+        raise MeshError('is no STEP file: it does not begin with "ISO-10303-21;"')
+    if b"END-ISO-10303-21" not in content[-2000:]:
+        raise MeshError('is cut off: it does not end with "END-ISO-10303-21;"')
+    said = {unit for unit in map(_unit_of, _LENGTHS.findall(content)) if unit}
+    if "inch" in said:  # which is told in another unit, and that one is there too
+        said = {"inch"}
+    if len(said) != 1:
+        what = (
+            f"several units of length ({', '.join(sorted(said))})" if said else "no unit of length"
+        )
+        raise MeshError(f"names {what} that is known here; known are mm, cm, m and inch")
+    (own,) = said
+    if table.unit is not None and UNITS[table.unit] != UNITS[own]:
+        raise SceneError(f"the file itself says {own}", path=("unit",))
+    return UNITS[own]
+
+
+def _unit_of(text: bytes) -> str | None:
+    converted = re.search(rb"CONVERSION_BASED_UNIT\s*\(\s*'([^']*)'", text)
+    if converted:
+        name = converted[1].strip().upper()
+        return "inch" if name in (b"INCH", b"IN") else None
+    plain = re.search(rb"SI_UNIT\s*\(\s*(?:\.(\w+)\.|\$)\s*,\s*\.METRE\.\s*\)", text)
+    return _PREFIX.get(plain[1] or b"") if plain else None
+
+
+def _foot(table: BodyTable) -> Triple:
+    """The point on the axis that comes to y = 0, in the axes of the file, m."""
+    if table.origin is None:
+        return (0.0, 0.0, 0.0)
+    if isinstance(table.origin, tuple):
+        return table.origin
+    # along the axis of the file, whichever way the shaft runs
+    x, y, z = (table.origin if name == table.axis[-1] else 0.0 for name in "xyz")
+    return (x, y, z)
+
+
+def _surface(table: BodyTable, path: Path, place: Placing):
+    """Points and triangles on the surface in the scene, the volume of the part, and what is known
+    of its own mesh.
+    """
+    try:
+        if table.step is not None:
+            seen = apart(look, str(path), place, seconds=LOOK_SECONDS)
+            return seen.points, seen.triangles, seen.volume, {}
+        found = apart(mesh_from, str(path), place, seconds=LOOK_SECONDS)
+    except (ApartError, MemoryError) as error:
+        raise MeshError(
+            f"cannot be read: the reader {error or 'ran out of memory'}; the file is broken or too "
+            "large"
+        ) from None
+    mesh = found.mesh
+    counts = tuple(int(a.shape[1]) for a in (mesh.p, mesh.edges, mesh.facets, mesh.t))
+    return *found.skin(), found.volume, {"element": found.element, "counts": counts}
+
+
+def _sizes(table: BodyTable, points) -> None:
+    """Hold length, largest diameter and mass against what the table says."""
+    length = float(np.ptp(points[1]))
+    diameter = float(2 * np.hypot(points[0], points[2]).max())
+    for k, (what, own) in enumerate((("length", length), ("largest diameter", diameter))):
+        if table.size_check is None:
+            break
+        ratio = own / table.size_check[k]
+        if not abs(ratio - 1) <= SIZE_CHECK:
+            raise SceneError(
+                f"the {what} of the part about {table.axis} is {1e3 * own:.6g} mm{_slip(ratio)}",
+                path=("size_check", k),
+            )
+    if not 1e-3 <= length <= 20.0:
+        raise SceneError(
+            f"the part is {length:.4g} m long about {table.axis}, outside 1 mm to 20 m: probably "
+            "drawn in another unit than the file says",
+            path=("unit",) if table.unit else (table.key,),
+        )
+
+
+def _slip(ratio: float) -> str:
+    for factor, words in SLIPS.items():
+        if abs(ratio / factor - 1) < 5e-3:
+            return f", as if {words}"
+    return ""
+
+
+def _not_round(table: BodyTable, place: Placing, points, triangles, found: RoundPart) -> str:
+    """Why a part is no shaft about its axis, and about which it would be."""
+    shares = {table.axis: found.share}
+    # m from here on
+    raw = place.back(points)
+    for axis in ("x", "y", "z"):
+        if axis != table.axis.lstrip("-"):
+            turned = Placing(1.0, TURNS[axis], place.foot).of(raw)
+            shares[axis] = round_part(turned, triangles).share
+    best = max(shares, key=shares.__getitem__)
+    words = f"{100 * found.share:.0f} % of the surface is round about this axis"
+    if shares[best] >= LEAST_ROUND:
+        return f'{words}, and {100 * shares[best]:.0f} % about "{best}"'
+    # points on a circle miss its outermost places by a little, and axes lie at round numbers
+    middle = (raw.max(axis=1) + raw.min(axis=1)) / 2
+    off = 0.0
+    for digits in (4, 5, 8):
+        x, y, z = (round(float(v), digits) for v in middle)
+        off = round_part(Placing(1.0, place.turn, (x, y, z)).of(raw), triangles).share
+        if off >= LEAST_ROUND:
+            break
+    if off >= LEAST_ROUND:
+        x, y, z = 1e3 * x, 1e3 * y, 1e3 * z
+        return (
+            f"{words}, which goes through ({', '.join(f'{1e3 * v:.4g}' for v in place.foot)}) mm of "
+            f"the file, and {100 * off:.0f} % about one through ({x:.5g}, {y:.5g}, {z:.5g}) mm: "
+            "write that point as origin"
+        )
+    return f"{words}, at least {100 * LEAST_ROUND:.0f} % makes a shaft"
+
+
+def seat_share(
+    points: np.ndarray, triangles: np.ndarray, radius: float, lo: float, hi: float
+) -> float:
+    """Area of a surface on a cylinder between two places, over that of the cylinder.
+
+    Parameters
+    ----------
+    points : (3, n) ndarray
+        m.
+    triangles : (3, t) ndarray of int
+    radius, lo, hi : float
+        m.
+
+    Returns
+    -------
+    float
+        A whole turn of chords is a little less than 1.
+    """
+    r = np.hypot(points[0], points[2])[triangles]
+    on = (np.abs(r - radius) <= 10 * ON_LINE * radius).all(axis=0)
+    a, b, c = (points[:, corner[on]] for corner in triangles)
+    area = np.linalg.norm(np.cross((b - a).T, (c - a).T), axis=1) / 2
+    steps = 16
+    inside = np.zeros(len(area))
+    for i in range(steps):
+        for j in range(steps - i):
+            for third in (1 / 3, 2 / 3) if i + j < steps - 1 else (1 / 3,):
+                s, t = (i + third) / steps, (j + third) / steps
+                y = a[1] + s * (b[1] - a[1]) + t * (c[1] - a[1])
+                inside += (y >= lo) & (y <= hi)
+    return float((area * inside).sum() / steps**2 / (2 * np.pi * radius * (hi - lo)))
