@@ -305,7 +305,7 @@ def check(
 
     loaded = load(scene)
     # a model of revolution is looked at on the plain part, and the check says so
-    shown = loaded.plain if LADDER[fidelity].features == "none" else loaded
+    shown = loaded if LADDER[fidelity].holds else loaded.plain
     body = build_body(shown, fidelity, settings)
     found = check_scene(loaded, body)
     if as_json:

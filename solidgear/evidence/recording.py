@@ -96,7 +96,7 @@ def recorded(
         missing=[
             LADDER[model].title
             for model in LADDER.bodies
-            if model not in models and (LADDER[model].features != "only" or scene.features)
+            if model not in models and LADDER[model].concerns(scene)
         ],
     )
     if lumped and reference:

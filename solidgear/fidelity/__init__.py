@@ -49,6 +49,7 @@ def build(scene: Shaft, fidelity: str, **options) -> Body:
     True
     """
     from solidgear.fidelity.size import refuse_too_large
+    from solidgear.scene.features import resolved
 
     if fidelity not in LADDER.bodies:
         raise SolidgearError(
@@ -60,7 +61,7 @@ def build(scene: Shaft, fidelity: str, **options) -> Body:
     if unfit:
         fit = [r.name for r in LADDER if r.build is not None and not r.unfit(scene)]
         raise SolidgearError(f"{unfit}; use {' or '.join(fit)}")
-    if getattr(scene, "features", ()):
+    if resolved(scene):
         options = {**rung.featured, **options}
     options = rung.checked(options)
     refuse_too_large(scene, fidelity, options)

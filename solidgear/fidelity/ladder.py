@@ -2,15 +2,23 @@
 
 from __future__ import annotations
 
-from solidgear.fidelity.levels import corrected_meshes, harmonic_meshes, solid_meshes
+from solidgear.fidelity.levels import (
+    corrected_meshes,
+    harmonic_meshes,
+    sector_meshes,
+    solid_meshes,
+)
 from solidgear.fidelity.options import (
     BEAM_OPTIONS,
     CORRECTED_OPTIONS,
     HARMONIC_OPTIONS,
+    SECTOR_OPTIONS,
     SOLID_OPTIONS,
 )
 from solidgear.fidelity.rung import (
     BEAM,
+    CUTS,
+    CYCLIC,
     HELD,
     HELD_AT_A_STEP,
     LUMPED,
@@ -115,12 +123,47 @@ LADDER = Ladder(
         ),
         share=3.0,
         section_ties=False,
-        features="only",
+        holds=(CUTS,),
+        nature="a correction by two meshes, with features cut out and without",
+        for_features=True,
         mass_tolerance=1e-3,
         series=Later("solidgear.fidelity.series", "corrected_series"),
         most_seats=12,
         colour="#a05a00",
         marker="^",
+    ),
+    Rung(
+        name="sector",
+        title="cyclic sector",
+        short="sector",
+        family=SOLID,
+        theory="full 3D elasticity of a part of equal sectors, with its teeth",
+        build=Later("solidgear.fidelity.sector", "sector"),
+        options=SECTOR_OPTIONS,
+        size=Later("solidgear.fidelity.sizes", "sector_size"),
+        meshes=sector_meshes,
+        factors=BandFactors(
+            # those of tetrahedra that fill the whole shaft
+            usual={SMOOTH: 0.8, STEPPED: 0.8, HELD: 1.3, HELD_AT_A_STEP: 1.3},
+            first={
+                SMOOTH: (1.8, 0.009, 0.6),
+                STEPPED: (1.8, 0.009, 0.6),
+                HELD: (1.8, 0.036, 0.8),
+                HELD_AT_A_STEP: (1.8, 0.036, 0.8),
+            },
+            earlier=0.15,
+            ahead=0.4,
+            singular=True,
+        ),
+        section_ties=False,
+        holds=(CYCLIC,),
+        nature="one sector that repeats itself around the axis",
+        for_features=True,
+        mass_tolerance=1e-3,
+        series=Later("solidgear.fidelity.series", "sector_series"),
+        most_seats=12,
+        colour="#c2185b",
+        marker="h",
     ),
     Rung(
         name="solid",
@@ -144,7 +187,8 @@ LADDER = Ladder(
             singular=True,
         ),
         section_ties=False,
-        features="any",
+        holds=(CUTS, CYCLIC),
+        nature="one mesh of tetrahedra",
         featured={"element": "tet10"},
         mass_tolerance=1e-3,
         series=Later("solidgear.fidelity.series", "solid_series"),

@@ -119,6 +119,17 @@ def corrected_meshes(options: Mapping[str, Any]) -> Sequence:
     return Sequence(tuple({**level, **options} for level in CORRECTED), False, True)
 
 
+#: one sector holds meshes that are finer than those of a whole shaft
+SECTOR: tuple[Options, ...] = tuple({"refinement": r} for r in (0.45, 0.65, 0.95, 1.4, 2.0))
+
+
+def sector_meshes(options: Mapping[str, Any]) -> Sequence:
+    """Meshes of a cyclic sector; options as for :func:`harmonic_meshes`."""
+    if set(options) - {*FREE, "material_port"}:
+        return _refinements(dict(options))
+    return Sequence(tuple({**level, **options} for level in SECTOR), False, False)
+
+
 def _turned(level: Options) -> Options:
     return {**level, "around": 4 * -(-3 * level["around"] // 8)}
 

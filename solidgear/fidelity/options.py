@@ -162,6 +162,25 @@ CORRECTED_OPTIONS = {
     "attachments": _TIES,
 }
 
+_GRADED = Option(
+    "size of tetrahedra at shoulders and seat ends, m",
+    above=0,
+    most=100,
+    optional=True,
+    why="a shaft is at most 20 m long",
+)
+
+SECTOR_OPTIONS = {
+    "size": _SIZE,
+    "graded_size": _GRADED,
+    "refinement": _REFINEMENT,
+    "material_port": Option(
+        "whether stations on teeth follow the mean of their material, not of their surface", "flag"
+    ),
+    "ovalising": HARMONIC_OPTIONS["ovalising"],
+    "attachments": _TIES,
+}
+
 SOLID_OPTIONS = {
     "element": Option(
         "element type", "choice", choices=("hex20", "hex27", "hex8", "tet10", "tet4")
@@ -175,13 +194,7 @@ SOLID_OPTIONS = {
     "around": Option(
         "elements around the circumference", "whole", least=8, most=720, why="two to a degree"
     ),
-    "graded_size": Option(
-        "size of tetrahedra at shoulders and seat ends, m",
-        above=0,
-        most=100,
-        optional=True,
-        why="a shaft is at most 20 m long",
-    ),
+    "graded_size": _GRADED,
     "refinement": _REFINEMENT,
     "attachments": _TIES,
     "half": Option("whether a part with a mirror plane is solved in halves", "flag"),

@@ -9,7 +9,7 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
-from solidgear.errors import SolidgearError, nearest, show
+from solidgear.errors import SolidgearError, listed, nearest, show
 from solidgear.fidelity.options import Option, checked
 
 if TYPE_CHECKING:
@@ -19,6 +19,9 @@ if TYPE_CHECKING:
     from solidgear.scene.shaft import Shaft
 
 LUMPED, BEAM, SOLID = "lumped", "beam", "solid"
+#: kinds of features that are cut out at one place, and those that repeat themselves around the axis
+CUTS = frozenset({"keyway", "flat", "cross_hole"})
+CYCLIC = frozenset({"teeth", "spline", "bolt_circle"})
 #: a line of a chart: family, label, builder options from the cheapest level on
 Series = tuple[str, str, list[dict[str, Any]]]
 
@@ -116,9 +119,13 @@ class Rung:
     series : callable, optional
         ``series(scene, full)`` gives the lines of a chart of error against cost; by default its
         one usual mesh.
-    features : {'none', 'any', 'only'}
-        Whether its body holds features that are not of revolution: it cannot, it may, or it is
-        made for them alone.
+    holds : tuple of frozenset of str
+        Kinds of features (`CUTS`, `CYCLIC`) that its body holds, in
+        sets that cannot be mixed; a body of revolution holds none.
+    nature : str
+        What its body is, where a feature does not fit it: ``of revolution``.
+    for_features : bool
+        Whether it is made for the features that it holds, and for nothing else.
     featured : mapping
         Options of the builder for a scene with features.
     colour, marker : str
@@ -141,7 +148,9 @@ class Rung:
     mass_tolerance: float = 1e-9
     most_seats: int = 12
     series: Callable[[Any, bool], list[Series]] | None = None
-    features: str = "none"
+    holds: tuple[frozenset[str], ...] = ()
+    nature: str = "of revolution"
+    for_features: bool = False
     featured: Mapping[str, Any] = field(default_factory=dict)
     colour: str = "#777777"
     marker: str = "P"
@@ -158,16 +167,37 @@ class Rung:
         ----------
         scene : Scene
         """
-        features = getattr(scene, "features", ())
-        if features and self.features == "none":
-            names = ", ".join(f'{f.what} "{f.name}"' for f in features)
-            return (
-                f"the {self.title} is of revolution and the scene has {names}: "
-                "it would answer for the plain part"
-            )
-        if not features and self.features == "only":
-            return f"the {self.title} is made for features, and the scene has none"
+        from solidgear.scene.features import named, resolved
+
+        features = resolved(scene)
+        kinds = {f.kind for f in features}
+        if kinds and not any(kinds <= own for own in self.holds):
+            strange = [f for f in features if not any(f.kind in own for own in self.holds)]
+            told = named(strange or features)
+            return f"the {self.title} is {self.nature} and the scene has {told}{self._amiss(strange)}"
+        every = getattr(scene, "features", ())
+        if self.for_features and not any(f.kind in own for f in every for own in self.holds):
+            kinds = sorted(set().union(*self.holds))
+            told = "none" if not every else named(every)
+            return f"the {self.title} is made for features ({listed(k.replace('_', ' ') for k in kinds)}), and the scene has {told}"
         return ""
+
+    def _amiss(self, strange: Any) -> str:
+        if not self.holds:
+            return ": it would answer for the plain part"
+        return "" if strange else ", of which it holds one kind or the other, not both"
+
+    def concerns(self, scene: Any) -> bool:
+        """Whether it is among the models that one asks of a scene without naming any.
+
+        Parameters
+        ----------
+        scene : Scene
+        """
+        from solidgear.scene.features import resolved
+
+        own = set().union(*self.holds) if self.holds else set()
+        return not self.for_features or any(f.kind in own for f in resolved(scene))
 
     def meshes_of(self, scene: Any, options: Mapping[str, Any]) -> Sequence:
         """Meshes for a scene, coarse to fine; see ``meshes``.
@@ -178,8 +208,10 @@ class Rung:
         options : mapping
             Builder options that were asked for.
         """
+        from solidgear.scene.features import resolved
+
         assert self.meshes is not None  # asked of rungs that have them
-        given = self.featured if getattr(scene, "features", ()) else {}
+        given = self.featured if resolved(scene) else {}
         return self.meshes({**given, **options})
 
     def checked(self, options: Mapping[str, Any]) -> dict[str, Any]:
@@ -245,11 +277,10 @@ class Ladder:
         return tuple(rung.name for rung in self.rungs if rung.build is not None)
 
     def fit(self, scene: Any) -> tuple[str, ...]:
-        """Those with a body of their own, without rungs that are made for features where a scene
-        has none.
+        """Those with a body of their own, without rungs that are made for features of kinds that a
+        scene does not have.
         """
-        features = bool(getattr(scene, "features", ()))
-        return tuple(n for n in self.bodies if features or self[n].features != "only")
+        return tuple(n for n in self.bodies if self[n].concerns(scene))
 
     @property
     def judges(self) -> tuple[str, ...]:

@@ -170,6 +170,13 @@ def corrected_size(scene: Shaft, given: Mapping[str, Any]) -> Size:
     )
 
 
+def sector_size(scene: Shaft, given: Mapping[str, Any]) -> Size:
+    """Size of a cyclic sector, estimated: a share of the whole shaft, and its cut faces."""
+    from solidgear.fidelity.sector import sector_counts
+
+    return _sector(scene, given, *sector_counts(scene, given))
+
+
 def _hexahedra(scene: Shaft, given: Mapping[str, Any]) -> Size:
     from solidgear.fidelity.solid import hexahedra_layout
 

@@ -10,10 +10,12 @@ from solidgear.body import Body, Port
 from solidgear.errors import SolidgearError
 from solidgear.fidelity.attachment import tie_rigidly
 from solidgear.fidelity.options import SOLID_OPTIONS, checked, countable
+from solidgear.fidelity.rung import CYCLIC
 from solidgear.fidelity.scale import elastic_scale
 from solidgear.fidelity.solid_block import free_block, seat_facets
 from solidgear.fidelity.solid_mesh import _isoparametric
 from solidgear.meshing.grading import Grading
+from solidgear.scene.features import resolved
 
 
 def solid(
@@ -93,21 +95,20 @@ def solid(
             f"solid: around = {around} does not fit an O-grid; use a multiple of 4"
         )
     wanted = [(s, a) for s in scene.stations for a in (attachments or (s.attachment,))]
-    if getattr(scene, "features", ()):
+    features = resolved(scene)
+    if features:
         if element != "tet10":
             raise SolidgearError(
                 f"solid: element = {element} cannot hold features of the scene; use tet10"
             )
+        sizes = {"size": size, "graded_size": graded_size, "refinement": refinement}
+        if {f.kind for f in features} <= CYCLIC:
+            from solidgear.fidelity.sector import whole
+
+            return whole(scene, wanted, **sizes)
         from solidgear.fidelity.featured import featured_body, meshed
 
-        plan = tetrahedra_plan(
-            scene,
-            wanted,
-            size=size,
-            graded_size=graded_size,
-            refinement=refinement,
-            around=around,
-        )
+        plan = tetrahedra_plan(scene, wanted, around=around, **sizes)
         return featured_body(scene, wanted, meshed(scene, plan, refinement, half), refinement)
     tet = element.startswith("tet")
     if tet:

@@ -14,6 +14,7 @@ from solidgear.fidelity.ladder import LADDER
 from solidgear.fidelity.rung import BEAM, LUMPED
 from solidgear.machine.threads import pinned
 from solidgear.meshing.quality import mass_properties
+from solidgear.scene.features import named, resolved
 from solidgear.studies.guards import GUARDS, LEVELS, Notice, Probe
 from solidgear.studies.guards.notice import beams, everything
 
@@ -92,7 +93,7 @@ def check_scene(scene: Scene, body: Body) -> dict:
         "verdicts": {
             model: _verdict(model, records)
             for model in everything()
-            if LADDER[model].features != "only" or scene.features
+            if LADDER[model].concerns(scene)
         },
     }
 
@@ -197,21 +198,31 @@ def _verdict(model: str, records: list[dict]) -> dict:
 
 def _of_features(scene: Scene) -> Iterator[Notice]:
     """Which models answer for the plain part only."""
-    if not scene.features:
+    smeared = [f for f in scene.features if f.smeared]
+    if smeared:
+        yield Notice("fact", (), smeared_sentence(scene, smeared))
+    features = resolved(scene)
+    if not features:
         return
-    names = ", ".join(f'{f.what} "{f.name}"' for f in scene.features)
+    names = named(features)
     yield Notice(
         "fact",
         (),
         f"not of revolution: {names}; all that is told of the shaft is of its plain part",
     )
-    blind = tuple(m for m in everything() if LADDER[m].features == "none")
+    blind = tuple(m for m in everything() if LADDER[m].unfit(scene))
+    fit = [r.name for r in LADDER if r.build is not None and not r.unfit(scene)]
+    use = f"use {' or '.join(fit)}" if fit else "no model holds all of them"
     yield Notice(
         "avoid",
         blind,
         f"the scene has {names}, of which a model of revolution knows nothing: it would answer for "
-        "the plain part; use corrected, or solid",
+        f"the plain part; {use}",
     )
+
+
+def smeared_sentence(scene: Scene, smeared) -> str:
+    return f"{named(smeared)}: smeared into the segment of revolution"
 
 
 def _of_the_body(scene: Scene, body: Body) -> Iterator[Notice]:

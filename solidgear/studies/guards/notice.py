@@ -42,7 +42,7 @@ def beams() -> tuple[str, ...]:
 
 def solids() -> tuple[str, ...]:
     """Solids that model a plain shaft: guards look at nothing else."""
-    return tuple(name for name in LADDER.of(SOLID) if LADDER[name].features != "only")
+    return tuple(name for name in LADDER.of(SOLID) if not LADDER[name].for_features)
 
 
 def everything() -> tuple[str, ...]:
