@@ -98,7 +98,9 @@ def basis(sector: Sector, nodes: int, h: int) -> tuple[sp.csr_matrix, np.ndarray
     kept = np.flatnonzero(free)
     column = np.full(nodes, -1)
     column[kept] = 3 * np.arange(len(kept))
-    on_axis = {0: np.array([[0.0], [1.0], [0.0]]), 1: _across(sector.angle)}.get(h, np.zeros((3, 0)))
+    on_axis = {0: np.array([[0.0], [1.0], [0.0]]), 1: _across(sector.angle)}.get(
+        h, np.zeros((3, 0))
+    )
     wide = on_axis.shape[1]
     size = 3 * len(kept) + wide * len(sector.axis)
     turn = np.exp(1j * h * sector.angle) * rotation(1, sector.angle)[:3, :3]

@@ -169,23 +169,25 @@ class Rung:
         """
         from solidgear.scene.features import named, resolved
 
-        features = resolved(scene)
-        kinds = {f.kind for f in features}
-        if kinds and not any(kinds <= own for own in self.holds):
-            strange = [f for f in features if not any(f.kind in own for own in self.holds)]
-            told = named(strange or features)
-            return f"the {self.title} is {self.nature} and the scene has {told}{self._amiss(strange)}"
+        features, held = resolved(scene), [f"{k}".replace("_", " ") for k in sorted(self._kinds)]
         every = getattr(scene, "features", ())
-        if self.for_features and not any(f.kind in own for f in every for own in self.holds):
-            kinds = sorted(set().union(*self.holds))
-            told = "none" if not every else named(every)
-            return f"the {self.title} is made for features ({listed(k.replace('_', ' ') for k in kinds)}), and the scene has {told}"
-        return ""
-
-    def _amiss(self, strange: Any) -> str:
+        if self.for_features and not any(f.kind in self._kinds for f in every):
+            return (
+                f"the {self.title} is made for features, and the scene has none of: {listed(held)}"
+            )
+        kinds = {f.kind for f in features}
+        if not kinds or any(kinds <= own for own in self.holds):
+            return ""
+        strange = [f for f in features if f.kind not in self._kinds]
+        unfit = f"the {self.title} is {self.nature} and the scene has {named(strange or features)}"
         if not self.holds:
-            return ": it would answer for the plain part"
-        return "" if strange else ", of which it holds one kind or the other, not both"
+            return f"{unfit}: it would answer for the plain part"
+        return unfit if strange else f"{unfit}, which no mesh holds together"
+
+    @property
+    def _kinds(self) -> set[str]:
+        """All kinds of features that it holds."""
+        return {kind for own in self.holds for kind in own}
 
     def concerns(self, scene: Any) -> bool:
         """Whether it is among the models that one asks of a scene without naming any.
@@ -196,8 +198,7 @@ class Rung:
         """
         from solidgear.scene.features import resolved
 
-        own = set().union(*self.holds) if self.holds else set()
-        return not self.for_features or any(f.kind in own for f in resolved(scene))
+        return not self.for_features or any(f.kind in self._kinds for f in resolved(scene))
 
     def meshes_of(self, scene: Any, options: Mapping[str, Any]) -> Sequence:
         """Meshes for a scene, coarse to fine; see ``meshes``.

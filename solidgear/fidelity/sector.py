@@ -5,34 +5,28 @@ the same mesh.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
-from functools import cached_property
 from typing import Any
 
 import numpy as np
 
 from solidgear.body import Body, Port
-from solidgear.body.surface import Surface, Volume
 from solidgear.errors import SolidgearError
 from solidgear.fidelity.attachment import tie_rigidly
-from solidgear.fidelity.cyclic import Sector, cyclic_blocks
-from solidgear.fidelity.halves import seat_on_cylinder
+from solidgear.fidelity.cyclic import cyclic_blocks
 from solidgear.fidelity.options import SECTOR_OPTIONS, checked
 from solidgear.fidelity.rung import CYCLIC
 from solidgear.fidelity.scale import elastic_scale
+from solidgear.fidelity.sector_solid import on_teeth, seats, sector_solid
 from solidgear.fidelity.solid import tetrahedra_plan
-from solidgear.fidelity.solid_block import Facets, free_block
-from solidgear.fidelity.solid_drawing import solid_surface
+from solidgear.fidelity.solid_block import free_block
 from solidgear.fidelity.solid_mesh import SolidMesh, _isoparametric
-from solidgear.frames import rotation
-from solidgear.meshing.quality import check_mesh
+from solidgear.meshing.element_size import estimated_counts
 from solidgear.meshing.sector import (
     SectorMesh,
-    cut_vertices,
-    matched,
+    feature_sizes,
     replicated,
     sector_mesh,
-    volume_of_sector,
+    sectors_of,
 )
 
 #: eigenvalues of pairs in a real matrix made of a complex one differ by rounding
@@ -44,7 +38,7 @@ def sector(
     *,
     size: float | None = None,
     graded_size: float | None = None,
-    refinement: float = 0.7,
+    refinement: float = 1.0,
     material_port: bool = False,
     ovalising: tuple[int, ...] = (),
     attachments: tuple[str, ...] | None = None,
@@ -92,7 +86,7 @@ def sector(
         raise SolidgearError(
             f"sector: ovalising {high[0]} is not below half of the {made.count} sectors"
         )
-    mesh = _mesh_of(made)
+    mesh = sector_solid(made)
     facets = seats(mesh, made.straight, scene, features)
 
     def parts_of(station, attachment):
@@ -156,13 +150,44 @@ def cyclic_features(scene: Any) -> tuple[Any, ...]:
 
 
 def meshed_sector(
-    scene, wanted, features, *, size=None, graded_size=None, refinement=0.7, count=None
+    scene, wanted, features, *, size=None, graded_size=None, refinement=1.0, count=None
 ) -> SectorMesh:
     """The mesh of one sector of a scene; parameters as for :func:`sector`."""
     plan = tetrahedra_plan(
         scene, wanted, size=size, graded_size=graded_size, refinement=refinement, around=16
     )
     return sector_mesh(scene.segments, features, **plan, refinement=refinement, count=count)
+
+
+def sectors_around(scene, given: Mapping[str, Any]) -> int:
+    """Number of sectors of a scene: what its features have in common, or what was asked for."""
+    return given.get("count") or max(1, sectors_of(cyclic_features(scene)))
+
+
+def sector_counts(scene, given: Mapping[str, Any]) -> tuple[float, float, float, float]:
+    """Vertices, edges, faces and cells of the whole shaft at the sizes of its sector, estimated.
+
+    Parameters
+    ----------
+    scene : Scene
+    given : mapping
+        Options of :func:`sector`, or of the solid.
+
+    Returns
+    -------
+    vertices, edges, faces, cells : float
+    """
+    wanted = [(s, a) for s in scene.stations for a in (given["attachments"] or (s.attachment,))]
+    refinement = given["refinement"]
+    sizes = {"size": given["size"], "graded_size": given["graded_size"]}
+    plan = tetrahedra_plan(scene, wanted, refinement=refinement, around=16, **sizes)
+    features = cyclic_features(scene)
+    more = feature_sizes(scene.segments, features, refinement)
+    # a tooth and the gap beside it take cells of their own
+    strips = max(
+        [sectors_of(features), *(2 * f.count for f in features if f.kind != "bolt_circle")]
+    )
+    return estimated_counts(scene.segments, **plan, more=more, sectors=strips)
 
 
 def _body(fidelity, scene, wanted, blocks, facts, drawing) -> Body:
@@ -183,134 +208,3 @@ def _facts(made: SectorMesh, mesh: SolidMesh, features, refinement: float) -> di
         "representative_size": float((made.quality.volume / elements) ** (1 / 3)),
         "features": [f.name for f in features],
     }
-
-
-def on_teeth(station, scene, features) -> bool:
-    """Whether a station sits on a toothed segment."""
-    names = {f.segment for f in features if f.kind != "bolt_circle"}
-    return any(
-        s.name in names and station.lo < s.y1 and station.hi > s.y0 for s in scene.segments
-    )
-
-
-def seats(mesh: SolidMesh, straight: np.ndarray, scene, features) -> Facets:
-    """Facets of seats: on what is left of surfaces of revolution, and flanks, tips and roots of
-    teeth.
-
-    Parameters
-    ----------
-    mesh : SolidMesh
-        Of a sector, or of the whole.
-    straight : (3, nv) ndarray
-        Places of its vertices, m; only y and the radius count.
-    scene : Scene
-    features : sequence of Teeth, Spline or BoltCircle
-
-    Returns
-    -------
-    callable
-        ``facets(station, attachment)``.
-    """
-    toothed = {f.segment: f for f in features if f.kind != "bolt_circle"}
-    tolerance = 1e-7 * scene.length
-    plain = [s for s in scene.segments if s.name not in toothed]
-    on_cylinder = seat_on_cylinder(mesh, plain, tolerance)
-    corners = mesh.mesh.facets[:, mesh.boundary]
-    y, r = straight[1, corners], np.hypot(*straight[[0, 2]][:, corners])
-
-    def facets(station, attachment):
-        found = on_cylinder(station, attachment)
-        if attachment == "section":
-            return found
-        low, high = y.min(axis=0), y.max(axis=0)
-        on = np.zeros(len(mesh.boundary), bool)
-        for s in scene.segments:
-            if s.name in toothed:
-                teeth = toothed[s.name]
-                pitch = s.outer0 + (s.outer1 - s.outer0) * (y - s.y0) / s.length
-                # chords of roots run below their circle by this at most; bores and holes lie deeper
-                least = teeth.root * np.cos(np.pi / teeth.count - teeth.root_half) * (1 - 1e-6)
-                here = (low > s.y0 - tolerance) & (high < s.y1 + tolerance)
-                on |= here & (r > least * pitch).all(axis=0)
-        inside = (low >= station.lo - tolerance) & (high <= station.hi + tolerance)
-        steep = high - low > tolerance
-        return np.union1d(found, mesh.boundary[inside & steep & on])
-
-    return facets
-
-
-@dataclass(frozen=True, eq=False)
-class SectorSolid(SolidMesh):
-    """The mesh of a sector, which draws the whole part.
-
-    Attributes
-    ----------
-    sector : Sector
-    inner : (k,) ndarray of int
-        Facets on the cut faces.
-    """
-
-    sector: Sector
-    inner: np.ndarray
-
-    @cached_property
-    def boundary(self) -> np.ndarray:
-        """Indices of the facets on the surface of the whole part."""
-        return np.setdiff1d(self.mesh.boundary_facets(), self.inner)
-
-    def surface(self, moved: Mapping[str, np.ndarray]) -> Surface:
-        """All copies of the sector, each with its phase."""
-        parts = {}
-        for name, vector in moved.items():
-            h = int(name.removeprefix("cyclic_"))
-            real, imaginary = (vector, None) if h == 0 else (vector[::2], vector[1::2])
-            parts[h] = [None if v is None else solid_surface(self, v) for v in (real, imaginary)]
-        rest = solid_surface(self, None)
-        size, copies = len(rest.points), []
-        for k in range(self.sector.count):
-            angle = k * self.sector.angle
-            local = np.zeros((size, 3))
-            for h, (real, imaginary) in parts.items():
-                local += np.cos(h * angle) * real.displacement
-                if imaginary is not None:
-                    local -= np.sin(h * angle) * imaginary.displacement
-            turn = rotation(1, angle)[:3, :3].T
-            copies.append((rest.points @ turn, local @ turn))
-        points, displacement = (np.vstack(part) for part in zip(*copies))
-        shift = size * np.arange(self.sector.count)[:, None, None]
-
-        def every(cells):
-            return (cells + shift).reshape(-1, cells.shape[1])
-
-        return Surface(
-            points, displacement, every(rest.faces), every(rest.triangles), every(rest.lines)
-        )
-
-    def volume(self) -> Volume | None:
-        """No mesh of the whole part."""
-        return None
-
-
-def _mesh_of(made: SectorMesh) -> SectorSolid:
-    plain = _isoparametric(made.mesh, "tet10", made.segment)
-    low, high, axis = cut_vertices(made)
-    outside = made.mesh.boundary_facets()
-    inner, sides = [], []
-    for own in (low, high):
-        on = np.zeros(plain.nodes.shape[1], bool)
-        on[own] = on[axis] = True
-        inner.append(outside[on[made.mesh.facets[:, outside]].all(axis=0)])
-        sides.append(plain.facet_unknowns(inner[-1]))
-    on_axis = np.intersect1d(*sides)
-    master, slave = (np.setdiff1d(side, on_axis) for side in sides)
-    master = matched(plain.nodes, made.count, master, slave)
-    return SectorSolid(
-        plain.mesh,
-        plain.name,
-        plain.element,
-        plain.dofs,
-        plain.nodes,
-        plain.segment,
-        Sector(made.count, master, slave, on_axis),
-        np.concatenate(inner),
-    )

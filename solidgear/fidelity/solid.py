@@ -6,10 +6,13 @@ blocks from one Gram matrix of basis gradients per element.
 
 from __future__ import annotations
 
+from typing import Any
+
 from solidgear.body import Body, Port
 from solidgear.errors import SolidgearError
 from solidgear.fidelity.attachment import tie_rigidly
-from solidgear.fidelity.options import SOLID_OPTIONS, checked, countable
+from solidgear.fidelity.limits import countable
+from solidgear.fidelity.options import SOLID_OPTIONS, checked
 from solidgear.fidelity.rung import CYCLIC
 from solidgear.fidelity.scale import elastic_scale
 from solidgear.fidelity.solid_block import free_block, seat_facets
@@ -101,7 +104,8 @@ def solid(
             raise SolidgearError(
                 f"solid: element = {element} cannot hold features of the scene; use tet10"
             )
-        sizes = {"size": size, "graded_size": graded_size, "refinement": refinement}
+        sizes: dict[str, Any] = {"size": size, "graded_size": graded_size}
+        sizes["refinement"] = refinement
         if {f.kind for f in features} <= CYCLIC:
             from solidgear.fidelity.sector import whole
 

@@ -25,8 +25,9 @@ from solidgear.meshing.element_size import set_size, size_formulas
 from solidgear.meshing.gmsh_session import Session, import_gmsh
 from solidgear.meshing.outline import Frustum, corners_of, slabs_between, tolerance_of
 from solidgear.meshing.quality import MeshError, MeshQuality, check_mesh
-from solidgear.meshing.teeth import hole_size, outline, section_area, tooth_size, turn_at
-from solidgear.meshing.tetrahedra import draw_revolved, relaxed, to_skfem
+from solidgear.meshing.sector_drawing import draw_sector, drill, pair_faces, phase
+from solidgear.meshing.teeth import hole_size, section_area, tooth_size, turn_at
+from solidgear.meshing.tetrahedra import relaxed, to_skfem
 
 #: sectors of less than this share of a turn are cyclic
 FEWEST = 3
@@ -125,16 +126,16 @@ def sector_mesh(
     shapes = [Frustum.of(s) for s in segments]
     tolerance = tolerance_of(shapes)
     toothed = {f.segment: f for f in features if f.kind != "bolt_circle"}
-    first = _phase(toothed.values(), count)
+    first = phase(toothed.values(), count)
     twists = [(s, toothed[s.name]) for s in segments if s.name in toothed]
     with Session(gmsh):
-        own = _draw(gmsh, segments, shapes, toothed, planes, circles, count, first)
+        own = draw_sector(gmsh, segments, shapes, toothed, planes, circles, count, first)
         holes = [f for f in features if f.kind == "bolt_circle"]
-        own = _drill(gmsh, own, holes, segments, twists, count, first)
+        own = drill(gmsh, own, holes, segments, twists, count, first)
         gmsh.model.occ.fragment(own[:1], own[1:]) if len(own) > 1 else None
         gmsh.model.occ.synchronize()
         drawn = sum(gmsh.model.occ.getMass(3, v) for _, v in gmsh.model.getEntities(3))
-        _pair_faces(gmsh, count, tolerance)
+        pair_faces(gmsh, count, tolerance)
         corners = corners_of(slabs_between(shapes, planes, tolerance), circles, tolerance)
         formulas = size_formulas(shapes, corners, size, graded_size, None, around)
         formulas += feature_sizes(segments, features, refinement)
@@ -216,119 +217,6 @@ def _common(features, count: int) -> None:
         f"{each} have no sector of a third of a turn or less in common: "
         "there is no cyclic symmetry to use"
     )
-
-
-def _phase(toothed, count: int) -> float:
-    """Angle of the middle of the sector, such that its borders run between teeth, rad."""
-    first = None
-    for teeth in toothed:
-        pitch = 2 * pi / teeth.count
-        # with an even number of teeth in a sector its middle lies between two of them
-        middle = teeth.angle + (pitch / 2 if teeth.count // count % 2 == 0 else 0.0)
-        apart = 0.0 if first is None else (middle - first + pitch / 2) % pitch - pitch / 2
-        if abs(apart) > 1e-9:
-            raise MeshError(
-                f'the gaps of {teeth.what} "{teeth.name}" do not lie behind those of the other '
-                f"teeth: no sector border runs between both; turn it by {-apart:.6g} rad"
-            )
-        first = middle if first is None else first
-    return first or 0.0
-
-
-def _draw(gmsh, segments, shapes, toothed, planes, circles, count: int, first: float):
-    """Volumes of the sector: wedges of runs of plain segments, and slabs of toothed ones."""
-    turn, runs = 2 * pi / count, []
-    for i, s in enumerate(segments):
-        if s.name in toothed:
-            inside = [y for y in (*planes, *circles) if s.y0 < y < s.y1]
-            _toothed(gmsh, s, toothed[s.name], sorted(set(inside)), count)
-        elif runs and runs[-1][-1] == i - 1:
-            runs[-1].append(i)
-        else:
-            runs.append([i])
-    for run in runs:
-        own = [shapes[i] for i in run]
-        within = [
-            [y for y in places if own[0].y0 <= y <= own[-1].y1] for places in (planes, circles)
-        ]
-        draw_revolved(gmsh, own, *within, -pi / 2 - turn / 2, turn)
-    gmsh.model.occ.synchronize()
-    return gmsh.model.getEntities(3)
-
-
-def _toothed(gmsh, segment, teeth, cuts: list[float], count: int) -> None:
-    """A toothed segment between the cut faces, as polyhedra from cut to cut, less its bore."""
-    occ = gmsh.model.occ
-    angle, radius = outline(teeth, count)
-    places = [segment.y0, *cuts, segment.y1]
-    sections = []
-    for y in places:
-        r = segment.outer0 + (segment.outer1 - segment.outer0) * (y - segment.y0) / segment.length
-        points = [occ.addPoint(0.0, y, 0.0)]
-        points += [occ.addPoint(r * q * sin(t), y, r * q * cos(t)) for t, q in zip(angle, radius)]
-        rim = [occ.addLine(a, b) for a, b in zip(points, points[1:] + points[:1])]
-        face = occ.addPlaneSurface([occ.addCurveLoop(rim)])
-        sections.append((points, rim, face))
-    solids = []
-    for low, high in zip(sections, sections[1:]):
-        risers = [occ.addLine(a, b) for a, b in zip(low[0], high[0])]
-        n = len(risers)
-        sides = [
-            occ.addPlaneSurface(
-                [occ.addCurveLoop([low[1][i], risers[(i + 1) % n], -high[1][i], -risers[i]])]
-            )
-            for i in range(n)
-        ]
-        solids.append((3, occ.addVolume([occ.addSurfaceLoop([low[2], *sides, high[2]])])))
-    if segment.inner0 or segment.inner1:
-        a, b, length = segment.inner0, segment.inner1, segment.length
-        place = (0.0, segment.y0, 0.0, 0.0, length, 0.0)
-        bore = occ.addCylinder(*place, a) if a == b else occ.addCone(*place, a, b)
-        occ.cut(solids, [(3, bore)])
-
-
-def _drill(gmsh, volumes, holes, segments, twists, count: int, first: float):
-    """Cut the holes that reach into the sector, also those that its borders halve."""
-    occ, tools = gmsh.model.occ, []
-    for f in holes:
-        here = next(s for s in segments if s.name == f.segment)
-        lo, hi = f.reach(here)
-        start = f.angle - first - float(turn_at(np.array([(lo + hi) / 2]), twists)[0])
-        half = pi / count + 2 * f.diameter / f.circle
-        for k in range(f.count):
-            t = (start + 2 * pi * k / f.count + pi) % (2 * pi) - pi
-            if abs(t) < half:
-                x, z = f.circle / 2 * sin(t), f.circle / 2 * cos(t)
-                tools.append((3, occ.addCylinder(x, lo, z, 0.0, hi - lo, 0.0, f.diameter / 2)))
-    if not tools:
-        return volumes
-    cut, _ = occ.cut(volumes, tools)
-    occ.synchronize()
-    return [entity for entity in cut if entity[0] == 3]
-
-
-def _pair_faces(gmsh, count: int, tolerance: float) -> None:
-    """Tell gmsh which cut faces carry the same mesh."""
-    half = pi / count
-    low, high = {}, {}
-    for _, face in gmsh.model.getEntities(2):
-        x, y, z = gmsh.model.occ.getCenterOfMass(2, face)
-        t, key = np.arctan2(x, z), (np.hypot(x, z), y, gmsh.model.occ.getMass(2, face))
-        if abs(abs(t) - half) < 1e-7:
-            (low if t < 0 else high)[face] = key
-    own = np.array(list(high.values())).reshape(-1, 3)
-    if len(own) != len(low):
-        raise MeshError("the two cut faces of the sector are not divided alike")
-    pairs = []
-    for face, key in low.items():
-        k = int(np.abs(own - key).max(axis=1).argmin())
-        pairs.append((list(high)[k], face))
-    if len({slave for slave, _ in pairs}) != len(low):
-        raise MeshError("the two cut faces of the sector are not divided alike")
-    turn = np.eye(4)
-    turn[:3, :3] = rotation(1, 2 * half)[:3, :3]
-    slaves, masters = zip(*pairs)
-    gmsh.model.mesh.setPeriodic(2, slaves, masters, turn.ravel().tolist())
 
 
 def _turned(mesh: MeshTet2, by) -> MeshTet2:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import cos, hypot, pi, sin
+from math import cos, hypot, pi
 from typing import Any
 
 import numpy as np
@@ -103,9 +103,7 @@ def turn_at(y: np.ndarray, twists: list[tuple[Any, Any]]) -> np.ndarray:
         if abs(slope) < 1e-12:
             out += teeth.twist * along / s.outer0
         else:
-            out += (
-                teeth.twist * hypot(1.0, slope) / slope * np.log1p(slope * along / s.outer0)
-            )
+            out += teeth.twist * hypot(1.0, slope) / slope * np.log1p(slope * along / s.outer0)
     return out
 
 
@@ -153,5 +151,3 @@ def hole_size(bolts: Any, segment: Any, refinement: float) -> str:
     across = f"Max(0,Sqrt((Sqrt(x^2+z^2)-{_num(bolts.circle / 2)})^2)-{_num(bolts.diameter / 2)})"
     along = f"Max(0,Max({_num(lo)}-y,y-{_num(hi)}))"
     return f"{_num(least)}+{_num(GROWTH)}*Sqrt({across}^2+{along}^2)"
-
-

@@ -166,8 +166,10 @@ class CrossHole(Cut):
             )
 
 
+CutFeature: TypeAlias = Keyway | Flat | CrossHole
+CyclicFeature: TypeAlias = Teeth | Spline | BoltCircle
 #: any of them
-Feature: TypeAlias = Keyway | Flat | CrossHole | Teeth | Spline | BoltCircle
+Feature: TypeAlias = CutFeature | CyclicFeature
 
 
 def resolved(scene: Any) -> tuple[Feature, ...]:

@@ -18,7 +18,8 @@ from solidgear.body import FURTHER, Body, as_supports
 from solidgear.errors import SolidgearError
 from solidgear.machine.threads import pinned
 from solidgear.solve.eigen import Raw
-from solidgear.solve.naming import Names, Projection, numbered
+from solidgear.solve.families import numbered
+from solidgear.solve.naming import Names, Projection
 from solidgear.solve.parts import (
     Part,
     complete,

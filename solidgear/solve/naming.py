@@ -19,12 +19,12 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.sparse.csgraph import connected_components
 
-from solidgear.body import Block, Body, Supports
+from solidgear.body import Body, Supports
 from solidgear.frames import rotation
 from solidgear.solve.circumference import Circumference, of_body
+from solidgear.solve.families import FAMILIES, family_of, repeats, several, waves_of
 from solidgear.solve.quarter_turn import alike
 
-FAMILIES = {"bending": (0, 2, 3, 5), "axial": (1,), "torsion": (4,)}
 #: Bearings that a quarter turn changes by no more than this, relative, split a pair by half of it
 #: at most.
 ALIKE = 1e-6
@@ -167,7 +167,7 @@ class Names:
         profile: np.ndarray | dict[int, np.ndarray] = vectors
         if self._round is not None:
             energy, profile = self._around(*self._round, vectors)
-        elif all(_several(self.body.block(b)) for b in vectors):
+        elif any(several(self.body.block(b)) for b in vectors):
             energy = {
                 (1 if name == "bending" else 0, name): share for name, share in shares.items()
             }
@@ -338,82 +338,3 @@ class Names:
             if partner.get(i) != i
         ]
         return groups, torn
-
-
-def waves_of(block: Block) -> int:
-    """Waves around the axis of the motions of a block.
-
-    Parameters
-    ----------
-    block : Block
-
-    Returns
-    -------
-    int
-    """
-    for kind in ("ovalising_", "cyclic_"):
-        if block.name.startswith(kind):
-            return int(block.name.removeprefix(kind))
-    return 1 if set(block.components) & set(FAMILIES["bending"]) else 0
-
-
-def repeats(block: Block) -> bool:
-    """Whether every shape of a block stands for its twin as well, a quarter of a wave further
-    round.
-
-    Parameters
-    ----------
-    block : Block
-    """
-    return block.name.startswith("ovalising_")
-
-
-def _several(block: Block) -> bool:
-    """Whether section motions tell the families of a block apart, and not the block alone."""
-    own = [name for name, known in FAMILIES.items() if set(block.components) & set(known)]
-    return len(own) > 1
-
-
-def family_of(block: Block) -> str:
-    """Family of the motions of a block.
-
-    Parameters
-    ----------
-    block : Block
-
-    Returns
-    -------
-    str
-        ``all`` for a block that holds every motion.
-    """
-    if len(block.components) == 6:
-        return "all"
-    if waves_of(block) > 1:
-        return f"ovalising n={waves_of(block)}"
-    own = [name for name, known in FAMILIES.items() if set(block.components) & set(known)]
-    # a block of a part with a mirror plane holds several
-    return " and ".join(own)
-
-
-def numbered(families: list[str]) -> list[str]:
-    """Names of modes from their families, in the order given.
-
-    Parameters
-    ----------
-    families : list of str
-
-    Returns
-    -------
-    list of str
-
-    Examples
-    --------
-    >>> numbered(["bending", "axial", "bending"])
-    ['bending 1', 'axial 1', 'bending 2']
-    """
-    count: dict[str, int] = {}
-    out = []
-    for family in families:
-        count[family] = count.get(family, 0) + 1
-        out.append(f"{family} {count[family]}")
-    return out

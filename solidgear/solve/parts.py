@@ -15,7 +15,7 @@ import numpy as np
 from solidgear.body import FURTHER, Block, Body, Supports, component_rows
 from solidgear.errors import SolidgearError
 from solidgear.solve.eigen import Raw, Solved, count_below, lowest
-from solidgear.solve.naming import family_of, repeats, waves_of
+from solidgear.solve.families import family_of, repeats, waves_of
 from solidgear.solve.supported import Supported, groups
 
 # validation/stability/circumferential_families.py: no family of its random shafts began below the
