@@ -189,6 +189,7 @@ LADDER = Ladder(
         section_ties=False,
         holds=(CUTS, CYCLIC),
         nature="one mesh of tetrahedra,",
+        copies=CYCLIC,
         featured={"element": "tet10"},
         mass_tolerance=1e-3,
         series=Later("solidgear.fidelity.series", "solid_series"),

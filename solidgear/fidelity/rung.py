@@ -124,6 +124,9 @@ class Rung:
         sets that cannot be mixed; a body of revolution holds none.
     nature : str
         What its body is, where a feature does not fit it: ``of revolution``.
+    copies : frozenset of str
+        Kinds of features for which its mesh is made of copies of another rung's: no second opinion,
+        and solved only where it is asked for by name.
     for_features : bool
         Whether it is made for the features that it holds, and for nothing else.
     featured : mapping
@@ -150,6 +153,7 @@ class Rung:
     series: Callable[[Any, bool], list[Series]] | None = None
     holds: tuple[frozenset[str], ...] = ()
     nature: str = "of revolution"
+    copies: frozenset[str] = frozenset()
     for_features: bool = False
     featured: Mapping[str, Any] = field(default_factory=dict)
     colour: str = "#777777"
@@ -198,7 +202,10 @@ class Rung:
         """
         from solidgear.scene.features import resolved
 
-        return not self.for_features or any(f.kind in self._kinds for f in resolved(scene))
+        kinds = {f.kind for f in resolved(scene)}
+        if self.for_features:
+            return bool(kinds & self._kinds)
+        return not kinds & self.copies
 
     def meshes_of(self, scene: Any, options: Mapping[str, Any]) -> Sequence:
         """Meshes for a scene, coarse to fine; see ``meshes``.
