@@ -168,7 +168,8 @@ SECTOR_OPTIONS = {
     "graded_size": _GRADED,
     "refinement": _REFINEMENT,
     "material_port": Option(
-        "whether stations on teeth follow the mean of their material, not of their surface", "flag"
+        "whether the lumped point follows the mean of the material of its span, not of its surface",
+        "flag",
     ),
     "ovalising": HARMONIC_OPTIONS["ovalising"],
     "attachments": _TIES,

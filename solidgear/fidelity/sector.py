@@ -16,7 +16,7 @@ from solidgear.fidelity.cyclic import cyclic_blocks
 from solidgear.fidelity.options import SECTOR_OPTIONS, checked
 from solidgear.fidelity.rung import CYCLIC
 from solidgear.fidelity.scale import elastic_scale
-from solidgear.fidelity.sector_solid import on_teeth, seats, sector_solid
+from solidgear.fidelity.sector_solid import seats, sector_solid
 from solidgear.fidelity.solid import tetrahedra_plan
 from solidgear.fidelity.solid_block import free_block
 from solidgear.fidelity.solid_mesh import SolidMesh, _isoparametric
@@ -55,8 +55,8 @@ def sector(
     size, graded_size, refinement
         As for tetrahedra of :func:`solidgear.fidelity.solid.solid`.
     material_port : bool
-        Stations on toothed segments follow the mean motion of their material, not that of their
-        flanks, tips and roots.
+        The lumped point follows the mean motion of the material between the ends of its span, not
+        that of its surface. Of teeth that converges more quickly.
     ovalising : tuple of int
         Further harmonic indices to build, from 2 to less than half the sectors.
     attachments : tuple of str, optional
@@ -80,7 +80,8 @@ def sector(
     attachments = checked("sector", given, SECTOR_OPTIONS)["attachments"]
     wanted = [(s, a) for s in scene.stations for a in (attachments or (s.attachment,))]
     features = cyclic_features(scene)
-    made = meshed_sector(scene, wanted, features, count=count, **own)
+    ends = (scene.port.lo, scene.port.hi) if material_port else ()
+    made = meshed_sector(scene, wanted, features, ends, count=count, **own)
     high = [h for h in ovalising if 2 * h >= made.count]
     if high:
         raise SolidgearError(
@@ -90,7 +91,7 @@ def sector(
     facets = seats(mesh, made.straight, scene, features)
 
     def parts_of(station, attachment):
-        if material_port and attachment == "average" and on_teeth(station, scene, features):
+        if material_port and attachment == "average" and station is scene.port:
             y = made.straight[1][made.mesh.t]
             inside = (y > station.lo - 1e-9) & (y < station.hi + 1e-9)
             return mesh.over_cells(np.flatnonzero(inside.all(axis=0))), None
@@ -150,12 +151,15 @@ def cyclic_features(scene: Any) -> tuple[Any, ...]:
 
 
 def meshed_sector(
-    scene, wanted, features, *, size=None, graded_size=None, refinement=1.0, count=None
+    scene, wanted, features, ends=(), *, size=None, graded_size=None, refinement=1.0, count=None
 ) -> SectorMesh:
-    """The mesh of one sector of a scene; parameters as for :func:`sector`."""
+    """The mesh of one sector of a scene, divided at the planes ``ends`` too; parameters as for
+    :func:`sector`.
+    """
     plan = tetrahedra_plan(
         scene, wanted, size=size, graded_size=graded_size, refinement=refinement, around=16
     )
+    plan["planes"] = sorted({*plan["planes"], *ends})
     return sector_mesh(scene.segments, features, **plan, refinement=refinement, count=count)
 
 

@@ -18,12 +18,6 @@ from solidgear.frames import rotation
 from solidgear.meshing.sector import SectorMesh, cut_vertices, matched
 
 
-def on_teeth(station, scene, features) -> bool:
-    """Whether a station sits on a toothed segment."""
-    names = {f.segment for f in features if f.kind != "bolt_circle"}
-    return any(s.name in names and station.lo < s.y1 and station.hi > s.y0 for s in scene.segments)
-
-
 def seats(mesh: SolidMesh, straight: np.ndarray, scene, features) -> Facets:
     """Facets of seats: on what is left of surfaces of revolution, and flanks, tips and roots of
     teeth.
