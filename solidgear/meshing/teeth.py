@@ -147,7 +147,8 @@ def hole_size(bolts: Any, segment: Any, refinement: float) -> str:
         In x, y, z, m, as gmsh's parser reads it.
     """
     lo, hi = bolts.reach(segment)
-    least = pi * bolts.diameter / 8 / (ACROSS * refinement)
+    # a circle of fewer than eight edges is no hole
+    least = pi * bolts.diameter / 8 / max(1.0, ACROSS * refinement)
     across = f"Max(0,Sqrt((Sqrt(x^2+z^2)-{_num(bolts.circle / 2)})^2)-{_num(bolts.diameter / 2)})"
     along = f"Max(0,Max({_num(lo)}-y,y-{_num(hi)}))"
     return f"{_num(least)}+{_num(GROWTH)}*Sqrt({across}^2+{along}^2)"
