@@ -71,6 +71,54 @@ def section_area(teeth: Any) -> float:
     return float(teeth.count * each.sum())
 
 
+def section_polar(teeth: Any) -> float:
+    """Polar second moment of area of a toothed section of unit pitch radius, closed form.
+
+    Parameters
+    ----------
+    teeth : Teeth or Spline
+
+    Returns
+    -------
+    float
+
+    Examples
+    --------
+    >>> from solidgear.scene import Teeth
+    >>> low = Teeth(name="t", segment="s", count=300, addendum=1e-6, dedendum=1e-6)
+    >>> abs(section_polar(low) / (pi / 2) - 1) < 1e-3
+    True
+    """
+    angle, radius = outline(teeth, teeth.count)
+    x, z = radius * np.sin(angle), radius * np.cos(angle)
+    # triangles from the axis
+    twice = radius[1:] * radius[:-1] * np.sin(np.diff(angle))
+    square = radius[:-1] ** 2 + radius[1:] ** 2 + x[:-1] * x[1:] + z[:-1] * z[1:]
+    return float(teeth.count * (twice * square).sum() / 12)
+
+
+def lacking(teeth: Any, segment: Any) -> tuple[float, float]:
+    """Mass and polar inertia that a toothed segment has beyond its cone.
+
+    Parameters
+    ----------
+    teeth : Teeth or Spline
+    segment : Segment
+
+    Returns
+    -------
+    mass, polar : float
+        kg, kg m^2; below zero where the cone has more.
+    """
+    a, b = segment.outer0, segment.outer1
+    bulk = segment.material.density * (segment.y1 - segment.y0)
+    fourth = (a**4 + a**3 * b + a**2 * b**2 + a * b**3 + b**4) / 5
+    return (
+        bulk * (section_area(teeth) - pi) * (a * a + a * b + b * b) / 3,
+        bulk * (section_polar(teeth) - pi / 2) * fourth,
+    )
+
+
 def turn_at(y: np.ndarray, twists: list[tuple[Any, Any]]) -> np.ndarray:
     """Angle by which spiral teeth have turned the sections.
 

@@ -17,6 +17,7 @@ from solidgear.meshing.quality import mass_properties
 from solidgear.scene.features import named, resolved
 from solidgear.studies.guards import GUARDS, LEVELS, Notice, Probe
 from solidgear.studies.guards.notice import beams, everything
+from solidgear.studies.guards.smearing import smearing
 
 if TYPE_CHECKING:
     from solidgear.scene import Scene
@@ -198,9 +199,7 @@ def _verdict(model: str, records: list[dict]) -> dict:
 
 def _of_features(scene: Scene) -> Iterator[Notice]:
     """Which models answer for the plain part only."""
-    smeared = [f for f in scene.features if f.smeared]
-    if smeared:
-        yield Notice("fact", (), smeared_sentence(scene, smeared))
+    yield from smearing(scene)
     features = resolved(scene)
     if not features:
         return
@@ -219,10 +218,6 @@ def _of_features(scene: Scene) -> Iterator[Notice]:
         f"the scene has {names}, of which a model of revolution knows nothing: it would answer for "
         f"the plain part; {use}",
     )
-
-
-def smeared_sentence(scene: Scene, smeared) -> str:
-    return f"{named(smeared)}: smeared into the segment of revolution"
 
 
 def _of_the_body(scene: Scene, body: Body) -> Iterator[Notice]:
