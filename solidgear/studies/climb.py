@@ -29,7 +29,12 @@ Progress = Callable[[str], None]
 #: tolerance
 COUPLING = 0.01
 #: options of a mesh that are reported, and in which words
-SETTINGS = {"order": "order", "layers": "layers", "around": "cells around"}
+SETTINGS = {
+    "order": "order",
+    "layers": "layers",
+    "around": "cells around",
+    "refinement": "refinement",
+}
 #: a frequency that rises with a finer mesh, by more than the eigensolver leaves, is rounding: the
 #: bar is this many times the rise
 RISE = 2.0

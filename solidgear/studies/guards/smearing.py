@@ -58,7 +58,7 @@ def expected(scene: Scene) -> tuple[float, float]:
     >>> pinion = sg.load("geometry/pinion_overhung.toml")
     >>> teeth = Teeth(name="teeth", segment="head", count=14)
     >>> [round(e, 3) for e in expected(pinion.with_changes(features=(teeth,)))]
-    [0.016, 0.018]
+    [0.016, 0.019]
     """
     own = mass_properties(scene.segments)
     stiffness = max(STIFFER * (f.tip - f.root) for f in _smeared(scene))
@@ -83,8 +83,8 @@ def smearing(scene: Scene) -> Notices:
     stiffness, frequency = expected(scene)
     mass, polar = _lacking(scene)
     cost = (
-        f"{named(_smeared(scene))}: smeared into the segment of revolution, which lacks {mass:+.3g} kg and "
-        f"{polar:+.3g} kg m^2 of them; stiffness is off by up to {100 * stiffness:.2g} %, "
+        f"{named(_smeared(scene))}: smeared into the segment of revolution, which lacks "
+        f"{mass:+.3g} kg and {polar:+.3g} kg m^2 of them; stiffness is off by up to {100 * stiffness:.2g} %, "
         f"frequencies by up to {100 * frequency:.2g} % (as measured on an overhung pinion)"
     )
     tolerance = scene.ask.tolerance
