@@ -58,11 +58,11 @@ MUTATIONS = (
         "tests/test_sector.py::test_a_sector_is_the_whole[straight]",
     ),
     Mutation(
-        "the axis of a sector moves across as it likes",
+        "the axis of a sector moves against the turn",
         "solidgear/fidelity/cyclic.py",
-        "basis",
-        "{0: np.array([[0.0], [1.0], [0.0]]), 1: _across(sector.angle)}",
-        "{0: np.array([[0.0], [1.0], [0.0]]), 1: _across(-sector.angle)}",
+        "_across",
+        "one if np.allclose(turn @ one, np.exp(-1j * angle) * one) else one.conj()",
+        "one.conj() if np.allclose(turn @ one, np.exp(-1j * angle) * one) else one",
         "tests/test_sector.py::test_a_node_on_the_axis",
     ),
     Mutation(

@@ -143,15 +143,16 @@ LADDER = Ladder(
         size=Later("solidgear.fidelity.sizes", "sector_size"),
         meshes=sector_meshes,
         factors=BandFactors(
-            # One and a half times those of tetrahedra that fill the whole shaft: loads on flanks with
-            # sharp roots converge more slowly. On the toothed pinion C_thx after two levels is off
-            # by 0.9 % of itself (extrapolated), and the factors of whole shafts gave 0.7 %.
-            usual={SMOOTH: 1.2, STEPPED: 1.2, HELD: 2.0, HELD_AT_A_STEP: 2.0},
+            # Tetrahedra stay at first order at the ends of seats, so that at steps of 1.4 a change is
+            # followed by one and a half to three times as much; the change between the two coarsest
+            # sectors, whose width no size reaches, by up to five times. From the overhung pinion,
+            # with teeth (extrapolated) and as a cone against the harmonic solid.
+            usual={SMOOTH: 3.0, STEPPED: 3.0, HELD: 4.5, HELD_AT_A_STEP: 4.5},
             first={
-                SMOOTH: (2.7, 0.0135, 0.9),
-                STEPPED: (2.7, 0.0135, 0.9),
-                HELD: (2.7, 0.054, 1.2),
-                HELD_AT_A_STEP: (2.7, 0.054, 1.2),
+                SMOOTH: (6.0, 0.03, 3.5),
+                STEPPED: (6.0, 0.03, 3.5),
+                HELD: (9.0, 0.09, 5.0),
+                HELD_AT_A_STEP: (9.0, 0.09, 5.0),
             },
             earlier=0.15,
             ahead=0.4,

@@ -120,7 +120,7 @@ def corrected_meshes(options: Mapping[str, Any]) -> Sequence:
 
 
 #: one sector holds meshes that are finer than those of a whole shaft
-SECTOR: tuple[Options, ...] = tuple({"refinement": r} for r in (0.45, 0.65, 0.95, 1.4, 2.0))
+SECTOR: tuple[Options, ...] = tuple({"refinement": r} for r in (0.7, 1.0, 1.4, 2.0, 2.8))
 
 
 def sector_meshes(options: Mapping[str, Any]) -> Sequence:
