@@ -257,11 +257,13 @@ def _trust(rungs, reference, gaps, judged) -> list[str]:
     ]
     for model in LADDER.of(SOLID):
         if model in rungs and model != reference:
-            out += _other_solid(model, gaps, judged)
+            same = all("sectors" in rungs[m].body.mesh for m in (model, reference))
+            kind = "copies of the same mesh" if same else "another mesh and another formulation"
+            out += _other_solid(model, kind, gaps, judged)
     return out
 
 
-def _other_solid(model: str, gaps: list[dict], judged) -> list[str]:
+def _other_solid(model: str, kind: str, gaps: list[dict], judged) -> list[str]:
     """How far a solid that does not judge is from the one that does."""
     mine = [
         g
@@ -273,7 +275,7 @@ def _other_solid(model: str, gaps: list[dict], judged) -> list[str]:
     worst = max(mine, key=lambda g: abs(g["relative"]))
     beyond = [g["quantity"] for g in mine if g["verdict"] == "resolved"]
     text = (
-        f"The {LADDER[model].title}, another mesh and another formulation, is within "
+        f"The {LADDER[model].title}, {kind}, is within "
         f"{percent(abs(worst['relative']))} of it in every judged number"
     )
     if beyond:

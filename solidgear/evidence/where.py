@@ -31,7 +31,7 @@ from solidgear.fidelity.levels import HARMONIC
 from solidgear.fidelity.options import HARMONIC_OPTIONS
 from solidgear.machine.memory import one_run
 from solidgear.machine.threads import pinned
-from solidgear.solve.naming import FAMILIES
+from solidgear.solve.families import FAMILIES
 from solidgear.solve.statics import condense
 from solidgear.solve.supported import Supported, decoupled, groups
 

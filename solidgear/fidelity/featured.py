@@ -16,11 +16,12 @@ from solidgear.fidelity.solid_block import free_block
 from solidgear.fidelity.solid_mesh import SolidMesh, _isoparametric
 from solidgear.meshing.featured import FeaturedMesh, featured_mesh, without
 from solidgear.meshing.quality import check_mesh
+from solidgear.scene.shaft import resolved
 
 
 def meshed(scene, plan: dict, refinement: float, half: bool) -> FeaturedMesh:
     """The mesh of a scene with features; ``plan`` holds planes, circles and sizes."""
-    return featured_mesh(scene.segments, scene.features, **plan, refinement=refinement, half=half)
+    return featured_mesh(scene.segments, resolved(scene), **plan, refinement=refinement, half=half)
 
 
 def featured_body(
@@ -69,7 +70,7 @@ def featured_body(
         "volume": share * quality.volume,
         "min_jacobian_ratio": quality.min_ratio,
         "representative_size": float((quality.volume / solid.dofs.shape[1]) ** (1 / 3)),
-        "features": [f.name for f in scene.features],
+        "features": [f.name for f in resolved(scene)],
         "mirror_plane": "none" if made.plane is None else f"{'xyz'[made.plane]} = 0",
         # nothing promises twins: what is split is split
         "round": False,

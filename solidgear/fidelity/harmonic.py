@@ -19,7 +19,8 @@ from solidgear.body.surface import Surface
 from solidgear.fidelity.assembly import unknowns
 from solidgear.fidelity.circumferential import Families
 from solidgear.fidelity.harmonic_blocks import _Work
-from solidgear.fidelity.options import HARMONIC_OPTIONS, checked, countable
+from solidgear.fidelity.limits import countable
+from solidgear.fidelity.options import HARMONIC_OPTIONS, checked
 from solidgear.fidelity.scale import elastic_scale
 from solidgear.meshing.grading import Grading
 from solidgear.meshing.layout import Layout, layout

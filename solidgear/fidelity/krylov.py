@@ -17,7 +17,7 @@ import numpy as np
 
 from solidgear.errors import SolidgearError
 from solidgear.fidelity.krylov_shaft import AFTER, GAUSS, joined_shaft, transfer, transferred
-from solidgear.fidelity.options import number
+from solidgear.fidelity.limits import number
 
 
 @dataclass(frozen=True)

@@ -2,18 +2,27 @@
 
 from __future__ import annotations
 
-from solidgear.fidelity.levels import corrected_meshes, harmonic_meshes, solid_meshes
+from solidgear.fidelity.levels import (
+    corrected_meshes,
+    harmonic_meshes,
+    sector_meshes,
+    solid_meshes,
+)
 from solidgear.fidelity.options import (
     BEAM_OPTIONS,
     CORRECTED_OPTIONS,
     HARMONIC_OPTIONS,
+    SECTOR_OPTIONS,
     SOLID_OPTIONS,
 )
 from solidgear.fidelity.rung import (
     BEAM,
+    CUTS,
+    CYCLIC,
     HELD,
     HELD_AT_A_STEP,
     LUMPED,
+    PARTS,
     SMOOTH,
     SOLID,
     STEPPED,
@@ -22,7 +31,6 @@ from solidgear.fidelity.rung import (
     Later,
     Rung,
 )
-from solidgear.scene.shaft import CUT, PART, ROUND
 
 LADDER = Ladder(
     Rung(
@@ -116,12 +124,50 @@ LADDER = Ladder(
         ),
         share=3.0,
         section_ties=False,
-        shapes=(CUT,),
+        holds=(CUTS,),
+        nature="made of two meshes, with cuts and without,",
+        for_features=True,
         mass_tolerance=1e-3,
         series=Later("solidgear.fidelity.series", "corrected_series"),
         most_seats=12,
         colour="#a05a00",
         marker="^",
+    ),
+    Rung(
+        name="sector",
+        title="cyclic sector",
+        short="sector",
+        family=SOLID,
+        theory="full 3D elasticity of a part of equal sectors, with its teeth",
+        build=Later("solidgear.fidelity.sector", "sector"),
+        options=SECTOR_OPTIONS,
+        size=Later("solidgear.fidelity.sizes", "sector_size"),
+        meshes=sector_meshes,
+        factors=BandFactors(
+            # Tetrahedra stay at first order at the ends of seats, so that at steps of 1.4 a change is
+            # followed by one and a half to three times as much; the change between the two coarsest
+            # sectors, whose width no size reaches, by up to five times. From the overhung pinion,
+            # with teeth (extrapolated) and as a cone against the harmonic solid.
+            usual={SMOOTH: 3.0, STEPPED: 3.0, HELD: 4.5, HELD_AT_A_STEP: 4.5},
+            first={
+                SMOOTH: (6.0, 0.03, 3.5),
+                STEPPED: (6.0, 0.03, 3.5),
+                HELD: (9.0, 0.09, 5.0),
+                HELD_AT_A_STEP: (9.0, 0.09, 5.0),
+            },
+            earlier=0.15,
+            ahead=0.4,
+            singular=True,
+        ),
+        section_ties=False,
+        holds=(CYCLIC,),
+        nature="one sector that repeats itself around the axis,",
+        for_features=True,
+        mass_tolerance=1e-3,
+        series=Later("solidgear.fidelity.series", "sector_series"),
+        most_seats=12,
+        colour="#c2185b",
+        marker="h",
     ),
     Rung(
         name="solid",
@@ -145,8 +191,10 @@ LADDER = Ladder(
             singular=True,
         ),
         section_ties=False,
-        shapes=(ROUND, CUT, PART),
-        beyond_round={"element": "tet10"},
+        holds=(CUTS, CYCLIC, PARTS),
+        nature="one mesh of tetrahedra,",
+        copies=CYCLIC,
+        featured={"element": "tet10"},
         mass_tolerance=1e-3,
         series=Later("solidgear.fidelity.series", "solid_series"),
         most_seats=12,

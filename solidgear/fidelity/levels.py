@@ -52,7 +52,7 @@ TETRAHEDRA: tuple[Options, ...] = tuple({"refinement": r} for r in (0.45, 0.65, 
 LINEAR: tuple[Options, ...] = tuple({"refinement": r} for r in (0.6, 0.9, 1.35, 2.0))
 
 # What leaves the choice of meshes to the program although it is given.
-FREE = ("element", "around", "ovalising", "attachments")
+FREE = ("element", "around", "ovalising", "attachments", "material_port")
 #: cells around of hexahedra that bend as a whole: eight are good to some 6e-4, and the error falls
 #: with the fourth power
 AROUND, ORDER_AROUND = 8, 4
@@ -117,6 +117,17 @@ def corrected_meshes(options: Mapping[str, Any]) -> Sequence:
         coarser = {**finest, "refinement": finest["refinement"] / 1.4}
         return Sequence((coarser, finest), True, True)
     return Sequence(tuple({**level, **options} for level in CORRECTED), False, True)
+
+
+#: one sector holds meshes that are finer than those of a whole shaft
+SECTOR: tuple[Options, ...] = tuple({"refinement": r} for r in (0.7, 1.0, 1.4, 2.0, 2.8))
+
+
+def sector_meshes(options: Mapping[str, Any]) -> Sequence:
+    """Meshes of a cyclic sector; options as for :func:`harmonic_meshes`."""
+    if set(options) - set(FREE):
+        return _refinements(dict(options))
+    return Sequence(tuple({**level, **options} for level in SECTOR), False, False)
 
 
 def _turned(level: Options) -> Options:

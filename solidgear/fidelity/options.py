@@ -8,14 +8,9 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from numbers import Integral, Real
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import Any
 
 from solidgear.errors import SolidgearError, listed, nearest, show
-
-if TYPE_CHECKING:
-    from solidgear.scene.shaft import Shaft
-
-Given = TypeVar("Given")
 
 
 @dataclass(frozen=True)
@@ -53,8 +48,6 @@ ATTACHMENTS = ("average", "rigid", "section")
 #: a last layer below this part of the first one costs digits: residuals of modes rise from 1e-8 to
 #: 1e-4 there, whatever layers and ratio make it
 THINNEST_LAYER = 1e-6
-#: lines of cells along the shaft, or across it; a mesh of so many has billions of unknowns in 3D
-MOST_LINES = 20_000
 
 _REFINEMENT = Option(
     "multiplies the number of cells in every direction",
@@ -162,6 +155,26 @@ CORRECTED_OPTIONS = {
     "attachments": _TIES,
 }
 
+_GRADED = Option(
+    "size of tetrahedra at shoulders and seat ends, m",
+    above=0,
+    most=100,
+    optional=True,
+    why="a shaft is at most 20 m long",
+)
+
+SECTOR_OPTIONS = {
+    "size": _SIZE,
+    "graded_size": _GRADED,
+    "refinement": _REFINEMENT,
+    "material_port": Option(
+        "whether the lumped point follows the mean of the material of its span, not of its surface",
+        "flag",
+    ),
+    "ovalising": HARMONIC_OPTIONS["ovalising"],
+    "attachments": _TIES,
+}
+
 SOLID_OPTIONS = {
     "element": Option(
         "element type", "choice", choices=("hex20", "hex27", "hex8", "tet10", "tet4")
@@ -175,13 +188,7 @@ SOLID_OPTIONS = {
     "around": Option(
         "elements around the circumference", "whole", least=8, most=720, why="two to a degree"
     ),
-    "graded_size": Option(
-        "size of tetrahedra at shoulders and seat ends, m",
-        above=0,
-        most=100,
-        optional=True,
-        why="a shaft is at most 20 m long",
-    ),
+    "graded_size": _GRADED,
     "refinement": _REFINEMENT,
     "attachments": _TIES,
     "half": Option("whether a part with a mirror plane is solved in halves", "flag"),
@@ -258,13 +265,13 @@ def limits(option: Option) -> str:
 
 def _usable_number(model: str, name: str, value: Any, option: Option) -> Any:
     whole = option.kind == "whole"
-    if _is_number(value, whole) and _within(
+    if is_number(value, whole) and within(
         value, option.above, option.least, option.below, option.most
     ):
         return value
     hint = (
         "; decimals take a point"
-        if isinstance(value, tuple) and len(value) == 2 and all(_is_number(v) for v in value)
+        if isinstance(value, tuple) and len(value) == 2 and all(is_number(v) for v in value)
         else ""
     )
     raise SolidgearError(
@@ -289,8 +296,7 @@ def _usable_flag(model: str, name: str, value: Any, option: Option) -> bool:
 def _usable_harmonics(model: str, name: str, value: Any, option: Option) -> tuple[int, ...]:
     values = tuple(value) if isinstance(value, (tuple, list)) else (value,)
     if all(
-        _is_number(v, whole=True) and _within(v, least=option.least, most=option.most)
-        for v in values
+        is_number(v, whole=True) and within(v, least=option.least, most=option.most) for v in values
     ) and len(set(values)) == len(values):
         return values
     raise SolidgearError(
@@ -322,7 +328,8 @@ _USABLE = {
 }
 
 
-def _is_number(value: Any, whole: bool = False) -> bool:
+def is_number(value: Any, whole: bool = False) -> bool:
+    """Whether a value is a finite number, and a whole one if asked."""
     return (
         isinstance(value, Integral if whole else Real)
         and not isinstance(value, bool)
@@ -330,70 +337,11 @@ def _is_number(value: Any, whole: bool = False) -> bool:
     )
 
 
-def _within(value, above=None, least=None, below=None, most=None) -> bool:
+def within(value, above=None, least=None, below=None, most=None) -> bool:
+    """Whether a number meets its limits; ``least`` and ``most`` may be met."""
     return (
         (above is None or value > above)
         and (least is None or value >= least)
         and (below is None or value < below)
         and (most is None or value <= most)
     )
-
-
-def number(
-    model: str,
-    name: str,
-    value: Given,
-    *,
-    above: float | None = None,
-    least: float | None = None,
-    below: float | None = None,
-    whole: bool = False,
-) -> Given:
-    """A number within limits, or one sentence.
-
-    Parameters
-    ----------
-    model, name : str
-        Of the builder and its option, for the sentence.
-    value : object
-        None is passed through: the builder's default.
-    above, least, below : float, optional
-        Limits; ``least`` may be met, the others not.
-    whole : bool
-        Whether it must be an integer.
-
-    Raises
-    ------
-    SolidgearError
-    """
-    if value is None or _is_number(value, whole) and _within(value, above, least, below):
-        return value
-    limits = [
-        f"{word} {limit:g}"
-        for word, limit in (("above", above), ("at least", least), ("below", below))
-        if limit is not None
-    ]
-    raise SolidgearError(
-        f"{model}: {name} = {show(value)} is not usable; give a {'whole ' if whole else ''}number {' and '.join(limits)}"
-    )
-
-
-def countable(model: str, scene: Shaft, size: float, refinement: float) -> float:
-    """A size of cells of which a mesh can be laid out at all, or one sentence.
-
-    Parameters
-    ----------
-    model : str
-    scene : Scene
-    size : float
-        Of cells where nothing asks for smaller ones, m.
-    refinement : float
-    """
-    extent = max(scene.length, *(max(s.outer0, s.outer1) for s in scene.segments))
-    lines = extent / size * refinement
-    if lines > MOST_LINES:
-        raise SolidgearError(
-            f"{model}: cells of {size / refinement:.3g} m would make {lines:.3g} lines of them, more than {MOST_LINES}; give size of at least {extent * refinement / MOST_LINES:.3g} m "
-            "or a smaller refinement"
-        )
-    return size

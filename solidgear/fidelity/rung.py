@@ -9,9 +9,9 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
-from solidgear.errors import SolidgearError, nearest, show
+from solidgear.errors import SolidgearError, listed, nearest, show
 from solidgear.fidelity.options import Option, checked
-from solidgear.scene.shaft import ROUND, extras, shapes
+from solidgear.scene.shaft import named, resolved
 
 if TYPE_CHECKING:
     from solidgear.body import Body
@@ -20,6 +20,11 @@ if TYPE_CHECKING:
     from solidgear.scene.shaft import Shaft
 
 LUMPED, BEAM, SOLID = "lumped", "beam", "solid"
+#: kinds of features that are cut out at one place, and those that repeat themselves around the axis
+CUTS = frozenset({"keyway", "flat", "cross_hole"})
+CYCLIC = frozenset({"teeth", "spline", "bolt_circle"})
+#: kinds of files that hold a whole part
+PARTS = frozenset({"step", "mesh"})
 #: a line of a chart: family, label, builder options from the cheapest level on
 Series = tuple[str, str, list[dict[str, Any]]]
 
@@ -117,9 +122,17 @@ class Rung:
     series : callable, optional
         ``series(scene, full)`` gives the lines of a chart of error against cost; by default its
         one usual mesh.
-    shapes : tuple of {'round', 'cut', 'part'}
-        What its body holds: segments, features cut out of them, a part from a file.
-    beyond_round : mapping
+    holds : tuple of frozenset of str
+        Kinds of features (`CUTS`, `CYCLIC`), or of files of a part (`PARTS`), that its body holds,
+        in sets that cannot be mixed; a body of revolution holds none.
+    nature : str
+        What its body is, where a feature does not fit it: ``of revolution``.
+    copies : frozenset of str
+        Kinds of features for which its mesh is made of copies of another rung's: no second opinion,
+        and solved only where it is asked for by name.
+    for_features : bool
+        Whether it is made for the features that it holds, and for nothing else.
+    featured : mapping
         Options of the builder for a scene that is more than its segments.
     colour, marker : str
         In charts.
@@ -141,8 +154,11 @@ class Rung:
     mass_tolerance: float = 1e-9
     most_seats: int = 12
     series: Callable[[Any, bool], list[Series]] | None = None
-    shapes: tuple[str, ...] = (ROUND,)
-    beyond_round: Mapping[str, Any] = field(default_factory=dict)
+    holds: tuple[frozenset[str], ...] = ()
+    nature: str = "of revolution"
+    copies: frozenset[str] = frozenset()
+    for_features: bool = False
+    featured: Mapping[str, Any] = field(default_factory=dict)
     colour: str = "#777777"
     marker: str = "P"
 
@@ -158,14 +174,39 @@ class Rung:
         ----------
         scene : Scene
         """
-        if set(shapes(scene)) & set(self.shapes):
-            return ""
-        if ROUND in self.shapes:
+        features, held = resolved(scene), [f"{k}".replace("_", " ") for k in sorted(self._kinds)]
+        every = getattr(scene, "features", ())
+        if self.for_features and not any(f.kind in self._kinds for f in every):
             return (
-                f"the {self.title} is of revolution and the scene has {extras(scene)}: "
-                "it would answer for the plain part"
+                f"the {self.title} is made for features, and the scene has none of: {listed(held)}"
             )
-        return f"the {self.title} is made for features cut out of segments, and the scene has none"
+        kinds = {f.kind for f in features}
+        if not kinds or any(kinds <= own for own in self.holds):
+            return ""
+        if not self.holds and all(f.round for f in features):
+            return ""
+        strange = [f for f in features if f.kind not in self._kinds]
+        unfit = f"the {self.title} is {self.nature} and the scene has {named(strange or features)}"
+        if not self.holds:
+            return f"{unfit}: it would answer for the plain part"
+        return unfit if strange else f"{unfit}, which no mesh holds together"
+
+    @property
+    def _kinds(self) -> set[str]:
+        """All kinds of features that it holds."""
+        return {kind for own in self.holds for kind in own}
+
+    def concerns(self, scene: Any) -> bool:
+        """Whether it is among the models that one asks of a scene without naming any.
+
+        Parameters
+        ----------
+        scene : Scene
+        """
+        kinds = {f.kind for f in resolved(scene)}
+        if self.for_features:
+            return bool(kinds & self._kinds)
+        return not kinds & self.copies
 
     def meshes_of(self, scene: Any, options: Mapping[str, Any]) -> Sequence:
         """Meshes for a scene, coarse to fine; see ``meshes``.
@@ -185,14 +226,14 @@ class Rung:
         return self.meshes(given)
 
     def given(self, scene: Any, options: Mapping[str, Any]) -> dict[str, Any]:
-        """Options for the builder of a scene: those asked for over those of its shape.
+        """Options for the builder of a scene: those asked for over those of its features.
 
         Parameters
         ----------
         scene : Scene
         options : mapping
         """
-        return {**({} if shapes(scene)[0] == ROUND else self.beyond_round), **options}
+        return {**(self.featured if resolved(scene) else {}), **options}
 
     def checked(self, options: Mapping[str, Any]) -> dict[str, Any]:
         """Options for the builder within their limits; see
@@ -257,9 +298,10 @@ class Ladder:
         return tuple(rung.name for rung in self.rungs if rung.build is not None)
 
     def fit(self, scene: Any) -> tuple[str, ...]:
-        """Those with a body of their own that hold the scene, or at least a plain shaft."""
-        held = {ROUND, *shapes(scene)}
-        return tuple(n for n in self.bodies if held & set(self[n].shapes))
+        """Those with a body of their own, without rungs that are made for features of kinds that a
+        scene does not have.
+        """
+        return tuple(n for n in self.bodies if self[n].concerns(scene))
 
     @property
     def judges(self) -> tuple[str, ...]:

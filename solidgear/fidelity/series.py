@@ -6,8 +6,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from solidgear.fidelity.levels import CORRECTED
-from solidgear.scene.shaft import CUT, shapes
+from solidgear.fidelity.ladder import LADDER
+from solidgear.fidelity.levels import CORRECTED, SECTOR
 
 if TYPE_CHECKING:
     from solidgear.fidelity.rung import Series
@@ -100,7 +100,15 @@ def _levels(quick: tuple, more: tuple, full: bool) -> tuple:
 
 def corrected_series(scene: Shaft, full: bool) -> list[Series]:
     """The meshes of defect correction, for a scene with features."""
-    if CUT not in shapes(scene):
+    if not LADDER["corrected"].concerns(scene):
         return []
     levels = CORRECTED if full else CORRECTED[:3]
     return [("solid", "corrected harmonic solid", [dict(level) for level in levels])]
+
+
+def sector_series(scene: Shaft, full: bool) -> list[Series]:
+    """The meshes of a cyclic sector, for a scene with such features."""
+    if not LADDER["sector"].concerns(scene):
+        return []
+    levels = SECTOR[:4] if full else SECTOR[:3]
+    return [("tetrahedra", "cyclic sector", [dict(level) for level in levels])]

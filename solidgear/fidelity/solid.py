@@ -6,15 +6,19 @@ blocks from one Gram matrix of basis gradients per element.
 
 from __future__ import annotations
 
+from typing import Any
+
 from solidgear.body import Body, Port
 from solidgear.errors import SolidgearError
 from solidgear.fidelity.attachment import tie_rigidly
-from solidgear.fidelity.options import SOLID_OPTIONS, checked, countable
+from solidgear.fidelity.limits import countable
+from solidgear.fidelity.options import SOLID_OPTIONS, checked
+from solidgear.fidelity.rung import CYCLIC, PARTS
 from solidgear.fidelity.scale import elastic_scale
 from solidgear.fidelity.solid_block import free_block, seat_facets
 from solidgear.fidelity.solid_mesh import _isoparametric
 from solidgear.meshing.grading import Grading
-from solidgear.scene.shaft import CUT, PART, ROUND, extras, shapes
+from solidgear.scene.shaft import named, resolved
 
 
 def solid(
@@ -95,33 +99,26 @@ def solid(
             f"solid: around = {around} does not fit an O-grid; use a multiple of 4"
         )
     wanted = [(s, a) for s in scene.stations for a in (attachments or (s.attachment,))]
-    shape = shapes(scene)[0]
-    if shape != ROUND and element != "tet10":
-        raise SolidgearError(
-            f"solid: element = {element} cannot hold {extras(scene)} of the scene; use tet10"
-        )
-    if shape == PART:
-        from solidgear.fidelity.part import part_body
+    features = resolved(scene)
+    if features:
+        if element != "tet10":
+            raise SolidgearError(
+                f"solid: element = {element} cannot hold {named(features)} of the scene; use tet10"
+            )
+        sizes: dict[str, Any] = {"size": size, "graded_size": graded_size}
+        sizes["refinement"] = refinement
+        kinds = {f.kind for f in features}
+        if kinds <= PARTS:
+            from solidgear.fidelity.part import part_body
 
-        return part_body(
-            scene,
-            wanted,
-            size=size,
-            graded_size=graded_size,
-            refinement=refinement,
-            around=around,
-        )
-    if shape == CUT:
+            return part_body(scene, wanted, around=around, **sizes)
+        if kinds <= CYCLIC:
+            from solidgear.fidelity.sector import whole
+
+            return whole(scene, wanted, **sizes)
         from solidgear.fidelity.featured import featured_body, meshed
 
-        plan = tetrahedra_plan(
-            scene,
-            wanted,
-            size=size,
-            graded_size=graded_size,
-            refinement=refinement,
-            around=around,
-        )
+        plan = tetrahedra_plan(scene, wanted, around=around, **sizes)
         return featured_body(scene, wanted, meshed(scene, plan, refinement, half), refinement)
     tet = element.startswith("tet")
     if tet:

@@ -70,19 +70,41 @@ def _mean(m: SolidMesh, facets, y0, n, components=range(6), within=None) -> sp.c
     """(6, 3n) area-weighted least-squares rigid motion of facets about the axis point at y0, or
     only some components of it; of their parts between two places along y where these are given.
     """
+    a, b = weighed(m.over_facets(facets, within), y0, n)
+    own = list(components)
+    g = np.linalg.solve(a[np.ix_(own, own)], b.T[own])
+    g[np.abs(g) < 1e-14 * np.abs(g).max(axis=1, keepdims=True)] = 0.0
+    return sp.csr_matrix(g)
+
+
+def weighed(pieces, y0: float, n: int) -> tuple[np.ndarray, np.ndarray]:
+    """Normal equations of the rigid motion that is nearest to the motion of some pieces.
+
+    Parameters
+    ----------
+    pieces : iterable of (values, x, weights, unknowns)
+        From :meth:`SolidMesh.over_facets` or :meth:`SolidMesh.over_cells`.
+    y0 : float
+        Point on the axis that motions are about, m.
+    n : int
+        Nodes of the mesh.
+
+    Returns
+    -------
+    gram : (6, 6) ndarray
+    loads : (3 n, 6) ndarray
+        The rigid motion of displacements u is ``gram^-1 loads' u``.
+    """
     a = np.zeros((6, 6))
     b = np.zeros((n, 3, 6))
-    for value, x, area, dofs in m.over_facets(facets, within):
+    for value, x, weight, dofs in pieces:
         offset = np.moveaxis(x, 0, -1) - np.array([0.0, y0, 0.0])  # (e, q, 3)
         motion = np.zeros((*offset.shape, 6))
         motion[..., :3] = np.eye(3)
         motion[..., 3:] = -np.einsum("abc,eqc->eqab", _CROSS, offset)
-        a += np.einsum("eq,eqci,eqcj->ij", area, motion, motion)
-        np.add.at(b, dofs.T, np.einsum("bq,eq,eqci->ebci", value, area, motion, optimize=True))
-    own = list(components)
-    g = np.linalg.solve(a[np.ix_(own, own)], b.reshape(3 * n, 6).T[own])
-    g[np.abs(g) < 1e-14 * np.abs(g).max(axis=1, keepdims=True)] = 0.0
-    return sp.csr_matrix(g)
+        a += np.einsum("eq,eqci,eqcj->ij", weight, motion, motion)
+        np.add.at(b, dofs.T, np.einsum("bq,eq,eqci->ebci", value, weight, motion, optimize=True))
+    return a, b.reshape(3 * n, 6)
 
 
 # cross_matrix(r)[a, b] = sum_c _CROSS[a, b, c] r[c]

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 from solidgear.meshing.element_size import _num
 
 if TYPE_CHECKING:
-    from solidgear.scene.features import Feature
+    from solidgear.scene.features import CutFeature
 
 #: elements across the smaller size of a feature, at the size asked for
 ACROSS = 2.0
@@ -18,7 +18,7 @@ GROWTH = 1.0
 BEYOND = 0.2
 
 
-def tool(occ: Any, feature: Feature, radius: float) -> int:
+def tool(occ: Any, feature: CutFeature, radius: float) -> int:
     """The solid that cuts a feature.
 
     Parameters
@@ -80,7 +80,7 @@ def _slot(occ, key, floor: float, height: float) -> int:
     return next(tag for dim, tag in occ.extrude([(2, face)], 0, 0, height) if dim == 3)
 
 
-def volume(feature: Feature, outer: float, inner: float) -> float | None:
+def volume(feature: CutFeature, outer: float, inner: float) -> float | None:
     """Volume that a feature takes from its segment, where a closed form is known.
 
     Parameters
@@ -127,7 +127,7 @@ def volume(feature: Feature, outer: float, inner: float) -> float | None:
     return 2 * quad(lambda x: height(x) * along(x), 0, half, epsabs=0, epsrel=1e-12)[0]
 
 
-def feature_size(feature: Feature, radius: float, refinement: float) -> tuple[str, float]:
+def feature_size(feature: CutFeature, radius: float, refinement: float) -> tuple[str, float]:
     """Formula of the element edge around a feature, and its least value.
 
     Parameters
@@ -164,7 +164,7 @@ def feature_size(feature: Feature, radius: float, refinement: float) -> tuple[st
     return f"{_num(least)}+{_num(GROWTH)}*{distance}", least
 
 
-def mirror_plane(features: tuple[Feature, ...]) -> int | None:
+def mirror_plane(features: tuple[CutFeature, ...]) -> int | None:
     """The plane that all features are symmetric about.
 
     Parameters

@@ -10,7 +10,16 @@ _GROWTH = 0.5  # element size gained per distance from a lateral surface
 
 
 def estimated_counts(
-    segments, planes=(), circles=(), *, size, graded_size=None, reach=None, around=16
+    segments,
+    planes=(),
+    circles=(),
+    *,
+    size,
+    graded_size=None,
+    reach=None,
+    around=16,
+    more=(),
+    sectors=0,
 ):
     """Size of the mesh that :func:`~solidgear.meshing.tetrahedra.tetrahedra` makes of the same
     arguments, without meshing.
@@ -23,6 +32,10 @@ def estimated_counts(
     ----------
     segments, planes, circles, size, graded_size, reach, around
         As there, m.
+    more : sequence of str
+        Further formulas of size, the same all around.
+    sectors : int
+        Equal strips around that cells do not reach across; 0 for a whole shaft.
 
     Returns
     -------
@@ -41,7 +54,7 @@ def estimated_counts(
     slabs = slabs_between(segments, [float(y) for y in planes], tolerance)
     corners = corners_of(slabs, [float(y) for y in circles], tolerance)
     # the formulas that the mesher itself uses
-    formulas = size_formulas(segments, corners, size, graded_size, reach, around)
+    formulas = [*size_formulas(segments, corners, size, graded_size, reach, around), *more]
     fields = [eval(f"lambda x, y, z: {f}".replace("^", "**"), _NUMPY) for f in formulas]
     least = min(size, graded_size or size)
 
@@ -50,6 +63,10 @@ def estimated_counts(
         for field in fields:
             np.minimum(h, field(r, y, 0.0), out=h)
         return h
+
+    def crowded(r, h):
+        """How many more cells there are where they do not reach across strips; fitted to sectors."""
+        return 1.0 + 0.8 * h * sectors / (2 * pi * r) if sectors else 1.0
 
     marks = sorted({y for y, _ in corners} | {s.y0 for s in segments} | {segments[-1].y1})
     volume = surface = 0.0
@@ -63,14 +80,19 @@ def estimated_counts(
             part, across = _graded_points(0.0, 1.0, least / max(s.outer0, s.outer1))
             r = bore[:, None] + (outer - bore)[:, None] * part
             h = edge(r, y[:, None])
-            volume += (2 * pi * along[:, None] * (outer - bore)[:, None] * across * r / h**3).sum()
+            ring = 2 * pi * along[:, None] * (outer - bore)[:, None] * across * r
+            volume += (ring * crowded(r, h) / h**3).sum()
             # the outermost and innermost points lie a hair from the surfaces
             for at, radius in ((-1, outer), (0, bore)):
-                surface += (2 * pi * along * radius / h[:, at] ** 2).sum()
+                narrow = crowded(np.maximum(radius, 1e-12), h[:, at])
+                surface += (2 * pi * along * radius * narrow / h[:, at] ** 2).sum()
     for y, inner, outer in _faces(segments):
         r, across = _graded_points(inner, outer, least)
-        surface += (2 * pi * across * r / edge(r, np.array(y)) ** 2).sum()
-    rim = sum(2 * pi * r / float(edge(np.array(r), np.array(y))) for y, r in set(corners))
+        h = edge(r, np.array(y))
+        surface += (2 * pi * across * r * crowded(r, h) / h**2).sum()
+    rim = sum(
+        max(2 * pi * r / float(edge(np.array(r), np.array(y))), sectors) for y, r in set(corners)
+    )
     return tuple(np.array(_FILL) @ (volume, surface, rim))
 
 

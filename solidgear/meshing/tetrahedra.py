@@ -163,7 +163,7 @@ def _validate(segments, planes, circles, size, graded_size, reach, around):
         raise MeshError(f"around is {around}: at least 6 elements are needed around a circle")
 
 
-def draw_revolved(gmsh, segments, planes, circles, start=0.0, turn=2.0 * pi):
+def draw_revolved(gmsh, segments, planes, circles, start: float = 0.0, turn: float = 2.0 * pi):
     """Draw the meridian with shared edges and turn it about y; the (y, radius) to grade at.
 
     Parameters

@@ -29,8 +29,8 @@ from solidgear.body import Block, Body, Port
 from solidgear.body.kept import Kept
 from solidgear.body.mass import ScalarMass
 from solidgear.machine.threads import pinned
+from solidgear.solve.families import FAMILIES
 from solidgear.solve.modes import modes
-from solidgear.solve.naming import FAMILIES
 from solidgear.solve.statics import SHIFT, Factored, factors, flexibility
 
 Mass: TypeAlias = sp.csr_matrix | ScalarMass

@@ -25,13 +25,18 @@ def scene(told: Any) -> Table:
     rows: list[tuple[Any, ...]] = []
     for s in told.segments:
         rows.append((s.name, "segment", 1e3 * s.y0, 1e3 * s.y1, _diameters(s)))
+    whole = {s.name: (s.y0, s.y1) for s in told.segments}
     for f in told.features:
-        lo, hi = f.reach
+        lo, hi = getattr(f, "reach", whole[f.segment])
         rows.append((f.name, f.what, 1e3 * lo, 1e3 * hi, f"on {f.segment}"))
     for b in told.bearings:
         rows.append((b.name, "bearing", 1e3 * b.lo, 1e3 * b.hi, b.attachment))
     for m in told.masses:
         rows.append((m.name, "mass", 1e3 * m.lo, 1e3 * m.hi, f"{m.mass:.6g} kg"))
+    if told.body is not None:
+        rows.append(
+            (told.body.name, told.body.what, 0.0, 1e3 * told.length, "segments are its round part")
+        )
     port = told.port
     rows.append((port.name, "port", 1e3 * port.lo, 1e3 * port.hi, port.attachment))
     title = told.title or told.name

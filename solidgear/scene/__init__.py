@@ -1,6 +1,7 @@
 """What is modelled and what is asked: data only."""
 
 from solidgear.scene.catalogue import BearingDisplacement, BearingLoad, Catalogue
+from solidgear.scene.cyclic_features import BoltCircle, Spline, Teeth
 from solidgear.scene.features import CrossHole, Feature, Flat, Keyway
 from solidgear.scene.model import Ask, Quantity, Scene
 from solidgear.scene.parts import STEEL, Material, Segment
@@ -12,6 +13,7 @@ __all__ = [
     "Bearing",
     "BearingDisplacement",
     "BearingLoad",
+    "BoltCircle",
     "Catalogue",
     "CrossHole",
     "Feature",
@@ -24,4 +26,6 @@ __all__ = [
     "STEEL",
     "Scene",
     "Segment",
+    "Spline",
+    "Teeth",
 ]

@@ -1,99 +1,23 @@
-"""What is cut out of a shaft and is not of revolution: keyways, flats, cross holes."""
+"""What of a shaft is not of revolution: keyways, flats and cross holes; and all kinds together."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
-from typing import Annotated, Literal, TypeAlias
+from typing import Literal, TypeAlias
 
-from pydantic import BeforeValidator
-
-from solidgear.errors import SceneError, nearest
-from solidgear.scene.parts import Model, Segment
+from solidgear.errors import SceneError
+from solidgear.scene.cyclic_features import BoltCircle, Spline, Teeth
+from solidgear.scene.feature import SMALLEST, Cut, deep
+from solidgear.scene.parts import Segment
 from solidgear.scene.rules import TOUCH
-from solidgear.scene.units import Position, PositiveLength, quantity
+from solidgear.scene.units import PositiveLength
 
 #: a shaft carries no more of them
 MOST_FEATURES = 20
-#: least size of a feature over the radius of the shaft; smaller ones ask for meshes without end
-SMALLEST = 1e-2
-
-Turn = Annotated[float, BeforeValidator(lambda value: quantity(value, "angle") % (2 * math.pi))]
 
 
-class _Feature(Model):
-    """What every feature has: a name, a segment, and the angle it looks to."""
-
-    name: str
-    segment: str
-    y: Position
-    angle: Turn = 0.0
-
-    def _on(self, segments: Sequence[Segment]) -> Segment | None:
-        return next((s for s in segments if s.name == self.segment), None)
-
-    def problems(self, segments: Sequence[Segment]) -> Iterator[SceneError]:
-        """Why it does not fit the shaft; paths are those of its own fields."""
-        here = self._on(segments)
-        if here is None:
-            known = [s.name for s in segments]
-            yield SceneError(
-                f"unknown segment{nearest(self.segment, known)}; there are {', '.join(known)}",
-                path=("segment",),
-            )
-            return
-        if here.outer0 != here.outer1:
-            yield SceneError(
-                f'"{here.name}" is a cone; a {self.what} is cut into a cylinder', path=("segment",)
-            )
-            return
-        if here.inner0 != here.inner1:
-            yield SceneError(
-                f'the bore of "{here.name}" is a cone; a {self.what} is cut into an even wall',
-                path=("segment",),
-            )
-            return
-        lo, hi = self.reach
-        if lo < here.y0 - TOUCH or hi > here.y1 + TOUCH:
-            yield SceneError(
-                f"the {self.what} reaches from {lo:.6g} to {hi:.6g} m, outside "
-                f'"{here.name}" ({here.y0:.6g} to {here.y1:.6g} m)',
-                path=("length" if hasattr(self, "length") else "y",),
-            )
-            return
-        yield from self._sized(here)
-
-    def _sized(self, here: Segment) -> Iterator[SceneError]:
-        raise NotImplementedError
-
-    @property
-    def what(self) -> str:
-        """Its kind in words."""
-        return getattr(self, "kind").replace("_", " ")  # noqa: B009  # of every subclass
-
-    @property
-    def reach(self) -> tuple[float, float]:
-        """Ends along the shaft, m."""
-        raise NotImplementedError
-
-
-def _deep(depth: float, here: Segment, what: str, least: float = 0.0) -> Iterator[SceneError]:
-    """A cut leaves some wall over the bore, and over the axis of a solid shaft."""
-    wall = here.outer0 - max(here.inner0, least)
-    if depth >= wall - TOUCH:
-        over = "the wall" if here.inner0 else "the radius"
-        yield SceneError(
-            f"a {what} as deep as this cuts through {over} of {wall:.6g} m", path=("depth",)
-        )
-    elif depth < SMALLEST * here.outer0:
-        yield SceneError(
-            f"a {what} under a hundredth of the radius, {here.outer0:.6g} m, is no feature: "
-            "leave it out, or look at the units",
-            path=("depth",),
-        )
-
-
-class Keyway(_Feature):
+class Keyway(Cut):
     """A slot with a flat floor along a cylinder.
 
     Attributes
@@ -136,7 +60,7 @@ class Keyway(_Feature):
         return self.y, self.y + self.length
 
     def _sized(self, here: Segment) -> Iterator[SceneError]:
-        yield from _deep(self.depth, here, "keyway")
+        yield from deep(self.depth, here, "keyway")
         if self.width >= here.outer0:
             yield SceneError(
                 f"a keyway wider than the radius, {here.outer0:.6g} m, is no keyway",
@@ -160,7 +84,7 @@ class Keyway(_Feature):
             )
 
 
-class Flat(_Feature):
+class Flat(Cut):
     """A flat cut across a cylinder.
 
     Attributes
@@ -194,10 +118,10 @@ class Flat(_Feature):
         return self.y, self.y + self.length
 
     def _sized(self, here: Segment) -> Iterator[SceneError]:
-        yield from _deep(self.depth, here, "flat")
+        yield from deep(self.depth, here, "flat")
 
 
-class CrossHole(_Feature):
+class CrossHole(Cut):
     """A hole drilled through the axis.
 
     Attributes
@@ -242,8 +166,10 @@ class CrossHole(_Feature):
             )
 
 
+CutFeature: TypeAlias = Keyway | Flat | CrossHole
+CyclicFeature: TypeAlias = Teeth | Spline | BoltCircle
 #: any of them
-Feature: TypeAlias = Keyway | Flat | CrossHole
+Feature: TypeAlias = CutFeature | CyclicFeature
 
 
 def feature_problems(
@@ -254,7 +180,7 @@ def feature_problems(
     Parameters
     ----------
     segments : sequence of Segment
-    features : sequence of Keyway, Flat or CrossHole
+    features : sequence of Feature
 
     Yields
     ------

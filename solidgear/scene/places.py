@@ -6,9 +6,11 @@ A problem of a place is reported under the key of the file that it came from.
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from typing import Any
 
 from solidgear.errors import SceneError
 from solidgear.scene.body_file import MASS_CHECK, Recognised
+from solidgear.scene.cyclic_features import BoltCircle, Spline, Teeth
 from solidgear.scene.features import CrossHole, Feature, Flat, Keyway, feature_problems
 from solidgear.scene.model import Scene
 from solidgear.scene.parts import Material, Segment
@@ -18,6 +20,7 @@ from solidgear.scene.segment_tables import Piece
 from solidgear.scene.stations import Attachment, Bearing, Port, Status
 from solidgear.scene.tables import (
     BearingTable,
+    CutTable,
     FeatureTable,
     MassTable,
     PortTable,
@@ -92,11 +95,14 @@ def resolve(
                 masses[index] = _mass(heavy, table.attachment, datums)
             except SceneError as error:
                 problems.append(error.located(None, path=("mass", index, *error.path)))
-    features = [
-        _feature(cut, k, datums)
-        for k, cut in enumerate(table.feature)
-        if cut.from_ is None or cut.from_ in datums
-    ]
+    features = []
+    for index, cut in enumerate(table.feature):
+        # a datum that is missing was reported before
+        if getattr(cut, "from_", None) in (None, *datums):
+            try:
+                features.append(_feature(cut, index, datums))
+            except SceneError as error:
+                problems += error.problems
     whole = len(bearings) == len(numbers) and table.port is not None
     problems += [
         one.located(None, path=_file_path(one.path, table, owner))
@@ -269,15 +275,27 @@ def _mass(item: MassTable, attachment: Attachment, datums: dict[str, float]) -> 
     return PointMass(name=item.name, mass=item.mass, on=item.on, **place, **given)
 
 
-_FEATURES = {"keyway": Keyway, "flat": Flat, "cross_hole": CrossHole}
+_FEATURES: dict[str, Any] = {
+    "keyway": Keyway,
+    "flat": Flat,
+    "cross_hole": CrossHole,
+    "teeth": Teeth,
+    "spline": Spline,
+    "bolt_circle": BoltCircle,
+}
 
 
 def _feature(item: FeatureTable, index: int, datums: dict[str, float]) -> Feature:
-    given = item.model_dump(exclude={"name", "kind", "from_", "position"})
-    # along the segment, unless another datum is given
-    start = datums.get(item.from_ or f"{item.segment}.start", 0.0)
+    given = item.model_dump(exclude={"name", "kind", "from_", "position"}, exclude_none=True)
+    if isinstance(item, CutTable):
+        # along the segment, unless another datum is given
+        given["y"] = datums.get(item.from_ or f"{item.segment}.start", 0.0) + item.position
     name = item.name or f"{item.kind.replace('_', ' ')} {index + 1}"
-    return _FEATURES[item.kind](name=name, y=start + item.position, **given)
+    try:
+        return _FEATURES[item.kind](name=name, **given)
+    except SceneError as error:
+        found = [one.located(None, path=("feature", index, *one.path)) for one in error.problems]
+        raise SceneError.of(found) from None
 
 
 def _port(

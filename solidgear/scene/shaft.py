@@ -2,14 +2,11 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Protocol
+from collections.abc import Iterable
+from typing import TYPE_CHECKING, Any, Protocol
 
 if TYPE_CHECKING:
     from solidgear.scene import Bearing, PointMass, Port, Segment
-
-#: what a scene is beyond its segments: nothing, features cut out of them, or a part from a file of
-#: which they are the round part
-ROUND, CUT, PART = "round", "cut", "part"
 
 
 class Shaft(Protocol):
@@ -31,37 +28,42 @@ class Shaft(Protocol):
         """Overall length, m."""
 
 
-def shapes(scene: Shaft) -> tuple[str, ...]:
-    """Shapes that a model may hold to stand for a scene.
+def resolved(scene: Any) -> tuple[Any, ...]:
+    """What a scene has beyond its segments, so that a model of revolution does not hold it:
+    features, but for teeth that are smeared into a cone, or a part from a file.
 
     Parameters
     ----------
-    scene : Shaft
+    scene : Scene, or anything with segments
+        Nothing more is there where it does not speak of it.
 
     Returns
     -------
-    tuple of {'round', 'cut', 'part'}
-        What the scene is first.
+    tuple of Feature or BodyFile
+        Each with ``kind``, ``what``, ``name`` and ``round``.
 
     Examples
     --------
-    >>> from solidgear import Scene, Segment
-    >>> shapes(Scene.from_parts([Segment.cylinder("rod", length=0.3, diameter=0.06)]))
-    ('round',)
+    >>> import solidgear as sg
+    >>> scene = sg.load("geometry/pinion_keyed.toml")
+    >>> [feature.name for feature in resolved(scene)]
+    ['key']
     """
     body = getattr(scene, "body", None)
-    if body is not None:
-        return (PART, ROUND) if body.round else (PART,)
-    return (CUT,) if getattr(scene, "features", ()) else (ROUND,)
+    whole = () if body is None else (body,)
+    return (*(f for f in getattr(scene, "features", ()) if not f.smeared), *whole)
 
 
-def extras(scene: Shaft) -> str:
-    """What a scene has that its segments do not show, in words; empty for a body of revolution.
+def named(features: Iterable[Any]) -> str:
+    """Features in a sentence.
 
     Parameters
     ----------
-    scene : Shaft
+    features : iterable of Feature or BodyFile
+
+    Returns
+    -------
+    str
+        Such as ``keyway "key"``.
     """
-    body = getattr(scene, "body", None)
-    more = (*getattr(scene, "features", ()), *([body] if body is not None else []))
-    return ", ".join(f'{one.what} "{one.name}"' for one in more)
+    return ", ".join(f'{f.what} "{f.name}"' for f in features)

@@ -176,12 +176,10 @@ class PortTable(Table):
 
 
 class _FeatureTable(Table):
-    """A [[feature]], its datum not yet resolved."""
+    """A [[feature]] of a segment."""
 
     name: Name | None = None
     segment: str
-    from_: str | None = Field(None, alias="from")
-    position: Length = 0.0
     angle: Any = 0.0
 
     @model_validator(mode="after")
@@ -193,7 +191,14 @@ class _FeatureTable(Table):
         return self
 
 
-class _KeywayTable(_FeatureTable):
+class CutTable(_FeatureTable):
+    """One cut at a place, its datum not yet resolved."""
+
+    from_: str | None = Field(None, alias="from")
+    position: Length = 0.0
+
+
+class _KeywayTable(CutTable):
     kind: Literal["keyway"]
     length: PositiveLength
     width: PositiveLength
@@ -201,19 +206,51 @@ class _KeywayTable(_FeatureTable):
     ends: Literal["round", "square"] = "round"
 
 
-class _FlatTable(_FeatureTable):
+class _FlatTable(CutTable):
     kind: Literal["flat"]
     length: PositiveLength
     depth: PositiveLength
 
 
-class _CrossHoleTable(_FeatureTable):
+class _CrossHoleTable(CutTable):
     kind: Literal["cross_hole"]
     diameter: PositiveLength
 
 
-FeatureTable = _KeywayTable | _FlatTable | _CrossHoleTable
-FEATURES = ("keyway", "flat", "cross_hole")
+class _ToothedTable(_FeatureTable):
+    """Teeth are those of the whole segment; their own class knows the limits."""
+
+    count: Any
+    addendum: Any = None
+    dedendum: Any = None
+    half_thickness: Any = None
+    flank_angle: Any = None
+    spiral_angle: Any = None
+    hand: Any = None
+    model: Any = None
+
+
+class _TeethTable(_ToothedTable):
+    kind: Literal["teeth"]
+
+
+class _SplineTable(_ToothedTable):
+    kind: Literal["spline"]
+
+
+class _BoltCircleTable(_FeatureTable):
+    kind: Literal["bolt_circle"]
+    count: Any
+    diameter: PositiveLength
+    circle: PositiveLength
+    depth: PositiveLength | None = None
+    side: Literal["start", "end"] = "start"
+
+
+FeatureTable = (
+    _KeywayTable | _FlatTable | _CrossHoleTable | _TeethTable | _SplineTable | _BoltCircleTable
+)
+FEATURES = ("keyway", "flat", "cross_hole", "teeth", "spline", "bolt_circle")
 
 
 class SceneTable(Model):

@@ -19,7 +19,8 @@ from solidgear.display import Displayed
 from solidgear.errors import SolidgearError
 from solidgear.machine.threads import pinned
 from solidgear.solve.eigen import Raw
-from solidgear.solve.naming import Names, Projection, numbered
+from solidgear.solve.families import numbered
+from solidgear.solve.naming import Names, Projection
 from solidgear.solve.parts import (
     Part,
     complete,

@@ -19,14 +19,16 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.sparse.csgraph import connected_components
 
-from solidgear.body import Block, Body, Supports
+from solidgear.body import Body, Supports
+from solidgear.frames import rotation
 from solidgear.solve.circumference import Circumference, of_body
+from solidgear.solve.families import FAMILIES, family_of, repeats, several, waves_of
 from solidgear.solve.quarter_turn import alike
 
-FAMILIES = {"bending": (0, 2, 3, 5), "axial": (1,), "torsion": (4,)}
 #: Bearings that a quarter turn changes by no more than this, relative, split a pair by half of it
 #: at most.
 ALIKE = 1e-6
+_QUARTER = rotation(1, np.pi / 2)
 #: Eigenvalues of twins of two and more waves that a 3D mesh has split by this much are still
 #: reported as one pair.
 OVAL_TOLERANCE = 1e-2
@@ -144,6 +146,7 @@ class Names:
         # a part that is not round promises no twins, however near its frequencies lie
         self._split = not body.mesh.get("round", True)
         self._planes = self._split and len(body.blocks) > 1
+        self._mirrored = any(block.mirror is not None for block in body.blocks)
         self._round = of_body(body)
         self._moving_axially: dict[int, np.ndarray] = {}
 
@@ -164,7 +167,7 @@ class Names:
         profile: np.ndarray | dict[int, np.ndarray] = vectors
         if self._round is not None:
             energy, profile = self._around(*self._round, vectors)
-        elif self._planes or len(self.body.blocks[0].components) == 6:
+        elif any(several(self.body.block(b)) for b in vectors):
             energy = {
                 (1 if name == "bending" else 0, name): share for name, share in shares.items()
             }
@@ -178,7 +181,7 @@ class Names:
             # shares are of the mass of the shaft, of which unit shapes have less than one
             moved = (v @ (self.body.block(b).mass @ v) for b, v in vectors.items())
             captured /= float(sum(moved))
-        whole = self._round is None and waves > 1
+        whole = self._round is None and all(repeats(self.body.block(b)) for b in vectors)
         return Shape(family, waves, motion, captured, profile, whole, self._plane(motion, family))
 
     def _plane(self, motion: np.ndarray, family: str) -> str:
@@ -254,7 +257,15 @@ class Names:
         if isinstance(one, np.ndarray) and isinstance(other, np.ndarray):
             size = np.vdot(one, one).real * np.vdot(other, other).real
             return float(np.vdot(1j * one, other).real ** 2 / size)
+        if not self._mirrored:
+            return self._sections_alike(a.motion, b.motion)
         return self._turned(one, other) ** 2 / (self._turned(one, None) * self._turned(other, None))
+
+    def _sections_alike(self, a: np.ndarray, b: np.ndarray) -> float:
+        """The same by section motions, for a block that holds both planes."""
+        gram, turned = self.project.gram, (a @ _QUARTER.T).ravel()
+        size = (a.ravel() @ gram @ a.ravel()) * (b.ravel() @ gram @ b.ravel())
+        return float((turned @ gram @ b.ravel()) ** 2 / size) if size > 0 else 0.0
 
     def _turned(self, a, b) -> float:
         """Mass product of a shape in blocks that mirror each other, turned into the other plane,
@@ -327,64 +338,3 @@ class Names:
             if partner.get(i) != i
         ]
         return groups, torn
-
-
-def waves_of(block: Block) -> int:
-    """Waves around the axis of the motions of a block.
-
-    Parameters
-    ----------
-    block : Block
-
-    Returns
-    -------
-    int
-    """
-    if block.name.startswith("ovalising_"):
-        return int(block.name.removeprefix("ovalising_"))
-    return 1 if set(block.components) & set(FAMILIES["bending"]) else 0
-
-
-def family_of(block: Block) -> str:
-    """Family of the motions of a block.
-
-    Parameters
-    ----------
-    block : Block
-
-    Returns
-    -------
-    str
-        ``all`` for a block that holds every motion.
-    """
-    if len(block.components) == 6:
-        return "all"
-    if block.name.startswith("ovalising_"):
-        return block.name.replace("_", " n=")
-    own = [name for name, known in FAMILIES.items() if set(block.components) & set(known)]
-    # a block of a part with a mirror plane holds several
-    return " and ".join(own)
-
-
-def numbered(families: list[str]) -> list[str]:
-    """Names of modes from their families, in the order given.
-
-    Parameters
-    ----------
-    families : list of str
-
-    Returns
-    -------
-    list of str
-
-    Examples
-    --------
-    >>> numbered(["bending", "axial", "bending"])
-    ['bending 1', 'axial 1', 'bending 2']
-    """
-    count: dict[str, int] = {}
-    out = []
-    for family in families:
-        count[family] = count.get(family, 0) + 1
-        out.append(f"{family} {count[family]}")
-    return out

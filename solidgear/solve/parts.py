@@ -15,7 +15,7 @@ import numpy as np
 from solidgear.body import FURTHER, Block, Body, Supports, component_rows
 from solidgear.errors import SolidgearError
 from solidgear.solve.eigen import Raw, Solved, count_below, lowest
-from solidgear.solve.naming import family_of, waves_of
+from solidgear.solve.families import family_of, repeats, waves_of
 from solidgear.solve.supported import Supported, groups
 
 # validation/stability/circumferential_families.py: no family of its random shafts began below the
@@ -63,7 +63,7 @@ class Part:
     @property
     def copies(self) -> int:
         """Shapes that every eigenpair stands for."""
-        return 2 if waves_of(self.blocks[0]) > 1 else 1 + len(self.twins)
+        return 2 if repeats(self.blocks[0]) else 1 + len(self.twins)
 
     def everywhere(self, found: list[Raw]) -> list[Raw]:
         """Eigenpairs of the group and of its twins.

@@ -14,9 +14,10 @@ from solidgear.fidelity.ladder import LADDER
 from solidgear.fidelity.rung import BEAM, LUMPED, SOLID
 from solidgear.machine.threads import pinned
 from solidgear.meshing.quality import mass_properties
-from solidgear.scene.shaft import ROUND, extras, shapes
+from solidgear.scene.shaft import named, resolved
 from solidgear.studies.guards import GUARDS, LEVELS, Notice, Probe
 from solidgear.studies.guards.notice import beams, everything
+from solidgear.studies.guards.smearing import smearing
 from solidgear.studies.round_part import against_the_part, described
 
 if TYPE_CHECKING:
@@ -208,22 +209,26 @@ def _verdict(model: str, records: list[dict]) -> dict:
 
 def _beyond_the_segments(scene: Scene) -> Iterator[Notice]:
     """Which models answer for the plain part only."""
-    shape = shapes(scene)
-    if shape[0] == ROUND:
+    yield from smearing(scene)
+    features = resolved(scene)
+    if not features:
         return
-    names = extras(scene)
+    names = named(features)
     yield Notice(
         "fact",
         (),
         f"not of revolution: {names}; all that is told of the shaft is of its plain part",
     )
-    holds = [r for r in LADDER if set(shape) & set(r.shapes)]
-    blind = tuple(m for m in everything() if LADDER[m] not in holds)
+    blind = tuple(m for m in everything() if LADDER[m].unfit(scene))
+    if not blind:
+        return
+    fit = [r.name for r in LADDER if r.build is not None and not r.unfit(scene)]
+    use = f"use {' or '.join(fit)}" if fit else "no model holds all of them"
     yield Notice(
         "avoid",
         blind,
         f"the scene has {names}, of which a model of revolution knows nothing: it would answer for "
-        f"the plain part; use {', or '.join(r.name for r in holds)}",
+        f"the plain part; {use}",
     )
 
 

@@ -15,8 +15,8 @@ from solidgear.evidence.quantities import QUANTITIES, size
 from solidgear.evidence.sequence_bands import sequence_bands
 from solidgear.fidelity import build
 from solidgear.fidelity.rung import Rung
+from solidgear.solve.families import FAMILIES
 from solidgear.solve.modes import ModeSet, modes
-from solidgear.solve.naming import FAMILIES
 from solidgear.solve.statics import Condensed, condense
 from solidgear.solve.supported import decoupled, groups
 

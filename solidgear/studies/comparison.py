@@ -176,7 +176,9 @@ def _run(scene: Scene, models, options, found: _Found, progress: Progress) -> No
     from solidgear.studies.check import notices
 
     lumped = bool(set(LADDER.of(LUMPED)) & set(models))
-    for model in (m for m in LADDER.fit(scene) if m in models):
+    # who names models is told why one does not fit
+    known = LADDER.fit(scene) if set(models) >= set(LADDER.names) else LADDER.bodies
+    for model in (m for m in known if m in models):
         try:
             chosen = _circumference(scene, model, options[model], found)
             # A count takes a second factor.  One by a cheaper solid counts for a dearer one, whose

@@ -10,8 +10,7 @@ from solidgear.evidence.study import Solution
 from solidgear.evidence.ties import SCENE
 from solidgear.evidence.verdict import BEYOND, WITHIN, gap_verdict, percent
 from solidgear.fidelity.ladder import LADDER
-from solidgear.fidelity.rung import SOLID
-from solidgear.scene.shaft import PART
+from solidgear.fidelity.rung import PARTS, SOLID
 from solidgear.studies.guards import Notice, Probe
 
 if TYPE_CHECKING:
@@ -42,7 +41,7 @@ def described(scene: Scene) -> Iterator[Notice]:
     if body.one_mesh:
         yield Notice(
             "caution",
-            tuple(r.name for r in LADDER if PART in r.shapes),
+            tuple(r.name for r in LADDER if PARTS in r.holds),
             f"the mesh of {body.name} is the only one there is: how good its numbers are is not "
             "judged; a STEP file would be meshed coarse to fine",
         )
@@ -63,7 +62,7 @@ def against_the_part(scene: Scene, rungs: dict[str, Solution], probe: Probe) -> 
     if scene.body is None or scene.body.round:
         return
     judged, tolerance = scene.ask.quantities or JUDGED, scene.ask.tolerance
-    for model in (m for m in LADDER.of(SOLID) if m in rungs and PART in LADDER[m].shapes):
+    for model in (m for m in LADDER.of(SOLID) if m in rungs and PARTS in LADDER[m].holds):
         mine, theirs = probe.rung(ROUND_MODEL), rungs[model]
         told, verdicts = [], []
         for name in judged:

@@ -7,7 +7,6 @@ from dataclasses import dataclass
 
 from solidgear.fidelity.ladder import LADDER
 from solidgear.fidelity.rung import BEAM, LUMPED, SOLID
-from solidgear.scene.shaft import ROUND
 
 #: good to know; holds worse than one might think; cannot be decided here; out of the tolerance asked
 #: for; wrong
@@ -43,7 +42,7 @@ def beams() -> tuple[str, ...]:
 
 def solids() -> tuple[str, ...]:
     """Solids that model a plain shaft: guards look at nothing else."""
-    return tuple(name for name in LADDER.of(SOLID) if ROUND in LADDER[name].shapes)
+    return tuple(name for name in LADDER.of(SOLID) if not LADDER[name].for_features)
 
 
 def everything() -> tuple[str, ...]:

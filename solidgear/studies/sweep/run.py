@@ -12,7 +12,7 @@ from solidgear.body import Body
 from solidgear.errors import SolidgearError
 from solidgear.fidelity import build as build_any
 from solidgear.fidelity.ladder import LADDER
-from solidgear.fidelity.options import number
+from solidgear.fidelity.limits import number
 from solidgear.fidelity.size import refuse_too_large
 from solidgear.reduction.moments import LEVELS, Reduced, reduce
 from solidgear.scene import Scene

@@ -1,0 +1,214 @@
+"""A shaft with teeth, splines or bolt circles in 3D: from one sector of it, or whole from copies of
+the same mesh.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+
+from solidgear.body import Body, Port
+from solidgear.errors import SolidgearError
+from solidgear.fidelity.attachment import tie_rigidly
+from solidgear.fidelity.cyclic import cyclic_blocks
+from solidgear.fidelity.options import SECTOR_OPTIONS, checked
+from solidgear.fidelity.rung import CYCLIC
+from solidgear.fidelity.scale import elastic_scale
+from solidgear.fidelity.sector_solid import seats, sector_solid
+from solidgear.fidelity.solid import tetrahedra_plan
+from solidgear.fidelity.solid_block import free_block
+from solidgear.fidelity.solid_mesh import SolidMesh, _isoparametric
+from solidgear.meshing.element_size import estimated_counts
+from solidgear.meshing.sector import (
+    SectorMesh,
+    feature_sizes,
+    replicated,
+    sector_mesh,
+    sectors_of,
+)
+
+#: eigenvalues of pairs in a real matrix made of a complex one differ by rounding
+PAIRS = 1e-9
+
+
+def sector(
+    scene: Any,
+    *,
+    size: float | None = None,
+    graded_size: float | None = None,
+    refinement: float = 1.0,
+    material_port: bool = False,
+    ovalising: tuple[int, ...] = (),
+    attachments: tuple[str, ...] | None = None,
+    count: int | None = None,
+) -> Body:
+    """Free body of a shaft that repeats itself around the axis, from one sector of it.
+
+    Teeth are resolved, also those that the scene smears for other models.
+
+    Parameters
+    ----------
+    scene : Scene
+        With teeth, splines or bolt circles, and no feature of another kind.
+    size, graded_size, refinement
+        As for tetrahedra of :func:`solidgear.fidelity.solid.solid`.
+    material_port : bool
+        The lumped point follows the mean motion of the material between the ends of its span, not
+        that of its surface. Of teeth that converges more quickly.
+    ovalising : tuple of int
+        Further harmonic indices to build, from 2 to less than half the sectors.
+    attachments : tuple of str, optional
+        Attachments to build at every station, the first being the default one.
+    count : int, optional
+        Sectors around; by default as many as features have in common.
+
+    Returns
+    -------
+    Body
+        Blocks ``cyclic_0`` of axial motion and torsion, and ``cyclic_1`` of bending.
+
+    Raises
+    ------
+    SolidgearError
+        Features without a common sector, a harmonic index that is too high, or a seat without
+        faces; MeshError where meshing fails.
+    """
+    own = {"size": size, "graded_size": graded_size, "refinement": refinement}
+    given = {**own, "ovalising": ovalising, "attachments": attachments}
+    attachments = checked("sector", given, SECTOR_OPTIONS)["attachments"]
+    wanted = [(s, a) for s in scene.stations for a in (attachments or (s.attachment,))]
+    features = cyclic_features(scene)
+    ends = (scene.port.lo, scene.port.hi) if material_port else ()
+    made = meshed_sector(scene, wanted, features, ends, count=count, **own)
+    high = [h for h in ovalising if 2 * h >= made.count]
+    if high:
+        raise SolidgearError(
+            f"sector: ovalising {high[0]} is not below half of the {made.count} sectors"
+        )
+    mesh = sector_solid(made)
+    facets = seats(mesh, made.straight, scene, features)
+
+    def parts_of(station, attachment):
+        if material_port and attachment == "average" and station is scene.port:
+            y = made.straight[1][made.mesh.t]
+            inside = (y > station.lo - 1e-9) & (y < station.hi + 1e-9)
+            return mesh.over_cells(np.flatnonzero(inside.all(axis=0))), None
+        found = facets(station, attachment)
+        if not len(found):
+            raise SolidgearError(f"port {station.name!r}: no element faces lie on its seat")
+        held = mesh.facet_unknowns(found) if attachment == "rigid" else None
+        return mesh.over_facets(found), held
+
+    blocks = cyclic_blocks(mesh, scene, mesh.sector, wanted, parts_of, ovalising)
+    facts = _facts(made, mesh, features, refinement) | {"pair_tolerance": PAIRS}
+    return _body("sector", scene, wanted, blocks, facts, mesh)
+
+
+def whole(scene: Any, wanted: Sequence, *, refinement: float, **own: Any) -> Body:
+    """Free body of the same shaft in full: all sectors, copies of one mesh.
+
+    Parameters
+    ----------
+    scene : Scene
+    wanted : sequence of (station, attachment)
+    refinement : float
+    **own
+        ``size`` and ``graded_size`` of :func:`sector`.
+
+    Returns
+    -------
+    Body
+        One block.
+
+    Raises
+    ------
+    SolidgearError
+        As :func:`sector`.
+    """
+    features = cyclic_features(scene)
+    made = meshed_sector(scene, wanted, features, refinement=refinement, **own)
+    mesh, segment = replicated(made)
+    solid = _isoparametric(mesh, "tet10", segment)
+    block, ties = free_block(solid, scene, wanted, seats(solid, mesh.p, scene, features))
+    facts = _facts(made, solid, features, refinement) | {"pair_tolerance": 1e-6}
+    return _body("solid", scene, wanted, (tie_rigidly(block, ties),), facts, solid)
+
+
+def cyclic_features(scene: Any) -> tuple[Any, ...]:
+    """Features of a scene that repeat themselves around the axis, smeared or not.
+
+    Parameters
+    ----------
+    scene : Scene
+
+    Returns
+    -------
+    tuple of Teeth, Spline or BoltCircle
+    """
+    return tuple(f for f in getattr(scene, "features", ()) if f.kind in CYCLIC)
+
+
+def meshed_sector(
+    scene, wanted, features, ends=(), *, size=None, graded_size=None, refinement=1.0, count=None
+) -> SectorMesh:
+    """The mesh of one sector of a scene, divided at the planes ``ends`` too; parameters as for
+    :func:`sector`.
+    """
+    plan = tetrahedra_plan(
+        scene, wanted, size=size, graded_size=graded_size, refinement=refinement, around=16
+    )
+    plan["planes"] = sorted({*plan["planes"], *ends})
+    return sector_mesh(scene.segments, features, **plan, refinement=refinement, count=count)
+
+
+def sectors_around(scene, given: Mapping[str, Any]) -> int:
+    """Number of sectors of a scene: what its features have in common, or what was asked for."""
+    return given.get("count") or max(1, sectors_of(cyclic_features(scene)))
+
+
+def sector_counts(scene, given: Mapping[str, Any]) -> tuple[float, float, float, float]:
+    """Vertices, edges, faces and cells of the whole shaft at the sizes of its sector, estimated.
+
+    Parameters
+    ----------
+    scene : Scene
+    given : mapping
+        Options of :func:`sector`, or of the solid.
+
+    Returns
+    -------
+    vertices, edges, faces, cells : float
+    """
+    wanted = [(s, a) for s in scene.stations for a in (given["attachments"] or (s.attachment,))]
+    refinement = given["refinement"]
+    sizes = {"size": given["size"], "graded_size": given["graded_size"]}
+    plan = tetrahedra_plan(scene, wanted, refinement=refinement, around=16, **sizes)
+    features = cyclic_features(scene)
+    more = feature_sizes(scene.segments, features, refinement)
+    # a tooth and the gap beside it take cells of their own
+    strips = max(
+        [sectors_of(features), *(2 * f.count for f in features if f.kind != "bolt_circle")]
+    )
+    return estimated_counts(scene.segments, **plan, more=more, sectors=strips)
+
+
+def _body(fidelity, scene, wanted, blocks, facts, drawing) -> Body:
+    ports = tuple(Port(s.name, s.y, a) for s, a in wanted)
+    return Body(fidelity, blocks, ports, elastic_scale(scene), scene.length, facts, drawing)
+
+
+def _facts(made: SectorMesh, mesh: SolidMesh, features, refinement: float) -> dict[str, Any]:
+    elements = made.mesh.t.shape[1]
+    return {
+        "element": "tet10",
+        "elements": elements * made.count,
+        "nodes": int(mesh.nodes.shape[1]),
+        "sectors": made.count,
+        "refinement": refinement,
+        "volume": made.count * made.quality.volume,
+        "min_jacobian_ratio": made.quality.min_ratio,
+        "representative_size": float((made.quality.volume / elements) ** (1 / 3)),
+        "features": [f.name for f in features],
+    }

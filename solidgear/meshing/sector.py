@@ -1,0 +1,325 @@
+"""One sector of a shaft that repeats itself around the axis, in curved tetrahedra.
+
+The sector lies between two half planes through the axis, at half its angle to either side of +z.
+Segments of revolution are drawn as wedges, toothed ones as polyhedra whose sections are homothetic,
+so that all of their faces are planes. Both cut faces carry the same mesh (`setPeriodic` of gmsh),
+and their nodes are matched by place. Spiral teeth are the straight ones twisted about the axis:
+``theta(y) = tan(beta) int dy / (r cos(delta))`` turns every section rigidly, so that cut faces stay
+each other's image and volumes what they were.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
+from math import cos, gcd, pi, sin
+from typing import Any
+
+import numpy as np
+from scipy.spatial import cKDTree
+from skfem import MeshTet1, MeshTet2
+
+from solidgear.frames import rotation
+from solidgear.machine.interruptible import call
+from solidgear.meshing.element_size import set_size, size_formulas
+from solidgear.meshing.gmsh_session import Session, import_gmsh
+from solidgear.meshing.outline import Frustum, corners_of, slabs_between, tolerance_of
+from solidgear.meshing.quality import MeshError, MeshQuality, check_mesh
+from solidgear.meshing.sector_drawing import draw_sector, drill, pair_faces, phase
+from solidgear.meshing.teeth import hole_size, section_area, tooth_size, turn_at
+from solidgear.meshing.tetrahedra import relaxed, to_skfem
+
+#: sectors of less than this share of a turn are cyclic
+FEWEST = 3
+#: of the length of the shaft: cut faces whose nodes match no better than this do not match
+MATCH = 1e-9
+
+
+@dataclass(frozen=True)
+class SectorMesh:
+    """A meshed sector.
+
+    Attributes
+    ----------
+    mesh : skfem.MeshTet2
+        Twisted as its teeth are.
+    segment : (ne,) ndarray of int
+        Segment each element lies in.
+    count : int
+        Sectors around.
+    straight : (3, nv) ndarray
+        Vertices before they were twisted, m.
+    quality : MeshQuality
+        Of the twisted mesh.
+    drawn : float
+        Volume of the sector that OCC has drawn, m^3.
+    """
+
+    mesh: MeshTet2
+    segment: np.ndarray
+    count: int
+    straight: np.ndarray
+    quality: MeshQuality
+    drawn: float
+
+
+def sectors_of(features: Iterable[Any]) -> int:
+    """Number of equal sectors of a shaft with cyclic features.
+
+    Parameters
+    ----------
+    features : iterable of Teeth, Spline or BoltCircle
+
+    Returns
+    -------
+    int
+        The greatest common divisor of their counts; 0 without any.
+
+    Examples
+    --------
+    >>> from solidgear.scene import BoltCircle, Teeth
+    >>> teeth = Teeth(name="teeth", segment="rim", count=42)
+    >>> sectors_of([teeth, BoltCircle(name="b", segment="web", count=6, diameter=0.01, circle=0.1)])
+    6
+    """
+    return gcd(*(f.count for f in features))
+
+
+def sector_mesh(
+    segments: tuple[Any, ...],
+    features: tuple[Any, ...],
+    planes: list[float],
+    circles: list[float],
+    *,
+    size: float,
+    graded_size: float | None,
+    around: int,
+    refinement: float,
+    count: int | None = None,
+) -> SectorMesh:
+    """Mesh one sector of a shaft with cyclic features.
+
+    Parameters
+    ----------
+    segments : tuple of Segment
+    features : tuple of Teeth, Spline or BoltCircle
+    planes, circles, size, graded_size, around
+        As for :func:`solidgear.meshing.tetrahedra.tetrahedra`.
+    refinement : float
+        Divides the sizes at features; those above are given refined.
+    count : int, optional
+        Sectors around; by default as many as the features say.
+
+    Returns
+    -------
+    SectorMesh
+
+    Raises
+    ------
+    MeshError
+        Features without a common sector, geometry that cannot be meshed, cut faces that do not
+        match, inverted elements, or a wrong volume.
+    """
+    count = count or sectors_of(features)
+    _common(features, count)
+    gmsh = import_gmsh()
+    shapes = [Frustum.of(s) for s in segments]
+    tolerance = tolerance_of(shapes)
+    toothed = {f.segment: f for f in features if f.kind != "bolt_circle"}
+    first = phase(toothed.values(), count)
+    twists = [(s, toothed[s.name]) for s in segments if s.name in toothed]
+    with Session(gmsh):
+        own = draw_sector(gmsh, segments, shapes, toothed, planes, circles, count, first)
+        holes = [f for f in features if f.kind == "bolt_circle"]
+        own = drill(gmsh, own, holes, segments, twists, count, first)
+        gmsh.model.occ.fragment(own[:1], own[1:]) if len(own) > 1 else None
+        gmsh.model.occ.synchronize()
+        drawn = sum(gmsh.model.occ.getMass(3, v) for _, v in gmsh.model.getEntities(3))
+        pair_faces(gmsh, count, tolerance)
+        corners = corners_of(slabs_between(shapes, planes, tolerance), circles, tolerance)
+        formulas = size_formulas(shapes, corners, size, graded_size, None, around)
+        formulas += feature_sizes(segments, features, refinement)
+        set_size(gmsh, formulas, size)
+        try:
+            for dimension in (1, 2, 3):
+                call(gmsh.model.mesh.generate, dimension)
+            mesh = relaxed(to_skfem(gmsh))
+        except MeshError:
+            raise
+        except Exception as error:
+            raise MeshError(
+                f"gmsh could not mesh the sector ({error}): change refinement a little"
+            ) from error
+    exact = volume_of_sector(segments, features, count)
+    check_mesh(mesh, volume=exact, rtol=max(1e-3, 4.0 * (pi / around) ** 4 / 30.0))
+    y = mesh.p[1][mesh.t].mean(axis=0)
+    segment = np.searchsorted([s.y1 for s in segments[:-1]], y)
+    # turned to where the features look
+    whole = _turned(mesh, lambda y: first + turn_at(y, twists))
+    return SectorMesh(whole, segment, count, mesh.p, check_mesh(whole), drawn)
+
+
+def feature_sizes(segments, features, refinement: float) -> list[str]:
+    """Formulas of element size at features, as gmsh reads them.
+
+    Parameters
+    ----------
+    segments : sequence of Segment
+    features : sequence of Teeth, Spline or BoltCircle
+    refinement : float
+
+    Returns
+    -------
+    list of str
+    """
+    of = {s.name: s for s in segments}
+    return [
+        (hole_size if f.kind == "bolt_circle" else tooth_size)(f, of[f.segment], refinement)
+        for f in features
+    ]
+
+
+def volume_of_sector(segments, features, count: int) -> float:
+    """Closed form of the volume of a sector.
+
+    Parameters
+    ----------
+    segments : sequence of Segment
+    features : sequence of Teeth, Spline or BoltCircle
+    count : int
+        Sectors around.
+
+    Returns
+    -------
+    float
+        m^3.
+    """
+    toothed = {f.segment: f for f in features if f.kind != "bolt_circle"}
+    total = 0.0
+    for s in segments:
+        area = section_area(toothed[s.name]) if s.name in toothed else pi
+        outer, inner = (
+            (a * a + a * b + b * b) / 3 for a, b in ((s.outer0, s.outer1), (s.inner0, s.inner1))
+        )
+        total += (area * outer - pi * inner) * (s.y1 - s.y0)
+    for f in features:
+        if f.kind == "bolt_circle":
+            lo, hi = f.reach(next(s for s in segments if s.name == f.segment))
+            total -= f.count * pi * f.diameter**2 / 4 * (hi - lo)
+    return total / count
+
+
+def _common(features, count: int) -> None:
+    if count >= FEWEST and all(f.count % count == 0 for f in features):
+        return
+    each = " and ".join(f'{f.count} of {f.what} "{f.name}"' for f in features)
+    raise MeshError(
+        f"{each} have no sector of a third of a turn or less in common: "
+        "there is no cyclic symmetry to use"
+    )
+
+
+def _turned(mesh: MeshTet2, by) -> MeshTet2:
+    """The mesh with every section turned about +y, by an angle that depends on y."""
+    x, y, z = mesh.doflocs
+    c, s = np.cos(by(y)), np.sin(by(y))
+    return replace(mesh, doflocs=np.stack([c * x + s * z, y, c * z - s * x]))
+
+
+def matched(nodes: np.ndarray, count: int, low: np.ndarray, high: np.ndarray) -> np.ndarray:
+    """Nodes on one cut face that a turn takes to those of the other.
+
+    Parameters
+    ----------
+    nodes : (3, n) ndarray
+        m.
+    count : int
+        Sectors around.
+    low, high : (k,) ndarray of int
+        Nodes on both cut faces.
+
+    Returns
+    -------
+    (k,) ndarray of int
+        The one of ``low`` for every one of ``high``.
+
+    Raises
+    ------
+    MeshError
+        If one of them has no partner.
+    """
+    turned = rotation(1, 2 * pi / count)[:3, :3] @ nodes[:, low]
+    gap, at = cKDTree(turned.T).query(nodes[:, high].T)
+    if (
+        len(low) != len(high)
+        or gap.max(initial=0.0) > MATCH * np.ptp(nodes[1])
+        or len(np.unique(at)) != len(low)
+    ):
+        raise MeshError(
+            f"the cut faces of the sector carry different meshes, {gap.max(initial=0.0):.1e} m apart"
+        )
+    return low[at]
+
+
+def cut_vertices(made: SectorMesh) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Vertices of the two cut faces, without those on the axis, and these.
+
+    Parameters
+    ----------
+    made : SectorMesh
+
+    Returns
+    -------
+    low, high, axis : ndarray of int
+    """
+    used = np.unique(made.mesh.t)
+    x, _, z = made.straight[:, used]
+    near = np.hypot(x, z) < MATCH * np.ptp(made.straight[1])
+    # distance from the cut planes, whose normals the angle gives
+    c, s = cos(pi / made.count), sin(pi / made.count)
+    tolerance = MATCH * np.ptp(made.straight[1])
+    on = [np.abs(x * c - sign * z * s) < tolerance for sign in (-1, 1)]
+    return (*(used[side & ~near] for side in on), used[near])
+
+
+def replicated(made: SectorMesh) -> tuple[MeshTet2, np.ndarray]:
+    """The mesh of the whole shaft, sector by sector around the axis.
+
+    Parameters
+    ----------
+    made : SectorMesh
+
+    Returns
+    -------
+    mesh : skfem.MeshTet2
+    segment : (ne,) ndarray of int
+    """
+    mesh, count = made.mesh, made.count
+    corners = np.unique(mesh.t)
+    low, high, axis = cut_vertices(made)
+    master = matched(mesh.p, count, low, high)
+    own = np.setdiff1d(corners, np.r_[high, axis])
+    place = np.zeros(mesh.p.shape[1], int)
+    place[own] = np.arange(len(own))
+    number = np.zeros((count, mesh.p.shape[1]), int)
+    number[:, own] = place[own] + len(own) * np.arange(count)[:, None]
+    number[:, high] = np.roll(number, -1, axis=0)[:, master]
+    number[:, axis] = len(own) * count + np.arange(len(axis))
+    total = len(own) * count + len(axis)
+    points, cells, keys, middles = np.zeros((3, total)), [], [], []
+    at = mesh.doflocs[:, mesh.dofs.edge_dofs[0]]
+    for k in range(count):
+        turn = rotation(1, 2 * pi * k / count)[:3, :3]
+        points[:, number[k, np.r_[own, axis]]] = turn @ mesh.p[:, np.r_[own, axis]]
+        cells.append(number[k][mesh.t])
+        ends = np.sort(number[k][mesh.edges], axis=0)
+        keys.append(ends[0] * total + ends[1])
+        middles.append(turn @ at)
+    straight = MeshTet1(points, np.ascontiguousarray(np.hstack(cells).astype(np.int32)))
+    whole = MeshTet2.from_mesh(straight)
+    key, first = np.unique(np.concatenate(keys), return_index=True)
+    ends = np.sort(whole.edges.astype(np.int64), axis=0)
+    doflocs = whole.doflocs.copy()
+    found = first[np.searchsorted(key, ends[0] * total + ends[1])]
+    doflocs[:, whole.dofs.edge_dofs[0]] = np.hstack(middles)[:, found]
+    return replace(whole, doflocs=doflocs), np.tile(made.segment, count)

@@ -1,0 +1,127 @@
+"""One sector of a shaft drawn in OCC: wedges, toothed slabs, holes, and the pairs of its cut faces."""
+
+from __future__ import annotations
+
+from math import cos, pi, sin
+
+import numpy as np
+
+from solidgear.frames import rotation
+from solidgear.meshing.quality import MeshError
+from solidgear.meshing.teeth import outline, turn_at
+from solidgear.meshing.tetrahedra import draw_revolved
+
+
+def phase(toothed, count: int) -> float:
+    """Angle of the middle of the sector, such that its borders run between teeth, rad."""
+    first = None
+    for teeth in toothed:
+        pitch = 2 * pi / teeth.count
+        # with an even number of teeth in a sector its middle lies between two of them
+        middle = teeth.angle + (pitch / 2 if teeth.count // count % 2 == 0 else 0.0)
+        apart = 0.0 if first is None else (middle - first + pitch / 2) % pitch - pitch / 2
+        if abs(apart) > 1e-9:
+            raise MeshError(
+                f'the gaps of {teeth.what} "{teeth.name}" do not lie behind those of the other '
+                f"teeth: no sector border runs between both; turn it by {-apart:.6g} rad"
+            )
+        first = middle if first is None else first
+    return first or 0.0
+
+
+def draw_sector(gmsh, segments, shapes, toothed, planes, circles, count: int, first: float):
+    """Volumes of the sector: wedges of runs of plain segments, and slabs of toothed ones."""
+    turn = 2 * pi / count
+    runs: list[list[int]] = []
+    for i, s in enumerate(segments):
+        if s.name in toothed:
+            inside = [y for y in (*planes, *circles) if s.y0 < y < s.y1]
+            _toothed(gmsh, s, toothed[s.name], sorted(set(inside)), count)
+        elif runs and runs[-1][-1] == i - 1:
+            runs[-1].append(i)
+        else:
+            runs.append([i])
+    for run in runs:
+        own = [shapes[i] for i in run]
+        inside = [
+            [y for y in places if own[0].y0 <= y <= own[-1].y1] for places in (planes, circles)
+        ]
+        draw_revolved(gmsh, own, inside[0], inside[1], -pi / 2 - turn / 2, turn)
+    gmsh.model.occ.synchronize()
+    return gmsh.model.getEntities(3)
+
+
+def _toothed(gmsh, segment, teeth, cuts: list[float], count: int) -> None:
+    """A toothed segment between the cut faces, as polyhedra from cut to cut, less its bore."""
+    occ = gmsh.model.occ
+    angle, radius = outline(teeth, count)
+    places = [segment.y0, *cuts, segment.y1]
+    sections = []
+    for y in places:
+        r = segment.outer0 + (segment.outer1 - segment.outer0) * (y - segment.y0) / segment.length
+        points = [occ.addPoint(0.0, y, 0.0)]
+        points += [occ.addPoint(r * q * sin(t), y, r * q * cos(t)) for t, q in zip(angle, radius)]
+        rim = [occ.addLine(a, b) for a, b in zip(points, points[1:] + points[:1])]
+        face = occ.addPlaneSurface([occ.addCurveLoop(rim)])
+        sections.append((points, rim, face))
+    solids = []
+    for low, high in zip(sections, sections[1:]):
+        risers = [occ.addLine(a, b) for a, b in zip(low[0], high[0])]
+        n = len(risers)
+        sides = [
+            occ.addPlaneSurface(
+                [occ.addCurveLoop([low[1][i], risers[(i + 1) % n], -high[1][i], -risers[i]])]
+            )
+            for i in range(n)
+        ]
+        solids.append((3, occ.addVolume([occ.addSurfaceLoop([low[2], *sides, high[2]])])))
+    if segment.inner0 or segment.inner1:
+        a, b, length = segment.inner0, segment.inner1, segment.length
+        place = (0.0, segment.y0, 0.0, 0.0, length, 0.0)
+        bore = occ.addCylinder(*place, a) if a == b else occ.addCone(*place, a, b)
+        occ.cut(solids, [(3, bore)])
+
+
+def drill(gmsh, volumes, holes, segments, twists, count: int, first: float):
+    """Cut the holes that reach into the sector, also those that its borders halve."""
+    occ, tools = gmsh.model.occ, []
+    for f in holes:
+        here = next(s for s in segments if s.name == f.segment)
+        lo, hi = f.reach(here)
+        start = f.angle - first - float(turn_at(np.array([(lo + hi) / 2]), twists)[0])
+        half = pi / count + 2 * f.diameter / f.circle
+        for k in range(f.count):
+            t = (start + 2 * pi * k / f.count + pi) % (2 * pi) - pi
+            if abs(t) < half:
+                x, z = f.circle / 2 * sin(t), f.circle / 2 * cos(t)
+                tools.append((3, occ.addCylinder(x, lo, z, 0.0, hi - lo, 0.0, f.diameter / 2)))
+    if not tools:
+        return volumes
+    cut, _ = occ.cut(volumes, tools)
+    occ.synchronize()
+    return [entity for entity in cut if entity[0] == 3]
+
+
+def pair_faces(gmsh, count: int, tolerance: float) -> None:
+    """Tell gmsh which cut faces carry the same mesh."""
+    half = pi / count
+    low: dict[int, tuple[float, ...]] = {}
+    high: dict[int, tuple[float, ...]] = {}
+    for _, face in gmsh.model.getEntities(2):
+        x, y, z = gmsh.model.occ.getCenterOfMass(2, face)
+        t, key = np.arctan2(x, z), (np.hypot(x, z), y, gmsh.model.occ.getMass(2, face))
+        if abs(abs(t) - half) < 1e-7:
+            (low if t < 0 else high)[face] = key
+    own = np.array(list(high.values())).reshape(-1, 3)
+    if len(own) != len(low):
+        raise MeshError("the two cut faces of the sector are not divided alike")
+    pairs = []
+    for face, place in low.items():
+        k = int(np.abs(own - place).max(axis=1).argmin())
+        pairs.append((list(high)[k], face))
+    if len({slave for slave, _ in pairs}) != len(low):
+        raise MeshError("the two cut faces of the sector are not divided alike")
+    turn = np.eye(4)
+    turn[:3, :3] = rotation(1, 2 * half)[:3, :3]
+    slaves, masters = zip(*pairs)
+    gmsh.model.mesh.setPeriodic(2, slaves, masters, turn.ravel().tolist())

@@ -1,0 +1,202 @@
+"""The section of trapezoid teeth, how they turn along the axis, and element sizes at features."""
+
+from __future__ import annotations
+
+from math import cos, hypot, pi
+from typing import Any
+
+import numpy as np
+
+from solidgear.meshing.cuts import ACROSS, GROWTH
+from solidgear.meshing.element_size import _num
+
+
+def outline(teeth: Any, count: int) -> tuple[np.ndarray, np.ndarray]:
+    """Corners of the section of a sector, from one cut face to the other.
+
+    Parameters
+    ----------
+    teeth : Teeth or Spline
+    count : int
+        Sectors around.
+
+    Returns
+    -------
+    angle, radius : (k,) ndarray
+        rad, from the middle of the sector; over the pitch radius.
+
+    Examples
+    --------
+    >>> from solidgear.scene import Teeth
+    >>> angle, radius = outline(Teeth(name="t", segment="head", count=14), 14)
+    >>> len(angle), bool(abs(angle[-1] - np.pi / 14) < 1e-12)
+    (6, True)
+    """
+    pitch, many = 2 * pi / teeth.count, teeth.count // count
+    # the land between two teeth is a chord, which the cut planes meet in its middle
+    land = teeth.root * cos(pitch / 2 - teeth.root_half)
+    one = [
+        (-teeth.root_half, teeth.root),
+        (-teeth.tip_half, teeth.tip),
+        (teeth.tip_half, teeth.tip),
+        (teeth.root_half, teeth.root),
+    ]
+    border = pitch * many / 2
+    corners = [(-border, land)]
+    corners += [(t - border + pitch * (j + 0.5), r) for j in range(many) for t, r in one]
+    angle, radius = np.array([*corners, (border, land)]).T
+    return angle, radius
+
+
+def section_area(teeth: Any) -> float:
+    """Area of a toothed section of unit pitch radius, closed form.
+
+    Parameters
+    ----------
+    teeth : Teeth or Spline
+
+    Returns
+    -------
+    float
+
+    Examples
+    --------
+    >>> from solidgear.scene import Teeth
+    >>> low = Teeth(name="t", segment="s", count=300, addendum=1e-6, dedendum=1e-6)
+    >>> abs(section_area(low) / pi - 1) < 1e-3
+    True
+    """
+    angle, radius = outline(teeth, teeth.count)
+    each = radius[1:] * radius[:-1] * np.sin(np.diff(angle)) / 2
+    return float(teeth.count * each.sum())
+
+
+def section_polar(teeth: Any) -> float:
+    """Polar second moment of area of a toothed section of unit pitch radius, closed form.
+
+    Parameters
+    ----------
+    teeth : Teeth or Spline
+
+    Returns
+    -------
+    float
+
+    Examples
+    --------
+    >>> from solidgear.scene import Teeth
+    >>> low = Teeth(name="t", segment="s", count=300, addendum=1e-6, dedendum=1e-6)
+    >>> abs(section_polar(low) / (pi / 2) - 1) < 1e-3
+    True
+    """
+    angle, radius = outline(teeth, teeth.count)
+    x, z = radius * np.sin(angle), radius * np.cos(angle)
+    # triangles from the axis
+    twice = radius[1:] * radius[:-1] * np.sin(np.diff(angle))
+    square = radius[:-1] ** 2 + radius[1:] ** 2 + x[:-1] * x[1:] + z[:-1] * z[1:]
+    return float(teeth.count * (twice * square).sum() / 12)
+
+
+def lacking(teeth: Any, segment: Any) -> tuple[float, float]:
+    """Mass and polar inertia that a toothed segment has beyond its cone.
+
+    Parameters
+    ----------
+    teeth : Teeth or Spline
+    segment : Segment
+
+    Returns
+    -------
+    mass, polar : float
+        kg, kg m^2; below zero where the cone has more.
+    """
+    a, b = segment.outer0, segment.outer1
+    bulk = segment.material.density * (segment.y1 - segment.y0)
+    fourth = (a**4 + a**3 * b + a**2 * b**2 + a * b**3 + b**4) / 5
+    return (
+        bulk * (section_area(teeth) - pi) * (a * a + a * b + b * b) / 3,
+        bulk * (section_polar(teeth) - pi / 2) * fourth,
+    )
+
+
+def turn_at(y: np.ndarray, twists: list[tuple[Any, Any]]) -> np.ndarray:
+    """Angle by which spiral teeth have turned the sections.
+
+    Parameters
+    ----------
+    y : ndarray
+        m.
+    twists : list of (Segment, Teeth or Spline)
+
+    Returns
+    -------
+    ndarray
+        rad about +y; zero at the start of the shaft, and constant outside the teeth.
+
+    Examples
+    --------
+    A lead of half a turn in a helix of 45 degrees:
+
+    >>> from solidgear import Segment
+    >>> from solidgear.scene import Spline
+    >>> rod = Segment.cylinder("rod", length=0.1 * pi, diameter=0.2)
+    >>> helix = Spline(name="h", segment="rod", count=20, spiral_angle="45 deg")
+    >>> round(float(turn_at(np.array([1.0]), [(rod, helix)])[0] / pi), 6)
+    1.0
+    """
+    out = np.zeros(np.shape(y))
+    for s, teeth in twists:
+        along = np.clip(y, s.y0, s.y1) - s.y0
+        slope = (s.outer1 - s.outer0) / (s.y1 - s.y0)
+        if abs(slope) < 1e-12:
+            out += teeth.twist * along / s.outer0
+        else:
+            out += teeth.twist * hypot(1.0, slope) / slope * np.log1p(slope * along / s.outer0)
+    return out
+
+
+def tooth_size(teeth: Any, segment: Any, refinement: float) -> str:
+    """Formula of the element edge at teeth: a part of their height in the section, growing inwards.
+
+    Parameters
+    ----------
+    teeth : Teeth or Spline
+    segment : Segment
+    refinement : float
+        Divides the size.
+
+    Returns
+    -------
+    str
+        In x, y, z, m, as gmsh's parser reads it.
+    """
+    share = (teeth.tip - teeth.root) / (ACROSS * refinement)
+    slope = (segment.outer1 - segment.outer0) / (segment.y1 - segment.y0)
+    inside = f"Max({_num(segment.y0)},Min({_num(segment.y1)},y))"
+    pitch = f"({_num(segment.outer0)}+{_num(slope)}*({inside}-{_num(segment.y0)}))"
+    below = f"Max(0,{_num(teeth.root)}*{pitch}-Sqrt(x^2+z^2))"
+    outside = f"(y-{inside})"
+    return f"{_num(share)}*{pitch}+{_num(GROWTH)}*Sqrt({below}^2+{outside}^2)"
+
+
+def hole_size(bolts: Any, segment: Any, refinement: float) -> str:
+    """Formula of the element edge at the holes of a bolt circle, whatever their angle.
+
+    Parameters
+    ----------
+    bolts : BoltCircle
+    segment : Segment
+    refinement : float
+        Divides the size.
+
+    Returns
+    -------
+    str
+        In x, y, z, m, as gmsh's parser reads it.
+    """
+    lo, hi = bolts.reach(segment)
+    # a circle of fewer than eight edges is no hole
+    least = pi * bolts.diameter / 8 / max(1.0, ACROSS * refinement)
+    across = f"Max(0,Sqrt((Sqrt(x^2+z^2)-{_num(bolts.circle / 2)})^2)-{_num(bolts.diameter / 2)})"
+    along = f"Max(0,Max({_num(lo)}-y,y-{_num(hi)}))"
+    return f"{_num(least)}+{_num(GROWTH)}*Sqrt({across}^2+{along}^2)"

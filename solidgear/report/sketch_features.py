@@ -1,0 +1,116 @@
+"""Features of a shaft in its sketch: cuts, teeth and circles of holes."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+CUT = "#8a1f1f"
+
+
+def draw_feature(pen: Any, feature: Mapping[str, Any], segments: Sequence[Mapping]) -> None:
+    """Draw a feature, seen along x, whatever way it looks.
+
+    Parameters
+    ----------
+    pen : object
+        With ``ax``, ``x(y)`` (inches along the shaft) and ``radial`` (inches per metre across).
+    feature : mapping
+        Of the record of a scene.
+    segments : sequence of mapping
+    """
+    here = next(s for s in segments if s["name"] == feature["segment"])
+    if feature["kind"] in ("teeth", "spline"):
+        _teeth(pen, feature, here)
+    elif feature["kind"] == "bolt_circle":
+        _holes(pen, feature, here)
+    else:
+        _cut(pen, feature, here)
+
+
+def _name(feature: Mapping) -> str:
+    turn = f", at {math.degrees(feature['angle']):.3g} deg" if feature["angle"] else ""
+    kind = feature["kind"].replace("_", " ")
+    return f"{kind}{turn}" if feature["name"] == kind else f"{kind} {feature['name']}{turn}"
+
+
+def _label(pen, x: float, height: float, text: str) -> None:
+    pen.ax.text(
+        x,
+        height,
+        text,
+        color=CUT,
+        ha="center",
+        va="top",
+        fontsize=8,
+        parse_math=False,
+        bbox={"facecolor": "white", "edgecolor": "none", "alpha": 0.8, "pad": 0.5},
+        zorder=10,
+    )
+
+
+def _cut(pen, cut: Mapping, here: Mapping) -> None:
+    """What is cut out of a segment."""
+    lo, hi = cut["y"], cut["y"] + cut.get("length", 0.0)
+    if cut["kind"] == "cross_hole":
+        lo, hi = lo - cut["diameter"] / 2, lo + cut["diameter"] / 2
+    radius = here["outer0"]
+    floor = radius - cut["depth"] if "depth" in cut else -radius
+    x = [pen.x(y) for y in (lo, hi, hi, lo, lo)]
+    r = [pen.radial * v for v in (floor, floor, radius, radius, floor)]
+    pen.ax.fill(x, r, facecolor="white", lw=0, zorder=4)
+    pen.ax.plot(x, r, color=CUT, lw=1.1, ls="-" if "depth" in cut else "--", zorder=5)
+    _label(pen, (x[0] + x[1]) / 2, pen.radial * max(floor, 0) - 0.05, _name(cut))
+
+
+def _teeth(pen, teeth: Mapping, here: Mapping) -> None:
+    """Tips and roots above, where the section shows a tooth; the run of the teeth below."""
+    x = [pen.x(here["y0"]), pen.x(here["y1"])]
+    ends = [pen.radial * here[k] for k in ("outer0", "outer1")]
+    tip = 1 + 2 * teeth["addendum"] / teeth["count"]
+    root = 1 - 2 * teeth["dedendum"] / teeth["count"]
+    for side in (1, -1):
+        for share, style in ((tip, "-"), (root, "--")):
+            pen.ax.plot(x, [side * share * r for r in ends], color=CUT, lw=1.0, ls=style, zorder=5)
+        for k in (0, 1):
+            band = [side * share * ends[k] for share in (root, tip)]
+            pen.ax.plot([x[k]] * 2, band, color=CUT, lw=1.0, zorder=5)
+    lean = math.tan(teeth["spiral_angle"]) * (1 if teeth["hand"] == "right" else -1)
+    steps = 20
+    for j in range(teeth["count"]):
+        # seen from +x, with +z upwards: what turns about +y comes from +z towards the viewer
+        angle, line = teeth["angle"] + 2 * math.pi * j / teeth["count"], []
+        for i in range(steps + 1):
+            t = i / steps
+            r = here["outer0"] + (here["outer1"] - here["outer0"]) * t
+            if math.sin(angle) > 0 and math.cos(angle) < 0:
+                line.append((x[0] + (x[1] - x[0]) * t, pen.radial * tip * r * math.cos(angle)))
+            slope = (here["outer1"] - here["outer0"]) / (here["y1"] - here["y0"])
+            step = (here["y1"] - here["y0"]) / steps * math.hypot(1.0, slope)
+            angle += lean * step / r
+        if line:
+            pen.ax.plot(*zip(*line), color=CUT, lw=0.7, alpha=0.8, zorder=5)
+    text = f"{teeth['count']} {_name(teeth)}"
+    if teeth["spiral_angle"]:
+        text += f", {math.degrees(teeth['spiral_angle']):.3g} deg {teeth['hand']}"
+    if teeth["model"] == "pitch_cone":
+        text += " (smeared)"
+    _label(pen, sum(x) / 2, 0.6 * sum(ends) / 2, text)
+
+
+def _holes(pen, bolts: Mapping, here: Mapping) -> None:
+    """The outlines of a hole above and below, hidden."""
+    lo, hi = here["y0"], here["y1"]
+    if bolts.get("depth") is not None:
+        lo, hi = (
+            (lo, lo + bolts["depth"]) if bolts["side"] == "start" else (hi - bolts["depth"], hi)
+        )
+    x = [pen.x(y) for y in (lo, hi, hi, lo, lo)]
+    middle, half = bolts["circle"] / 2, bolts["diameter"] / 2
+    for side in (1, -1):
+        r = [side * pen.radial * v for v in (middle - half,) * 2 + (middle + half,) * 2]
+        pen.ax.plot(x, [*r, r[0]], color=CUT, lw=1.1, ls="--", zorder=5)
+    size = f"{2e3 * half:.4g}"
+    text = f"{bolts['count']} x ⌀{size} {_name(bolts)}"
+    _label(pen, (x[0] + x[1]) / 2, pen.radial * (middle - half) - 0.05, text)

@@ -1,0 +1,91 @@
+"""Families of motion: which block moves in which, and how modes are numbered within one."""
+
+from __future__ import annotations
+
+from solidgear.body import Block
+
+FAMILIES = {"bending": (0, 2, 3, 5), "axial": (1,), "torsion": (4,)}
+
+
+def waves_of(block: Block) -> int:
+    """Waves around the axis of the motions of a block.
+
+    Parameters
+    ----------
+    block : Block
+
+    Returns
+    -------
+    int
+    """
+    for kind in ("ovalising_", "cyclic_"):
+        if block.name.startswith(kind):
+            return int(block.name.removeprefix(kind))
+    return 1 if set(block.components) & set(FAMILIES["bending"]) else 0
+
+
+def repeats(block: Block) -> bool:
+    """Whether every shape of a block stands for its twin as well, a quarter of a wave further
+    round.
+
+    Parameters
+    ----------
+    block : Block
+    """
+    return block.name.startswith("ovalising_")
+
+
+def several(block: Block) -> bool:
+    """Whether section motions tell the families of a block apart, and not the block alone.
+
+    Parameters
+    ----------
+    block : Block
+    """
+    own = [name for name, known in FAMILIES.items() if set(block.components) & set(known)]
+    return len(own) > 1
+
+
+def family_of(block: Block) -> str:
+    """Family of the motions of a block.
+
+    Parameters
+    ----------
+    block : Block
+
+    Returns
+    -------
+    str
+        ``all`` for a block that holds every motion.
+    """
+    if len(block.components) == 6:
+        return "all"
+    if waves_of(block) > 1:
+        return f"ovalising n={waves_of(block)}"
+    own = [name for name, known in FAMILIES.items() if set(block.components) & set(known)]
+    # a block of a part with a mirror plane holds several
+    return " and ".join(own)
+
+
+def numbered(families: list[str]) -> list[str]:
+    """Names of modes from their families, in the order given.
+
+    Parameters
+    ----------
+    families : list of str
+
+    Returns
+    -------
+    list of str
+
+    Examples
+    --------
+    >>> numbered(["bending", "axial", "bending"])
+    ['bending 1', 'axial 1', 'bending 2']
+    """
+    count: dict[str, int] = {}
+    out = []
+    for family in families:
+        count[family] = count.get(family, 0) + 1
+        out.append(f"{family} {count[family]}")
+    return out

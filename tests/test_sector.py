@@ -1,0 +1,359 @@
+"""Teeth, splines and bolt circles by one cyclic sector: against the whole in 3D, closed forms, the
+harmonic solid, and the scenes that are refused.
+"""
+
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import solidgear as sg
+from solidgear.fidelity.cyclic import Sector, basis, doubled
+from solidgear.fidelity.sector import meshed_sector, sector, whole
+from solidgear.fidelity.size import estimated_unknowns
+from solidgear.meshing.quality import MeshError, volume_of
+from solidgear.meshing.sector import volume_of_sector
+from solidgear.meshing.teeth import section_area, section_polar
+from solidgear.scene import BoltCircle, Keyway, Spline, Teeth
+
+ROOT = Path(__file__).parent.parent
+TOOTHED = ROOT / "geometry" / "pinion_toothed.toml"
+STEEL = sg.Material(E=2.07e11, nu=0.3, density=7850.0)
+TEETH = Teeth(name="teeth", segment="head", count=7, dedendum=0.6, model="sector")
+BOLTS = BoltCircle(
+    name="bolts", segment="disc", count=5, diameter=0.02, circle=0.065, depth=0.012, side="end"
+)
+COARSE = 0.2
+
+
+def shaft(*features, bore=0.0):
+    """A toothed cone, a disc and a rod on two bearings."""
+    head = sg.Segment.cone(
+        "head", length=0.04, start_diameter=0.05, end_diameter=0.07, bore=bore, material=STEEL
+    )
+    disc = sg.Segment.cylinder("disc", length=0.02, diameter=0.09, bore=bore, y0=0.04)
+    rod = sg.Segment.cylinder("rod", length=0.08, diameter=0.04, bore=bore, y0=0.06)
+    firm = {"kxx": 1e9, "kyy": 1e8, "kzz": 1e9, "kthx": 1e6, "kthz": 1e6}
+    return sg.Scene.from_parts(
+        [head, disc.with_changes(material=STEEL), rod.with_changes(material=STEEL)],
+        STEEL,
+        [
+            sg.Bearing(name=name, y=y, seat_width=0.02, stiffness=firm)
+            for name, y in (("a", 0.08), ("b", 0.13))
+        ],
+        sg.Port(name="gear", y=0.02, lo=0.0, hi=0.04),
+        features=features,
+    )
+
+
+SPIRAL = TEETH.with_changes(spiral_angle="30 deg", hand="right")
+PARTS = {
+    "straight": shaft(TEETH),
+    "spiral": shaft(SPIRAL),
+    "bolts": shaft(BOLTS),
+    "rigid seats in a bore": shaft(SPIRAL, bore=0.02).with_attachment("rigid"),
+    "two teeth in a sector": shaft(
+        TEETH.with_changes(count=14), BOLTS.with_changes(count=7, angle=0.1)
+    ),
+}
+
+
+def apart(one, other):
+    """Largest difference of compliances over the largest of their kind."""
+    on = np.isfinite(one)
+    assert (on == np.isfinite(other)).all()
+    size = np.sqrt(np.nan_to_num(np.diag(other)))
+    scale = np.outer(size, size)
+    use = on & (scale > 0)
+    return (np.abs(one - other)[use] / scale[use]).max()
+
+
+@pytest.mark.parametrize("name", PARTS)
+def test_a_sector_is_the_whole(name):
+    """The same elements, once as one sector with phases and once as all of its copies: rounding is
+    all that is left. A wrong phase, turn, axis or port would be of order one.
+    """
+    scene = PARTS[name]
+    wanted = [(s, s.attachment) for s in scene.stations]
+    one, other = sector(scene, refinement=COARSE), whole(scene, wanted, refinement=COARSE)
+    assert [b.components for b in one.blocks] == [(1, 4), (0, 2, 3, 5)]
+    assert one.rigid_residual() < 1e-14
+    mass = other.mass_matrix()
+    assert np.abs(one.mass_matrix() - mass).max() < 1e-13 * np.abs(mass).max()
+    a, b = (sg.condense(body, scene, "gear").compliance for body in (one, other))
+    assert apart(a, b) < 1e-12
+    f, g = (sg.modes(body, scene, n=6) for body in (one, other))
+    first, second = (np.repeat(m.frequency_hz, m.multiplicity)[1:7] for m in (f, g))
+    assert np.abs(first / second - 1).max() < 1e-11
+    assert f.named("bending 1").multiplicity == 2
+    # section motions weigh the same mass
+    assert np.abs(f.gram - g.gram).max() < 1e-12 * np.abs(g.gram).max()
+
+
+@pytest.mark.parametrize("name", ["straight", "spiral", "bolts"])
+def test_volume_mass_and_inertia(name):
+    """OCC's volume against the closed form to 1e-12; the mesh to what its arcs lose. Teeth have plane
+    faces and lose nothing, so that the head alone is exact: straight to rounding, spiral ones to
+    what curved elements leave of the helix.
+    """
+    scene = PARTS[name]
+    features = scene.features
+    wanted = [(s, s.attachment) for s in scene.stations]
+    made = meshed_sector(scene, wanted, features, refinement=0.5)
+    exact = volume_of_sector(scene.segments, features, made.count)
+    assert made.drawn == pytest.approx(exact, rel=1e-9)
+    # edges of a seventh of a turn lose (pi/7)^4/30 of an arc
+    assert made.quality.volume == pytest.approx(exact, rel=2e-3)
+    if name != "bolts":
+        from solidgear.fidelity.sector_solid import sector_solid
+
+        mesh = sector_solid(made)
+        pieces = mesh.over_cells(np.flatnonzero(made.segment == 0))
+        parts = [(w.sum(), (w * (x[0] ** 2 + x[2] ** 2)).sum()) for _, x, w, _ in pieces]
+        volume, polar = made.count * np.sum(parts, axis=0)
+        a, b = 0.025, 0.035
+        area = section_area(TEETH)
+        tight = 1e-12 if name == "straight" else 1e-4
+        assert volume == pytest.approx(area * 0.04 * (a * a + a * b + b * b) / 3, rel=tight)
+        fourth = (a**4 + a**3 * b + a**2 * b**2 + a * b**3 + b**4) / 5
+        assert polar == pytest.approx(section_polar(TEETH) * 0.04 * fourth, rel=tight)
+
+
+def test_a_cone_without_teeth_is_the_harmonic_solid():
+    """Two elements of order two across a radius and graded seat ends: the harmonic solid, which
+    shares no mesh with it, lies within 2.5 % of the compliance (tilt is the worst) and 0.5 % of
+    frequencies.
+    """
+    scene = shaft()
+    one = sector(scene, refinement=0.7, count=8)
+    other = sg.build(scene, "harmonic")
+    a, b = (sg.condense(body, scene, "gear").compliance for body in (one, other))
+    on = [0, 1, 2, 3, 5]
+    assert np.diag(a)[on] == pytest.approx(np.diag(b)[on], rel=2.5e-2)
+    assert (np.diag(a)[on] < np.diag(b)[on]).all()  # displacement elements are too stiff
+    f, g = (sg.modes(body, scene, n=6, ovalising=False) for body in (one, other))
+    for name in ("bending 1", "axial 1", "torsion 1"):
+        assert f.named(name).frequency_hz == pytest.approx(g.named(name).frequency_hz, rel=5e-3)
+        assert f.named(name).frequency_hz > g.named(name).frequency_hz
+
+
+def coupling(feature):
+    """C_y,thy of the head on firm bearings, over the root of its diagonal."""
+    scene = shaft(feature)
+    firm = {"kxx": 1e9, "kyy": 1e8, "kzz": 1e9, "kthx": 1e6, "kthy": 1e6, "kthz": 1e6}
+    held = [
+        b.with_changes(matrix=sg.Bearing(name="k", y=0.1, seat_width=0.01, stiffness=firm).matrix)
+        for b in scene.bearings
+    ]
+    c = sg.condense(sector(scene, refinement=0.35), held, "gear").compliance
+    return c[1, 4] / math.sqrt(c[1, 1] * c[4, 4])
+
+
+def test_spiral_teeth_couple_axial_motion_and_torsion():
+    """A mirror plane through the axis forbids C_y,thy, and the other hand turns its sign."""
+    right, left = (coupling(SPIRAL.with_changes(hand=hand)) for hand in ("right", "left"))
+    straight = coupling(TEETH)
+    assert abs(right) > 20 * abs(straight)
+    assert right == pytest.approx(-left, rel=0.1)
+
+
+def test_a_right_hand_turns_about_y_along_y():
+    """Vertices of the tooth's middle at both ends of the head, by its closed form."""
+    scene = shaft(SPIRAL)
+    made = meshed_sector(scene, [(s, s.attachment) for s in scene.stations], (SPIRAL,))
+    x, y, z = made.mesh.p[:, np.unique(made.mesh.t)]
+    turned = np.arctan2(x, z)
+    slope = 0.25
+    full = math.tan(math.radians(30)) * math.hypot(1, slope) / slope * math.log(0.035 / 0.025)
+    for place, wanted in ((0.0, 0.0), (0.04, full)):
+        at = (np.abs(y - place) < 1e-9) & (np.hypot(x, z) > 0.0101)
+        # a sector is even about its middle
+        assert (turned[at].max() + turned[at].min()) / 2 == pytest.approx(wanted, abs=1e-9)
+
+
+def test_pictures_are_of_all_copies():
+    """The surface of the sector's copies moves as that of the whole, point by point."""
+    from scipy.spatial import cKDTree
+
+    scene = PARTS["spiral"]
+    wanted = [(s, s.attachment) for s in scene.stations]
+    one, other = sector(scene, refinement=COARSE), whole(scene, wanted, refinement=COARSE)
+    for name in ("bending 1", "torsion 1"):
+        moved = []
+        for body in (one, other):
+            found = sg.modes(body, scene, n=6).named(name)
+            moved.append([body.surface(v) for v in found.vectors])
+        gap, at = cKDTree(moved[0][0].points).query(moved[1][0].points)
+        assert gap.max() < 1e-12
+        a, b = (
+            np.array([s.displacement[k].ravel() for s in own]).T
+            for own, k in ((moved[0], at), (moved[1], slice(None)))
+        )
+        left = b - a @ np.linalg.lstsq(a, b, rcond=None)[0]
+        assert np.linalg.norm(left) < 1e-6 * np.linalg.norm(b)
+        faces = len(moved[1][0].triangles)
+        assert len(moved[0][0].triangles) == faces
+
+
+def test_higher_harmonics_are_those_of_the_whole():
+    """Two waves around: in neither block of the ports, and a pair in the whole."""
+    scene = shaft(TEETH, bore=0.034)
+    wanted = [(s, s.attachment) for s in scene.stations]
+    one = sector(scene, refinement=COARSE, ovalising=(2,))
+    assert [b.name for b in one.blocks] == ["cyclic_0", "cyclic_1", "cyclic_2"]
+    f, g = (sg.modes(b, scene, n=16) for b in (one, whole(scene, wanted, refinement=COARSE)))
+    oval = next(m for m in f.modes if m.waves == 2)
+    assert oval.name == "ovalising n=2 1" and oval.multiplicity == 2
+    assert np.abs(g.frequency_hz / oval.frequency_hz - 1).min() < 1e-9
+    with pytest.raises(sg.SolidgearError, match="not below half of the 7 sectors"):
+        sector(scene, refinement=COARSE, ovalising=(4,))
+
+
+def test_a_node_on_the_axis():
+    """What a turn by a sector leaves of it: axial motion, one complex number, nothing."""
+    around = Sector(7, np.zeros(0, int), np.zeros(0, int), np.array([0]))
+    for h, size in ((0, 1), (1, 1), (2, 0), (3, 0)):
+        assert basis(around, 1, h)[0].shape == (3, size)
+    motion = basis(around, 1, 1)[0].toarray()[:, 0]
+    angle = 2 * np.pi / 7
+    turned = sg.frames.rotation(1, angle)[:3, :3] @ motion
+    assert np.abs(np.exp(1j * angle) * turned - motion).max() < 1e-15
+    assert doubled(basis(around, 1, 1)[0]).shape == (6, 2)
+
+
+def test_smeared_teeth_change_no_model_of_revolution():
+    """The default is the segment as it is; the sector resolves teeth where it is asked by name."""
+    smeared = TEETH.with_changes(model="pitch_cone")
+    scene = shaft(smeared)
+    for rung in ("timoshenko", "harmonic"):
+        a, b = (sg.condense(sg.build(s, rung), s, "gear") for s in (scene, shaft()))
+        assert np.array_equal(a.compliance, b.compliance, equal_nan=True)
+    assert sg.build(scene, "solid", layers=1, radial_layers=1).mesh["element"] == "hex20"
+    assert sg.build(scene, "sector", refinement=COARSE).mesh["features"] == ["teeth"]
+    from solidgear.fidelity.ladder import LADDER
+
+    assert "sector" not in LADDER.fit(scene) and "sector" in LADDER.fit(shaft(TEETH))
+    assert "solid" not in LADDER.fit(shaft(TEETH))  # copies of the sector are no second opinion
+
+
+def test_who_holds_what():
+    key = Keyway(name="key", segment="rod", y=0.1, length=0.03, width=0.01, depth=0.005)
+    both = shaft(TEETH, key)
+    for rung, says in (
+        ("harmonic", 'of revolution and the scene has teeth "teeth", keyway "key"'),
+        (
+            "sector",
+            'one sector that repeats itself around the axis, and the scene has keyway "key"',
+        ),
+        ("corrected", 'made of two meshes, with cuts and without, and the scene has teeth "teeth"'),
+        ("solid", 'teeth "teeth", keyway "key", which no mesh holds together'),
+    ):
+        with pytest.raises(sg.SolidgearError) as caught:
+            sg.build(both, rung)
+        assert says in str(caught.value) and len(str(caught.value).splitlines()) == 1
+    with pytest.raises(sg.SolidgearError, match="the scene has none of: bolt circle, spline"):
+        sg.build(shaft(), "sector")
+    with pytest.raises(MeshError, match="7 of teeth .* no sector"):
+        sg.build(shaft(TEETH, BOLTS), "sector")
+
+
+def test_the_size_is_known_before_meshing():
+    """Within a third, as for other tetrahedra whose features are fine."""
+    for scene in (PARTS["straight"], PARTS["bolts"]):
+        made = sg.build(scene, "sector", refinement=0.6).size
+        assert estimated_unknowns(scene, "sector", {"refinement": 0.6}) == pytest.approx(
+            made, rel=0.35
+        )
+
+
+BAD = {
+    "count = 14 ": ("count = 2 ", "greater than or equal to 3"),
+    "addendum = 1.0": ("addendum = 9", "between 0 and 3 modules"),
+    "dedendum = 1.2": ("dedendum = 3", "roots"),
+    "addendum = 1.0 ": ("addendum = 2.9", "edge"),
+    "half_thickness = 0.25": ("half_thickness = 0.6", "between 0.1 and 0.4"),
+    'segment = "head"\ncount': ('segment = "hub"\ncount', "unknown segment"),
+    'kind = "teeth"': ('kind = "spline"', "a spline is cut into a cylinder"),
+    'model = "sector"': ('model = "cone"', "pitch_cone"),
+    'model = "sector"\n': ('position = "3 mm"\n', "unknown key"),
+}
+
+
+@pytest.mark.parametrize("old", BAD)
+def test_bad_teeth_are_one_sentence(old, tmp_path):
+    text = TOOTHED.read_text()
+    new, says = BAD[old]
+    old = old if old in text else old.strip()
+    assert old in text
+    file = tmp_path / "bad.toml"
+    file.write_text(text.replace(old, new))
+    with pytest.raises(sg.SceneError) as caught:
+        sg.load(file)
+    assert says in str(caught.value) and len(str(caught.value).splitlines()) == 1
+
+
+@pytest.mark.parametrize(
+    ("change", "says"),
+    [
+        ({"circle": 0.075}, "out of"),
+        ({"circle": 0.02}, "into the axis"),
+        ({"diameter": 0.05}, "out of"),
+        ({"count": 40}, "run into each other"),
+        ({"depth": 0.03}, "deeper than"),
+        ({"side": "start"}, 'covers the holes at the start of "disc"'),
+        ({"diameter": 1e-5}, "under a hundredth"),
+    ],
+)
+def test_bad_bolt_circles(change, says):
+    with pytest.raises(sg.SceneError, match=says):
+        shaft(BOLTS.with_changes(**change))
+
+
+def test_teeth_without_height_are_refused():
+    with pytest.raises(sg.SceneError, match="leave the feature out"):
+        Teeth(name="t", segment="head", count=14, addendum=0, dedendum=0)
+
+
+def test_a_spline_is_a_cylinder_with_teeth():
+    """Volume of low teeth of equal height and depth: the cylinder's own, but for the chords."""
+    spline = Spline(name="s", segment="rod", count=30, addendum=0.5, dedendum=0.5, model="sector")
+    scene = shaft(spline)
+    exact = 30 * volume_of_sector(scene.segments, (spline,), 30)
+    assert exact == pytest.approx(volume_of(scene.segments), rel=1e-2)
+    body = sg.build(scene, "sector", refinement=COARSE)
+    assert body.mesh["volume"] == pytest.approx(exact, rel=1e-4)
+
+
+def test_check_says_what_smearing_costs():
+    """Bounds of the rule hold for what the sector says of one pinion, and the tolerance decides."""
+    from solidgear.studies.check import check_scene
+    from solidgear.studies.guards.smearing import expected
+
+    smeared = TEETH.with_changes(model="pitch_cone")
+    scene = shaft(smeared)
+    stiffness, frequency = expected(scene)
+    teeth, cone = (
+        sector(s, refinement=COARSE, count=7, material_port=True) for s in (scene, scene.plain)
+    )
+    a, b = (np.diag(sg.condense(body, scene, "gear").compliance) for body in (teeth, cone))
+    assert (np.abs(b / a - 1)[[0, 2, 3, 5]] < stiffness).all()
+    f, g = (sg.modes(body, scene, n=6) for body in (teeth, cone))
+    for name in ("bending 1", "axial 1"):
+        apart = g.named(name).frequency_hz / f.named(name).frequency_hz - 1
+        assert abs(apart) < frequency, name
+    # mass and inertia by the closed form against those of the mesh of the head
+    from solidgear.meshing.teeth import lacking
+
+    mass, polar = lacking(smeared, scene.segments[0])
+    more = teeth.mass_matrix() - cone.mass_matrix()
+    # arcs of the cone lose (pi/7)^4/30 of it
+    whole = cone.mass_matrix()
+    assert abs(more[0, 0] - mass) < 2e-3 * whole[0, 0]
+    assert abs(more[4, 4] - polar) < 4e-3 * whole[4, 4]
+    body = sg.build(scene, "timoshenko")
+    for tolerance, level in ((0.2, "fact"), (1e-3, "caution")):
+        asked = scene.with_changes(ask=sg.Ask(tolerance=tolerance))
+        said = check_scene(asked, body)["records"]
+        (own,) = [r for r in said if "smeared" in r["sentence"]]
+        assert own["level"] == level
