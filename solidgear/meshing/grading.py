@@ -43,6 +43,8 @@ class Grading:
         Multiplies the number of cells everywhere.
     core : bool
         Start the band on the axis with one cell of half its width, room for the core of an O-grid.
+    corner_cells : int
+        Cells along either half of a fillet.
     """
 
     layers: int = 3
@@ -55,6 +57,7 @@ class Grading:
     radial_reach: float = REACH
     refinement: float = 1.0
     core: bool = False
+    corner_cells: int = 1
 
     @property
     def across(self) -> int:

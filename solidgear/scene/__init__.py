@@ -1,5 +1,6 @@
 """What is modelled and what is asked: data only."""
 
+from solidgear.scene.blends import Blend, Chamfer, Corner, Fillet
 from solidgear.scene.catalogue import BearingDisplacement, BearingLoad, Catalogue
 from solidgear.scene.features import CrossHole, Feature, Flat, Keyway
 from solidgear.scene.model import Ask, Quantity, Scene
@@ -10,11 +11,15 @@ from solidgear.scene.stations import Bearing, Port
 __all__ = [
     "Ask",
     "Bearing",
+    "Blend",
     "BearingDisplacement",
     "BearingLoad",
     "Catalogue",
+    "Chamfer",
+    "Corner",
     "CrossHole",
     "Feature",
+    "Fillet",
     "Flat",
     "Keyway",
     "Material",

@@ -15,6 +15,7 @@ from pydantic import Field, model_validator
 
 from solidgear.errors import SceneError
 from solidgear.scene.bearing_stiffness import stiffness_entries
+from solidgear.scene.blends import Blend, Corner, blend_problems, corners_of_blends
 from solidgear.scene.catalogue import BearingLoad
 from solidgear.scene.features import Feature, feature_problems
 from solidgear.scene.parts import STEEL, Material, Model, Segment
@@ -95,6 +96,8 @@ class Scene(Model):
     masses : tuple of PointMass
     features : tuple of Keyway, Flat or CrossHole
         What is cut out of the shaft and is not of revolution.
+    blends : tuple of Fillet or Chamfer
+        At its edges; it stays of revolution.
     housing_axial : float or None
         Spring along y between the common bearing housing and ground, N/m.
     port : Port
@@ -128,6 +131,7 @@ class Scene(Model):
     bearings: tuple[Bearing, ...] = ()
     masses: tuple[PointMass, ...] = ()
     features: tuple[Feature, ...] = ()
+    blends: tuple[Blend, ...] = ()
     housing_axial: AxialSpring | None = None
     port: Port
     load: BearingLoad | None = None
@@ -141,6 +145,7 @@ class Scene(Model):
             problems = list(station_problems(self.segments, self.port, bearings, masses))
             problems += mass_problems(self.port, bearings, masses)
             problems += feature_problems(self.segments, self.features)
+            problems += blend_problems(self.segments, self.blends, self.stations, self.features)
         if problems:
             raise SceneError.of(problems)
         return self
@@ -211,6 +216,11 @@ class Scene(Model):
     def plain(self) -> Scene:
         """The same scene without features: a body of revolution."""
         return self.with_changes(features=()) if self.features else self
+
+    @property
+    def corners(self) -> tuple[Corner, ...]:
+        """Edges with fillets and chamfers."""
+        return corners_of_blends(self.segments, self.blends)
 
     @property
     def steps(self) -> tuple[float, ...]:
@@ -360,9 +370,14 @@ class Scene(Model):
         dict
         """
         data = self.model_dump(mode="json")
-        for key in ("masses", "features"):
+        for key in ("masses", "features", "blends"):
             if not data[key]:
                 del data[key]
+        for row, corner in zip(data.get("blends", ()), self.corners):
+            lo, hi = corner.span
+            row |= {"edge": "root" if corner.root else "rim", "lo": lo, "hi": hi}
+            row |= {"corner": [corner.r, corner.y], "outline": [list(p) for p in corner.points()]}
+            row |= {"owner": self.segments[corner.owner].name}
         for row, segment in zip(data["segments"], self.segments):
             row["length"] = segment.length
         for row, bearing in zip(data["bearings"], self.bearings):

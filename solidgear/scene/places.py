@@ -5,9 +5,10 @@ A problem of a place is reported under the key of the file that it came from.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Iterator, Sequence
 
 from solidgear.errors import SceneError
+from solidgear.scene.blends import Blend, Chamfer, Fillet, blend_problems
 from solidgear.scene.features import CrossHole, Feature, Flat, Keyway, feature_problems
 from solidgear.scene.model import Scene
 from solidgear.scene.parts import Material, Segment
@@ -16,7 +17,10 @@ from solidgear.scene.rules import mass_problems, shaft_problems, station_problem
 from solidgear.scene.stations import Attachment, Bearing, Port, Status
 from solidgear.scene.tables import (
     BearingTable,
+    BlendTable,
+    ChamferTable,
     FeatureTable,
+    FilletTable,
     MassTable,
     Piece,
     PortTable,
@@ -78,18 +82,26 @@ def resolve(table: SceneTable, numbers: list[int], name: str, problems: list[Sce
                 masses[index] = _mass(heavy, table.attachment, datums)
             except SceneError as error:
                 problems.append(error.located(None, path=("mass", index, *error.path)))
-    features = [
-        _feature(cut, k, datums)
-        for k, cut in enumerate(table.feature)
-        if cut.from_ is None or cut.from_ in datums
-    ]
+    features, cut_rows, blends, blend_rows = [], [], [], []
+    for index, entry in enumerate(table.feature):
+        if isinstance(entry, FilletTable | ChamferTable):
+            if entry.at in datums:
+                blends.append(_blend(entry, index, datums))
+                blend_rows.append(index)
+        elif entry.from_ is None or entry.from_ in datums:
+            features.append(_feature(entry, index, datums))
+            cut_rows.append(index)
+    stations = [s for s in (port, *bearings.values(), *masses.values()) if s is not None]
+    seated = [s for s in stations if getattr(s, "on", None) is None]
+    of_edges = blend_problems(segments, blends, seated, features)
     whole = len(bearings) == len(numbers) and table.port is not None
     problems += [
         one.located(None, path=_file_path(one.path, table, owner))
         for one in (
             *station_problems(segments, port, bearings, masses),
             *(mass_problems(port, bearings, masses) if whole else ()),
-            *feature_problems(segments, features),
+            *_of_rows(feature_problems(segments, features), cut_rows),
+            *_of_rows(of_edges, blend_rows),
         )
     ]
     if problems:
@@ -104,10 +116,18 @@ def resolve(table: SceneTable, numbers: list[int], name: str, problems: list[Sce
         source=table.source,
         masses=tuple(masses.values()),
         features=tuple(features),
+        blends=tuple(blends),
         housing_axial=table.housing.axial if table.housing else None,
         load=table.load,
         ask=table.ask,
     )
+
+
+def _of_rows(problems: Iterable[SceneError], rows: Sequence[int]) -> Iterator[SceneError]:
+    """Problems of a list with the number of each entry among the [[feature]] of the file."""
+    for one in problems:
+        rest = (rows[one.path[1]], *one.path[2:]) if one.path[1:] else ()
+        yield one.located(None, path=(one.path[0], *rest))
 
 
 def _lay_out(table: SceneTable, problems: list[SceneError]):
@@ -224,6 +244,15 @@ def _feature(item: FeatureTable, index: int, datums: dict[str, float]) -> Featur
     return _FEATURES[item.kind](name=name, y=start + item.position, **given)
 
 
+_BLENDS = {"fillet": Fillet, "chamfer": Chamfer}
+
+
+def _blend(item: BlendTable, index: int, datums: dict[str, float]) -> Blend:
+    given = item.model_dump(exclude={"name", "kind", "at"}, exclude_none=True)
+    name = item.name or f"{item.kind} {index + 1}"
+    return _BLENDS[item.kind](name=name, y=datums[item.at], **given)
+
+
 def _port(
     item: PortTable,
     attachment: Attachment,
@@ -275,6 +304,10 @@ def _file_path(path: tuple, table: SceneTable, owner: Sequence[int]) -> tuple:
             return ("mass", index, {"y": "position"}.get(key, key))
         case ("features", index, key):
             return ("feature", index, {"y": "position"}.get(key, key))
+        case ("blends", index, key):
+            return ("feature", index, {"y": "at"}.get(key, key))
+        case ("features" | "blends",):
+            return ("feature",)
         case ("port", "y"):
             return ("port", "at" if table.port.at is not None else "position")
         case ("port", "lo" | "hi"):

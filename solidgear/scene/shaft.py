@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Protocol
 
 if TYPE_CHECKING:
-    from solidgear.scene import Bearing, PointMass, Port, Segment
+    from solidgear.scene import Bearing, Corner, PointMass, Port, Segment
 
 
 class Shaft(Protocol):
@@ -21,6 +21,10 @@ class Shaft(Protocol):
     @property
     def stations(self) -> tuple[Port | Bearing | PointMass, ...]:
         """What is attached, the port first; each has name, y, lo, hi (m) and attachment."""
+
+    @property
+    def corners(self) -> tuple[Corner, ...]:
+        """Edges with fillets and chamfers."""
 
     @property
     def length(self) -> float:

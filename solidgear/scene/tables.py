@@ -9,6 +9,7 @@ from pydantic import AfterValidator, Field, model_validator
 
 from solidgear.errors import SceneError
 from solidgear.scene.bearing_stiffness import stiffness_matrix
+from solidgear.scene.blends import Edge, Surface, slope
 from solidgear.scene.catalogue import BearingLoad, Catalogue
 from solidgear.scene.model import Ask
 from solidgear.scene.parts import Material, Model
@@ -333,8 +334,42 @@ class _CrossHoleTable(_FeatureTable):
     diameter: PositiveLength
 
 
+class _BlendTable(_Table):
+    """A [[feature]] at an edge, its datum not yet resolved."""
+
+    name: Name | None = None
+    at: str
+    surface: Surface = "outer"
+    edge: Edge | None = None
+
+
+class FilletTable(_BlendTable):
+    """A fillet."""
+
+    kind: Literal["fillet"]
+    radius: PositiveLength
+
+
+class ChamferTable(_BlendTable):
+    """A chamfer."""
+
+    kind: Literal["chamfer"]
+    length: PositiveLength
+    angle: Any = None
+
+    @model_validator(mode="after")
+    def _angle(self):
+        if self.angle is not None:
+            try:
+                slope(self.angle)
+            except SceneError as error:
+                raise SceneError(error.reason, path=("angle",), value=error.value) from None
+        return self
+
+
 FeatureTable = _KeywayTable | _FlatTable | _CrossHoleTable
-FEATURES = ("keyway", "flat", "cross_hole")
+BlendTable = FilletTable | ChamferTable
+FEATURES = ("keyway", "flat", "cross_hole", "fillet", "chamfer")
 
 
 class SceneTable(Model):
@@ -347,7 +382,7 @@ class SceneTable(Model):
     segment: list[Annotated[_Cylinder | _Cone | _BevelHead, Field(discriminator="kind")]]
     bearing: list[BearingTable] = []
     mass: list[MassTable] = []
-    feature: list[Annotated[FeatureTable, Field(discriminator="kind")]] = []
+    feature: list[Annotated[FeatureTable | BlendTable, Field(discriminator="kind")]] = []
     housing: _Housing | None = None
     port: PortTable
     load: BearingLoad | None = None

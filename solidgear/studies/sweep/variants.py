@@ -9,7 +9,7 @@ import numpy as np
 
 from solidgear.body import Supports, as_supports
 from solidgear.errors import SceneError, SolidgearError
-from solidgear.scene import Bearing, Feature, PointMass, Port, Scene, Segment
+from solidgear.scene import Bearing, Corner, Feature, PointMass, Port, Scene, Segment
 from solidgear.scene.bearing_stiffness import STIFFNESS_NAMES
 from solidgear.studies.sweep.vary import Axis
 
@@ -24,6 +24,7 @@ class SeatedShaft:
     segments: tuple[Segment, ...]
     stations: tuple[Port | Bearing | PointMass, ...]
     features: tuple[Feature, ...] = ()
+    corners: tuple[Corner, ...] = ()
 
     @property
     def plain(self) -> SeatedShaft:
@@ -134,7 +135,10 @@ class Variants:
         ordered = sorted(seats.values(), key=lambda b: b.y)
         own = (m for m in self.scene.masses if m.on is None)
         return SeatedShaft(
-            self.scene.segments, (self.scene.port, *ordered, *own), self.scene.features
+            self.scene.segments,
+            (self.scene.port, *ordered, *own),
+            self.scene.features,
+            self.scene.corners,
         )
 
 
