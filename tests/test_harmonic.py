@@ -13,7 +13,7 @@ from scipy.special import jv, jvp
 from skfem import Basis
 
 import solidgear as sg
-from solidgear.meshing.quality import mass_properties
+from solidgear.meshing.closed_form import mass_properties
 from solidgear.scene import STEEL, Port, Scene, Segment
 from validation.shipped import shipped_shafts
 

@@ -53,6 +53,8 @@ class Cell:
         A local edge that is an arc, and (r, y) of its middle, m.
     flip : int or None
         A local edge whose odd functions have the other sign.
+    halfway : (float, float) or None
+        Radii of its inner and outer side in the middle of its row, where that is straight, m.
     """
 
     ids: tuple[int, int, int, int]
@@ -61,6 +63,7 @@ class Cell:
     count: int = 0
     arc: tuple[int, float, float] | None = None
     flip: int | None = None
+    halfway: tuple[float, float] | None = None
 
 
 @dataclass
@@ -112,12 +115,23 @@ class _Work:
         for row, seg in enumerate(self.plan.segment):
             number = self.numbers[seg]
             ends = [self.line(seg, row + k) for k in (0, 1)]
+            middle = self._halfway(seg, row, ends)
             for ring in range(len(number) - 1):
                 corners = ((0, 0), (0, 1), (1, 1), (1, 0))
                 ids = tuple(self.id(row + k, number[ring + m]) for k, m in corners)
                 for id_, (k, m) in zip(ids, corners):
                     self.places.setdefault(id_, (ends[k][0][m + ring], ends[k][1][m + ring]))
-                self.cells[row, int(number[ring])] = Cell(ids, seg, ring, len(number) - 1)
+                cell = Cell(ids, seg, ring, len(number) - 1)
+                cell.halfway = None if middle is None else (middle[ring], middle[ring + 1])
+                self.cells[row, int(number[ring])] = cell
+
+    def _halfway(self, seg: int, row: int, ends) -> np.ndarray | None:
+        """Radii in the middle of a row between two straight lines; None between others."""
+        low, high = self.plan.y[row : row + 2]
+        if not (np.all(ends[0][1] == low) and np.all(ends[1][1] == high)):
+            return None
+        segment = self.scene.segments[seg]
+        return self.plan.rings(seg, (segment.y0, segment.y1), (low + high) / 2)
 
     def line(self, seg: int, line: int) -> tuple[np.ndarray, np.ndarray]:
         """r and y of the rings of a segment on a line."""
@@ -303,7 +317,7 @@ class _Work:
                     continue
                 cell = self.cells[frame.key(i, j)]
                 cell.ring = -1 if cell.ring != 0 or j >= k else cell.ring
-                cell.ids = frame.corners(ids, i, j)
+                cell.ids, cell.halfway = frame.corners(ids, i, j), None
                 if corner.centre:
                     if i == 2 * k - 1:
                         cell.arc = (end, *corner.centre)

@@ -20,7 +20,8 @@ from solidgear.meshing.cuts import feature_size, mirror_plane, tool
 from solidgear.meshing.element_size import set_size, size_formulas
 from solidgear.meshing.gmsh_session import Session, import_gmsh
 from solidgear.meshing.outline import Frustum
-from solidgear.meshing.quality import MeshError, MeshQuality, check_mesh, volume_of
+from solidgear.meshing.closed_form import volume_of
+from solidgear.meshing.quality import MeshError, MeshQuality, check_mesh
 from solidgear.meshing.tetrahedra import draw_revolved, relaxed, to_skfem
 
 #: angle about y at which half a shaft begins, so that the other end of the half turn lies in the

@@ -25,7 +25,8 @@ from solidgear.meshing.outline import (
     slabs_between,
     tolerance_of,
 )
-from solidgear.meshing.quality import MeshError, MeshQuality, check_mesh, element_ratios, volume_of
+from solidgear.meshing.closed_form import volume_of
+from solidgear.meshing.quality import MeshError, MeshQuality, check_mesh, element_ratios
 
 _TET10 = 11  # gmsh's number for the ten-node tetrahedron
 _FOLD = 0.05  # below this min/max det J an element's edges are straightened

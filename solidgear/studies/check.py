@@ -13,7 +13,7 @@ from solidgear.evidence.study import Solution
 from solidgear.fidelity.ladder import LADDER
 from solidgear.fidelity.rung import BEAM, LUMPED
 from solidgear.machine.threads import pinned
-from solidgear.meshing.quality import mass_properties
+from solidgear.meshing.closed_form import mass_properties
 from solidgear.studies.guards import GUARDS, LEVELS, Notice, Probe
 from solidgear.studies.guards.notice import beams, everything
 
@@ -216,7 +216,7 @@ def _of_features(scene: Scene) -> Iterator[Notice]:
 
 def _of_the_body(scene: Scene, body: Body) -> Iterator[Notice]:
     """Mass and inertia against the closed form, and no stiffness against rigid motions."""
-    exact, matrix, own = mass_properties(scene.segments), body.mass_matrix(), (body.fidelity,)
+    exact, matrix, own = mass_properties(scene.segments, scene.corners), body.mass_matrix(), (body.fidelity,)
     yield Notice(
         "fact",
         (),
