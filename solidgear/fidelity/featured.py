@@ -20,7 +20,14 @@ from solidgear.meshing.quality import check_mesh
 
 def meshed(scene, plan: dict, refinement: float, half: bool) -> FeaturedMesh:
     """The mesh of a scene with features; ``plan`` holds planes, circles and sizes."""
-    return featured_mesh(scene.segments, scene.features, **plan, refinement=refinement, half=half)
+    return featured_mesh(
+        scene.segments,
+        scene.features,
+        blends=scene.corners,
+        **plan,
+        refinement=refinement,
+        half=half,
+    )
 
 
 def featured_body(

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 import scipy.sparse as sp
+
 from solidgear.body.sections import Sections, hats
 from solidgear.fidelity.assembly import batches
 from solidgear.fidelity.cell_shapes import Shapes

@@ -226,7 +226,7 @@ def _tets(scene, wanted, element, size, graded_size, refinement, around):
     plan = tetrahedra_plan(
         scene, wanted, size=size, graded_size=graded_size, refinement=refinement, around=around
     )
-    made = tetrahedra(scene.segments, corners=scene.corners, **plan)
+    made = tetrahedra(scene.segments, blends=scene.corners, **plan)
     if element == "tet10":
         return made.mesh, made.segment, made.quality
     from skfem import MeshTet1

@@ -6,11 +6,12 @@ import numpy as np
 
 from solidgear.meshing.outline import Frustum, corners_of, slabs_between, tolerance_of
 
+PER_BLEND = 0.8  # edge at a fillet or chamfer, of its size
 _GROWTH = 0.5  # element size gained per distance from a lateral surface
 
 
 def estimated_counts(
-    segments, planes=(), circles=(), *, size, graded_size=None, reach=None, around=16
+    segments, planes=(), circles=(), *, size, graded_size=None, reach=None, around=16, blends=()
 ):
     """Size of the mesh that :func:`~solidgear.meshing.tetrahedra.tetrahedra` makes of the same
     arguments, without meshing.
@@ -21,7 +22,7 @@ def estimated_counts(
 
     Parameters
     ----------
-    segments, planes, circles, size, graded_size, reach, around
+    segments, planes, circles, size, graded_size, reach, around, blends
         As there, m.
 
     Returns
@@ -39,8 +40,9 @@ def estimated_counts(
     segments = [Frustum.of(s) for s in segments]
     tolerance = tolerance_of(segments)
     slabs = slabs_between(segments, [float(y) for y in planes], tolerance)
-    corners = corners_of(slabs, [float(y) for y in circles], tolerance)
+    corners = corners_of(slabs, [float(y) for y in circles], tolerance, blends)
     # the formulas that the mesher itself uses
+    # edges with fillets and chamfers are added below: the points of the sums do not see them
     formulas = size_formulas(segments, corners, size, graded_size, reach, around)
     fields = [eval(f"lambda x, y, z: {f}".replace("^", "**"), _NUMPY) for f in formulas]
     least = min(size, graded_size or size)
@@ -70,8 +72,26 @@ def estimated_counts(
     for y, inner, outer in _faces(segments):
         r, across = _graded_points(inner, outer, least)
         surface += (2 * pi * across * r / edge(r, np.array(y)) ** 2).sum()
+    for blend in blends:
+        more = _around_edge(blend, size, graded_size, float(edge(*map(np.array, blend.middle))))
+        volume, surface = volume + more[0], surface + more[1]
     rim = sum(2 * pi * r / float(edge(np.array(r), np.array(y))) for y, r in set(corners))
     return tuple(np.array(_FILL) @ (volume, surface, rim))
+
+
+def _around_edge(blend, size, graded_size, beside):
+    """What a fillet or chamfer adds to the two sums of :func:`estimated_counts`, where elements
+    beside it are of a size.
+    """
+    across = min(blend.axial, blend.radial)
+    least = min(size, graded_size or size, PER_BLEND * across)
+    s = across * np.geomspace(0.05, 200.0, 200)
+    h = np.minimum(beside, least + _GROWTH * np.maximum(0.0, s - across / 2))
+    turned = 2 * pi * blend.r
+    # material fills three quarters around a root and one around a rim
+    share = 1.5 * pi if blend.root else 0.5 * pi
+    volume = turned * share * np.trapezoid(s * (h**-3 - beside**-3), s)
+    return volume, turned * 2 * np.trapezoid(h**-2 - beside**-2, s)
 
 
 def _faces(segments):
@@ -113,7 +133,7 @@ def _graded_points(a, b, least):
     return np.r_[middle - shift, middle + shift], np.r_[width, width] / 2
 
 
-def size_formulas(segments, corners, size, graded_size, reach, around):
+def size_formulas(segments, corners, size, graded_size, reach, around, blends=()):
     """Formulas of the element edge; the least one counts.
 
     Parameters
@@ -121,7 +141,7 @@ def size_formulas(segments, corners, size, graded_size, reach, around):
     segments : sequence of Frustum
     corners : list of (float, float)
         (y, radius) to grade towards, m.
-    size, graded_size, reach, around
+    size, graded_size, reach, around, blends
         As for :func:`~solidgear.meshing.tetrahedra.tetrahedra`.
 
     Returns
@@ -136,6 +156,15 @@ def size_formulas(segments, corners, size, graded_size, reach, around):
         slope = (size - graded_size) / (reach or r)
         formulas.append(
             f"{_num(graded_size)}+{_num(slope)}*Sqrt(({radius}-{_num(r)})^2+(y-{_num(y)})^2)"
+        )
+    for blend in blends:
+        # an edge of an element along either half of the outline, or the size at a corner
+        r, y = blend.middle
+        across = min(blend.axial, blend.radial)
+        least = min(size, graded_size or size, PER_BLEND * across)
+        formulas.append(
+            f"{_num(least)}+{_num(_GROWTH)}*Max(0,Sqrt(({radius}-{_num(r)})^2+(y-{_num(y)})^2)"
+            f"-{_num(across / 2)})"
         )
     for s in segments:
         for r0, r1 in ((s.outer0, s.outer1), (s.inner0, s.inner1)):

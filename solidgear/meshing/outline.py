@@ -46,7 +46,7 @@ def cuts_of(slab, circles, tolerance):
     return [(outer0 + (outer1 - outer0) * (y - y0) / (y1 - y0), y) for y in cuts]
 
 
-def corners_of(slabs, circles, tolerance):
+def corners_of(slabs, circles, tolerance, blends=()):
     """Points of the meridian to grade at: circles on the surface and kinks of the outline.
 
     Parameters
@@ -57,6 +57,8 @@ def corners_of(slabs, circles, tolerance):
         Positions y, m.
     tolerance : float
         m.
+    blends : sequence of Corner
+        Edges that are no corners any more; those that a chamfer at a root leaves are.
 
     Returns
     -------
@@ -66,7 +68,57 @@ def corners_of(slabs, circles, tolerance):
     corners = [(y, r) for slab in slabs for r, y in cuts_of(slab, circles, tolerance)]
     cut = [y for y, _ in corners]
     on_station = [y for y in circles if not _near(y, cut, tolerance)]
-    return corners + _kinks(slabs, on_station, tolerance)
+    corners += _kinks(slabs, on_station, tolerance)
+    gone = [(b.y, b.r) for b in blends]
+    left = [
+        (y, r)
+        for y, r in corners
+        if all(abs(y - a) > tolerance or abs(r - b) > tolerance for a, b in gone)
+    ]
+    chamfered = [b for b in blends if b.root and b.kind == "chamfer"]
+    return left + [p[::-1] for b in chamfered for p in (b.on_face, b.on_cylinder)]
+
+
+def blended_loop(ends, bottom, side, top, blends, tolerance):
+    """The outline of a slab with fillets and chamfers.
+
+    Parameters
+    ----------
+    ends : (float, float)
+        First and last y of the slab, m.
+    bottom, top : list of float
+        Radii of the points of its two ends, ascending, m.
+    side : list of (float, float)
+        (radius, y) of points on its outer surface, ascending in y.
+    blends : sequence of Corner
+    tolerance : float
+        m.
+
+    Returns
+    -------
+    bottom, side, top : list of (float, float)
+        (radius, y); the bore is closed from the last of `top` to the first of `bottom`.
+    """
+    rows = []
+    for y, radii, inward in ((ends[0], bottom, 1), (ends[1], top, -1)):
+        row, before, after = [(r, y) for r in radii], [], []
+        for blend in (b for b in blends if abs(b.y - y) <= tolerance):
+            if blend.side != inward:
+                if blend.root:  # seen from the face it stands on
+                    row = sorted({*row, (blend.on_face[0], y)})
+                continue
+            first, last = (row[0], row[-1])
+            if blend.surface == "outer":
+                row = row if blend.root else row[:-1]
+                row, after = [*row, (blend.on_face[0], y)], [blend.on_cylinder]
+                assert abs(last[0] - blend.r) <= tolerance
+            else:
+                row = row if blend.root else row[1:]
+                row, before = [(blend.on_face[0], y), *row], [blend.on_cylinder]
+                assert abs(first[0] - blend.r) <= tolerance
+        rows.append((row, before, after))
+    (low, low_bore, low_side), (high, high_bore, high_side) = rows
+    return low_bore + low, low_side + side + high_side, high_bore + high
 
 
 def slabs_between(segments, planes, tolerance):

@@ -410,8 +410,9 @@ def _misfit(blend, corner, segments, before, stations, features) -> tuple[str, s
                 f'{reach}, into the seat of "{s.name}" ({s.lo:.6g} to {s.hi:.6g} m), which must '
                 "stay a cylinder"
             )
-        inside = lo - TOUCH <= s.y <= hi + TOUCH
-        if inside and 0 < corner.y < segments[-1].y1:
+        # the face itself is plane at the end of a shaft
+        at_end = abs(s.y - corner.y) <= TOUCH and corner.y in (0.0, segments[-1].y1)
+        if lo - TOUCH <= s.y <= hi + TOUCH and not at_end:
             return key, (
                 f'{reach}, and "{s.name}" is at {s.y:.6g} m; put the one or the other elsewhere, '
                 "since no section there is plane"
