@@ -19,10 +19,9 @@ from solidgear.meshing.element_size import set_size, size_formulas
 from solidgear.meshing.gmsh_session import Session, import_gmsh
 from solidgear.meshing.outline import (
     Frustum,
-    blended_loop,
     corners_of,
     cuts_of,
-    radii_between,
+    rows_between,
     slabs_between,
     tolerance_of,
 )
@@ -227,15 +226,14 @@ def draw_revolved(gmsh, segments, planes, circles, start=0.0, turn=2.0 * pi, ble
         return occ.addLine(a, b)
 
     slabs = slabs_between(segments, planes, tolerance)
-    for i, (y0, y1, outer0, outer1, inner0, inner1) in enumerate(slabs):
-        below = slabs[i - 1] if i else None
-        above = slabs[i + 1] if i + 1 < len(slabs) else None
-        # an end of a slab carries the radii of its neighbour too, where they fall inside its own
-        bottom = radii_between(inner0, outer0, (below[3], below[5]) if below else ())
-        top = radii_between(inner1, outer1, (above[2], above[4]) if above else ())
-        side = cuts_of(slabs[i], circles, tolerance)
-        bottom, side, top = blended_loop((y0, y1), bottom, side, top, blends, tolerance)
-        loop = bottom + side + top[::-1]
+    rows = [
+        rows_between(below, above, blends, tolerance)
+        for below, above in zip([None, *slabs], [*slabs, None])
+    ]
+    for slab, (_, first), (last, _) in zip(slabs, rows, rows[1:]):
+        side = first.outer + cuts_of(slab, circles, tolerance) + last.outer
+        # the bore closes the loop from the last point to the first
+        loop = first.bore + first.points + side + last.points[::-1] + last.bore
         tags = []
         for r, y in loop:
             tag = point(r, y)
