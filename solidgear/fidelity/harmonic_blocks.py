@@ -230,9 +230,7 @@ class _Work:
     def _sections(self, parts, unknowns: int, keep: np.ndarray) -> Sections:
         """Section motions of a block of which ``keep`` are the unknowns left."""
         density = np.array([s.material.density for s in self.scene.segments])[self.flat.segment]
-        every = from_cells(
-            self.shapes, self.dofs, self.order, density, parts, unknowns
-        )
+        every = from_cells(self.shapes, self.dofs, self.order, density, parts, unknowns)
         return through(every, sp.identity(len(keep), format="csc")[:, keep].tocsr())
 
     def _seat_cells(self, station):

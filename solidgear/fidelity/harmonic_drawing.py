@@ -45,7 +45,9 @@ def surface(geometry: HarmonicMesh, moved: Mapping[str, np.ndarray]) -> Surface:
     place = Shapes(geometry.meridian, geometry.element).places(dofs)
     for k in range(4):
         here = side == k
-        r[ring[here]], y[ring[here]] = np.einsum("bq,cbe->ceq", values[k], place[:, dofs[:, cell[here]]])
+        r[ring[here]], y[ring[here]] = np.einsum(
+            "bq,cbe->ceq", values[k], place[:, dofs[:, cell[here]]]
+        )
 
     def on_rings(field):
         out = np.zeros((len(r), field.shape[1]))

@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from solidgear.fidelity.counts import KINDS, nodes, sections
-from solidgear.meshing.blocks import blocks_beyond
 from solidgear.fidelity.size import Size
+from solidgear.meshing.blocks import blocks_beyond
 
 if TYPE_CHECKING:
     from solidgear.scene.shaft import Shaft

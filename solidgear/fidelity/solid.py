@@ -209,13 +209,17 @@ def tetrahedra_plan(scene, wanted, *, size, graded_size, refinement, around) -> 
 
 
 def _hexes(scene, wanted, grading):
-    from solidgear.meshing.hexahedra import hexahedra
     from solidgear.meshing.closed_form import volume_of
+    from solidgear.meshing.hexahedra import hexahedra
     from solidgear.meshing.quality import check_mesh
 
     plan, turns = hexahedra_layout(scene, tuple(dict.fromkeys(a for _, a in wanted)), **grading)
     mesh, segment = hexahedra(scene, plan, turns)
-    return mesh, segment, check_mesh(mesh, volume=volume_of(scene.segments, scene.corners), rtol=1e-3)
+    return (
+        mesh,
+        segment,
+        check_mesh(mesh, volume=volume_of(scene.segments, scene.corners), rtol=1e-3),
+    )
 
 
 def _tets(scene, wanted, element, size, graded_size, refinement, around):
@@ -233,4 +237,8 @@ def _tets(scene, wanted, element, size, graded_size, refinement, around):
 
     straight = MeshTet1(made.mesh.p[:, : made.mesh.t.max() + 1], made.mesh.t)
     # Straight sides lose some of the volume by nature; the gate only looks for broken elements.
-    return straight, made.segment, check_mesh(straight, volume=volume_of(scene.segments, scene.corners), rtol=5e-2)
+    return (
+        straight,
+        made.segment,
+        check_mesh(straight, volume=volume_of(scene.segments, scene.corners), rtol=5e-2),
+    )

@@ -164,7 +164,9 @@ def blocks_beyond(joints: Sequence[Joint]) -> tuple[int, int, int]:
     return count[0], count[1], count[2]
 
 
-def layers_at(joint: Joint | None, a, b, surface: str, layers: int, reach: float, ratio: float) -> int:
+def layers_at(
+    joint: Joint | None, a, b, surface: str, layers: int, reach: float, ratio: float
+) -> int:
     """Geometric layers that a joint of two segments needs towards the edges of one surface, or of
     the worst of both.
 
@@ -264,8 +266,10 @@ def split_bands(joints, bands, left, right, raised, strips, fractions):
     """
     lowest, end = min(b[0] for b in bands), max(b[1] for b in bands)
     start, count = {}, 0
-    sides = {band: [any((band, f, s) in strips for f in range(len(bands))) for s in (0, 1)]
-             for band in range(lowest, end)}
+    sides = {
+        band: [any((band, f, s) in strips for f in range(len(bands))) for s in (0, 1)]
+        for band in range(lowest, end)
+    }
     for band in range(lowest, end):
         start[band] = count
         count += 1 + sum(sides[band])
@@ -288,8 +292,11 @@ def split_bands(joints, bands, left, right, raised, strips, fractions):
                     if strip is None:
                         found.append(bottom if side == 0 else top)
                         continue
-                    rim = _rim(joints, k, at, "bore" if side == 0 else "outer") if (
-                        band == (low if side == 0 else high - 1)) else None
+                    rim = (
+                        _rim(joints, k, at, "bore" if side == 0 else "outer")
+                        if (band == (low if side == 0 else high - 1))
+                        else None
+                    )
                     if side == 0:
                         own = _own(joints, k, at, "bore", band, bands)
                         found.append(bottom + rim if rim else bottom - lifted * own + strip.depth)
@@ -306,7 +313,9 @@ def split_bands(joints, bands, left, right, raised, strips, fractions):
             strip = strips.get((band, first, side))
             cells = strip.cells if strip else 0
             if there:
-                new_fractions[at + (0 if side == 0 else 1 + inner), first] = np.linspace(0, 1, cells + 1) if cells else np.zeros(1)
+                new_fractions[at + (0 if side == 0 else 1 + inner), first] = (
+                    np.linspace(0, 1, cells + 1) if cells else np.zeros(1)
+                )
         new_fractions[at + inner, first] = lines
     new_bands = tuple((start[low], start[high]) for low, high in bands)
     return new_bands, tuple(new_left), tuple(new_right), new_fractions

@@ -156,9 +156,7 @@ def _ends_of_chamfer(corner: Corner) -> float:
     return float(np.pi + max(slope, np.pi / 2 - slope))
 
 
-def corner_layers(
-    a: Segment, b: Segment, layers: int, smooth: tuple[str, ...] = ()
-) -> int:
+def corner_layers(a: Segment, b: Segment, layers: int, smooth: tuple[str, ...] = ()) -> int:
     """Geometric layers that the corner between two segments needs.
 
     Layers of one ratio shrink the error by ``ratio ** (2 exponent)`` each, and what they have to

@@ -16,11 +16,11 @@ import numpy as np
 from skfem import MeshTet1, MeshTet2
 
 from solidgear.machine.interruptible import call
+from solidgear.meshing.closed_form import volume_of
 from solidgear.meshing.cuts import feature_size, mirror_plane, tool
 from solidgear.meshing.element_size import set_size, size_formulas
 from solidgear.meshing.gmsh_session import Session, import_gmsh
 from solidgear.meshing.outline import Frustum
-from solidgear.meshing.closed_form import volume_of
 from solidgear.meshing.quality import MeshError, MeshQuality, check_mesh
 from solidgear.meshing.tetrahedra import draw_revolved, relaxed, to_skfem
 

@@ -15,6 +15,7 @@ import numpy as np
 from skfem import MeshTet1, MeshTet2
 
 from solidgear.machine.interruptible import call
+from solidgear.meshing.closed_form import volume_of
 from solidgear.meshing.element_size import set_size, size_formulas
 from solidgear.meshing.gmsh_session import Session, import_gmsh
 from solidgear.meshing.outline import (
@@ -25,7 +26,6 @@ from solidgear.meshing.outline import (
     slabs_between,
     tolerance_of,
 )
-from solidgear.meshing.closed_form import volume_of
 from solidgear.meshing.quality import MeshError, MeshQuality, check_mesh, element_ratios
 
 _TET10 = 11  # gmsh's number for the ten-node tetrahedron

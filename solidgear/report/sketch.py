@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping
 from typing import Any
 
+from solidgear.report import sketch_details as details
+from solidgear.report.sketch_details import FILL, INK, MASS
 from solidgear.report.words import is_number
 
-FILL = {"shaft": "#d5dbe1", "frustum": "#ecd9b4", "backcone": "#dcc08a"}
 PART_NAMES = {"shaft": "shaft", "frustum": "gear head (pitch cone)", "backcone": "backcone"}
-INK, SEAT, SPAN, MASS, CUT = "#222222", "#1f5f99", "#c4541c", "#6b2e8a", "#8a1f1f"
+SEAT, SPAN = "#1f5f99", "#c4541c"
 #: inches on paper
 WIDTH, DRAWN, TALLEST, FLATTEST = 10.6, 8.8, 1.75, 0.45
 CHAR = 0.075  # of a letter at the size of the labels
@@ -58,12 +58,14 @@ def draw(scene: Mapping[str, Any]) -> Any:
         dashes=(12, 3, 2, 3),
         zorder=4,
     )
+    for blend in scene.get("blends") or []:
+        details.blend(pen, blend, segments)
     for cut in scene.get("features") or []:
-        pen.feature(cut, segments)
+        details.feature(pen, cut, segments)
     for b in scene.get("bearings") or []:
         pen.bearing(b, segments)
     for mass in scene.get("masses") or []:
-        pen.mass(mass)
+        details.mass(pen, mass)
     if scene.get("port"):
         pen.port(scene["port"], segments)
     for x, _, text, is_port, level in labels:
@@ -274,52 +276,6 @@ class _Pen:
                     )
         self.ax.plot([x], [0], marker="o", ms=8, mfc="white", mec=SPAN, mew=1.6, zorder=8)
         self.ax.plot([x], [0], marker="+", ms=8, mec=SPAN, mew=1.0, zorder=9)
-
-    def feature(self, cut: Mapping, segments) -> None:
-        """What is cut out of a segment, seen along x, whatever way it looks."""
-        lo, hi = cut["y"], cut["y"] + cut.get("length", 0.0)
-        if cut["kind"] == "cross_hole":
-            lo, hi = lo - cut["diameter"] / 2, lo + cut["diameter"] / 2
-        radius = next(s["outer0"] for s in segments if s["name"] == cut["segment"])
-        floor = radius - cut["depth"] if "depth" in cut else -radius
-        x = [self.x(y) for y in (lo, hi, hi, lo, lo)]
-        r = [self.radial * v for v in (floor, floor, radius, radius, floor)]
-        self.ax.fill(x, r, facecolor="white", lw=0, zorder=4)
-        self.ax.plot(x, r, color=CUT, lw=1.1, ls="-" if "depth" in cut else "--", zorder=5)
-        turn = f", at {math.degrees(cut['angle']):.3g} deg" if cut["angle"] else ""
-        self.ax.text(
-            (x[0] + x[1]) / 2,
-            self.radial * max(floor, 0) - 0.05,
-            f"{cut['kind'].replace('_', ' ')} {cut['name']}{turn}",
-            color=CUT,
-            ha="center",
-            va="top",
-            fontsize=8,
-            parse_math=False,
-            bbox={"facecolor": "white", "edgecolor": "none", "alpha": 0.8, "pad": 0.5},
-            zorder=10,
-        )
-
-    def mass(self, mass: Mapping) -> None:
-        """A rigid mass: its centre, joined to its station, with its name and size above."""
-        x, centre = self.x(mass["y"]), self.x(mass["y"] + mass["offset"][1])
-        # seen along x: what lies towards +z is drawn upwards
-        height = self.radial * mass["offset"][2]
-        self.ax.plot([x, centre], [0, height], color=MASS, lw=1.6, zorder=8)
-        self.ax.plot([centre], [height], marker="o", ms=10, color=MASS, alpha=0.85, zorder=10)
-        self.ax.text(
-            centre,
-            height + 0.12,
-            f"{mass['name']}\n{mass['mass']:.4g} kg",
-            color=MASS,
-            ha="center",
-            va="bottom",
-            fontsize=8,
-            linespacing=1.0,
-            parse_math=False,
-            bbox={"facecolor": "white", "edgecolor": "none", "alpha": 0.8, "pad": 0.5},
-            zorder=10,
-        )
 
     def lengths(self, segments, level: float) -> None:
         """The chain of segment lengths."""

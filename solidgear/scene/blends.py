@@ -108,9 +108,7 @@ class Corner:
         # from the face (straight along the axis from the centre) to the cylinder (straight across)
         turns = [math.pi / 2 * k / (count - 1) for k in range(count)]
         (r, y), f = self.centre, self.radial
-        found = [
-            (r - self.out * f * math.sin(t), y - self.side * f * math.cos(t)) for t in turns
-        ]
+        found = [(r - self.out * f * math.sin(t), y - self.side * f * math.cos(t)) for t in turns]
         return [self.on_face, *found[1:-1], self.on_cylinder]
 
 
@@ -309,9 +307,7 @@ class Chamfer(_Blend):
 Blend: TypeAlias = Fillet | Chamfer
 
 
-def corners_of_blends(
-    segments: Sequence[Segment], blends: Sequence[Blend]
-) -> tuple[Corner, ...]:
+def corners_of_blends(segments: Sequence[Segment], blends: Sequence[Blend]) -> tuple[Corner, ...]:
     """Edges with their fillets and chamfers; see :meth:`Fillet.corner`."""
     return tuple(blend.corner(segments) for blend in blends)
 

@@ -216,7 +216,11 @@ def _of_features(scene: Scene) -> Iterator[Notice]:
 
 def _of_the_body(scene: Scene, body: Body) -> Iterator[Notice]:
     """Mass and inertia against the closed form, and no stiffness against rigid motions."""
-    exact, matrix, own = mass_properties(scene.segments, scene.corners), body.mass_matrix(), (body.fidelity,)
+    exact, matrix, own = (
+        mass_properties(scene.segments, scene.corners),
+        body.mass_matrix(),
+        (body.fidelity,),
+    )
     yield Notice(
         "fact",
         (),
