@@ -118,7 +118,8 @@ class _Work:
             middle = self._halfway(seg, row, ends)
             for ring in range(len(number) - 1):
                 corners = ((0, 0), (0, 1), (1, 1), (1, 0))
-                ids = tuple(self.id(row + k, number[ring + m]) for k, m in corners)
+                a, b, c, d = (self.id(row + k, number[ring + m]) for k, m in corners)
+                ids = (a, b, c, d)
                 for id_, (k, m) in zip(ids, corners):
                     self.places.setdefault(id_, (ends[k][0][m + ring], ends[k][1][m + ring]))
                 cell = Cell(ids, seg, ring, len(number) - 1)

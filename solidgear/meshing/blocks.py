@@ -274,7 +274,8 @@ def split_bands(joints, bands, left, right, raised, strips, fractions):
         start[band] = count
         count += 1 + sum(sides[band])
     start[end] = count
-    new_left, new_right = [], []
+    new_left: list[np.ndarray] = []
+    new_right: list[np.ndarray] = []
     for k, (low, high) in enumerate(bands):
         for ends, made, at in ((left, new_left, "left"), (right, new_right, "right")):
             radii = _inside_rims(joints, k, at, np.array(ends[k], float), bands, raised)
@@ -308,15 +309,15 @@ def split_bands(joints, bands, left, right, raised, strips, fractions):
     new_fractions = {}
     for (band, first), lines in fractions.items():
         inner, outer = sides[band]
-        at = start[band]
+        place = start[band]
         for side, there in ((0, inner), (1, outer)):
             strip = strips.get((band, first, side))
             cells = strip.cells if strip else 0
             if there:
-                new_fractions[at + (0 if side == 0 else 1 + inner), first] = (
+                new_fractions[place + (0 if side == 0 else 1 + inner), first] = (
                     np.linspace(0, 1, cells + 1) if cells else np.zeros(1)
                 )
-        new_fractions[at + inner, first] = lines
+        new_fractions[place + inner, first] = lines
     new_bands = tuple((start[low], start[high]) for low, high in bands)
     return new_bands, tuple(new_left), tuple(new_right), new_fractions
 

@@ -12,6 +12,7 @@ from functools import cached_property
 
 import numpy as np
 
+from solidgear.errors import SolidgearError
 from solidgear.meshing.bands import first_of_run, radial_bands
 from solidgear.meshing.blocks import (
     Joint,
@@ -249,10 +250,20 @@ def _beside_blocks(scene, grading: Grading, marks: list[_Mark], joints: list[Joi
         joint = next((j for j in joints if abs(j.y - mark.y) <= TOUCH), None)
         if joint:
             out.append(_Mark(mark.y, _layers(scene, grading, joint), joint))
-        elif not any(
-            j.y - j.low.reach - TOUCH <= mark.y <= j.y + j.high.reach + TOUCH for j in joints
-        ):
+            continue
+        near = [j for j in joints if -j.low.reach - TOUCH <= mark.y - j.y <= j.high.reach + TOUCH]
+        if not near:
             out.append(mark)
+        elif mark.layers and not any(
+            c.surface == "outer" and abs(c.on_cylinder[1] - mark.y) <= TOUCH
+            for j in near
+            for c in j.corners
+        ):
+            raise SolidgearError(
+                f"a seat ends or is held at y = {mark.y:.6g} m, among the cells of the "
+                f'{near[0].corners[0].kind} "{near[0].corners[0].name}" at {near[0].y:.6g} m; '
+                "move the one or the other"
+            )
     return out
 
 
@@ -272,11 +283,11 @@ def _with_blocks(a: _Mark, b: _Mark, lines: np.ndarray) -> np.ndarray:
     Where a fillet only runs into the space between them, the line of the joint takes the place of
     the first one beyond it.
     """
-    if a.after:
+    if a.joint and a.after:
         rows = a.joint.high.rows
         first = np.linspace(a.y, lines[0], rows + 1) if rows else np.array([a.y])
         lines = np.concatenate([first, lines[1:]])
-    if b.before:
+    if b.joint and b.before:
         rows = b.joint.low.rows
         last = np.linspace(lines[-1], b.y, rows + 1) if rows else np.array([b.y])
         lines = np.concatenate([lines[:-1], last])

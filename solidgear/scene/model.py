@@ -15,7 +15,8 @@ from pydantic import Field, model_validator
 
 from solidgear.errors import SceneError
 from solidgear.scene.bearing_stiffness import stiffness_entries
-from solidgear.scene.blends import Blend, Corner, blend_problems, corners_of_blends
+from solidgear.scene.blend_rules import blend_problems
+from solidgear.scene.blends import Blend, Corner, corners_of_blends
 from solidgear.scene.catalogue import BearingLoad
 from solidgear.scene.features import Feature, feature_problems
 from solidgear.scene.parts import STEEL, Material, Model, Segment

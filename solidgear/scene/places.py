@@ -8,7 +8,8 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Sequence
 
 from solidgear.errors import SceneError
-from solidgear.scene.blends import Blend, Chamfer, Fillet, blend_problems
+from solidgear.scene.blend_rules import blend_problems
+from solidgear.scene.blends import Blend, Chamfer, Fillet
 from solidgear.scene.features import CrossHole, Feature, Flat, Keyway, feature_problems
 from solidgear.scene.model import Scene
 from solidgear.scene.parts import Material, Segment
