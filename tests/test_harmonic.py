@@ -51,7 +51,7 @@ def test_free_free_torsion(bore):
 def test_mass_matrix_of_shipped_scenes(path):
     scene = sg.load(path)
     m = sg.build(scene, "harmonic", order=2).mass_matrix()
-    p = mass_properties(scene.segments)
+    p = mass_properties(scene.segments, scene.corners)
     expected = np.diag(
         [p.mass, p.mass, p.mass, p.ixx + p.mass * p.centre**2, p.iyy, p.ixx + p.mass * p.centre**2]
     )

@@ -177,6 +177,8 @@ def hexahedra_layout(
         radial_reach=0.5,
         refinement=refinement,
         core=True,
+        # quadratic sides: what layers do at a sharp corner, more of them do at a round one
+        corner_cells=1 + layers // 2,
     )
     return layout(scene, grading, attachments), max(8, 4 * int(round(around * refinement / 4)))
 

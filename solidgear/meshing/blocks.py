@@ -134,7 +134,7 @@ def joints_of(scene, grading: Grading, marks: Sequence[float]) -> list[Joint]:
 
 def _size(joint: Joint, zone: Zone, grading: Grading, ends, marks) -> None:
     """Rows and depths of one side of a joint."""
-    k = grading.corner_cells
+    k = grading.along_corner
     here = [c for c in joint.corners if joint.block_side(c) == zone.side]
     rims, roots = ([c for c in here if c.root is root] for root in (False, True))
     zone.skip = max((c.axial for c in joint.corners if c.root and c.side == zone.side), default=0.0)

@@ -44,7 +44,7 @@ class Grading:
     core : bool
         Start the band on the axis with one cell of half its width, room for the core of an O-grid.
     corner_cells : int
-        Cells along either half of a fillet.
+        Cells along either half of a fillet, at refinement 1.
     """
 
     layers: int = 3
@@ -68,6 +68,11 @@ class Grading:
     def edge(self) -> int:
         """Layers towards the ends of averaged seats, never more than towards shoulders."""
         return min(self.edge_layers, self.layers)
+
+    @property
+    def along_corner(self) -> int:
+        """Cells along either half of a fillet."""
+        return max(1, round(self.corner_cells * self.refinement))
 
     def cell(self, segment) -> tuple[float, float]:
         """Cell size of a segment.
