@@ -50,7 +50,8 @@ def test_free_free_torsion(bore):
 @pytest.mark.parametrize("path", SCENES, ids=lambda p: p.stem)
 def test_mass_matrix_of_shipped_scenes(path):
     scene = sg.load(path)
-    m = sg.build(scene, "harmonic", order=2).mass_matrix()
+    # sides on a circle are of the order of the element
+    m = sg.build(scene, "harmonic", order=7 if scene.blends else 2).mass_matrix()
     p = mass_properties(scene.segments, scene.corners)
     expected = np.diag(
         [p.mass, p.mass, p.mass, p.ixx + p.mass * p.centre**2, p.iyy, p.ixx + p.mass * p.centre**2]

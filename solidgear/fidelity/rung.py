@@ -120,7 +120,7 @@ class Rung:
         Whether its body holds features that are not of revolution: it cannot, it may, or it is
         made for them alone.
     featured : mapping
-        Options of the builder for a scene with features.
+        Options of the builder for a scene with features, fillets or chamfers.
     colour, marker : str
         In charts.
     """
@@ -179,7 +179,9 @@ class Rung:
             Builder options that were asked for.
         """
         assert self.meshes is not None  # asked of rungs that have them
-        given = self.featured if getattr(scene, "features", ()) else {}
+        # layered hexahedra converge too slowly beside fillets for the factors of their bands
+        special = getattr(scene, "features", ()) or getattr(scene, "corners", ())
+        given = self.featured if special else {}
         return self.meshes({**given, **options})
 
     def checked(self, options: Mapping[str, Any]) -> dict[str, Any]:

@@ -178,7 +178,7 @@ def hexahedra_layout(
         refinement=refinement,
         core=True,
         # quadratic sides: what layers do at a sharp corner, more of them do at a round one
-        corner_cells=1 + layers // 2,
+        corner_cells=max(1, layers),
     )
     return layout(scene, grading, attachments), max(8, 4 * int(round(around * refinement / 4)))
 

@@ -23,8 +23,8 @@ from solidgear.scene.rules import TOUCH
 DEPTH = 1.0
 #: and of a band, and of the way to the next end of a segment, at most
 MOST_OF_BAND, MOST_OF_WAY = 0.3, 0.3
-#: a layer beside a block is so many times as thick as the block
-GROWTH = 4.0
+#: the last layer towards a fillet begins this far from its block, in sizes of the block
+GROWTH = 1.0
 
 
 @dataclass

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import solidgear as sg
 from solidgear import Port, Scene, Segment
+from solidgear.evidence.answer import solve
 from solidgear.evidence.quantities import change, measure
 from solidgear.scene import Chamfer, Fillet
 from validation.shipped import GEOMETRY
@@ -33,7 +34,7 @@ def shaft(*blends) -> Scene:
 
 def values(scene: Scene, layers: int) -> dict[str, float]:
     """Quantities of one scene."""
-    found = sg.solve(scene, "harmonic", order=6, layers=layers, edge_layers=3)
+    found = solve(scene, "harmonic", order=6, layers=layers, edge_layers=3)
     return measure(found.condensed, found.modes)
 
 
