@@ -1,7 +1,7 @@
 """What a fillet changes: compliances and first bending of a stepped shaft, against a sharp shoulder.
 
 D134 over 68 mm on D90, 276 mm in all, on the bearings of the overhung pinion at 96 and 246 mm, the
-lumped point on a surface from 14 to 34 mm.  The harmonic solid, order 6.
+lumped point on a surface from 14 to 34 mm.  The harmonic solid, order 5.
 """
 
 from __future__ import annotations
@@ -34,20 +34,20 @@ def shaft(*blends) -> Scene:
 
 def values(scene: Scene, layers: int) -> dict[str, float]:
     """Quantities of one scene."""
-    found = solve(scene, "harmonic", order=6, layers=layers, edge_layers=3)
+    found = solve(scene, "harmonic", order=5, layers=layers, edge_layers=2)
     return measure(found.condensed, found.modes)
 
 
 def main() -> None:
     """Print the effects."""
-    sharp = values(shaft(), 6)
+    sharp = values(shaft(), 5)
     print(f"{'r / d':>16}" + "".join(f"{name:>12}" for name in NAMES))
     for share in SHARES[1:]:
         for blend in (
             Fillet(name="f", y=0.068, radius=share * 0.09),
             Chamfer(name="c", y=0.068, length=share * 0.09),
         ):
-            found = values(shaft(blend), 3)
+            found = values(shaft(blend), 2)
             row = (100 * (change(sharp, found, name) or 0.0) for name in NAMES)
             print(f"{blend.kind:>10}{share:6.2f}" + "".join(f"{x:+11.2f}%" for x in row))
 
