@@ -48,7 +48,7 @@ def main() -> None:
             Chamfer(name="c", y=0.068, length=share * 0.09),
         ):
             found = values(shaft(blend), 2)
-            row = (100 * (change(sharp, found, name) or 0.0) for name in NAMES)
+            row = (100 * (change(found, sharp, name) or 0.0) for name in NAMES)
             print(f"{blend.kind:>10}{share:6.2f}" + "".join(f"{x:+11.2f}%" for x in row))
 
 
