@@ -13,7 +13,7 @@ import pytest
 from solidgear.body import as_supports
 from solidgear.evidence.quantities import size
 from solidgear.fidelity import build
-from solidgear.meshing.quality import mass_properties
+from solidgear.meshing.closed_form import mass_properties
 from solidgear.scene import Bearing, Port, Scene, Segment
 from solidgear.solve.statics import condense
 from validation.attack import __main__ as command

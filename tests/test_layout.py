@@ -20,7 +20,8 @@ from solidgear.scene import Bearing, Port, Scene, Segment
 from validation.shipped import shipped_shafts
 
 GEOMETRY = Path(__file__).parent.parent / "geometry"
-SHIPPED = [p.stem for p in shipped_shafts()]
+# blocks of cells at fillets are not of lines and rings: tests/test_blends.py
+SHIPPED = [p.stem for p in shipped_shafts() if not sg.load(p).blends]
 PLAN = {"size": 0.02, "layers": 3, "edge_layers": 1, "ratio": 0.3}
 
 

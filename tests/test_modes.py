@@ -10,7 +10,7 @@ import scipy.linalg as sla
 
 import solidgear as sg
 from solidgear.errors import SolidgearError
-from solidgear.meshing.quality import volume_of
+from solidgear.meshing.closed_form import volume_of
 from solidgear.scene import STEEL, Bearing, Port, Scene, Segment
 
 GEOMETRY = Path(__file__).parent.parent / "geometry"

@@ -12,9 +12,9 @@ import pytest
 import solidgear as sg
 from solidgear.fidelity.ladder import LADDER
 from solidgear.fidelity.own_mesh import solid_body
+from solidgear.meshing.closed_form import volume_of
 from solidgear.meshing.mesh_file import mesh_from
 from solidgear.meshing.placing import TURNS, Placing
-from solidgear.meshing.quality import volume_of
 from solidgear.report.export import CELLS, node_order
 from solidgear.scene import Keyway
 from validation.step_parts import shaft_step, with_unit, write_step

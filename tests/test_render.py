@@ -17,7 +17,7 @@ from skfem.refdom import RefHex, RefTet
 
 import solidgear as sg
 from solidgear.errors import SolidgearError
-from solidgear.meshing.quality import volume_of
+from solidgear.meshing.closed_form import volume_of
 from solidgear.report import render
 from solidgear.report.export import write_vtu
 from solidgear.report.render import PACKAGES, RenderJob, render_modes

@@ -12,7 +12,8 @@ import solidgear as sg
 from solidgear.fidelity.cyclic import Sector, basis, doubled
 from solidgear.fidelity.sector import meshed_sector, sector, whole
 from solidgear.fidelity.size import estimated_unknowns
-from solidgear.meshing.quality import MeshError, volume_of
+from solidgear.meshing.closed_form import volume_of
+from solidgear.meshing.quality import MeshError
 from solidgear.meshing.sector import volume_of_sector
 from solidgear.meshing.teeth import section_area, section_polar
 from solidgear.scene import BoltCircle, Keyway, Spline, Teeth

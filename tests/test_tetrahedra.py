@@ -9,7 +9,8 @@ import numpy as np
 import pytest
 from skfem import MeshTet1, MeshTet2
 
-from solidgear.meshing.quality import MeshError, check_mesh, mass_properties, volume_of
+from solidgear.meshing.closed_form import mass_properties, volume_of
+from solidgear.meshing.quality import MeshError, check_mesh
 from solidgear.meshing.tetrahedra import tetrahedra
 
 

@@ -116,7 +116,8 @@ def shoulder_cause(
     radius = min(min(s.outer0, s.outer1) for s in scene.segments)
     try:
         plain = scene.with_changes(
-            segments=tuple(s.with_changes(outer0=radius, outer1=radius) for s in scene.segments)
+            segments=tuple(s.with_changes(outer0=radius, outer1=radius) for s in scene.segments),
+            blends=(),
         ).with_attachment("section")
     except SolidgearError:
         tell(

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from solidgear.meshing.corners import filled_at
 from solidgear.meshing.grading import corner_length
 
 if TYPE_CHECKING:
@@ -61,7 +62,10 @@ def singular_places(scene: Scene, attachments: tuple[str, ...] | None = None) ->
     """
     found: list[Place] = []
     for a, b in zip(scene.segments, scene.segments[1:]):
-        found += _corners(a, b)
+        found += _corners(a, b, filled_at(scene, b.y0))
+    for corner in (c for c in scene.corners if c.root):
+        r, y = corner.middle
+        found.append(Place(f"{corner.kind} {corner.name}", y, r, corner.axial + corner.radial))
     for a, b in zip(scene.segments, scene.segments[1:]):
         if a.material != b.material:
             reach = min(corner_length(a), corner_length(b))
@@ -84,15 +88,19 @@ def singular_places(scene: Scene, attachments: tuple[str, ...] | None = None) ->
     return _distinct(found, 1e-9 * scene.length)
 
 
-def _corners(a: Segment, b: Segment) -> list[Place]:
+def _corners(a: Segment, b: Segment, filled: tuple[str, ...]) -> list[Place]:
     """Re-entrant corners where one segment follows another: steps, and surfaces that turn."""
     reach = min(corner_length(a), corner_length(b))
     out = []
-    if abs(a.outer1 - b.outer0) > 1e-9 * a.length:
+    if "outer" in filled:
+        pass
+    elif abs(a.outer1 - b.outer0) > 1e-9 * a.length:
         out.append(Place("shoulder", a.y1, min(a.outer1, b.outer0), reach))
     elif _slope(b, "outer") - _slope(a, "outer") > SMOOTH:
         out.append(Place("concave kink of the surface", a.y1, b.outer0, reach))
-    if abs(a.inner1 - b.inner0) > 1e-9 * a.length:
+    if "bore" in filled:
+        pass
+    elif abs(a.inner1 - b.inner0) > 1e-9 * a.length:
         out.append(Place("step of the bore", a.y1, max(a.inner1, b.inner0), reach))
     elif max(b.inner0, a.inner1) > 0 and _slope(a, "inner") - _slope(b, "inner") > SMOOTH:
         out.append(Place("concave kink of the bore", a.y1, b.inner0, reach))

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from solidgear.fidelity.rung import HELD, HELD_AT_A_STEP, SMOOTH, STEPPED
-from solidgear.meshing.corners import corner_angle
+from solidgear.meshing.corners import corner_angle, filled_at
 
 if TYPE_CHECKING:
     from solidgear.scene import Scene
@@ -23,6 +23,8 @@ def sharpest_edge(scene: Scene) -> str:
     and 0.33, so that a layer of ratio q leaves the shares ``q^2``, ``q^1.09``, ``q`` and
     ``q^0.67``.  Williams (1952), J. Appl. Mech. 19, 526, free and clamped-free corners.
 
+    A fillet is none of them: its mesh is made for it, and converges as a smooth shaft does.
+
     Parameters
     ----------
     scene : Scene
@@ -35,7 +37,10 @@ def sharpest_edge(scene: Scene) -> str:
     ('shoulder', 'rigid seat at a shoulder')
     """
     pairs = zip(scene.segments, scene.segments[1:])
-    corners = [b.y0 for a, b in pairs if corner_angle(a, b) > np.pi * (1 + 1e-9)]
+    sharp = np.pi * (1 + 1e-9)
+    corners = [b.y0 for a, b in pairs if corner_angle(a, b, filled_at(scene, b.y0)) > sharp]
+    # a chamfer in a shoulder leaves two corners, a fillet none
+    corners += [c.y for c in scene.corners if c.root and c.kind == "chamfer"]
     seats = [s for s in scene.stations if s.attachment == "rigid"]
     near = NEAR * min(min(s.outer0, s.outer1) for s in scene.segments)
     touched = any(s.lo - near <= y <= s.hi + near for s in seats for y in corners)

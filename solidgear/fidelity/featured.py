@@ -21,7 +21,14 @@ from solidgear.scene.shaft import resolved
 
 def meshed(scene, plan: dict, refinement: float, half: bool) -> FeaturedMesh:
     """The mesh of a scene with features; ``plan`` holds planes, circles and sizes."""
-    return featured_mesh(scene.segments, resolved(scene), **plan, refinement=refinement, half=half)
+    return featured_mesh(
+        scene.segments,
+        resolved(scene),
+        blends=scene.corners,
+        **plan,
+        refinement=refinement,
+        half=half,
+    )
 
 
 def featured_body(

@@ -17,8 +17,9 @@ from skfem import ElementQuad1
 from solidgear.body import Block
 from solidgear.body.sections import Sections, through
 from solidgear.errors import SolidgearError
-from solidgear.fidelity.assembly import Pattern, Tabulation, batches, reference, tabulate
+from solidgear.fidelity.assembly import Pattern, batches, reference, tabulate
 from solidgear.fidelity.attachment import tie_rigidly
+from solidgear.fidelity.cell_shapes import Shapes
 from solidgear.fidelity.meridian_sections import AXIAL, BENDING, TORSION, from_cells
 
 _CORNERS = ElementQuad1()
@@ -61,6 +62,12 @@ def _functions(t, weight: np.ndarray) -> np.ndarray:
     return np.concatenate([around, t.gradient(root)], axis=1)
 
 
+def _products(t) -> np.ndarray:
+    """(nq, nb nb) products of basis functions, of which every mass is a weighted sum."""
+    nq = t.value.shape[1]
+    return (t.value[:, None] * t.value).reshape(-1, nq).T
+
+
 class _Work:
     """Tabulated basis, materials and surface integrals shared by the blocks of one body."""
 
@@ -80,26 +87,16 @@ class _Work:
         self.weights = np.outer(self.gw, self.gw).ravel()
         self.pattern = Pattern(dofs)
         self.n = self.pattern.n
-        self.basis = Tabulation(_CORNERS, element, self.points)
-        # products of basis functions, of which every mass is a weighted sum
-        self.products = (
-            (self.basis.value[:, None] * self.basis.value).reshape(-1, len(self.weights)).T
-        )
+        self.shapes = Shapes(flat, element)
+        self.bases = [self.shapes.tabulation(kind, self.points) for kind in self.shapes.kinds]
         # Vertex functions carry all rigid motions; higher ones are zero there in a hierarchical
-        # basis.
-        self.r = np.zeros(self.n)
-        self.y = np.full(self.n, np.nan)
+        # basis, but where a side is curved.
+        self.place = self.shapes.places(dofs)
+        self.point = np.ones(self.n, bool)
         if order > 2:
-            self.r[dofs[:4]], self.y[dofs[:4]] = (
-                flat.points[0][flat.cells],
-                flat.points[1][flat.cells],
-            )
-            self.point = ~np.isnan(self.y)
-        else:
-            at = np.nan_to_num(np.array([element.doflocs[:, 0], element.doflocs[:, 1]]))
-            x = tabulate(_CORNERS, self._nodes(slice(None)), element, at).x
-            self.r[dofs.T], self.y[dofs.T] = x[0], x[1]
-            self.point = np.ones(self.n, bool)
+            self.point[:] = False
+            self.point[dofs[:4]] = True
+        self.y = np.where(self.point, self.place[1], np.nan)
         self.area = 0.0
         # Unknowns with a share on the axis.
         on_axis = np.zeros(self.n, bool)
@@ -120,12 +117,16 @@ class _Work:
         return np.unique(self.dofs[alive][:, cells])
 
     def _batches(self):
-        """Yields (cells, material, tabulated basis, area weights (m, nq)), one material at a time."""
+        """Yields (cells, material, tabulated basis, area weights (m, nq)), one material and one shape
+        of cells at a time.
+        """
         bytes_each = 8 * (3 * self.dofs.shape[0] * len(self.weights) + 30 * self.dofs.shape[0] ** 2)
         for index, segment in enumerate(self.scene.segments):
-            for part in batches(np.flatnonzero(self.flat.segment == index), bytes_each):
-                t = self.basis.on(self._nodes(part))
-                yield part, segment.material, t, t.det * self.weights
+            for kind, basis in zip(self.shapes.kinds, self.bases):
+                cells = kind.cells[self.flat.segment[kind.cells] == index]
+                for part in batches(cells, bytes_each):
+                    t = basis.on(self.shapes.nodes(kind, part))
+                    yield part, segment.material, t, t.det * self.weights
 
     def bending_block(self, name, components, n, wanted) -> Block:
         """Block of harmonic n (0 is axial) in the unknowns (p, q, w), or (u_r, u_y) for n = 0."""
@@ -149,7 +150,7 @@ class _Work:
             mu = material.shear_modulus
             lame = 2 * mu * material.nu / (1 - 2 * material.nu)
             stiffness.add(part, (lame * trace + mu * (2 * normal + shear)) @ gram)
-            heavy.add(part, material.density * w @ self.products)
+            heavy.add(part, material.density * w @ _products(t))
         self.area = area
         k = stiffness.matrix()
         share = np.ones(2) if n == 0 else np.array([2.0, 2.0, 1.0])
@@ -163,8 +164,8 @@ class _Work:
             rigid[on, 1, 0] = 1.0
         elif n == 1:
             rigid[on, 0, 0] = 1.0
-            rigid[on, 0, 1] = self.y[on]
-            rigid[on, 2, 1] = -self.r[on]
+            rigid[:, 0, 1] = self.place[1]
+            rigid[:, 2, 1] = -self.place[0]
         rigid = rigid.reshape(self.n * c, -1)[keep]
         k, m = k[keep][:, keep], m[keep][:, keep]
         if not components:
@@ -204,7 +205,7 @@ class _Work:
             g = t.gradient(np.sqrt(w * material.shear_modulus))
             g = g.swapaxes(1, 2).reshape(len(part), self.dofs.shape[0], -1)
             stiffness.add(part, g @ g.transpose(0, 2, 1))
-            heavy.add(part, material.density * w @ self.products)
+            heavy.add(part, material.density * w @ _products(t))
         k, m = stiffness.matrix(), heavy.matrix()
         rigid = self.point.astype(float)[:, None]
         rows, ties = [], []
@@ -229,9 +230,7 @@ class _Work:
     def _sections(self, parts, unknowns: int, keep: np.ndarray) -> Sections:
         """Section motions of a block of which ``keep`` are the unknowns left."""
         density = np.array([s.material.density for s in self.scene.segments])[self.flat.segment]
-        every = from_cells(
-            self.flat, self.dofs, _CORNERS, self.element, self.order, density, parts, unknowns
-        )
+        every = from_cells(self.shapes, self.dofs, self.order, density, parts, unknowns)
         return through(every, sp.identity(len(keep), format="csc")[:, keep].tocsr())
 
     def _seat_cells(self, station):
@@ -249,11 +248,12 @@ class _Work:
         if attachment == "average":
             cells, direction, value = self._seat_cells(station), 0, 1.0
         elif attachment == "section":
-            y = self.flat.points[1][self.flat.cells]
+            off = np.abs(self.flat.points[1][self.flat.cells] - station.y)
             tol = 1e-9 * self.scene.length
-            cells, direction, value = np.flatnonzero(np.abs(y[3] - station.y) < tol), 1, 1.0
+            # of cells beside a fillet a single corner may lie in the plane
+            cells, direction, value = np.flatnonzero((off[2:] < tol).all(axis=0)), 1, 1.0
             if not len(cells):  # a section at the very start
-                cells, value = np.flatnonzero(np.abs(y[0] - station.y) < tol), 0.0
+                cells, value = np.flatnonzero((off[:2] < tol).all(axis=0)), 0.0
         else:
             raise SolidgearError(
                 f"attachment {attachment!r} is unknown; use 'average', 'rigid' or 'section'"

@@ -12,6 +12,7 @@ from solidgear.body.revolution import Rings, revolve, wave
 from solidgear.body.surface import PIECES, Surface
 from solidgear.errors import SolidgearError
 from solidgear.fidelity.assembly import reference
+from solidgear.fidelity.cell_shapes import Shapes
 
 if TYPE_CHECKING:
     from solidgear.fidelity.harmonic import HarmonicMesh
@@ -39,9 +40,14 @@ def surface(geometry: HarmonicMesh, moved: Mapping[str, np.ndarray]) -> Surface:
     between = len(vertex) + np.arange(len(side) * (pieces - 1)).reshape(len(side), -1)
     ring = np.column_stack([corner[:, 0], between, corner[:, 1]])
     r, y = np.zeros((2, ring.max() + 1))
-    ra, rb = points[:, edges[side, cell, 0]], points[:, edges[side, cell, 1]]
-    r[ring], y[ring] = ra[:, :, None] + s * (rb - ra)[:, :, None]
     values = [reference(geometry.element, p)[0] for p in sides]
+
+    place = Shapes(geometry.meridian, geometry.element).places(dofs)
+    for k in range(4):
+        here = side == k
+        r[ring[here]], y[ring[here]] = np.einsum(
+            "bq,cbe->ceq", values[k], place[:, dofs[:, cell[here]]]
+        )
 
     def on_rings(field):
         out = np.zeros((len(r), field.shape[1]))

@@ -8,11 +8,10 @@ from dataclasses import dataclass
 
 import numpy as np
 import scipy.sparse as sp
-from skfem import Element
 
 from solidgear.body.sections import Sections, hats
-from solidgear.fidelity.assembly import Tabulation, batches
-from solidgear.meshing.meridian import Meridian
+from solidgear.fidelity.assembly import batches
+from solidgear.fidelity.cell_shapes import Shapes
 
 
 @dataclass(frozen=True)
@@ -36,10 +35,8 @@ BENDING = (Part(0, 2 * np.pi, 1), Part(2, np.pi, 1, -1.0, 1))
 
 
 def from_cells(
-    flat: Meridian,
+    shapes: Shapes,
     dofs: np.ndarray,
-    geometry: Element,
-    element: Element,
     order: int,
     density: np.ndarray,
     parts: tuple[Part, ...],
@@ -49,10 +46,9 @@ def from_cells(
 
     Parameters
     ----------
-    flat : Meridian
+    shapes : Shapes
+        Of the cells, with an element of this ``order``.
     dofs : (nb, ne) ndarray of int
-    geometry, element : scikit-fem elements
-        Of the mapping and of the unknowns, of this ``order``.
     density : (ne,) ndarray
         kg/m3.
     parts : tuple of Part
@@ -63,8 +59,8 @@ def from_cells(
     n = int(dofs.max()) + 1
     x, w = np.polynomial.legendre.leggauss(order + 2)
     x, w = (x + 1) / 2, w / 2
-    nodes = flat.points[:, flat.cells]
-    reach = np.ptp(nodes[1], axis=0)
+    flat = shapes.flat
+    reach = np.ptp(flat.points[1][flat.cells], axis=0)
 
     def sections(stations):
         loads = np.zeros((n, unknowns, len(stations), len(parts)))
@@ -75,9 +71,8 @@ def from_cells(
             along = ((np.arange(count)[:, None] + x) / count).ravel()
             a, b = np.meshgrid(x, along, indexing="ij")
             weight = np.outer(w, np.tile(w / count, count)).ravel()
-            basis = Tabulation(geometry, element, np.array([a.ravel(), b.ravel()]))
-            for some in batches(np.flatnonzero(pieces == count), 8 * 12 * len(weight)):
-                t = basis.on(nodes[:, :, some])
+            points = np.array([a.ravel(), b.ravel()])
+            for some, t in _tabulated(shapes, pieces == count, points):
                 r, dm = t.x[0].ravel(), (t.det * weight * density[some, None]).ravel()
                 hat = hats(np.clip(t.x[1].ravel(), stations[0], stations[-1]), stations)
                 value = _at_points(t.value, dofs[:, some], n)
@@ -92,6 +87,14 @@ def from_cells(
         return loads.reshape(n * unknowns, size), gram.reshape(size, size)
 
     return sections
+
+
+def _tabulated(shapes: Shapes, wanted: np.ndarray, points: np.ndarray):
+    """Yields (cells, tabulated basis) for those of a mask, a batch of one shape at a time."""
+    for kind in shapes.kinds:
+        basis = shapes.tabulation(kind, points)
+        for some in batches(kind.cells[wanted[kind.cells]], 8 * 12 * points.shape[1]):
+            yield some, basis.on(shapes.nodes(kind, some))
 
 
 def _at_points(value: np.ndarray, dofs: np.ndarray, n: int) -> sp.csr_matrix:

@@ -133,7 +133,8 @@ class Rung:
     for_features : bool
         Whether it is made for the features that it holds, and for nothing else.
     featured : mapping
-        Options of the builder for a scene that is more than its segments.
+        Options of the builder for a scene that is more than its segments: with features, fillets or
+        chamfers, or from a file.
     colour, marker : str
         In charts.
     """
@@ -233,7 +234,9 @@ class Rung:
         scene : Scene
         options : mapping
         """
-        return {**(self.featured if resolved(scene) else {}), **options}
+        # layered hexahedra converge too slowly beside fillets for the factors of their bands
+        special = resolved(scene) or getattr(scene, "corners", ())
+        return {**(self.featured if special else {}), **options}
 
     def checked(self, options: Mapping[str, Any]) -> dict[str, Any]:
         """Options for the builder within their limits; see

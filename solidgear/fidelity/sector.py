@@ -155,7 +155,18 @@ def meshed_sector(
 ) -> SectorMesh:
     """The mesh of one sector of a scene, divided at the planes ``ends`` too; parameters as for
     :func:`sector`.
+
+    Raises
+    ------
+    SolidgearError
+        For fillets and chamfers, which no sector draws yet.
     """
+    if scene.corners:
+        names = ", ".join(f'{c.kind} "{c.name}"' for c in scene.corners)
+        raise SolidgearError(
+            f"a sector holds no fillets or chamfers yet, and the scene has {names}: leave them out, "
+            'or smear the teeth (model = "pitch_cone")'
+        )
     plan = tetrahedra_plan(
         scene, wanted, size=size, graded_size=graded_size, refinement=refinement, around=16
     )

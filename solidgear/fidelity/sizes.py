@@ -13,6 +13,7 @@ import numpy as np
 from solidgear.fidelity.counts import KINDS, nodes, sections
 from solidgear.fidelity.rung import CYCLIC
 from solidgear.fidelity.size import Size
+from solidgear.meshing.blocks import blocks_beyond
 from solidgear.scene.shaft import resolved
 
 if TYPE_CHECKING:
@@ -73,14 +74,16 @@ def harmonic_size(scene: Shaft, given: Mapping[str, Any]) -> Size:
 
     order = given["order"]
     names = ("layers", "edge_layers", "ratio", "relative_size", "size", "refinement")
-    plan = _lines(
-        scene, harmonic_layout(scene, given["attachments"], **{k: given[k] for k in names})
-    )
+    laid = harmonic_layout(scene, given["attachments"], **{k: given[k] for k in names})
+    plan = _lines(scene, laid)
     across_rows, across_lines = (np.diff(part).sum() for part in (plan.rows, plan.lines))
     vertices, edges, cells = (
         across_lines + len(plan.lines),
         across_lines + across_rows + len(plan.rows),
         across_rows,
+    )
+    vertices, edges, cells = (
+        n + more for n, more in zip((vertices, edges, cells), blocks_beyond(laid.joints))
     )
     n = int(vertices + edges * (order - 1) + cells * (order - 1) ** 2)
     inner_edges = 4 * cells - edges
@@ -240,6 +243,10 @@ def _hexahedra(scene: Shaft, given: Mapping[str, Any]) -> Size:
     # a section drawn out along the shaft makes edges of its vertices, faces of its edges and cells
     # of its faces
     counts = (lines[0], lines[1] + rows[0], lines[2] + rows[1], rows[2])
+    points, sides, cells = (around * more for more in blocks_beyond(layout.joints))
+    # a meridian turned around: every point makes a circle of points and edges
+    more = (points, points + sides, sides + cells, cells)
+    counts = tuple(n + m for n, m in zip(counts, more))
     unknowns, entries = nodes(given["element"], counts, 4)
     bubbles = 3 * counts[3] if given["element"] == "hex27" else 0
     # fill grows with the whole and, as a shaft is long, with its cross-section: 30 meshes of 2,000
@@ -268,6 +275,7 @@ def _tetrahedra(scene: Shaft, given: Mapping[str, Any]) -> Size:
     wanted = [(s, a) for s in scene.stations for a in (given["attachments"] or (s.attachment,))]
     counts = estimated_counts(
         scene.segments,
+        blends=scene.corners,
         **tetrahedra_plan(
             scene, wanted, **{k: given[k] for k in ("size", "graded_size", "refinement", "around")}
         ),

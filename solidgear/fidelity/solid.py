@@ -188,6 +188,8 @@ def hexahedra_layout(
         radial_reach=0.5,
         refinement=refinement,
         core=True,
+        # quadratic sides: what layers do at a sharp corner, more of them do at a round one
+        corner_cells=max(1, layers),
     )
     return layout(scene, grading, attachments), max(8, 4 * int(round(around * refinement / 4)))
 
@@ -220,26 +222,36 @@ def tetrahedra_plan(scene, wanted, *, size, graded_size, refinement, around) -> 
 
 
 def _hexes(scene, wanted, grading):
+    from solidgear.meshing.closed_form import volume_of
     from solidgear.meshing.hexahedra import hexahedra
-    from solidgear.meshing.quality import check_mesh, volume_of
+    from solidgear.meshing.quality import check_mesh
 
     plan, turns = hexahedra_layout(scene, tuple(dict.fromkeys(a for _, a in wanted)), **grading)
     mesh, segment = hexahedra(scene, plan, turns)
-    return mesh, segment, check_mesh(mesh, volume=volume_of(scene.segments), rtol=1e-3)
+    return (
+        mesh,
+        segment,
+        check_mesh(mesh, volume=volume_of(scene.segments, scene.corners), rtol=1e-3),
+    )
 
 
 def _tets(scene, wanted, element, size, graded_size, refinement, around):
-    from solidgear.meshing.quality import check_mesh, volume_of
+    from solidgear.meshing.closed_form import volume_of
+    from solidgear.meshing.quality import check_mesh
     from solidgear.meshing.tetrahedra import tetrahedra
 
     plan = tetrahedra_plan(
         scene, wanted, size=size, graded_size=graded_size, refinement=refinement, around=around
     )
-    made = tetrahedra(scene.segments, **plan)
+    made = tetrahedra(scene.segments, blends=scene.corners, **plan)
     if element == "tet10":
         return made.mesh, made.segment, made.quality
     from skfem import MeshTet1
 
     straight = MeshTet1(made.mesh.p[:, : made.mesh.t.max() + 1], made.mesh.t)
     # Straight sides lose some of the volume by nature; the gate only looks for broken elements.
-    return straight, made.segment, check_mesh(straight, volume=volume_of(scene.segments), rtol=5e-2)
+    return (
+        straight,
+        made.segment,
+        check_mesh(straight, volume=volume_of(scene.segments, scene.corners), rtol=5e-2),
+    )

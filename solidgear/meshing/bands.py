@@ -25,7 +25,7 @@ def first_of_run(bands, band: int, segment: int) -> int:
     return segment
 
 
-def radial_bands(segments):
+def radial_bands(segments, raised=None):
     """Radial bands of every segment such that neighbours share mesh lines.
 
     Where the outer radius jumps, the larger side gets at least one band more than
@@ -34,6 +34,9 @@ def radial_bands(segments):
     Parameters
     ----------
     segments : sequence of Segment
+    raised : dict of (segment, end, boundary) to float, optional
+        Where the surface of a smaller neighbour meets the end ('left' or 'right') of a segment at
+        another radius, by so much, m; the boundary is 'high' outside and 'low' in the bore.
 
     Returns
     -------
@@ -51,7 +54,7 @@ def radial_bands(segments):
     >>> bands, left[1]
     (((0, 1), (0, 2)), array([0.  , 0.02, 0.03]))
     """
-    n = len(segments)
+    n, raised = len(segments), raised or {}
     tol = 1e-9 * max(max(s.outer0, s.outer1) for s in segments)
 
     def levels(end, start):
@@ -88,9 +91,16 @@ def radial_bands(segments):
         a, b = segments[i], segments[i + 1]
         low, high = max(bottoms[i], bottoms[i + 1]), min(tops[i], tops[i + 1])
         common = {low: max(a.inner1, b.inner0), high: min(a.outer1, b.outer0)}
-        right[i] = spread(*bands[i], {**common, bottoms[i]: a.inner1, tops[i]: a.outer1})
+        here, there = (
+            {
+                low: common[low] + raised.get((k, end, "low"), 0.0),
+                high: common[high] + raised.get((k, end, "high"), 0.0),
+            }
+            for k, end in ((i, "right"), (i + 1, "left"))
+        )
+        right[i] = spread(*bands[i], {**here, bottoms[i]: a.inner1, tops[i]: a.outer1})
         left[i + 1] = spread(
-            *bands[i + 1], {**common, bottoms[i + 1]: b.inner0, tops[i + 1]: b.outer0}
+            *bands[i + 1], {**there, bottoms[i + 1]: b.inner0, tops[i + 1]: b.outer0}
         )
     # A free end divides its radius as the far end of the same segment does.
     for i, s in enumerate(segments):

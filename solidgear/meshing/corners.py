@@ -10,8 +10,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from solidgear.scene.rules import TOUCH
+
 if TYPE_CHECKING:
-    from solidgear.scene import Segment
+    from solidgear.scene import Corner, Segment
     from solidgear.scene.shaft import Shaft
 
 # Exponent of a right-angled shoulder, against which layers are counted.
@@ -66,7 +68,7 @@ def _root(angle: float, sign: float, low: float, high: float) -> float:
     return float(0.5 * (low + high))
 
 
-def corner_angle(a: Segment, b: Segment) -> float:
+def corner_angle(a: Segment, b: Segment, smooth: tuple[str, ...] = ()) -> float:
     """Largest material angle of the outline where one segment follows another, outside or in the
     bore.
 
@@ -74,6 +76,8 @@ def corner_angle(a: Segment, b: Segment) -> float:
     ----------
     a, b : Segment
         ``b`` begins where ``a`` ends.
+    smooth : tuple of {'outer', 'bore'}
+        Surfaces whose root there is filled: it is no corner.
 
     Returns
     -------
@@ -82,6 +86,8 @@ def corner_angle(a: Segment, b: Segment) -> float:
     """
     worst = np.pi
     for surface, side in (("outer", 1.0), ("inner", -1.0)):
+        if ("outer" if surface == "outer" else "bore") in smooth:
+            continue
         a0, a1 = getattr(a, surface + "0"), getattr(a, surface + "1")
         b0, b1 = getattr(b, surface + "0"), getattr(b, surface + "1")
         step = side * (b0 - a1)
@@ -118,11 +124,39 @@ def sharpest_corner(scene: Shaft) -> tuple[float, float]:
     (270, 0.5445)
     """
     pairs = zip(scene.segments, scene.segments[1:])
-    worst = max((corner_angle(a, b) for a, b in pairs), default=np.pi)
+    worst = max((corner_angle(a, b, filled_at(scene, b.y0)) for a, b in pairs), default=np.pi)
+    worst = max([worst, *map(_ends_of_chamfer, getattr(scene, "corners", ()))])
     return worst, corner_exponent(worst)
 
 
-def corner_layers(a: Segment, b: Segment, layers: int) -> int:
+def filled_at(scene: Shaft, y: float) -> tuple[str, ...]:
+    """Surfaces whose root at a joint has a fillet or a chamfer.
+
+    Parameters
+    ----------
+    scene : Scene
+    y : float
+        Of the joint, m.
+
+    Returns
+    -------
+    tuple of {'outer', 'bore'}
+    """
+    corners = getattr(scene, "corners", ())
+    return tuple(c.surface for c in corners if c.root and abs(c.y - y) <= TOUCH)
+
+
+def _ends_of_chamfer(corner: Corner) -> float:
+    """Larger material angle at the ends of a chamfer at a root, rad; pi of all that is convex or
+    round.
+    """
+    if corner.kind != "chamfer" or not corner.root:
+        return float(np.pi)
+    slope = np.arctan2(corner.radial, corner.axial)
+    return float(np.pi + max(slope, np.pi / 2 - slope))
+
+
+def corner_layers(a: Segment, b: Segment, layers: int, smooth: tuple[str, ...] = ()) -> int:
     """Geometric layers that the corner between two segments needs.
 
     Layers of one ratio shrink the error by ``ratio ** (2 exponent)`` each, and what they have to
@@ -135,6 +169,8 @@ def corner_layers(a: Segment, b: Segment, layers: int) -> int:
         ``b`` begins where ``a`` ends.
     layers : int
         What a right-angled shoulder needs.
+    smooth : tuple of str
+        As for :func:`corner_angle`.
 
     Returns
     -------
@@ -142,5 +178,5 @@ def corner_layers(a: Segment, b: Segment, layers: int) -> int:
     """
     if a.material != b.material:
         return layers
-    lacking = (1.0 - corner_exponent(corner_angle(a, b))) / (1.0 - SHOULDER)
+    lacking = (1.0 - corner_exponent(corner_angle(a, b, smooth))) / (1.0 - SHOULDER)
     return min(layers, int(np.ceil(layers * lacking - 0.05)))

@@ -6,6 +6,7 @@ import numpy as np
 
 from solidgear.meshing.outline import Frustum, corners_of, slabs_between, tolerance_of
 
+PER_BLEND = 0.8  # edge at a fillet or chamfer, of its size
 _GROWTH = 0.5  # element size gained per distance from a lateral surface
 
 
@@ -18,6 +19,7 @@ def estimated_counts(
     graded_size=None,
     reach=None,
     around=16,
+    blends=(),
     more=(),
     sectors=0,
 ):
@@ -30,7 +32,7 @@ def estimated_counts(
 
     Parameters
     ----------
-    segments, planes, circles, size, graded_size, reach, around
+    segments, planes, circles, size, graded_size, reach, around, blends
         As there, m.
     more : sequence of str
         Further formulas of size, the same all around.
@@ -52,8 +54,9 @@ def estimated_counts(
     segments = [Frustum.of(s) for s in segments]
     tolerance = tolerance_of(segments)
     slabs = slabs_between(segments, [float(y) for y in planes], tolerance)
-    corners = corners_of(slabs, [float(y) for y in circles], tolerance)
+    corners = corners_of(slabs, [float(y) for y in circles], tolerance, blends)
     # the formulas that the mesher itself uses
+    # edges with fillets and chamfers are added below: the points of the sums do not see them
     formulas = [*size_formulas(segments, corners, size, graded_size, reach, around), *more]
     fields = [eval(f"lambda x, y, z: {f}".replace("^", "**"), _NUMPY) for f in formulas]
     least = min(size, graded_size or size)
@@ -90,10 +93,28 @@ def estimated_counts(
         r, across = _graded_points(inner, outer, least)
         h = edge(r, np.array(y))
         surface += (2 * pi * across * r * crowded(r, h) / h**2).sum()
+    for blend in blends:
+        own = _around_edge(blend, size, graded_size, float(edge(*map(np.array, blend.middle))))
+        volume, surface = volume + own[0], surface + own[1]
     rim = sum(
         max(2 * pi * r / float(edge(np.array(r), np.array(y))), sectors) for y, r in set(corners)
     )
     return tuple(np.array(_FILL) @ (volume, surface, rim))
+
+
+def _around_edge(blend, size, graded_size, beside):
+    """What a fillet or chamfer adds to the two sums of :func:`estimated_counts`, where elements
+    beside it are of a size.
+    """
+    across = min(blend.axial, blend.radial)
+    least = min(size, graded_size or size, PER_BLEND * across)
+    s = across * np.geomspace(0.05, 200.0, 200)
+    h = np.minimum(beside, least + _GROWTH * np.maximum(0.0, s - across / 2))
+    turned = 2 * pi * blend.r
+    # material fills three quarters around a root and one around a rim
+    share = 1.5 * pi if blend.root else 0.5 * pi
+    volume = turned * share * np.trapezoid(s * (h**-3 - beside**-3), s)
+    return volume, turned * 2 * np.trapezoid(h**-2 - beside**-2, s)
 
 
 def _faces(segments):
@@ -135,7 +156,7 @@ def _graded_points(a, b, least):
     return np.r_[middle - shift, middle + shift], np.r_[width, width] / 2
 
 
-def size_formulas(segments, corners, size, graded_size, reach, around):
+def size_formulas(segments, corners, size, graded_size, reach, around, blends=()):
     """Formulas of the element edge; the least one counts.
 
     Parameters
@@ -143,7 +164,7 @@ def size_formulas(segments, corners, size, graded_size, reach, around):
     segments : sequence of Frustum
     corners : list of (float, float)
         (y, radius) to grade towards, m.
-    size, graded_size, reach, around
+    size, graded_size, reach, around, blends
         As for :func:`~solidgear.meshing.tetrahedra.tetrahedra`.
 
     Returns
@@ -158,6 +179,15 @@ def size_formulas(segments, corners, size, graded_size, reach, around):
         slope = (size - graded_size) / (reach or r)
         formulas.append(
             f"{_num(graded_size)}+{_num(slope)}*Sqrt(({radius}-{_num(r)})^2+(y-{_num(y)})^2)"
+        )
+    for blend in blends:
+        # an edge of an element along either half of the outline, or the size at a corner
+        r, y = blend.middle
+        across = min(blend.axial, blend.radial)
+        least = min(size, graded_size or size, PER_BLEND * across)
+        formulas.append(
+            f"{_num(least)}+{_num(_GROWTH)}*Max(0,Sqrt(({radius}-{_num(r)})^2+(y-{_num(y)})^2)"
+            f"-{_num(across / 2)})"
         )
     for s in segments:
         for r0, r1 in ((s.outer0, s.outer1), (s.inner0, s.inner1)):

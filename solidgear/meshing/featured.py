@@ -16,11 +16,12 @@ import numpy as np
 from skfem import MeshTet1, MeshTet2
 
 from solidgear.machine.interruptible import call
+from solidgear.meshing.closed_form import volume_of
 from solidgear.meshing.cuts import feature_size, mirror_plane, tool
 from solidgear.meshing.element_size import set_size, size_formulas
 from solidgear.meshing.gmsh_session import Session, import_gmsh
 from solidgear.meshing.outline import Frustum
-from solidgear.meshing.quality import MeshError, MeshQuality, check_mesh, volume_of
+from solidgear.meshing.quality import MeshError, MeshQuality, check_mesh
 from solidgear.meshing.tetrahedra import draw_revolved, relaxed, to_skfem
 
 #: angle about y at which half a shaft begins, so that the other end of the half turn lies in the
@@ -66,6 +67,7 @@ def featured_mesh(
     around: int,
     refinement: float,
     half: bool = True,
+    blends: tuple[Any, ...] = (),
 ) -> FeaturedMesh:
     """Mesh a shaft with features.
 
@@ -79,6 +81,8 @@ def featured_mesh(
         Divides the sizes at features; those above are given refined.
     half : bool
         Whether to draw half of the shaft where features have a mirror plane.
+    blends : tuple of Corner
+        Edges with fillets and chamfers.
 
     Returns
     -------
@@ -95,9 +99,9 @@ def featured_mesh(
     start, turn = (0.0, 2 * pi) if plane is None else (_START[plane], pi)
     radii = {s.name: float(s.outer0) for s in segments}
     with Session(gmsh):
-        corners = draw_revolved(gmsh, shapes, planes, circles, start, turn)
+        corners = draw_revolved(gmsh, shapes, planes, circles, start, turn, blends)
         pieces = _cut(gmsh, features, radii)
-        formulas = size_formulas(shapes, corners, size, graded_size, None, around)
+        formulas = size_formulas(shapes, corners, size, graded_size, None, around, blends)
         formulas += [feature_size(f, radii[f.segment], refinement)[0] for f in features]
         set_size(gmsh, formulas, size)
         removed = sum(gmsh.model.occ.getMass(3, piece) for piece in pieces)
@@ -117,7 +121,7 @@ def featured_mesh(
         cut = np.isin(every, np.concatenate(own))
     share = turn / (2 * pi)
     arcs = 4.0 * (pi / around) ** 4 / 30.0
-    quality = check_mesh(mesh, volume=share * volume_of(segments), rtol=max(1e-3, arcs))
+    quality = check_mesh(mesh, volume=share * volume_of(segments, blends), rtol=max(1e-3, arcs))
     y = mesh.p[1][mesh.t].mean(axis=0)
     segment = np.searchsorted([s.y1 for s in segments[:-1]], y)
     return FeaturedMesh(mesh, segment, cut, plane, quality, removed / share)

@@ -43,6 +43,8 @@ class Grading:
         Multiplies the number of cells everywhere.
     core : bool
         Start the band on the axis with one cell of half its width, room for the core of an O-grid.
+    corner_cells : int
+        Cells along either half of a fillet, at refinement 1.
     """
 
     layers: int = 3
@@ -55,6 +57,7 @@ class Grading:
     radial_reach: float = REACH
     refinement: float = 1.0
     core: bool = False
+    corner_cells: int = 1
 
     @property
     def across(self) -> int:
@@ -65,6 +68,11 @@ class Grading:
     def edge(self) -> int:
         """Layers towards the ends of averaged seats, never more than towards shoulders."""
         return min(self.edge_layers, self.layers)
+
+    @property
+    def along_corner(self) -> int:
+        """Cells along either half of a fillet."""
+        return max(1, round(self.corner_cells * self.refinement))
 
     def cell(self, segment) -> tuple[float, float]:
         """Cell size of a segment.

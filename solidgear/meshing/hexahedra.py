@@ -14,6 +14,7 @@ import numpy as np
 from skfem import MeshHex1, MeshHex2
 from skfem.element import ElementHex2
 
+from solidgear.meshing.blended import ENDS, HIGH, IN, LOW, OUT, Cell, quadrilaterals
 from solidgear.meshing.layout import Layout
 from solidgear.meshing.quality import MeshError
 
@@ -50,7 +51,8 @@ def hexahedra(scene: Shaft, plan: Layout, around: int = 8) -> tuple[MeshHex2, np
     >>> from solidgear import Scene, Segment
     >>> from solidgear.meshing.grading import Grading
     >>> from solidgear.meshing.layout import layout
-    >>> from solidgear.meshing.quality import check_mesh, volume_of
+    >>> from solidgear.meshing.closed_form import volume_of
+    >>> from solidgear.meshing.quality import check_mesh
     >>> scene = Scene.from_parts([Segment.cylinder("rod", length=0.3, diameter=0.06)])
     >>> mesh, segment = hexahedra(scene, layout(scene, Grading(layers=0, core=True)))
     >>> quality = check_mesh(mesh, volume=volume_of(scene.segments))
@@ -69,50 +71,45 @@ def hexahedra(scene: Shaft, plan: Layout, around: int = 8) -> tuple[MeshHex2, np
     core = _core(k)
     rim = _rim(core)
     offsets = (2 * ElementHex2.doflocs).round().astype(int)  # (27, 3) in half cells
+    made = quadrilaterals(scene, plan)
     nodes, keys, owner = [], [], []
-    n_lines = plan.ring_lines
     a = np.arange(around)
     i, j = (g.ravel() for g in np.meshgrid(np.arange(k), np.arange(k), indexing="ij"))
-    for row, seg in enumerate(plan.segment):
-        segment = scene.segments[seg]
-        ys = np.array([plan.y[row], (plan.y[row] + plan.y[row + 1]) / 2, plan.y[row + 1]])
-        radii = np.array([plan.rings(seg, (segment.y0, segment.y1), y) for y in ys])
-        solid = np.all(radii[:, 0] == 0.0)
-        if not solid and np.any(radii[:, 0] == 0.0):
+    fan = offsets[None] + np.stack([0 * a, 2 * a, 0 * a], axis=-1)[:, None]
+    turn = fan[..., 1] % (2 * around)
+    for cell in made.cells:
+        # (across, along the shaft) in half cells: r and y
+        r, y = _nine(cell, made.places)
+        segment = scene.segments[cell.segment]
+        solid = segment.inner0 == segment.inner1 == 0.0
+        if cell.ring == 0 and not solid and np.any(r[0] == 0.0):
             raise MeshError(
                 f"segment {segment.name!r}: its bore closes to a point, "
                 "which an O-grid cannot mesh; use element 'tet10'"
             )
-        number = plan.ring_numbers(seg)
-        if solid:
+        if solid and cell.ring == 0:
             # cells of the core: local axes (z, x, y) are right-handed
             fine = offsets[None] + 2 * np.column_stack([i, j, np.zeros_like(i)])[:, None]
-            xy = core[fine[..., 0], fine[..., 1]] * radii[fine[..., 2], 1][..., None]
-            nodes.append(np.stack([xy[..., 1], ys[fine[..., 2]], xy[..., 0]], axis=-1))
-            keys.append(_core_key(fine[:, :8] // 2, row, number[1], k, n_lines, around))
-            owner.append(np.full(len(i), seg))
-        for ring in range(1 if solid else 0, radii.shape[1] - 1):
-            fine = offsets[None] + np.stack([0 * a, 2 * a, 0 * a], axis=-1)[:, None]
-            turn = fine[..., 1] % (2 * around)
-            inner = radii[fine[..., 2], ring] * (rim[turn] if solid and ring == 1 else inflate)
-            outer = radii[fine[..., 2], ring + 1] * inflate
-            r = inner + (outer - inner) * fine[..., 0] / 2
-            nodes.append(
-                np.stack(
-                    [r * np.sin(angle[turn]), ys[fine[..., 2]], r * np.cos(angle[turn])], axis=-1
-                )
-            )
-            corner = fine[:, :8] // 2
-            keys.append(
-                _ring_key(
-                    row + corner[..., 2],
-                    number[ring + corner[..., 0]],
-                    corner[..., 1],
-                    n_lines,
-                    around,
-                )
-            )
-            owner.append(np.full(around, seg))
+            xy = core[fine[..., 0], fine[..., 1]] * r[2][fine[..., 2]][..., None]
+            nodes.append(np.stack([xy[..., 1], y[2][fine[..., 2]], xy[..., 0]], axis=-1))
+            rim_ids = np.array([cell.ids[1], cell.ids[2]])
+            keys.append(_core_key(fine[:, :8] // 2, cell.ids[0], cell.ids[3], rim_ids, k, around))
+            owner.append(np.full(len(i), cell.segment))
+            continue
+        out, up = fan[..., 0], fan[..., 2]
+        on_core = solid and cell.ring == 1
+        inner = r[0][up] * (rim[turn] if on_core else inflate)
+        outer = r[2][up] * inflate
+        here = inner + (outer - inner) * out / 2
+        if cell.arc:  # what a curved side draws along with it in the middle
+            here = here + (r[1] - (r[0] + r[2]) / 2)[up] * inflate * (out == 1)
+        nodes.append(
+            np.stack([here * np.sin(angle[turn]), y[out, up], here * np.cos(angle[turn])], axis=-1)
+        )
+        corner = fan[:, :8] // 2
+        ids = np.array([[cell.ids[0], cell.ids[3]], [cell.ids[1], cell.ids[2]]])
+        keys.append(_ring_key(ids[corner[..., 0], corner[..., 2]], corner[..., 1], around))
+        owner.append(np.full(around, cell.segment))
     place, key = np.concatenate(nodes), np.concatenate(keys)
     _, where, t = np.unique(key, return_index=True, return_inverse=True)
     points = place[:, :8].reshape(-1, 3)[where]
@@ -157,17 +154,38 @@ def _rim(core: np.ndarray) -> np.ndarray:
     return np.linalg.norm(edge, axis=1)
 
 
-def _ring_key(line, ring, turn, n_lines, around):
-    return 1 + ((line.astype(np.int64) * n_lines + ring) * around + turn % around)
+def _nine(cell: Cell, places) -> tuple[np.ndarray, np.ndarray]:
+    """(3, 3) r and y of a quadrilateral at its corners, the middles of its sides and its middle,
+    by half cells outwards and along the shaft.
+    """
+    corner = np.array([places[one] for one in cell.ids])
+    out = np.zeros((3, 3, 2))
+    out[0, 0], out[2, 0], out[2, 2], out[0, 2] = corner
+    out[1, [0, 2]] = (out[0, [0, 2]] + out[2, [0, 2]]) / 2
+    out[:, 1] = (out[:, 0] + out[:, 2]) / 2
+    if cell.halfway:
+        out[[0, 2], 1, 0] = cell.halfway
+    if cell.arc:
+        edge, *centre = cell.arc
+        a, b = (corner[end] - centre for end in ENDS[edge])
+        bulge = (a + b) * (np.linalg.norm(a) / np.linalg.norm(a + b) - 0.5)
+        at = {LOW: (1, 0), OUT: (2, 1), HIGH: (1, 2), IN: (0, 1)}[edge]
+        out[at] += bulge
+        out[1, 1] += bulge / 2
+    return out[..., 0], out[..., 1]
 
 
-def _core_key(corner, row, rim_line, k, n_lines, around):
+def _ring_key(ids, turn, around):
+    """Keys of vertices: those of the meridian, turned."""
+    return 1 + (ids.astype(np.int64) * around + turn % around)
+
+
+def _core_key(corner, low, high, rim_ids, k, around):
     """Keys of core vertices: those on the edge are vertices of the first ring, inner ones are
     negative.
     """
-    i, j, line = corner[..., 0], corner[..., 1], row + corner[..., 2]
+    i, j, up = corner[..., 0], corner[..., 1], corner[..., 2]
     turn = np.select([j == 0, i == k, j == k, i == 0], [i, k + j, 3 * k - i, 4 * k - j], -1)
-    inside = -1 - (line.astype(np.int64) * (k + 1) + i) * (k + 1) - j
-    return np.where(
-        turn >= 0, _ring_key(line, np.full_like(line, rim_line), turn, n_lines, around), inside
-    )
+    axis = np.array([low, high], dtype=np.int64)[up]
+    inside = -1 - (axis * (k + 1) + i) * (k + 1) - j
+    return np.where(turn >= 0, _ring_key(rim_ids[up], turn, around), inside)

@@ -12,8 +12,16 @@ from functools import cached_property
 
 import numpy as np
 
+from solidgear.errors import SolidgearError
 from solidgear.meshing.bands import first_of_run, radial_bands
-from solidgear.meshing.corners import corner_layers
+from solidgear.meshing.blocks import (
+    Joint,
+    joints_of,
+    layers_at,
+    raised_by,
+    split_bands,
+    strips_of,
+)
 from solidgear.meshing.grading import Grading, corner_length, distinct, graded
 from solidgear.scene.rules import TOUCH
 
@@ -35,6 +43,9 @@ class Layout:
     fractions : dict of (band index, first segment of a run) -> (m + 1,) ndarray
         Subdivision of each band, 0 to 1 outwards, for every run of neighbours that have the band: a
         flange does not pass its rings on to a seat at the other end of the shaft.
+    joints : tuple of Joint
+        Places with fillets or chamfers, whose blocks of cells
+        :mod:`solidgear.meshing.blended` puts in.
     """
 
     y: np.ndarray
@@ -43,6 +54,7 @@ class Layout:
     left: tuple[np.ndarray, ...]
     right: tuple[np.ndarray, ...]
     fractions: dict[tuple[int, int], np.ndarray]
+    joints: tuple[Joint, ...] = ()
 
     def radii(self, segment: int, span: tuple[float, float], y: float) -> np.ndarray:
         """Radii of all band boundaries of a segment at one place.
@@ -171,13 +183,16 @@ def layout(scene, grading: Grading, attachments: tuple[str, ...] | None = None) 
     """
     segments = scene.segments
     tol = 1e-9 * scene.length
-    bands, left, right = radial_bands(segments)
     marks = _marks(scene, grading, attachments)
+    joints = joints_of(scene, grading, [mark.y for mark in marks])
+    raised = raised_by(joints)
+    bands, left, right = radial_bands(segments, raised)
+    marks = _beside_blocks(scene, grading, marks, joints)
     lines = [np.array([0.0])]
     for a, b in zip(marks, marks[1:]):
         owner = next(s for s in segments if (a.y + b.y) / 2 < s.y1 + tol)
         between = graded(
-            b.y - a.y,
+            b.y - a.y - a.after - b.before,
             grading.cell(owner),
             grading.ratio,
             [grading.reach * _length_at(mark.y, segments, tol) for mark in (a, b)],
@@ -185,13 +200,19 @@ def layout(scene, grading: Grading, attachments: tuple[str, ...] | None = None) 
             a.layers,
             b.layers,
         )
-        lines.append(a.y + between[1:])
+        lines.append(_with_blocks(a, b, a.y + a.after + between)[1:])
     y = np.concatenate(lines)
+    for joint in joints:
+        joint.line = int(np.abs(y - joint.y).argmin())
     middle = (y[1:] + y[:-1]) / 2
     segment = np.minimum(np.searchsorted([s.y1 for s in segments], middle), len(segments) - 1)
-    return Layout(
-        y, segment, bands, left, right, _fractions(scene, grading, attachments, bands, left, right)
-    )
+    strips = strips_of(joints, bands, left, right, raised, grading)
+    fractions = _fractions(scene, grading, attachments, bands, left, right, joints, strips)
+    if joints:
+        bands, left, right, fractions = split_bands(
+            joints, bands, left, right, raised, strips, fractions
+        )
+    return Layout(y, segment, bands, left, right, fractions, tuple(joints))
 
 
 def _length_at(y: float, segments, tol: float) -> float:
@@ -205,6 +226,72 @@ class _Mark:
 
     y: float
     layers: int
+    joint: Joint | None = None
+
+    @property
+    def before(self) -> float:
+        """Room that blocks and fillets take before it, m."""
+        return self.joint.low.reach if self.joint else 0.0
+
+    @property
+    def after(self) -> float:
+        """And after it, m."""
+        return self.joint.high.reach if self.joint else 0.0
+
+
+def _beside_blocks(scene, grading: Grading, marks: list[_Mark], joints: list[Joint]) -> list[_Mark]:
+    """Marks with the joints they stand for, without those that fall into a block: what ends there
+    ends at the block.
+    """
+    if not joints:
+        return marks
+    out = []
+    for mark in marks:
+        joint = next((j for j in joints if abs(j.y - mark.y) <= TOUCH), None)
+        if joint:
+            out.append(_Mark(mark.y, _layers(scene, grading, joint), joint))
+            continue
+        near = [j for j in joints if -j.low.reach - TOUCH <= mark.y - j.y <= j.high.reach + TOUCH]
+        if not near:
+            out.append(mark)
+        elif mark.layers and not any(
+            c.surface == "outer" and abs(c.on_cylinder[1] - mark.y) <= TOUCH
+            for j in near
+            for c in j.corners
+        ):
+            raise SolidgearError(
+                f"a seat ends or is held at y = {mark.y:.6g} m, among the cells of the "
+                f'{near[0].corners[0].kind} "{near[0].corners[0].name}" at {near[0].y:.6g} m; '
+                "move the one or the other"
+            )
+    return out
+
+
+def _layers(scene, grading: Grading, joint: Joint) -> int:
+    """Layers towards a joint with fillets or chamfers."""
+    k = joint.index
+    if not 0 < k < len(scene.segments):
+        return 0
+    a, b = scene.segments[k - 1 : k + 1]
+    reach = grading.reach * min(corner_length(a), corner_length(b))
+    return layers_at(joint, a, b, "", grading.layers, reach, grading.ratio)
+
+
+def _with_blocks(a: _Mark, b: _Mark, lines: np.ndarray) -> np.ndarray:
+    """Lines from one mark to the next with the rows of blocks beside them.
+
+    Where a fillet only runs into the space between them, the line of the joint takes the place of
+    the first one beyond it.
+    """
+    if a.joint and a.after:
+        rows = a.joint.high.rows
+        first = np.linspace(a.y, lines[0], rows + 1) if rows else np.array([a.y])
+        lines = np.concatenate([first, lines[1:]])
+    if b.joint and b.before:
+        rows = b.joint.low.rows
+        last = np.linspace(lines[-1], b.y, rows + 1) if rows else np.array([b.y])
+        lines = np.concatenate([lines[:-1], last])
+    return lines
 
 
 def _marks(scene, grading: Grading, attachments) -> list[_Mark]:
@@ -231,7 +318,7 @@ def _marks(scene, grading: Grading, attachments) -> list[_Mark]:
         planes = "section" in ties and tol < station.y < scene.length - tol
         add(station.y, max(grading.edge, grading.layers - 1) if planes else 0)
     for a, b in zip(segments, segments[1:]):
-        add(b.y0, corner_layers(a, b, grading.layers))
+        add(b.y0, layers_at(None, a, b, "", grading.layers, 1.0, grading.ratio))
     marks = []
     for mark in distinct(sorted(weight), tol):
         here = [layers for y, layers in weight.items() if abs(y - mark) <= tol]
@@ -240,11 +327,11 @@ def _marks(scene, grading: Grading, attachments) -> list[_Mark]:
 
 
 def _fractions(
-    scene, grading: Grading, attachments, bands, left, right
+    scene, grading: Grading, attachments, bands, left, right, joints, strips
 ) -> dict[tuple[int, int], np.ndarray]:
     """Subdivision of every radial band, graded towards the surfaces that carry singular points."""
     segments = scene.segments
-    needs = _radial_needs(scene, grading, attachments, bands)
+    needs = _radial_needs(scene, grading, attachments, bands, joints)
     fractions = {}
     for band in range(min(b[0] for b in bands), max(b[1] for b in bands)):
         having = [k for k, b in enumerate(bands) if b[0] <= band < b[1]]
@@ -255,6 +342,9 @@ def _fractions(
             thickness = max(
                 float(max(np.diff(left[k])[i], np.diff(right[k])[i])) for k, i in place.items()
             )
+            for side in (0, 1):
+                strip = strips.get((band, first, side))
+                thickness -= strip.depth if strip else 0.0
             # The axis is the only band boundary that is no surface anywhere.
             on_axis = any(
                 i == 0 and left[k][0] == 0.0 and right[k][0] == 0.0 for k, i in place.items()
@@ -275,7 +365,7 @@ def _fractions(
 
 
 def _radial_needs(
-    scene, grading: Grading, attachments, bands
+    scene, grading: Grading, attachments, bands, joints
 ) -> dict[tuple[int, int], tuple[int, float]]:
     """Layers and reach (m) that a band boundary needs in a segment."""
     segments = scene.segments
@@ -288,10 +378,14 @@ def _radial_needs(
             )
 
     for i, (a, b) in enumerate(zip(segments, segments[1:])):
-        layers = corner_layers(a, b, grading.across)
         reach = grading.radial_reach * min(corner_length(a), corner_length(b))
+        joint = next((j for j in joints if j.index == i + 1), None)
         # A band boundary meets a shoulder where it is the surface of the smaller neighbour.
-        for boundary in (min(bands[i][1], bands[i + 1][1]), max(bands[i][0], bands[i + 1][0])):
+        for boundary, surface in (
+            (min(bands[i][1], bands[i + 1][1]), "outer"),
+            (max(bands[i][0], bands[i + 1][0]), "bore"),
+        ):
+            layers = layers_at(joint, a, b, surface, grading.across, reach, grading.ratio)
             for k in (i, i + 1):
                 add(boundary, k, layers, reach)
     for station in scene.stations:

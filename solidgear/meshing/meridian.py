@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from solidgear.meshing.blended import quadrilaterals
 from solidgear.meshing.layout import Layout
 
 if TYPE_CHECKING:
@@ -29,6 +30,12 @@ class Meridian:
     segment : (m,) ndarray of int
     outer, inner : (k,) ndarray of int
         Cells with their outer (inner) edge on a lateral surface.
+    arc : (m,) ndarray of int
+        Local edge that is part of a circle, or -1: 0 low, 1 outer, 2 high, 3 inner.
+    centre : (2, m) ndarray
+        r and y of the middle of that circle, m.
+    flip : (m,) ndarray of int
+        Local edge whose odd functions have the other sign, or -1.
     """
 
     points: np.ndarray
@@ -36,6 +43,9 @@ class Meridian:
     segment: np.ndarray
     outer: np.ndarray
     inner: np.ndarray
+    arc: np.ndarray
+    centre: np.ndarray
+    flip: np.ndarray
 
 
 def meridian(scene: Shaft, plan: Layout) -> Meridian:
@@ -60,33 +70,24 @@ def meridian(scene: Shaft, plan: Layout) -> Meridian:
     >>> float(mesh.points[0].max()), float(mesh.points[1].max())
     (0.03, 0.3)
     """
-    points: list[tuple[float, float]] = []
-    index: dict[tuple[int, int], int] = {}
-    cells: list[tuple[int, int, int, int]] = []
-    owner, outer, inner = [], [], []
-    for row, seg in enumerate(plan.segment):
-        segment = scene.segments[seg]
-        rings = [
-            plan.rings(seg, (segment.y0, segment.y1), y) for y in (plan.y[row], plan.y[row + 1])
-        ]
-        number = plan.ring_numbers(seg)
-
-        def node(line, ring, row=row, rings=rings, number=number):
-            key = (line, number[ring])
-            if key not in index:
-                index[key] = len(points)
-                points.append((rings[line - row][ring], plan.y[line]))
-            return index[key]
-
-        for ring in range(len(number) - 1):
-            if ring == 0:
-                inner.append(len(cells))
-            if ring == len(number) - 2:
-                outer.append(len(cells))
-            cells.append(
-                (node(row, ring), node(row, ring + 1), node(row + 1, ring + 1), node(row + 1, ring))
-            )
-            owner.append(seg)
+    made = quadrilaterals(scene, plan)
+    index: dict[int, int] = {}
+    for cell in made.cells:
+        for corner in cell.ids:
+            index.setdefault(corner, len(index))
+    points = np.array([made.places[corner] for corner in index]).T
+    cells = np.array([[index[corner] for corner in cell.ids] for cell in made.cells]).T
+    edge, centre = np.full(len(made.cells), -1), np.zeros((2, len(made.cells)))
+    for k, cell in enumerate(made.cells):
+        if cell.arc:
+            edge[k], *centre[:, k] = cell.arc
     return Meridian(
-        np.array(points).T, np.array(cells).T, np.array(owner), np.array(outer), np.array(inner)
+        points,
+        cells,
+        np.array([cell.segment for cell in made.cells]),
+        np.array([k for k, cell in enumerate(made.cells) if cell.ring == cell.count - 1]),
+        np.array([k for k, cell in enumerate(made.cells) if cell.ring == 0]),
+        edge,
+        centre,
+        np.array([-1 if cell.flip is None else cell.flip for cell in made.cells]),
     )

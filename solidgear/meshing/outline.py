@@ -1,5 +1,6 @@
 """The outline of a shaft in plain floats: slabs between cuts, and the corners to grade towards."""
 
+from dataclasses import dataclass, field
 from typing import NamedTuple
 
 
@@ -46,7 +47,7 @@ def cuts_of(slab, circles, tolerance):
     return [(outer0 + (outer1 - outer0) * (y - y0) / (y1 - y0), y) for y in cuts]
 
 
-def corners_of(slabs, circles, tolerance):
+def corners_of(slabs, circles, tolerance, blends=()):
     """Points of the meridian to grade at: circles on the surface and kinks of the outline.
 
     Parameters
@@ -57,6 +58,8 @@ def corners_of(slabs, circles, tolerance):
         Positions y, m.
     tolerance : float
         m.
+    blends : sequence of Corner
+        Edges that are no corners any more; those that a chamfer at a root leaves are.
 
     Returns
     -------
@@ -66,7 +69,104 @@ def corners_of(slabs, circles, tolerance):
     corners = [(y, r) for slab in slabs for r, y in cuts_of(slab, circles, tolerance)]
     cut = [y for y, _ in corners]
     on_station = [y for y in circles if not _near(y, cut, tolerance)]
-    return corners + _kinks(slabs, on_station, tolerance)
+    corners += _kinks(slabs, on_station, tolerance)
+    gone = [(b.y, b.r) for b in blends]
+    left = [
+        (y, r)
+        for y, r in corners
+        if all(abs(y - a) > tolerance or abs(r - b) > tolerance for a, b in gone)
+    ]
+    chamfered = [b for b in blends if b.root and b.kind == "chamfer"]
+    return left + [p[::-1] for b in chamfered for p in (b.on_face, b.on_cylinder)]
+
+
+@dataclass(frozen=True)
+class Row:
+    """The points of one end of a slab, from the bore outwards.
+
+    Attributes
+    ----------
+    points : list of (float, float)
+        (radius, y), m.
+    bore, outer : list of (float, float)
+        Where a rim meets the surface beside it; of one point at most.
+    """
+
+    points: list[tuple[float, float]]
+    bore: list[tuple[float, float]] = field(default_factory=list)
+    outer: list[tuple[float, float]] = field(default_factory=list)
+
+
+def rows_between(below, above, blends, tolerance):
+    """Points of the end of one slab and of the start of the next.
+
+    What two slabs share runs from where one fillet meets its cylinder, so that no sharp edge of a
+    slab lies at a fillet.
+
+    Parameters
+    ----------
+    below, above : tuple of float or None
+        From :func:`slabs_between`; None beyond an end face.
+    blends : sequence of Corner
+        Those of the whole shaft.
+    tolerance : float
+        m.
+
+    Returns
+    -------
+    Row, Row
+        Of ``below`` and of ``above``; empty for None.
+    """
+    y = below[1] if below else above[0]
+    here = {(b.surface, b.root, b.side): b for b in blends if abs(b.y - y) <= tolerance}
+    walls = [(s[5], s[3]) if k == 0 else (s[4], s[2]) for k, s in enumerate((below, above)) if s]
+    if not here:
+        others = [radii for wall in walls for radii in wall] if below and above else ()
+        return tuple(
+            Row([(r, y) for r in radii_between(*wall, others)]) if s else Row([])
+            for s, wall in ((below, walls[0]), (above, walls[-1]))
+        )
+    roots = {surface: b for (surface, root, _), b in here.items() if root}
+    shared = []
+    if below and above:
+        shifts = [roots[x].side * roots[x].axial if x in roots else None for x in ("bore", "outer")]
+        steps = [abs(walls[0][k] - walls[1][k]) > tolerance for k in (0, 1)]
+        for k, pick in ((0, max), (1, min)):
+            shift = shifts[k]
+            if shift is None:
+                shift = 0.0 if steps[k] else shifts[1 - k] or 0.0
+            radius = pick(walls[0][k], walls[1][k])
+            if shift and k not in [i for i, x in enumerate(("bore", "outer")) if x in roots]:
+                radius = _radius_at(above if shift > 0 else below, k, y + shift)
+            shared.append((radius, y + shift))
+    rows = []
+    for slab, side in ((below, -1), (above, 1)):
+        if not slab:
+            rows.append(Row([]))
+            continue
+        inner, outer = walls[0] if side < 0 else walls[-1]
+        bore_rim, rim = here.get(("bore", False, side)), here.get(("outer", False, side))
+        points = list(shared)
+        if not shared or outer > shared[1][0] + tolerance:
+            face = [roots["outer"].on_face] if shared and "outer" in roots else []
+            points = [*points, *face, rim.on_face if rim else (outer, y)]
+        if not shared or inner < shared[0][0] - tolerance:
+            face = [roots["bore"].on_face] if shared and "bore" in roots else []
+            points = [bore_rim.on_face if bore_rim else (inner, y), *face, *points]
+        rows.append(
+            Row(
+                points,
+                [bore_rim.on_cylinder] if bore_rim else [],
+                [rim.on_cylinder] if rim else [],
+            )
+        )
+    return tuple(rows)
+
+
+def _radius_at(slab, which, y):
+    """Radius of the bore (0) or of the outer surface (1) of a slab."""
+    a, b = slab[4 - 2 * which], slab[5 - 2 * which]
+    return a + (b - a) * (y - slab[0]) / (slab[1] - slab[0])
 
 
 def slabs_between(segments, planes, tolerance):

@@ -11,9 +11,10 @@ import numpy as np
 
 from solidgear.errors import SceneError
 from solidgear.machine.apart import ApartError, apart
+from solidgear.meshing.closed_form import volume_of
 from solidgear.meshing.mesh_file import mesh_from
 from solidgear.meshing.placing import TURNS, Placing, Triple
-from solidgear.meshing.quality import MeshError, volume_of
+from solidgear.meshing.quality import MeshError
 from solidgear.meshing.round_part import ON_LINE, RoundPart, Wall, round_part
 from solidgear.meshing.step import look
 from solidgear.scene.body_file import UNITS, BodyFile, BodyTable, Recognised

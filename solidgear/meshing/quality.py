@@ -8,7 +8,6 @@ shaft.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import cache
 from itertools import product
@@ -21,8 +20,6 @@ from solidgear.errors import SolidgearError
 
 if TYPE_CHECKING:
     from skfem import Mesh
-
-    from solidgear.scene import Segment
 
 # Elements in which det J is bounded from below by this part of its greatest value need no closer
 # look.
@@ -79,7 +76,7 @@ def check_mesh(
         Right-handed. scikit-fem itself integrates with |det J|, and its `init_tensor` meshes are
         left-handed.
     volume : float, optional
-        Volume the mesh should have [m^3], see `volume_of`; None skips the comparison.
+        Volume the mesh should have [m^3], see :func:`solidgear.meshing.closed_form.volume_of`; None skips the comparison.
     rtol : float
         Relative mismatch of volume that is still accepted.
     min_ratio : float
@@ -304,97 +301,3 @@ def _refuse(mesh, bad, value, what, name, unit, cure):
         f"the worst is element {worst} at ({x:.4g}, {y:.4g}, {z:.4g}) m "
         f"with {name} {value[worst]:.3g} {unit}: {cure}"
     )
-
-
-def volume_of(segments: Iterable[Segment]) -> float:
-    """Volume of hollow frusta end to end, closed form.
-
-    Parameters
-    ----------
-    segments : iterable
-        Objects with y0, y1, outer0, outer1, inner0, inner1 [m].
-
-    Returns
-    -------
-    float
-        [m^3]
-    """
-    return float(
-        sum(
-            np.pi * (s.y1 - s.y0) * (_squares(s.outer0, s.outer1) - _squares(s.inner0, s.inner1))
-            for s in segments
-        )
-    )
-
-
-@dataclass(frozen=True)
-class MassProperties:
-    """Rigid-body constants of a body of revolution about the axis y.
-
-    Attributes
-    ----------
-    mass : float
-        [kg]
-    centre : float
-        Position of the centre of mass along y [m].
-    ixx : float
-        Moment of inertia about a transverse axis through the centre of mass [kg m^2]; the one about
-        z is the same.
-    iyy : float
-        Polar moment of inertia about the axis y [kg m^2].
-    """
-
-    mass: float
-    centre: float
-    ixx: float
-    iyy: float
-
-
-def mass_properties(segments: Sequence[Segment]) -> MassProperties:
-    """Mass, centre and inertia of hollow frusta, by exact integration of the polynomials in y.
-
-    Parameters
-    ----------
-    segments : sequence
-        Objects with y0, y1, outer0, outer1, inner0, inner1 [m] and material.density [kg/m^3].
-
-    Returns
-    -------
-    MassProperties
-
-    Examples
-    --------
-    >>> from solidgear import Segment
-    >>> rod = mass_properties([Segment.cylinder("rod", length=0.6, diameter=0.02)])
-    >>> bool(np.isclose(rod.iyy, rod.mass * 0.01**2 / 2)), rod.centre
-    (True, 0.3)
-    """
-    parts = np.array(
-        [_frustum(s.y0, s.y1, s.outer0, s.outer1, s.material.density) for s in segments]
-        + [_frustum(s.y0, s.y1, s.inner0, s.inner1, -s.material.density) for s in segments]
-    )
-    mass, first, polar = parts[:, :3].sum(axis=0)
-    centre = first / mass
-    # second moment of each part about the common centre: about its own small end, then shifted
-    offset = parts[:, 3] - centre
-    axial = (parts[:, 5] + 2.0 * offset * parts[:, 4] + offset**2 * parts[:, 0]).sum()
-    return MassProperties(
-        mass=float(mass), centre=float(centre), ixx=float(0.5 * polar + axial), iyy=float(polar)
-    )
-
-
-def _frustum(y0, y1, a, b, density):
-    """Mass, moment of mass in y, polar inertia, and y0 with first and second moment about y0, of a
-    solid frustum.
-    """
-    h = y1 - y0
-    mass = density * np.pi * h * _squares(a, b)
-    first = density * np.pi * h**2 * (a * a + 2.0 * a * b + 3.0 * b * b) / 12.0  # int r^2 s
-    second = density * np.pi * h**3 * (a * a + 3.0 * a * b + 6.0 * b * b) / 30.0  # int r^2 s^2
-    fourth = (a**4 + a**3 * b + a**2 * b**2 + a * b**3 + b**4) / 5.0  # int r^4
-    return mass, first + y0 * mass, 0.5 * density * np.pi * h * fourth, y0, first, second
-
-
-def _squares(a, b):
-    """Mean of r^2 along a cone from radius a to radius b."""
-    return (a * a + a * b + b * b) / 3.0

@@ -15,17 +15,18 @@ import numpy as np
 from skfem import MeshTet1, MeshTet2
 
 from solidgear.machine.interruptible import call
+from solidgear.meshing.closed_form import volume_of
 from solidgear.meshing.element_size import set_size, size_formulas
 from solidgear.meshing.gmsh_session import Session, import_gmsh
 from solidgear.meshing.outline import (
     Frustum,
     corners_of,
     cuts_of,
-    radii_between,
+    rows_between,
     slabs_between,
     tolerance_of,
 )
-from solidgear.meshing.quality import MeshError, MeshQuality, check_mesh, element_ratios, volume_of
+from solidgear.meshing.quality import MeshError, MeshQuality, check_mesh, element_ratios
 
 _TET10 = 11  # gmsh's number for the ten-node tetrahedron
 _FOLD = 0.05  # below this min/max det J an element's edges are straightened
@@ -50,7 +51,16 @@ class TetMesh:
 
 
 def tetrahedra(
-    segments, planes=(), circles=(), *, size, graded_size=None, reach=None, around=16, progress=None
+    segments,
+    planes=(),
+    circles=(),
+    *,
+    size,
+    graded_size=None,
+    reach=None,
+    around=16,
+    blends=(),
+    progress=None,
 ):
     """Mesh a shaft of revolution about y with curved ten-node tetrahedra.
 
@@ -74,6 +84,8 @@ def tetrahedra(
         None.
     around : int
         Least number of elements around a circle.
+    blends : sequence of Corner
+        Edges with fillets and chamfers.
     progress : callable, optional
         Called as progress(fraction, message) between the stages.
 
@@ -95,8 +107,9 @@ def tetrahedra(
 
     with Session(gmsh):
         report(0.0, "drawing the meridian")
-        corners = draw_revolved(gmsh, segments, planes, circles)
-        set_size(gmsh, size_formulas(segments, corners, size, graded_size, reach, around), size)
+        corners = draw_revolved(gmsh, segments, planes, circles, blends=blends)
+        formulas = size_formulas(segments, corners, size, graded_size, reach, around, blends)
+        set_size(gmsh, formulas, size)
         try:
             for dimension, fraction in ((1, 0.05), (2, 0.1), (3, 0.3)):
                 report(fraction, f"meshing dimension {dimension}")
@@ -113,7 +126,7 @@ def tetrahedra(
     report(0.9, "checking the mesh")
     # four times what the arcs lose by themselves: a lost part is far larger
     quality = check_mesh(
-        mesh, volume=volume_of(segments), rtol=max(1e-3, 4.0 * (pi / around) ** 4 / 30.0)
+        mesh, volume=volume_of(segments, blends), rtol=max(1e-3, 4.0 * (pi / around) ** 4 / 30.0)
     )
     # interfaces are planes of element faces, so the mean of the corners decides
     y = mesh.p[1][mesh.t].mean(axis=0)
@@ -163,7 +176,9 @@ def _validate(segments, planes, circles, size, graded_size, reach, around):
         raise MeshError(f"around is {around}: at least 6 elements are needed around a circle")
 
 
-def draw_revolved(gmsh, segments, planes, circles, start: float = 0.0, turn: float = 2.0 * pi):
+def draw_revolved(
+    gmsh, segments, planes, circles, start: float = 0.0, turn: float = 2.0 * pi, blends=()
+):
     """Draw the meridian with shared edges and turn it about y; the (y, radius) to grade at.
 
     Parameters
@@ -175,6 +190,8 @@ def draw_revolved(gmsh, segments, planes, circles, start: float = 0.0, turn: flo
     start, turn : float
         Angle about y from +x towards -z at which the meridian is drawn, and by which it is turned,
         rad.
+    blends : sequence of Corner
+        Edges with fillets and chamfers.
 
     Returns
     -------
@@ -198,18 +215,27 @@ def draw_revolved(gmsh, segments, planes, circles, start: float = 0.0, turn: flo
         if (b, a) in lines:
             return -lines[b, a]
         if (a, b) not in lines:
-            lines[a, b] = occ.addLine(a, b)
+            lines[a, b] = curve(a, b)
         return lines[a, b]
 
+    def curve(a, b):
+        for blend in blends:
+            if blend.centre and {a, b} == {point(*blend.on_face), point(*blend.on_cylinder)}:
+                middle = occ.addPoint(*blend.centre, 0.0)
+                made = occ.addCircleArc(a, middle, b)
+                occ.remove([(0, middle)])
+                return made
+        return occ.addLine(a, b)
+
     slabs = slabs_between(segments, planes, tolerance)
-    for i, (y0, y1, outer0, outer1, inner0, inner1) in enumerate(slabs):
-        below = slabs[i - 1] if i else None
-        above = slabs[i + 1] if i + 1 < len(slabs) else None
-        # an end of a slab carries the radii of its neighbour too, where they fall inside its own
-        bottom = radii_between(inner0, outer0, (below[3], below[5]) if below else ())
-        top = radii_between(inner1, outer1, (above[2], above[4]) if above else ())
-        side = cuts_of(slabs[i], circles, tolerance)
-        loop = [(r, y0) for r in bottom] + side + [(r, y1) for r in reversed(top)]
+    rows = [
+        rows_between(below, above, blends, tolerance)
+        for below, above in zip([None, *slabs], [*slabs, None])
+    ]
+    for slab, (_, first), (last, _) in zip(slabs, rows, rows[1:]):
+        side = first.outer + cuts_of(slab, circles, tolerance) + last.outer
+        # the bore closes the loop from the last point to the first
+        loop = first.bore + first.points + side + last.points[::-1] + last.bore
         tags = []
         for r, y in loop:
             tag = point(r, y)
@@ -224,7 +250,7 @@ def draw_revolved(gmsh, segments, planes, circles, start: float = 0.0, turn: flo
         occ.remove(faces, recursive=True)
     occ.synchronize()
     _embed_tips(gmsh, tolerance)
-    return corners_of(slabs, circles, tolerance)
+    return corners_of(slabs, circles, tolerance, blends)
 
 
 def _embed_tips(gmsh, tolerance):

@@ -25,14 +25,17 @@ def scene(told: Any) -> Table:
     rows: list[tuple[Any, ...]] = []
     for s in told.segments:
         rows.append((s.name, "segment", 1e3 * s.y0, 1e3 * s.y1, _diameters(s)))
-    whole = {s.name: (s.y0, s.y1) for s in told.segments}
     for f in told.features:
-        lo, hi = getattr(f, "reach", whole[f.segment])
+        lo, hi = f.span(told.segments)
         rows.append((f.name, f.what, 1e3 * lo, 1e3 * hi, f"on {f.segment}"))
     for b in told.bearings:
         rows.append((b.name, "bearing", 1e3 * b.lo, 1e3 * b.hi, b.attachment))
     for m in told.masses:
         rows.append((m.name, "mass", 1e3 * m.lo, 1e3 * m.hi, f"{m.mass:.6g} kg"))
+    for c in told.corners:
+        rows.append(
+            (c.name, c.kind, *(1e3 * y for y in c.span), f"on {told.segments[c.owner].name}")
+        )
     if told.body is not None:
         rows.append(
             (told.body.name, told.body.what, 0.0, 1e3 * told.length, "segments are its round part")

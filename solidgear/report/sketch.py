@@ -5,12 +5,13 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
+from solidgear.report import sketch_details as details
+from solidgear.report.sketch_details import FILL, INK, MASS
 from solidgear.report.sketch_features import draw_feature
 from solidgear.report.words import is_number
 
-FILL = {"shaft": "#d5dbe1", "frustum": "#ecd9b4", "backcone": "#dcc08a"}
 PART_NAMES = {"shaft": "shaft", "frustum": "gear head (pitch cone)", "backcone": "backcone"}
-INK, SEAT, SPAN, MASS = "#222222", "#1f5f99", "#c4541c", "#6b2e8a"
+SEAT, SPAN = "#1f5f99", "#c4541c"
 #: inches on paper
 WIDTH, DRAWN, TALLEST, FLATTEST = 10.6, 8.8, 1.75, 0.45
 CHAR = 0.075  # of a letter at the size of the labels
@@ -52,12 +53,14 @@ def draw(scene: Mapping[str, Any]) -> Any:
         pen.segment(s)
     ends = [left - 0.3, left + length * inch + 0.3]
     ax.plot(ends, [0, 0], color=INK, lw=0.8, dashes=(12, 3, 2, 3), zorder=4)
+    for blend in scene.get("blends") or []:
+        details.blend(pen, blend, segments)
     for cut in scene.get("features") or []:
         draw_feature(pen, cut, segments)
     for b in scene.get("bearings") or []:
         pen.bearing(b, segments)
     for mass in scene.get("masses") or []:
-        pen.mass(mass)
+        details.mass(pen, mass)
     if scene.get("port"):
         pen.port(scene["port"], segments)
     for x, _, text, is_port, level in labels:
@@ -272,27 +275,6 @@ class _Pen:
                     )
         self.ax.plot([x], [0], marker="o", ms=8, mfc="white", mec=SPAN, mew=1.6, zorder=8)
         self.ax.plot([x], [0], marker="+", ms=8, mec=SPAN, mew=1.0, zorder=9)
-
-    def mass(self, mass: Mapping) -> None:
-        """A rigid mass: its centre, joined to its station, with its name and size above."""
-        x, centre = self.x(mass["y"]), self.x(mass["y"] + mass["offset"][1])
-        # seen along x: what lies towards +z is drawn upwards
-        height = self.radial * mass["offset"][2]
-        self.ax.plot([x, centre], [0, height], color=MASS, lw=1.6, zorder=8)
-        self.ax.plot([centre], [height], marker="o", ms=10, color=MASS, alpha=0.85, zorder=10)
-        self.ax.text(
-            centre,
-            height + 0.12,
-            f"{mass['name']}\n{mass['mass']:.4g} kg",
-            color=MASS,
-            ha="center",
-            va="bottom",
-            fontsize=8,
-            linespacing=1.0,
-            parse_math=False,
-            bbox={"facecolor": "white", "edgecolor": "none", "alpha": 0.8, "pad": 0.5},
-            zorder=10,
-        )
 
     def lengths(self, segments, level: float) -> None:
         """The chain of segment lengths."""

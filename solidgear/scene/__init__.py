@@ -1,5 +1,6 @@
 """What is modelled and what is asked: data only."""
 
+from solidgear.scene.blends import Blend, Chamfer, Corner, Fillet
 from solidgear.scene.catalogue import BearingDisplacement, BearingLoad, Catalogue
 from solidgear.scene.cyclic_features import BoltCircle, Spline, Teeth
 from solidgear.scene.features import CrossHole, Feature, Flat, Keyway
@@ -11,12 +12,16 @@ from solidgear.scene.stations import Bearing, Port
 __all__ = [
     "Ask",
     "Bearing",
+    "Blend",
     "BearingDisplacement",
     "BearingLoad",
     "BoltCircle",
     "Catalogue",
+    "Chamfer",
+    "Corner",
     "CrossHole",
     "Feature",
+    "Fillet",
     "Flat",
     "Keyway",
     "Material",

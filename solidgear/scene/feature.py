@@ -46,6 +46,11 @@ class OnSegment(Model):
         """Its kind in words."""
         return getattr(self, "kind").replace("_", " ")  # noqa: B009  # of every subclass
 
+    def span(self, segments: Sequence[Segment]) -> tuple[float, float]:
+        """Its ends along a shaft that it fits, m."""
+        here = next(s for s in segments if s.name == self.segment)
+        return here.y0, here.y1
+
     @property
     def smeared(self) -> bool:
         """Whether the segment of revolution stands for it."""
@@ -91,6 +96,9 @@ class Cut(OnSegment):
     def reach(self) -> tuple[float, float]:
         """Ends along the shaft, m."""
         raise NotImplementedError
+
+    def span(self, segments: Sequence[Segment]) -> tuple[float, float]:
+        return self.reach
 
 
 def deep(depth: float, here: Segment, what: str, least: float = 0.0) -> Iterator[SceneError]:

@@ -184,7 +184,8 @@ def _unknown_names(raw: dict[str, Any], part: Recognised | None) -> Iterator[Sce
     for i, mass in enumerate(masses or () if bearings is not None else ()):
         yield from _unknown_datum(mass.get("from"), known, ("mass", i, "from"))
     for i, feature in enumerate(_list_of_tables(raw.get("feature", [])) or ()):
-        yield from _unknown_datum(feature.get("from"), known, ("feature", i, "from"))
+        for key in ("at", "from"):
+            yield from _unknown_datum(feature.get(key), known, ("feature", i, key))
     if isinstance(port, Mapping) and bearings is not None:
         for key in ("at", "from"):
             yield from _unknown_datum(port.get(key), known, ("port", key))

@@ -15,7 +15,8 @@ from pydantic import Field, model_validator
 
 from solidgear.display import Displayed
 from solidgear.errors import SceneError
-from solidgear.scene.bearing_stiffness import stiffness_entries
+from solidgear.scene.blend_rules import blend_problems
+from solidgear.scene.blends import Blend, Corner, corners_of_blends
 from solidgear.scene.body_file import BodyFile
 from solidgear.scene.catalogue import BearingLoad
 from solidgear.scene.features import Feature, feature_problems
@@ -99,6 +100,8 @@ class Scene(Displayed, Model):
         What is cut out of the shaft and is not of revolution.
     body : BodyFile or None
         The part from a file of which the segments are the round part.
+    blends : tuple of Fillet or Chamfer
+        At its edges; it stays of revolution.
     housing_axial : float or None
         Spring along y between the common bearing housing and ground, N/m.
     port : Port
@@ -135,6 +138,7 @@ class Scene(Displayed, Model):
     masses: tuple[PointMass, ...] = ()
     features: tuple[Feature, ...] = ()
     body: BodyFile | None = None
+    blends: tuple[Blend, ...] = ()
     housing_axial: AxialSpring | None = None
     port: Port
     load: BearingLoad | None = None
@@ -148,6 +152,7 @@ class Scene(Displayed, Model):
             problems = list(station_problems(self.segments, self.port, bearings, masses))
             problems += mass_problems(self.port, bearings, masses)
             problems += feature_problems(self.segments, self.features)
+            problems += blend_problems(self.segments, self.blends, self.stations, self.features)
         if problems:
             raise SceneError.of(problems)
         return self
@@ -220,6 +225,11 @@ class Scene(Displayed, Model):
         if not self.features and self.body is None:
             return self
         return self.with_changes(features=(), body=None)
+
+    @property
+    def corners(self) -> tuple[Corner, ...]:
+        """Edges with fillets and chamfers."""
+        return corners_of_blends(self.segments, self.blends)
 
     @property
     def steps(self) -> tuple[float, ...]:
@@ -368,27 +378,6 @@ class Scene(Displayed, Model):
         -------
         dict
         """
-        data = self.model_dump(mode="json")
-        for key in ("masses", "features"):
-            if not data[key]:
-                del data[key]
-        for row, segment in zip(data["segments"], self.segments):
-            row["length"] = segment.length
-        for row, bearing in zip(data["bearings"], self.bearings):
-            row |= {
-                "lo": bearing.lo,
-                "hi": bearing.hi,
-                "stiffness": bearing.stiffness.tolist(),
-                "entries": stiffness_entries(row.pop("matrix")),
-            }
-            for key in ("catalogue", "hold", "face"):
-                if row[key] is None:
-                    del row[key]
-        for key in ("load", "body"):
-            if data[key] is None:
-                del data[key]
-        for row, mass in zip(data.get("masses", ()), self.masses):
-            carrier = next(s for s in self.stations if s.name == mass.station)
-            row |= {"y": carrier.y, "lo": carrier.lo, "hi": carrier.hi}
-            row |= {"attachment": carrier.attachment, "matrix": mass.matrix.tolist()}
-        return data | {"length": self.length, "steps": list(self.steps)}
+        from solidgear.scene.plain_data import plain_data
+
+        return plain_data(self)

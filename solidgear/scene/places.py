@@ -5,13 +5,13 @@ A problem of a place is reported under the key of the file that it came from.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
-from typing import Any
+from collections.abc import Iterable, Iterator, Sequence
 
 from solidgear.errors import SceneError
+from solidgear.scene.blend_rules import blend_problems
 from solidgear.scene.body_file import MASS_CHECK, Recognised
-from solidgear.scene.cyclic_features import BoltCircle, Spline, Teeth
-from solidgear.scene.features import CrossHole, Feature, Flat, Keyway, feature_problems
+from solidgear.scene.feature_places import blend_of, feature_of
+from solidgear.scene.features import feature_problems
 from solidgear.scene.model import Scene
 from solidgear.scene.parts import Material, Segment
 from solidgear.scene.point_mass import PointMass
@@ -20,8 +20,8 @@ from solidgear.scene.segment_tables import Piece
 from solidgear.scene.stations import Attachment, Bearing, Port, Status
 from solidgear.scene.tables import (
     BearingTable,
-    CutTable,
-    FeatureTable,
+    ChamferTable,
+    FilletTable,
     MassTable,
     PortTable,
     SceneTable,
@@ -95,21 +95,30 @@ def resolve(
                 masses[index] = _mass(heavy, table.attachment, datums)
             except SceneError as error:
                 problems.append(error.located(None, path=("mass", index, *error.path)))
-    features = []
-    for index, cut in enumerate(table.feature):
+    features, cut_rows, blends, blend_rows = [], [], [], []
+    for index, entry in enumerate(table.feature):
         # a datum that is missing was reported before
-        if getattr(cut, "from_", None) in (None, *datums):
+        if isinstance(entry, FilletTable | ChamferTable):
+            if entry.at in datums:
+                blends.append(blend_of(entry, index, datums))
+                blend_rows.append(index)
+        elif getattr(entry, "from_", None) in (None, *datums):
             try:
-                features.append(_feature(cut, index, datums))
+                features.append(feature_of(entry, index, datums))
+                cut_rows.append(index)
             except SceneError as error:
                 problems += error.problems
+    stations = [s for s in (port, *bearings.values(), *masses.values()) if s is not None]
+    seated = [s for s in stations if getattr(s, "on", None) is None]
+    of_edges = blend_problems(segments, blends, seated, features)
     whole = len(bearings) == len(numbers) and table.port is not None
     problems += [
         one.located(None, path=_file_path(one.path, table, owner))
         for one in (
             *station_problems(segments, port, bearings, masses),
             *(mass_problems(port, bearings, masses) if whole else ()),
-            *feature_problems(segments, features),
+            *_of_rows(feature_problems(segments, features), cut_rows),
+            *_of_rows(of_edges, blend_rows),
         )
     ]
     if problems:
@@ -125,10 +134,18 @@ def resolve(
         masses=tuple(masses.values()),
         features=tuple(features),
         body=part.body if part is not None else None,
+        blends=tuple(blends),
         housing_axial=table.housing.axial if table.housing else None,
         load=table.load,
         ask=table.ask,
     )
+
+
+def _of_rows(problems: Iterable[SceneError], rows: Sequence[int]) -> Iterator[SceneError]:
+    """Problems of a list with the number of each entry among the [[feature]] of the file."""
+    for one in problems:
+        rest = (rows[one.path[1]], *one.path[2:]) if one.path[1:] else ()
+        yield one.located(None, path=(one.path[0], *rest))
 
 
 def _lay_out(table: SceneTable, problems: list[SceneError]):
@@ -275,29 +292,6 @@ def _mass(item: MassTable, attachment: Attachment, datums: dict[str, float]) -> 
     return PointMass(name=item.name, mass=item.mass, on=item.on, **place, **given)
 
 
-_FEATURES: dict[str, Any] = {
-    "keyway": Keyway,
-    "flat": Flat,
-    "cross_hole": CrossHole,
-    "teeth": Teeth,
-    "spline": Spline,
-    "bolt_circle": BoltCircle,
-}
-
-
-def _feature(item: FeatureTable, index: int, datums: dict[str, float]) -> Feature:
-    given = item.model_dump(exclude={"name", "kind", "from_", "position"}, exclude_none=True)
-    if isinstance(item, CutTable):
-        # along the segment, unless another datum is given
-        given["y"] = datums.get(item.from_ or f"{item.segment}.start", 0.0) + item.position
-    name = item.name or f"{item.kind.replace('_', ' ')} {index + 1}"
-    try:
-        return _FEATURES[item.kind](name=name, **given)
-    except SceneError as error:
-        found = [one.located(None, path=("feature", index, *one.path)) for one in error.problems]
-        raise SceneError.of(found) from None
-
-
 def _port(
     item: PortTable,
     attachment: Attachment,
@@ -357,6 +351,10 @@ def _file_path(path: tuple, table: SceneTable, owner: Sequence[int] | None) -> t
             return ("mass", index, {"y": "position"}.get(key, key))
         case ("features", index, key):
             return ("feature", index, {"y": "position"}.get(key, key))
+        case ("blends", index, key):
+            return ("feature", index, {"y": "at"}.get(key, key))
+        case ("features" | "blends",):
+            return ("feature",)
         case ("port", "y"):
             return ("port", "at" if table.port.at is not None else "position")
         case ("port", "lo" | "hi"):

@@ -6,7 +6,7 @@ from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any, Protocol
 
 if TYPE_CHECKING:
-    from solidgear.scene import Bearing, PointMass, Port, Segment
+    from solidgear.scene import Bearing, Corner, PointMass, Port, Segment
 
 
 class Shaft(Protocol):
@@ -22,6 +22,10 @@ class Shaft(Protocol):
     @property
     def stations(self) -> tuple[Port | Bearing | PointMass, ...]:
         """What is attached, the port first; each has name, y, lo, hi (m) and attachment."""
+
+    @property
+    def corners(self) -> tuple[Corner, ...]:
+        """Edges with fillets and chamfers."""
 
     @property
     def length(self) -> float:

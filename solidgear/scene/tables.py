@@ -8,6 +8,7 @@ from pydantic import AfterValidator, BeforeValidator, Field, model_validator
 
 from solidgear.errors import SceneError
 from solidgear.scene.bearing_stiffness import stiffness_matrix
+from solidgear.scene.blends import Edge, Surface, slope
 from solidgear.scene.body_file import BodyTable, SeatTable
 from solidgear.scene.catalogue import BearingLoad, Catalogue
 from solidgear.scene.materials import by_name
@@ -247,10 +248,53 @@ class _BoltCircleTable(_FeatureTable):
     side: Literal["start", "end"] = "start"
 
 
+class _BlendTable(Table):
+    """A [[feature]] at an edge, its datum not yet resolved."""
+
+    name: Name | None = None
+    at: str
+    surface: Surface = "outer"
+    edge: Edge | None = None
+
+
+class FilletTable(_BlendTable):
+    """A fillet."""
+
+    kind: Literal["fillet"]
+    radius: PositiveLength
+
+
+class ChamferTable(_BlendTable):
+    """A chamfer."""
+
+    kind: Literal["chamfer"]
+    length: PositiveLength
+    angle: Any = None
+
+    @model_validator(mode="after")
+    def _angle(self):
+        if self.angle is not None:
+            try:
+                slope(self.angle)
+            except SceneError as error:
+                raise SceneError(error.reason, path=("angle",), value=error.value) from None
+        return self
+
+
 FeatureTable = (
     _KeywayTable | _FlatTable | _CrossHoleTable | _TeethTable | _SplineTable | _BoltCircleTable
 )
-FEATURES = ("keyway", "flat", "cross_hole", "teeth", "spline", "bolt_circle")
+BlendTable = FilletTable | ChamferTable
+FEATURES = (
+    "keyway",
+    "flat",
+    "cross_hole",
+    "teeth",
+    "spline",
+    "bolt_circle",
+    "fillet",
+    "chamfer",
+)
 
 
 class SceneTable(Model):
@@ -264,7 +308,7 @@ class SceneTable(Model):
     segment: list[Annotated[Cylinder | Cone | BevelHead, Field(discriminator="kind")]]
     bearing: list[BearingTable] = []
     mass: list[MassTable] = []
-    feature: list[Annotated[FeatureTable, Field(discriminator="kind")]] = []
+    feature: list[Annotated[FeatureTable | BlendTable, Field(discriminator="kind")]] = []
     housing: _Housing | None = None
     port: PortTable
     load: BearingLoad | None = None

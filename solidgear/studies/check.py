@@ -13,7 +13,7 @@ from solidgear.evidence.study import Solution
 from solidgear.fidelity.ladder import LADDER
 from solidgear.fidelity.rung import BEAM, LUMPED, SOLID
 from solidgear.machine.threads import pinned
-from solidgear.meshing.quality import mass_properties
+from solidgear.meshing.closed_form import mass_properties
 from solidgear.scene.shaft import named, resolved
 from solidgear.studies.guards import GUARDS, LEVELS, Notice, Probe
 from solidgear.studies.guards.notice import beams, everything
@@ -234,7 +234,8 @@ def _beyond_the_segments(scene: Scene) -> Iterator[Notice]:
 
 def _of_the_body(scene: Scene, body: Body) -> Iterator[Notice]:
     """Mass and inertia against the closed form, and no stiffness against rigid motions."""
-    exact, matrix, own = mass_properties(scene.segments), body.mass_matrix(), (body.fidelity,)
+    exact = mass_properties(scene.segments, scene.corners)
+    matrix, own = body.mass_matrix(), (body.fidelity,)
     # of what is cut there is no closed form; of a part there is what its file says
     closed = [("mass", matrix[0, 0], exact.mass), ("polar inertia", matrix[4, 4], exact.iyy)]
     where, off = "closed form", "the closed form"

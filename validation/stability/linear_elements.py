@@ -13,7 +13,7 @@ from __future__ import annotations
 import numpy as np
 
 import solidgear as sg
-from solidgear.meshing.quality import mass_properties
+from solidgear.meshing.closed_form import mass_properties
 from solidgear.scene import Bearing, Port, Scene, Segment
 from validation.stability.frame import Finding, crossing, main
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from solidgear.studies.guards import data, elements, models
+from solidgear.studies.guards import data, edges, elements, models
 from solidgear.studies.guards.notice import LEVELS, Notice, Notices
 from solidgear.studies.guards.probe import Probe
 
@@ -27,6 +27,7 @@ GUARDS: dict[str, Callable[[Probe], Notices]] = {
         models.beam_against_solid,
         models.slenderness,
         models.shoulder,
+        edges.fillets,
         models.disc_head,
         models.thin_joint,
         models.point_beyond_surface,

@@ -125,10 +125,11 @@ def shoulder(probe: Probe) -> Notices:
             continue
         missing = float(np.interp(thick / thin, MISSING[:, 0], MISSING[:, 1]))
         lacking = float(np.interp(thick / thin, STEPS[:, 0], STEPS[:, 1]))
+        sharp = f"(sharpest corner {degrees:.0f} degrees)" if degrees > 180 else "(with its fillet)"
         yield Notice(
             "caution",
             stiff,
-            f"shoulder between {a.name!r} and {b.name!r} at y = {1e3 * b.y0:.6g} mm (sharpest corner {degrees:.0f} degrees), ratio of diameters {thick / thin:.2f}: a beam lacks "
+            f"shoulder between {a.name!r} and {b.name!r} at y = {1e3 * b.y0:.6g} mm {sharp}, ratio of diameters {thick / thin:.2f}: a beam lacks "
             f"{2e3 * thin * missing:.2g} mm of thin shaft, {100 * lacking:.1f} % of the deflection of an overhang of one diameter; 1 % is passed at {STEP:g}, 5 % at {STEEP:g}; "
             "use the harmonic solid, or the beam's option shoulder",
         )

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 
 from solidgear.fidelity.ladder import LADDER
 from solidgear.fidelity.rung import CYCLIC
-from solidgear.meshing.quality import mass_properties
+from solidgear.meshing.closed_form import mass_properties
 from solidgear.meshing.teeth import lacking
 from solidgear.scene.cyclic_features import Spline, Teeth
 from solidgear.scene.shaft import named

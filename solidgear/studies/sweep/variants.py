@@ -9,7 +9,7 @@ import numpy as np
 
 from solidgear.body import Supports, as_supports
 from solidgear.errors import SceneError, SolidgearError
-from solidgear.scene import Bearing, Feature, PointMass, Port, Scene, Segment
+from solidgear.scene import Bearing, Corner, Feature, PointMass, Port, Scene, Segment
 from solidgear.scene.bearing_stiffness import STIFFNESS_NAMES
 from solidgear.scene.body_file import BodyFile
 from solidgear.studies.sweep.vary import Axis
@@ -26,6 +26,7 @@ class SeatedShaft:
     stations: tuple[Port | Bearing | PointMass, ...]
     features: tuple[Feature, ...] = ()
     body: BodyFile | None = None
+    corners: tuple[Corner, ...] = ()
 
     @property
     def plain(self) -> SeatedShaft:
@@ -140,6 +141,7 @@ class Variants:
             (self.scene.port, *ordered, *own),
             self.scene.features,
             self.scene.body,
+            self.scene.corners,
         )
 
 

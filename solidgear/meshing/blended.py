@@ -1,0 +1,393 @@
+"""Quadrilaterals of the meridian of a shaft, with its fillets and chamfers.
+
+Without those every cell lies between two mesh lines and two ring lines.  Next to an edge that has
+one a block of k x k cells (2k x 2k at a rim) is exchanged:
+
+- at a root the block becomes two, which meet from its inner corner Q to the middle M of the
+  outline; one leans on the plane face, the other on the cylinder;
+- at a rim the outermost quarter of the block is left out and its neighbours are joined from the
+  middle of the block to M.
+
+So a line that runs along a face turns and runs on along the cylinder.  All corners of cells at the
+outline are right angles (a chamfer: 45 to 135 degrees); the two at Q are near 45 degrees.
+
+Hierarchical edge functions carry no sign: those of the edge from Q to M are odd for one of the two
+cells where the face lies towards smaller y (`Cell.flip`).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from solidgear.meshing.layout import Layout
+
+if TYPE_CHECKING:
+    from solidgear.meshing.blocks import Joint
+    from solidgear.scene.blends import Corner
+    from solidgear.scene.shaft import Shaft
+
+#: local edges, in the numbering of the corners of a cell
+LOW, OUT, HIGH, IN = range(4)
+#: ends of the local edges, in the sense of its local coordinate
+ENDS = ((0, 1), (1, 2), (3, 2), (0, 3))
+
+
+@dataclass
+class Cell:
+    """A quadrilateral: inner-low, outer-low, outer-high, inner-high.
+
+    Attributes
+    ----------
+    ids : tuple of int
+        Of its corners; those of ring lines are ``line * ring lines + ring``.
+    segment : int
+    ring : int
+        Its place in its segment from the inside, -1 in a block.
+    count : int
+        Rings of cells of that segment.
+    arc : (int, float, float) or None
+        A local edge that is an arc, and (r, y) of its middle, m.
+    flip : int or None
+        A local edge whose odd functions have the other sign.
+    halfway : (float, float) or None
+        Radii of its inner and outer side in the middle of its row, where that is straight, m.
+    """
+
+    ids: tuple[int, int, int, int]
+    segment: int
+    ring: int = -1
+    count: int = 0
+    arc: tuple[int, float, float] | None = None
+    flip: int | None = None
+    halfway: tuple[float, float] | None = None
+
+
+@dataclass
+class Quadrilaterals:
+    """Cells in the order of their lines and rings, those of roots last; (r, y) of their corners."""
+
+    cells: list[Cell]
+    places: dict[int, tuple[float, float]]
+
+
+def quadrilaterals(scene: Shaft, plan: Layout) -> Quadrilaterals:
+    """The cells of a layout.
+
+    Parameters
+    ----------
+    scene : Scene
+    plan : Layout
+
+    Returns
+    -------
+    Quadrilaterals
+    """
+    work = _Work(scene, plan)
+    work.ring_lines()
+    for joint in plan.joints:
+        for corner in joint.corners:
+            (work.root if corner.root else work.rim)(joint, corner)
+    return Quadrilaterals(list(work.cells.values()), work.places)
+
+
+class _Work:
+    def __init__(self, scene, plan):
+        self.scene, self.plan = scene, plan
+        self.cells: dict = {}
+        self.places: dict[int, tuple[float, float]] = {}
+        self.numbers = {k: plan.ring_numbers(k) for k in range(len(scene.segments))}
+        self.fresh = len(plan.y) * plan.ring_lines
+
+    def id(self, line: int, ring: int) -> int:
+        return int(line * self.plan.ring_lines + ring)
+
+    def new(self, place) -> int:
+        self.fresh += 1
+        self.places[self.fresh] = (float(place[0]), float(place[1]))
+        return self.fresh
+
+    def ring_lines(self) -> None:
+        """All cells between lines and rings, as if there were no blocks."""
+        for row, seg in enumerate(self.plan.segment):
+            number = self.numbers[seg]
+            ends = [self.line(seg, row + k) for k in (0, 1)]
+            middle = self._halfway(seg, row, ends)
+            for ring in range(len(number) - 1):
+                corners = ((0, 0), (0, 1), (1, 1), (1, 0))
+                a, b, c, d = (self.id(row + k, number[ring + m]) for k, m in corners)
+                ids = (a, b, c, d)
+                for id_, (k, m) in zip(ids, corners):
+                    self.places.setdefault(id_, (ends[k][0][m + ring], ends[k][1][m + ring]))
+                cell = Cell(ids, seg, ring, len(number) - 1)
+                cell.halfway = None if middle is None else (middle[ring], middle[ring + 1])
+                self.cells[row, int(number[ring])] = cell
+
+    def _halfway(self, seg: int, row: int, ends) -> np.ndarray | None:
+        """Radii in the middle of a row between two straight lines; None between others."""
+        low, high = self.plan.y[row : row + 2]
+        if not (np.all(ends[0][1] == low) and np.all(ends[1][1] == high)):
+            return None
+        segment = self.scene.segments[seg]
+        return self.plan.rings(seg, (segment.y0, segment.y1), (low + high) / 2)
+
+    def line(self, seg: int, line: int) -> tuple[np.ndarray, np.ndarray]:
+        """r and y of the rings of a segment on a line."""
+        segment, nominal = self.scene.segments[seg], float(self.plan.y[line])
+        span = (segment.y0, segment.y1)
+        r = self.plan.rings(seg, span, nominal)
+        for joint in self.plan.joints:
+            for zone in (joint.low, joint.high):
+                away = (line - joint.line) * zone.side
+                if not (0 <= away <= zone.rows or (away == 0 and zone.skip)):
+                    continue
+                if seg != (joint.index - 1 if zone.side < 0 else joint.index):
+                    continue
+                y = self._zone_line(joint, zone, seg, away, r)
+                if away:
+                    y_in = np.clip(y, *span)
+                    local = (self._zone_rings(joint, seg, span, at) for at in y_in)
+                    r = np.array([rings[k] for k, rings in enumerate(local)])
+                return r, y
+        return r, np.full(len(r), nominal)
+
+    def _zone_rings(self, joint: Joint, seg: int, span, y: float) -> np.ndarray:
+        """Radii of the rings of a segment beside a joint: at the block of a root as on the joint,
+        so that it is square; towards the surfaces as they run.
+        """
+        here = self.plan.rings(seg, span, y)
+        kept = set()
+        for corner in joint.corners:
+            if corner.root and joint.thick(corner) == seg:
+                at, k = self._boundary(corner, seg), joint.cells(corner)
+                kept |= {at, at - k if corner.out > 0 else at + k}
+        if not kept:
+            return here
+        there = self.plan.rings(seg, span, joint.y)
+        inner = sorted(kept - {0, len(here) - 1})
+        known = [there[0], *there[inner], there[-1]]
+        return np.interp(there, known, [here[0], *there[inner], here[-1]])
+
+    def _zone_line(self, joint: Joint, zone, seg, away, r) -> np.ndarray:
+        """y of a line of a zone, ``away`` lines from the joint."""
+        own = np.where(self._common(joint, seg), joint.y + joint.shift(r), joint.y)
+        if not zone.rows:
+            return own
+        end = joint.y + zone.side * zone.depth_at(r)
+        t = away / zone.rows
+        return (1 - t) * own + t * end
+
+    def _common(self, joint: Joint, seg: int) -> np.ndarray:
+        """Rings of a segment that the line of a joint crosses inside material on both sides; those
+        between the two ends of a root's block belong to the block.
+        """
+        number = self.numbers[seg]
+        common = np.ones(len(number), bool)
+        for corner in joint.corners:
+            if corner.root and joint.thick(corner) == seg:
+                boundary, cells = self._boundary(corner, seg), joint.cells(corner)
+                at = np.arange(len(number))
+                common &= (at <= boundary - cells) if corner.out > 0 else (at >= boundary + cells)
+        return common
+
+    def _boundary(self, corner: Corner, seg: int) -> int:
+        """Place among the rings of a segment of the surface that the outline runs into."""
+        owner = self.numbers[corner.owner]
+        number = owner[-1] if corner.surface == "outer" else owner[0]
+        return int(np.flatnonzero(self.numbers[seg] == number)[0])
+
+    def _frame(self, joint: Joint, corner: Corner, size: int) -> _Frame:
+        """Local lines and rings 0 .. size of a block, the edge being at (size, size)."""
+        seg = joint.thick(corner)
+        boundary = self._boundary(corner, seg)
+        up = -joint.block_side(corner)
+        out = 1 if corner.surface == "outer" else -1
+        lines = [joint.line - up * (size - i) for i in range(size + 1)]
+        at = [boundary - out * (size - j) for j in range(size + 1)]
+        return _Frame(seg, lines, [int(self.numbers[seg][k]) for k in at], up, out)
+
+    def _take(self, frame: _Frame, rows: Iterable[int], rings: Iterable[int]) -> None:
+        """Remove cells of a block."""
+        for i in rows:
+            for j in rings:
+                del self.cells[frame.key(i, j)]
+
+    def _place_all(self, ids: list[list[int]]) -> None:
+        """Corners inside a block from its sides (transfinite interpolation)."""
+        n, m = len(ids) - 1, len(ids[0]) - 1
+        p = {k: np.array(self.places[k]) for row in (ids[0], ids[-1]) for k in row}
+        p |= {row[k]: np.array(self.places[row[k]]) for row in ids for k in (0, -1)}
+        for i in range(1, n):
+            for j in range(1, m):
+                u, v = i / n, j / m
+                sides = (1 - u) * p[ids[0][j]] + u * p[ids[n][j]]
+                sides = sides + (1 - v) * p[ids[i][0]] + v * p[ids[i][m]]
+                flat = (1 - u) * ((1 - v) * p[ids[0][0]] + v * p[ids[0][m]])
+                flat = flat + u * ((1 - v) * p[ids[n][0]] + v * p[ids[n][m]])
+                self.places[ids[i][j]] = tuple(sides - flat)
+
+    def root(self, joint: Joint, corner: Corner) -> None:
+        """Exchange the block at a root for two."""
+        k = joint.cells(corner)
+        frame = self._frame(joint, corner, k)
+        self._take(frame, range(k), range(k))
+        tensor = [[self.id(line, ring) for ring in frame.rings] for line in frame.lines]
+        # beside the edge the line of the joint belongs to the cylinder
+        r, y = self.line(corner.owner, joint.line)
+        inside = self._boundary(corner, corner.owner)
+        strip = self.plan.divided(corner.owner)[-1 if frame.out > 0 else 0]
+        for depth in range(1, len(strip)):
+            at = inside - frame.out * depth
+            ring = int(self.numbers[corner.owner][at])
+            self.places[self.id(joint.line, ring)] = (r[at], y[at])
+        q = np.array(self.places[tensor[0][0]])
+        middle = np.array(corner.middle)
+        diagonal = [tensor[0][0]] + [self.new(q + (middle - q) * i / k) for i in range(1, k)]
+        diagonal.append(self.new(middle))
+        outline = _Outline(corner)
+        # on the plane face: rows as before, rings up to the outline
+        on_face = self._grid(k)
+        for i in range(k + 1):
+            on_face[i][0], on_face[i][k] = diagonal[i], tensor[i][k]
+        for j in range(1, k):
+            on_face[0][j] = tensor[0][j]
+            on_face[k][j] = self.new(outline.at(0.5 * (1 - j / k)))
+        # on the cylinder: what were rows end at the outline
+        on_cylinder = self._grid(k)
+        for i in range(k + 1):
+            on_cylinder[0][i], on_cylinder[k][i] = diagonal[i], tensor[k][i]
+            on_cylinder[i][0] = tensor[i][0]
+        for i in range(1, k):
+            on_cylinder[i][k] = self.new(outline.at(0.5 + 0.5 * i / k))
+        # the edge itself has split in two: the cylinder keeps its number, the face has a new one
+        face = self.new(corner.on_face)
+        on_face[k][k] = face
+        self.places[tensor[k][k]] = corner.on_cylinder
+        on_cylinder[k][k] = tensor[k][k]
+        on_cylinder[0][k] = diagonal[k]
+        self._rename(joint, frame, tensor[k][k], face)
+        for ids in (on_face, on_cylinder):
+            for i in range(1, k):
+                for j in range(1, k):
+                    ids[i][j] = self.new((0.0, 0.0))
+            self._place_all(ids)
+        low_high = (HIGH if frame.up > 0 else LOW), (LOW if frame.up > 0 else HIGH)
+        self._fill(frame, on_face, outline, arc=(k - 1, None, low_high[0]))
+        flip = low_high[1] if frame.up != frame.out else None
+        side = OUT if frame.out > 0 else IN
+        self._fill(frame, on_cylinder, outline, arc=(None, k - 1, side), flip=(0, None, flip))
+
+    def rim(self, joint: Joint, corner: Corner) -> None:
+        """Leave out the outermost quarter of the block at a rim and join its neighbours."""
+        k = joint.zone(joint.block_side(corner)).rows // 2
+        frame = self._frame(joint, corner, 2 * k)
+        tensor = [[self.id(line, ring) for ring in frame.rings] for line in frame.lines]
+        self._take(frame, range(k, 2 * k), range(k, 2 * k))
+        outline = _Outline(corner)
+        ids = [list(row) for row in tensor]
+        for m in range(k + 1):
+            ids[k][k + m] = tensor[k + m][k]
+        middle = np.array(corner.middle)
+        self.places[tensor[2 * k][0]] = corner.on_face
+        self.places[tensor[0][2 * k]] = corner.on_cylinder
+        self.places[ids[2 * k][k]] = tuple(middle)
+        a, b = (np.array(self.places[x]) for x in (tensor[k][0], tensor[0][k]))
+        inner = (a + b + middle) / 3
+        self.places[tensor[k][k]] = tuple(inner)
+        for m in range(1, k):
+            self.places[ids[2 * k][m]] = outline.at(0.5 * m / k)
+            self.places[ids[m][2 * k]] = outline.at(1 - 0.5 * m / k)
+            self.places[ids[k + m][k]] = tuple(inner + (middle - inner) * m / k)
+            self.places[ids[k][m]] = tuple(a + (inner - a) * m / k)
+            self.places[ids[m][k]] = tuple(b + (inner - b) * m / k)
+        patches = (
+            [row[: k + 1] for row in ids[: k + 1]],
+            [row[: k + 1] for row in ids[k:]],
+            [row[k:] for row in ids[: k + 1]],
+        )
+        for patch in patches:
+            self._place_all(patch)
+        end = HIGH if frame.up > 0 else LOW
+        side = OUT if frame.out > 0 else IN
+        for i in range(2 * k):
+            for j in range(2 * k):
+                if i >= k and j >= k:
+                    continue
+                cell = self.cells[frame.key(i, j)]
+                cell.ring = -1 if cell.ring != 0 or j >= k else cell.ring
+                cell.ids, cell.halfway = frame.corners(ids, i, j), None
+                if corner.centre:
+                    if i == 2 * k - 1:
+                        cell.arc = (end, *corner.centre)
+                    if j == 2 * k - 1:
+                        cell.arc = (side, *corner.centre)
+                if i == k - 1 and j >= k and frame.up != frame.out:
+                    cell.flip = end
+
+    @staticmethod
+    def _grid(k: int) -> list[list[int]]:
+        return [[-1] * (k + 1) for _ in range(k + 1)]
+
+    def _rename(self, joint, frame, old: int, new: int) -> None:
+        """Give the cells of the face their own corner where the cylinder has moved away."""
+        row = joint.line - 1 if frame.up > 0 else joint.line
+        for (at, _), cell in self.cells.items():
+            if at == row:
+                cell.ids = tuple(new if one == old else one for one in cell.ids)
+
+    def _fill(self, frame, ids, outline, arc, flip=(None, None, None)) -> None:
+        """Cells of a block that is not one of lines and rings."""
+        k = len(ids) - 1
+        for i in range(k):
+            for j in range(k):
+                cell = Cell(frame.corners(ids, i, j), frame.segment)
+                if outline.centre and (i == arc[0] or j == arc[1]):
+                    cell.arc = (arc[2], *outline.centre)
+                if i == flip[0]:
+                    cell.flip = flip[2]
+                self.fresh += 1
+                self.cells[len(self.plan.y), self.fresh] = cell
+
+
+@dataclass
+class _Frame:
+    """A block seen from its edge: local lines and rings run towards it."""
+
+    segment: int
+    lines: list[int]
+    rings: list[int]
+    up: int
+    out: int
+
+    def key(self, i: int, j: int) -> tuple[int, int]:
+        """Of the cell between local lines i, i + 1 and rings j, j + 1."""
+        row = self.lines[i] if self.up > 0 else self.lines[i + 1]
+        return row, self.rings[j] if self.out > 0 else self.rings[j + 1]
+
+    def corners(self, ids, i: int, j: int) -> tuple[int, int, int, int]:
+        """Of that cell, in the order of the meridian."""
+        found = []
+        for a, b in ((0, 0), (1, 0), (1, 1), (0, 1)):
+            at = i + (b if self.up > 0 else 1 - b), j + (a if self.out > 0 else 1 - a)
+            found.append(ids[at[0]][at[1]])
+        return tuple(found)
+
+
+class _Outline:
+    """The outline from the face (0) to the cylinder (1)."""
+
+    def __init__(self, corner: Corner):
+        self.corner, self.centre = corner, corner.centre
+
+    def at(self, t: float) -> tuple[float, float]:
+        """(r, y) at a share of its length."""
+        c = self.corner
+        if c.centre is None:
+            a, b = np.array(c.on_face), np.array(c.on_cylinder)
+            return tuple(a + t * (b - a))
+        turn = np.pi / 2 * t
+        r = c.centre[0] - c.out * c.radial * np.sin(turn)
+        return r, c.centre[1] - c.side * c.radial * np.cos(turn)

@@ -1,0 +1,143 @@
+"""Whether fillets and chamfers fit their shaft: every problem in a sentence of its own."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from typing import Any
+
+from solidgear.errors import SceneError
+from solidgear.scene.blends import Blend, Corner, radius_of
+from solidgear.scene.parts import Segment
+from solidgear.scene.rules import TOUCH
+
+#: a shaft carries no more of them
+MOST_BLENDS = 40
+#: least size over the radius of the edge: smaller ones ask for meshes without end
+SMALLEST = 2e-3
+#: of a plane face, and of the cylinder between two edges, that may go to fillets and chamfers
+MOST_OF_FACE, MOST_OF_LENGTH = 0.95, 0.95
+
+
+def blend_problems(
+    segments: Sequence[Segment],
+    blends: Sequence[Blend],
+    stations: Sequence[Any] = (),
+    features: Sequence[Any] = (),
+) -> Iterator[SceneError]:
+    """Fillets and chamfers that do not fit their shaft.
+
+    Parameters
+    ----------
+    segments : sequence of Segment
+    blends : sequence of Fillet or Chamfer
+    stations : sequence
+        What sits on the shaft: name, y, lo and hi each.
+    features : sequence of Keyway, Flat or CrossHole
+
+    Yields
+    ------
+    SceneError
+        One for each problem, with the path of a scene.
+    """
+    if len(blends) > MOST_BLENDS:
+        reason = (
+            f"{len(blends)} fillets and chamfers are more than the {MOST_BLENDS} a shaft may have"
+        )
+        yield SceneError(reason, path=("blends",))
+        return
+    names = {f.name for f in features}
+    before: list[tuple[Blend, Corner]] = []
+    for i, blend in enumerate(blends):
+        if blend.name in names:
+            yield SceneError(
+                "another feature has this name; each needs its own", path=("blends", i, "name")
+            )
+        names.add(blend.name)
+        try:
+            corner = blend.corner(segments)
+        except SceneError as error:
+            yield error.located(None, path=("blends", i, *error.path))
+            continue
+        key, reason = _misfit(blend, corner, segments, before, stations, features)
+        if reason:
+            yield SceneError(reason, path=("blends", i, key))
+        before.append((blend, corner))
+
+
+def _misfit(blend, corner, segments, before, stations, features) -> tuple[str, str]:
+    """Field and reason of the first thing that is wrong with a fillet or chamfer, or two empty
+    texts.
+    """
+    here, what, key = segments[corner.owner], blend.what, blend.size_key
+    for other, at in before:
+        if (at.y, at.r, at.surface) == (corner.y, corner.r, corner.surface):
+            return "y", f'this edge has "{other.name}" already'
+    if min(corner.axial, corner.radial) < SMALLEST * corner.r:
+        return key, (
+            f"a {what} under {SMALLEST:g} of the radius, {corner.r:.6g} m, is no {what}: "
+            "leave it out, or look at the units"
+        )
+    face = _face_height(corner, segments)
+    if corner.radial > face + TOUCH:
+        return key, f"a {what} of {corner.radial:.6g} m does not fit the face of {face:.6g} m"
+    same_face = [at for _, at in before if at.y == corner.y and _same_face(at, corner, segments)]
+    if corner.radial + sum(at.radial for at in same_face) > MOST_OF_FACE * face:
+        beside = f' beside "{same_face[0].name}"' if same_face else ""
+        return key, (
+            f"a {what} of {corner.radial:.6g} m{beside} leaves less than a twentieth of the face "
+            f"of {face:.6g} m"
+        )
+    if corner.axial > here.length / 2 + TOUCH:
+        return key, (
+            f'a {what} reaches {corner.axial:.6g} m along "{here.name}", beyond half its length of '
+            f"{here.length:.6g} m"
+        )
+    for other, at in before:
+        if (at.owner, at.surface) == (corner.owner, corner.surface) and (
+            at.axial + corner.axial > MOST_OF_LENGTH * here.length
+        ):
+            return key, (
+                f'with "{other.name}" at its other end nothing is left of the cylinder '
+                f'"{here.name}", {here.length:.6g} m long'
+            )
+    lo, hi = corner.span
+    reach = f"the {what} reaches from {lo:.6g} to {hi:.6g} m"
+    for s in stations:
+        if corner.surface == "outer" and min(s.hi, hi) - max(s.lo, lo) > TOUCH:
+            return key, (
+                f'{reach}, into the seat of "{s.name}" ({s.lo:.6g} to {s.hi:.6g} m), which must '
+                "stay a cylinder"
+            )
+        ends_inside = [y for y in (s.lo, s.hi) if lo + TOUCH < y < hi - TOUCH]
+        if ends_inside:
+            return key, (
+                f'{reach}, and the seat of "{s.name}" ends inside of that, at '
+                f"{ends_inside[0]:.6g} m; let it end elsewhere"
+            )
+        # the face itself is plane at the end of a shaft
+        at_end = abs(s.y - corner.y) <= TOUCH and corner.y in (0.0, segments[-1].y1)
+        if lo - TOUCH <= s.y <= hi + TOUCH and not at_end:
+            return key, (
+                f'{reach}, and "{s.name}" is at {s.y:.6g} m; put the one or the other elsewhere, '
+                "since no section there is plane"
+            )
+    for f in features:
+        first, last = f.span(segments)
+        if first < hi - TOUCH and lo + TOUCH < last:
+            return key, f'{reach}, into the {f.what} "{f.name}"'
+    return "", ""
+
+
+def _face_height(corner: Corner, segments: Sequence[Segment]) -> float:
+    """Of the plane face beside an edge, m."""
+    here = segments[corner.owner]
+    k = corner.owner + (0 if corner.side > 0 else 1)  # the joint
+    if k in (0, len(segments)):
+        return here.outer0 - here.inner0 if k == 0 else here.outer1 - here.inner1
+    low, high = segments[k - 1], segments[k]
+    return abs(radius_of(low, corner.surface, "1") - radius_of(high, corner.surface, "0"))
+
+
+def _same_face(a: Corner, b: Corner, segments: Sequence[Segment]) -> bool:
+    at_end = a.y <= TOUCH or a.y >= segments[-1].y1 - TOUCH
+    return at_end or a.surface == b.surface

@@ -1,0 +1,310 @@
+"""Fillets and chamfers at the edges of a shaft: it stays a body of revolution.
+
+An edge is a corner of the meridian (r, y).  At the root of a step material is added in the corner,
+at a rim it is taken away; either way the outline runs from a point on the plane face to a point on
+the cylinder beside it, along an arc or straight.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Annotated, Any, Literal, TypeAlias
+
+from pydantic import BeforeValidator
+
+from solidgear.errors import SceneError
+from solidgear.scene.parts import Model, Segment
+from solidgear.scene.rules import TOUCH
+from solidgear.scene.units import Position, PositiveLength, quantity
+
+Surface = Literal["outer", "bore"]
+Edge = Literal["root", "rim"]
+
+
+@dataclass(frozen=True)
+class Corner:
+    """An edge of a shaft with its fillet or chamfer, in plain floats.
+
+    Attributes
+    ----------
+    name, kind : str
+        Kind is fillet or chamfer.
+    y, r : float
+        Of the sharp edge, m.
+    surface : {'outer', 'bore'}
+    root : bool
+        Material is added; at a rim it is taken away.
+    owner : int
+        Segment whose cylinder the outline runs into.
+    side : int
+        +1 if that segment lies at larger y than the edge, -1 otherwise.
+    out : int
+        +1 if the plane face beside the edge lies at larger radius, -1 otherwise.
+    axial, radial : float
+        Extent along the shaft and across it, m.
+
+    Examples
+    --------
+    >>> corner = Corner("f", "fillet", 0.1, 0.02, "outer", True, 1, 1, 1, 0.004, 0.004)
+    >>> corner.on_face, corner.on_cylinder
+    ((0.024, 0.1), (0.02, 0.10400000000000001))
+    """
+
+    name: str
+    kind: str
+    y: float
+    r: float
+    surface: Surface
+    root: bool
+    owner: int
+    side: int
+    out: int
+    axial: float
+    radial: float
+
+    @property
+    def on_face(self) -> tuple[float, float]:
+        """(r, y) where the outline leaves the plane face, m."""
+        return self.r + self.out * self.radial, self.y
+
+    @property
+    def on_cylinder(self) -> tuple[float, float]:
+        """(r, y) where it meets the cylinder, m."""
+        return self.r, self.y + self.side * self.axial
+
+    @property
+    def centre(self) -> tuple[float, float] | None:
+        """(r, y) of the middle of the arc, m; None for a chamfer."""
+        return (self.on_face[0], self.on_cylinder[1]) if self.kind == "fillet" else None
+
+    @property
+    def middle(self) -> tuple[float, float]:
+        """(r, y) halfway along the outline, m."""
+        if self.centre is None:
+            (a, b), (c, d) = self.on_face, self.on_cylinder
+            return (a + c) / 2, (b + d) / 2
+        reach = self.radial / math.sqrt(2)
+        return self.centre[0] - self.out * reach, self.centre[1] - self.side * reach
+
+    @property
+    def span(self) -> tuple[float, float]:
+        """First and last y, m."""
+        ends = (self.y, self.on_cylinder[1])
+        return min(ends), max(ends)
+
+    def points(self, count: int = 9) -> list[tuple[float, float]]:
+        """(r, y) along the outline from the face to the cylinder, m."""
+        if self.centre is None:
+            return [self.on_face, self.on_cylinder]
+        # from the face (straight along the axis from the centre) to the cylinder (straight across)
+        turns = [math.pi / 2 * k / (count - 1) for k in range(count)]
+        (r, y), f = self.centre, self.radial
+        found = [(r - self.out * f * math.sin(t), y - self.side * f * math.cos(t)) for t in turns]
+        return [self.on_face, *found[1:-1], self.on_cylinder]
+
+
+class _Blend(Model):
+    """What fillets and chamfers have in common."""
+
+    name: str
+    y: Position
+    surface: Surface = "outer"
+    edge: Edge | None = None
+
+    @property
+    def what(self) -> str:
+        """Its kind in words."""
+        return getattr(self, "kind")  # noqa: B009  # of every subclass
+
+    @property
+    def extents(self) -> tuple[float, float]:
+        """Along the shaft and across, m."""
+        raise NotImplementedError
+
+    @property
+    def size_key(self) -> str:
+        """The field that gives its size."""
+        raise NotImplementedError
+
+    def corner(self, segments: Sequence[Segment]) -> Corner:
+        """Its edge on a shaft.
+
+        Parameters
+        ----------
+        segments : sequence of Segment
+
+        Raises
+        ------
+        SceneError
+            Where there is no such edge, or it cannot be rounded; the path is that of a field.
+        """
+        outer = self.surface == "outer"
+        i, low, high = self._place(segments)
+        before, after = (
+            radius_of(s, self.surface, end) if s else None for s, end in ((low, "1"), (high, "0"))
+        )
+        edge = self.edge
+        if before is None or after is None:
+            if edge == "root":
+                raise SceneError(
+                    "an end face has no root, only a rim; the root is that of a step",
+                    path=("edge",),
+                )
+            edge = "rim"
+            owner = i if low is None else i - 1
+        else:
+            if abs(before - after) <= 1e-9 * max(before, after):
+                what = "outer radius" if outer else "bore"
+                raise SceneError(
+                    f"the {what} does not jump at y = {self.y:.6g} m; a {self.what} sits at a step "
+                    "or at the edge of an end face",
+                    path=("y",),
+                )
+            edge = edge or "root"
+            # the root is on the surface that lies deeper in the material, the rim on the other
+            deeper_first = (before < after) == outer
+            owner = i - 1 if deeper_first == (edge == "root") else i
+        here = segments[owner]
+        radius = radius_of(here, self.surface, "0" if owner == i else "1")
+        if not radius:
+            raise SceneError(f'"{here.name}" has no bore there', path=("surface",))
+        if radius_of(here, self.surface, "0") != radius_of(here, self.surface, "1"):
+            raise SceneError(
+                f'"{here.name}" is a cone there; a {self.what} runs into a cylinder',
+                path=("y",),
+            )
+        if edge == "root" and low and high and low.material != high.material:
+            raise SceneError(
+                f'"{low.name}" and "{high.name}" are of two materials; a {self.what} at their '
+                "root would be of neither",
+                path=("y",),
+            )
+        axial, radial = self.extents
+        return Corner(
+            self.name,
+            self.what,
+            here.y0 if owner == i else here.y1,
+            radius,
+            self.surface,
+            edge == "root",
+            owner,
+            1 if owner == i else -1,
+            1 if (edge == "root") == outer else -1,
+            axial,
+            radial,
+        )
+
+    def _place(self, segments):
+        """Number of the segment that begins at the edge, and the segments on its two sides."""
+        ends = [0.0, *(s.y1 for s in segments)]
+        near = [k for k, y in enumerate(ends) if abs(y - self.y) <= TOUCH]
+        if not near:
+            raise SceneError(
+                f"no segment begins or ends at y = {self.y:.6g} m; a {self.what} sits at a step "
+                'or at the edge of an end face, such as "<segment>.end"',
+                path=("y",),
+            )
+        k = near[0]
+        low = segments[k - 1] if k else None
+        return k, low, segments[k] if k < len(segments) else None
+
+
+class Fillet(_Blend):
+    """A quarter of a circle at an edge.
+
+    Attributes
+    ----------
+    name : str
+    y : float
+        Place of the edge, m: a step, or an end face.
+    surface : {'outer', 'bore'}
+    edge : {'root', 'rim'} or None
+        Root adds material in the corner of a step, rim rounds off its edge; by default the root,
+        and the rim at an end face.
+    radius : float
+        m.
+
+    Raises
+    ------
+    SceneError
+        A radius that is not positive.
+
+    Examples
+    --------
+    >>> from solidgear.scene import Fillet
+    >>> Fillet(name="head fillet", y="68 mm", radius="4 mm").extents
+    (0.004, 0.004)
+    """
+
+    kind: Literal["fillet"] = "fillet"
+    radius: PositiveLength
+
+    @property
+    def extents(self) -> tuple[float, float]:
+        return self.radius, self.radius
+
+    @property
+    def size_key(self) -> str:
+        return "radius"
+
+
+def slope(value: Any) -> float:
+    """Angle of a chamfer to the axis, rad."""
+    angle = quantity(value, "angle")
+    if not math.radians(5) <= angle <= math.radians(85):
+        raise SceneError("the angle of a chamfer to the axis lies between 5 and 85 deg")
+    return angle
+
+
+class Chamfer(_Blend):
+    """A straight cut across an edge.
+
+    Attributes
+    ----------
+    name, y, surface, edge
+        As for :class:`Fillet`; a chamfer at a root fills the corner.
+    length : float
+        Along the shaft, m.
+    angle : float
+        To the axis, rad; 45 degrees by default.
+
+    Raises
+    ------
+    SceneError
+        A length that is not positive, or an angle outside 5 to 85 degrees.
+
+    Examples
+    --------
+    >>> from solidgear.scene import Chamfer
+    >>> [round(x, 6) for x in Chamfer(name="end", y=0.2, length="2 mm", angle="30 deg").extents]
+    [0.002, 0.001155]
+    """
+
+    kind: Literal["chamfer"] = "chamfer"
+    length: PositiveLength
+    angle: Annotated[float, BeforeValidator(slope)] = math.pi / 4
+
+    @property
+    def extents(self) -> tuple[float, float]:
+        tangent = 1.0 if self.angle == math.pi / 4 else math.tan(self.angle)
+        return self.length, self.length * tangent
+
+    @property
+    def size_key(self) -> str:
+        return "length"
+
+
+#: either of them
+Blend: TypeAlias = Fillet | Chamfer
+
+
+def corners_of_blends(segments: Sequence[Segment], blends: Sequence[Blend]) -> tuple[Corner, ...]:
+    """Edges with their fillets and chamfers; see :meth:`Fillet.corner`."""
+    return tuple(blend.corner(segments) for blend in blends)
+
+
+def radius_of(segment: Segment, surface: Surface, end: str) -> float:
+    """Radius of a surface of a segment at its end "0" or "1", m."""
+    return getattr(segment, ("outer" if surface == "outer" else "inner") + end)

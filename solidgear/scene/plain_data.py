@@ -1,0 +1,48 @@
+"""A scene as plain data, everything resolved: what reports read and what identifies a scene."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from solidgear.scene.bearing_stiffness import stiffness_entries
+
+if TYPE_CHECKING:
+    from solidgear.scene.model import Scene
+
+
+def plain_data(scene: Scene) -> dict[str, Any]:
+    """See :meth:`Scene.as_dict`.
+
+    Parameters
+    ----------
+    scene : Scene
+    """
+    data = scene.model_dump(mode="json")
+    for key in ("masses", "features", "blends"):
+        if not data[key]:
+            del data[key]
+    for row, corner in zip(data.get("blends", ()), scene.corners):
+        lo, hi = corner.span
+        row |= {"edge": "root" if corner.root else "rim", "lo": lo, "hi": hi}
+        row |= {"corner": [corner.r, corner.y], "outline": [list(p) for p in corner.points()]}
+        row |= {"owner": scene.segments[corner.owner].name}
+    for row, segment in zip(data["segments"], scene.segments):
+        row["length"] = segment.length
+    for row, bearing in zip(data["bearings"], scene.bearings):
+        row |= {
+            "lo": bearing.lo,
+            "hi": bearing.hi,
+            "stiffness": bearing.stiffness.tolist(),
+            "entries": stiffness_entries(row.pop("matrix")),
+        }
+        for key in ("catalogue", "hold", "face"):
+            if row[key] is None:
+                del row[key]
+    for key in ("load", "body"):
+        if data[key] is None:
+            del data[key]
+    for row, mass in zip(data.get("masses", ()), scene.masses):
+        carrier = next(s for s in scene.stations if s.name == mass.station)
+        row |= {"y": carrier.y, "lo": carrier.lo, "hi": carrier.hi}
+        row |= {"attachment": carrier.attachment, "matrix": mass.matrix.tolist()}
+    return data | {"length": scene.length, "steps": list(scene.steps)}

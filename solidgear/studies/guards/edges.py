@@ -1,0 +1,42 @@
+"""What a model leaves out at fillets and chamfers."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from solidgear.studies.guards.notice import Notice, Notices, beams
+from solidgear.studies.guards.probe import Probe
+
+# fillets.py: radius over the smaller diameter of a shoulder of 134 on 90 mm, then what a fillet takes
+# from the compliances of a point 15 mm before it in deflection and in tilt, and adds to first bending
+FILLETS = np.array(
+    [
+        [0.0, 0.0, 0.0, 0.0],
+        [0.02, 0.0021, 0.0074, 0.0012],
+        [0.05, 0.0066, 0.0209, 0.0034],
+        [0.10, 0.0164, 0.0448, 0.0078],
+    ]
+)
+NOTICED, LARGE = 0.02, 0.07
+
+
+def fillets(probe: Probe) -> Notices:
+    """Fillets at roots that a beam leaves out, from where a thousandth is at stake."""
+    segments = probe.scene.segments
+    for corner in probe.scene.corners:
+        here = segments[corner.owner]
+        ratio = min(corner.axial, corner.radial) / (2 * corner.r)
+        if not corner.root or corner.surface != "outer" or ratio < NOTICED:
+            continue
+        soft, tilt, rise = (
+            100 * float(np.interp(ratio, FILLETS[:, 0], column)) for column in FILLETS.T[1:]
+        )
+        yield Notice(
+            "caution" if ratio >= LARGE else "fact",
+            beams(),
+            f'a beam leaves out the {corner.kind} "{corner.name}" at the shoulder of '
+            f"{here.name!r}, y = {1e3 * corner.y:.6g} mm, {ratio:.2g} of the diameter: on a short "
+            f"overhang such a fillet takes {soft:.1g} % of the deflection and {tilt:.1g} % of the "
+            f"tilt and adds {rise:.1g} % to first bending; a thousandth is passed at {NOTICED:g}, a "
+            f"hundredth at {LARGE:g}; use the harmonic solid",
+        )
