@@ -31,6 +31,7 @@ from solidgear.cli import (
     solve,
     sweep,
     train,
+    train_judge,
 )
 from solidgear.cli.app import app
 from solidgear.errors import SolidgearError, for_terminal

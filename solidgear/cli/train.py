@@ -1,4 +1,4 @@
-"""Commands on a train, two shafts that mesh: system-modes, response, judge-system."""
+"""Commands on a train, two shafts that mesh: system-modes, response."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ MOST_KEPT = 200
 ROUNDING = 1e-12
 
 
-def _shop(path: Path, reduction: str, kept: int, max_frequency: float | None):
+def workshop(path: Path, reduction: str, kept: int, max_frequency: float | None):
     """Where the bodies of a train are built, once the options that all commands share are sound."""
     from solidgear.scene.toml_file import parse
     from solidgear.scene.train_file import load_train
@@ -61,23 +61,23 @@ def system_modes(
     """Natural frequencies of a geared rotor system, each with its name and its proven bound."""
     from solidgear.studies.axle.modes import train_modes
 
-    shop = _shop(train, reduction, kept, max_frequency)
+    shop = workshop(train, reduction, kept, max_frequency)
     found = train_modes(shop, pinion, gear, max_frequency)
     if as_json:
         print(json.dumps(found.as_dict(), allow_nan=False))
         return
-    _say(*found.heading())
+    say(*found.heading())
     console().print(_modes_table(found))
-    _say(*found.remarks())
+    say(*found.remarks())
 
 
-def _say(*sentences: str) -> None:
+def say(*sentences: str) -> None:
     terminal = console()
     for sentence in sentences:
         terminal.print(sentence, markup=False, soft_wrap=True)
 
 
-def _caution(text: str) -> str:
+def caution(text: str) -> str:
     return f"caution: {text}"
 
 
@@ -140,12 +140,13 @@ def response(
     from solidgear.studies.axle.modes import unpublished_lines
     from solidgear.studies.axle.respond import respond
 
-    shop = _shop(train, reduction, kept, max_frequency)
-    mixes = [(pinion, gear), *map(_mix, against or [])]
+    shop = workshop(train, reduction, kept, max_frequency)
+    mixes = [(pinion, gear), *map(mix, against or [])]
     forces = _forces(force)
     with held(out):
         found = [
-            respond(shop, *mix, max_frequency, damping, matched_at or 0.0, forces) for mix in mixes
+            respond(shop, *pair, max_frequency, damping, matched_at or 0.0, forces)
+            for pair in mixes
         ]
         unpublished = shop.train.unpublished()
         notes = {"damping": damping, "unpublished": unpublished, "cautions": found[0].cautions}
@@ -160,11 +161,11 @@ def response(
     terminal.print(_peaks_table(found[0], teeth))
     if not found[0].peaks:
         terminal.print("The mesh force has no peak in this range.", markup=False)
-    _say(*unpublished_lines(unpublished), *map(_caution, found[0].cautions))
-    _say(f"Written: {', '.join(map(str, files))}")
+    say(*unpublished_lines(unpublished), *map(caution, found[0].cautions))
+    say(f"Written: {', '.join(map(str, files))}")
 
 
-def _mix(text: str) -> tuple[str, str]:
+def mix(text: str) -> tuple[str, str]:
     pinion, plus, gear = text.partition("+")
     if not plus:
         raise SolidgearError(f"--against {show(text, 40)}: write PINION+GEAR, such as euler+euler")
@@ -202,75 +203,4 @@ def _peaks_table(found, teeth: int):
     for peak in found.peaks:
         hz = peak.frequency_hz
         table.add_row(peak.mode, f"{hz:.1f}", f"{60 * hz / teeth:.0f}", f"{peak.force:.1f}")
-    return table
-
-
-@command
-def judge_system(
-    train: TrainFile,
-    out: Annotated[
-        Path | None, typer.Option("--out", "-o", help="Folder for the chart and the table.")
-    ] = None,
-    max_frequency: MaxFrequency = None,
-    against: Annotated[
-        list[str] | None,
-        typer.Option("--against", help="Further mix to judge, as PINION+GEAR; repeatable."),
-    ] = None,
-    reduction: Reduction = "rubin",
-    kept: Kept = 24,
-    as_json: JsonFlag = False,
-) -> None:
-    """Which shaft needs the solid, and from which frequency on: every mix against both solid."""
-    from contextlib import nullcontext
-
-    from solidgear.report.folder import held
-    from solidgear.report.train_files import write_response
-    from solidgear.studies.axle.judge import DRAWN, judge_train
-    from solidgear.studies.axle.modes import unpublished_lines
-
-    shop = _shop(train, reduction, kept, max_frequency)
-    with held(out) if out else nullcontext():
-        found = judge_train(shop, max_frequency, [_mix(text) for text in against or []])
-        if out:
-            drawn = [r for r in found.responses if (r.pinion, r.gear) in DRAWN]
-            marks = {m.label: m.force_to_hz for m in found.mixes if m.force_to_hz is not None}
-            teeth = shop.train.pinion.teeth
-            write_response(
-                out, drawn, found.train, teeth, found.decibels, {"verdict": found.as_dict()}, marks
-            )
-    if as_json:
-        print(json.dumps(found.as_dict(), allow_nan=False))
-        return
-    terminal = console()
-    terminal.print(f"{found.train}, up to {found.highest_hz:g} Hz", markup=False)
-    terminal.print(_verdict_table(found))
-    _say(*found.sentences(), *unpublished_lines(found.unpublished), *map(_caution, found.cautions))
-
-
-def _verdict_table(found):
-    from rich.table import Table
-
-    title = "Within the band up to, in Hz"
-    table = Table(title=title, title_justify="left", box=None, padding=(0, 1, 0, 0))
-    table.add_column("pinion + gear")
-    for head in (
-        f"modes\n{100 * found.tolerance:g} %",
-        f"force\n{found.decibels:g} dB",
-        f"force\n{100 * found.tolerance:g} %",
-    ):
-        table.add_column(head, justify="right")
-    table.add_column("first mode off")
-    table.add_column("by")
-    table.add_column("s", justify="right")
-    for mix in found.mixes:
-        ends = [
-            f"{found.highest_hz:.0f}+" if hz is None else f"{hz:.0f}"
-            for hz in (mix.modes_to_hz, mix.force_to_hz, mix.close_to_hz)
-        ]
-        off = "" if not mix.mode else f"{mix.mode} gone"
-        if mix.error is not None:
-            digits = 1 if abs(mix.error) < 0.0995 else 0
-            off = f"{mix.mode} {100 * mix.error:+.{digits}f} %"
-        name = f"{mix.pinion} + {mix.gear}" if mix.pinion != mix.gear else f"both {mix.gear}"
-        table.add_row(name, *ends, off, mix.cause, f"{mix.seconds:.1f}")
     return table

@@ -201,7 +201,7 @@ def _renders(
         images = _named_images(record, folder)
     renders = []
     for key, image in images.items():
-        renders.append((capital(model_name(record, key)), _data_uri(key, image)))
+        renders.append((capital(model_name(record, key)), data_uri(key, image)))
     return renders
 
 
@@ -214,7 +214,7 @@ def _named_images(record: Record, folder: str | os.PathLike | None) -> dict[str,
     return {key: Path(folder) / Path(name).name for key, name in record.images.items()}
 
 
-def _data_uri(key: str, image: Any) -> str | None:
+def data_uri(key: str, image: Any) -> str | None:
     """A picture in bytes or in a file as a data URI; None if it cannot be had or is none."""
     try:
         in_memory = isinstance(image, (bytes, bytearray, memoryview))

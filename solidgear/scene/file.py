@@ -17,7 +17,7 @@ from solidgear.scene.model import Scene
 from solidgear.scene.places import resolve
 from solidgear.scene.rules import MOST_BEARINGS, MOST_MASSES, MOST_SEGMENTS, too_many
 from solidgear.scene.tables import FEATURES, KINDS, SceneTable, SoundTables
-from solidgear.scene.toml_file import parse
+from solidgear.scene.toml_file import describes_train, parse
 
 
 def _drop_tag(loc: tuple) -> tuple:
@@ -53,10 +53,10 @@ def load(path: str | os.PathLike) -> Scene:
     """
     where = os.fspath(path)
     raw = parse(where)
-    if "segment" not in raw and {"pinion", "gear"} <= set(raw):
+    if describes_train(raw):
         raise SceneError(
-            "describes a train of two shafts and not a shaft; read it with solidgear.load_train, "
-            "or run solidgear system-modes, response or judge-system on it"
+            "describes a train of two shafts and not a shaft; run solidgear compare, "
+            "system-modes, response or receptance on it, or read it with solidgear.load_train"
         ).located(raw, where=where)
     try:
         return _read(raw, Path(where).stem)
