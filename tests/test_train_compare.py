@@ -101,9 +101,11 @@ def test_commands_of_a_shaft_name_those_of_a_train(arguments, tmp_path, monkeypa
     assert "run solidgear compare, system-modes, response or receptance" in str(done.exception)
 
 
-@pytest.mark.parametrize("command", ["system-modes", "response", "judge-system"])
+@pytest.mark.parametrize("command", ["system-modes", "response", "judge-system", "receptance"])
 def test_commands_of_a_train_name_those_of_a_shaft(command, tmp_path):
-    done = run(command, SHAFT, *(["--out", tmp_path / "out"] if command != "system-modes" else []))
+    more = ["--out", tmp_path / "out"] if command != "system-modes" else []
+    more += ["--from", "a:x", "--to", "b:x"] if command == "receptance" else []
+    done = run(command, SHAFT, *more)
     assert done.exit_code == 1
     assert "the scene of one shaft" in str(done.exception)
     assert "solidgear compare, answer or modes" in str(done.exception)

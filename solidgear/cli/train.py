@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Annotated
 
@@ -26,6 +27,20 @@ Reduction = Annotated[
 ]
 MaxFrequency = Annotated[float | None, typer.Option(help="Hz; as the file says by default.")]
 Kept = Annotated[int, typer.Option("--kept", help="Modes of each shaft kept in its reduction.")]
+Against = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--against",
+        help="Further model to draw, as PINION+GEAR, such as euler+euler; repeatable.",
+    ),
+]
+Damping = Annotated[
+    str,
+    typer.Option(help="hysteretic, viscous (with --matched-at), modal, or literal (C = zeta K)."),
+]
+MatchedAt = Annotated[
+    float | None, typer.Option("--matched-at", help="Hz at which viscous losses match.")
+]
 MOST_KEPT = 200
 #: relative; no frequency is printed with a smaller bound, whatever the proof says
 ROUNDING = 1e-12
@@ -106,23 +121,10 @@ def response(
     ] = Path("out"),
     pinion: PinionRung = FIDELITY,
     gear: GearRung = FIDELITY,
-    against: Annotated[
-        list[str] | None,
-        typer.Option(
-            "--against",
-            help="Further model to draw, as PINION+GEAR, such as euler+euler; repeatable.",
-        ),
-    ] = None,
+    against: Against = None,
     max_frequency: MaxFrequency = None,
-    damping: Annotated[
-        str,
-        typer.Option(
-            help="hysteretic, viscous (with --matched-at), modal, or literal (C = zeta K)."
-        ),
-    ] = "hysteretic",
-    matched_at: Annotated[
-        float | None, typer.Option("--matched-at", help="Hz at which viscous losses match.")
-    ] = None,
+    damping: Damping = "hysteretic",
+    matched_at: MatchedAt = None,
     force: Annotated[
         list[str] | None,
         typer.Option(
@@ -158,9 +160,8 @@ def response(
         return
     terminal = console()
     terminal.print(f"{title}: pinion {pinion}, gear {gear}, {damping} losses", markup=False)
-    terminal.print(_peaks_table(found[0], teeth))
-    if not found[0].peaks:
-        terminal.print("The mesh force has no peak in this range.", markup=False)
+    tops = [(p.frequency_hz, p.force, p.mode) for p in found[0].peaks]
+    peaks_table("Peaks of the mesh force", "mesh force N", tops, teeth, ".1f")
     say(*unpublished_lines(unpublished), *map(caution, found[0].cautions))
     say(f"Written: {', '.join(map(str, files))}")
 
@@ -178,29 +179,49 @@ def _forces(texts: list[str] | None) -> dict:
 
     out: dict = {}
     for text in texts or []:
-        port, _, rest = text.partition(":")
-        dof, _, value = rest.partition("=")
+        end, _, value = text.partition("=")
         try:
             number = float(value)
         except ValueError:
             number = float("nan")
-        if dof not in DOF_NAMES or not abs(number) < float("inf"):
+        if not abs(number) < float("inf"):
             raise SolidgearError(
-                f"--force {show(text, 40)}: write PORT:COMPONENT=VALUE, such as gear.gear:z=100; "
-                f"components are {' '.join(DOF_NAMES)}"
+                f"--force {show(text, 40)}: write PORT:COMPONENT=VALUE, such as gear.gear:z=100"
             )
+        port, dof = end_of("--force", end, "=100")
         out.setdefault(port, [0.0] * 6)[DOF_NAMES.index(dof)] += number
     return out
 
 
-def _peaks_table(found, teeth: int):
+def end_of(option: str, text: str, more: str = "") -> tuple[str, str]:
+    """Port and component, from a text such as ``gear.gear:z``; what else follows is part of the
+    example in an error.
+    """
+    from solidgear.frames import DOF_NAMES
+
+    port, _, dof = text.partition(":")
+    if not port or dof not in DOF_NAMES:
+        raise SolidgearError(
+            f"{option} {show(text, 40)}: write PORT:COMPONENT{'=VALUE' * bool(more)}, such as "
+            f"gear.gear:z{more}; components are {' '.join(DOF_NAMES)}"
+        )
+    return port, dof
+
+
+def peaks_table(
+    title: str, head: str, peaks: Sequence[tuple[float, float, str]], teeth: int, digits: str
+) -> None:
+    """Print peaks (Hz, size, mode), or that there is none."""
     from rich.table import Table
 
-    table = Table(title="Peaks of the mesh force", title_justify="left", show_edge=False)
+    terminal = console()
+    table = Table(title=title, title_justify="left", show_edge=False)
     table.add_column("mode")
-    for head in ("Hz", "pinion rpm", "mesh force N"):
-        table.add_column(head, justify="right")
-    for peak in found.peaks:
-        hz = peak.frequency_hz
-        table.add_row(peak.mode, f"{hz:.1f}", f"{60 * hz / teeth:.0f}", f"{peak.force:.1f}")
-    return table
+    for words in ("Hz", "pinion rpm", head):
+        table.add_column(words, justify="right")
+    for hz, size, mode in peaks:
+        table.add_row(mode, f"{hz:.1f}", f"{60 * hz / teeth:.0f}", f"{size:{digits}}")
+    if peaks:
+        terminal.print(table)
+    else:
+        terminal.print(f"{title}: none in this range.", markup=False)

@@ -183,6 +183,41 @@ class SteadyState:
             out[part] = np.linalg.solve(left, right)[:, :, 0] @ seen.T
         return out
 
+    @pinned
+    def solved(self, frequency_hz: np.ndarray, load: np.ndarray, rows: np.ndarray) -> np.ndarray:
+        """The same as :meth:`motion`, each frequency solved by itself.
+
+        Between ends far from each other a sum over modes cancels: engine to load of a train at
+        4 kHz is 1e-14 of its terms, and no digit of the sum is left where an elimination has all.
+
+        Parameters
+        ----------
+        frequency_hz : (f,) ndarray
+        load : (N,) ndarray
+        rows : (q, N) ndarray
+
+        Returns
+        -------
+        (f, q) complex ndarray
+            Sums over modes for modal losses, which are told in modes alone.
+        """
+        if self.kind == "modal":
+            return self.motion(frequency_hz, load, rows)
+        frequency_hz = np.asarray(frequency_hz, float)
+        g, where = self.system.strains
+        stiffness = {n: g[own].T @ g[own] for n, own in where.items() if self.loss.get(n, 0.0)}
+        elastic, mass = self.system.stiffness, self.system.mass
+        lost = sum((self.loss[n] * k for n, k in stiffness.items()), np.zeros_like(elastic))
+        out = np.empty((len(frequency_hz), len(rows)), complex)
+        for start in range(0, len(frequency_hz), BATCH):
+            part = slice(start, start + BATCH)
+            hz = frequency_hz[part, None, None]
+            growth = hz / self.matched_hz if self._grows else np.ones_like(hz)
+            left = elastic - (2 * np.pi * hz) ** 2 * mass + 1j * growth * lost
+            right = np.broadcast_to(load.astype(complex)[:, None], (len(left), len(load), 1))
+            out[part] = np.linalg.solve(left, right)[:, :, 0] @ rows.T
+        return out
+
     def grid(
         self, lowest_hz: float, highest_hz: float, seen: Callable[[np.ndarray], np.ndarray]
     ) -> np.ndarray:

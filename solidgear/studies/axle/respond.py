@@ -8,7 +8,7 @@ times what their seats move: all six components, the whole row and not the diago
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -179,20 +179,31 @@ class Drive:
                     out[f"{side} bearing {name}"] = found[:, 6 * k : 6 * k + 6]
         return out
 
-    def grid(self, highest_hz: float, lowest_hz: float | None = None) -> np.ndarray:
-        """Frequencies on which no peak of the mesh force or the transmission error is missed."""
+    def grid(
+        self,
+        highest_hz: float,
+        lowest_hz: float | None = None,
+        seen: Callable[[np.ndarray], np.ndarray] | None = None,
+    ) -> np.ndarray:
+        """Frequencies on which no peak of the last of some motions is missed.
+
+        Parameters
+        ----------
+        highest_hz, lowest_hz : float
+        seen : callable, optional
+            ``seen(frequency_hz)`` gives motions (f, q); by default the dynamic transmission error
+            and the mesh force.
+        """
         refuse_unresolved(self.workshop, self.system, highest_hz)
         first = float(self.system.elastic[0][0] / (2 * np.pi))
         lowest = lowest_hz or min(BEGIN * first, highest_hz / 100)
 
-        def seen(hz):
-            return np.column_stack(self.mesh(hz))
-
+        seen = seen or (lambda hz: np.column_stack(self.mesh(hz)))
         points = self.steady.grid(lowest, highest_hz, seen)
-        tops = peaks(np.abs(self.mesh(points)[1]))
+        tops = peaks(np.abs(seen(points)[:, -1]))
         if len(tops) > MOST_PEAKS:
             raise SolidgearError(
-                f"the mesh force has {len(tops)} peaks, which is rounding: a spring or an inertia "
+                f"the response has {len(tops)} peaks, which is rounding: a spring or an inertia "
                 "is so large or small beside the others that no digit is left; check their units"
             )
         fine = [np.linspace(points[k - 1], points[k + 1], TOP) for k in tops]
@@ -200,14 +211,26 @@ class Drive:
 
     def peaks(self, frequency_hz: np.ndarray, force: np.ndarray) -> tuple[Peak, ...]:
         """Peaks of the mesh force, each with the mode that makes it."""
+        return tuple(Peak(*top) for top in self.tops(frequency_hz, np.abs(force), self.row))
+
+    def tops(
+        self, frequency_hz: np.ndarray, size: np.ndarray, row: np.ndarray
+    ) -> list[tuple[float, float, str]]:
+        """Frequency, size and mode of every peak of an amplitude.
+
+        Parameters
+        ----------
+        frequency_hz, size : (f,) ndarray
+        row : (N,) ndarray
+            Of the motion that is looked at.
+        """
         omega, shapes = self.system.elastic
         within = max(1, int((omega <= 4 * np.pi * frequency_hz[-1]).sum()))
         found = self.system.modes(within)
         names = mode_names(self.workshop, self.system, found)[found.rigid :]
-        share = (self.row @ shapes[:, :within]) * (shapes[:, :within].T @ self.load)
+        share = (row @ shapes[:, :within]) * (shapes[:, :within].T @ self.load)
         lost = np.array([self._loss_of(found, found.rigid + k) for k in range(within)])
         out = []
-        size = np.abs(force)
         for k in peaks(size):
             if not stands_out(size, k):
                 continue
@@ -216,8 +239,8 @@ class Drive:
             # far modes give much of the force, but the same everywhere
             gap = omega[:within] ** 2 * (1 + 1j * lost) - w**2
             most = np.abs(share / gap**2).argmax()
-            out.append(Peak(float(frequency_hz[k]), float(size[k]), names[most]))
-        return tuple(out)
+            out.append((float(frequency_hz[k]), float(size[k]), names[most]))
+        return out
 
     def _loss_of(self, found, k: int) -> float:
         return sum(self.steady.loss.get(name, 0.0) * e[k] for name, e in found.energy.items())
