@@ -132,6 +132,10 @@ def response(
             help="Force on a port instead of the transmission error, such as gear.gear:z=100 in N; repeatable.",
         ),
     ] = None,
+    orders: Annotated[
+        int | None,
+        typer.Option("--orders", help="Orders of the mesh in orders.png; 3, or as many as given."),
+    ] = None,
     reduction: Reduction = "rubin",
     kept: Kept = 24,
     as_json: JsonFlag = False,
@@ -140,6 +144,7 @@ def response(
     from solidgear.report.folder import held
     from solidgear.report.train_files import write_response
     from solidgear.studies.axle.modes import unpublished_lines
+    from solidgear.studies.axle.orders import order_map
     from solidgear.studies.axle.respond import respond
 
     shop = workshop(train, reduction, kept, max_frequency)
@@ -154,7 +159,10 @@ def response(
         notes = {"damping": damping, "unpublished": unpublished, "cautions": found[0].cautions}
         title = shop.train.title or shop.train.name
         teeth, band = shop.train.pinion.teeth, shop.train.ask.decibels
-        files = write_response(out, found, title, teeth, band, notes)
+        # a force on a port has no order of the mesh
+        kind = (damping, matched_at or 0.0)
+        lines = None if forces else order_map(shop, pinion, gear, max_frequency, *kind, orders)
+        files = write_response(out, found, title, teeth, band, notes, lines)
     if as_json:
         print((out / "response.json").read_text(encoding="utf-8"))
         return

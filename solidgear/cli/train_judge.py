@@ -85,7 +85,7 @@ def _judged(
         results = found.results()
         if out:
             progress("report")
-            write_train(results, found.drawn, found.marks, out)
+            write_train(results, found.drawn, found.marks, found.orders, out)
     if as_json:
         print(json.dumps(results, allow_nan=False))
         return

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from solidgear.machine.whole_file import whole
+from solidgear.report.order_chart import order_figure, write_crossings
 from solidgear.report.train_chart import response_figure
 
 
@@ -21,10 +22,10 @@ def write_response(
     teeth: int,
     band: float,
     notes: Mapping[str, Any],
-    marks: Mapping[str, float] | None = None,
+    orders: Any = None,
 ) -> list[Path]:
-    """``response.csv`` of the first response, ``response.png``, ``response.svg`` of all, and
-    ``response.json`` with peaks and what else is told.
+    """``response.csv`` of the first response, ``response.png``, ``response.svg`` of all,
+    ``response.json`` with peaks and what else is told, and ``orders`` as table and charts.
 
     Returns
     -------
@@ -39,8 +40,12 @@ def write_response(
     with whole(files[1]) as partial:
         data = {"title": title, "responses": peaks, **notes}
         partial.write_text(json.dumps(data, indent=1, allow_nan=False), encoding="utf-8")
-    figure = response_figure(responses, title, teeth, band, marks or {})
-    return files + write_charts(folder / "response", figure)
+    files += write_charts(folder / "response", response_figure(responses, title, teeth, band, {}))
+    if orders is not None:
+        write_crossings(folder / "orders.csv", orders)
+        files += [folder / "orders.csv"]
+        files += write_charts(folder / "orders", order_figure(orders, title, teeth))
+    return files
 
 
 def write_charts(stem: Path, figure: Any) -> list[Path]:

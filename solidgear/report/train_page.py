@@ -17,6 +17,7 @@ from solidgear.report.cells import DASH, capital
 from solidgear.report.chart_style import svg_of
 from solidgear.report.folder import clear, held
 from solidgear.report.html import data_uri, template
+from solidgear.report.order_chart import order_figure, write_crossings
 from solidgear.report.run_tables import pairs_of
 from solidgear.report.train_chart import response_figure
 from solidgear.report.train_files import write_charts, write_table
@@ -29,6 +30,7 @@ def write_train(
     results: Mapping[str, Any],
     responses: Sequence[Any],
     marks: Mapping[str, float],
+    orders: Any,
     out: str | os.PathLike,
 ) -> Path:
     """Write results.json, response.csv, the charts and report.html of a train.
@@ -41,6 +43,8 @@ def write_train(
         To draw, the judge's first.
     marks : mapping of str to float
         Where a model leaves its band, Hz.
+    orders : OrderMap
+        Of the judge.
     out : path
 
     Returns
@@ -58,17 +62,19 @@ def write_train(
     charts: dict[str, Callable[[], Any]] = {
         "response": lambda: response_figure(
             responses, train["title"], teeth, verdict["decibels"], marks
-        )
+        ),
+        "orders": lambda: order_figure(orders, train["title"], teeth),
     }
     with held(out) as folder:
         try:
             # Nothing of an earlier run must stand beside the numbers of this one.
             clear(folder)
             (folder / "report.html").unlink(missing_ok=True)
-            files = ["report.html", "response.csv"]
+            files = ["report.html", "response.csv", "orders.csv"]
             files += [f"{name}.{kind}" for name in charts for kind in ("png", "svg")]
             _write_json(folder / "results.json", {**results, "files": files})
             write_table(folder / "response.csv", responses[0], teeth)
+            write_crossings(folder / "orders.csv", orders)
             for name, figure in charts.items():
                 write_charts(folder / name, figure())
             page = _page(results, charts)
@@ -92,7 +98,7 @@ def _page(results: Mapping[str, Any], charts: Mapping[str, Callable[[], Any]]) -
 
     train, verdict = results["train"], results["verdict"]
     drawn = {f"{side}": lambda side=side: sketch.draw(train[side]["scene"]) for side in SIDES}
-    svg = {"orders": None} | {n: svg_of(n, make) for n, make in {**charts, **drawn}.items()}
+    svg = {name: svg_of(name, make) for name, make in {**charts, **drawn}.items()}
     best = verdict["cheapest"]
     both = f"both shafts {best['gear']}"
     mixed = f"pinion {best['pinion']}, gear {best['gear']}"
@@ -107,7 +113,7 @@ def _page(results: Mapping[str, Any], charts: Mapping[str, Callable[[], Any]]) -
         mixes=train_tables.verdict(verdict),
         peaks=train_tables.peaks(results["peaks"], train["pinion"]["teeth"]),
         modes=train_tables.modes(results["modes"]),
-        crossings=None,
+        crossings=train_tables.crossings(results["crossings"]),
         bearings={side: input_tables.bearings(train[side]["scene"]) for side in SIDES},
         renders=[(capital(n), data_uri(n, p)) for n, p in results.get("pictures", {}).items()],
         environment=pairs_of(results["environment"], "Environment of the run"),

@@ -148,3 +148,19 @@ def peaks(found: list[Mapping[str, Any]], teeth: int) -> Table:
     ]
     head = ["mode that makes it", "Hz", "pinion rpm", "mesh force, N"]
     return Table("Peaks of the mesh force, both shafts solid", head, rows)
+
+
+def crossings(found: list[Mapping[str, Any]]) -> Table:
+    """Where orders meet natural frequencies."""
+    rows = []
+    for c in found:
+        force = DASH if c["force"] is None else f"{c['force']:.1f}"
+        rows.append([c["line"], (c["mode"], "text"), hertz(c["frequency_hz"])])
+        rows[-1] += [f"{c['rpm']:.0f}", force]
+    head = ["order", "mode", "Hz", "pinion rpm", "mesh force, N"]
+    return Table(
+        "Where orders meet natural frequencies",
+        head,
+        rows,
+        note="A dash: the transmission error has no such order.",
+    )

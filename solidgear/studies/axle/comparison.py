@@ -12,6 +12,7 @@ from solidgear.scene.train import SIDES
 from solidgear.studies.axle.judge import DRAWN, JUDGE, Verdict, judge_train
 from solidgear.studies.axle.models import Workshop
 from solidgear.studies.axle.modes import TrainModes, train_modes
+from solidgear.studies.axle.orders import OrderMap, order_map
 from solidgear.studies.axle.respond import TrainResponse
 
 
@@ -25,6 +26,8 @@ class TrainComparison:
     verdict : Verdict
     modes : TrainModes
         Of the judge.
+    orders : OrderMap
+        Of the judge.
     seconds : float
         The whole run.
     """
@@ -32,6 +35,7 @@ class TrainComparison:
     workshop: Workshop
     verdict: Verdict
     modes: TrainModes
+    orders: OrderMap
     seconds: float
 
     @property
@@ -53,6 +57,7 @@ class TrainComparison:
             "verdict": self.verdict.as_dict() | {"sentences": self.verdict.sentences()},
             "modes": self.modes.as_dict() | {"notes": self.modes.notes()},
             "peaks": [asdict(peak) for peak in self.verdict.responses[0].peaks],
+            "crossings": [asdict(crossing) for crossing in self.orders.crossings],
             "environment": environment(),
             "seconds_total": self.seconds,
         }
@@ -79,7 +84,9 @@ def compare_train(
     start = perf_counter()
     verdict = judge_train(workshop, highest_hz, more, progress)
     modes = train_modes(workshop, JUDGE, JUDGE, verdict.highest_hz)
-    return TrainComparison(workshop, verdict, modes, perf_counter() - start)
+    progress("order lines")
+    orders = order_map(workshop, JUDGE, JUDGE, verdict.highest_hz)
+    return TrainComparison(workshop, verdict, modes, orders, perf_counter() - start)
 
 
 def described(workshop: Workshop) -> dict[str, Any]:
