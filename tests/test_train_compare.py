@@ -29,7 +29,7 @@ def compared(tmp_path_factory):
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(models, "MESH", {"harmonic": {"order": 2, "layers": 1}})
         patch.setattr(judging, "COARSER", {"harmonic": {"order": 1, "layers": 1}})
-        done = run("compare", TRAIN, "--out", out, "--json")
+        done = run("compare", TRAIN, "--out", out, "--json", "--no-renders")
     assert done.exit_code == 0, done.output
     return json.loads(done.stdout), out
 
@@ -38,6 +38,7 @@ def test_compare_leaves_the_same_kind_of_folder_as_for_a_shaft(compared):
     told, out = compared
     stored = json.loads((out / "results.json").read_text(encoding="utf-8"))
     assert set(stored.pop("files")) | {"results.json"} == {p.name for p in out.iterdir()}
+    assert stored.pop("left_out") == [] and stored.pop("pictures") == {}
     assert stored == told
     assert stored["verdict"]["cheapest"] == {"pinion": "harmonic", "gear": "harmonic"}
 

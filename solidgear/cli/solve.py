@@ -76,7 +76,7 @@ def compare(
             "--set": bool(settings),
             "--chart": chart,
         }
-        compare_train(scene, out, as_json, given)
+        compare_train(scene, out, as_json, renders, given)
         return
     from solidgear.report.folder import held
     from solidgear.studies.comparison import check_models

@@ -69,6 +69,14 @@ def system_modes(
     pinion: PinionRung = FIDELITY,
     gear: GearRung = FIDELITY,
     max_frequency: MaxFrequency = None,
+    pictures: Annotated[
+        Path | None,
+        typer.Option("--pictures", help="Folder for a picture a mode, both shafts in place."),
+    ] = None,
+    mode: Annotated[
+        list[int] | None,
+        typer.Option("--mode", help="Only draw this one, counted from 1 as listed; repeatable."),
+    ] = None,
     reduction: Reduction = "rubin",
     kept: Kept = 24,
     as_json: JsonFlag = False,
@@ -77,13 +85,27 @@ def system_modes(
     from solidgear.studies.axle.modes import train_modes
 
     shop = workshop(train, reduction, kept, max_frequency)
+    if mode and pictures is None:
+        raise SolidgearError("--mode says which mode to draw; add --pictures and a folder")
     found = train_modes(shop, pinion, gear, max_frequency)
+    drawn = _drawn(shop, pinion, gear, pictures, mode, found) if pictures else []
     if as_json:
         print(json.dumps(found.as_dict(), allow_nan=False))
         return
     say(*found.heading())
     console().print(_modes_table(found))
-    say(*found.remarks())
+    say(*found.remarks(), *drawn)
+
+
+def _drawn(shop, pinion: str, gear: str, folder: Path, numbers: list[int] | None, found):
+    """Pictures of modes, and what is to be said of them."""
+    from solidgear.studies.axle.pictures import draw_modes
+
+    listed = [n for n, mode in enumerate(found.modes, start=1) if mode.frequency_hz > 0]
+    done = draw_modes(shop, pinion, gear, folder, numbers or listed).values()
+    written = [str(one.path) for one in done if one.ok]
+    lines = [f"Written: {', '.join(written)}"] if written else []
+    return lines + sorted({one.reason for one in done if not one.ok})
 
 
 def say(*sentences: str) -> None:
@@ -100,15 +122,21 @@ def _modes_table(found):
     from rich.table import Table
 
     table = Table(show_edge=False)
+    table.add_column("", justify="right")
     table.add_column("mode")
     table.add_column("Hz", justify="right")
     table.add_column("pinion rpm", justify="right")
     table.add_column("most strain energy")
     table.add_column("bound", justify="right")
-    for mode in found.modes:
+    for number, mode in enumerate(found.modes, start=1):
         bound = "exact" if mode.frequency_hz == 0 else f"{max(mode.bound, ROUNDING):.0e}"
         table.add_row(
-            mode.name, f"{mode.frequency_hz:.2f}", f"{mode.rpm:.0f}", mode.strained, bound
+            str(number),
+            mode.name,
+            f"{mode.frequency_hz:.2f}",
+            f"{mode.rpm:.0f}",
+            mode.strained,
+            bound,
         )
     return table
 

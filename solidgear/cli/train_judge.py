@@ -46,13 +46,15 @@ def judge_system(
     _judged(train, out, as_json, max_frequency, more, reduction, kept)
 
 
-def compare_train(train: Path, out: Path, as_json: bool, given: dict[str, bool]) -> None:
+def compare_train(
+    train: Path, out: Path, as_json: bool, renders: bool, given: dict[str, bool]
+) -> None:
     """The command compare on a train.
 
     Parameters
     ----------
     train, out : Path
-    as_json : bool
+    as_json, renders : bool
     given : dict of str to bool
         Options of compare that speak of one shaft, and whether they were given.
     """
@@ -62,7 +64,7 @@ def compare_train(train: Path, out: Path, as_json: bool, given: dict[str, bool])
                 f"{option} is for one shaft, and {train} is a train: every mix of its models is "
                 "judged; add further ones by solidgear judge-system --against"
             )
-    _judged(train, out, as_json)
+    _judged(train, out, as_json, renders=renders)
 
 
 def _judged(
@@ -73,6 +75,7 @@ def _judged(
     more: Sequence[tuple[str, str]] = (),
     reduction: str = "rubin",
     kept: int = 24,
+    renders: bool = False,
 ) -> None:
     from solidgear.report.folder import held
     from solidgear.report.train_page import write_train
@@ -85,7 +88,8 @@ def _judged(
         results = found.results()
         if out:
             progress("report")
-            write_train(results, found.drawn, found.marks, found.orders, out)
+            draw = found.pictures if renders else None
+            write_train(results, found.drawn, found.marks, found.orders, out, draw)
     if as_json:
         print(json.dumps(results, allow_nan=False))
         return

@@ -32,6 +32,7 @@ def write_train(
     marks: Mapping[str, float],
     orders: Any,
     out: str | os.PathLike,
+    draw: Callable[[Path], Mapping[str, Any]] | None = None,
 ) -> Path:
     """Write results.json, response.csv, the charts and report.html of a train.
 
@@ -46,6 +47,9 @@ def write_train(
     orders : OrderMap
         Of the judge.
     out : path
+    draw : callable, optional
+        Draws into the folder; gives ``pictures``, files by what they show, and ``left_out``,
+        sentences on what could not be drawn.
 
     Returns
     -------
@@ -72,12 +76,16 @@ def write_train(
             (folder / "report.html").unlink(missing_ok=True)
             files = ["report.html", "response.csv", "orders.csv"]
             files += [f"{name}.{kind}" for name in charts for kind in ("png", "svg")]
+            # Numbers first: whatever happens to pictures, they are there.
             _write_json(folder / "results.json", {**results, "files": files})
             write_table(folder / "response.csv", responses[0], teeth)
             write_crossings(folder / "orders.csv", orders)
             for name, figure in charts.items():
                 write_charts(folder / name, figure())
-            page = _page(results, charts)
+            results = {**results, **(draw(folder) if draw else {"pictures": {}, "left_out": []})}
+            files += results["pictures"].values()
+            _write_json(folder / "results.json", {**results, "files": files})
+            page = _page(results, charts, folder)
             with whole(folder / "report.html") as partial:
                 partial.write_text(page, encoding="utf-8")
         except OSError as error:
@@ -93,20 +101,20 @@ def _write_json(path: Path, results: Mapping[str, Any]) -> None:
         partial.write_text(json.dumps(results, indent=1, allow_nan=False) + "\n", encoding="utf-8")
 
 
-def _page(results: Mapping[str, Any], charts: Mapping[str, Callable[[], Any]]) -> str:
+def _page(results: Mapping[str, Any], charts: Mapping[str, Callable[[], Any]], folder: Path) -> str:
     from markupsafe import Markup
 
     train, verdict = results["train"], results["verdict"]
     drawn = {f"{side}": lambda side=side: sketch.draw(train[side]["scene"]) for side in SIDES}
     svg = {name: svg_of(name, make) for name, make in {**charts, **drawn}.items()}
-    best = verdict["cheapest"]
+    best, pictures = verdict["cheapest"], results["pictures"]
     both = f"both shafts {best['gear']}"
     mixed = f"pinion {best['pinion']}, gear {best['gear']}"
     return template("train.html").render(
         train=train,
         verdict=verdict,
         cheapest=both if best["pinion"] == best["gear"] else mixed,
-        warnings=verdict["cautions"],
+        warnings=[*verdict["cautions"], *results["left_out"]],
         notes=results["modes"]["notes"],
         charts={name: Markup(text.decode()) if text else None for name, text in svg.items()},
         facts=train_tables.facts(train),
@@ -115,7 +123,7 @@ def _page(results: Mapping[str, Any], charts: Mapping[str, Callable[[], Any]]) -
         modes=train_tables.modes(results["modes"]),
         crossings=train_tables.crossings(results["crossings"]),
         bearings={side: input_tables.bearings(train[side]["scene"]) for side in SIDES},
-        renders=[(capital(n), data_uri(n, p)) for n, p in results.get("pictures", {}).items()],
+        renders=[(capital(told), data_uri(told, folder / name)) for told, name in pictures.items()],
         environment=pairs_of(results["environment"], "Environment of the run"),
         total=seconds(results["seconds_total"], DASH),
     )

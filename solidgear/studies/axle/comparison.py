@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import asdict, dataclass
+from pathlib import Path
 from time import perf_counter
 from typing import Any
 
@@ -13,7 +14,11 @@ from solidgear.studies.axle.judge import DRAWN, JUDGE, Verdict, judge_train
 from solidgear.studies.axle.models import Workshop
 from solidgear.studies.axle.modes import TrainModes, train_modes
 from solidgear.studies.axle.orders import OrderMap, order_map
+from solidgear.studies.axle.pictures import draw_modes
 from solidgear.studies.axle.respond import TrainResponse
+
+#: modes that are drawn
+PICTURES = 4
 
 
 @dataclass(frozen=True, eq=False)
@@ -48,6 +53,21 @@ class TrainComparison:
         """Where the mesh force of a mix leaves its band, Hz, by its label."""
         mixes = self.verdict.mixes
         return {m.label: m.force_to_hz for m in mixes if m.force_to_hz is not None}
+
+    @property
+    def loudest(self) -> list[int]:
+        """Numbers, from 1, of the modes that make the largest peaks of the judge's mesh force."""
+        names = [mode.name for mode in self.modes.modes]
+        peaks = sorted(self.verdict.responses[0].peaks, key=lambda peak: -peak.force)
+        loud = dict.fromkeys(peak.mode for peak in peaks if peak.mode in names)
+        return sorted(names.index(name) + 1 for name in list(loud)[:PICTURES])
+
+    def pictures(self, folder: Path) -> dict[str, Any]:
+        """Draw the loudest modes into a folder: files by what they show, and what was left out."""
+        done = draw_modes(self.workshop, JUDGE, JUDGE, folder, self.loudest) if self.loudest else {}
+        drawn = {told: one.path.name for told, one in done.items() if one.ok}
+        reasons = sorted({one.reason for one in done.values() if not one.ok})
+        return {"pictures": drawn, "left_out": reasons}
 
     def results(self) -> dict[str, Any]:
         """Plain data that JSON can hold: all numbers of the page."""
