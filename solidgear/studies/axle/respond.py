@@ -157,6 +157,11 @@ class Drive:
     def mesh(self, frequency_hz: np.ndarray, order: int = 1) -> tuple[np.ndarray, np.ndarray]:
         """(f,) dynamic transmission error, m, and mesh force, N."""
         dte = self.motion(frequency_hz, self.row[None], order)[:, 0]
+        return self._teeth(frequency_hz, dte, order)
+
+    def _teeth(
+        self, frequency_hz: np.ndarray, dte: np.ndarray, order: int = 1
+    ) -> tuple[np.ndarray, np.ndarray]:
         error = 0.0 if self.forces else self.amplitude(frequency_hz, order)
         factor = self.stiffness * self.steady.factor("mesh", frequency_hz)
         return dte, factor * (dte - error)
@@ -165,18 +170,48 @@ class Drive:
         """(f, 6) forces of every bearing on its shaft, in the axes of that shaft, by ``side
         bearing``.
         """
+        rows = self._reaction_rows()
+        found = self.motion(frequency_hz, np.vstack([force for _, force in rows.values()]))
+        return self._reactions(frequency_hz, rows, found)
+
+    def _reaction_rows(self) -> dict[str, tuple[str, np.ndarray]]:
+        """Link and rows (6, N) of the elastic force of every bearing, by ``side bearing``."""
         out = {}
         for side in SIDES:
-            scene = self.workshop.scenes[side]
-            supports = as_supports(scene)
+            supports = as_supports(self.workshop.scenes[side])
             seats = np.vstack([self.system.motion(f"{side}.{b}") for b in supports.ports])
             link = next(n for n in self.system.links if n.startswith(f"{side}."))
             force = -np.array(supports.stiffness) @ seats
-            found = self.motion(frequency_hz, force)
-            found = found * self.steady.factor(link, frequency_hz)[:, None]
             for k, name in enumerate(supports.ports):
                 if np.any(supports.stiffness[6 * k : 6 * k + 6]):
-                    out[f"{side} bearing {name}"] = found[:, 6 * k : 6 * k + 6]
+                    out[f"{side} bearing {name}"] = (link, force[6 * k : 6 * k + 6])
+        return out
+
+    def _reactions(self, frequency_hz, rows, found) -> dict[str, np.ndarray]:
+        """Reactions from the motions (f, 6 b) of their rows, losses included."""
+        return {
+            name: found[:, 6 * k : 6 * k + 6] * self.steady.factor(link, frequency_hz)[:, None]
+            for k, (name, (link, _)) in enumerate(rows.items())
+        }
+
+    def columns(self, frequency_hz: np.ndarray) -> dict[str, np.ndarray]:
+        """All that a response tells of the first order, by name and unit: mesh, reactions of every
+        bearing, motions of both lumped points.
+        """
+        reactions = self._reaction_rows()
+        ports = {side: f"{side}.{self.workshop.scenes[side].port.name}" for side in SIDES}
+        rows = [self.row[None], *(force for _, force in reactions.values())]
+        rows += [self.system.motion(port) for port in ports.values()]
+        found = self.motion(frequency_hz, np.vstack(rows))
+        dte, force = self._teeth(frequency_hz, found[:, 0])
+        out = {"dynamic transmission error [m]": dte, "mesh force [N]": force}
+        for name, reaction in self._reactions(frequency_hz, reactions, found[:, 1:]).items():
+            for c, (dof, unit) in enumerate(zip(DOF_NAMES, FORCE_UNITS)):
+                out[f"{name} {dof} [{unit}]"] = reaction[:, c]
+        moved = found[:, 1 + 6 * len(reactions) :]
+        for k, side in enumerate(ports):
+            for c, (dof, unit) in enumerate(zip(DOF_NAMES, MOTION_UNITS)):
+                out[f"{side} {dof} [{unit}]"] = moved[:, 6 * k + c]
         return out
 
     def grid(
@@ -298,22 +333,17 @@ def respond(
     drive = Drive(workshop, pinion, gear, damping, matched_hz, forces)
     highest = highest_hz or workshop.train.ask.max_frequency
     hz = drive.grid(highest) if frequency_hz is None else np.asarray(frequency_hz, float)
-    dte, force = drive.mesh(hz)
-    columns = {"dynamic transmission error [m]": dte, "mesh force [N]": force}
+    told = drive.columns(hz)
+    mesh = list(told)[:2]
+    columns = {name: told.pop(name) for name in mesh}
+    force = columns[mesh[1]]
     orders = len(drive.error.orders) if not drive.forces else 1
     for order in range(2, orders + 1):
         there = order * hz <= highest
         found = np.full(len(hz), np.nan + 0j)
         found[there] = drive.mesh(order * hz[there], order)[1]
         columns[f"mesh force, order {order} [N]"] = found
-    for name, reaction in drive.reactions(hz).items():
-        for c, (dof, unit) in enumerate(zip(DOF_NAMES, FORCE_UNITS)):
-            columns[f"{name} {dof} [{unit}]"] = reaction[:, c]
-    for side in SIDES:
-        port = workshop.scenes[side].port.name
-        moved = drive.motion(hz, drive.system.motion(f"{side}.{port}"))
-        for c, (dof, unit) in enumerate(zip(DOF_NAMES, MOTION_UNITS)):
-            columns[f"{side} {dof} [{unit}]"] = moved[:, c]
+    columns |= told
     cautions = list(workshop.contact.cautions)
     if damping == "literal":
         at = float(highest)
