@@ -51,10 +51,13 @@ def test_modal_and_direct_agree(shop, here, there, damping, at):
 
 
 @pytest.mark.parametrize(("here", "there"), PAIRS[:3])
-def test_the_reduced_receptance_is_that_of_the_full_matrices(shop, here, there):
+def test_the_reduced_receptance_is_that_of_the_full_matrices(here, there):
     """Nothing of reduction/ or system/ is in the reference."""
+    # bearings that lose more than the rest: sums over complex modes leave two digits at 4 kHz
+    losses = TRAIN.losses.with_changes(bearings=0.1)
+    shop = Workshop(TRAIN.with_changes(losses=losses), settings=COARSE)
     found = receptance(shop, *MIX, here, there, frequency_hz=HZ).value
-    k, m, motion, _ = assembled(shop, dict(zip(("pinion", "gear"), MIX)), TRAIN.losses)
+    k, m, motion, _ = assembled(shop, dict(zip(("pinion", "gear"), MIX)), losses)
     force = motion(here[0])[DOF_NAMES.index(here[1])]
     row = motion(there[0])[DOF_NAMES.index(there[1])]
     for f, value in zip(HZ, found):
