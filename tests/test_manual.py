@@ -12,7 +12,7 @@ from solidgear.fidelity.krylov import from_scene
 from validation.manual import CASES
 from validation.manual import __main__ as command
 from validation.manual.case import Answer, CaseError, Model, Reference
-from validation.manual.cases import free_beams, held_beams, pinion, thesis
+from validation.manual.cases import free_beams, held_beams, pinion, spur_train, thesis
 from validation.manual.page import FOLDER, INDEX, SAME_SIZE, index, lines, read, render
 
 
@@ -132,6 +132,8 @@ def test_numbers_do_not_depend_on_rounding():
 NO_MATERIAL = ("thesis_geared_pair", "pinion_seat_ties", "pinion_beam_over_solid")
 #: no body at all; tests/test_bearings_rows.py spoils them
 NO_MATERIAL += ("ball_bearing_displacement", "angular_contact_218", "roller_row")
+#: two shafts, and elements that know no scene; spoilt by a test of its own
+NO_MATERIAL += ("spur_train",)
 
 
 def spoilt(monkeypatch, key, factor):
@@ -162,6 +164,14 @@ def test_another_material_is_not_ok(case, letter, monkeypatch):
     spoilt(monkeypatch, key, factor)
     shares = [line.share for line in case.lines(model, model.solve().values)]
     assert max(shares) > 1
+
+
+@pytest.mark.parametrize("letter", ["A", "B"])
+def test_two_shafts_of_another_steel_are_not_ok(letter, monkeypatch):
+    case, model = spur_train.SPUR, model_of(spur_train.SPUR, letter)
+    modulus, *rest = spur_train.EXAMPLE
+    monkeypatch.setattr(spur_train, "EXAMPLE", (1.01 * modulus, *rest))
+    assert max(line.share for line in case.lines(model, model.solve().values)) > 1
 
 
 def test_one_per_cent_of_the_shear_coefficient_is_not_ok(monkeypatch):

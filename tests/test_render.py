@@ -218,7 +218,7 @@ def test_a_child_that_dies_or_hangs_is_survived(
 
 
 def test_the_child_starts_without_the_rest_of_the_package():
-    code = "import sys, json, solidgear.report.render; print(json.dumps([m for m in sys.modules if m.startswith(('solidgear', 'scipy', 'skfem', 'pyvista'))]))"
+    code = "import sys, json, solidgear.report.drawing; print(json.dumps([m for m in sys.modules if m.startswith(('solidgear', 'scipy', 'skfem', 'pyvista'))]))"
     out = subprocess.run(
         [sys.executable, "-c", code],
         capture_output=True,
@@ -229,7 +229,7 @@ def test_the_child_starts_without_the_rest_of_the_package():
     assert set(json.loads(out.stdout)) == {
         "solidgear",
         "solidgear.report",
-        "solidgear.report.render",
+        "solidgear.report.drawing",
     }
 
 

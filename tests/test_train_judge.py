@@ -81,5 +81,5 @@ def test_the_command_writes_the_verdict(tmp_path, monkeypatch):
     done = CliRunner().invoke(app, [*args, "--json", "--out", str(tmp_path)])
     assert done.exit_code == 0, done.output
     data = json.loads(done.stdout)
-    assert data["cheapest"]["gear"] == "harmonic"
+    assert data["verdict"]["cheapest"]["gear"] == "harmonic"
     assert (tmp_path / "response.png").stat().st_size > 10_000

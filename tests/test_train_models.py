@@ -47,6 +47,7 @@ def assembled(shop, rungs, losses=None):
             start += block.size
     k += [np.zeros((1, 1))] * 2
     m += [np.array([[train.engine.inertia]]), np.array([[train.load.inertia]])]
+    ports |= {"engine": {4: (start, np.ones(1))}, "load": {4: (start + 1, np.ones(1))}}
     k, m = (1 + lost["shafts"]) * sla.block_diag(*k), sla.block_diag(*m)
     size = len(k)
 

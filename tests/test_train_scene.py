@@ -9,6 +9,7 @@ import solidgear as sg
 from solidgear.frames import cross_matrix
 from solidgear.scene.train_file import load_train
 from solidgear.studies.axle.contact import contact
+from solidgear.studies.axle.models import Workshop
 from solidgear.studies.axle.modes import wrench_lines
 from solidgear.system.contact_cells import contact_wrench
 from solidgear.system.gear_mesh import to_gear_frame
@@ -180,3 +181,33 @@ def test_a_spring_may_sit_anywhere_on_its_shaft(tmp_path):
     off = place.replace("-5", "5")
     with pytest.raises(sg.SceneError, match="no place on the gear's shaft"):
         load_train(written(tmp_path, ('at = "gear"', off)))
+
+
+# --------------------------------------------------------------------------- parallel shafts
+def test_parallel_shafts_are_a_train_too():
+    """Spur gears: the rotation of the train keeps the ratio of the base radii, and nothing of the
+    mesh acts along the shafts.
+    """
+    from validation.manual.cases.spur_train import GENERATOR, TURBINE, spur_train
+
+    train = spur_train()
+    shop = Workshop(train, settings={"timoshenko": {"elements": 20}})
+    met = shop.contact
+    assert abs(met.pinion.lever) == pytest.approx(TURBINE["base_radius"], rel=1e-12)
+    assert abs(met.gear.lever) == pytest.approx(GENERATOR["base_radius"], rel=1e-12)
+    system = shop.system("timoshenko", "timoshenko")
+    turn = np.array([system.motion(name)[4] for name in ("engine", "load")]) @ system.free
+    ratio = turn[0] @ turn[0] / (turn[1] @ turn[0])  # of the one free motion that turns
+    # external gears turn against each other
+    assert ratio == pytest.approx(-GENERATOR["base_radius"] / TURBINE["base_radius"], rel=1e-6)
+    assert met.pinion.vector[1] == met.gear.vector[1] == 0.0
+    assert np.allclose(system.parts["gear"].rotation, np.eye(3))
+
+
+def test_a_wheel_that_is_a_rigid_mass_needs_its_pitch_radius():
+    from validation.manual.cases.spur_train import spur_train
+
+    train = spur_train()
+    bare = train.with_changes(gear=train.gear.with_changes(pitch_radius=None))
+    with pytest.raises(sg.SceneError, match="off the gear, whose largest radius is 150.0 mm"):
+        Workshop(bare)

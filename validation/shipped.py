@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-import tomllib
 from pathlib import Path
+
+from solidgear.scene.toml_file import is_train
 
 GEOMETRY = Path(__file__).resolve().parent.parent / "geometry"
 
@@ -11,4 +12,4 @@ GEOMETRY = Path(__file__).resolve().parent.parent / "geometry"
 def shipped_shafts() -> list[Path]:
     """Scenes of one shaft, by name."""
     paths = sorted(GEOMETRY.glob("*.toml"))
-    return [path for path in paths if "segment" in tomllib.loads(path.read_text("utf-8"))]
+    return [path for path in paths if not is_train(path)]

@@ -29,9 +29,11 @@ from solidgear.cli import (
     bearing,
     chart,
     files,
+    receptance,
     solve,
     sweep,
     train,
+    train_judge,
 )
 from solidgear.cli.app import app
 from solidgear.errors import SolidgearError, for_terminal

@@ -64,7 +64,20 @@ def compare(
         ),
     ] = False,
 ) -> None:
-    """Solve a scene with every model and write a report on which to trust."""
+    """Solve a scene with every model and write a report on which to trust; a train as well."""
+    from solidgear.scene.toml_file import is_train
+
+    if is_train(scene):
+        from solidgear.cli.train_judge import compare_train
+
+        given = {
+            "--models": models != ",".join(LADDER.names),
+            "--solid-element": bool(solid_element),
+            "--set": bool(settings),
+            "--chart": chart,
+        }
+        compare_train(scene, out, as_json, renders, given)
+        return
     from solidgear.report.folder import held
     from solidgear.studies.comparison import check_models
     from solidgear.studies.comparison import compare as run

@@ -1,8 +1,9 @@
-"""Commands on a train, two shafts that mesh: system-modes, response, judge-system."""
+"""Commands on a train, two shafts that mesh: system-modes, response."""
 
 from __future__ import annotations
 
 import json
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Annotated
 
@@ -26,12 +27,26 @@ Reduction = Annotated[
 ]
 MaxFrequency = Annotated[float | None, typer.Option(help="Hz; as the file says by default.")]
 Kept = Annotated[int, typer.Option("--kept", help="Modes of each shaft kept in its reduction.")]
+Against = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--against",
+        help="Further model to draw, as PINION+GEAR, such as euler+euler; repeatable.",
+    ),
+]
+Damping = Annotated[
+    str,
+    typer.Option(help="hysteretic, viscous (with --matched-at), modal, or literal (C = zeta K)."),
+]
+MatchedAt = Annotated[
+    float | None, typer.Option("--matched-at", help="Hz at which viscous losses match.")
+]
 MOST_KEPT = 200
 #: relative; no frequency is printed with a smaller bound, whatever the proof says
 ROUNDING = 1e-12
 
 
-def _shop(path: Path, reduction: str, kept: int, max_frequency: float | None):
+def workshop(path: Path, reduction: str, kept: int, max_frequency: float | None):
     """Where the bodies of a train are built, once the options that all commands share are sound."""
     from solidgear.scene.toml_file import parse
     from solidgear.scene.train_file import load_train
@@ -54,6 +69,14 @@ def system_modes(
     pinion: PinionRung = FIDELITY,
     gear: GearRung = FIDELITY,
     max_frequency: MaxFrequency = None,
+    pictures: Annotated[
+        Path | None,
+        typer.Option("--pictures", help="Folder for a picture a mode, both shafts in place."),
+    ] = None,
+    mode: Annotated[
+        list[int] | None,
+        typer.Option("--mode", help="Only draw this one, counted from 1 as listed; repeatable."),
+    ] = None,
     reduction: Reduction = "rubin",
     kept: Kept = 24,
     as_json: JsonFlag = False,
@@ -61,23 +84,37 @@ def system_modes(
     """Natural frequencies of a geared rotor system, each with its name and its proven bound."""
     from solidgear.studies.axle.modes import train_modes
 
-    shop = _shop(train, reduction, kept, max_frequency)
+    shop = workshop(train, reduction, kept, max_frequency)
+    if mode and pictures is None:
+        raise SolidgearError("--mode says which mode to draw; add --pictures and a folder")
     found = train_modes(shop, pinion, gear, max_frequency)
+    drawn = _drawn(shop, pinion, gear, pictures, mode, found) if pictures else []
     if as_json:
         print(json.dumps(found.as_dict(), allow_nan=False))
         return
-    _say(*found.heading())
+    say(*found.heading())
     console().print(_modes_table(found))
-    _say(*found.remarks())
+    say(*found.remarks(), *drawn)
 
 
-def _say(*sentences: str) -> None:
+def _drawn(shop, pinion: str, gear: str, folder: Path, numbers: list[int] | None, found):
+    """Pictures of modes, and what is to be said of them."""
+    from solidgear.studies.axle.pictures import draw_modes
+
+    listed = [n for n, mode in enumerate(found.modes, start=1) if mode.frequency_hz > 0]
+    done = draw_modes(shop, pinion, gear, folder, numbers or listed).values()
+    written = [str(one.path) for one in done if one.ok]
+    lines = [f"Written: {', '.join(written)}"] if written else []
+    return lines + sorted({one.reason for one in done if not one.ok})
+
+
+def say(*sentences: str) -> None:
     terminal = console()
     for sentence in sentences:
         terminal.print(sentence, markup=False, soft_wrap=True)
 
 
-def _caution(text: str) -> str:
+def caution(text: str) -> str:
     return f"caution: {text}"
 
 
@@ -85,15 +122,21 @@ def _modes_table(found):
     from rich.table import Table
 
     table = Table(show_edge=False)
+    table.add_column("", justify="right")
     table.add_column("mode")
     table.add_column("Hz", justify="right")
     table.add_column("pinion rpm", justify="right")
     table.add_column("most strain energy")
     table.add_column("bound", justify="right")
-    for mode in found.modes:
+    for number, mode in enumerate(found.modes, start=1):
         bound = "exact" if mode.frequency_hz == 0 else f"{max(mode.bound, ROUNDING):.0e}"
         table.add_row(
-            mode.name, f"{mode.frequency_hz:.2f}", f"{mode.rpm:.0f}", mode.strained, bound
+            str(number),
+            mode.name,
+            f"{mode.frequency_hz:.2f}",
+            f"{mode.rpm:.0f}",
+            mode.strained,
+            bound,
         )
     return table
 
@@ -106,29 +149,20 @@ def response(
     ] = Path("out"),
     pinion: PinionRung = FIDELITY,
     gear: GearRung = FIDELITY,
-    against: Annotated[
-        list[str] | None,
-        typer.Option(
-            "--against",
-            help="Further model to draw, as PINION+GEAR, such as euler+euler; repeatable.",
-        ),
-    ] = None,
+    against: Against = None,
     max_frequency: MaxFrequency = None,
-    damping: Annotated[
-        str,
-        typer.Option(
-            help="hysteretic, viscous (with --matched-at), modal, or literal (C = zeta K)."
-        ),
-    ] = "hysteretic",
-    matched_at: Annotated[
-        float | None, typer.Option("--matched-at", help="Hz at which viscous losses match.")
-    ] = None,
+    damping: Damping = "hysteretic",
+    matched_at: MatchedAt = None,
     force: Annotated[
         list[str] | None,
         typer.Option(
             "--force",
             help="Force on a port instead of the transmission error, such as gear.gear:z=100 in N; repeatable.",
         ),
+    ] = None,
+    orders: Annotated[
+        int | None,
+        typer.Option("--orders", help="Orders of the mesh in orders.png; 3, or as many as given."),
     ] = None,
     reduction: Reduction = "rubin",
     kept: Kept = 24,
@@ -138,33 +172,37 @@ def response(
     from solidgear.report.folder import held
     from solidgear.report.train_files import write_response
     from solidgear.studies.axle.modes import unpublished_lines
+    from solidgear.studies.axle.orders import order_map
     from solidgear.studies.axle.respond import respond
 
-    shop = _shop(train, reduction, kept, max_frequency)
-    mixes = [(pinion, gear), *map(_mix, against or [])]
+    shop = workshop(train, reduction, kept, max_frequency)
+    mixes = [(pinion, gear), *map(mix, against or [])]
     forces = _forces(force)
     with held(out):
         found = [
-            respond(shop, *mix, max_frequency, damping, matched_at or 0.0, forces) for mix in mixes
+            respond(shop, *pair, max_frequency, damping, matched_at or 0.0, forces)
+            for pair in mixes
         ]
         unpublished = shop.train.unpublished()
         notes = {"damping": damping, "unpublished": unpublished, "cautions": found[0].cautions}
         title = shop.train.title or shop.train.name
         teeth, band = shop.train.pinion.teeth, shop.train.ask.decibels
-        files = write_response(out, found, title, teeth, band, notes)
+        # a force on a port has no order of the mesh
+        kind = (damping, matched_at or 0.0)
+        lines = None if forces else order_map(shop, pinion, gear, max_frequency, *kind, orders)
+        files = write_response(out, found, title, teeth, band, notes, lines)
     if as_json:
         print((out / "response.json").read_text(encoding="utf-8"))
         return
     terminal = console()
     terminal.print(f"{title}: pinion {pinion}, gear {gear}, {damping} losses", markup=False)
-    terminal.print(_peaks_table(found[0], teeth))
-    if not found[0].peaks:
-        terminal.print("The mesh force has no peak in this range.", markup=False)
-    _say(*unpublished_lines(unpublished), *map(_caution, found[0].cautions))
-    _say(f"Written: {', '.join(map(str, files))}")
+    tops = [(p.frequency_hz, p.force, p.mode) for p in found[0].peaks]
+    peaks_table("Peaks of the mesh force", "mesh force N", tops, teeth, ".1f")
+    say(*unpublished_lines(unpublished), *map(caution, found[0].cautions))
+    say(f"Written: {', '.join(map(str, files))}")
 
 
-def _mix(text: str) -> tuple[str, str]:
+def mix(text: str) -> tuple[str, str]:
     pinion, plus, gear = text.partition("+")
     if not plus:
         raise SolidgearError(f"--against {show(text, 40)}: write PINION+GEAR, such as euler+euler")
@@ -177,100 +215,49 @@ def _forces(texts: list[str] | None) -> dict:
 
     out: dict = {}
     for text in texts or []:
-        port, _, rest = text.partition(":")
-        dof, _, value = rest.partition("=")
+        end, _, value = text.partition("=")
         try:
             number = float(value)
         except ValueError:
             number = float("nan")
-        if dof not in DOF_NAMES or not abs(number) < float("inf"):
+        if not abs(number) < float("inf"):
             raise SolidgearError(
-                f"--force {show(text, 40)}: write PORT:COMPONENT=VALUE, such as gear.gear:z=100; "
-                f"components are {' '.join(DOF_NAMES)}"
+                f"--force {show(text, 40)}: write PORT:COMPONENT=VALUE, such as gear.gear:z=100"
             )
+        port, dof = end_of("--force", end, "=100")
         out.setdefault(port, [0.0] * 6)[DOF_NAMES.index(dof)] += number
     return out
 
 
-def _peaks_table(found, teeth: int):
-    from rich.table import Table
+def end_of(option: str, text: str, more: str = "") -> tuple[str, str]:
+    """Port and component, from a text such as ``gear.gear:z``; what else follows is part of the
+    example in an error.
+    """
+    from solidgear.frames import DOF_NAMES
 
-    table = Table(title="Peaks of the mesh force", title_justify="left", show_edge=False)
-    table.add_column("mode")
-    for head in ("Hz", "pinion rpm", "mesh force N"):
-        table.add_column(head, justify="right")
-    for peak in found.peaks:
-        hz = peak.frequency_hz
-        table.add_row(peak.mode, f"{hz:.1f}", f"{60 * hz / teeth:.0f}", f"{peak.force:.1f}")
-    return table
+    port, _, dof = text.partition(":")
+    if not port or dof not in DOF_NAMES:
+        raise SolidgearError(
+            f"{option} {show(text, 40)}: write PORT:COMPONENT{'=VALUE' * bool(more)}, such as "
+            f"gear.gear:z{more}; components are {' '.join(DOF_NAMES)}"
+        )
+    return port, dof
 
 
-@command
-def judge_system(
-    train: TrainFile,
-    out: Annotated[
-        Path | None, typer.Option("--out", "-o", help="Folder for the chart and the table.")
-    ] = None,
-    max_frequency: MaxFrequency = None,
-    against: Annotated[
-        list[str] | None,
-        typer.Option("--against", help="Further mix to judge, as PINION+GEAR; repeatable."),
-    ] = None,
-    reduction: Reduction = "rubin",
-    kept: Kept = 24,
-    as_json: JsonFlag = False,
+def peaks_table(
+    title: str, head: str, peaks: Sequence[tuple[float, float, str]], teeth: int, digits: str
 ) -> None:
-    """Which shaft needs the solid, and from which frequency on: every mix against both solid."""
-    from contextlib import nullcontext
-
-    from solidgear.report.folder import held
-    from solidgear.report.train_files import write_response
-    from solidgear.studies.axle.judge import DRAWN, judge_train
-    from solidgear.studies.axle.modes import unpublished_lines
-
-    shop = _shop(train, reduction, kept, max_frequency)
-    with held(out) if out else nullcontext():
-        found = judge_train(shop, max_frequency, [_mix(text) for text in against or []])
-        if out:
-            drawn = [r for r in found.responses if (r.pinion, r.gear) in DRAWN]
-            marks = {m.label: m.force_to_hz for m in found.mixes if m.force_to_hz is not None}
-            teeth = shop.train.pinion.teeth
-            write_response(
-                out, drawn, found.train, teeth, found.decibels, {"verdict": found.as_dict()}, marks
-            )
-    if as_json:
-        print(json.dumps(found.as_dict(), allow_nan=False))
-        return
-    terminal = console()
-    terminal.print(f"{found.train}, up to {found.highest_hz:g} Hz", markup=False)
-    terminal.print(_verdict_table(found))
-    _say(*found.sentences(), *unpublished_lines(found.unpublished), *map(_caution, found.cautions))
-
-
-def _verdict_table(found):
+    """Print peaks (Hz, size, mode), or that there is none."""
     from rich.table import Table
 
-    title = "Within the band up to, in Hz"
-    table = Table(title=title, title_justify="left", box=None, padding=(0, 1, 0, 0))
-    table.add_column("pinion + gear")
-    for head in (
-        f"modes\n{100 * found.tolerance:g} %",
-        f"force\n{found.decibels:g} dB",
-        f"force\n{100 * found.tolerance:g} %",
-    ):
-        table.add_column(head, justify="right")
-    table.add_column("first mode off")
-    table.add_column("by")
-    table.add_column("s", justify="right")
-    for mix in found.mixes:
-        ends = [
-            f"{found.highest_hz:.0f}+" if hz is None else f"{hz:.0f}"
-            for hz in (mix.modes_to_hz, mix.force_to_hz, mix.close_to_hz)
-        ]
-        off = "" if not mix.mode else f"{mix.mode} gone"
-        if mix.error is not None:
-            digits = 1 if abs(mix.error) < 0.0995 else 0
-            off = f"{mix.mode} {100 * mix.error:+.{digits}f} %"
-        name = f"{mix.pinion} + {mix.gear}" if mix.pinion != mix.gear else f"both {mix.gear}"
-        table.add_row(name, *ends, off, mix.cause, f"{mix.seconds:.1f}")
-    return table
+    terminal = console()
+    table = Table(title=title, title_justify="left", show_edge=False)
+    table.add_column("mode")
+    for words in ("Hz", "pinion rpm", head):
+        table.add_column(words, justify="right")
+    for hz, size, mode in peaks:
+        table.add_row(mode, f"{hz:.1f}", f"{60 * hz / teeth:.0f}", f"{size:{digits}}")
+    if peaks:
+        terminal.print(table)
+    else:
+        terminal.print(f"{title}: none in this range.", markup=False)

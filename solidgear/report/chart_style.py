@@ -48,24 +48,36 @@ def as_svg(function: Callable[[Record], Any]) -> Chart:
 
     @functools.wraps(function)
     def drawn(found: Record | Mapping[str, Any]) -> bytes | None:
-        import matplotlib
-
-        name = function.__name__
-        with matplotlib.rc_context():
-            matplotlib.rcdefaults()  # the user's own matplotlibrc must not change a report
-            matplotlib.rcParams.update({**STYLE, "svg.hashsalt": f"solidgear {name}"})
-            figure = function(as_record(found))
-            if figure is None:
-                return None
-            target = io.BytesIO()
-            figure.savefig(
-                target,
-                format="svg",
-                metadata={"Date": None, "Creator": None, "Format": None, "Type": None},
-            )
-        return _embeddable(target.getvalue().decode(), name).encode()
+        return svg_of(function.__name__, lambda: function(as_record(found)))
 
     return drawn
+
+
+def svg_of(name: str, make: Callable[[], Any]) -> bytes | None:
+    """The SVG of a figure, ready to stand in an HTML page.
+
+    Parameters
+    ----------
+    name : str
+        Letters and underscores, of no other figure of the page.
+    make : callable
+        Gives the figure, or None where there is nothing to draw.
+    """
+    import matplotlib
+
+    with matplotlib.rc_context():
+        matplotlib.rcdefaults()  # the user's own matplotlibrc must not change a report
+        matplotlib.rcParams.update({**STYLE, "svg.hashsalt": f"solidgear {name}"})
+        figure = make()
+        if figure is None:
+            return None
+        target = io.BytesIO()
+        figure.savefig(
+            target,
+            format="svg",
+            metadata={"Date": None, "Creator": None, "Format": None, "Type": None},
+        )
+    return _embeddable(target.getvalue().decode(), name).encode()
 
 
 def _embeddable(svg: str, name: str) -> str:

@@ -85,7 +85,7 @@ def render_page(
     record = as_record(found)
     warnings = list(record.warnings)
     drawn = _drawn(record, warnings)
-    return _template().render(
+    return template("report.html").render(
         **_opening(record),
         warnings=warnings,
         charts={name: Markup(svg.decode()) if svg else None for name, svg in drawn.items()},
@@ -179,7 +179,8 @@ def _tables(record: Record) -> dict[str, Any]:
 
 
 @functools.cache
-def _template():
+def template(name: str):
+    """A page beside this file, ready to be filled."""
     from jinja2 import Environment, FileSystemLoader, StrictUndefined
 
     loader = FileSystemLoader(Path(__file__).parent)
@@ -189,7 +190,7 @@ def _template():
         undefined=StrictUndefined,
         trim_blocks=True,
         lstrip_blocks=True,
-    ).get_template("report.html")
+    ).get_template(name)
 
 
 def _renders(
@@ -200,7 +201,7 @@ def _renders(
         images = _named_images(record, folder)
     renders = []
     for key, image in images.items():
-        renders.append((capital(model_name(record, key)), _data_uri(key, image)))
+        renders.append((capital(model_name(record, key)), data_uri(key, image)))
     return renders
 
 
@@ -213,7 +214,7 @@ def _named_images(record: Record, folder: str | os.PathLike | None) -> dict[str,
     return {key: Path(folder) / Path(name).name for key, name in record.images.items()}
 
 
-def _data_uri(key: str, image: Any) -> str | None:
+def data_uri(key: str, image: Any) -> str | None:
     """A picture in bytes or in a file as a data URI; None if it cannot be had or is none."""
     try:
         in_memory = isinstance(image, (bytes, bytearray, memoryview))

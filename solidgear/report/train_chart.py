@@ -1,4 +1,6 @@
-"""Charts of a train's response: mesh force and transmission error, every model in one figure."""
+"""Charts of a train over frequency, every model in one figure: mesh force and transmission error, or
+a receptance.
+"""
 
 from __future__ import annotations
 
@@ -61,25 +63,69 @@ def response_figure(
             axis.set_ylabel(words)
             axis.set_xlim(first, last)
             axis.set_ylim(_ends(responses, column, first))
-        _peaks(axes[0], responses[0], first)
+        tops = [(p.frequency_hz, p.force, p.mode) for p in responses[0].peaks]
+        _named(axes[0], tops, first)
         for k, response in enumerate(responses[1:], start=1):
             if label(response) in marks:
                 colour = COLOURS[k % len(COLOURS)]
                 place = marks[label(response)]
                 axes[0].axvline(place, ymax=DEPARTS, color=colour, lw=1.2, ls=":")
-        axes[1].set_xlabel("mesh frequency in Hz")
-        upper = axes[0].secondary_xaxis(
-            "top", functions=(lambda f: 60 * f / teeth, lambda n: n * teeth / 60)
-        )
-        upper.set_xlabel("pinion speed in rpm")
-        for axis in (*(a.xaxis for a in axes), upper.xaxis):
-            _plain(axis, TICKS)
         for axis in axes:
             _plain(axis.yaxis, (1.0,))
-        figure.suptitle(title, fontsize=10.5, x=0.01, ha="left")
-        handles, words = axes[0].get_legend_handles_labels()
-        figure.legend(handles, words, loc="outside lower center", fontsize=7.5, ncols=3)
+        _finish(figure, axes, "mesh frequency in Hz", title, teeth)
         return figure
+
+
+def receptance_figure(found: Sequence[Any], title: str, teeth: int):
+    """Amplitude and phase of a receptance over frequency, the peaks of the first model named.
+
+    Parameters
+    ----------
+    found : sequence of TrainReceptance
+        Of the same two ends.
+    title : str
+    teeth : int
+        Of the pinion, for the upper axis in rpm.
+
+    Returns
+    -------
+    matplotlib Figure
+    """
+    import matplotlib
+    from matplotlib.figure import Figure
+
+    with matplotlib.rc_context():
+        matplotlib.rcdefaults()
+        matplotlib.rcParams.update(STYLE)
+        figure = Figure(figsize=(9.0, 6.6), layout="constrained")
+        axes = figure.subplots(2, 1, sharex=True, height_ratios=(2.2, 1))
+        for k, one in enumerate(found):
+            look = {"color": COLOURS[k % len(COLOURS)], "lw": 1.6 if k == 0 else 1.0}
+            look["zorder"] = 9 - k
+            axes[0].loglog(one.frequency_hz, np.abs(one.value), label=label(one), **look)
+            axes[1].semilogx(one.frequency_hz, np.degrees(np.angle(one.value)), ".", ms=1.5, **look)
+        axes[0].set_ylabel(f"receptance in {found[0].unit}")
+        axes[1].set_ylabel("phase in degrees")
+        axes[1].set_ylim(-185, 185)
+        axes[1].set_yticks((-180, -90, 0, 90, 180))
+        axes[1].set_xlim(found[0].frequency_hz[0], found[0].frequency_hz[-1])
+        _named(axes[0], found[0].peaks, found[0].frequency_hz[0])
+        _finish(figure, axes, "frequency in Hz", title, teeth)
+        return figure
+
+
+def _finish(figure, axes, words: str, title: str, teeth: int) -> None:
+    """What two panels over frequency share: axes in Hz and in rpm, title and legend."""
+    axes[1].set_xlabel(words)
+    upper = axes[0].secondary_xaxis(
+        "top", functions=(lambda f: 60 * f / teeth, lambda n: n * teeth / 60)
+    )
+    upper.set_xlabel("pinion speed in rpm at which the teeth mesh at it")
+    for axis in (*(a.xaxis for a in axes), upper.xaxis):
+        _plain(axis, TICKS)
+    figure.suptitle(title, fontsize=10.5, x=0.01, ha="left")
+    handles, labels = axes[0].get_legend_handles_labels()
+    figure.legend(handles, labels, loc="outside lower center", fontsize=7.5, ncols=3)
 
 
 def _plain(axis, subs) -> None:
@@ -122,21 +168,23 @@ def _ends(responses, column, first: float) -> tuple[float, float]:
     return 0.6 * min(s.min() for s in seen), 1.8 * max(s.max() for s in seen)
 
 
-def _peaks(axis, response, first: float) -> None:
-    """Names over the peaks; one that would lie on its neighbour is left to the table."""
+def _named(axis, tops: Sequence[tuple[float, float, str]], first: float) -> None:
+    """Names over the peaks (Hz, size, mode); one that would lie on its neighbour is left to the
+    table.
+    """
     last = -np.inf
     low, high = axis.get_ylim()
     axis.set_ylim(low, high * (high / low) ** ROOM)
-    for peak in response.peaks:
-        place = np.log10(peak.frequency_hz)
-        if peak.frequency_hz < first:
+    for hz, size, mode in tops:
+        place = np.log10(hz)
+        if hz < first:
             continue
         if place - last < APART:
             continue
         last = place
         axis.annotate(
-            f"{peak.mode}  {peak.frequency_hz:.0f} Hz",
-            (peak.frequency_hz, peak.force),
+            f"{mode}  {hz:.0f} Hz",
+            (hz, size),
             xytext=(0, 6),
             textcoords="offset points",
             rotation=90,

@@ -19,7 +19,7 @@ from solidgear.scene.places import resolve
 from solidgear.scene.rules import MOST_BEARINGS, MOST_MASSES, MOST_SEGMENTS, too_many
 from solidgear.scene.segment_tables import KINDS
 from solidgear.scene.tables import FEATURES, PartTable, SceneTable, SoundTables
-from solidgear.scene.toml_file import name_of, parse, place_of
+from solidgear.scene.toml_file import describes_train, name_of, parse, place_of
 
 
 def _drop_tag(loc: tuple) -> tuple:
@@ -57,10 +57,10 @@ def load(path: str | os.PathLike, part_of: Reader = unread) -> Scene:
     """
     where = os.fspath(path)
     raw = parse(where)
-    if "segment" not in raw and {"pinion", "gear"} <= set(raw):
+    if describes_train(raw):
         raise SceneError(
-            "describes a train of two shafts and not a shaft; read it with solidgear.load_train, "
-            "or run solidgear system-modes, response or judge-system on it"
+            "describes a train of two shafts and not a shaft; run solidgear compare, "
+            "system-modes, response or receptance on it, or read it with solidgear.load_train"
         ).located(raw, where=place_of(where))
     try:
         return _read(raw, where, part_of)

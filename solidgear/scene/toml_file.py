@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import os
 import re
 import stat
 import sys
 import tomllib
+from collections.abc import Mapping
 from functools import lru_cache
 from pathlib import Path
 from typing import Any, TextIO
@@ -60,6 +62,31 @@ def parse(where: str) -> dict[str, Any]:
             else f"cannot be read: {getattr(error, 'strerror', None) or error}"
         )
     raise SceneError(reason, where=place_of(where))
+
+
+def describes_train(raw: Mapping[str, Any]) -> bool:
+    """Whether the tables of a file are those of a train of two shafts, and not of one shaft."""
+    return "segment" not in raw and {"pinion", "gear"} <= set(raw)
+
+
+def is_train(path: str | os.PathLike) -> bool:
+    """Whether a file describes a train.
+
+    Parameters
+    ----------
+    path : str or path
+
+    Raises
+    ------
+    SceneError
+        As :func:`parse`.
+
+    Examples
+    --------
+    >>> is_train("geometry/axle_overhung.toml"), is_train("geometry/gear_shaft.toml")
+    (True, False)
+    """
+    return describes_train(parse(os.fspath(path)))
 
 
 def name_of(where: str) -> str:

@@ -160,6 +160,10 @@ class Train(Model):
         """Every value of the file that no source gives, by its key: ``identified`` or
         ``assumed``.
         """
+        return {k: s for k, s in self.statuses().items() if s in ("identified", "assumed")}
+
+    def statuses(self) -> dict[str, str]:
+        """Where every value of the file that has a status comes from, by its key."""
         mesh, out = self.mesh, {}
         line = "line_of_action" if mesh.line_of_action else "contact_cells"
         line = "pressure_angle" if not (mesh.line_of_action or mesh.contact_cells) else line
@@ -180,4 +184,4 @@ class Train(Model):
                 out[f"{side}.head"] = str(member.head.status)
             for bearing in member.scene.bearings:
                 out[f"{side} bearing {bearing.name}"] = str(bearing.status)
-        return {key: status for key, status in out.items() if status in ("identified", "assumed")}
+        return out

@@ -53,8 +53,9 @@ def load_train(path: str | os.PathLike) -> Train:
     try:
         if "segment" in raw:
             raise SceneError(
-                "this is the scene of one shaft, not of a train; name a file with [pinion] and "
-                "[gear], such as geometry/axle_overhung.toml",
+                "this is the scene of one shaft, not of a train; run solidgear compare, answer "
+                "or modes on it, or name a file with [pinion] and [gear], such as "
+                "geometry/axle_overhung.toml",
                 path=("segment",),
             )
         data = {**raw}

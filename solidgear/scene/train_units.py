@@ -88,5 +88,5 @@ PressureAngle = Annotated[
 ShaftAngle = Annotated[
     float,
     _in("angle"),
-    _angle(math.radians(5), math.radians(175), "5 and 175 degrees; bevel axes cross"),
+    _angle(0.0, math.radians(175), "0 (parallel shafts) and 175 degrees"),
 ]

@@ -85,8 +85,10 @@ def response(
     return (shapes @ ((shapes.T @ load)[:, None] / gap) + free_motion(system, w2, load)).T
 
 
-def free_motion(system: System, w2: np.ndarray, load: np.ndarray) -> np.ndarray:
-    """Accelerations of free motions, twice integrated."""
+def free_motion(
+    system: System, w2: np.ndarray, load: np.ndarray, rows: np.ndarray | None = None
+) -> np.ndarray:
+    """Accelerations of free motions, twice integrated; of all coordinates, or seen by some rows."""
     push = system.free.T @ load
     if np.any(w2 == 0):
         if np.abs(push).max(initial=0.0) > UNBALANCED * np.linalg.norm(system.elastic[1].T @ load):
@@ -94,7 +96,8 @@ def free_motion(system: System, w2: np.ndarray, load: np.ndarray) -> np.ndarray:
                 "at 0 Hz the load drives a motion that nothing resists; leave 0 Hz out"
             )
     moving = np.where(w2 > 0, w2, 1.0)
-    return system.free @ (push[:, None] * (w2 > 0) / -moving)
+    free = system.free if rows is None else rows @ system.free
+    return free @ (push[:, None] * (w2 > 0) / -moving)
 
 
 def lost_stiffness(system: System, loss: Mapping[str, float]) -> np.ndarray:

@@ -8,9 +8,10 @@ from validation.manual.cases import (
     pinion,
     rods,
     solids,
+    spur_train,
     statics,
     thesis,
 )
 
-SUBJECTS = (statics, free_beams, held_beams, rods, solids, bearings, thesis, pinion)
+SUBJECTS = (statics, free_beams, held_beams, rods, solids, bearings, thesis, pinion, spur_train)
 CASES: dict[str, Case] = {case.name: case for subject in SUBJECTS for case in subject.CASES}

@@ -10,7 +10,7 @@ furthest.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import asdict, dataclass, replace
 
 import numpy as np
@@ -180,7 +180,10 @@ class Verdict:
 
 
 def judge_train(
-    workshop: Workshop, highest_hz: float | None = None, more: Sequence[tuple[str, str]] = ()
+    workshop: Workshop,
+    highest_hz: float | None = None,
+    more: Sequence[tuple[str, str]] = (),
+    progress: Callable[[str], None] = lambda text: None,
 ) -> Verdict:
     """Every mix of beams and solids, and the lumped models, against both shafts solid.
 
@@ -191,6 +194,8 @@ def judge_train(
         That of the file by default.
     more : sequence of (str, str)
         Further mixes, (pinion, gear).
+    progress : callable, optional
+        Told of every stage.
 
     Raises
     ------
@@ -205,10 +210,15 @@ def judge_train(
     for pair in mixes:
         for rung in pair:
             checked_rung(rung)
+    progress(f"judge: both shafts {JUDGE}")
     judge = _Judge(workshop, highest)
-    found = {mix: judge.departure(*mix) for mix in mixes}
+    found = {}
+    for mix in mixes:
+        progress(f"pinion {mix[0]}, gear {mix[1]}")
+        found[mix] = judge.departure(*mix)
     told = [_with_cause(found, mix) for mix in mixes]
     own = judge.departure(JUDGE, JUDGE)
+    progress("the judge's own coarser mesh")
     ordered = sorted(told, key=lambda m: (m.unknowns, m.seconds))
     return Verdict(
         workshop.train.title or workshop.train.name,

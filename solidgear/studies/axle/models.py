@@ -13,13 +13,15 @@ or ``lumped``: six degrees of freedom at the lumped point, condensed from a body
 from __future__ import annotations
 
 from collections.abc import Mapping
+from copy import copy
 from dataclasses import dataclass, field
 from time import perf_counter
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from solidgear.body import Body, as_supports
-from solidgear.errors import SolidgearError, nearest, show
+from solidgear.errors import SolidgearError, listed, nearest, show
 from solidgear.fidelity import build
 from solidgear.fidelity.ladder import LADDER
 from solidgear.reduction.condensed import condensed_shaft
@@ -161,6 +163,57 @@ class Workshop:
         self._made[side, name] = ShaftModel(
             side, name, part, under.body, under.unknowns, under.seconds
         )
+
+    def with_bearings(self, stiffness: Mapping[str, ArrayLike]) -> Workshop:
+        """The same train on other bearings; bodies and their reductions are kept.
+
+        Parameters
+        ----------
+        stiffness : mapping of str to (6, 6) array_like
+            By bearing, such as ``pinion.1``, series springs included, SI.
+
+        Returns
+        -------
+        Workshop
+
+        Raises
+        ------
+        SolidgearError
+            For a bearing that there is not, or a matrix that is no stiffness.
+
+        Examples
+        --------
+        >>> import numpy as np
+        >>> import solidgear as sg
+        >>> shop = Workshop(sg.load_train("geometry/axle_overhung.toml"))
+        >>> usual = shop.system("euler", "euler").modes(3).frequency_hz[3]
+        >>> soft = shop.with_bearings({"gear.3": np.diag([1e8, 1e8, 1e8, 0, 0, 0])})
+        >>> bool(soft.system("euler", "euler").modes(3).frequency_hz[3] < usual)
+        True
+        """
+        known = [f"{s}.{b.name}" for s in SIDES for b in self.train.member(s).scene.bearings]
+        for name in stiffness:
+            if name not in known:
+                raise SolidgearError(
+                    f"no bearing {show(name, 40)}{nearest(name, known)}; there are {listed(known)}"
+                )
+        out = copy(self)
+        # bodies are free of their bearings; what is condensed on them is not
+        kept = {k: m for k, m in self._made.items() if k[1].partition("/")[0] not in LUMPED}
+        out._made, out.scenes = kept, {}
+        for side, scene in self.scenes.items():
+            bearings = [
+                bearing.with_changes(
+                    matrix=np.asarray(stiffness[f"{side}.{bearing.name}"]).tolist(),
+                    axial_series=(),
+                    catalogue=None,
+                )
+                if f"{side}.{bearing.name}" in stiffness
+                else bearing
+                for bearing in scene.bearings
+            ]
+            out.scenes[side] = scene.with_changes(bearings=tuple(bearings))
+        return out
 
     def _from_body(self, side: str, rung: str, kind: str, base: str) -> ShaftModel:
         under = self.shaft(side, base)

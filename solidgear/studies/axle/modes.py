@@ -95,6 +95,10 @@ class TrainModes:
         ]
 
     def remarks(self) -> list[str]:
+        """What to know of the numbers, cautions included."""
+        return self.notes() + [f"caution: {text}" for text in self.cautions]
+
+    def notes(self) -> list[str]:
         """What to know of the numbers."""
         lines = []
         if self.rigid == 1 and not self.free:
@@ -111,8 +115,7 @@ class TrainModes:
             "Bound: largest relative error that the reduction leaves, proven; "
             "it says nothing of the meshes of the shafts."
         )
-        lines += list(self.contact) + unpublished_lines(self.unpublished)
-        return lines + [f"caution: {text}" for text in self.cautions]
+        return lines + list(self.contact) + unpublished_lines(self.unpublished)
 
 
 def unpublished_lines(unpublished: dict[str, str]) -> list[str]:

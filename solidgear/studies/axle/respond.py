@@ -8,7 +8,7 @@ times what their seats move: all six components, the whole row and not the diago
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -157,6 +157,11 @@ class Drive:
     def mesh(self, frequency_hz: np.ndarray, order: int = 1) -> tuple[np.ndarray, np.ndarray]:
         """(f,) dynamic transmission error, m, and mesh force, N."""
         dte = self.motion(frequency_hz, self.row[None], order)[:, 0]
+        return self._teeth(frequency_hz, dte, order)
+
+    def _teeth(
+        self, frequency_hz: np.ndarray, dte: np.ndarray, order: int = 1
+    ) -> tuple[np.ndarray, np.ndarray]:
         error = 0.0 if self.forces else self.amplitude(frequency_hz, order)
         factor = self.stiffness * self.steady.factor("mesh", frequency_hz)
         return dte, factor * (dte - error)
@@ -165,34 +170,75 @@ class Drive:
         """(f, 6) forces of every bearing on its shaft, in the axes of that shaft, by ``side
         bearing``.
         """
+        rows = self._reaction_rows()
+        found = self.motion(frequency_hz, np.vstack([force for _, force in rows.values()]))
+        return self._reactions(frequency_hz, rows, found)
+
+    def _reaction_rows(self) -> dict[str, tuple[str, np.ndarray]]:
+        """Link and rows (6, N) of the elastic force of every bearing, by ``side bearing``."""
         out = {}
         for side in SIDES:
-            scene = self.workshop.scenes[side]
-            supports = as_supports(scene)
+            supports = as_supports(self.workshop.scenes[side])
             seats = np.vstack([self.system.motion(f"{side}.{b}") for b in supports.ports])
             link = next(n for n in self.system.links if n.startswith(f"{side}."))
             force = -np.array(supports.stiffness) @ seats
-            found = self.motion(frequency_hz, force)
-            found = found * self.steady.factor(link, frequency_hz)[:, None]
             for k, name in enumerate(supports.ports):
                 if np.any(supports.stiffness[6 * k : 6 * k + 6]):
-                    out[f"{side} bearing {name}"] = found[:, 6 * k : 6 * k + 6]
+                    out[f"{side} bearing {name}"] = (link, force[6 * k : 6 * k + 6])
         return out
 
-    def grid(self, highest_hz: float, lowest_hz: float | None = None) -> np.ndarray:
-        """Frequencies on which no peak of the mesh force or the transmission error is missed."""
+    def _reactions(self, frequency_hz, rows, found) -> dict[str, np.ndarray]:
+        """Reactions from the motions (f, 6 b) of their rows, losses included."""
+        return {
+            name: found[:, 6 * k : 6 * k + 6] * self.steady.factor(link, frequency_hz)[:, None]
+            for k, (name, (link, _)) in enumerate(rows.items())
+        }
+
+    def columns(self, frequency_hz: np.ndarray) -> dict[str, np.ndarray]:
+        """All that a response tells of the first order, by name and unit: mesh, reactions of every
+        bearing, motions of both lumped points.
+        """
+        reactions = self._reaction_rows()
+        ports = {side: f"{side}.{self.workshop.scenes[side].port.name}" for side in SIDES}
+        rows = [self.row[None], *(force for _, force in reactions.values())]
+        rows += [self.system.motion(port) for port in ports.values()]
+        found = self.motion(frequency_hz, np.vstack(rows))
+        dte, force = self._teeth(frequency_hz, found[:, 0])
+        out = {"dynamic transmission error [m]": dte, "mesh force [N]": force}
+        for name, reaction in self._reactions(frequency_hz, reactions, found[:, 1:]).items():
+            for c, (dof, unit) in enumerate(zip(DOF_NAMES, FORCE_UNITS)):
+                out[f"{name} {dof} [{unit}]"] = reaction[:, c]
+        moved = found[:, 1 + 6 * len(reactions) :]
+        for k, side in enumerate(ports):
+            for c, (dof, unit) in enumerate(zip(DOF_NAMES, MOTION_UNITS)):
+                out[f"{side} {dof} [{unit}]"] = moved[:, 6 * k + c]
+        return out
+
+    def grid(
+        self,
+        highest_hz: float,
+        lowest_hz: float | None = None,
+        seen: Callable[[np.ndarray], np.ndarray] | None = None,
+    ) -> np.ndarray:
+        """Frequencies on which no peak of the last of some motions is missed.
+
+        Parameters
+        ----------
+        highest_hz, lowest_hz : float
+        seen : callable, optional
+            ``seen(frequency_hz)`` gives motions (f, q); by default the dynamic transmission error
+            and the mesh force.
+        """
         refuse_unresolved(self.workshop, self.system, highest_hz)
         first = float(self.system.elastic[0][0] / (2 * np.pi))
         lowest = lowest_hz or min(BEGIN * first, highest_hz / 100)
 
-        def seen(hz):
-            return np.column_stack(self.mesh(hz))
-
+        seen = seen or (lambda hz: np.column_stack(self.mesh(hz)))
         points = self.steady.grid(lowest, highest_hz, seen)
-        tops = peaks(np.abs(self.mesh(points)[1]))
+        tops = peaks(np.abs(seen(points)[:, -1]))
         if len(tops) > MOST_PEAKS:
             raise SolidgearError(
-                f"the mesh force has {len(tops)} peaks, which is rounding: a spring or an inertia "
+                f"the response has {len(tops)} peaks, which is rounding: a spring or an inertia "
                 "is so large or small beside the others that no digit is left; check their units"
             )
         fine = [np.linspace(points[k - 1], points[k + 1], TOP) for k in tops]
@@ -200,14 +246,26 @@ class Drive:
 
     def peaks(self, frequency_hz: np.ndarray, force: np.ndarray) -> tuple[Peak, ...]:
         """Peaks of the mesh force, each with the mode that makes it."""
+        return tuple(Peak(*top) for top in self.tops(frequency_hz, np.abs(force), self.row))
+
+    def tops(
+        self, frequency_hz: np.ndarray, size: np.ndarray, row: np.ndarray
+    ) -> list[tuple[float, float, str]]:
+        """Frequency, size and mode of every peak of an amplitude.
+
+        Parameters
+        ----------
+        frequency_hz, size : (f,) ndarray
+        row : (N,) ndarray
+            Of the motion that is looked at.
+        """
         omega, shapes = self.system.elastic
         within = max(1, int((omega <= 4 * np.pi * frequency_hz[-1]).sum()))
         found = self.system.modes(within)
         names = mode_names(self.workshop, self.system, found)[found.rigid :]
-        share = (self.row @ shapes[:, :within]) * (shapes[:, :within].T @ self.load)
+        share = (row @ shapes[:, :within]) * (shapes[:, :within].T @ self.load)
         lost = np.array([self._loss_of(found, found.rigid + k) for k in range(within)])
         out = []
-        size = np.abs(force)
         for k in peaks(size):
             if not stands_out(size, k):
                 continue
@@ -216,8 +274,8 @@ class Drive:
             # far modes give much of the force, but the same everywhere
             gap = omega[:within] ** 2 * (1 + 1j * lost) - w**2
             most = np.abs(share / gap**2).argmax()
-            out.append(Peak(float(frequency_hz[k]), float(size[k]), names[most]))
-        return tuple(out)
+            out.append((float(frequency_hz[k]), float(size[k]), names[most]))
+        return out
 
     def _loss_of(self, found, k: int) -> float:
         return sum(self.steady.loss.get(name, 0.0) * e[k] for name, e in found.energy.items())
@@ -275,22 +333,17 @@ def respond(
     drive = Drive(workshop, pinion, gear, damping, matched_hz, forces)
     highest = highest_hz or workshop.train.ask.max_frequency
     hz = drive.grid(highest) if frequency_hz is None else np.asarray(frequency_hz, float)
-    dte, force = drive.mesh(hz)
-    columns = {"dynamic transmission error [m]": dte, "mesh force [N]": force}
+    told = drive.columns(hz)
+    mesh = list(told)[:2]
+    columns = {name: told.pop(name) for name in mesh}
+    force = columns[mesh[1]]
     orders = len(drive.error.orders) if not drive.forces else 1
     for order in range(2, orders + 1):
         there = order * hz <= highest
         found = np.full(len(hz), np.nan + 0j)
         found[there] = drive.mesh(order * hz[there], order)[1]
         columns[f"mesh force, order {order} [N]"] = found
-    for name, reaction in drive.reactions(hz).items():
-        for c, (dof, unit) in enumerate(zip(DOF_NAMES, FORCE_UNITS)):
-            columns[f"{name} {dof} [{unit}]"] = reaction[:, c]
-    for side in SIDES:
-        port = workshop.scenes[side].port.name
-        moved = drive.motion(hz, drive.system.motion(f"{side}.{port}"))
-        for c, (dof, unit) in enumerate(zip(DOF_NAMES, MOTION_UNITS)):
-            columns[f"{side} {dof} [{unit}]"] = moved[:, c]
+    columns |= told
     cautions = list(workshop.contact.cautions)
     if damping == "literal":
         at = float(highest)

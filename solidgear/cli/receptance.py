@@ -1,0 +1,75 @@
+"""The command receptance: motion of one port of a train for a unit force on another."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from solidgear.cli.app import FIDELITY, JsonFlag, command
+from solidgear.cli.train import (
+    Against,
+    Damping,
+    GearRung,
+    Kept,
+    MatchedAt,
+    MaxFrequency,
+    PinionRung,
+    Reduction,
+    TrainFile,
+    caution,
+    end_of,
+    mix,
+    peaks_table,
+    say,
+    workshop,
+)
+
+END = "as PORT:COMPONENT, such as gear.gear:z, in the axes of the port's own shaft."
+
+
+@command
+def receptance(
+    train: TrainFile,
+    from_: Annotated[str, typer.Option("--from", help=f"Where a unit force acts, {END}")],
+    to: Annotated[str, typer.Option("--to", help=f"Whose motion is told, {END}")],
+    out: Annotated[
+        Path, typer.Option("--out", "-o", help="Folder for receptance.csv and its chart.")
+    ] = Path("out"),
+    pinion: PinionRung = FIDELITY,
+    gear: GearRung = FIDELITY,
+    against: Against = None,
+    max_frequency: MaxFrequency = None,
+    damping: Damping = "hysteretic",
+    matched_at: MatchedAt = None,
+    reduction: Reduction = "rubin",
+    kept: Kept = 24,
+    as_json: JsonFlag = False,
+) -> None:
+    """Receptance between any two ports of a train: table, chart, and peaks with their modes."""
+    from solidgear.report.folder import held
+    from solidgear.report.receptance_files import write_receptance
+    from solidgear.studies.axle.modes import unpublished_lines
+    from solidgear.studies.axle.receptance import receptance as run
+
+    shop = workshop(train, reduction, kept, max_frequency)
+    ends = end_of("--from", from_), end_of("--to", to)
+    mixes = [(pinion, gear), *map(mix, against or [])]
+    unpublished, cautions = shop.train.unpublished(), shop.contact.cautions
+    title = f"{shop.train.title or shop.train.name}: {to} for a unit force on {from_}"
+    with held(out):
+        found = [
+            run(shop, *pair, *ends, max_frequency, damping, matched_at or 0.0) for pair in mixes
+        ]
+        notes = {"from": from_, "to": to, "unpublished": unpublished, "cautions": list(cautions)}
+        files = write_receptance(out, found, title, shop.train.pinion.teeth, notes)
+    if as_json:
+        print((out / "receptance.json").read_text(encoding="utf-8"))
+        return
+    say(f"{title}; pinion {pinion}, gear {gear}, {damping} losses")
+    peaks_table(
+        "Peaks of the receptance", found[0].unit, found[0].peaks, shop.train.pinion.teeth, ".3e"
+    )
+    say(*unpublished_lines(unpublished), *map(caution, cautions))
+    say(f"Written: {', '.join(map(str, files))}")

@@ -1,0 +1,61 @@
+"""The files of a receptance: a table, its peaks, and a chart as PNG and SVG."""
+
+from __future__ import annotations
+
+import csv
+import json
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from solidgear.machine.whole_file import whole
+from solidgear.report.train_chart import receptance_figure
+from solidgear.report.train_files import write_charts
+
+STEM = "receptance"
+
+
+def write_receptance(
+    folder: Path, found: Sequence[Any], title: str, teeth: int, notes: Mapping[str, Any]
+) -> list[Path]:
+    """``receptance.csv`` of the first model, ``receptance.png``, ``receptance.svg`` of all, and
+    ``receptance.json`` with the peaks and what else is told.
+
+    Parameters
+    ----------
+    folder : Path
+    found : sequence of TrainReceptance
+        Of the same two ends.
+    title : str
+    teeth : int
+        Of the pinion.
+    notes : mapping
+
+    Returns
+    -------
+    list of Path
+    """
+    folder.mkdir(parents=True, exist_ok=True)
+    first = found[0]
+    files = [folder / f"{STEM}.{kind}" for kind in ("csv", "json")]
+    hz, unit, value = first.frequency_hz, first.unit, first.value
+    head = ["frequency [Hz]", "pinion speed [rpm]", f"amplitude [{unit}]", "phase [deg]"]
+    head += [f"real part [{unit}]", f"imaginary part [{unit}]"]
+    polar = [np.abs(value), np.degrees(np.angle(value))]
+    rows = np.column_stack([hz, 60 * hz / teeth, *polar, value.real, value.imag])
+    with whole(files[0]) as partial, partial.open("w", newline="", encoding="utf-8") as file:
+        writer = csv.writer(file)
+        writer.writerow(head)
+        writer.writerows([f"{v:.9g}" for v in row] for row in rows)
+    with whole(files[1]) as partial:
+        data = {"title": title, "unit": unit, "models": [_plain(one) for one in found], **notes}
+        partial.write_text(json.dumps(data, indent=1, allow_nan=False), encoding="utf-8")
+    return files + write_charts(folder / STEM, receptance_figure(found, title, teeth))
+
+
+def _plain(one: Any) -> dict[str, Any]:
+    keys = ("frequency_hz", "amplitude", "mode")
+    peaks = [dict(zip(keys, peak)) for peak in one.peaks]
+    return {"pinion": one.pinion, "gear": one.gear, "damping": one.damping, "peaks": peaks}

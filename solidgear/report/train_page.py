@@ -1,0 +1,129 @@
+"""Everything a comparison of a train leaves in its folder: numbers, table, charts, and one
+self-contained page, ``train.html`` filled.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+from solidgear.errors import SolidgearError
+from solidgear.machine.whole_file import whole
+from solidgear.report import input_tables, sketch, train_tables
+from solidgear.report.cells import DASH, capital
+from solidgear.report.chart_style import svg_of
+from solidgear.report.folder import clear, held
+from solidgear.report.html import data_uri, template
+from solidgear.report.order_chart import order_figure, write_crossings
+from solidgear.report.run_tables import pairs_of
+from solidgear.report.train_chart import response_figure
+from solidgear.report.train_files import write_charts, write_table
+from solidgear.report.words import seconds
+
+SIDES = ("pinion", "gear")
+
+
+def write_train(
+    results: Mapping[str, Any],
+    responses: Sequence[Any],
+    marks: Mapping[str, float],
+    orders: Any,
+    out: str | os.PathLike,
+    draw: Callable[[Path], Mapping[str, Any]] | None = None,
+) -> Path:
+    """Write results.json, response.csv, the charts and report.html of a train.
+
+    Parameters
+    ----------
+    results : mapping
+        Plain data, as of ``TrainComparison.results``.
+    responses : sequence of TrainResponse
+        To draw, the judge's first.
+    marks : mapping of str to float
+        Where a model leaves its band, Hz.
+    orders : OrderMap
+        Of the judge.
+    out : path
+    draw : callable, optional
+        Draws into the folder; gives ``pictures``, files by what they show, and ``left_out``,
+        sentences on what could not be drawn.
+
+    Returns
+    -------
+    Path
+        Of the page.
+
+    Raises
+    ------
+    SolidgearError
+        If the folder cannot be written.
+    """
+    verdict, train = results["verdict"], results["train"]
+    teeth = train["pinion"]["teeth"]
+    charts: dict[str, Callable[[], Any]] = {
+        "response": lambda: response_figure(
+            responses, train["title"], teeth, verdict["decibels"], marks
+        ),
+        "orders": lambda: order_figure(orders, train["title"], teeth),
+    }
+    with held(out) as folder:
+        try:
+            # Nothing of an earlier run must stand beside the numbers of this one.
+            clear(folder)
+            (folder / "report.html").unlink(missing_ok=True)
+            files = ["report.html", "response.csv", "orders.csv"]
+            files += [f"{name}.{kind}" for name in charts for kind in ("png", "svg")]
+            # Numbers first: whatever happens to pictures, they are there.
+            _write_json(folder / "results.json", {**results, "files": files})
+            write_table(folder / "response.csv", responses[0], teeth)
+            write_crossings(folder / "orders.csv", orders)
+            for name, figure in charts.items():
+                write_charts(folder / name, figure())
+            results = {**results, **(draw(folder) if draw else {"pictures": {}, "left_out": []})}
+            files += results["pictures"].values()
+            _write_json(folder / "results.json", {**results, "files": files})
+            page = _page(results, charts, folder)
+            with whole(folder / "report.html") as partial:
+                partial.write_text(page, encoding="utf-8")
+        except OSError as error:
+            raise SolidgearError(
+                f"--out {out}: writing stopped ({error.strerror or error}); "
+                "files already there are whole"
+            ) from error
+        return folder / "report.html"
+
+
+def _write_json(path: Path, results: Mapping[str, Any]) -> None:
+    with whole(path) as partial:
+        partial.write_text(json.dumps(results, indent=1, allow_nan=False) + "\n", encoding="utf-8")
+
+
+def _page(results: Mapping[str, Any], charts: Mapping[str, Callable[[], Any]], folder: Path) -> str:
+    from markupsafe import Markup
+
+    train, verdict = results["train"], results["verdict"]
+    drawn = {f"{side}": lambda side=side: sketch.draw(train[side]["scene"]) for side in SIDES}
+    svg = {name: svg_of(name, make) for name, make in {**charts, **drawn}.items()}
+    best, pictures = verdict["cheapest"], results["pictures"]
+    both = f"both shafts {best['gear']}"
+    mixed = f"pinion {best['pinion']}, gear {best['gear']}"
+    return template("train.html").render(
+        train=train,
+        verdict=verdict,
+        cheapest=both if best["pinion"] == best["gear"] else mixed,
+        warnings=[*verdict["cautions"], *results["left_out"]],
+        notes=results["modes"]["notes"],
+        charts={name: Markup(text.decode()) if text else None for name, text in svg.items()},
+        facts=train_tables.facts(train),
+        mixes=train_tables.verdict(verdict),
+        peaks=train_tables.peaks(results["peaks"], train["pinion"]["teeth"]),
+        modes=train_tables.modes(results["modes"]),
+        crossings=train_tables.crossings(results["crossings"]),
+        bearings={side: input_tables.bearings(train[side]["scene"]) for side in SIDES},
+        renders=[(capital(told), data_uri(told, folder / name)) for told, name in pictures.items()],
+        environment=pairs_of(results["environment"], "Environment of the run"),
+        total=seconds(results["seconds_total"], DASH),
+    )

@@ -1,0 +1,166 @@
+"""Tables of the page about a train, from its plain results."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from math import degrees
+from typing import Any
+
+from solidgear.report.cells import DASH, eng, mm, pct, whole_number
+from solidgear.report.table import Table
+from solidgear.report.words import hertz, seconds
+
+SIDES = ("pinion", "gear")
+#: relative; no frequency is shown with a smaller bound, whatever the proof says
+ROUNDING = 1e-12
+
+
+def facts(train: Mapping[str, Any]) -> Table:
+    """The train in a few lines, each value with where it comes from."""
+    status = train["statuses"]
+    pinion, gear = (train[side] for side in SIDES)
+    line = next((k for k in status if k.startswith("mesh.") and k not in _MESH), "")
+    rows = [
+        ["teeth", f"{pinion['teeth']} and {gear['teeth']}, ratio {train['ratio']:.4f}", ""],
+        ["shaft angle", f"{degrees(train['shaft_angle']):g}°", ""],
+        ["mesh stiffness", f"{eng(train['mesh_stiffness'], 4)} N/m", "mesh.stiffness"],
+        ["line of action on the pinion", _vector(pinion["line_of_action"], 4), line],
+        ["mesh point from the lumped points", _points(train), ""],
+        ["lever arms", " and ".join(f"{mm(abs(train[s]['lever']))} mm" for s in SIDES), ""],
+        ["transmission error", _error(train["transmission_error"]), "mesh.transmission_error"],
+    ]
+    for name in ("engine", "load"):
+        own = train[name]
+        rows.append([f"{name} inertia", f"{eng(own['inertia'], 4)} kg m²", f"{name}.inertia"])
+        spring = f"{eng(own['spring'], 4)} N m/rad at {own['at']}"
+        rows.append([f"{name} spring", spring, f"{name}.spring.stiffness"])
+    losses = ", ".join(f"{name} {value:g}" for name, value in train["losses"].items())
+    rows.append(["loss factors", losses, "losses"])
+    return Table(
+        "Train",
+        ["item", "value", "status"],
+        [[item, (text, "text"), _mark(status.get(key, ""))] for item, text, key in rows],
+        css="facts",
+        note="Status says where a value comes from: published, measured, identified or assumed.",
+    )
+
+
+_MESH = ("mesh.stiffness", "mesh.transmission_error")
+
+
+def _mark(status: str) -> tuple[str, str]:
+    return status, f"word text mark {status}".rstrip()
+
+
+def _vector(values, digits: int) -> str:
+    return f"({', '.join(f'{v:.{digits}f}' for v in values)})"
+
+
+def _points(train: Mapping[str, Any]) -> str:
+    points = (_vector([1e3 * v for v in train[s]["point"]], 2) for s in SIDES)
+    return " and ".join(f"{text} mm" for text in points)
+
+
+def _error(table: Mapping[str, Any]) -> str:
+    if table["orders"]:
+        sizes = ", ".join(f"{1e6 * v:.4g}" for v in table["orders"])
+        return f"{sizes} µm" + (" by order of the mesh" if len(table["orders"]) > 1 else "")
+    low, high = table["frequency"][0], table["frequency"][-1]
+    return f"a table from {low:g} to {high:g} Hz, up to {1e6 * max(table['amplitude']):.4g} µm"
+
+
+def verdict(found: Mapping[str, Any]) -> Table:
+    """Every mix of models: up to where it holds, why no further, and its cost."""
+    rows = []
+    for mix in found["mixes"]:
+        ends = [_end(mix[k], found) for k in ("modes_to_hz", "force_to_hz", "close_to_hz")]
+        same = mix["pinion"] == mix["gear"]
+        name = f"both {mix['gear']}" if same else f"{mix['pinion']} + {mix['gear']}"
+        off = DASH
+        if mix["mode"]:
+            by = "no counterpart" if mix["error"] is None else pct(mix["error"])
+            off = f"{mix['mode']}: {by}"
+        best = {"pinion": mix["pinion"], "gear": mix["gear"]} == found["cheapest"]
+        rows.append(
+            [
+                f"{name}, cheapest" if best else name,
+                *ends,
+                (off, "text"),
+                (mix["cause"] or DASH, "text"),
+                whole_number(mix["unknowns"]),
+                seconds(mix["seconds"]),
+            ]
+        )
+    tolerance = 100 * found["tolerance"]
+    head = [
+        "pinion + gear",
+        f"modes within {tolerance:g} %, Hz",
+        f"mesh force within {found['decibels']:g} dB, Hz",
+        f"mesh force within {tolerance:g} %, Hz",
+        "first mode off",
+        "because of",
+        "unknowns",
+        "build and reduce, s",
+    ]
+    return Table(
+        "Up to where every mix of models holds against both shafts solid, cheapest first",
+        head,
+        rows,
+        note=(
+            "The cause is the shaft whose model, put back to the solid alone, carries the mix "
+            "furthest; of a lumped model, the assumption. The force within the tolerance is left "
+            "by any peak or dip that moves a little."
+        ),
+    )
+
+
+def _end(hz: float | None, found: Mapping[str, Any]) -> str:
+    return f"{found['highest_hz']:.0f}+" if hz is None else f"{hz:.0f}"
+
+
+def modes(found: Mapping[str, Any]) -> Table:
+    """Natural frequencies of the judge."""
+    rows = []
+    for mode in found["modes"]:
+        hz = mode["frequency_hz"]
+        rows.append(
+            [
+                mode["name"],
+                f"{hz:.2f}",
+                f"{mode['rpm']:.0f}",
+                (mode["strained"] or DASH, "text"),
+                "exact" if hz == 0 else f"{max(mode['bound'], ROUNDING):.0e}",
+            ]
+        )
+    return Table(
+        "Natural frequencies, both shafts solid",
+        ["mode", "Hz", "pinion rpm at which the teeth meet it", "most strain energy", "bound"],
+        rows,
+    )
+
+
+def peaks(found: list[Mapping[str, Any]], teeth: int) -> Table:
+    """Peaks of the judge's mesh force."""
+    rows = [
+        [p["mode"], hertz(p["frequency_hz"]), f"{60 * p['frequency_hz'] / teeth:.0f}"]
+        + [f"{p['force']:.1f}"]
+        for p in found
+    ]
+    head = ["mode that makes it", "Hz", "pinion rpm", "mesh force, N"]
+    return Table("Peaks of the mesh force, both shafts solid", head, rows)
+
+
+def crossings(found: list[Mapping[str, Any]]) -> Table:
+    """Where orders meet natural frequencies."""
+    rows = []
+    for c in found:
+        force = DASH if c["force"] is None else f"{c['force']:.1f}"
+        rows.append([c["line"], (c["mode"], "text"), hertz(c["frequency_hz"])])
+        rows[-1] += [f"{c['rpm']:.0f}", force]
+    head = ["order", "mode", "Hz", "pinion rpm", "mesh force, N"]
+    return Table(
+        "Where orders meet natural frequencies",
+        head,
+        rows,
+        note="A dash: the transmission error has no such order.",
+    )

@@ -1,0 +1,117 @@
+"""Modes of a train drawn with both shafts in place, several phases a picture."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Sequence
+from math import cos, radians
+from pathlib import Path
+
+import numpy as np
+
+from solidgear.body.surface import Surface
+from solidgear.errors import SolidgearError, listed
+from solidgear.fidelity.ladder import LADDER
+from solidgear.report.folder import prepare
+from solidgear.report.render import RenderJob, RenderResult, render_modes
+from solidgear.scene.train import SIDES
+from solidgear.studies.axle.models import Workshop
+from solidgear.studies.axle.naming import mode_names
+from solidgear.system.system import System
+
+#: phases of a vibration that a picture shows, degrees
+PHASES = (0, 60, 120, 180)
+#: seconds that a picture of four frames may take
+PATIENCE = 60.0
+
+
+def system_surface(workshop: Workshop, system: System, rungs: Sequence[str], shape) -> Surface:
+    """Surface of both shafts in the axes of the pinion's scene, moved by coordinates of the system.
+
+    Parameters
+    ----------
+    workshop : Workshop
+    system : System
+        Of these rungs.
+    rungs : (str, str)
+        Of pinion and gear.
+    shape : (N,) ndarray
+
+    Raises
+    ------
+    SolidgearError
+        For a rung without a shape, such as a lumped one.
+
+    Examples
+    --------
+    >>> import solidgear as sg
+    >>> shop = Workshop(sg.load_train("geometry/axle_overhung.toml"))
+    >>> system = shop.system("euler", "euler")
+    >>> drawn = system_surface(shop, system, ("euler", "euler"), system.elastic[1][:, 2])
+    >>> drawn.points.shape == drawn.displacement.shape
+    True
+    """
+    pieces = []
+    for side, rung in zip(SIDES, rungs):
+        if rung not in LADDER.bodies:
+            raise SolidgearError(
+                f"the model {rung} of the {side} has no shape to draw; "
+                f"use one of {', '.join(LADDER.bodies)}"
+            )
+        body = workshop.shaft(side, rung).body
+        drawn = body.surface(system.expand(side, shape))
+        part = system.parts[side]
+        turn, origin = getattr(part, "rotation", np.eye(3)), getattr(part, "origin", np.zeros(3))
+        points, moved = drawn.points @ turn.T + origin, drawn.displacement @ turn.T
+        pieces.append((points, moved, drawn.faces, drawn.triangles, drawn.lines))
+    first = len(pieces[0][0])
+    (points, moved, *cells), (others, also, *more) = pieces
+    whole = [np.vstack([mine, its + first]) for mine, its in zip(cells, more)]
+    return Surface(np.vstack([points, others]), np.vstack([moved, also]), *whole)
+
+
+def draw_modes(
+    workshop: Workshop,
+    pinion: str,
+    gear: str,
+    folder: str | os.PathLike,
+    numbers: Sequence[int],
+) -> dict[str, RenderResult]:
+    """One picture a mode, ``system_mode_03.png`` and so on.
+
+    Parameters
+    ----------
+    workshop : Workshop
+    pinion, gear : str
+        Rungs.
+    folder : path
+    numbers : sequence of int
+        Of modes as system-modes lists them, from 1.
+
+    Returns
+    -------
+    dict of str to RenderResult
+        By name and frequency; nothing is raised for a picture that could not be drawn.
+
+    Raises
+    ------
+    SolidgearError
+        For a rung without a shape, a number that there is not, or a folder that cannot be written.
+    """
+    system = workshop.system(pinion, gear)
+    most = system.free.shape[1] + len(system.elastic[0])
+    wrong = [str(n) for n in numbers if not 1 <= n <= most]
+    if wrong:
+        raise SolidgearError(f"there is no mode {listed(wrong)}; modes are numbered 1 to {most}")
+    found = system.modes(max(1, max(numbers) - system.free.shape[1]))
+    names = mode_names(workshop, system, found)
+    frames = [(cos(radians(phase)), f"phase {phase}°") for phase in PHASES]
+    both = pinion if pinion == gear else f"{pinion} pinion, {gear} gear"
+    jobs = {}
+    for n in numbers:
+        surface = system_surface(workshop, system, (pinion, gear), found.shapes[:, n - 1])
+        told = f"{names[n - 1]}, {found.frequency_hz[n - 1]:.1f} Hz"
+        path = Path(folder) / f"system_mode_{n:02d}.png"
+        jobs[told] = RenderJob(surface, f"{told} ({both})", path, frames, along=False)
+    prepare(folder)
+    return dict(zip(jobs, render_modes(jobs.values(), timeout=PATIENCE * len(jobs))))

@@ -1,0 +1,141 @@
+"""Both shafts of a train in one picture: placed where the teeth meet, moved as the modes say."""
+
+import numpy as np
+import pytest
+from test_train_models import COARSE, OVERHUNG
+from typer.testing import CliRunner
+
+import solidgear as sg
+from solidgear.cli import app
+from solidgear.report.folder import clear
+from solidgear.studies.axle.models import Workshop
+from solidgear.studies.axle.pictures import draw_modes, system_surface
+
+TRAIN = sg.load_train(OVERHUNG)
+FINE = {**COARSE, "harmonic": {"order": 2, "layers": 1}}
+
+
+@pytest.fixture(scope="module")
+def shop():
+    return Workshop(TRAIN, settings=FINE)
+
+
+def rigid_motion(points, moved):
+    """Motion of the origin and rotation that fit a cloud of points best, and what is left."""
+    rows = np.zeros((len(points), 3, 6))
+    rows[:, :, :3] = np.eye(3)
+    for k, axis in enumerate(np.eye(3)):
+        rows[:, :, 3 + k] = np.cross(axis, points)
+    found, *_ = np.linalg.lstsq(rows.reshape(-1, 6), moved.ravel(), rcond=None)
+    left = moved - (rows @ found)
+    return found, np.abs(left).max() / np.abs(moved).max()
+
+
+def halves(shop, system, rungs, shape):
+    drawn = system_surface(shop, system, rungs, shape)
+    first = len(shop.shaft("pinion", rungs[0]).body.surface({}).points)
+    return (
+        (drawn.points[:first], drawn.displacement[:first]),
+        (drawn.points[first:], drawn.displacement[first:]),
+    )
+
+
+@pytest.mark.parametrize("rungs", [("timoshenko", "timoshenko"), ("harmonic", "harmonic")])
+def test_as_the_train_turns_its_teeth_stay_together(shop, rungs):
+    """Points on both surfaces, carried to the mesh point, move alike along the line of action:
+    place, axes and signs of the gear are all in it.
+    """
+    system = shop.system(*rungs)
+    pinion, gear = halves(shop, system, rungs, system.free[:, 0])
+    scene, met = shop.scenes["pinion"], shop.contact.pinion
+    mesh = np.array([0.0, scene.port.y, 0.0]) + met.point
+    along = []
+    for points, moved in (pinion, gear):
+        motion, left = rigid_motion(points, moved)
+        assert left < 1e-6  # a rigid rotation, drawn as one
+        along.append(met.normal @ (motion[:3] + np.cross(motion[3:], mesh)))
+    assert along[0] == pytest.approx(along[1], rel=1e-6)
+    assert abs(along[0]) > 0
+
+
+def test_shafts_cross_at_right_angles_and_the_mesh_point_is_on_both_heads(shop):
+    rungs = ("timoshenko", "timoshenko")
+    system = shop.system(*rungs)
+    pinion, gear = halves(shop, system, rungs, system.elastic[1][:, 0])
+    scene = shop.scenes["pinion"]
+    mesh = np.array([0.0, scene.port.y, 0.0]) + shop.contact.pinion.point
+    for points, _ in (pinion, gear):
+        assert np.linalg.norm(points - mesh, axis=1).min() < 0.03  # a face is 63 mm wide
+    across = [np.ptp(points, axis=0) for points, _ in (pinion, gear)]
+    # the pinion is long along y, the flat ring is as large along y as along z
+    assert across[0][1] > 1.5 * across[0][2]
+    assert across[1][1] == pytest.approx(across[1][2], rel=0.01) and across[1][0] < across[1][2]
+
+
+def test_the_surface_moves_as_the_ports_do(shop):
+    """The mean motion of the gear's lumped seat in the picture is that of its port."""
+    rungs = ("timoshenko", "timoshenko")
+    system = shop.system(*rungs)
+    shape = system.elastic[1][:, 3]
+    gear = halves(shop, system, rungs, shape)[1]
+    part, port = system.parts["gear"], shop.scenes["gear"].port
+    own = (gear[0] - part.origin) @ part.rotation
+    near = np.abs(own[:, 1] - port.y) < 0.02
+    motion, _ = rigid_motion(own[near] - [0, port.y, 0], gear[1][near] @ part.rotation)
+    told = system.motion(f"gear.{port.name}") @ shape
+    # sections of a beam between its nodes; the port is the mean over a width
+    assert np.allclose(motion, told, atol=0.02 * np.abs(told).max())
+
+
+def test_a_model_without_a_shape_says_so(shop, tmp_path):
+    with pytest.raises(sg.SolidgearError, match="lumped of the gear has no shape to draw"):
+        draw_modes(shop, "timoshenko", "lumped", tmp_path / "out", [2])
+    assert not (tmp_path / "out").exists()
+
+
+def test_modes_are_drawn_with_four_phases(shop, tmp_path):
+    from matplotlib.image import imread
+
+    done = draw_modes(shop, "timoshenko", "timoshenko", tmp_path, [4])
+    ((told, one),) = done.items()
+    if one.no_renderer:
+        pytest.skip(one.reason)
+    assert one.ok and told.startswith("gear bending 1, ")
+    assert one.path.name == "system_mode_04.png"
+    picture = imread(one.path)[:, :, :3]
+    # four frames side by side, each with a shape in it, the first and the last moved apart
+    frames = np.array_split(picture[150:600], 4, axis=1)
+    assert all((frame < 0.98).any(axis=2).mean() > 0.1 for frame in frames)
+    assert np.abs(frames[0] - frames[3]).mean() > 0.01
+
+
+def test_without_a_renderer_there_is_a_sentence(tmp_path, monkeypatch):
+    monkeypatch.setenv("SOLIDGEAR_RENDERER", "none")
+    args = ["system-modes", str(OVERHUNG), "--pinion", "euler", "--gear", "euler"]
+    done = CliRunner().invoke(app, [*args, "--pictures", str(tmp_path), "--mode", "3"])
+    assert done.exit_code == 0 and "OpenGL is mended by" in done.output
+    assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize(
+    ("more", "words"),
+    [
+        (["--mode", "3"], "add --pictures"),
+        (["--pictures", "out", "--mode", "0"], "there is no mode 0"),
+        (["--pictures", "out", "--mode", "5000"], "modes are numbered 1 to"),
+    ],
+)
+def test_wrong_modes_are_told(more, words, tmp_path, monkeypatch):
+    args = ["system-modes", str(OVERHUNG), "--pinion", "euler", "--gear", "euler"]
+    monkeypatch.chdir(tmp_path)
+    done = CliRunner().invoke(app, [*args, *more])
+    assert done.exit_code == 1 and words in str(done.exception)
+    assert not list(tmp_path.iterdir())
+
+
+def test_pictures_of_an_earlier_run_are_cleared(tmp_path):
+    (tmp_path / "results.json").write_text('{"files": ["system_mode_04.png", "orders.csv"]}')
+    for name in ("system_mode_04.png", "orders.csv", "mine.png"):
+        (tmp_path / name).write_text("")
+    clear(tmp_path)
+    assert {p.name for p in tmp_path.iterdir()} == {"results.json", "mine.png"}

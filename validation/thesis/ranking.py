@@ -1,0 +1,126 @@
+"""What moves the mesh force of the geared rotor most: one thing at a time, against both shafts solid.
+
+The measure is the rms over frequency, from 100 to 4000 Hz in equal steps, of the change of the mesh
+force in decibels at the same frequency; below and above 1 kHz as well.
+
+    python -m validation.thesis.ranking
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+
+import solidgear as sg
+from solidgear.scene import Scene
+from solidgear.scene.train import SIDES, Train
+from solidgear.studies.axle.models import JUDGE, Workshop
+from solidgear.studies.axle.respond import Drive
+from validation.common import ROOT, results_folder, show, write_rows
+
+LOWEST, MIDDLE, HIGHEST = 100.0, 1000.0, 4000.0
+POINTS = 3901
+BEAM, LUMPED = "timoshenko", "lumped"
+
+
+def with_scenes(train: Train, change) -> Train:
+    """The same train, both shafts changed."""
+    members = {}
+    for side in SIDES:
+        member = train.member(side)
+        members[side] = member.with_changes(scene=change(member.scene))
+    return train.with_changes(**members)
+
+
+def with_bearings(scene: Scene, factor: float) -> Scene:
+    """A shaft with all bearings stiffer or softer by a factor."""
+    bearings = []
+    for b in scene.bearings:
+        matrix = tuple(tuple(factor * float(v) for v in row) for row in b.stiffness)
+        bearings.append(b.with_changes(matrix=matrix, axial_series=()))
+    housing = scene.housing_axial
+    softer = None if housing is None else factor * housing
+    return scene.with_changes(bearings=tuple(bearings), housing_axial=softer)
+
+
+def with_engine_at_the_end(train: Train) -> Train:
+    """The engine's spring on the far end of the pinion's shaft and not on its lumped point."""
+    length = train.pinion.scene.length
+    table = train.engine.spring.model_dump(by_alias=True) | {
+        "at": None,
+        "position": length - 0.004,
+        "from": "start",
+        "seat_width": 0.008,
+    }
+    spring = type(train.engine.spring)(**table)
+    return train.with_changes(engine=train.engine.with_changes(spring=spring))
+
+
+def variants(train: Train) -> dict[str, tuple[Train, str, str]]:
+    """Train, model of the pinion's shaft and of the gear's, by what is changed."""
+    mesh = train.mesh
+    stiff = mesh.with_changes(stiffness=2 * mesh.stiffness)
+    return {
+        "mesh stiffness x2": (train.with_changes(mesh=stiff), JUDGE, JUDGE),
+        "bearings x0.1": (with_scenes(train, lambda s: with_bearings(s, 0.1)), JUDGE, JUDGE),
+        "rigid instead of averaged seats": (
+            with_scenes(train, lambda s: s.with_attachment("rigid")),
+            JUDGE,
+            JUDGE,
+        ),
+        "gear as a beam": (train, JUDGE, BEAM),
+        "pinion as a beam": (train, BEAM, JUDGE),
+        "both lumped, six motions": (train, LUMPED, LUMPED),
+        "both lumped, axial mass total": (train, f"{LUMPED}-bending", f"{LUMPED}-bending"),
+        "engine spring at the shaft's end": (with_engine_at_the_end(train), JUDGE, JUDGE),
+    }
+
+
+def ranking(
+    train: Train, settings: Mapping[str, Mapping] | None = None, highest: float = HIGHEST
+) -> list[dict]:
+    """Rows of the table, the largest change first.
+
+    Parameters
+    ----------
+    train : Train
+    settings : mapping, optional
+        Builder options, for coarser meshes.
+    highest : float
+        Hz.
+    """
+    hz = np.linspace(LOWEST, highest, POINTS)
+    usual = Workshop(train, settings=settings or {})
+    base = np.abs(Drive(usual, JUDGE, JUDGE).mesh(hz)[1])
+    rows = []
+    for name, (changed, pinion, gear) in variants(train).items():
+        shop = usual if changed is train else Workshop(changed, settings=settings or {})
+        size = np.abs(Drive(shop, pinion, gear).mesh(hz)[1])
+        decibels = 20 * np.log10(size / base)
+        low = hz <= MIDDLE
+        rows.append(
+            {
+                "what is changed": name,
+                "rms dB": _rms(decibels),
+                "below 1 kHz": _rms(decibels[low]),
+                "above 1 kHz": _rms(decibels[~low]),
+            }
+        )
+    return sorted(rows, key=lambda row: -row["rms dB"])
+
+
+def _rms(values: np.ndarray) -> float:
+    return float(np.sqrt(np.mean(values**2)))
+
+
+def main() -> None:
+    """Measure, and show the table."""
+    rows = ranking(sg.load_train(ROOT / "geometry" / "axle_overhung.toml"))
+    shown = [{k: v if isinstance(v, str) else round(v, 2) for k, v in r.items()} for r in rows]
+    write_rows(results_folder("axle_ranking") / "ranking.csv", shown)
+    show(f"What moves the mesh force, rms dB from {LOWEST:g} to {HIGHEST:g} Hz", shown)
+
+
+if __name__ == "__main__":
+    main()
