@@ -656,6 +656,16 @@ def test_lumped_rung_rests_on_a_body(overhung):
     strict(json.dumps(found, allow_nan=False))
 
 
+def test_a_lumped_model_on_a_solid_lacks_nothing_that_a_beam_lacks(overhung):
+    """Its stiffness is that of the solid: what beams leave out at a shoulder is in it."""
+    said = {}
+    for under in ("timoshenko", "harmonic"):
+        found = compare(overhung, ("lumped", under), settings=LIGHT).results
+        about = [g["models"] for g in found["guards"] if "a beam lacks" in g["sentence"]]
+        said[under] = sorted({m for models in about for m in models})
+    assert said == {"timoshenko": ["lumped", "timoshenko"], "harmonic": []}
+
+
 def test_lumped_alone_has_nothing_to_rest_on(overhung):
     with pytest.raises(SolidgearError, match="not alone"):
         compare(overhung, ("lumped",))

@@ -122,7 +122,6 @@ def notices(
     # quick solutions are of the plain part; what is solved with features is no stand-in for them
     known = rungs if plain is scene else {}
     probes = [Probe(plain, r.body, known) for r in rungs.values()]
-    solved = {*rungs, *LADDER.of(LUMPED)}
     out: dict[str, dict] = {}
     if names is None and scene.body is not None and probes:
         heard = [*described(scene), *against_the_part(scene, rungs, probes[-1])]
@@ -130,13 +129,13 @@ def notices(
             out[notice.sentence] = {
                 "guard": "round_part",
                 "level": notice.level,
-                "models": [m for m in notice.models if m in solved],
+                "models": _about(notice, rungs),
                 "sentence": notice.sentence,
             }
     for name in names or tuple(n for n in GUARDS if n not in NOT_IN_COMPARISONS):
         for probe in probes if name in OF_A_MESH else probes[-1:]:
             for notice in _heard(name, probe):
-                about = [m for m in notice.models if m in solved]
+                about = _about(notice, rungs)
                 mine = name not in OF_A_MESH or probe.body.fidelity in notice.models
                 if notice.level != "fact" and mine and (about or not notice.models):
                     out.setdefault(
@@ -149,6 +148,15 @@ def notices(
                         },
                     )
     return list(out.values())
+
+
+def _about(notice: Notice, rungs: dict[str, Solution]) -> list[str]:
+    """Solved models that a notice is about; what is said of beams is not said of a lumped model
+    that rests on a solid.
+    """
+    meant = set(notice.models) & set(LADDER.of(BEAM))
+    lumped = () if meant and not meant & set(rungs) else LADDER.of(LUMPED)
+    return [m for m in notice.models if m in rungs or m in lumped]
 
 
 def cautions(scene: Scene, body: Body, fidelity: str | None = None) -> list[str]:
