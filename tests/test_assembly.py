@@ -6,7 +6,6 @@ its scatter.
 """
 
 from dataclasses import dataclass, replace
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -164,9 +163,7 @@ def move(p, size, amount, rng):
 def assembled_box(element, curved=False):
     mesh = box(element, curved=curved)
     geometry = solid_mesh._isoparametric(mesh, element, np.zeros(mesh.t.shape[1], int))
-    k, m = solid_matrices._matrices(
-        geometry, SimpleNamespace(segments=(SimpleNamespace(material=STEEL),))
-    )
+    k, m = solid_matrices._matrices(geometry, [STEEL])
     return geometry, k, m
 
 
@@ -227,10 +224,8 @@ def test_patch_test_can_fail():
     soft[0] = 1
     geometry = solid_mesh._isoparametric(mesh, "hex27", soft)
     softer = Material(E=STEEL.E * (1 - 1e-6), nu=STEEL.nu, density=STEEL.density)
-    scene = SimpleNamespace(
-        segments=(SimpleNamespace(material=STEEL), SimpleNamespace(material=softer))
-    )
-    k, _ = solid_matrices._matrices(geometry, scene)
+    materials = [STEEL, softer]
+    k, _ = solid_matrices._matrices(geometry, materials)
     u = (np.diag([1e-3, 0, 0]) @ geometry.nodes).T.ravel()
     size = np.array([1.0, 2.0, 3.0])[:, None]
     interior = np.all((geometry.nodes > 1e-9) & (geometry.nodes < (1 - 1e-9) * size), axis=0)
@@ -255,7 +250,7 @@ def bent_box(element, amount, every=3):
 
 
 SOFT = Material(E=7e10, nu=0.4, density=2700.0)
-TWO = SimpleNamespace(segments=(SimpleNamespace(material=STEEL), SimpleNamespace(material=SOFT)))
+TWO = [STEEL, SOFT]
 
 
 @pytest.mark.parametrize("amount", [0.0, 1e-12, 1e-11, 1e-9, 1e-6, 1e-2])

@@ -14,16 +14,16 @@ import scipy.linalg as sla
 import solidgear as sg
 from solidgear.cli import main
 from solidgear.evidence.study import study
-from solidgear.scene import STEEL, Ask, Bearing, Port, Scene, Segment
+from solidgear.scene import STEEL, Ask, Bearing, Fillet, Port, Scene, Segment
 from solidgear.studies import check, guards
 from solidgear.studies.check import cautions, check_scene, notices
 from solidgear.studies.guards import GUARDS, Notice, elements, models
 from solidgear.studies.guards.notice import everything
 from solidgear.studies.guards.probe import Probe
-from validation.shipped import shipped_shafts
+from validation.shipped import shafts_of_revolution
 
 ROOT = Path(__file__).parent.parent
-SHIPPED = [p for p in shipped_shafts() if not sg.load(p).features]
+SHIPPED = shafts_of_revolution()
 D = 0.06
 LIGHT = {"order": 2, "layers": 1, "edge_layers": 0}
 COARSE = {"refinement": 0.3, "layers": 1}
@@ -82,6 +82,13 @@ def scene(
         port=Port(name="p", y=at, lo=lo, hi=hi, attachment=attachment),
         ask=Ask(**ask),
     )
+
+
+def filleted(radius: str) -> Scene:
+    """The overhung pinion with a fillet behind its head; the shaft there is 90 mm thick."""
+    pinion = sg.load(ROOT / "geometry" / "pinion_overhung.toml")
+    root = Fillet(name="root", y=pinion.steps[0], radius=radius)
+    return pinion.with_changes(blends=(root,))
 
 
 def uniform(slenderness: float, seats=True, **ask) -> Scene:
@@ -252,6 +259,14 @@ CASES = {
         "avoid",
         sg.load(ROOT / "geometry" / "gear_shaft.toml"),
         sg.load(ROOT / "geometry" / "shaft_hollow.toml"),
+    ),
+    "large fillet": Case(
+        "fillets",
+        "leaves out the fillet",
+        BEAMS,
+        "caution",
+        filleted("8 mm"),
+        filleted("0.8 mm"),
     ),
     "tolerance": Case(
         "beam_against_solid",

@@ -9,14 +9,8 @@ from scipy.integrate import quad
 from skfem import MeshHex, MeshHex2, MeshQuad, MeshTet, MeshTet2
 
 from solidgear.errors import SolidgearError
-from solidgear.meshing.quality import (
-    MeshError,
-    _bernstein,
-    check_mesh,
-    element_ratios,
-    mass_properties,
-    volume_of,
-)
+from solidgear.meshing.closed_form import mass_properties, volume_of
+from solidgear.meshing.quality import MeshError, _bernstein, check_mesh, element_ratios
 
 
 def box(kind, n=3):

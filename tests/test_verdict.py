@@ -43,7 +43,7 @@ def tied(c_zz=1.0, bending=100.0, **others):
     )
     found = ModeSet("any", modes, STATIONS, np.eye(6 * len(STATIONS)))
     return Answer(
-        SimpleNamespace(size=10),
+        SimpleNamespace(size=10, mesh={}),
         SimpleNamespace(attachment="average", evidence={"residual": 0.0}),
         found,
         {"C_zz": c_zz, "bending 1": bending, **others},

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from solidgear.scene.shaft import resolved
 from solidgear.scene.toml_file import is_train
+from solidgear.studies.loading import load
 
 GEOMETRY = Path(__file__).resolve().parent.parent / "geometry"
 
@@ -13,3 +15,8 @@ def shipped_shafts() -> list[Path]:
     """Scenes of one shaft, by name."""
     paths = sorted(GEOMETRY.glob("*.toml"))
     return [path for path in paths if not is_train(path)]
+
+
+def shafts_of_revolution() -> list[Path]:
+    """Those that a model of revolution holds."""
+    return [path for path in shipped_shafts() if not resolved(load(path))]

@@ -11,7 +11,6 @@ from typing import TYPE_CHECKING, Any
 
 from solidgear.errors import SolidgearError, listed, nearest, show
 from solidgear.fidelity.options import Option, checked
-from solidgear.scene.shaft import named, resolved
 
 if TYPE_CHECKING:
     from solidgear.body import Body
@@ -175,6 +174,8 @@ class Rung:
         ----------
         scene : Scene
         """
+        from solidgear.scene.shaft import named, resolved
+
         features, held = resolved(scene), [f"{k}".replace("_", " ") for k in sorted(self._kinds)]
         every = getattr(scene, "features", ())
         if self.for_features and not any(f.kind in self._kinds for f in every):
@@ -204,6 +205,8 @@ class Rung:
         ----------
         scene : Scene
         """
+        from solidgear.scene.shaft import resolved
+
         kinds = {f.kind for f in resolved(scene)}
         if self.for_features:
             return bool(kinds & self._kinds)
@@ -234,6 +237,8 @@ class Rung:
         scene : Scene
         options : mapping
         """
+        from solidgear.scene.shaft import resolved
+
         # layered hexahedra converge too slowly beside fillets for the factors of their bands
         special = resolved(scene) or getattr(scene, "corners", ())
         return {**(self.featured if special else {}), **options}

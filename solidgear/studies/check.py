@@ -244,9 +244,13 @@ def _of_the_body(scene: Scene, body: Body) -> Iterator[Notice]:
     """Mass and inertia against the closed form, and no stiffness against rigid motions."""
     exact = mass_properties(scene.segments, scene.corners)
     matrix, own = body.mass_matrix(), (body.fidelity,)
+    # beams leave out fillets and chamfers, and are held against what they are made of
+    beam = LADDER[body.fidelity].family == BEAM
+    due = mass_properties(scene.segments) if beam else exact
     # of what is cut there is no closed form; of a part there is what its file says
-    closed = [("mass", matrix[0, 0], exact.mass), ("polar inertia", matrix[4, 4], exact.iyy)]
-    where, off = "closed form", "the closed form"
+    closed = [("mass", matrix[0, 0], due.mass), ("polar inertia", matrix[4, 4], due.iyy)]
+    bare = " without fillets and chamfers" * bool(beam and scene.corners)
+    where, off = f"closed form{bare}", f"the closed form{bare}"
     if not body.mesh.get("round", True):
         whole = scene.body
         closed, where, off = [], "the part", "that of the part"
