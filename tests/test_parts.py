@@ -137,6 +137,7 @@ def test_unit_and_axis_change_no_number(unit, axis, shipped, tmp_path):
     assert own == pytest.approx(numbers(shipped[1], shipped[0]), rel=5e-3)
 
 
+@pytest.mark.slow
 def test_a_part_of_revolution_is_its_segments(tmp_path):
     """Every model fits, and 3D tetrahedra meet the harmonic solid: what is left is their coarse
     mesh, half a per cent of C_zz and a quarter of a frequency, and always too stiff.

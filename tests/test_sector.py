@@ -197,6 +197,7 @@ def test_pictures_are_of_all_copies():
         assert len(moved[0][0].triangles) == faces
 
 
+@pytest.mark.slow
 def test_higher_harmonics_are_those_of_the_whole():
     """Two waves around: in neither block of the ports, and a pair in the whole."""
     scene = shaft(TEETH, bore=0.034)
