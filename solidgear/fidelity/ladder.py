@@ -23,6 +23,7 @@ from solidgear.fidelity.rung import (
     HELD_AT_A_STEP,
     LUMPED,
     PARTS,
+    PLANE,
     SMOOTH,
     SOLID,
     STEPPED,
@@ -30,6 +31,7 @@ from solidgear.fidelity.rung import (
     Ladder,
     Later,
     Rung,
+    by_edge,
 )
 
 LADDER = Ladder(
@@ -82,10 +84,14 @@ LADDER = Ladder(
             # q**(2 a) / (1 - q**(2 a)): 0.04, 0.21, 0.25 and 0.53 for q = 0.2. Set with 59 random
             # scenes, they held 97 % of 548 errors on 20 others, all misses at rigid seats after two
             # levels, where the factor has been raised since (`python -m validation.choice`).
-            usual={SMOOTH: 0.22, STEPPED: 0.22, HELD: 0.3, HELD_AT_A_STEP: 0.5},
+            # On 54 more scenes 530 of 545 errors after two levels were held; 11 of the misses were
+            # at section ties, whose planes the first two levels do not refine towards, and 4 at
+            # shoulders, where 0.15 became 0.24.
+            usual={SMOOTH: 0.22, PLANE: 0.22, STEPPED: 0.22, HELD: 0.3, HELD_AT_A_STEP: 0.5},
             first={
                 SMOOTH: (1.8, 1.2e-3, 0.6),
-                STEPPED: (1.8, 1.2e-3, 0.15),
+                PLANE: (4.0, 1.2e-3, 1.0),
+                STEPPED: (1.8, 1.2e-3, 0.24),
                 HELD: (1.8, 1.2e-3, 0.26),
                 HELD_AT_A_STEP: (1.8, 1.2e-3, 0.26),
             },
@@ -112,13 +118,8 @@ LADDER = Ladder(
             # Of both parts at once, whose meshes are finer from level to level. From one scene
             # only: on the keyed pinion an error is 1.6 to 2.3 times the last change
             # (validation/keyed_speed_accuracy.py).
-            usual={SMOOTH: 3.5, STEPPED: 3.5, HELD: 5.0, HELD_AT_A_STEP: 5.0},
-            first={
-                SMOOTH: (3.5, 0.0, 3.5),
-                STEPPED: (3.5, 0.0, 3.5),
-                HELD: (5.0, 0.0, 5.0),
-                HELD_AT_A_STEP: (5.0, 0.0, 5.0),
-            },
+            usual=by_edge(3.5, 5.0),
+            first=by_edge((3.5, 0.0, 3.5), (5.0, 0.0, 5.0)),
             earlier=0.5,
             ahead=0.5,
         ),
@@ -148,13 +149,8 @@ LADDER = Ladder(
             # followed by one and a half to three times as much; the change between the two coarsest
             # sectors, whose width no size reaches, by up to five times. From the overhung pinion,
             # with teeth (extrapolated) and as a cone against the harmonic solid.
-            usual={SMOOTH: 3.0, STEPPED: 3.0, HELD: 4.5, HELD_AT_A_STEP: 4.5},
-            first={
-                SMOOTH: (6.0, 0.03, 3.5),
-                STEPPED: (6.0, 0.03, 3.5),
-                HELD: (9.0, 0.09, 5.0),
-                HELD_AT_A_STEP: (9.0, 0.09, 5.0),
-            },
+            usual=by_edge(3.0, 4.5),
+            first=by_edge((6.0, 0.03, 3.5), (9.0, 0.09, 5.0)),
             earlier=0.15,
             ahead=0.4,
             singular=True,
@@ -179,13 +175,8 @@ LADDER = Ladder(
         size=Later("solidgear.fidelity.sizes", "solid_size"),
         meshes=solid_meshes,
         factors=BandFactors(
-            usual={SMOOTH: 0.8, STEPPED: 0.8, HELD: 1.3, HELD_AT_A_STEP: 1.3},
-            first={
-                SMOOTH: (1.8, 0.009, 0.6),
-                STEPPED: (1.8, 0.009, 0.6),
-                HELD: (1.8, 0.036, 0.8),
-                HELD_AT_A_STEP: (1.8, 0.036, 0.8),
-            },
+            usual=by_edge(0.8, 1.3),
+            first=by_edge((1.8, 0.009, 0.6), (1.8, 0.036, 0.8)),
             earlier=0.15,
             ahead=0.4,
             singular=True,

@@ -46,8 +46,13 @@ class Later:
 
 
 #: what is sharpest on a shaft, from nothing at all to a rigid seat that ends at a shoulder
-SMOOTH, STEPPED = "smooth", "shoulder"
+SMOOTH, PLANE, STEPPED = "smooth", "section tie", "shoulder"
 HELD, HELD_AT_A_STEP = "rigid seat", "rigid seat at a shoulder"
+
+
+def by_edge(free: Any, held: Any) -> dict[str, Any]:
+    """One value for shafts that no rigid seat holds, and one for those that one does."""
+    return {SMOOTH: free, PLANE: free, STEPPED: free, HELD: held, HELD_AT_A_STEP: held}
 
 
 @dataclass(frozen=True)
