@@ -11,6 +11,10 @@ import pages  # noqa: E402
 
 import solidgear  # noqa: E402
 
+# before autodoc does: it imports with TYPE_CHECKING true, which is no way to run
+for name in solidgear.__all__:
+    getattr(solidgear, name)
+
 project = "solidgear"
 author = "solidgear developers"
 copyright = "solidgear developers, GPL-3.0-or-later"
@@ -19,11 +23,12 @@ version = release = solidgear.__version__
 extensions = [
     "myst_parser",
     "sphinx.ext.autodoc",
-    "sphinx.ext.autosummary",
     "sphinx.ext.napoleon",
 ]
+# attributes of several classes share a name, and a word in a docstring may be one of them
+suppress_warnings = ["ref.python"]
 root_doc = "index"
-exclude_patterns = ["tools", "README.md"]
+exclude_patterns = ["tools", "written", "README.md"]
 
 myst_enable_extensions = ["dollarmath", "amsmath", "deflist", "colon_fence", "attrs_inline"]
 myst_heading_anchors = 3
@@ -35,7 +40,6 @@ napoleon_use_rtype = False
 napoleon_use_ivar = True
 autodoc_member_order = "bysource"
 autodoc_typehints = "none"
-autosummary_generate = False
 add_module_names = False
 python_use_unqualified_type_names = True
 toc_object_entries_show_parents = "hide"

@@ -1,11 +1,12 @@
 """Formulas of the documentation as MathML, which browsers draw themselves.
 
 Nothing is fetched from a network, and no script runs in the page. The LaTeX converter is that of
-docutils; a formula it does not know ends the build.
+docutils; a formula it does not know is a warning, and ends a strict build.
 """
 
 from docutils import nodes
 from docutils.utils.math import MathError, latex2mathml
+from sphinx.util import logging
 
 
 def converted(node, display: bool) -> str:
@@ -13,7 +14,8 @@ def converted(node, display: bool) -> str:
     try:
         return latex2mathml.tex2mathml(node.astext().strip(), as_block=display)
     except MathError as error:
-        raise ValueError(f"formula {node.astext()!r}: {error}") from error
+        logging.getLogger(__name__).warning("formula %r: %s", node.astext(), error, location=node)
+        return ""
 
 
 def inline(translator, node):
@@ -23,11 +25,8 @@ def inline(translator, node):
 
 
 def block(translator, node):
-    """A formula on a line of its own, with its number if it has a label."""
-    number = f'<span class="eqno">({node["number"]})</span>' if node["number"] else ""
-    label = f' id="equation-{node["label"]}"' if node["label"] else ""
-    body = converted(node, display=True)
-    translator.body.append(f'<div class="formula"{label}>{body}{number}</div>')
+    """A formula on a line of its own."""
+    translator.body.append(f'<div class="formula">{converted(node, display=True)}</div>')
     raise nodes.SkipNode
 
 

@@ -1,4 +1,5 @@
-"""Pages and pictures that other parts of the project write, brought under `docs/` when it is built.
+"""Pages that other parts of the project write, and tables of what the program knows, brought under
+`docs/` when it is built.
 
 The validation manual and the claims are written by `python -m validation.manual` and
 `python -m validation.thesis.claims`; what is shown here is a copy of those files, made at every build.
@@ -9,6 +10,8 @@ import shutil
 from pathlib import Path
 
 DOCS = Path(__file__).parent.parent
+#: tables of what the program knows, not under version control
+TABLES = DOCS / "written"
 ROOT = DOCS.parent
 #: where copies go, not under version control
 COPIES = DOCS / "validation" / "written"
@@ -42,6 +45,48 @@ def with_contents(text: str) -> str:
     return text.replace("# Validation manual", "# Cases with a known answer", 1) + f"\n{contents}\n"
 
 
+def write_tables(app=None):
+    """Materials and builder options, as the program has them."""
+    TABLES.mkdir(exist_ok=True)
+    (TABLES / "materials.md").write_text(materials())
+    (TABLES / "options.md").write_text(options())
+
+
+def materials() -> str:
+    """The table of materials by name, those with the same constants in one row."""
+    from solidgear.scene.materials import MATERIALS
+
+    rows: dict[object, list[str]] = {}
+    for name, known in MATERIALS.items():
+        rows.setdefault(known, []).append(f"`{name}`")
+    lines = ["| names | E, GPa | nu | density, kg/m³ | source |", "| --- | --- | --- | --- | --- |"]
+    lines += [
+        f"| {', '.join(names)} | {k.E / 1e9:g} | {k.nu:g} | {k.density:g} | {k.source} |"
+        for k, names in rows.items()
+    ]
+    return "\n".join(lines) + "\n"
+
+
+def options() -> str:
+    """One table a model, the words of `solidgear options`."""
+    # the words of the command itself, which has no other place for them
+    from solidgear.cli.files import _default, _may_be
+    from solidgear.fidelity.ladder import LADDER
+
+    lines = []
+    for name in LADDER.bodies:
+        rung = LADDER[name]
+        defaults = rung.defaults()
+        lines += [f"## {name}: {rung.title}", "", "| option | default | may be | what it is |"]
+        lines.append("| --- | --- | --- | --- |")
+        for key, option in rung.options.items():
+            default = _default(defaults.get(key))
+            lines.append(f"| `{key}` | {default} | {_may_be(option)} | {option.meaning} |")
+        lines.append("")
+    return "\n".join(lines)
+
+
 def setup(app):
-    """Copy before sources are read."""
+    """Write all of it before sources are read."""
     app.connect("builder-inited", copy_pages)
+    app.connect("builder-inited", write_tables)
