@@ -6,6 +6,7 @@ from pathlib import Path
 ROOT = Path(__file__).parent.parent
 sys.path[:0] = [str(ROOT), str(ROOT / "docs" / "tools")]
 
+import docstrings  # noqa: E402
 import mathml  # noqa: E402
 import pages  # noqa: E402
 
@@ -61,6 +62,7 @@ html_last_updated_fmt = None
 
 
 def setup(app):
-    """Formulas as MathML, and pages that other parts of the project have written."""
+    """Docstrings in order, formulas as MathML, and pages that other parts of the project have written."""
+    docstrings.setup(app)
     mathml.setup(app)
     pages.setup(app)

@@ -1,6 +1,6 @@
 """Pictures of the pages, drawn by the program from the scene of the tutorial and a shipped train.
 
-    python docs/tools/pictures.py
+python docs/tools/pictures.py
 """
 
 from __future__ import annotations
@@ -47,7 +47,9 @@ def main() -> int:
     small(folder / "section.png", "section")
     said = run("solidgear render my_shaft.toml --out mode.png", folder)
     train = ROOT / "geometry" / "axle_overhung.toml"
-    said += run(f"solidgear response {train} --gear harmonic --against euler+euler --out out", folder)
+    said += run(
+        f"solidgear response {train} --gear harmonic --against euler+euler --out out", folder
+    )
     small(folder / "mode.png", "mode")
     small(folder / "out" / "response.png", "response")
     print(said)
