@@ -33,9 +33,17 @@ def copy_pages(app=None):
         text = source.read_text()
         if name == "README.md":
             name, text = "cases.md", with_contents(text)
-        (COPIES / name).write_text(text)
+        (COPIES / name).write_text(fenced(text))
     for name in PICTURES:
         shutil.copy(ROOT / "validation" / "figures" / name, COPIES / name)
+
+
+def fenced(text: str) -> str:
+    """Sketches drawn with characters, in a fence of their own: their lines begin with blanks, and
+    those that begin with fewer than four would be taken for text.
+    """
+    sketch = re.compile(r"(?m)(?<=\n\n)((?: +\S.*\n)+)(?=\n|\Z)")
+    return sketch.sub(lambda found: f"```text\n{found[1]}```\n", text)
 
 
 def with_contents(text: str) -> str:
