@@ -144,6 +144,8 @@ def test_every_mark_and_column_of_the_final_table_is_explained():
     from solidgear.report import terminal
 
     page = (DOCS / "guide" / "verdict.md").read_text()
+    # what the program prints explains nothing
+    page = re.sub(r"(?ms)^```.*?^```", "", page)
     words = [*terminal.VALID.values(), terminal.NOT_RESOLVED, "ref.", "INCOMPLETE", "caution:"]
     words += [head.split("\n")[0] for head in terminal.COLUMNS if head != "band\nC"] + ["band C"]
     assert [w for w in words if w not in page] == []
