@@ -39,6 +39,7 @@ LONG = {
     "guide/trains.md",
     "guide/real_parts.md",
     "guide/stiffness.md",
+    "guide/sweeps.md",
 }
 
 
