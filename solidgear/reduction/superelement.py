@@ -10,7 +10,8 @@ row touches, exactly, and two superelements differ in nothing but which V they c
 (:func:`solidgear.reduction.rubin.rubin`, :func:`solidgear.reduction.craig_bampton.craig_bampton`).
 
 What V leaves out
------------------ Let springs of any kind join ports of several bodies and ground, ``B = K + G' Kb G``, and let the
+-----------------
+Let springs of any kind join ports of several bodies and ground, ``B = K + G' Kb G``, and let the
 masses ``M`` carry further inertias at ports.  Every basis here holds the rigid motions R and the
 static displacements E N of port loads in equilibrium (``P'N = 0`` with P = G R).  A field y with
 ``V' B y = 0`` then moves no port.  For with d = G y and f = Kb d, R gives ``P'f = 0``, so that

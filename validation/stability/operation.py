@@ -20,6 +20,7 @@ import time
 from dataclasses import dataclass
 from pathlib import Path
 
+from solidgear.report.folder import LOCK
 from validation.stability.frame import ROOT, Finding, main
 
 SCENE = str(ROOT / "geometry" / "pinion_overhung.toml")
@@ -155,7 +156,7 @@ CASES = (
         ("compare", SCENE, "--models", "timoshenko,solid", "--out", "{out}"),
         (130,),
         "interrupt",
-        stop=("solid: build", signal.SIGINT),
+        stop=("solid: mesh", signal.SIGINT),
     ),
     Case(
         "interrupt: Ctrl-C at the start",
@@ -290,7 +291,7 @@ def run(case: Case, room: Path) -> dict:
     left = [
         p
         for p in sorted(room.rglob("*"))
-        if p.is_file() and p.name != "log" and "shadow" not in p.parts
+        if p.is_file() and p.name not in ("log", LOCK) and "shadow" not in p.parts
     ]
     seconds = time.perf_counter() - start
     faults = []

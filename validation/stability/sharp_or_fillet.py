@@ -23,7 +23,7 @@ from validation.stability.frame import Finding, main
 THIN, THICK, STEP, END = 0.05, 0.075, 0.1, 0.2  # radii and places, m
 CONES = 6
 REFINEMENTS = (1, 2, 4, 8)
-LAYERS, RATIO = (2, 4, 6, 8), 0.15
+LAYERS, RATIO = (2, 4, 6, 7), 0.15
 FILLETS = (0.0, 0.02, 0.05, 0.1, 0.2)  # of the thin diameter
 
 
@@ -116,7 +116,7 @@ def measure(quick: bool = False) -> Finding:
     refinements = REFINEMENTS[:2] if quick else REFINEMENTS
     scene = shaft(0.0)
     expected = 2 * sharpest_corner(scene)[1]
-    best = tilt(graded(scene, *((6, 5) if quick else (8, 10))), scene)
+    best = tilt(graded(scene, *((6, 5) if quick else (8, 7))), scene)
     for order in (1, 2, 3):
         errors, strains = [], []
         for refinement in refinements[: 3 if order == 3 else None]:

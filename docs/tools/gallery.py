@@ -1,0 +1,69 @@
+"""The gallery, from the scripts in `examples/`: what each says of itself, its source, and a place for
+its output.
+
+    python docs/tools/gallery.py
+    python docs/tools/console.py --write docs/gallery.md      # runs them
+"""
+
+from __future__ import annotations
+
+import ast
+from pathlib import Path
+
+DOCS = Path(__file__).parent.parent
+EXAMPLES = DOCS.parent / "examples"
+PAGE = DOCS / "gallery.md"
+
+#: from the first answer to whole trains; a new example is added where it belongs
+ORDER = (
+    "first_answer",
+    "shaft_in_python",
+    "before_solving",
+    "which_model",
+    "how_sure",
+    "attachments",
+    "ovalising",
+    "exact_beam",
+    "many_bearings",
+    "lumped_model",
+    "way_back",
+    "two_shafts",
+    "geared_train",
+)
+HEAD = """# Gallery
+
+Short scripts, each with what it prints. They are in `examples/` and run from the folder of the project; the tests run them too. This page is made from them by `docs/tools/gallery.py`.
+"""
+
+
+def examples() -> list[str]:
+    """Names of all examples, those without a place of their own at the end."""
+    there = {p.stem for p in EXAMPLES.glob("*.py")}
+    return [n for n in ORDER if n in there] + sorted(there - set(ORDER))
+
+
+def section(name: str) -> str:
+    """An example on the page."""
+    source = (EXAMPLES / f"{name}.py").read_text()
+    head, _, rest = ast.get_docstring(ast.parse(source)).partition("\n")
+    # the text above is the docstring; the code begins below it
+    first = next(n for n in ast.parse(source).body if not isinstance(n, ast.Expr)).lineno
+    return "\n".join(
+        [
+            f"## {name.replace('_', ' ').capitalize()}\n",
+            f"{head.strip()}\n",
+            f"{rest.strip()}\n",
+            f"```{{literalinclude}} ../examples/{name}.py",
+            f":language: python\n:lines: {first}-\n```\n",
+            f"```console\n$ python examples/{name}.py\n```\n",
+        ]
+    )
+
+
+def main() -> None:
+    """Write the page, without outputs."""
+    PAGE.write_text("\n".join([HEAD, *map(section, examples())]).rstrip() + "\n")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,60 @@
+"""Pictures of the pages, drawn by the program from the scene of the tutorial and a shipped train.
+
+python docs/tools/pictures.py
+"""
+
+from __future__ import annotations
+
+import sys
+import tempfile
+from pathlib import Path
+
+from console import ROOT, blocks, run
+
+DOCS = Path(__file__).parent.parent
+PICTURES = DOCS / "pictures"
+#: name of the picture: its widest side, pixels
+WIDTHS = {"section": 900, "mode": 800, "response": 900}
+
+
+def tutorial_scene() -> str:
+    """The scene that the tutorial writes."""
+    return next(
+        "\n".join(b.lines) for b in blocks((DOCS / "tutorial.md").read_text()) if b.kind == "toml"
+    )
+
+
+def small(source: Path, name: str) -> None:
+    """A picture at the size of the page, in 64 colours."""
+    from PIL import Image
+
+    with Image.open(source) as picture:
+        width = WIDTHS[name]
+        height = round(picture.height * width / picture.width)
+        scaled = picture.convert("RGB").resize((width, height), Image.Resampling.LANCZOS)
+        scaled.quantize(64).save(PICTURES / f"{name}.png", optimize=True)
+
+
+def main() -> int:
+    """Draw them all."""
+    import solidgear as sg
+
+    PICTURES.mkdir(exist_ok=True)
+    folder = Path(tempfile.mkdtemp())
+    scene = folder / "my_shaft.toml"
+    scene.write_text(tutorial_scene())
+    sg.load(scene).plot().savefig(folder / "section.png", dpi=200)
+    small(folder / "section.png", "section")
+    said = run("solidgear render my_shaft.toml --out mode.png", folder)
+    train = ROOT / "geometry" / "axle_overhung.toml"
+    said += run(
+        f"solidgear response {train} --gear harmonic --against euler+euler --out out", folder
+    )
+    small(folder / "mode.png", "mode")
+    small(folder / "out" / "response.png", "response")
+    print(said)
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

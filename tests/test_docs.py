@@ -1,0 +1,200 @@
+"""The documentation says what the program does: commands, code, lists of what there is.
+
+What a page shows was printed by the program.  Words must be the same; numbers may differ by 2 %,
+far more than libraries and processors move them and less than a slip would; times and megabytes are
+a machine's own.
+"""
+
+import doctest
+import re
+import shutil
+import sys
+from pathlib import Path
+
+import pytest
+
+import solidgear as sg
+
+ROOT = Path(__file__).parent.parent
+DOCS = ROOT / "docs"
+sys.path.insert(0, str(DOCS / "tools"))
+
+import build  # noqa: E402
+import console  # noqa: E402
+import gallery  # noqa: E402
+import stability  # noqa: E402
+
+MADE = ("written",)
+PAGES = sorted(
+    p.relative_to(DOCS).as_posix()
+    for p in DOCS.rglob("*.md")
+    if not set(MADE) & set(p.relative_to(DOCS).parts)
+)
+#: pages whose commands take longer than a few seconds
+LONG = {
+    "tutorial.md",
+    "gallery.md",
+    "guide/verdict.md",
+    "guide/tolerance.md",
+    "guide/trains.md",
+    "guide/real_parts.md",
+    "guide/stiffness.md",
+    "guide/sweeps.md",
+}
+
+
+def kinds(page):
+    return {block.kind for block in console.blocks((DOCS / page).read_text())}
+
+
+SHOWING = [p for p in PAGES if "console" in kinds(p)]
+
+
+@pytest.mark.parametrize(
+    "page", [pytest.param(p, marks=pytest.mark.slow) if p in LONG else p for p in SHOWING]
+)
+def test_a_page_shows_what_the_program_prints(page):
+    assert console.check(DOCS / page) == []
+
+
+def test_the_tutorial_runs_but_for_its_long_step():
+    assert console.check(DOCS / "tutorial.md", without="compare") == []
+
+
+def test_the_tutorial_has_eight_steps_each_with_something_to_do():
+    steps = re.split(r"(?m)^## (?=\d)", (DOCS / "tutorial.md").read_text())[1:]
+    assert [int(s.split(".")[0]) for s in steps] == list(range(1, 9))
+    assert all("```" in s for s in steps)
+
+
+@pytest.mark.parametrize("page", [p for p in PAGES if "pycon" in kinds(p)])
+def test_code_on_a_page_runs(page, tmp_path, monkeypatch):
+    shutil.copytree(ROOT / "geometry", tmp_path / "geometry")
+    monkeypatch.chdir(tmp_path)
+    shown = [b for b in console.blocks((DOCS / page).read_text()) if b.kind == "pycon"]
+    code = "\n".join(line for b in shown for line in [*b.lines, ""])
+    case = doctest.DocTestParser().get_doctest(code, {}, page, page, 0)
+    words = []
+    runner = doctest.DocTestRunner(optionflags=doctest.NORMALIZE_WHITESPACE)
+    runner.run(case, out=words.append)
+    assert runner.tries > 0
+    assert runner.failures == 0, "".join(words)
+
+
+SHOWN = """
+ quantity         value   unit        bar   from
+ C_zz        596.120e-12   m/N   +- 0.12 %   2 meshes
+
+ tried      dofs   time, s
+ harmonic   1.1k      0.30
+Within 1.00 %: harmonic, 0.47 s for all meshes tried, pardiso.
+"""
+
+
+@pytest.mark.parametrize(
+    "was, now",
+    [("596.120e-12", "606.120e-12"), ("596.120e-12", "601.120e-12"), ("0.30\n", "0.97\n")]
+    + [("0.47 s", "3.1 s"), ("pardiso", "superlu")],
+)
+def test_what_makes_no_difference(was, now):
+    assert console.same(SHOWN, SHOWN.replace(was, now)) == ""
+
+
+@pytest.mark.parametrize(
+    "was, now",
+    [("596.120e-12", "616.120e-12"), ("0.12 %", "0.13 %"), ("2 meshes", "3 meshes")]
+    + [("m/N", "N/m"), ("Within", "Not within"), ("1.1k      0.30", "1.2k      0.30")]
+    + [("596.120e-12", "-596.120e-12"), ("596.120e-12", "596.120e-9")],
+)
+def test_what_makes_one(was, now):
+    assert console.same(SHOWN, SHOWN.replace(was, now))
+
+
+def test_rounding_in_a_row_is_no_difference_and_a_coupling_is():
+    row = " x  463.04e6   0  20.591e-9   0  -24.771e6"
+    assert console.same(row, row.replace("20.591e-9", "-3.1e-9")) == ""
+    assert console.same(row, row.replace("20.591e-9", "0")) == ""
+    assert console.same(row, row.replace("20.591e-9", "20.591e3"))
+
+
+def test_lines_left_out_are_found_wherever_they_are():
+    step = console.Step("x", ["...", "Trust: harmonic solid", "..."])
+    assert console.differs(step, "a table\nTrust: harmonic solid\nmore") == ""
+    assert "not printed" in console.differs(step, "a table\nTrust: 3D solid\nmore")
+
+
+def test_the_gallery_shows_every_example():
+    page = (DOCS / "gallery.md").read_text()
+    for name in gallery.examples():
+        assert f"$ python examples/{name}.py" in page
+    # but for what scripts print, the page is what it is made from
+    bare = re.sub(r"(?m)^(\$ python \S+\n)(?:(?!```).*\n)*", r"\1", page)
+    assert (
+        bare.rstrip()
+        == "\n".join([gallery.HEAD, *map(gallery.section, gallery.examples())]).rstrip()
+    )
+
+
+def test_the_reference_holds_all_that_is_exported():
+    page = (DOCS / "api.md").read_text()
+    for name in set(sg.__all__) - {"__version__"}:
+        assert re.search(rf"(?:autoclass|autofunction|py:data):: {name}$", page, re.M), name
+
+
+def test_every_mark_and_column_of_the_final_table_is_explained():
+    from solidgear.report import terminal
+
+    page = (DOCS / "guide" / "verdict.md").read_text()
+    # what the program prints explains nothing
+    page = re.sub(r"(?ms)^```.*?^```", "", page)
+    words = [*terminal.VALID.values(), terminal.NOT_RESOLVED, "ref.", "INCOMPLETE", "caution:"]
+    words += [head.split("\n")[0] for head in terminal.COLUMNS if head != "band\nC"] + ["band C"]
+    assert [w for w in words if w not in page] == []
+
+
+def test_every_command_and_exit_code_is_listed():
+    import typer.main
+
+    from solidgear.cli import app
+
+    page = (DOCS / "guide" / "commands.md").read_text()
+    for name in typer.main.get_command(app).commands:
+        assert f"`solidgear {name}" in page, name
+    for code in (0, 1, 2, 3, 130):
+        assert f"| {code} |" in page
+
+
+def test_every_finding_of_the_stability_scripts_has_a_place():
+    page = (DOCS / "validation" / "stability.md").read_text()
+    for name in (n for names in stability.CHAPTERS.values() for n in names):
+        assert f"pictures/stability/{name}.png" in page
+        assert (stability.PICTURES / f"{name}.png").exists()
+
+
+def test_tests_named_as_guards_are_there():
+    page = (DOCS / "validation" / "stability.md").read_text()
+    guards = re.findall(r"Held by the test `(tests/\w+\.py)::(\w+)", page)
+    assert len(guards) > 20
+    for path, name in guards:
+        assert f"def {name}(" in (ROOT / path).read_text(), name
+
+
+def test_a_broken_link_and_a_file_from_a_network_are_seen(tmp_path):
+    (tmp_path / "a.html").write_text('<p id="here"><a href="b.html#there">x</a></p>')
+    (tmp_path / "b.html").write_text('<p id="there"><a href="a.html#here">y</a></p>')
+    assert build.broken(tmp_path) == []
+    (tmp_path / "b.html").write_text('<a href="c.html">y</a><script src="https://x.org/y.js">')
+    told = build.broken(tmp_path)
+    assert len(told) == 3 and all(any(w in t for t in told) for w in ("#there", "c.html", "x.org"))
+
+
+@pytest.mark.slow
+def test_the_site_builds_without_a_warning_and_without_a_broken_link(tmp_path):
+    pytest.importorskip("sphinx")
+    assert build.build(tmp_path / "site") == 0
+    assert build.broken(tmp_path / "site") == []
+
+
+def test_pages_and_pictures_stay_small():
+    size = sum(p.stat().st_size for p in DOCS.rglob("*") if p.is_file())
+    assert size < 3e6
