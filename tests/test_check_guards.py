@@ -14,7 +14,7 @@ import scipy.linalg as sla
 import solidgear as sg
 from solidgear.cli import main
 from solidgear.evidence.study import study
-from solidgear.scene import STEEL, Ask, Bearing, Port, Scene, Segment
+from solidgear.scene import STEEL, Ask, Bearing, Fillet, Port, Scene, Segment
 from solidgear.studies import check, guards
 from solidgear.studies.check import cautions, check_scene, notices
 from solidgear.studies.guards import GUARDS, Notice, elements, models
@@ -133,6 +133,12 @@ def rubber(nu: float) -> Scene:
 def slipped(E=1.0, density=1.0) -> Scene:
     """The shaft with a slip in the units of its material."""
     return scene(material=STEEL.with_changes(E=STEEL.E * E, density=STEEL.density * density))
+
+
+def filleted(radius: float = 0.002) -> Scene:
+    """A step with a fillet at its root."""
+    stepped = scene()
+    return stepped.with_changes(blends=(Fillet(name="root", y=stepped.steps[0], radius=radius),))
 
 
 @dataclass
@@ -429,6 +435,24 @@ CASES = {
         "harmonic",
         {**LIGHT, "order": 1},
         LIGHT,
+    ),
+    "large fillet": Case(
+        "fillets",
+        'leaves out the fillet "root"',
+        BEAMS,
+        "caution",
+        filleted(0.005),
+        filleted(0.001),
+    ),
+    "hexahedra at a fillet": Case(
+        "hexahedra_at_fillets",
+        'unevenly beside fillet "root"',
+        ("solid",),
+        "open",
+        filleted(),
+        scene(),
+        "solid",
+        {"layers": 1, "radial_layers": 1, "around": 8, "element": "hex20"},
     ),
     "uniform mesh": Case(
         "uniform_at_shoulder",

@@ -415,3 +415,16 @@ def test_a_model_that_says_it_fits_can_be_built():
         assert "no model holds all that the scene has" in str(caught.value)
     cone = shaft(TEETH.with_changes(model="pitch_cone")).with_changes(blends=(fillet,))
     assert "no fillets" in LADDER["sector"].unfit(cone) and not LADDER["solid"].unfit(cone)
+
+
+def test_check_does_not_say_of_a_model_that_refuses_that_it_holds():
+    from solidgear.fidelity.ladder import LADDER
+    from solidgear.scene import Fillet
+    from solidgear.studies.check import check_scene
+
+    key = Keyway(name="key", segment="rod", y=0.1, length=0.03, width=0.01, depth=0.005)
+    fillet = Fillet(name="root", y=0.06, radius=0.002)
+    for scene in (shaft(TEETH, key), shaft(TEETH).with_changes(blends=(fillet,)), shaft(TEETH)):
+        body = sg.build(scene.plain, "timoshenko")
+        for model, told in check_scene(scene, body)["verdicts"].items():
+            assert not LADDER[model].unfit(scene) or told["verdict"] == "will not hold", model
