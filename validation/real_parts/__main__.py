@@ -18,13 +18,16 @@ def main() -> int:
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--sort", choices=SORTS)
     parser.add_argument("--light", action="store_true", help="no bands")
+    parser.add_argument("--commands", action="store_true", help="the command line as well")
     given = parser.parse_args()
     done = refused = failed = 0
     seed = given.seed
     with tempfile.TemporaryDirectory() as folder:
         while done < given.scenes:
             part = draw(seed, given.sort)
-            out = judged(part.text, seed, Path(folder) / f"part_{seed}.toml", bands=not given.light)
+            path = Path(folder) / f"part_{seed}.toml"
+            more = {"bands": not given.light, "commands": given.commands}
+            out = judged(part.text, seed, path, **more)
             seed += 1
             if out.refused:
                 refused += 1

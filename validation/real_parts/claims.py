@@ -17,6 +17,7 @@ from solidgear.fidelity.ladder import LADDER
 from solidgear.fidelity.rung import SOLID
 from solidgear.fidelity.size import estimated_size
 from solidgear.meshing.closed_form import mass_properties
+from validation.real_parts.commands import spoken
 from validation.real_parts.volumes import removed_mass, toothed_area
 
 #: meshes of one solve each, coarse
@@ -227,7 +228,9 @@ def agreeing(scene: sg.Scene, out: Outcome) -> dict[str, Any]:
     return solved
 
 
-def judged(text: str, seed: int, path: Any, *, bands: bool = True) -> Outcome:
+def judged(
+    text: str, seed: int, path: Any, *, bands: bool = True, commands: bool = False
+) -> Outcome:
     """All claims about one file.
 
     Parameters
@@ -238,6 +241,8 @@ def judged(text: str, seed: int, path: Any, *, bands: bool = True) -> Outcome:
         Where the file is written.
     bands : bool
         Whether to solve ever finer meshes.
+    commands : bool
+        Whether to run the command line on it.
 
     Returns
     -------
@@ -256,6 +261,8 @@ def judged(text: str, seed: int, path: Any, *, bands: bool = True) -> Outcome:
             claim()
         except Exception as error:  # that is what is looked for
             out.failures.append(f"crash: {type(error).__name__}: {error}")
+    if commands:
+        out.failures += spoken(scene, path)
     out.seconds = time.perf_counter() - start
     return out
 
