@@ -13,7 +13,6 @@ from validation.real_parts.claims import judged
 from validation.real_parts.scenes import SORTS, draw
 from validation.real_parts.volumes import removed_mass, toothed_area
 
-
 SLOW = [pytest.param(seed, marks=pytest.mark.slow) for seed in (8, 25)]
 
 
