@@ -222,7 +222,7 @@ def test_a_bad_feature_is_one_sentence(old, tmp_path):
     assert says in str(caught.value) and len(str(caught.value).splitlines()) == 1
 
 
-KEY = """
+KEY_TABLE = """
 [[feature]]
 kind = "keyway"
 name = "key"
@@ -238,7 +238,7 @@ def test_bearings_of_catalogue_data_settle_on_the_plain_part(tmp_path):
     """A keyway does not keep a scene from being read; its bearings are those of the plain shaft."""
     file = tmp_path / "keyed.toml"
     plain = ROOT / "geometry" / "gearbox_catalogue.toml"
-    file.write_text(plain.read_text(encoding="utf-8") + KEY, encoding="utf-8")
+    file.write_text(plain.read_text(encoding="utf-8") + KEY_TABLE, encoding="utf-8")
     keyed, bare = sg.load(file), sg.load(plain)
     assert [f.name for f in keyed.features] == ["key"]
     for a, b in zip(keyed.bearings, bare.bearings):
