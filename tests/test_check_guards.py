@@ -142,6 +142,12 @@ def slipped(E=1.0, density=1.0) -> Scene:
     return scene(material=STEEL.with_changes(E=STEEL.E * E, density=STEEL.density * density))
 
 
+def filleted(radius: float = 0.002) -> Scene:
+    """A step with a fillet at its root."""
+    stepped = scene()
+    return stepped.with_changes(blends=(Fillet(name="root", y=stepped.steps[0], radius=radius),))
+
+
 @dataclass
 class Case:
     """A scene that sets a guard off, what it says and of whom; and the near miss."""
@@ -444,6 +450,24 @@ CASES = {
         "harmonic",
         {**LIGHT, "order": 1},
         LIGHT,
+    ),
+    "large fillet": Case(
+        "fillets",
+        'leaves out the fillet "root"',
+        BEAMS,
+        "caution",
+        filleted(0.005),
+        filleted(0.001),
+    ),
+    "hexahedra at a fillet": Case(
+        "hexahedra_at_fillets",
+        'unevenly beside fillet "root"',
+        ("solid",),
+        "open",
+        filleted(),
+        scene(),
+        "solid",
+        {"layers": 1, "radial_layers": 1, "around": 8, "element": "hex20"},
     ),
     "uniform mesh": Case(
         "uniform_at_shoulder",

@@ -119,11 +119,26 @@ def test_modes_that_are_not_recognised_are_left_out_or_refused(plain):
 
     strange = replace(exact, value=exact.value * 2)
     with pytest.raises(sg.SolidgearError, match="not recognised on the 3D mesh"):
-        module._recognised(exact, strange)
+        module._recognised(exact, strange, 12)
     values = np.diag(exact.value).copy()
     values[-1] *= 2
-    kept = module._recognised(exact, replace(exact, value=np.diag(values)))
+    kept = module._recognised(exact, replace(exact, value=np.diag(values)), 12)
     assert 2 <= kept.motions.shape[1] < exact.motions.shape[1]
+
+
+def test_no_more_modes_are_recognised_than_the_3d_mesh_has(plain):
+    """Of a stub most 3D modes move no sections and are left out: what is left decides, and no pair
+    is cut in two.
+    """
+    exact = modal(plain, 12)
+    value = np.diag(exact.value)
+    for most in range(2, len(value)):
+        if value[most] < value[most - 1] * (1 + module.TWIN):
+            for fewer, limit in ((exact.first(most), 12), (exact, most)):
+                assert module._recognised(exact, fewer, limit).motions.shape[1] == most - 1
+            break
+    else:
+        pytest.fail("no pair among the modes")
 
 
 def test_the_pictures_are_of_the_plain_shaft_moved(scene, body):

@@ -220,3 +220,47 @@ def test_a_bad_feature_is_one_sentence(old, tmp_path):
     with pytest.raises(sg.SceneError) as caught:
         sg.load(file)
     assert says in str(caught.value) and len(str(caught.value).splitlines()) == 1
+
+
+KEY_TABLE = """
+[[feature]]
+kind = "keyway"
+name = "key"
+segment = "right"
+position = "40 mm"
+length = "30 mm"
+width = "10 mm"
+depth = "5 mm"
+"""
+
+
+def test_bearings_of_catalogue_data_settle_on_the_plain_part(tmp_path):
+    """A keyway does not keep a scene from being read; its bearings are those of the plain shaft."""
+    file = tmp_path / "keyed.toml"
+    plain = ROOT / "geometry" / "gearbox_catalogue.toml"
+    file.write_text(plain.read_text(encoding="utf-8") + KEY_TABLE, encoding="utf-8")
+    keyed, bare = sg.load(file), sg.load(plain)
+    assert [f.name for f in keyed.features] == ["key"]
+    for a, b in zip(keyed.bearings, bare.bearings):
+        assert np.array_equal(a.stiffness, b.stiffness)
+
+
+def test_a_sweep_over_a_shaft_with_features_ends_well(tmp_path, monkeypatch, capsys):
+    """Rows are written, cautions are those of the plain part, and the exit code is that of success."""
+    import sys
+
+    from solidgear import cli
+
+    file = tmp_path / "keyed.toml"
+    text = (ROOT / "geometry" / "pinion_keyed.toml").read_text(encoding="utf-8")
+    file.write_text(text, encoding="utf-8")
+    rows = tmp_path / "rows.csv"
+    coarse = ("--set", "size=0.04", "--set", "graded_size=0.04", "--set", "refinement=0.5")
+    vary = ("--vary", "bearing.1.scale=1,2", "-o", str(rows))
+    command = ("solidgear", "-q", "sweep", str(file), "-f", "solid", *coarse, *vary)
+    monkeypatch.setattr(sys, "argv", list(command))
+    try:
+        cli.main()
+    except SystemExit as end:
+        assert not end.code, capsys.readouterr().err
+    assert len(rows.read_text().splitlines()) == 3

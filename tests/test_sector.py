@@ -13,7 +13,6 @@ from solidgear.fidelity.cyclic import Sector, basis, doubled
 from solidgear.fidelity.sector import meshed_sector, sector, whole
 from solidgear.fidelity.size import estimated_unknowns
 from solidgear.meshing.closed_form import volume_of
-from solidgear.meshing.quality import MeshError
 from solidgear.meshing.sector import volume_of_sector
 from solidgear.meshing.teeth import section_area, section_polar
 from solidgear.scene import BoltCircle, Keyway, Spline, Teeth
@@ -256,7 +255,7 @@ def test_who_holds_what():
         assert says in str(caught.value) and len(str(caught.value).splitlines()) == 1
     with pytest.raises(sg.SolidgearError, match="the scene has none of: bolt circle, spline"):
         sg.build(shaft(), "sector")
-    with pytest.raises(MeshError, match="7 of teeth .* no sector"):
+    with pytest.raises(sg.SolidgearError, match="7 of teeth .* no sector"):
         sg.build(shaft(TEETH, BOLTS), "sector")
 
 
@@ -359,3 +358,74 @@ def test_check_says_what_smearing_costs():
         said = check_scene(asked, body)["records"]
         (own,) = [r for r in said if "smeared" in r["sentence"]]
         assert own["level"] == level
+
+
+def test_features_that_meet_on_one_segment():
+    """Where two features cannot both be there, one sentence says so; none is dropped, or twisted
+    with spiral teeth, in silence.
+    """
+    drilled = BoltCircle(name="oil", segment="head", count=7, diameter=0.004, circle=0.03)
+    twice = TEETH.with_changes(name="more", count=14)
+    for features, says in (
+        ((TEETH, twice), 'has the teeth "teeth" already'),
+        ((TEETH, drilled.with_changes(circle=0.04)), 'into the teeth "teeth", whose roots lie'),
+        ((SPIRAL, drilled), "spiral teeth .* straight holes"),
+        ((BOLTS, BOLTS.with_changes(name="b", angle=0.05)), 'run into those of "bolts"'),
+        ((BOLTS, BOLTS.with_changes(name="b", count=7)), 'run into those of "bolts"'),
+    ):
+        with pytest.raises(sg.SceneError, match=says) as caught:
+            shaft(*features)
+        assert len(str(caught.value).splitlines()) == 1
+    # near misses: the teeth are a cone here, the holes lie between others, or below the roots
+    shaft(SPIRAL.with_changes(model="pitch_cone"), drilled)
+    small = BOLTS.with_changes(diameter=0.01)
+    shaft(small, small.with_changes(name="b", count=10, angle=math.pi / 10, diameter=0.005))
+    shaft(TEETH, drilled.with_changes(circle=0.02, diameter=0.003))
+
+
+def test_smeared_teeth_stay_smeared_beside_bolts():
+    """The segment of revolution stands for them in every model that the scene fits, so that their
+    count asks for no common sector.
+    """
+    from solidgear.fidelity.ladder import LADDER
+
+    smeared = TEETH.with_changes(model="pitch_cone", count=14)
+    scene, bare = shaft(smeared, BOLTS), shaft(BOLTS)
+    assert LADDER["sector"].unfit(scene) == LADDER["solid"].unfit(scene) == ""
+    a, b = (sg.build(s, "sector", refinement=COARSE) for s in (scene, bare))
+    assert np.array_equal(a.mass_matrix(), b.mass_matrix())
+
+
+def test_a_model_that_says_it_fits_can_be_built():
+    """Fillets, counts and phases that leave no sector are told before anything is meshed."""
+    from solidgear.fidelity.ladder import LADDER
+    from solidgear.scene import Fillet
+
+    fillet = Fillet(name="root", y=0.06, radius=0.002)
+    spline = Spline(name="s", segment="rod", count=7, angle=0.1, dedendum=0.5, model="sector")
+    scenes = {
+        'no fillets or chamfers yet.*"root"': shaft(TEETH).with_changes(blends=(fillet,)),
+        "no sector of a third": shaft(TEETH, BOLTS),
+        "gaps of spline .*turn it by": shaft(TEETH, spline),
+    }
+    for says, scene in scenes.items():
+        for rung in ("sector", "solid"):
+            with pytest.raises(sg.SolidgearError, match=says) as caught:
+                sg.build(scene, rung)
+            assert LADDER[rung].unfit(scene) in str(caught.value)
+        assert "no model holds all that the scene has" in str(caught.value)
+    cone = shaft(TEETH.with_changes(model="pitch_cone")).with_changes(blends=(fillet,))
+    assert "no fillets" in LADDER["sector"].unfit(cone) and not LADDER["solid"].unfit(cone)
+
+
+def test_check_does_not_say_of_a_model_that_refuses_that_it_holds():
+    from solidgear.fidelity.ladder import LADDER
+    from solidgear.scene import Fillet
+    from solidgear.studies.check import check_scene
+
+    key = Keyway(name="key", segment="rod", y=0.1, length=0.03, width=0.01, depth=0.005)
+    fillet = Fillet(name="root", y=0.06, radius=0.002)
+    for scene in (shaft(TEETH, key), shaft(TEETH).with_changes(blends=(fillet,)), shaft(TEETH)):
+        body = sg.build(scene.plain, "timoshenko")
+        for model, told in check_scene(scene, body)["verdicts"].items():
+            assert not LADDER[model].unfit(scene) or told["verdict"] == "will not hold", model

@@ -157,7 +157,7 @@ def sweep(
         print(json.dumps(record, default=str))
         ended(settled)
         return
-    for sentence in cautions(loaded, build(loaded, "timoshenko"), rung):
+    for sentence in cautions(loaded, build(loaded.plain, "timoshenko"), rung):
         print(f"caution: {sentence}", file=sys.stderr)
     new = found.total - found.skipped
     path = str(found.path).encode("utf-8", "backslashreplace").decode()  # bytes that are no text

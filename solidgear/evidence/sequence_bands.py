@@ -51,8 +51,11 @@ def sequence_bands(
     Returns
     -------
     dict of str to Band
-        Empty where there are too few levels, or they are not ever finer.
+        Empty where there are too few levels, or they are not ever finer; and for layered hexahedra
+        beside a fillet or a chamfer, where no factors of bands hold.
     """
+    if scene.corners and plan.turned is not None:  # what only layered hexahedra have
+        return {}
     if plan.layered:
         if len(levels) < 2:
             return {}

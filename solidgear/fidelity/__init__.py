@@ -59,7 +59,8 @@ def build(scene: Shaft, fidelity: str, **options) -> Body:
     unfit = rung.unfit(scene)
     if unfit:
         fit = [r.name for r in LADDER if r.build is not None and not r.unfit(scene)]
-        raise SolidgearError(f"{unfit}; use {' or '.join(fit)}")
+        use = f"use {' or '.join(fit)}" if fit else "no model holds all that the scene has"
+        raise SolidgearError(f"{unfit}; {use}")
     options = rung.checked(rung.given(scene, options))
     refuse_too_large(scene, fidelity, options)
     assert rung.build is not None  # as every rung of LADDER.bodies

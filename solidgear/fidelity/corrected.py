@@ -108,7 +108,7 @@ def corrected(
     with_ = featured_body(scene, wanted, made, refinement)
     exact = modal(base, modes)
     before, after = modal(without, modes + SPARE), modal(with_, modes + SPARE)
-    exact = _recognised(exact, before)
+    exact = _recognised(exact, before, after.motions.shape[1])
     numbers = _corrected(exact, before, after)
     while not _positive_enough(numbers.static) and exact.motions.shape[1] > FEWEST:
         exact = exact.first(_fewer(exact))
@@ -176,11 +176,13 @@ def _fewer(exact: Modal) -> int:
     return len(value) - (2 if value[-1] < value[-2] * (1 + TWIN) else 1)
 
 
-def _recognised(exact: Modal, before: Modal) -> Modal:
-    """The lowest of the harmonic modes, as far as each is found among those of the 3D mesh."""
+def _recognised(exact: Modal, before: Modal, most: int) -> Modal:
+    """The lowest of the harmonic modes, as far as each is found among those of the 3D mesh, and no
+    more than ``most``: on a stub, many of these move no sections and stand for none.
+    """
     count = 0
     value = np.diag(exact.value)
-    for k in range(1, len(value) + 1):
+    for k in range(1, min(len(value), before.motions.shape[1], most) + 1):
         if k < len(value) and value[k] < value[k - 1] * (1 + TWIN):
             continue  # a pair is turned as one, and not cut in two
         own = exact.first(k)

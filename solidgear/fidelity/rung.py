@@ -131,6 +131,9 @@ class Rung:
         in sets that cannot be mixed; a body of revolution holds none.
     nature : str
         What its body is, where a feature does not fit it: ``of revolution``.
+    limits : callable, optional
+        ``limits(scene)`` tells why a scene whose features are of kinds that it holds does not fit
+        it all the same, or nothing; asked of scenes with features of `CYCLIC` only.
     copies : frozenset of str
         Kinds of features for which its mesh is made of copies of another rung's: no second opinion,
         and solved only where it is asked for by name.
@@ -161,6 +164,7 @@ class Rung:
     series: Callable[[Any, bool], list[Series]] | None = None
     holds: tuple[frozenset[str], ...] = ()
     nature: str = "of revolution"
+    limits: Callable[[Any], str] | None = None
     copies: frozenset[str] = frozenset()
     for_features: bool = False
     featured: Mapping[str, Any] = field(default_factory=dict)
@@ -188,8 +192,9 @@ class Rung:
                 f"the {self.title} is made for features, and the scene has none of: {listed(held)}"
             )
         kinds = {f.kind for f in features}
+        held_here = {f.kind for f in every} if self.for_features and not kinds else kinds
         if not kinds or any(kinds <= own for own in self.holds):
-            return ""
+            return self.limits(scene) if self.limits and held_here & CYCLIC else ""
         if not self.holds and all(f.round for f in features):
             return ""
         strange = [f for f in features if f.kind not in self._kinds]

@@ -28,6 +28,7 @@ from solidgear.meshing.sector import (
     sector_mesh,
     sectors_of,
 )
+from solidgear.scene.cyclic_rules import no_common_sector
 
 #: eigenvalues of pairs in a real matrix made of a complex one differ by rounding
 PAIRS = 1e-9
@@ -46,7 +47,8 @@ def sector(
 ) -> Body:
     """Free body of a shaft that repeats itself around the axis, from one sector of it.
 
-    Teeth are resolved, also those that the scene smears for other models.
+    Teeth are resolved, also those that the scene smears for other models, unless the scene resolves
+    other features: then the segment of revolution stands for smeared ones here too.
 
     Parameters
     ----------
@@ -137,7 +139,8 @@ def whole(scene: Any, wanted: Sequence, *, refinement: float, **own: Any) -> Bod
 
 
 def cyclic_features(scene: Any) -> tuple[Any, ...]:
-    """Features of a scene that repeat themselves around the axis, smeared or not.
+    """Features of a scene that repeat themselves around the axis: those that are resolved, or, where
+    there are none, teeth that the scene smears for other models.
 
     Parameters
     ----------
@@ -147,7 +150,35 @@ def cyclic_features(scene: Any) -> tuple[Any, ...]:
     -------
     tuple of Teeth, Spline or BoltCircle
     """
-    return tuple(f for f in getattr(scene, "features", ()) if f.kind in CYCLIC)
+    every = tuple(f for f in getattr(scene, "features", ()) if f.kind in CYCLIC)
+    return tuple(f for f in every if not f.smeared) or every
+
+
+def no_sector(scene: Any) -> str:
+    """Why the features of a scene have no sector that can be meshed, or nothing.
+
+    Parameters
+    ----------
+    scene : Scene
+
+    Returns
+    -------
+    str
+
+    Examples
+    --------
+    >>> import solidgear as sg
+    >>> no_sector(sg.load("geometry/pinion_toothed.toml"))
+    ''
+    """
+    features = cyclic_features(scene)
+    if features and scene.corners:
+        names = ", ".join(f'{c.kind} "{c.name}"' for c in scene.corners)
+        return (
+            f"a sector holds no fillets or chamfers yet, and the scene has {names}: leave them out, "
+            'or smear the teeth (model = "pitch_cone")'
+        )
+    return no_common_sector(features) if features else ""
 
 
 def meshed_sector(
@@ -155,18 +186,7 @@ def meshed_sector(
 ) -> SectorMesh:
     """The mesh of one sector of a scene, divided at the planes ``ends`` too; parameters as for
     :func:`sector`.
-
-    Raises
-    ------
-    SolidgearError
-        For fillets and chamfers, which no sector draws yet.
     """
-    if scene.corners:
-        names = ", ".join(f'{c.kind} "{c.name}"' for c in scene.corners)
-        raise SolidgearError(
-            f"a sector holds no fillets or chamfers yet, and the scene has {names}: leave them out, "
-            'or smear the teeth (model = "pitch_cone")'
-        )
     plan = tetrahedra_plan(
         scene, wanted, size=size, graded_size=graded_size, refinement=refinement, around=16
     )

@@ -25,12 +25,11 @@ from solidgear.meshing.element_size import set_size, size_formulas
 from solidgear.meshing.gmsh_session import Session, import_gmsh
 from solidgear.meshing.outline import Frustum, corners_of, slabs_between, tolerance_of
 from solidgear.meshing.quality import MeshError, MeshQuality, check_mesh
-from solidgear.meshing.sector_drawing import draw_sector, drill, pair_faces, phase
+from solidgear.meshing.sector_drawing import draw_sector, drill, pair_faces
 from solidgear.meshing.teeth import hole_size, section_area, tooth_size, turn_at
 from solidgear.meshing.tetrahedra import relaxed, to_skfem
+from solidgear.scene.cyclic_rules import middle, no_common_sector
 
-#: sectors of less than this share of a turn are cyclic
-FEWEST = 3
 #: of the length of the shaft: cut faces whose nodes match no better than this do not match
 MATCH = 1e-9
 
@@ -121,12 +120,14 @@ def sector_mesh(
         match, inverted elements, or a wrong volume.
     """
     count = count or sectors_of(features)
-    _common(features, count)
+    reason = no_common_sector(features, count)
+    if reason:
+        raise MeshError(reason)
     gmsh = import_gmsh()
     shapes = [Frustum.of(s) for s in segments]
     tolerance = tolerance_of(shapes)
     toothed = {f.segment: f for f in features if f.kind != "bolt_circle"}
-    first = phase(toothed.values(), count)
+    first = next((middle(teeth, count) for teeth in toothed.values()), 0.0)
     twists = [(s, toothed[s.name]) for s in segments if s.name in toothed]
     with Session(gmsh):
         own = draw_sector(gmsh, segments, shapes, toothed, planes, circles, count, first)
@@ -207,16 +208,6 @@ def volume_of_sector(segments, features, count: int) -> float:
             lo, hi = f.reach(next(s for s in segments if s.name == f.segment))
             total -= f.count * pi * f.diameter**2 / 4 * (hi - lo)
     return total / count
-
-
-def _common(features, count: int) -> None:
-    if count >= FEWEST and all(f.count % count == 0 for f in features):
-        return
-    each = " and ".join(f'{f.count} of {f.what} "{f.name}"' for f in features)
-    raise MeshError(
-        f"{each} have no sector of a third of a turn or less in common: "
-        "there is no cyclic symmetry to use"
-    )
 
 
 def _turned(mesh: MeshTet2, by) -> MeshTet2:

@@ -12,23 +12,6 @@ from solidgear.meshing.teeth import outline, turn_at
 from solidgear.meshing.tetrahedra import draw_revolved
 
 
-def phase(toothed, count: int) -> float:
-    """Angle of the middle of the sector, such that its borders run between teeth, rad."""
-    first = None
-    for teeth in toothed:
-        pitch = 2 * pi / teeth.count
-        # with an even number of teeth in a sector its middle lies between two of them
-        middle = teeth.angle + (pitch / 2 if teeth.count // count % 2 == 0 else 0.0)
-        apart = 0.0 if first is None else (middle - first + pitch / 2) % pitch - pitch / 2
-        if abs(apart) > 1e-9:
-            raise MeshError(
-                f'the gaps of {teeth.what} "{teeth.name}" do not lie behind those of the other '
-                f"teeth: no sector border runs between both; turn it by {-apart:.6g} rad"
-            )
-        first = middle if first is None else first
-    return first or 0.0
-
-
 def draw_sector(gmsh, segments, shapes, toothed, planes, circles, count: int, first: float):
     """Volumes of the sector: wedges of runs of plain segments, and slabs of toothed ones."""
     turn = 2 * pi / count

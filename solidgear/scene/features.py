@@ -8,6 +8,7 @@ from typing import Literal, TypeAlias
 
 from solidgear.errors import SceneError
 from solidgear.scene.cyclic_features import BoltCircle, Spline, Teeth
+from solidgear.scene.cyclic_rules import meeting_problems
 from solidgear.scene.feature import SMALLEST, Cut, deep
 from solidgear.scene.parts import Segment
 from solidgear.scene.rules import TOUCH
@@ -191,7 +192,7 @@ def feature_problems(
         reason = f"{len(features)} features are more than the {MOST_FEATURES} a shaft may have"
         yield SceneError(reason, path=("features",))
         return
-    names = set()
+    names, alone = set(), True
     for i, feature in enumerate(features):
         if feature.name in names:
             yield SceneError(
@@ -199,4 +200,8 @@ def feature_problems(
             )
         names.add(feature.name)
         for problem in feature.problems(segments):
+            alone = False
+            yield problem.located(None, path=("features", i, *problem.path))
+    if alone:
+        for i, problem in meeting_problems(segments, features):
             yield problem.located(None, path=("features", i, *problem.path))

@@ -52,7 +52,12 @@ NOT_HEARD_ALONE = (
     "doubtful_data",
 )
 #: what depends on the mesh of one solid
-OF_A_MESH = ("linear_elements", "nearly_incompressible", "uniform_at_shoulder")
+OF_A_MESH = (
+    "linear_elements",
+    "hexahedra_at_fillets",
+    "nearly_incompressible",
+    "uniform_at_shoulder",
+)
 
 
 @pinned
@@ -227,17 +232,22 @@ def _beyond_the_segments(scene: Scene) -> Iterator[Notice]:
         (),
         f"not of revolution: {names}; all that is told of the shaft is of its plain part",
     )
-    blind = tuple(m for m in everything() if LADDER[m].unfit(scene))
-    if not blind:
+    unfit = [m for m in LADDER.names if m in (*everything(), *LADDER.fit(scene))]
+    unfit = [m for m in unfit if LADDER[m].unfit(scene)]
+    if not unfit:
         return
     fit = [r.name for r in LADDER if r.build is not None and not r.unfit(scene)]
     use = f"use {' or '.join(fit)}" if fit else "no model holds all of them"
-    yield Notice(
-        "avoid",
-        blind,
-        f"the scene has {names}, of which a model of revolution knows nothing: it would answer for "
-        f"the plain part; {use}",
-    )
+    for model in (m for m in unfit if LADDER[m].holds):
+        yield Notice("avoid", (model,), f"{LADDER[model].unfit(scene)}; {use}")
+    blind = tuple(m for m in unfit if not LADDER[m].holds)
+    if blind:
+        yield Notice(
+            "avoid",
+            blind,
+            f"the scene has {names}, of which a model of revolution knows nothing: it would answer "
+            f"for the plain part; {use}",
+        )
 
 
 def _of_the_body(scene: Scene, body: Body) -> Iterator[Notice]:

@@ -38,6 +38,7 @@ GUARDS: dict[str, Callable[[Probe], Notices]] = {
         elements.narrow_seat,
         elements.rigid_seats,
         elements.linear_elements,
+        elements.hexahedra_at_fillets,
         elements.nearly_incompressible,
         elements.uniform_at_shoulder,
         elements.memory,

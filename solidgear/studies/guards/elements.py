@@ -90,6 +90,19 @@ def linear_elements(probe: Probe) -> Notices:
         )
 
 
+def hexahedra_at_fillets(probe: Probe) -> Notices:
+    """Hexahedra whose layers do not converge beside fillets as their bands would ask."""
+    element, corners = str(probe.body.mesh.get("element", "")), probe.scene.corners
+    if probe.body.fidelity == "solid" and element.startswith("hex") and corners:
+        names = ", ".join(f'{c.kind} "{c.name}"' for c in corners)
+        yield Notice(
+            "open",
+            ("solid",),
+            f"element = {element} converges slowly and unevenly beside {names}: no band can be told; "
+            "use element = tet10, which is the default here, or the harmonic solid",
+        )
+
+
 # nearly_incompressible.py: what the bending compliance lacks, over nu
 NU = np.array([0.3, 0.4, 0.45, 0.49, 0.499, 0.4999, 0.49999])
 LOCKING = {

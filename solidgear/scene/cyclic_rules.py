@@ -1,0 +1,145 @@
+"""What teeth and bolt circles must not be to one another: on one segment, and around one axis."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from itertools import combinations
+from typing import Any
+
+from solidgear.errors import SceneError
+from solidgear.scene.cyclic_features import FEWEST, BoltCircle, Spline, Teeth
+from solidgear.scene.feature import SMALLEST
+from solidgear.scene.parts import Segment
+
+#: of a pitch: gaps further apart than this do not lie behind each other, rad
+SAME_ANGLE = 1e-9
+
+
+def meeting_problems(
+    segments: Sequence[Segment], features: Sequence[Any]
+) -> Iterator[tuple[int, SceneError]]:
+    """Teeth and bolt circles of one segment that cannot both be there.
+
+    Parameters
+    ----------
+    segments : sequence of Segment
+    features : sequence of Feature
+        Each of which fits by itself.
+
+    Yields
+    ------
+    int, SceneError
+        Number of the feature, and a problem with the path of its own fields.
+    """
+    of = {s.name: s for s in segments}
+    for (_, a), (j, b) in combinations(enumerate(features), 2):
+        if a.segment != b.segment:
+            continue
+        kinds = (isinstance(a, (Teeth, Spline)), isinstance(b, (Teeth, Spline)))
+        if all(kinds):
+            yield (
+                j,
+                SceneError(
+                    f'"{b.segment}" has the {a.what} "{a.name}" already, and carries one set of '
+                    "them; divide the segment in two",
+                    path=("segment",),
+                ),
+            )
+        elif isinstance(a, BoltCircle) and isinstance(b, BoltCircle):
+            if _touch(a, b, of[b.segment]):
+                yield (
+                    j,
+                    SceneError(f'the holes run into those of "{a.name}"', path=("circle",)),
+                )
+        elif any(kinds) and BoltCircle in (type(a), type(b)):
+            teeth, bolts = (a, b) if kinds[0] else (b, a)
+            reason = "" if teeth.smeared else _in_teeth(teeth, bolts, of[b.segment])
+            if reason:
+                yield features.index(bolts), SceneError(reason, path=("circle",))
+
+
+def _touch(a: BoltCircle, b: BoltCircle, here: Segment) -> bool:
+    """Whether holes of two circles run into each other."""
+    (lo, hi), (first, last) = a.reach(here), b.reach(here)
+    if min(hi, last) <= max(lo, first):
+        return False
+    # angles between holes repeat themselves after the common part of both pitches
+    common = 2 * math.pi / math.lcm(a.count, b.count)
+    apart = (b.angle - a.angle + common / 2) % common - common / 2
+    ra, rb = a.circle / 2, b.circle / 2
+    distance = math.sqrt(max(ra * ra + rb * rb - 2 * ra * rb * math.cos(apart), 0.0))
+    return distance < (a.diameter + b.diameter) / 2 + SMALLEST * here.outer0
+
+
+def _in_teeth(teeth: Teeth | Spline, bolts: BoltCircle, here: Segment) -> str:
+    """Why holes do not fit a segment whose teeth are resolved, or nothing."""
+    if teeth.spiral_angle:
+        return (
+            f'"{here.name}" has the spiral {teeth.what} "{teeth.name}", along which its mesh is '
+            "twisted, and straight holes would be with it; give the holes a segment of their own"
+        )
+    low = min(here.outer0, here.outer1)
+    # the land between two teeth is a chord
+    root = teeth.root * math.cos(math.pi / teeth.count - teeth.root_half) * low
+    reach = (bolts.circle + bolts.diameter) / 2
+    if reach > root - SMALLEST * low:
+        return (
+            f"the holes reach {reach:.6g} m from the axis, into the {teeth.what} "
+            f'"{teeth.name}", whose roots lie at {root:.6g} m'
+        )
+    return ""
+
+
+def no_common_sector(features: Sequence[Any], count: int | None = None) -> str:
+    """Why features do not repeat themselves together around the axis, or nothing.
+
+    Parameters
+    ----------
+    features : sequence of Teeth, Spline or BoltCircle
+    count : int, optional
+        Sectors around; by default as many as the features have in common.
+
+    Returns
+    -------
+    str
+
+    Examples
+    --------
+    >>> from solidgear.scene import Spline
+    >>> a, b = (Spline(name=n, segment=n, count=c) for n, c in (("a", 12), ("b", 14)))
+    >>> no_common_sector([a, b])[:32]
+    '12 of spline "a" and 14 of splin'
+    >>> no_common_sector([a])
+    ''
+    """
+    count = count or math.gcd(*(f.count for f in features))
+    if count < FEWEST or any(f.count % count for f in features):
+        each = " and ".join(f'{f.count} of {f.what} "{f.name}"' for f in features)
+        return (
+            f"{each} have no sector of a third of a turn or less in common: "
+            "there is no cyclic symmetry to use"
+        )
+    toothed = [f for f in features if not isinstance(f, BoltCircle)]
+    for teeth in toothed[1:]:
+        pitch = 2 * math.pi / teeth.count
+        apart = (middle(teeth, count) - middle(toothed[0], count) + pitch / 2) % pitch - pitch / 2
+        if abs(apart) > SAME_ANGLE:
+            return (
+                f'the gaps of {teeth.what} "{teeth.name}" do not lie behind those of the other '
+                f"teeth: no sector border runs between both; turn it by {-apart:.6g} rad"
+            )
+    return ""
+
+
+def middle(teeth: Teeth | Spline, count: int) -> float:
+    """Angle of the middle of a sector whose borders run between teeth, rad.
+
+    Parameters
+    ----------
+    teeth : Teeth or Spline
+    count : int
+        Sectors around.
+    """
+    # with an even number of teeth in a sector its middle lies between two of them
+    return teeth.angle + (math.pi / teeth.count if teeth.count // count % 2 == 0 else 0.0)

@@ -1,0 +1,278 @@
+"""What must be true of every part with features, whatever it looks like."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+import solidgear as sg
+from solidgear.evidence.quantities import JUDGED
+from solidgear.evidence.study import study
+from solidgear.evidence.ties import SCENE
+from solidgear.fidelity.ladder import LADDER
+from solidgear.fidelity.rung import SOLID
+from solidgear.fidelity.size import estimated_size
+from solidgear.meshing.closed_form import mass_properties
+from validation.real_parts.commands import spoken
+from validation.real_parts.volumes import removed_mass, toothed_area
+
+#: meshes of one solve each, coarse
+LIGHT: dict[str, dict[str, Any]] = {
+    "harmonic": {"order": 3, "layers": 1, "edge_layers": 1, "relative_size": 4.0},
+    "sector": {"refinement": 0.6},
+    "solid": {"element": "tet10", "refinement": 0.35},
+}
+#: a coarse mesh of tetrahedra loses so much of the arcs over a cut
+OF_CUT = 3e-2
+#: unknowns of what is not solved for want of time
+HEAVY = 40_000
+CUTS, CYCLIC = ("keyway", "flat", "cross_hole"), ("teeth", "spline", "bolt_circle")
+
+
+@dataclass
+class Outcome:
+    """What became of one part.
+
+    Attributes
+    ----------
+    seed : int
+    words : str
+        Its features.
+    refused : str
+        Why it is no scene, if it is none.
+    failures : list of str
+        Claims that do not hold.
+    numbers : dict of str to float
+        Largest of each.
+    seconds : float
+    """
+
+    seed: int
+    words: str
+    refused: str = ""
+    failures: list[str] = field(default_factory=list)
+    numbers: dict[str, float] = field(default_factory=dict)
+    seconds: float = 0.0
+
+    def note(self, name: str, value: float, limit: float | None = None, what: str = "") -> None:
+        """Keep the largest of a number, and a failure above its limit."""
+        self.numbers[name] = max(self.numbers.get(name, 0.0), float(value))
+        if limit is not None and not value <= limit:
+            self.failures.append(f"{name} {value:.2e} above {limit:.0e} {what}".rstrip())
+
+
+def tried(scene: sg.Scene, out: Outcome) -> dict[str, sg.Body]:
+    """Bodies of all models, where exactly those that say that they fit can be built."""
+    bodies = {}
+    for name in LADDER.bodies:
+        unfit = LADDER[name].unfit(scene)
+        if not unfit and heavy(scene, name, LIGHT.get(name, {})):
+            out.numbers[f"left out {name}"] = 1.0
+            continue
+        try:
+            bodies[name] = sg.build(scene, name, **LIGHT.get(name, {}))
+            if unfit:
+                out.failures.append(f"{name} is built, and says: {unfit}")
+        except sg.SolidgearError as error:
+            if not unfit:
+                out.failures.append(f"{name} fits, and is refused: {error}")
+        except Exception as error:  # that is what is looked for
+            out.failures.append(f"{name} crashes: {type(error).__name__}: {error}")
+    return bodies
+
+
+def heavy(scene: sg.Scene, name: str, options: dict[str, Any]) -> bool:
+    """Whether a model takes more time than there is."""
+    return estimated_size(scene, name, LADDER[name].given(scene, options)).unknowns > HEAVY
+
+
+def sound(scene: sg.Scene, name: str, body: sg.Body, out: Outcome) -> None:
+    """A free body, of the mass that the part has, symmetric and positive."""
+    out.note("rigid", body.rigid_residual(), 1e-12, name)
+    if "min_jacobian_ratio" in body.mesh and body.mesh["min_jacobian_ratio"] <= 0:
+        out.failures.append(f"{name}: an element is inverted")
+    rung = LADDER[name]
+    smeared = name != "sector"
+    want, taken = expected_mass(scene, smeared)
+    mass = body.mass_matrix()
+    size = np.sqrt(np.outer(np.diag(want), np.diag(want)))
+    # a beam knows no inertia across the shaft exactly; arcs of fillets are those of the order
+    limit = max(rung.mass_tolerance, 1e-6) + OF_CUT * taken
+    if rung.family == SOLID:
+        out.note("mass", np.abs((mass - want) / size).max(), limit, name)
+    found = sg.condense(body, scene, scene.port.name)
+    c = found.compliance
+    held = np.isfinite(np.diag(c))
+    c = c[held][:, held]
+    scale = np.sqrt(np.outer(np.diag(c), np.diag(c)))
+    out.note("symmetry", np.abs((c - c.T) / scale).max(), 1e-9, name)
+    low = np.linalg.eigvalsh((c + c.T) / 2 / scale)[0]
+    if low <= 0:
+        out.failures.append(f"{name}: C has the eigenvalue {low:.1e}")
+    try:
+        hertz = sg.modes(body, scene, n=6).frequency_hz
+    except sg.SolidgearError as error:
+        out.failures.append(f"{name}: no modes: {error}")
+        return
+    if not (np.isfinite(hertz).all() and (np.asarray(hertz)[1:] > 0).all()):
+        out.failures.append(f"{name}: frequencies {hertz}")
+
+
+def expected_mass(scene: sg.Scene, smeared: bool) -> tuple[np.ndarray, float]:
+    """Rigid mass matrix of the part, and the largest share that is cut out of it.
+
+    Parameters
+    ----------
+    scene : Scene
+    smeared : bool
+        Whether teeth that the scene smears are a cone.
+
+    Returns
+    -------
+    matrix : (6, 6) ndarray
+    share : float
+    """
+    plain = _revolved(mass_properties(scene.segments, scene.corners))
+    removed = removed_mass(scene)
+    share = float(np.max(np.diag(removed) / np.diag(plain)))
+    for f in scene.features:
+        if f.kind not in ("teeth", "spline") or (f.smeared and smeared):
+            continue
+        here = next(s for s in scene.segments if s.name == f.segment)
+        assert here.outer0 == here.outer1, "teeth are drawn on cylinders here"
+        area, polar = toothed_area(f)
+        r, lo, hi = here.outer0, here.y0, here.y1
+        m = here.material.density * (hi - lo) * r * r * (np.pi - area)
+        turning = here.material.density * (hi - lo) * r**4 * (np.pi / 2 - polar)
+        middle, square = (lo + hi) / 2, (hi * hi + lo * hi + lo * lo) / 3
+        gone = np.diag([m, m, m, m * square + turning / 2, turning, m * square + turning / 2])
+        gone[2, 3] = gone[3, 2] = m * middle
+        gone[0, 5] = gone[5, 0] = -m * middle
+        removed = removed + gone
+    return plain - removed, share
+
+
+def _revolved(p: Any) -> np.ndarray:
+    """Rigid mass matrix about the start of the shaft of a body of revolution."""
+    across = p.ixx + p.mass * p.centre**2
+    out = np.diag([p.mass, p.mass, p.mass, across, p.iyy, across])
+    out[2, 3] = out[3, 2] = p.mass * p.centre
+    out[0, 5] = out[5, 0] = -p.mass * p.centre
+    return out
+
+
+def softer(scene: sg.Scene, out: Outcome) -> None:
+    """On one mesh a cut makes every compliance larger, if seats are not cut themselves."""
+    from solidgear.fidelity.featured import featured_body, meshed
+    from solidgear.fidelity.solid import tetrahedra_plan
+
+    if not apart_from_seats(scene):
+        return
+    wanted = [(s, s.attachment) for s in scene.stations]
+    plan = tetrahedra_plan(scene, wanted, size=None, graded_size=None, refinement=0.3, around=12)
+    made = meshed(scene, plan, 0.3, True)
+    before, after = (
+        sg.condense(
+            featured_body(scene, wanted, made, 0.3, plain=plain), scene, scene.port.name
+        ).compliance
+        for plain in (True, False)
+    )
+    held = np.isfinite(np.diag(before))
+    scale = np.sqrt(np.diag(before)[held])
+    low = np.linalg.eigvalsh((after - before)[held][:, held] / np.outer(scale, scale))[0]
+    out.note("stiffer by a cut", max(0.0, -low), 1e-9)
+
+
+def apart_from_seats(scene: sg.Scene) -> bool:
+    """Whether no cut touches a seat."""
+    spans = [f.span(scene.segments) for f in scene.features if f.kind in CUTS]
+    return all(hi < s.lo or lo > s.hi for lo, hi in spans for s in scene.stations)
+
+
+def agreeing(scene: sg.Scene, out: Outcome) -> dict[str, Any]:
+    """Models with bands of their own agree within them; the solutions."""
+    pair = [n for n in ("harmonic", "corrected", "sector") if n in LADDER.fit(scene)]
+    pair = [n for n in pair if not LADDER[n].unfit(scene)][:1]
+    solved: dict[str, Any] = {}
+    for name, most in ((pair[0], 3), ("solid", 3)) if pair else ():
+        if name == "solid" and LADDER["solid"].copies & {f.kind for f in scene.features}:
+            continue
+        finest = {"element": "tet10", "refinement": 0.95}
+        if name == "solid" and heavy(scene, name, finest):
+            out.numbers["left out bands of solid"] = 1.0
+            continue
+        try:
+            options = {"element": "tet10"} if name == "solid" else {}
+            solved[name] = study(scene, name, options, most=most, evidence=False)
+        except sg.SolidgearError as error:
+            out.failures.append(f"{name} cannot be solved: {error}")
+    if len(solved) == 2:
+        one, other = solved.values()
+        for q in JUDGED:
+            both = [s.bands.get(SCENE, {}).get(q) for s in (one, other)]
+            if None in both or q not in one.quantities or q not in other.quantities:
+                continue
+            a, b = one.quantities[q], other.quantities[q]
+            gap, bands = abs(a / b - 1), both[0].gci + both[1].gci
+            out.note("gap", gap)
+            out.note("gap / bands", gap / bands)
+            if gap > bands:
+                out.failures.append(
+                    f"{q}: {' and '.join(solved)} are {gap:.2%} apart, bands {both[0].gci:.2%} "
+                    f"and {both[1].gci:.2%}"
+                )
+    return solved
+
+
+def judged(
+    text: str, seed: int, path: Any, *, bands: bool = True, commands: bool = False
+) -> Outcome:
+    """All claims about one file.
+
+    Parameters
+    ----------
+    text : str
+    seed : int
+    path : Path
+        Where the file is written.
+    bands : bool
+        Whether to solve ever finer meshes.
+    commands : bool
+        Whether to run the command line on it.
+
+    Returns
+    -------
+    Outcome
+    """
+    start = time.perf_counter()
+    path.write_text(text)
+    out = Outcome(seed, "")
+    try:
+        scene = sg.load(path)
+    except sg.SolidgearError as error:
+        out.refused = str(error)
+        return out
+    for claim in _claims(scene, out, bands):
+        try:
+            claim()
+        except Exception as error:  # that is what is looked for
+            out.failures.append(f"crash: {type(error).__name__}: {error}")
+    if commands:
+        out.failures += spoken(scene, path)
+    out.seconds = time.perf_counter() - start
+    return out
+
+
+def _claims(scene: sg.Scene, out: Outcome, bands: bool) -> Iterator[Any]:
+    out.words = " + ".join(f.what for f in (*scene.features, *scene.blends))
+    bodies = tried(scene, out)
+    for name, body in bodies.items():
+        yield lambda name=name, body=body: sound(scene, name, body, out)
+    if any(f.kind in CUTS for f in scene.features) and "corrected" in bodies:
+        yield lambda: softer(scene, out)
+    if bands:
+        yield lambda: agreeing(scene, out)
