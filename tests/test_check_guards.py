@@ -84,13 +84,6 @@ def scene(
     )
 
 
-def filleted(radius: str) -> Scene:
-    """The overhung pinion with a fillet behind its head; the shaft there is 90 mm thick."""
-    pinion = sg.load(ROOT / "geometry" / "pinion_overhung.toml")
-    root = Fillet(name="root", y=pinion.steps[0], radius=radius)
-    return pinion.with_changes(blends=(root,))
-
-
 def uniform(slenderness: float, seats=True, **ask) -> Scene:
     """A uniform shaft on bearings that hold its ends, tied and loaded at sections."""
     length = slenderness * D
@@ -265,14 +258,6 @@ CASES = {
         "avoid",
         sg.load(ROOT / "geometry" / "gear_shaft.toml"),
         sg.load(ROOT / "geometry" / "shaft_hollow.toml"),
-    ),
-    "large fillet": Case(
-        "fillets",
-        "leaves out the fillet",
-        BEAMS,
-        "caution",
-        filleted("8 mm"),
-        filleted("0.8 mm"),
     ),
     "tolerance": Case(
         "beam_against_solid",
