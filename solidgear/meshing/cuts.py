@@ -160,7 +160,9 @@ def feature_size(feature: CutFeature, radius: float, refinement: float) -> tuple
         below = f"Max(0,{_num(floor)}-{up})"
         beside = f"Max(0,Sqrt({across}^2)-{_num(wide)})"
         distance = f"Sqrt({below}^2+{beside}^2+{along}^2)"
-    least = least / (ACROSS * refinement)
+    divided = ACROSS * refinement
+    # a circle of fewer than eight edges is no hole: it loses a fifteenth of its volume
+    least = least / (max(1.0, divided) if feature.kind == "cross_hole" else divided)
     return f"{_num(least)}+{_num(GROWTH)}*{distance}", least
 
 
