@@ -598,6 +598,12 @@ def test_fixed_interface_is_that_of_a_constraint():
     )
 
 
+def test_arcs_followed_by_coarse_elements_are_no_fault():
+    """At order 3 an arc is followed to some 1e-8 of the mass: enough for every number asked."""
+    light = sg.build(filleted(0.004), "harmonic", order=3, layers=1)
+    assert check_scene(filleted(0.004), light)["faults"] == []
+
+
 def test_guard_that_cannot_run_says_so(monkeypatch):
     def broken(probe):
         raise sg.SolidgearError("no mesh")
