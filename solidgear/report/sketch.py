@@ -42,6 +42,7 @@ def draw(scene: Mapping[str, Any]) -> Any:
     labels = _labels(stations, lambda y: left + y * inch)
     ordinates = _staggered([(left + y * inch, f"{1e3 * y:.1f}") for y in _marks(scene, length)])
     above = top + 0.62 + 0.34 * (1 + max((level for *_, level in labels), default=0))
+    above += 0.25 if scene.get("body") else 0.0  # room for a note over the names
     below = top + 1.62 + 0.17 * max((level for *_, level in ordinates), default=0)
 
     figure = Figure(figsize=(WIDTH, above + below))
