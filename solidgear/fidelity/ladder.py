@@ -86,12 +86,12 @@ LADDER = Ladder(
             # levels, where the factor has been raised since (`python -m validation.choice`).
             # On 54 more scenes 530 of 545 errors after two levels were held; 11 of the misses were
             # at section ties, whose planes the first two levels do not refine towards, and 4 at
-            # shoulders, where 0.15 became 0.24.
+            # shoulders, where 0.15 became 0.17. On 18 scenes after those 476 of 482 bars hold.
             usual={SMOOTH: 0.22, PLANE: 0.22, STEPPED: 0.22, HELD: 0.3, HELD_AT_A_STEP: 0.5},
             first={
                 SMOOTH: (1.8, 1.2e-3, 0.6),
                 PLANE: (4.0, 1.2e-3, 1.0),
-                STEPPED: (1.8, 1.2e-3, 0.24),
+                STEPPED: (1.8, 1.2e-3, 0.17),
                 HELD: (1.8, 1.2e-3, 0.26),
                 HELD_AT_A_STEP: (1.8, 1.2e-3, 0.26),
             },
