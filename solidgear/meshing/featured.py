@@ -15,14 +15,13 @@ from typing import Any
 import numpy as np
 from skfem import MeshTet1, MeshTet2
 
-from solidgear.machine.interruptible import call
 from solidgear.meshing.closed_form import volume_of
 from solidgear.meshing.cuts import feature_size, mirror_plane, tool
 from solidgear.meshing.element_size import set_size, size_formulas
 from solidgear.meshing.gmsh_session import Session, import_gmsh
 from solidgear.meshing.outline import Frustum
 from solidgear.meshing.quality import MeshError, MeshQuality, check_mesh
-from solidgear.meshing.tetrahedra import draw_revolved, relaxed, to_skfem
+from solidgear.meshing.tetrahedra import draw_revolved, filled
 
 #: angle about y at which half a shaft begins, so that the other end of the half turn lies in the
 #: same plane
@@ -105,17 +104,11 @@ def featured_mesh(
         formulas += [feature_size(f, radii[f.segment], refinement)[0] for f in features]
         set_size(gmsh, formulas, size)
         removed = sum(gmsh.model.occ.getMass(3, piece) for piece in pieces)
-        try:
-            for dimension in (1, 2, 3):
-                call(gmsh.model.mesh.generate, dimension)
-            mesh = relaxed(to_skfem(gmsh))
-        except MeshError:
-            raise
-        except Exception as error:
-            raise MeshError(
-                f"gmsh could not mesh the shaft with its features ({error}): "
-                "change refinement a little, or look for features that all but touch"
-            ) from error
+        mesh = filled(
+            gmsh,
+            "gmsh could not mesh the shaft with its features ({}): "
+            "change refinement a little, or look for features that all but touch",
+        )
         every = gmsh.model.mesh.getElements(3)[1][0]
         own = [gmsh.model.mesh.getElements(3, piece)[1][0] for piece in pieces]
         cut = np.isin(every, np.concatenate(own))

@@ -20,14 +20,13 @@ from scipy.spatial import cKDTree
 from skfem import MeshTet1, MeshTet2
 
 from solidgear.frames import rotation
-from solidgear.machine.interruptible import call
 from solidgear.meshing.element_size import set_size, size_formulas
 from solidgear.meshing.gmsh_session import Session, import_gmsh
 from solidgear.meshing.outline import Frustum, corners_of, slabs_between, tolerance_of
 from solidgear.meshing.quality import MeshError, MeshQuality, check_mesh
 from solidgear.meshing.sector_drawing import draw_sector, drill, pair_faces
 from solidgear.meshing.teeth import hole_size, section_area, tooth_size, turn_at
-from solidgear.meshing.tetrahedra import relaxed, to_skfem
+from solidgear.meshing.tetrahedra import filled
 from solidgear.scene.cyclic_rules import middle, no_common_sector
 
 #: of the length of the shaft: cut faces whose nodes match no better than this do not match
@@ -141,16 +140,7 @@ def sector_mesh(
         formulas = size_formulas(shapes, corners, size, graded_size, None, around)
         formulas += feature_sizes(segments, features, refinement)
         set_size(gmsh, formulas, size)
-        try:
-            for dimension in (1, 2, 3):
-                call(gmsh.model.mesh.generate, dimension)
-            mesh = relaxed(to_skfem(gmsh))
-        except MeshError:
-            raise
-        except Exception as error:
-            raise MeshError(
-                f"gmsh could not mesh the sector ({error}): change refinement a little"
-            ) from error
+        mesh = filled(gmsh, "gmsh could not mesh the sector ({}): change refinement a little")
     exact = volume_of_sector(segments, features, count)
     check_mesh(mesh, volume=exact, rtol=max(1e-3, 4.0 * (pi / around) ** 4 / 30.0))
     y = mesh.p[1][mesh.t].mean(axis=0)

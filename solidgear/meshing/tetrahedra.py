@@ -110,18 +110,12 @@ def tetrahedra(
         corners = draw_revolved(gmsh, segments, planes, circles, blends=blends)
         formulas = size_formulas(segments, corners, size, graded_size, reach, around, blends)
         set_size(gmsh, formulas, size)
-        try:
-            for dimension, fraction in ((1, 0.05), (2, 0.1), (3, 0.3)):
-                report(fraction, f"meshing dimension {dimension}")
-                call(gmsh.model.mesh.generate, dimension)
-            mesh = relaxed(to_skfem(gmsh))
-        except MeshError:
-            raise
-        except Exception as error:
-            raise MeshError(
-                f"gmsh could not mesh the shaft ({error}): change size or graded_size a little, "
-                "or look for segments much thinner than size"
-            ) from error
+        mesh = filled(
+            gmsh,
+            "gmsh could not mesh the shaft ({}): change size or graded_size a little, "
+            "or look for segments much thinner than size",
+            report,
+        )
 
     report(0.9, "checking the mesh")
     # four times what the arcs lose by themselves: a lost part is far larger
@@ -133,6 +127,37 @@ def tetrahedra(
     segment = np.searchsorted([s.y1 for s in segments[:-1]], y)
     report(1.0, f"{quality.n_elements} elements")
     return TetMesh(mesh, segment, quality)
+
+
+def filled(gmsh, refusal: str, report=lambda fraction, message: None):
+    """Curved tetrahedra in everything that is drawn.
+
+    Parameters
+    ----------
+    gmsh : module
+        With a model and its sizes.
+    refusal : str
+        What is said where it cannot be done; the mesher's own words take the place of ``{}``.
+    report : callable, optional
+        ``report(fraction, message)``.
+
+    Returns
+    -------
+    MeshTet2
+
+    Raises
+    ------
+    MeshError
+    """
+    try:
+        for dimension, fraction in ((1, 0.05), (2, 0.1), (3, 0.3)):
+            report(fraction, f"meshing dimension {dimension}")
+            call(gmsh.model.mesh.generate, dimension)
+        return relaxed(to_skfem(gmsh))
+    except MeshError:
+        raise
+    except Exception as error:
+        raise MeshError(refusal.format(error)) from error
 
 
 def _validate(segments, planes, circles, size, graded_size, reach, around):
