@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from solidgear.machine.whole_file import whole
-from solidgear.report.chart_style import STYLE
+from solidgear.report.chart_style import new_figure, styled
 
 #: least distance of two names beside the chart, of its height
 APART = 0.021
@@ -33,13 +33,8 @@ def order_figure(found: Any, title: str, teeth: int):
     -------
     matplotlib Figure
     """
-    import matplotlib
-    from matplotlib.figure import Figure
-
-    with matplotlib.rc_context():
-        matplotlib.rcdefaults()
-        matplotlib.rcParams.update(STYLE)
-        figure = Figure(figsize=(9.6, 7.2), layout="constrained")
+    with styled():
+        figure = new_figure(9.6, 7.2)
         axis: Any = figure.subplots()
         axis.set(xlim=(0, found.highest_rpm), ylim=(0, found.highest_hz))
         axis.set(xlabel="pinion speed in rpm", ylabel="frequency in Hz")

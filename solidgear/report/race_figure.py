@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from solidgear.evidence.pareto import AUTOMATIC, Race, Row
-from solidgear.report.chart_style import STYLE, percent_decades, tolerance_line
+from solidgear.report.chart_style import percent_decades, styled, tolerance_line
 from solidgear.report.race_legend import FRONT, footer, legend
 from solidgear.report.race_rows import COSTS, replace_file
 from solidgear.report.race_style import REFERENCE, Look
@@ -25,11 +25,7 @@ def draw(race: Race, path) -> Path:
     -------
     pathlib.Path
     """
-    import matplotlib
-
-    with matplotlib.rc_context():
-        matplotlib.rcdefaults()  # the user's own matplotlibrc must not change a figure
-        matplotlib.rcParams.update(STYLE)
+    with styled():
         target = io.BytesIO()
         figure(race).savefig(target, format="png", dpi=150, metadata={"Software": None})
     replace_file(Path(path), target.getvalue())

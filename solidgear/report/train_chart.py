@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from solidgear.report.chart_style import STYLE
+from solidgear.report.chart_style import new_figure, styled
 
 COLOURS = ("#00805e", "#0072b2", "#c98a00", "#b3305c", "#5a3e8c", "#444444", "#1f9bb8", "#8a6d3b")
 #: labels of peaks closer than this share of a decade would lie on one another
@@ -47,13 +47,8 @@ def response_figure(
     -------
     matplotlib Figure
     """
-    import matplotlib
-    from matplotlib.figure import Figure
-
-    with matplotlib.rc_context():
-        matplotlib.rcdefaults()
-        matplotlib.rcParams.update(STYLE)
-        figure = Figure(figsize=(9.0, 7.4), layout="constrained")
+    with styled():
+        figure = new_figure(9.0, 7.4)
         axes = figure.subplots(2, 1, sharex=True, height_ratios=(1.7, 1))
         last = responses[0].frequency_hz[-1]
         # where models differ is the upper end; below half the first departure they are one line
@@ -91,13 +86,8 @@ def receptance_figure(found: Sequence[Any], title: str, teeth: int):
     -------
     matplotlib Figure
     """
-    import matplotlib
-    from matplotlib.figure import Figure
-
-    with matplotlib.rc_context():
-        matplotlib.rcdefaults()
-        matplotlib.rcParams.update(STYLE)
-        figure = Figure(figsize=(9.0, 6.6), layout="constrained")
+    with styled():
+        figure = new_figure(9.0, 6.6)
         axes = figure.subplots(2, 1, sharex=True, height_ratios=(2.2, 1))
         for k, one in enumerate(found):
             look = {"color": COLOURS[k % len(COLOURS)], "lw": 1.6 if k == 0 else 1.0}
