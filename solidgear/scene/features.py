@@ -18,7 +18,17 @@ from solidgear.scene.units import PositiveLength
 MOST_FEATURES = 20
 
 
-class Keyway(Cut):
+class _Long(Cut):
+    """A cut that begins at its place and runs along the shaft."""
+
+    length: PositiveLength
+
+    @property
+    def reach(self) -> tuple[float, float]:
+        return self.y, self.y + self.length
+
+
+class Keyway(_Long):
     """A slot with a flat floor along a cylinder.
 
     Attributes
@@ -51,14 +61,9 @@ class Keyway(Cut):
     """
 
     kind: Literal["keyway"] = "keyway"
-    length: PositiveLength
     width: PositiveLength
     depth: PositiveLength
     ends: Literal["round", "square"] = "round"
-
-    @property
-    def reach(self) -> tuple[float, float]:
-        return self.y, self.y + self.length
 
     def _sized(self, here: Segment) -> Iterator[SceneError]:
         yield from deep(self.depth, here, "keyway")
@@ -85,7 +90,7 @@ class Keyway(Cut):
             )
 
 
-class Flat(Cut):
+class Flat(_Long):
     """A flat cut across a cylinder.
 
     Attributes
@@ -111,12 +116,7 @@ class Flat(Cut):
     """
 
     kind: Literal["flat"] = "flat"
-    length: PositiveLength
     depth: PositiveLength
-
-    @property
-    def reach(self) -> tuple[float, float]:
-        return self.y, self.y + self.length
 
     def _sized(self, here: Segment) -> Iterator[SceneError]:
         yield from deep(self.depth, here, "flat")
