@@ -4,9 +4,27 @@ Ctrl-C is heard.
 
 import signal
 
+import pytest
+
 from solidgear.machine.threads import pin
 
 pin()
 # A shell starts what it runs in the background deaf to Ctrl-C; tests that interrupt themselves
 # would wait for ever.
 signal.signal(signal.SIGINT, signal.default_int_handler)
+
+
+@pytest.fixture
+def refused(tmp_path):
+    """Asks for one sentence from a scene in which one text stands for another."""
+    import solidgear as sg
+
+    def ask(text: str, old: str, new: str, says: str) -> None:
+        assert old in text
+        file = tmp_path / "bad.toml"
+        file.write_text(text.replace(old, new))
+        with pytest.raises(sg.SceneError) as caught:
+            sg.load(file)
+        assert says in str(caught.value) and len(str(caught.value).splitlines()) == 1
+
+    return ask
