@@ -16,7 +16,7 @@ from solidgear.body import Block
 from solidgear.body.surface import Surface, Volume
 from solidgear.errors import SolidgearError
 from solidgear.fidelity.attachment import tie_rigidly
-from solidgear.fidelity.solid_block import Facets, rigid_motions
+from solidgear.fidelity.solid_block import Facets, middles, rigid_motions
 from solidgear.fidelity.solid_matrices import _matrices, _mean
 from solidgear.fidelity.solid_mesh import SolidMesh
 
@@ -160,19 +160,8 @@ def seat_on_cylinder(mesh: SolidMesh, segments, tolerance: float) -> Facets:
     boundary = mesh.boundary
     corners = mesh.mesh.facets[:, boundary]
     y, r = mesh.mesh.p[1, corners], np.hypot(*mesh.mesh.p[[0, 2]][:, corners])
-    places = mesh.mesh.doflocs[:, mesh.mesh.dofs.edge_dofs[0]]
-    vertices = mesh.mesh.p.shape[1]
-    edges = np.sort(mesh.mesh.edges.astype(np.int64), axis=0)
-    key = edges[0] * vertices + edges[1]
-    order = np.argsort(key)
-
-    def middle(a, b):
-        low, high = np.minimum(a, b).astype(np.int64), np.maximum(a, b).astype(np.int64)
-        return places[:, order[np.searchsorted(key[order], low * vertices + high)]]
-
-    mids = np.stack([middle(corners[i], corners[j]) for i, j in ((0, 1), (1, 2), (0, 2))], axis=1)
-    every_y = np.vstack([y, mids[1]])
-    every_r = np.vstack([r, np.hypot(mids[0], mids[2])])
+    middle_y, middle_r = middles(mesh, corners)
+    every_y, every_r = np.vstack([y, middle_y]), np.vstack([r, middle_r])
 
     def facets(station, attachment):
         if attachment == "section":

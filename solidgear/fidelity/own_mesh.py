@@ -11,7 +11,7 @@ from solidgear.body import Body, Port
 from solidgear.errors import SolidgearError
 from solidgear.fidelity.attachment import tie_rigidly
 from solidgear.fidelity.scale import elastic_scale
-from solidgear.fidelity.solid_block import Facets, free_block
+from solidgear.fidelity.solid_block import Facets, free_block, middles
 from solidgear.fidelity.solid_mesh import SolidMesh, _isoparametric
 from solidgear.meshing.quality import check_mesh
 
@@ -122,7 +122,7 @@ def faces_on(mesh: SolidMesh, segments: Sequence[Any], clipped: bool) -> Facets:
     boundary = mesh.boundary
     corners = mesh.mesh.facets[:, boundary]
     y, r = mesh.mesh.p[1, corners], np.hypot(*mesh.mesh.p[[0, 2]][:, corners])
-    middle_y, middle_r = _middles(mesh, corners)
+    middle_y, middle_r = middles(mesh, corners)
 
     def on_surface(at_y, at_r, s) -> np.ndarray:
         outer = s.outer0 + (s.outer1 - s.outer0) * (at_y - s.y0) / (s.y1 - s.y0)
@@ -157,29 +157,3 @@ def faces_on(mesh: SolidMesh, segments: Sequence[Any], clipped: bool) -> Facets:
         return boundary[out]
 
     return facets
-
-
-def _middles(mesh: SolidMesh, corners) -> tuple[Any, Any]:
-    """Place y and radius of the middle nodes of facets; None for elements without."""
-    if not mesh.element.edge_dofs:
-        return None, None
-    vertices = mesh.mesh.p.shape[1]
-    edges = np.sort(mesh.mesh.edges.astype(np.int64), axis=0)
-    key = edges[0] * vertices + edges[1]
-    order = np.argsort(key)
-    at = np.zeros(edges.shape[1], int)
-    at[mesh.mesh.t2e] = mesh.dofs[len(mesh.mesh.t) : len(mesh.mesh.t) + len(mesh.mesh.t2e)]
-    found = []
-    # of four corners of a quadrilateral two pairs are its diagonals, which are no edges
-    for i in range(len(corners)):
-        for j in range(i):
-            a, b = np.sort(corners[[i, j]].astype(np.int64), axis=0)
-            pair = a * vertices + b
-            place = np.minimum(np.searchsorted(key[order], pair), len(key) - 1)
-            edge = order[place]
-            real = key[edge] == pair
-            spot = mesh.nodes[:, at[edge]]
-            ends = mesh.mesh.p[:, corners[i]]
-            found.append(np.where(real, spot, ends))
-    places = np.stack(found, axis=1)
-    return places[1], np.hypot(places[0], places[2])

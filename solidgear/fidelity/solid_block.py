@@ -41,6 +41,44 @@ def seat_facets(mesh: SolidMesh, segments: Sequence[Any], tolerance: float) -> F
     return facets
 
 
+def middles(mesh: SolidMesh, corners: np.ndarray) -> tuple[Any, Any]:
+    """Places of the middle nodes of facets.
+
+    Parameters
+    ----------
+    mesh : SolidMesh
+    corners : (c, f) ndarray of int
+        Vertices of the facets.
+
+    Returns
+    -------
+    y, radius : (m, f) ndarray or None
+        m; None for elements without middle nodes.
+    """
+    if not mesh.element.edge_dofs:
+        return None, None
+    vertices = mesh.mesh.p.shape[1]
+    edges = np.sort(mesh.mesh.edges.astype(np.int64), axis=0)
+    key = edges[0] * vertices + edges[1]
+    order = np.argsort(key)
+    at = np.zeros(edges.shape[1], int)
+    at[mesh.mesh.t2e] = mesh.dofs[len(mesh.mesh.t) : len(mesh.mesh.t) + len(mesh.mesh.t2e)]
+    found = []
+    # of four corners of a quadrilateral two pairs are its diagonals, which are no edges
+    for i in range(len(corners)):
+        for j in range(i):
+            a, b = np.sort(corners[[i, j]].astype(np.int64), axis=0)
+            pair = a * vertices + b
+            place = np.minimum(np.searchsorted(key[order], pair), len(key) - 1)
+            edge = order[place]
+            real = key[edge] == pair
+            spot = mesh.nodes[:, at[edge]]
+            ends = mesh.mesh.p[:, corners[i]]
+            found.append(np.where(real, spot, ends))
+    places = np.stack(found, axis=1)
+    return places[1], np.hypot(places[0], places[2])
+
+
 def rigid_motions(nodes: np.ndarray) -> np.ndarray:
     """Unit rigid motions about the origin.
 
