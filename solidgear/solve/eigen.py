@@ -185,7 +185,9 @@ def _arpack(supported: Supported, wanted: int):
             OPinv=spla.LinearOperator(shape, matvec=supported.inverse, dtype=float),
             v0=supported.inverse(np.random.default_rng(0).standard_normal(total)),
             ncv=min(total - 1, max(2 * wanted + 6, 20)),
-            tol=1e-12,
+            # Tighter buys nothing: at 1e-12 frequencies are the same to 15 digits for half as many
+            # solves again (30 against 21 on a pinion and a motor rotor).
+            tol=TOLERANCE,
         )
     except spla.ArpackNoConvergence as error:
         raise SolidgearError(
