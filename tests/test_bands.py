@@ -9,7 +9,7 @@ import solidgear as sg
 from solidgear.evidence.bands import DIAGONAL, LEAST, SURE_AROUND, layered_bands
 from solidgear.fidelity.edges import sharpest_edge
 from solidgear.fidelity.ladder import LADDER
-from solidgear.fidelity.rung import HELD, HELD_AT_A_STEP, PLANE, SMOOTH, STEPPED
+from solidgear.fidelity.rung import HELD, HELD_AT_A_STEP, PLANE, SMOOTH, STEPPED, STEPPED_PLANE
 
 FINEST = {"C_zz": 2.0, "C_thx": 8.0, "C_z,thx": 1.0, "bending 1": 100.0}
 
@@ -34,7 +34,7 @@ def test_a_step_that_is_small_by_accident_is_not_believed():
     assert all(band.gci > 1e-3 * 0.1 for band in lucky.values())
 
 
-@pytest.mark.parametrize("edge", [SMOOTH, PLANE, STEPPED, HELD, HELD_AT_A_STEP])
+@pytest.mark.parametrize("edge", [SMOOTH, PLANE, STEPPED, STEPPED_PLANE, HELD, HELD_AT_A_STEP])
 def test_after_two_levels_of_hexahedra_larger_steps_give_larger_bands_and_lesser_shares(edge):
     steps = np.geomspace(1e-5, 0.3, 60)
     bands = np.array(
@@ -105,6 +105,7 @@ def test_what_is_sharpest_on_a_shaft():
 
     assert sharpest_edge(shaft("average", 0.05, second=0.05)) == SMOOTH
     assert sharpest_edge(shaft("average", 0.05)) == STEPPED
+    assert sharpest_edge(shaft("section", 0.05)) == STEPPED_PLANE
     assert sharpest_edge(shaft("section", 0.05, second=0.05)) == PLANE
     assert sharpest_edge(shaft("rigid", 0.05)) == HELD
     assert sharpest_edge(shaft("rigid", 0.16)) == HELD_AT_A_STEP  # ends where the step is

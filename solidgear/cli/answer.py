@@ -103,7 +103,8 @@ def _values(found: Answered) -> Table:
     from rich.table import Table
 
     from solidgear.evidence.quantities import COUPLINGS
-    from solidgear.report.words import engineering, percent
+    from solidgear.report.words import bar_of, engineering
+    from solidgear.studies.climb import ABOVE, BELOW
 
     table = Table(box=box.SIMPLE_HEAD, pad_edge=False)
     table.add_column("quantity")
@@ -112,11 +113,15 @@ def _values(found: Answered) -> Table:
     table.add_column("bar", justify="right")
     table.add_column("from")
     for row in found.values:
-        bar = f"+- {percent(row.bar, signed=False)}"
         value = "0" if row.zero else engineering(row.value, 6)
-        table.add_row(row.quantity, value, row.unit, bar, row.how)
+        table.add_row(row.quantity, value, row.unit, bar_of(row), row.how)
+    notes = []
+    if any(row.side in (ABOVE, BELOW) for row in found.values):
+        notes.append("a bar with one sign: the exact answer lies on that side only")
     if any(row.quantity in COUPLINGS for row in found.values):
-        table.caption = "bars of couplings are relative to the mean of both diagonal entries"
+        notes.append("bars of couplings are relative to the mean of both diagonal entries")
+    if notes:
+        table.caption = "\n".join(notes)
         table.caption_justify = "left"
     return table
 

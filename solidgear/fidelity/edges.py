@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from solidgear.fidelity.rung import HELD, HELD_AT_A_STEP, PLANE, SMOOTH, STEPPED
+from solidgear.fidelity.rung import HELD, HELD_AT_A_STEP, PLANE, SMOOTH, STEPPED, STEPPED_PLANE
 from solidgear.meshing.corners import corner_angle, filled_at
 
 if TYPE_CHECKING:
@@ -17,8 +17,8 @@ NEAR = 0.01
 
 
 def sharpest_edge(scene: Scene) -> str:
-    """What limits how fast meshes converge: one of `SMOOTH`, `PLANE`, `STEPPED`, `HELD`,
-    `HELD_AT_A_STEP`.
+    """What limits how fast meshes converge: one of `SMOOTH`, `PLANE`, `STEPPED`,
+    `STEPPED_PLANE`, `HELD`, `HELD_AT_A_STEP`.
 
     Exponents of displacement there are 1 (the jump of the load at the end of a seat), 0.54, 0.50
     and 0.33, so that a layer of ratio q leaves the shares ``q^2``, ``q^1.09``, ``q`` and
@@ -47,7 +47,8 @@ def sharpest_edge(scene: Scene) -> str:
     touched = any(s.lo - near <= y <= s.hi + near for s in seats for y in corners)
     if seats:
         return HELD_AT_A_STEP if touched else HELD
-    if corners:
-        return STEPPED
     # a plane that carries a load ends in a ring of the surface
-    return PLANE if any(s.attachment == "section" for s in scene.stations) else SMOOTH
+    plane = any(s.attachment == "section" for s in scene.stations)
+    if corners:
+        return STEPPED_PLANE if plane else STEPPED
+    return PLANE if plane else SMOOTH

@@ -47,12 +47,15 @@ class Later:
 
 #: what is sharpest on a shaft, from nothing at all to a rigid seat that ends at a shoulder
 SMOOTH, PLANE, STEPPED = "smooth", "section tie", "shoulder"
+STEPPED_PLANE = "shoulder and section tie"
 HELD, HELD_AT_A_STEP = "rigid seat", "rigid seat at a shoulder"
 
 
 def by_edge(free: Any, held: Any) -> dict[str, Any]:
     """One value for shafts that no rigid seat holds, and one for those that one does."""
-    return {SMOOTH: free, PLANE: free, STEPPED: free, HELD: held, HELD_AT_A_STEP: held}
+    return dict.fromkeys((SMOOTH, PLANE, STEPPED, STEPPED_PLANE), free) | dict.fromkeys(
+        (HELD, HELD_AT_A_STEP), held
+    )
 
 
 @dataclass(frozen=True)
@@ -119,6 +122,10 @@ class Rung:
     section_ties : bool
         Whether its mesh carries the mean motion of any section; otherwise it is not compared like
         for like.
+    from_above : bool
+        Whether its displacements are admissible on the exact geometry, integrated exactly: such a
+        body is too stiff, so that compliances come from below, stiffnesses and frequencies from
+        above.
     mass_tolerance : float
         Closure of mass and inertia that it owes to the closed form.
     most_seats : int
@@ -159,6 +166,7 @@ class Rung:
     share: float = 1.0
     theory: str = ""
     section_ties: bool = True
+    from_above: bool = False
     mass_tolerance: float = 1e-9
     most_seats: int = 12
     series: Callable[[Any, bool], list[Series]] | None = None

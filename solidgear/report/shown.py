@@ -9,7 +9,7 @@ import numpy as np
 
 from solidgear.display import Table
 from solidgear.frames import DOF_NAMES
-from solidgear.report.words import BLOCK_UNITS, percent
+from solidgear.report.words import BLOCK_UNITS, bar_of, percent
 
 if TYPE_CHECKING:
     from solidgear.body import Body
@@ -172,7 +172,7 @@ def comparison(told: Any) -> Table:
 
 def answered(told: Any) -> Table:
     """Numbers with their bars."""
-    rows = [(v.quantity, v.value, v.unit, percent(v.bar, signed=False)) for v in told.values]
+    rows = [(v.quantity, v.value, v.unit, bar_of(v)) for v in told.values]
     words = "within" if told.reached else "not within"
     return Table(
         f"Answer for {told.scene}: {told.rung}, {words} {percent(told.tolerance, signed=False)}",

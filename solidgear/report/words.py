@@ -52,6 +52,12 @@ def percent(value: float | None, signed: bool = True, nothing: str = NOTHING) ->
     return f"{p:{sign}.{decimals}f} %"
 
 
+def bar_of(value: Any) -> str:
+    """The bar of a number in per cent, with a sign where the exact answer lies on one side only."""
+    sign = {"above": "+", "below": "-"}.get(value.side, "+- ")
+    return f"{sign}{percent(value.bar, signed=False)}"
+
+
 def hertz(value: float | None, nothing: str = NOTHING) -> str:
     """A frequency to five or six figures, without its unit."""
     if not is_number(value):

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 from solidgear.body import Body, as_supports
 from solidgear.evidence.answer import ENOUGH, Numbers, numbers
 from solidgear.evidence.bands import Band
-from solidgear.evidence.quantities import QUANTITIES, size
+from solidgear.evidence.quantities import COUPLINGS, QUANTITIES, size
 from solidgear.evidence.sequence_bands import sequence_bands
 from solidgear.fidelity import build
 from solidgear.fidelity.rung import Rung
@@ -40,6 +40,10 @@ SETTINGS = {
 RISE = 2.0
 #: a coupling this small against its diagonal entries is zero
 ROUNDING = 1e-9
+#: sides on which the exact answer may lie
+ABOVE, BELOW, BOTH = "above", "below", "both"
+#: a bar has one side where the solver has left no more than this share of it
+SOLVER_SHARE = 0.01
 
 
 @dataclass(frozen=True)
@@ -58,6 +62,9 @@ class Value:
         Where the bar comes from.
     size : float
         What the bar is relative to, SI.
+    side : str
+        Where the exact answer of the model lies: ``above`` or ``below`` the value, or ``both`` where
+        it may be either.
     """
 
     quantity: str
@@ -66,6 +73,7 @@ class Value:
     bar: float
     how: str
     size: float
+    side: str = BOTH
 
     @property
     def zero(self) -> bool:
@@ -131,6 +139,7 @@ class Climb:
         self.steps: list[Step] = []
         self.bands: dict[str, Band] = {}
         self.families: tuple[str, ...] | None = None
+        self.left_out = 0.0
         self.body: Body | None = None
         self.options: dict[str, Any] = {}
         self.statics: Condensed | None = None
@@ -186,8 +195,23 @@ class Climb:
                 count = len(self.levels)
                 how = f"{count} meshes" if count > 1 else "one mesh only, not judged"
                 unit = QUANTITIES[name][2]
-                out.append(Value(name, finest[name], unit, bar, how, size(finest, name)))
+                scale, side = size(finest, name), self._side(name)
+                out.append(Value(name, finest[name], unit, bar, how, scale, side))
         return tuple(out)
+
+    def _side(self, name: str) -> str:
+        """Where the exact answer lies.
+
+        Of all admissible displacements the exact ones store the least energy under given motions of
+        the ports, and the most under given loads; a Rayleigh quotient is least at the exact mode.
+        """
+        exact = self.rung.from_above and not self.scene.corners
+        if not exact or name in COUPLINGS or name not in self.bands or self._rise(name):
+            return BOTH
+        # what the solver leaves, and couplings that were left out, may go either way
+        if max(self.bands[name].solver, self.left_out) > SOLVER_SHARE * self.bar(name):
+            return BOTH
+        return ABOVE if QUANTITIES[name][0] == "compliance" else BELOW
 
     def _body(self, level: Mapping[str, Any]) -> Body:
         options = dict(level)
@@ -200,7 +224,7 @@ class Climb:
         if len(body.blocks) < len(FAMILIES):
             return None  # one block holds all motions
         supports = as_supports(self.scene)
-        spring, _ = decoupled(body, supports, COUPLING * self.tol)
+        spring, self.left_out = decoupled(body, supports, COUPLING * self.tol)
         asked = {_family_of(q) for q in self.wanted}
         out: set[str] = set()
         for group in groups(body, supports, spring):
