@@ -26,6 +26,8 @@ from solidgear.frames import shift
 #: Index of the block of n waves around the axis is this plus n, where it is not among the blocks of
 #: a body.
 FURTHER = 1000
+#: Index of the same block a quarter of a wave further round (its sine form): this plus n.
+SINE = 2000
 
 
 @dataclass(frozen=True)
@@ -243,7 +245,7 @@ class Body(Displayed):
         ----------
         index : int
             From ``FURTHER`` on, that of a further circumferential family, built when first asked
-            for.
+            for; from ``SINE`` on, its sine form.
 
         Returns
         -------
@@ -254,7 +256,12 @@ class Body(Displayed):
         SolidgearError
             If the fidelity has no such family.
         """
-        return self.blocks[index] if index < FURTHER else self.family(index - FURTHER).blocks[0]
+        if index < FURTHER:
+            return self.blocks[index]
+        if index < SINE:
+            return self.family(index - FURTHER).blocks[0]
+        cosine = self.family(index - SINE).blocks[0]
+        return replace(cosine, name=f"sine_{cosine.name}")
 
     def family(self, n: int) -> Body:
         """The motions of some waves around the axis, as a body of one block without port motions.

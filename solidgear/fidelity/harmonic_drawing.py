@@ -72,7 +72,8 @@ def surface(geometry: HarmonicMesh, moved: Mapping[str, np.ndarray]) -> Surface:
             waves.append(wave(0, 0.0, amplitude[0], 0.0, amplitude[1]))
         else:
             p, q, w = amplitude
-            waves.append(wave(n, np.pi / 2 if name == "bending_x" else 0.0, p + q, p - q, w))
+            start = np.pi / (2 * n) if name.startswith("sine_") else 0.0
+            waves.append(wave(n, np.pi / 2 if name == "bending_x" else start, p + q, p - q, w))
     return revolve(rings, waves)
 
 

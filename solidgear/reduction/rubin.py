@@ -22,6 +22,7 @@ References: S. Rubin, AIAA Journal 13 (1975), 995-1006.
 from __future__ import annotations
 
 import numpy as np
+import scipy.sparse as sp
 
 from solidgear.body import Block, Body
 from solidgear.errors import SolidgearError
@@ -111,8 +112,10 @@ def rubin(body: Body, n: int = 30, ports: PortChoice | None = None, steps: int =
             )
             continue
         free = free_shapes(block, [v[index] for v in shapes if index in v])
-        size = ease(body)[body.rows(block)[port_rows(block, at)]]
-        value, basis, truncation = _basis(block, factors(body)[index], free, cut, at, size, steps)
+        own = port_rows(block, at)
+        size, rows = ease(body)[body.rows(block)[own]], block.ports[own]
+        factor = factors(body)[index]
+        value, basis, truncation = residual_block(block, factor, free, cut, rows, size, steps)
         blocks[index] = reduced_motions(block, index, at, value, basis, truncation)
     return assemble("rubin", body, chosen, blocks.values())
 
@@ -129,8 +132,33 @@ def lowest_shapes(found: ModeSet, n: int) -> tuple[list[dict[int, np.ndarray]], 
     return [v for m in elastic[:-1] for v in m.vectors], cut
 
 
-def _basis(block: Block, factor: Factor, free: FreeShapes, cut: float, ports, size, steps: int):
-    """Eigenvalues, mass-normalised shapes and truncation of one block."""
+def residual_block(
+    block: Block,
+    factor: Factor,
+    free: FreeShapes,
+    cut: float,
+    rows: sp.csr_matrix,
+    size: np.ndarray,
+    steps: int,
+) -> tuple[np.ndarray, np.ndarray, Truncation]:
+    """Eigenvalues, mass-normalised shapes and truncation of one block.
+
+    Parameters
+    ----------
+    block : Block
+    factor : Factor
+        Of the block, shifted.
+    free : FreeShapes
+        The modes to keep.
+    cut : float
+        Eigenvalue below which there are no others, rad^2/s^2.
+    rows : (q, n) sparse
+        Motions that springs may act on.
+    size : (q,) ndarray
+        Flexibilities beside which one is rounding.
+    steps : int
+        Krylov steps.
+    """
     u, value = free.shapes, free.value
     if u.shape[1] >= block.size or np.isinf(cut):
         return value, u, Truncation(np.inf, np.zeros((len(value),) * 2))
@@ -148,7 +176,6 @@ def _basis(block: Block, factor: Factor, free: FreeShapes, cut: float, ports, si
         )
         return field - u @ (heavy.T @ field)
 
-    rows = block.ports[port_rows(block, ports)]
     moments, fields = residual_fields(inverse, block.mass, rows, steps)
     mu = np.array(moments)
     # What the mean motion of a seat as long as the shaft leaves over is rounding.

@@ -1,0 +1,143 @@
+r"""Harmonics n >= 2 of a body of revolution as further coordinates of its superelement.
+
+Ports are mean motions of rings and bearings hold ports, so that these harmonics neither see a
+bearing nor one another; what drives them is a force on a patch of the surface
+(:mod:`solidgear.fidelity.harmonic_patch`).  Each is reduced as blocks with ports are
+(:mod:`solidgear.reduction.rubin`): free modes and residual fields of the mean motions of the patch,
+so that its statics is exact and the bound on frequencies of systems holds on.
+
+A harmonic has a cosine and a sine form of the same matrices.  With the patch at the angle t0 and
+``a = n t0``, R its rows of the part even (radial, axial) and odd (tangential) about it,
+
+    cosine: cos a R_r, - sin a R_t, cos a R_y,        sine: sin a R_r, cos a R_t, sin a R_y.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+import scipy.sparse as sp
+
+from solidgear.body import FURTHER, SINE, Body
+from solidgear.errors import SolidgearError
+from solidgear.frames import shift
+from solidgear.machine.threads import pinned
+from solidgear.reduction.moments import free_shapes
+from solidgear.reduction.rubin import lowest_shapes, residual_block
+from solidgear.reduction.superelement import PortMotion, ReducedMotions, Superelement, assemble
+from solidgear.solve.modes import modes
+from solidgear.solve.statics import factors
+
+#: free modes of every harmonic that are kept
+KEPT = 6
+
+
+@pinned
+def with_waves(
+    part: Superelement,
+    body: Body,
+    at: str,
+    offset: np.ndarray,
+    axes: np.ndarray,
+    rows: Mapping[int, np.ndarray],
+    name: str = "teeth",
+    kept: int = KEPT,
+) -> Superelement:
+    """A superelement with harmonics n >= 2, and a port that feels them.
+
+    Parameters
+    ----------
+    part : Superelement
+    body : Body
+        Of which it was made, with further harmonics.
+    at : str
+        Port of the part that carries the new one rigidly.
+    offset : (3,) ndarray
+        The new port from that one, m.
+    axes : (3, 3) ndarray
+        Radial, tangential and axial direction there as columns.
+    rows : mapping of int to (3, m) ndarray
+        Mean motions of the patch in these directions, by n.
+    name : str
+        Of the new port: the motion of the carried point and that of the patch by the harmonics;
+        it turns as its carrier does.
+    kept : int
+        Free modes of each harmonic.
+
+    Returns
+    -------
+    Superelement
+
+    Raises
+    ------
+    SolidgearError
+        For a port of that name, or a body without further harmonics.
+    """
+    if name in part.ports:
+        raise SolidgearError(
+            f"a station is called {name!r}, which is the name of the port at the mesh point; "
+            "call it otherwise"
+        )
+    angle = np.arctan2(axes[0, 0], axes[2, 0])
+    blocks, local = list(part.blocks), [np.zeros((3, part.size))]
+    for n, own in rows.items():
+        value, shapes, truncation = _reduced(body.family(n), own, kept)
+        still = np.zeros((6, len(part.ports), len(value)))
+        c, s = np.cos(n * angle), np.sin(n * angle)
+        for index, turn in ((FURTHER + n, [c, -s, c]), (SINE + n, [s, c, s])):
+            blocks.append(ReducedMotions(index, value, shapes, still, truncation))
+            local.append(axes @ (np.array(turn)[:, None] * (own @ shapes)))
+    whole = assemble(part.kind, body, {p: body.port_index(p) for p in part.ports}, blocks)
+    carrier = whole.ports[at]
+    motion = shift(offset) @ carrier.rows
+    motion[:3] += np.hstack(local)
+    port = PortMotion(motion, carrier.point + carrier.axes @ offset, carrier.axes)
+    return Superelement(part.kind, part.fidelity, whole.blocks, {**whole.ports, name: port})
+
+
+def _reduced(family: Body, rows: np.ndarray, kept: int):
+    """Eigenvalues, shapes and truncation of one harmonic; the same for its cosine and its sine."""
+    # every mode stands for two
+    shapes, cut = lowest_shapes(modes(family, (), n=2 * kept + 1), 2 * kept)
+    (block,), (factor,) = family.blocks, factors(family)
+    free = free_shapes(block, [v[0] for v in shapes])
+    nothing = np.zeros(len(rows))
+    return residual_block(block, factor, free, cut, sp.csr_matrix(rows), nothing, steps=1)
+
+
+def own_waves(part: Superelement) -> dict[int, np.ndarray]:
+    """Coordinates of every harmonic n >= 2 of a superelement.
+
+    Parameters
+    ----------
+    part : Superelement
+
+    Returns
+    -------
+    dict of int to (k,) ndarray of int
+        By n, cosine and sine together; empty for a part without any.
+    """
+    cuts = np.cumsum([0] + [len(block.value) for block in part.blocks])
+    out: dict[int, np.ndarray] = {}
+    for block, start, end in zip(part.blocks, cuts, cuts[1:]):
+        if block.index > FURTHER:
+            n = block.index % FURTHER
+            out[n] = np.r_[out.get(n, np.zeros(0, int)), np.arange(start, end)]
+    return out
+
+
+def local_compliance(part: Superelement, name: str, direction: np.ndarray) -> float:
+    """How far the harmonics n >= 2 let a port give way under a constant force, m/N.
+
+    Parameters
+    ----------
+    part : Superelement
+    name : str
+        Of the port.
+    direction : (3,) ndarray
+        Of the force, unit.
+    """
+    own = np.concatenate([np.zeros(0, int), *own_waves(part).values()])
+    moved = np.asarray(direction) @ part.ports[name].rows[:3, own]
+    return float((moved**2 / part.value[own]).sum())
