@@ -13,6 +13,7 @@ from solidgear.cli.train import (
     Damping,
     GearRung,
     Kept,
+    LocalHarmonics,
     MatchedAt,
     MaxFrequency,
     PinionRung,
@@ -45,6 +46,7 @@ def receptance(
     matched_at: MatchedAt = None,
     reduction: Reduction = "rubin",
     kept: Kept = 24,
+    local_harmonics: LocalHarmonics = None,
     as_json: JsonFlag = False,
 ) -> None:
     """Receptance between any two ports of a train: table, chart, and peaks with their modes."""
@@ -53,7 +55,7 @@ def receptance(
     from solidgear.studies.axle.modes import unpublished_lines
     from solidgear.studies.axle.receptance import receptance as run
 
-    shop = workshop(train, reduction, kept, max_frequency)
+    shop = workshop(train, reduction, kept, max_frequency, local_harmonics)
     ends = end_of("--from", from_), end_of("--to", to)
     mixes = [(pinion, gear), *map(mix, against or [])]
     unpublished, cautions = shop.train.unpublished(), shop.contact.cautions

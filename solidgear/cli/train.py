@@ -41,12 +41,26 @@ Damping = Annotated[
 MatchedAt = Annotated[
     float | None, typer.Option("--matched-at", help="Hz at which viscous losses match.")
 ]
+LocalHarmonics = Annotated[
+    str | None,
+    typer.Option(
+        "--local-harmonics",
+        help="Harmonics n >= 2 of harmonic solids that the teeth drive where they touch, such as "
+        "2,3; by default as [mesh] local_harmonics of the file says.",
+    ),
+]
 MOST_KEPT = 200
 #: relative; no frequency is printed with a smaller bound, whatever the proof says
 ROUNDING = 1e-12
 
 
-def workshop(path: Path, reduction: str, kept: int, max_frequency: float | None):
+def workshop(
+    path: Path,
+    reduction: str,
+    kept: int,
+    max_frequency: float | None,
+    local_harmonics: str | None = None,
+):
     """Where the bodies of a train are built, once the options that all commands share are sound."""
     from solidgear.scene.toml_file import parse
     from solidgear.scene.train_file import load_train
@@ -57,10 +71,30 @@ def workshop(path: Path, reduction: str, kept: int, max_frequency: float | None)
     if max_frequency is not None and not max_frequency > 0:
         raise SolidgearError(f"--max-frequency {max_frequency:g}: must be greater than zero, in Hz")
     loaded = load_train(path)
+    if local_harmonics is not None:
+        mesh = loaded.mesh.with_changes(local_harmonics=_harmonics(local_harmonics))
+        loaded = loaded.with_changes(mesh=mesh)
     try:
         return Workshop(loaded, reduction, kept)
     except SceneError as error:  # what the mesh of a sound file cannot be
         raise error.located(parse(str(path)), where=str(path)) from None
+
+
+def _harmonics(text: str) -> tuple[int, ...]:
+    """Numbers of waves from a text such as ``2,3``."""
+    from solidgear.scene.train_tables import FIRST_HARMONIC, LAST_HARMONIC
+
+    try:
+        found = tuple(int(word) for word in text.split(",") if word.strip())
+    except ValueError:
+        found = ()
+    sound = all(FIRST_HARMONIC <= n <= LAST_HARMONIC for n in found)
+    if not found or not sound or len(set(found)) < len(found):
+        raise SolidgearError(
+            f"--local-harmonics {show(text, 40)}: write whole numbers from {FIRST_HARMONIC} to "
+            f"{LAST_HARMONIC}, each once, such as 2,3"
+        )
+    return found
 
 
 @command
@@ -79,12 +113,13 @@ def system_modes(
     ] = None,
     reduction: Reduction = "rubin",
     kept: Kept = 24,
+    local_harmonics: LocalHarmonics = None,
     as_json: JsonFlag = False,
 ) -> None:
     """Natural frequencies of a geared rotor system, each with its name and its proven bound."""
     from solidgear.studies.axle.modes import train_modes
 
-    shop = workshop(train, reduction, kept, max_frequency)
+    shop = workshop(train, reduction, kept, max_frequency, local_harmonics)
     if mode and pictures is None:
         raise SolidgearError("--mode says which mode to draw; add --pictures and a folder")
     found = train_modes(shop, pinion, gear, max_frequency)
@@ -166,6 +201,7 @@ def response(
     ] = None,
     reduction: Reduction = "rubin",
     kept: Kept = 24,
+    local_harmonics: LocalHarmonics = None,
     as_json: JsonFlag = False,
 ) -> None:
     """Steady response to the transmission error: mesh force, reactions, motions, and a chart."""
@@ -175,7 +211,7 @@ def response(
     from solidgear.studies.axle.orders import order_map
     from solidgear.studies.axle.respond import respond
 
-    shop = workshop(train, reduction, kept, max_frequency)
+    shop = workshop(train, reduction, kept, max_frequency, local_harmonics)
     mixes = [(pinion, gear), *map(mix, against or [])]
     forces = _forces(force)
     with held(out):

@@ -13,6 +13,7 @@ import typer
 from solidgear.cli.app import JsonFlag, Progress, command, console
 from solidgear.cli.train import (
     Kept,
+    LocalHarmonics,
     MaxFrequency,
     Reduction,
     TrainFile,
@@ -37,13 +38,14 @@ def judge_system(
     ] = None,
     reduction: Reduction = "rubin",
     kept: Kept = 24,
+    local_harmonics: LocalHarmonics = None,
     as_json: JsonFlag = False,
 ) -> None:
     """What compare does with a train, with further mixes and reductions, and no folder unless
     asked for.
     """
     more = [mix(text) for text in against or []]
-    _judged(train, out, as_json, max_frequency, more, reduction, kept)
+    _judged(train, out, as_json, max_frequency, more, reduction, kept, local=local_harmonics)
 
 
 def compare_train(
@@ -76,13 +78,14 @@ def _judged(
     reduction: str = "rubin",
     kept: int = 24,
     renders: bool = False,
+    local: str | None = None,
 ) -> None:
     from solidgear.report.folder import held
     from solidgear.report.train_page import write_train
     from solidgear.studies.axle.comparison import compare_train as run
     from solidgear.studies.axle.modes import unpublished_lines
 
-    shop = workshop(train, reduction, kept, max_frequency)
+    shop = workshop(train, reduction, kept, max_frequency, local)
     with held(out) if out else nullcontext(), Progress(quiet=as_json) as progress:
         found = run(shop, max_frequency, more, progress)
         results = found.results()

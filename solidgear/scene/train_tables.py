@@ -29,6 +29,9 @@ from solidgear.scene.units import Angle, Frequency, Length, PositiveLength, Tole
 FEWEST_TEETH, MOST_TEETH = 3, 2000
 
 Teeth = Annotated[int, Field(strict=True, ge=FEWEST_TEETH, le=MOST_TEETH)]
+#: nodal diameters; ports hold those below, and finer waves than the last are shorter than teeth
+FIRST_HARMONIC, LAST_HARMONIC = 2, 32
+Harmonic = Annotated[int, Field(strict=True, ge=FIRST_HARMONIC, le=LAST_HARMONIC)]
 
 
 class HeadInertia(Model):
@@ -206,6 +209,9 @@ class Mesh(Model):
         Static transmission error under the load of the cells and without it, m.
     transmission_error : ErrorTable
         A single number is a constant amplitude, m.
+    local_harmonics : tuple of int
+        Harmonics n >= 2 of harmonic solids that the force of the teeth drives where it acts, on one
+        tooth pitch of the lumped point's seat; by default none, the mean of the seat alone.
     """
 
     stiffness: MeshSpring | None = None
@@ -222,6 +228,13 @@ class Mesh(Model):
     unloaded_error: Ordinate | None = None
     transmission_error: Annotated[ErrorTable, BeforeValidator(_constant_or_table)]
     transmission_error_status: Status = "assumed"
+    local_harmonics: tuple[Harmonic, ...] = ()
+
+    @model_validator(mode="after")
+    def _each_once(self):
+        if len(set(self.local_harmonics)) != len(self.local_harmonics):
+            raise SceneError("names a harmonic twice; give each once", path=("local_harmonics",))
+        return self
 
     @model_validator(mode="after")
     def _one_line(self):

@@ -19,8 +19,9 @@ from scipy.optimize import linear_sum_assignment
 from solidgear.fidelity.ladder import LADDER
 from solidgear.fidelity.rung import BEAM
 from solidgear.scene.train import SIDES
+from solidgear.studies.axle.local import local_lines
 from solidgear.studies.axle.models import JUDGE, LUMPED, Workshop, checked_rung
-from solidgear.studies.axle.naming import mode_names
+from solidgear.studies.axle.naming import driven, mode_names
 from solidgear.studies.axle.respond import Drive, TrainResponse, respond
 from solidgear.system.system import System
 
@@ -229,7 +230,7 @@ def judge_train(
         judge.change(),
         tuple(judge.responses.values()),
         workshop.train.unpublished(),
-        workshop.contact.cautions,
+        (*workshop.contact.cautions, *local_lines(workshop, judge.system)),
     )
 
 
@@ -282,6 +283,7 @@ class _Judge:
         self.system = workshop.system(JUDGE, JUDGE)
         self.found, self.seen = _modes(workshop, self.system, highest)
         self.names = mode_names(workshop, self.system, self.found)
+        self.driven = driven(self.system, self.found)[1:]
         self.drive = Drive(workshop, JUDGE, JUDGE)
         self.grid = self.drive.grid(highest)
         self.responses = {
@@ -310,6 +312,8 @@ class _Judge:
         pair = dict(zip(mine, its))
         for k, hz in enumerate(self.found.frequency_hz[1:]):
             name = self.names[k + 1]
+            if not self.driven[k]:  # moves no port: nothing could tell it from another
+                continue
             if k not in pair or alike[k, pair[k]] < ALIKE:
                 return float(hz), name, None
             error = float(other.frequency_hz[1 + pair[k]] / hz - 1)
@@ -361,4 +365,4 @@ def _modes(workshop: Workshop, system: System, highest: float):
 def _mac(one: np.ndarray, other: np.ndarray) -> np.ndarray:
     """Modal assurance criterion of every pair of columns."""
     size = np.outer((one**2).sum(axis=0), (other**2).sum(axis=0))
-    return (one.T @ other) ** 2 / size
+    return (one.T @ other) ** 2 / np.maximum(size, np.finfo(float).tiny)

@@ -32,6 +32,8 @@ from solidgear.reduction.superelement import Superelement
 from solidgear.scene import Scene
 from solidgear.scene.train import SIDES, Train
 from solidgear.studies.axle.contact import Contact, contact
+from solidgear.studies.axle.local import TEETH, local_teeth
+from solidgear.system.gear_mesh import MeshVector
 from solidgear.system.links import Link, PortInertia, grounded, mesh_spring, torsion_spring
 from solidgear.system.parts import Inertia, Part, Placed, RigidBody
 from solidgear.system.system import System
@@ -129,6 +131,8 @@ class Workshop:
                 f"reduction {show(self.reduction, 30)} is unknown; use {' or '.join(REDUCTIONS)}"
             )
         self._made: dict[tuple[str, str], ShaftModel] = {}
+        self._local: dict[tuple[str, str], Part] = {}
+        self._local_seconds = 0.0
         self.scenes: dict[str, Scene] = {side: self.train.shaft(side) for side in SIDES}
         self.contact: Contact = contact(self.train)
 
@@ -269,8 +273,8 @@ class Workshop:
         ports = {side: f"{side}.{self.scenes[side].port.name}" for side in SIDES}
         parts: dict[str, Part] = {
             "engine": Inertia(train.engine.inertia),
-            "pinion": self.shaft("pinion", pinion).part,
-            "gear": self.placed(self.shaft("gear", gear).part),
+            "pinion": self.part("pinion", pinion),
+            "gear": self.placed(self.part("gear", gear)),
             "load": Inertia(train.load.inertia),
         }
         links: dict[str, Link] = {}
@@ -283,10 +287,35 @@ class Workshop:
             if head is not None:
                 diagonal = [head.mass] * 3 + [head.bending, head.torsional, head.bending]
                 links[f"{side} head"] = PortInertia(ports[side], np.diag(diagonal))
-        links["mesh"] = mesh_spring(
-            ports["pinion"], met.pinion, ports["gear"], met.gear, met.stiffness
-        )
+        ends = [
+            self.teeth(side, part) for side, part in zip(SIDES, (parts["pinion"], parts["gear"]))
+        ]
+        links["mesh"] = mesh_spring(*ends[0], *ends[1], met.stiffness)
         return System(parts, links)
+
+    def part(self, side: str, rung: str) -> Part:
+        """Model of a shaft with the harmonics that its teeth drive, if the train asks for any."""
+        harmonics = self.train.mesh.local_harmonics
+        if not harmonics or rung != JUDGE:
+            return self.shaft(side, rung).part
+        if (side, rung) not in self._local:
+            start = perf_counter()
+            own, vector = self.shaft(side, rung), self._vector(side)
+            self._local[side, rung] = local_teeth(
+                self.train, side, self.scenes[side], own.part, own.body, vector.point
+            )
+            self._local_seconds += perf_counter() - start
+        return self._local[side, rung]
+
+    def teeth(self, side: str, part: Part) -> tuple[str, MeshVector]:
+        """Port of a part that the teeth act on, and along which line from there."""
+        vector = self._vector(side)
+        if TEETH in part.ports:
+            return f"{side}.{TEETH}", MeshVector(vector.normal, np.zeros(3))
+        return f"{side}.{self.scenes[side].port.name}", vector
+
+    def _vector(self, side: str) -> MeshVector:
+        return {"pinion": self.contact.pinion, "gear": self.contact.gear}[side]
 
     def placed(self, part: Part) -> Placed:
         """The gear where the teeth meet, in the axes of the pinion's scene."""
@@ -310,7 +339,8 @@ class Workshop:
 
     def seconds(self, pinion: str, gear: str) -> float:
         """To build and reduce both shafts."""
-        return self.shaft("pinion", pinion).seconds + self.shaft("gear", gear).seconds
+        local = self._local_seconds if JUDGE in (pinion, gear) else 0.0
+        return self.shaft("pinion", pinion).seconds + self.shaft("gear", gear).seconds + local
 
 
 def _mass_about(body: Body, y: float) -> np.ndarray:

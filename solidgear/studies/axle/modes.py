@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, field
 
 import numpy as np
 
@@ -10,8 +10,9 @@ from solidgear.errors import SolidgearError
 from solidgear.frames import DOF_NAMES
 from solidgear.scene.train import SIDES
 from solidgear.studies.axle.contact import Contact
-from solidgear.studies.axle.models import Workshop
-from solidgear.studies.axle.naming import OVALISING, mode_names
+from solidgear.studies.axle.local import local_lines, undriven, waves_of
+from solidgear.studies.axle.models import JUDGE, Workshop
+from solidgear.studies.axle.naming import OVALISING, driven, mode_names
 from solidgear.system.system import System
 
 #: a frequency whose bound is above this is not resolved by the reduction
@@ -32,6 +33,8 @@ class TrainMode:
         Part or link with most of the strain energy, and its share.
     bound : float
         Largest relative error that the reduction leaves, proven; nothing of the mesh of a solid.
+    driven : bool
+        Whether it strains the mesh or a bearing at all.
     """
 
     name: str
@@ -39,6 +42,7 @@ class TrainMode:
     rpm: float
     strained: str
     bound: float
+    driven: bool = True
 
 
 @dataclass(frozen=True, eq=False)
@@ -65,6 +69,11 @@ class TrainModes:
         What contact cells leave over, in words; empty without any.
     unpublished : dict of str to str
     cautions : tuple of str
+    undriven : dict of str to dict of int to tuple of float
+        Free modes (Hz) of harmonic solids that no port drives, by shaft and number of nodal
+        diameters; they take no part in the train.
+    local : tuple of str
+        What harmonics at a local mesh point add, in words.
     """
 
     train: str
@@ -81,6 +90,8 @@ class TrainModes:
     contact: tuple[str, ...]
     unpublished: dict[str, str]
     cautions: tuple[str, ...]
+    undriven: dict[str, dict[int, tuple[float, ...]]] = field(default_factory=dict)
+    local: tuple[str, ...] = ()
 
     def as_dict(self) -> dict:
         """Plain data that JSON can hold."""
@@ -104,18 +115,36 @@ class TrainModes:
         if self.rigid == 1 and not self.free:
             lines.append("The whole train turns freely: one motion at exactly 0 Hz.")
         lines += list(self.free)
-        still = [mode for mode in self.modes if OVALISING in mode.name]
-        if still:
-            places = ", ".join(f"{mode.frequency_hz:.0f}" for mode in still)
-            lines.append(
-                f"Ovalising, not driven by this mesh model: {places} Hz; "
-                "seats and teeth act on mean motions, which these modes have none of."
-            )
+        lines += [*self._still(), *self.local]
         lines.append(
             "Bound: largest relative error that the reduction leaves, proven; "
             "it says nothing of the meshes of the shafts."
         )
         return lines + list(self.contact) + unpublished_lines(self.unpublished)
+
+    def _still(self) -> list[str]:
+        """Modes that the teeth do not drive, shaft by shaft, each n with its frequencies."""
+        at: dict[tuple[str, int], list[float]] = {}
+        for side, families in self.undriven.items():
+            for n, free in families.items():
+                at.setdefault((side, n), []).extend(free)
+        for mode in self.modes:
+            if not mode.driven and OVALISING in mode.name:
+                side, _, wave, *_ = mode.name.split()
+                at.setdefault((side, int(wave.removeprefix("n="))), []).append(mode.frequency_hz)
+        if not at:
+            return []
+        places = [
+            f"{side} n={n} {', '.join(dict.fromkeys(f'{hz:.0f}' for hz in sorted(found)))} Hz"
+            for (side, n), found in sorted(at.items())
+        ]
+        told = f"Ovalising, not driven by this mesh model: {'; '.join(places)} (n nodal diameters)."
+        if self.local:
+            return [told]
+        return [
+            f"{told} Seats and teeth act on mean motions, which these modes have none of; "
+            "--local-harmonics n lets the teeth of a harmonic solid push where they touch."
+        ]
 
 
 def unpublished_lines(unpublished: dict[str, str]) -> list[str]:
@@ -188,12 +217,19 @@ def train_modes(
     refuse_unresolved(workshop, system, limit)
     names = mode_names(workshop, system, found)
     most = found.dominant()
+    moved = driven(system, found)
     modes = []
     for k, (name, hz) in enumerate(zip(names, found.frequency_hz)):
         strained = "" if hz == 0 else f"{most[k]} {100 * found.energy[most[k]][k]:.0f} %"
         rpm = 60 * float(hz) / workshop.train.pinion.teeth
-        modes.append(TrainMode(name, float(hz), rpm, strained, float(found.error_bound[k])))
+        bound = float(found.error_bound[k])
+        modes.append(TrainMode(name, float(hz), rpm, strained, bound, bool(moved[k])))
     rungs = {"pinion": pinion, "gear": gear}
+    still = {}
+    for side, rung in rungs.items():
+        if rung == JUDGE:
+            have = tuple(waves_of(system.parts[side]))
+            still[side] = undriven(workshop.shaft(side, rung).body, limit, have)
     return TrainModes(
         workshop.train.title or workshop.train.name,
         pinion,
@@ -209,6 +245,8 @@ def train_modes(
         wrench_lines(workshop.contact),
         workshop.train.unpublished(),
         workshop.contact.cautions,
+        {side: families for side, families in still.items() if families},
+        local_lines(workshop, system),
     )
 
 

@@ -5,16 +5,20 @@ torsion as the energies its rigid mass would have in the motions of its lumped p
 called after the largest share, and counted: ``gear bending 2``.  Where no share has 40 % of the
 whole, after the two largest: ``pinion axial + gear bending 1``.
 
-A solid also has modes with two and more nodal diameters, whose mean motion over any seat is zero:
-no averaged port drives or feels them.  They are called ``gear ovalising``.
+Modes with n >= 2 nodal diameters are called ``gear ovalising n=2``.  Their mean motion over any seat
+is zero, so that no averaged port drives or feels them; a harmonic solid has them where a local mesh
+does (:mod:`solidgear.studies.axle.local`), a 3D solid always.
 """
 
 from __future__ import annotations
 
 import numpy as np
 
+from solidgear.body import Body
 from solidgear.frames import shift
 from solidgear.scene.train import SIDES
+from solidgear.solve.circumference import of_body
+from solidgear.studies.axle.local import waves_of
 from solidgear.studies.axle.models import Workshop
 from solidgear.system.modes import SystemModes
 from solidgear.system.system import System
@@ -35,10 +39,14 @@ def shares(workshop: Workshop, system: System, shapes: np.ndarray) -> dict[str, 
     momentum = system.mass @ shapes
     for part in system.parts:
         place = system.place(part)
-        own = np.maximum((shapes[place] * momentum[place]).sum(axis=0), 0.0)
+        each = shapes[place] * momentum[place]
+        own = np.maximum(each.sum(axis=0), 0.0)
         if part not in SIDES:
             out[f"{part} torsion"] = own
             continue
+        for n, rows in waves_of(system.parts[part]).items():
+            out[f"{part} {OVALISING} n={n}"] = waving = np.maximum(each[rows].sum(axis=0), 0.0)
+            own = np.maximum(own - waving, 0.0)
         port = workshop.scenes[part].port
         body = workshop.shaft(part, workshop_rung(workshop, part)).body
         back = shift([0.0, -port.y, 0.0])
@@ -46,7 +54,9 @@ def shares(workshop: Workshop, system: System, shapes: np.ndarray) -> dict[str, 
         energy = mass[:, None] * (system.motion(f"{part}.{port.name}") @ shapes) ** 2
         whole = energy.sum(axis=0)
         still = _still(workshop, system, part, mass, own, shapes)
-        out[f"{part} {OVALISING}"] = np.where(still, own, 0.0)
+        around = _diameters(body, system, part, shapes, still)
+        for n in sorted({*around[still]}):
+            out[f"{part} {OVALISING} n={n}"] = np.where(still & (around == n), own, 0.0)
         for family, rows in FAMILIES.items():
             share = energy[list(rows)].sum(axis=0) / (whole + 1e-300)
             out[f"{part} {family}"] = np.where(still, 0.0, own * share)
@@ -61,6 +71,27 @@ def _still(workshop: Workshop, system: System, part: str, mass, own, shapes) -> 
         motion = system.motion(f"{part}.{station.name}") @ shapes
         moved = np.maximum(moved, mass @ motion**2)
     return (own > ALONE * _total(system, shapes)) & (moved < UNDRIVEN * own)
+
+
+def _diameters(body: Body, system: System, part: str, shapes, still: np.ndarray) -> np.ndarray:
+    """Nodal diameters of the modes of a 3D solid that move none of its ports; 2 where the mesh
+    does not tell.
+    """
+    out = np.full(shapes.shape[1], 2)
+    fitted = of_body(body)
+    if fitted is None:
+        return out
+    fit, displacements = fitted
+    for k in np.flatnonzero(still):
+        _, share = fit(displacements(system.expand(part, shapes[:, k])[0]))
+        out[k] = max(2, int(share.sum(axis=1).argmax()))
+    return out
+
+
+def driven(system: System, found: SystemModes) -> np.ndarray:
+    """(k,) whether each mode strains a link, the mesh or a bearing, by more than a trifle."""
+    links = [found.energy[name] for name in system.links if name in found.energy]
+    return (found.frequency_hz == 0) | (np.sum(links, axis=0) > UNDRIVEN)
 
 
 def _total(system: System, shapes: np.ndarray) -> np.ndarray:

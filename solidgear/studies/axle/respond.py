@@ -17,6 +17,7 @@ from solidgear.body import as_supports
 from solidgear.errors import SolidgearError, show
 from solidgear.frames import DOF_NAMES
 from solidgear.scene.train import SIDES
+from solidgear.studies.axle.local import local_lines
 from solidgear.studies.axle.models import Workshop
 from solidgear.studies.axle.modes import refuse_unresolved
 from solidgear.studies.axle.naming import mode_names
@@ -132,9 +133,9 @@ class Drive:
             kind, matched_hz = "viscous", 1 / (2 * np.pi)
         self.steady = SteadyState(self.system, loss, kind, matched_hz)
         met, train = workshop.contact, workshop.train
-        ports = [f"{side}.{workshop.scenes[side].port.name}" for side in SIDES]
-        self.row = met.pinion.vector @ self.system.motion(ports[0])
-        self.row = self.row - met.gear.vector @ self.system.motion(ports[1])
+        ends = [workshop.teeth(side, self.system.parts[side]) for side in SIDES]
+        stretch = [vector.vector @ self.system.motion(port) for port, vector in ends]
+        self.row = stretch[0] - stretch[1]
         self.stiffness = met.stiffness
         self.forces = dict(forces or {})
         self.error = train.mesh.transmission_error
@@ -344,7 +345,7 @@ def respond(
         found[there] = drive.mesh(order * hz[there], order)[1]
         columns[f"mesh force, order {order} [N]"] = found
     columns |= told
-    cautions = list(workshop.contact.cautions)
+    cautions = [*workshop.contact.cautions, *local_lines(workshop, drive.system)]
     if damping == "literal":
         at = float(highest)
         cautions.append(LITERAL.format(at, np.pi * at * workshop.train.losses.mesh))
