@@ -15,6 +15,7 @@ import numpy as np
 import solidgear as sg
 from solidgear.scene import Scene
 from solidgear.scene.train import SIDES, Train
+from solidgear.studies.axle.local import local_give
 from solidgear.studies.axle.models import JUDGE, Workshop
 from solidgear.studies.axle.respond import Drive
 from validation.common import ROOT, results_folder, show, write_rows
@@ -57,11 +58,28 @@ def with_engine_at_the_end(train: Train) -> Train:
     return train.with_changes(engine=train.engine.with_changes(spring=spring))
 
 
+def with_local(train: Train, *harmonics: int) -> Train:
+    """Harmonics of two and more nodal diameters driven at the mesh point."""
+    return train.with_changes(mesh=train.mesh.with_changes(local_harmonics=harmonics))
+
+
+def with_local_held(train: Train, *harmonics: int) -> Train:
+    """The same, the teeth as much stiffer as those harmonics give way: the modes alone."""
+    local = with_local(train, *harmonics)
+    shop = Workshop(local)
+    give = sum(local_give(shop, shop.system(JUDGE, JUDGE)).values())
+    stiffness = 1 / (1 / shop.contact.stiffness - give)
+    return local.with_changes(mesh=local.mesh.with_changes(stiffness=stiffness))
+
+
 def variants(train: Train) -> dict[str, tuple[Train, str, str]]:
     """Train, model of the pinion's shaft and of the gear's, by what is changed."""
     mesh = train.mesh
     stiff = mesh.with_changes(stiffness=2 * mesh.stiffness)
     return {
+        "teeth push where they touch, n = 2": (with_local(train, 2), JUDGE, JUDGE),
+        "teeth push where they touch, n = 2, 3": (with_local(train, 2, 3), JUDGE, JUDGE),
+        "the same, compliance of the mesh held": (with_local_held(train, 2, 3), JUDGE, JUDGE),
         "mesh stiffness x2": (train.with_changes(mesh=stiff), JUDGE, JUDGE),
         "bearings x0.1": (with_scenes(train, lambda s: with_bearings(s, 0.1)), JUDGE, JUDGE),
         "rigid instead of averaged seats": (
@@ -103,6 +121,7 @@ def ranking(
             {
                 "what is changed": name,
                 "rms dB": _rms(decibels),
+                "most dB": float(np.abs(decibels).max()),
                 "below 1 kHz": _rms(decibels[low]),
                 "above 1 kHz": _rms(decibels[~low]),
             }

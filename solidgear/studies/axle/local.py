@@ -27,7 +27,7 @@ from solidgear.fidelity.harmonic_patch import Patch, PatchMotion
 from solidgear.reduction.superelement import Superelement
 from solidgear.reduction.waves import local_compliance, own_waves, with_waves
 from solidgear.scene import Scene
-from solidgear.scene.train import Train
+from solidgear.scene.train import SIDES, Train
 from solidgear.solve.modes import modes
 from solidgear.system.parts import Part, Placed
 
@@ -108,17 +108,25 @@ def waves_of(part: Part) -> dict[int, np.ndarray]:
     return {} if inner is None else own_waves(inner)
 
 
+def local_give(workshop: Workshop, system: System) -> dict[str, float]:
+    """How far the harmonics at the mesh point give way under a constant mesh force, m/N, by shaft
+    that has any.
+    """
+    give = {}
+    for side in SIDES:
+        part = reduced(system.parts[side])
+        if part is not None and TEETH in part.ports:
+            normal = workshop.teeth(side, part)[1].normal
+            give[side] = local_compliance(part, TEETH, normal)
+    return give
+
+
 def local_lines(workshop: Workshop, system: System) -> tuple[str, ...]:
     """What the harmonics at the mesh point add, in words; empty without any."""
     asked = workshop.train.mesh.local_harmonics
     if not asked:
         return ()
-    give = {}
-    for side in ("pinion", "gear"):
-        part = reduced(system.parts[side])
-        if part is not None and TEETH in part.ports:
-            normal = workshop.teeth(side, part)[1].normal
-            give[side] = local_compliance(part, TEETH, normal)
+    give = local_give(workshop, system)
     listed = ", ".join(map(str, sorted(asked)))
     if not give:
         return (
