@@ -312,8 +312,19 @@ def check(
     as_json: JsonFlag = False,
     settings: Settings = None,
 ) -> None:
-    """Say what will be modelled and what will not hold; a light mesh is the heaviest solved."""
-    from solidgear.studies.check import VERDICTS, check_scene
+    """Say what will be modelled and what will not hold, of a scene or a train; a light mesh is the
+    heaviest solved.
+    """
+    from solidgear.scene.toml_file import is_train
+
+    if is_train(scene):
+        from solidgear.cli.checked import check_train
+
+        given = {"--fidelity": fidelity != FIDELITY, "--set": bool(settings)}
+        check_train(scene, as_json, given)
+        return
+    from solidgear.cli.checked import print_check
+    from solidgear.studies.check import check_scene
     from solidgear.studies.loading import load
 
     loaded = load(scene)
@@ -324,28 +335,6 @@ def check(
     if as_json:
         print(json.dumps(found, default=float))
     else:
-        for line in found["facts"]:
-            print(line)
-        for record in (
-            r
-            for level in ("caution", "open", "avoid")
-            for r in found["records"]
-            if r["level"] == level
-        ):
-            print(
-                ": ".join(
-                    filter(None, ("caution", ", ".join(record["models"]), record["sentence"]))
-                )
-            )
-        for line in found["faults"]:
-            print(f"fault: {line}")
-        for verdict in dict.fromkeys(VERDICTS.values()):
-            models = [
-                f"{m} ({', '.join(v['guards']).replace('_', ' ')})" if v["guards"] else m
-                for m, v in found["verdicts"].items()
-                if v["verdict"] == verdict
-            ]
-            if models:
-                print(f"{verdict.capitalize()}: {', '.join(models)}.")
+        print_check(found)
     if found["faults"]:
         raise typer.Exit(1)

@@ -63,7 +63,7 @@ OF_A_MESH = (
 
 
 @pinned
-def check_scene(scene: Scene, body: Body) -> dict:
+def check_scene(scene: Scene, body: Body, probe: Probe | None = None) -> dict:
     """Facts, cautions and faults of a scene, in sentences, and what each model is worth for it.
 
     Parameters
@@ -71,6 +71,8 @@ def check_scene(scene: Scene, body: Body) -> dict:
     scene : Scene
     body : Body
         The fidelity asked for; its mesh is held against the closed form.
+    probe : Probe, optional
+        Of the plain part of the scene and that body, for what it has solved or will have.
 
     Returns
     -------
@@ -80,7 +82,7 @@ def check_scene(scene: Scene, body: Body) -> dict:
         ``models`` and ``sentence``; ``verdicts``: by model, ``verdict`` and the names of the guards
         it rests on.
     """
-    probe = Probe(scene.plain, body)
+    probe = probe or Probe(scene.plain, body)
     said = [("body", notice) for notice in _of_the_body(scene, body)]
     said += [("features", notice) for notice in _beyond_the_segments(scene)]
     said += [("round_part", notice) for notice in described(scene)]

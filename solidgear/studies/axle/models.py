@@ -150,6 +150,20 @@ class Workshop:
                 self._made[side, rung] = ShaftModel(side, rung, part, body, body.size, seconds)
         return self._made[side, rung]
 
+    def take(self, side: str, rung: str, body: Body) -> None:
+        """Take in a body that is there already as the model of a shaft.
+
+        Parameters
+        ----------
+        side, rung : str
+        body : Body
+            Of that rung, on any mesh.
+        """
+        start = perf_counter()
+        part = REDUCTIONS[self.reduction](body, n=self.kept)
+        seconds = perf_counter() - start
+        self._made[side, rung] = ShaftModel(side, rung, part, body, body.size, seconds)
+
     def put(self, side: str, name: str, part: Part, like: str) -> None:
         """Take in a part of one's own as a further model of a shaft.
 

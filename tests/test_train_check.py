@@ -1,0 +1,92 @@
+"""check on a train: the guards of both shafts, and what concerns the system."""
+
+import json
+
+import pytest
+from typer.testing import CliRunner
+
+import solidgear as sg
+from solidgear.cli import app
+from solidgear.studies.axle import check as checked
+from solidgear.studies.axle.check import check_train
+from solidgear.studies.axle.models import Workshop
+
+AXLE = "geometry/axle_overhung.toml"
+TRAIN = sg.load_train(AXLE)
+
+
+@pytest.fixture(scope="module")
+def found():
+    return check_train(Workshop(TRAIN))
+
+
+def said(lines, *words):
+    return [line for line in lines if all(word in line for word in words)]
+
+
+def test_both_shafts_are_heard_up_to_what_the_train_asks(found):
+    assert said(found["pinion"]["facts"], "15.9078 kg")
+    assert said(found["gear"]["facts"], "79.8202 kg")
+    # the pinion's own file asks 10 kHz and 5 %
+    assert said(found["pinion"]["cautions"], "4000 Hz are asked for")
+    assert said(found["pinion"]["cautions"], "more than the 2 % asked for")
+
+
+def test_the_worse_of_both_shafts_is_told(found):
+    verdicts = found["verdicts"]
+    assert verdicts["harmonic"] == {"verdict": "holds", "shafts": []}
+    assert verdicts["solid"] == {"verdict": "holds with caution", "shafts": ["gear"]}
+    assert verdicts["timoshenko"]["shafts"] == ["pinion", "gear"]
+
+
+def test_what_concerns_the_system(found):
+    assert said(found["cautions"], "pitch angle of 0.391 rad is not that of 14 and 45 teeth")
+    assert said(found["cautions"], "the gear has modes with nodal diameters", "n = 2 at 18")
+    assert said(found["facts"], "12 elastic modes up to 4000 Hz", "within 0.001")
+    assert said(found["facts"], "the whole train turns freely")
+    assert said(found["facts"], "twice a damping ratio", "mesh 0.12")
+    assert said(found["facts"], "Assumed, not published: mesh.transmission_error")
+    assert not said(found["cautions"], "loss factor is below")
+
+
+@pytest.fixture
+def no_shafts(monkeypatch):
+    """Only what is said of the system."""
+    quiet = {"facts": [], "cautions": [], "faults": [], "records": [], "verdicts": {}}
+    monkeypatch.setattr(checked, "check_scene", lambda *_: quiet)
+
+
+def test_little_loss_and_a_short_table_are_told(no_shafts):
+    table = {"frequency": [10.0, 900.0], "amplitude": [1e-6, 1e-6]}
+    mesh = type(TRAIN.mesh)(**TRAIN.mesh.model_dump() | {"transmission_error": table})
+    odd = TRAIN.with_changes(mesh=mesh, losses=TRAIN.losses.with_changes(springs=1e-4))
+    cautions = check_train(Workshop(odd))["cautions"]
+    assert said(cautions, "springs 0.0001", "height of a peak")
+    assert said(cautions, "given up to 900 Hz", "constant from there to the 4000 Hz")
+
+
+def test_a_frequency_beyond_the_reduction_is_a_fault(no_shafts):
+    faults = check_train(Workshop(TRAIN, kept=4), 9000.0)["faults"]
+    assert said(faults, "9000 Hz is beyond what the reduction resolves")
+
+
+def test_local_harmonics_are_not_called_undriven(no_shafts):
+    local = TRAIN.with_changes(mesh=TRAIN.mesh.with_changes(local_harmonics=(2,)))
+    (line,) = said(check_train(Workshop(local))["cautions"], "nodal diameters")
+    assert "n = 3" in line and "n = 2" not in line
+
+
+def test_the_command_on_a_train(monkeypatch, found):
+    monkeypatch.setattr(checked, "check_train", lambda shop: found)
+    done = CliRunner().invoke(app, ["check", AXLE])
+    assert done.exit_code == 0
+    assert done.output.index("== pinion") < done.output.index("== gear")
+    assert "Holds with caution: solid (gear)." in done.output.split("== train")[1]
+    told = json.loads(CliRunner().invoke(app, ["check", AXLE, "--json"]).output)
+    assert told["verdicts"]["solid"]["shafts"] == ["gear"]
+
+
+def test_options_of_one_shaft_are_refused():
+    done = CliRunner().invoke(app, ["check", AXLE, "--set", "order=3"])
+    assert done.exit_code != 0
+    assert "--set is for one shaft" in str(done.exception) + done.output
