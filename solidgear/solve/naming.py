@@ -149,6 +149,8 @@ class Names:
         self._mirrored = any(block.mirror is not None for block in body.blocks)
         self._round = of_body(body)
         self._moving_axially: dict[int, np.ndarray] = {}
+        # momenta of shapes by the identity of their profile, which is kept alive beside them
+        self._momenta: dict[int, tuple[dict, dict[int, np.ndarray]]] = {}
 
     def describe(self, vectors: dict[int, np.ndarray]) -> Shape:
         """Family, waves around, section motions and profile of one shape.
@@ -271,7 +273,7 @@ class Names:
         """Mass product of a shape in blocks that mirror each other, turned into the other plane,
         with another; with itself, not turned, for None.
         """
-        out = 0.0
+        out, heavy = 0.0, self._momentum(a if b is None else b)
         for index, block in enumerate(self.body.blocks):
             if block.mirror is None:
                 continue
@@ -279,10 +281,17 @@ class Names:
             for p, q, sign in ((planes[0], planes[1], 1.0), (planes[1], planes[0], -1.0)):
                 if b is None:
                     if p in a:
-                        out += float(a[p] @ (block.mass @ a[p]))
+                        out += float(a[p] @ heavy[p])
                 elif p in a and q in b:
-                    out += sign * float(a[p] @ (block.mass @ b[q]))
+                    out += sign * float(a[p] @ heavy[q])
         return out
+
+    def _momentum(self, shape: dict[int, np.ndarray]) -> dict[int, np.ndarray]:
+        """``M u`` by block, once a shape: every shape is held against all others."""
+        if id(shape) not in self._momenta:
+            heavy = {b: self.body.block(b).mass @ v for b, v in shape.items()}
+            self._momenta[id(shape)] = shape, heavy
+        return self._momenta[id(shape)][1]
 
     def pairs(
         self, shapes: list[Shape], value: np.ndarray

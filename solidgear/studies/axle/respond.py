@@ -16,6 +16,7 @@ import numpy as np
 from solidgear.body import as_supports
 from solidgear.errors import SolidgearError, show
 from solidgear.frames import DOF_NAMES
+from solidgear.machine.threads import pinned
 from solidgear.scene.train import SIDES
 from solidgear.studies.axle.local import local_lines
 from solidgear.studies.axle.models import Workshop
@@ -295,6 +296,7 @@ def stands_out(size: np.ndarray, k: int) -> bool:
     return dips(left) and dips(right)
 
 
+@pinned
 def respond(
     workshop: Workshop,
     pinion: str,
