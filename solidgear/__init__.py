@@ -19,7 +19,7 @@ __version__ = "0.1.0"
 
 _WHERE = {
     "load": "solidgear.studies.loading",
-    "load_train": "solidgear.scene.train_file",
+    "load_train": "solidgear.studies.loading",
     "Train": "solidgear.scene.train",
     "Scene": "solidgear.scene",
     "Segment": "solidgear.scene",
@@ -100,12 +100,11 @@ if TYPE_CHECKING:
     from solidgear.reduction.superelement import Superelement
     from solidgear.scene import STEEL, Ask, Bearing, Material, PointMass, Port, Scene, Segment
     from solidgear.scene.train import Train
-    from solidgear.scene.train_file import load_train
     from solidgear.solve.modes import modes
     from solidgear.solve.statics import condense
     from solidgear.studies.answering import answer
     from solidgear.studies.comparison import compare
-    from solidgear.studies.loading import load
+    from solidgear.studies.loading import load, load_train
     from solidgear.system import (
         BearingSpring,
         Inertia,

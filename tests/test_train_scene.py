@@ -211,3 +211,16 @@ def test_a_wheel_that_is_a_rigid_mass_needs_its_pitch_radius():
     bare = train.with_changes(gear=train.gear.with_changes(pitch_radius=None))
     with pytest.raises(sg.SceneError, match="off the gear, whose largest radius is 150.0 mm"):
         Workshop(bare)
+
+
+def test_catalogue_bearings_of_a_shaft_get_their_stiffness(tmp_path):
+    """At the load of the shaft's own file, as solidgear.load gives it."""
+    name = '"pinion_overhung.toml"'
+    catalogue = f'"{GEOMETRY / "gearbox_catalogue.toml"}"'
+    size = ('pitch_radius = "67 mm"', 'pitch_radius = "30 mm"')
+    width = ('face_width = "63 mm"', 'face_width = "20 mm"')
+    train = sg.load_train(written(tmp_path, (name, catalogue), size, width))
+    alone = sg.load(GEOMETRY / "gearbox_catalogue.toml")
+    for mine, its in zip(train.pinion.scene.bearings, alone.bearings, strict=True):
+        assert np.array_equal(mine.stiffness, its.stiffness)
+    assert Workshop(train).system("euler", "euler").modes(3).frequency_hz[0] == 0.0

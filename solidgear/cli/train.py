@@ -63,8 +63,8 @@ def workshop(
 ):
     """Where the bodies of a train are built, once the options that all commands share are sound."""
     from solidgear.scene.toml_file import parse
-    from solidgear.scene.train_file import load_train
     from solidgear.studies.axle.models import Workshop
+    from solidgear.studies.loading import load_train
 
     if not 1 <= kept <= MOST_KEPT:
         raise SolidgearError(f"--kept {show(kept)}: give 1 to {MOST_KEPT} modes")

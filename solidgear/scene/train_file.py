@@ -7,13 +7,14 @@ from __future__ import annotations
 
 import csv
 import os
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from math import isfinite, sqrt
 from pathlib import Path
 from typing import Any
 
 from solidgear.errors import SceneError, show
 from solidgear.scene.file import load
+from solidgear.scene.model import Scene
 from solidgear.scene.toml_file import name_of, parse
 from solidgear.scene.train import SIDES, Train
 
@@ -23,13 +24,18 @@ NORMAL_TYPED = 1e-3
 MOST_CELLS = 100_000
 
 
-def load_train(path: str | os.PathLike) -> Train:
+def load_train(
+    path: str | os.PathLike, shaft: Callable[[str | os.PathLike], Scene] = load
+) -> Train:
     """Read a train file; the shafts it names lie relative to it.
 
     Parameters
     ----------
     path : str or path
         A TOML file; ``geometry/axle_overhung.toml`` describes the format.
+    shaft : callable, optional
+        Reads the scene of a shaft from its file; by default as it is written, without a stiffness
+        of catalogue bearings, which :func:`solidgear.load_train` works out.
 
     Returns
     -------
@@ -61,7 +67,7 @@ def load_train(path: str | os.PathLike) -> Train:
         data = {**raw}
         for side in SIDES:
             if isinstance(raw.get(side), Mapping):
-                data[side] = _with_scene(raw[side], folder, side)
+                data[side] = _with_scene(raw[side], folder, side, shaft)
         if isinstance(raw.get("mesh"), Mapping) and "contact_cells" in raw["mesh"]:
             data["mesh"] = _with_cells(raw["mesh"], folder)
         for rotor in ("engine", "load"):
@@ -73,12 +79,12 @@ def load_train(path: str | os.PathLike) -> Train:
         raise error.located(raw, where=where) from None
 
 
-def _with_scene(table: Mapping[str, Any], folder: Path, side: str) -> dict[str, Any]:
+def _with_scene(table: Mapping[str, Any], folder: Path, side: str, shaft) -> dict[str, Any]:
     name = table.get("scene")
     if not isinstance(name, str):
         reason = 'names the file of the shaft, such as "gear_shaft.toml"'
         raise SceneError(reason, path=(side, "scene"))
-    return {**table, "scene": load(folder / name)}
+    return {**table, "scene": shaft(folder / name)}
 
 
 def _whole_rotor(raw: Mapping[str, Any], rotor: str) -> None:

@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from solidgear.body import Body
     from solidgear.scene import Scene
     from solidgear.scene.body_file import BodyTable, Recognised
+    from solidgear.scene.train import Train
 
 #: rung on which bearings and shaft find their equilibrium: loads in a shaft hang little on how its
 #: shoulders are modelled
@@ -59,6 +60,36 @@ def load(path: str | os.PathLike) -> Scene:
     if all(bearing.catalogue is None for bearing in scene.bearings):
         return scene
     return read(path, scene).scene
+
+
+def load_train(path: str | os.PathLike) -> Train:
+    """Read a train file; the shafts it names lie relative to it, and the stiffness of their
+    catalogue bearings is worked out at the load of each shaft's own file.
+
+    Parameters
+    ----------
+    path : str or path
+        A TOML file; ``geometry/axle_overhung.toml`` describes the format.
+
+    Returns
+    -------
+    Train
+
+    Raises
+    ------
+    SceneError
+        The file, the key, the value as written, what would be right: one line for each problem.
+
+    Examples
+    --------
+    >>> import solidgear as sg
+    >>> train = sg.load_train("geometry/axle_straddle.toml")
+    >>> [bearing.name for bearing in train.pinion.scene.bearings]
+    ['0', '1', '2']
+    """
+    from solidgear.scene import train_file
+
+    return train_file.load_train(path, load)
 
 
 def read(path: str | os.PathLike, scene: Scene | None = None) -> Solved:
