@@ -85,7 +85,6 @@ def test_an_earlier_run_of_a_shaft_leaves_nothing_beside_a_train(tmp_path):
     [
         ["stiffness"],
         ["modes"],
-        ["check"],
         ["answer"],
         ["render"],
         ["chart"],
@@ -99,7 +98,9 @@ def test_commands_of_a_shaft_name_those_of_a_train(arguments, tmp_path, monkeypa
     train = ROOT / TRAIN
     done = run(command, train, *rest)
     assert done.exit_code == 1 and not list(tmp_path.iterdir())
-    assert "run solidgear compare, system-modes, response or receptance" in str(done.exception)
+    assert "run solidgear compare, check, system-modes, response or receptance" in str(
+        done.exception
+    )
 
 
 @pytest.mark.parametrize("command", ["system-modes", "response", "judge-system", "receptance"])

@@ -58,6 +58,8 @@ NORMAL = "0.23183445, 0.5465063, 0.80472583"
 BAD = {
     "off the gears": (LINE, GIVEN.format(NORMAL, -90.0), "off the pinion"),
     "levers": (LINE, GIVEN.format(NORMAL, -45.0), "the teeth ask for 3.2143"),
+    "a harmonic of ports": (LINE, LINE + "\nlocal_harmonics = [1, 2]", "local_harmonics"),
+    "a harmonic twice": (LINE, LINE + "\nlocal_harmonics = [2, 2]", "names a harmonic twice"),
     "no unit": (LINE, GIVEN.format("0.24, 0.54, 0.80", -55), "unit vector of this direction is"),
     "wrong frame": (LINE, GIVEN.format("0.5465063, -0.23183445, 0.80472583", -55), "gear's frame"),
     "hands": ('hand = "right"', 'hand = "left"', "cannot mesh"),

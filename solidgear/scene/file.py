@@ -59,7 +59,7 @@ def load(path: str | os.PathLike, part_of: Reader = unread) -> Scene:
     raw = parse(where)
     if describes_train(raw):
         raise SceneError(
-            "describes a train of two shafts and not a shaft; run solidgear compare, "
+            "describes a train of two shafts and not a shaft; run solidgear compare, check, "
             "system-modes, response or receptance on it, or read it with solidgear.load_train"
         ).located(raw, where=place_of(where))
     try:

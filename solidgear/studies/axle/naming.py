@@ -44,8 +44,8 @@ def shares(workshop: Workshop, system: System, shapes: np.ndarray) -> dict[str, 
         if part not in SIDES:
             out[f"{part} torsion"] = own
             continue
-        for n, rows in waves_of(system.parts[part]).items():
-            out[f"{part} {OVALISING} n={n}"] = waving = np.maximum(each[rows].sum(axis=0), 0.0)
+        for n, places in waves_of(system.parts[part]).items():
+            out[f"{part} {OVALISING} n={n}"] = waving = np.maximum(each[places].sum(axis=0), 0.0)
             own = np.maximum(own - waving, 0.0)
         port = workshop.scenes[part].port
         body = workshop.shaft(part, workshop_rung(workshop, part)).body
