@@ -140,7 +140,8 @@ class TrainModes:
         ]
         told = f"Ovalising, not driven by this mesh model: {'; '.join(places)} (n nodal diameters)."
         if self.local:
-            return [told]
+            one = "of a pair that is driven, one stands still along the line of action"
+            return [told.removesuffix(").") + f"; {one})."]
         return [
             f"{told} Seats and teeth act on mean motions, which these modes have none of; "
             "--local-harmonics n lets the teeth of a harmonic solid push where they touch."
