@@ -25,8 +25,9 @@ def import_gmsh():
         import gmsh
     except (ImportError, OSError) as error:
         raise MeshError(
-            f"gmsh cannot be loaded ({error}); install its wheel (pip install gmsh) "
-            f"and the system libraries it needs: {_APT}"
+            f"gmsh cannot be loaded ({error}); install its wheel (pip install gmsh; there is none "
+            "for Linux on ARM, whose distributions have it as python3-gmsh) and the system "
+            f"libraries it needs: {_APT}; beams, the harmonic solid and hexahedra do without it"
         ) from error
     return gmsh
 

@@ -11,6 +11,7 @@ from __future__ import annotations
 import json
 import os
 import re
+import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -159,6 +160,8 @@ def _listed(folder: Path) -> list[str]:
 
 
 def _alive(process: int) -> bool:
+    if sys.platform == "win32":  # where signal 0 is Ctrl-C, or the end of that process
+        return True
     try:
         os.kill(process, 0)
     except ProcessLookupError:
