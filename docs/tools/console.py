@@ -133,7 +133,7 @@ def without_times(text: str) -> str:
     """Tables without their last column where it is one of times."""
     out, timed = [], False
     for line in text.splitlines():
-        if re.search(r"\btime(, s)?$", line.rstrip()):
+        if re.search(r"(\btime(, s)?|  s)$", line.rstrip()):
             timed = True
         elif line and not line.startswith(" "):
             timed = False  # tables are indented
