@@ -74,7 +74,7 @@ def main() -> int:
         f"{source.name} {source.stat().st_size / 1e6:.1f} MB, {wheel.name} {wheel.stat().st_size / 1e6:.1f} MB;",
         end=" ",
     )
-    print(f"tests of the unpacked source: {done.stdout.splitlines()[-1]}")
+    print(f"tests of the unpacked source: {done.stdout.strip().splitlines()[-1]}")
     if done.returncode:
         print(done.stdout + done.stderr, file=sys.stderr)
     return done.returncode
