@@ -65,7 +65,6 @@ def main() -> int:
         "pytest",
         "-n0",
         "--collect-only",
-        "-q",
         "-p",
         "no:cacheprovider",
     ]
