@@ -15,6 +15,7 @@ from typing import Any, ClassVar
 import numpy as np
 import scipy.sparse as sp
 
+from solidgear.body.factoring import Factoring
 from solidgear.body.kept import Kept
 from solidgear.body.mass import ScalarMass
 from solidgear.body.sections import Sections, from_points, signed
@@ -209,6 +210,8 @@ class Body(Displayed):
         fidelity knows.
     kept : Kept
         What solvers have worked out about this body, such as its factors.
+    factoring : Factoring
+        How its matrices are to be factored.
 
     Examples
     --------
@@ -232,6 +235,7 @@ class Body(Displayed):
     geometry: Drawing | None = None
     further: Any = None
     kept: Kept = field(default_factory=Kept, repr=False)
+    factoring: Factoring = Factoring()
 
     @property
     def size(self) -> int:

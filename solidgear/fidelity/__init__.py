@@ -64,5 +64,6 @@ def build(scene: Shaft, fidelity: str, **options) -> Body:
     options = rung.checked(rung.given(scene, options))
     refuse_too_large(scene, fidelity, options)
     assert rung.build is not None  # as every rung of LADDER.bodies
-    body = rung.build(scene, **{**rung.preset, **options})
-    return body if body.fidelity == fidelity else replace(body, fidelity=fidelity)
+    own, factoring = rung.split(options)
+    body = rung.build(scene, **{**rung.preset, **own})
+    return replace(body, fidelity=fidelity, factoring=factoring)

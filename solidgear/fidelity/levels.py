@@ -12,6 +12,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
+from solidgear.fidelity.options import FACTORING_OPTIONS
+
 Options = dict[str, Any]
 
 
@@ -52,7 +54,7 @@ TETRAHEDRA: tuple[Options, ...] = tuple({"refinement": r} for r in (0.45, 0.65, 
 LINEAR: tuple[Options, ...] = tuple({"refinement": r} for r in (0.6, 0.9, 1.35, 2.0))
 
 # What leaves the choice of meshes to the program although it is given.
-FREE = ("element", "around", "ovalising", "attachments", "material_port")
+FREE = ("element", "around", "ovalising", "attachments", "material_port", *FACTORING_OPTIONS)
 #: cells around of hexahedra that bend as a whole: eight are good to some 6e-4, and the error falls
 #: with the fourth power
 AROUND, ORDER_AROUND = 8, 4

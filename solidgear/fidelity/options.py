@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from numbers import Integral, Real
 from typing import Any
 
+from solidgear.body.factoring import PRECISIONS
 from solidgear.errors import SolidgearError, listed, nearest, show
 
 
@@ -163,6 +164,15 @@ _GRADED = Option(
     why="a shaft is at most 20 m long",
 )
 
+#: how the matrices of a 3D solid are factored (:class:`solidgear.body.factoring.Factoring`); builders
+#: do not see these
+FACTORING_OPTIONS = {
+    "precision": Option(
+        "of the factor; solutions are refined in double precision", "choice", choices=PRECISIONS
+    ),
+    "out_of_core": Option("whether the factor is kept in files, in the folder TMPDIR", "flag"),
+}
+
 SECTOR_OPTIONS = {
     "size": _SIZE,
     "graded_size": _GRADED,
@@ -173,6 +183,7 @@ SECTOR_OPTIONS = {
     ),
     "ovalising": HARMONIC_OPTIONS["ovalising"],
     "attachments": _TIES,
+    **FACTORING_OPTIONS,
 }
 
 SOLID_OPTIONS = {
@@ -192,6 +203,7 @@ SOLID_OPTIONS = {
     "refinement": _REFINEMENT,
     "attachments": _TIES,
     "half": Option("whether a part with a mirror plane is solved in halves", "flag"),
+    **FACTORING_OPTIONS,
 }
 
 

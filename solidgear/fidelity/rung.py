@@ -6,11 +6,12 @@ from __future__ import annotations
 
 import importlib
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import asdict, dataclass, field
 from typing import TYPE_CHECKING, Any
 
+from solidgear.body.factoring import Factoring
 from solidgear.errors import SolidgearError, listed, nearest, show
-from solidgear.fidelity.options import Option, checked
+from solidgear.fidelity.options import FACTORING_OPTIONS, Option, checked
 
 if TYPE_CHECKING:
     from solidgear.body import Body
@@ -274,9 +275,14 @@ class Rung:
         assert self.build is not None
         builder = self.build.load() if isinstance(self.build, Later) else self.build
         parameters = signature(builder).parameters.values()
-        return {p.name: p.default for p in parameters if p.default is not p.empty} | dict(
-            self.preset
-        )
+        own = {p.name: p.default for p in parameters if p.default is not p.empty}
+        usual = {k: v for k, v in asdict(Factoring()).items() if k in self.options}
+        return own | dict(self.preset) | usual
+
+    def split(self, options: Mapping[str, Any]) -> tuple[dict[str, Any], Factoring]:
+        """What of the options the builder takes, and how the matrices are to be factored."""
+        own = {k: v for k, v in options.items() if k not in FACTORING_OPTIONS}
+        return own, Factoring(**{k: v for k, v in options.items() if k in FACTORING_OPTIONS})
 
 
 class Ladder:

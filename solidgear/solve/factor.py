@@ -7,17 +7,18 @@ negative eigenvalues are counted. The back ends themselves are in :mod:`solidgea
 from __future__ import annotations
 
 import os
-from collections.abc import Callable
-from dataclasses import dataclass
 
 import numpy as np
-import scipy.linalg as sla
 import scipy.sparse as sp
 
-from solidgear.machine.interruptible import call
+from solidgear.body.factoring import Factoring
 from solidgear.machine.memory import available_mb
-from solidgear.solve.backends import BACKENDS, INSTALL, missing
+from solidgear.solve.backends import BACKENDS, INSTALL, OUT_OF_CORE, SINGLE, missing
 from solidgear.solve.backends.matrix import FactorError
+from solidgear.solve.border import any_corner, bordered, definite_corner
+from solidgear.solve.factored import Factor, Indefinite, heard
+from solidgear.solve.relief import Linear
+from solidgear.solve.single import Refining
 
 __all__ = [
     "Factor",
@@ -40,63 +41,12 @@ SMALL = 6_000
 # these).
 FASTEST = ("pardiso", "cholmod", "mumps", "superlu")
 COUNTING = ("pardiso", "mumps", "superlu")
-# Unknowns from which on a call can take so long that Ctrl-C must be heard meanwhile; handing it
-# over costs 0.1 ms.
-LONG = 5_000
 # Normwise backward error (Rigal and Gaches) of one solve.  Solids give 1e-17, since their solutions
 # lie in the low modes; it must be far below the ratio of the lowest eigenvalues to the norm, about
 # 1e-9 there, for the signs of those to mean anything.
 SOUND = 1e-14
-
-
-@dataclass
-class Factor:
-    """Result of :func:`factorise`.
-
-    Attributes
-    ----------
-    backend : str
-        ``pardiso``, ``cholmod``, ``mumps`` or ``superlu``.
-    reason : str
-        Why this back end was taken.
-    estimate_mb : float or None
-        Memory it was expected to need, MB.
-    nnz : int or None
-        Entries of the factor, where the back end reports them.
-    """
-
-    backend: str
-    reason: str
-    _solve: Callable[[np.ndarray], np.ndarray]
-    estimate_mb: float | None = None
-    nnz: int | None = None
-
-    def solve(self, rhs: np.ndarray) -> np.ndarray:
-        """Solve with the factor.
-
-        Parameters
-        ----------
-        rhs : (n,) or (n, k) ndarray
-
-        Returns
-        -------
-        ndarray
-            Of the same shape.
-        """
-        return _heard(len(rhs), self._solve, rhs)
-
-
-@dataclass
-class Indefinite(Factor):
-    """Result of :func:`indefinite`.
-
-    Attributes
-    ----------
-    negative : int
-        Number of negative eigenvalues.
-    """
-
-    negative: int = 0
+#: a factor in double precision, in memory
+USUAL = Factoring()
 
 
 def pardiso_missing() -> str:
@@ -105,7 +55,12 @@ def pardiso_missing() -> str:
 
 
 def factorise(
-    matrix: sp.spmatrix, backend: str | None = None, planar: bool = False, border: int = 0
+    matrix: sp.spmatrix,
+    backend: str | None = None,
+    planar: bool = False,
+    border: int = 0,
+    factoring: Factoring = USUAL,
+    product: Linear | None = None,
 ) -> Factor:
     """Factor a symmetric positive definite matrix.
 
@@ -121,6 +76,11 @@ def factorise(
     border : int
         Unknowns at the end that couple to very many others.  They are eliminated by hand, as a
         dense Schur complement: left to a fill-reducing ordering they cost ten times the rest.
+    factoring : Factoring
+        Precision of the factor, and whether it is kept in files.
+    product : callable, optional
+        ``matrix @ u``, by which a factor in single precision is refined; by default the matrix
+        itself is kept for that.
 
     Returns
     -------
@@ -130,7 +90,7 @@ def factorise(
     ------
     FactorError
         If the matrix holds NaN, is not positive definite to the back end, will not fit into memory,
-        or the back end is not there.
+        or the back end is not there or cannot do what is asked of the factor.
 
     Examples
     --------
@@ -141,12 +101,23 @@ def factorise(
     """
     matrix = _canonical(matrix)
     if border:
-        return _bordered(
-            matrix, border, lambda inner: factorise(inner, backend, planar), _definite_corner
+        whole = product or matrix.__matmul__
+
+        def inner_product(u):
+            return whole(np.pad(u, ((0, border), (0, 0))))[:-border]
+
+        return bordered(
+            matrix,
+            border,
+            lambda inner: factorise(inner, backend, planar, 0, factoring, inner_product),
+            definite_corner,
         )
-    name, reason = choice(matrix, backend, planar)
-    work = _factored(name, matrix, planar, definite=True)
-    return Factor(name, reason, work.solve, work.estimate_mb, work.nnz)
+    name, reason = choice(matrix, backend, planar, factoring)
+    work = _factored(name, matrix, planar, True, factoring)
+    if factoring.precision == "double":
+        return Factor(name, reason, work.solve, work.estimate_mb, work.nnz, factoring)
+    refining = Refining(product or matrix.__matmul__, work.solve)
+    return Factor(name, reason, refining.solve, work.estimate_mb, work.nnz, factoring, refining)
 
 
 def indefinite(
@@ -183,8 +154,8 @@ def indefinite(
     """
     matrix = _canonical(matrix)
     if border:
-        return _bordered(
-            matrix, border, lambda inner: indefinite(inner, backend, planar), _any_corner
+        return bordered(
+            matrix, border, lambda inner: indefinite(inner, backend, planar), any_corner
         )
     chosen, reason = choice(matrix, backend, planar)
     forced = reason == FORCED and chosen in COUNTING
@@ -193,7 +164,7 @@ def indefinite(
         if name not in COUNTING or missing(name):
             continue
         try:
-            work = _factored(name, matrix, planar, definite=False)
+            work = _factored(name, matrix, planar, False, USUAL)
             if work.negative is not None and _backward_error(matrix, work.solve) < SOUND:
                 return Indefinite(
                     name, reason, work.solve, work.estimate_mb, work.nnz, work.negative
@@ -245,7 +216,10 @@ def _canonical(matrix):
 
 
 def choice(
-    matrix: sp.csr_matrix, backend: str | None = None, planar: bool = False
+    matrix: sp.csr_matrix,
+    backend: str | None = None,
+    planar: bool = False,
+    factoring: Factoring = USUAL,
 ) -> tuple[str, str]:
     """The back end that will factor a matrix.
 
@@ -253,7 +227,7 @@ def choice(
     ----------
     matrix : (n, n) sparse
         Its size and number of entries count.
-    backend, planar
+    backend, planar, factoring
         As for :func:`factorise`.
 
     Returns
@@ -263,7 +237,7 @@ def choice(
     Raises
     ------
     FactorError
-        If the one asked for is unknown or not there.
+        If the one asked for is unknown, not there, or cannot do it.
 
     Examples
     --------
@@ -280,13 +254,20 @@ def choice(
         why = _missing(backend)
         if why:
             raise FactorError(f"back end {backend} was asked for but {why}")
+        if backend not in _able(factoring):
+            raise FactorError(
+                f"back end {backend} was asked for but makes no factor in {factoring.words}; "
+                f"{' or '.join(_able(factoring)) or 'none'} does"
+            )
         return backend, FORCED
+    if factoring.out_of_core:
+        return _out_of_core(factoring)
     if planar and matrix.nnz < LARGE_PLANAR:
         return "superlu", "a planar mesh fills in little"
     if n <= SMALL:
         return "superlu", f"{n} unknowns are not above {SMALL}"
     absent = []
-    for name in FASTEST:
+    for name in (name for name in FASTEST if name in _able(factoring)):
         why = _missing(name)
         if not why:
             break
@@ -296,28 +277,47 @@ def choice(
     )
 
 
+def _able(factoring: Factoring) -> tuple[str, ...]:
+    """Back ends that make such a factor, fastest first."""
+    single, files = factoring.precision == "single", factoring.out_of_core
+    return tuple(
+        name
+        for name in FASTEST
+        if (not single or name in SINGLE) and (not files or name in OUT_OF_CORE)
+    )
+
+
+def _out_of_core(factoring: Factoring) -> tuple[str, str]:
+    absent = []
+    for name in _able(factoring):
+        why = _missing(name)
+        if not why:
+            return name, "it keeps its factor in files"
+        absent.append(f"{why}: {INSTALL[name]}")
+    raise FactorError(f"no back end here makes a factor in {factoring.words}: {'; '.join(absent)}")
+
+
 def _missing(name):
     return pardiso_missing() if name == "pardiso" else missing(name)
 
 
-def _factored(name, matrix, planar, definite):
+def _factored(name, matrix, planar, definite, factoring):
     free = available_mb()
     options = {"planar": planar} if name in ("cholmod", "superlu") else {}
+    options |= {"single": True} if factoring.precision == "single" else {}
+    options |= {"out_of_core": True} if factoring.out_of_core else {}
     n = matrix.shape[0]
-    work = _heard(n, BACKENDS[name], matrix, definite=definite, **options)
+    work = heard(n, BACKENDS[name], matrix, definite=definite, **options)
     if free is not None and work.estimate_mb > free:
         raise NoRoom(
             f"{n} unknowns need about {_mb(work.estimate_mb)} MB to factor by {name}, "
             f"{_mb(free)} MB are free; "
             "use a coarser mesh, or the harmonic model, which needs far less"
+            + f"; {less_memory(factoring)}"
+            * bool(definite and not planar and less_memory(factoring))
         )
-    _heard(n, work.factor)
+    heard(n, work.factor)
     return work
-
-
-def _heard(n, function, *arguments, **options):
-    """A call that Ctrl-C can end, if it is on enough unknowns to last."""
-    return call(function, *arguments, **options) if n >= LONG else function(*arguments, **options)
 
 
 def _mb(amount):
@@ -334,55 +334,8 @@ def _backward_error(matrix, solve):
     return np.linalg.norm(matrix @ x - rhs) / (largest * np.linalg.norm(x) + np.linalg.norm(rhs))
 
 
-# --------------------------------------------------------------------------- border
-def _bordered(matrix, border, factor, corner_of):
-    """Factor the inner part by `factor`, the Schur complement of the border by `corner_of`."""
-    n = matrix.shape[0] - border
-    if n == 0:  # a shaft that rigid seats hold from end to end: nothing but border
-        return factor(matrix)
-    inner = factor(matrix[:n, :n])
-    if inner is None:
-        return None
-    edge = matrix[:n, n:].toarray()
-    through = inner.solve(edge)
-    corner = matrix[n:, n:].toarray() - edge.T @ through
-    found = corner_of((corner + corner.T) / 2)
-    if found is None:
-        return None
-    through_corner, negative = found
-
-    def solve(rhs):
-        top = inner.solve(rhs[:n])
-        bottom = through_corner(rhs[n:] - edge.T @ top)
-        return np.concatenate([top - through @ bottom, bottom])
-
-    if isinstance(inner, Indefinite):
-        # Haynsworth: the inertia of a matrix is that of a block plus that of its Schur complement.
-        return Indefinite(
-            inner.backend,
-            inner.reason,
-            solve,
-            inner.estimate_mb,
-            inner.nnz,
-            inner.negative + negative,
-        )
-    return Factor(inner.backend, inner.reason, solve, inner.estimate_mb, inner.nnz)
-
-
-def _definite_corner(corner):
-    try:
-        factor = sla.cho_factor(corner)
-    except np.linalg.LinAlgError as error:
-        raise FactorError("the system matrix is not positive definite") from error
-    return (lambda rhs: sla.cho_solve(factor, rhs)), 0
-
-
-def _any_corner(corner):
-    # Rows of a border differ in unit (forces, moments): scaled, so that small ones are not taken
-    # for rounding.
-    scale = 1 / np.sqrt(np.maximum(np.abs(corner).max(axis=1), np.finfo(float).tiny))
-    values, vectors = np.linalg.eigh(corner * np.outer(scale, scale))
-    if np.abs(values).min() < 1e-13 * np.abs(values).max():
-        return None
-    inverse = scale[:, None] * (vectors / values) @ vectors.T * scale
-    return (lambda rhs: inverse @ rhs), int(np.count_nonzero(values < 0))
+def less_memory(factoring: Factoring) -> str:
+    """What of a factor could be asked for that takes less memory than it does so far, or nothing."""
+    more = [] if factoring.precision == "single" else ["precision = single"]
+    more += [] if factoring.out_of_core else ["out_of_core = true"]
+    return f"a 3D solid also takes {' or '.join(more)}" if more else ""

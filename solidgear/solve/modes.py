@@ -237,7 +237,7 @@ def modes(
         "rigid_modes": len(rigid),
         "shift_rad2": -SHIFT * body.scale,
         "coupling_bound": bound,
-        "backend": "+".join(sorted({f.backend for f in factors(body)})),
+        "backend": "+".join(sorted({f.said for f in factors(body)})),
         "method": "+".join(dict.fromkeys(part.solved.method for part in parts)),
         "families": family_rows(parts, left, every),
     }

@@ -24,7 +24,8 @@ import numpy as np
 import scipy.linalg as sla
 import scipy.sparse as sp
 
-from solidgear.body import Body, as_supports
+from solidgear.body import Block, Body, as_supports
+from solidgear.body.factoring import Factoring
 from solidgear.display import Displayed
 from solidgear.errors import SolidgearError
 from solidgear.frames import DOF_NAMES
@@ -145,12 +146,20 @@ def _factored(body: Body) -> Factored:
     for block in body.blocks:
         key = id(block.stiffness)
         if key not in made:
-            made[key] = factorise(
-                (block.stiffness + SHIFT * body.scale * block.mass).tocsr(),
-                planar=block.planar,
-                border=block.border,
-            )
+            made[key] = _factor(block, SHIFT * body.scale, body.factoring)
     return Factored([made[id(block.stiffness)] for block in body.blocks])
+
+
+def _factor(block: Block, shift: float, factoring: Factoring) -> Factor:
+    matrix = (block.stiffness + shift * block.mass).tocsr()
+    return factorise(
+        matrix,
+        planar=block.planar,
+        border=block.border,
+        factoring=factoring,
+        # by what the body holds anyway, not by a copy
+        product=lambda u: block.stiffness @ u + shift * (block.mass @ u),
+    )
 
 
 def flexibility(body: Body, tolerance: float = 1e-12) -> Flexibility:
@@ -205,7 +214,7 @@ def _flexibility(body: Body, tolerance: float) -> Flexibility:
         )
         residual = max(residual, float(missing))
         out[np.ix_(rows, rows)] = (f_block + f_block.T) / 2
-        backends.append(factor.backend)
+        backends.append(factor.said)
     if not np.all(np.isfinite(out)):
         raise SolidgearError(f"the static solution of the {body.fidelity} body is not finite")
     return Flexibility(out, asymmetry, residual, "+".join(sorted(set(backends))))

@@ -27,6 +27,8 @@ from solidgear.solve.backends.pardiso import Pardiso
 from solidgear.solve.backends.superlu import SuperLU
 
 BACKENDS = {back.name: back for back in (Pardiso, Cholmod, Mumps, SuperLU)}
+#: those that factor in single precision, and those that keep a factor in files
+SINGLE, OUT_OF_CORE = ("pardiso", "superlu"), ("pardiso", "mumps")
 INSTALL = {
     "pardiso": "install the extra 'fast'",
     "cholmod": "install the extra 'cholmod'",

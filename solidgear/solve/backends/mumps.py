@@ -20,12 +20,16 @@ class Mumps:
         Symmetric, sorted rows.
     definite : bool
         Whether it is positive definite: then pivots stay on the diagonal.
+    out_of_core : bool
+        Keep the factor in files.
     """
 
     name = "mumps"
 
-    def __init__(self, matrix: sp.csr_matrix, definite: bool = True):
+    def __init__(self, matrix: sp.csr_matrix, definite: bool = True, out_of_core: bool = False):
         import mumps
+
+        self.out_of_core = out_of_core
 
         self.error, self.definite, self.context = mumps.MUMPSError, definite, mumps.Context()
         upper = upper_triangle(matrix).tocoo()
@@ -33,7 +37,9 @@ class Mumps:
         self._try(self.context.analyze, ordering="auto")
         # by coordinates: two indices and a number
         by_coordinates = 16 * upper.nnz / 2**20
-        self.estimate_mb = float(self.context.analysis_stats.est_mem_incore) + by_coordinates
+        stats = self.context.analysis_stats
+        needed = stats.est_mem_ooc if out_of_core else stats.est_mem_incore
+        self.estimate_mb = float(needed) + by_coordinates
 
     def _try(self, step, **options):
         try:
@@ -44,7 +50,10 @@ class Mumps:
     def factor(self):
         """Factor; :class:`FactorError` if the matrix is not what it should be."""
         self._try(
-            self.context.factor, reuse_analysis=True, pivot_tol=0.0 if self.definite else 0.01
+            self.context.factor,
+            reuse_analysis=True,
+            pivot_tol=0.0 if self.definite else 0.01,
+            ooc=self.out_of_core,
         )
         if self.definite and self.negative:
             raise FactorError(

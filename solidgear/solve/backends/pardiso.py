@@ -4,7 +4,11 @@ from __future__ import annotations
 
 import ctypes
 import os
+import shutil
+import tempfile
 import weakref
+from collections.abc import Iterator
+from contextlib import contextmanager
 from functools import lru_cache
 from importlib.metadata import PackageNotFoundError, files
 
@@ -86,6 +90,10 @@ class Pardiso:
         Symmetric, sorted rows.
     definite : bool
         Whether it is positive definite: LL', else LDL' with Bunch-Kaufman pivots.
+    single : bool
+        Factor and solve with numbers of four bytes.
+    out_of_core : bool
+        Keep the factor in files, in a folder that goes with it.
 
     Raises
     ------
@@ -98,15 +106,30 @@ class Pardiso:
         -2: "not enough memory",
         -4: "a zero or negative pivot: the matrix is not positive definite",
         -8: "an overflow of 32-bit integers",
+        -9: "not enough memory for what an out-of-core factor keeps of itself",
+        -10: "the files of an out-of-core factor cannot be opened",
+        -11: "the files of an out-of-core factor cannot be read or written; is the disk full?",
     }
     # no defaults; parallel nested dissection; no refinement; two-level factorisation; parallel
     # solve; report entries; count from zero
     SETTINGS = {1: 1, 2: 3, 8: 0, 24: 1, 25: 2, 18: -1, 35: 1}
     # perturb pivots below 1e-8 of the norm (and report them); Bunch-Kaufman pivots
     INDEFINITE = {10: 8, 21: 1}
+    SINGLE = {28: 1}
+    # in files; with an order of one's own or two-level factorisation PARDISO keeps nearly all in
+    # memory all the same (measured at 142,533 unknowns: a peak of 1290 MB for 787)
+    OUT_OF_CORE = {60: 2, 2: 2, 24: 0}
 
-    def __init__(self, matrix: sp.csr_matrix, definite: bool = True):
+    def __init__(
+        self,
+        matrix: sp.csr_matrix,
+        definite: bool = True,
+        single: bool = False,
+        out_of_core: bool = False,
+    ):
+        self.number = np.float32 if single else np.float64
         self.upper = upper_triangle(matrix)
+        self.upper.data = self.upper.data.astype(self.number, copy=False)
         self.n = matrix.shape[0]
         # An empty row would end in a segmentation fault.
         empty = np.diff(self.upper.indptr).min() == 0
@@ -115,10 +138,15 @@ class Pardiso:
                 "PARDISO failed on the system matrix: an entry of the diagonal is missing"
             )
         self.pt, self.iparm = np.zeros(64, np.int64), np.zeros(64, np.int32)
-        for number, value in {**self.SETTINGS, **({} if definite else self.INDEFINITE)}.items():
+        settings = dict(self.SETTINGS)
+        settings |= {} if definite else self.INDEFINITE
+        settings |= self.SINGLE if single else {}
+        settings |= self.OUT_OF_CORE if out_of_core else {}
+        for number, value in settings.items():
             self.iparm[number - 1] = value
         self.definite = definite
-        self.order = _node_order(matrix)
+        self.folder = _folder(self) if out_of_core else None
+        self.order = None if out_of_core else _node_order(matrix)
         if self.order is not None:
             self.iparm[4] = 1
         self.ia, self.ja = (
@@ -126,29 +154,43 @@ class Pardiso:
             self.upper.indices.astype(np.int32, copy=False),
         )
         self._release = weakref.finalize(
-            self, _release, _mkl_pardiso(), self.pt, self.iparm, 2 if definite else -2, self.n
+            self,
+            _release,
+            _mkl_pardiso(),
+            self.pt,
+            self.iparm,
+            2 if definite else -2,
+            self.n,
+            self.folder,
         )
         self._release.atexit = False  # a factorisation that was interrupted may still use it
         self._call(11)
         symbolic_peak, symbolic, numeric = (int(kb) for kb in self.iparm[14:17])
+        if out_of_core:
+            numeric = int(self.iparm[62])
+            self.core_mb = 2 * numeric / 1024 + 100
         self.estimate_mb = max(symbolic_peak, symbolic + numeric) / 1024 + size_mb(self.upper)
+
+    #: MB that an out-of-core factor may hold in memory; told after the analysis, by PARDISO
+    core_mb = 2000.0
 
     def _call(self, phase, rhs=UNUSED, x=UNUSED, columns=1):
         mtype = 2 if self.definite else -2
-        error = _pardiso_phase(
-            phase,
-            self.pt,
-            self.iparm,
-            mtype,
-            self.n,
-            self.upper.data,
-            self.ia,
-            self.ja,
-            self.order,
-            rhs,
-            x,
-            columns,
-        )
+        with _files_in(self.folder, self.core_mb):
+            error = _pardiso_phase(
+                phase,
+                self.pt,
+                self.iparm,
+                mtype,
+                self.n,
+                self.upper.data,
+                self.ia,
+                self.ja,
+                self.order,
+                rhs,
+                x,
+                columns,
+            )
         if error:
             raise FactorError(
                 f"PARDISO failed on the system matrix: {self.ERRORS.get(error, f'error {error}')}"
@@ -175,7 +217,7 @@ class Pardiso:
 
     def solve(self, rhs):
         """Solution for one (n,) or several (n, k) right-hand sides; `FactorError` for NaN."""
-        rhs = np.asfortranarray(rhs, dtype=float)
+        rhs = np.asfortranarray(rhs, dtype=self.number)
         x = np.empty_like(rhs)
         if rhs.size:
             self._call(33, rhs, x, 1 if rhs.ndim == 1 else rhs.shape[1])
@@ -255,24 +297,56 @@ def _node_order(matrix, components: int = 3) -> np.ndarray | None:
     return (components * order[:, None] + np.arange(components)).ravel().astype(np.int32)
 
 
-def _release(pardiso, pt, iparm, mtype, n):
+def _folder(owner: Pardiso) -> str:
+    """A folder for the files of one factor, which goes with it; where it is follows ``TMPDIR``."""
+    folder = tempfile.mkdtemp(prefix="solidgear-factor-")
+    weakref.finalize(owner, shutil.rmtree, folder, ignore_errors=True)
+    return folder
+
+
+@contextmanager
+def _files_in(folder: str | None, core_mb: float) -> Iterator[None]:
+    """PARDISO is told by the environment where its files go, and how much memory it may take
+    beside them.
+    """
+    if folder is None:
+        yield
+        return
+    wanted = {
+        "MKL_PARDISO_OOC_PATH": folder,
+        "MKL_PARDISO_OOC_MAX_CORE_SIZE": str(int(np.ceil(core_mb))),
+    }
+    before = {name: os.environ.get(name) for name in wanted}
+    os.environ.update(wanted)
+    try:
+        yield
+    finally:
+        for name, value in before.items():
+            if value is None:
+                del os.environ[name]
+            else:
+                os.environ[name] = value
+
+
+def _release(pardiso, pt, iparm, mtype, n, folder=None):
     """Give PARDISO's memory back."""
     nothing = np.zeros(1)
-    pardiso(
-        _pointer(pt),
-        _int(1),
-        _int(1),
-        _int(mtype),
-        _int(-1),
-        _int(n),
-        _pointer(nothing),
-        None,
-        None,
-        None,
-        _int(1),
-        _pointer(iparm),
-        _int(0),
-        _pointer(nothing),
-        _pointer(nothing),
-        _int(0),
-    )
+    with _files_in(folder, Pardiso.core_mb):
+        pardiso(
+            _pointer(pt),
+            _int(1),
+            _int(1),
+            _int(mtype),
+            _int(-1),
+            _int(n),
+            _pointer(nothing),
+            None,
+            None,
+            None,
+            _int(1),
+            _pointer(iparm),
+            _int(0),
+            _pointer(nothing),
+            _pointer(nothing),
+            _int(0),
+        )

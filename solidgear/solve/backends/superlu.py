@@ -14,6 +14,8 @@ from solidgear.solve.backends.memory_law import law
 # on planar meshes, and as much memory again: done where SuperLU is the automatic choice for a
 # solid, and where a planar matrix is so small that it costs nothing.
 CHECKED, CHECKED_PLANAR = 12_000, 1_000
+#: of the memory of a factor in double precision: numbers take half, indices what they take
+SINGLE_SHARE = 0.67
 
 
 class SuperLU:
@@ -27,18 +29,29 @@ class SuperLU:
         Whether it must be positive definite.
     planar : bool
         Whether it comes from a 1D or 2D mesh, for the estimate of memory.
+    single : bool
+        Factor and solve with numbers of four bytes.
     """
 
     name = "superlu"
 
-    def __init__(self, matrix: sp.csr_matrix, definite: bool = True, planar: bool = False):
+    def __init__(
+        self,
+        matrix: sp.csr_matrix,
+        definite: bool = True,
+        planar: bool = False,
+        single: bool = False,
+    ):
+        self.number = np.float32 if single else np.float64
         # the matrix is symmetric: its rows are its columns
         self.matrix = sp.csc_matrix(
-            (matrix.data, matrix.indices, matrix.indptr), shape=matrix.shape
+            (matrix.data.astype(self.number, copy=False), matrix.indices, matrix.indptr),
+            shape=matrix.shape,
         )
         self.checked = definite and matrix.shape[0] <= (CHECKED_PLANAR if planar else CHECKED)
         copies = 2 if self.checked or not definite else 1
-        self.estimate_mb = copies * law("superlu", matrix, planar)
+        share = SINGLE_SHARE if single else 1.0
+        self.estimate_mb = copies * share * law("superlu", matrix, planar)
 
     def factor(self):
         """Factor; :class:`FactorError` if memory ends, or the matrix is not what it should be."""
@@ -80,4 +93,4 @@ class SuperLU:
 
     def solve(self, rhs):
         """Solution for one (n,) or several (n, k) right-hand sides."""
-        return self._lu.value.solve(rhs)
+        return self._lu.value.solve(np.asarray(rhs, dtype=self.number))

@@ -1,0 +1,51 @@
+"""How the matrices of a body are factored, where the usual way takes more memory than there is."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+#: what a factor may be kept in
+PRECISIONS = ("double", "single")
+#: who factors: this program, or PETSc in processes of its own, by MUMPS or by multigrid
+ENGINES = ("own", "petsc", "petsc-gamg")
+
+
+@dataclass(frozen=True)
+class Factoring:
+    """What a solver is asked for beyond the back end that it takes.
+
+    Attributes
+    ----------
+    precision : {'double', 'single'}
+        Of the factor. Solutions are refined in double precision either way.
+    out_of_core : bool
+        Whether the factor is kept in files.
+    engine : {'own', 'petsc', 'petsc-gamg'}
+        PETSc in processes of its own: MUMPS, or conjugate gradients on algebraic multigrid.
+    ranks : int
+        Processes of the engine.
+
+    Examples
+    --------
+    >>> Factoring(precision="single").words
+    'single precision'
+    >>> Factoring().words
+    ''
+    """
+
+    precision: str = "double"
+    out_of_core: bool = False
+    engine: str = "own"
+    ranks: int = 2
+
+    @property
+    def words(self) -> str:
+        """What is unusual about it, or nothing."""
+        unusual = []
+        if self.precision == "single":
+            unusual.append("single precision")
+        if self.out_of_core:
+            unusual.append("out of core")
+        if self.engine != "own":
+            unusual.append(f"{self.engine} on {self.ranks} ranks")
+        return ", ".join(unusual)

@@ -1,0 +1,85 @@
+"""A matrix that has been factored: what solves with it, and how that came about."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from solidgear.body.factoring import Factoring
+from solidgear.machine.interruptible import call
+from solidgear.solve.single import Refining
+
+# Unknowns from which on a call can take so long that Ctrl-C must be heard meanwhile; handing it
+# over costs 0.1 ms.
+LONG = 5_000
+
+
+@dataclass
+class Factor:
+    """Result of :func:`solidgear.solve.factor.factorise`.
+
+    Attributes
+    ----------
+    backend : str
+        ``pardiso``, ``cholmod``, ``mumps`` or ``superlu``.
+    reason : str
+        Why this back end was taken.
+    estimate_mb : float or None
+        Memory it was expected to need, MB.
+    nnz : int or None
+        Entries of the factor, where the back end reports them.
+    factoring : Factoring
+        Precision, and where it is kept.
+    refining : Refining or None
+        Of a factor in single precision.
+    """
+
+    backend: str
+    reason: str
+    _solve: Callable[[np.ndarray], np.ndarray]
+    estimate_mb: float | None = None
+    nnz: int | None = None
+    factoring: Factoring = Factoring()
+    refining: Refining | None = None
+
+    @property
+    def said(self) -> str:
+        """The back end, and what is unusual about the factor."""
+        unusual = [self.factoring.words] if self.factoring.words else []
+        if self.refining is not None:
+            unusual.append(f"{self.refining.steps} refinements in double")
+        return self.backend + (f" ({', '.join(unusual)})" if unusual else "")
+
+    def solve(self, rhs: np.ndarray) -> np.ndarray:
+        """Solve with the factor.
+
+        Parameters
+        ----------
+        rhs : (n,) or (n, k) ndarray
+
+        Returns
+        -------
+        ndarray
+            Of the same shape.
+        """
+        return heard(len(rhs), self._solve, rhs)
+
+
+@dataclass
+class Indefinite(Factor):
+    """Result of :func:`solidgear.solve.factor.indefinite`.
+
+    Attributes
+    ----------
+    negative : int
+        Number of negative eigenvalues.
+    """
+
+    negative: int = 0
+
+
+def heard(n, function, *arguments, **options):
+    """A call that Ctrl-C can end, if it is on enough unknowns to last."""
+    return call(function, *arguments, **options) if n >= LONG else function(*arguments, **options)
