@@ -100,7 +100,8 @@ def factorise(
     True
     """
     matrix = _canonical(matrix)
-    if border:
+    # a shaft that rigid seats hold from end to end is nothing but border
+    if 0 < border < matrix.shape[0]:
         whole = product or matrix.__matmul__
 
         def inner_product(u):
