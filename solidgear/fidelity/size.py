@@ -103,8 +103,11 @@ def refuse_too_large(scene: Shaft, model: str, options: dict | None = None) -> S
         )
     free = available_mb()
     if free is not None and size.peak_mb > max(free, SMALL_MB):
+        from solidgear.fidelity.ways import offered, ways_out
+
+        ways = offered(ways_out(scene, model, options or {}, free), free)
         raise SolidgearError(
-            f"{what} need about {size.peak_mb:.0f} MB for mesh, matrices and factor, {free:.0f} MB are free; {size.lower}"
+            f"{what} need about {size.peak_mb:.0f} MB for mesh, matrices and factor, {free:.0f} MB are free; {size.lower}{ways}"
         )
     expect(size.peak_mb)
     return size

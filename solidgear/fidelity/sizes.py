@@ -10,8 +10,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from solidgear.body.factoring import Factoring
 from solidgear.fidelity.counts import KINDS, nodes, sections
-from solidgear.fidelity.rung import CYCLIC
+from solidgear.fidelity.rung import CUTS, CYCLIC
 from solidgear.fidelity.size import Size
 from solidgear.meshing.blocks import blocks_beyond
 from solidgear.scene.shaft import resolved
@@ -281,7 +282,18 @@ def _tetrahedra(scene: Shaft, given: Mapping[str, Any]) -> Size:
         ),
     )
     unknowns, entries = nodes(given["element"], counts, 3)
-    return _solid(scene, given, unknowns, entries, counts[3], _tetrahedral_fill(unknowns, entries))
+    parts = 2 if given["half"] and has_mirror_plane(scene) else 1
+    # matrices, mesh and factors of both halves are held; the mesh is drawn once
+    fill = parts * _tetrahedral_fill(unknowns / parts, entries / parts)
+    return _solid(scene, given, unknowns, entries, counts[3] / parts, fill)
+
+
+def has_mirror_plane(scene: Shaft) -> bool:
+    """Whether all that is cut out of a shaft has one mirror plane."""
+    from solidgear.meshing.cuts import mirror_plane
+
+    cuts = resolved(scene)
+    return bool(cuts) and {f.kind for f in cuts} <= CUTS and mirror_plane(cuts) is not None
 
 
 def _solid(
@@ -304,9 +316,10 @@ def _solid(
     lower = (
         "lower refinement"
         + (", or raise size and graded_size" if tets else ", around or the layers, or raise size")
-        + ", or use the harmonic model"
+        + ", or use the harmonic model" * (not resolved(scene))
     )
-    peak = built + beside + _solid_factor_mb(unknowns, entries, fill)
+    factoring = Factoring(given.get("precision", "double"), given.get("out_of_core", False))
+    peak = built + beside + _solid_factor_mb(unknowns, entries, fill, factoring)
     return Size(
         int(round(unknowns)),
         int(entries),
@@ -317,21 +330,30 @@ def _solid(
     )
 
 
-def _solid_factor_mb(unknowns: float, entries: float, fill: float) -> float:
+def _solid_factor_mb(unknowns: float, entries: float, fill: float, factoring: Factoring) -> float:
     """Peak memory of factoring the matrix of a solid by the back end that will be taken.
 
     PARDISO needs its factor, its copy of the matrix and work by the entry: its own estimate for 47
-    meshes within 1 % where the fill is known.
+    meshes within 1 % where the fill is known. In single precision the same with numbers of four
+    bytes (five meshes within 1 %); out of core what it keeps of the factor goes with the entries
+    (27,000 to 142,000 unknowns; it takes 5 % less than this at most).
     """
     from solidgear.solve.backends.memory_law import Outline, law
+    from solidgear.solve.backends.superlu import SINGLE_SHARE
     from solidgear.solve.factor import FactorError, choice
 
     matrix = Outline((unknowns, unknowns), entries)
     try:
-        name, _ = choice(matrix)
+        name, _ = choice(matrix, factoring=factoring)
     except FactorError:
         name = "superlu"  # said where it is factored
+    single = factoring.precision == "single"
+    if name == "pardiso" and factoring.out_of_core:
+        return (36.0 if single else 38.0) * entries / MB + 20
     if name == "pardiso":
-        return (8.0 * 1.05 * fill + 24.5 * entries) / MB + 20
+        number, work = (4.0, 22.5) if single else (8.0, 24.5)
+        return (number * 1.05 * fill + work * entries) / MB + 20
     # MUMPS's own estimate was 1.46 to 1.84 times this law on four shafts
-    return 1.8 * law("cholmod", matrix, False) if name == "mumps" else law(name, matrix, False)
+    if name == "mumps":
+        return 1.8 * law("cholmod", matrix, False)
+    return law(name, matrix, False) * (SINGLE_SHARE if single and name == "superlu" else 1.0)

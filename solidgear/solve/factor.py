@@ -168,7 +168,7 @@ def indefinite(
             work = _factored(name, matrix, planar, False, USUAL)
             if work.negative is not None and _backward_error(matrix, work.solve) < SOUND:
                 return Indefinite(
-                    name, reason, work.solve, work.estimate_mb, work.nnz, work.negative
+                    name, reason, work.solve, work.estimate_mb, work.nnz, negative=work.negative
                 )
         except NoRoom:
             raise
