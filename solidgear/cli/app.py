@@ -100,6 +100,18 @@ Settings = Annotated[
         help="Builder option as key=value, repeatable: order=8, layers=4, element=tet10; solidgear options lists them.",
     ),
 ]
+Engine = Annotated[
+    str | None,
+    typer.Option(
+        "--engine",
+        help="Who factors a 3D solid too large for this program: petsc (MUMPS under mpirun) or petsc-gamg (multigrid, statics only); the same as --set engine=...",
+    ),
+]
+
+
+def with_engine(pairs: list[str] | None, engine: str | None) -> list[str] | None:
+    """``--set`` options with that of ``--engine``."""
+    return pairs if engine is None else [*(pairs or []), f"engine={engine}"]
 
 
 def options(pairs: list[str] | None) -> dict:

@@ -12,6 +12,7 @@ from solidgear.cli.app import (
     AUTO,
     FIDELITY,
     AutoFidelityOption,
+    Engine,
     FidelityOption,
     JsonFlag,
     Progress,
@@ -22,6 +23,7 @@ from solidgear.cli.app import (
     command,
     console,
     options_by_model,
+    with_engine,
 )
 from solidgear.cli.settled import body_for, ended, heading, told, unjudged, without_bar
 from solidgear.errors import SolidgearError, show
@@ -127,6 +129,7 @@ def stiffness(
     ] = None,
     as_json: JsonFlag = False,
     settings: Settings = None,
+    engine: Engine = None,
 ) -> None:
     """6x6 stiffness and compliance at the lumped point, bearings included."""
     import numpy as np
@@ -139,6 +142,7 @@ def stiffness(
     loaded = load(scene)
     if attachment:
         loaded = loaded.with_attachment(attachment)
+    settings = with_engine(settings, engine)
     body, settled = body_for(loaded, fidelity, settings, tol, "stiffness")
     found = condense(body, loaded, loaded.port.name)
     said = cautions(loaded, body)
@@ -205,6 +209,7 @@ def modes(
     ] = False,
     as_json: JsonFlag = False,
     settings: Settings = None,
+    engine: Engine = None,
 ) -> None:
     """Natural frequencies on the bearings, with the evidence for them."""
     from solidgear.scene.rules import MOST_MODES
@@ -219,7 +224,7 @@ def modes(
             f"-n {show(n)} is not a number of modes that can be asked for; give 1 to {MOST_MODES}"
         )
     loaded = load(scene)
-    body, settled = body_for(loaded, fidelity, settings, tol, "modes")
+    body, settled = body_for(loaded, fidelity, with_engine(settings, engine), tol, "modes")
     found = solve(
         body,
         loaded,

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from numbers import Integral, Real
 from typing import Any
 
-from solidgear.body.factoring import PRECISIONS
+from solidgear.body.factoring import ENGINES, PRECISIONS
 from solidgear.errors import SolidgearError, listed, nearest, show
 
 
@@ -171,6 +171,18 @@ FACTORING_OPTIONS = {
         "of the factor; solutions are refined in double precision", "choice", choices=PRECISIONS
     ),
     "out_of_core": Option("whether the factor is kept in files, in the folder TMPDIR", "flag"),
+    "engine": Option(
+        "who factors: this program, or PETSc under mpirun by MUMPS or (statics only) by multigrid",
+        "choice",
+        choices=ENGINES,
+    ),
+    "ranks": Option(
+        "processes of PETSc",
+        "whole",
+        least=1,
+        most=4096,
+        why="more rows a rank than ranks is what pays",
+    ),
 }
 
 SECTOR_OPTIONS = {

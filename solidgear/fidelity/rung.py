@@ -282,7 +282,16 @@ class Rung:
     def split(self, options: Mapping[str, Any]) -> tuple[dict[str, Any], Factoring]:
         """What of the options the builder takes, and how the matrices are to be factored."""
         own = {k: v for k, v in options.items() if k not in FACTORING_OPTIONS}
-        return own, Factoring(**{k: v for k, v in options.items() if k in FACTORING_OPTIONS})
+        factoring = Factoring(**{k: v for k, v in options.items() if k in FACTORING_OPTIONS})
+        if factoring.engine != "own" and (factoring.precision, factoring.out_of_core) != (
+            "double",
+            False,
+        ):
+            raise SolidgearError(
+                f"{self.name}: engine = {factoring.engine} factors in double precision and in memory; "
+                "leave out precision and out_of_core"
+            )
+        return own, factoring
 
 
 class Ladder:

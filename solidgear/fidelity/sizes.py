@@ -5,7 +5,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -318,7 +318,8 @@ def _solid(
         + (", or raise size and graded_size" if tets else ", around or the layers, or raise size")
         + ", or use the harmonic model" * (not resolved(scene))
     )
-    factoring = Factoring(given.get("precision", "double"), given.get("out_of_core", False))
+    asked = {f.name: given[f.name] for f in fields(Factoring) if f.name in given}
+    factoring = Factoring(**asked)
     peak = built + beside + _solid_factor_mb(unknowns, entries, fill, factoring)
     return Size(
         int(round(unknowns)),
@@ -341,8 +342,12 @@ def _solid_factor_mb(unknowns: float, entries: float, fill: float, factoring: Fa
     from solidgear.solve.backends.memory_law import Outline, law
     from solidgear.solve.backends.superlu import SINGLE_SHARE
     from solidgear.solve.factor import FactorError, choice
+    from solidgear.solve.petsc import elsewhere
 
     matrix = Outline((unknowns, unknowns), entries)
+    if factoring.engine != "own":
+        here = 2 * ENTRY * entries / MB
+        return here if elsewhere() else here + ranks_mb(unknowns, entries, fill, factoring)
     try:
         name, _ = choice(matrix, factoring=factoring)
     except FactorError:
@@ -357,3 +362,11 @@ def _solid_factor_mb(unknowns: float, entries: float, fill: float, factoring: Fa
     if name == "mumps":
         return 1.8 * law("cholmod", matrix, False)
     return law(name, matrix, False) * (SINGLE_SHARE if single and name == "superlu" else 1.0)
+
+
+def ranks_mb(unknowns: float, entries: float, fill: float, factoring: Factoring) -> float:
+    """Memory of all ranks of PETSc together: libraries, rows and numbering of each, and a factor by
+    MUMPS or the levels of multigrid.
+    """
+    factor = 16.0 * fill if factoring.engine == "petsc" else 60.0 * entries
+    return (factor + 45.0 * entries) / MB + 90.0 * factoring.ranks

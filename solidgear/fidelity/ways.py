@@ -88,6 +88,11 @@ def _ways(scene, model: str, options: dict, free: float) -> Iterator[Way]:
             size = _sized(scene, model, {**options, **more})
             if size is not None:
                 yield Way(words, size.peak_mb, note)
+    if options.get("engine", "own") == "own":
+        size = _sized(scene, model, {**options, "engine": "petsc"})
+        if size is not None:
+            note = "MUMPS in PETSc on two ranks of this machine; SOLIDGEAR_MPIRUN names others"
+            yield Way("--engine petsc", size.peak_mb, note)
 
 
 def _halves(scene, model: str, options: dict) -> Iterator[Way]:

@@ -63,7 +63,7 @@ class Solved:
     orthogonality : float
         Largest entry of ``U' M U - I``.
     method : str
-        ``lanczos``, ``arpack`` or ``dense``, with the reason where one stands in for another.
+        ``lanczos``, ``krylov-schur (SLEPc)``, ``arpack`` or ``dense``, with the reason where one stands in for another.
     steps : int
         Corrections by :func:`solidgear.solve.refine.refine`.
     """
@@ -149,6 +149,13 @@ def _dense(supported: Supported, wanted: int):
 
 
 def _lanczos(supported: Supported, wanted: int):
+    found = supported.on_ranks(wanted, TOLERANCE)
+    if found is not None and len(found[0]) == wanted:
+        return 1 / found[0], found[1], "krylov-schur (SLEPc)"
+    return _block_lanczos(supported, wanted)
+
+
+def _block_lanczos(supported: Supported, wanted: int):
     # Loads drawn at random excite every shape, whatever its symmetry. Static solutions under port
     # loads are no better a start (they needed one block more on a pinion of 93,000 unknowns) and
     # cannot see a mode that moves no port.

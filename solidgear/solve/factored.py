@@ -4,12 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from solidgear.body.factoring import Factoring
 from solidgear.machine.interruptible import call
 from solidgear.solve.single import Refining
+
+if TYPE_CHECKING:
+    from solidgear.solve.petsc import Ranks
 
 # Unknowns from which on a call can take so long that Ctrl-C must be heard meanwhile; handing it
 # over costs 0.1 ms.
@@ -34,6 +38,8 @@ class Factor:
         Precision, and where it is kept.
     refining : Refining or None
         Of a factor in single precision.
+    ranks : Ranks or None
+        Of a factor by MUMPS in PETSc, which finds modes as well.
     """
 
     backend: str
@@ -43,6 +49,7 @@ class Factor:
     nnz: int | None = None
     factoring: Factoring = Factoring()
     refining: Refining | None = None
+    ranks: Ranks | None = None
 
     @property
     def said(self) -> str:

@@ -209,6 +209,10 @@ def modes(
     """
     if n < 1:
         raise SolidgearError(f"modes: n = {n} is not a number of modes; ask for 1 or more")
+    if body.factoring.engine == "petsc-gamg":
+        raise SolidgearError(
+            "modes: engine = petsc-gamg solves statics only; use engine = petsc, whose factor finds modes"
+        )
     supports = as_supports(supports)
     spring, bound = decoupled(body, supports, coupling_tolerance)
     own = solved_parts(body, supports, spring, n, method)

@@ -152,6 +152,10 @@ def _factored(body: Body) -> Factored:
 
 def _factor(block: Block, shift: float, factoring: Factoring) -> Factor:
     matrix = (block.stiffness + shift * block.mass).tocsr()
+    if factoring.engine != "own":
+        from solidgear.solve.petsc import factor_on_ranks
+
+        return factor_on_ranks(block, matrix, factoring)
     return factorise(
         matrix,
         planar=block.planar,

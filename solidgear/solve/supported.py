@@ -147,6 +147,20 @@ class Supported:
         """Back ends of the factors, joined by ``+``."""
         return "+".join(sorted({f.backend for f in self._factors}))
 
+    def on_ranks(self, wanted: int, tolerance: float) -> tuple[np.ndarray, np.ndarray] | None:
+        """Lowest eigenpairs of ``K + springs + shift M`` by the engine that holds the factor; None
+        where there is none, or where it lacks a part of the group or masses on its ports.
+        """
+        held = self._factors[0].ranks
+        if held is None or len(self.blocks) > 1 or self.heavy.shape[1]:
+            return None
+        inner = np.zeros((0, 0))
+        through = self.load
+        if self.load.shape[1]:
+            through = self._through
+            inner = np.eye(self.load.shape[1]) + self.load.T @ through
+        return held.modes(wanted, self.load, through, inner, self.free, tolerance)
+
     def parts(self, x: np.ndarray) -> list[np.ndarray]:
         """Rows of (n, ...) ``x``, block by block."""
         return [x[a:b] for a, b in zip(self._cuts, self._cuts[1:])]

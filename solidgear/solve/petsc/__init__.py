@@ -1,0 +1,241 @@
+"""Factors and modes by PETSc and SLEPc in processes of their own, under ``mpirun``.
+
+The matrix goes over as files, so that PETSc may belong to another interpreter than this program
+(Debian's packages belong to ``/usr/bin/python3``), and to other machines that see the same folder.
+Everything that makes a result trustworthy stays here: statics are corrected on the stiffness
+itself, and modes refined and judged, with solutions that the ranks give.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import shlex
+import shutil
+import subprocess
+import tempfile
+import time
+import weakref
+from functools import lru_cache
+from pathlib import Path
+
+import numpy as np
+import scipy.sparse as sp
+
+from solidgear.body import Block
+from solidgear.body.factoring import Factoring
+from solidgear.body.mass import ScalarMass
+from solidgear.solve.backends.matrix import FactorError
+from solidgear.solve.border import bordered, definite_corner
+from solidgear.solve.factored import Factor
+
+WORKER = Path(__file__).parent / "worker.py"
+INSTALL = "apt-get install python3-petsc4py-real python3-slepc4py-real openmpi-bin"
+FORCED = "asked for"
+PROBE = "import worker; worker.libraries()"
+
+
+def python() -> str:
+    """The interpreter that PETSc belongs to."""
+    return os.environ.get("SOLIDGEAR_PETSC_PYTHON") or "/usr/bin/python3"
+
+
+def launcher() -> list[str]:
+    """How ranks are started: ``SOLIDGEAR_MPIRUN``, such as ``mpirun --hostfile hosts``."""
+    return shlex.split(os.environ.get("SOLIDGEAR_MPIRUN") or "mpirun")
+
+
+def elsewhere() -> bool:
+    """Whether ranks may run on other machines, so that their memory is not this one's."""
+    return bool(os.environ.get("SOLIDGEAR_MPIRUN"))
+
+
+@lru_cache(maxsize=1)
+def missing() -> str:
+    """Empty if PETSc can be used, else the reason why not.
+
+    Returns
+    -------
+    str
+    """
+    if shutil.which(launcher()[0]) is None:
+        return f"{launcher()[0]} is not there"
+    if shutil.which(python()) is None:
+        return f"{python()} is not there"
+    tried = subprocess.run(
+        [python(), "-c", PROBE], cwd=WORKER.parent, env=_environment(), capture_output=True
+    )
+    return "" if tried.returncode == 0 else f"{python()} has no petsc4py and slepc4py"
+
+
+def _environment() -> dict[str, str]:
+    """Of the ranks: one thread each, and none of this interpreter's paths."""
+    out = {k: v for k, v in os.environ.items() if not k.startswith(("PYTHON", "VIRTUAL_ENV"))}
+    out |= {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
+    out["OMPI_MCA_rmaps_base_oversubscribe"] = "1"
+    if os.geteuid() == 0:
+        # whoever runs this program as root has decided that already
+        out |= {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"}
+    return out
+
+
+class Ranks:
+    """A matrix factored on some ranks, which wait for right-hand sides.
+
+    Parameters
+    ----------
+    matrix, mass : (n, n) sparse
+        Positive definite; the mass is for modes.
+    rigid : (n, r) ndarray
+        Rigid motions: what multigrid must know of the matrix.
+    factoring : Factoring
+        Engine and ranks.
+    nodal : bool
+        Whether unknowns come in threes, node by node.
+
+    Attributes
+    ----------
+    peak_mb : float
+        Most memory of all ranks together so far.
+    steps : int
+        Most iterations of a solution; 0 for a direct factor.
+
+    Raises
+    ------
+    FactorError
+        If PETSc is not there or ends.
+    """
+
+    def __init__(self, matrix, mass, rigid: np.ndarray, factoring: Factoring, nodal: bool):
+        why = missing()
+        if why:
+            raise FactorError(f"engine = {factoring.engine} was asked for but {why}: {INSTALL}")
+        self.n, self.steps, self.peak_mb, self._number = matrix.shape[0], 0, 0.0, 0
+        self.direct = factoring.engine == "petsc"
+        self.folder = Path(tempfile.mkdtemp(prefix="solidgear-petsc-"))
+        weakref.finalize(self, shutil.rmtree, self.folder, ignore_errors=True)
+        self._save("a", matrix)
+        self._mass = mass
+        np.save(self.folder / "rigid.npy", rigid)
+        block = 3 if nodal and self.n % 3 == 0 else 1
+        task = {"n": self.n, "block": block, "method": "mumps" if self.direct else "gamg"}
+        (self.folder / "task.json").write_text(json.dumps(task))
+        self._log = open(self.folder / "log", "w+")
+        command = [*launcher(), "-n", str(factoring.ranks), python(), str(WORKER), str(self.folder)]
+        self._process = subprocess.Popen(
+            command, env=_environment(), stdout=self._log, stderr=subprocess.STDOUT
+        )
+        weakref.finalize(self, _end, self._process, self._log)
+        self._wait()
+
+    def _save(self, name: str, matrix) -> None:
+        matrix = sp.csr_matrix(matrix)
+        for part in ("indptr", "indices", "data"):
+            np.save(self.folder / f"{name}_{part}.npy", getattr(matrix, part))
+
+    def _wait(self) -> dict:
+        done = self.folder / f"{self._number}.done"
+        while not done.exists():
+            if self._process.poll() is not None and not done.exists():
+                self._log.seek(0)
+                lines = [x.strip() for x in self._log.read().splitlines() if "Error" in x]
+                raise FactorError(
+                    f"PETSc ended without an answer: {(lines or ['killed'])[-1][:200]}"
+                )
+            time.sleep(0.002)
+        answer = json.loads(done.read_text())
+        self.peak_mb = max(self.peak_mb, answer["peak_mb"])
+        self.steps = max(self.steps, answer.get("steps", 0))
+        return answer
+
+    def _ask(self, what: str, columns: int, arrays: dict[str, np.ndarray], **more) -> tuple:
+        self._number += 1
+        for name, array in arrays.items():
+            np.save(self.folder / f"{self._number}_{name}.npy", array)
+        out = self.folder / f"{self._number}_out.npy"
+        np.lib.format.open_memmap(out, "w+", float, (self.n, columns)).flush()
+        order = self.folder / "order.tmp"
+        order.write_text(json.dumps({"what": what, **more}))
+        order.rename(self.folder / f"{self._number}.json")
+        answer = self._wait()
+        found = np.load(out)
+        for path in self.folder.glob(f"{self._number}_*.npy"):
+            path.unlink()
+        return found, answer
+
+    def solve(self, rhs: np.ndarray) -> np.ndarray:
+        """Solution for one (n,) or several (n, k) right-hand sides."""
+        if rhs.ndim == 1:
+            return self.solve(rhs[:, None])[:, 0]
+        if not rhs.shape[1]:
+            return np.zeros(rhs.shape)
+        return self._ask("solve", rhs.shape[1], {"in": np.ascontiguousarray(rhs, float)})[0]
+
+    def modes(
+        self, wanted: int, load, through, inner, free, tolerance: float
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """Lowest eigenpairs of the matrix with springs, by SLEPc's Krylov-Schur.
+
+        Parameters
+        ----------
+        wanted : int
+        load, through : (n, r) ndarray
+            Root of the springs, and the solution for it.
+        inner : (r, r) ndarray
+            ``I + load' through``.
+        free : (n, k) ndarray
+            What is kept out: rigid motions that nothing resists.
+        tolerance : float
+
+        Returns
+        -------
+        value : (k,) ndarray
+            Ascending, of the shifted matrix; fewer than wanted if it did not converge.
+        vectors : (n, k) ndarray
+            Mass-orthonormal.
+        """
+        if self._mass is not None:
+            self._save("m", self._mass.tocsr())
+            self._mass = None
+        arrays = {"load": load, "through": through, "inner": inner, "free": free}
+        u, answer = self._ask("modes", wanted, arrays, wanted=wanted, tolerance=tolerance)
+        value = np.array(answer["values"])
+        order = np.argsort(value)
+        return value[order], u[:, : len(value)][:, order]
+
+
+def factor_on_ranks(block: Block, matrix: sp.csr_matrix, factoring: Factoring) -> Factor:
+    """The factor of a block by an engine of its own.
+
+    Parameters
+    ----------
+    block : Block
+    matrix : (n, n) sparse
+        Its shifted stiffness.
+    factoring : Factoring
+
+    Returns
+    -------
+    Factor
+    """
+    name = "mumps" if factoring.engine == "petsc" else "gamg-cg"
+    nodal = isinstance(block.mass, ScalarMass)
+
+    def made(inner: sp.csr_matrix) -> Factor:
+        whole = inner.shape[0] == block.size
+        ranks = Ranks(
+            inner, block.mass if whole else None, block.rigid[: inner.shape[0]], factoring, nodal
+        )
+        held = ranks if whole and ranks.direct else None
+        return Factor(name, FORCED, ranks.solve, factoring=factoring, ranks=held)
+
+    return bordered(matrix, block.border, made, definite_corner) if block.border else made(matrix)
+
+
+def _end(process: subprocess.Popen, log) -> None:
+    process.terminate()
+    try:
+        process.wait(10)
+    except subprocess.TimeoutExpired:
+        process.kill()
+    log.close()
