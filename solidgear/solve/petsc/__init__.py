@@ -73,6 +73,8 @@ def _environment() -> dict[str, str]:
     out = {k: v for k, v in os.environ.items() if not k.startswith(("PYTHON", "VIRTUAL_ENV"))}
     out |= {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
     out["OMPI_MCA_rmaps_base_oversubscribe"] = "1"
+    # ranks that wait leave the processor to those that work
+    out["OMPI_MCA_mpi_yield_when_idle"] = "1"
     if os.geteuid() == 0:
         # whoever runs this program as root has decided that already
         out |= {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"}
