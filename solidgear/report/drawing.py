@@ -129,7 +129,7 @@ def _frame(pv, p, rest, deformed, lines, length, view, along):
         "specular": 0.05,
     }
     body = p.add_mesh(
-        deformed, scalars="size", cmap=_colours(), clim=(0, 1), show_scalar_bar=False, **look
+        deformed, scalars="size", cmap=colours(), clim=(0, 1), show_scalar_bar=False, **look
     )
     # Lines on a surface are brought a hair nearer, or they would sink into it here and there.
     nearer = 0.004 * length * back
@@ -216,7 +216,7 @@ def _axes(p) -> None:
     )
 
 
-def _colours():
+def colours():
     """viridis without its darkest part, on which neither shading nor lines can be seen."""
     from matplotlib import colormaps
     from matplotlib.colors import ListedColormap

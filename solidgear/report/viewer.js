@@ -1,0 +1,398 @@
+// Mode shapes in 3D: unpacks what solidgear/report/packing.py packed, and draws it with WebGL 2.
+(() => {
+"use strict";
+const CREASE = Math.cos(32 * Math.PI / 180); // edges sharper than this stay sharp, and are drawn
+const PERIOD = 2.4; // s of one swing
+const SIZE = 0.9; // share of a pane that the shape fills
+
+// ---- unpacking
+async function counts(text) {
+  const bytes = Uint8Array.from(atob(text), c => c.charCodeAt(0));
+  const plain = new Blob([bytes]).stream().pipeThrough(new DecompressionStream("deflate"));
+  const b = new Uint8Array(await new Response(plain).arrayBuffer()), n = b.length / 4;
+  const out = new Uint32Array(n);
+  for (let i = 0; i < n; i++) out[i] = b[i] | b[n + i] << 8 | b[2 * n + i] << 16 | b[3 * n + i] << 24;
+  return out;
+}
+
+function corners(code) { // counts back from the next new point
+  const t = new Uint32Array(code.length);
+  for (let i = 0, next = 0; i < t.length; i++) { t[i] = next - code[i]; if (!code[i]) next++; }
+  return t;
+}
+
+function foretelling(t, n) { // the points a, b, c of which a + b - c foretells each
+  const out = new Int32Array(3 * n), seen = new Map();
+  let next = 0;
+  for (let k = 0; k < t.length; k += 3) {
+    for (let j = 0; j < 3; j++) {
+      if (t[k + j] !== next) continue;
+      const a = t[k + (j + 1) % 3], b = t[k + (j + 2) % 3];
+      const c = a < n && b < n ? seen.get(Math.min(a, b) * n + Math.max(a, b)) : undefined;
+      out.set(c === undefined ? [next - 1, 0, 0] : [a, b, c], 3 * next++);
+    }
+    for (let j = 0; j < 3; j++) {
+      const a = t[k + (j + 1) % 3], b = t[k + (j + 2) % 3], key = Math.min(a, b) * n + Math.max(a, b);
+      if (!seen.has(key)) seen.set(key, t[k + j]);
+    }
+  }
+  return out;
+}
+
+async function values(text, model, step) {
+  const code = await counts(text), n = model.count, f = model.foretold, whole = new Int32Array(n), out = new Float64Array(3 * n);
+  for (let c = 0; c < 3; c++) for (let i = 0; i < n; i++) {
+    const v = code[c * n + i], rest = v & 1 ? -((v + 1) / 2) : v / 2;
+    whole[i] = rest + (i ? whole[f[3 * i]] + whole[f[3 * i + 1]] - whole[f[3 * i + 2]] : 0);
+    out[3 * i + c] = whole[i] * step;
+  }
+  return out;
+}
+
+// ---- shading: corners of triangles share a normal across edges that are not sharp
+function areas(p, t) {
+  const out = new Float64Array(t.length);
+  for (let k = 0; k < t.length; k += 3) {
+    const a = 3 * t[k], b = 3 * t[k + 1], c = 3 * t[k + 2];
+    const ux = p[b] - p[a], uy = p[b + 1] - p[a + 1], uz = p[b + 2] - p[a + 2];
+    const vx = p[c] - p[a], vy = p[c + 1] - p[a + 1], vz = p[c + 2] - p[a + 2];
+    out[k] = uy * vz - uz * vy; out[k + 1] = uz * vx - ux * vz; out[k + 2] = ux * vy - uy * vx;
+  }
+  return out;
+}
+
+function shared(model) {
+  const t = model.t, n = model.count, area = areas(model.rest, t), root = Uint32Array.from(t.keys());
+  const find = i => { while (root[i] !== i) i = root[i] = root[root[i]]; return i; };
+  const sharp = [], seen = new Map();
+  const cosine = (k, l) => {
+    const dot = area[k] * area[l] + area[k + 1] * area[l + 1] + area[k + 2] * area[l + 2];
+    return dot / (Math.hypot(area[k], area[k + 1], area[k + 2]) * Math.hypot(area[l], area[l + 1], area[l + 2]) || 1);
+  };
+  for (let i = 0; i < t.length; i++) {
+    const k = i - i % 3, j = k + (i + 1) % 3, a = t[i], b = t[j], key = Math.min(a, b) * n + Math.max(a, b);
+    const other = seen.get(key);
+    if (other === undefined) { seen.set(key, i); continue; }
+    const l = other - other % 3, end = l + (other + 1) % 3;
+    if (cosine(k, l) < CREASE) { sharp.push(a, b); continue; }
+    const [mine, next] = t[other] === a ? [other, end] : [end, other];
+    root[find(i)] = find(mine); root[find(j)] = find(next);
+  }
+  const number = new Int32Array(t.length).fill(-1), index = new Uint32Array(t.length), source = [];
+  for (let i = 0; i < t.length; i++) {
+    const r = find(i);
+    if (number[r] < 0) { number[r] = source.length; source.push(t[i]); }
+    index[i] = number[r];
+  }
+  return { index, source: Uint32Array.from(source), sharp: Uint32Array.from(sharp) };
+}
+
+function normals(p, model) {
+  const area = areas(p, model.t), out = new Float32Array(3 * model.source.length);
+  for (let i = 0; i < model.index.length; i++) {
+    const k = i - i % 3, v = 3 * model.index[i];
+    out[v] += area[k]; out[v + 1] += area[k + 1]; out[v + 2] += area[k + 2];
+  }
+  for (let v = 0; v < out.length; v += 3) {
+    const size = Math.hypot(out[v], out[v + 1], out[v + 2]) || 1;
+    out[v] /= size; out[v + 1] /= size; out[v + 2] /= size;
+  }
+  return out;
+}
+
+const picked = (p, at) => {
+  const out = new Float32Array(3 * at.length);
+  for (let i = 0; i < at.length; i++) for (let c = 0; c < 3; c++) out[3 * i + c] = p[3 * at[i] + c];
+  return out;
+};
+
+async function unpack(model) { // once per model
+  if (model.rest) return model;
+  model.t = corners(await counts(model.triangles));
+  model.foretold = foretelling(model.t, model.count);
+  const rest = await values(model.points, model, model.step);
+  const low = [0, 1, 2].map(c => { let v = Infinity; for (let i = c; i < rest.length; i += 3) v = Math.min(v, rest[i]); return v; });
+  const high = [0, 1, 2].map(c => { let v = -Infinity; for (let i = c; i < rest.length; i += 3) v = Math.max(v, rest[i]); return v; });
+  model.low = low; model.high = high; model.length = Math.max(...low.map((v, c) => high[c] - v));
+  model.rest = rest;
+  return Object.assign(model, shared(model));
+}
+
+// ---- drawing
+const MOVE = `#version 300 es
+precision highp float;
+uniform mat3 uTurn; uniform vec3 uMiddle; uniform vec3 uScale; uniform float uSwing; uniform float uNearer;
+in vec3 aRest; in vec3 aMoved;
+out vec3 vRest;
+vec4 place() {
+  vec3 p = uTurn * (aRest + uSwing * aMoved - uMiddle);
+  vRest = aRest;
+  return vec4(p * uScale * vec3(1.0, 1.0, -1.0) - vec3(0.0, 0.0, uNearer), 1.0);
+}`;
+const FACES = [MOVE + `
+uniform float uTilt;
+in vec3 aNormal; in vec3 aTilt;
+out vec3 vNormal; out float vSize;
+void main() {
+  gl_Position = place();
+  vNormal = uTurn * (aNormal + uTilt * aTilt);
+  vSize = length(aMoved);
+}`, `#version 300 es
+precision highp float;
+uniform vec3 uColours[17]; uniform vec4 uCut; uniform vec3 uHatch[2]; uniform float uPixel;
+in vec3 vRest; in vec3 vNormal; in float vSize;
+out vec4 colour;
+void main() {
+  if (uCut.w > 0.5 && dot(vRest, uCut.xyz) > 0.0) discard;
+  // Behind a cut closed surface the first thing seen from inside is where the section is.
+  if (uCut.w > 0.5 && !gl_FrontFacing) {
+    float line = step(mod(gl_FragCoord.x + gl_FragCoord.y, 9.0 * uPixel), 1.6 * uPixel);
+    colour = vec4(mix(uHatch[0], uHatch[1], line), 1.0);
+    return;
+  }
+  float s = clamp(vSize, 0.0, 1.0) * 16.0; int i = int(min(s, 15.0));
+  vec3 base = mix(uColours[i], uColours[i + 1], s - float(i)), n = normalize(vNormal);
+  float lit = 0.34 + 0.58 * max(dot(n, normalize(vec3(-0.45, 0.65, 0.75))), 0.0) + 0.24 * max(dot(n, normalize(vec3(0.7, -0.35, 0.6))), 0.0);
+  float shine = 0.10 * pow(max(dot(reflect(normalize(vec3(0.45, -0.65, -0.75)), n), vec3(0.0, 0.0, 1.0)), 0.0), 24.0);
+  colour = vec4(min(base * lit + shine, 1.0), 1.0);
+}`];
+const LINES = [MOVE + `
+void main() { gl_Position = place(); }`, `#version 300 es
+precision highp float;
+uniform vec4 uCut; uniform vec3 uColour;
+in vec3 vRest;
+out vec4 colour;
+void main() {
+  if (uCut.w > 0.5 && dot(vRest, uCut.xyz) > 0.0) discard;
+  colour = vec4(uColour, 1.0);
+}`];
+
+function program(gl, sources) {
+  const p = gl.createProgram();
+  sources.forEach((text, i) => {
+    const s = gl.createShader(i ? gl.FRAGMENT_SHADER : gl.VERTEX_SHADER);
+    gl.shaderSource(s, text); gl.compileShader(s);
+    if (!gl.getShaderParameter(s, gl.COMPILE_STATUS)) throw new Error(gl.getShaderInfoLog(s));
+    gl.attachShader(p, s);
+  });
+  ["aRest", "aMoved", "aNormal", "aTilt"].forEach((name, i) => gl.bindAttribLocation(p, i, name));
+  gl.linkProgram(p);
+  if (!gl.getProgramParameter(p, gl.LINK_STATUS)) throw new Error(gl.getProgramInfoLog(p));
+  const at = {};
+  for (let i = 0; i < gl.getProgramParameter(p, gl.ACTIVE_UNIFORMS); i++) {
+    const name = gl.getActiveUniform(p, i).name.replace("[0]", "");
+    at[name] = gl.getUniformLocation(p, name);
+  }
+  return { p, at };
+}
+
+const rgb = text => { const m = text.trim().match(/^#(..)(..)(..)$/); return m ? m.slice(1).map(v => parseInt(v, 16) / 255) : (text.match(/[\d.]+/g) || [0, 0, 0]).slice(0, 3).map(v => v / 255); };
+const mixed = (a, b, s) => a.map((v, i) => v + s * (b[i] - v));
+
+class Pane {
+  constructor(viewer, element) {
+    this.viewer = viewer; this.element = element; this.canvas = element.querySelector("canvas");
+    this.gl = this.canvas.getContext("webgl2", { antialias: true, alpha: true });
+    if (!this.gl) throw new Error("this browser has no WebGL 2 here");
+    this.start();
+  }
+  start() {
+    this.faces = program(this.gl, FACES); this.lines = program(this.gl, LINES);
+    this.buffers = []; this.drawn = null;
+  }
+  async show(model, shape) {
+    await unpack(model);
+    const moved = shape && await values(shape.moved, model, shape.step), swing = this.viewer.data.swing * model.length;
+    // Deformed to both sides: between them normals are taken to change evenly.
+    const [up, down] = moved ? [1, -1].map(s => normals(model.rest.map((v, i) => v + s * swing * moved[i]), model)) : [];
+    const gl = this.gl, still = normals(model.rest, model), none = new Float32Array(model.source.length * 3);
+    this.buffers.forEach(b => gl.deleteBuffer(b)); this.buffers = [];
+    const vao = (at, arrays, elements) => {
+      const v = gl.createVertexArray(); gl.bindVertexArray(v);
+      arrays.forEach((array, i) => {
+        this.put(gl.ARRAY_BUFFER, array); gl.enableVertexAttribArray(i); gl.vertexAttribPointer(i, 3, gl.FLOAT, false, 0, 0);
+      });
+      if (elements) this.put(gl.ELEMENT_ARRAY_BUFFER, elements);
+      gl.bindVertexArray(null);
+      return v;
+    };
+    const at = model.source, ends = model.sharp;
+    this.drawn = {
+      model, shape, swing,
+      faces: vao(at, [picked(model.rest, at), moved ? picked(moved, at) : none, still, moved ? up.map((v, i) => (v - down[i]) / 2) : none], model.index),
+      edges: vao(ends, [picked(model.rest, ends), moved ? picked(moved, ends) : new Float32Array(3 * ends.length)]),
+    };
+    const words = shape ? `${shape.name}, ${shape.hz.toFixed(1)} Hz${shape.pair ? " (pair)" : ""}` : "no mode of this name";
+    this.element.querySelector(".hz").textContent = words;
+    this.canvas.setAttribute("aria-label", `${model.title}: ${words}; deformed shape, can be turned`);
+  }
+  put(target, array) {
+    const b = this.gl.createBuffer(); this.buffers.push(b);
+    this.gl.bindBuffer(target, b); this.gl.bufferData(target, array, this.gl.STATIC_DRAW);
+  }
+  draw() {
+    if (!this.drawn) return;
+    const { gl, canvas, viewer, drawn } = this, { model } = drawn, pixel = Math.min(window.devicePixelRatio || 1, 2);
+    const w = Math.max(1, Math.round(canvas.clientWidth * pixel)), h = Math.max(1, Math.round(canvas.clientHeight * pixel));
+    if (canvas.width !== w || canvas.height !== h) { canvas.width = w; canvas.height = h; }
+    gl.viewport(0, 0, w, h);
+    gl.clearColor(0, 0, 0, 0); gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
+    gl.enable(gl.DEPTH_TEST); gl.enable(gl.POLYGON_OFFSET_FILL); gl.polygonOffset(1, 1);
+    // The box around shape and motion fills the pane, whichever way it is turned.
+    const R = viewer.turn, size = drawn.swing * Math.max(viewer.scale, 0.3), half = model.low.map((v, c) => (model.high[c] - v) / 2);
+    const reach = R.map(row => row.reduce((sum, v, c) => sum + Math.abs(v) * half[c], 0) + size);
+    const fit = SIZE * viewer.zoom * Math.min(w / reach[0], h / reach[1]);
+    const scale = [fit / w, fit / h, 0.5 / (reach[2] + reach[0])];
+    const swing = drawn.shape ? drawn.swing * viewer.scale * Math.sin(viewer.phase) : 0;
+    const middle = model.low.map((v, c) => (v + model.high[c]) / 2), cut = [Math.sin(viewer.angle), 0, Math.cos(viewer.angle), viewer.cut ? 1 : 0];
+    const colour = getComputedStyle(viewer.root), ink = rgb(colour.color), paper = rgb(colour.getPropertyValue("--bg"));
+    const use = ({ p, at }, s, nearer) => {
+      gl.useProgram(p);
+      gl.uniformMatrix3fv(at.uTurn, true, R.flat()); gl.uniform3fv(at.uMiddle, middle); gl.uniform3fv(at.uScale, scale);
+      gl.uniform1f(at.uSwing, s); gl.uniform1f(at.uNearer, nearer); gl.uniform4fv(at.uCut, cut);
+      return at;
+    };
+    let at = use(this.faces, swing, 0);
+    gl.uniform1f(at.uTilt, drawn.shape ? swing / drawn.swing : 0); gl.uniform1f(at.uPixel, pixel);
+    gl.uniform3fv(at.uColours, viewer.colours); gl.uniform3fv(at.uHatch, [...mixed(paper, ink, 0.12), ...mixed(paper, ink, 0.5)]);
+    gl.bindVertexArray(drawn.faces); gl.drawElements(gl.TRIANGLES, model.index.length, gl.UNSIGNED_INT, 0);
+    gl.bindVertexArray(drawn.edges);
+    at = use(this.lines, swing, 0.0015); gl.uniform3fv(at.uColour, [0.08, 0.09, 0.11]); gl.drawArrays(gl.LINES, 0, model.sharp.length);
+    if (viewer.rest) { at = use(this.lines, 0, 0); gl.uniform3fv(at.uColour, mixed(paper, ink, 0.55)); gl.drawArrays(gl.LINES, 0, model.sharp.length); }
+    gl.bindVertexArray(null);
+    this.axes(R);
+  }
+  axes(R) {
+    this.element.querySelector("svg").innerHTML = ["x", "y", "z"].map((name, c) => {
+      const x = (24 * R[0][c]).toFixed(1), y = (-24 * R[1][c]).toFixed(1);
+      return `<line x2="${x}" y2="${y}"/><text x="${(1.35 * x).toFixed(1)}" y="${(1.35 * y).toFixed(1)}">${name}</text>`;
+    }).join("");
+  }
+}
+
+// ---- the viewer: panes that turn together
+const by = (axis, angle) => { // turn about an axis of the screen
+  const c = Math.cos(angle), s = Math.sin(angle);
+  return axis ? [[c, 0, s], [0, 1, 0], [-s, 0, c]] : [[1, 0, 0], [0, c, -s], [0, s, c]];
+};
+const times = (a, b) => a.map(row => [0, 1, 2].map(c => row.reduce((sum, v, k) => sum + v * b[k][c], 0)));
+function upright(R) { // rounding must not shear what is turned for long
+  const dot = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2], unit = a => a.map(v => v / Math.hypot(...a));
+  const x = unit(R[0]), y = unit(R[1].map((v, c) => v - dot(R[1], x) * x[c]));
+  return [x, y, [x[1] * y[2] - x[2] * y[1], x[2] * y[0] - x[0] * y[2], x[0] * y[1] - x[1] * y[0]]];
+}
+function home() { // y to the right, z up, a little from above and from the end, as in the pictures
+  const h = 18 * Math.PI / 180, t = -22 * Math.PI / 180;
+  const back = [Math.cos(h) * Math.cos(t), Math.cos(h) * Math.sin(t), Math.sin(h)];
+  const right = [0, 1, 0].map((v, c) => v - back[1] * back[c]), size = Math.hypot(...right), x = right.map(v => v / size);
+  return [x, [back[1] * x[2] - back[2] * x[1], back[2] * x[0] - back[0] * x[2], back[0] * x[1] - back[1] * x[0]], back];
+}
+
+class Viewer {
+  constructor(root) {
+    this.root = root; this.data = JSON.parse(root.querySelector(".data").textContent);
+    this.colours = this.data.colours.flatMap(rgb);
+    this.turn = home(); this.zoom = 1; this.scale = 1; this.phase = Math.PI / 2; this.cut = false; this.angle = 0; this.rest = true;
+    this.playing = !matchMedia("(prefers-reduced-motion: reduce)").matches; this.seen = true;
+    this.panes = [...root.querySelectorAll(".pane")].map(e => new Pane(this, e));
+    this.$ = name => root.querySelector("." + name);
+    const first = this.data.modes.findIndex(m => /^bending( z)? 1$/.test(m.name));
+    this.mode = Math.max(first, 0);
+    this.listen();
+    this.ready = this.pick(this.mode).then(() => { root.classList.add("on"); this.play(this.playing); this.draw(); });
+  }
+  async pick(mode) { // by number or by name
+    this.mode = typeof mode === "number" ? mode : this.data.modes.findIndex(m => m.name === mode);
+    this.$("mode").value = this.mode;
+    const at = this.data.modes[this.mode].at, turn = this.picking = {};
+    for (let i = 0; i < this.panes.length; i++) {
+      const pane = this.panes[i], choice = pane.element.querySelector(".model"), k = choice ? +choice.value : 0, model = this.data.models[k];
+      await pane.show(model, model.shapes[at[k]]);
+      if (this.picking !== turn) return; // something else was picked meanwhile
+    }
+    this.draw();
+  }
+  draw() { this.panes.forEach(p => p.draw()); }
+  frame(t) { this.play(false); this.phase = 2 * Math.PI * t / PERIOD; this.draw(); }
+  rotate(dx, dy) { this.turn = upright(times(by(1, dx), times(by(0, dy), this.turn))); this.draw(); }
+  zoomed(factor) { this.zoom = Math.min(Math.max(this.zoom * factor, 0.3), 12); this.draw(); }
+  section(on, angle = this.angle) {
+    this.cut = on; this.angle = angle; this.$("cut").checked = on; this.$("angle").disabled = !on;
+    this.$("angle").value = Math.round(angle * 36 / Math.PI) * 5; this.draw();
+  }
+  facing() { // the half towards the viewer, by whole steps of the slider
+    const back = this.turn[2], step = Math.PI / 36, a = Math.round(Math.atan2(back[0], back[2]) / step) * step;
+    return a < 0 ? a + 2 * Math.PI : a;
+  }
+  reset() { this.turn = home(); this.zoom = 1; this.draw(); }
+  play(on) {
+    this.playing = on; this.$("play").textContent = on ? "Pause" : "Play"; this.$("play").setAttribute("aria-pressed", on);
+    if (on && this.seen && !this.waiting) { this.before = undefined; this.waiting = requestAnimationFrame(now => this.tick(now)); }
+  }
+  tick(now) {
+    this.waiting = 0;
+    if (!this.playing || !this.seen) return;
+    this.phase = (this.phase + 2 * Math.PI * Math.min((now - (this.before ?? now)) / 1000, 0.1) / PERIOD) % (2 * Math.PI);
+    this.before = now; this.draw();
+    this.waiting = requestAnimationFrame(later => this.tick(later));
+  }
+  listen() {
+    const on = (name, event, action) => this.$(name).addEventListener(event, e => action(e.target));
+    on("mode", "change", e => this.pick(+e.value)); on("play", "click", () => this.play(!this.playing));
+    on("scale", "input", e => { this.scale = +e.value; this.draw(); });
+    on("cut", "change", e => this.section(e.checked, e.checked ? this.facing() : this.angle));
+    on("angle", "input", e => this.section(this.cut, e.value * Math.PI / 180));
+    on("rest", "change", e => { this.rest = e.checked; this.draw(); }); on("home", "click", () => this.reset());
+    this.root.querySelectorAll(".model").forEach(e => e.addEventListener("change", () => this.pick(this.mode)));
+    this.panes.forEach(pane => this.handle(pane));
+    new ResizeObserver(() => this.draw()).observe(this.root);
+    new IntersectionObserver(rows => { this.seen = rows.some(r => r.isIntersecting); this.play(this.playing); }).observe(this.root);
+    matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => this.draw());
+  }
+  handle(pane) {
+    const c = pane.canvas, down = new Map();
+    c.addEventListener("pointerdown", e => { down.set(e.pointerId, [e.clientX, e.clientY]); try { c.setPointerCapture(e.pointerId); } catch { /* a pointer that is gone */ } });
+    c.addEventListener("pointermove", e => {
+      const was = down.get(e.pointerId);
+      if (!was) return;
+      const spread = () => { const [a, b] = [...down.values()]; return Math.hypot(a[0] - b[0], a[1] - b[1]) || 1; };
+      const before = down.size === 2 ? spread() : 0;
+      down.set(e.pointerId, [e.clientX, e.clientY]);
+      if (before) this.zoomed(spread() / before);
+      const k = 0.009 / down.size;
+      this.rotate(k * (e.clientX - was[0]), k * (e.clientY - was[1]));
+    });
+    ["pointerup", "pointercancel", "lostpointercapture"].forEach(name => c.addEventListener(name, e => down.delete(e.pointerId)));
+    // A page that scrolls must not stop at a picture: the wheel zooms one that was clicked.
+    c.addEventListener("wheel", e => { if (document.activeElement === c) { e.preventDefault(); this.zoomed(Math.exp(-0.0015 * e.deltaY)); } }, { passive: false });
+    c.addEventListener("keydown", e => {
+      const step = Math.PI / 36;
+      const action = {
+        ArrowLeft: () => this.rotate(-step, 0), ArrowRight: () => this.rotate(step, 0), ArrowUp: () => this.rotate(0, -step), ArrowDown: () => this.rotate(0, step),
+        "+": () => this.zoomed(1.15), "=": () => this.zoomed(1.15), "-": () => this.zoomed(1 / 1.15), " ": () => this.play(!this.playing),
+        c: () => this.section(!this.cut, this.cut ? this.angle : this.facing()), 0: () => this.reset(), Home: () => this.reset(),
+      }[e.key];
+      if (!action || e.ctrlKey || e.metaKey || e.altKey) return;
+      e.preventDefault(); action();
+    });
+    c.addEventListener("webglcontextlost", e => { e.preventDefault(); pane.drawn = null; });
+    c.addEventListener("webglcontextrestored", () => { pane.start(); this.pick(this.mode); });
+  }
+}
+
+function begin() {
+  const api = window.solidgearViewer = window.solidgearViewer || { all: [] };
+  for (const root of document.querySelectorAll(".sg-turn:not([data-begun])")) {
+    root.dataset.begun = "yes";
+    const failed = error => { root.classList.remove("on"); root.querySelector(".why").textContent = `The model cannot be turned here: ${error.message}.`; };
+    try {
+      if (!window.DecompressionStream) throw new Error("this browser is too old to unpack it");
+      const viewer = new Viewer(root);
+      viewer.ready.catch(failed); api.all.push(viewer);
+    } catch (error) { failed(error); }
+  }
+  const first = api.all[0];
+  if (first) Object.assign(api, { ready: first.ready, frame: t => first.frame(t), rotate: (x, y) => first.rotate(x, y), pick: m => first.pick(m), section: (on, a) => first.section(on, a) });
+}
+if (document.readyState === "loading") document.addEventListener("DOMContentLoaded", begin); else begin();
+})();
