@@ -34,6 +34,8 @@ class Shape:
     frequency_hz : float
     pair : bool
         Whether there is a second shape at this frequency.
+    twists : bool
+        Whether sections turn about the axis: drawn enlarged, they are turned, and do not swell.
     displacement : (n, 3) ndarray
         At the points of the mesh; the largest has length 1.
     """
@@ -41,6 +43,7 @@ class Shape:
     name: str
     frequency_hz: float
     pair: bool
+    twists: bool
     displacement: np.ndarray
 
 
@@ -105,7 +108,8 @@ def turned(
     for mode in elastic:
         moved = _drawn(body, mode, mesh)
         moved *= _sign(mesh.points, moved, _partner(mode.name, like))
-        shapes.append(Shape(mode.name, mode.frequency_hz, len(mode.vectors) > 1, moved))
+        pair, twists = len(mode.vectors) > 1, mode.family == "torsion"
+        shapes.append(Shape(mode.name, mode.frequency_hz, pair, twists, moved))
     return Turned(title or body.fidelity, mesh, tuple(shapes))
 
 

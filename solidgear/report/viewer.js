@@ -121,43 +121,70 @@ async function unpack(model) { // once per model
 // ---- drawing
 const MOVE = `#version 300 es
 precision highp float;
-uniform mat3 uTurn; uniform vec3 uMiddle; uniform vec3 uScale; uniform float uSwing; uniform float uNearer;
-in vec3 aRest; in vec3 aMoved;
+uniform mat3 uTurn; uniform vec3 uMiddle; uniform vec3 uScale; uniform float uSwing; uniform bool uTwists;
 out vec3 vRest;
-vec4 place() {
-  vec3 p = uTurn * (aRest + uSwing * aMoved - uMiddle);
-  vRest = aRest;
-  return vec4(p * uScale * vec3(1.0, 1.0, -1.0) - vec3(0.0, 0.0, uNearer), 1.0);
+// Torsion enlarged turns sections; along the tangent it would swell them.
+mat2 twist(vec3 rest, vec3 moved) {
+  float a = uTwists ? uSwing * dot(moved.xz, vec2(rest.z, -rest.x)) / max(dot(rest, rest) - rest.y * rest.y, 1e-12) : 0.0;
+  return mat2(cos(a), -sin(a), sin(a), cos(a));
+}
+vec4 place(vec3 rest, vec3 moved) {
+  vec3 p = rest + uSwing * moved;
+  if (uTwists) {
+    vec2 out_ = normalize(rest.xz + 1e-12);
+    p.xz = twist(rest, moved) * (rest.xz + uSwing * dot(moved.xz, out_) * out_);
+  }
+  return vec4((uTurn * (p - uMiddle)) * uScale * vec3(1.0, 1.0, -1.0), 1.0);
 }`;
 const FACES = [MOVE + `
 uniform float uTilt;
-in vec3 aNormal; in vec3 aTilt;
+layout(location = 0) in vec3 aRest; layout(location = 1) in vec3 aMoved; layout(location = 2) in vec3 aNormal; layout(location = 3) in vec3 aTilt;
 out vec3 vNormal; out float vSize;
 void main() {
-  gl_Position = place();
-  vNormal = uTurn * (aNormal + uTilt * aTilt);
+  vRest = aRest; gl_Position = place(aRest, aMoved);
+  vec3 n = aNormal + (uTwists ? 0.0 : uTilt) * aTilt;
+  n.xz = twist(aRest, aMoved) * n.xz;
+  vNormal = uTurn * n;
   vSize = length(aMoved);
 }`, `#version 300 es
 precision highp float;
-uniform vec3 uColours[17]; uniform vec4 uCut; uniform vec3 uHatch[2]; uniform float uPixel;
+uniform vec3 uColours[17]; uniform vec4 uCut; uniform vec3 uHatch[2]; uniform float uPixel; uniform vec2 uGrid;
 in vec3 vRest; in vec3 vNormal; in float vSize;
 out vec4 colour;
+float line(float at, float width) { // where a number is whole, fading where lines would touch
+  return (1.0 - smoothstep(0.4, 1.2, abs(fract(at - 0.5) - 0.5) / max(width * uPixel, 1e-9))) * (1.0 - smoothstep(0.1, 0.3, width));
+}
 void main() {
+  // Meridians and circles painted on the shape at rest: without them torsion could not be seen.
+  float around = atan(vRest.x, vRest.z) * 3.8197186, along = (vRest.y - uGrid.x) / uGrid.y - 0.5;
+  vec3 flatly = normalize(cross(dFdx(vRest), dFdy(vRest)));
+  float grid = max(line(around, fwidth(around)), abs(flatly.y) > 0.98 ? 0.0 : line(along, fwidth(along)));
   if (uCut.w > 0.5 && dot(vRest, uCut.xyz) > 0.0) discard;
   // Behind a cut closed surface the first thing seen from inside is where the section is.
   if (uCut.w > 0.5 && !gl_FrontFacing) {
-    float line = step(mod(gl_FragCoord.x + gl_FragCoord.y, 9.0 * uPixel), 1.6 * uPixel);
-    colour = vec4(mix(uHatch[0], uHatch[1], line), 1.0);
+    float stripe = abs(mod(gl_FragCoord.x + gl_FragCoord.y, 11.0 * uPixel) - 5.5 * uPixel);
+    colour = vec4(mix(uHatch[1], uHatch[0], smoothstep(0.4 * uPixel, 1.4 * uPixel, stripe)), 1.0);
     return;
   }
   float s = clamp(vSize, 0.0, 1.0) * 16.0; int i = int(min(s, 15.0));
   vec3 base = mix(uColours[i], uColours[i + 1], s - float(i)), n = normalize(vNormal);
-  float lit = 0.34 + 0.58 * max(dot(n, normalize(vec3(-0.45, 0.65, 0.75))), 0.0) + 0.24 * max(dot(n, normalize(vec3(0.7, -0.35, 0.6))), 0.0);
+  float lit = 0.5 + 0.52 * max(dot(n, normalize(vec3(-0.45, 0.65, 0.75))), 0.0) + 0.2 * max(dot(n, normalize(vec3(0.7, -0.35, 0.6))), 0.0);
   float shine = 0.10 * pow(max(dot(reflect(normalize(vec3(0.45, -0.65, -0.75)), n), vec3(0.0, 0.0, 1.0)), 0.0), 24.0);
-  colour = vec4(min(base * lit + shine, 1.0), 1.0);
+  colour = vec4(mix(min(base * lit + shine, 1.0), vec3(0.0), 0.28 * grid), 1.0);
 }`];
+// Edges are strips some pixels wide: what a browser draws as lines depends on the driver.
 const LINES = [MOVE + `
-void main() { gl_Position = place(); }`, `#version 300 es
+uniform vec2 uPane; uniform float uWidth; uniform float uNearer;
+layout(location = 0) in vec3 aRest; layout(location = 1) in vec3 aMoved; layout(location = 2) in vec3 aEnd; layout(location = 3) in vec3 aEndMoved;
+void main() {
+  bool end = gl_VertexID > 1;
+  vec4 a = place(aRest, aMoved), b = place(aEnd, aEndMoved);
+  vec2 along = (b.xy - a.xy) * uPane; along = length(along) > 1e-6 ? normalize(along) : vec2(1.0, 0.0);
+  vec2 across = vec2(-along.y, along.x) * ((gl_VertexID & 1) == 0 ? 1.0 : -1.0);
+  vRest = end ? aEnd : aRest; gl_Position = end ? b : a;
+  gl_Position.xy += (across + (end ? 0.5 : -0.5) * along) * uWidth / uPane;
+  gl_Position.z -= uNearer;
+}`, `#version 300 es
 precision highp float;
 uniform vec4 uCut; uniform vec3 uColour;
 in vec3 vRest;
@@ -175,7 +202,6 @@ function program(gl, sources) {
     if (!gl.getShaderParameter(s, gl.COMPILE_STATUS)) throw new Error(gl.getShaderInfoLog(s));
     gl.attachShader(p, s);
   });
-  ["aRest", "aMoved", "aNormal", "aTilt"].forEach((name, i) => gl.bindAttribLocation(p, i, name));
   gl.linkProgram(p);
   if (!gl.getProgramParameter(p, gl.LINK_STATUS)) throw new Error(gl.getProgramInfoLog(p));
   const at = {};
@@ -186,13 +212,16 @@ function program(gl, sources) {
   return { p, at };
 }
 
-const rgb = text => { const m = text.trim().match(/^#(..)(..)(..)$/); return m ? m.slice(1).map(v => parseInt(v, 16) / 255) : (text.match(/[\d.]+/g) || [0, 0, 0]).slice(0, 3).map(v => v / 255); };
+function rgb(text) { // #rgb, #rrggbb or rgb(...)
+  const hex = text.trim().match(/^#(\w\w?)(\w\w?)(\w\w?)$/);
+  return (hex ? hex.slice(1).map(v => parseInt(v.padEnd(2, v), 16)) : (text.match(/[\d.]+/g) || [0, 0, 0]).slice(0, 3).map(Number)).map(v => v / 255);
+}
 const mixed = (a, b, s) => a.map((v, i) => v + s * (b[i] - v));
 
 class Pane {
   constructor(viewer, element) {
     this.viewer = viewer; this.element = element; this.canvas = element.querySelector("canvas");
-    this.gl = this.canvas.getContext("webgl2", { antialias: true, alpha: true });
+    this.gl = this.canvas.getContext("webgl2", { antialias: true, alpha: true, stencil: true });
     if (!this.gl) throw new Error("this browser has no WebGL 2 here");
     this.start();
   }
@@ -207,20 +236,27 @@ class Pane {
     const [up, down] = moved ? [1, -1].map(s => normals(model.rest.map((v, i) => v + s * swing * moved[i]), model)) : [];
     const gl = this.gl, still = normals(model.rest, model), none = new Float32Array(model.source.length * 3);
     this.buffers.forEach(b => gl.deleteBuffer(b)); this.buffers = [];
-    const vao = (at, arrays, elements) => {
+    const vao = (arrays, elements) => { // edges, which have no elements, take both ends from one array
       const v = gl.createVertexArray(); gl.bindVertexArray(v);
+      const field = (i, stride, start) => {
+        gl.enableVertexAttribArray(i); gl.vertexAttribPointer(i, 3, gl.FLOAT, false, stride, start);
+        if (stride) gl.vertexAttribDivisor(i, 1);
+      };
       arrays.forEach((array, i) => {
-        this.put(gl.ARRAY_BUFFER, array); gl.enableVertexAttribArray(i); gl.vertexAttribPointer(i, 3, gl.FLOAT, false, 0, 0);
+        this.put(gl.ARRAY_BUFFER, array);
+        if (elements) field(i, 0, 0); else { field(i, 24, 0); field(i + 2, 24, 12); }
       });
       if (elements) this.put(gl.ELEMENT_ARRAY_BUFFER, elements);
       gl.bindVertexArray(null);
       return v;
     };
+    const most = [0, 0, 0];
+    if (moved) moved.forEach((v, i) => { most[i % 3] = Math.max(most[i % 3], Math.abs(v)); });
     const at = model.source, ends = model.sharp;
     this.drawn = {
-      model, shape, swing,
-      faces: vao(at, [picked(model.rest, at), moved ? picked(moved, at) : none, still, moved ? up.map((v, i) => (v - down[i]) / 2) : none], model.index),
-      edges: vao(ends, [picked(model.rest, ends), moved ? picked(moved, ends) : new Float32Array(3 * ends.length)]),
+      model, shape, swing, most,
+      faces: vao([picked(model.rest, at), moved ? picked(moved, at) : none, still, moved ? up.map((v, i) => (v - down[i]) / 2) : none], model.index),
+      edges: vao([picked(model.rest, ends), moved ? picked(moved, ends) : new Float32Array(3 * ends.length)]),
     };
     const words = shape ? `${shape.name}, ${shape.hz.toFixed(1)} Hz${shape.pair ? " (pair)" : ""}` : "no mode of this name";
     this.element.querySelector(".hz").textContent = words;
@@ -230,35 +266,47 @@ class Pane {
     const b = this.gl.createBuffer(); this.buffers.push(b);
     this.gl.bindBuffer(target, b); this.gl.bufferData(target, array, this.gl.STATIC_DRAW);
   }
+  fits() { // pixels a metre at which the box around shape and motion fills the pane, as it is turned
+    const { model, most, swing } = this.drawn, { turn, scale } = this.viewer;
+    const half = model.low.map((v, c) => (model.high[c] - v) / 2 + swing * scale * most[c]);
+    const reach = turn.map(row => row.reduce((sum, v, c) => sum + Math.abs(v) * half[c], 0));
+    return SIZE / 2 * Math.min(this.canvas.clientWidth / reach[0], this.canvas.clientHeight / reach[1]);
+  }
   draw() {
     if (!this.drawn) return;
     const { gl, canvas, viewer, drawn } = this, { model } = drawn, pixel = Math.min(window.devicePixelRatio || 1, 2);
     const w = Math.max(1, Math.round(canvas.clientWidth * pixel)), h = Math.max(1, Math.round(canvas.clientHeight * pixel));
     if (canvas.width !== w || canvas.height !== h) { canvas.width = w; canvas.height = h; }
     gl.viewport(0, 0, w, h);
-    gl.clearColor(0, 0, 0, 0); gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
+    gl.clearColor(0, 0, 0, 0); gl.clearStencil(0); gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT | gl.STENCIL_BUFFER_BIT);
     gl.enable(gl.DEPTH_TEST); gl.enable(gl.POLYGON_OFFSET_FILL); gl.polygonOffset(1, 1);
-    // The box around shape and motion fills the pane, whichever way it is turned.
-    const R = viewer.turn, size = drawn.swing * Math.max(viewer.scale, 0.3), half = model.low.map((v, c) => (model.high[c] - v) / 2);
-    const reach = R.map(row => row.reduce((sum, v, c) => sum + Math.abs(v) * half[c], 0) + size);
-    const fit = SIZE * viewer.zoom * Math.min(w / reach[0], h / reach[1]);
-    const scale = [fit / w, fit / h, 0.5 / (reach[2] + reach[0])];
+    const R = viewer.turn, fit = viewer.fit() * pixel, scale = [2 * fit / w, 2 * fit / h, 0.25 / model.length];
     const swing = drawn.shape ? drawn.swing * viewer.scale * Math.sin(viewer.phase) : 0;
     const middle = model.low.map((v, c) => (v + model.high[c]) / 2), cut = [Math.sin(viewer.angle), 0, Math.cos(viewer.angle), viewer.cut ? 1 : 0];
     const colour = getComputedStyle(viewer.root), ink = rgb(colour.color), paper = rgb(colour.getPropertyValue("--bg"));
-    const use = ({ p, at }, s, nearer) => {
+    const use = ({ p, at }, s) => {
       gl.useProgram(p);
       gl.uniformMatrix3fv(at.uTurn, true, R.flat()); gl.uniform3fv(at.uMiddle, middle); gl.uniform3fv(at.uScale, scale);
-      gl.uniform1f(at.uSwing, s); gl.uniform1f(at.uNearer, nearer); gl.uniform4fv(at.uCut, cut);
+      gl.uniform1f(at.uSwing, s); gl.uniform1i(at.uTwists, drawn.shape && drawn.shape.twists ? 1 : 0); gl.uniform4fv(at.uCut, cut);
       return at;
     };
-    let at = use(this.faces, swing, 0);
+    const at = use(this.faces, swing);
     gl.uniform1f(at.uTilt, drawn.shape ? swing / drawn.swing : 0); gl.uniform1f(at.uPixel, pixel);
     gl.uniform3fv(at.uColours, viewer.colours); gl.uniform3fv(at.uHatch, [...mixed(paper, ink, 0.12), ...mixed(paper, ink, 0.5)]);
+    gl.uniform2fv(at.uGrid, [model.low[1], model.length / 16]);
+    // The section hides what lies behind it: its pixels are marked, and no edge is drawn there.
+    gl.enable(gl.STENCIL_TEST); gl.stencilFunc(gl.ALWAYS, 1, 1);
+    gl.stencilOpSeparate(gl.FRONT, gl.KEEP, gl.KEEP, gl.ZERO); gl.stencilOpSeparate(gl.BACK, gl.KEEP, gl.KEEP, viewer.cut ? gl.REPLACE : gl.ZERO);
     gl.bindVertexArray(drawn.faces); gl.drawElements(gl.TRIANGLES, model.index.length, gl.UNSIGNED_INT, 0);
-    gl.bindVertexArray(drawn.edges);
-    at = use(this.lines, swing, 0.0015); gl.uniform3fv(at.uColour, [0.08, 0.09, 0.11]); gl.drawArrays(gl.LINES, 0, model.sharp.length);
-    if (viewer.rest) { at = use(this.lines, 0, 0); gl.uniform3fv(at.uColour, mixed(paper, ink, 0.55)); gl.drawArrays(gl.LINES, 0, model.sharp.length); }
+    gl.bindVertexArray(drawn.edges); gl.stencilFunc(gl.EQUAL, 0, 1); gl.stencilOp(gl.KEEP, gl.KEEP, gl.KEEP);
+    gl.disable(gl.POLYGON_OFFSET_FILL);
+    const edges = (s, colour, nearer, width) => {
+      const to = use(this.lines, s);
+      gl.uniform2fv(to.uPane, [w, h]); gl.uniform1f(to.uWidth, width * pixel); gl.uniform1f(to.uNearer, nearer); gl.uniform3fv(to.uColour, colour);
+      gl.drawArraysInstanced(gl.TRIANGLE_STRIP, 0, 4, model.sharp.length / 2);
+    };
+    edges(swing, [0.08, 0.09, 0.11], 0.0015, 1.5);
+    if (viewer.rest) edges(0, mixed(paper, ink, 0.55), 0, 1.2);
     gl.bindVertexArray(null);
     this.axes(R);
   }
@@ -313,6 +361,7 @@ class Viewer {
     this.draw();
   }
   draw() { this.panes.forEach(p => p.draw()); }
+  fit() { return this.zoom * Math.min(...this.panes.filter(p => p.drawn).map(p => p.fits())); }
   frame(t) { this.play(false); this.phase = 2 * Math.PI * t / PERIOD; this.draw(); }
   rotate(dx, dy) { this.turn = upright(times(by(1, dx), times(by(0, dy), this.turn))); this.draw(); }
   zoomed(factor) { this.zoom = Math.min(Math.max(this.zoom * factor, 0.3), 12); this.draw(); }

@@ -212,6 +212,7 @@ def _packed(model: Turned) -> dict[str, Any]:
                 "name": shape.name,
                 "hz": shape.frequency_hz,
                 "pair": shape.pair,
+                "twists": shape.twists,
                 "step": swing,
                 "moved": packing.packed_values(mesh, shape.displacement, swing),
             }
