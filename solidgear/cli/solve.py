@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import sys
 from pathlib import Path
 from typing import Annotated
 
@@ -12,6 +13,7 @@ from solidgear.cli.app import (
     AUTO,
     FIDELITY,
     AutoFidelityOption,
+    Choice,
     Engine,
     FidelityOption,
     JsonFlag,
@@ -296,17 +298,38 @@ def render(
     mode: Annotated[
         str, typer.Option(help='Name of the mode, such as "bending 1" or "axial 1".')
     ] = "bending 1",
+    turn: Annotated[
+        Path | None,
+        typer.Option(
+            help="HTML file: all modes in 3D, to be turned, animated and cut, instead of one picture."
+        ),
+    ] = None,
+    beside: Annotated[
+        Choice | None, typer.Option(help="A second model in the page of --turn, side by side.")
+    ] = None,
     settings: Settings = None,
 ) -> None:
-    """Draw one mode shape off-screen."""
-    from solidgear.report.write import render_mode
+    """Draw one mode shape off-screen, or all of them in a page where they can be turned."""
+    from solidgear.report.write import Drawn, render_mode, turn_modes
     from solidgear.solve.modes import modes as solve
     from solidgear.studies.loading import load
 
+    if beside and not turn:
+        raise SolidgearError(
+            f"--beside {beside}: two models need the page of --turn; add --turn model.html"
+        )
     loaded = load(scene)
-    body = build_body(loaded, fidelity, settings)
-    found = solve(body, loaded, max(loaded.ask.modes, 10))
-    path = render_mode(body, found, mode, out)
+    drawn = []
+    for name in dict.fromkeys([fidelity, beside] if beside else [fidelity]):
+        body = build_body(loaded, name, settings if name == fidelity else None)
+        found = solve(body, loaded, max(loaded.ask.modes, 10))
+        drawn.append(Drawn(body, found, LADDER[name].title))
+    if turn is None:
+        print(render_mode(drawn[0].body, drawn[0].modes, mode, out))
+        return
+    path, said = turn_modes(drawn, turn, loaded.title or loaded.name, mode)
+    if said:
+        print(f"caution: {said}", file=sys.stderr)
     print(path)
 
 

@@ -27,7 +27,7 @@ except ImportError:  # Windows
 LOCK = ".solidgear.lock"
 #: what is ever listed, and so ever removed: a damaged list can name nothing else
 OWN = re.compile(
-    r"(report\.html|mode_\w+\.png|modes_\w+\.vtu|system_mode_\d+\.png"
+    r"(report\.html|mode_\w+\.png|modes_\w+\.vtu|modes\.html|system_mode_\d+\.png"
     r"|(response|orders)\.(csv|png|svg))"
 )
 #: what a process that was killed can have left half written, see

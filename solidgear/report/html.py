@@ -1,8 +1,8 @@
 """One self-contained HTML page about one run.
 
 `write_report` turns the record of a run into tables and charts and fills ``report.html``, the
-template beside this file. The page needs no network, no
-script and no other file.
+template beside this file. The page needs no network and no other file; its one script turns the mode
+shapes, and without it pictures stand there.
 """
 
 from __future__ import annotations
@@ -89,6 +89,7 @@ def render_page(
         **_opening(record),
         warnings=warnings,
         charts={name: Markup(svg.decode()) if svg else None for name, svg in drawn.items()},
+        viewer=_viewer(record, folder),
         renders=_renders(record, folder, images),
         race=race_tables.section(folder, record.scene),
         **_tables(record),
@@ -203,6 +204,16 @@ def _renders(
     for key, image in images.items():
         renders.append((capital(model_name(record, key)), data_uri(key, image)))
     return renders
+
+
+def _viewer(record: Record, folder: str | os.PathLike | None) -> Any:
+    """The mode shapes to be turned, from the page that the run has written beside this one."""
+    from markupsafe import Markup
+
+    from solidgear.report.viewer import TURNED, fragment_of
+
+    here = folder is not None and TURNED in (record.files or ())
+    return Markup(fragment_of(Path(folder) / TURNED)) if folder is not None and here else ""
 
 
 def _named_images(record: Record, folder: str | os.PathLike | None) -> dict[str, Picture]:

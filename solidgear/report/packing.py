@@ -4,7 +4,7 @@ Whole numbers take the place of coordinates. Triangles come in an order in which
 with an earlier one, and points are numbered as they first appear. A new point is then foretold from
 the three of the neighbour across the opposite edge, ``a + b - c`` (Touma and Gotsman, Triangle mesh
 compression, Graphics Interface 1998). What is left is small where a surface is flat, or its motion
-smooth, and is deflated (RFC 1950). ``viewer.js`` undoes it: what is done here must be kept in step.
+smooth, and is deflated (RFC 1950). ``viewer_mesh.js`` undoes it: what is done here must be kept in step.
 """
 
 from __future__ import annotations
@@ -126,7 +126,9 @@ def _foretold(triangles: np.ndarray) -> np.ndarray:
     c = triangles.ravel()[partner]
     before = np.arange(len(corner)) - 1
     known = partner // 3 < k
-    out = np.column_stack([np.where(known, a, before), np.where(known, b, 0), np.where(known, c, 0)])
+    out = np.column_stack(
+        [np.where(known, a, before), np.where(known, b, 0), np.where(known, c, 0)]
+    )
     out[0] = -1
     return out
 

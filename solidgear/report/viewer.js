@@ -1,122 +1,6 @@
-// Mode shapes in 3D: unpacks what solidgear/report/packing.py packed, and draws it with WebGL 2.
-(() => {
-"use strict";
-const CREASE = Math.cos(32 * Math.PI / 180); // edges sharper than this stay sharp, and are drawn
+// The viewer: draws mode shapes in 3D with WebGL 2, after viewer_mesh.js.
 const PERIOD = 2.4; // s of one swing
 const SIZE = 0.9; // share of a pane that the shape fills
-
-// ---- unpacking
-async function counts(text) {
-  const bytes = Uint8Array.from(atob(text), c => c.charCodeAt(0));
-  const plain = new Blob([bytes]).stream().pipeThrough(new DecompressionStream("deflate"));
-  const b = new Uint8Array(await new Response(plain).arrayBuffer()), n = b.length / 4;
-  const out = new Uint32Array(n);
-  for (let i = 0; i < n; i++) out[i] = b[i] | b[n + i] << 8 | b[2 * n + i] << 16 | b[3 * n + i] << 24;
-  return out;
-}
-
-function corners(code) { // counts back from the next new point
-  const t = new Uint32Array(code.length);
-  for (let i = 0, next = 0; i < t.length; i++) { t[i] = next - code[i]; if (!code[i]) next++; }
-  return t;
-}
-
-function foretelling(t, n) { // the points a, b, c of which a + b - c foretells each
-  const out = new Int32Array(3 * n), seen = new Map();
-  let next = 0;
-  for (let k = 0; k < t.length; k += 3) {
-    for (let j = 0; j < 3; j++) {
-      if (t[k + j] !== next) continue;
-      const a = t[k + (j + 1) % 3], b = t[k + (j + 2) % 3];
-      const c = a < n && b < n ? seen.get(Math.min(a, b) * n + Math.max(a, b)) : undefined;
-      out.set(c === undefined ? [next - 1, 0, 0] : [a, b, c], 3 * next++);
-    }
-    for (let j = 0; j < 3; j++) {
-      const a = t[k + (j + 1) % 3], b = t[k + (j + 2) % 3], key = Math.min(a, b) * n + Math.max(a, b);
-      if (!seen.has(key)) seen.set(key, t[k + j]);
-    }
-  }
-  return out;
-}
-
-async function values(text, model, step) {
-  const code = await counts(text), n = model.count, f = model.foretold, whole = new Int32Array(n), out = new Float64Array(3 * n);
-  for (let c = 0; c < 3; c++) for (let i = 0; i < n; i++) {
-    const v = code[c * n + i], rest = v & 1 ? -((v + 1) / 2) : v / 2;
-    whole[i] = rest + (i ? whole[f[3 * i]] + whole[f[3 * i + 1]] - whole[f[3 * i + 2]] : 0);
-    out[3 * i + c] = whole[i] * step;
-  }
-  return out;
-}
-
-// ---- shading: corners of triangles share a normal across edges that are not sharp
-function areas(p, t) {
-  const out = new Float64Array(t.length);
-  for (let k = 0; k < t.length; k += 3) {
-    const a = 3 * t[k], b = 3 * t[k + 1], c = 3 * t[k + 2];
-    const ux = p[b] - p[a], uy = p[b + 1] - p[a + 1], uz = p[b + 2] - p[a + 2];
-    const vx = p[c] - p[a], vy = p[c + 1] - p[a + 1], vz = p[c + 2] - p[a + 2];
-    out[k] = uy * vz - uz * vy; out[k + 1] = uz * vx - ux * vz; out[k + 2] = ux * vy - uy * vx;
-  }
-  return out;
-}
-
-function shared(model) {
-  const t = model.t, n = model.count, area = areas(model.rest, t), root = Uint32Array.from(t.keys());
-  const find = i => { while (root[i] !== i) i = root[i] = root[root[i]]; return i; };
-  const sharp = [], seen = new Map();
-  const cosine = (k, l) => {
-    const dot = area[k] * area[l] + area[k + 1] * area[l + 1] + area[k + 2] * area[l + 2];
-    return dot / (Math.hypot(area[k], area[k + 1], area[k + 2]) * Math.hypot(area[l], area[l + 1], area[l + 2]) || 1);
-  };
-  for (let i = 0; i < t.length; i++) {
-    const k = i - i % 3, j = k + (i + 1) % 3, a = t[i], b = t[j], key = Math.min(a, b) * n + Math.max(a, b);
-    const other = seen.get(key);
-    if (other === undefined) { seen.set(key, i); continue; }
-    const l = other - other % 3, end = l + (other + 1) % 3;
-    if (cosine(k, l) < CREASE) { sharp.push(a, b); continue; }
-    const [mine, next] = t[other] === a ? [other, end] : [end, other];
-    root[find(i)] = find(mine); root[find(j)] = find(next);
-  }
-  const number = new Int32Array(t.length).fill(-1), index = new Uint32Array(t.length), source = [];
-  for (let i = 0; i < t.length; i++) {
-    const r = find(i);
-    if (number[r] < 0) { number[r] = source.length; source.push(t[i]); }
-    index[i] = number[r];
-  }
-  return { index, source: Uint32Array.from(source), sharp: Uint32Array.from(sharp) };
-}
-
-function normals(p, model) {
-  const area = areas(p, model.t), out = new Float32Array(3 * model.source.length);
-  for (let i = 0; i < model.index.length; i++) {
-    const k = i - i % 3, v = 3 * model.index[i];
-    out[v] += area[k]; out[v + 1] += area[k + 1]; out[v + 2] += area[k + 2];
-  }
-  for (let v = 0; v < out.length; v += 3) {
-    const size = Math.hypot(out[v], out[v + 1], out[v + 2]) || 1;
-    out[v] /= size; out[v + 1] /= size; out[v + 2] /= size;
-  }
-  return out;
-}
-
-const picked = (p, at) => {
-  const out = new Float32Array(3 * at.length);
-  for (let i = 0; i < at.length; i++) for (let c = 0; c < 3; c++) out[3 * i + c] = p[3 * at[i] + c];
-  return out;
-};
-
-async function unpack(model) { // once per model
-  if (model.rest) return model;
-  model.t = corners(await counts(model.triangles));
-  model.foretold = foretelling(model.t, model.count);
-  const rest = await values(model.points, model, model.step);
-  const low = [0, 1, 2].map(c => { let v = Infinity; for (let i = c; i < rest.length; i += 3) v = Math.min(v, rest[i]); return v; });
-  const high = [0, 1, 2].map(c => { let v = -Infinity; for (let i = c; i < rest.length; i += 3) v = Math.max(v, rest[i]); return v; });
-  model.low = low; model.high = high; model.length = Math.max(...low.map((v, c) => high[c] - v));
-  model.rest = rest;
-  return Object.assign(model, shared(model));
-}
 
 // ---- drawing
 const MOVE = `#version 300 es
@@ -344,8 +228,7 @@ class Viewer {
     this.playing = !matchMedia("(prefers-reduced-motion: reduce)").matches; this.seen = true;
     this.panes = [...root.querySelectorAll(".pane")].map(e => new Pane(this, e));
     this.$ = name => root.querySelector("." + name);
-    const first = this.data.modes.findIndex(m => /^bending( z)? 1$/.test(m.name));
-    this.mode = Math.max(first, 0);
+    this.mode = Math.max(this.data.modes.findIndex(m => m.at[0] === this.data.first), 0);
     this.listen();
     this.ready = this.pick(this.mode).then(() => { root.classList.add("on"); this.play(this.playing); this.draw(); });
   }
@@ -444,4 +327,3 @@ function begin() {
   if (first) Object.assign(api, { ready: first.ready, frame: t => first.frame(t), rotate: (x, y) => first.rotate(x, y), pick: m => first.pick(m), section: (on, a) => first.section(on, a) });
 }
 if (document.readyState === "loading") document.addEventListener("DOMContentLoaded", begin); else begin();
-})();

@@ -1,6 +1,6 @@
 """A model one can turn: mode shapes in 3D inside a page, without network and without other files.
 
-The viewer is ours (``viewer.js``, WebGL 2, some 14 kB) and not a library: three.js alone is 0.7 MB
+The viewer is ours (``viewer.js``, WebGL 2, 25 kB) and not a library: three.js alone is 0.7 MB
 and vtk.js over 1 MB in every report, both need a loader for surfaces that move, and neither hatches
 a section. What is drawn are the product's own surfaces (:mod:`solidgear.body.surface`).
 """
@@ -29,8 +29,11 @@ if TYPE_CHECKING:
 
 #: most that the surfaces and shapes of one page may take, bytes; the page itself stays below 6 MB
 BUDGET = 3_500_000
+#: the page of mode shapes that a comparison writes, which its report takes the viewer from
+TURNED = "modes.html"
 START, END = "<!-- solidgear viewer: start -->", "<!-- solidgear viewer: end -->"
 STOPS = 17
+SCRIPTS = ("viewer_mesh.js", "viewer.js")
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -42,10 +45,13 @@ class Turning:
     models : tuple of Turned
     title : str
         Of the page.
+    first : str
+        Name of the mode to open with; first bending by default.
     """
 
     models: tuple[Turned, ...]
     title: str = ""
+    first: str = ""
 
     def write(self, path: str | os.PathLike, *, still: str = "") -> Path:
         """Write one self-contained page.
@@ -63,7 +69,7 @@ class Turning:
             If the file cannot be written.
         """
         path = Path(path)
-        text = viewer_page(self.models, self.title, still=still)
+        text = viewer_page(self.models, self.title, still=still, first=self.first)
         try:
             path.parent.mkdir(parents=True, exist_ok=True)
             with whole(path) as partial:
@@ -82,7 +88,7 @@ class Turning:
         from html import escape
 
         # A frame of its own: a notebook strips scripts from what is not one.
-        page = escape(viewer_page(self.models, self.title), quote=True)
+        page = escape(viewer_page(self.models, self.title, first=self.first), quote=True)
         return f'<iframe srcdoc="{page}" style="width:100%;height:640px;border:0"></iframe>'
 
 
@@ -121,7 +127,7 @@ def turn(body: Body, modes: ModeSet, *others: tuple[Body, ModeSet]) -> Turning:
     return Turning(tuple(models))
 
 
-def viewer_fragment(models: Sequence[Turned], *, still: str = "") -> str:
+def viewer_fragment(models: Sequence[Turned], *, still: str = "", first: str = "") -> str:
     """Markup, style, script and data of a viewer, to be put into a page.
 
     Parameters
@@ -131,6 +137,8 @@ def viewer_fragment(models: Sequence[Turned], *, still: str = "") -> str:
         data past ``BUDGET`` are left out, but never the first.
     still : str, optional
         Data URI of a picture to show in print and where the viewer cannot run.
+    first : str, optional
+        Name of the mode to open with; first bending by default.
 
     Returns
     -------
@@ -139,12 +147,12 @@ def viewer_fragment(models: Sequence[Turned], *, still: str = "") -> str:
     """
     from markupsafe import Markup
 
-    told = _told(models)
+    told = _told(models, first)
     # "</script" must not end the script that holds the data.
     data = json.dumps(told, allow_nan=False).replace("<", "\\u003c")
     markup = _template("viewer.html").render(
         data=Markup(data),
-        script=Markup((Path(__file__).parent / "viewer.js").read_text(encoding="utf-8")),
+        script=Markup(_script()),
         still=still,
         shown=told["models"][:2],
         models=told["models"],
@@ -154,12 +162,15 @@ def viewer_fragment(models: Sequence[Turned], *, still: str = "") -> str:
     return f"{START}\n{markup}\n{END}"
 
 
-def viewer_page(models: Sequence[Turned], title: str = "", *, still: str = "") -> str:
+def viewer_page(
+    models: Sequence[Turned], title: str = "", *, still: str = "", first: str = ""
+) -> str:
     """The viewer alone as a page; parameters as those of :func:`viewer_fragment`."""
     from markupsafe import Markup
 
     return _template("viewer_page.html").render(
-        title=title or "Mode shapes", viewer=Markup(viewer_fragment(models, still=still))
+        title=title or "Mode shapes",
+        viewer=Markup(viewer_fragment(models, still=still, first=first)),
     )
 
 
@@ -173,13 +184,14 @@ def fragment_of(page: str | os.PathLike) -> str:
     return text[start : end + len(END)] if 0 <= start < end else ""
 
 
-def _told(models: Sequence[Turned]) -> dict[str, Any]:
+def _told(models: Sequence[Turned], first: str) -> dict[str, Any]:
     """What the script is handed."""
     kept = list(_within(models))
     models = models[: len(kept)]
     ramp = colours()(np.linspace(0, 1, STOPS))[:, :3]
     return {
         "swing": SWING,
+        "first": max(models[0].index(first or "bending 1"), 0),
         "colours": ["#" + "".join(f"{round(255 * v):02x}" for v in rgb) for rgb in ramp],
         "models": kept,
         "modes": picks(models),
@@ -219,6 +231,12 @@ def _packed(model: Turned) -> dict[str, Any]:
             for shape in model.shapes
         ],
     }
+
+
+def _script() -> str:
+    here = Path(__file__).parent
+    parts = [(here / name).read_text(encoding="utf-8") for name in SCRIPTS]
+    return "(() => {\n" + '"use strict";\n' + "".join(parts) + "})();"
 
 
 @functools.cache

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import json
 import os
-from collections.abc import Callable
+import tempfile
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -36,6 +38,7 @@ def write_all(
     who has pressed Ctrl-C does not want to wait for them.
     """
     from solidgear.report.html import write_report
+    from solidgear.report.viewer import TURNED
 
     record = comparison.record
     record.left_out = []
@@ -52,6 +55,7 @@ def write_all(
                 "report.html",
                 *(f"modes_{m}.vtu" for m in shapes),
                 *(f"mode_{m}.png" for m in shapes if renders),
+                *([TURNED] if shapes and renders else []),
             ]
             _write_json(folder / "results.json", record)
             for model, rung in shapes.items():
@@ -60,6 +64,7 @@ def write_all(
             if renders and shapes:
                 progress("renders")
                 _draw(comparison, folder)
+                _try(record, "viewer of mode shapes", _write_turned, comparison, folder)
             progress("report")
             record.files = [
                 name for name in record.files if name == "report.html" or (folder / name).exists()
@@ -140,6 +145,26 @@ def _draw(comparison: Comparison, folder: Path) -> None:
         _leave_out(record, f"render of {', '.join(models)} left out: {reason}")
 
 
+def _write_turned(comparison: Comparison, folder: Path) -> None:
+    """The page of mode shapes, the most detailed models first."""
+    from solidgear.report.html import data_uri
+    from solidgear.report.reading import model_name
+    from solidgear.report.turning import Turned, turned
+    from solidgear.report.viewer import TURNED, Turning
+
+    record, still = comparison.record, ""
+    models: list[Turned] = []
+    for key, rung in reversed(comparison.rungs.items()):
+        if rung.body.geometry is None or _drawn_mode(rung.modes) is None:
+            continue
+        models.append(turned(rung.body, rung.modes, model_name(record, key), models))
+        if not still and key in record.images:
+            still = data_uri(key, folder / record.images[key]) or ""
+    if models:
+        title = record.scene.get("title") or record.scene.get("name") or ""
+        Turning(tuple(models), title).write(folder / TURNED, still=still)
+
+
 def _drawn_mode(modes: ModeSet) -> str | None:
     """The mode that a report shows: first bending, else the lowest elastic one."""
     if modes.named(MODE):
@@ -173,3 +198,59 @@ def render_mode(body: Body, modes: ModeSet, name: str, path: str | os.PathLike) 
     if not done.ok:
         raise SolidgearError(done.reason)
     return done.path
+
+
+@dataclass(frozen=True, eq=False)
+class Drawn:
+    """A body, its modes, and what it is called in a page."""
+
+    body: Body
+    modes: ModeSet
+    title: str
+
+
+def turn_modes(
+    drawn: Sequence[Drawn], path: str | os.PathLike, title: str, name: str
+) -> tuple[Path, str]:
+    """Write a page in which all modes can be turned.
+
+    Parameters
+    ----------
+    drawn : sequence of Drawn
+        Models, side by side.
+    path : path
+        Of the page.
+    title : str
+        Of the page.
+    name : str
+        The mode that it opens with, and of the picture of the first model for print.
+
+    Returns
+    -------
+    path : Path
+    said : str
+        Why there is no picture for print; empty if there is one.
+
+    Raises
+    ------
+    SolidgearError
+        If there is no such mode, or the page cannot be written.
+    """
+    from solidgear.report.html import data_uri
+    from solidgear.report.turning import Turned, turned
+    from solidgear.report.viewer import Turning
+
+    path = Path(path)
+    prepare(path.parent)
+    models: list[Turned] = []
+    for one in drawn:
+        _job(one.body, one.modes, name, path)
+        models.append(turned(one.body, one.modes, one.title, models))
+    still, said = "", ""
+    with tempfile.TemporaryDirectory(prefix="solidgear-turn-") as folder:
+        try:
+            picture = render_mode(drawn[0].body, drawn[0].modes, name, Path(folder) / "mode.png")
+            still = data_uri("mode", picture) or ""
+        except SolidgearError as error:
+            said = f"no picture for print in {path.name}: {error}"
+    return Turning(tuple(models), title, name).write(path, still=still), said
