@@ -50,6 +50,7 @@ _WHERE = {
     "modes": "solidgear.solve.modes",
     "answer": "solidgear.studies.answering",
     "compare": "solidgear.studies.comparison",
+    "turn": "solidgear.report.viewer",
     "SolidgearError": "solidgear.errors",
     "SceneError": "solidgear.errors",
 }
@@ -89,6 +90,7 @@ __all__ = [
     "modes",
     "rubin",
     "torsion_spring",
+    "turn",
 ]
 
 if TYPE_CHECKING:
@@ -98,6 +100,7 @@ if TYPE_CHECKING:
     from solidgear.reduction.craig_bampton import craig_bampton
     from solidgear.reduction.rubin import rubin
     from solidgear.reduction.superelement import Superelement
+    from solidgear.report.viewer import turn
     from solidgear.scene import STEEL, Ask, Bearing, Material, PointMass, Port, Scene, Segment
     from solidgear.scene.train import Train
     from solidgear.solve.modes import modes

@@ -41,8 +41,11 @@ float line(float at, float width) { // where a number is whole, fading where lin
 void main() {
   // Meridians and circles painted on the shape at rest: without them torsion could not be seen.
   float around = atan(vRest.x, vRest.z) * 3.8197186, along = (vRest.y - uGrid.x) / uGrid.y - 0.5;
+  // The angle's own derivative jumps where it starts again.
+  vec2 r = vRest.zx, dx = dFdx(r), dy = dFdy(r);
+  float step_ = 3.8197186 * (abs(r.x * dx.y - r.y * dx.x) + abs(r.x * dy.y - r.y * dy.x)) / max(dot(r, r), 1e-12);
   vec3 flatly = normalize(cross(dFdx(vRest), dFdy(vRest)));
-  float grid = max(line(around, fwidth(around)), abs(flatly.y) > 0.98 ? 0.0 : line(along, fwidth(along)));
+  float grid = max(line(around, step_), abs(flatly.y) > 0.98 ? 0.0 : line(along, fwidth(along)));
   if (uCut.w > 0.5 && dot(vRest, uCut.xyz) > 0.0) discard;
   // Behind a cut closed surface the first thing seen from inside is where the section is.
   if (uCut.w > 0.5 && !gl_FrontFacing) {
