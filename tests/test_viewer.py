@@ -221,9 +221,10 @@ def test_rigid_motions_are_no_modes_to_turn(solved):
         turned(body, rigid)
 
 
-def test_a_comparison_puts_it_into_its_report(pinion, tmp_path, monkeypatch):
+def test_a_comparison_puts_it_into_its_report(tmp_path, monkeypatch):
     monkeypatch.setenv("SOLIDGEAR_RENDERER", "none")
-    found = sg.compare(pinion, models=("lumped", "euler", "timoshenko"))
+    scene = sg.load(ROOT / "geometry" / "cylinder_free.toml")
+    found = sg.compare(scene, models=("lumped", "euler", "timoshenko"))
     found.write_report(tmp_path)
     assert viewer.TURNED in found.record.files
     page = (tmp_path / "report.html").read_text()

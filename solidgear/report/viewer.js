@@ -109,7 +109,7 @@ class Pane {
   constructor(viewer, element) {
     this.viewer = viewer; this.element = element; this.canvas = element.querySelector("canvas");
     this.gl = this.canvas.getContext("webgl2", { antialias: true, alpha: true, stencil: true });
-    if (!this.gl) throw new Error("this browser has no WebGL 2 here");
+    if (!this.gl) throw new Error("this browser shows no WebGL 2");
     this.start();
   }
   start() {
@@ -236,7 +236,9 @@ class Viewer {
     this.ready = this.pick(this.mode).then(() => { root.classList.add("on"); this.play(this.playing); this.draw(); });
   }
   async pick(mode) { // by number or by name
-    this.mode = typeof mode === "number" ? mode : this.data.modes.findIndex(m => m.name === mode);
+    const number = typeof mode === "number" ? mode : this.data.modes.findIndex(m => m.name === mode);
+    if (!this.data.modes[number]) throw new Error(`there is no mode ${mode}`);
+    this.mode = number;
     this.$("mode").value = this.mode;
     const at = this.data.modes[this.mode].at, turn = this.picking = {};
     for (let i = 0; i < this.panes.length; i++) {
