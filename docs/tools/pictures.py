@@ -5,6 +5,8 @@ python docs/tools/pictures.py
 
 from __future__ import annotations
 
+import shutil
+import subprocess
 import sys
 import tempfile
 from pathlib import Path
@@ -14,7 +16,10 @@ from console import ROOT, blocks, run
 DOCS = Path(__file__).parent.parent
 PICTURES = DOCS / "pictures"
 #: name of the picture: its widest side, pixels
-WIDTHS = {"section": 900, "mode": 800, "response": 900}
+WIDTHS = {"section": 900, "mode": 800, "response": 900, "turning": 1000}
+#: the state in which the page of mode shapes is taken
+POSE = """<script>addEventListener("load", () => solidgearViewer.ready.then(() => {
+solidgearViewer.frame(0.6); solidgearViewer.rotate(0.35, 0.1); solidgearViewer.section(true, 0.35); }))</script>"""
 
 
 def tutorial_scene() -> str:
@@ -32,7 +37,20 @@ def small(source: Path, name: str) -> None:
         width = WIDTHS[name]
         height = round(picture.height * width / picture.width)
         scaled = picture.convert("RGB").resize((width, height), Image.Resampling.LANCZOS)
-        scaled.quantize(64).save(PICTURES / f"{name}.png", optimize=True)
+        scaled.quantize(128 if name == "turning" else 64).save(
+            PICTURES / f"{name}.png", optimize=True
+        )
+
+
+def turning(page: Path, target: Path) -> None:
+    """What a browser without a screen shows of a page of mode shapes."""
+    page.write_text(page.read_text() + POSE)
+    browser = shutil.which("chromium") or shutil.which("google-chrome")
+    if browser is None:
+        raise SystemExit("the picture of the viewer needs Chromium")
+    command = [browser, "--headless", "--no-sandbox", "--enable-unsafe-swiftshader"]
+    command += ["--hide-scrollbars", "--window-size=1200,600", "--virtual-time-budget=8000"]
+    subprocess.run([*command, f"--screenshot={target}", page.as_uri()], check=True)
 
 
 def main() -> int:
@@ -46,6 +64,9 @@ def main() -> int:
     sg.load(scene).plot().savefig(folder / "section.png", dpi=200)
     small(folder / "section.png", "section")
     said = run("solidgear render my_shaft.toml --out mode.png", folder)
+    said += run("solidgear render my_shaft.toml -f solid --beside timoshenko --turn m.html", folder)
+    turning(folder / "m.html", folder / "turning.png")
+    small(folder / "turning.png", "turning")
     train = ROOT / "geometry" / "axle_overhung.toml"
     said += run(
         f"solidgear response {train} --gear harmonic --against euler+euler --out out", folder
