@@ -512,6 +512,7 @@ def test_only_whole_files_are_left(folder):
     assert {p.name for p in folder.iterdir()} == {
         "results.json",
         "report.html",
+        "modes.html",
         *(f"modes_{m}.vtu" for m in FIDELITIES),
     }
 

@@ -19,7 +19,7 @@ PICTURES = DOCS / "pictures"
 WIDTHS = {"section": 900, "mode": 800, "response": 900, "turning": 1000}
 #: the state in which the page of mode shapes is taken
 POSE = """<script>addEventListener("load", () => solidgearViewer.ready.then(() => {
-solidgearViewer.frame(0.6); solidgearViewer.rotate(0.35, 0.1); solidgearViewer.section(true, 0.35); }))</script>"""
+solidgearViewer.frame(0.6); solidgearViewer.rotate(0.3, 0.12); }))</script>"""
 
 
 def tutorial_scene() -> str:
@@ -37,7 +37,7 @@ def small(source: Path, name: str) -> None:
         width = WIDTHS[name]
         height = round(picture.height * width / picture.width)
         scaled = picture.convert("RGB").resize((width, height), Image.Resampling.LANCZOS)
-        scaled.quantize(128 if name == "turning" else 64).save(
+        scaled.quantize(256 if name == "turning" else 64).save(
             PICTURES / f"{name}.png", optimize=True
         )
 
@@ -49,7 +49,7 @@ def turning(page: Path, target: Path) -> None:
     if browser is None:
         raise SystemExit("the picture of the viewer needs Chromium")
     command = [browser, "--headless", "--no-sandbox", "--enable-unsafe-swiftshader"]
-    command += ["--hide-scrollbars", "--window-size=1200,600", "--virtual-time-budget=8000"]
+    command += ["--hide-scrollbars", "--window-size=1200,640", "--virtual-time-budget=8000"]
     subprocess.run([*command, f"--screenshot={target}", page.as_uri()], check=True)
 
 
