@@ -145,7 +145,7 @@ class Pane {
       faces: vao([picked(model.rest, at), moved ? picked(moved, at) : none, still, moved ? up.map((v, i) => (v - down[i]) / 2) : none], model.index),
       edges: vao([picked(model.rest, ends), moved ? picked(moved, ends) : new Float32Array(3 * ends.length)]),
     };
-    const words = shape ? `${shape.name}, ${shape.hz.toFixed(1)} Hz${shape.pair ? " (pair)" : ""}` : "no mode of this name";
+    const words = shape ? `${shape.name}, ${shape.hz.toFixed(1)} Hz${shape.pair ? " (pair)" : ""}` : "none of this name among its modes";
     this.element.querySelector(".hz").textContent = words;
     this.canvas.setAttribute("aria-label", `${model.title}: ${words}; deformed shape, can be turned`);
   }
