@@ -40,7 +40,7 @@ def plan(scene: Scene, full: bool = False) -> list[Row]:
 
 def _series(rung: Rung, scene: Scene, full: bool) -> list[Series]:
     if rung.series is None:
-        return [(rung.family, rung.title, [{}])]
+        return [(rung.family, rung.heading, [{}])]
     return rung.series(scene, full)
 
 

@@ -106,11 +106,12 @@ def preferred(made: Mapping[str, Synthesis]) -> Synthesis | None:
 
 
 def drawn(model: str) -> dict[str, str]:
-    """What a record keeps of a rung: its names, and how it is drawn in charts."""
+    """What a record keeps of a rung: its names, what it solves, and how charts draw it."""
     rung = LADDER[model]
     return {
         "title": rung.title,
         "short": rung.heading,
+        "theory": rung.theory,
         "family": rung.family,
         "colour": rung.colour,
         "marker": rung.marker,
@@ -174,7 +175,7 @@ def model_record(
         seconds=seconds,
         peak_mb=base.peak_mb,
         backend=base.backend,
-        mesh={"element": f"{variant} masses on the {source} stiffness"},
+        mesh={"element": f"{variant} masses on the stiffness of the {LADDER[source].title}"},
     )
 
 
@@ -190,7 +191,7 @@ def _judged(
 ) -> Judgement:
     """What the lumped rung is worth: its source's stiffness, and its own first bending."""
     if not base.valid:
-        why = f"its stiffness is that of the {source} model, which is out: {base.why_not}"
+        why = f"its stiffness is that of the {LADDER[source].title}, which is out: {base.why_not}"
         return Judgement(False, why, open=base.open)
     if against := spoken_against("lumped", notices):
         return Judgement(False, against[0])

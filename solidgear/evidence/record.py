@@ -136,12 +136,13 @@ class EvidenceRecord(Part):
 class ModelRecord(Part):
     """One rung.
 
-    ``title``, ``short``, ``family``, ``colour`` and ``marker`` are those of the ladder
+    ``title``, ``short``, ``theory``, ``family``, ``colour`` and ``marker`` are those of the ladder
     (:class:`solidgear.fidelity.rung.Rung`), so that a record can be shown without it.
     """
 
     title: str = ""
     short: str = ""
+    theory: str = ""
     family: str = ""
     colour: str = "#777777"
     marker: str = "P"
@@ -311,7 +312,8 @@ class WhereRecord(Part):
 class Record(Part):
     """Everything a comparison found.
 
-    ``missing`` are titles of rungs that have a body of their own and no record here.
+    ``missing`` are titles of rungs that have a body of their own and no record here.  ``shown_in``
+    is the choice of units of its page (:mod:`solidgear.report.units`); the record itself is in SI.
 
     Examples
     --------
@@ -345,6 +347,7 @@ class Record(Part):
     expected_peak_mb: Number = None
     left_out: list[str] = []
     files: list[str] | None = None
+    shown_in: str = "engineering"
 
     def as_dict(self) -> dict[str, Any]:
         """Plain data, as ``results.json`` has it."""

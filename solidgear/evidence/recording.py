@@ -96,7 +96,7 @@ def recorded(
         missing=[LADDER[model].title for model in LADDER.fit(scene) if model not in models],
     )
     if lumped and reference:
-        _add_lumped(out, rungs[reference], guards, scene.ask.tolerance)
+        _add_lumped(out, rungs[reference], guards, scene.ask.tolerance, scene.ask.lumped)
     out.warnings = _warnings(rungs, guards, out.models)
     return out
 
@@ -128,18 +128,21 @@ def _warnings(
         # What speaks against a model that is out anyway is in the record, and nobody's concern.
         about = [m for m in notice["models"] if m in models and models[m].valid]
         if about or not notice["models"]:
-            out.append(f"{', '.join(about)}: {notice['sentence']}" if about else notice["sentence"])
-    out += [f"{m}: {what}: {why}" for m, r in rungs.items() for what, why in r.failed.items()]
+            named = ", ".join(models[m].title for m in about)
+            out.append(f"{named}: {notice['sentence']}" if about else notice["sentence"])
+    out += [f"{LADDER[m].title}: {what}: {why}" for m, r in rungs.items() for what, why in r.failed.items()]
     for model, rung in rungs.items():
         for one, other, gap in rung.modes.evidence.get("torn_pairs", ()):
             out.append(
-                f"{model}: {one} and {other} are twins that the mesh has split by {gap:.1e}: refine it, or use hexahedra"
+                f"{LADDER[model].title}: {one} and {other} are twins that the mesh has split by {gap:.1e}: refine it, or use hexahedra"
             )
     return out
 
 
-def _add_lumped(record: Record, base: Solution, guards: list[dict], tolerance: float) -> None:
-    """The lumped rung among the models, and what the lumped models are worth in the verdict."""
+def _add_lumped(
+    record: Record, base: Solution, guards: list[dict], tolerance: float, synthesis: bool
+) -> None:
+    """The lumped rung among the models; what every synthesis is worth only where it is asked."""
     band = base.bands.get(SCENE, {}).get("bending 1")
     own = model_record(
         record.lumped,
@@ -159,10 +162,11 @@ def _add_lumped(record: Record, base: Solution, guards: list[dict], tolerance: f
         verdict.sentences = [s for s in verdict.sentences if not s.startswith("Cheapest model")]
         verdict.sentences.append(
             f"Cheapest model within {percent(tolerance)}: {LADDER[name].title} "
-            f"({own.variant} masses on the {own.source} stiffness), for first bending and below only."
+            f"({own.variant} masses on the stiffness of the {LADDER[own.source].title}), "
+            "for first bending and below only."
         )
     made = record.lumped[base.model].variants if base.model in record.lumped else {}
-    if not made or verdict.trust is None:
+    if not made or verdict.trust is None or not synthesis:
         return
     errors = [
         f"{n} {_error(v.frequency_error)}"
@@ -170,7 +174,7 @@ def _add_lumped(record: Record, base: Solution, guards: list[dict], tolerance: f
         if v.feasible and v.frequency_error is not None
     ]
     verdict.sentences.append(
-        f"First bending of lumped models made from the {LADDER[base.model].title} itself: "
+        f"First bending of lumped models made from the {LADDER[base.model].title}: "
         f"{', '.join(errors)}."
     )
     if not made["thesis"].feasible:

@@ -38,7 +38,8 @@ from solidgear.fidelity.rung import (
 LADDER = Ladder(
     Rung(
         name="lumped",
-        title="lumped",
+        title="lumped model",
+        short="lumped",
         family=LUMPED,
         colour="#b3305c",
         marker="P",

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import Any
 
 from solidgear.evidence.record import (
@@ -13,22 +12,19 @@ from solidgear.evidence.record import (
     PartnerRecord,
     Record,
 )
-from solidgear.evidence.ties import SCENE, SECTION
-from solidgear.report.cells import DASH, capital, eng, mm, pct, short_percent, small, whole_number
-from solidgear.report.reading import is_beam, is_resolved, model_name, relative_change
+from solidgear.evidence.ties import SCENE
+from solidgear.report.cells import DASH, capital, pct, short_percent, small, whole_number
+from solidgear.report.reading import is_resolved, model_name, reference_of, relative_change
 from solidgear.report.table import Table
-from solidgear.report.words import band_percent, engineering, hertz
+from solidgear.report.units import ENGINEERING, Units
+from solidgear.report.words import band_percent, hertz
 
 #: rank of a frequency among the quantities
 FREQUENCY = 2
-#: whether a difference is within the tolerance -> cell
-INSIDE = {True: ("yes", "good"), False: ("no", "bad"), None: DASH}
-#: quantities shown of causes and attachments -> how each is written
-SHOWN: dict[str, Callable[..., str]] = {
-    "C_zz": engineering,
-    "K_zz": engineering,
-    "bending 1": hertz,
-}
+#: quantities shown of causes and attachments -> unit in SI
+SHOWN = {"C_zz": "m/N", "K_zz": "N/m", "bending 1": "Hz"}
+#: how a column calls one
+HEADS = {"bending 1": "first bending"}
 
 
 def _rank(quantity: str) -> int:
@@ -43,61 +39,47 @@ def _named(record: Record, key: str) -> str:
     return capital(model_name(record, key))
 
 
-def deviations(record: Record) -> list[Table]:
-    """One table for each (model, attachment), compliances first."""
-    tolerance = record.verdict.tolerance
-    groups: dict[tuple[str, str, str], list[DeviationRecord]] = {}
-    for row in record.deviations:
-        groups.setdefault((row.model, row.reference, row.attachment), []).append(row)
-    tables = []
-    for (model, reference, attachment), rows in groups.items():
-        one, other = model_name(record, model), model_name(record, reference)
-        head = [
-            "quantity",
-            "unit",
-            one,
-            other,
-            "difference",
-            "band",
-            "resolved?",
-            f"within {short_percent(tolerance) or 'tolerance'}",
-        ]
-        ties = _ties(attachment, is_beam(record, model))
-        table = Table(f"{capital(one)} against {other}, {ties}", head)
-        for row in sorted(rows, key=lambda r: _rank(r.quantity)):
-            table.rows.append(_deviation(row, tolerance))
-        tables.append(table)
-    return tables
+def deviations(record: Record, units: Units = ENGINEERING) -> Table:
+    """All models against the reference, a quantity a row: as the scene is tied, and like for like."""
+    reference, tolerance = reference_of(record), record.verdict.tolerance
+    pairs = list(dict.fromkeys((r.model, r.attachment) for r in record.deviations))
+    found = {(r.model, r.attachment, r.quantity): r for r in record.deviations}
+    rows = []
+    for quantity in sorted(dict.fromkeys(r.quantity for r in record.deviations), key=_rank):
+        own = [found.get((*pair, quantity)) for pair in pairs]
+        first = next(r for r in own if r is not None)
+        si = first.unit or ("Hz" if _rank(quantity) == FREQUENCY else "")
+        scene = next((r for r in own if r and r.attachment == SCENE), first)
+        value = scene.reference_value
+        figure = hertz(value, DASH) if si == "Hz" else units.number(value, si, nothing=DASH)
+        cells: list[Any] = [quantity, (units.unit(si), "word text"), figure]
+        rows.append(cells + [_deviation(row, tolerance) for row in own])
+    names = [f"{_named(record, model)}, {_ties(tie)}" for model, tie in pairs]
+    within = f" Bold: beyond the {short_percent(tolerance)} asked for." if tolerance else ""
+    return Table(
+        f"Differences from the {model_name(record, reference)}",
+        ["quantity", "unit", model_name(record, reference), *names],
+        rows,
+        "In brackets and cursive: not resolved, smaller than the bands of the two models." + within,
+    )
 
 
-def _ties(attachment: str, beam: bool) -> str:
+def _ties(attachment: str) -> str:
     """How two models were held when they were compared."""
-    if attachment == SCENE:
-        return "attachments as in the scene"
-    like = ", like for like" if attachment == SECTION and beam else ""
-    return f"{attachment} ties on both sides{like}"
+    return "as tied" if attachment == SCENE else f"{attachment} ties"
 
 
-def _deviation(row: DeviationRecord, tolerance: float | None) -> list:
-    """The cells of one quantity."""
-    is_frequency = _rank(row.quantity) == FREQUENCY
-    figure = hertz if is_frequency else engineering
-    resolved = ("not resolved", "word text unresolved")
-    if is_resolved(row):
-        resolved = (row.verdict or "resolved", "word text")
-    inside = None
-    if row.relative is not None and tolerance is not None:
-        inside = abs(row.relative) <= tolerance
-    return [
-        row.quantity,
-        (row.unit or ("Hz" if is_frequency else ""), "word text"),
-        figure(row.value, nothing=DASH),
-        figure(row.reference_value, nothing=DASH),
-        pct(row.relative),
-        pct(row.band, signed=False),
-        resolved,
-        INSIDE[inside],
-    ]
+def _deviation(row: DeviationRecord | None, tolerance: float | None) -> Any:
+    """The cell of one difference."""
+    if row is None:
+        return DASH
+    text = pct(row.relative)
+    if not is_resolved(row):
+        return (f"not resolved ({text})", "unresolved")
+    beyond = (
+        tolerance is not None and row.relative is not None and abs(row.relative) > tolerance
+    )
+    return (text, "bad") if beyond else text
 
 
 def causes(record: Record) -> Table:
@@ -119,34 +101,31 @@ def causes(record: Record) -> Table:
     )
 
 
-def attachments(record: Record) -> Table:
+def attachments(record: Record, units: Units = ENGINEERING) -> Table:
     """What the way of holding the seats changes."""
     rows = []
     for key, ties in record.attachments.items():
         average = ties["average"].quantities if "average" in ties else {}
         for tie, variant in ties.items():
             cells: list[Any] = [f"{_named(record, key)}, {tie}"]
-            for name, figure in SHOWN.items():
+            for name, si in SHOWN.items():
                 value = variant.quantities.get(name)
-                cells.append(figure(value, nothing=DASH))
-                cells.append(pct(relative_change(value, average.get(name))))
+                cells.append(_figure(value, si, units))
+                change = relative_change(value, average.get(name))
+                cells.append(DASH if tie == "average" else pct(change))
             rows.append(cells)
-    return Table(
-        "Three ways to hold the same surfaces",
-        [
-            "model, ties",
-            "C_zz, m/N",
-            "against average",
-            "K_zz, N/m",
-            "against average",
-            "first bending, Hz",
-            "against average",
-        ],
-        rows,
-    )
+    head = ["model, ties"]
+    for name, si in SHOWN.items():
+        head += [f"{HEADS.get(name, name)}, {units.unit(si)}", "change"]
+    return Table("Three ways to hold the same surfaces", head, rows)
 
 
-def levels(record: Record) -> Table:
+def _figure(value: float | None, si: str, units: Units, digits: int = 5) -> str:
+    """A value for a column that names its unit."""
+    return hertz(value, DASH) if si == "Hz" else units.number(value, si, digits, DASH)
+
+
+def levels(record: Record, units: Units = ENGINEERING) -> Table:
     """The meshes that the bands come from."""
     rows = []
     for key, model in record.models.items():
@@ -157,9 +136,9 @@ def levels(record: Record) -> Table:
                 [
                     f"{_named(record, key)}, {n}",
                     whole_number(level.dofs),
-                    mm(level.h),
+                    units.number(level.h, "m", 4, DASH),
                     str(level.order or DASH),
-                    eng(level.quantities.get("C_zz"), 7),
+                    units.number(level.quantities.get("C_zz"), "m/N", 7, DASH),
                     DASH if bending is None else f"{bending:.3f}",
                 ]
             )
@@ -168,9 +147,9 @@ def levels(record: Record) -> Table:
         [
             "model",
             "degrees of freedom",
-            "element size h, mm",
+            f"element size h, {units.unit('m')}",
             "element order",
-            "C_zz, m/N",
+            f"C_zz, {units.unit('m/N')}",
             "first bending, Hz",
         ],
         rows,
@@ -178,11 +157,14 @@ def levels(record: Record) -> Table:
 
 
 def orders(record: Record) -> Table:
-    """Changes from mesh to mesh, and the bands made of them."""
+    """Changes from mesh to mesh, and the bands made of them, of what models are judged by."""
     rows = []
     for key, model in record.models.items():
         bands = model.convergence.quantities if model.convergence else {}
+        judged = record.verdict.judged or list(bands)
         for name, band in bands.items():
+            if name not in judged:
+                continue
             label = f"{name}, Hz" if _rank(name) == FREQUENCY else name
             rows.append([f"{_named(record, key)}: {label}", *_band(band)])
     return Table(
@@ -198,9 +180,8 @@ def orders(record: Record) -> Table:
             "band",
         ],
         rows,
-        "Layers: every mesh adds layers towards corners as well as order or cells, so errors "
-        "shrink by a nearly fixed share; the factor is measured on random shafts. A coupling's "
-        "numbers are shares of the geometric mean of its two diagonal entries.",
+        "Layers: errors shrink by a nearly fixed share, and the factor is measured on random "
+        "shafts. Of a coupling: shares of the geometric mean of its two diagonal entries.",
     )
 
 
@@ -267,28 +248,29 @@ def _counted_below(evidence: EvidenceRecord) -> str:
     return f"{min(part['below_hz'] for part in parts):.0f}"
 
 
-def pairs(record: Record) -> list[Table]:
-    """One table for each model, its modes beside those of the reference."""
+def pairs(record: Record) -> Table:
+    """Modes of every model beside those of the reference, a mode a row."""
     if record.mac is None:
-        return []
+        return Table("", [])
     reference = model_name(record, record.mac.reference)
-    head = ["mode", "partner", "MAC", "frequency, Hz", f"{reference}, Hz", "difference"]
-    tables = []
-    for key, table in record.mac.models.items():
-        caption = f"{_named(record, key)}: modes and their partners in the {reference}"
-        rows = [_pair(pair) for pair in table.pairs]
-        if rows:
-            tables.append(Table(caption, head, rows))
-    return tables
+    own = {
+        key: {pair.mode: pair for pair in table.pairs}
+        for key, table in record.mac.models.items()
+        if table.pairs
+    }
+    names = dict.fromkeys(name for found in own.values() for name in found)
+    rows = [[name, *(_pair(found.get(name)) for found in own.values())] for name in names]
+    return Table(
+        f"MAC of every mode with its partner in the {reference}",
+        ["mode", *(_named(record, key) for key in own)],
+        rows,
+        "In brackets: the partner, where it has another name.",
+    )
 
 
-def _pair(pair: PartnerRecord) -> list:
-    """The cells of one mode and its partner."""
-    return [
-        pair.mode,
-        (pair.partner or "none", "text"),
-        DASH if pair.mac is None else f"{pair.mac:.4f}",
-        hertz(pair.frequency_hz, DASH),
-        hertz(pair.reference_hz, DASH),
-        pct(pair.relative),
-    ]
+def _pair(pair: PartnerRecord | None) -> str:
+    """How like its partner a mode is."""
+    if pair is None or pair.mac is None:
+        return DASH
+    other = "" if pair.partner == pair.mode else f" ({pair.partner or 'none'})"
+    return f"{pair.mac:.4f}{other}"

@@ -1,8 +1,9 @@
 """One self-contained HTML page about one run.
 
 `write_report` turns the record of a run into tables and charts and fills ``report.html``, the
-template beside this file. The page needs no network and no other file; its one script turns the mode
-shapes, and without it pictures stand there.
+template beside this file: page one with the answer, a part for the customer, an appendix for the
+engineer. The page needs no network and no other
+file; its one script turns the mode shapes, and without it pictures stand there.
 """
 
 from __future__ import annotations
@@ -20,15 +21,17 @@ from solidgear.machine.whole_file import whole
 from solidgear.report import (
     charts,
     evidence_tables,
+    front,
     input_tables,
     race_tables,
     result_tables,
     run_tables,
 )
 from solidgear.report.border import as_record
-from solidgear.report.cells import DASH, capital, short_percent
+from solidgear.report.cells import DASH, capital
 from solidgear.report.lumped import lumped_tables
-from solidgear.report.reading import model_name, reference_of, validity
+from solidgear.report.reading import model_name, reference_of
+from solidgear.report.units import Units, units_named
 from solidgear.report.words import percent, seconds
 
 log = logging.getLogger(__name__)
@@ -38,22 +41,54 @@ log = logging.getLogger(__name__)
 Picture = bytes | str | os.PathLike
 
 
+#: sections of the customer's part and of the appendix: anchor -> title
+CUSTOMER = {
+    "scene": "Shaft and bearings",
+    "stiffness": "Stiffness and compliance",
+    "frequencies": "Natural frequencies",
+    "shapes": "Mode shape",
+    "models": "Which models may be used",
+}
+APPENDIX = {
+    "results": "All models side by side",
+    "matrices": "Stiffness of the other models",
+    "modes": "Natural frequencies of all models",
+    "renders": "Mode shapes of the other models",
+    "deviations": "Differences between models",
+    "causes": "Causes",
+    "attachments": "Attachments",
+    "verification": "Solution verification",
+    "mac": "Mode correlation",
+    "cost": "Cost",
+    "speed": "Speed against accuracy",
+    "lumped": "Lumped models",
+    "provenance": "Provenance",
+}
+
+
 def write_report(
     found: Record | Mapping[str, Any],
     folder: str | os.PathLike,
     images: Mapping[str, Picture] | None = None,
+    units: str | Units | None = None,
+    viewer: str = "",
 ) -> Path:
     """Write ``report.html`` into `folder`.
 
     Parameters
     ----------
     found : Record or mapping
-        What a run found; parts that are missing are said to be missing.
+        What a run found; parts that are missing are left out.
     folder : path
         Made if it is not there.
     images : mapping, optional
         Renders by model key: PNG, JPEG or SVG, as bytes or as a path. Without it the files that
         the record names are taken from `folder`.
+    units : str or Units, optional
+        ``engineering``, ``si`` or ``us``; by default what the record was shown in.
+    viewer : str
+        HTML that shows mode shapes, for the section of the mode shape, taken as it is: none of it
+        may come from a scene unescaped.
 
     Returns
     -------
@@ -63,14 +98,15 @@ def write_report(
     Raises
     ------
     SolidgearError
-        For plain data that is no record of this version.
+        For plain data that is no record of this version, or unknown units.
     """
     record = as_record(found)
     folder = Path(folder)
     folder.mkdir(parents=True, exist_ok=True)
     target = folder / "report.html"
     with whole(target) as partial:
-        partial.write_text(render_page(record, folder, images), encoding="utf-8")
+        page = render_page(record, folder, images, units, viewer)
+        partial.write_text(page, encoding="utf-8")
     return target
 
 
@@ -78,22 +114,64 @@ def render_page(
     found: Record | Mapping[str, Any],
     folder: str | os.PathLike | None = None,
     images: Mapping[str, Picture] | None = None,
+    units: str | Units | None = None,
+    viewer: str = "",
 ) -> str:
     """The page as text; parameters and errors are those of `write_report`."""
     from markupsafe import Markup
 
     record = as_record(found)
+    chosen = units_named(units or record.shown_in)
     warnings = list(record.warnings)
     drawn = _drawn(record, warnings)
+    shown = {
+        **_tables(record, chosen),
+        **_pictures(record, folder, images),
+        "charts": {name: Markup(svg.decode()) if svg else None for name, svg in drawn.items()},
+        "race": race_tables.section(folder, record.scene),
+        "viewer": Markup(viewer) if viewer else _viewer(record, folder),
+    }
     return template("report.html").render(
-        **_opening(record),
-        warnings=warnings,
-        charts={name: Markup(svg.decode()) if svg else None for name, svg in drawn.items()},
-        viewer=_viewer(record, folder),
-        renders=_renders(record, folder, images),
-        race=race_tables.section(folder, record.scene),
-        **_tables(record),
+        **_opening(record, chosen), **_contents(shown), **shown, warnings=warnings
     )
+
+
+def _contents(shown: Mapping[str, Any]) -> dict[str, Any]:
+    """The sections that have content, numbered, in the order of the page."""
+    charts = shown["charts"]
+    content = {
+        "scene": shown["scene_facts"] or shown["bearings"],
+        "stiffness": shown["own_matrices"],
+        "frequencies": shown["own_frequencies"],
+        "shapes": shown["own_renders"] or shown["viewer"],
+        "models": shown["models"],
+        "results": shown["summary"],
+        "matrices": shown["other_matrices"],
+        "modes": shown["frequencies"],
+        "renders": shown["other_renders"],
+        "deviations": shown["deviations"],
+        "causes": shown["causes"] or charts.get("causes"),
+        "attachments": shown["attachments"] or charts.get("attachments"),
+        "verification": shown["levels"] or shown["algebra"] or shown["where"],
+        "mac": shown["pairs"] or charts.get("mac"),
+        "cost": shown["cost"],
+        "speed": shown["race"],
+        "lumped": shown["lumped"],
+        "provenance": shown["environment"] or shown["summary"],
+    }
+    customer = [anchor for anchor in CUSTOMER if content[anchor]]
+    appendix = [anchor for anchor in APPENDIX if content[anchor]]
+    sections = {}
+    for anchors, titles, sign in ((customer, CUSTOMER, ""), (appendix, APPENDIX, "A")):
+        for n, anchor in enumerate(anchors, start=1):
+            number = f"{sign}{n}" if sign else f"{n}."
+            sections[anchor] = {"number": number, "title": titles[anchor]}
+    parts = [("The shaft and its numbers", customer), ("Appendix for the engineer", appendix)]
+    return {
+        "sections": sections,
+        "appendix": appendix,
+        "contents": [(part, anchors) for part, anchors in parts if anchors],
+    }
 
 
 def _drawn(record: Record, warnings: list[str]) -> dict[str, bytes | None]:
@@ -109,23 +187,20 @@ def _drawn(record: Record, warnings: list[str]) -> dict[str, bytes | None]:
     return drawn
 
 
-def _opening(record: Record) -> dict[str, Any]:
-    """What the head of the page says: the scene, the verdict, and which models are out."""
+def _opening(record: Record, units: Units) -> dict[str, Any]:
+    """What page one says: the numbers, the model they come from, and why it is trusted."""
     scene, verdict = record.scene, record.verdict
     return {
         "title": scene.get("title") or scene.get("name") or "shaft",
-        "scene": scene,
+        "stamp": front.stamp(record),
+        "numbers": front.numbers(record, units),
+        "reasons": front.reasons(record),
         "verdict": None if verdict == VerdictRecord() else verdict,
         "free": record.port.free if record.port else [],
-        "where": _where(record),
         "complete": record.complete,
         "missing": record.missing,
-        "trusted": _name_or_none(record, verdict.trust),
-        "cheapest": _name_or_none(record, verdict.cheapest),
-        "tolerance": short_percent(verdict.tolerance),
-        "reference": _name_or_none(record, reference_of(record)),
-        "distrusted": _reasons(record, "no", "not valid for this scene"),
-        "undecided": _reasons(record, "open", "not judged"),
+        "trusted": model_name(record, verdict.trust) if verdict.trust else None,
+        "reference": model_name(record, reference_of(record)) if reference_of(record) else None,
     }
 
 
@@ -142,32 +217,30 @@ def _where(record: Record) -> dict[str, Any] | None:
     }
 
 
-def _name_or_none(record: Record, key: str | None) -> str | None:
-    return model_name(record, key) if key else None
-
-
-def _reasons(record: Record, worth: str, default: str) -> list[tuple[str, str]]:
-    """Names of the models of one worth (see `validity`), each with the reason."""
-    chosen = {key: model for key, model in record.models.items() if validity(model) == worth}
-    return [(model_name(record, key), m.why_not or default) for key, m in chosen.items()]
-
-
-def _tables(record: Record) -> dict[str, Any]:
+def _tables(record: Record, units: Units) -> dict[str, Any]:
     """All tables of the page, by their names in the template."""
+    scene, own = record.scene, front.shown_model(record)
+    matrices = result_tables.matrices(record, units)
     return {
-        "scene_facts": input_tables.scene_facts(record),
-        "segments": input_tables.segments(record.scene),
-        "bearings": input_tables.bearings(record.scene),
-        "bearing_range": input_tables.bearing_range(record.bearing_range),
-        "masses": input_tables.masses(record.scene),
-        "summary": result_tables.summary(record),
-        "matrices": result_tables.matrices(record),
+        "scene_facts": input_tables.scene_facts(record, units),
+        "segments": input_tables.segments(scene, units),
+        "features": input_tables.features(scene, units),
+        "bearings": input_tables.bearings(scene, units),
+        "bearing_range": input_tables.bearing_range(record),
+        "masses": input_tables.masses(scene, units),
+        "own_matrices": matrices.get(own or "", []),
+        "own_frequencies": result_tables.own_frequencies(record, own),
+        "models": result_tables.models(record),
+        "summary": result_tables.summary(record, units),
+        # a compliance is the inverse of what is shown
+        "other_matrices": [found[0] for key, found in matrices.items() if key != own],
         "frequencies": result_tables.frequencies(record),
-        "deviations": evidence_tables.deviations(record),
+        "deviations": evidence_tables.deviations(record, units),
         "causes": evidence_tables.causes(record),
         "lumped": lumped_tables(record),
-        "attachments": evidence_tables.attachments(record),
-        "levels": evidence_tables.levels(record),
+        "attachments": evidence_tables.attachments(record, units),
+        "where": _where(record),
+        "levels": evidence_tables.levels(record, units),
         "orders": evidence_tables.orders(record),
         "algebra": evidence_tables.algebra(record),
         "pairs": evidence_tables.pairs(record),
@@ -194,16 +267,20 @@ def template(name: str):
     ).get_template(name)
 
 
-def _renders(
+def _pictures(
     record: Record, folder: str | os.PathLike | None, images: Mapping[str, Picture] | None
-) -> list[tuple[str, str | None]]:
-    """(caption, data URI or None when the picture could not be had)."""
+) -> dict[str, list[tuple[str, str | None]]]:
+    """(caption, data URI or None when the picture could not be had), of the model shown on page one
+    and of the others.
+    """
     if images is None:
         images = _named_images(record, folder)
-    renders = []
-    for key, image in images.items():
-        renders.append((capital(model_name(record, key)), data_uri(key, image)))
-    return renders
+    told = {k: (capital(model_name(record, k)), data_uri(k, image)) for k, image in images.items()}
+    own = front.shown_model(record)
+    return {
+        "own_renders": [found for key, found in told.items() if key == own],
+        "other_renders": [found for key, found in told.items() if key != own],
+    }
 
 
 def _viewer(record: Record, folder: str | os.PathLike | None) -> Any:

@@ -6,45 +6,57 @@ from collections.abc import Mapping
 from typing import Any
 
 from solidgear.evidence.record import Record
-from solidgear.report.cells import DASH, eng, mm, short_percent
+from solidgear.report.cells import DASH, eng, short_percent
+from solidgear.report.reading import model_name
 from solidgear.report.table import Table
+from solidgear.report.units import ENGINEERING, Units
 from solidgear.report.words import hertz, is_number, percent
 
+#: of a bearing's 6x6 -> its place and unit
+BEARING_ENTRIES = {
+    "K_xx": (0, 0, "N/m"),
+    "K_yy": (1, 1, "N/m"),
+    "K_zz": (2, 2, "N/m"),
+    "K_z,thx": (2, 3, "N/rad"),
+    "K_thx": (3, 3, "N m/rad"),
+    "K_thz": (5, 5, "N m/rad"),
+}
+#: lengths that a feature can have
+SIZES = ("y", "length", "width", "depth", "diameter", "radius", "size", "height")
 
-def scene_facts(record: Record) -> Table:
+
+def scene_facts(record: Record, units: Units = ENGINEERING) -> Table:
     """The scene in a few lines."""
     scene = record.scene
     material, housing = scene.get("material") or {}, scene.get("housing_axial")
     free = record.port.free if record.port else []
     rows = [
         ["source", scene.get("source") or "not given"],
-        ["length", f"{mm(scene.get('length'))} mm"],
-        ["material", _material(material)],
-        ["lumped point", _lumped_point(record)],
+        ["length", units.text(scene.get("length"), "m", 6, DASH)],
+        ["material", _material(material, units)],
+        ["lumped point", _lumped_point(record, units)],
         ["free motions there", ", ".join(free) or "none"],
-        [
-            "housing spring along y",
-            f"{eng(housing)} N/m" if is_number(housing) else "none",
-        ],
+        ["housing spring along y", units.text(housing, "N/m", nothing="none")],
         ["asked for", _asked(scene.get("ask") or {})],
     ]
     return Table("Scene", ["item", "value"], rows if scene else [], css="facts")
 
 
-def _material(material: Mapping[str, Any]) -> str:
-    modulus = eng(material.get("E"), 4)
+def _material(material: Mapping[str, Any], units: Units) -> str:
+    modulus = units.text(material.get("E"), "Pa", 4, DASH)
     nu, density = material.get("nu", DASH), material.get("density", DASH)
-    return f"E = {modulus} Pa, nu = {nu}, density = {density} kg/m³"
+    return f"E = {modulus}, nu = {nu}, density = {density} kg/m³"
 
 
-def _lumped_point(record: Record) -> str:
+def _lumped_point(record: Record, units: Units) -> str:
     """Where the lumped point is and what carries it, by the scene, else by the solution."""
     port = record.scene.get("port")
     if not port:
         port = record.port.model_dump(exclude_defaults=True) if record.port else {}
+    y, lo, hi = (units.number(port.get(name), "m", 6, DASH) for name in ("y", "lo", "hi"))
     return (
-        f"{port.get('name', '')} on the axis at y = {mm(port.get('y'))} mm, "
-        f"carried by the outer surface from {mm(port.get('lo'))} to {mm(port.get('hi'))} mm, "
+        f"{port.get('name', '')} on the axis at y = {y} {units.unit('m')}, "
+        f"carried by the outer surface from {lo} to {hi} {units.unit('m')}, "
         f"attachment {port.get('attachment', DASH)}"
     )
 
@@ -59,7 +71,7 @@ def _asked(ask: Mapping) -> str:
     return words
 
 
-def segments(scene: Mapping) -> Table:
+def segments(scene: Mapping, units: Units = ENGINEERING) -> Table:
     """The shaft, a segment a row."""
     default = scene.get("material") or {}
     rows = []
@@ -69,12 +81,12 @@ def segments(scene: Mapping) -> Table:
             [
                 str(s.get("name", "")),
                 (s.get("part", "shaft"), "word text"),
-                mm(s.get("y0")),
-                mm(s.get("y1")),
-                mm(s.get("length", s["y1"] - s["y0"])),
-                _diameters(s, "outer"),
-                _diameters(s, "inner") if hollow else DASH,
-                (_own_material(s.get("material") or default, default), "word text"),
+                units.number(s.get("y0"), "m", 6, DASH),
+                units.number(s.get("y1"), "m", 6, DASH),
+                units.number(s.get("length", s["y1"] - s["y0"]), "m", 6, DASH),
+                _diameters(s, "outer", units),
+                _diameters(s, "inner", units) if hollow else DASH,
+                (_own_material(s.get("material") or default, default, units), "word text"),
             ]
         )
     return Table(
@@ -82,60 +94,56 @@ def segments(scene: Mapping) -> Table:
         [
             "segment",
             "part",
-            "from y, mm",
-            "to y, mm",
-            "length, mm",
-            "outer diameter, mm",
-            "bore, mm",
+            f"from y, {units.unit('m')}",
+            f"to y, {units.unit('m')}",
+            f"length, {units.unit('m')}",
+            f"outer diameter, {units.unit('m')}",
+            f"bore, {units.unit('m')}",
             "material",
         ],
         rows,
     )
 
 
-def _diameters(segment: Mapping, side: str) -> str:
-    """Diameters, mm, at both ends of the outer or inner surface."""
-    return f"{mm(2 * segment[side + '0'])} → {mm(2 * segment[side + '1'])}"
+def _diameters(segment: Mapping, side: str, units: Units) -> str:
+    """Diameters at both ends of the outer or inner surface; one where they are the same."""
+    ends = [units.number(2 * segment[side + end], "m", 6, DASH) for end in "01"]
+    return " → ".join(dict.fromkeys(ends))
 
 
-def _own_material(material: Mapping, default: Mapping) -> str:
+def _own_material(material: Mapping, default: Mapping, units: Units) -> str:
     if material == default:
         return "default"
-    modulus = eng(material.get("E"), 4)
+    modulus = units.text(material.get("E"), "Pa", 4, DASH)
     return f"E {modulus}, nu {material.get('nu')}, density {material.get('density')}"
 
 
-def bearings(scene: Mapping) -> Table:
+def bearings(scene: Mapping, units: Units = ENGINEERING) -> Table:
     """The bearings with the stiffness they are solved with."""
     rows = []
     for b in scene.get("bearings") or []:
         stiffness = b.get("stiffness") or [[None] * 6] * 6
-        shown = [stiffness[i][j] for i, j in ((0, 0), (1, 1), (2, 2), (2, 3), (3, 3), (5, 5))]
+        shown = [(stiffness[i][j], si) for i, j, si in BEARING_ENTRIES.values()]
         # what is held has the stiffness of nothing real
-        cells = [b["hold"] if value else DASH for value in shown] if b.get("hold") else None
+        cells = [b["hold"] if value else DASH for value, _ in shown] if b.get("hold") else None
         status = b.get("status") or "not stated"
         rows.append(
             [
                 str(b.get("name", "")),
-                mm(b.get("y")),
-                mm(b.get("seat_width")),
+                units.number(b.get("y"), "m", 6, DASH),
+                units.number(b.get("seat_width"), "m", 6, DASH),
                 (b.get("attachment", DASH), "word text"),
-                *(cells or (eng(value, 4) for value in shown)),
+                *(cells or (units.number(value, si, 4, DASH) for value, si in shown)),
                 (status, f"word text mark {status}"),
                 (str(b.get("note") or ""), "text"),
             ]
         )
     head = [
         "bearing",
-        "y, mm",
-        "seat, mm",
+        f"y, {units.unit('m')}",
+        f"seat, {units.unit('m')}",
         "attachment",
-        "K_xx, N/m",
-        "K_yy, N/m",
-        "K_zz, N/m",
-        "K_z,thx, N/rad",
-        "K_thx, N m/rad",
-        "K_thz, N m/rad",
+        *(f"{name}, {units.unit(si)}" for name, (_, _, si) in BEARING_ENTRIES.items()),
         "status",
         "note",
     ]
@@ -150,10 +158,11 @@ def bearings(scene: Mapping) -> Table:
     )
 
 
-def bearing_range(found: Mapping) -> Table:
+def bearing_range(record: Record) -> Table:
     """What is not known of catalogue bearings, as bands on natural frequencies: beside these stand
     those of mesh and model.
     """
+    found = record.bearing_range
     rows = []
     for b in found.get("bounds") or []:
         middle, low, high = b["frequency_hz"], b["low"], b["high"]
@@ -161,7 +170,7 @@ def bearing_range(found: Mapping) -> Table:
         rows.append([str(b["mode"]), *(hertz(f) for f in (middle, low, high)), band])
     lost = [f"Bearing {name} carries nothing somewhere in it." for name in found.get("lost") or []]
     note = (
-        f"Of the {found.get('model')} model over {found.get('points')} points: "
+        f"Of the {model_name(record, found.get('model'))} over {found.get('points')} points: "
         f"{found.get('varied')}. {' '.join(lost)}"
     )
     return Table(
@@ -172,20 +181,43 @@ def bearing_range(found: Mapping) -> Table:
     )
 
 
-def masses(scene: Mapping) -> Table:
+def features(scene: Mapping, units: Units = ENGINEERING) -> Table:
+    """What is cut out of the shaft, stands on it or rounds its edges."""
+    rows = []
+    for found in [*(scene.get("features") or []), *(scene.get("blends") or [])]:
+        where = str(found.get("segment") or found.get("at") or DASH)
+        sizes = [
+            f"{name.replace('_', ' ')} {units.text(found[name], 'm', 6)}"
+            for name in SIZES
+            if is_number(found.get(name))
+        ]
+        kind = str(found.get("kind", "")).replace("_", " ")
+        rows.append([str(found.get("name") or kind), kind, (where, "word text"), (", ".join(sizes), "text")])
+    return Table("Features", ["feature", "kind", "on", "place and size"], rows)
+
+
+def masses(scene: Mapping, units: Units = ENGINEERING) -> Table:
     """The rigid masses on ports."""
     rows = [
         [
             str(mass.get("name", "")),
             str(mass.get("on") or "a seat of its own"),
-            mm(mass.get("y")),
+            units.number(mass.get("y"), "m", 6, DASH),
             eng(mass.get("mass"), 4),
             ", ".join(eng(value, 4) for value in mass.get("inertia", ())),
-            ", ".join(mm(value) for value in mass.get("offset", ())),
+            ", ".join(units.number(value, "m", 6, DASH) for value in mass.get("offset", ())),
         ]
         for mass in scene.get("masses") or []
     ]
-    head = ["mass", "moves with", "y, mm", "mass, kg", "inertia x, y, z, kg m²", "offset, mm"]
+    length = units.unit("m")
+    head = [
+        "mass",
+        "moves with",
+        f"y, {length}",
+        "mass, kg",
+        "inertia x, y, z, kg m²",
+        f"offset, {length}",
+    ]
     return Table(
         "Rigid masses",
         head,

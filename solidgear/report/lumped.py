@@ -1,4 +1,4 @@
-"""Tables of the lumped models for the report."""
+"""Tables of the lumped models for the report, where a scene asks for them."""
 
 from __future__ import annotations
 
@@ -10,9 +10,11 @@ from solidgear.report.words import engineering, hertz, percent
 
 
 def lumped_tables(record: Record) -> list[Table]:
-    """One table of first bending side by side, one of the synthesis in detail per body."""
+    """One table of first bending side by side, one of the synthesis in detail per body; none where
+    the scene does not ask for lumped synthesis.
+    """
     lumped = {key: found for key, found in record.lumped.items() if found.variants}
-    if not lumped:
+    if not lumped or not (record.scene.get("ask") or {}).get("lumped"):
         return []
     methods = list(next(iter(lumped.values())).variants)
     rows = []

@@ -1,4 +1,6 @@
-"""Tables of what was solved: the summary of all models, 6x6 matrices and natural frequencies."""
+"""Tables of what was solved: which models may be used, their summary, 6x6 matrices and natural
+frequencies.
+"""
 
 from __future__ import annotations
 
@@ -7,7 +9,7 @@ from typing import Any
 
 from solidgear.evidence.record import Matrix, ModelRecord, ModeRecord, Record
 from solidgear.frames import DOF_NAMES
-from solidgear.report.cells import DASH, capital, eng, megabytes, pct, whole_number
+from solidgear.report.cells import DASH, capital, pct, short_percent, whole_number
 from solidgear.report.reading import (
     LUMPED,
     answer_seconds,
@@ -17,11 +19,13 @@ from solidgear.report.reading import (
     is_beam,
     is_resolved,
     model_name,
+    model_of,
     reference_of,
     relative_change,
     validity,
 )
 from solidgear.report.table import Table
+from solidgear.report.units import ENGINEERING, Units
 from solidgear.report.words import BLOCK_UNITS, band_percent, hertz, seconds
 
 #: below this share of the geometric mean of its diagonal entries a coupling is printed faint
@@ -38,11 +42,17 @@ WORTH: dict[str, Cell] = {
 }
 
 
-def summary(record: Record) -> Table:
+def summary(record: Record, units: Units = ENGINEERING) -> Table:
     """Quantities down, models across: four models fit a page, thirteen columns do not."""
 
     def row(label: str, cell: Callable[[ModelRecord], Cell]) -> list[Cell]:
         return [label, *(cell(model) for model in record.models.values())]
+
+    def value(name: str, kind: str, place: int, si: str) -> list[Cell]:
+        return row(
+            f"{name}, {units.unit(si)}",
+            lambda m: units.number(entry(getattr(m, kind), place, place), si, nothing=DASH),
+        )
 
     def apart(label: str, quantity: str) -> list[Cell]:
         return [label, *(_apart(record, key, quantity) for key in record.models)]
@@ -54,35 +64,55 @@ def summary(record: Record) -> Table:
     bands = [model.band for model in record.models.values()]
     rows = [
         row("valid for this scene", lambda m: WORTH[validity(m)]),
-        row("K_zz, N/m", lambda m: eng(entry(m.stiffness, 2, 2))),
-        row("C_zz, m/N", lambda m: eng(entry(m.compliance, 2, 2))),
-        row("K_yy, N/m", lambda m: eng(entry(m.stiffness, 1, 1))),
-        row("K_thx, N m/rad", lambda m: eng(entry(m.stiffness, 3, 3))),
-        row("first bending, Hz", lambda m: hertz(first_frequency(m, "bending"), DASH)),
-        row("first axial, Hz", lambda m: hertz(first_frequency(m, "axial"), DASH)),
-        row("first torsion, Hz", lambda m: hertz(first_frequency(m, "torsion"), DASH)),
+        value("K_zz", "stiffness", 2, "N/m"),
+        value("C_zz", "compliance", 2, "m/N"),
+        value("K_yy", "stiffness", 1, "N/m"),
+        value("K_thx", "stiffness", 3, "N m/rad"),
         apart("C_zz against reference", "C_zz"),
         apart("first bending against reference", "bending 1"),
-        band("band of the worst compliance (mesh)", [b.compliance if b else None for b in bands]),
-        band(
-            "band of first bending (mesh)", [b.each.get("bending 1") if b else None for b in bands]
-        ),
+        band("band, worst compliance", [b.compliance if b else None for b in bands]),
+        band("band, first bending", [b.each.get("bending 1") if b else None for b in bands]),
         row("degrees of freedom", lambda m: whole_number(m.dofs)),
-        row("building and solving, s", lambda m: seconds(answer_seconds(m), DASH)),
-        row("peak memory, MB", lambda m: megabytes(m.peak_mb)),
     ]
     note = (
-        "Stiffness and compliance with the attachments of the scene. “Against reference” compares "
-        "beams with section ties on both sides, where they have a like-for-like partner, and "
-        "solids as the scene has them."
+        "“Against reference” compares beams with section ties on both sides, where they have a "
+        "like-for-like partner, and solids as the scene has them."
     )
     return Table(
-        "Results at the lumped point",
+        "Results at the lumped point, attachments of the scene",
         ["quantity", *(capital(model_name(record, key)) for key in record.models)],
         rows if record.models else [],
         note,
         css="summary",
     )
+
+
+def models(record: Record) -> Table:
+    """Which models may be used, and why the others not: a model a row."""
+    rows = []
+    for key, model in record.models.items():
+        rows.append(
+            [
+                capital(model_name(record, key)),
+                WORTH[validity(model)],
+                hertz(first_frequency(model, "bending"), DASH),
+                _apart(record, key, "bending 1"),
+                _apart(record, key, "C_zz"),
+                seconds(answer_seconds(model), DASH),
+                (model.why_not or "", "text"),
+            ]
+        )
+    tolerance = short_percent(record.verdict.tolerance)
+    head = [
+        "model",
+        f"within {tolerance}" if tolerance else "valid",
+        "first bending, Hz",
+        "first bending off",
+        "C_zz off",
+        "time, s",
+        "why not",
+    ]
+    return Table("Models of this scene, cheapest first", head, rows)
 
 
 def _apart(record: Record, key: str, quantity: str) -> Cell:
@@ -103,22 +133,24 @@ def _band(record: Record, key: str, value: float | None) -> Cell:
     return band_percent(value, DASH)
 
 
-def matrices(record: Record) -> list[tuple[str, list[dict]]]:
+def matrices(record: Record, units: Units = ENGINEERING) -> dict[str, list[dict]]:
     """The matrices of every model; the lumped one stands on those of another, shown there."""
-    out = []
+    out = {}
     for key, model in record.models.items():
         if model.family == LUMPED:
             continue
         name = model_name(record, key)
         both = (("stiffness", model.stiffness), ("compliance", model.compliance))
-        shown = [_matrix(record, name, kind, values) for kind, values in both if values]
-        out.append((name, shown))
+        shown = [_matrix(record, name, kind, values, units) for kind, values in both if values]
+        if shown:
+            out[key] = shown
     return out
 
 
-def _matrix(record: Record, name: str, kind: str, values: Matrix) -> dict:
+def _matrix(record: Record, name: str, kind: str, values: Matrix, units: Units) -> dict:
     """A 6x6 with a unit over each of its four blocks."""
     free = record.port.free if record.port else []
+    same, mixed, turn = BLOCK_UNITS[kind]
     rows = []
     for i, direction in enumerate(DOF_NAMES):
         cells = []
@@ -128,9 +160,12 @@ def _matrix(record: Record, name: str, kind: str, values: Matrix) -> dict:
                 cells.append((DASH, "quiet"))
                 continue
             faint = i != j and _is_faint(value, entry(values, i, i), entry(values, j, j))
-            cells.append((eng(value), "faint" if faint else ""))
+            si = mixed if (i < 3) != (j < 3) else same if i < 3 else turn
+            # without exponents a coupling of nothing would fill its cell with zeros
+            text = "0" if faint and not units.exponents else units.number(value, si)
+            cells.append((text, "faint" if faint else ""))
         rows.append((direction, cells))
-    same, mixed, turn = BLOCK_UNITS[kind]
+    same, mixed, turn = (units.unit(si) for si in (same, mixed, turn))
     return {
         "caption": f"{capital(name)}: {kind}",
         "names": DOF_NAMES,
@@ -143,6 +178,27 @@ def _is_faint(coupling: float, first: float | None, second: float | None) -> boo
     if first is None or second is None:
         return False
     return abs(coupling) <= FAINT * abs(first * second) ** 0.5
+
+
+def own_frequencies(record: Record, key: str | None) -> Table:
+    """Natural frequencies of one model with their bars."""
+    model = model_of(record, key)
+    each = model.band.each if model.band else {}
+    rows = []
+    for mode in sorted(model.modes, key=lambda m: m.frequency_hz or 0.0):
+        bar = each.get(mode.name)
+        told = "0 (rigid)" if mode.frequency_hz == 0 else hertz(mode.frequency_hz, DASH)
+        cell = DASH if bar is None else f"± {band_percent(bar)}"
+        rows.append([mode.name, told, str(mode.multiplicity), cell])
+    note = "Two shapes: a pair of the same frequency in two planes."
+    if any(row[-1] == DASH and row[1] != "0 (rigid)" for row in rows):
+        note += " A dash: no bar of its own; the higher a mode, the more it asks of a mesh."
+    return Table(
+        f"Natural frequencies of the {model_name(record, key)}",
+        ["mode", "Hz", "shapes", "bar"],
+        rows,
+        note,
+    )
 
 
 def frequencies(record: Record) -> Table:

@@ -63,6 +63,9 @@ class Ask(Model):
     quantities : tuple of str
         What models are judged by, names of `Quantity`; empty is the usual set, compliances with
         first bending and first axial mode.
+    lumped : bool
+        Whether a comparison also tells of every synthesis of a lumped mass, the thesis's equations
+        52 and 53 among them.
 
     Raises
     ------
@@ -81,6 +84,7 @@ class Ask(Model):
     max_frequency: Frequency | None = None
     tolerance: Tolerance = 0.05
     quantities: tuple[Quantity, ...] = ()
+    lumped: Annotated[bool, Field(strict=True)] = False
 
 
 class Scene(Displayed, Model):

@@ -146,6 +146,7 @@ class Verdict:
             "tolerance": self.tolerance,
             "decibels": self.decibels,
             "judge": JUDGE,
+            "judge_title": LADDER[JUDGE].title,
             "judge_change": self.judge_change,
             "cheapest": {"pinion": best.pinion, "gear": best.gear},
             "mixes": [asdict(mix) for mix in self.mixes],
@@ -156,8 +157,8 @@ class Verdict:
     def sentences(self) -> list[str]:
         """What follows from the table."""
         out = [
-            f"Judge: both shafts as {JUDGE} solids; from their coarser mesh the frequencies move "
-            f"by {100 * self.judge_change:.2g} % at most."
+            f"Judge: both shafts as {LADDER[JUDGE].title}s; from their coarser mesh the frequencies "
+            f"move by {100 * self.judge_change:.2g} % at most."
         ]
         for side in SIDES:
             ends = {}

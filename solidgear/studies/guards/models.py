@@ -37,7 +37,7 @@ def beam_against_solid(probe: Probe) -> Notices:
             gaps = probe.gaps(model)
         except SolidgearError as error:
             # One beam that cannot be made says nothing of the other.
-            yield Notice("avoid", (model,), f"there is no {model} beam of this shaft: {error}")
+            yield Notice("avoid", (model,), f"there is no {LADDER[model].title} of this shaft: {error}")
             continue
         if not gaps:
             continue
@@ -58,7 +58,7 @@ def beam_against_solid(probe: Probe) -> Notices:
             if gap > 0
             else "lower"
         )
-        text = f"{name} of the {model} beam is {100 * abs(gap):.3g} % {side} than that of a light harmonic solid {TIES[worst['attachment']]}"
+        text = f"{name} of the {LADDER[model].title} is {100 * abs(gap):.3g} % {side} than that of a light harmonic solid {TIES[worst['attachment']]}"
         if kind == verdict.BEYOND:
             yield Notice(
                 "avoid",

@@ -1,0 +1,205 @@
+"""Page one of the report: the numbers asked with their bars, the model they come from, and why it
+is trusted, in a record's words and the units of the reader.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from collections.abc import Iterable, Mapping
+from typing import Any
+
+from solidgear.evidence.record import ModelRecord, Record, VerdictRecord
+from solidgear.evidence.ties import SCENE
+from solidgear.report.cells import DASH, short_percent
+from solidgear.report.reading import (
+    BEAM,
+    LUMPED,
+    entry,
+    first_frequency,
+    is_resolved,
+    model_name,
+    model_of,
+    reference_of,
+    relative_change,
+    validity,
+)
+from solidgear.report.table import Table
+from solidgear.report.units import Units, digits_for
+from solidgear.report.words import band_percent, percent
+
+#: of page one -> (what it is in words, symbol, matrix or family of modes, entry, SI unit)
+Row = tuple[str, str, str, tuple[int, int] | None, str]
+ROWS: dict[str, Row] = {
+    "bending 1": ("First bending mode", "f1", "bending", None, "Hz"),
+    "axial 1": ("First axial mode", "", "axial", None, "Hz"),
+    "K_zz": ("Stiffness across the shaft", "K_zz", "stiffness", (2, 2), "N/m"),
+    "K_yy": ("Stiffness along the shaft", "K_yy", "stiffness", (1, 1), "N/m"),
+    "K_thx": ("Stiffness against tilting", "K_thx", "stiffness", (3, 3), "N m/rad"),
+    "C_zz": ("Compliance across the shaft", "C_zz", "compliance", (2, 2), "m/N"),
+    "C_yy": ("Compliance along the shaft", "C_yy", "compliance", (1, 1), "m/N"),
+    "C_thx": ("Compliance against tilting", "C_thx", "compliance", (3, 3), "rad/(N m)"),
+}
+#: told only where the scene asks for them
+ON_REQUEST: dict[str, Row] = {
+    "K_z,thx": ("Stiffness, motion across with tilting", "K_z,thx", "stiffness", (2, 3), "N/rad"),
+    "C_z,thx": ("Compliance, motion across with tilting", "C_z,thx", "compliance", (2, 3), "rad/N"),
+    "bending 2": ("Second bending mode", "", "bending", None, "Hz"),
+    "torsion 1": ("First torsion mode", "", "torsion", None, "Hz"),
+}
+#: the two directions across a shaft are told apart from here on
+ALIKE = 0.01
+#: figures of the hash that page and customer compare
+HASH_DIGITS = 12
+
+
+def shown_model(record: Record) -> str | None:
+    """The model whose numbers stand on page one: the trusted one, else the reference, else the last
+    that was solved.
+    """
+    solved = [key for key, model in record.models.items() if model.stiffness or model.modes]
+    for key in (record.verdict.trust, reference_of(record)):
+        if key in solved:
+            return key
+    return solved[-1] if solved else None
+
+
+def scene_hash(scene: Mapping[str, Any]) -> str:
+    """First figures of the SHA-256 of a scene as it was read: of its data, whatever its file looks
+    like.
+    """
+    if not scene:
+        return ""
+    text = json.dumps(scene, sort_keys=True, ensure_ascii=True)
+    return hashlib.sha256(text.encode()).hexdigest()[:HASH_DIGITS]
+
+
+def numbers(record: Record, units: Units) -> Table:
+    """What was asked, each number with its bar, from the model that is shown."""
+    key = shown_model(record)
+    model = model_of(record, key)
+    asked = (record.scene.get("ask") or {}).get("quantities") or []
+    rows: dict[str, Row] = {**ROWS, **{q: ON_REQUEST[q] for q in asked if q in ON_REQUEST}}
+    cells = [_number(model, name, row, units) for name, row in rows.items()]
+    cells += _other_direction(model, units)
+    caption = f"At the lumped point {(record.scene.get('port') or {}).get('name', '')}".strip()
+    if key:
+        caption += f", by the {model_name(record, key)}"
+    return Table(
+        caption,
+        ["quantity", "value", "bar"],
+        [row for row in cells if row],
+        "K holds all other motions still, C leaves them free. The bar is what mesh and solver "
+        "leave open; it says nothing of bearings or load.",
+        css="numbers",
+    )
+
+
+def _number(model: ModelRecord, name: str, row: Row, units: Units) -> list[Any]:
+    """The cells of one quantity; none where there is no such number."""
+    words, symbol, kind, place, si = row
+    value = _value(model, name, kind, place)
+    if value is None or value == 0:
+        return []
+    bar = model.band.each.get(name) if model.band else None
+    label = f"{words}, {symbol}" if symbol else words
+    told = units.text(value, si, digits_for(bar))
+    return [label, (told, "strong"), f"± {band_percent(bar)}" if bar is not None else "no bar"]
+
+
+def _value(
+    model: ModelRecord, name: str, kind: str, place: tuple[int, int] | None
+) -> float | None:
+    if place is not None:
+        return entry(getattr(model, kind), *place)
+    exact = next((m.frequency_hz for m in model.modes if m.name == name), None)
+    return exact if exact is not None or name.endswith("2") else first_frequency(model, kind)
+
+
+def _other_direction(model: ModelRecord, units: Units) -> Iterable[list[Any]]:
+    """The other direction across the shaft, where bearings or features make it another number."""
+    one, other = (entry(model.stiffness, i, i) for i in (2, 0))
+    change = relative_change(other, one)
+    if change is None or abs(change) <= ALIKE:
+        return []
+    return [["Stiffness across, other direction, K_xx", (units.text(other, "N/m", 4), "strong"), "no bar"]]
+
+
+def reasons(record: Record) -> list[str]:
+    """Why the shown model is trusted, in three plain sentences; without a verdict, why not."""
+    verdict = record.verdict
+    if verdict == VerdictRecord():
+        return ["The run did not get far enough to give a verdict."]
+    if not verdict.trust:
+        return list(verdict.sentences[:3])
+    return [_own(record), _second(record), _others(record)]
+
+
+def _own(record: Record) -> str:
+    """How sure the trusted model is of itself."""
+    trust = record.verdict.trust
+    model = model_of(record, trust)
+    solves = f", which solves {model.theory}," if model.theory else ""
+    bars = model.band.each if model.band else {}
+    judged = record.verdict.judged or list(bars)
+    c = max((bars[q] or 0.0 for q in judged if q.startswith("C_") and q in bars), default=None)
+    sure = [(c, "compliance"), (bars.get("bending 1"), "first bending")]
+    told = [f"{band_percent(bar)} in {what}" for bar, what in sure if bar is not None]
+    asked = short_percent(record.verdict.tolerance)
+    wanted = f"; {asked} was asked for" if asked else ""
+    known = f" is sure of its own numbers to {' and '.join(told)}" if told else " judges the others"
+    return f"The {model_name(record, trust)}{solves}{known}{wanted}."
+
+
+def _second(record: Record) -> str:
+    """What a second solid says of the trusted one."""
+    trust, judged = record.verdict.trust, record.verdict.judged
+    told = []
+    for key, model in record.models.items():
+        rows = [
+            r
+            for r in record.deviations
+            if r.model == key
+            and r.reference == trust
+            and r.attachment == SCENE
+            and (r.quantity in judged or not judged)
+            and r.relative is not None
+        ]
+        if model.family in (BEAM, LUMPED) or key == trust or not rows:
+            continue
+        worst = max(abs(r.relative or 0.0) for r in rows)
+        text = f"The {model_name(record, key)}, solved apart, differs by at most {percent(worst, False)}"
+        inside = not any(is_resolved(r) for r in rows)
+        told.append(text + (", less than the bars of both." if inside else "."))
+    return " ".join(told) or "No second solid was solved that could confirm it."
+
+
+def _others(record: Record) -> str:
+    """Which cheaper models will do, and which will not."""
+    verdict = record.verdict
+    tolerance = short_percent(verdict.tolerance) or "the tolerance"
+    out = [model_name(record, k) for k, m in record.models.items() if validity(m) == "no"]
+    keep = f"do not use the {_listed(out)} here" if out else ""
+    cheapest = verdict.cheapest
+    if cheapest and cheapest != verdict.trust:
+        only = " for first bending and below" if model_of(record, cheapest).family == LUMPED else ""
+        text = f"The {model_name(record, cheapest)} will do as well within {tolerance}{only}"
+        return f"{text}; {keep}." if keep else f"{text}."
+    text = f"No cheaper model is known to stay within {tolerance}"
+    return f"{text}: {keep}." if keep else f"{text}."
+
+
+def _listed(names: list[str]) -> str:
+    return names[0] if len(names) == 1 else f"{', '.join(names[:-1])} or {names[-1]}"
+
+
+def stamp(record: Record) -> list[tuple[str, str]]:
+    """Date, version and scene of the run, as (what, value)."""
+    of = record.environment
+    facts = [
+        ("scene", str(record.scene.get("name") or "")),
+        ("scene hash", scene_hash(record.scene)),
+        ("date", str(of.get("date") or "")),
+        ("solidgear", str(of.get("solidgear") or "")),
+    ]
+    return [(what, value or DASH) for what, value in facts]

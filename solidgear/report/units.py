@@ -1,0 +1,150 @@
+"""Units in which tables and pages are read: a customer's, SI, or pounds and inches.
+
+Results are SI inside and in every JSON; only what a person reads is converted, here and nowhere
+else. Factors are exact by definition: 1 in = 25.4 mm, 1 lbf = 4.4482216152605 N (NIST SP 811,
+appendix B).
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from solidgear.errors import SolidgearError, nearest
+from solidgear.report.words import NOTHING, engineering, is_number
+
+INCH, POUND = 0.0254, 4.4482216152605
+#: between groups of three digits: the page must not break a number there
+GROUP = "\u00a0"
+#: sizes, as powers of ten, that are written without an exponent
+SMALLEST, LARGEST = -4, 8
+
+
+@dataclass(frozen=True)
+class Units:
+    """A choice of units.
+
+    Attributes
+    ----------
+    name : str
+        What ``--units`` calls it.
+    about : str
+        The choice in a few words.
+    of : mapping of str to (str, float)
+        SI unit -> its name here, and how many of it make one of SI; those left out stay as they
+        are.
+    exponents : bool
+        Whether numbers carry exponents (multiples of three) or all their digits.
+    """
+
+    name: str
+    about: str
+    of: Mapping[str, tuple[str, float]]
+    exponents: bool = False
+
+    def unit(self, si: str) -> str:
+        """The name of an SI unit here."""
+        return self.of.get(si, (si, 1.0))[0]
+
+    def value(self, value: float | None, si: str) -> float | None:
+        """A value of SI in this unit."""
+        return value * self.of.get(si, (si, 1.0))[1] if is_number(value) else None
+
+    def number(
+        self, value: float | None, si: str, digits: int = 5, nothing: str = NOTHING
+    ) -> str:
+        """A value of SI in this unit, without its name.
+
+        Examples
+        --------
+        >>> ENGINEERING.number(4.7105e9, "N/m"), ENGINEERING.number(5.9612e-10, "m/N")
+        ('4710.5', '0.59612')
+        """
+        here = self.value(value, si)
+        if self.exponents:
+            return engineering(here, digits, nothing)
+        return plain(here, digits, nothing)
+
+    def text(self, value: float | None, si: str, digits: int = 5, nothing: str = NOTHING) -> str:
+        """The same with its unit."""
+        number = self.number(value, si, digits, nothing)
+        return number if number == nothing else f"{number} {self.unit(si)}"
+
+
+def plain(value: float | None, digits: int = 5, nothing: str = NOTHING) -> str:
+    """A number with all its digits, in groups of three from five digits on; an exponent only for
+    what is extremely large or small.
+    """
+    if not is_number(value):
+        return nothing
+    if value == 0:
+        return "0"
+    value = float(f"{value:.{digits - 1}e}")
+    size = math.floor(math.log10(abs(value)) + 1e-12)
+    if not SMALLEST <= size <= LARGEST:
+        return engineering(value, digits)
+    text = f"{value:,.{max(digits - 1 - size, 0)}f}"
+    return text.replace(",", GROUP if size >= 4 else "")
+
+
+def digits_for(bar: float | None, least: int = 3, most: int = 6) -> int:
+    """Figures that a number with this relative bar deserves: one beyond the first uncertain one."""
+    if not is_number(bar) or bar <= 0:
+        return most - 1
+    return min(max(math.ceil(-math.log10(bar)) + 1, least), most)
+
+
+def in_ascii(text: str) -> str:
+    """The same for terminals and logs, which may know no Greek."""
+    return text.replace("µ", "u").replace(GROUP, " ")
+
+
+ENGINEERING = Units(
+    "engineering",
+    "N/um, um/kN, N m/rad, mm",
+    {
+        "N/m": ("N/µm", 1e-6),
+        "N/rad": ("kN/rad", 1e-3),
+        "m/N": ("µm/kN", 1e9),
+        "rad/N": ("µrad/kN", 1e9),
+        "rad/(N m)": ("µrad/(kN m)", 1e9),
+        "m": ("mm", 1e3),
+        "Pa": ("GPa", 1e-9),
+    },
+)
+SI = Units("si", "N/m, m/N, N m/rad; lengths in mm", {"m": ("mm", 1e3)}, exponents=True)
+US = Units(
+    "us",
+    "lbf/in, uin/lbf, lbf in/rad, in",
+    {
+        "N/m": ("lbf/in", INCH / POUND),
+        "N/rad": ("lbf/rad", 1 / POUND),
+        "N m/rad": ("lbf in/rad", 1 / (POUND * INCH)),
+        "m/N": ("µin/lbf", 1e6 * POUND / INCH),
+        "rad/N": ("µrad/lbf", 1e6 * POUND),
+        "rad/(N m)": ("µrad/(lbf in)", 1e6 * POUND * INCH),
+        "m": ("in", 1 / INCH),
+        "Pa": ("ksi", 1e-3 * INCH**2 / POUND),
+        "N": ("lbf", 1 / POUND),
+    },
+)
+SYSTEMS = {units.name: units for units in (ENGINEERING, SI, US)}
+
+
+def units_named(name: str | Units) -> Units:
+    """A choice of units by its name.
+
+    Raises
+    ------
+    SolidgearError
+        For one that does not exist.
+    """
+    if isinstance(name, Units):
+        return name
+    if name not in SYSTEMS:
+        raise SolidgearError(
+            f"units {name!r} are unknown{nearest(str(name), SYSTEMS)}; "
+            f"use one of {', '.join(SYSTEMS)}"
+        )
+    return SYSTEMS[name]
