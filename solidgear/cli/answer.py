@@ -8,7 +8,16 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from solidgear.cli.app import NOT_REACHED, JsonFlag, Progress, SceneFile, command, console
+from solidgear.cli.app import (
+    NOT_REACHED,
+    UNITS,
+    JsonFlag,
+    Progress,
+    SceneFile,
+    UnitsOption,
+    command,
+    console,
+)
 from solidgear.errors import SolidgearError
 
 if TYPE_CHECKING:
@@ -54,6 +63,7 @@ def answer(
         typer.Option("--picture", help="The same as a picture: a file that ends in .png or .svg."),
     ] = None,
     as_json: JsonFlag = False,
+    units: UnitsOption = UNITS,
 ) -> None:
     """Numbers within a tolerance, each with its bar, from the cheapest model that can show it."""
     from solidgear.studies.answering import answer as solve
@@ -83,7 +93,7 @@ def answer(
         print(json.dumps(out, allow_nan=False))
     else:
         terminal = console()
-        terminal.print(_values(found))
+        terminal.print(_values(found, units))
         terminal.print(_path(found))
         for line in sentences(found):
             terminal.print(line, markup=False, soft_wrap=True)
@@ -98,14 +108,16 @@ def answer(
         raise typer.Exit(NOT_REACHED)
 
 
-def _values(found: Answered) -> Table:
+def _values(found: Answered, units: str) -> Table:
     from rich import box
     from rich.table import Table
 
     from solidgear.evidence.quantities import COUPLINGS
-    from solidgear.report.words import bar_of, engineering
+    from solidgear.report.units import in_ascii, units_named
+    from solidgear.report.words import bar_of
     from solidgear.studies.climb import ABOVE, BELOW
 
+    chosen = units_named(units)
     table = Table(box=box.SIMPLE_HEAD, pad_edge=False)
     table.add_column("quantity")
     table.add_column("value", justify="right")
@@ -113,8 +125,9 @@ def _values(found: Answered) -> Table:
     table.add_column("bar", justify="right")
     table.add_column("from")
     for row in found.values:
-        value = "0" if row.zero else engineering(row.value, 6)
-        table.add_row(row.quantity, value, row.unit, bar_of(row), row.how)
+        value = "0" if row.zero else in_ascii(chosen.number(row.value, row.unit, 6))
+        unit = in_ascii(chosen.unit(row.unit))
+        table.add_row(row.quantity, value, unit, bar_of(row), row.how)
     notes = []
     if any(row.side in (ABOVE, BELOW) for row in found.values):
         notes.append("a bar with one sign: the exact answer lies on that side only")
@@ -178,7 +191,7 @@ def _places(scene: Scene, found: Answered) -> Whereabouts:
     from solidgear.fidelity.ladder import LADDER
 
     if found.rung != "harmonic":
-        raise SolidgearError(f"only known of the harmonic solid; this answer is the {found.rung}'s")
+        raise SolidgearError(f"only known of the harmonic solid; this answer is that of the {LADDER[found.rung].title}")
     least_certain = sorted(found.values, key=lambda value: -value.bar)
     named = [STANDS_FOR.get(value.quantity, value.quantity) for value in least_certain]
     known = [name for name in named if name in PLACED]

@@ -13,6 +13,7 @@ import typer
 
 from solidgear.errors import SolidgearError, show
 from solidgear.fidelity.ladder import LADDER
+from solidgear.report.units import ENGINEERING, SYSTEMS
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -61,6 +62,8 @@ def everywhere(
 FIDELITY = "harmonic"
 #: the word for the cheapest mesh that keeps a tolerance, instead of a rung
 AUTO = "auto"
+#: units of tables and pages unless told otherwise
+UNITS = ENGINEERING.name
 #: exit code where the tolerance is not reached: the numbers are there, with their bars
 NOT_REACHED = 3
 
@@ -74,7 +77,9 @@ SceneFile = Annotated[
 if TYPE_CHECKING:
     Choice = str
     AutoChoice = str
+    UnitsChoice = str
 else:
+    UnitsChoice = StrEnum("UnitsChoice", [(name, name) for name in SYSTEMS])
     Choice = StrEnum("Choice", [(name, name) for name in LADDER.bodies])
     AutoChoice = StrEnum("AutoChoice", [(name, name) for name in (AUTO, *LADDER.bodies)])
 FidelityOption = Annotated[Choice, typer.Option("--fidelity", "-f", help="Model to solve with.")]
@@ -91,7 +96,16 @@ Tolerance = Annotated[
     typer.Option("--tol", help="Of -f auto: relative error allowed; else the scene's own."),
 ]
 JsonFlag = Annotated[
-    bool, typer.Option("--json", help="Print JSON for machines instead of tables.")
+    bool, typer.Option("--json", help="Print JSON for machines instead of tables; always SI.")
+]
+UnitsOption = Annotated[
+    UnitsChoice,
+    typer.Option(
+        "--units",
+        help="Of tables and pages: "
+        + "; ".join(f"{units.name}: {units.about}" for units in SYSTEMS.values())
+        + ". JSON stays SI always.",
+    ),
 ]
 Settings = Annotated[
     list[str] | None,

@@ -12,6 +12,7 @@ import typer
 from solidgear.cli.app import (
     AUTO,
     FIDELITY,
+    UNITS,
     AutoFidelityOption,
     Choice,
     Engine,
@@ -21,6 +22,7 @@ from solidgear.cli.app import (
     SceneFile,
     Settings,
     Tolerance,
+    UnitsOption,
     build_body,
     command,
     console,
@@ -67,6 +69,7 @@ def compare(
             help="Also chart error against cost, as a section of the report (about four minutes more).",
         ),
     ] = False,
+    units: UnitsOption = UNITS,
 ) -> None:
     """Solve a scene with every model and write a report on which to trust; a train as well."""
     from solidgear.scene.toml_file import is_train
@@ -79,6 +82,7 @@ def compare(
             "--solid-element": bool(solid_element),
             "--set": bool(settings),
             "--chart": chart,
+            "--units": units != UNITS,
         }
         compare_train(scene, out, as_json, renders, given)
         return
@@ -96,7 +100,8 @@ def compare(
     with held(out):
         with Progress(quiet=as_json) as progress:
             found = run(loaded, wanted, settings=chosen, progress=progress)
-            found.write_report(out, renders=renders and found.record.complete, progress=progress)
+            drawn = renders and found.record.complete
+            found.write_report(out, renders=drawn, units=units, progress=progress)
         if chart and found.record.complete:
             from solidgear.cli.chart import run_chart
 
@@ -132,6 +137,7 @@ def stiffness(
     as_json: JsonFlag = False,
     settings: Settings = None,
     engine: Engine = None,
+    units: UnitsOption = UNITS,
 ) -> None:
     """6x6 stiffness and compliance at the lumped point, bearings included."""
     import numpy as np
@@ -180,8 +186,8 @@ def stiffness(
         f"{heading(loaded, body, settled)}, port {found.port!r} at y = {1e3 * loaded.port.y:.3f} mm ({found.attachment})",
         markup=False,
     )
-    terminal.print(matrix_table(found.stiffness, "stiffness"))
-    terminal.print(matrix_table(found.compliance, "compliance"))
+    terminal.print(matrix_table(found.stiffness, "stiffness", units))
+    terminal.print(matrix_table(found.compliance, "compliance", units))
     if found.free_names:
         terminal.print(f"Free: {', '.join(found.free_names)} (stiffness exactly zero).")
     for motion in found.oblique.T:
@@ -325,7 +331,7 @@ def render(
         found = solve(body, loaded, max(loaded.ask.modes, 10))
         drawn.append(Drawn(body, found, LADDER[name].title))
     if turn is None:
-        print(render_mode(drawn[0].body, drawn[0].modes, mode, out))
+        print(render_mode(drawn[0].body, drawn[0].modes, mode, out, drawn[0].title))
         return
     path, said = turn_modes(drawn, turn, loaded.title or loaded.name, mode)
     if said:

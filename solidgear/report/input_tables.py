@@ -32,7 +32,7 @@ def scene_facts(record: Record, units: Units = ENGINEERING) -> Table:
     free = record.port.free if record.port else []
     rows = [
         ["source", scene.get("source") or "not given"],
-        ["length", units.text(scene.get("length"), "m", 6, DASH)],
+        ["length", f"{units.given(scene.get('length'), 'm', DASH)} {units.unit('m')}"],
         ["material", _material(material, units)],
         ["lumped point", _lumped_point(record, units)],
         ["free motions there", ", ".join(free) or "none"],
@@ -43,9 +43,9 @@ def scene_facts(record: Record, units: Units = ENGINEERING) -> Table:
 
 
 def _material(material: Mapping[str, Any], units: Units) -> str:
-    modulus = units.text(material.get("E"), "Pa", 4, DASH)
-    nu, density = material.get("nu", DASH), material.get("density", DASH)
-    return f"E = {modulus}, nu = {nu}, density = {density} kg/m³"
+    modulus = f"{units.given(material.get('E'), 'Pa', DASH)} {units.unit('Pa')}"
+    density = units.given(material.get("density"), "kg/m³", DASH)
+    return f"E = {modulus}, nu = {material.get('nu', DASH)}, density = {density} kg/m³"
 
 
 def _lumped_point(record: Record, units: Units) -> str:
@@ -53,7 +53,7 @@ def _lumped_point(record: Record, units: Units) -> str:
     port = record.scene.get("port")
     if not port:
         port = record.port.model_dump(exclude_defaults=True) if record.port else {}
-    y, lo, hi = (units.number(port.get(name), "m", 6, DASH) for name in ("y", "lo", "hi"))
+    y, lo, hi = (units.given(port.get(name), "m", DASH) for name in ("y", "lo", "hi"))
     return (
         f"{port.get('name', '')} on the axis at y = {y} {units.unit('m')}, "
         f"carried by the outer surface from {lo} to {hi} {units.unit('m')}, "
@@ -81,9 +81,9 @@ def segments(scene: Mapping, units: Units = ENGINEERING) -> Table:
             [
                 str(s.get("name", "")),
                 (s.get("part", "shaft"), "word text"),
-                units.number(s.get("y0"), "m", 6, DASH),
-                units.number(s.get("y1"), "m", 6, DASH),
-                units.number(s.get("length", s["y1"] - s["y0"]), "m", 6, DASH),
+                units.given(s.get("y0"), "m", DASH),
+                units.given(s.get("y1"), "m", DASH),
+                units.given(s.get("length", s["y1"] - s["y0"]), "m", DASH),
                 _diameters(s, "outer", units),
                 _diameters(s, "inner", units) if hollow else DASH,
                 (_own_material(s.get("material") or default, default, units), "word text"),
@@ -107,14 +107,14 @@ def segments(scene: Mapping, units: Units = ENGINEERING) -> Table:
 
 def _diameters(segment: Mapping, side: str, units: Units) -> str:
     """Diameters at both ends of the outer or inner surface; one where they are the same."""
-    ends = [units.number(2 * segment[side + end], "m", 6, DASH) for end in "01"]
+    ends = [units.given(2 * segment[side + end], "m", DASH) for end in "01"]
     return " → ".join(dict.fromkeys(ends))
 
 
 def _own_material(material: Mapping, default: Mapping, units: Units) -> str:
     if material == default:
         return "default"
-    modulus = units.text(material.get("E"), "Pa", 4, DASH)
+    modulus = f"{units.given(material.get('E'), 'Pa', DASH)} {units.unit('Pa')}"
     return f"E {modulus}, nu {material.get('nu')}, density {material.get('density')}"
 
 
@@ -130,8 +130,8 @@ def bearings(scene: Mapping, units: Units = ENGINEERING) -> Table:
         rows.append(
             [
                 str(b.get("name", "")),
-                units.number(b.get("y"), "m", 6, DASH),
-                units.number(b.get("seat_width"), "m", 6, DASH),
+                units.given(b.get("y"), "m", DASH),
+                units.given(b.get("seat_width"), "m", DASH),
                 (b.get("attachment", DASH), "word text"),
                 *(cells or (units.number(value, si, 4, DASH) for value, si in shown)),
                 (status, f"word text mark {status}"),
@@ -186,8 +186,9 @@ def features(scene: Mapping, units: Units = ENGINEERING) -> Table:
     rows = []
     for found in [*(scene.get("features") or []), *(scene.get("blends") or [])]:
         where = str(found.get("segment") or found.get("at") or DASH)
-        sizes = [
-            f"{name.replace('_', ' ')} {units.text(found[name], 'm', 6)}"
+        number = [f"{found['count']} of them"] if found.get("count") else []
+        sizes = number + [
+            f"{name.replace('_', ' ')} {units.given(found[name], 'm')} {units.unit('m')}"
             for name in SIZES
             if is_number(found.get(name))
         ]
@@ -202,10 +203,10 @@ def masses(scene: Mapping, units: Units = ENGINEERING) -> Table:
         [
             str(mass.get("name", "")),
             str(mass.get("on") or "a seat of its own"),
-            units.number(mass.get("y"), "m", 6, DASH),
+            units.given(mass.get("y"), "m", DASH),
             eng(mass.get("mass"), 4),
             ", ".join(eng(value, 4) for value in mass.get("inertia", ())),
-            ", ".join(units.number(value, "m", 6, DASH) for value in mass.get("offset", ())),
+            ", ".join(units.given(value, "m", DASH) for value in mass.get("offset", ())),
         ]
         for mass in scene.get("masses") or []
     ]

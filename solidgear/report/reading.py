@@ -8,6 +8,8 @@ from solidgear.report.words import NOTHING, is_number
 
 #: families of models, as the ladder has them
 LUMPED, BEAM = "lumped", "beam"
+#: below this share of the geometric mean of its diagonal entries a coupling is next to nothing
+FAINT = 1e-6
 
 
 def model_of(record: Record, key: str | None) -> ModelRecord:
@@ -36,6 +38,14 @@ def entry(matrix: list[list[float | None]] | None, i: int, j: int) -> float | No
     if matrix is None or i >= len(matrix) or j >= len(matrix[i]):
         return None
     return matrix[i][j]
+
+
+def is_faint(matrix: list[list[float | None]] | None, i: int, j: int) -> bool:
+    """Whether a coupling is next to nothing beside its two diagonal entries."""
+    value, one, other = entry(matrix, i, j), entry(matrix, i, i), entry(matrix, j, j)
+    if i == j or value is None or one is None or other is None:
+        return False
+    return abs(value) <= FAINT * abs(one * other) ** 0.5
 
 
 def first_mode(model: ModelRecord, family: str) -> ModeRecord | None:

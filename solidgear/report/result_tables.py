@@ -17,6 +17,7 @@ from solidgear.report.reading import (
     first_frequency,
     headline,
     is_beam,
+    is_faint,
     is_resolved,
     model_name,
     model_of,
@@ -28,8 +29,6 @@ from solidgear.report.table import Table
 from solidgear.report.units import ENGINEERING, Units
 from solidgear.report.words import BLOCK_UNITS, band_percent, hertz, seconds
 
-#: below this share of the geometric mean of its diagonal entries a coupling is printed faint
-FAINT = 1e-6
 #: a text, or a text and its css class
 Cell = str | tuple[str, str]
 
@@ -159,7 +158,7 @@ def _matrix(record: Record, name: str, kind: str, values: Matrix, units: Units) 
             if value is None or direction in free or other in free:
                 cells.append((DASH, "quiet"))
                 continue
-            faint = i != j and _is_faint(value, entry(values, i, i), entry(values, j, j))
+            faint = is_faint(values, i, j)
             si = mixed if (i < 3) != (j < 3) else same if i < 3 else turn
             # without exponents a coupling of nothing would fill its cell with zeros
             text = "0" if faint and not units.exponents else units.number(value, si)
@@ -171,13 +170,6 @@ def _matrix(record: Record, name: str, kind: str, values: Matrix, units: Units) 
         "names": DOF_NAMES,
         "blocks": [((same, mixed), rows[:3]), ((mixed, turn), rows[3:])],
     }
-
-
-def _is_faint(coupling: float, first: float | None, second: float | None) -> bool:
-    """Whether a coupling is next to nothing beside its two diagonal entries."""
-    if first is None or second is None:
-        return False
-    return abs(coupling) <= FAINT * abs(first * second) ** 0.5
 
 
 def own_frequencies(record: Record, key: str | None) -> Table:

@@ -18,19 +18,33 @@ from solidgear.evidence.record import ModelRecord, ModeRecord, Record, VerdictRe
 from solidgear.frames import DOF_NAMES
 from solidgear.report import reading, words
 from solidgear.report.border import as_record
-from solidgear.report.words import NOTHING, engineering
+from solidgear.report.units import SI, Units, in_ascii, units_named
+from solidgear.report.words import NOTHING
 
 if TYPE_CHECKING:
     import numpy as np
 
 NOT_RESOLVED = "n.r."
+#: figures of a coupling that is next to nothing
+WEAK = 3
 #: validity -> how it is written in a narrow column
 VALID = {"yes": "yes", "no": "NO", "open": "?", "unknown": "?"}
-#: heads of the columns of numbers in the final table
-COLUMNS = ("K_zz\nN/m", "C_zz\nm/N", "f1\nHz", "dC_zz\n", "df1\n", "band\nC", "DOFs\n", "time\ns")
+#: heads of the columns of numbers in the final table, and their units in SI
+COLUMNS = {
+    "K_zz": "N/m",
+    "C_zz": "m/N",
+    "f1": "Hz",
+    "dC_zz": "",
+    "df1": "",
+    "band C": "",
+    "DOFs": "",
+    "time": "s",
+}
 
 
-def final_table(found: Record | Mapping[str, Any]) -> RenderableType:
+def final_table(
+    found: Record | Mapping[str, Any], units: str | Units | None = None
+) -> RenderableType:
     """One line a model: validity, K_zz, C_zz, first bending, deviation from the reference, band,
     size, time.
 
@@ -38,6 +52,8 @@ def final_table(found: Record | Mapping[str, Any]) -> RenderableType:
     ----------
     found : Record or mapping
         What a run found; missing parts show as a dash.
+    units : str or Units, optional
+        ``engineering``, ``si`` or ``us``; by default what the record was shown in.
 
     Returns
     -------
@@ -48,13 +64,15 @@ def final_table(found: Record | Mapping[str, Any]) -> RenderableType:
     Raises
     ------
     SolidgearError
-        For plain data that is no record of this version.
+        For plain data that is no record of this version, or unknown units.
     """
     record = as_record(found)
+    chosen = units_named(units or record.shown_in)
     table = Table(box=box.SIMPLE_HEAD, padding=0, pad_edge=False)
     table.add_column("model", no_wrap=True)
     table.add_column("valid", justify="center", no_wrap=True)
-    for head in COLUMNS:
+    for name, si in COLUMNS.items():
+        head = f"{name}\n{in_ascii(chosen.unit(si))}" if si else name.replace(" ", "\n")
         table.add_column(head, justify="right", no_wrap=True)
     unresolved = False
     for key, model in record.models.items():
@@ -63,8 +81,8 @@ def final_table(found: Record | Mapping[str, Any]) -> RenderableType:
         table.add_row(
             Text(reading.heading(record, key)[:10]),
             VALID[reading.validity(model)],
-            engineering(reading.entry(model.stiffness, 2, 2), 4),
-            engineering(reading.entry(model.compliance, 2, 2), 4),
+            in_ascii(chosen.number(reading.entry(model.stiffness, 2, 2), "N/m", 4)),
+            in_ascii(chosen.number(reading.entry(model.compliance, 2, 2), "m/N", 4)),
             words.hertz(reading.first_frequency(model, "bending")),
             *cells,
             words.band_percent(model.band.compliance if model.band else None),
@@ -162,7 +180,9 @@ def verdict_text(found: Record | Mapping[str, Any]) -> str:
     return "\n".join(lines + [f"- {s}" for s in verdict.sentences])
 
 
-def matrix_table(matrix: np.ndarray | Sequence[Sequence[float | None]], kind: str) -> Table:
+def matrix_table(
+    matrix: np.ndarray | Sequence[Sequence[float | None]], kind: str, units: str | Units = SI
+) -> Table:
     """A 6x6 with its units; free components (None or NaN) show as a dash.
 
     Parameters
@@ -170,23 +190,36 @@ def matrix_table(matrix: np.ndarray | Sequence[Sequence[float | None]], kind: st
     matrix : (6, 6) array_like
         SI, order x y z thx thy thz.
     kind : {'stiffness', 'compliance'}
+    units : str or Units
+        To show it in.
 
     Returns
     -------
     rich.table.Table
     """
+    chosen = units_named(units)
     same, mixed, turn = words.BLOCK_UNITS[kind]
     rows = matrix.tolist() if hasattr(matrix, "tolist") else matrix
     table = Table(
-        box=box.SIMPLE_HEAD, padding=0, pad_edge=False, title=f"{kind}, SI", title_justify="left"
+        box=box.SIMPLE_HEAD,
+        padding=0,
+        pad_edge=False,
+        title=f"{kind}, {chosen.name} units" if chosen is not SI else f"{kind}, SI",
+        title_justify="left",
     )
     table.add_column("")
     for name in DOF_NAMES:
         table.add_column(name, justify="right", no_wrap=True)
-    for block, (left, right) in enumerate(((same, mixed), (mixed, turn))):
+    for block, pair in enumerate(((same, mixed), (mixed, turn))):
+        left, right = (in_ascii(chosen.unit(si)) for si in pair)
         table.add_row("", "", left, "", "", right, "", style="dim")
         for i in range(3 * block, 3 * block + 3):
-            table.add_row(DOF_NAMES[i], *(engineering(v) for v in rows[i]), end_section=i == 2)
+            cells = []
+            for j, value in enumerate(rows[i]):
+                # a weak coupling has few figures that mean something, and a row has 80 columns
+                digits = WEAK if not chosen.exponents and reading.is_faint(rows, i, j) else 5
+                cells.append(in_ascii(chosen.number(value, pair[j // 3], digits)))
+            table.add_row(DOF_NAMES[i], *cells, end_section=i == 2)
     return table
 
 

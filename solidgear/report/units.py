@@ -18,7 +18,7 @@ INCH, POUND = 0.0254, 4.4482216152605
 #: between groups of three digits: the page must not break a number there
 GROUP = "\u00a0"
 #: sizes, as powers of ten, that are written without an exponent
-SMALLEST, LARGEST = -4, 8
+SMALLEST, LARGEST = -3, 8
 
 
 @dataclass(frozen=True)
@@ -66,8 +66,16 @@ class Units:
             return engineering(here, digits, nothing)
         return plain(here, digits, nothing)
 
+    def given(self, value: float | None, si: str, nothing: str = NOTHING) -> str:
+        """A number out of a scene: as it was given, without zeros behind it."""
+        here = self.value(value, si)
+        if here is None:
+            return nothing
+        written = f"{here:.6g}"
+        return engineering(here, 4) if "e" in written else written
+
     def text(self, value: float | None, si: str, digits: int = 5, nothing: str = NOTHING) -> str:
-        """The same with its unit."""
+        """The number with its unit."""
         number = self.number(value, si, digits, nothing)
         return number if number == nothing else f"{number} {self.unit(si)}"
 
@@ -89,10 +97,10 @@ def plain(value: float | None, digits: int = 5, nothing: str = NOTHING) -> str:
 
 
 def digits_for(bar: float | None, least: int = 3, most: int = 6) -> int:
-    """Figures that a number with this relative bar deserves: one beyond the first uncertain one."""
+    """Figures that a number with this relative bar deserves: up to the first uncertain one."""
     if not is_number(bar) or bar <= 0:
         return most - 1
-    return min(max(math.ceil(-math.log10(bar)) + 1, least), most)
+    return min(max(math.floor(-math.log10(bar)) + 1, least), most)
 
 
 def in_ascii(text: str) -> str:

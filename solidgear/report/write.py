@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 from solidgear.errors import SolidgearError
 from solidgear.machine.whole_file import whole
 from solidgear.report.folder import clear, held, prepare
+from solidgear.report.reading import model_name
 
 if TYPE_CHECKING:
     from solidgear.body import Body
@@ -106,16 +107,16 @@ def _write_vtu(rung, path: Path) -> None:
     write_vtu(rung.body, rung.modes, path)
 
 
-def _job(body, modes, name: str, path: Path):
+def _job(body, modes, name: str, path: Path, model: str):
     from solidgear.report.render import RenderJob
 
     mode = modes.named(name)
     if mode is None:
         have = ", ".join(m.name for m in modes.modes)
         raise SolidgearError(
-            f"mode {name!r}: the {body.fidelity} model found none of that name; it has {have}"
+            f"mode {name!r}: the {model} has none of that name; it has {have}"
         )
-    title = f"{body.fidelity}: {mode.name}, {mode.frequency_hz:.1f} Hz"
+    title = f"{model}: {mode.name}, {mode.frequency_hz:.1f} Hz"
     return RenderJob(body.surface(mode.vectors[0]), title, path)
 
 
@@ -132,7 +133,7 @@ def _draw(comparison: Comparison, folder: Path) -> None:
         path.unlink(missing_ok=True)  # whoever made it, it must not pass for this run's
 
         def add(model=model, rung=rung, name=name, path=path) -> None:
-            jobs[model] = _job(rung.body, rung.modes, name, path)
+            jobs[model] = _job(rung.body, rung.modes, name, path, model_name(record, model))
 
         _try(record, f"render of {model}", add)
     reasons: dict[str, list[str]] = {}
@@ -175,8 +176,10 @@ def _drawn_mode(modes: ModeSet) -> str | None:
     return None
 
 
-def render_mode(body: Body, modes: ModeSet, name: str, path: str | os.PathLike) -> Path:
-    """Draw one mode of one body.
+def render_mode(
+    body: Body, modes: ModeSet, name: str, path: str | os.PathLike, model: str = ""
+) -> Path:
+    """Draw one mode of one body; `model` is what the picture calls it.
 
     Raises
     ------
@@ -186,7 +189,7 @@ def render_mode(body: Body, modes: ModeSet, name: str, path: str | os.PathLike) 
     from solidgear.report.render import render_modes
 
     path = Path(path)
-    job = _job(body, modes, name, path)
+    job = _job(body, modes, name, path, model or body.fidelity)
     prepare(path.parent)
     try:
         (done,) = render_modes([job])

@@ -59,9 +59,25 @@ class Comparison(Displayed):
         return self.record.as_dict()
 
     def write_report(
-        self, out: str | os.PathLike, *, renders: bool = True, progress: Progress = lambda _: None
+        self,
+        out: str | os.PathLike,
+        *,
+        renders: bool = True,
+        units: str = "engineering",
+        progress: Progress = lambda _: None,
     ) -> Path:
         """Write results.json, report.html, mode_*.png and modes_*.vtu into a folder.
+
+        Parameters
+        ----------
+        out : path
+            The folder.
+        renders : bool
+            Whether mode shapes are drawn.
+        units : {'engineering', 'si', 'us'}
+            Of the page; results.json is SI always.
+        progress : callable
+            Called with a sentence at every step.
 
         Returns
         -------
@@ -71,10 +87,12 @@ class Comparison(Displayed):
         Raises
         ------
         SolidgearError
-            If the folder cannot be written.
+            If the folder cannot be written, or units are unknown.
         """
+        from solidgear.report.units import units_named
         from solidgear.report.write import write_all
 
+        self.record.shown_in = units_named(units).name
         return write_all(self, out, renders=renders, progress=progress)
 
 
