@@ -4,6 +4,7 @@ something goes wrong.
 
 import json
 import math
+import re
 from pathlib import Path
 
 import numpy as np
@@ -648,13 +649,37 @@ def test_lumped_rung_rests_on_a_body(overhung):
     # mode-matched masses keep the body's first bending; 1e-8 is what the synthesis promises
     assert record["modes"][0]["frequency_hz"] == pytest.approx(beam["frequency_hz"], rel=1e-8)
     assert (
-        not record["valid"] and "timoshenko" in record["why_not"]
+        not record["valid"] and "Timoshenko beam" in record["why_not"]
     )  # it inherits what is wrong with its stiffness
     variants = found["lumped"]["harmonic"]["variants"]
     assert list(variants) == ["old", "thesis", "mode-matched", "guyan"]
     assert not variants["thesis"]["feasible"] and variants["guyan"]["frequency_error"] > 0
-    assert any("equations 52 and 53" in s for s in found["verdict"]["sentences"])
     strict(json.dumps(found, allow_nan=False))
+
+
+@pytest.mark.parametrize("asked", [False, True])
+def test_lumped_syntheses_are_told_only_where_they_are_asked_for(overhung, asked):
+    scene = overhung.with_changes(ask=overhung.ask.with_changes(lumped=asked))
+    found = compare(scene, ("lumped", "timoshenko", "harmonic"), settings=LIGHT).record
+    assert list(found.models)[0] == "lumped" and found.lumped["harmonic"].variants
+    told = [*found.verdict.sentences, *(g.sentence for g in found.guards)]
+    for words in ("equations 52 and 53", "old -73 %"):
+        assert any(words in s for s in told) == asked
+
+
+def test_no_sentence_calls_a_model_by_its_key(overhung):
+    """ "the timoshenko model" is the Timoshenko beam, and nothing is a solid solid."""
+    scene = overhung.with_changes(ask=overhung.ask.with_changes(lumped=True))
+    found = compare(scene, ("lumped", *BEAMS_AND_HARMONIC), settings=LIGHT).record
+    told = [*found.verdict.sentences, *found.warnings, *(g.sentence for g in found.guards)]
+    told += [m.why_not or "" for m in found.models.values()]
+    told += [str(m.mesh.get("element")) for m in found.models.values()]
+    kinds = "beam|solid|model|stiffness"
+    keys = "|".join(LADDER.bodies)
+    for sentence in told:
+        for words in re.findall(rf"\b(?:{keys}) (?:{kinds})\b", sentence):
+            assert words == "harmonic solid", sentence
+    assert any("Timoshenko beam" in s for s in told)
 
 
 def test_a_lumped_model_on_a_solid_lacks_nothing_that_a_beam_lacks(overhung):

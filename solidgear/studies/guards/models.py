@@ -277,7 +277,7 @@ def effective_mass(probe: Probe) -> Notices:
     except SolidgearError as error:
         yield Notice("avoid", ("lumped",), f"there is no lumped model: {error}")
         return
-    if not found["thesis"].feasible:
+    if not found["thesis"].feasible and probe.scene.ask.lumped:
         yield Notice(
             "fact",
             ("lumped",),
