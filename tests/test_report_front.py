@@ -96,7 +96,7 @@ def test_numbers_with_all_their_digits(value, told):
 
 
 def test_figures_end_where_the_bar_begins():
-    assert [digits_for(bar) for bar in (0.3, 0.02, 4e-4, 4e-5, 1e-9)] == [3, 3, 4, 5, 6]
+    assert [digits_for(bar) for bar in (0.3, 0.02, 1.2e-3, 4e-5, 1e-9)] == [3, 3, 4, 5, 6]
 
 
 def test_unknown_units_are_refused_in_a_sentence():

@@ -195,7 +195,7 @@ def _band(band: BandRecord) -> list:
         pct(band.change, signed=False),
         small(band.reduction),
         orders,
-        str(band.factor or DASH),
+        small(band.factor),
         pct(band.solver, signed=False),
         band_percent(band.gci, DASH),
     ]

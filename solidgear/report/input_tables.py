@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from solidgear.evidence.record import Record
-from solidgear.report.cells import DASH, eng, short_percent
+from solidgear.report.cells import DASH, short_percent
 from solidgear.report.reading import model_name
 from solidgear.report.table import Table
 from solidgear.report.units import ENGINEERING, Units
@@ -204,8 +204,8 @@ def masses(scene: Mapping, units: Units = ENGINEERING) -> Table:
             str(mass.get("name", "")),
             str(mass.get("on") or "a seat of its own"),
             units.given(mass.get("y"), "m", DASH),
-            eng(mass.get("mass"), 4),
-            ", ".join(eng(value, 4) for value in mass.get("inertia", ())),
+            units.given(mass.get("mass"), "kg", DASH),
+            ", ".join(units.given(value, "kg m²", DASH) for value in mass.get("inertia", ())),
             ", ".join(units.given(value, "m", DASH) for value in mass.get("offset", ())),
         ]
         for mass in scene.get("masses") or []

@@ -15,6 +15,7 @@ from solidgear.report.reading import (
     answer_seconds,
     entry,
     first_frequency,
+    first_mode,
     headline,
     is_beam,
     is_faint,
@@ -111,7 +112,7 @@ def models(record: Record) -> Table:
         "time, s",
         "why not",
     ]
-    return Table("Models of this scene, cheapest first", head, rows)
+    return Table("Models of this scene", head, rows)
 
 
 def _apart(record: Record, key: str, quantity: str) -> Cell:
@@ -175,10 +176,12 @@ def _matrix(record: Record, name: str, kind: str, values: Matrix, units: Units) 
 def own_frequencies(record: Record, key: str | None) -> Table:
     """Natural frequencies of one model with their bars."""
     model = model_of(record, key)
-    each = model.band.each if model.band else {}
+    each, first = model.band.each if model.band else {}, first_mode(model, "bending")
     rows = []
     for mode in sorted(model.modes, key=lambda m: m.frequency_hz or 0.0):
-        bar = each.get(mode.name)
+        # in two planes that differ, the first of both is the one that is judged
+        name = "bending 1" if mode is first else mode.name
+        bar = each.get(name)
         told = "0 (rigid)" if mode.frequency_hz == 0 else hertz(mode.frequency_hz, DASH)
         cell = DASH if bar is None else f"± {band_percent(bar)}"
         rows.append([mode.name, told, str(mode.multiplicity), cell])

@@ -100,7 +100,7 @@ def digits_for(bar: float | None, least: int = 3, most: int = 6) -> int:
     """Figures that a number with this relative bar deserves: up to the first uncertain one."""
     if not is_number(bar) or bar <= 0:
         return most - 1
-    return min(max(math.floor(-math.log10(bar)) + 1, least), most)
+    return min(max(round(-math.log10(bar)) + 1, least), most)
 
 
 def in_ascii(text: str) -> str:
