@@ -17,7 +17,9 @@ import pytest
 from solidgear.report.html import render_page
 from tests.made_up_run import fixture_results
 
-CHROMIUM = next(filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), None)
+CHROMIUM = next(
+    filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), None
+)
 pytestmark = pytest.mark.skipif(CHROMIUM is None, reason="there is no chromium here")
 WIDTHS = (390, 768, 1280)
 #: contrast of text that WCAG 2.1 asks for (AA, 1.4.3)
@@ -78,9 +80,7 @@ def browse(folder, page, *flags):
     file = folder / "page.html"
     file.write_text(page, encoding="utf-8")
     own = [f"--user-data-dir={folder / 'profile'}", *FLAGS, *flags, file.as_uri()]
-    done = subprocess.run(
-        [CHROMIUM, *own], capture_output=True, text=True, timeout=120, cwd=folder
-    )
+    done = subprocess.run([CHROMIUM, *own], capture_output=True, text=True, timeout=120, cwd=folder)
     return done.stdout, done.stderr
 
 

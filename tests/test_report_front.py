@@ -70,11 +70,15 @@ def test_stiffness_times_compliance_is_one_in_consistent_units(units):
         """What the prefixes of a unit are worth: N/um times um/kN is a thousandth."""
         top, _, bottom = name.replace("(", "").replace(")", "").partition("/")
         size = {"µ": 1e-6, "k": 1e3, "m": 1e-3}
-        worth = [size[u[0]] if u not in ("m", "mm") and u[0] in size else 1.0 for u in (top, bottom)]
+        worth = [
+            size[u[0]] if u not in ("m", "mm") and u[0] in size else 1.0 for u in (top, bottom)
+        ]
         return worth[0] / worth[1]
 
     for stiff, soft in (("N/m", "m/N"), ("N m/rad", "rad/(N m)")):
-        product = factor(stiff) * prefix(units.unit(stiff)) * factor(soft) * prefix(units.unit(soft))
+        product = (
+            factor(stiff) * prefix(units.unit(stiff)) * factor(soft) * prefix(units.unit(soft))
+        )
         assert product == pytest.approx(1.0, rel=1e-12)  # products of two factors: rounding only
 
 

@@ -191,7 +191,9 @@ def _places(scene: Scene, found: Answered) -> Whereabouts:
     from solidgear.fidelity.ladder import LADDER
 
     if found.rung != "harmonic":
-        raise SolidgearError(f"only known of the harmonic solid; this answer is that of the {LADDER[found.rung].title}")
+        raise SolidgearError(
+            f"only known of the harmonic solid; this answer is that of the {LADDER[found.rung].title}"
+        )
     least_certain = sorted(found.values, key=lambda value: -value.bar)
     named = [STANDS_FOR.get(value.quantity, value.quantity) for value in least_certain]
     known = [name for name in named if name in PLACED]

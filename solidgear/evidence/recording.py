@@ -130,7 +130,11 @@ def _warnings(
         if about or not notice["models"]:
             named = ", ".join(models[m].title for m in about)
             out.append(f"{named}: {notice['sentence']}" if about else notice["sentence"])
-    out += [f"{LADDER[m].title}: {what}: {why}" for m, r in rungs.items() for what, why in r.failed.items()]
+    out += [
+        f"{LADDER[m].title}: {what}: {why}"
+        for m, r in rungs.items()
+        for what, why in r.failed.items()
+    ]
     for model, rung in rungs.items():
         for one, other, gap in rung.modes.evidence.get("torn_pairs", ()):
             out.append(
@@ -162,7 +166,7 @@ def _add_lumped(
         verdict.sentences = [s for s in verdict.sentences if not s.startswith("Cheapest model")]
         verdict.sentences.append(
             f"Cheapest model within {percent(tolerance)}: {LADDER[name].title} "
-            f"({own.variant} masses on the stiffness of the {LADDER[own.source].title}), "
+            f"({own.variant} masses on the stiffness of the {LADDER[own.source or name].title}), "
             "for first bending and below only."
         )
     made = record.lumped[base.model].variants if base.model in record.lumped else {}

@@ -76,9 +76,7 @@ def _deviation(row: DeviationRecord | None, tolerance: float | None) -> Any:
     text = pct(row.relative)
     if not is_resolved(row):
         return (f"not resolved ({text})", "unresolved")
-    beyond = (
-        tolerance is not None and row.relative is not None and abs(row.relative) > tolerance
-    )
+    beyond = tolerance is not None and row.relative is not None and abs(row.relative) > tolerance
     return (text, "bad") if beyond else text
 
 

@@ -107,9 +107,7 @@ def _number(model: ModelRecord, name: str, row: Row, units: Units) -> list[Any]:
     return [label, (told, "strong"), f"± {band_percent(bar)}" if bar is not None else "no bar"]
 
 
-def _value(
-    model: ModelRecord, name: str, kind: str, place: tuple[int, int] | None
-) -> float | None:
+def _value(model: ModelRecord, name: str, kind: str, place: tuple[int, int] | None) -> float | None:
     if place is not None:
         return entry(getattr(model, kind), *place)
     exact = next((m.frequency_hz for m in model.modes if m.name == name), None)
@@ -122,7 +120,13 @@ def _other_direction(model: ModelRecord, units: Units) -> Iterable[list[Any]]:
     change = relative_change(other, one)
     if change is None or abs(change) <= ALIKE:
         return []
-    return [["Stiffness across, other direction, K_xx", (units.text(other, "N/m", 4), "strong"), "no bar"]]
+    return [
+        [
+            "Stiffness across, other direction, K_xx",
+            (units.text(other, "N/m", 4), "strong"),
+            "no bar",
+        ]
+    ]
 
 
 def reasons(record: Record) -> list[str]:

@@ -193,7 +193,9 @@ def features(scene: Mapping, units: Units = ENGINEERING) -> Table:
             if is_number(found.get(name))
         ]
         kind = str(found.get("kind", "")).replace("_", " ")
-        rows.append([str(found.get("name") or kind), kind, (where, "word text"), (", ".join(sizes), "text")])
+        rows.append(
+            [str(found.get("name") or kind), kind, (where, "word text"), (", ".join(sizes), "text")]
+        )
     return Table("Features", ["feature", "kind", "on", "place and size"], rows)
 
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 from solidgear.evidence.record import DeviationRecord, ModelRecord, ModeRecord, Record
 from solidgear.evidence.ties import SCENE, SECTION
 from solidgear.report.words import NOTHING, is_number
@@ -33,14 +35,14 @@ def is_beam(record: Record, key: str) -> bool:
     return model_of(record, key).family == BEAM
 
 
-def entry(matrix: list[list[float | None]] | None, i: int, j: int) -> float | None:
+def entry(matrix: Sequence[Sequence[float | None]] | None, i: int, j: int) -> float | None:
     """One entry of a matrix; None if there is none."""
     if matrix is None or i >= len(matrix) or j >= len(matrix[i]):
         return None
     return matrix[i][j]
 
 
-def is_faint(matrix: list[list[float | None]] | None, i: int, j: int) -> bool:
+def is_faint(matrix: Sequence[Sequence[float | None]] | None, i: int, j: int) -> bool:
     """Whether a coupling is next to nothing beside its two diagonal entries."""
     value, one, other = entry(matrix, i, j), entry(matrix, i, i), entry(matrix, j, j)
     if i == j or value is None or one is None or other is None:

@@ -47,7 +47,10 @@ def provenance(record: Record) -> Table:
     rows: list[list[Any]] = [
         ["geometry, material, bearings", f"input: {source}; each bearing carries its status"],
         ["stiffness, compliance, modes", f"this run, by: {ran}"],
-        ["differences, correlation", f"this run, against its {reference}: no error against reality"],
+        [
+            "differences, correlation",
+            f"this run, against its {reference}: no error against reality",
+        ],
         ["causes, attachments", "this run: the same model solved again with one thing switched"],
         ["bands", "this run: solution verification on related meshes of the same model"],
         ["expected orders, free motions", "closed form"],

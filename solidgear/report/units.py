@@ -51,9 +51,7 @@ class Units:
         """A value of SI in this unit."""
         return value * self.of.get(si, (si, 1.0))[1] if is_number(value) else None
 
-    def number(
-        self, value: float | None, si: str, digits: int = 5, nothing: str = NOTHING
-    ) -> str:
+    def number(self, value: float | None, si: str, digits: int = 5, nothing: str = NOTHING) -> str:
         """A value of SI in this unit, without its name.
 
         Examples

@@ -113,9 +113,7 @@ def _job(body, modes, name: str, path: Path, model: str):
     mode = modes.named(name)
     if mode is None:
         have = ", ".join(m.name for m in modes.modes)
-        raise SolidgearError(
-            f"mode {name!r}: the {model} has none of that name; it has {have}"
-        )
+        raise SolidgearError(f"mode {name!r}: the {model} has none of that name; it has {have}")
     title = f"{model}: {mode.name}, {mode.frequency_hz:.1f} Hz"
     return RenderJob(body.surface(mode.vectors[0]), title, path)
 

@@ -37,7 +37,9 @@ def beam_against_solid(probe: Probe) -> Notices:
             gaps = probe.gaps(model)
         except SolidgearError as error:
             # One beam that cannot be made says nothing of the other.
-            yield Notice("avoid", (model,), f"there is no {LADDER[model].title} of this shaft: {error}")
+            yield Notice(
+                "avoid", (model,), f"there is no {LADDER[model].title} of this shaft: {error}"
+            )
             continue
         if not gaps:
             continue
