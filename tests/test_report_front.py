@@ -117,6 +117,8 @@ def test_terminal_is_ascii_in_every_choice():
         assert "…" not in text and max(map(len, text.splitlines())) <= 80
         assert in_ascii(SYSTEMS[name].unit("N/m")) in text
         assert text.replace("─", "").isascii()
+    stiff = shown(matrix_table(stiffness, "stiffness", "engineering"))
+    assert "19010000" in stiff  # one number, not three columns
 
 
 def test_the_choice_is_kept_for_a_page_that_is_written_again():

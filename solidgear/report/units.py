@@ -102,8 +102,10 @@ def digits_for(bar: float | None, least: int = 3, most: int = 6) -> int:
 
 
 def in_ascii(text: str) -> str:
-    """The same for terminals and logs, which may know no Greek."""
-    return text.replace("µ", "u").replace(GROUP, " ")
+    """The same for terminals, which may know no Greek, and where groups of digits would look like
+    two columns.
+    """
+    return text.replace("µ", "u").replace(GROUP, "")
 
 
 ENGINEERING = Units(
