@@ -137,27 +137,54 @@ def test_a_bad_page_is_seen_to_be_bad(tmp_path):
     assert any("out of order" in line for line in console)
 
 
-@pytest.mark.skipif(shutil.which("pdftotext") is None, reason="there is no pdftotext here")
-def test_on_paper_captions_stay_with_what_they_name(page, tmp_path):
-    browse(tmp_path, page, "--no-pdf-header-footer", f"--print-to-pdf={tmp_path / 'page.pdf'}")
+def sheets_of(folder, page):
+    """Lines of every sheet of paper, without empty ones."""
+    browse(folder, page, "--no-pdf-header-footer", f"--print-to-pdf={folder / 'page.pdf'}")
     done = subprocess.run(
-        ["pdftotext", "-layout", "page.pdf", "-"], capture_output=True, text=True, cwd=tmp_path
+        ["pdftotext", "-layout", "page.pdf", "-"], capture_output=True, text=True, cwd=folder
     )
     sheets = [
         [re.sub(r"\s+", " ", line).strip() for line in sheet.splitlines() if line.strip()]
         for sheet in done.stdout.split("\f")
     ]
-    sheets = [lines for lines in sheets if lines]
-    assert sheets[1][0] == "1. Shaft and bearings"  # page one is one page
-    (appendix,) = (k for k, lines in enumerate(sheets) if lines[0] == "Appendix for the engineer")
-    assert 2 <= appendix - 1 <= 3  # the customer's part
+    return [lines for lines in sheets if lines]
+
+
+def torn(sheets, page):
+    """Captions and headings at the foot of a sheet, and captions of figures at its head."""
 
     def texts(tag):
         found = re.findall(rf"<{tag}(?: [^>]*)?>(.*?)</{tag}>", page, re.S)
-        return [html.unescape(re.sub(r"<[^>]+>", "", text)).strip()[:40] for text in found]
+        plain = [html.unescape(re.sub(r"<[^>]+>", "", text)).strip()[:40] for text in found]
+        return tuple(text for text in plain if text)
 
-    above = [t for t in texts("caption") + texts("h2") if t]  # above what they name
-    below = [t for t in texts("figcaption") if t]
-    for lines in sheets:
-        assert not any(lines[-1].startswith(text) for text in above), lines[-1]
-        assert not any(lines[0].startswith(text) for text in below), lines[0]
+    above, below = texts("caption") + texts("h2"), texts("figcaption")
+    feet = [lines[-1] for lines in sheets if lines[-1].startswith(above)]
+    return feet + [lines[0] for lines in sheets if lines[0].startswith(below)]
+
+
+@pytest.mark.skipif(shutil.which("pdftotext") is None, reason="there is no pdftotext here")
+def test_on_paper_captions_stay_with_what_they_name(page, tmp_path):
+    sheets = sheets_of(tmp_path, page)
+    assert sheets[1][0] == "1. Shaft and bearings"  # page one is one page
+    (appendix,) = (k for k, lines in enumerate(sheets) if lines[0] == "Appendix for the engineer")
+    assert 2 <= appendix - 1 <= 3  # the customer's part
+    assert torn(sheets, page) == []
+
+
+@pytest.mark.skipif(shutil.which("pdftotext") is None, reason="there is no pdftotext here")
+def test_on_paper_captions_stay_wherever_they_fall(page, tmp_path):
+    """The same table and the same figure at many heights of a sheet of 297 mm."""
+    head = page[: page.index("<body>")]
+    table = page[page.index('<h2 id="cost">') :]
+    figure, table = (
+        table[table.index(f"<{tag}") : table.index(end) + len(end)]
+        for tag, end in (("figure>", "</figure>"), ('div class="tabled', "</table></div>"))
+    )
+    parts = []
+    for height in range(0, 260, 18):
+        heading = f"<h2>Section {height}</h2><p>What it says, in a line.</p>"
+        gap = f'<div style="height: {height}mm; break-before: page"></div>'
+        parts += [gap, heading, table, "</div>", gap, figure]
+    body = "".join(parts)
+    assert torn(sheets_of(tmp_path, f"{head}<body>{body}"), body) == []
