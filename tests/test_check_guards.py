@@ -241,11 +241,11 @@ CASES = {
         scene(),
     ),
     "Euler beam, pinion": Case(
-        "beam_against_solid", "of the euler beam is", ("euler",), "avoid", OVERHUNG, uniform(16)
+        "beam_against_solid", "of the Euler beam is", ("euler",), "avoid", OVERHUNG, uniform(16)
     ),
     "Timoshenko beam, pinion": Case(
         "beam_against_solid",
-        "C_thx of the timoshenko beam is 14.",
+        "C_thx of the Timoshenko beam is 14.",
         ("timoshenko", "lumped"),
         "avoid",
         OVERHUNG,
@@ -253,7 +253,7 @@ CASES = {
     ),
     "seats as in the scene": Case(
         "beam_against_solid",
-        "of the timoshenko beam is",
+        "of the Timoshenko beam is",
         ("timoshenko", "lumped"),
         "avoid",
         sg.load(ROOT / "geometry" / "gear_shaft.toml"),
