@@ -161,8 +161,11 @@ def feature_size(feature: CutFeature, radius: float, refinement: float) -> tuple
         beside = f"Max(0,Sqrt({across}^2)-{_num(wide)})"
         distance = f"Sqrt({below}^2+{beside}^2+{along}^2)"
     divided = ACROSS * refinement
-    # a circle of fewer than eight edges is no hole: it loses a fifteenth of its volume
+    # a circle of fewer than eight edges is no hole: it loses a fifteenth of its volume; nor is half
+    # of one of fewer than four the end of a keyway, which five leave room for
     least = least / (max(1.0, divided) if feature.kind == "cross_hole" else divided)
+    if feature.kind == "keyway" and feature.ends == "round":
+        least = min(least, pi * feature.width / 10 / max(1.0, divided))
     return f"{_num(least)}+{_num(GROWTH)}*{distance}", least
 
 

@@ -26,6 +26,9 @@ from solidgear.meshing.tetrahedra import draw_revolved, filled
 #: angle about y at which half a shaft begins, so that the other end of the half turn lies in the
 #: same plane
 _START = {0: -pi / 2, 2: 0.0}
+#: share of its volume that the cut may be off by in the mesh: three times what a circle of eight
+#: curved edges loses, 4 / 30 (pi / 8)^4; one of six would lose as much
+OF_CUT = 1e-2
 
 
 @dataclass(frozen=True)
@@ -115,9 +118,21 @@ def featured_mesh(
     share = turn / (2 * pi)
     arcs = 4.0 * (pi / around) ** 4 / 30.0
     quality = check_mesh(mesh, volume=share * volume_of(segments, blends), rtol=max(1e-3, arcs))
+    _check_cut(mesh, cut, removed, features)
     y = mesh.p[1][mesh.t].mean(axis=0)
     segment = np.searchsorted([s.y1 for s in segments[:-1]], y)
     return FeaturedMesh(mesh, segment, cut, plane, quality, removed / share)
+
+
+def _check_cut(mesh: MeshTet2, cut: np.ndarray, removed: float, features) -> None:
+    """Refuse a mesh whose features have not the volume that OCC says they have."""
+    volume = check_mesh(without(mesh, cut)).volume
+    if not abs(volume / removed - 1) <= OF_CUT:
+        names = ", ".join(f'"{f.name}"' for f in features)
+        raise MeshError(
+            f"the elements of {names} fill {1e9 * volume:.6g} mm^3, and the solid cut out of the mesh "
+            f"has {1e9 * removed:.6g} mm^3: more than {OF_CUT:.0%} apart; raise refinement"
+        )
 
 
 def _cut(gmsh, features, radii) -> list[int]:

@@ -82,7 +82,7 @@ def check_scene(scene: Scene, body: Body, probe: Probe | None = None) -> dict:
         ``models`` and ``sentence``; ``verdicts``: by model, ``verdict`` and the names of the guards
         it rests on.
     """
-    probe = probe or Probe(scene.plain, body)
+    probe = probe or Probe(scene.plain, body, whole=scene)
     said = [("body", notice) for notice in _of_the_body(scene, body)]
     said += [("features", notice) for notice in _beyond_the_segments(scene)]
     said += [("round_part", notice) for notice in described(scene)]
@@ -130,7 +130,7 @@ def notices(
     plain = scene.plain
     # quick solutions are of the plain part; what is solved with features is no stand-in for them
     known = rungs if plain is scene else {}
-    probes = [Probe(plain, r.body, known) for r in rungs.values()]
+    probes = [Probe(plain, r.body, known, scene) for r in rungs.values()]
     out: dict[str, dict] = {}
     if names is None and scene.body is not None and probes:
         heard = [*described(scene), *against_the_part(scene, rungs, probes[-1])]
@@ -180,7 +180,7 @@ def cautions(scene: Scene, body: Body, fidelity: str | None = None) -> list[str]
         Another model than that of ``body``, whose mesh is then not judged.
     """
     model = fidelity or body.fidelity
-    probe, out = Probe(scene.plain, body), []
+    probe, out = Probe(scene.plain, body, whole=scene), []
     silent = set(NOT_HEARD_ALONE)
     if LADDER[model].family != BEAM:
         silent.add("beam_against_solid")

@@ -2,7 +2,7 @@
 beside the plain part on the same sizes, of which the truth is known.
 
 With ``X`` a number of the part and ``P`` that of its plain shaft, both of one mesh of tetrahedra, and
-``H`` that of a harmonic solid of order 7,
+``H`` that of a fine harmonic solid,
 
     compliances, stiffnesses:  X + (H - P),        frequencies:  X H / P
 
@@ -26,18 +26,23 @@ from solidgear.evidence.answer import Answer, answered, solve
 from solidgear.evidence.quantities import QUANTITIES, size
 from solidgear.fidelity.featured import featured_body, meshed
 from solidgear.fidelity.ladder import LADDER
-from solidgear.fidelity.sector import sector, sectors_around
+from solidgear.fidelity.sector import cyclic_features, meshed_sector, sector, sectors_around
 from solidgear.fidelity.solid import tetrahedra_plan
 from solidgear.machine.meter import Meter
 from validation.common import ROOT
 
 FOLDER = ROOT / "validation" / "results" / "real_parts"
-#: of the plain part; the next coarser one is 1e-5 away and less
-PLAIN = {"order": 7, "layers": 5, "edge_layers": 3, "relative_size": 2.0}
+#: of the plain part, and a coarser one whose distance tells how sure it is
+PLAIN = {"order": 5, "layers": 4, "edge_layers": 3, "relative_size": 4.0}
+COARSER = {"order": 4, "layers": 3, "edge_layers": 2, "relative_size": 4.0}
+#: share of that distance that is left
+LEFT = 0.5
 #: refinement away from features and at them
 CUT_LEVELS = ((0.22, 0.45), (0.3, 0.64), (0.42, 0.9))
 #: refinement of sectors
 SECTOR_LEVELS = (0.8, 1.13, 1.6)
+#: elements of the finest mesh (of a half, of a sector) above which all three are coarser
+MOST = {"cut": 8_000, "cyclic": 3_500}
 #: size of elements at seats and shoulders over the largest, of cuts
 AT_EDGES = 1 / 8
 #: the limit over the last step: 2.2 at the order of a right-angled shoulder (1.09), 1 at second order
@@ -117,7 +122,7 @@ def truth(scene: sg.Scene, text: str, folder: Path = FOLDER) -> Truth:
     -------
     Truth
     """
-    key = json.dumps([PLAIN, CUT_LEVELS, SECTOR_LEVELS, AT_EDGES, AHEAD, DOUBT])
+    key = json.dumps([PLAIN, COARSER, LEFT, CUT_LEVELS, SECTOR_LEVELS, AT_EDGES, AHEAD, DOUBT, MOST])
     path = folder / f"{hashlib.sha256((key + text).encode()).hexdigest()[:16]}.json"
     if path.exists():
         return Truth(**json.loads(path.read_text()))
@@ -128,7 +133,7 @@ def truth(scene: sg.Scene, text: str, folder: Path = FOLDER) -> Truth:
 
 
 def _solved(scene: sg.Scene) -> Truth:
-    plain = solve(scene.plain, "harmonic", **PLAIN)
+    plain, coarser = (solve(scene.plain, "harmonic", **level) for level in (PLAIN, COARSER))
     cyclic = not LADDER["sector"].unfit(scene)
     split = not cyclic and "z" in _planes(scene)
     steps, raw, unknowns = [], {}, 0
@@ -151,9 +156,10 @@ def _solved(scene: sg.Scene) -> Truth:
         last, before = v[-1] - v[-2], v[-2] - v[-3]
         values[q] = v[-1] + AHEAD * last
         doubt[q] = max(DOUBT[0] * abs(last), DOUBT[1] * abs(before))
+    h, c = _like(plain, split), _like(coarser, split)
     for q in values:
         scale = size(values, q)
-        doubt[q] /= scale
+        doubt[q] = (doubt[q] + LEFT * abs(h[q] - c.get(q, h[q]))) / scale
         effect[q] = (values[q] - steps[-1][q][3]) / scale
         errors[q] = (raw[q] - values[q]) / scale
     return Truth(values, doubt, effect, errors, unknowns)
@@ -176,12 +182,17 @@ def _like(plain: Answer, split: bool) -> dict[str, float]:
 
 def _cuts(scene: sg.Scene) -> Iterator[tuple[Answer, Answer]]:
     wanted = [(s, s.attachment) for s in scene.stations]
-    for base, own in CUT_LEVELS:
+
+    def made_at(level: tuple[float, float], scale: float):
         plan = tetrahedra_plan(
-            scene, wanted, size=None, graded_size=None, refinement=base, around=16
+            scene, wanted, size=None, graded_size=None, refinement=scale * level[0], around=16
         )
         plan["graded_size"] = plan["size"] * AT_EDGES
-        made = meshed(scene, plan, own, True)
+        return meshed(scene, plan, scale * level[1], True)
+
+    scale = _affordable(lambda s: made_at(CUT_LEVELS[-1], s).mesh.t.shape[1], MOST["cut"])
+    for level in CUT_LEVELS:
+        made, own = made_at(level, scale), scale * level[1]
         yield tuple(
             _answered(lambda p=p: featured_body(scene, wanted, made, own, plain=p), scene)
             for p in (False, True)
@@ -190,11 +201,30 @@ def _cuts(scene: sg.Scene) -> Iterator[tuple[Answer, Answer]]:
 
 def _sectors(scene: sg.Scene) -> Iterator[tuple[Answer, Answer]]:
     count = sectors_around(scene, {})
+    wanted = [(s, s.attachment) for s in scene.stations]
+    features = cyclic_features(scene)
+
+    def elements(scale: float) -> int:
+        made = meshed_sector(scene, wanted, features, refinement=scale * SECTOR_LEVELS[-1])
+        return made.mesh.t.shape[1]
+
+    scale = _affordable(elements, MOST["cyclic"])
     for refinement in SECTOR_LEVELS:
-        more = {"refinement": refinement, "count": count}
+        more = {"refinement": scale * refinement, "count": count}
         yield tuple(
             _answered(lambda s=s: sector(s, **more), scene) for s in (scene, scene.plain)
         )
+
+
+def _affordable(elements: Callable[[float], int], most: int) -> float:
+    """What all sizes are divided by so that the finest mesh is not too large."""
+    scale = 1.0
+    for _ in range(4):
+        count = elements(scale)
+        if count <= most:
+            break
+        scale *= 0.95 * (most / count) ** (1 / 2.2)
+    return scale
 
 
 def _answered(build: Callable[[], Any], scene: sg.Scene) -> Answer:

@@ -38,5 +38,5 @@ def fillets(probe: Probe) -> Notices:
             f"{here.name!r}, y = {1e3 * corner.y:.6g} mm, {ratio:.2g} of the diameter: on a short "
             f"overhang such a fillet takes {soft:.1g} % of the deflection and {tilt:.1g} % of the "
             f"tilt and adds {rise:.1g} % to first bending; a thousandth is passed at {NOTICED:g}, a "
-            f"hundredth at {LARGE:g}; use the harmonic solid",
+            f"hundredth at {LARGE:g}; use {probe.instead()}",
         )

@@ -169,6 +169,7 @@ def memory(probe: Probe) -> Notices:
         OVER_LAW.get(name, 1.0) * law("cholmod" if name in OVER_LAW else "superlu", matrix, False),
         available_mb(),
     )
+    smaller = probe.instead("the harmonic solid, or --set refinement=0.7")
     which = "the" if probe.body.fidelity == "solid" else "the default"
     yield Notice(
         "fact",
@@ -180,7 +181,7 @@ def memory(probe: Probe) -> Notices:
         yield Notice(
             "avoid" if need > free else "caution",
             ("solid",),
-            f"{which} 3D solid needs about {need:.0f} MB (good to a factor of {GOOD_TO:g}) and {free:.0f} MB are free; use the harmonic solid, or --set refinement=0.7",
+            f"{which} 3D solid needs about {need:.0f} MB (good to a factor of {GOOD_TO:g}) and {free:.0f} MB are free; use {smaller}",
         )
 
 

@@ -25,6 +25,7 @@ if TYPE_CHECKING:
 
 #: bands of a light solid rest on two meshes only
 CAUTIOUS = 2.0
+BEAM_OR_SOLID = "a beam or a solid"
 
 
 def beam_against_solid(probe: Probe) -> Notices:
@@ -65,7 +66,7 @@ def beam_against_solid(probe: Probe) -> Notices:
             yield Notice(
                 "avoid",
                 concerned,
-                f"{text}, more than the {100 * tolerance:g} % asked for; use the harmonic solid",
+                f"{text}, more than the {100 * tolerance:g} % asked for; use {probe.instead()}",
             )
         elif kind == verdict.OPEN:
             yield Notice(
@@ -87,8 +88,8 @@ def slenderness(probe: Probe) -> Notices:
     scene = probe.scene
     ratio = scene.length**2 / sum(s.length * (s.outer0 + s.outer1) for s in scene.segments)
     for name, (one, five), models, better in (
-        ("Euler-Bernoulli", EULER, ("euler",), "the Timoshenko beam or a solid"),
-        ("Timoshenko", TIMOSHENKO, ("timoshenko", "lumped"), "the harmonic solid"),
+        ("Euler-Bernoulli", EULER, ("euler",), probe.instead("the Timoshenko beam or a solid", "timoshenko")),
+        ("Timoshenko", TIMOSHENKO, ("timoshenko", "lumped"), probe.instead()),
     ):
         if ratio < one:
             yield Notice(
@@ -117,6 +118,7 @@ STEP, STEEP = 1.17, 1.53
 def shoulder(probe: Probe) -> Notices:
     """Steps of the outer radius beyond which stress does not fill the thick part at once."""
     soft = {model for model in LADDER.of(BEAM) if probe.asked(model).get("shoulder")}
+    better = probe.instead("the harmonic solid, or the beam's option shoulder")
     if "timoshenko" in soft:
         soft |= {*LADDER.of(LUMPED)}  # which rest on it
     stiff = tuple(model for model in beams() if model not in soft)
@@ -133,7 +135,7 @@ def shoulder(probe: Probe) -> Notices:
             stiff,
             f"shoulder between {a.name!r} and {b.name!r} at y = {1e3 * b.y0:.6g} mm {sharp}, ratio of diameters {thick / thin:.2f}: a beam lacks "
             f"{2e3 * thin * missing:.2g} mm of thin shaft, {100 * lacking:.1f} % of the deflection of an overhang of one diameter; 1 % is passed at {STEP:g}, 5 % at {STEEP:g}; "
-            "use the harmonic solid, or the beam's option shoulder",
+            f"use {better}",
         )
 
 
@@ -151,7 +153,7 @@ def disc_head(probe: Probe) -> Notices:
             "caution",
             beams(),
             f"the head with {port.name!r}, y = {1e3 * low:.6g} to {1e3 * high:.6g} mm, is {(high - low) / widest:.2g} of its diameter long: below {DISC:g} it bends in itself, and "
-            "a beam's tilt compliance misses 10 % and more; use the harmonic solid",
+            f"a beam's tilt compliance misses 10 % and more; use {probe.instead()}",
         )
 
 
@@ -168,7 +170,7 @@ def thin_joint(probe: Probe) -> Notices:
                 "caution",
                 beams(),
                 f"{a.name!r} and {b.name!r} share a ring of {1e3 * ring:.3g} mm at y = {1e3 * b.y0:.6g} mm, {share:.2g} of the thinner wall: below {JOINT:g} a beam's tilt "
-                "compliance misses 5 %, below 0.3 12 %; use the harmonic solid",
+                f"compliance misses 5 %, below 0.3 12 %; use {probe.instead()}",
             )
 
 
@@ -217,7 +219,8 @@ def ovalising(probe: Probe) -> Notices:
     yield Notice(
         "avoid" if low < first else "caution",
         beams(),
-        f"sections lose their shape below {where}: {what}, which a beam cannot do; use the harmonic solid, which solves them",
+        f"sections lose their shape below {where}: {what}, which a beam cannot do; use "
+        + probe.instead("the harmonic solid, which solves them"),
     )
     cells = probe.cells_around if probe.body.fidelity == "solid" else DEFAULT_AROUND
     needed = max(cells_around(scene, n) for n in inside)
@@ -328,7 +331,7 @@ def lumped_against_solid(probe: Probe) -> Notices:
         yield Notice(
             "avoid",
             ("lumped",),
-            f"{text}, more than the {100 * tolerance:g} % asked for; use a beam or a solid",
+            f"{text}, more than the {100 * tolerance:g} % asked for; use {probe.instead(BEAM_OR_SOLID, *beams())}",
         )
     elif kind == verdict.OPEN:
         yield Notice(
@@ -353,5 +356,5 @@ def frequency_range(probe: Probe) -> Notices:
             "avoid" if asked > pole else "caution",
             ("lumped",),
             f"{asked:g} Hz are asked for, and with the lumped point held the shaft has a mode at {pole:.4g} Hz that no condensed model has: Guyan's is off by 1 % of the "
-            f"stiffness from {HOLDS * pole:.4g} Hz, by 10 % from {DRIFTS * pole:.4g} Hz; use a beam or a solid above",
+            f"stiffness from {HOLDS * pole:.4g} Hz, by 10 % from {DRIFTS * pole:.4g} Hz; use {probe.instead(BEAM_OR_SOLID, *beams())} above",
         )

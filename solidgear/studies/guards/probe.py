@@ -23,6 +23,7 @@ from solidgear.evidence.study import Solution, study
 from solidgear.evidence.ties import rigid_seats
 from solidgear.evidence.verdict import deviations
 from solidgear.fidelity import build
+from solidgear.fidelity.ladder import LADDER
 from solidgear.fidelity.levels import HARMONIC
 from solidgear.reduction.effective_mass import Synthesis, synthesise
 from solidgear.reduction.lumped_point import LumpedPoint
@@ -54,13 +55,36 @@ class Probe:
         The body the user asked for; it is read, not solved.
     rungs : dict of str to Solution, optional
         What is solved already.
+    whole : Scene, optional
+        With the features that ``scene`` leaves out; by default there are none.
     """
 
-    def __init__(self, scene: Scene, body: Body, rungs: dict[str, Solution] | None = None):
-        self.scene, self.body = scene, body
+    def __init__(
+        self,
+        scene: Scene,
+        body: Body,
+        rungs: dict[str, Solution] | None = None,
+        whole: Scene | None = None,
+    ):
+        self.scene, self.body, self.whole = scene, body, whole or scene
         self.supports = as_supports(scene).on_stations(scene.stations)
         self.rungs = dict(rungs or {})
         self.tied, self.gaps = cache(self._tied), cache(self._gaps)
+
+    def instead(self, usual: str = "the harmonic solid", *models: str) -> str:
+        """What to use in place of a model that does not hold: the usual advice, or, where features
+        of the scene forbid its models, those that hold them.
+
+        Parameters
+        ----------
+        usual : str
+        *models : str
+            What it speaks of; by default the harmonic solid.
+        """
+        if not any(LADDER[m].unfit(self.whole) for m in models or ("harmonic",)):
+            return usual
+        fit = [r.name for r in LADDER if r.build is not None and not r.unfit(self.whole)]
+        return " or ".join(fit) or "a scene with fewer of its features"
 
     def diameter(self, y: float) -> float:
         """Outer diameter of the shaft at y, the larger one at a step, m."""
