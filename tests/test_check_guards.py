@@ -679,3 +679,13 @@ def test_a_beam_with_soft_shoulders_is_not_told_of_them_and_is_judged_as_asked()
     models = {"timoshenko": study(scene, "timoshenko", {"shoulder": True}, evidence=False)}
     told = notices(scene, models, ("shoulder",))
     assert told == []
+
+
+def test_advice_on_a_scene_with_features_names_models_that_hold_them():
+    """A keyed pinion: `harmonic` refuses it, so that no sentence may send there; the plain one stays as it was."""
+    keyed = sg.load(ROOT / "geometry" / "pinion_keyed.toml")
+    said = check_scene(keyed, sg.build(keyed.plain, "timoshenko"))["cautions"]
+    advice = [s.split("; use ")[-1] for s in said if "; use " in s]
+    assert len(advice) > 3 and set(advice) <= {"corrected or solid", "corrected or solid above"}
+    plain = check_scene(keyed.plain, sg.build(keyed.plain, "timoshenko"))["cautions"]
+    assert any("use the harmonic solid" in s for s in plain)

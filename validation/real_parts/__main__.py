@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-import resource
 import sys
 import tempfile
 from pathlib import Path
@@ -12,9 +11,6 @@ import solidgear as sg
 from validation.real_parts.claims import judged
 from validation.real_parts.judge import HEAD, Part, judge, light, summary, told
 from validation.real_parts.scenes import SORTS, draw
-
-#: bytes that a reference may take
-ROOM = 4 << 30
 
 
 def main() -> int:
@@ -25,7 +21,9 @@ def main() -> int:
     parser.add_argument("--sort", choices=SORTS)
     parser.add_argument("--light", action="store_true", help="no bands")
     parser.add_argument("--commands", action="store_true", help="the command line as well")
-    parser.add_argument("--judge", action="store_true", help="bars and verdicts against a reference")
+    parser.add_argument(
+        "--judge", action="store_true", help="bars and verdicts against a reference"
+    )
     given = parser.parse_args()
     if given.judge:
         return _judge(given)
@@ -58,8 +56,6 @@ def _judge(given: argparse.Namespace) -> int:
     """Bars against references; the exit code is 1 where what is called valid is not."""
     parts: list[Part] = []
     seed = given.seed
-    # what the references may take, whatever else runs beside them
-    resource.setrlimit(resource.RLIMIT_DATA, (ROOM, ROOM))
     print(*HEAD, sep="\n")
     with tempfile.TemporaryDirectory() as folder:
         while len(parts) < given.scenes:

@@ -125,7 +125,9 @@ def judge(text: str, seed: int, words: str, path: Path, folder: Path = FOLDER) -
         found: list[Solution] = []
         options = {"element": "tet10"} if model == "solid" else {}
         try:
-            study(asked, model, options, most=most, evidence=False, counted=False, keep=found.append)
+            study(
+                asked, model, options, most=most, evidence=False, counted=False, keep=found.append
+            )
         except sg.SolidgearError as error:
             part.left_out.append(f"{model}: {error}")
         for mesh, one in enumerate(found, 1):
@@ -137,9 +139,7 @@ def judge(text: str, seed: int, words: str, path: Path, folder: Path = FOLDER) -
 def _judged(part: Part, model: str, mesh: int, one: Solution) -> None:
     bands, true = one.bands.get(SCENE, {}), part.truth
     own = numbers(one.ties[SCENE])
-    errors = {
-        q: (own[q] - v) / size(true.values, q) for q, v in true.values.items() if q in own
-    }
+    errors = {q: (own[q] - v) / size(true.values, q) for q, v in true.values.items() if q in own}
     split = "bending 2" in bands and "bending z 1" not in {m.name for m in one.modes.modes}
     called = {"pair 1": "bending 1", **({"pair 2": "bending 2"} if split else {})}
     for q, error in errors.items():
@@ -206,7 +206,10 @@ HEAD = (
 
 def summary(parts: list[Part]) -> list[str]:
     """Share of bars that held, by model and mesh, and verdicts."""
-    out = ["| model, mesh | bars held | median bar / error | false valid, of valid |", "| --- " * 4 + "|"]
+    out = [
+        "| model, mesh | bars held | median bar / error | false valid, of valid |",
+        "| --- " * 4 + "|",
+    ]
     every = [b for p in parts for b in p.bars]
     for key in sorted({(b.model, b.mesh) for b in every}):
         clear = [b for b in every if (b.model, b.mesh) == key and b.clear]

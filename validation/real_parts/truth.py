@@ -17,6 +17,7 @@ import hashlib
 import json
 from collections.abc import Callable, Iterator
 from dataclasses import asdict, dataclass
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -100,7 +101,11 @@ def numbers(answer: Answer) -> dict[str, float]:
 def _by_block(answer: Answer, component: int):
     """The lowest bending mode of the block of one plane, where planes are blocks of their own."""
     blocks = answer.body.blocks
-    own = [k for k, b in enumerate(blocks) if component in b.components and 2 - component not in b.components]
+    own = [
+        k
+        for k, b in enumerate(blocks)
+        if component in b.components and 2 - component not in b.components
+    ]
     for mode in answer.modes.modes:
         if mode.name.startswith("bending") and any(k in own for v in mode.vectors for k in v):
             return mode
@@ -122,7 +127,9 @@ def truth(scene: sg.Scene, text: str, folder: Path = FOLDER) -> Truth:
     -------
     Truth
     """
-    key = json.dumps([PLAIN, COARSER, LEFT, CUT_LEVELS, SECTOR_LEVELS, AT_EDGES, AHEAD, DOUBT, MOST])
+    key = json.dumps(
+        [PLAIN, COARSER, LEFT, CUT_LEVELS, SECTOR_LEVELS, AT_EDGES, AHEAD, DOUBT, MOST]
+    )
     path = folder / f"{hashlib.sha256((key + text).encode()).hexdigest()[:16]}.json"
     if path.exists():
         return Truth(**json.loads(path.read_text()))
@@ -194,7 +201,7 @@ def _cuts(scene: sg.Scene) -> Iterator[tuple[Answer, Answer]]:
     for level in CUT_LEVELS:
         made, own = made_at(level, scale), scale * level[1]
         yield tuple(
-            _answered(lambda p=p: featured_body(scene, wanted, made, own, plain=p), scene)
+            _answered(partial(featured_body, scene, wanted, made, own, plain=p), scene)
             for p in (False, True)
         )
 
@@ -211,9 +218,7 @@ def _sectors(scene: sg.Scene) -> Iterator[tuple[Answer, Answer]]:
     scale = _affordable(elements, MOST["cyclic"])
     for refinement in SECTOR_LEVELS:
         more = {"refinement": scale * refinement, "count": count}
-        yield tuple(
-            _answered(lambda s=s: sector(s, **more), scene) for s in (scene, scene.plain)
-        )
+        yield tuple(_answered(partial(sector, s, **more), scene) for s in (scene, scene.plain))
 
 
 def _affordable(elements: Callable[[float], int], most: int) -> float:

@@ -88,7 +88,12 @@ def slenderness(probe: Probe) -> Notices:
     scene = probe.scene
     ratio = scene.length**2 / sum(s.length * (s.outer0 + s.outer1) for s in scene.segments)
     for name, (one, five), models, better in (
-        ("Euler-Bernoulli", EULER, ("euler",), probe.instead("the Timoshenko beam or a solid", "timoshenko")),
+        (
+            "Euler-Bernoulli",
+            EULER,
+            ("euler",),
+            probe.instead("the Timoshenko beam or a solid", "timoshenko"),
+        ),
         ("Timoshenko", TIMOSHENKO, ("timoshenko", "lumped"), probe.instead()),
     ):
         if ratio < one:
