@@ -64,8 +64,14 @@ def part_body(
     facts = {"file": file.name, "refinement": refinement}
     if file.kind == "mesh":
         found = _apart(file, mesh_from, file.path, place)
+        # flat elements of first order are taken as the shape only, since they lock in bending: on a
+        # rod of 16 faces around they miss the deflection by -7.7 %, those of second order with straight
+        # sides by +2.3 %, which is what the flat faces take from the section
+        element = "tet10" if found.element == "tet4" else found.element
+        if element != found.element:
+            facts["file_element"] = found.element
         return solid_body(
-            found.mesh, scene, element=found.element, wanted=wanted, clipped=True, facts=facts
+            found.mesh, scene, element=element, wanted=wanted, clipped=True, facts=facts
         )
     plan = step_plan(
         scene, wanted, size=size, graded_size=graded_size, refinement=refinement, around=around

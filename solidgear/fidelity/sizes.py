@@ -262,8 +262,10 @@ def _hexahedra(scene: Shaft, given: Mapping[str, Any]) -> Size:
 def _given_mesh(scene: Shaft, given: Mapping[str, Any], body: BodyFile) -> Size:
     """Of a mesh that is what it is: counted, but for the fill of its factor."""
     assert body.counts is not None  # asked before
-    own = {**given, "element": body.element}
-    unknowns, entries = nodes(body.element, body.counts, 4 if body.element[0] == "h" else 3)
+    # first-order tetrahedra of a file are solved as second-order ones on the same cells
+    element = "tet10" if body.element == "tet4" else body.element
+    own = {**given, "element": element}
+    unknowns, entries = nodes(element, body.counts, 4 if element[0] == "h" else 3)
     fill = np.exp(0.519) * unknowns**1.313 * (entries / unknowns) ** 0.448
     size = _solid(scene, own, unknowns, entries, body.counts[3], fill)
     return replace(size, lower="mesh the part coarser, or use the harmonic model of its round part")

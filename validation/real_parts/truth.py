@@ -43,7 +43,7 @@ CUT_LEVELS = ((0.22, 0.45), (0.3, 0.64), (0.42, 0.9))
 #: refinement of sectors
 SECTOR_LEVELS = (0.8, 1.13, 1.6)
 #: elements of the finest mesh (of a half, of a sector) above which all three are coarser
-MOST = {"cut": 8_000, "cyclic": 3_500}
+MOST = {"cut": 4_000, "cyclic": 2_000}
 #: size of elements at seats and shoulders over the largest, of cuts
 AT_EDGES = 1 / 8
 #: the limit over the last step: 2.2 at the order of a right-angled shoulder (1.09), 1 at second order
