@@ -70,7 +70,7 @@ def check_train(workshop: Workshop, max_frequency: float | None = None) -> dict:
     light = Workshop(train, workshop.reduction, workshop.kept)
     for side in SIDES:
         scene = _asked(workshop.scenes[side], train, limit)
-        probe = Probe(scene.plain, build(scene.plain, JUDGE))
+        probe = Probe(scene.plain, build(scene.plain, JUDGE), whole=scene)
         out[side] = check_scene(scene, probe.body, probe)
         light.take(side, JUDGE, probe.rung(JUDGE).body)
     faults: list[str] = []
