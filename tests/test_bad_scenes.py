@@ -142,7 +142,7 @@ CASES = {
     ),
     "misspelt table": ("[ask]", "[aks]", "aks", "", 'did you mean "ask"'),
     "2: missing key": ('seat_width = "40 mm"', "", 'bearing[2] "2".seat_width', "", "missing"),
-    "missing table": ("[port]", "[[port]]", "port", "", "must be a table"),
+    "missing table": ("[material]", "[[material]]", "material", "", "must be a table"),
     "2: no stiffness": (
         GOOD[GOOD.rindex("[bearing.stiffness]") : GOOD.index("# The source also")],
         "",

@@ -397,8 +397,8 @@ MUTATIONS = (
         "bearing: the housing's spring is left out of the equilibrium",
         "solidgear/bearings/equilibrium.py",
         "_System.__init__",
-        "read[1, -1], self.own[-1] = -1.0, housing",
-        "read[1, -1], self.own[-1] = 0.0, housing",
+        "-below[k].moves",
+        "-0.0 * below[k].moves",
         "tests/test_bearings_equilibrium.py::test_series_spring_and_housing_take_the_bearings_load",
     ),
     Mutation(

@@ -7,9 +7,10 @@ the stiffness between ports
 
 without any rigid motion in it; torques about y are left out, and with them the free turning: they
 leave by the drive, and no bearing feels them.  Unknown are the motions d of the ports, of a ring w
-on a spring in series with a bearing, and of the housing h on its own.  With the contacts' energy V
+on a spring or in a housing of its own, and of the housing of all, h, on its 6x6 H, which moves the
+outer ring of bearing i by ``E_i h``.  With the contacts' energy V
 
-    K d + sum of V'(d - w - h) = load,      k_w w = V',      k_h h = sum of V',
+    K d + sum of V'(d - w - E h) = load,      k_w w = V',      H h = sum of E' V',
 
 the gradient of one convex energy: one equilibrium (:mod:`solidgear.bearings.newton`), however many
 bearings there are.
@@ -19,14 +20,16 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Protocol
+from typing import TYPE_CHECKING, Protocol, TypeGuard
 
 import numpy as np
+import scipy.linalg as sla
 
 from solidgear.bearings.newton import NothingHolds, settle
 from solidgear.bearings.rolling import UNITS
 from solidgear.errors import SolidgearError
 from solidgear.frames import DOF_NAMES
+from solidgear.scene.housing import Elastic, Housing
 from solidgear.solve.statics import flexibility
 
 if TYPE_CHECKING:
@@ -71,6 +74,41 @@ class Linear:
 
 
 @dataclass(frozen=True)
+class Foot:
+    """Something elastic that the outer ring of a bearing stands on.
+
+    Attributes
+    ----------
+    moves : (6, k) ndarray
+        Motion of the ring for unit motions in which it gives.
+    stiffness : (k, k) ndarray
+        Against these.
+    """
+
+    moves: np.ndarray
+    stiffness: np.ndarray
+
+
+def foot_of(housing: Elastic, moves: np.ndarray | None = None) -> Foot:
+    """A housing as the equilibrium takes it.
+
+    Parameters
+    ----------
+    housing : Elastic
+    moves : (6, k) ndarray, optional
+        Of the ring for unit motions in which the housing gives; by default both are at one point.
+
+    Returns
+    -------
+    Foot
+        Without turning about y where nothing resists that: no bearing brings a torque.
+    """
+    moves = np.eye(6)[:, housing.gives] if moves is None else moves
+    keep = [k for k, c in enumerate(housing.gives) if c != 4 or housing.own[k, k] > 0]
+    return Foot(moves[:, keep], housing.own[np.ix_(keep, keep)])
+
+
+@dataclass(frozen=True)
 class Mounted:
     """What carries at a port.
 
@@ -82,12 +120,22 @@ class Mounted:
         Of the port; None takes the body's first.
     spring : float or None
         In series with it along y, N/m.
+    housing : Elastic or None
+        That its outer ring alone stands in.
     """
 
     port: str
     bearing: Holds
     attachment: str | None = None
     spring: float | None = None
+    housing: Elastic | None = None
+
+    @property
+    def feet(self) -> tuple[Foot, ...]:
+        """What it stands on by itself."""
+        spring = () if self.spring is None else (Elastic(stiffness={"kyy": self.spring}),)
+        own = () if self.housing is None else (self.housing,)
+        return tuple(foot_of(one) for one in (*spring, *own))
 
 
 @dataclass(frozen=True)
@@ -155,7 +203,7 @@ def equilibrium(
     body: Body,
     bearings: Sequence[Mounted],
     loads: Mapping[str, Sequence[float] | np.ndarray],
-    housing: float | None = None,
+    housing: float | Housing | None = None,
     start: Equilibrium | None = None,
 ) -> Equilibrium:
     """Equilibrium of a shaft on bearings of any kind.
@@ -167,8 +215,8 @@ def equilibrium(
     bearings : sequence of Mounted
     loads : mapping of str to (6,) array_like
         Loads on ports by name, N and N m; torques about y pass on to the drive.
-    housing : float, optional
-        Spring along y between all bearings and ground, N/m.
+    housing : float or Housing, optional
+        Between all bearings and ground; a number is a spring along y, N/m.
     start : Equilibrium, optional
         One of the same shaft to begin at, under a load that is near.
 
@@ -207,6 +255,10 @@ def equilibrium(
     return system.told(found.motion, found.unbalanced, found.iterations)
 
 
+def _is_spring(housing: float | Housing) -> TypeGuard[float]:
+    return not isinstance(housing, Housing)
+
+
 class _System:
     """Unknowns, loads and tangents of a shaft with what holds it."""
 
@@ -226,18 +278,24 @@ class _System:
         rows = [6 * index + c for index in indices for c in FIVE]
         self.stiffness = port_stiffness(body, rows)
         self.ports = len(rows)
-        springs = [k for k, b in enumerate(self.bearings) if b.spring is not None]
-        self.count = self.ports + len(springs) + (housing is not None)
-        self.own = np.zeros(self.count - self.ports)
+        feet = [foot for bearing in self.bearings for foot in bearing.feet]
+        own = [foot.stiffness for foot in feet]
+        if housing is not None:
+            around = Housing(stiffness={"kyy": housing}) if _is_spring(housing) else housing
+            below = [foot_of(around, around.moves(body.ports[k].y)) for k in indices]
+            own.append(below[0].stiffness)
+        self.own = sla.block_diag(*own) if own else np.zeros((0, 0))
+        self.count = self.ports + len(self.own)
         self.reads = []
+        at = self.ports
         for k, bearing in enumerate(self.bearings):
             read = np.zeros((6, self.count))
             read[FIVE, 5 * k + np.arange(5)] = 1.0
-            if bearing.spring is not None:
-                ring = self.ports + springs.index(k)
-                read[1, ring], self.own[ring - self.ports] = -1.0, bearing.spring
+            for foot in bearing.feet:
+                read[:, at : at + len(foot.stiffness)] = -foot.moves
+                at += len(foot.stiffness)
             if housing is not None:
-                read[1, -1], self.own[-1] = -1.0, housing
+                read[:, self.count - len(own[-1]) :] = -below[k].moves
             self.reads.append(read)
         self.size = np.ones(self.count)
         self.size[: self.ports] = np.tile(
@@ -250,15 +308,14 @@ class _System:
 
     def load(self, at: np.ndarray) -> np.ndarray:
         """Gradient of the energy without the loads'."""
-        out = np.concatenate([self.stiffness @ at[: self.ports], self.own * at[self.ports :]])
+        out = np.concatenate([self.stiffness @ at[: self.ports], self.own @ at[self.ports :]])
         for bearing, read in zip(self.bearings, self.reads):
             out = out + read.T @ bearing.bearing.load(read @ at)
         return out
 
     def tangent(self, at: np.ndarray) -> np.ndarray:
         """Its Hessian."""
-        out = np.diag(np.concatenate([np.zeros(self.ports), self.own]))
-        out[: self.ports, : self.ports] += self.stiffness
+        out = sla.block_diag(self.stiffness, self.own)
         for bearing, read in zip(self.bearings, self.reads):
             out = out + read.T @ bearing.bearing.tangent(read @ at) @ read
         return out

@@ -184,7 +184,11 @@ def mounted(scene: Scene, made: Mapping[str, Catalogued]) -> list[Mounted]:
         spring = None
         if bearing.axial_series:
             spring = 1 / sum(1 / k for k in bearing.axial_series)
-        out.append(Mounted(bearing.name, made[bearing.name].bearing, spring=spring))
+        out.append(
+            Mounted(
+                bearing.name, made[bearing.name].bearing, spring=spring, housing=bearing.housing
+            )
+        )
     return out
 
 
@@ -197,4 +201,5 @@ def _settled(
 ) -> Equilibrium:
     assert scene.load is not None
     loads = {scene.port.name: choice.load * np.array(scene.load.six)}
-    return equilibrium(body, mounted(scene, made), loads, scene.housing_axial, start)
+    around = scene.housing or scene.housing_axial
+    return equilibrium(body, mounted(scene, made), loads, around, start)

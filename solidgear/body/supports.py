@@ -12,6 +12,7 @@ import numpy as np
 from solidgear.body.model import Body
 from solidgear.errors import SolidgearError
 from solidgear.frames import DOF_NAMES
+from solidgear.springs import root_of
 
 if TYPE_CHECKING:
     from solidgear.scene import Bearing, PointMass, Scene
@@ -193,49 +194,12 @@ class Supports:
         return size[:, None] * null
 
 
-def root_of(matrix: np.ndarray) -> np.ndarray:
-    """Root of a symmetric positive semidefinite matrix: ``L L' = matrix``.
-
-    Cholesky's factor with the largest pivots first, of the matrix scaled to a unit diagonal: a
-    spring of 1e-3 N/m beside one of 1e24 keeps its own precision, in a column of its own.
-    (Eigenvectors would mix equal entries of the scaled matrix, whatever they couple.)
-
-    Parameters
-    ----------
-    matrix : (n, n) ndarray
-
-    Returns
-    -------
-    (n, r) ndarray
-        r is its rank.
-
-    Examples
-    --------
-    >>> root_of(np.array([[4.0, 0.0], [0.0, 0.0]]))
-    array([[2.],
-           [0.]])
-    """
-    d = np.sqrt(np.abs(np.diag(matrix)))
-    order = np.argsort(-d, kind="stable")
-    unit = np.where(d > 0, d, 1.0)[order]
-    left = matrix[np.ix_(order, order)] / np.outer(unit, unit)
-    columns = []
-    for j in range(len(left)):
-        if left[j, j] > 1e-12:
-            column = left[:, j] / np.sqrt(left[j, j])
-            column[:j] = 0.0
-            columns.append(column)
-            left = left - np.outer(column, column)
-    out = np.zeros((len(d), len(columns)))
-    out[order] = d[order, None] * np.array(columns).reshape(len(columns), len(d)).T
-    return out
-
-
 def as_supports(source: Holding) -> Supports:
     """Supports of a scene (housing and masses included), of bearings (neither), or as they are.
 
     A housing spring sits between ground and the axially rigid ring that carries all outer races:
-    eliminating that ring leaves ``K - K e (e'K e + k)^-1 e'K`` with e the common axial motion.
+    eliminating that ring leaves ``K - K e (e'K e + k)^-1 e'K`` with e the common axial motion. Of a
+    housing that gives in other motions too :func:`solidgear.springs.in_series` tells what is left.
 
     Parameters
     ----------
@@ -254,7 +218,7 @@ def as_supports(source: Holding) -> Supports:
     """
     if isinstance(source, Supports):
         return source
-    housing = getattr(source, "housing_axial", None)
+    housing, around = (getattr(source, key, None) for key in ("housing_axial", "housing"))
     bearings: Iterable = getattr(source, "bearings", source) or ()
     bearings = tuple(bearings)
     n = len(bearings)
@@ -266,6 +230,8 @@ def as_supports(source: Holding) -> Supports:
         e[1::6] = 1.0
         ke = k @ e
         k = k - np.outer(ke, ke) / (e @ ke + housing)
+    if around is not None:
+        k = around.beneath(k, [b.y for b in bearings])
     names = tuple(b.name for b in bearings)
     masses = tuple(getattr(source, "masses", ()))
     return _laden(names, k, masses) if masses else Supports(names, k)

@@ -1,10 +1,12 @@
 """What is modelled and what is asked: data only."""
 
+from solidgear.scene.ask import Ask, Quantity
 from solidgear.scene.blends import Blend, Chamfer, Corner, Fillet
 from solidgear.scene.catalogue import BearingDisplacement, BearingLoad, Catalogue
 from solidgear.scene.cyclic_features import BoltCircle, Spline, Teeth
 from solidgear.scene.features import CrossHole, Feature, Flat, Keyway
-from solidgear.scene.model import Ask, Quantity, Scene
+from solidgear.scene.housing import Elastic, Housing
+from solidgear.scene.model import Scene
 from solidgear.scene.parts import STEEL, Material, Segment
 from solidgear.scene.point_mass import PointMass
 from solidgear.scene.stations import Bearing, Port
@@ -20,9 +22,11 @@ __all__ = [
     "Chamfer",
     "Corner",
     "CrossHole",
+    "Elastic",
     "Feature",
     "Fillet",
     "Flat",
+    "Housing",
     "Keyway",
     "Material",
     "PointMass",

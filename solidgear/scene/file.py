@@ -65,12 +65,19 @@ def load(path: str | os.PathLike, part_of: Reader = unread) -> Scene:
     try:
         return _read(raw, where, part_of)
     except SceneError as error:
+        found = error.problems
+        if isinstance(raw.get("port"), Mapping):  # one [port] is a table and not a list of one
+            found = tuple(one.located(None, path=_of_the_one_port(one.path)) for one in found)
         problems = {
-            (one.path, one.reason): one for one in error.problems
+            (one.path, one.reason): one for one in found
         }  # both ends of a cylinder are one diameter
         order = _FileOrder(raw)
         ordered = sorted(problems.values(), key=lambda one: order.of(one.path))
         raise SceneError.of(ordered).located(raw, where=place_of(where)) from None
+
+
+def _of_the_one_port(path: tuple) -> tuple:
+    return ("port", *path[2:]) if path[:1] == ("port",) and path[1:2] == (0,) else path
 
 
 def _read(raw: dict[str, Any], where: str, part_of: Reader) -> Scene:
@@ -114,7 +121,7 @@ def _tables(raw: dict[str, Any], problems: list[SceneError]) -> tuple[SceneTable
     numbers = [k for k in range(count) if ("bearing", k) not in spoilt]
     sound = {
         key: raw[key]
-        for key in ("material", "segment", "body", "attachment", "port")
+        for key in ("material", "segment", "body", "attachment", "port", "ask")
         if key in raw and (key,) not in spoilt
     }
     return SoundTables(**sound, bearing=[raw["bearing"][k] for k in numbers]), numbers
@@ -158,13 +165,13 @@ def _unknown_names(raw: dict[str, Any], part: Recognised | None) -> Iterator[Sce
 
     Read from the file as it stands, since a segment of a wrong length still has its name.
     """
-    pieces, bearings, masses, port = (
+    pieces, bearings, masses, ports = (
         _list_of_tables(raw.get("segment"))
         if part is None
         else [{"name": f"s{k}"} for k in range(1, len(part.walls) + 1)],
         _list_of_tables(raw.get("bearing", [])),
         _list_of_tables(raw.get("mass", [])),
-        raw.get("port"),
+        _list_of_tables([given] if isinstance(given := raw.get("port"), Mapping) else given),
     )
     if pieces is None or not all(isinstance(piece.get("name"), str) for piece in pieces):
         return  # without sound names, what refers to them cannot be judged
@@ -186,14 +193,19 @@ def _unknown_names(raw: dict[str, Any], part: Recognised | None) -> Iterator[Sce
     for i, feature in enumerate(_list_of_tables(raw.get("feature", [])) or ()):
         for key in ("at", "from"):
             yield from _unknown_datum(feature.get(key), known, ("feature", i, key))
-    if isinstance(port, Mapping) and bearings is not None:
+    if bearings is None:
+        return
+    housing = raw.get("housing")
+    if isinstance(housing, Mapping):
+        yield from _unknown_datum(housing.get("from"), known, ("housing", "from"))
+    for i, port in enumerate(ports or ()):
         for key in ("at", "from"):
-            yield from _unknown_datum(port.get(key), known, ("port", key))
+            yield from _unknown_datum(port.get(key), known, ("port", i, key))
         carrier = port.get("attach_to")
         if isinstance(carrier, str) and carrier not in segments:
             yield SceneError(
                 f"unknown segment{nearest(carrier, segments)}; known here: {listed(segments)}",
-                path=("port", "attach_to"),
+                path=("port", i, "attach_to"),
             )
 
 

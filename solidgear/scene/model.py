@@ -1,7 +1,7 @@
 """The scene: what is modelled, and what is asked of it.
 
-A shaft of cylinders and cones along y, bearings with 6x6 stiffness, one lumped point (the port),
-and the questions. Frozen and validated, SI inside, no numerics beyond geometry bookkeeping. Degrees
+A shaft of cylinders and cones along y, bearings with 6x6 stiffness, lumped points (ports), and the
+questions. Frozen and validated, SI inside, no numerics beyond geometry bookkeeping. Degrees
 of freedom are everywhere in the order (x, y, z, thx, thy, thz); y runs along the shaft and is 0 at
 its first end face.
 """
@@ -9,82 +9,32 @@ its first end face.
 from __future__ import annotations
 
 from collections.abc import Iterable
-from typing import Annotated, Any, ClassVar, Literal
+from typing import Any, ClassVar
 
-from pydantic import Field, model_validator
+from pydantic import model_validator
 
 from solidgear.display import Displayed
 from solidgear.errors import SceneError
+from solidgear.scene.ask import Ask
 from solidgear.scene.blend_rules import blend_problems
 from solidgear.scene.blends import Blend, Corner, corners_of_blends
 from solidgear.scene.body_file import BodyFile
 from solidgear.scene.catalogue import BearingLoad
 from solidgear.scene.features import Feature, feature_problems
+from solidgear.scene.housing import Housing
 from solidgear.scene.parts import STEEL, Material, Model, Segment
 from solidgear.scene.point_mass import PointMass
 from solidgear.scene.rules import (
-    MOST_MODES,
+    ONE_HOUSING,
     mass_problems,
+    no_such_point,
+    question_problems,
     shaft_problems,
     station_problems,
     steps,
 )
 from solidgear.scene.stations import Bearing, Port
-from solidgear.scene.units import AxialSpring, Frequency, Tolerance
-
-#: what a model can be judged by: compliance and stiffness at the lumped point, first modes
-Quantity = Literal[
-    "C_zz",
-    "C_z,thx",
-    "C_thx",
-    "C_yy",
-    "K_zz",
-    "K_z,thx",
-    "K_thx",
-    "K_yy",
-    "bending 1",
-    "bending 2",
-    "axial 1",
-    "torsion 1",
-]
-
-
-class Ask(Model):
-    """The questions: how many modes, up to what frequency, to what tolerance, judged by what.
-
-    Attributes
-    ----------
-    modes : int
-        Elastic modes, 1 to `MOST_MODES`.
-    max_frequency : float or None
-        Hz; None is no limit.
-    tolerance : float
-        Relative, between 0 and 1.
-    quantities : tuple of str
-        What models are judged by, names of `Quantity`; empty is the usual set, compliances with
-        first bending and first axial mode.
-    lumped : bool
-        Whether a comparison also tells of every synthesis of a lumped mass, the thesis's equations
-        52 and 53 among them.
-
-    Raises
-    ------
-    SceneError
-        A field out of its range.
-
-    Examples
-    --------
-    >>> from solidgear import Ask
-    >>> ask = Ask(max_frequency="10 kHz", tolerance=0.02)
-    >>> ask.modes, ask.max_frequency, ask.tolerance
-    (10, 10000.0, 0.02)
-    """
-
-    modes: Annotated[int, Field(strict=True, ge=1, le=MOST_MODES)] = 10
-    max_frequency: Frequency | None = None
-    tolerance: Tolerance = 0.05
-    quantities: tuple[Quantity, ...] = ()
-    lumped: Annotated[bool, Field(strict=True)] = False
+from solidgear.scene.units import AxialSpring
 
 
 class Scene(Displayed, Model):
@@ -108,10 +58,14 @@ class Scene(Displayed, Model):
         At its edges; it stays of revolution.
     housing_axial : float or None
         Spring along y between the common bearing housing and ground, N/m.
+    housing : Housing or None
+        A rigid housing of all bearings on a 6x6 spring; in place of `housing_axial`.
     port : Port
-        The lumped point.
+        The lumped point; of several, the main one.
+    further_ports : tuple of Port
+        Other lumped points, such as a second gear.
     load : BearingLoad or None
-        Load on the shaft at the port, under which bearings of catalogue data settle.
+        Load on the shaft at the main port, under which bearings of catalogue data settle.
     ask : Ask
 
     Raises
@@ -144,7 +98,9 @@ class Scene(Displayed, Model):
     body: BodyFile | None = None
     blends: tuple[Blend, ...] = ()
     housing_axial: AxialSpring | None = None
+    housing: Housing | None = None
     port: Port
+    further_ports: tuple[Port, ...] = ()
     load: BearingLoad | None = None
     ask: Ask = Ask()
 
@@ -153,10 +109,14 @@ class Scene(Displayed, Model):
         problems = shaft_problems(self.segments)
         if not problems:  # a station can be judged only on a shaft that is sound
             bearings, masses = dict(enumerate(self.bearings)), dict(enumerate(self.masses))
-            problems = list(station_problems(self.segments, self.port, bearings, masses))
-            problems += mass_problems(self.port, bearings, masses)
+            ports = dict(enumerate(self.ports))
+            problems = list(station_problems(self.segments, ports, bearings, masses))
+            problems += mass_problems(self.ports, bearings, masses)
             problems += feature_problems(self.segments, self.features)
             problems += blend_problems(self.segments, self.blends, self.stations, self.features)
+        problems += question_problems(self.ports, self.ask.quantities)
+        if self.housing is not None and self.housing_axial is not None:
+            problems.append(SceneError(ONE_HOUSING, path=("housing_axial",)))
         if problems:
             raise SceneError.of(problems)
         return self
@@ -182,7 +142,7 @@ class Scene(Displayed, Model):
             Without it, the middle of the longest segment, attached to all of that segment's outer
             surface.
         **rest
-            title, name, source, housing_axial, ask.
+            title, name, source, housing_axial, housing, further_ports, ask.
 
         Returns
         -------
@@ -217,11 +177,17 @@ class Scene(Displayed, Model):
         return self.segments[-1].y1
 
     @property
+    def ports(self) -> tuple[Port, ...]:
+        """All lumped points, the main one first."""
+        return (self.port, *self.further_ports)
+
+    @property
     def stations(self) -> tuple[Port | Bearing | PointMass, ...]:
-        """Everything attached to the shaft, the port first, then bearings and masses on seats of
-        their own: each has name, y, lo, hi (m), attachment.
+        """Everything attached to the shaft, the port first, then bearings, masses on seats of
+        their own and further ports: each has name, y, lo, hi (m), attachment.
         """
-        return (self.port, *self.bearings, *(m for m in self.masses if m.on is None))
+        own = (m for m in self.masses if m.on is None)
+        return (self.port, *self.bearings, *own, *self.further_ports)
 
     @property
     def plain(self) -> Scene:
@@ -265,7 +231,7 @@ class Scene(Displayed, Model):
         return super().with_changes(**changes)
 
     def with_attachment(self, attachment: str) -> Scene:
-        """The same scene with the port and every bearing attached in one way.
+        """The same scene with ports, bearings and masses attached in one way.
 
         Parameters
         ----------
@@ -280,12 +246,12 @@ class Scene(Displayed, Model):
         SceneError
             An unknown attachment, or two rigid surfaces that overlap.
         """
-        bearings, masses = (
-            tuple(one.with_changes(attachment=attachment) for one in some)
-            for some in (self.bearings, self.masses)
-        )
+        changes = {
+            key: tuple(one.with_changes(attachment=attachment) for one in getattr(self, key))
+            for key in ("bearings", "masses", "further_ports")
+        }
         port = self.port.with_changes(attachment=attachment)
-        return self.with_changes(bearings=bearings, masses=masses, port=port)
+        return self.with_changes(port=port, **changes)
 
     def with_seat_width(self, width: float | str) -> Scene:
         """The same scene with every bearing seat of one width.
@@ -374,6 +340,38 @@ class Scene(Displayed, Model):
             A port off the shaft.
         """
         return self.with_changes(port=self.port.with_changes(**changes))
+
+    def with_main_port(self, name: str) -> Scene:
+        """The same scene judged and condensed at another of its lumped points.
+
+        Parameters
+        ----------
+        name : str
+            Of one of `ports`.
+
+        Returns
+        -------
+        Scene
+
+        Raises
+        ------
+        SceneError
+            If there is none of that name.
+
+        Examples
+        --------
+        >>> import solidgear as sg
+        >>> scene = sg.load("geometry/intermediate_shaft.toml")
+        >>> [port.name for port in scene.ports]
+        ['wheel', 'pinion']
+        >>> [port.name for port in scene.with_main_port("pinion").ports]
+        ['pinion', 'wheel']
+        """
+        known = {port.name: port for port in self.ports}
+        if name not in known:
+            raise SceneError(no_such_point(name, known), field="port")
+        first = known.pop(name)
+        return self.with_changes(port=first, further_ports=tuple(known.values()))
 
     def as_dict(self) -> dict[str, Any]:
         """Everything resolved, in SI, as plain data that JSON can hold.

@@ -8,24 +8,33 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Sequence
 
 from solidgear.errors import SceneError
+from solidgear.scene.ask import Ask
 from solidgear.scene.blend_rules import blend_problems
 from solidgear.scene.body_file import MASS_CHECK, Recognised
 from solidgear.scene.feature_places import blend_of, feature_of
 from solidgear.scene.features import feature_problems
 from solidgear.scene.model import Scene
 from solidgear.scene.parts import Material, Segment
-from solidgear.scene.point_mass import PointMass
-from solidgear.scene.rules import mass_problems, shaft_problems, station_problems
+from solidgear.scene.rules import (
+    mass_problems,
+    no_such_point,
+    question_problems,
+    shaft_problems,
+    station_problems,
+)
 from solidgear.scene.segment_tables import Piece
-from solidgear.scene.stations import Attachment, Bearing, Port, Status
+from solidgear.scene.station_places import (
+    bearing_of,
+    housing_of,
+    main_first,
+    mass_of,
+    of_port,
+    port_of,
+)
 from solidgear.scene.tables import (
-    BearingTable,
     ChamferTable,
     FilletTable,
-    MassTable,
-    PortTable,
     SceneTable,
-    SeatTable,
 )
 
 
@@ -80,19 +89,31 @@ def resolve(
         # a datum that is missing was reported before, or is a bearing that was refused
         if (item.from_ or "start") in datums:
             try:
-                bearings[index] = _bearing(item, index, table.attachment, datums, part)
+                bearings[index] = bearing_of(item, index, table.attachment, datums, part)
             except SceneError as error:
                 problems.append(error)
-    port = None
+    order = main_first(table)
+    ports, known = {}, [item.name for item in table.port]
+    if table.port and table.ask.port is not None and table.ask.port not in known:
+        problems.append(SceneError(no_such_point(table.ask.port, known), path=("ask", "port")))
+    for place, index in enumerate(order):
+        try:
+            port = port_of(table.port[index], index, table.attachment, datums, surface, part)
+        except SceneError as error:
+            problems.append(error)
+            continue
+        if port is not None:
+            ports[place] = port
+    housing = None
     try:
-        port = _port(table.port, table.attachment, datums, surface, part) if table.port else None
+        housing = housing_of(table, datums)
     except SceneError as error:
         problems.append(error)
     masses = {}
     for index, heavy in enumerate(table.mass):
         if (heavy.from_ or "start") in datums:
             try:
-                masses[index] = _mass(heavy, table.attachment, datums)
+                masses[index] = mass_of(heavy, table.attachment, datums)
             except SceneError as error:
                 problems.append(error.located(None, path=("mass", index, *error.path)))
     features, cut_rows, blends, blend_rows = [], [], [], []
@@ -108,15 +129,18 @@ def resolve(
                 cut_rows.append(index)
             except SceneError as error:
                 problems += error.problems
-    stations = [s for s in (port, *bearings.values(), *masses.values()) if s is not None]
+    stations = [*ports.values(), *bearings.values(), *masses.values()]
     seated = [s for s in stations if getattr(s, "on", None) is None]
     of_edges = blend_problems(segments, blends, seated, features)
-    whole = len(bearings) == len(numbers) and table.port is not None
+    # names are judged where all are known
+    whole = len(bearings) == len(numbers) and bool(table.port)
+    if whole and len(ports) == len(table.port):
+        problems += question_problems([*ports.values()], table.ask.quantities)
     problems += [
-        one.located(None, path=_file_path(one.path, table, owner))
+        one.located(None, path=_file_path(of_port(one.path, order), table, owner))
         for one in (
-            *station_problems(segments, port, bearings, masses),
-            *(mass_problems(port, bearings, masses) if whole else ()),
+            *station_problems(segments, ports, bearings, masses),
+            *(mass_problems([*ports.values()], bearings, masses) if whole else ()),
             *_of_rows(feature_problems(segments, features), cut_rows),
             *_of_rows(of_edges, blend_rows),
         )
@@ -127,7 +151,7 @@ def resolve(
         segments,
         table.material,
         bearings.values(),
-        port,
+        ports.pop(0),
         title=table.title,
         name=name,
         source=table.source,
@@ -136,8 +160,10 @@ def resolve(
         body=part.body if part is not None else None,
         blends=tuple(blends),
         housing_axial=table.housing.axial if table.housing else None,
+        housing=housing,
+        further_ports=tuple(ports.values()),
         load=table.load,
-        ask=table.ask,
+        ask=Ask(**{key: getattr(table.ask, key) for key in Ask.model_fields}),
     )
 
 
@@ -208,15 +234,6 @@ def _weighed(table: SceneTable, part: Recognised) -> Iterator[SceneError]:
         )
 
 
-def _on_part(part: Recognised | None, seat: SeatTable, *place: str | int) -> tuple[float, float]:
-    """Ends of a seat on a part."""
-    assert part is not None  # tables refuse it without one
-    try:
-        return part.span(seat)
-    except SceneError as error:
-        raise error.located(None, prefix=(*place, "seat")) from None
-
-
 _LENGTH_KEY = {"frustum": "face_width", "backcone": "backcone", "shaft": "length"}
 
 
@@ -231,91 +248,6 @@ def _segment(piece: Piece, y: float, bore_radius: float, material: Material) -> 
         inner1=bore_radius,
         material=material,
         part=piece.part,
-    )
-
-
-def _bearing(
-    item: BearingTable,
-    index: int,
-    attachment: str,
-    datums: dict[str, float],
-    part: Recognised | None = None,
-) -> Bearing:
-    width = item.seat_width
-    if item.seat is not None:
-        lo, hi = _on_part(part, item.seat, "bearing", index)
-        y, width = (lo + hi) / 2, hi - lo
-    elif item.face is None:
-        y = (item.position or 0.0) + datums[item.from_ or "start"]
-    else:
-        y = datums[item.face]
-    # the middle of an end face is a section; a seat would be the rim beside it
-    usual = attachment if item.face is None else "section"
-    given = item.stiffness if item.matrix is None else item.matrix
-    held = {"matrix": given} if item.hold is None else {"hold": item.hold}
-    try:
-        bearing = Bearing(
-            name=item.name,
-            y=y,
-            seat_width=width,
-            catalogue=item.catalogue,
-            axial_series=item.axial_series,
-            attachment=item.attachment or usual,
-            status=item.status or _status(item),
-            note=item.note,
-            face=item.face,
-            **held,
-        )
-    except SceneError as error:
-        key = "stiffness" if item.matrix is None else "matrix"
-        raise SceneError(error.reason, path=("bearing", index, key), value=error.value) from None
-    datums[f"bearing.{item.name}"] = bearing.y
-    return bearing
-
-
-def _status(item: BearingTable) -> Status:
-    """Of a bearing that does not say where its numbers come from."""
-    if item.catalogue is None:
-        return "assumed"
-    return "estimated" if item.catalogue.estimated else "calculated"
-
-
-def _mass(item: MassTable, attachment: Attachment, datums: dict[str, float]) -> PointMass:
-    place = {}
-    if item.on is None:
-        place = {
-            "y": (item.position or 0.0) + datums[item.from_ or "start"],
-            "seat_width": item.seat_width,
-            "attachment": item.attachment or attachment,
-        }
-    given = {key: getattr(item, key) for key in ("inertia", "offset") if getattr(item, key)}
-    return PointMass(name=item.name, mass=item.mass, on=item.on, **place, **given)
-
-
-def _port(
-    item: PortTable,
-    attachment: Attachment,
-    datums: dict[str, float],
-    surface: dict[str, tuple[float, float]],
-    part: Recognised | None = None,
-) -> Port | None:
-    """The port, or None where it names what is not there."""
-    datum = item.at or item.from_ or "start"
-    span: Sequence[float] | None = item.span
-    if item.seat is not None:
-        span = _on_part(part, item.seat, "port")
-    elif span is None and item.attach_to is not None:
-        span = surface.get(item.attach_to)
-    if datum not in datums or span is None:
-        return None
-    lo, hi = span
-    placed = item.at is not None or item.position is not None
-    return Port(
-        name=item.name,
-        y=datums[datum] + (item.position or 0.0) if placed else (lo + hi) / 2,
-        lo=lo,
-        hi=hi,
-        attachment=item.attachment or attachment,
     )
 
 
@@ -355,10 +287,11 @@ def _file_path(path: tuple, table: SceneTable, owner: Sequence[int] | None) -> t
             return ("feature", index, {"y": "at"}.get(key, key))
         case ("features" | "blends",):
             return ("feature",)
-        case ("port", "y"):
-            return ("port", "at" if table.port.at is not None else "position")
-        case ("port", "lo" | "hi"):
-            return ("port", "span" if table.port.span is not None else "attach_to")
+        case ("port", index, "y"):
+            return ("port", index, "at" if table.port[index].at is not None else "position")
+        case ("port", index, "lo" | "hi"):
+            key = "span" if table.port[index].span is not None else "attach_to"
+            return ("port", index, key)
         case ("housing_axial",):
             return ("housing", "axial")
     return path
@@ -373,6 +306,6 @@ def _part_path(path: tuple, table: SceneTable) -> tuple:
             return ("body", table.body.key if table.body is not None else "step")
         case ("bearings", index, "seat_width") if table.bearing[index].seat is not None:
             return ("bearings", index, "seat")
-        case ("port", "lo" | "hi") if table.port.seat is not None:
-            return ("port", "seat")
+        case ("port", index, "lo" | "hi") if table.port[index].seat is not None:
+            return ("port", index, "seat")
     return path

@@ -18,7 +18,7 @@ def plain_data(scene: Scene) -> dict[str, Any]:
     scene : Scene
     """
     data = scene.model_dump(mode="json")
-    for key in ("masses", "features", "blends"):
+    for key in ("masses", "features", "blends", "further_ports"):
         if not data[key]:
             del data[key]
     for row, corner in zip(data.get("blends", ()), scene.corners):
@@ -35,10 +35,14 @@ def plain_data(scene: Scene) -> dict[str, Any]:
             "stiffness": bearing.stiffness.tolist(),
             "entries": stiffness_entries(row.pop("matrix")),
         }
-        for key in ("catalogue", "hold", "face"):
+        for key in ("catalogue", "hold", "face", "housing"):
             if row[key] is None:
                 del row[key]
-    for key in ("load", "body"):
+        if bearing.housing is not None:
+            row["housing"] = bearing.housing.entries
+    if scene.housing is not None:
+        data["housing"] = {"y": scene.housing.y, "entries": scene.housing.entries}
+    for key in ("load", "body", "housing"):
         if data[key] is None:
             del data[key]
     for row, mass in zip(data.get("masses", ()), scene.masses):

@@ -6,10 +6,10 @@ Numbers in m. Paths of problems are those of a `Scene`.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING
 
-from solidgear.errors import SceneError
+from solidgear.errors import SceneError, listed, nearest, show
 
 if TYPE_CHECKING:
     from solidgear.scene import Bearing, Material, PointMass, Port, Segment
@@ -31,6 +31,12 @@ MOST_MODES = 500
 
 #: every segment takes at least a line of cells, and every bearing six ports
 MOST_SEGMENTS, MOST_BEARINGS, MOST_SPRINGS, MOST_MASSES = 100, 50, 20, 50
+#: lumped points; each is condensed to and judged
+MOST_PORTS = 12
+
+ONE_HOUSING = (
+    "is the entry kyy of a housing's stiffness, all other motions rigid; leave one of both out"
+)
 
 
 def steps(segments: Sequence[Segment]) -> tuple[float, ...]:
@@ -74,7 +80,7 @@ def too_many(what: str, count: int, most: int) -> str:
 
     Parameters
     ----------
-    what : {'segments', 'bearings', 'masses'}
+    what : {'segments', 'bearings', 'masses', 'ports'}
     count, most : int
         How many there are, and how many there may be.
 
@@ -175,7 +181,7 @@ def _unlike(first: Material, here: Material, i: int) -> Iterator[SceneError]:
 
 def station_problems(
     segments: Sequence[Segment],
-    port: Port | None,
+    ports: Mapping[int, Port],
     bearings: Mapping[int, Bearing],
     masses: Mapping[int, PointMass] | None = None,
 ) -> Iterator[SceneError]:
@@ -184,10 +190,10 @@ def station_problems(
     Parameters
     ----------
     segments : sequence of Segment
-    port : Port or None
+    ports : mapping of int to Port
+        By their place in the scene, 0 for the main one.
     bearings : mapping of int to Bearing
-        By their place in the scene; those that cannot be used for another reason may be left out,
-        and so may the port.
+        Likewise; those that cannot be used for another reason may be left out, and so may ports.
     masses : mapping of int to PointMass, optional
         Likewise; those that move with another station have no place of their own.
 
@@ -197,30 +203,32 @@ def station_problems(
         One for each problem.
     """
     length, jumps = segments[-1].y1, steps(segments)
-    if len(bearings) > MOST_BEARINGS:
-        yield SceneError(too_many("bearings", len(bearings), MOST_BEARINGS), path=("bearings",))
-        return
+    for what, of, most in (("bearings", bearings, MOST_BEARINGS), ("ports", ports, MOST_PORTS)):
+        if len(of) > most:
+            path = "further_ports" if what == "ports" else what
+            yield SceneError(too_many(what, len(of), most), path=(path,))
+            return
     places: list[tuple[tuple[str | int, ...], Port | Bearing | PointMass, str]] = [
-        (("bearings", i, "seat_width"), bearing, "seat") for i, bearing in bearings.items()
+        ((*_port_path(i), "hi"), port, "attached span") for i, port in ports.items()
     ]
+    places += [(("bearings", i, "seat_width"), bearing, "seat") for i, bearing in bearings.items()]
     places += [
         (("masses", i, "seat_width"), mass, "seat")
         for i, mass in (masses or {}).items()
         if mass.on is None
     ]
-    if port is not None:
+    for i, port in ports.items():
         if not -TOUCH <= port.y <= length + TOUCH:
             yield SceneError(
                 f"the port is at y = {port.y:.6g} m, outside the shaft (0 to {length:.6g} m)",
-                path=("port", "y"),
+                path=(*_port_path(i), "y"),
             )
-        places.insert(0, (("port", "hi"), port, "attached span"))
     names = set()
     for k, (path, here, what) in enumerate(places):
         if here.name in names:
+            others = "another port" if what == "attached span" else "the port or another bearing"
             yield SceneError(
-                "the port or another bearing has this name; each needs its own",
-                path=(*path[:-1], "name"),
+                f"{others} has this name; each needs its own", path=(*path[:-1], "name")
             )
         names.add(here.name)
         reason = _misplaced(here, what, places[:k], length, jumps)
@@ -228,15 +236,59 @@ def station_problems(
             yield SceneError(reason, path=path)
 
 
+def _port_path(index: int) -> tuple[str | int, ...]:
+    """Where a lumped point is in a scene; the main one is the first."""
+    return ("further_ports", index - 1) if index else ("port",)
+
+
+def no_such_point(name: str, known: Iterable[str]) -> str:
+    """The reason to refuse the name of a lumped point.
+
+    Parameters
+    ----------
+    name : str
+    known : iterable of str
+        Those that there are.
+
+    Returns
+    -------
+    str
+    """
+    known = list(known)
+    hint = nearest(name, known)
+    return f"there is no lumped point {show(name, 40)}{hint}; the scene has {listed(known)}"
+
+
+def question_problems(ports: Sequence[Port], quantities: Sequence[str]) -> Iterator[SceneError]:
+    """Quantities are asked of lumped points that there are.
+
+    Parameters
+    ----------
+    ports : sequence of Port
+    quantities : sequence of str
+        Such as ``C_zz`` or ``C_zz@gear``.
+
+    Yields
+    ------
+    SceneError
+        One for each problem.
+    """
+    known = [port.name for port in ports]
+    for k, quantity in enumerate(quantities):
+        _, at, point = quantity.partition("@")
+        if at and point not in known:
+            yield SceneError(no_such_point(point, known), path=("ask", "quantities", k))
+
+
 def mass_problems(
-    port: Port | None, bearings: Mapping[int, Bearing], masses: Mapping[int, PointMass]
+    ports: Sequence[Port], bearings: Mapping[int, Bearing], masses: Mapping[int, PointMass]
 ) -> Iterator[SceneError]:
     """Masses sit on a station that there is, and not too many of them.
 
     Parameters
     ----------
-    port : Port or None
-        None where it cannot be used; then its name may be the one that is missing.
+    ports : sequence of Port
+        None where they cannot be used; then one of their names may be the one that is missing.
     bearings, masses : mapping of int to Bearing or PointMass
         By their place in the scene.
 
@@ -248,10 +300,10 @@ def mass_problems(
     if len(masses) > MOST_MASSES:
         yield SceneError(too_many("masses", len(masses), MOST_MASSES), path=("masses",))
         return
-    known = [*([port.name] if port else []), *(b.name for b in bearings.values())]
+    known = [*(port.name for port in ports), *(b.name for b in bearings.values())]
     named = set()
     for i, mass in masses.items():
-        if mass.on is not None and mass.on not in known and port is not None:
+        if mass.on is not None and mass.on not in known and ports:
             reason = f"no lumped point or bearing has this name; there are {', '.join(known)}"
             yield SceneError(reason, path=("masses", i, "on"))
         # on seats of their own they are stations, whose names are compared there
@@ -288,9 +340,10 @@ def _misplaced(
                 f"{reach}, across the step of the outer radius at {step:.6g} m; it must end there"
             )
     for _, other, other_what in before:
-        # the port may share a seat's surface, unless both hold it rigid: that would weld the two
-        # points together
-        both = other_what == what or other.attachment == here.attachment == "rigid"
+        # a port may share the surface of a seat or of another port, unless both hold it rigid: that
+        # would weld the two points together
+        seats = other_what == what == "seat"
+        both = seats or other.attachment == here.attachment == "rigid"
         if both and min(here.hi, other.hi) - max(here.lo, other.lo) > TOUCH:
             return (
                 f'{reach} and overlaps that of "{other.name}" ({other.lo:.6g} to {other.hi:.6g} m)'

@@ -11,6 +11,7 @@ from solidgear.errors import SceneError, show
 from solidgear.frames import DOF_NAMES
 from solidgear.scene.bearing_stiffness import checked_matrix
 from solidgear.scene.catalogue import Catalogue
+from solidgear.scene.housing import Elastic
 from solidgear.scene.parts import Model
 from solidgear.scene.rules import MOST_SPRINGS
 from solidgear.scene.units import (
@@ -88,6 +89,8 @@ class Bearing(Model):
         What the stiffness comes from, where it was not given.
     axial_series : tuple of float
         Springs in series with its axial stiffness, N/m.
+    housing : Elastic or None
+        What its outer ring stands in, in series with all of it.
     attachment : {'average', 'rigid', 'section'}
         How the seat follows the bearing.
     status : str
@@ -121,6 +124,7 @@ class Bearing(Model):
     matrix: Annotated[tuple[tuple[float, ...], ...] | None, BeforeValidator(_matrix)] = None
     catalogue: Catalogue | None = None
     axial_series: AxialSeries = ()
+    housing: Elastic | None = None
     attachment: Attachment = "average"
     status: Status = "assumed"
     note: str = ""
@@ -164,7 +168,7 @@ class Bearing(Model):
     @property
     def stiffness(self) -> np.ndarray:
         """(6, 6) read-only, SI, order x y z thx thy thz: the bearing with its axial series springs
-        condensed in.
+        and the housing at its seat condensed in.
 
         Raises
         ------
@@ -177,6 +181,8 @@ class Bearing(Model):
             # couplings included
             spring = 1 / sum(1 / k for k in self.axial_series)
             K -= np.outer(K[:, 1], K[1, :]) / (K[1, 1] + spring)
+        if self.housing is not None:
+            K = self.housing.beneath_one(K, f"the housing of bearing {show(self.name)}")
         K.flags.writeable = False
         return K
 
@@ -189,7 +195,8 @@ class Bearing(Model):
         return self.matrix
 
     def scaled(self, factor: float) -> Bearing:
-        """The same bearing with every stiffness, series springs included, multiplied.
+        """The same bearing with every stiffness, series springs and its housing included,
+        multiplied.
 
         Parameters
         ----------
@@ -207,11 +214,16 @@ class Bearing(Model):
         """
         if not factor > 0:
             raise SceneError("must be greater than zero", field="factor", value=show(factor))
-        if self.hold:
-            return self  # there is nothing stiffer
+        if self.hold:  # there is nothing stiffer; what it stands in may be
+            return (
+                self
+                if self.housing is None
+                else self.with_changes(housing=self.housing.scaled(factor))
+            )
         return self.with_changes(
             matrix=np.array(self._solved_matrix()) * factor,
             axial_series=tuple(k * factor for k in self.axial_series),
+            housing=None if self.housing is None else self.housing.scaled(factor),
         )
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Annotated, Any, Literal
 
 from pydantic import AfterValidator, BeforeValidator, Field, model_validator
@@ -12,13 +13,12 @@ from solidgear.scene.blends import Edge, Surface, slope
 from solidgear.scene.body_file import BodyTable, SeatTable
 from solidgear.scene.catalogue import BearingLoad, Catalogue
 from solidgear.scene.materials import by_name
-from solidgear.scene.model import Ask
 from solidgear.scene.parts import Material, Model
 from solidgear.scene.point_mass import check_inertia
+from solidgear.scene.port_tables import AskTable, HousingTable, PortTable, SeatHousing
 from solidgear.scene.segment_tables import BevelHead, Cone, Cylinder, Name, Table
 from solidgear.scene.stations import Attachment, AxialSeries, Face, Hold, Status
 from solidgear.scene.units import (
-    AxialSpring,
     Length,
     Mass,
     PositiveLength,
@@ -45,6 +45,7 @@ class BearingTable(Table):
     matrix: list[Any] | None = None
     catalogue: Catalogue | None = None
     axial_series: AxialSeries = ()
+    housing: SeatHousing | None = None
     attachment: Attachment | None = None
     status: Status | None = None
     note: str = ""
@@ -139,41 +140,6 @@ class MassTable(Table):
                 quantity(entry, dimension)
             except SceneError as error:
                 raise SceneError(error.reason, path=(key, k), value=error.value) from None
-
-
-class _Housing(Model):
-    axial: AxialSpring
-
-
-class PortTable(Table):
-    """The [port], its datum and surface not yet resolved."""
-
-    name: Name = "port"
-    at: str | None = None
-    position: Length | None = None
-    from_: str | None = Field(None, alias="from")
-    attach_to: str | None = None
-    span: Annotated[list[Length], Field(min_length=2, max_length=2)] | None = None
-    seat: SeatTable | None = None
-    attachment: Attachment | None = None
-
-    @model_validator(mode="after")
-    def _one_place_one_surface(self):
-        if self.seat is not None:
-            for key in ("attach_to", "span"):
-                if getattr(self, key) is not None:
-                    raise SceneError(f"give either seat or {key}, not both", path=(key,))
-        elif self.at is None and self.position is None:
-            raise SceneError(
-                'this key is missing; write at = "<segment>.middle", or position with from',
-                path=("at",),
-            )
-        if self.at is not None and (self.position is not None or self.from_ is not None):
-            raise SceneError("give either at, or position with from, not both", path=("at",))
-        how = 'name the segment whose surface carries the port, or write span = ["0 mm", "58 mm"]'
-        if self.seat is None:
-            self._one_of("attach_to", "span", how)
-        return self
 
 
 class _FeatureTable(Table):
@@ -297,6 +263,11 @@ FEATURES = (
 )
 
 
+def _several(ports: Any) -> Any:
+    """One [port] is a list of one."""
+    return [ports] if isinstance(ports, Mapping) else ports
+
+
 class SceneTable(Model):
     """A whole file, each table sound by itself."""
 
@@ -309,17 +280,17 @@ class SceneTable(Model):
     bearing: list[BearingTable] = []
     mass: list[MassTable] = []
     feature: list[Annotated[FeatureTable | BlendTable, Field(discriminator="kind")]] = []
-    housing: _Housing | None = None
-    port: PortTable
+    housing: HousingTable | None = None
+    port: Annotated[list[PortTable], BeforeValidator(_several), Field(min_length=1)]
     load: BearingLoad | None = None
-    ask: Ask = Ask()
+    ask: AskTable = AskTable()
 
     @model_validator(mode="after")
     def _one_shaft(self):
         if self.body is None:
             seats: list[tuple[str | int, ...]]
             seats = [("bearing", k) for k, one in enumerate(self.bearing) if one.seat is not None]
-            seats += [("port",)] if self.port is not None and self.port.seat is not None else []
+            seats += [("port", k) for k, one in enumerate(self.port) if one.seat is not None]
             if seats:
                 raise SceneError(
                     "a seat by diameter is looked for on a part from a file ([body]); on segments "
@@ -346,4 +317,5 @@ class SoundTables(SceneTable):
     """What is left of a file without the tables that cannot be used."""
 
     segment: list[Annotated[Cylinder | Cone | BevelHead, Field(discriminator="kind")]] = []
-    port: PortTable | None = None  # type: ignore[assignment]  # it may be what is missing
+    # they may be what is missing
+    port: Annotated[list[PortTable], BeforeValidator(_several)] = []

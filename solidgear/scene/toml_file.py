@@ -176,7 +176,7 @@ _HABITS = (
 _TWICE = re.compile(
     r"(?:Cannot declare|Cannot mutate immutable namespace|Cannot redefine namespace) \((.*)\)"
 )
-_LISTS = ("segment", "bearing", "mass", "feature")
+_LISTS = ("segment", "bearing", "mass", "feature", "port")
 _PARSER = {
     "Cannot overwrite a value": "a key is given twice in its table, or as a value and as a table",
     "Unterminated string": "a text is not closed: its last quotes are missing",
@@ -220,6 +220,10 @@ def _plain_words(words: str, line: str) -> str:
         return (
             f"there is a second [{name}]; a {owner} has one, so put all of its keys into the first"
         )
+    listed = re.match(r"\[\[(\w+)\]\]", line)
+    if words.startswith("Cannot overwrite a value") and listed and listed[1] in _LISTS:
+        name = listed[1]
+        return f"there is a [{name}] before; each is written with double brackets, [[{name}]]"
     if words.startswith("Duplicate inline table key"):
         return "a key is given twice in its table"
     bare = re.sub(r"\s*#.*$", "", line[:300])

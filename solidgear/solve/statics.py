@@ -17,8 +17,9 @@ is an exact zero and not a penalty.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, ClassVar
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, overload
 
 import numpy as np
 import scipy.linalg as sla
@@ -26,16 +27,18 @@ import scipy.sparse as sp
 
 from solidgear.body import Block, Body, as_supports
 from solidgear.body.factoring import Factoring
-from solidgear.display import Displayed
-from solidgear.errors import SolidgearError
-from solidgear.frames import DOF_NAMES
+from solidgear.errors import SolidgearError, show
 from solidgear.machine.threads import pinned
+from solidgear.solve.condensed import Condensed, Coupled
 from solidgear.solve.factor import Factor, factorise
 from solidgear.solve.relief import elastic_fields
 
 if TYPE_CHECKING:
     from solidgear.body.supports import Holding
 
+# Relative error of a compliance where refinement tells none, and that of a stiffness above which
+# two points count as one.
+ROUNDING, APART = 1e-14, 1e-4
 # Of the lowest elastic eigenvalue.  Rounding in the factor is amplified by the highest eigenvalue
 # of the mesh over the shift: 1e-3 left 5e-3 of the frequencies of slender tubes wrong, 3e-2 leaves
 # what refinement can mend.  Statics takes a solve more for it.
@@ -61,51 +64,6 @@ class Flexibility:
     asymmetry: float
     residual: float
     backend: str
-
-
-@dataclass(frozen=True, repr=False)
-class Condensed(Displayed):
-    """Static behaviour seen from one port, bearings included.
-
-    Attributes
-    ----------
-    port : str
-    attachment : str
-    stiffness : (6, 6) ndarray
-        N/m, N/rad, N m/rad; rows of unresisted motions are exactly zero.
-    compliance : (6, 6) ndarray
-        Inverse on the resisted motions; NaN in rows and columns that are free.
-    free : (6, k) ndarray
-        Motions of the port that nothing resists.
-    evidence : dict
-        Asymmetry, refinement residual, back end.
-    """
-
-    shown: ClassVar[str] = "condensed"
-
-    port: str
-    attachment: str
-    stiffness: np.ndarray
-    compliance: np.ndarray
-    free: np.ndarray
-    evidence: dict = field(default_factory=dict)
-
-    @property
-    def free_names(self) -> tuple[str, ...]:
-        """Names of the components that are free by themselves."""
-        return tuple(n for n, alone in zip(DOF_NAMES, self._alone()) if alone)
-
-    @property
-    def oblique(self) -> np.ndarray:
-        """(6, k) free motions that no single component describes, largest entry 1."""
-        largest = np.abs(self.free).max(axis=0, initial=0.0)
-        others = np.abs(self.free[~self._alone()]).max(axis=0, initial=0.0)
-        rest = self.free[:, others > 1e-9 * largest]
-        return rest / np.abs(rest).max(axis=0, initial=0.0)
-
-    def _alone(self) -> np.ndarray:
-        """Mask of the components whose unit motion nothing resists."""
-        return np.array([not np.any(row) for row in self.stiffness])
 
 
 @dataclass(frozen=True)
@@ -224,23 +182,39 @@ def _flexibility(body: Body, tolerance: float) -> Flexibility:
     return Flexibility(out, asymmetry, residual, "+".join(sorted(set(backends))))
 
 
+@overload
+def condense(
+    body: Body, supports: Holding, port: str, attachment: str | None = None
+) -> Condensed: ...
+
+
+@overload
+def condense(
+    body: Body,
+    supports: Holding,
+    port: tuple[str, ...] | list[str],
+    attachment: str | Sequence[str | None] | None = None,
+) -> Coupled: ...
+
+
 @pinned
-def condense(body: Body, supports: Holding, port: str, attachment: str | None = None) -> Condensed:
-    """Stiffness and compliance of the supported shaft at one port.
+def condense(body, supports, port, attachment=None):
+    """Stiffness and compliance of the supported shaft at one port, or between several.
 
     Parameters
     ----------
     body : Body
     supports : Scene, Supports or iterable of bearings
-        A scene brings its housing spring along.
-    port : str
-        Name of the port to condense to.
-    attachment : str, optional
+        A scene brings its housing along.
+    port : str or tuple of str
+        Name of the port to condense to; of several names, the ports together with all terms
+        between them.
+    attachment : str or sequence of str, optional
         Which attachment of that port, where the body carries several.
 
     Returns
     -------
-    Condensed
+    Condensed, or Coupled of several ports
 
     Raises
     ------
@@ -259,39 +233,72 @@ def condense(body: Body, supports: Holding, port: str, attachment: str | None = 
     >>> bool(at_gear.stiffness[2, 2] < 4e8 + 5e8)  # softer than the bearings side by side
     True
     """
+    names = (port,) if isinstance(port, str) else tuple(port)
+    if not names or len(set(names)) < len(names):
+        raise SolidgearError(f"condense: port = {show(names)}; name each port once, at least one")
+    alike = attachment is None or isinstance(attachment, str)
+    kinds = (attachment,) * len(names) if alike else tuple(attachment)
     supports = as_supports(supports)
     flex = flexibility(body)
-    index = body.port_index(port, attachment)
-    here = 6 * index + np.arange(6)
+    indices = [body.port_index(name, kind) for name, kind in zip(names, kinds)]
+    here = np.concatenate([6 * index + np.arange(6) for index in indices])
     there = supports.rows(body)
-    f_ll = flex.matrix[np.ix_(here, here)]
     p_l = body.rigid_ports[here]
     free = supports.unresisted(body)
-    k = np.zeros((6, 6))
-    c = np.full((6, 6), np.nan)
-    if free.shape[1] < 6:
-        f_lb, f_bb = flex.matrix[np.ix_(here, there)], flex.matrix[np.ix_(there, there)]
-        p_b, root = body.rigid_ports[there], supports.root
-        # S = N'N and H = (N P_b)'(N P_b); with the stiffest springs first both N and its QR factor
-        # keep the digits of the softest.
-        inner = np.eye(root.shape[1]) + root.T @ f_bb @ root
-        n = _half_solve(inner, root.T)
-        held = _complement(free, body.length)
-        reach = n @ f_lb.T
-        rigid = n @ p_b @ held
-        x = (p_l @ held - reach.T @ rigid).T
-        swing = _half_inverse(rigid, x)
-        full = f_ll - reach.T @ reach + swing.T @ swing
+    k = np.zeros((len(here), len(here)))
+    c = np.full_like(k, np.nan)
+    evidence = {"asymmetry": flex.asymmetry, "residual": flex.residual, "backend": flex.backend}
+    if free.shape[1] < 6 or len(names) > 1:  # what is wholly free is stiff between its ports
+        full = _full_compliance(body, supports, flex, here, there, free)
         loads = _allowed_loads(p_l @ free)
         small = loads.T @ full @ loads
         small = (small + small.T) / 2
-        k = loads @ _spd_solve(small, loads.T)
+        left = 0.0 if len(names) == 1 else _inverted(small, flex.residual)
+        k = loads @ _spd_solve(small, loads.T) if left < APART else np.full_like(k, np.nan)
         k = (k + k.T) / 2
-        on = np.abs(loads).sum(axis=1) > 0
-        if on.sum() == loads.shape[1]:
-            c[np.ix_(on, on)] = ((full + full.T) / 2)[np.ix_(on, on)]
-    evidence = {"asymmetry": flex.asymmetry, "residual": flex.residual, "backend": flex.backend}
-    return Condensed(port, body.ports[index].attachment, k, c, p_l @ free, evidence)
+        on = _still(p_l @ free)
+        if len(names) > 1:
+            evidence["stiffness_error"] = left
+        elif on.sum() < loads.shape[1]:
+            on[:] = False  # of one point a compliance is told as a whole or not at all
+        c[np.ix_(on, on)] = ((full + full.T) / 2)[np.ix_(on, on)]
+    tied = tuple(body.ports[index].attachment for index in indices)
+    if isinstance(port, str):
+        return Condensed(port, tied[0], k, c, p_l @ free, evidence)
+    return Coupled(names, tied, k, c, p_l @ free, evidence)
+
+
+def _full_compliance(body, supports, flex, here, there, free) -> np.ndarray:
+    """Motions of ports under loads on them; loads that do work on free motions are meant to be
+    left out.
+    """
+    f_ll = flex.matrix[np.ix_(here, here)]
+    p_l, root = body.rigid_ports[here], supports.root
+    if not root.shape[1]:
+        return f_ll
+    f_lb, f_bb = flex.matrix[np.ix_(here, there)], flex.matrix[np.ix_(there, there)]
+    p_b = body.rigid_ports[there]
+    # S = N'N and H = (N P_b)'(N P_b); with the stiffest springs first both N and its QR factor
+    # keep the digits of the softest.
+    inner = np.eye(root.shape[1]) + root.T @ f_bb @ root
+    n = _half_solve(inner, root.T)
+    held = _complement(free, body.length)
+    reach = n @ f_lb.T
+    rigid = n @ p_b @ held
+    x = (p_l @ held - reach.T @ rigid).T
+    swing = _half_inverse(rigid, x)
+    return f_ll - reach.T @ reach + swing.T @ swing
+
+
+def _inverted(small: np.ndarray, residual: float) -> float:
+    """Relative error that the inverse of a compliance has: of two points that move as one it is
+    nothing but error.
+    """
+    size = np.sqrt(np.diag(small))
+    if not len(size) or not np.all(size > 0):
+        return np.inf if len(size) else 0.0
+    least = np.linalg.eigvalsh(small / np.outer(size, size))[0]
+    return float(max(residual, ROUNDING) / max(least, ROUNDING))
 
 
 def _half_solve(a, b):
@@ -357,13 +364,26 @@ def _complement(null: np.ndarray, length: float) -> np.ndarray:
     return size[:, None] * q[:, null.shape[1] :]
 
 
+def _still(null_at_port: np.ndarray) -> np.ndarray:
+    """Mask of the components of ports that no free motion moves."""
+    largest = np.abs(null_at_port).max(initial=0.0)
+    return (
+        ~(np.abs(null_at_port) >= 1e-9 * largest).any(axis=1)
+        if largest
+        else np.ones(len(null_at_port), bool)
+    )
+
+
 def _allowed_loads(null_at_port: np.ndarray) -> np.ndarray:
     """Basis of the loads that do no work on free motions; coordinate axes where possible."""
+    still = _still(null_at_port)
     clean = np.where(
         np.abs(null_at_port) < 1e-9 * np.abs(null_at_port).max(initial=0.0), 0.0, null_at_port
     )
-    mask = _aligned(clean)
-    if mask is not None:
-        return np.eye(6)[:, ~mask]
-    q, _ = np.linalg.qr(clean, mode="complete")
-    return q[:, clean.shape[1] :]
+    moved = clean[~still]
+    u, s, _ = np.linalg.svd(moved) if moved.size else (np.eye(len(moved)), np.zeros(0), None)
+    rest = u[:, int((s > 1e-9 * s.max(initial=0.0)).sum()) :]
+    out = np.zeros((len(clean), int(still.sum()) + rest.shape[1]))
+    out[still, : still.sum()] = np.eye(int(still.sum()))
+    out[~still, still.sum() :] = rest
+    return out

@@ -15,11 +15,11 @@ import numpy as np
 import scipy.linalg as sla
 
 from solidgear.body import Body, Supports, component_rows
-from solidgear.body.supports import root_of
 from solidgear.solve.coupling import decoupled, groups
 from solidgear.solve.laden import Laden
 from solidgear.solve.relief import elastic_fields
 from solidgear.solve.statics import SHIFT, factors
+from solidgear.springs import root_of
 
 # The motion of a seat that comes out below this part of the largest one has no digits left that
 # matter.

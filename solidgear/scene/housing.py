@@ -1,0 +1,201 @@
+"""What bearings stand in: the elastic seat of one of them, and the housing of all.
+
+A housing has no mass here.  A motion for which no stiffness is written is *rigid*, so that
+``[housing] axial`` and a stiffness of ``kyy`` alone say the same; one of zero is free.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Annotated, Any
+
+import numpy as np
+from pydantic import BeforeValidator, model_validator
+
+from solidgear.errors import SceneError
+from solidgear.frames import DOF_NAMES, shift
+from solidgear.scene.bearing_stiffness import STIFFNESS_NAMES, checked_matrix, stiffness_entries
+from solidgear.scene.parts import Model
+from solidgear.scene.units import SOFTEST, Position
+from solidgear.springs import in_series
+
+#: names of the entries on the diagonal of a 6x6, in its order
+OWN = tuple(name for name, (i, j, _) in STIFFNESS_NAMES.items() if i == j)
+
+
+def rigid_motions(entries: Mapping[str, Any]) -> tuple[str, ...]:
+    """Motions of which named entries of a housing say nothing.
+
+    Parameters
+    ----------
+    entries : mapping
+        By `STIFFNESS_NAMES`.
+
+    Returns
+    -------
+    tuple of str
+        Of x y z thx thy thz.
+
+    Raises
+    ------
+    SceneError
+        If a coupling is of a motion that has no entry of its own.
+
+    Examples
+    --------
+    >>> rigid_motions({"kxx": 1e8, "kzz": 1e8})
+    ('y', 'thx', 'thy', 'thz')
+    """
+    rigid = [k for k, name in enumerate(OWN) if name not in entries]
+    for name in entries:
+        i, j, _ = STIFFNESS_NAMES.get(name, (-1, -1, ""))
+        for k in {i, j} & set(rigid):
+            raise SceneError(
+                f"couples {DOF_NAMES[k]}, which is rigid as long as {OWN[k]} is not given",
+                path=(name,),
+            )
+    return tuple(DOF_NAMES[k] for k in rigid)
+
+
+class Elastic(Model):
+    """Something elastic between the outer ring of a bearing and ground.
+
+    Attributes
+    ----------
+    matrix : tuple of tuple of float
+        6x6, SI, order (x, y, z, thx, thy, thz). The constructor also takes it as `stiffness`:
+        named entries, of which those on the diagonal that are left out are rigid, or six rows.
+    rigid : tuple of str
+        Motions in which it does not give; their rows are zero.
+
+    Raises
+    ------
+    SceneError
+        A matrix that is not symmetric or is indefinite, or one that couples rigid motions.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> wall = Elastic(stiffness={"kxx": "2e8 N/m", "kzz": "2e8 N/m"})
+    >>> wall.rigid
+    ('y', 'thx', 'thy', 'thz')
+    >>> ring = wall.beneath_one(np.diag([2e8, 1e8, 2e8, 0.0, 0.0, 0.0]))
+    >>> [round(float(k) / 1e8, 6) for k in np.diag(ring)[:3]]
+    [1.0, 1.0, 1.0]
+    """
+
+    matrix: Annotated[tuple[tuple[float, ...], ...], BeforeValidator(checked_matrix)]
+    rigid: tuple[str, ...] = ()
+
+    def __init__(self, /, **data: Any):
+        if "stiffness" in data:
+            given = data.pop("stiffness")
+            if isinstance(given, Mapping):
+                try:
+                    data.setdefault("rigid", rigid_motions(given))
+                except SceneError as error:
+                    raise error.located(None, prefix=("stiffness",)) from None
+            data["matrix"] = given
+        super().__init__(**data)
+
+    @model_validator(mode="after")
+    def _gives_or_does_not(self):
+        for k, name in enumerate(DOF_NAMES):
+            own = self.matrix[k][k]
+            if name in self.rigid and any(self.matrix[k]):
+                raise SceneError(f"has entries in {name}, which is rigid", path=("matrix",))
+            if 0 < own < SOFTEST:
+                raise SceneError(
+                    f"the stiffness in {name} is {own:.6g}, below {SOFTEST:g} in SI, "
+                    "which is no spring: write 0",
+                    path=("matrix",),
+                )
+        return self
+
+    @property
+    def gives(self) -> list[int]:
+        """Motions in which it is not rigid, by place."""
+        return [k for k, name in enumerate(DOF_NAMES) if name not in self.rigid]
+
+    @property
+    def own(self) -> np.ndarray:
+        """(k, k) stiffness against these."""
+        return np.array(self.matrix)[np.ix_(self.gives, self.gives)]
+
+    @property
+    def entries(self) -> dict[str, float]:
+        """Named entries, those of free motions included; what is left out is rigid."""
+        free = {OWN[k]: 0.0 for k in self.gives if self.matrix[k][k] == 0.0}
+        return stiffness_entries(self.matrix) | free
+
+    def scaled(self, factor: float):
+        """The same with every stiffness multiplied."""
+        return self.with_changes(matrix=np.array(self.matrix) * factor)
+
+    def beneath_one(self, stiffness: np.ndarray, what: str = "the housing") -> np.ndarray:
+        """(6, 6) stiffness of a bearing that stands in it, both at one point.
+
+        Parameters
+        ----------
+        stiffness : (6, 6) ndarray
+        what : str
+            That it is called in an error.
+        """
+        return in_series(stiffness, np.eye(6)[:, self.gives], self.own, what)
+
+
+class Housing(Elastic):
+    """A rigid housing of all bearings on a 6x6 spring to ground.
+
+    Attributes
+    ----------
+    y : float
+        Place on the axis of the shaft that the 6x6 is about, m.
+
+    Examples
+    --------
+    Two bearings 0.2 m apart in a housing that only tilts, about its middle: pushed alike they are
+    as stiff as ever, pushed against each other they are softer.
+
+    >>> import numpy as np
+    >>> tilting = Housing(stiffness={"kthx": 1e6}, y=0.1)
+    >>> found = tilting.beneath(np.kron(np.eye(2), np.diag([0, 0, 1e8, 0, 0, 0.0])), [0.0, 0.2])
+    >>> alike, apart = found[np.ix_([2, 8], [2, 8])] @ [[1, 1], [1, -1]]
+    >>> round(float(alike[0]) / 1e8, 6), round(float(alike[1]) / 1e8, 6)
+    (1.0, 0.333333)
+    """
+
+    y: Position = 0.0
+
+    def moves(self, y: float) -> np.ndarray:
+        """(6, k) motion of its bore at a place along the shaft, for unit motions in which it gives.
+
+        Parameters
+        ----------
+        y : float
+            m.
+        """
+        return shift((0.0, y - self.y, 0.0))[:, self.gives]
+
+    def beneath(self, stiffness: np.ndarray, places: Sequence[float]) -> np.ndarray:
+        """Stiffness of bearings that stand in it.
+
+        Parameters
+        ----------
+        stiffness : (6 m, 6 m) ndarray
+            Of the bearings on a rigid one, in their order.
+        places : sequence of float
+            Of the bearings, m.
+
+        Returns
+        -------
+        (6 m, 6 m) ndarray
+
+        Raises
+        ------
+        SolidgearError
+            As :func:`solidgear.springs.in_series`.
+        """
+        if not len(places) or not self.gives:
+            return stiffness
+        return in_series(stiffness, np.vstack([self.moves(y) for y in places]), self.own)

@@ -1,0 +1,134 @@
+"""What condensation finds: stiffness and compliance at one lumped point, or between several."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import ClassVar
+
+import numpy as np
+
+from solidgear.display import Displayed
+from solidgear.errors import SolidgearError, listed, nearest, show
+from solidgear.frames import DOF_NAMES
+
+
+@dataclass(frozen=True, repr=False)
+class Condensed(Displayed):
+    """Static behaviour seen from one port, bearings included.
+
+    Attributes
+    ----------
+    port : str
+    attachment : str
+    stiffness : (6, 6) ndarray
+        N/m, N/rad, N m/rad; rows of unresisted motions are exactly zero.
+    compliance : (6, 6) ndarray
+        Inverse on the resisted motions; NaN in rows and columns that are free.
+    free : (6, k) ndarray
+        Motions of the port that nothing resists.
+    evidence : dict
+        Asymmetry, refinement residual, back end.
+    """
+
+    shown: ClassVar[str] = "condensed"
+
+    port: str
+    attachment: str
+    stiffness: np.ndarray
+    compliance: np.ndarray
+    free: np.ndarray
+    evidence: dict = field(default_factory=dict)
+
+    @property
+    def free_names(self) -> tuple[str, ...]:
+        """Names of the components that are free by themselves."""
+        return tuple(n for n, alone in zip(DOF_NAMES, self._alone()) if alone)
+
+    @property
+    def oblique(self) -> np.ndarray:
+        """(6, k) free motions that no single component describes, largest entry 1."""
+        largest = np.abs(self.free).max(axis=0, initial=0.0)
+        others = np.abs(self.free[~self._alone()]).max(axis=0, initial=0.0)
+        rest = self.free[:, others > 1e-9 * largest]
+        return rest / np.abs(rest).max(axis=0, initial=0.0)
+
+    def _alone(self) -> np.ndarray:
+        """Mask of the components whose unit motion nothing resists."""
+        return np.array([not np.any(row) for row in self.stiffness])
+
+
+@dataclass(frozen=True, repr=False)
+class Coupled(Displayed):
+    """Static behaviour seen from several ports together, bearings included.
+
+    Attributes
+    ----------
+    ports : tuple of str
+    attachments : tuple of str
+    stiffness : (6 n, 6 n) ndarray
+        Loads that hold all ports at given motions, port by port, SI. NaN where ports move as one:
+        then none exists. Rows of motions that nothing resists at any of them are exactly zero.
+    compliance : (6 n, 6 n) ndarray
+        Motions of all ports under loads at them. NaN in rows and columns that a free motion moves.
+    free : (6 n, k) ndarray
+        Motions of all ports together that nothing resists; of a shaft that turns freely one,
+        with thy of every port.
+    evidence : dict
+        Asymmetry, refinement residual, back end, and ``stiffness_error``: the relative error that
+        inverting leaves in the stiffness.
+
+    Examples
+    --------
+    >>> import solidgear as sg
+    >>> scene = sg.load("geometry/intermediate_shaft.toml")
+    >>> body = sg.build(scene, "timoshenko")
+    >>> both = sg.condense(body, scene, port=("wheel", "pinion"))
+    >>> both.compliance.shape
+    (12, 12)
+    >>> cross = both.between("wheel", "pinion")  # motion of the wheel for loads on the pinion
+    >>> bool(0 < cross[2, 2] < both.between("wheel", "wheel")[2, 2])
+    True
+    """
+
+    shown: ClassVar[str] = "coupled"
+
+    ports: tuple[str, ...]
+    attachments: tuple[str, ...]
+    stiffness: np.ndarray
+    compliance: np.ndarray
+    free: np.ndarray
+    evidence: dict = field(default_factory=dict)
+
+    def between(self, one: str, other: str, kind: str = "compliance") -> np.ndarray:
+        """Block of two ports.
+
+        Parameters
+        ----------
+        one, other : str
+            Names: motion of the first for loads on the second, or of a stiffness the other way
+            round. They may be the same.
+        kind : {'compliance', 'stiffness'}
+
+        Returns
+        -------
+        (6, 6) ndarray
+
+        Raises
+        ------
+        SolidgearError
+            If it was not condensed to one of them.
+        """
+        for name in (one, other):
+            if name not in self.ports:
+                raise SolidgearError(
+                    f"condensed to {listed(self.ports)}, and not to {show(name, 40)}"
+                    f"{nearest(name, self.ports)}"
+                )
+        a, b = (6 * self.ports.index(name) + np.arange(6) for name in (one, other))
+        return getattr(self, kind)[np.ix_(a, b)]
+
+    @property
+    def free_names(self) -> tuple[str, ...]:
+        """Names of the components that a free motion moves."""
+        moved = self.free.reshape(len(self.ports), 6, -1).any(axis=(0, 2))
+        return tuple(name for name, free in zip(DOF_NAMES, moved) if free)

@@ -1,0 +1,162 @@
+"""Stiffness matrices as roots, and springs in series, to full precision.
+
+A matrix ``K = L L'`` of springs may stand on something that gives in some motions h, as bearings
+stand in a housing: what they stretch is ``L'(d - E h)``, and the housing resists h by its own
+``H``.  At rest h is where the energy ``|L'(d - E h)|^2 + h'H h`` is least.  Motions that H leaves
+free are taken out of the springs exactly: L becomes ``L N``, N the complement of ``L'E Z`` with Z
+those motions.  What is left is the parallel sum
+
+    K_s = L (I + B B')^-1 L',     B = L'E Y,     Y'H Y = I,
+
+with the inverse from the singular values of B.  Nothing is subtracted that is larger than what is
+left of it, and there is no penalty: a housing of any stiffness, none in some direction included,
+takes one path.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import scipy.linalg as sla
+
+from solidgear.errors import SolidgearError
+
+#: of unit columns: below it, motions are the same
+SAME = 1e-9
+#: of the diagonal: a direction of a matrix that is softer than this hangs on the last digits of
+#: its entries
+LOST = 1e-10
+
+
+def root_of(matrix: np.ndarray) -> np.ndarray:
+    """Root of a symmetric positive semidefinite matrix: ``L L' = matrix``.
+
+    Cholesky's factor with the largest pivots first, of the matrix scaled to a unit diagonal: a
+    spring of 1e-3 N/m beside one of 1e24 keeps its own precision, in a column of its own.
+    (Eigenvectors would mix equal entries of the scaled matrix, whatever they couple.)
+
+    Parameters
+    ----------
+    matrix : (n, n) ndarray
+
+    Returns
+    -------
+    (n, r) ndarray
+        r is its rank.
+
+    Examples
+    --------
+    >>> root_of(np.array([[4.0, 0.0], [0.0, 0.0]]))
+    array([[2.],
+           [0.]])
+    """
+    d = np.sqrt(np.abs(np.diag(matrix)))
+    order = np.argsort(-d, kind="stable")
+    unit = np.where(d > 0, d, 1.0)[order]
+    left = matrix[np.ix_(order, order)] / np.outer(unit, unit)
+    columns = []
+    for j in range(len(left)):
+        if left[j, j] > 1e-12:
+            column = left[:, j] / np.sqrt(left[j, j])
+            column[:j] = 0.0
+            columns.append(column)
+            left = left - np.outer(column, column)
+    out = np.zeros((len(d), len(columns)))
+    out[order] = d[order, None] * np.array(columns).reshape(len(columns), len(d)).T
+    return out
+
+
+def in_series(
+    stiffness: np.ndarray, moves: np.ndarray, own: np.ndarray, what: str = "the housing"
+) -> np.ndarray:
+    """Springs that stand on something elastic.
+
+    Parameters
+    ----------
+    stiffness : (n, n) ndarray
+        Of the springs, symmetric positive semidefinite.
+    moves : (n, k) ndarray
+        Motion of their feet for unit motions of what they stand on.
+    own : (k, k) ndarray
+        Stiffness of that against these motions, symmetric positive semidefinite; a motion without
+        any is free.
+    what : str
+        That it is called in an error.
+
+    Returns
+    -------
+    (n, n) ndarray
+        What the springs resist, their feet as they will.
+
+    Raises
+    ------
+    SolidgearError
+        If it is so much softer than the springs that a matrix of sixteen digits cannot hold both.
+
+    Examples
+    --------
+    Two equal springs, one on top of the other:
+
+    >>> float(in_series(np.array([[4.0]]), np.eye(1), np.array([[4.0]]))[0, 0])
+    2.0
+
+    Two springs side by side on something free pull at each other only:
+
+    >>> found = in_series(np.diag([1.0, 3.0]), np.ones((2, 1)), np.zeros((1, 1)))
+    >>> bool(np.allclose(found, [[0.75, -0.75], [-0.75, 0.75]]))
+    True
+    """
+    root = root_of(stiffness)
+    stretch = root.T @ moves
+    held = root_of(own)
+    if held.shape[1] < len(own):
+        out = _spanned(stretch @ _null(held))
+        root = root @ out
+        stretch = out.T @ stretch
+    q, r = np.linalg.qr(held)
+    reach = (
+        sla.solve_triangular(r, (stretch @ q).T, trans="T").T if held.shape[1] else stretch[:, :0]
+    )
+    u, s, _ = np.linalg.svd(reach)
+    weight = np.ones(len(u))
+    weight[: len(s)] = 1 / np.hypot(1.0, s)
+    half = root @ (u * weight)
+    found = half @ half.T
+    if _softest(found, half.shape[1]) < LOST <= _softest(stiffness, root_of(stiffness).shape[1]):
+        raise SolidgearError(
+            f"{what} is softer than the bearings in it by more than sixteen digits can tell; "
+            "write 0 for a motion that it leaves free, or stiffnesses that are nearer to each other"
+        )
+    return found
+
+
+def _null(root: np.ndarray) -> np.ndarray:
+    """Basis of the motions that ``root @ root.T`` does not resist; coordinates where they are."""
+    size = np.linalg.norm(root, axis=1)
+    alone = size == 0
+    unit = root[~alone] / size[~alone, None]
+    u, s, _ = np.linalg.svd(unit)
+    oblique = u[:, int((s > SAME).sum()) :] / size[~alone, None]
+    out = np.zeros((len(root), int(alone.sum()) + oblique.shape[1]))
+    out[alone, : alone.sum()] = np.eye(int(alone.sum()))
+    out[~alone, alone.sum() :] = oblique
+    return out
+
+
+def _spanned(columns: np.ndarray) -> np.ndarray:
+    """Orthonormal basis of all that is orthogonal to some columns."""
+    size = np.linalg.norm(columns, axis=0)
+    some = columns[:, size > 0] / size[size > 0]
+    if not some.shape[1]:
+        return np.eye(len(columns))
+    u, s, _ = np.linalg.svd(some)
+    return u[:, int((s > SAME).sum()) :]
+
+
+def _softest(matrix: np.ndarray, rank: int) -> float:
+    """The smallest eigenvalue that is meant to be there, of the matrix scaled to a unit diagonal."""
+    size = np.sqrt(np.diag(matrix))
+    on = size > 0
+    if not rank or not on.any():
+        return 1.0
+    unit = matrix[np.ix_(on, on)] / np.outer(size[on], size[on])
+    return float(np.linalg.eigvalsh(unit)[-rank])
