@@ -22,6 +22,8 @@ from solidgear.errors import SolidgearError
 
 #: of unit columns: below it, motions are the same
 SAME = 1e-9
+#: of the geometric mean of two entries of the diagonal: a coupling that is none
+ROUNDING = 1e-15
 #: of the diagonal: a direction of a matrix that is softer than this hangs on the last digits of
 #: its entries
 LOST = 1e-10
@@ -121,6 +123,9 @@ def in_series(
     weight[: len(s)] = 1 / np.hypot(1.0, s)
     half = root @ (u * weight)
     found = half @ half.T
+    # what does not couple stays so: planes that rounding tied together would be solved together
+    size = np.sqrt(np.diag(found))
+    found[np.abs(found) <= ROUNDING * np.outer(size, size)] = 0.0
     if _softest(found, half.shape[1]) < LOST <= _softest(stiffness, root_of(stiffness).shape[1]):
         raise SolidgearError(
             f"{what} is softer than the bearings in it by more than sixteen digits can tell; "

@@ -43,7 +43,8 @@ def test_a_bearing_goes_by_name_first_and_by_number_else():
     ("text", "word"),
     [
         ("bearing.2.position", "write bearing.NAME.FIELD=VALUES"),
-        ("housing.axial=1", "write bearing.NAME.FIELD=VALUES"),
+        ("housing.axial=1", "the scene gives its housing no axial"),
+        ("housing=1", "write bearing.NAME.FIELD=VALUES"),
         ("bearing.5.kxx=1e9", "no bearing '5'"),
         ("bearing.0.kxx=1e9", "no bearing '0'"),
         ("bearing.1.kxq=1e9", "unknown field 'kxq'"),

@@ -64,7 +64,9 @@ def rung(c_zz=1.0, bending=100.0, *, model="beam", band=None, section=None, **ot
 
 
 def asking(tolerance, quantities=()):
-    return SimpleNamespace(ask=Ask(tolerance=tolerance, quantities=quantities))
+    ports = (SimpleNamespace(name="gear"),)
+    ask = Ask(tolerance=tolerance, quantities=quantities)
+    return SimpleNamespace(ask=ask, port=ports[0], ports=ports, further_ports=())
 
 
 def judged(rungs, tolerance, quantities=(), notices=()):

@@ -31,6 +31,7 @@ from solidgear.cli import (
     files,
     receptance,
     solve,
+    stiffness,
     sweep,
     train,
     train_judge,

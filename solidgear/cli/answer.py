@@ -112,7 +112,7 @@ def _values(found: Answered, units: str) -> Table:
     from rich import box
     from rich.table import Table
 
-    from solidgear.evidence.quantities import COUPLINGS
+    from solidgear.evidence.quantities import diagonals
     from solidgear.report.units import in_ascii, units_named
     from solidgear.report.words import bar_of
     from solidgear.studies.climb import ABOVE, BELOW
@@ -131,7 +131,7 @@ def _values(found: Answered, units: str) -> Table:
     notes = []
     if any(row.side in (ABOVE, BELOW) for row in found.values):
         notes.append("a bar with one sign: the exact answer lies on that side only")
-    if any(row.quantity in COUPLINGS for row in found.values):
+    if any(diagonals(row.quantity) for row in found.values):
         notes.append("bars of couplings are relative to the mean of both diagonal entries")
     if notes:
         table.caption = "\n".join(notes)

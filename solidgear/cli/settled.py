@@ -20,7 +20,12 @@ if TYPE_CHECKING:
 
 
 def body_for(
-    scene: Scene, fidelity: str, pairs: list[str] | None, tol: float | None, ask: str
+    scene: Scene,
+    fidelity: str,
+    pairs: list[str] | None,
+    tol: float | None,
+    ask: str,
+    points: Sequence[str] = (),
 ) -> tuple[Body, Settled | None]:
     """The body that a command solves with, and how it was chosen where it was.
 
@@ -34,12 +39,13 @@ def body_for(
     tol : float or None
         ``--tol``.
     ask : str
+    points : sequence of str
         As for :func:`solidgear.studies.settle.settle`.
     """
     if fidelity != AUTO:
         refuse_tolerance(fidelity, tol)
         return build_body(scene, fidelity, pairs), None
-    settled = settled_for(scene, pairs, tol, ask)
+    settled = settled_for(scene, pairs, tol, ask, points)
     return settled.body, settled
 
 
@@ -51,14 +57,20 @@ def refuse_tolerance(fidelity: str, tol: float | None) -> None:
         )
 
 
-def settled_for(scene: Scene, pairs: list[str] | None, tol: float | None, ask: str) -> Settled:
+def settled_for(
+    scene: Scene,
+    pairs: list[str] | None,
+    tol: float | None,
+    ask: str,
+    points: Sequence[str] = (),
+) -> Settled:
     """What ``-f auto`` chooses; parameters as for :func:`body_for`."""
     from solidgear.studies.settle import settle
 
     refuse_settings(pairs)
     # A second or less for most scenes: lines are for those who watch.
     with Progress(quiet=not sys.stderr.isatty()) as progress:
-        return settle(scene, tol, ask, progress=progress)
+        return settle(scene, tol, ask, points=points, progress=progress)
 
 
 def refuse_settings(pairs: list[str] | None) -> None:

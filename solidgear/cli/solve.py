@@ -1,4 +1,4 @@
-"""Commands on one scene: compare, stiffness, modes, render, check."""
+"""Commands on one scene: compare, modes, render, check."""
 
 from __future__ import annotations
 
@@ -121,83 +121,6 @@ def compare(
         raise typer.Exit(130)
     if not found.rungs:
         raise typer.Exit(1)
-
-
-@command
-def stiffness(
-    scene: SceneFile,
-    fidelity: AutoFidelityOption = AUTO,
-    tol: Tolerance = None,
-    attachment: Annotated[
-        str | None,
-        typer.Option(
-            help="average, rigid or section for every port; by default as the scene says."
-        ),
-    ] = None,
-    as_json: JsonFlag = False,
-    settings: Settings = None,
-    engine: Engine = None,
-    units: UnitsOption = UNITS,
-) -> None:
-    """6x6 stiffness and compliance at the lumped point, bearings included."""
-    import numpy as np
-
-    from solidgear.frames import DOF_NAMES
-    from solidgear.solve.statics import condense
-    from solidgear.studies.check import cautions
-    from solidgear.studies.loading import load
-
-    loaded = load(scene)
-    if attachment:
-        loaded = loaded.with_attachment(attachment)
-    settings = with_engine(settings, engine)
-    body, settled = body_for(loaded, fidelity, settings, tol, "stiffness")
-    found = condense(body, loaded, loaded.port.name)
-    said = cautions(loaded, body)
-
-    if as_json:
-
-        def plain(a):
-            return [[float(v) if np.isfinite(v) else None for v in row] for row in a]
-
-        record = {
-            "scene": loaded.name,
-            "fidelity": body.fidelity,
-            "port": found.port,
-            "attachment": found.attachment,
-            "order": DOF_NAMES,
-            "stiffness": plain(found.stiffness),
-            "compliance": plain(found.compliance),
-            "free": found.free_names,
-            "free_oblique": found.oblique.T.tolist(),
-            "dofs": body.size,
-            "evidence": found.evidence,
-            "cautions": said,
-        }
-        if settled is not None:
-            record |= settled.as_dict()
-        print(json.dumps(record))
-        ended(settled)
-        return
-    from solidgear.report.terminal import matrix_table
-
-    terminal = console()
-    terminal.print(
-        f"{heading(loaded, body, settled)}, port {found.port!r} at y = {1e3 * loaded.port.y:.3f} mm ({found.attachment})",
-        markup=False,
-    )
-    terminal.print(matrix_table(found.stiffness, "stiffness", units))
-    terminal.print(matrix_table(found.compliance, "compliance", units))
-    if found.free_names:
-        terminal.print(f"Free: {', '.join(found.free_names)} (stiffness exactly zero).")
-    for motion in found.oblique.T:
-        parts = ", ".join(f"{v:.4g} {n}" for v, n in zip(motion, DOF_NAMES) if abs(v) > 1e-9)
-        terminal.print(f"Free: the motion ({parts}), m and rad; a compliance does not exist.")
-    for line in told(settled):
-        terminal.print(line, markup=False, soft_wrap=True)
-    for sentence in said:
-        terminal.print(f"caution: {sentence}", markup=False)
-    ended(settled)
 
 
 @command

@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 from solidgear.body import Body, Supports, as_supports
-from solidgear.evidence.quantities import QUANTITIES, measure
+from solidgear.evidence.quantities import QUANTITIES, described, measure
 from solidgear.fidelity import build
 from solidgear.machine.meter import Meter
+from solidgear.solve.condensed import Condensed, Coupled
 from solidgear.solve.modes import ModeSet, modes
-from solidgear.solve.statics import Condensed, condense
+from solidgear.solve.statics import condense
 
 if TYPE_CHECKING:
     from solidgear.scene import Scene
@@ -36,15 +38,23 @@ class Numbers:
     solver: dict[str, float]
 
 
-def numbers(statics: Condensed | None, found: ModeSet | None) -> Numbers:
+def numbers(
+    statics: Condensed | None,
+    found: ModeSet | None,
+    further: Mapping[str, Condensed] | None = None,
+) -> Numbers:
     """The compared numbers of statics and modes, either of which may not have been solved."""
-    return Numbers(measure(statics, found), _left(statics, found))
+    values = measure(statics, found, further)
+    return Numbers(values, _left(statics, found, values))
 
 
-def _left(statics: Condensed | None, found: ModeSet | None) -> dict[str, float]:
+def _left(
+    statics: Condensed | None, found: ModeSet | None, values: Iterable[str]
+) -> dict[str, float]:
     """Relative error that the solver may have left in every quantity."""
     solver = {}
-    for name, (kind, place, _) in QUANTITIES.items():
+    for name in dict.fromkeys((*QUANTITIES, *values)):
+        kind, place, _ = described(name)
         if kind == "frequency":
             mode = found.named(place) if found is not None and isinstance(place, str) else None
             if mode is not None:
@@ -66,17 +76,24 @@ class Answer:
     modes : ModeSet
     quantities : dict of str to float
         The compared numbers; see :mod:`solidgear.evidence.quantities`.
+    further : dict of str to Condensed
+        Statics at further lumped points.
+    coupled : Coupled or None
+        All lumped points together, where there are several.
     """
 
     body: Body
     condensed: Condensed
     modes: ModeSet
     quantities: dict[str, float]
+    further: dict[str, Condensed] = field(default_factory=dict)
+    coupled: Coupled | None = None
 
     @property
     def numbers(self) -> Numbers:
         """Its numbers and what the solver may have left in them; they outlive the body."""
-        return Numbers(self.quantities, _left(self.condensed, self.modes))
+        left = _left(self.condensed, self.modes, self.quantities)
+        return Numbers(self.quantities, left)
 
 
 def solve(
@@ -128,7 +145,7 @@ def solve(
     return answered(
         body,
         as_supports(scene),
-        scene.port.name,
+        [port.name for port in scene.ports],
         n=n,
         max_frequency=max_frequency,
         count=count,
@@ -140,8 +157,8 @@ def solve(
 def answered(
     body: Body,
     supports: Supports,
-    port: str,
-    attachment: str | None = None,
+    ports: Sequence[str],
+    attachments: Sequence[str | None] | str | None = None,
     *,
     n: int = ENOUGH,
     max_frequency: float | None = None,
@@ -155,17 +172,24 @@ def answered(
     ----------
     body : Body
     supports : Supports
-    port : str
-        Of the lumped point.
-    attachment : str, optional
-        Of the lumped point; by default the body's first.
+    ports : sequence of str
+        Names of the lumped points, the main one first.
+    attachments : str or sequence of str, optional
+        Of the lumped points; by default the body's first.
     """
+    alike = attachments is None or isinstance(attachments, str)
+    kinds = [attachments] * len(ports) if alike else list(attachments or ())
     with meter.stage("statics"):
-        condensed = condense(body, supports, port, attachment)
+        condensed, *others = (
+            condense(body, supports, port, kind) for port, kind in zip(ports, kinds)
+        )
+        coupled = condense(body, supports, tuple(ports), tuple(kinds)) if others else None
+    further = dict(zip(ports[1:], others))
     with meter.stage("modes"):
         found = modes(
             body, supports, n, max_frequency=max_frequency, count=count, ovalising=ovalising
         )
     # Evidence, not part of the answer: kept apart from what the modes cost.
     meter.move("modes", "count", found.evidence.get("count_seconds", 0.0))
-    return Answer(body, condensed, found, measure(condensed, found))
+    values = measure(condensed, found, further)
+    return Answer(body, condensed, found, values, further, coupled)

@@ -26,7 +26,7 @@ from dataclasses import asdict, dataclass
 from typing import TYPE_CHECKING
 
 from solidgear.evidence.converge import gci
-from solidgear.evidence.quantities import COUPLINGS, QUANTITIES, change
+from solidgear.evidence.quantities import change, diagonals, in_order
 from solidgear.fidelity.rung import STEPPED
 
 if TYPE_CHECKING:
@@ -119,7 +119,7 @@ def layered_bands(
     usual = factors.usual[edge]
     out = {}
     finest, before = levels[-1], levels[-2]
-    for name in QUANTITIES:
+    for name in in_order(levels[-1]):
         if any(name not in level for level in levels[-2:]):
             continue
         last = abs(change(before, finest, name) or 0.0)
@@ -133,11 +133,9 @@ def layered_bands(
         if earlier and len(levels) > 3:  # the step off the coarsest mesh is no regular one
             ratio = min(last / earlier, SLOWEST)
             factor = max(usual, LATE, OBSERVED * ratio / (1 - ratio))
-        if name in COUPLINGS:
+        if pair := diagonals(name):
             own = [
-                abs(change(before, finest, d) or 0.0)
-                for d in COUPLINGS[name]
-                if d in before and d in finest
+                abs(change(before, finest, d) or 0.0) for d in pair if d in before and d in finest
             ]
             if len(own) == 2:
                 rests_on = max(rests_on, DIAGONAL * (own[0] * own[1]) ** 0.5)
@@ -164,8 +162,8 @@ def _left_around(around: Values, name: str) -> float:
     """What the cells around leave in a quantity; in a coupling as much as in its diagonal entries,
     in one that was not measured as much as in the worst.
     """
-    if name in COUPLINGS:
-        own = [around[d] for d in COUPLINGS[name] if d in around]
+    if pair := diagonals(name):
+        own = [around[d] for d in pair if d in around]
         return max([around.get(name, 0.0), (own[0] * own[1]) ** 0.5 if len(own) == 2 else 0.0])
     return around.get(name, max(around.values(), default=0.0))
 
@@ -197,14 +195,14 @@ def refined_bands(
     """
     expected = 2 * exponent
     out = {}
-    for name in QUANTITIES:
+    for name in in_order(levels[-1]):
         if any(name not in level for level in levels[-3:]):
             continue
         v = [float(level[name]) for level in levels[-3:]]
-        if (
-            name in COUPLINGS
+        if pair := diagonals(
+            name
         ):  # relative to the scale of a coupling: an offset that leaves differences alone
-            scale = _scale(levels[-1], name)
+            scale = _scale(levels[-1], name, pair)
             v = [1.0 + x / scale - v[-1] / scale for x in v]
         found = gci(v, sizes[-3:], expected, 4.0, expected if singular else 2.0)
         left = solver.get(name, 0.0)
@@ -215,7 +213,7 @@ def refined_bands(
             reduction=abs((v[2] - v[1]) / (v[1] - v[0])) if v[1] != v[0] else None,
             factor=found.factor,
             solver=float(left),
-            extrapolated=float(levels[-1][name] if name in COUPLINGS else found.extrapolated),
+            extrapolated=float(levels[-1][name] if pair else found.extrapolated),
             observed_order=found.observed_order,
             expected_order=found.expected_order,
             used_order=found.used_order,
@@ -224,8 +222,8 @@ def refined_bands(
     return out
 
 
-def _scale(values: Values, name: str) -> float:
-    one, two = COUPLINGS[name]
+def _scale(values: Values, name: str, pair: tuple[str, str]) -> float:
+    one, two = pair
     return (
         (values[one] * values[two]) ** 0.5
         if one in values and two in values

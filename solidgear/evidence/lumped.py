@@ -162,6 +162,8 @@ def model_record(
         variant=variant,
         compliance=base.compliance,
         stiffness=base.stiffness,
+        points=base.points,
+        coupled=base.coupled,
         modes=[
             ModeRecord(
                 name="bending 1",

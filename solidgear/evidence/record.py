@@ -133,6 +133,25 @@ class EvidenceRecord(Part):
     shift_rad2: Number = None
 
 
+class PointRecord(Part):
+    """Statics at a further lumped point."""
+
+    stiffness: Matrix | None = None
+    compliance: Matrix | None = None
+
+
+class CoupledRecord(Part):
+    """Statics between all lumped points: 6 n square matrices, point by point.
+
+    ``stiffness_error`` is the relative error that inverting the compliance leaves.
+    """
+
+    ports: list[str] = []
+    stiffness: Matrix | None = None
+    compliance: Matrix | None = None
+    stiffness_error: Number = None
+
+
 class ModelRecord(Part):
     """One rung.
 
@@ -153,6 +172,8 @@ class ModelRecord(Part):
     variant: str | None = None
     compliance: Matrix | None = None
     stiffness: Matrix | None = None
+    points: dict[str, PointRecord] = {}
+    coupled: CoupledRecord | None = None
     modes: list[ModeRecord] = []
     band: BandSummary | None = None
     convergence: ConvergenceRecord | None = None
@@ -328,6 +349,7 @@ class Record(Part):
     complete: bool = True
     scene: Facts = {}
     port: PortRecord | None = None
+    further_ports: list[PortRecord] = []
     models: dict[str, ModelRecord] = {}
     missing: list[str] = []
     attachments: dict[str, dict[str, VariantRecord]] = {}

@@ -10,11 +10,13 @@ from solidgear.evidence.causes import Cause
 from solidgear.evidence.completeness import completeness
 from solidgear.evidence.correlate import correlate
 from solidgear.evidence.lumped import drawn, model_record
+from solidgear.evidence.quantities import usual
 from solidgear.evidence.record import (
     BandRecord,
     BandSummary,
     CauseRecord,
     ConvergenceRecord,
+    CoupledRecord,
     DeviationRecord,
     EvidenceRecord,
     GuardRecord,
@@ -25,6 +27,7 @@ from solidgear.evidence.record import (
     ModelRecord,
     ModeRecord,
     PartnerRecord,
+    PointRecord,
     PortRecord,
     Record,
     VariantRecord,
@@ -68,7 +71,7 @@ def recorded(
     complete : bool
         False after an interrupt.
     """
-    trust, _ = trusted(rungs, scene.ask.tolerance)
+    trust, _ = trusted(rungs, scene.ask.tolerance, usual(scene))
     # Where nothing may judge, the distances are still reported; they are no judgement.
     reference = trust or next((m for m in LADDER.judges if m in rungs), None)
     gaps = deviations(rungs, reference) if reference else []
@@ -83,7 +86,8 @@ def recorded(
     out = Record(
         complete=complete,
         scene=scene.as_dict(),
-        port=_port_record(scene, rungs),
+        port=_port_record(scene, rungs, 0),
+        further_ports=[_port_record(scene, rungs, k) for k in range(1, len(scene.ports)) if rungs],
         attachments=_attachments(rungs),
         mac=_mac(rungs, reference),
         deviations=[DeviationRecord(**gap) for gap in gaps],
@@ -101,14 +105,16 @@ def recorded(
     return out
 
 
-def _port_record(scene: Scene, rungs: dict[str, Solution]) -> PortRecord:
-    first = next(iter(rungs.values()), None)
+def _port_record(scene: Scene, rungs: dict[str, Solution], k: int) -> PortRecord:
+    port, first = scene.ports[k], next(iter(rungs.values()), None)
+    found = None if first is None else first.ties[SCENE]
+    there = None if found is None else [found.condensed, *found.further.values()][k]
     return PortRecord(
-        name=scene.port.name,
-        y=scene.port.y,
-        attachment=scene.port.attachment,
+        name=port.name,
+        y=port.y,
+        attachment=port.attachment,
         order=list(DOF_NAMES),
-        free=list(first.condensed.free_names) if first else [],
+        free=list(there.free_names) if there else [],
     )
 
 
@@ -200,6 +206,8 @@ def _model_record(rung: Solution, judgement: Judgement) -> ModelRecord:
         why_not=judgement.why_not,
         compliance=rung.condensed.compliance,
         stiffness=rung.condensed.stiffness,
+        points=_points(rung.ties[SCENE]),
+        coupled=_coupled(rung.ties[SCENE]),
         modes=[_mode_record(m) for m in rung.modes.modes],
         band=_band_summary(rung),
         convergence=_convergence(rung),
@@ -209,6 +217,25 @@ def _model_record(rung: Solution, judgement: Judgement) -> ModelRecord:
         backend=rung.condensed.evidence["backend"],
         mesh=rung.body.mesh,
         evidence=_evidence(rung),
+    )
+
+
+def _points(found: Answer) -> dict[str, PointRecord]:
+    return {
+        name: PointRecord(stiffness=there.stiffness, compliance=there.compliance)
+        for name, there in found.further.items()
+    }
+
+
+def _coupled(found: Answer) -> CoupledRecord | None:
+    both = found.coupled
+    if both is None:
+        return None
+    return CoupledRecord(
+        ports=list(both.ports),
+        stiffness=both.stiffness,
+        compliance=both.compliance,
+        stiffness_error=both.evidence["stiffness_error"],
     )
 
 

@@ -19,7 +19,7 @@ from solidgear.body import Body, Supports, as_supports
 from solidgear.errors import SolidgearError
 from solidgear.evidence.answer import ENOUGH, Answer, Numbers, answered
 from solidgear.evidence.bands import Band
-from solidgear.evidence.quantities import JUDGED, change
+from solidgear.evidence.quantities import JUDGED, change, usual
 from solidgear.evidence.sequence_bands import sequence_bands
 from solidgear.evidence.ties import SCENE, SECTION, rigid_seats
 from solidgear.fidelity import build
@@ -205,7 +205,7 @@ def _climbed(
         rung = Solution(model, ties, meter, levels=facts, failed=failed, options=dict(level))
         rung.bands = _bands(scene, model, plan, solved, facts, around)
         keep(rung)
-        worst = rung.worst_band()
+        worst = rung.worst_band(usual(scene))
         enough = target if k >= 2 else max(target, scene.ask.tolerance / LIGHT_JUDGE)
         if (
             not plan.fixed
@@ -304,9 +304,7 @@ def _solved(
     if together:
         supports = supports.on_stations(scene.stations)
     ties = {
-        SCENE: _tied(
-            scene, body, supports, scene.port.attachment if together else None, meter, count
-        )
+        SCENE: _tied(scene, body, supports, _as_tied(scene) if together else None, meter, count)
     }
     if given == {"section"}:
         ties[SECTION] = ties[SCENE]
@@ -323,21 +321,30 @@ def _solved(
     return ties
 
 
+def _as_tied(scene: Scene) -> list[str]:
+    return [port.attachment for port in scene.ports]
+
+
 def _built(scene: Scene, model: str, options: Mapping[str, Any], meter: Meter) -> Body:
     with meter.stage("build"):
         return build(scene, model, **options)
 
 
 def _tied(
-    scene: Scene, body: Body, supports: Supports, attachment: str | None, meter: Meter, count: bool
+    scene: Scene,
+    body: Body,
+    supports: Supports,
+    attachments: list[str] | str | None,
+    meter: Meter,
+    count: bool,
 ) -> Answer:
     # Families of two waves and more are reported for the mesh that is; bearings do not move them,
     # nor do bands rest on them.
     return answered(
         body,
         supports,
-        scene.port.name,
-        attachment,
+        [port.name for port in scene.ports],
+        attachments,
         n=max(scene.ask.modes, ENOUGH),
         max_frequency=scene.ask.max_frequency,
         count=count,

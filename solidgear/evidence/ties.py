@@ -19,9 +19,8 @@ def rigid_seats(scene: Scene) -> Scene:
     model.
     """
     bearings = tuple(b.with_changes(attachment="rigid") for b in scene.bearings)
-    port = (
-        scene.port.with_changes(attachment="average")
-        if scene.port.attachment == "rigid"
-        else scene.port
+    port, *further = (
+        port.with_changes(attachment="average") if port.attachment == "rigid" else port
+        for port in scene.ports
     )
-    return scene.with_changes(bearings=bearings, port=port)
+    return scene.with_changes(bearings=bearings, port=port, further_ports=tuple(further))

@@ -12,7 +12,15 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from solidgear.evidence.partners import Partners
-from solidgear.evidence.quantities import JUDGED, QUANTITIES, change
+from solidgear.evidence.quantities import (
+    AT,
+    JUDGED,
+    QUANTITIES,
+    change,
+    described,
+    judged,
+    usual,
+)
 from solidgear.evidence.study import Solution
 from solidgear.evidence.ties import SCENE, SECTION
 from solidgear.fidelity.ladder import LADDER
@@ -75,7 +83,9 @@ def _deviations(
 ) -> Iterable[dict]:
     mine, theirs = rung.ties[tie], base.ties[tie]
     partners = Partners(mine.modes, theirs.modes)
-    for name, (_, place, unit) in QUANTITIES.items():
+    further = [name for name in mine.quantities if AT in name]
+    for name in (*QUANTITIES, *further):
+        _, place, unit = described(name)
         value, how = mine.quantities.get(name), ""
         if isinstance(place, str):
             value, how = partners.frequency(place)
@@ -104,15 +114,18 @@ def _deviations(
         }
 
 
-def trusted(rungs: dict[str, Solution], tolerance: float) -> tuple[str | None, str]:
-    """The rung that may judge the others, and why there is none: a solid whose bands are inside the
-    tolerance.
+def trusted(
+    rungs: dict[str, Solution], tolerance: float, names: Iterable[str] = JUDGED
+) -> tuple[str | None, str]:
+    """The rung that may judge the others, and why there is none: a solid whose bands of some
+    quantities are inside the tolerance.
     """
+    names = tuple(names)
     why = "no solid was run, and a beam cannot judge itself"
     for model in LADDER.of(SOLID):
         if model not in rungs:
             continue
-        worst = rungs[model].worst_band()
+        worst = rungs[model].worst_band(names)
         if worst is None:
             why = f"the {LADDER[model].title} has no band of its own ({_reason(rungs[model])})"
         elif worst > tolerance:
@@ -142,11 +155,11 @@ def judge(
         What the guards say: ``level``, ``models``, ``sentence``.
     """
     tolerance = scene.ask.tolerance
-    judged = scene.ask.quantities or JUDGED
-    reference, why = trusted(rungs, tolerance)
+    names = judged(scene)
+    reference, why = trusted(rungs, tolerance, usual(scene))
     notices = list(notices)
     validity = {
-        m: _judged(m, rungs, reference, why, gaps, judged, tolerance, notices) for m in rungs
+        m: _judged(m, rungs, reference, why, gaps, names, tolerance, notices) for m in rungs
     }
     cheapest = next((m for m in LADDER.bodies if m in rungs and validity[m].valid), None)
     sentences = []
@@ -156,16 +169,17 @@ def judge(
         sentences = [f"Not judged: {why}."]
     else:
         sentences = [
-            *_trust(rungs, reference, gaps, judged),
+            *_trust(rungs, reference, gaps, names),
+            *_points(scene, names),
             *_cheapest(rungs, cheapest, tolerance),
-            *_beams(rungs, gaps, judged, tolerance),
+            *_beams(rungs, gaps, names, tolerance),
         ]
     verdict = {
         "trust": reference,
         "reference": reference,
         "cheapest": cheapest,
         "tolerance": tolerance,
-        "judged": list(judged),
+        "judged": list(names),
         "sentences": sentences,
     }
     return verdict, validity
@@ -229,7 +243,7 @@ def _why(gap: dict, reference: str, kind: str, tolerance: float) -> str:
 
 def _side(gap: dict) -> str:
     """What the sign of a gap means to an engineer."""
-    if gap["quantity"] in ("C_z,thx", "K_z,thx"):
+    if gap["quantity"].partition(AT)[0] in ("C_z,thx", "K_z,thx"):
         return "off (of the geometric mean of the two diagonal entries)"
     if gap["quantity"].startswith("C_"):
         return "too small (too stiff)" if gap["relative"] < 0 else "too large (too soft)"
@@ -281,6 +295,17 @@ def _other_solid(model: str, kind: str, gaps: list[dict], judged) -> list[str]:
     if beyond:
         return [f"{text}, beyond the bands in {', '.join(beyond)}."]
     return [f"{text}; all gaps lie inside the bands (not resolved)."]
+
+
+def _points(scene: Scene, names) -> list[str]:
+    """At which of several lumped points models are judged."""
+    if not scene.further_ports:
+        return []
+    asked = {name.partition(AT)[2] or scene.port.name for name in names if name[:2] in ("C_", "K_")}
+    at = [port.name for port in scene.ports if port.name in asked]
+    left = [port.name for port in scene.ports if port.name not in asked]
+    where = f"Compliances are judged at {' and '.join(at)}" if at else "No compliance is judged"
+    return [f"{where}{'; not at ' * bool(left)}{' and '.join(left)}."]
 
 
 def _cheapest(rungs, cheapest, tolerance) -> list[str]:

@@ -23,6 +23,7 @@ from solidgear.report import (
     evidence_tables,
     front,
     input_tables,
+    point_tables,
     race_tables,
     result_tables,
     run_tables,
@@ -45,6 +46,7 @@ Picture = bytes | str | os.PathLike
 CUSTOMER = {
     "scene": "Shaft and bearings",
     "stiffness": "Stiffness and compliance",
+    "points": "Further lumped points",
     "frequencies": "Natural frequencies",
     "shapes": "Mode shape",
     "models": "Which models may be used",
@@ -52,6 +54,7 @@ CUSTOMER = {
 APPENDIX = {
     "results": "All models side by side",
     "matrices": "Stiffness of the other models",
+    "between": "At the further points and between points",
     "modes": "Natural frequencies of all models",
     "renders": "Mode shapes of the other models",
     "deviations": "Differences between models",
@@ -147,6 +150,8 @@ def _contents(shown: Mapping[str, Any]) -> dict[str, Any]:
         "models": shown["models"],
         "results": shown["summary"],
         "matrices": shown["other_matrices"],
+        "points": shown["points"],
+        "between": shown["point_matrices"],
         "modes": shown["frequencies"],
         "renders": shown["other_renders"],
         "deviations": shown["deviations"],
@@ -234,6 +239,8 @@ def _tables(record: Record, units: Units) -> dict[str, Any]:
         "summary": result_tables.summary(record, units),
         # a compliance is the inverse of what is shown
         "other_matrices": [found[0] for key, found in matrices.items() if key != own],
+        "points": point_tables.points(record, units),
+        "point_matrices": point_tables.matrices(record, units),
         "frequencies": result_tables.frequencies(record),
         "deviations": evidence_tables.deviations(record, units),
         "causes": evidence_tables.causes(record),

@@ -10,7 +10,7 @@ from solidgear.report.cells import DASH, short_percent
 from solidgear.report.reading import model_name
 from solidgear.report.table import Table
 from solidgear.report.units import ENGINEERING, Units
-from solidgear.report.words import hertz, is_number, percent
+from solidgear.report.words import engineering, hertz, is_number, percent
 
 #: of a bearing's 6x6 -> its place and unit
 BEARING_ENTRIES = {
@@ -28,7 +28,7 @@ SIZES = ("y", "length", "width", "depth", "diameter", "radius", "size", "height"
 def scene_facts(record: Record, units: Units = ENGINEERING) -> Table:
     """The scene in a few lines."""
     scene = record.scene
-    material, housing = scene.get("material") or {}, scene.get("housing_axial")
+    material = scene.get("material") or {}
     free = record.port.free if record.port else []
     rows = [
         ["source", scene.get("source") or "not given"],
@@ -36,7 +36,8 @@ def scene_facts(record: Record, units: Units = ENGINEERING) -> Table:
         ["material", _material(material, units)],
         ["lumped point", _lumped_point(record, units)],
         ["free motions there", ", ".join(free) or "none"],
-        ["housing spring along y", units.text(housing, "N/m", nothing="none")],
+        *_further_points(scene, units),
+        _housing(scene, units),
         ["asked for", _asked(scene.get("ask") or {})],
     ]
     return Table("Scene", ["item", "value"], rows if scene else [], css="facts")
@@ -53,12 +54,40 @@ def _lumped_point(record: Record, units: Units) -> str:
     port = record.scene.get("port")
     if not port:
         port = record.port.model_dump(exclude_defaults=True) if record.port else {}
-    y, lo, hi = (units.given(port.get(name), "m", DASH) for name in ("y", "lo", "hi"))
+    return f"{_placed(port, units)}, {_carried(port, units)}"
+
+
+def _further_points(scene: Mapping, units: Units) -> list[list[str]]:
+    """Other lumped points, a row each."""
+    found = scene.get("further_ports") or []
+    return [["further point", f"{_placed(p, units)}, {_carried(p, units)}"] for p in found]
+
+
+def _placed(port: Mapping, units: Units) -> str:
+    y = units.given(port.get("y"), "m", DASH)
+    return f"{port.get('name', '')} on the axis at y = {y} {units.unit('m')}"
+
+
+def _carried(port: Mapping, units: Units) -> str:
+    lo, hi = (units.given(port.get(name), "m", DASH) for name in ("lo", "hi"))
     return (
-        f"{port.get('name', '')} on the axis at y = {y} {units.unit('m')}, "
         f"carried by the outer surface from {lo} to {hi} {units.unit('m')}, "
         f"attachment {port.get('attachment', DASH)}"
     )
+
+
+def _housing(scene: Mapping, units: Units) -> list[str]:
+    """What all bearings stand in."""
+    around, spring = scene.get("housing"), scene.get("housing_axial")
+    if not around:
+        return ["housing spring along y", units.text(spring, "N/m", nothing="none")]
+    found = around["entries"].items()
+    entries = ", ".join(f"{name} {engineering(value, 4)}" for name, value in found)
+    y = units.given(around["y"], "m", DASH)
+    return [
+        "housing of all bearings",
+        f"6x6 about y = {y} {units.unit('m')}, SI: {entries}; rigid in every other motion, no mass",
+    ]
 
 
 def _asked(ask: Mapping) -> str:
@@ -135,7 +164,7 @@ def bearings(scene: Mapping, units: Units = ENGINEERING) -> Table:
                 (b.get("attachment", DASH), "word text"),
                 *(cells or (units.number(value, si, 4, DASH) for value, si in shown)),
                 (status, f"word text mark {status}"),
-                (str(b.get("note") or ""), "text"),
+                (_note(b), "text"),
             ]
         )
     head = [
@@ -156,6 +185,15 @@ def bearings(scene: Mapping, units: Units = ENGINEERING) -> Table:
             "assumed, or from catalogue data: calculated, or estimated where the inner geometry is."
         ),
     )
+
+
+def _note(bearing: Mapping) -> str:
+    """What is told of a bearing in words, the housing at its seat included."""
+    own = bearing.get("housing")
+    if not own:
+        return str(bearing.get("note") or "")
+    entries = ", ".join(f"{name} {engineering(value, 4)}" for name, value in own.items())
+    return f"{bearing.get('note') or ''} Stands in a housing of its own, SI: {entries}.".strip()
 
 
 def bearing_range(record: Record) -> Table:

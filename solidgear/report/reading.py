@@ -44,8 +44,12 @@ def entry(matrix: Sequence[Sequence[float | None]] | None, i: int, j: int) -> fl
 
 def is_faint(matrix: Sequence[Sequence[float | None]] | None, i: int, j: int) -> bool:
     """Whether a coupling is next to nothing beside its two diagonal entries."""
-    value, one, other = entry(matrix, i, j), entry(matrix, i, i), entry(matrix, j, j)
-    if i == j or value is None or one is None or other is None:
+    return i != j and is_nothing(entry(matrix, i, j), entry(matrix, i, i), entry(matrix, j, j))
+
+
+def is_nothing(value: float | None, one: float | None, other: float | None) -> bool:
+    """Whether a coupling is next to nothing beside two entries of its size."""
+    if value is None or one is None or other is None:
         return False
     return abs(value) <= FAINT * abs(one * other) ** 0.5
 

@@ -18,7 +18,7 @@ from solidgear.report.reading import (
     first_mode,
     headline,
     is_beam,
-    is_faint,
+    is_nothing,
     is_resolved,
     model_name,
     model_of,
@@ -141,15 +141,39 @@ def matrices(record: Record, units: Units = ENGINEERING) -> dict[str, list[dict]
             continue
         name = model_name(record, key)
         both = (("stiffness", model.stiffness), ("compliance", model.compliance))
-        shown = [_matrix(record, name, kind, values, units) for kind, values in both if values]
+        free = record.port.free if record.port else []
+        shown = [
+            matrix(f"{name}: {kind}", kind, values, free, units) for kind, values in both if values
+        ]
         if shown:
             out[key] = shown
     return out
 
 
-def _matrix(record: Record, name: str, kind: str, values: Matrix, units: Units) -> dict:
-    """A 6x6 with a unit over each of its four blocks."""
-    free = record.port.free if record.port else []
+def matrix(
+    caption: str,
+    kind: str,
+    values: Matrix,
+    free: list[str],
+    units: Units = ENGINEERING,
+    sizes: Any = None,
+) -> dict:
+    """A 6x6 with a unit over each of its four blocks.
+
+    Parameters
+    ----------
+    caption : str
+    kind : {'stiffness', 'compliance'}
+    values : (6, 6) rows of numbers
+    free : list of str
+        Components that are shown as a dash.
+    units : Units
+    sizes : two lists of six numbers, optional
+        Entries of the diagonal beside which a coupling may be next to nothing; by default those of
+        the matrix.
+    """
+    own = [entry(values, k, k) for k in range(6)]
+    across, along = sizes or (own, own)
     same, mixed, turn = BLOCK_UNITS[kind]
     rows = []
     for i, direction in enumerate(DOF_NAMES):
@@ -159,7 +183,7 @@ def _matrix(record: Record, name: str, kind: str, values: Matrix, units: Units) 
             if value is None or direction in free or other in free:
                 cells.append((DASH, "quiet"))
                 continue
-            faint = is_faint(values, i, j)
+            faint = (i != j or sizes is not None) and is_nothing(value, across[i], along[j])
             si = mixed if (i < 3) != (j < 3) else same if i < 3 else turn
             # without exponents a coupling of nothing would fill its cell with zeros
             text = "0" if faint and not units.exponents else units.number(value, si)
@@ -167,7 +191,7 @@ def _matrix(record: Record, name: str, kind: str, values: Matrix, units: Units) 
         rows.append((direction, cells))
     same, mixed, turn = (units.unit(si) for si in (same, mixed, turn))
     return {
-        "caption": f"{capital(name)}: {kind}",
+        "caption": capital(caption),
         "names": DOF_NAMES,
         "blocks": [((same, mixed), rows[:3]), ((mixed, turn), rows[3:])],
     }

@@ -40,8 +40,8 @@ def scene(told: Any) -> Table:
         rows.append(
             (told.body.name, told.body.what, 0.0, 1e3 * told.length, "segments are its round part")
         )
-    port = told.port
-    rows.append((port.name, "port", 1e3 * port.lo, 1e3 * port.hi, port.attachment))
+    for port in told.ports:
+        rows.append((port.name, "port", 1e3 * port.lo, 1e3 * port.hi, port.attachment))
     title = told.title or told.name
     return Table(
         f"Scene {told.name}: {title}, {1e3 * told.length:.6g} mm long",
@@ -147,6 +147,29 @@ def condensed(told: Any, kind: str = "stiffness") -> Table:
     free = f"; free: {', '.join(told.free_names)}" if told.free_names else ""
     return Table(
         f"{kind} at {told.port} ({told.attachment}), {units}{free}", ("", *DOF_NAMES), rows
+    )
+
+
+def coupled(told: Any, kind: str = "compliance") -> Table:
+    """The matrix between several ports.
+
+    Parameters
+    ----------
+    told : Coupled
+    kind : {'stiffness', 'compliance'}
+    """
+    if kind not in BLOCK_UNITS:
+        raise ValueError(f"kind {kind!r}: use stiffness or compliance")
+    heads = [f"{port} {name}" for port in told.ports for name in DOF_NAMES]
+    rows = [
+        (name, *(float(v) if np.isfinite(v) else None for v in row))
+        for name, row in zip(heads, getattr(told, kind))
+    ]
+    free = f"; free together: {', '.join(told.free_names)}" if told.free_names else ""
+    return Table(
+        f"{kind} between {' and '.join(told.ports)}, {', '.join(BLOCK_UNITS[kind])}{free}",
+        ("", *heads),
+        rows,
     )
 
 

@@ -37,8 +37,8 @@ def draw(scene: Mapping[str, Any]) -> Any:
     left = (WIDTH - length * inch) / 2
 
     stations = [(b, False) for b in scene.get("bearings") or []]
-    if scene.get("port"):
-        stations.append((scene["port"], True))
+    points = [port for port in (scene.get("port"), *(scene.get("further_ports") or [])) if port]
+    stations += [(port, True) for port in points]
     labels = _labels(stations, lambda y: left + y * inch)
     ordinates = _staggered([(left + y * inch, f"{1e3 * y:.1f}") for y in _marks(scene, length)])
     above = top + 0.62 + 0.34 * (1 + max((level for *_, level in labels), default=0))
@@ -62,8 +62,8 @@ def draw(scene: Mapping[str, Any]) -> Any:
         pen.bearing(b, segments)
     for mass in scene.get("masses") or []:
         details.mass(pen, mass)
-    if scene.get("port"):
-        pen.port(scene["port"], segments)
+    for port in points:
+        pen.port(port, segments)
     for x, _, text, is_port, level in labels:
         colour = SPAN if is_port else SEAT
         height = top + 0.62 + 0.34 * level
@@ -99,11 +99,12 @@ def draw(scene: Mapping[str, Any]) -> Any:
         note = f"round part of {body['name']}, {100 * body['round_share']:.3g} % of its surface"
         how: dict[str, Any] = {"va": "top", "fontsize": 8, "style": "italic", "parse_math": False}
         ax.text(0.15, above - 0.1, note, **how)
-    if is_number(scene.get("housing_axial")):
+    if scene.get("housing") or is_number(scene.get("housing_axial")):
+        around = "a 6x6 spring" if scene.get("housing") else "an axial spring"
         ax.text(
             0.15,
             -top - 1.04,
-            "not drawn: housing on\nan axial spring",
+            f"not drawn: housing on\n{around}",
             va="center",
             fontsize=8,
             style="italic",
@@ -113,8 +114,10 @@ def draw(scene: Mapping[str, Any]) -> Any:
 
 
 def _marks(scene: Mapping, length: float) -> list[float]:
-    port = [scene["port"]["y"]] if scene.get("port") else []
-    return sorted({0.0, length, *port, *(b["y"] for b in scene.get("bearings") or [])})
+    points = [
+        port["y"] for port in (scene.get("port"), *(scene.get("further_ports") or [])) if port
+    ]
+    return sorted({0.0, length, *points, *(b["y"] for b in scene.get("bearings") or [])})
 
 
 def _staggered(items: list[tuple[float, str]]) -> list[tuple[float, str, int]]:

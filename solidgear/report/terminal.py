@@ -90,6 +90,7 @@ def final_table(
             words.seconds(reading.answer_seconds(model)),
         )
     notes = [Text(note) for note in _notes(record, unresolved)]
+    notes += [Text(line) for line in _further_points(record)]
     reasons = [_reason(record, key, model) for key, model in record.models.items()]
     return Group(table, *notes, *(reason for reason in reasons if reason is not None))
 
@@ -115,6 +116,22 @@ def _notes(record: Record, unresolved: bool) -> list[str]:
     if not record.complete:
         notes.append("INCOMPLETE: the run was interrupted; what is missing shows as a dash")
     return notes
+
+
+def _further_points(record: Record) -> list[str]:
+    """Compliance at further lumped points, a line each, and the main point by name."""
+    if not record.further_ports:
+        return []
+    lines = [f"the table is of {record.port.name if record.port else 'the first point'}"]
+    for port in record.further_ports:
+        told = []
+        for key, model in record.models.items():
+            found = model.points.get(port.name)
+            value = engineering(reading.entry(found.compliance, 2, 2) if found else None, 4)
+            apart = _against_reference(record, key, f"C_zz@{port.name}")
+            told.append(f"{reading.heading(record, key)} {value} ({apart})")
+        lines.append(f"C_zz at {port.name}, m/N: {', '.join(told)}")
+    return lines
 
 
 def _reason(record: Record, key: str, model: ModelRecord) -> Text | None:
@@ -181,7 +198,10 @@ def verdict_text(found: Record | Mapping[str, Any]) -> str:
 
 
 def matrix_table(
-    matrix: np.ndarray | Sequence[Sequence[float | None]], kind: str, units: str | Units = SI
+    matrix: np.ndarray | Sequence[Sequence[float | None]],
+    kind: str,
+    units: str | Units = SI,
+    title: str = "",
 ) -> Table:
     """A 6x6 with its units; free components (None or NaN) show as a dash.
 
@@ -192,6 +212,8 @@ def matrix_table(
     kind : {'stiffness', 'compliance'}
     units : str or Units
         To show it in.
+    title : str
+        By default the kind.
 
     Returns
     -------
@@ -204,7 +226,10 @@ def matrix_table(
         box=box.SIMPLE_HEAD,
         padding=0,
         pad_edge=False,
-        title=f"{kind}, {chosen.name} units" if chosen is not SI else f"{kind}, SI",
+        title=Text(
+            f"{title or kind}, {f'{chosen.name} units' if chosen is not SI else 'SI'}",
+            "table.title",
+        ),
         title_justify="left",
     )
     table.add_column("")

@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, TypeVar
 
 from solidgear.display import Displayed
 from solidgear.errors import SolidgearError, nearest, show
-from solidgear.evidence.quantities import JUDGED, QUANTITIES
+from solidgear.evidence.quantities import AT, QUANTITIES, described, judged, own_name
 from solidgear.fidelity.ladder import LADDER
 from solidgear.fidelity.rung import BEAM, SOLID
 from solidgear.machine.memory import one_run
@@ -102,7 +102,8 @@ def answer(
         Relative error that every quantity may have; by default the tolerance of the scene.
     ask : str or iterable of str, optional
         Quantities (:data:`solidgear.evidence.quantities.QUANTITIES`), or ``bending``, ``axial``,
-        ``torsion`` for the first frequency of a family; by default those the scene asks for.
+        ``torsion`` for the first frequency of a family; ``C_zz@name`` at a further lumped point; by
+        default those the scene asks for.
     progress : callable
         Called with a sentence at every step.
 
@@ -219,11 +220,16 @@ def _quantities(scene: Scene, ask: Iterable[str] | str) -> tuple[str, ...]:
     given = re.split(r",(?!\s*thx)", ask) if isinstance(ask, str) else list(ask)
     given = [name.strip() for name in given if name.strip()]
     if not given:
-        return tuple(scene.ask.quantities or JUDGED)
+        return judged(scene)
     out = []
     for name in given:
-        word = WORDS.get(name, name.replace("_1", " 1").replace("_2", " 2"))
-        if word not in QUANTITIES:
+        base, at, point = name.partition(AT)
+        word = WORDS.get(base, base.replace("_1", " 1").replace("_2", " 2"))
+        if at and word in QUANTITIES:
+            if described(word)[0] == "frequency":
+                raise SolidgearError(f"ask: {name}: a frequency is not of a point; ask for {word}")
+            word = own_name(scene, f"{word}{AT}{point}")
+        elif word not in QUANTITIES:
             known = (*QUANTITIES, *WORDS)
             raise SolidgearError(
                 f"ask: there is no quantity {show(name, 40)}{nearest(name, known)}; "

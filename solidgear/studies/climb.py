@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 from solidgear.body import Body, as_supports
 from solidgear.evidence.answer import ENOUGH, Numbers, numbers
 from solidgear.evidence.bands import Band
-from solidgear.evidence.quantities import COUPLINGS, QUANTITIES, size
+from solidgear.evidence.quantities import AT, described, diagonals, size
 from solidgear.evidence.sequence_bands import sequence_bands
 from solidgear.fidelity import build
 from solidgear.fidelity.rung import Rung
@@ -113,7 +113,7 @@ class Step:
 
 def _family_of(quantity: str) -> str:
     """The family of motion that a quantity belongs to."""
-    _, place, _ = QUANTITIES[quantity]
+    _, place, _ = described(quantity)
     if isinstance(place, str):
         return place.split()[0]
     return next(name for name, components in FAMILIES.items() if set(place) <= set(components))
@@ -143,6 +143,7 @@ class Climb:
         self.body: Body | None = None
         self.options: dict[str, Any] = {}
         self.statics: Condensed | None = None
+        self.further: dict[str, Condensed] = {}
         self.modes: ModeSet | None = None
 
     def run(self) -> None:
@@ -194,7 +195,7 @@ class Climb:
                 bar = self.bar(name)
                 count = len(self.levels)
                 how = f"{count} meshes" if count > 1 else "one mesh only, not judged"
-                unit = QUANTITIES[name][2]
+                unit = described(name)[2]
                 scale, side = size(finest, name), self._side(name)
                 out.append(Value(name, finest[name], unit, bar, how, scale, side))
         return tuple(out)
@@ -206,12 +207,12 @@ class Climb:
         the ports, and the most under given loads; a Rayleigh quotient is least at the exact mode.
         """
         exact = self.rung.from_above and not self.scene.corners
-        if not exact or name in COUPLINGS or name not in self.bands or self._rise(name):
+        if not exact or diagonals(name) or name not in self.bands or self._rise(name):
             return BOTH
         # what the solver leaves, and couplings that were left out, may go either way
         if max(self.bands[name].solver, self.left_out) > SOLVER_SHARE * self.bar(name):
             return BOTH
-        return ABOVE if QUANTITIES[name][0] == "compliance" else BELOW
+        return ABOVE if described(name)[0] == "compliance" else BELOW
 
     def _body(self, level: Mapping[str, Any]) -> Body:
         options = dict(level)
@@ -238,21 +239,23 @@ class Climb:
         supports = as_supports(self.scene)
         if self.families is not None:
             supports = supports.on(c for f in self.families for c in FAMILIES[f])
-        kinds = {QUANTITIES[q][0] for q in self.wanted}
+        kinds = {described(q)[0] for q in self.wanted}
         statics: Condensed | None = None
         found: ModeSet | None = None
         if kinds & {"compliance", "stiffness"}:
             statics = condense(body, supports, self.scene.port.name)
             self.statics = statics
+            points = dict.fromkeys(q.partition(AT)[2] for q in self.wanted if AT in q)
+            self.further = {point: condense(body, supports, point) for point in points}
         if "frequency" in kinds:
             found = self.modes = modes(body, supports, self._shapes(), ovalising=False)
-        return numbers(statics, found)
+        return numbers(statics, found, self.further)
 
     def _shapes(self) -> int:
         """Elastic shapes that hold the modes asked for."""
         if self.families is None or len(self.families) > 1:
             return ENOUGH
-        places = [int(q.split()[1]) for q in self.wanted if QUANTITIES[q][0] == "frequency"]
+        places = [int(q.split()[1]) for q in self.wanted if described(q)[0] == "frequency"]
         return 2 * max(places) + 2
 
     def judge(self) -> float | None:
@@ -278,7 +281,7 @@ class Climb:
 
     def _rise(self, name: str) -> float:
         """How much a frequency has risen at the last step, beyond what the solver leaves."""
-        if QUANTITIES[name][0] != "frequency" or len(self.levels) < 2:
+        if described(name)[0] != "frequency" or len(self.levels) < 2:
             return 0.0
         before, last = self.levels[-2], self.levels[-1]
         if name not in before.quantities:

@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
-from solidgear.evidence.quantities import JUDGED, QUANTITIES, change
+from solidgear.evidence import quantities
+from solidgear.evidence.quantities import change, judged
 from solidgear.evidence.study import Solution
 from solidgear.evidence.ties import SCENE
 from solidgear.evidence.verdict import BEYOND, WITHIN, gap_verdict, percent
@@ -61,17 +62,17 @@ def against_the_part(scene: Scene, rungs: dict[str, Solution], probe: Probe) -> 
     """
     if scene.body is None or scene.body.round:
         return
-    judged, tolerance = scene.ask.quantities or JUDGED, scene.ask.tolerance
+    names, tolerance = judged(scene), scene.ask.tolerance
     for model in (m for m in LADDER.of(SOLID) if m in rungs and PARTS in LADDER[m].holds):
         mine, theirs = probe.rung(ROUND_MODEL), rungs[model]
         told, verdicts = [], []
-        for name in judged:
+        for name in names:
             gap = change(mine.quantities, theirs.quantities, name)
             if gap is None:
                 continue
             bands = [r.bands.get(SCENE, {}).get(name) for r in (mine, theirs)]
             band = sum(b.gci for b in bands if b is not None)
-            unit = QUANTITIES[name][2]
+            unit = quantities.described(name)[2]
             told.append(
                 f"{name} {mine.quantities[name]:.5g} {unit} ({'+' * (gap > 0)}{percent(gap)}"
                 + (f" +- {percent(band)})" if all(bands) else ", part without a band)")

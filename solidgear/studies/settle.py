@@ -15,7 +15,7 @@ measured as well, by a quarter turn of the same matrix, and torsion with it.
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
@@ -24,8 +24,9 @@ import numpy as np
 from solidgear.body import Body
 from solidgear.errors import SolidgearError, show
 from solidgear.evidence.answer import Numbers
-from solidgear.evidence.quantities import QUANTITIES, measure
+from solidgear.evidence.quantities import AT, QUANTITIES, at_points, measure
 from solidgear.machine.threads import pinned
+from solidgear.solve.condensed import Condensed
 from solidgear.studies.answering import climbed, usable
 from solidgear.studies.climb import Climb, Progress, Step
 
@@ -129,6 +130,7 @@ def settle(
     tol: float | None = None,
     ask: str = "all",
     *,
+    points: Sequence[str] = (),
     progress: Progress = lambda _: None,
 ) -> Settled:
     """The cheapest body whose bands of all that is asked are within a tolerance.
@@ -141,6 +143,8 @@ def settle(
     ask : {'all', 'stiffness', 'modes'}
         Compliances and stiffnesses at the lumped point in all six directions, the first frequencies
         of every family, or both.
+    points : sequence of str
+        Further lumped points at which the same is asked.
     progress : callable
         Called with a sentence at every step.
 
@@ -169,6 +173,7 @@ def settle(
     if ask not in QUESTIONS:
         raise SolidgearError(f"settle: ask = {show(ask, 40)}; use one of {', '.join(QUESTIONS)}")
     wanted = tuple(q for q, (kind, _, _) in QUANTITIES.items() if kind in QUESTIONS[ask])
+    wanted = at_points(wanted, points)
     climb, steps = climbed(scene, tol, wanted, Whole, progress)
     assert climb.body is not None  # a rung without a single mesh is passed over
     bars = climb.bars()
@@ -201,7 +206,7 @@ class Whole(Climb):
         if self.turned:
             finest = self.turned[-1].quantities
             known = self._turned_bands()
-            out |= {TURNED[name]: known.get(name, math.inf) for name in finest}
+            out |= {_turned_name(name): known.get(name, math.inf) for name in finest}
         return out
 
     def judge(self) -> float | None:
@@ -216,15 +221,24 @@ class Whole(Climb):
     def _level(self, body: Body) -> Numbers:
         level = super()._level(body)
         if self.statics is not None:
-            other = replace(
-                self.statics,
-                stiffness=self.statics.stiffness[np.ix_(TURN, TURN)],
-                compliance=self.statics.compliance[np.ix_(TURN, TURN)],
-            )
-            self.turned.append(Numbers(measure(other, None), level.solver))
+            other, further = _turned(self.statics), {}
+            for point, there in self.further.items():
+                further[point] = _turned(there)
+            self.turned.append(Numbers(measure(other, None, further), level.solver))
         return level
 
     def _turned_bands(self) -> Mapping[str, float]:
         if len(self.turned) < 2:
             return {}
         return {name: band.gci for name, band in self.bands_of(self.turned).items()}
+
+
+def _turned(found: Condensed) -> Condensed:
+    """A quarter turn about the axis, torsion in the place of axial motion."""
+    turn = np.ix_(TURN, TURN)
+    return replace(found, stiffness=found.stiffness[turn], compliance=found.compliance[turn])
+
+
+def _turned_name(name: str) -> str:
+    base, at, point = name.partition(AT)
+    return f"{TURNED[base]}{at}{point}"

@@ -26,7 +26,7 @@ def narrow_seat(probe: Probe) -> Notices:
     """Seats that tie like a line."""
     for s in probe.scene.stations:
         width = (s.hi - s.lo) / probe.diameter(s.y)
-        limit, softer = NARROW_POINT if s is probe.scene.port else NARROW
+        limit, softer = NARROW_POINT if s in probe.scene.ports else NARROW
         if width < limit and s.attachment != "section":
             yield Notice(
                 "caution",

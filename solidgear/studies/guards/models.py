@@ -149,17 +149,19 @@ DISC = 0.2  # odd_geometry.py: the tilt compliance of a beam is 10 % further off
 
 def disc_head(probe: Probe) -> Notices:
     """A head so short that it bends in itself."""
-    port, parts = probe.scene.port, probe.parts
-    at = next(i for i, (low, high, _) in enumerate(parts) if low <= (port.lo + port.hi) / 2 <= high)
-    low, high, widest = parts[at]
-    beside = [wide for i, (_, _, wide) in enumerate(parts) if abs(i - at) == 1]
-    if beside and max(beside) < widest and high - low < DISC * widest:
-        yield Notice(
-            "caution",
-            beams(),
-            f"the head with {port.name!r}, y = {1e3 * low:.6g} to {1e3 * high:.6g} mm, is {(high - low) / widest:.2g} of its diameter long: below {DISC:g} it bends in itself, and "
-            f"a beam's tilt compliance misses 10 % and more; use {probe.instead()}",
-        )
+    parts = probe.parts
+    for port in probe.scene.ports:
+        middle = (port.lo + port.hi) / 2
+        at = next(i for i, (low, high, _) in enumerate(parts) if low <= middle <= high)
+        low, high, widest = parts[at]
+        beside = [wide for i, (_, _, wide) in enumerate(parts) if abs(i - at) == 1]
+        if beside and max(beside) < widest and high - low < DISC * widest:
+            yield Notice(
+                "caution",
+                beams(),
+                f"the head with {port.name!r}, y = {1e3 * low:.6g} to {1e3 * high:.6g} mm, is {(high - low) / widest:.2g} of its diameter long: below {DISC:g} it bends in itself, and "
+                f"a beam's tilt compliance misses 10 % and more; use {probe.instead()}",
+            )
 
 
 JOINT = 0.5  # odd_geometry.py: the tilt compliance of a beam misses 5 %, at 0.3 12 %
@@ -186,15 +188,15 @@ def point_beyond_surface(probe: Probe) -> Notices:
     """A lumped point that a solid reaches by extrapolating from its surface, a beam along the
     shaft.
     """
-    port = probe.scene.port
-    off = max(port.lo - port.y, port.y - port.hi) / probe.diameter(port.y)
-    if off > BEYOND and port.attachment != "section":
-        yield Notice(
-            "caution",
-            everything(),
-            f"the lumped point {port.name!r} lies {off:.2f} diameters of the shaft beyond its surface ({1e3 * port.lo:.6g} to {1e3 * port.hi:.6g} mm): from {BEYOND:g} on beams "
-            "and solids answer different questions (7 % in tilt at 0.1); move the point, or give it the surface it stands for",
-        )
+    for port in probe.scene.ports:
+        off = max(port.lo - port.y, port.y - port.hi) / probe.diameter(port.y)
+        if off > BEYOND and port.attachment != "section":
+            yield Notice(
+                "caution",
+                everything(),
+                f"the lumped point {port.name!r} lies {off:.2f} diameters of the shaft beyond its surface ({1e3 * port.lo:.6g} to {1e3 * port.hi:.6g} mm): from {BEYOND:g} on beams "
+                "and solids answer different questions (7 % in tilt at 0.1); move the point, or give it the surface it stands for",
+            )
 
 
 NEAR = 1.2

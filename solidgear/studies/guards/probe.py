@@ -18,7 +18,7 @@ import scipy.sparse.linalg as spla
 
 from solidgear.body import Body, Supports, as_supports
 from solidgear.errors import SolidgearError
-from solidgear.evidence.quantities import JUDGED
+from solidgear.evidence.quantities import judged
 from solidgear.evidence.study import Solution, study
 from solidgear.evidence.ties import rigid_seats
 from solidgear.evidence.verdict import deviations
@@ -145,8 +145,8 @@ class Probe:
     def _gaps(self, model: str) -> list[dict]:
         """Deviations of a beam from the light solid in what is judged, the largest first."""
         rungs = {model: self.rung(model), "harmonic": self.rung("harmonic")}
-        judged = self.scene.ask.quantities or JUDGED
-        found = [g for g in deviations(rungs, "harmonic") if g["quantity"] in judged]
+        names = judged(self.scene)
+        found = [g for g in deviations(rungs, "harmonic") if g["quantity"] in names]
         return sorted(found, key=lambda g: -abs(g["relative"]))
 
     @property

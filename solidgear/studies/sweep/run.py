@@ -141,7 +141,7 @@ def sweep(
     def body() -> tuple[Body, int]:
         shaft = variants.shaft()
         _check_seats(shaft, scene, fidelity, options)
-        seats = len(shaft.stations) - 1
+        seats = len(shaft.stations) - len(scene.ports)
         progress(len(file.done), total, f"body with {seats} seats")
         return build(shaft, fidelity, **options), seats
 
@@ -234,7 +234,7 @@ class _Solver:
 def _check_seats(
     shaft: SeatedShaft, scene: Scene, fidelity: str, options: Mapping[str, Any]
 ) -> None:
-    seats, most = len(shaft.stations) - 1, LADDER[fidelity].most_seats
+    seats, most = len(shaft.stations) - len(scene.ports), LADDER[fidelity].most_seats
     if most is not None and seats > most:
         raise SolidgearError(
             f"{seats} different seats are more than the {most} one {fidelity} body carries; vary fewer positions, sweep them in parts, or use a cheaper model"

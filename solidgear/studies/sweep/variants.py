@@ -9,10 +9,19 @@ import numpy as np
 
 from solidgear.body import Supports, as_supports
 from solidgear.errors import SceneError, SolidgearError
-from solidgear.scene import Bearing, Corner, Feature, PointMass, Port, Scene, Segment
+from solidgear.scene import (
+    Bearing,
+    Corner,
+    Feature,
+    Housing,
+    PointMass,
+    Port,
+    Scene,
+    Segment,
+)
 from solidgear.scene.bearing_stiffness import STIFFNESS_NAMES
 from solidgear.scene.body_file import BodyFile
-from solidgear.studies.sweep.vary import Axis
+from solidgear.studies.sweep.vary import HOUSING, Axis
 
 
 @dataclass(frozen=True)
@@ -95,6 +104,9 @@ class Variants:
                 changes.setdefault(axis.bearing, []).append((axis.field, value))
         if not changes:
             return placed
+        around = changes.pop(HOUSING, [])
+        if around:
+            placed = _rehoused(placed, around)
         bearings = list(placed.bearings)
         for b, fields in changes.items():
             try:
@@ -138,7 +150,7 @@ class Variants:
         own = (m for m in self.scene.masses if m.on is None)
         return SeatedShaft(
             self.scene.segments,
-            (self.scene.port, *ordered, *own),
+            (self.scene.port, *ordered, *own, *self.scene.further_ports),
             self.scene.features,
             self.scene.body,
             self.scene.corners,
@@ -155,6 +167,17 @@ def seat_name(bearing: Bearing) -> str:
     surface alike.
     """
     return f"seat at {bearing.y!r} m, {bearing.lo!r} to {bearing.hi!r} m, {bearing.attachment}"
+
+
+def _rehoused(scene: Scene, fields: list[tuple[str, float]]) -> Scene:
+    """A scene with entries of its housing replaced."""
+    try:
+        if scene.housing is None:
+            return scene.with_changes(housing_axial=fields[-1][1])
+        entries = scene.housing.entries | dict(fields)
+        return scene.with_changes(housing=Housing(stiffness=entries, y=scene.housing.y))
+    except SceneError as error:
+        raise SceneError(error.reason, field="housing") from None
 
 
 # In a product of axes the same few bearings come again and again.

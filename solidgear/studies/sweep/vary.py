@@ -1,5 +1,8 @@
 """What a sweep varies: ``bearing.NAME.FIELD=SPEC`` texts, their full product or a Latin hypercube.
 
+``housing.FIELD=SPEC`` varies an entry of the housing that the scene gives a stiffness for, or its
+``axial`` spring.
+
 FIELD is ``position`` (middle of the seat from y = 0, whatever the datum in the scene file), an
 entry of the bearing's own 6x6 as in scene files (``kxx``, ``kx_thz``, ...), or ``scale`` (a factor
 on the whole bearing, series springs included, after its entries). SPEC is ``a:b:n`` (n values,
@@ -24,6 +27,8 @@ if TYPE_CHECKING:
     from solidgear.scene import Scene
 
 FIELDS = ("position", "scale", *STIFFNESS_NAMES)
+#: in place of a bearing
+HOUSING = -1
 #: More variants than this are a slip of the keyboard.
 MOST = 10_000_000
 
@@ -35,9 +40,9 @@ class Axis:
     Attributes
     ----------
     bearing : int
-        Place of the bearing in the scene.
+        Place of the bearing in the scene; `HOUSING` for that of all.
     field : str
-        One of `FIELDS`.
+        One of `FIELDS`, or ``axial`` of the housing.
     label : str
         Name of its column, such as ``bearing.2.kxx``.
     values : tuple of float
@@ -116,6 +121,8 @@ def _axis(scene: Scene, text: str) -> Axis:
     target, equals, spec = text.partition("=")
     head, _, field = target.strip().rpartition(".")
     word, _, name = head.partition(".")
+    if equals and head == "housing":
+        return _of_the_housing(scene, text, field, spec)
     if not equals or word != "bearing" or not name:
         raise SolidgearError(
             f'--vary {text}: write bearing.NAME.FIELD=VALUES, such as "bearing.2.position=0.2 m:0.3 m:11"'
@@ -133,17 +140,33 @@ def _axis(scene: Scene, text: str) -> Axis:
         raise SolidgearError(
             f"--vary {text}: unknown field {field!r}{nearest(field, FIELDS)}; valid are {', '.join(FIELDS)}"
         )
+    return _read(text, index, field, f"bearing.{names[index]}.{field}", spec)
+
+
+def _of_the_housing(scene: Scene, text: str, field: str, spec: str) -> Axis:
+    known = ("axial",) if scene.housing_axial else ()
+    if scene.housing is not None:
+        known = tuple(scene.housing.entries)
+    if field not in known:
+        there = f"; it has {', '.join(known)}" if known else ""
+        raise SolidgearError(
+            f"--vary {text}: the scene gives its housing no {field}{nearest(field, known)}, "
+            f"and what is rigid cannot be varied{there}"
+        )
+    return _read(text, HOUSING, field, f"housing.{field}", spec)
+
+
+def _read(text: str, index: int, field: str, label: str, spec: str) -> Axis:
     try:
         values, spacing = _values(field, spec)
     except SceneError as error:
         raise SolidgearError(f"--vary {text}: {error}") from None
-    return Axis(index, field, f"bearing.{names[index]}.{field}", values, spacing)
+    return Axis(index, field, label, values, spacing)
 
 
 def _values(field: str, spec: str) -> tuple[tuple[float, ...], str]:
-    dimension = {"position": "length", "scale": "dimensionless"}.get(field) or STIFFNESS_NAMES[
-        field
-    ][2]
+    of_its_own = {"position": "length", "scale": "dimensionless", "axial": "force_per_length"}
+    dimension = of_its_own.get(field) or STIFFNESS_NAMES[field][2]
     spacing, parts = "linear", [part.strip() for part in spec.split(":")]
     if parts[0] == "log":
         spacing, parts = "log", parts[1:]

@@ -1,0 +1,195 @@
+"""The command that tells stiffness and compliance at one lumped point, or between several."""
+
+from __future__ import annotations
+
+import json
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from solidgear.cli.app import (
+    AUTO,
+    UNITS,
+    AutoFidelityOption,
+    Engine,
+    JsonFlag,
+    SceneFile,
+    Settings,
+    Tolerance,
+    UnitsOption,
+    command,
+    console,
+    with_engine,
+)
+from solidgear.cli.settled import body_for, ended, heading, told
+
+if TYPE_CHECKING:
+    from solidgear.scene import Scene
+    from solidgear.solve.condensed import Condensed, Coupled
+
+
+@command
+def stiffness(
+    scene: SceneFile,
+    fidelity: AutoFidelityOption = AUTO,
+    tol: Tolerance = None,
+    port: Annotated[
+        str | None,
+        typer.Option(
+            help="Lumped point, by name; several with commas for the stiffness between them. By default the main one."
+        ),
+    ] = None,
+    attachment: Annotated[
+        str | None,
+        typer.Option(
+            help="average, rigid or section for every port; by default as the scene says."
+        ),
+    ] = None,
+    as_json: JsonFlag = False,
+    settings: Settings = None,
+    engine: Engine = None,
+    units: UnitsOption = UNITS,
+) -> None:
+    """6x6 stiffness and compliance at a lumped point, bearings included; 12x12 between two."""
+    from solidgear.solve.statics import condense
+    from solidgear.studies.check import cautions
+    from solidgear.studies.loading import load
+
+    loaded = load(scene)
+    if attachment:
+        loaded = loaded.with_attachment(attachment)
+    names = _points(loaded, port)
+    loaded = loaded.with_main_port(names[0])
+    settings = with_engine(settings, engine)
+    body, settled = body_for(loaded, fidelity, settings, tol, "stiffness", names[1:])
+    found = condense(body, loaded, names[0])
+    coupled = condense(body, loaded, names) if len(names) > 1 else None
+    said = cautions(loaded, body)
+
+    if as_json:
+        record = {"scene": loaded.name, "fidelity": body.fidelity}
+        record |= _plain(found) if coupled is None else _plain_coupled(coupled)
+        evidence = {"evidence": record.pop("evidence")}
+        record |= {"dofs": body.size, **evidence, "cautions": said}
+        if settled is not None:
+            record |= settled.as_dict()
+        print(json.dumps(record))
+        ended(settled)
+        return
+    terminal = console()
+    head = heading(loaded, body, settled)
+    if coupled is None:
+        _tell(terminal, head, loaded, found, units)
+    else:
+        _tell_coupled(terminal, head, loaded, coupled, units)
+    for line in told(settled):
+        terminal.print(line, markup=False, soft_wrap=True)
+    if coupled is not None and settled is not None:
+        line = "Bars are those of each point alone; couplings between points have no larger one in compliance."
+        terminal.print(line, markup=False, soft_wrap=True)
+    for sentence in said:
+        terminal.print(f"caution: {sentence}", markup=False)
+    ended(settled)
+
+
+def _points(scene: Scene, port: str | None) -> tuple[str, ...]:
+    """Names given with ``--port``; that of the main point where there are none."""
+    from solidgear.errors import SolidgearError
+    from solidgear.scene.rules import no_such_point
+
+    known = [one.name for one in scene.ports]
+    if port is None:
+        return (known[0],)
+    # a name may have a comma of its own
+    names = [port] if port in known else [part.strip() for part in port.split(",")]
+    for name in names:
+        if name not in known:
+            raise SolidgearError(f"--port: {no_such_point(name, known)}")
+        if names.count(name) > 1:
+            raise SolidgearError(f"--port {port}: {name} is named twice; name each point once")
+    return tuple(names)
+
+
+def _numbers(matrix) -> list[list[float | None]]:
+    import numpy as np
+
+    return [[float(v) if np.isfinite(v) else None for v in row] for row in matrix]
+
+
+def _plain(found: Condensed) -> dict[str, Any]:
+    from solidgear.frames import DOF_NAMES
+
+    return {
+        "port": found.port,
+        "attachment": found.attachment,
+        "order": DOF_NAMES,
+        "stiffness": _numbers(found.stiffness),
+        "compliance": _numbers(found.compliance),
+        "free": found.free_names,
+        "free_oblique": found.oblique.T.tolist(),
+        "evidence": found.evidence,
+    }
+
+
+def _plain_coupled(found: Coupled) -> dict[str, Any]:
+    from solidgear.frames import DOF_NAMES
+
+    return {
+        "ports": found.ports,
+        "attachments": found.attachments,
+        "order": [f"{port} {name}" for port in found.ports for name in DOF_NAMES],
+        "stiffness": _numbers(found.stiffness),
+        "compliance": _numbers(found.compliance),
+        "free": found.free_names,
+        "evidence": found.evidence,
+    }
+
+
+def _tell(terminal, head: str, scene: Scene, found: Condensed, units: str) -> None:
+    from solidgear.frames import DOF_NAMES
+    from solidgear.report.terminal import matrix_table
+
+    terminal.print(
+        f"{head}, port {found.port!r} at y = {1e3 * scene.port.y:.3f} mm ({found.attachment})",
+        markup=False,
+    )
+    terminal.print(matrix_table(found.stiffness, "stiffness", units))
+    terminal.print(matrix_table(found.compliance, "compliance", units))
+    if found.free_names:
+        terminal.print(f"Free: {', '.join(found.free_names)} (stiffness exactly zero).")
+    for motion in found.oblique.T:
+        parts = ", ".join(f"{v:.4g} {n}" for v, n in zip(motion, DOF_NAMES) if abs(v) > 1e-9)
+        terminal.print(f"Free: the motion ({parts}), m and rad; a compliance does not exist.")
+
+
+def _tell_coupled(terminal, head: str, scene: Scene, found: Coupled, units: str) -> None:
+    import numpy as np
+
+    from solidgear.report.terminal import matrix_table
+
+    places = {port.name: 1e3 * port.y for port in scene.ports}
+    at = ", ".join(
+        f"{name!r} at y = {places[name]:.3f} mm ({kind})"
+        for name, kind in zip(found.ports, found.attachments)
+    )
+    terminal.print(f"{head}, ports {at}", markup=False)
+    pairs = [(a, b) for k, a in enumerate(found.ports) for b in found.ports[k:]]
+    stiff = bool(np.isfinite(found.stiffness).all())
+    for kind in ("stiffness", "compliance") if stiff else ("compliance",):
+        for a, b in pairs:
+            words = {"stiffness": "load on", "compliance": "motion of"}[kind]
+            other = {"stiffness": "motion of", "compliance": "load on"}[kind]
+            caption = f"{kind}: {words} {a}, {other} {b}"
+            terminal.print(matrix_table(found.between(a, b, kind), kind, units, caption))
+    several = "both points" if len(found.ports) == 2 else "all points"
+    if stiff:
+        line = f"Stiffness holds {several}: one moves, all else is held. The blocks left out are the transposed ones."
+    else:
+        line = (
+            "The points all but move as one: a stiffness between them does not exist to any digits."
+        )
+    terminal.print(line, markup=False, soft_wrap=True)
+    if found.free_names:
+        names = ", ".join(found.free_names)
+        line = f"Free: {names} of {several} together; only what the points do against each other is resisted, and has no entry of its own in the compliance."
+        terminal.print(line, markup=False, soft_wrap=True)

@@ -1,0 +1,112 @@
+"""Tables of scenes with several lumped points: each of the further ones, and what is between them."""
+
+from __future__ import annotations
+
+from solidgear.evidence.record import CoupledRecord, Matrix, ModelRecord, Record
+from solidgear.report.cells import DASH, capital, pct
+from solidgear.report.reading import LUMPED, entry, headline, is_resolved, model_name, reference_of
+from solidgear.report.result_tables import Cell, matrix
+from solidgear.report.table import Table
+from solidgear.report.units import ENGINEERING, Units
+
+#: what is told of every point in the summary: quantity, unit, place
+SUMMED = (("C_zz", "m/N", (2, 2)), ("C_yy", "m/N", (1, 1)), ("C_thx", "rad/(N m)", (3, 3)))
+
+
+def points(record: Record, units: Units = ENGINEERING) -> Table:
+    """The further points in short: quantities down, models across."""
+    rows: list[list[Cell]] = []
+    main = record.port.name if record.port else ""
+    for port in record.further_ports:
+        for name, unit, place in SUMMED:
+            at = f"{name}@{port.name}"
+            values = [_entry(m, port.name, place) for m in record.models.values()]
+            cells = [units.number(value, unit, nothing=DASH) for value in values]
+            rows.append([f"{name} at {port.name}, {units.unit(unit)}", *cells])
+            rows.append(["against reference", *(_apart(record, key, at) for key in record.models)])
+    for a, b in _pairs(record):
+        for name, unit, (i, j) in SUMMED[:2]:
+            blocks = [_block(m.coupled, a, b, "compliance") for m in record.models.values()]
+            values = [entry(block, i, j) for block in blocks]
+            cells = [units.number(value, unit, nothing=DASH) for value in values]
+            rows.append([f"{name}, {a} for a load on {b}, {units.unit(unit)}", *cells])
+    note = (
+        f"Headlines, lumped models and attachments above are those of {main}, the main point; "
+        "compliances of every point are judged unless the scene asks for others. Terms between "
+        "points have no band of their own: in a solid none errs by more than the geometric mean "
+        "of its two points' errors."
+    )
+    return Table(
+        "Further lumped points",
+        ["quantity", *(capital(model_name(record, key)) for key in record.models)],
+        rows,
+        note,
+        css="summary",
+    )
+
+
+def matrices(record: Record, units: Units = ENGINEERING) -> list[tuple[str, list[dict]]]:
+    """The matrices of every further point and between points, a heading and its matrices."""
+    out: list[tuple[str, list[dict]]] = []
+    models = {k: m for k, m in record.models.items() if m.family != LUMPED and m.coupled}
+    for port in record.further_ports:
+        shown = []
+        for key, model in models.items():
+            found = model.points.get(port.name)
+            for kind in ("stiffness", "compliance") if found else ():
+                values = getattr(found, kind)
+                if values:
+                    caption = f"{model_name(record, key)}: {kind} at {port.name}"
+                    shown.append(matrix(caption, kind, values, port.free, units))
+        out.append((f"At {port.name}", shown))
+    for a, b in _pairs(record):
+        shown = []
+        for key, model in models.items():
+            for kind in ("stiffness", "compliance"):
+                block = _block(model.coupled, a, b, kind)
+                own = [_block(model.coupled, one, one, kind) for one in (a, b)]
+                sizes = [[entry(one, k, k) for k in range(6)] for one in own]
+                first, second = (
+                    ("load on", "motion of")
+                    if kind == "stiffness"
+                    else (
+                        "motion of",
+                        "load on",
+                    )
+                )
+                caption = f"{model_name(record, key)}: {kind}, {first} {a}, {second} {b}"
+                if block and any(v is not None for row in block for v in row):
+                    shown.append(matrix(caption, kind, block, [], units, sizes))
+        out.append((f"Between {a} and {b}", shown))
+    return out
+
+
+def _pairs(record: Record) -> list[tuple[str, str]]:
+    """Names of points, two by two."""
+    names = [port.name for port in (record.port, *record.further_ports) if port is not None]
+    return [(a, b) for k, a in enumerate(names) for b in names[k + 1 :]]
+
+
+def _entry(model: ModelRecord, port: str, place: tuple[int, int]) -> float | None:
+    found = model.points.get(port)
+    return entry(found.compliance, *place) if found else None
+
+
+def _block(found: CoupledRecord | None, a: str, b: str, kind: str) -> Matrix | None:
+    """The 6x6 of two points."""
+    values = getattr(found, kind, None)
+    if found is None or values is None or not {a, b} <= set(found.ports):
+        return None
+    i, j = 6 * found.ports.index(a), 6 * found.ports.index(b)
+    return [row[j : j + 6] for row in values[i : i + 6]]
+
+
+def _apart(record: Record, key: str, quantity: str) -> Cell:
+    """How far a model is from the reference at a further point."""
+    if key == reference_of(record):
+        return ("reference", "quiet")
+    found = headline(record, key, quantity)
+    if found is None:
+        return DASH
+    difference = pct(found.relative)
+    return difference if is_resolved(found) else (f"not resolved ({difference})", "quiet")
