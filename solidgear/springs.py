@@ -115,9 +115,7 @@ def in_series(
         root = root @ out
         stretch = out.T @ stretch
     q, r = np.linalg.qr(held)
-    reach = (
-        sla.solve_triangular(r, (stretch @ q).T, trans="T").T if held.shape[1] else stretch[:, :0]
-    )
+    reach = sla.solve_triangular(r, (stretch @ q).T).T if held.shape[1] else stretch[:, :0]
     u, s, _ = np.linalg.svd(reach)
     weight = np.ones(len(u))
     weight[: len(s)] = 1 / np.hypot(1.0, s)
