@@ -20,7 +20,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Protocol, TypeGuard
+from typing import TYPE_CHECKING, Any, Protocol, TypeVar
 
 import numpy as np
 import scipy.linalg as sla
@@ -34,6 +34,8 @@ from solidgear.solve.statics import flexibility
 
 if TYPE_CHECKING:
     from solidgear.body import Body
+
+E = TypeVar("E", bound=Elastic)
 
 #: components of a port that are solved for
 FIVE = (0, 1, 2, 3, 5)
@@ -133,7 +135,7 @@ class Mounted:
     @property
     def feet(self) -> tuple[Foot, ...]:
         """What it stands on by itself."""
-        spring = () if self.spring is None else (Elastic(stiffness={"kyy": self.spring}),)
+        spring = () if self.spring is None else (_along_y(Elastic, self.spring),)
         own = () if self.housing is None else (self.housing,)
         return tuple(foot_of(one) for one in (*spring, *own))
 
@@ -255,8 +257,10 @@ def equilibrium(
     return system.told(found.motion, found.unbalanced, found.iterations)
 
 
-def _is_spring(housing: float | Housing) -> TypeGuard[float]:
-    return not isinstance(housing, Housing)
+def _along_y(kind: type[E], spring: float) -> E:
+    """A housing that gives along y only."""
+    given: dict[str, Any] = {"stiffness": {"kyy": spring}}
+    return kind(**given)
 
 
 class _System:
@@ -281,7 +285,7 @@ class _System:
         feet = [foot for bearing in self.bearings for foot in bearing.feet]
         own = [foot.stiffness for foot in feet]
         if housing is not None:
-            around = Housing(stiffness={"kyy": housing}) if _is_spring(housing) else housing
+            around = housing if isinstance(housing, Housing) else _along_y(Housing, housing)
             below = [foot_of(around, around.moves(body.ports[k].y)) for k in indices]
             own.append(below[0].stiffness)
         self.own = sla.block_diag(*own) if own else np.zeros((0, 0))

@@ -67,7 +67,7 @@ def stiffness(
     said = cautions(loaded, body)
 
     if as_json:
-        record = {"scene": loaded.name, "fidelity": body.fidelity}
+        record: dict[str, Any] = {"scene": loaded.name, "fidelity": body.fidelity}
         record |= _plain(found) if coupled is None else _plain_coupled(coupled)
         evidence = {"evidence": record.pop("evidence")}
         record |= {"dofs": body.size, **evidence, "cautions": said}

@@ -177,13 +177,14 @@ def answered(
     attachments : str or sequence of str, optional
         Of the lumped points; by default the body's first.
     """
-    alike = attachments is None or isinstance(attachments, str)
-    kinds = [attachments] * len(ports) if alike else list(attachments or ())
+    if attachments is None or isinstance(attachments, str):
+        attachments = [attachments] * len(ports)
+    kinds = tuple(attachments)
     with meter.stage("statics"):
         condensed, *others = (
             condense(body, supports, port, kind) for port, kind in zip(ports, kinds)
         )
-        coupled = condense(body, supports, tuple(ports), tuple(kinds)) if others else None
+        coupled = condense(body, supports, tuple(ports), kinds) if others else None
     further = dict(zip(ports[1:], others))
     with meter.stage("modes"):
         found = modes(

@@ -205,8 +205,8 @@ def station_problems(
     length, jumps = segments[-1].y1, steps(segments)
     for what, of, most in (("bearings", bearings, MOST_BEARINGS), ("ports", ports, MOST_PORTS)):
         if len(of) > most:
-            path = "further_ports" if what == "ports" else what
-            yield SceneError(too_many(what, len(of), most), path=(path,))
+            key = "further_ports" if what == "ports" else what
+            yield SceneError(too_many(what, len(of), most), path=(key,))
             return
     places: list[tuple[tuple[str | int, ...], Port | Bearing | PointMass, str]] = [
         ((*_port_path(i), "hi"), port, "attached span") for i, port in ports.items()

@@ -130,5 +130,7 @@ class Coupled(Displayed):
     @property
     def free_names(self) -> tuple[str, ...]:
         """Names of the components that a free motion moves."""
-        moved = self.free.reshape(len(self.ports), 6, -1).any(axis=(0, 2))
+        moved = (
+            np.abs(self.free).reshape(len(self.ports), 6, -1).max(axis=(0, 2), initial=0.0).tolist()
+        )
         return tuple(name for name, free in zip(DOF_NAMES, moved) if free)

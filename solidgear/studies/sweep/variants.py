@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import functools
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 
@@ -175,7 +176,8 @@ def _rehoused(scene: Scene, fields: list[tuple[str, float]]) -> Scene:
         if scene.housing is None:
             return scene.with_changes(housing_axial=fields[-1][1])
         entries = scene.housing.entries | dict(fields)
-        return scene.with_changes(housing=Housing(stiffness=entries, y=scene.housing.y))
+        given: dict[str, Any] = {"stiffness": entries, "y": scene.housing.y}
+        return scene.with_changes(housing=Housing(**given))
     except SceneError as error:
         raise SceneError(error.reason, field="housing") from None
 

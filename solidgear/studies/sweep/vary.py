@@ -144,7 +144,7 @@ def _axis(scene: Scene, text: str) -> Axis:
 
 
 def _of_the_housing(scene: Scene, text: str, field: str, spec: str) -> Axis:
-    known = ("axial",) if scene.housing_axial else ()
+    known: tuple[str, ...] = ("axial",) if scene.housing_axial else ()
     if scene.housing is not None:
         known = tuple(scene.housing.entries)
     if field not in known:
