@@ -26,6 +26,7 @@ _WHERE = {
     "Bearing": "solidgear.scene",
     "PointMass": "solidgear.scene",
     "Port": "solidgear.scene",
+    "Housing": "solidgear.scene",
     "Material": "solidgear.scene",
     "Ask": "solidgear.scene",
     "STEEL": "solidgear.scene",
@@ -60,6 +61,7 @@ __all__ = [
     "Bearing",
     "BearingSpring",
     "Body",
+    "Housing",
     "Inertia",
     "Material",
     "MeshVector",
@@ -101,7 +103,17 @@ if TYPE_CHECKING:
     from solidgear.reduction.rubin import rubin
     from solidgear.reduction.superelement import Superelement
     from solidgear.report.viewer import turn
-    from solidgear.scene import STEEL, Ask, Bearing, Material, PointMass, Port, Scene, Segment
+    from solidgear.scene import (
+        STEEL,
+        Ask,
+        Bearing,
+        Housing,
+        Material,
+        PointMass,
+        Port,
+        Scene,
+        Segment,
+    )
     from solidgear.scene.train import Train
     from solidgear.solve.modes import modes
     from solidgear.solve.statics import condense

@@ -98,7 +98,7 @@ def in_series(
     --------
     Two equal springs, one on top of the other:
 
-    >>> float(in_series(np.array([[4.0]]), np.eye(1), np.array([[4.0]]))[0, 0])
+    >>> round(float(in_series(np.array([[4.0]]), np.eye(1), np.array([[4.0]]))[0, 0]), 12)
     2.0
 
     Two springs side by side on something free pull at each other only:

@@ -45,6 +45,13 @@ def test_many_bearings():
     assert found["falls"] and 0 < found["share"] < 1
 
 
+def test_two_gears():
+    found = run("two_gears")
+    # a box stiffer than a bearing still takes a third where both bearings share it
+    assert 0.3 < found["share"] < 0.5 and found["twist"] > 1e6
+    assert found["push"] == pytest.approx(2.58e-6, rel=0.01)
+
+
 def test_which_model():
     assert run("which_model") == {"trust": "harmonic", "cheapest": "harmonic"}
 

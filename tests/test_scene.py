@@ -346,6 +346,7 @@ def test_the_six_scenes_are_there():
         "pinion_overhung",
         "pinion_straddle",
         "gear_shaft",
+        "intermediate_shaft",
         "shaft_stepped",
         "cylinder_free",
         "shaft_hollow",

@@ -25,6 +25,7 @@ ORDER = (
     "ovalising",
     "exact_beam",
     "many_bearings",
+    "two_gears",
     "lumped_model",
     "way_back",
     "two_shafts",

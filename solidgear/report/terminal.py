@@ -90,7 +90,7 @@ def final_table(
             words.seconds(reading.answer_seconds(model)),
         )
     notes = [Text(note) for note in _notes(record, unresolved)]
-    notes += [Text(line) for line in _further_points(record)]
+    notes += [Text(line) for line in _further_points(record, chosen)]
     reasons = [_reason(record, key, model) for key, model in record.models.items()]
     return Group(table, *notes, *(reason for reason in reasons if reason is not None))
 
@@ -118,7 +118,7 @@ def _notes(record: Record, unresolved: bool) -> list[str]:
     return notes
 
 
-def _further_points(record: Record) -> list[str]:
+def _further_points(record: Record, units: Units) -> list[str]:
     """Compliance at further lumped points, a line each, and the main point by name."""
     if not record.further_ports:
         return []
@@ -127,10 +127,11 @@ def _further_points(record: Record) -> list[str]:
         told = []
         for key, model in record.models.items():
             found = model.points.get(port.name)
-            value = engineering(reading.entry(found.compliance, 2, 2) if found else None, 4)
+            own = reading.entry(found.compliance, 2, 2) if found else None
+            value = in_ascii(units.number(own, "m/N", 4))
             apart = _against_reference(record, key, f"C_zz@{port.name}")
             told.append(f"{reading.heading(record, key)} {value} ({apart})")
-        lines.append(f"C_zz at {port.name}, m/N: {', '.join(told)}")
+        lines.append(f"C_zz at {port.name}, {in_ascii(units.unit('m/N'))}: {', '.join(told)}")
     return lines
 
 
