@@ -245,12 +245,15 @@ def turn_modes(
     prepare(path.parent)
     models: list[Turned] = []
     for one in drawn:
-        _job(one.body, one.modes, name, path)
+        _job(one.body, one.modes, name, path, one.title)
         models.append(turned(one.body, one.modes, one.title, models))
     still, said = "", ""
     with tempfile.TemporaryDirectory(prefix="solidgear-turn-") as folder:
         try:
-            picture = render_mode(drawn[0].body, drawn[0].modes, name, Path(folder) / "mode.png")
+            first = drawn[0]
+            picture = render_mode(
+                first.body, first.modes, name, Path(folder) / "mode.png", first.title
+            )
             still = data_uri("mode", picture) or ""
         except SolidgearError as error:
             said = f"no picture for print in {path.name}: {error}"
