@@ -289,7 +289,7 @@ def test_models_are_judged_at_every_point():
         assert words in page
     terminal = Console(width=200, file=io.StringIO())
     terminal.print(final_table(record))
-    assert "C_zz at disc, m/N: Timoshenko" in terminal.file.getvalue()
+    assert "C_zz at disc, um/kN: Timoshenko" in terminal.file.getvalue()
     again = Record.model_validate(json.loads(json.dumps(record.as_dict())))
     assert again.further_ports[0].name == "disc" and again.further_ports[0].free == ["thy"]
 
