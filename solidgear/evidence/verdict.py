@@ -228,12 +228,23 @@ def _judged(model, rungs, reference, why, gaps, judged, tolerance, notices) -> J
     for kind in (BEYOND, OPEN):
         for gap in worst_first:
             if gap_verdict(gap["relative"], gap["band"] or 0.0, tolerance) == kind:
-                return Judgement(False, _why(gap, reference, kind, tolerance), open=kind == OPEN)
+                return Judgement(False, _why(gap, rungs, reference, kind, tolerance), open=kind == OPEN)
     return Judgement(True)
 
 
-def _why(gap: dict, reference: str, kind: str, tolerance: float) -> str:
-    text = f"{gap['quantity']} is {percent(abs(gap['relative']))} {_side(gap)} against the {LADDER[reference].title} {TIES[gap['attachment']]}"
+def _said(gap: dict, rungs: dict[str, Solution]) -> str:
+    """The quantity of a gap; with its lumped point where there are several."""
+    found = rungs[gap["reference"]].ties[SCENE]
+    name, _, point = gap["quantity"].partition(AT)
+    if not found.further or name[:2] not in ("C_", "K_"):
+        return gap["quantity"]
+    return f"{name} at {point or found.condensed.port}"
+
+
+def _why(
+    gap: dict, rungs: dict[str, Solution], reference: str, kind: str, tolerance: float
+) -> str:
+    text = f"{_said(gap, rungs)} is {percent(abs(gap['relative']))} {_side(gap)} against the {LADDER[reference].title} {TIES[gap['attachment']]}"
     if gap["pairing"]:
         text += f" ({gap['pairing']})"
     if kind == BEYOND:
@@ -338,12 +349,12 @@ def _beams(rungs, gaps, judged, tolerance) -> list[str]:
         here, fair = abs(scene["relative"]), abs(like["relative"])
         if here > tolerance >= fair:
             out.append(
-                f"What puts the {LADDER[model].title} out is the tie, not the beam: {scene['quantity']} is {percent(here)} off at the scene's seats, which "
+                f"What puts the {LADDER[model].title} out is the tie, not the beam: {_said(scene, rungs)} is {percent(here)} off at the scene's seats, which "
                 f"distort sections, and nothing is more than {percent(fair)} off like for like."
             )
         elif here <= tolerance < fair:
             out.append(
-                f"The {LADDER[model].title} looks within {percent(here)} at the scene's seats but is {percent(fair)} off in {like['quantity']} like for like: "
+                f"The {LADDER[model].title} looks within {percent(here)} at the scene's seats but is {percent(fair)} off in {_said(like, rungs)} like for like: "
                 "seat flexibility, which a beam has not, hides part of its excess stiffness."
             )
     return out
