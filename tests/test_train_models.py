@@ -239,6 +239,15 @@ def test_a_frequency_beyond_the_reduction_is_refused():
         train_modes(shop, "timoshenko", "timoshenko", 20_000.0)
 
 
+def test_a_frequency_beyond_the_mesh_is_refused():
+    # so many modes are kept that the reduction resolves more than cells of 28 mm and order 2 do
+    coarse = {"harmonic": {"order": 2, "layers": 0, "edge_layers": 0}}
+    shop = Workshop(TRAIN_DATA, kept=80, settings=coarse)
+    with pytest.raises(sg.SolidgearError, match="beyond what the mesh of the gear resolves"):
+        train_modes(shop, "timoshenko", "harmonic", 20_000.0)
+    assert train_modes(shop, "timoshenko", "harmonic", 2_000.0).modes
+
+
 @pytest.mark.parametrize(
     ("rung", "words"),
     [

@@ -228,7 +228,9 @@ def _judged(model, rungs, reference, why, gaps, judged, tolerance, notices) -> J
     for kind in (BEYOND, OPEN):
         for gap in worst_first:
             if gap_verdict(gap["relative"], gap["band"] or 0.0, tolerance) == kind:
-                return Judgement(False, _why(gap, rungs, reference, kind, tolerance), open=kind == OPEN)
+                return Judgement(
+                    False, _why(gap, rungs, reference, kind, tolerance), open=kind == OPEN
+                )
     return Judgement(True)
 
 
@@ -241,9 +243,7 @@ def _said(gap: dict, rungs: dict[str, Solution]) -> str:
     return f"{name} at {point or found.condensed.port}"
 
 
-def _why(
-    gap: dict, rungs: dict[str, Solution], reference: str, kind: str, tolerance: float
-) -> str:
+def _why(gap: dict, rungs: dict[str, Solution], reference: str, kind: str, tolerance: float) -> str:
     text = f"{_said(gap, rungs)} is {percent(abs(gap['relative']))} {_side(gap)} against the {LADDER[reference].title} {TIES[gap['attachment']]}"
     if gap["pairing"]:
         text += f" ({gap['pairing']})"

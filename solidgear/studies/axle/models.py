@@ -150,6 +150,24 @@ class Workshop:
                 self._made[side, rung] = ShaftModel(side, rung, part, body, body.size, seconds)
         return self._made[side, rung]
 
+    def mesh_limit(self, side: str, part: Part) -> float:
+        """Frequency up to which the mesh under a part follows shear waves, Hz; infinite for what has
+        no cells.
+
+        A quarter of the order in radians a cell: at 0.6 of it frequencies of the pinion, the ring
+        gear and a stepped shaft were off by 0.3 % at most at order 4, at all of it by some 2 % at
+        order 2.
+        """
+        inner = part.part if isinstance(part, Placed) else part
+        model = self._made.get((side, getattr(inner, "fidelity", "")))
+        cell = model.body.mesh.get("representative_size") if model is not None else None
+        if model is None or not cell:
+            return np.inf
+        order = model.body.mesh.get("order") or (2 if "2" in model.body.mesh["element"] else 1)
+        materials = {segment.material for segment in self.scenes[side].segments}
+        shear = min(np.sqrt(m.shear_modulus / m.density) for m in materials)
+        return float(order * shear / (8 * np.pi * cell))
+
     def take(self, side: str, rung: str, body: Body) -> None:
         """Take in a body that is there already as the model of a shaft.
 

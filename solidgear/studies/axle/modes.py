@@ -252,7 +252,7 @@ def train_modes(
 
 
 def refuse_unresolved(workshop: Workshop, system: System, limit: float) -> None:
-    """Refuse a frequency at which the reduction promises nothing.
+    """Refuse a frequency at which the reduction promises nothing, or the mesh of a shaft.
 
     Raises
     ------
@@ -265,6 +265,13 @@ def refuse_unresolved(workshop: Workshop, system: System, limit: float) -> None:
             f"out lies at {cut:.0f} Hz; keep more modes (--kept), or ask for less than "
             f"{0.9 * cut:.0f} Hz"
         )
+    for side in SIDES:
+        at = workshop.mesh_limit(side, system.parts[side])
+        if limit > at:
+            raise SolidgearError(
+                f"{limit:g} Hz is beyond what the mesh of the {side} resolves, about {at:.0f} Hz: "
+                "shear waves are then shorter than its cells can follow; ask for less"
+            )
 
 
 def free_motions(workshop: Workshop, system: System) -> tuple[str, ...]:
