@@ -7,7 +7,7 @@ import pytest
 import scipy.sparse as sp
 
 import solidgear as sg
-from solidgear.body.factoring import Factoring
+from solidgear.factoring import Factoring
 from solidgear.fidelity.size import estimated_size
 from solidgear.fidelity.ways import ways_out
 from solidgear.solve import single

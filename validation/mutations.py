@@ -300,7 +300,7 @@ MUTATIONS = (
     Mutation(
         "rigid motions of the load port forgotten",
         "solidgear/solve/statics.py",
-        "condense",
+        "_full_compliance",
         "x = (p_l @ held - reach.T @ rigid).T",
         "x = (p_l @ held).T",
         "tests/test_condense.py::test_against_a_direct_dense_solution",

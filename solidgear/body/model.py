@@ -15,13 +15,13 @@ from typing import Any, ClassVar
 import numpy as np
 import scipy.sparse as sp
 
-from solidgear.body.factoring import Factoring
 from solidgear.body.kept import Kept
 from solidgear.body.mass import ScalarMass
 from solidgear.body.sections import Sections, from_points, signed
 from solidgear.body.surface import Drawing, Surface, mesh_unknowns
 from solidgear.display import Displayed
 from solidgear.errors import SolidgearError
+from solidgear.factoring import Factoring
 from solidgear.frames import shift
 
 #: Index of the block of n waves around the axis is this plus n, where it is not among the blocks of

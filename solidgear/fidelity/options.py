@@ -10,8 +10,8 @@ from dataclasses import dataclass
 from numbers import Integral, Real
 from typing import Any
 
-from solidgear.body.factoring import ENGINES, PRECISIONS
 from solidgear.errors import SolidgearError, listed, nearest, show
+from solidgear.factoring import ENGINES, PRECISIONS
 
 
 @dataclass(frozen=True)
@@ -164,7 +164,7 @@ _GRADED = Option(
     why="a shaft is at most 20 m long",
 )
 
-#: how the matrices of a 3D solid are factored (:class:`solidgear.body.factoring.Factoring`); builders
+#: how the matrices of a 3D solid are factored (:class:`solidgear.factoring.Factoring`); builders
 #: do not see these
 FACTORING_OPTIONS = {
     "precision": Option(

@@ -9,8 +9,8 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import asdict, dataclass, field
 from typing import TYPE_CHECKING, Any
 
-from solidgear.body.factoring import Factoring
 from solidgear.errors import SolidgearError, listed, nearest, show
+from solidgear.factoring import Factoring
 from solidgear.fidelity.options import FACTORING_OPTIONS, Option, checked
 
 if TYPE_CHECKING:

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from solidgear.body.factoring import Factoring
+from solidgear.factoring import Factoring
 from solidgear.fidelity.counts import KINDS, nodes, sections
 from solidgear.fidelity.rung import CUTS, CYCLIC
 from solidgear.fidelity.size import Size

@@ -11,7 +11,7 @@ import os
 import numpy as np
 import scipy.sparse as sp
 
-from solidgear.body.factoring import Factoring
+from solidgear.factoring import Factoring
 from solidgear.machine.memory import available_mb
 from solidgear.solve.backends import BACKENDS, INSTALL, OUT_OF_CORE, SINGLE, missing
 from solidgear.solve.backends.matrix import FactorError

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from solidgear.body.factoring import Factoring
+from solidgear.factoring import Factoring
 from solidgear.machine.interruptible import call
 from solidgear.solve.single import Refining
 

@@ -26,8 +26,8 @@ import scipy.linalg as sla
 import scipy.sparse as sp
 
 from solidgear.body import Block, Body, as_supports
-from solidgear.body.factoring import Factoring
 from solidgear.errors import SolidgearError, show
+from solidgear.factoring import Factoring
 from solidgear.machine.threads import pinned
 from solidgear.solve.condensed import Condensed, Coupled
 from solidgear.solve.factor import Factor, factorise

@@ -23,8 +23,8 @@ import numpy as np
 import scipy.sparse as sp
 
 from solidgear.body import Block
-from solidgear.body.factoring import Factoring
 from solidgear.body.mass import ScalarMass
+from solidgear.factoring import Factoring
 from solidgear.solve.backends.matrix import FactorError
 from solidgear.solve.border import bordered, definite_corner
 from solidgear.solve.factored import Factor
