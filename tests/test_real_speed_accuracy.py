@@ -31,6 +31,7 @@ def rows_of(part, line, error, costs, truth=(2e-10, 3000.0)):
             "line": line,
             "mesh": f"{i}",
             "cpu_s": c[0],
+            "cpu_of_modes_s": 0.4 * c[0],
             "unknowns": c[1],
             "peak_MB": c[2],
             # compliance from below, frequency from above and nearer
@@ -71,9 +72,11 @@ def test_error_of_the_model_itself_is_never_met():
 
 def test_an_error_that_is_small_by_its_sign_alone_does_not_count():
     _, costs = made_up(0.7)
-    found = ratios.cost([1e-2, 1e-5, 4e-3], costs, 5e-3)
-    assert found.how == "between" and found.unknowns < SIZES[1]
-    assert ratios.cost([1e-2, 1e-5, 6e-3], costs, 5e-3).how == "beyond"
+    # as if the second mesh erred by as much as the third
+    for target, how in ((5e-3, "between"), (1e-3, "beyond")):
+        found = ratios.cost([1e-2, 1e-5, 4e-3], costs, target)
+        assert found == ratios.cost([1e-2, 4e-3, 4e-3], costs, target)
+        assert found.how == how
 
 
 def test_limit_of_a_sequence():
@@ -104,6 +107,7 @@ def test_ratios_of_a_part():
     # the reference is right to 1e-6, an error of 1e-3 so to a thousandth
     assert found["quick"]["raw / this"] == pytest.approx(expected, rel=1e-2)
     assert found["quick"]["CalculiX / this"] == pytest.approx(5 * expected, rel=1e-2)
+    assert found["quick"]["its modes / this"] == pytest.approx(2 * expected, rel=1e-2)
     assert found[GRADED]["raw / this"] == pytest.approx(1.0)
     assert math.isnan(found[PLAIN]["raw / this"])
     half = {row["line"]: row for row in ratios.table(rows, "step", 1e-3, "bending_1")}
@@ -137,10 +141,10 @@ def test_a_slice_of_the_step_part():
     # Two coarse meshes of the part from its file: compliance rises and frequency falls as a mesh of
     # displacements is refined, and the plain part is stiffer, for it has no keyway.
     coarse, fine = (
-        measure.run(Job("step", UNIFORM, {"size": s, "graded_size": s})) for s in (0.016, 0.011)
+        measure.run(Job("step", UNIFORM, {"size": s, "graded_size": s})) for s in (0.016, 0.009)
     )
     plain = measure.run(Job("step", PLAIN, {"order": 3, "layers": 1, "relative_size": 4.0}))
-    assert fine.unknowns > 1.5 * coarse.unknowns
+    assert fine.unknowns > 1.2 * coarse.unknowns
     assert coarse.c_zz < fine.c_zz and coarse.bending > fine.bending
     assert plain.c_zz < 0.98 * fine.c_zz and plain.bending > fine.bending
     rows = [
@@ -151,21 +155,16 @@ def test_a_slice_of_the_step_part():
     rows += rows_of("step", REFERENCE, np.zeros(3), np.ones((3, 3)), (3.3825e-9, 2599.0))
     error = ratios.errors(rows, "step", UNIFORM)
     assert error[1] < error[0] < 0.1
-
-
-def test_the_shaft_as_segments_and_keyway_is_the_part_of_the_file():
-    scene = lines.scene_of("step")
-    twin = lines.as_features(scene)
-    assert scene.plain.segments[-1].y1 == pytest.approx(twin.segments[-1].y1)
+    # The same shaft by segments and a keyway, on a mesh of like size: what the keyway changes is
+    # ten times as much.
+    twin = lines.as_features(lines.scene_of("step"))
     size = {"size": 0.016, "graded_size": 0.016}
-    one, other = (
-        measure.solved(s, "solid", element="tet10", half=False, **size) for s in (scene, twin)
-    )
-    # meshes of like size that are not the same: both err by 2e-2
-    assert one.c_zz == pytest.approx(other.c_zz, rel=1e-2)
-    assert one.bending == pytest.approx(other.bending, rel=1e-2)
+    other = measure.solved(twin, "solid", element="tet10", half=False, **size)
+    assert other.c_zz == pytest.approx(coarse.c_zz, rel=3e-3)
+    assert other.bending == pytest.approx(coarse.bending, rel=3e-3)
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(bool(present()), reason=present())
 def test_calculix_answers_as_our_solid_on_its_mesh(monkeypatch):
     job = Job("step", CALCULIX, {"refinement": 0.15})

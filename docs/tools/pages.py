@@ -22,7 +22,13 @@ WRITTEN = {
     ROOT / "validation" / "thesis" / "claims.md": "thesis_claims.md",
     ROOT / "validation" / "thesis" / "bearings.md": "thesis_bearings.md",
 }
-PICTURES = ("speed_accuracy.png", "keyed_speed_accuracy.png", "pinion_bending_1.png")
+PICTURES = (
+    "speed_accuracy.png",
+    "real_keyed.png",
+    "real_toothed.png",
+    "real_step.png",
+    "pinion_bending_1.png",
+)
 
 
 def copy_pages(app=None):

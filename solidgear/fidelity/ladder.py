@@ -130,7 +130,7 @@ LADDER = Ladder(
         factors=BandFactors(
             # Of both parts at once, whose meshes are finer from level to level. From one scene
             # only: on the keyed pinion an error is 1.6 to 2.3 times the last change
-            # (validation/keyed_speed_accuracy.py).
+            # (python -m validation.real_speed_accuracy).
             usual=by_edge(3.5, 5.0),
             first=by_edge((3.5, 0.0, 3.5), (5.0, 0.0, 5.0)),
             earlier=0.5,

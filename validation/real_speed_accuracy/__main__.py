@@ -18,7 +18,14 @@ from validation.peers.process import PeerError
 from validation.real_speed_accuracy.chart import draw
 from validation.real_speed_accuracy.lines import CALCULIX, NOTES, PARTS, jobs
 from validation.real_speed_accuracy.race import measured
-from validation.real_speed_accuracy.ratios import QUANTITIES, Row, read_rows, references, table
+from validation.real_speed_accuracy.ratios import (
+    QUANTITIES,
+    Row,
+    markdown,
+    read_rows,
+    references,
+    table,
+)
 
 FOLDER = ROOT / "validation" / "figures"
 ROWS = FOLDER / "real_speed_accuracy.csv"
@@ -30,6 +37,9 @@ def main() -> None:
     parser.add_argument("--part", choices=PARTS)
     parser.add_argument("--line", default="", help="only lines whose name holds this")
     parser.add_argument("--read", action="store_true", help="measure nothing")
+    parser.add_argument(
+        "--page", action="store_true", help="print rows of docs/validation/speed.md"
+    )
     parser.add_argument("--target", type=float, default=1e-3, help="error that ratios are taken at")
     given = parser.parse_args()
     parts = [given.part] if given.part else list(PARTS)
@@ -43,7 +53,9 @@ def main() -> None:
             f"{q} {truth[q].value:.7g} within {truth[q].doubt:.1e}" for q in QUANTITIES
         )
         print(f"\n{part}: reference {said}. {NOTES[part]}")
-        for what in ("both", *QUANTITIES):
+        if given.page:
+            print(*markdown(rows, part), sep="\n")
+        for what in () if given.page else ("both", *QUANTITIES):
             show(f"{part}, {what} to {given.target:g}", table(rows, part, given.target, what))
         draw(rows, part, FOLDER / f"real_{part}.png", given.target)
 
@@ -65,7 +77,7 @@ def _measure(part: str, line: str) -> None:
         order = [(j.part, j.line, j.label) for p in PARTS for j in jobs(p)]
         # read again: another part may have been measured meanwhile
         rows = [*_rows(), row]
-        rows.sort(key=lambda r: order.index(_place(r)))
+        rows.sort(key=lambda r: order.index(_place(r)) if _place(r) in order else len(order))
         write_rows(ROWS, rows)
 
 

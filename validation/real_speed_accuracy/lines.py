@@ -89,8 +89,8 @@ LINES: dict[str, dict[str, list[dict[str, Any]]]] = {
         DIFFERENCE: _refined(0.2, 0.3, 0.5),
         HEAVY: _PLAIN,
         PLAIN: _PLAIN,
-        CALCULIX: _refined(0.3, 0.5, 0.7),
-        REFERENCE: _refined(1.0, 1.4, 2.0),
+        CALCULIX: _refined(0.3, 0.5),
+        REFERENCE: _refined(0.7, 1.0, 1.4),
     },
     "step": {
         UNIFORM: _uniform(0.011, 0.008, 0.006, 0.0045),
