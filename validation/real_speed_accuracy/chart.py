@@ -36,6 +36,8 @@ def draw(rows: Sequence[Row], part: str, path: Path, target: float = 1e-3) -> No
     target : float
         The error that ratios are taken at.
     """
+    from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
+
     truth = references(rows, part)
     with styled():
         figure = new_figure(9.6, 6.8)
@@ -55,6 +57,9 @@ def draw(rows: Sequence[Row], part: str, path: Path, target: float = 1e-3) -> No
                 tolerance_line(ax, target, x=0.99, size=7, linewidth=0.8, linestyle="--")
                 ax.set_ylim(3e-5, 6e-2)
                 percent_decades(ax)
+                ax.xaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
+                ax.xaxis.set_major_formatter(FuncFormatter(lambda v, _: f"{v:g}"))
+                ax.xaxis.set_minor_formatter(NullFormatter())
                 if i:
                     ax.set_xlabel(words)
             axes[i][0].set_ylabel(WORDS[what])

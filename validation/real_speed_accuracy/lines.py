@@ -84,7 +84,7 @@ LINES: dict[str, dict[str, list[dict[str, Any]]]] = {
     },
     "toothed": {
         UNIFORM: _uniform(0.022, 0.015, 0.011),
-        GRADED: _refined(0.3, 0.5, 0.7, 1.0),
+        GRADED: _refined(0.3, 0.5, 0.7, 1.0, 1.4),
         SECTOR: _refined(0.3, 0.5, 0.7, 1.0, 1.4),
         DIFFERENCE: _refined(0.2, 0.3, 0.5),
         HEAVY: _PLAIN,
