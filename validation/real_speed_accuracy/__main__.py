@@ -54,7 +54,7 @@ def main() -> None:
         )
         print(f"\n{part}: reference {said}. {NOTES[part]}")
         if given.page:
-            print(*markdown(rows, part), sep="\n")
+            print(*markdown(rows, part, given.target), sep="\n")
         for what in () if given.page else ("both", *QUANTITIES):
             show(f"{part}, {what} to {given.target:g}", table(rows, part, given.target, what))
         draw(rows, part, FOLDER / f"real_{part}.png", given.target)

@@ -85,12 +85,12 @@ LINES: dict[str, dict[str, list[dict[str, Any]]]] = {
     "toothed": {
         UNIFORM: _uniform(0.022, 0.015, 0.011),
         GRADED: _refined(0.3, 0.5, 0.7, 1.0, 1.4),
-        SECTOR: _refined(0.3, 0.5, 0.7, 1.0, 1.4),
+        SECTOR: _refined(0.3, 0.5, 0.7, 1.0, 1.4, 2.0),
         DIFFERENCE: _refined(0.2, 0.3, 0.5),
         HEAVY: _PLAIN,
         PLAIN: _PLAIN,
         CALCULIX: _refined(0.3, 0.5),
-        REFERENCE: _refined(0.7, 1.0, 1.4),
+        REFERENCE: _refined(0.7, 1.0, 1.4, 2.0),
     },
     "step": {
         UNIFORM: _uniform(0.011, 0.008, 0.006, 0.0045),
