@@ -179,6 +179,9 @@ def test_calculix_answers_as_our_solid_on_its_mesh(monkeypatch):
 
 def test_rows_that_are_shipped_hold_what_pages_say():
     rows = ratios.read_rows(command.ROWS)
+    places = [(row["part"], row["line"], row["mesh"]) for row in rows]
+    jobs = {(j.part, j.line, j.label) for part in lines.PARTS for j in lines.jobs(part)}
+    assert len(set(places)) == len(places) and set(places) == jobs
     page = (command.ROOT / "docs" / "validation" / "speed.md").read_text()
     for part in lines.PARTS:
         # the reference is better than the error that ratios are taken at
