@@ -10,8 +10,9 @@ import signal
 import traceback
 from collections.abc import Callable
 
-#: address space of the worker, bytes
-ROOM = 8 << 30
+#: address space of the worker, bytes: SuperLU reserves some ten times what it touches (11 GB for a
+#: peak of 0.9), and how much is touched the product watches itself
+ROOM = 48 << 30
 
 
 class Worker:
