@@ -24,6 +24,9 @@ def main() -> int:
     parser.add_argument(
         "--judge", action="store_true", help="bars and verdicts against a reference"
     )
+    parser.add_argument(
+        "--again", action="store_true", help="bars anew, of what models said the last time"
+    )
     given = parser.parse_args()
     if given.judge:
         return _judge(given)
@@ -69,7 +72,7 @@ def _judge(given: argparse.Namespace) -> int:
             except sg.SolidgearError:
                 continue  # it does not fit together
             try:
-                parts.append(judge(drawn.text, drawn.seed, drawn.words, path))
+                parts.append(judge(drawn.text, drawn.seed, drawn.words, path, again=given.again))
             except (sg.SolidgearError, MemoryError) as error:
                 print(f"    seed {drawn.seed}, {drawn.words}: no reference: {error}", flush=True)
                 continue

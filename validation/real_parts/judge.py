@@ -4,14 +4,17 @@ tolerance?
 
 from __future__ import annotations
 
+import hashlib
+import json
 import time
-from dataclasses import dataclass, field
+from dataclasses import asdict, dataclass, field
 from pathlib import Path
 
 import numpy as np
 
 import solidgear as sg
 from solidgear.evidence.quantities import JUDGED, size
+from solidgear.evidence.sequence_bands import sequence_bands
 from solidgear.evidence.study import Solution, study
 from solidgear.evidence.ties import SCENE
 from solidgear.fidelity.ladder import LADDER
@@ -21,7 +24,7 @@ from validation.real_parts.truth import FOLDER, PAIR, Truth, numbers, truth
 #: meshes of each model that are judged: one after the other, as a user would come to them
 MESHES = {"corrected": 3, "sector": 3, "solid": 3}
 #: unknowns of the last mesh of a model above which it is left out
-HEAVY = {"corrected": 24_000, "sector": 90_000, "solid": 10_000}
+HEAVY = {"corrected": 24_000, "sector": 100_000, "solid": 10_000}
 #: what is asked for, so that no mesh is the last before its time
 NEVER = 1e-7
 #: tolerances at which a model is called valid
@@ -78,8 +81,7 @@ def fit(scene: sg.Scene) -> list[str]:
 
 def heavy(scene: sg.Scene, model: str) -> bool:
     """Whether the last mesh of a model takes more time than there is."""
-    options = {"element": "tet10"} if model == "solid" else {}
-    last = dict(LADDER[model].meshes(options).levels[MESHES[model] - 1])
+    last = dict(LADDER[model].meshes(_options(model)).levels[MESHES[model] - 1])
     return estimated_size(scene, model, LADDER[model].given(scene, last)).unknowns > HEAVY[model]
 
 
@@ -88,7 +90,9 @@ def light(scene: sg.Scene) -> bool:
     return any(n != "solid" and not heavy(scene, n) for n in fit(scene))
 
 
-def judge(text: str, seed: int, words: str, path: Path, folder: Path = FOLDER) -> Part:
+def judge(
+    text: str, seed: int, words: str, path: Path, folder: Path = FOLDER, *, again: bool = False
+) -> Part:
     """Hold every model of one part against the truth.
 
     Parameters
@@ -101,7 +105,9 @@ def judge(text: str, seed: int, words: str, path: Path, folder: Path = FOLDER) -
     path : Path
         Where the file is written.
     folder : Path
-        Where truths are kept.
+        Where truths and what models said are kept.
+    again : bool
+        Believe what models said the last time: for bars of new factors.
 
     Returns
     -------
@@ -116,31 +122,83 @@ def judge(text: str, seed: int, words: str, path: Path, folder: Path = FOLDER) -
     path.write_text(text)
     scene = sg.load(path)
     part = Part(seed, words, truth(scene, text, folder))
-    asked = scene.with_changes(ask=scene.ask.with_changes(tolerance=NEVER))
     for model in fit(scene):
-        most = MESHES[model]
         if heavy(scene, model):
             part.left_out.append(f"{model}, too large")
             continue
-        found: list[Solution] = []
-        options = {"element": "tet10"} if model == "solid" else {}
+        kept = folder / f"{hashlib.sha256((model + text).encode()).hexdigest()[:16]}_said.json"
         try:
-            study(
-                asked, model, options, most=most, evidence=False, counted=False, keep=found.append
+            said = (
+                [Said(**level) for level in json.loads(kept.read_text())]
+                if again and kept.exists()
+                else _said(scene, model)
             )
         except sg.SolidgearError as error:
             part.left_out.append(f"{model}: {error}")
-        for mesh, one in enumerate(found, 1):
-            _judged(part, model, mesh, one)
+            continue
+        kept.write_text(json.dumps([asdict(level) for level in said]))
+        for mesh in range(1, len(said) + 1):
+            _judged(part, scene, model, said[:mesh])
     part.seconds = time.process_time() - start
     return part
 
 
-def _judged(part: Part, model: str, mesh: int, one: Solution) -> None:
-    bands, true = one.bands.get(SCENE, {}), part.truth
-    own = numbers(one.ties[SCENE])
+@dataclass(frozen=True)
+class Said:
+    """What a model said on one mesh.
+
+    Attributes
+    ----------
+    numbers : dict of str to float
+        With the first bending pair by plane or by frequency.
+    quantities, solver : dict of str to float
+        As bands ask for them.
+    split : bool
+        Whether "bending 2" is the second of the first pair.
+    mesh : dict
+        Facts.
+    """
+
+    numbers: dict[str, float]
+    quantities: dict[str, float]
+    solver: dict[str, float]
+    split: bool
+    mesh: dict
+
+
+def _options(model: str) -> dict:
+    return {"element": "tet10"} if model == "solid" else {}
+
+
+def _said(scene: sg.Scene, model: str) -> list[Said]:
+    asked = scene.with_changes(ask=scene.ask.with_changes(tolerance=NEVER))
+    out: list[Said] = []
+
+    def keep(one: Solution) -> None:
+        found, mesh = one.ties[SCENE], one.body.mesh
+        given = found.numbers
+        split = "bending z 1" not in {m.name for m in one.modes.modes}
+        facts = {k: v for k, v in mesh.items() if isinstance(v, (int, float, str))}
+        out.append(Said(numbers(found), given.quantities, given.solver, split, facts))
+
+    more = {"most": MESHES[model], "evidence": False, "counted": False, "keep": keep}
+    study(asked, model, _options(model), **more)
+    return out
+
+
+def _judged(part: Part, scene: sg.Scene, model: str, said: list[Said]) -> None:
+    rung, mesh, last, true = LADDER[model], len(said), said[-1], part.truth
+    bands = sequence_bands(
+        scene,
+        rung.meshes(_options(model)),
+        rung.factors,
+        [s.quantities for s in said],
+        last.solver,
+        [s.mesh.get("representative_size") for s in said],
+    )
+    own = last.numbers
     errors = {q: (own[q] - v) / size(true.values, q) for q, v in true.values.items() if q in own}
-    split = "bending 2" in bands and "bending z 1" not in {m.name for m in one.modes.modes}
+    split = "bending 2" in bands and last.split
     called = {"pair 1": "bending 1", **({"pair 2": "bending 2"} if split else {})}
     for q, error in errors.items():
         band = bands.get(called.get(q, q))

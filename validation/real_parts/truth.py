@@ -30,20 +30,23 @@ from solidgear.fidelity.ladder import LADDER
 from solidgear.fidelity.sector import cyclic_features, meshed_sector, sector, sectors_around
 from solidgear.fidelity.solid import tetrahedra_plan
 from solidgear.machine.meter import Meter
+from solidgear.meshing.cuts import mirror_plane
+from solidgear.scene.shaft import resolved
 from validation.common import ROOT
 
 FOLDER = ROOT / "validation" / "results" / "real_parts"
 #: of the plain part, and a coarser one whose distance tells how sure it is
-PLAIN = {"order": 5, "layers": 4, "edge_layers": 3, "relative_size": 4.0}
-COARSER = {"order": 4, "layers": 3, "edge_layers": 2, "relative_size": 4.0}
-#: share of that distance that is left
-LEFT = 0.5
+PLAIN = {"order": 5, "layers": 3, "edge_layers": 2, "relative_size": 4.0}
+COARSER = {"order": 4, "layers": 2, "edge_layers": 1, "relative_size": 4.0}
+#: share of that distance that is left: what the bands of the harmonic solid count on
+LEFT = 0.25
 #: refinement away from features and at them
 CUT_LEVELS = ((0.22, 0.45), (0.3, 0.64), (0.42, 0.9))
-#: refinement of sectors
-SECTOR_LEVELS = (0.8, 1.13, 1.6)
-#: elements of the finest mesh (of a half, of a sector) above which all three are coarser
-MOST = {"cut": 4_000, "cyclic": 2_000}
+#: refinement of sectors: the last is finer than the third mesh of the rung, which is judged
+SECTOR_LEVELS = (0.85, 1.2, 1.7)
+#: elements of the finest mesh (of a half, of a sector) above which all three are coarser; a part
+#: without a mirror plane has twice as many
+MOST = {"cut": 6_000, "cyclic": 14_000}
 #: size of elements at seats and shoulders over the largest, of cuts
 AT_EDGES = 1 / 8
 #: the limit over the last step: 2.2 at the order of a right-angled shoulder (1.09), 1 at second order
@@ -142,7 +145,7 @@ def truth(scene: sg.Scene, text: str, folder: Path = FOLDER) -> Truth:
 def _solved(scene: sg.Scene) -> Truth:
     plain, coarser = (solve(scene.plain, "harmonic", **level) for level in (PLAIN, COARSER))
     cyclic = not LADDER["sector"].unfit(scene)
-    split = not cyclic and "z" in _planes(scene)
+    split = not cyclic and not _whole(scene)
     steps, raw, unknowns = [], {}, 0
     for with_, without in (_sectors if cyclic else _cuts)(scene):
         x, p = numbers(with_), numbers(without)
@@ -172,11 +175,9 @@ def _solved(scene: sg.Scene) -> Truth:
     return Truth(values, doubt, effect, errors, unknowns)
 
 
-def _planes(scene: sg.Scene) -> str:
-    from solidgear.meshing.cuts import mirror_plane
-    from solidgear.scene.shaft import resolved
-
-    return "" if mirror_plane(resolved(scene)) is None else "zx"
+def _whole(scene: sg.Scene) -> bool:
+    """Whether its features have no mirror plane."""
+    return mirror_plane(resolved(scene)) is None
 
 
 def _like(plain: Answer, split: bool) -> dict[str, float]:
@@ -197,7 +198,8 @@ def _cuts(scene: sg.Scene) -> Iterator[tuple[Answer, Answer]]:
         plan["graded_size"] = plan["size"] * AT_EDGES
         return meshed(scene, plan, scale * level[1], True)
 
-    scale = _affordable(lambda s: made_at(CUT_LEVELS[-1], s).mesh.t.shape[1], MOST["cut"])
+    most = MOST["cut"] * (2 if _whole(scene) else 1)
+    scale = _affordable(lambda s: made_at(CUT_LEVELS[-1], s).mesh.t.shape[1], most)
     for level in CUT_LEVELS:
         made, own = made_at(level, scale), scale * level[1]
         yield tuple(
