@@ -6,7 +6,9 @@ import numpy as np
 import pytest
 
 import solidgear as sg
+from solidgear.evidence.answer import solve
 from solidgear.evidence.bands import DIAGONAL, LEAST, SURE_AROUND, layered_bands
+from solidgear.evidence.sequence_bands import feature_effect
 from solidgear.fidelity.edges import sharpest_edge
 from solidgear.fidelity.ladder import LADDER
 from solidgear.fidelity.rung import HELD, HELD_AT_A_STEP, PLANE, SMOOTH, STEPPED, STEPPED_PLANE
@@ -54,6 +56,31 @@ def test_a_rigid_seat_costs_more():
         for model, edge in (("solid", STEPPED), ("solid", HELD))
     )
     assert rigid > free
+
+
+def test_frequencies_of_a_corrected_solid_are_no_surer_than_a_share_of_what_features_change():
+    """Twelve random parts (docs/validation/random.md): meshes that agree by chance say nothing."""
+    factors = LADDER["corrected"].factors
+    still = levels(0.0)
+    effect = {"bending 1": 0.05, "C_zz": 0.05}
+    found = layered_bands(still, {}, factors, effect=effect)
+    assert found["bending 1"].gci == pytest.approx(0.05 * factors.effect["bending 1"], rel=1e-6)
+    assert found["C_zz"].gci < 1e-9  # corrected as it is, through no modes
+    large = layered_bands(levels(0.1), {}, factors, effect=effect)
+    assert large["bending 1"].gci == layered_bands(levels(0.1), {}, factors)["bending 1"].gci
+
+
+def test_what_features_change_is_told_by_the_nearest_bending_mode_of_the_plain_part():
+    scene = sg.load("geometry/pinion_keyed.toml")
+    factors = LADDER["corrected"].factors
+    plain = solve(scene.plain, "harmonic", order=4).quantities
+    values = {q: 1.01 * v for q, v in plain.items()}
+    effect = feature_effect(scene, factors, values)
+    assert set(effect) == set(factors.effect) & set(values)
+    # a mesh of order 3 holds frequencies to some 1e-3
+    assert effect["axial 1"] == pytest.approx(0.01 / 1.01, abs=1e-3)
+    assert effect["bending 1"] <= 0.01 / 1.01 + 1e-3
+    assert feature_effect(scene, LADDER["harmonic"].factors, values) == {}
 
 
 def test_a_coupling_is_no_surer_than_its_diagonal_entries():

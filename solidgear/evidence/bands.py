@@ -13,7 +13,9 @@ distance.  The factors are measured, by ``validation/attack/bands.py`` on random
 A change that is small by accident, since a quantity passes through an extremum on its way, is not
 believed: the change before it, and for couplings the changes of both diagonal entries, set a floor.
 Displacement elements are too stiff, so the error of the compliance is a positive semidefinite
-matrix and that of a coupling no larger than the geometric mean of its diagonal entries'. What the
+matrix and that of a coupling no larger than the geometric mean of its diagonal entries'. A rung
+that stands on another model's modes errs in ways that no mesh of its own tells of: its bands hold at
+least a share of what features change. What the
 solver leaves (residuals of statics and modes) is added, and of hexahedra what the cells around
 leave, which layers do not touch: it is measured on the coarsest level with half as many cells
 around again.
@@ -99,6 +101,7 @@ def layered_bands(
     *,
     edge: str = STEPPED,
     around: Values | None = None,
+    effect: Values | None = None,
 ) -> dict[str, Band]:
     """Bands of the finest of two or more levels of a layered sequence.
 
@@ -114,8 +117,10 @@ def layered_bands(
         What is sharpest on the shaft (:func:`solidgear.fidelity.edges.sharpest_edge`).
     around : mapping, optional
         Relative error that the cells around leave in each quantity.
+    effect : mapping, optional
+        What features change of each quantity, relative, where the rung has shares of it.
     """
-    around = around or {}
+    around, effect = around or {}, effect or {}
     usual = factors.usual[edge]
     out = {}
     finest, before = levels[-1], levels[-2]
@@ -140,9 +145,15 @@ def layered_bands(
             if len(own) == 2:
                 rests_on = max(rests_on, DIAGONAL * (own[0] * own[1]) ** 0.5)
         left = solver.get(name, 0.0)
+        least = factors.effect.get(name, 0.0) * effect.get(name, 0.0)
         out[name] = Band(
             values=tuple(float(level[name]) for level in levels if name in level),
-            gci=float(factor * rests_on + SURE_AROUND * _left_around(around, name) + left + LEAST),
+            gci=float(
+                max(factor * rests_on, least)
+                + SURE_AROUND * _left_around(around, name)
+                + left
+                + LEAST
+            ),
             change=float(last),
             reduction=float(last / earlier) if earlier else None,
             factor=factor,

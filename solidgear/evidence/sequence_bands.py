@@ -4,10 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from collections.abc import Sequence as Listed
+from functools import lru_cache
 from typing import TYPE_CHECKING
 
+from solidgear.evidence.answer import solve
 from solidgear.evidence.bands import Band, layered_bands, refined_bands
 from solidgear.fidelity.edges import sharpest_edge
+from solidgear.fidelity.ladder import LADDER
 from solidgear.meshing.corners import sharpest_corner
 
 if TYPE_CHECKING:
@@ -18,6 +21,8 @@ if TYPE_CHECKING:
 #: exponent at the end of a rigid seat, a clamp on a smooth surface (Williams 1952, clamped-free at
 #: 180 degrees)
 RIGID_EDGE = 0.5
+#: mesh of the plain part, coarse to fine: good to some 1e-4, of which shares are taken
+PLAIN_MESH = 1
 
 
 def sequence_bands(
@@ -59,10 +64,54 @@ def sequence_bands(
     if plan.layered:
         if len(levels) < 2:
             return {}
-        return layered_bands(levels, solver, factors, edge=sharpest_edge(scene), around=around)
+        edge = sharpest_edge(scene)
+        effect = feature_effect(scene, factors, levels[-1])
+        return layered_bands(levels, solver, factors, edge=edge, around=around, effect=effect)
     last = [size or 0.0 for size in sizes[-3:]]
     if len(levels) < 3 or not last[0] > last[1] > last[2] > 0:
         return {}
     held = any(s.attachment == "rigid" for s in scene.stations)
     exponent = min(sharpest_corner(scene)[1], RIGID_EDGE if held else 1.0)
     return refined_bands(levels, solver, last, exponent, singular=factors.singular)
+
+
+def feature_effect(
+    scene: Scene, factors: BandFactors, values: Mapping[str, float]
+) -> dict[str, float]:
+    """What features change of the quantities that a rung has shares of.
+
+    Parameters
+    ----------
+    scene : Scene
+        With features.
+    factors : BandFactors
+        Of the rung.
+    values : mapping
+        What it says of the quantities.
+
+    Returns
+    -------
+    dict of str to float
+        Relative and positive; empty where the rung has no shares. A bending frequency is held
+        against the nearest one of the plain part: features may change their order and their names.
+    """
+    asked = [q for q in factors.effect if q in values]
+    if not asked:
+        return {}
+    plain, bending = _plain(scene.plain, factors.plain)
+    out = {}
+    for name in asked:
+        known = bending if name.startswith("bending") else [plain[q] for q in (name,) if q in plain]
+        if known:
+            out[name] = float(min(abs(values[name] - v) for v in known) / abs(values[name]))
+    return out
+
+
+@lru_cache(maxsize=8)
+def _plain(plain: Scene, rung: str) -> tuple[dict[str, float], list[float]]:
+    """Quantities of a plain part, and all bending frequencies; every finer mesh asks for them."""
+    meshes = LADDER[rung].meshes
+    assert meshes is not None  # of a solid
+    found = solve(plain, rung, **meshes({}).levels[PLAIN_MESH])
+    bending = [m.frequency_hz for m in found.modes.modes if m.name.startswith("bending")]
+    return found.quantities, bending

@@ -78,6 +78,11 @@ class BandFactors:
         Share of the last change by which a layered sequence is still expected to go on.
     singular : bool
         Whether plain refinement stays at the order of the sharpest corner.
+    effect : dict of str to float
+        By quantity, the share of what features change of it that a band holds at least: of errors
+        that no mesh tells of. The change is told by ``plain``.
+    plain : str
+        Rung that solves the plain part, on the first of its meshes that has shoulders graded.
     """
 
     usual: Mapping[str, float]
@@ -85,6 +90,8 @@ class BandFactors:
     earlier: float
     ahead: float
     singular: bool = False
+    effect: Mapping[str, float] = field(default_factory=dict)
+    plain: str = ""
 
 
 @dataclass(frozen=True)

@@ -46,7 +46,7 @@ CUT_LEVELS = ((0.22, 0.45), (0.3, 0.64), (0.42, 0.9))
 SECTOR_LEVELS = (0.85, 1.2, 1.7)
 #: elements of the finest mesh (of a half, of a sector) above which all three are coarser; a part
 #: without a mirror plane has twice as many
-MOST = {"cut": 6_000, "cyclic": 14_000}
+MOST = {"cut": 4_000, "cyclic": 12_000}
 #: size of elements at seats and shoulders over the largest, of cuts
 AT_EDGES = 1 / 8
 #: the limit over the last step: 2.2 at the order of a right-angled shoulder (1.09), 1 at second order
