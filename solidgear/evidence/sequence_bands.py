@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 from solidgear.evidence.answer import solve
 from solidgear.evidence.bands import Band, layered_bands, refined_bands
+from solidgear.evidence.quantities import size
 from solidgear.fidelity.edges import sharpest_edge
 from solidgear.fidelity.ladder import LADDER
 from solidgear.meshing.corners import sharpest_corner
@@ -103,7 +104,7 @@ def feature_effect(
     for name in asked:
         known = bending if name.startswith("bending") else [plain[q] for q in (name,) if q in plain]
         if known:
-            out[name] = float(min(abs(values[name] - v) for v in known) / abs(values[name]))
+            out[name] = float(min(abs(values[name] - v) for v in known) / size(values, name))
     return out
 
 

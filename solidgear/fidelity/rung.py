@@ -78,9 +78,10 @@ class BandFactors:
         Share of the last change by which a layered sequence is still expected to go on.
     singular : bool
         Whether plain refinement stays at the order of the sharpest corner.
-    effect : dict of str to float
-        By quantity, the share of what features change of it that a band holds at least: of errors
-        that no mesh tells of. The change is told by ``plain``.
+    effect : dict of str to (float, float)
+        By quantity, the share of what features change of it that a band holds at least, after two
+        levels and after more: two meshes may agree by accident, and of some errors no mesh tells.
+        The change is told by ``plain``.
     plain : str
         Rung that solves the plain part, on the first of its meshes that has shoulders graded.
     """
@@ -90,7 +91,7 @@ class BandFactors:
     earlier: float
     ahead: float
     singular: bool = False
-    effect: Mapping[str, float] = field(default_factory=dict)
+    effect: Mapping[str, tuple[float, float]] = field(default_factory=dict)
     plain: str = ""
 
 
