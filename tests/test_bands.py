@@ -62,13 +62,10 @@ def test_bands_of_a_corrected_solid_hold_a_share_of_what_features_change():
     """Random parts (docs/validation/random.md): meshes that agree by chance say nothing."""
     factors = LADDER["corrected"].factors
     effect = {"bending 1": 0.05, "C_zz": 0.05}
-    for steps, count in (((0.0,), 0), ((0.0, 0.0), 1)):
+    for steps in ((0.0,), (0.0, 0.0)):
         found = layered_bands(levels(*steps), {}, factors, effect=effect)
         for name, share in effect.items():
-            assert found[name].gci == pytest.approx(share * factors.effect[name][count], rel=1e-6)
-    # a compliance is corrected as it is, and meshes tell of it; a frequency through few modes
-    assert factors.effect["C_zz"][1] < factors.effect["C_zz"][0]
-    assert factors.effect["bending 1"][1] == factors.effect["bending 1"][0]
+            assert found[name].gci == pytest.approx(share * factors.effect[name], rel=1e-6)
     large = layered_bands(levels(0.1), {}, factors, effect=effect)
     assert large["bending 1"].gci == layered_bands(levels(0.1), {}, factors)["bending 1"].gci
 

@@ -136,18 +136,18 @@ LADDER = Ladder(
             first=by_edge((3.5, 0.0, 3.5), (5.0, 0.0, 5.0)),
             earlier=0.5,
             ahead=0.5,
-            # Two meshes may agree by accident: with a flat and a keyway stiffnesses were 0.10 and
-            # compliances 0.07 of what features change from the truth after two meshes, 0.06 and
-            # 0.04 after three, when changes tell. Frequencies err by what no mesh tells of: few
-            # modes, turned from one mesh to the other, the residual mass of the plain part, and
-            # 3e-3 of the mass of a cut. Up to 0.4 of what the rung says that features change of
-            # torsion 1 (a free mode), 0.01 of bending 1 and axial 1. From 5 random parts
-            # (docs/validation/random.md).
+            # Meshes may agree and err all the same: the mesh at a cross hole is one and the same from
+            # refinement 0.25 to 0.35, a flat with a keyway agreed by accident, few free modes are
+            # turned from one mesh to the other, the residual mass is that of the plain part. On 9
+            # random parts (docs/validation/random.md) errors were up to 0.12 of what features change
+            # of stiffnesses, 0.09 of compliances, 0.04 of bending 1, 0.2 of axial 1 (where mass and
+            # stiffness that are cut away nearly cancel), and 0.4 of torsion 1, a free mode.
             effect={
-                **dict.fromkeys(("C_zz", "C_z,thx", "C_thx", "C_yy"), (0.1, 0.03)),
-                **dict.fromkeys(("K_zz", "K_z,thx", "K_thx", "K_yy"), (0.13, 0.04)),
-                **dict.fromkeys(("bending 1", "bending 2", "axial 1"), (0.02, 0.02)),
-                "torsion 1": (0.6, 0.6),
+                **dict.fromkeys(("C_zz", "C_z,thx", "C_thx", "C_yy"), 0.1),
+                **dict.fromkeys(("K_zz", "K_z,thx", "K_thx", "K_yy"), 0.14),
+                **dict.fromkeys(("bending 1", "bending 2"), 0.1),
+                "axial 1": 0.3,
+                "torsion 1": 0.6,
             },
             plain="harmonic",
         ),

@@ -78,10 +78,9 @@ class BandFactors:
         Share of the last change by which a layered sequence is still expected to go on.
     singular : bool
         Whether plain refinement stays at the order of the sharpest corner.
-    effect : dict of str to (float, float)
-        By quantity, the share of what features change of it that a band holds at least, after two
-        levels and after more: two meshes may agree by accident, and of some errors no mesh tells.
-        The change is told by ``plain``.
+    effect : dict of str to float
+        By quantity, the share of what features change of it that a band holds at least: meshes may
+        agree by accident, and of some errors no mesh tells. The change is told by ``plain``.
     plain : str
         Rung that solves the plain part, on the first of its meshes that has shoulders graded.
     """
@@ -91,7 +90,7 @@ class BandFactors:
     earlier: float
     ahead: float
     singular: bool = False
-    effect: Mapping[str, tuple[float, float]] = field(default_factory=dict)
+    effect: Mapping[str, float] = field(default_factory=dict)
     plain: str = ""
 
 
