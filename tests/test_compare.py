@@ -429,7 +429,7 @@ def test_band_that_cannot_be_made_is_a_warning(overhung, monkeypatch):
         overhung, ("harmonic",), settings={"harmonic": {"order": 2, "layers": 0}}
     ).results
     assert found["models"]["harmonic"]["band"] is None
-    assert "harmonic: band: too coarse to mesh" in found["warnings"]
+    assert "harmonic solid: band: too coarse to mesh" in found["warnings"]
     assert "no band of its own (too coarse to mesh)" in found["verdict"]["sentences"][0]
     assert not found["models"]["harmonic"]["valid"]
 

@@ -198,8 +198,8 @@ def test_factors_of_superlu_are_given_back():
     code = """
 import gc, re
 import numpy as np, scipy.sparse as sp
-from solidgear.solve import factor
-factor.LONG = 0
+from solidgear.solve import factor, factored
+factored.LONG = 0
 def taken():
     gc.collect()
     return int(re.search(r"VmRSS:\\s+(\\d+)", open("/proc/self/status").read())[1]) / 1024

@@ -30,9 +30,9 @@ PATIENCE = 120
 ENDLESS = """
 import hashlib, os
 from solidgear.cli import main
-from solidgear.solve import factor
+from solidgear.solve import factored
 from solidgear.solve.backends.superlu import SuperLU
-factor.LONG = 0
+factored.LONG = 0
 real = SuperLU.factor
 
 def endless(self):
