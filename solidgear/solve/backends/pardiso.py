@@ -325,8 +325,8 @@ def _files_in(folder: str | None, core_mb: float) -> Iterator[None]:
         yield
         return
     wanted = {
-        # the beginning of their names: some releases write beside a folder of that name, not into it
-        "MKL_PARDISO_OOC_PATH": os.path.join(folder, "factor"),
+        # MKL 2026 takes it for a folder, 2024.2 for the beginning of names
+        "MKL_PARDISO_OOC_PATH": os.path.join(folder, ""),
         "MKL_PARDISO_OOC_MAX_CORE_SIZE": str(int(np.ceil(core_mb))),
     }
     before = {name: os.environ.get(name) for name in wanted}
