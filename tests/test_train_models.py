@@ -248,6 +248,18 @@ def test_a_frequency_beyond_the_mesh_is_refused():
     assert train_modes(shop, "timoshenko", "harmonic", 2_000.0).modes
 
 
+def test_cells_of_one_order_follow_waves_of_one_length():
+    reach = []
+    for element in ("tet10", "hex20"):
+        shop = Workshop(
+            TRAIN_DATA, kept=4, settings={"solid": {"element": element, "refinement": 0.3}}
+        )
+        model = shop.shaft("gear", "solid")
+        limit = shop.mesh_limit("gear", model.part)
+        reach.append(limit * model.body.mesh["representative_size"])
+    assert reach[0] == pytest.approx(reach[1], rel=1e-12)  # both are of second order
+
+
 @pytest.mark.parametrize(
     ("rung", "words"),
     [

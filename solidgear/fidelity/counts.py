@@ -18,6 +18,11 @@ class Kind:
     face: int
     edge: int
 
+    @property
+    def order(self) -> int:
+        """Of the polynomials along an edge."""
+        return self.edge - 1
+
 
 KINDS = {
     "hex8": Kind((1, 0, 0, 0), 8, 4, 2),

@@ -23,6 +23,7 @@ from numpy.typing import ArrayLike
 from solidgear.body import Body, as_supports
 from solidgear.errors import SolidgearError, listed, nearest, show
 from solidgear.fidelity import build
+from solidgear.fidelity.counts import KINDS
 from solidgear.fidelity.ladder import LADDER
 from solidgear.reduction.condensed import condensed_shaft
 from solidgear.reduction.craig_bampton import craig_bampton
@@ -163,7 +164,7 @@ class Workshop:
         cell = model.body.mesh.get("representative_size") if model is not None else None
         if model is None or not cell:
             return np.inf
-        order = model.body.mesh.get("order") or (2 if "2" in model.body.mesh["element"] else 1)
+        order = model.body.mesh.get("order") or KINDS[model.body.mesh["element"]].order
         materials = {segment.material for segment in self.scenes[side].segments}
         shear = min(np.sqrt(m.shear_modulus / m.density) for m in materials)
         return float(order * shear / (8 * np.pi * cell))
