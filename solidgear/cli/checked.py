@@ -7,8 +7,6 @@ from pathlib import Path
 
 import typer
 
-from solidgear.errors import SolidgearError
-
 
 def print_check(found: dict) -> None:
     """Facts, cautions, faults and verdicts of one shaft.
@@ -18,8 +16,6 @@ def print_check(found: dict) -> None:
     found : dict
         As :func:`solidgear.studies.check.check_scene` gives it.
     """
-    from solidgear.studies.check import VERDICTS
-
     for line in found["facts"]:
         print(line)
     for level in ("caution", "open", "avoid"):
@@ -28,14 +24,23 @@ def print_check(found: dict) -> None:
             print(": ".join(filter(None, words)))
     for line in found["faults"]:
         print(f"fault: {line}")
+    _print_verdicts(
+        {
+            name: (told["verdict"], ", ".join(told["guards"]).replace("_", " "))
+            for name, told in found["verdicts"].items()
+        }
+    )
+
+
+def _print_verdicts(models: dict[str, tuple[str, str]]) -> None:
+    """Verdict and reason of every model: a line for each verdict, in the order of check."""
+    from solidgear.studies.check import VERDICTS
+
     for verdict in dict.fromkeys(VERDICTS.values()):
-        models = [
-            f"{m} ({', '.join(v['guards']).replace('_', ' ')})" if v["guards"] else m
-            for m, v in found["verdicts"].items()
-            if v["verdict"] == verdict
-        ]
-        if models:
-            print(f"{verdict.capitalize()}: {', '.join(models)}.")
+        own = {name: why for name, (here, why) in models.items() if here == verdict}
+        if own:
+            told = (f"{name} ({why})" if why else name for name, why in own.items())
+            print(f"{verdict.capitalize()}: {', '.join(told)}.")
 
 
 def check_train(train: Path, as_json: bool, given: dict[str, bool]) -> None:
@@ -48,18 +53,13 @@ def check_train(train: Path, as_json: bool, given: dict[str, bool]) -> None:
     given : dict of str to bool
         Options of check that speak of one shaft, and whether they were given.
     """
-    from solidgear.cli.train import workshop
+    from solidgear.cli.train import refuse_given, workshop
     from solidgear.scene.train import SIDES
     from solidgear.studies.axle.check import check_train as run
     from solidgear.studies.axle.models import KEPT
-    from solidgear.studies.check import VERDICTS
 
-    for option, there in given.items():
-        if there:
-            raise SolidgearError(
-                f"{option} is for one shaft, and {train} is a train: run check on the file of "
-                "the shaft for other models and meshes"
-            )
+    instead = "run check on the file of the shaft for other models and meshes"
+    refuse_given(given, train, instead)
     shop = workshop(train, "rubin", KEPT, None)
     found = run(shop)
     if as_json:
@@ -75,13 +75,11 @@ def check_train(train: Path, as_json: bool, given: dict[str, bool]) -> None:
             print(f"caution: {line}")
         for line in found["faults"]:
             print(f"fault: {line}")
-        for verdict in dict.fromkeys(VERDICTS.values()):
-            models = [
-                f"{m} ({' and '.join(v['shafts'])})" if v["shafts"] else m
-                for m, v in found["verdicts"].items()
-                if v["verdict"] == verdict
-            ]
-            if models:
-                print(f"{verdict.capitalize()}: {', '.join(models)}.")
+        _print_verdicts(
+            {
+                name: (told["verdict"], " and ".join(told["shafts"]))
+                for name, told in found["verdicts"].items()
+            }
+        )
     if found["faults"] or any(found[side]["faults"] for side in SIDES):
         raise typer.Exit(1)

@@ -80,6 +80,26 @@ def workshop(
         raise error.located(parse(str(path)), where=str(path)) from None
 
 
+def refuse_given(given: dict[str, bool], train: Path, instead: str) -> None:
+    """Refuse options that speak of one shaft.
+
+    Parameters
+    ----------
+    given : dict of str to bool
+        Such options, and whether they were given.
+    train : Path
+    instead : str
+        What to do for a train, in words.
+
+    Raises
+    ------
+    SolidgearError
+    """
+    for option, there in given.items():
+        if there:
+            raise SolidgearError(f"{option} is for one shaft, and {train} is a train: {instead}")
+
+
 def _harmonics(text: str) -> tuple[int, ...]:
     """Numbers of waves from a text such as ``2,3``."""
     from solidgear.scene.train_tables import FIRST_HARMONIC, LAST_HARMONIC

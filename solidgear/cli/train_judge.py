@@ -19,10 +19,10 @@ from solidgear.cli.train import (
     TrainFile,
     caution,
     mix,
+    refuse_given,
     say,
     workshop,
 )
-from solidgear.errors import SolidgearError
 
 
 @command
@@ -60,12 +60,10 @@ def compare_train(
     given : dict of str to bool
         Options of compare that speak of one shaft, and whether they were given.
     """
-    for option, there in given.items():
-        if there:
-            raise SolidgearError(
-                f"{option} is for one shaft, and {train} is a train: every mix of its models is "
-                "judged; add further ones by solidgear judge-system --against"
-            )
+    instead = (
+        "every mix of its models is judged; add further ones by solidgear judge-system --against"
+    )
+    refuse_given(given, train, instead)
     _judged(train, out, as_json, renders=renders)
 
 

@@ -102,7 +102,7 @@ def feature_effect(
     plain, bending = _plain(scene.plain, factors.plain)
     out = {}
     for name in asked:
-        known = bending if name.startswith("bending") else [plain[q] for q in (name,) if q in plain]
+        known = bending if name.startswith("bending") else [plain[name]] if name in plain else []
         if known:
             out[name] = float(min(abs(values[name] - v) for v in known) / size(values, name))
     return out

@@ -33,6 +33,11 @@ KINDS = {
 }
 
 
+def solved_as(element: str) -> str:
+    """Element that the mesh of a file is solved with: first-order tetrahedra are its shape only."""
+    return "tet10" if element == "tet4" else element
+
+
 def sections(rings: np.ndarray, full: np.ndarray, around: int) -> tuple[float, float, float]:
     """Vertices, edges and faces of all sections: rings of cells, and a square core in place of the
     first where the shaft is full.

@@ -8,6 +8,7 @@ from pathlib import Path
 
 from solidgear.body import Body
 from solidgear.errors import SolidgearError
+from solidgear.fidelity.counts import solved_as
 from solidgear.fidelity.own_mesh import solid_body
 from solidgear.machine.apart import ApartError, apart
 from solidgear.meshing import step
@@ -67,7 +68,7 @@ def part_body(
         # flat elements of first order are taken as the shape only, since they lock in bending: on a
         # rod of 16 faces around they miss the deflection by -7.7 %, those of second order with straight
         # sides by +2.3 %, which is what the flat faces take from the section
-        element = "tet10" if found.element == "tet4" else found.element
+        element = solved_as(found.element)
         if element != found.element:
             facts["file_element"] = found.element
         return solid_body(

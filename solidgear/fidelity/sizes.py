@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from solidgear.factoring import Factoring
-from solidgear.fidelity.counts import KINDS, nodes, sections
+from solidgear.fidelity.counts import KINDS, nodes, sections, solved_as
 from solidgear.fidelity.rung import CUTS, CYCLIC
 from solidgear.fidelity.size import Size
 from solidgear.meshing.blocks import blocks_beyond
@@ -262,8 +262,7 @@ def _hexahedra(scene: Shaft, given: Mapping[str, Any]) -> Size:
 def _given_mesh(scene: Shaft, given: Mapping[str, Any], body: BodyFile) -> Size:
     """Of a mesh that is what it is: counted, but for the fill of its factor."""
     assert body.counts is not None  # asked before
-    # first-order tetrahedra of a file are solved as second-order ones on the same cells
-    element = "tet10" if body.element == "tet4" else body.element
+    element = solved_as(body.element)
     own = {**given, "element": element}
     unknowns, entries = nodes(element, body.counts, 4 if element[0] == "h" else 3)
     fill = np.exp(0.519) * unknowns**1.313 * (entries / unknowns) ** 0.448
