@@ -7,7 +7,7 @@ import pytest
 from solidgear.fidelity.levels import HARMONIC
 from validation.choice.__main__ import main
 from validation.choice.members import MEMBERS, options_of
-from validation.choice.walk import Tally, cheapest, levels_of, walk
+from validation.choice.walk import Tally, cheapest, walk
 
 TRUE = {"C_zz": 2.0e-9, "bending 1": 1000.0}
 
@@ -15,14 +15,17 @@ TRUE = {"C_zz": 2.0e-9, "bending 1": 1000.0}
 def member(which, away, seconds):
     """A mesh whose numbers are so far from the truth."""
     numbers = {"C_zz": TRUE["C_zz"] * (1 - away), "bending 1": TRUE["bending 1"] * (1 + away)}
-    return {"member": which, "size": 1000, "q": numbers, "solver": {}, "t": [seconds]}
+    parts = [[0.0, 0.6 * seconds, 0.2 * seconds], [0.0, 0.1 * seconds, 0.1 * seconds]]
+    whole = [sum(each) for each in zip(*parts)]
+    return {"member": which, "size": 1, "q": numbers, "solver": {}, "t": whole, "parts": parts}
 
 
 def row(*away):
     meshes = ((2, 0, 0, 4), (3, 1, 0, 4), (4, 2, 1, 4))
     members = [member(m, a, 10.0**k) for k, (m, a) in enumerate(zip(meshes, away))]
     truth = {"values": TRUE, "uncertainty": dict.fromkeys(TRUE, 1e-9)}
-    return {"seed": 3, "members": members, "ref": truth}
+    groups = [["bending"], ["axial", "torsion"]]
+    return {"seed": 3, "groups": groups, "members": members, "ref": truth}
 
 
 def walked(one, tol):
@@ -61,7 +64,14 @@ def test_the_cheapest_mesh_is_looked_for_among_all():
     one = row(1e-2, 1e-4, 1e-6)
     one["members"].append(member((3, 2, 0, 4), 5e-7, 0.5))
     assert cheapest(one, 1e-6) == 0.5 and cheapest(one, 1e-9) is None
-    assert [m["member"] for m in levels_of(one)] == [(2, 0, 0, 4), (3, 1, 0, 4), (4, 2, 1, 4)]
+
+
+def test_a_third_mesh_costs_what_it_was_solved_for():
+    one = row(1e-2, 0.9e-4, 1e-6)
+    for mesh in one["members"]:
+        mesh["q"]["bending 1"] = TRUE["bending 1"]
+    # two whole meshes, and of the third the statics of bending
+    assert walked(one, 1e-4).cost == [pytest.approx((1 + 10 + 60) / 10)]
 
 
 def test_members_hold_the_ladder():

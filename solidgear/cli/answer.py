@@ -196,12 +196,13 @@ def _places(scene: Scene, found: Answered) -> Whereabouts:
         )
     least_certain = sorted(found.values, key=lambda value: -value.bar)
     named = [STANDS_FOR.get(value.quantity, value.quantity) for value in least_certain]
-    known = [name for name in named if name in PLACED]
+    known = [(name, v.meshes) for name, v in zip(named, least_certain) if name in PLACED]
     if not known:
         raise SolidgearError(f"only known of {', '.join(PLACED)}; ask for one of them")
     meshes = LADDER["harmonic"].meshes
     assert meshes is not None  # as every solid
-    return where(scene, known[0], meshes({}).levels[len(_solved(found)) - 1])
+    name, solved_on = known[0]
+    return where(scene, name, meshes({}).levels[solved_on - 1])
 
 
 def _where_table(places: Whereabouts) -> Table:

@@ -6,12 +6,17 @@ one mesh, of which nobody has shown that it will do.
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
+
+import numpy as np
 
 from solidgear.evidence.answer import Answer
 from solidgear.evidence.pareto import AUTOMATIC, Row
 from solidgear.evidence.quantities import QUANTITIES
 from solidgear.evidence.racing import answer
+from solidgear.solve.condensed import Condensed
+from solidgear.solve.families import FAMILIES
 from solidgear.studies.answering import climbed
 from solidgear.studies.climb import Climb
 
@@ -49,6 +54,16 @@ def solved(scene: Scene, model: str, options: dict, n: int) -> Answer:
     if model != AUTO:
         return answer(scene, model, options, n)
     climb, _ = climbed(scene, options["tol"], tuple(QUANTITIES), Climb, lambda _: None)
-    body, statics, modes = climb.body, climb.statics, climb.modes
-    assert body is not None and statics is not None and modes is not None  # everything was asked
-    return Answer(body, statics, modes, climb.levels[-1].quantities)
+    assert climb.body is not None and climb.modes is not None  # everything was asked
+    values = {v.quantity: v.value for v in climb.values()}
+    return Answer(climb.body, _together(climb), climb.modes, values)
+
+
+def _together(climb: Climb) -> Condensed:
+    """Compliance of all families, each of the finest mesh that was solved for it."""
+    coarse, *finer = climb.compliances.items()
+    compliance = coarse[1].compliance.copy()
+    for families, found in finer:
+        own = [c for family in families for c in FAMILIES[family]]
+        compliance[np.ix_(own, own)] = found.compliance[np.ix_(own, own)]
+    return replace(coarse[1], compliance=compliance)

@@ -1,4 +1,9 @@
-"""One solid on ever finer meshes, until the bands of what is asked are within a tolerance."""
+"""One solid on ever finer meshes, until the bands of what is asked are within a tolerance.
+
+The two coarsest meshes are solved for everything that is asked.  From the third on a mesh is solved
+only for what is still open: what is within the tolerance keeps its value and its bar.  A first
+torsion that needs a finer mesh than all else then costs the torsion of that mesh alone.
+"""
 
 from __future__ import annotations
 
@@ -40,6 +45,8 @@ SETTINGS = {
 RISE = 2.0
 #: a coupling this small against its diagonal entries is zero
 ROUNDING = 1e-9
+#: what a mesh was solved for is named up to so many numbers
+FEW = 3
 #: sides on which the exact answer may lie
 ABOVE, BELOW, BOTH = "above", "below", "both"
 #: a bar has one side where the solver has left no more than this share of it
@@ -58,8 +65,8 @@ class Value:
     bar : float
         Relative; of couplings, to the geometric mean of their diagonal entries. Infinite where
         nothing is known.
-    how : str
-        Where the bar comes from.
+    meshes : int
+        That the value and its bar rest on.
     size : float
         What the bar is relative to, SI.
     side : str
@@ -71,9 +78,14 @@ class Value:
     value: float
     unit: str
     bar: float
-    how: str
+    meshes: int
     size: float
     side: str = BOTH
+
+    @property
+    def how(self) -> str:
+        """Where the bar comes from, in words."""
+        return f"{self.meshes} meshes" if self.meshes > 1 else "one mesh only, not judged"
 
     @property
     def zero(self) -> bool:
@@ -99,6 +111,8 @@ class Step:
     unknowns : int or None
     seconds : float
     chosen : bool
+    only : tuple of str
+        What was still open, where a mesh was not solved for everything asked for.
     """
 
     rung: str
@@ -109,9 +123,14 @@ class Step:
     unknowns: int | None = None
     seconds: float = 0.0
     chosen: bool = False
+    only: tuple[str, ...] = ()
 
 
-def _family_of(quantity: str) -> str:
+#: families of motion that are solved together, None for all of them, and what is asked of them
+Question = tuple[tuple[str, ...] | None, tuple[str, ...]]
+
+
+def family_of(quantity: str) -> str:
     """The family of motion that a quantity belongs to."""
     _, place, _ = described(quantity)
     if isinstance(place, str):
@@ -120,7 +139,17 @@ def _family_of(quantity: str) -> str:
 
 
 class Climb:
-    """One solid on ever finer meshes; what the finest of them was solved with is kept."""
+    """One solid on ever finer meshes; what the last of them was solved with is kept.
+
+    Attributes
+    ----------
+    levels : list of Numbers
+        Of every mesh, coarse to fine: what was solved for on it.
+    bands : dict of str to Band
+        Of every quantity, on the finest mesh that was solved for it.
+    compliances : dict of tuple of str to Condensed
+        Statics at the main point by families of motion, on the finest mesh that was solved for them.
+    """
 
     def __init__(
         self,
@@ -138,36 +167,32 @@ class Climb:
         self.sizes: list[float | None] = []
         self.steps: list[Step] = []
         self.bands: dict[str, Band] = {}
-        self.families: tuple[str, ...] | None = None
+        self.missing: set[str] = set()
+        self.groups: list[tuple[str, ...]] | None = None
         self.left_out = 0.0
         self.body: Body | None = None
         self.options: dict[str, Any] = {}
-        self.statics: Condensed | None = None
-        self.further: dict[str, Condensed] = {}
+        self.compliances: dict[tuple[str, ...], Condensed] = {}
         self.modes: ModeSet | None = None
 
     def run(self) -> None:
         """Climb until every band is within the tolerance, or there is no finer mesh."""
         for level in self.plan.levels:
             start = time.perf_counter()
-            self.progress(f"{self.rung.title}: {_words(level)}")
-            body = self._body(level)
-            self.sizes.append(body.mesh.get("representative_size"))
-            self.levels.append(self._level(body))
-            self.body, self.options = body, dict(level)
-            if len(self.levels) == 1:
-                self.families = self._needed(body)
+            questions = self._questions()
+            asked = {q for _, names in questions for q in names}
+            only = (
+                tuple(q for q in self.wanted if q in asked) if len(asked) < len(self.wanted) else ()
+            )
+            setting = _words(level) + (f", for {_few(only)}" if only else "")
+            self.progress(f"{self.rung.title}: {setting}")
+            unknowns = self._solve(level, questions)
+            self.options = dict(level)
+            self.missing = (self.missing | asked) - set(self.levels[-1].quantities)
             bar = self.judge()
+            spent = time.perf_counter() - start
             self.steps.append(
-                Step(
-                    self.rung.name,
-                    _words(level),
-                    True,
-                    "",
-                    bar,
-                    body.size,
-                    time.perf_counter() - start,
-                )
+                Step(self.rung.name, setting, True, "", bar, unknowns, spent, only=only)
             )
             if len(self.levels) == 2 and not self.values():
                 self._choose("nothing that was asked for exists in this scene")
@@ -175,10 +200,10 @@ class Climb:
             if bar is not None and bar <= self.tol:
                 self._choose("")
                 return
-        only = self.plan.fixed and len(self.plan.levels) == 1
+        only_one = self.plan.fixed and len(self.plan.levels) == 1
         self._choose(
             "the mesh is that of the file, and nothing finer tells how good it is"
-            if only
+            if only_one
             else "no finer mesh is calibrated"
         )
 
@@ -187,18 +212,23 @@ class Climb:
         self._choose(f"the next mesh could not be solved: {why}")
 
     def values(self) -> tuple[Value, ...]:
-        """What was asked for, from the finest mesh."""
-        finest = self.levels[-1].quantities
+        """What was asked for, each from the finest mesh that was solved for it."""
         out = []
-        for name in self.wanted:
-            if name in finest:
-                bar = self.bar(name)
-                count = len(self.levels)
-                how = f"{count} meshes" if count > 1 else "one mesh only, not judged"
-                unit = described(name)[2]
-                scale, side = size(finest, name), self._side(name)
-                out.append(Value(name, finest[name], unit, bar, how, scale, side))
+        for name in self._known():
+            history = self._history(name)
+            finest = history[-1].quantities
+            unit, scale = described(name)[2], size(finest, name)
+            bar, side = self.bar(name), self._side(name)
+            out.append(Value(name, finest[name], unit, bar, len(history), scale, side))
         return tuple(out)
+
+    def _known(self) -> list[str]:
+        """What was asked for and is there."""
+        return [q for q in self.wanted if q not in self.missing and self._history(q)]
+
+    def _history(self, name: str) -> list[Numbers]:
+        """The meshes that a quantity was solved on, coarse to fine."""
+        return [level for level in self.levels if name in level.quantities]
 
     def _side(self, name: str) -> str:
         """Where the exact answer lies.
@@ -214,56 +244,93 @@ class Climb:
             return BOTH
         return ABOVE if described(name)[0] == "compliance" else BELOW
 
-    def _body(self, level: Mapping[str, Any]) -> Body:
+    def _questions(self) -> list[Question]:
+        """What the next mesh is solved for."""
+        if len(self.levels) < 2:
+            families = None if self.groups is None else tuple(f for g in self.groups for f in g)
+            return [(families, self.wanted)]
+        open_ = [q for q in self._known() if not self.bar(q) <= self.tol]
+        if self.groups is None:
+            return [(None, tuple(open_))]
+        by_group = [(g, tuple(q for q in open_ if family_of(q) in g)) for g in self.groups]
+        return [(group, names) for group, names in by_group if names]
+
+    def _solve(self, level: Mapping[str, Any], questions: list[Question]) -> int:
+        """Solve a mesh for some questions; its unknowns."""
+        values: dict[str, float] = {}
+        solver: dict[str, float] = {}
+        unknowns, cells = 0, None
+        for families, names in questions:
+            body = self._body(level, families)
+            found = self._numbers(body, families, names)
+            values |= found.quantities
+            solver |= found.solver
+            unknowns, cells = unknowns + body.size, body.mesh.get("representative_size")
+            self.body = body
+        if not self.levels:
+            assert self.body is not None  # there is something to ask for
+            self.groups = self.needed(self.body)
+        self.levels.append(Numbers(values, solver))
+        self.sizes.append(cells)
+        return unknowns
+
+    def _body(self, level: Mapping[str, Any], families: tuple[str, ...] | None) -> Body:
         options = dict(level)
-        if self.families is not None and "families" in self.rung.options:
-            options["families"] = self.families
+        if families is not None and "families" in self.rung.options:
+            options["families"] = families
         return build(self.scene, self.rung.name, **options)
 
-    def _needed(self, body: Body) -> tuple[str, ...] | None:
-        """Families that the question is about, and those that bearings couple to them."""
+    def needed(self, body: Body) -> list[tuple[str, ...]] | None:
+        """Families that the question is about, each with those that bearings couple to it."""
         if len(body.blocks) < len(FAMILIES):
             return None  # one block holds all motions
         supports = as_supports(self.scene)
         spring, self.left_out = decoupled(body, supports, COUPLING * self.tol)
-        asked = {_family_of(q) for q in self.wanted}
-        out: set[str] = set()
+        asked = {family_of(q) for q in self.wanted}
+        together: list[set[str]] = []
         for group in groups(body, supports, spring):
             components = {c for b in group for c in body.blocks[b].components}
             here = {name for name, own in FAMILIES.items() if components & set(own)}
-            if here & asked:
-                out |= here
-        return tuple(name for name in FAMILIES if name in out)
+            # bending in one plane and in the other are two groups of one family
+            apart = [families for families in together if not families & here]
+            together = [*apart, here.union(*(f for f in together if f & here))]
+        return [tuple(f for f in FAMILIES if f in here) for here in together if here & asked]
 
-    def _level(self, body: Body) -> Numbers:
+    def _numbers(
+        self, body: Body, families: tuple[str, ...] | None, names: tuple[str, ...]
+    ) -> Numbers:
         supports = as_supports(self.scene)
-        if self.families is not None:
-            supports = supports.on(c for f in self.families for c in FAMILIES[f])
-        kinds = {described(q)[0] for q in self.wanted}
+        if families is not None:
+            supports = supports.on(c for f in families for c in FAMILIES[f])
+        kinds = {described(q)[0] for q in names}
         statics: Condensed | None = None
         found: ModeSet | None = None
+        further: dict[str, Condensed] = {}
         if kinds & {"compliance", "stiffness"}:
             statics = condense(body, supports, self.scene.port.name)
-            self.statics = statics
-            points = dict.fromkeys(q.partition(AT)[2] for q in self.wanted if AT in q)
-            self.further = {point: condense(body, supports, point) for point in points}
+            points = dict.fromkeys(q.partition(AT)[2] for q in names if AT in q)
+            further = {point: condense(body, supports, point) for point in points}
+            self._keep_statics(families, statics, further)
         if "frequency" in kinds:
-            found = self.modes = modes(body, supports, self._shapes(), ovalising=False)
-        return numbers(statics, found, self.further)
+            count = shapes(families, names)
+            found = self.modes = modes(body, supports, count, ovalising=False)
+        return numbers(statics, found, further)
 
-    def _shapes(self) -> int:
-        """Elastic shapes that hold the modes asked for."""
-        if self.families is None or len(self.families) > 1:
-            return ENOUGH
-        places = [int(q.split()[1]) for q in self.wanted if described(q)[0] == "frequency"]
-        return 2 * max(places) + 2
+    def _keep_statics(
+        self,
+        families: tuple[str, ...] | None,
+        statics: Condensed,
+        further: Mapping[str, Condensed],
+    ) -> None:
+        """Remember statics at the main point and at further ones."""
+        self.compliances[families or tuple(FAMILIES)] = statics
 
     def judge(self) -> float | None:
-        """Bands of the finest mesh, and the largest bar of what was asked for."""
+        """Bands of what the finest mesh was solved for, and the largest bar of all that was asked."""
         if len(self.levels) < 2:
             return None
-        self.bands = self.bands_of(self.levels)
-        bars = [self.bar(q) for q in self.wanted if q in self.levels[-1].quantities]
+        self.bands |= self.bands_of(self.levels)
+        bars = [self.bar(q) for q in self._known()]
         return max(bars, default=None) if self.bands else None
 
     def bands_of(self, levels: list[Numbers]) -> dict[str, Band]:
@@ -281,11 +348,10 @@ class Climb:
 
     def _rise(self, name: str) -> float:
         """How much a frequency has risen at the last step, beyond what the solver leaves."""
-        if described(name)[0] != "frequency" or len(self.levels) < 2:
+        history = self._history(name)
+        if described(name)[0] != "frequency" or len(history) < 2:
             return 0.0
-        before, last = self.levels[-2], self.levels[-1]
-        if name not in before.quantities:
-            return 0.0
+        before, last = history[-2:]
         rise = last.quantities[name] / before.quantities[name] - 1
         allowed = before.solver.get(name, 0.0) + last.solver.get(name, 0.0)
         return max(0.0, rise - allowed)
@@ -298,3 +364,16 @@ class Climb:
 def _words(level: Mapping[str, Any]) -> str:
     """A mesh in a few words."""
     return ", ".join(f"{word} {level[name]}" for name, word in SETTINGS.items() if name in level)
+
+
+def _few(names: tuple[str, ...]) -> str:
+    """Some names, or how many there are."""
+    return ", ".join(names) if len(names) <= FEW else f"{len(names)} numbers"
+
+
+def shapes(families: tuple[str, ...] | None, names: tuple[str, ...]) -> int:
+    """Elastic shapes that hold the modes asked for."""
+    if families is None or len(families) > 1:
+        return ENOUGH
+    places = [int(q.split()[1]) for q in names if described(q)[0] == "frequency"]
+    return 2 * max(places) + 2

@@ -23,12 +23,12 @@ import numpy as np
 
 from solidgear.body import Body
 from solidgear.errors import SolidgearError, show
-from solidgear.evidence.answer import Numbers
-from solidgear.evidence.quantities import AT, QUANTITIES, at_points, measure
+from solidgear.evidence.answer import Numbers, numbers
+from solidgear.evidence.quantities import AT, QUANTITIES, at_points
 from solidgear.machine.threads import pinned
 from solidgear.solve.condensed import Condensed
 from solidgear.studies.answering import climbed, usable
-from solidgear.studies.climb import Climb, Progress, Step
+from solidgear.studies.climb import Climb, Progress, Question, Step
 
 if TYPE_CHECKING:
     from solidgear.scene import Scene
@@ -215,17 +215,22 @@ class Whole(Climb):
             return None
         return max(self.bars().values(), default=None)
 
-    def _needed(self, _: Body) -> None:
+    def needed(self, body: Body) -> None:
         return None
 
-    def _level(self, body: Body) -> Numbers:
-        level = super()._level(body)
-        if self.statics is not None:
-            other, further = _turned(self.statics), {}
-            for point, there in self.further.items():
-                further[point] = _turned(there)
-            self.turned.append(Numbers(measure(other, None, further), level.solver))
-        return level
+    def _questions(self) -> list[Question]:
+        return [(None, self.wanted)]
+
+    def _keep_statics(
+        self,
+        families: tuple[str, ...] | None,
+        statics: Condensed,
+        further: Mapping[str, Condensed],
+    ) -> None:
+        there = {point: _turned(found) for point, found in further.items()}
+        # residuals are those of the matrix that is turned
+        turned = numbers(_turned(statics), None, there)
+        self.turned.append(turned)
 
     def _turned_bands(self) -> Mapping[str, float]:
         if len(self.turned) < 2:

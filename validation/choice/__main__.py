@@ -14,7 +14,7 @@ from solidgear.studies.answering import answer
 from validation import choice
 from validation.attack.reference import FOLDER
 from validation.attack.scenes import random_scene
-from validation.choice.members import collect
+from validation.choice.members import MOST, collect
 from validation.choice.walk import Tally, quantiles, table, walk
 
 RESULTS = FOLDER.parent.parent
@@ -54,11 +54,17 @@ def main(arguments: list[str] | None = None) -> int:
     parser.add_argument("--live", type=int, default=5, help="scenes to time bending alone on")
     parser.add_argument("--rows", type=Path, default=RESULTS / "choice" / "members.jsonl")
     parser.add_argument("--out", type=Path, default=RESULTS / "choice.md")
+    parser.add_argument(
+        "--most",
+        type=int,
+        default=MOST,
+        help="unknowns of a mesh after which no finer one is solved",
+    )
     options = parser.parse_args(arguments)
     seeds = range(options.seed, options.seed + options.scenes)
     rows = [
         row
-        for row in collect(seeds, options.rows, lambda text: print(text, flush=True))
+        for row in collect(seeds, options.rows, lambda text: print(text, flush=True), options.most)
         if row.get("ref") and row["seed"] >= (options.judged_from or 0)
     ]
     tallies = {tol: Tally() for tol in options.tolerance}
