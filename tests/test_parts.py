@@ -383,7 +383,7 @@ def test_a_mesh_that_is_refused(case, tmp_path):
 
 def test_mesh_files_that_are_not_read(tmp_path):
     for name, sentence in (
-        ("part.unv", "universal files"),
+        ("part.unv", "no dataset 2411 of nodes"),
         ("part.stl", "is unknown; known are .msh"),
         ("part.inp", "cannot be opened"),
     ):

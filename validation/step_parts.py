@@ -16,7 +16,7 @@ from solidgear.machine.apart import apart
 from solidgear.meshing.cuts import tool
 from solidgear.meshing.gmsh_session import Session, import_gmsh
 from solidgear.meshing.outline import Frustum
-from solidgear.meshing.step import axis_angle
+from solidgear.meshing.solids import axis_angle
 from solidgear.meshing.tetrahedra import draw_revolved
 from solidgear.scene import Keyway, Segment
 from solidgear.scene.body_file import UNITS
@@ -137,6 +137,27 @@ def write_two(path: str) -> None:
         for y in (0.0, 200.0):
             gmsh.model.occ.addCylinder(0, y, 0, 0, 100, 0, 20)
         gmsh.model.occ.synchronize()
+        gmsh.write(path)
+
+
+def write_solids(path: str, solids: Sequence[tuple[float, float, float, float]]) -> None:
+    """Write several cylinders and tubes along y, each a solid of its own.
+
+    Parameters
+    ----------
+    path : str
+    solids : sequence of (y0, y1, radius, bore)
+        mm; radii, and a bore of 0 is none.
+    """
+    gmsh = import_gmsh()
+    with Session(gmsh):
+        occ = gmsh.model.occ
+        for y0, y1, radius, bore in solids:
+            whole = occ.addCylinder(0, y0, 0, 0, y1 - y0, 0, radius)
+            if bore:
+                hole = occ.addCylinder(0, y0, 0, 0, y1 - y0, 0, bore)
+                occ.cut([(3, whole)], [(3, hole)])
+        occ.synchronize()
         gmsh.write(path)
 
 

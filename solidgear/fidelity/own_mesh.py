@@ -18,6 +18,7 @@ from solidgear.meshing.quality import check_mesh
 if TYPE_CHECKING:
     from skfem import Mesh
 
+    from solidgear.scene import Material
     from solidgear.scene.shaft import Shaft
 
 #: distance of a node from a surface of revolution, over its radius, at which it is on it
@@ -35,6 +36,8 @@ def solid_body(
     wanted: Sequence[tuple[Any, str]] | None = None,
     clipped: bool = True,
     facts: Mapping[str, Any] | None = None,
+    owner: np.ndarray | None = None,
+    materials: Sequence[Material] | None = None,
 ) -> Body:
     """The free body of a mesh, with ports on cylinders and cones of its surface.
 
@@ -54,6 +57,10 @@ def solid_body(
         within the seat count.
     facts : mapping, optional
         More of them for ``body.mesh``.
+    owner : (ne,) ndarray of int, optional
+        Place of each element's material among ``materials``; by default that of the segment which
+        its middle lies in.
+    materials : sequence of Material, optional
 
     Returns
     -------
@@ -76,11 +83,13 @@ def solid_body(
     """
     wanted = wanted or [(s, s.attachment) for s in shaft.stations]
     quality = check_mesh(mesh)
-    y = mesh.p[1][mesh.t].mean(axis=0)
-    segment = np.searchsorted([s.y1 for s in shaft.segments[:-1]], y)
-    solid = _isoparametric(mesh, element, segment)
+    if owner is None:
+        y = mesh.p[1][mesh.t].mean(axis=0)
+        owner = np.searchsorted([s.y1 for s in shaft.segments[:-1]], y)
+        materials = None
+    solid = _isoparametric(mesh, element, owner)
     facets = faces_on(solid, shaft.segments, clipped)
-    block, ties = free_block(solid, shaft, wanted, facets, clipped=clipped)
+    block, ties = free_block(solid, shaft, wanted, facets, clipped=clipped, materials=materials)
     own = {
         "element": element,
         "elements": int(solid.dofs.shape[1]),

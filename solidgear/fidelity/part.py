@@ -5,6 +5,7 @@ from __future__ import annotations
 import hashlib
 from collections.abc import Sequence
 from pathlib import Path
+from typing import Any
 
 from solidgear.body import Body
 from solidgear.errors import SolidgearError
@@ -13,7 +14,7 @@ from solidgear.fidelity.own_mesh import solid_body
 from solidgear.machine.apart import ApartError, apart
 from solidgear.meshing import step
 from solidgear.meshing.element_size import size_formulas
-from solidgear.meshing.mesh_file import FileMesh, mesh_from
+from solidgear.meshing.mesh_file import mesh_from
 from solidgear.meshing.outline import Frustum, corners_of, slabs_between, tolerance_of
 from solidgear.meshing.placing import Placing
 from solidgear.meshing.quality import MeshError, check_mesh
@@ -63,8 +64,10 @@ def part_body(
         raise SolidgearError(f"{file.name} has changed since the scene was read: read it again")
     place = Placing(file.unit, file.turn, file.foot)
     facts = {"file": file.name, "refinement": refinement}
+    named = tuple(g.name for g in file.groups if g.name)
+    materials = file.materials(scene.material) if file.groups else None
     if file.kind == "mesh":
-        found = _apart(file, mesh_from, file.path, place)
+        found = _apart(file, mesh_from, file.path, place, named)
         # flat elements of first order are taken as the shape only, since they lock in bending: on a
         # rod of 16 faces around they miss the deflection by -7.7 %, those of second order with straight
         # sides by +2.3 %, which is what the flat faces take from the section
@@ -72,18 +75,34 @@ def part_body(
         if element != found.element:
             facts["file_element"] = found.element
         return solid_body(
-            found.mesh, scene, element=element, wanted=wanted, clipped=True, facts=facts
+            found.mesh,
+            scene,
+            element=element,
+            wanted=wanted,
+            clipped=True,
+            facts=facts,
+            owner=found.owner if materials else None,
+            materials=materials,
         )
     plan = step_plan(
         scene, wanted, size=size, graded_size=graded_size, refinement=refinement, around=around
     )
-    mesh = _apart(file, step.mesh, file.path, place, plan)
+    mesh, owner = _apart(file, step.mesh, file.path, place, plan, named)
     # four times what the arcs lose by themselves
     check_mesh(mesh, volume=file.volume, rtol=max(2e-3, 15.0 / plan["around"] ** 4 * 4))
-    return solid_body(mesh, scene, element="tet10", wanted=wanted, clipped=False, facts=facts)
+    return solid_body(
+        mesh,
+        scene,
+        element="tet10",
+        wanted=wanted,
+        clipped=False,
+        facts=facts,
+        owner=owner if materials else None,
+        materials=materials,
+    )
 
 
-def _apart(file, function, *arguments) -> FileMesh:
+def _apart(file, function, *arguments) -> Any:
     """What a process of its own makes of a file."""
     try:
         return apart(function, *arguments, seconds=MESH_SECONDS)

@@ -111,6 +111,7 @@ def free_block(
     facets_of: Facets,
     *,
     clipped: bool = False,
+    materials: Sequence[Any] | None = None,
 ) -> tuple[Block, list[tuple[int, float, np.ndarray]]]:
     """The free block of a mesh with the rows of its ports.
 
@@ -124,6 +125,8 @@ def free_block(
         From :func:`seat_facets`, say.
     clipped : bool
         Facets may reach beyond the ends of their seat, which then end where they are said to.
+    materials : sequence of Material, optional
+        That the elements name; by default those of the segments.
 
     Returns
     -------
@@ -137,7 +140,7 @@ def free_block(
     SolidgearError
         If no face lies on a seat.
     """
-    k, m = _matrices(mesh, [segment.material for segment in scene.segments])
+    k, m = _matrices(mesh, materials or [segment.material for segment in scene.segments])
     n = mesh.nodes.shape[1]
     rows, ties = [], []
     for i, (station, attachment) in enumerate(wanted):

@@ -1,10 +1,8 @@
-"""A volume mesh from a file: gmsh, Abaqus, Nastran or VTK, as meshio reads them."""
+"""A volume mesh from a file of any of the formats of :mod:`solidgear.meshing.decks`."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass, replace
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -12,20 +10,12 @@ import scipy.sparse as sp
 from scipy.sparse.csgraph import connected_components
 from skfem import Mesh, MeshHex1, MeshHex2, MeshTet1, MeshTet2
 
+from solidgear.meshing.decks import Deck, read
+from solidgear.meshing.decks.deck import KINDS
+from solidgear.meshing.groups import owners, told
 from solidgear.meshing.placing import Placing
-from solidgear.meshing.quality import MeshError, check_mesh
+from solidgear.meshing.quality import MeshError, check_mesh, element_volumes
 
-#: how a file ends, and the module of meshio that reads it
-FORMATS = {".msh": "gmsh", ".inp": "abaqus", ".bdf": "nastran", ".nas": "nastran", ".vtu": "vtu"}
-#: meshio's kinds of cells that are assembled here, and what they are called
-KINDS = {
-    "tetra": "tet4",
-    "tetra10": "tet10",
-    "hexahedron": "hex8",
-    "hexahedron20": "hex20",
-}
-#: kinds of cells of a volume that are not
-OTHERS = ("wedge", "pyramid", "hexahedron", "tetra", "polyhedron", "VTK_LAGRANGE")
 #: corners between which the middle nodes of VTK's cells lie, in its order
 _TET_EDGES = ((0, 1), (1, 2), (2, 0), (0, 3), (1, 3), (2, 3))
 _HEX_EDGES = (
@@ -50,20 +40,49 @@ class FileMesh:
         ``tet4``, ``tet10``, ``hex8`` or ``hex20``.
     volume : float
         m^3.
+    owner : (ne,) ndarray of int
+        Place of the group of each element among those that were named; one more for the rest.
+    rest : tuple of str
+        Groups of the rest.
+    told : tuple of str
+        Groups of the file that tell materials, where there are several.
+    remarks : tuple of str
+        What is odd about the file.
     """
 
     mesh: Mesh
     element: str
     volume: float
+    owner: np.ndarray
+    rest: tuple[str, ...] = ()
+    told: tuple[str, ...] = ()
+    remarks: tuple[str, ...] = ()
 
-    def skin(self) -> tuple[np.ndarray, np.ndarray]:
-        """Points (3, n) and triangles (3, t) of its surface; quadrilaterals are cut in two."""
-        corners = self.mesh.facets[:, self.mesh.boundary_facets()]
+    def faces(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Its surface and what lies between groups.
+
+        Returns
+        -------
+        points : (3, n) ndarray
+        triangles : (3, t) ndarray of int
+            Quadrilaterals are cut in two.
+        sides : (2, t) ndarray of int
+            Owner on each side, -1 outside.
+        """
+        f2t = self.mesh.f2t
+        sides = np.where(f2t >= 0, self.owner[f2t], -1)
+        seen = np.flatnonzero(sides[0] != sides[1])
+        corners, sides = self.mesh.facets[:, seen], sides[:, seen]
         if len(corners) == 3:
-            return self.mesh.p, corners
+            return self.mesh.p, corners, sides
         # scikit-fem numbers the corners of a facet by rows: 0 1 2 around, 3 across
         around = _around(self.mesh.p, corners)
-        return self.mesh.p, np.hstack([around[[0, 1, 2]], around[[0, 2, 3]]])
+        triangles = np.hstack([around[[0, 1, 2]], around[[0, 2, 3]]])
+        return self.mesh.p, triangles, np.hstack([sides, sides])
+
+    def volumes(self, count: int) -> np.ndarray:
+        """Volume of each of so many groups, m^3."""
+        return np.bincount(self.owner, weights=element_volumes(self.mesh), minlength=count)
 
 
 def _around(p, quads) -> np.ndarray:
@@ -83,13 +102,15 @@ def _around(p, quads) -> np.ndarray:
     return np.take_along_axis(quads, np.argsort(angle, axis=0), axis=0)
 
 
-def mesh_from(path: str, place: Placing) -> FileMesh:
+def mesh_from(path: str, place: Placing, named: tuple[str, ...] = ()) -> FileMesh:
     """The volume mesh of a file.
 
     Parameters
     ----------
     path : str
     place : Placing
+    named : tuple of str
+        Groups of the file with materials of their own.
 
     Returns
     -------
@@ -99,68 +120,25 @@ def mesh_from(path: str, place: Placing) -> FileMesh:
     ------
     MeshError
         A file that cannot be read, a surface mesh, several kinds of elements, elements that are not
-        assembled here or are inverted, or a mesh in pieces.
+        assembled here or are inverted, a mesh in pieces or with a hole where an element is missing,
+        and groups that are not there or share elements.
     """
-    points, kind, cells = _read(path)
-    points = place.of(points)
-    _sound(points, cells, len(_HEX_CORNERS) if kind.startswith("hex") else 4)
-    mesh = _tets(points, cells) if kind.startswith("tetra") else _hexes(points, cells)
-    return FileMesh(mesh, KINDS[kind], check_mesh(mesh).volume)
+    deck = read(path)
+    points = place.of(deck.points)
+    hexes = deck.kind.startswith("hex")
+    _sound(deck, points, len(_HEX_CORNERS) if hexes else 4)
+    owner, rest = owners(deck, named)
+    mesh = _hexes(points, deck.cells) if hexes else _tets(points, deck.cells)
+    found = FileMesh(
+        mesh, KINDS[deck.kind], check_mesh(mesh).volume, owner, rest, told(deck), deck.remarks
+    )
+    _no_holes(found)
+    return found
 
 
-def _read(path: str) -> tuple[np.ndarray, str, np.ndarray]:
-    """Points (3, n), kind of cells and cells (nodes, ne) of a file."""
-    ending = Path(path).suffix.lower()
-    if ending == ".unv":
-        raise MeshError(
-            "universal files (.unv) cannot be read here: write the mesh as .msh, .inp, .bdf or .vtu"
-        )
-    if ending not in FORMATS:
-        raise MeshError(
-            f"a mesh file that ends in {ending or 'nothing'} is unknown; known are "
-            f"{', '.join(FORMATS)}"
-        )
-    found = _parsed(path, ending)
-    points = np.asarray(found.points, float)
-    if points.ndim != 2 or points.shape[1] != 3:
-        raise MeshError("its nodes are not points in space")
-    by_kind: dict[str, list[np.ndarray]] = {}
-    for block in found.cells:
-        if len(block.data):
-            by_kind.setdefault(block.type, []).append(np.asarray(block.data, np.int64))
-    volumes = [kind for kind in by_kind if kind.startswith(OTHERS)]
-    if not volumes:
-        counts = ", ".join(f"{sum(map(len, v))} {kind}" for kind, v in by_kind.items())
-        raise MeshError(
-            f"holds no volume elements ({counts or 'no elements at all'}): mesh the inside too"
-        )
-    unknown = [kind for kind in volumes if kind not in KINDS]
-    if unknown or len(volumes) > 1:
-        counts = ", ".join(f"{sum(map(len, by_kind[kind]))} {kind}" for kind in volumes)
-        raise MeshError(
-            f"holds {counts}; wanted is one kind of {', '.join(KINDS)}, for no other is assembled"
-        )
-    return points.T, volumes[0], np.concatenate(by_kind[volumes[0]]).T
-
-
-def _parsed(path: str, ending: str) -> Any:
-    import importlib
-
-    import meshio
-
-    read: Callable = importlib.import_module(f"meshio.{FORMATS[ending]}").read
-    try:
-        return read(path)
-    except OSError as error:
-        raise MeshError(f"cannot be read ({error.strerror or error})") from error
-    except (Exception, SystemExit) as error:  # whatever a parser meets in a file that is none
-        said = str(error) if isinstance(error, (ValueError, meshio.ReadError)) else ""
-        what = f" ({' '.join(said.split())[:120]})" if said else ": it is broken or cut off"
-        raise MeshError(f"cannot be read as {FORMATS[ending]}{what}") from error
-
-
-def _sound(points, cells, corners: int) -> None:
+def _sound(deck: Deck, points, corners: int) -> None:
     """Refuse what is no mesh of one part."""
+    cells = deck.cells
     if cells.min() < 0 or cells.max() >= points.shape[1]:
         raise MeshError("an element names a node that is not there")
     if not np.isfinite(points[:, cells]).all():
@@ -168,24 +146,49 @@ def _sound(points, cells, corners: int) -> None:
     own = np.sort(cells, axis=0)
     twice = np.flatnonzero((own[1:] == own[:-1]).any(axis=0))
     if len(twice):
-        raise MeshError(f"element {twice[0] + 1} has a node twice")
-    if (
-        len(np.unique(own[:corners], axis=1).T) < own.shape[1]
-        and len(np.unique(own, axis=1).T) < (own.shape[1])
-    ):
-        raise MeshError("an element is there twice")
+        raise MeshError(f"{deck.named(twice[0])} has a node twice")
+    _, first, of = np.unique(own, axis=1, return_index=True, return_inverse=True)
+    if len(first) < own.shape[1]:
+        copy = int(np.flatnonzero(first[of.ravel()] != np.arange(own.shape[1]))[0])
+        groups = [f'"{g.name}"' for g in deck.groups if copy in g.elements]
+        where = f"{deck.named(copy)}: " if deck.lines is not None else ""
+        more = f", as an element of {groups[0]} too: its groups overlap" if groups else ""
+        raise MeshError(f"{where}an element is there twice{more}")
     n = points.shape[1]
     first = np.repeat(cells[:1], corners - 1, axis=0).ravel()
     joined = sp.coo_matrix((np.ones(len(first)), (first, cells[1:corners].ravel())), shape=(n, n))
     _, label = connected_components(joined, directed=False)
     pieces, count = np.unique(label[cells[0]], return_counts=True)
     if len(pieces) > 1:
-        small = cells[0, label[cells[0]] == pieces[np.argmin(count)]]
-        at = "({:.4g}, {:.4g}, {:.4g})".format(*points[:, small].mean(axis=1))
+        least = pieces[np.argmin(count)]
+        cell = int(np.flatnonzero(label[cells[0]] == least)[0])
+        x, y, z = 1e3 * points[:, cells[:corners, cell]].mean(axis=1)
+        at = f"({x:.4g}, {y:.4g}, {z:.4g}) mm"
         raise MeshError(
-            f"falls into {len(pieces)} pieces that share no node, one near {at} m in the scene: "
+            f"falls into {len(pieces)} pieces that share no node, one near {at} in the scene: "
             "merge nodes at one place, or leave all but one piece out"
         )
+
+
+#: faces around a hole up to which it is one that elements are missing from, and none of the part
+FEW_FACES = 12
+
+
+def _no_holes(found: FileMesh) -> None:
+    """Refuse holes inside that a few lost elements leave."""
+    points, faces = found.mesh.p, found.mesh.facets[:, found.mesh.boundary_facets()]
+    n = points.shape[1]
+    first = np.repeat(faces[:1], len(faces) - 1, axis=0).ravel()
+    joined = sp.coo_matrix((np.ones(len(first)), (first, faces[1:].ravel())), shape=(n, n))
+    _, label = connected_components(joined, directed=False)
+    holes, count = np.unique(label[faces[0]], return_counts=True)
+    for hole, faces_of_it in zip(holes, count):
+        if len(holes) > 1 and faces_of_it <= FEW_FACES:
+            at = 1e3 * points[:, np.unique(faces[:, label[faces[0]] == hole])].mean(axis=1)
+            raise MeshError(
+                "has a hole of {} faces inside, near ({:.4g}, {:.4g}, {:.4g}) mm in the scene: an "
+                "element is missing there".format(faces_of_it, *at)
+            )
 
 
 def _tets(points, cells) -> Mesh:

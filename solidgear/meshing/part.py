@@ -6,6 +6,7 @@ import hashlib
 import re
 from functools import partial
 from pathlib import Path
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -16,8 +17,9 @@ from solidgear.meshing.mesh_file import mesh_from
 from solidgear.meshing.placing import TURNS, Placing, Triple
 from solidgear.meshing.quality import MeshError
 from solidgear.meshing.round_part import ON_LINE, RoundPart, Wall, round_part
+from solidgear.meshing.section_materials import Share, shared_out
 from solidgear.meshing.step import look
-from solidgear.scene.body_file import UNITS, BodyFile, BodyTable, Recognised
+from solidgear.scene.body_file import UNITS, BodyFile, BodyTable, PartGroup, Recognised
 
 #: seconds after which a file is given up
 LOOK_SECONDS = 25.0
@@ -57,7 +59,8 @@ def recognise(table: BodyTable, folder: Path) -> Recognised:
         unit = _unit(table, content)
         foot = _foot(table)
         place = Placing(unit, TURNS[table.axis], foot)
-        points, triangles, volume, own_mesh = _surface(table, path, place)
+        found_in = _surface(table, path, place)
+        points, triangles = _skin(found_in)
         _sizes(table, points)
         found = round_part(points, triangles)
         if not found.share >= LEAST_ROUND:
@@ -71,9 +74,10 @@ def recognise(table: BodyTable, folder: Path) -> Recognised:
     lower = np.array(foot) + np.array(place.turn).T @ (0.0, start, 0.0)
     x, y, z = (float(v) for v in lower)
     points = points - [[0.0], [start], [0.0]]
+    shares, kinds = _shared_out(found_in, found.walls)
     walls = tuple(
         Wall(_rounded(w.y0 - start), _rounded(w.y1 - start), *map(_rounded, w[2:]))
-        for w in found.walls
+        for w in (share.wall for share in shares)
     )
     body = BodyFile(
         kind="step" if table.step is not None else "mesh",
@@ -83,16 +87,27 @@ def recognise(table: BodyTable, folder: Path) -> Recognised:
         unit=unit,
         turn=place.turn,
         foot=(x, y, z),
-        volume=volume,
+        volume=found_in.volume,
         round_share=found.share,
-        round_volume=volume_of(walls) / volume,  # type: ignore[arg-type]
-        **own_mesh,
+        round_volume=volume_of(walls) / found_in.volume,  # type: ignore[arg-type]
+        groups=found_in.groups,
+        told=() if table.materials else found_in.told,
+        mixed=tuple(f"s{k}" for k, share in enumerate(shares, 1) if share.mixed),
+        remarks=found_in.remarks,
+        **found_in.own_mesh,
     )
     cylinders = tuple(
         (s.r0 + s.r1, s.y0 - start, s.y1 - start) for s in found.surfaces if s.r0 == s.r1
     )
     origin = 0.0 if table.origin is None else -start
-    return Recognised(body, walls, origin, cylinders, partial(seat_share, points, triangles))
+    return Recognised(
+        body,
+        walls,
+        origin,
+        cylinders,
+        partial(seat_share, points, triangles),
+        tuple(tuple((kinds[k], part) for k, part in share.groups) for share in shares),
+    )
 
 
 def _rounded(value: float) -> float:
@@ -157,15 +172,32 @@ def _foot(table: BodyTable) -> Triple:
     return (x, y, z)
 
 
-def _surface(table: BodyTable, path: Path, place: Placing):
-    """Points and triangles on the surface in the scene, the volume of the part, and what is known
-    of its own mesh.
+class _Found(NamedTuple):
+    """What a file holds, in the scene.
+
+    ``points`` (3, n) and ``triangles`` (3, t) of its surface and of what lies between groups;
+    ``sides`` (2, t), group on each side, -1 outside; ``own_mesh``, fields of a :class:`BodyFile`.
     """
+
+    points: np.ndarray
+    triangles: np.ndarray
+    sides: np.ndarray
+    volume: float
+    groups: tuple[PartGroup, ...]
+    told: tuple[str, ...] = ()
+    remarks: tuple[str, ...] = ()
+    own_mesh: dict[str, Any] = {}
+
+
+def _surface(table: BodyTable, path: Path, place: Placing) -> _Found:
+    """What the file of a part holds."""
+    named = tuple(table.materials)
     try:
         if table.step is not None:
-            seen = apart(look, str(path), place, seconds=LOOK_SECONDS)
-            return seen.points, seen.triangles, seen.volume, {}
-        found = apart(mesh_from, str(path), place, seconds=LOOK_SECONDS)
+            seen = apart(look, str(path), place, named, seconds=LOOK_SECONDS)
+            groups = _groups(table, seen.volumes, seen.rest)
+            return _Found(seen.points, seen.triangles, seen.sides, seen.volume, groups)
+        found = apart(mesh_from, str(path), place, named, seconds=LOOK_SECONDS)
     except (ApartError, MemoryError) as error:
         raise MeshError(
             f"cannot be read: the reader {error or 'ran out of memory'}; the file is broken or too "
@@ -173,7 +205,49 @@ def _surface(table: BodyTable, path: Path, place: Placing):
         ) from None
     mesh = found.mesh
     counts = tuple(int(a.shape[1]) for a in (mesh.p, mesh.edges, mesh.facets, mesh.t))
-    return *found.skin(), found.volume, {"element": found.element, "counts": counts}
+    groups = _groups(table, found.volumes(len(named) + 1), found.rest)
+    own_mesh = {"element": found.element, "counts": counts}
+    points, triangles, sides = found.faces()
+    more = (found.told, found.remarks, own_mesh)
+    return _Found(points, triangles, sides, found.volume, groups, *more)
+
+
+def _groups(table: BodyTable, volumes, rest: tuple[str, ...]) -> tuple[PartGroup, ...]:
+    """Groups with materials of their own, and the rest where there is one."""
+    if not table.materials:
+        return ()
+    groups = [
+        PartGroup(name=name, material=material, volume=float(volume))
+        for (name, material), volume in zip(table.materials.items(), volumes)
+    ]
+    if len(volumes) > len(groups) and volumes[-1] > 0:
+        groups.append(PartGroup(name="", volume=float(volumes[-1]), members=rest))
+    return tuple(groups)
+
+
+def _skin(found: _Found) -> tuple[np.ndarray, np.ndarray]:
+    """Points and triangles of the surface alone."""
+    outside = (found.sides < 0).any(axis=0)
+    used, triangles = np.unique(found.triangles[:, outside], return_inverse=True)
+    return found.points[:, used], triangles.reshape(3, -1)
+
+
+def _shared_out(found: _Found, walls) -> tuple[list[Share], list[int]]:
+    """What the frusta are made of, and the first group of each material that they speak of.
+
+    Groups of one material are one; walls stay where they are.
+    """
+    if not found.groups:
+        return [Share(wall, ((0, 1.0),)) for wall in walls], [0]
+    materials: list[Any] = []
+    for group in found.groups:
+        if group.material not in materials:
+            materials.append(group.material)
+    of = np.array([materials.index(g.material) for g in found.groups] + [-1])
+    sides = of[found.sides]
+    apart_ = sides[0] != sides[1]
+    shares = shared_out(found.points, found.triangles[:, apart_], sides[:, apart_], walls)
+    return shares, [int(np.flatnonzero(of == k)[0]) for k in range(len(materials))]
 
 
 def _sizes(table: BodyTable, points) -> None:

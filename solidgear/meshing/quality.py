@@ -148,6 +148,28 @@ def element_ratios(mesh: Mesh) -> np.ndarray:
     return _measure(mesh)[3]
 
 
+def element_volumes(mesh: Mesh) -> np.ndarray:
+    """Volume of each element; no gate.
+
+    Parameters
+    ----------
+    mesh : skfem.MeshTet1, MeshTet2, MeshHex1 or MeshHex2
+
+    Returns
+    -------
+    (n_elements,) ndarray
+        m^3.
+    """
+    element = mesh.elem()
+    tet, curved = element.refdom.nnodes == 4, element.doflocs.shape[0] > element.refdom.nnodes
+    rule = _bernstein(tet, _DEGREE[tet, curved])
+    parts = [slice(i, i + _BATCH) for i in range(0, mesh.t.shape[1], _BATCH)]
+    dets = [_determinants(mesh, element, rule.points, part) for part in parts]
+    # the mean of a polynomial is that of its coefficients
+    means = [(rule.from_values @ det).mean(axis=0) for det in dets]
+    return np.concatenate(means) / (6 if tet else 1)
+
+
 def _measure(mesh):
     """Quality, and per element the least and greatest det J and their ratio."""
     if mesh.dim() != 3:

@@ -9,7 +9,7 @@ every face a spline.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import acos, cos, pi, sin
+from math import cos, pi, sin
 from typing import Any
 
 import numpy as np
@@ -18,6 +18,7 @@ from solidgear.meshing.element_size import set_size
 from solidgear.meshing.gmsh_session import Session, import_gmsh
 from solidgear.meshing.placing import Placing
 from solidgear.meshing.quality import MeshError
+from solidgear.meshing.solids import fragmented, mm, read_solids, solid_owners
 from solidgear.meshing.tetrahedra import relaxed, to_skfem
 
 #: sides of a turn in the triangles that a part is looked at by
@@ -39,21 +40,31 @@ class Seen:
     Attributes
     ----------
     points : (3, n) ndarray
-        On its surface, m, in the axes of the scene.
+        On its surface and between its solids, m, in the axes of the scene.
     triangles : (3, t) ndarray of int
-        Closed.
-    volume : float
-        m^3.
+    sides : (2, t) ndarray of int
+        Owner of the solid on each side, -1 outside.
+    volumes : (n + 1,) ndarray
+        Of the solids that were named and of the rest, m^3.
+    rest : tuple of str
+        Solids of the rest.
     faces : int
     """
 
     points: np.ndarray
     triangles: np.ndarray
-    volume: float
+    sides: np.ndarray
+    volumes: np.ndarray
+    rest: tuple[str, ...]
     faces: int
 
+    @property
+    def volume(self) -> float:
+        """Of the part, m^3."""
+        return float(self.volumes.sum())
 
-def look(path: str, place: Placing) -> Seen:
+
+def look(path: str, place: Placing, named: tuple[str, ...] = ()) -> Seen:
     """Triangles on the surface of the part in a STEP file.
 
     Parameters
@@ -61,6 +72,8 @@ def look(path: str, place: Placing) -> Seen:
     path : str
     place : Placing
         Its unit is not used: STEP files name their own.
+    named : tuple of str
+        Numbers of solids with materials of their own; without any, one solid is wanted.
 
     Returns
     -------
@@ -69,12 +82,18 @@ def look(path: str, place: Placing) -> Seen:
     Raises
     ------
     MeshError
-        No part, several, an open one, or faces that cannot be meshed.
+        No part, several without names, solids that overlap or do not touch, an open one, or faces
+        that cannot be meshed.
     """
     gmsh = import_gmsh()
     with Session(gmsh):
-        solid = _read(gmsh, path, place)
-        volume = float(gmsh.model.occ.getMass(3, solid))
+        solids = read_solids(gmsh, path, place, several=bool(named))
+        owner, rest = solid_owners(gmsh, solids, named)
+        pieces = fragmented(gmsh, solids, [])
+        volumes = np.zeros(len(named) + 1)
+        for own, tags in zip(owner, pieces):
+            volumes[own] += sum(gmsh.model.occ.getMass(3, tag) for tag in tags)
+        volume = float(volumes.sum())
         extent = _extent(gmsh)
         faces = [tag for _, tag in gmsh.model.getEntities(2)]
         _no_slivers(gmsh, faces, extent, place)
@@ -87,101 +106,18 @@ def look(path: str, place: Placing) -> Seen:
         except Exception as error:
             bad = _unmeshed(gmsh, faces, place)
             raise MeshError(f"{bad} cannot be covered with triangles ({error})") from error
-        points, triangles = _triangles(gmsh)
+        points, triangles, sides = _triangles(gmsh, faces, owner, pieces)
     if not len(points[0]) or not np.isfinite(points).all():
         raise MeshError("its faces have no area")
-    a, b, c = (points[:, corner] for corner in triangles)
+    outside = (sides < 0).any(axis=0)
+    a, b, c = (points[:, corner[outside]] for corner in triangles)
     inside = abs(np.einsum("it,it->", a, np.cross(b.T, c.T).T)) / 6
     if not abs(inside - volume) <= OPEN * volume:
         raise MeshError(
             f"its faces enclose {1e6 * inside:.4g} cm^3 where the solid is told to have "
             f"{1e6 * volume:.4g} cm^3: faces are missing, turned inside out or intersect"
         )
-    return Seen(points, triangles, volume, len(faces))
-
-
-def _read(gmsh, path: str, place: Placing) -> int:
-    """The one solid of a file, turned and shifted; lengths are metres."""
-    gmsh.option.setString("Geometry.OCCTargetUnit", "M")
-    occ = gmsh.model.occ
-    try:
-        occ.importShapes(path, highestDimOnly=False)
-        occ.synchronize()
-    except Exception as error:
-        raise MeshError("cannot be read as STEP: it is broken or cut off") from error
-    solids = [tag for _, tag in gmsh.model.getEntities(3)]
-    if len(solids) != 1:
-        raise MeshError(_no_solid(gmsh, solids))
-    # measured before anything is meshed: without a size, nothing below makes sense
-    volume = occ.getMass(3, solids[0])
-    if not np.isfinite(volume) or abs(volume) < 1e-18:
-        raise MeshError(f"its solid has a volume of {volume:.3g} m^3")
-    if volume < 0:
-        raise MeshError("its solid is turned inside out, with a volume below zero")
-    x, y, z = (-v for v in place.foot)
-    occ.translate([(3, solids[0])], x, y, z)
-    axis, angle = axis_angle(np.array(place.turn))
-    if angle:
-        occ.rotate([(3, solids[0])], 0.0, 0.0, 0.0, *axis, angle)
-    occ.synchronize()
-    return solids[0]
-
-
-def axis_angle(turn: np.ndarray) -> tuple[tuple[float, float, float], float]:
-    """Axis and angle of a rotation.
-
-    Parameters
-    ----------
-    turn : (3, 3) ndarray
-
-    Returns
-    -------
-    axis : tuple of float
-    angle : float
-        rad, 0 to pi.
-
-    Examples
-    --------
-    >>> from solidgear.meshing.placing import TURNS
-    >>> axis_angle(np.array(TURNS["x"]))[1] == pi / 2
-    True
-    """
-    angle = acos(float(np.clip((np.trace(turn) - 1) / 2, -1.0, 1.0)))
-    w, v = np.linalg.eigh((turn + turn.T) / 2)
-    axis = v[:, int(np.argmax(w))]
-    skew = np.array([turn[2, 1] - turn[1, 2], turn[0, 2] - turn[2, 0], turn[1, 0] - turn[0, 1]])
-    if skew @ axis < 0:
-        axis = -axis
-    x, y, z = (float(v) for v in axis)
-    return (x, y, z), angle
-
-
-def _no_solid(gmsh, solids: list[int]) -> str:
-    """Why a file does not hold one solid."""
-    if solids:
-        each = [gmsh.model.occ.getCenterOfMass(3, tag) for tag in solids[:4]]
-        places = "; ".join(f"at {_mm(at)}" for at in each)
-        return (
-            f"holds {len(solids)} separate solids ({places}) where one is wanted: join them in the "
-            "CAD program"
-        )
-    faces = [tag for _, tag in gmsh.model.getEntities(2)]
-    if not faces:
-        return "holds no solid, and no faces either"
-    loose = [
-        int(gmsh.model.getAdjacencies(1, edge)[0][0])
-        for _, edge in gmsh.model.getEntities(1)
-        if len(gmsh.model.getAdjacencies(1, edge)[0]) == 1
-    ]
-    at = loose[0] if loose else faces[0]
-    return (
-        f"holds {len(faces)} faces that enclose no solid; the shell is open at face {at} at "
-        f"{_mm(gmsh.model.occ.getCenterOfMass(2, at))}"
-    )
-
-
-def _mm(at) -> str:
-    return "({:.4g}, {:.4g}, {:.4g}) mm".format(*(round(1e3 * float(v), 6) + 0.0 for v in at))
+    return Seen(points, triangles, sides, volumes, rest, len(faces))
 
 
 def _extent(gmsh) -> float:
@@ -210,7 +146,7 @@ def _width(gmsh, face: int) -> float:
 
 def _face(gmsh, tag: int, place: Placing) -> str:
     at = np.array(gmsh.model.occ.getCenterOfMass(2, tag))[:, None]
-    return f"face {tag} at {_mm(place.back(at)[:, 0])}"
+    return f"face {tag} at {mm(place.back(at)[:, 0])}"
 
 
 def _unmeshed(gmsh, faces: list[int], place: Placing) -> str:
@@ -218,20 +154,31 @@ def _unmeshed(gmsh, faces: list[int], place: Placing) -> str:
     return _face(gmsh, empty[0], place) if empty else "its surface"
 
 
-def _triangles(gmsh) -> tuple[np.ndarray, np.ndarray]:
+def _triangles(gmsh, faces: list[int], owner: list[int], pieces: list[list[int]]):
+    """Triangles of the surface and of what lies between solids with different owners."""
     tags, places, _ = gmsh.model.mesh.getNodes()
     at = np.zeros(int(tags.max(initial=0)) + 1, int)
     at[tags] = np.arange(len(tags))
-    types, _, nodes = gmsh.model.mesh.getElements(2)
-    corners = [n.reshape(-1, 3) for kind, n in zip(types, nodes) if kind == 2]
+    of = {tag: own for own, tags in zip(owner, pieces) for tag in tags}
+    corners, sides = [], []
+    for face in faces:
+        around = [of[int(tag)] for tag in gmsh.model.getAdjacencies(2, face)[0]]
+        own = (around + [-1])[:2]
+        if own[0] == own[1]:
+            continue
+        types, _, nodes = gmsh.model.mesh.getElements(2, face)
+        for kind, numbers in zip(types, nodes):
+            if kind == 2:
+                corners.append(numbers.reshape(-1, 3))
+                sides.append(np.tile(own, (len(corners[-1]), 1)))
     if not corners:
-        return np.zeros((3, 0)), np.zeros((3, 0), int)
+        return np.zeros((3, 0)), np.zeros((3, 0), int), np.zeros((2, 0), int)
     # points that belong to no face are none of the part
     used, triangles = np.unique(at[np.concatenate(corners)].T, return_inverse=True)
-    return places.reshape(-1, 3).T[:, used], triangles.reshape(3, -1)
+    return places.reshape(-1, 3).T[:, used], triangles.reshape(3, -1), np.concatenate(sides).T
 
 
-def mesh(path: str, place: Placing, plan: dict[str, Any]):
+def mesh(path: str, place: Placing, plan: dict[str, Any], named: tuple[str, ...] = ()):
     """Curved tetrahedra in the part of a STEP file.
 
     Parameters
@@ -242,10 +189,15 @@ def mesh(path: str, place: Placing, plan: dict[str, Any]):
         ``circles`` and ``planes``, (y, radius) of cuts into the surface and across the part, m;
         ``formulas`` of the size of elements, the largest ``size`` and the ``graded`` one at concave
         edges, m; ``around``, elements to a turn.
+    named : tuple of str
+        As for :func:`look`.
 
     Returns
     -------
-    skfem.MeshTet2
+    mesh : skfem.MeshTet2
+        Solids share the nodes of the faces between them.
+    owner : (ne,) ndarray of int
+        Place of the solid of each element among those that were named, one more for the rest.
 
     Raises
     ------
@@ -254,8 +206,9 @@ def mesh(path: str, place: Placing, plan: dict[str, Any]):
     """
     gmsh = import_gmsh()
     with Session(gmsh):
-        solid = _read(gmsh, path, place)
-        _cut(gmsh, solid, plan)
+        solids = read_solids(gmsh, path, place, several=bool(named))
+        owner, _ = solid_owners(gmsh, solids, named)
+        pieces = _cut(gmsh, solids, plan)
         formulas = plan["formulas"]
         set_size(gmsh, formulas, plan["size"])
         _grade(gmsh, plan)
@@ -264,7 +217,8 @@ def mesh(path: str, place: Placing, plan: dict[str, Any]):
         try:
             for dimension in (1, 2, 3):
                 gmsh.model.mesh.generate(dimension)
-            return relaxed(to_skfem(gmsh))
+            made = relaxed(to_skfem(gmsh))
+            return made, _owned(gmsh, owner, pieces)
         except MeshError:
             raise
         except Exception as error:
@@ -274,29 +228,25 @@ def mesh(path: str, place: Placing, plan: dict[str, Any]):
             ) from error
 
 
-def _cut(gmsh, solid: int, plan) -> None:
-    """Imprint circles on the surface, and cut across at planes."""
+def _owned(gmsh, owner: list[int], pieces: list[list[int]]) -> np.ndarray:
+    """Owner of each element, in gmsh's order."""
+    every = gmsh.model.mesh.getElements(3)[1][0]
+    out = np.zeros(len(every), int)
+    for own, tags in zip(owner, pieces):
+        for tag in tags:
+            out[np.isin(every, gmsh.model.mesh.getElements(3, tag)[1][0])] = own
+    return out
+
+
+def _cut(gmsh, solids: list[int], plan) -> list[list[int]]:
+    """Imprint circles on the surface, and cut across at planes; the pieces of each solid."""
     occ = gmsh.model.occ
     tools = [
         (1, occ.addCircle(0.0, y, 0.0, r, zAxis=[0, 1, 0], xAxis=[0, 0, 1]))
         for y, r in plan["circles"]
     ]
     tools += [(2, occ.addDisk(0.0, y, 0.0, r, r, zAxis=[0, 1, 0])) for y, r in plan["planes"]]
-    if not tools:
-        return
-    try:
-        occ.fragment([(3, solid)], tools)
-    except Exception as error:
-        raise MeshError(f"the ends of seats cannot be cut into the surface ({error})") from error
-    occ.synchronize()
-    for dimension in (2, 1):
-        loose = [
-            (dimension, tag)
-            for _, tag in gmsh.model.getEntities(dimension)
-            if not len(gmsh.model.getAdjacencies(dimension, tag)[0])
-        ]
-        occ.remove(loose, recursive=True)
-        occ.synchronize()
+    return fragmented(gmsh, solids, tools)
 
 
 def _grade(gmsh, plan) -> None:
@@ -330,7 +280,7 @@ def _grade(gmsh, plan) -> None:
 def _concave(gmsh, edge: int) -> bool:
     """Whether the material around the middle of an edge takes clearly more than half of a turn."""
     faces, _ = gmsh.model.getAdjacencies(1, edge)
-    if len(faces) != 2:
+    if len(faces) < 2:
         return False
     (low,), (high,) = gmsh.model.getParametrizationBounds(1, edge)
     middle = [0.53 * low + 0.47 * high]
@@ -349,4 +299,5 @@ def _concave(gmsh, edge: int) -> bool:
     inside = 0
     for _, solid in gmsh.model.getEntities(3):
         inside += sum(gmsh.model.isInside(3, solid, list(p)) for p in ring)
-    return inside > CONCAVE * len(ring)
+    # deep inside there is no edge of the part
+    return CONCAVE * len(ring) < inside < len(ring)

@@ -6,13 +6,14 @@ the file was read.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Annotated, Any, Literal, NamedTuple
 
 from pydantic import BeforeValidator, Field, model_validator
 
 from solidgear.errors import SceneError, listed
+from solidgear.scene.materials import by_name
 from solidgear.scene.parts import Material, Model, Segment
 from solidgear.scene.units import Length, Mass, PositiveLength, quantity
 
@@ -54,6 +55,8 @@ class BodyTable(Model):
     origin: Origin = None
     size_check: Annotated[list[PositiveLength], Field(min_length=2, max_length=2)] | None = None
     mass_check: Mass | None = None
+    #: by the name or number of a group of the file
+    materials: dict[str, Annotated[Material, BeforeValidator(by_name)]] = {}
 
     @model_validator(mode="after")
     def _one_file(self):
@@ -100,6 +103,34 @@ class SeatTable(Model):
 Triple = tuple[float, float, float]
 
 
+class PartGroup(Model):
+    """What of a part from a file is of one material.
+
+    Attributes
+    ----------
+    name : str
+        Of the group of elements or the solid in the file; empty for all the rest.
+    material : Material or None
+        None is that of the scene.
+    volume : float
+        m^3.
+    members : tuple of str
+        Of the rest: groups of the file with elements in it.
+    """
+
+    name: str
+    material: Material | None = None
+    volume: float
+    members: tuple[str, ...] = ()
+
+    @property
+    def said(self) -> str:
+        """Its name in a sentence."""
+        if self.name:
+            return f'"{self.name}"'
+        return f"the rest{self.members and f' ({listed(self.members, 6)})' or ''}"
+
+
 class BodyFile(Model):
     """A part from a file, as far as a scene knows it.
 
@@ -126,6 +157,14 @@ class BodyFile(Model):
         Of a mesh file.
     counts : tuple of int or None
         Vertices, edges, faces and cells of a mesh file.
+    groups : tuple of PartGroup
+        What has a material of its own, and the rest; empty where all of it is of one.
+    told : tuple of str
+        Groups of the file that tell materials, none of which a scene names.
+    mixed : tuple of str
+        Segments of the round part that are of several materials across.
+    remarks : tuple of str
+        What is odd about the file.
 
     Raises
     ------
@@ -152,21 +191,91 @@ class BodyFile(Model):
     round_volume: float
     element: str = ""
     counts: tuple[int, int, int, int] | None = None
+    groups: tuple[PartGroup, ...] = ()
+    told: tuple[str, ...] = ()
+    mixed: tuple[str, ...] = ()
+    remarks: tuple[str, ...] = ()
 
     @property
     def what(self) -> str:
         """What it is in words."""
-        return "part"
+        return "part of several materials side by side," if self.mixed else "part"
 
     @property
     def round(self) -> bool:
         """Whether it is its segments, and nothing else."""
+        if self.mixed:
+            return False
         return self.round_share >= ALL_ROUND and abs(self.round_volume - 1) <= SAME_VOLUME
+
+    def materials(self, usual: Material) -> tuple[Material, ...]:
+        """Of its groups in their order.
+
+        Parameters
+        ----------
+        usual : Material
+            That of the scene.
+        """
+        return tuple(g.material or usual for g in self.groups) or (usual,)
+
+    def mass(self, usual: Material) -> float:
+        """Of the whole part, kg.
+
+        Parameters
+        ----------
+        usual : Material
+            That of the scene.
+        """
+        if not self.groups:
+            return usual.density * self.volume
+        return sum(m.density * g.volume for m, g in zip(self.materials(usual), self.groups))
+
+    def with_material(self, **changes: Any) -> BodyFile:
+        """The same part with constants replaced in the materials of its groups.
+
+        Parameters
+        ----------
+        **changes
+            `E`, `nu` or `density`.
+        """
+        groups = tuple(
+            g.with_changes(material=g.material.with_changes(**changes)) if g.material else g
+            for g in self.groups
+        )
+        return self.with_changes(groups=groups)
 
     @property
     def one_mesh(self) -> bool:
         """Whether its mesh is what it is, and no finer one can be made."""
         return self.kind == "mesh"
+
+
+def mean_material(materials: Sequence[Material], shares: Sequence[tuple[int, float]]) -> Material:
+    """One material for several side by side: stretched together they are as stiff and as heavy.
+
+    Parameters
+    ----------
+    materials : sequence of Material
+    shares : sequence of (int, float)
+        Places of materials, and shares of the volume that add up to 1.
+
+    Examples
+    --------
+    >>> steel = Material(E=200e9, nu=0.3, density=8000)
+    >>> light = Material(E=100e9, nu=0.3, density=2000)
+    >>> mean = mean_material([steel, light], [(0, 0.25), (1, 0.75)])
+    >>> mean.E, mean.density
+    (125000000000.0, 3500.0)
+    """
+    if len(shares) == 1:
+        return materials[shares[0][0]]
+    parts = [(materials[place], share) for place, share in shares]
+    modulus = sum(share * m.E for m, share in parts)
+    return Material(
+        E=modulus,
+        nu=sum(share * m.E * m.nu for m, share in parts) / modulus,
+        density=sum(share * m.density for m, share in parts),
+    )
 
 
 class Recognised(NamedTuple):
@@ -184,6 +293,8 @@ class Recognised(NamedTuple):
     seat_share : callable
         ``seat_share(radius, lo, hi)``: area of the surface that lies on a cylinder between two
         places, over that of the cylinder.
+    shares : tuple of tuple of (int, float)
+        Of each frustum: groups of the body and their shares; empty for a body without groups.
     """
 
     body: BodyFile
@@ -191,13 +302,27 @@ class Recognised(NamedTuple):
     origin: float
     cylinders: tuple[tuple[float, float, float], ...]
     seat_share: Callable[[float, float, float], float]
+    shares: tuple[tuple[tuple[int, float], ...], ...] = ()
 
     def segments(self, material: Material) -> list[Segment]:
-        """Its frusta, named s1, s2 and so on."""
+        """Its frusta, named s1, s2 and so on.
+
+        Parameters
+        ----------
+        material : Material
+            That of the scene.
+        """
         names = ("y0", "y1", "outer0", "outer1", "inner0", "inner1")
+        materials = self.body.materials(material)
         return [
-            Segment(name=f"s{k}", material=material, **dict(zip(names, wall)))
-            for k, wall in enumerate(self.walls, 1)
+            Segment(
+                name=f"s{k}",
+                material=mean_material(materials, share),
+                **dict(zip(names, wall)),
+            )
+            for k, (wall, share) in enumerate(
+                zip(self.walls, self.shares or [((0, 1.0),)] * len(self.walls)), 1
+            )
         ]
 
     def span(self, seat: SeatTable) -> tuple[float, float]:

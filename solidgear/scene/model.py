@@ -301,7 +301,10 @@ class Scene(Displayed, Model):
         segments = tuple(
             s.with_changes(material=s.material.with_changes(**changes)) for s in self.segments
         )
-        return self.with_changes(material=self.material.with_changes(**changes), segments=segments)
+        body = None if self.body is None else self.body.with_material(**changes)
+        return self.with_changes(
+            material=self.material.with_changes(**changes), segments=segments, body=body
+        )
 
     def with_bearing_scale(self, factor: float) -> Scene:
         """The same scene with every bearing's stiffness, series springs included, multiplied.

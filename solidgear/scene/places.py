@@ -76,8 +76,9 @@ def resolve(
     if part is None:
         segments, owner, surface, datums = _lay_out(table, problems)
     else:
-        segments, owner, surface, datums = _recognised(table, part)
-        problems += _weighed(table, part)
+        usual = _usual(table, part)
+        segments, owner, surface, datums = _recognised(usual, part)
+        problems += _weighed(table, usual, part)
     if segments is not None:
         shaft = shaft_problems(segments)
         problems += [one.located(None, path=_file_path(one.path, table, owner)) for one in shaft]
@@ -149,7 +150,7 @@ def resolve(
         raise SceneError.of(problems)
     return Scene.from_parts(
         segments,
-        table.material,
+        table.material if part is None else usual,
         bearings.values(),
         ports.pop(0),
         title=table.title,
@@ -212,9 +213,24 @@ def _lay_out(table: SceneTable, problems: list[SceneError]):
     return segments if whole else None, owner, surface, datums | {"end": y}
 
 
-def _recognised(table: SceneTable, part: Recognised):
+def _usual(table: SceneTable, part: Recognised) -> Material:
+    """The material of whatever has none of its own."""
+    if table.material is not None:
+        return table.material
+    own = [g for g in part.body.groups if g.material is None]
+    if own:
+        raise SceneError(
+            f"{own[0].said}, {1e6 * own[0].volume:.4g} cm^3, has no material: name its groups "
+            "here, or write [material] for all the rest",
+            path=("body", "materials"),
+        )
+    # all groups have one of their own, so that this is nobody's
+    return next(g.material for g in part.body.groups if g.material is not None)
+
+
+def _recognised(material: Material, part: Recognised):
     """What :func:`_lay_out` gives, of a part from a file."""
-    segments = part.segments(table.material)
+    segments = part.segments(material)
     datums = {"start": 0.0, "end": segments[-1].y1, "origin": part.origin}
     for s in segments:
         middle = (s.y0 + s.y1) / 2
@@ -222,14 +238,14 @@ def _recognised(table: SceneTable, part: Recognised):
     return segments, None, {s.name: (s.y0, s.y1) for s in segments}, datums
 
 
-def _weighed(table: SceneTable, part: Recognised) -> Iterator[SceneError]:
+def _weighed(table: SceneTable, material: Material, part: Recognised) -> Iterator[SceneError]:
     """The mass of a part against what the file says."""
     assert table.body is not None  # it was read from there
-    said, mass = table.body.mass_check, table.material.density * part.body.volume
+    said, mass = table.body.mass_check, part.body.mass(material)
     if said is not None and abs(mass / said - 1) > MASS_CHECK:
         yield SceneError(
             f"the part has {mass:.5g} kg ({1e6 * part.body.volume:.5g} cm^3 of "
-            f"{table.material.density:.5g} kg/m^3), {100 * (mass / said - 1):+.3g} % from that",
+            f"{mass / part.body.volume:.5g} kg/m^3), {100 * (mass / said - 1):+.3g} % from that",
             path=("body", "mass_check"),
         )
 

@@ -45,6 +45,9 @@ def plain_data(scene: Scene) -> dict[str, Any]:
     for key in ("load", "body", "housing"):
         if data[key] is None:
             del data[key]
+    for key in ("groups", "told", "mixed", "remarks"):
+        if not data.get("body", {}).get(key, True):
+            del data["body"][key]
     for row, mass in zip(data.get("masses", ()), scene.masses):
         carrier = next(s for s in scene.stations if s.name == mass.station)
         row |= {"y": carrier.y, "lo": carrier.lo, "hi": carrier.hi}

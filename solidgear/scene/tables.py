@@ -297,6 +297,8 @@ class SceneTable(Model):
                     "write position and seat_width, or span",
                     path=(*seats[0], "seat"),
                 )
+        if self.material is None and not (self.body and self.body.materials):
+            raise SceneError("this key is missing", path=("material",))
         for key, what in (("segment", "describes the shaft"), ("feature", "is cut into segments")):
             if self.body is not None and getattr(self, key):
                 raise SceneError(
@@ -309,6 +311,8 @@ class SceneTable(Model):
 class PartTable(SceneTable):
     """A whole file with a part from another file in place of segments."""
 
+    # not needed where the groups of the part have all their own
+    material: Annotated[Material | None, BeforeValidator(by_name)] = None  # type: ignore[assignment]
     body: BodyTable
     segment: list[Annotated[Cylinder | Cone | BevelHead, Field(discriminator="kind")]] = []
 
@@ -316,6 +320,7 @@ class PartTable(SceneTable):
 class SoundTables(SceneTable):
     """What is left of a file without the tables that cannot be used."""
 
+    material: Annotated[Material | None, BeforeValidator(by_name)] = None  # type: ignore[assignment]
     segment: list[Annotated[Cylinder | Cone | BevelHead, Field(discriminator="kind")]] = []
     # they may be what is missing
     port: Annotated[list[PortTable], BeforeValidator(_several)] = []

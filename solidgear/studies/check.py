@@ -269,7 +269,7 @@ def _of_the_body(scene: Scene, body: Body) -> Iterator[Notice]:
         whole = scene.body
         closed, where, off = [], "the part", "that of the part"
         if whole is not None:
-            closed = [("mass", matrix[0, 0], scene.material.density * whole.volume)]
+            closed = [("mass", matrix[0, 0], whole.mass(scene.material))]
     yield Notice(
         "fact",
         (),

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
+from solidgear.errors import listed
 from solidgear.evidence import quantities
 from solidgear.evidence.quantities import change, judged
 from solidgear.evidence.study import Solution
@@ -39,12 +40,48 @@ def described(scene: Scene) -> Iterator[Notice]:
         f"is of revolution, and the volume of the segments is {100 * (body.round_volume - 1):+.2g} % "
         "from that of the part",
     )
+    yield from _of_materials(scene)
+    for remark in body.remarks:
+        yield Notice("caution", (), f"{body.name}: {remark}")
     if body.one_mesh:
         yield Notice(
             "caution",
             tuple(r.name for r in LADDER if PARTS in r.holds),
             f"the mesh of {body.name} is the only one there is: how good its numbers are is not "
             "judged; a STEP file would be meshed coarse to fine",
+        )
+
+
+def _of_materials(scene: Scene) -> Iterator[Notice]:
+    """What of the part is of which material, and what its round part makes of that."""
+    body = scene.body
+    assert body is not None  # asked of parts
+    if body.told:
+        yield Notice(
+            "caution",
+            (),
+            f"{body.name} has groups {listed(body.told, 12)}, and all of it is taken to be of "
+            "[material]; where they are of others, name them under materials of the [body]",
+        )
+    if not body.groups:
+        return
+    told = [
+        f"{group.said} {1e6 * group.volume:.6g} cm^3, {material.density * group.volume:.6g} kg, "
+        f"E {material.E / 1e9:.6g} GPa"
+        for group, material in zip(body.groups, body.materials(scene.material))
+    ]
+    yield Notice(
+        "fact",
+        (),
+        f"{body.name} by materials: {'; '.join(told)}; {body.mass(scene.material):.6g} kg in all",
+    )
+    if body.mixed:
+        yield Notice(
+            "caution",
+            (),
+            f"across {listed(body.mixed, 12)} of the round part several materials lie side by side, "
+            "which no segment can hold: there it is told with one of their mean E and density, as "
+            "stiff and as heavy in tension only",
         )
 
 
@@ -63,6 +100,7 @@ def against_the_part(scene: Scene, rungs: dict[str, Solution], probe: Probe) -> 
     if scene.body is None or scene.body.round:
         return
     names, tolerance = judged(scene), scene.ask.tolerance
+    of_mean = ", with one mean material across," * bool(scene.body.mixed)
     for model in (m for m in LADDER.of(SOLID) if m in rungs and PARTS in LADDER[m].holds):
         mine, theirs = probe.rung(ROUND_MODEL), rungs[model]
         told, verdicts = [], []
@@ -89,6 +127,6 @@ def against_the_part(scene: Scene, rungs: dict[str, Solution], probe: Probe) -> 
         yield Notice(
             "caution",
             (model,),
-            f"the round part of {scene.body.name} alone, as {LADDER[ROUND_MODEL].title}, has "
+            f"the round part of {scene.body.name} alone{of_mean}, as {LADDER[ROUND_MODEL].title}, has "
             f"{', '.join(told)} against the {LADDER[model].title} of the part; {words}",
         )

@@ -1,0 +1,249 @@
+"""Abaqus and CalculiX decks (.inp): nodes, elements, element sets and sections of one part."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from typing import NamedTuple
+
+from solidgear.meshing.decks.deck import Deck, Lines, integer, text_of, told_short
+from solidgear.meshing.quality import MeshError
+
+#: kinds of cells by the nodes of a continuum element, in meshio's words
+CONTINUUM = {
+    4: "tetra",
+    5: "pyramid",
+    6: "wedge",
+    8: "hexahedron",
+    10: "tetra10",
+    13: "pyramid13",
+    15: "wedge15",
+    20: "hexahedron20",
+    27: "hexahedron27",
+}
+#: entries that a line of data holds at most; what goes on after them needs no comma
+FULL = 16
+#: a set of nodes of a larger share of all is no place where something acts
+LOCAL = 0.1
+
+
+class _Block(NamedTuple):
+    """A keyword with its parameters, and the lines of data below it."""
+
+    keyword: str
+    given: dict[str, str]
+    line: int
+    data: list[tuple[int, str]]
+
+
+def read(path: str) -> Deck:
+    """The mesh of a deck.
+
+    Parameters
+    ----------
+    path : str
+
+    Returns
+    -------
+    Deck
+
+    Raises
+    ------
+    MeshError
+        Lines that are cut off, elements with too few nodes or a number twice, several parts, and
+        what a deck may not hold here.
+    """
+    text = text_of(path)
+    blocks = list(_blocks(text))
+    if not any(b.keyword == "NODE" for b in blocks):
+        raise MeshError("cannot be read as Abaqus: it holds no *NODE")
+    scope, meshes = "", {"": Lines()}
+    instances: dict[str, int] = {}
+    late: list[tuple[str, _Block]] = []
+    for block in blocks:
+        if block.keyword == "INCLUDE":
+            raise MeshError(
+                f"line {block.line}: *INCLUDE names another file: put its lines in its place"
+            )
+        if block.keyword == "PART":
+            scope = block.given.get("NAME", f"part in line {block.line}")
+            meshes.setdefault(scope, Lines())
+        elif block.keyword == "END PART":
+            scope = ""
+        elif block.keyword == "INSTANCE":
+            part = block.given.get("PART", "")
+            instances[part] = instances.get(part, 0) + 1
+        elif block.keyword == "NODE":
+            _nodes(meshes[scope], block)
+        elif block.keyword == "ELEMENT":
+            _elements(meshes[scope], block)
+        else:
+            late.append((scope, block))
+    name, lines = _the_part(meshes)
+    if instances.get(name, 0) > 1:
+        raise MeshError(
+            f"part {name} is there {instances[name]} times in the assembly: write one part"
+        )
+    _sets(lines, [b for where, b in late if where in ("", name)])
+    _whole(text, lines)
+    return lines.deck()
+
+
+def _blocks(text: str) -> Iterator[_Block]:
+    """Keywords with the data below them; comments are left out."""
+    block, open_line = None, False
+    for number, raw in enumerate(text.splitlines(), 1):
+        line = raw.strip()
+        if not line or line.startswith("**"):
+            continue
+        if open_line and block is not None:  # a keyword goes on after a comma
+            block.given.update(_parameters(line))
+            open_line = line.endswith(",")
+        elif line.startswith("*"):
+            if block is not None:
+                yield block
+            word, _, rest = line[1:].partition(",")
+            keyword = " ".join(word.upper().split())
+            block = _Block(keyword, _parameters(rest), number, [])
+            open_line = line.endswith(",")
+        elif block is not None:
+            block.data.append((number, line))
+    if block is not None:
+        yield block
+
+
+def _parameters(text: str) -> dict[str, str]:
+    pairs = (entry.partition("=") for entry in text.split(",") if entry.strip())
+    return {key.strip().upper(): value.strip().strip('"') for key, _, value in pairs}
+
+
+def _nodes(lines: Lines, block: _Block) -> None:
+    if block.given.get("SYSTEM", "R").upper() != "R":
+        raise MeshError(
+            f"line {block.line}: nodes are given in another system of coordinates than x, y, z"
+        )
+    for line, text in block.data:
+        entries = text.rstrip(",").split(",")
+        number = integer(entries[0], line, "the number of a node")
+        if len(entries) < 4:
+            raise MeshError(
+                f"line {line}: node {number} has {len(entries) - 1} coordinates where 3 are wanted"
+            )
+        try:
+            at = [float(re.sub("[dD]", "e", entry)) for entry in entries[1:4]]
+        except ValueError:
+            raise MeshError(
+                f"line {line}: node {number} has a coordinate that is no number"
+            ) from None
+        lines.node(number, line, at)
+
+
+def _elements(lines: Lines, block: _Block) -> None:
+    name = block.given.get("TYPE", "").upper()
+    if not name:
+        raise MeshError(f"line {block.line}: *ELEMENT without a TYPE")
+    found = re.match(r"C3D(\d+)", name)
+    if not found:
+        for _, text in block.data:
+            entries = [entry for entry in text.split(",") if entry.strip()]
+            lines.other(name, (int(e) for e in entries[1:] if e.strip().isdigit()))
+        return
+    wanted = int(found[1])
+    kind = CONTINUUM.get(wanted)
+    if kind is None:
+        raise MeshError(f"line {block.line}: elements of type {name} are unknown here")
+    if not block.data:
+        raise MeshError(f"line {block.line}: *ELEMENT with no element below it: lines are cut off")
+    members = lines.sets.setdefault(block.given["ELSET"], []) if "ELSET" in block.given else []
+    row: list[int] = []
+    start, goes_on = 0, False
+    for line, text in block.data:
+        if row and not goes_on:
+            raise told_short(row[0], start, name, len(row) - 1, str(wanted))
+        entries = [entry for entry in text.split(",") if entry.strip()]
+        start = start if row else line
+        row += [integer(entry, line, f"an entry of an element of type {name}") for entry in entries]
+        goes_on = text.endswith(",") or len(entries) == FULL
+        if len(row) > wanted:
+            if len(row) > wanted + 1:
+                raise told_short(row[0], start, name, len(row) - 1, str(wanted))
+            lines.element(row[0], start, kind, row[1:])
+            members.append(row[0])
+            row = []
+    if row:
+        raise told_short(row[0], start, name, len(row) - 1, str(wanted))
+
+
+def _the_part(meshes: dict[str, Lines]) -> tuple[str, Lines]:
+    """The one part with elements of a volume."""
+    full = {name: lines for name, lines in meshes.items() if lines.elements}
+    if len(full) > 1:
+        named = ", ".join(name or "none" for name in full)
+        raise MeshError(f"holds {len(full)} parts with elements ({named}): write one part")
+    for name, lines in full.items():
+        return name, lines
+    # nothing of a volume: what there is instead is told
+    return max(meshes.items(), key=lambda item: len(item[1].others))
+
+
+def _sets(lines: Lines, blocks: list[_Block]) -> None:
+    """Sets of elements, nodes that something acts on, and sections by their material."""
+    sections: dict[str, list[str]] = {}
+    for block in blocks:
+        if block.keyword == "ELSET" and "ELSET" in block.given:
+            own = lines.sets.setdefault(block.given["ELSET"], [])
+            own += _members(block, lines.sets)
+        elif block.keyword == "NSET":
+            found = list(_members(block, {}))
+            if len(found) <= max(1, LOCAL * len(lines.nodes)):
+                lines.mentioned.update(found)
+        elif block.keyword in ("SOLID SECTION", "MASS", "ROTARY INERTIA"):
+            if "MATERIAL" in block.given:
+                sections.setdefault(block.given["MATERIAL"], []).append(
+                    block.given.get("ELSET", "")
+                )
+        elif block.keyword in ("RIGID BODY", "COUPLING", "EQUATION", "MPC"):
+            lines.mentioned.update(
+                int(word)
+                for text in (block.given.get("REF NODE", ""), *(t for _, t in block.data))
+                for word in re.findall(r"\b\d+\b", text)
+            )
+    by_name = {name.upper(): members for name, members in lines.sets.items()}
+    for material, names in sections.items():
+        members = [n for name in names for n in by_name.get(name.upper(), ())]
+        same = by_name.get(material.upper())
+        if same is not None and set(same) == set(members):
+            lines.telling.add(next(n for n in lines.sets if n.upper() == material.upper()))
+            continue
+        name = material if same is None else f"material:{material}"
+        lines.sets[name] = members
+        lines.telling.add(name)
+
+
+def _members(block: _Block, sets: dict[str, list[int]]) -> Iterator[int]:
+    """Numbers in a set; names of sets before it stand for what they hold."""
+    known = {name.upper(): members for name, members in sets.items()}
+    for line, text in block.data:
+        entries = [entry.strip() for entry in text.split(",") if entry.strip()]
+        if "GENERATE" in block.given:
+            first, last, *step = (integer(e, line, "an entry of a set") for e in entries[:3])
+            every = step[0] if step else 1
+            if every < 1 or last - first > 10**9:
+                raise MeshError(f"line {line}: a set counts from {first} to {last} by {every}")
+            yield from range(first, last + 1, every)
+            continue
+        for entry in entries:
+            if entry.lstrip("-").isdigit():
+                yield int(entry)
+            else:
+                yield from known.get(entry.upper(), ())
+
+
+def _whole(text: str, lines: Lines) -> None:
+    """Refuse a file whose last line is an element without an end: half of a number may be lost."""
+    last = text.rpartition("\n")[2].strip()
+    if last and lines.elements and last.split(",")[0].strip() == str(lines.elements[-1].number):
+        raise MeshError(
+            f"line {lines.elements[-1].line}: the file ends in the middle of the line of element "
+            f"{lines.elements[-1].number}; if it is whole, end it with a line break"
+        )

@@ -1,0 +1,340 @@
+"""What a mesh file holds, whatever its format: nodes, elements of one kind, and groups of them."""
+
+from __future__ import annotations
+
+import importlib
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+
+from solidgear.meshing.quality import MeshError
+
+#: how a file ends, and the module of this room that reads it
+FORMATS = {
+    ".msh": "foreign",
+    ".inp": "abaqus",
+    ".bdf": "nastran",
+    ".nas": "nastran",
+    ".vtu": "foreign",
+    ".unv": "universal",
+}
+#: kinds of cells that are assembled, in meshio's words, and what they are called here
+KINDS = {
+    "tetra": "tet4",
+    "tetra10": "tet10",
+    "hexahedron": "hex8",
+    "hexahedron20": "hex20",
+}
+#: how kinds of cells of a volume begin
+VOLUMES = ("wedge", "pyramid", "hexahedron", "tetra", "polyhedron", "VTK_LAGRANGE")
+
+
+@dataclass(frozen=True)
+class Group:
+    """Elements that a file gives a name.
+
+    Attributes
+    ----------
+    name : str
+        As one writes it in a scene.
+    elements : (n,) ndarray of int
+        Places in :attr:`Deck.cells`.
+    tells : bool
+        Whether such groups are made to tell materials, and not, say, where loads act.
+    """
+
+    name: str
+    elements: np.ndarray
+    tells: bool = True
+
+
+@dataclass(frozen=True)
+class Deck:
+    """A mesh as its file has it.
+
+    Attributes
+    ----------
+    points : (3, n) ndarray
+        In the unit of the file.
+    kind : str
+        Of its cells, one of `KINDS`.
+    cells : (nodes, ne) ndarray of int
+        In VTK's order of nodes.
+    groups : tuple of Group
+    numbers : (ne,) ndarray of int or None
+        By which the file calls its elements.
+    lines : (ne,) ndarray of int or None
+        Where in the file they begin, counted from 1.
+    remarks : tuple of str
+        What is odd about the file, but no fault.
+    """
+
+    points: np.ndarray
+    kind: str
+    cells: np.ndarray
+    groups: tuple[Group, ...] = ()
+    numbers: np.ndarray | None = None
+    lines: np.ndarray | None = None
+    remarks: tuple[str, ...] = ()
+
+    def named(self, place: int) -> str:
+        """An element in a sentence.
+
+        Parameters
+        ----------
+        place : int
+            In :attr:`cells`.
+        """
+        if self.numbers is None or self.lines is None:
+            return f"element {place + 1}"
+        return f"line {self.lines[place]}: element {self.numbers[place]}"
+
+
+class Element(NamedTuple):
+    """An element of a file of lines."""
+
+    number: int
+    line: int
+    kind: str
+    nodes: Sequence[int]
+
+
+def read(path: str) -> Deck:
+    """The mesh in a file.
+
+    Parameters
+    ----------
+    path : str
+
+    Returns
+    -------
+    Deck
+
+    Raises
+    ------
+    MeshError
+        A file that cannot be read, or one without elements of one kind that is assembled here.
+    """
+    ending = Path(path).suffix.lower()
+    if ending not in FORMATS:
+        raise MeshError(
+            f"a mesh file that ends in {ending or 'nothing'} is unknown; known are "
+            f"{', '.join(FORMATS)}"
+        )
+    module = importlib.import_module(f"solidgear.meshing.decks.{FORMATS[ending]}")
+    reader: Callable[[str], Deck] = module.read
+    return reader(path)
+
+
+def text_of(path: str) -> str:
+    """The text of a file.
+
+    Parameters
+    ----------
+    path : str
+
+    Raises
+    ------
+    MeshError
+        If it cannot be opened, or holds no text.
+    """
+    try:
+        content = Path(path).read_bytes()
+    except OSError as error:
+        raise MeshError(f"cannot be read ({error.strerror or error})") from None
+    if b"\0" in content:
+        raise MeshError("is no text: it holds zero bytes")
+    return content.decode("utf-8", "replace")
+
+
+def one_kind(counts: dict[str, int]) -> str:
+    """The one kind of cells of a volume, of those that a file holds.
+
+    Parameters
+    ----------
+    counts : dict of str to int
+        Cells of each kind, in meshio's words.
+
+    Raises
+    ------
+    MeshError
+        If there is none, more than one, or one that is not assembled here.
+    """
+    volumes = [kind for kind in counts if kind.startswith(VOLUMES)]
+    if not volumes:
+        told = ", ".join(f"{n} {kind}" for kind, n in counts.items())
+        raise MeshError(
+            f"holds no volume elements ({told or 'no elements at all'}): mesh the inside too"
+        )
+    if len(volumes) > 1 or volumes[0] not in KINDS:
+        told = ", ".join(f"{counts[kind]} {kind}" for kind in volumes)
+        raise MeshError(
+            f"holds {told}; wanted is one kind of {', '.join(KINDS)}, for no other is assembled"
+        )
+    return volumes[0]
+
+
+class Lines:
+    """What a reader of lines collects: nodes, elements and sets, each with where it stands.
+
+    Attributes
+    ----------
+    nodes : dict of int to (place, line)
+    places : list of (float, float, float)
+    elements : list of Element
+        Of volumes.
+    mentioned : set of int
+        Nodes that something else than an element of a volume needs.
+    sets : dict of str to list of int
+        Numbers of elements by the name of their group.
+    telling : set of str
+        Groups that are made to tell materials.
+    """
+
+    def __init__(self) -> None:
+        self.nodes: dict[int, tuple[int, int]] = {}
+        self.places: list[tuple[float, ...]] = []
+        self.elements: list[Element] = []
+        self.others: dict[str, int] = {}
+        self.mentioned: set[int] = set()
+        self.sets: dict[str, list[int]] = {}
+        self.telling: set[str] = set()
+        self._lines: dict[int, int] = {}
+
+    def node(self, number: int, line: int, at: Sequence[float]) -> None:
+        """Take a node."""
+        if len(at) != 3 or not np.isfinite(at).all():
+            raise MeshError(f"line {line}: node {number} has a coordinate that is no number")
+        if number in self.nodes:
+            place, first = self.nodes[number]
+            if self.places[place] != tuple(at):
+                raise MeshError(
+                    f"line {line}: node {number} is there a second time, at another place than in "
+                    f"line {first}"
+                )
+            return
+        self.nodes[number] = (len(self.places), line)
+        self.places.append(tuple(at))
+
+    def element(self, number: int, line: int, kind: str, nodes: Sequence[int]) -> None:
+        """Take an element of a volume."""
+        if number in self._lines:
+            raise MeshError(
+                f"line {line}: element {number} is there a second time, first in line "
+                f"{self._lines[number]}"
+            )
+        self._lines[number] = line
+        self.elements.append(Element(number, line, kind, nodes))
+
+    def other(self, kind: str, nodes: Iterable[int]) -> None:
+        """Take an element that is none of a volume."""
+        self.others[kind] = self.others.get(kind, 0) + 1
+        self.mentioned.update(nodes)
+
+    def deck(self) -> Deck:
+        """All of it.
+
+        Raises
+        ------
+        MeshError
+            An element that names a node that is not there, or a node that nothing needs.
+        """
+        counts = dict(self.others)
+        for element in self.elements:
+            counts[element.kind] = counts.get(element.kind, 0) + 1
+        kind = one_kind(counts)
+        if not self.nodes:
+            raise MeshError("holds elements and no nodes")
+        for element in self.elements:
+            for node in element.nodes:
+                if node not in self.nodes:
+                    raise MeshError(
+                        f"line {element.line}: element {element.number} names node {node}, which "
+                        "is not there"
+                    )
+        own = np.array([[self.nodes[n][0] for n in e.nodes] for e in self.elements]).T
+        self._all_needed(own)
+        numbers = np.array([e.number for e in self.elements])
+        place = {int(number): k for k, number in enumerate(numbers)}
+        groups = []
+        for name, members in self.sets.items():
+            inside = sorted({place[n] for n in members if n in place})
+            if inside:
+                groups.append(Group(name, np.array(inside), name in self.telling))
+        return Deck(
+            np.array(self.places, float).T,
+            kind,
+            own,
+            tuple(groups),
+            numbers,
+            np.array([e.line for e in self.elements]),
+            tuple(_gaps(numbers, [e.line for e in self.elements])),
+        )
+
+    def _all_needed(self, cells: np.ndarray) -> None:
+        """Refuse nodes that nothing needs: elements are missing, then."""
+        needed = np.zeros(len(self.places), bool)
+        needed[cells] = True
+        spare = [n for n, (k, _) in self.nodes.items() if not needed[k] and n not in self.mentioned]
+        if spare:
+            more = f", and {len(spare) - 1} more like it," if len(spare) > 1 else ""
+            raise MeshError(
+                f"line {self.nodes[spare[0]][1]}: node {spare[0]}{more} belongs to no element: "
+                "lines of elements are missing, or else leave such nodes out"
+            )
+
+
+#: share of the numbers of elements that may be missing for the rest to look like an unbroken row
+FEW = 0.02
+
+
+def _gaps(numbers: np.ndarray, lines: Sequence[int]) -> Iterable[str]:
+    """Numbers left out of what is otherwise an unbroken row."""
+    order = np.argsort(numbers)
+    row = numbers[order]
+    step = np.diff(row) - 1
+    missing = int(step.sum())
+    if not 0 < missing <= max(1, FEW * len(row)):
+        return
+    first = int(np.flatnonzero(step)[0])
+    number = int(row[first]) + 1
+    more = f" and {missing - 1} more" if missing > 1 else ""
+    yield (
+        f"element {number}{more} is missing in the row of elements {row[0]} to {row[-1]} (after "
+        f"line {lines[order[first]]}): if nobody left it out on purpose, lines are lost and the "
+        "part has a hole there"
+    )
+
+
+def integer(text: str, line: int, what: str) -> int:
+    """A whole number of a line.
+
+    Parameters
+    ----------
+    text : str
+    line : int
+    what : str
+        It stands for.
+
+    Raises
+    ------
+    MeshError
+        If it is none.
+    """
+    try:
+        return int(text)
+    except ValueError:
+        raise MeshError(
+            f"line {line}: {what} is {text.strip()[:20]!r} where a whole number is wanted"
+        ) from None
+
+
+def told_short(number: int, line: int, name: str, has: int, wanted: str) -> MeshError:
+    """An element with too few or too many nodes."""
+    return MeshError(
+        f"line {line}: element {number} of type {name} has {has} nodes where {wanted} are wanted: "
+        "its line is cut off, or the type is wrong"
+    )

@@ -1,0 +1,162 @@
+"""Nastran bulk data (.bdf, .nas): GRID and the solid elements, by property."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from typing import NamedTuple
+
+from solidgear.meshing.decks.deck import Deck, Lines, integer, text_of, told_short
+from solidgear.meshing.quality import MeshError
+
+#: kinds of cells of a card by their number of nodes, in meshio's words
+SOLIDS = {
+    "CTETRA": {4: "tetra", 10: "tetra10"},
+    "CHEXA": {8: "hexahedron", 20: "hexahedron20"},
+    "CPENTA": {6: "wedge", 15: "wedge15"},
+    "CPYRAM": {5: "pyramid", 13: "pyramid13"},
+    "CPYRA": {5: "pyramid", 13: "pyramid13"},
+}
+#: edges of a brick: bottom, upright, top in Nastran; bottom, top, upright in VTK
+BRICK = (*range(12), *range(16, 20), *range(12, 16))
+#: how cards begin that need the nodes they name
+NEEDY = ("C", "RBE", "RBAR", "RROD", "RSPLINE", "MPC", "SPOINT")
+
+
+class Card(NamedTuple):
+    """A card: its name, its fields after that, and the line it begins in."""
+
+    name: str
+    fields: list[str]
+    line: int
+
+
+def read(path: str) -> Deck:
+    """The mesh of a bulk data file.
+
+    Parameters
+    ----------
+    path : str
+
+    Returns
+    -------
+    Deck
+
+    Raises
+    ------
+    MeshError
+        A file without ENDDATA, elements with too few nodes or a number twice, and
+        nodes in a system of coordinates of their own.
+    """
+    lines = Lines()
+    for card in cards(text_of(path)):
+        if card.name == "GRID":
+            _node(lines, card)
+        elif card.name in SOLIDS:
+            _solid(lines, card)
+        elif card.name == "INCLUDE":
+            raise MeshError(
+                f"line {card.line}: INCLUDE names another file: put its lines in its place"
+            )
+        elif card.name.startswith(NEEDY) and not card.name.startswith("CORD"):
+            named = (int(f) for f in card.fields[1:] if f.isdigit())
+            lines.other(card.name, named)
+    return lines.deck()
+
+
+def cards(text: str) -> Iterator[Card]:
+    """The cards of a bulk data section, lines that go on joined.
+
+    Parameters
+    ----------
+    text : str
+
+    Raises
+    ------
+    MeshError
+        Without ENDDATA.
+    """
+    # what comes before is for the solver; many programs write the bulk alone
+    begins = re.compile(r"\s*BEGIN\s*BULK", re.I)
+    inside = not any(begins.match(line) for line in text.splitlines())
+    ended, card = False, None
+    for number, raw in enumerate(text.splitlines(), 1):
+        line = raw.split("$")[0].rstrip().expandtabs(8)
+        if not line:
+            continue
+        if not inside:
+            inside = bool(begins.match(line))
+            continue
+        if line.strip().upper().startswith("ENDDATA"):
+            ended = True
+            break
+        first, fields = _fields(line)
+        if first == "" or first[0] in "+*":
+            if card is not None:
+                card.fields.extend(fields)
+            continue
+        if card is not None:
+            yield card
+        # meshio writes an underscore after the names of elements of second order
+        card = Card(first.rstrip("*").upper().rstrip("_"), fields, number)
+    if not ended:
+        raise MeshError("is cut off: it does not end with ENDDATA")
+    if card is not None:
+        yield card
+
+
+def _fields(line: str) -> tuple[str, list[str]]:
+    """The first field of a line, and those of its data, padded so that what goes on follows."""
+    if "," in line[:10]:
+        first, *rest = (entry.strip() for entry in line.split(","))
+        count = 4 if first.endswith("*") or first.startswith("*") else 8
+        fields = rest[:count]
+    else:
+        first = line[:8].strip()
+        wide = 16 if "*" in first else 8
+        count = 4 if wide == 16 else 8
+        fields = [line[8 + wide * k : 8 + wide * (k + 1)].strip() for k in range(count)]
+    return first, fields + [""] * (count - len(fields))
+
+
+def _number(text: str) -> float:
+    """A number as Nastran writes it: the E of an exponent may be left out."""
+    plain = re.sub("[dD]", "e", text)
+    return float(
+        re.sub(r"(?<=[\d.])([+-]\d+)$", r"e\1", plain) if "e" not in plain.lower() else plain
+    )
+
+
+def _node(lines: Lines, card: Card) -> None:
+    number = integer(card.fields[0], card.line, "the number of a GRID")
+    if card.fields[1] not in ("", "0"):
+        raise MeshError(
+            f"line {card.line}: GRID {number} is given in system {card.fields[1]}: write all nodes "
+            "in the basic system"
+        )
+    try:
+        at = [_number(entry) for entry in card.fields[2:5]]
+    except ValueError:
+        raise MeshError(
+            f"line {card.line}: GRID {number} has a coordinate that is missing or no number"
+        ) from None
+    lines.node(number, card.line, at)
+
+
+def _solid(lines: Lines, card: Card) -> None:
+    number = integer(card.fields[0], card.line, f"the number of a {card.name}")
+    kinds = SOLIDS[card.name]
+    entries = card.fields[2:]
+    while entries and not entries[-1]:
+        entries.pop()
+    if len(entries) not in kinds or "" in entries:
+        has = sum(1 for entry in entries if entry)
+        raise told_short(number, card.line, card.name, has, " or ".join(map(str, kinds)))
+    nodes = [integer(entry, card.line, f"a node of {card.name} {number}") for entry in entries]
+    if len(nodes) == len(BRICK):
+        nodes = [nodes[k] for k in BRICK]
+    lines.element(number, card.line, kinds[len(nodes)], nodes)
+    if card.fields[1]:
+        name = str(integer(card.fields[1], card.line, f"the property of {card.name} {number}"))
+        lines.sets.setdefault(name, []).append(number)
+        lines.telling.add(name)

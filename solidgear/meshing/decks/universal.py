@@ -1,0 +1,157 @@
+"""Universal files (.unv) of I-DEAS: nodes (dataset 2411 or 781), elements (2412 or 780), permanent
+groups (2467, 2477, 2452 and others of their kind).
+
+The format is described by the Structural Dynamics Research Laboratory of the University of
+Cincinnati, "Universal file formats for modal analysis testing and finite elements".
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+
+from solidgear.meshing.decks.deck import Deck, Lines, integer, text_of, told_short
+from solidgear.meshing.quality import MeshError
+
+#: by the descriptor of a finite element: kind of cell in meshio's words, and its nodes in VTK's
+#: order; those of second order go around each edge
+SOLIDS: dict[int, tuple[str, tuple[int, ...]]] = {
+    111: ("tetra", tuple(range(4))),
+    118: ("tetra10", (0, 2, 4, 9, 1, 3, 5, 6, 7, 8)),
+    112: ("wedge", tuple(range(6))),
+    113: ("wedge15", tuple(range(15))),
+    115: ("hexahedron", tuple(range(8))),
+    116: (
+        "hexahedron20",
+        (0, 2, 4, 6, 12, 14, 16, 18, 1, 3, 5, 7, 13, 15, 17, 19, 8, 9, 10, 11),
+    ),
+}
+#: elements along a line have one line of data more
+BEAMS = (11, 21, 22, 23, 24)
+NODES, ELEMENTS = ("2411", "781"), ("2412", "780")
+#: entries for each member of a group: kind and number, and in newer ones two more
+GROUPS = {"2417": 2, "2429": 2, "2430": 2, "2432": 2, "2435": 4, "2452": 4, "2467": 4, "2477": 4}
+#: kind of a member of a group that is an element
+IS_ELEMENT = 8
+
+
+def read(path: str) -> Deck:
+    """The mesh of a universal file.
+
+    Parameters
+    ----------
+    path : str
+
+    Returns
+    -------
+    Deck
+
+    Raises
+    ------
+    MeshError
+        A dataset that does not end, elements with another number of nodes than their kind has, or a
+        number twice.
+    """
+    lines, found = Lines(), set()
+    for kind, data in _datasets(text_of(path)):
+        found.add(kind)
+        if kind in NODES:
+            _nodes(lines, data)
+        elif kind in ELEMENTS:
+            _elements(lines, data)
+        elif kind in GROUPS:
+            _groups(lines, data, GROUPS[kind])
+    if not found & set(NODES):
+        raise MeshError("cannot be read as a universal file: it holds no dataset 2411 of nodes")
+    return lines.deck()
+
+
+Data = list[tuple[int, str]]
+
+
+def _datasets(text: str) -> Iterator[tuple[str, Data]]:
+    """Number of each dataset and its lines."""
+    kind: str | None = None
+    data: Data = []
+    begun = 0
+    for number, raw in enumerate(text.splitlines(), 1):
+        if raw.strip() == "-1":
+            if begun:
+                if kind is not None:
+                    yield kind, data
+                kind, data, begun = None, [], 0
+            else:
+                begun = number
+        elif begun and kind is None:
+            kind = raw.strip()
+        elif begun:
+            data.append((number, raw))
+    if begun:
+        raise MeshError(f"is cut off: the dataset that begins in line {begun} does not end with -1")
+
+
+def _nodes(lines: Lines, data: Data) -> None:
+    for (line, head), (below, at) in _by(data, 2):
+        number = integer((head.split() or [""])[0], line, "the number of a node")
+        try:
+            place = [float(re.sub("[dD]", "e", entry)) for entry in at.split()]
+        except ValueError:
+            place = []
+        if len(place) != 3:
+            raise MeshError(f"line {below}: node {number} has a coordinate that is no number")
+        lines.node(number, line, place)
+
+
+def _by(data: Data, count: int) -> Iterator[tuple[tuple[int, str], ...]]:
+    if len(data) % count:
+        raise MeshError(f"line {data[-1][0]}: a record is cut off")
+    for k in range(0, len(data), count):
+        yield tuple(data[k : k + count])
+
+
+def _elements(lines: Lines, data: Data) -> None:
+    k = 0
+    while k < len(data):
+        line, head = data[k]
+        row = [integer(entry, line, "an entry of an element") for entry in head.split()]
+        if len(row) < 6:
+            raise MeshError(f"line {line}: an element has {len(row)} entries where 6 are wanted")
+        # dataset 780 has the number of a table before each of property and material
+        number, descriptor, prop, material, wanted = (
+            (*row[:4], row[5]) if len(row) < 8 else (row[0], row[1], row[3], row[5], row[7])
+        )
+        k += 1 + (descriptor in BEAMS)
+        nodes: list[int] = []
+        while k < len(data) and len(nodes) < wanted:
+            place, text = data[k]
+            nodes += [integer(e, place, f"a node of element {number}") for e in text.split()]
+            k += 1
+        if descriptor not in SOLIDS:
+            lines.other(f"kind {descriptor}", nodes)
+            continue
+        kind, order = SOLIDS[descriptor]
+        if len(nodes) != len(order) or wanted != len(order):
+            raise told_short(number, line, f"{descriptor} ({kind})", len(nodes), str(len(order)))
+        lines.element(number, line, kind, [nodes[place] for place in order])
+        lines.sets.setdefault(str(material), []).append(number)
+        lines.telling.add(str(material))
+        lines.sets.setdefault(f"property:{prop}", []).append(number)
+
+
+def _groups(lines: Lines, data: Data, step: int) -> None:
+    """Permanent groups: a line that ends with their size, a name, and members."""
+    k = 0
+    while k + 1 < len(data):
+        line, head = data[k]
+        count = integer((head.split() or [""])[-1], line, "the size of a group")
+        name = data[k + 1][1].strip()
+        k += 2
+        entries: list[int] = []
+        while k < len(data) and len(entries) < step * count:
+            entries += [integer(e, data[k][0], f"a member of {name}") for e in data[k][1].split()]
+            k += 1
+        kinds, numbers = entries[0::step], entries[1::step]
+        members = [number for kind, number in zip(kinds, numbers) if kind == IS_ELEMENT]
+        if members:
+            lines.sets.setdefault(name, []).extend(members)
+            lines.telling.add(name)
