@@ -3,7 +3,9 @@
     python -m validation.fuzz_parts --cases 500 --seed 1
 
 Files are cut off, garbled byte by byte and number by number, mirrored, rescaled, opened and
-emptied; what is not refused must have the volume that its segments and its mesh agree on.
+emptied; what is not refused must have the volume that its segments and its mesh agree on. Of decks,
+lines of elements and nodes are lost, cut off and doubled: such a file must be refused with the line,
+or `check` must tell what is odd about it.
 """
 
 from __future__ import annotations
@@ -23,6 +25,8 @@ import numpy as np
 
 import solidgear as sg
 from solidgear.meshing.tetrahedra import tetrahedra
+from validation.fuzz_decks import DECK_CHANGES, DECKS
+from validation.mesh_files import write_mesh
 from validation.shipped import GEOMETRY
 
 SCENE = GEOMETRY / "shaft_step.toml"
@@ -40,6 +44,12 @@ class Outcome(NamedTuple):
     sentence: str
     seconds: float
     fault: str = ""
+    told: bool = False
+
+    @property
+    def became(self) -> str:
+        """What became of it in a word."""
+        return "refused" if self.refused else "told" if self.told else "taken"
 
 
 NUMBER = re.compile(r"-?\d+\.\d*(?:E[+-]?\d+)?")
@@ -116,6 +126,8 @@ def mirrored(text: str, dice: random.Random) -> str:
 
 
 Change = Callable[[str, random.Random], str]
+#: changes of decks after which something must be said
+MUST_SPEAK = frozenset(change.__name__ for change in DECK_CHANGES)
 CHANGES: tuple[Change, ...] = (
     cut_off,
     cut_off_with_end,
@@ -133,17 +145,24 @@ def sound_files(folder: Path) -> dict[str, str]:
     """Text of the sound files that broken ones are made of, by their ending."""
     scene = sg.load(SCENE)
     mesh = tetrahedra(scene.segments, size=0.012).mesh
-    cells = [("tetra", mesh.t.T)]
-    points = np.round(1e3 * mesh.p.T, 6) + 0.0
+    # nodes of second order are left out
+    used, numbered = np.unique(mesh.t, return_inverse=True)
+    corners = numbered.reshape(4, -1).T
+    cells = [("tetra", corners)]
+    left = np.flatnonzero(mesh.p[1][mesh.t].mean(axis=0) < 0.09)
+    right = np.setdiff1d(np.arange(mesh.t.shape[1]), left)
+    points = np.round(1e3 * mesh.p[:, used].T, 6) + 0.0
     out = {"step": SCENE.with_suffix(".step").read_text()}
     for ending, more in (
         ("msh", {"file_format": "gmsh22", "binary": False}),
-        ("inp", {}),
-        ("bdf", {}),
         ("vtu", {"binary": False}),
     ):
         path = folder / f"sound.{ending}"
         meshio.write(path, meshio.Mesh(points, cells), **more)
+        out[ending] = path.read_text()
+    for ending in DECKS:
+        path = folder / f"sound.{ending}"
+        write_mesh(path, points, "tetra", corners, {"left": left, "right": right})
         out[ending] = path.read_text()
     return out
 
@@ -159,22 +178,28 @@ def attacked(folder: Path, ending: str, text: str, kind: str) -> Outcome:
     scene = folder / "scene.toml"
     scene.write_text(words)
     start, sentence, fault, refused = time.perf_counter(), "", "", False
+    told = False
     try:
         found = sg.load(scene)
         body = found.body
         assert body is not None  # its table is there
         if not (0 < body.volume < 1 and np.isfinite(body.round_volume)):
             fault = f"a part of {body.volume} m^3 went through"
+        told, sentence = bool(body.remarks), "; ".join(body.remarks)
+        if kind in MUST_SPEAK and not told:
+            fault = "went through in silence"
     except sg.SolidgearError as error:
         refused, sentence = True, str(error)
         if len(sentence) > LONG * 3 or "Traceback" in sentence:
             fault = "no sentence"
+        if kind in MUST_SPEAK and "line " not in sentence and "node " not in sentence:
+            fault = fault or "no line is named"
     except Exception as error:  # that is what is looked for
         fault = f"{type(error).__name__}: {error}"
     seconds = time.perf_counter() - start
     if seconds > HANG:
         fault = fault or f"took {seconds:.0f} s"
-    return Outcome(f"{ending} {kind}", refused, sentence, seconds, fault)
+    return Outcome(f"{ending} {kind}", refused, sentence, seconds, fault, told)
 
 
 def campaign(cases: int, seed: int, folder: Path, endings: tuple[str, ...] = (), changes=CHANGES):
@@ -188,7 +213,7 @@ def campaign(cases: int, seed: int, folder: Path, endings: tuple[str, ...] = (),
     endings : tuple of str, optional
         Only those; by default half of the cases are STEP files.
     changes : tuple of callable, optional
-        Only those.
+        Only those, and of decks those of their lines.
 
     Yields
     ------
@@ -200,8 +225,9 @@ def campaign(cases: int, seed: int, folder: Path, endings: tuple[str, ...] = (),
         meshes = tuple(e for e in sound if e != "step")
         ending = dice.choice(endings or ("step",) * len(meshes) + meshes)
         text = sound[ending]
+        possible = (*changes, *(DECK_CHANGES if ending in DECKS else ()))
         while text == sound[ending]:  # not every change is one of every file
-            change = dice.choice(changes)
+            change = dice.choice(possible)
             text = change(sound[ending], dice)
         yield attacked(folder, ending, text, change.__name__)
 
@@ -211,21 +237,29 @@ def main() -> None:
     parser = argparse.ArgumentParser()
     parser.add_argument("--cases", type=int, default=100)
     parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--decks", action="store_true", help="only lines of decks")
     parser.add_argument("--words", action="store_true", help="print every sentence")
     given = parser.parse_args()
     counts: Counter = Counter()
     faults, slowest = [], 0.0
     with tempfile.TemporaryDirectory() as folder:
-        for k, one in enumerate(campaign(given.cases, given.seed, Path(folder))):
-            counts[one.kind, "refused" if one.refused else "taken"] += 1
+        only = (DECKS, ()) if given.decks else ((), CHANGES)
+        for k, one in enumerate(campaign(given.cases, given.seed, Path(folder), *only)):
+            counts[one.kind, one.became] += 1
             slowest = max(slowest, one.seconds)
             if one.fault:
                 faults.append((k, one))
                 print(f"FAULT {k} {one.kind}: {one.fault}", flush=True)
             if given.words:
-                print(f"{k} {one.kind} {one.seconds:.1f} s: {one.sentence or 'taken'}", flush=True)
+                print(
+                    f"{k} {one.kind} {one.seconds:.1f} s: {one.became}: {one.sentence}", flush=True
+                )
     for (kind, what), n in sorted(counts.items()):
         print(f"{n:4d} {kind}: {what}")
+    became = Counter({what: 0 for what in ("refused", "told", "taken")})
+    for (_, what), n in counts.items():
+        became[what] += n
+    print(", ".join(f"{n} {what}" for what, n in became.items()))
     print(f"{given.cases} cases, {len(faults)} faults, the slowest took {slowest:.1f} s")
 
 

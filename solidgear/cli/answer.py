@@ -66,8 +66,8 @@ def answer(
     units: UnitsOption = UNITS,
 ) -> None:
     """Numbers within a tolerance, each with its bar, from the cheapest model that can show it."""
+    from solidgear.cli.reading import load
     from solidgear.studies.answering import answer as solve
-    from solidgear.studies.loading import load
 
     if picture is not None:
         from solidgear.report.where_chart import check_ending

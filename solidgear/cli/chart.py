@@ -45,9 +45,9 @@ def chart(
     as_json: JsonFlag = False,
 ) -> None:
     """Chart error against cost: every model and element, uniform and graded, with the Pareto front."""
+    from solidgear.cli.reading import load
     from solidgear.report.race_rows import PICTURE, left_out, records
     from solidgear.report.race_tables import front_table
-    from solidgear.studies.loading import load
 
     found, reported = run_chart(
         load(scene), out, full=full, runs=runs, budget=budget, quiet=as_json

@@ -143,10 +143,10 @@ def modes(
     engine: Engine = None,
 ) -> None:
     """Natural frequencies on the bearings, with the evidence for them."""
+    from solidgear.cli.reading import load
     from solidgear.scene.rules import MOST_MODES
     from solidgear.solve.modes import modes as solve
     from solidgear.studies.check import cautions
-    from solidgear.studies.loading import load
 
     if max_frequency is not None and not max_frequency > 0:
         raise SolidgearError(f"--max-frequency {max_frequency:g}: must be greater than zero, in Hz")
@@ -239,9 +239,9 @@ def render(
     settings: Settings = None,
 ) -> None:
     """Draw one mode shape off-screen, or all of them in a page where they can be turned."""
+    from solidgear.cli.reading import load
     from solidgear.report.write import Drawn, render_mode, turn_modes
     from solidgear.solve.modes import modes as solve
-    from solidgear.studies.loading import load
 
     if beside and not turn:
         raise SolidgearError(

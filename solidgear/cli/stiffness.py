@@ -51,9 +51,9 @@ def stiffness(
     units: UnitsOption = UNITS,
 ) -> None:
     """6x6 stiffness and compliance at a lumped point, bearings included; 12x12 between two."""
+    from solidgear.cli.reading import load
     from solidgear.solve.statics import condense
     from solidgear.studies.check import cautions
-    from solidgear.studies.loading import load
 
     loaded = load(scene)
     if attachment:

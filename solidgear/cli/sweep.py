@@ -87,10 +87,10 @@ def sweep(
         TimeRemainingColumn,
     )
 
+    from solidgear.cli.reading import load
     from solidgear.fidelity import build
     from solidgear.fidelity.ladder import LADDER
     from solidgear.studies.check import cautions
-    from solidgear.studies.loading import load
     from solidgear.studies.sweep import sweep as run
     from solidgear.studies.sweep.choice import settled_for_sweep
 

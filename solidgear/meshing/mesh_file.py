@@ -188,6 +188,7 @@ def _no_holes(found: FileMesh) -> None:
             raise MeshError(
                 "has a hole of {} faces inside, near ({:.4g}, {:.4g}, {:.4g}) mm in the scene: an "
                 "element is missing there".format(faces_of_it, *at)
+                + "".join(f", for {remark}" for remark in found.remarks)
             )
 
 

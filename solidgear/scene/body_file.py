@@ -208,6 +208,17 @@ class BodyFile(Model):
             return False
         return self.round_share >= ALL_ROUND and abs(self.round_volume - 1) <= SAME_VOLUME
 
+    @property
+    def doubts(self) -> tuple[str, ...]:
+        """Sentences on what its file may not mean."""
+        out = [f"{self.name}: {remark}" for remark in self.remarks]
+        if self.told:
+            out.append(
+                f"{self.name} has groups {listed(self.told, 12)}, and all of it is taken to be of "
+                "[material]; where they are of others, name them under materials of the [body]"
+            )
+        return tuple(out)
+
     def materials(self, usual: Material) -> tuple[Material, ...]:
         """Of its groups in their order.
 

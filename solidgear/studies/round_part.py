@@ -41,8 +41,8 @@ def described(scene: Scene) -> Iterator[Notice]:
         "from that of the part",
     )
     yield from _of_materials(scene)
-    for remark in body.remarks:
-        yield Notice("caution", (), f"{body.name}: {remark}")
+    for sentence in body.doubts:
+        yield Notice("caution", (), sentence)
     if body.one_mesh:
         yield Notice(
             "caution",
@@ -56,13 +56,6 @@ def _of_materials(scene: Scene) -> Iterator[Notice]:
     """What of the part is of which material, and what its round part makes of that."""
     body = scene.body
     assert body is not None  # asked of parts
-    if body.told:
-        yield Notice(
-            "caution",
-            (),
-            f"{body.name} has groups {listed(body.told, 12)}, and all of it is taken to be of "
-            "[material]; where they are of others, name them under materials of the [body]",
-        )
     if not body.groups:
         return
     told = [

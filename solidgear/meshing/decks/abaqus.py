@@ -146,7 +146,8 @@ def _elements(lines: Lines, block: _Block) -> None:
     if not found:
         for _, text in block.data:
             entries = [entry for entry in text.split(",") if entry.strip()]
-            lines.other(name, (int(e) for e in entries[1:] if e.strip().isdigit()))
+            words = [int(e) for e in entries if e.strip().isdigit()]
+            lines.other(name, words[0] if words else 0, words[1:])
         return
     wanted = int(found[1])
     kind = CONTINUUM.get(wanted)
@@ -191,8 +192,12 @@ def _sets(lines: Lines, blocks: list[_Block]) -> None:
     sections: dict[str, list[str]] = {}
     for block in blocks:
         if block.keyword == "ELSET" and "ELSET" in block.given:
-            own = lines.sets.setdefault(block.given["ELSET"], [])
+            set_name = block.given["ELSET"]
+            own = lines.sets.setdefault(set_name, [])
             own += _members(block, lines.sets)
+            # of an assembly, a set may be one of another part; a count may run over gaps
+            if not {"INSTANCE", "GENERATE"} & set(block.given):
+                lines.listed += [(set_name, n, line) for n, line in _numbered(block)]
         elif block.keyword == "NSET":
             found = list(_members(block, {}))
             if len(found) <= max(1, LOCAL * len(lines.nodes)):
@@ -237,6 +242,12 @@ def _members(block: _Block, sets: dict[str, list[int]]) -> Iterator[int]:
                 yield int(entry)
             else:
                 yield from known.get(entry.upper(), ())
+
+
+def _numbered(block: _Block) -> Iterator[tuple[int, int]]:
+    """Numbers that a set lists, each with its line."""
+    for line, text in block.data:
+        yield from ((int(e), line) for e in text.split(",") if e.strip().isdigit())
 
 
 def _whole(text: str, lines: Lines) -> None:

@@ -192,6 +192,8 @@ class Lines:
         Numbers of elements by the name of their group.
     telling : set of str
         Groups that are made to tell materials.
+    listed : list of (str, int, int)
+        Name of a group, number of an element that it lists one by one, and the line.
     """
 
     def __init__(self) -> None:
@@ -202,6 +204,8 @@ class Lines:
         self.mentioned: set[int] = set()
         self.sets: dict[str, list[int]] = {}
         self.telling: set[str] = set()
+        self.listed: list[tuple[str, int, int]] = []
+        self._others: set[int] = set()
         self._lines: dict[int, int] = {}
 
     def node(self, number: int, line: int, at: Sequence[float]) -> None:
@@ -229,9 +233,10 @@ class Lines:
         self._lines[number] = line
         self.elements.append(Element(number, line, kind, nodes))
 
-    def other(self, kind: str, nodes: Iterable[int]) -> None:
+    def other(self, kind: str, number: int, nodes: Iterable[int]) -> None:
         """Take an element that is none of a volume."""
         self.others[kind] = self.others.get(kind, 0) + 1
+        self._others.add(number)
         self.mentioned.update(nodes)
 
     def deck(self) -> Deck:
@@ -240,7 +245,8 @@ class Lines:
         Raises
         ------
         MeshError
-            An element that names a node that is not there, or a node that nothing needs.
+            An element that names a node that is not there, a node that nothing needs, or a group with
+        an element that is not there.
         """
         counts = dict(self.others)
         for element in self.elements:
@@ -257,6 +263,12 @@ class Lines:
                     )
         own = np.array([[self.nodes[n][0] for n in e.nodes] for e in self.elements]).T
         self._all_needed(own)
+        for name, number, line in self.listed:
+            if number not in self._lines and number not in self._others:
+                raise MeshError(
+                    f"line {line}: group {name} lists element {number}, which is not there: lines "
+                    "of elements are missing"
+                )
         numbers = np.array([e.number for e in self.elements])
         place = {int(number): k for k, number in enumerate(numbers)}
         groups = []
@@ -287,8 +299,9 @@ class Lines:
             )
 
 
-#: share of the numbers of elements that may be missing for the rest to look like an unbroken row
-FEW = 0.02
+#: share of the numbers of elements that may be missing, and how many in any case, for the rest to
+#: look like an unbroken row
+FEW, AT_LEAST = 0.05, 12
 
 
 def _gaps(numbers: np.ndarray, lines: Sequence[int]) -> Iterable[str]:
@@ -297,15 +310,14 @@ def _gaps(numbers: np.ndarray, lines: Sequence[int]) -> Iterable[str]:
     row = numbers[order]
     step = np.diff(row) - 1
     missing = int(step.sum())
-    if not 0 < missing <= max(1, FEW * len(row)):
+    if not 0 < missing <= max(AT_LEAST, FEW * len(row)):
         return
     first = int(np.flatnonzero(step)[0])
     number = int(row[first]) + 1
-    more = f" and {missing - 1} more" if missing > 1 else ""
+    what = f"{number} and {missing - 1} more are" if missing > 1 else f"{number} is"
     yield (
-        f"element {number}{more} is missing in the row of elements {row[0]} to {row[-1]} (after "
-        f"line {lines[order[first]]}): if nobody left it out on purpose, lines are lost and the "
-        "part has a hole there"
+        f"element {what} missing in the row of elements {row[0]} to {row[-1]}, first after line "
+        f"{lines[order[first]]}: unless left out on purpose, lines are lost and the part has a hole"
     )
 
 

@@ -59,8 +59,8 @@ def read(path: str) -> Deck:
                 f"line {card.line}: INCLUDE names another file: put its lines in its place"
             )
         elif card.name.startswith(NEEDY) and not card.name.startswith("CORD"):
-            named = (int(f) for f in card.fields[1:] if f.isdigit())
-            lines.other(card.name, named)
+            named = [int(f) for f in card.fields if f.isdigit()]
+            lines.other(card.name, named[0] if named else 0, named[1:])
     return lines.deck()
 
 
@@ -79,7 +79,7 @@ def cards(text: str) -> Iterator[Card]:
     # what comes before is for the solver; many programs write the bulk alone
     begins = re.compile(r"\s*BEGIN\s*BULK", re.I)
     inside = not any(begins.match(line) for line in text.splitlines())
-    ended, card = False, None
+    ended, card, number = False, None, 0
     for number, raw in enumerate(text.splitlines(), 1):
         line = raw.split("$")[0].rstrip().expandtabs(8)
         if not line:
@@ -100,7 +100,7 @@ def cards(text: str) -> Iterator[Card]:
         # meshio writes an underscore after the names of elements of second order
         card = Card(first.rstrip("*").upper().rstrip("_"), fields, number)
     if not ended:
-        raise MeshError("is cut off: it does not end with ENDDATA")
+        raise MeshError(f"is cut off after line {number}: it does not end with ENDDATA")
     if card is not None:
         yield card
 
@@ -135,7 +135,8 @@ def _node(lines: Lines, card: Card) -> None:
             "in the basic system"
         )
     try:
-        at = [_number(entry) for entry in card.fields[2:5]]
+        # a blank field is zero, a line that should go on is none
+        at = [_number(entry or "0.") for entry in card.fields[2:5]]
     except ValueError:
         raise MeshError(
             f"line {card.line}: GRID {number} has a coordinate that is missing or no number"

@@ -127,7 +127,7 @@ def _elements(lines: Lines, data: Data) -> None:
             nodes += [integer(e, place, f"a node of element {number}") for e in text.split()]
             k += 1
         if descriptor not in SOLIDS:
-            lines.other(f"kind {descriptor}", nodes)
+            lines.other(f"kind {descriptor}", number, nodes)
             continue
         kind, order = SOLIDS[descriptor]
         if len(nodes) != len(order) or wanted != len(order):
@@ -155,3 +155,4 @@ def _groups(lines: Lines, data: Data, step: int) -> None:
         if members:
             lines.sets.setdefault(name, []).extend(members)
             lines.telling.add(name)
+            lines.listed += [(name, number, line) for number in members]
