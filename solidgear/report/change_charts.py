@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from solidgear.evidence.record import CauseRecord, Record
 from solidgear.report.chart_style import as_svg, new_figure
+from solidgear.report.readout import readable
 from solidgear.report.reading import model_name, relative_change
 from solidgear.report.words import percent
 
@@ -30,6 +31,12 @@ def _bars(ax, labels: list[str], columns: dict[str, list[float | None]]) -> None
             color=SHOWN[name],
             label=name,
         )
+        told = {
+            "case": ("", [labels[i].replace("\n", " ") for i, v in enumerate(values) if v is not None]),
+            f"change of {name}": ("", [percent(v) for _, v in spots]),
+        }
+        ys, ends = [y for y, _ in spots], [v for _, v in spots]
+        readable(ax, ends, ys, name, told, colour=SHOWN[name])
         for y, v in spots:
             ax.annotate(
                 percent(v),

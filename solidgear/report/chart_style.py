@@ -10,6 +10,7 @@ from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
 
 from solidgear.report.border import as_record
+from solidgear.report.readout import with_readings
 
 if TYPE_CHECKING:
     from matplotlib.typing import RcKeyType
@@ -55,7 +56,7 @@ def as_svg(function: Callable[[Record], Any]) -> Chart:
 
 
 def svg_of(name: str, make: Callable[[], Any]) -> bytes | None:
-    """The SVG of a figure, ready to stand in an HTML page.
+    """The SVG of a figure, ready to stand in an HTML page, with what is to be read off it.
 
     Parameters
     ----------
@@ -78,7 +79,7 @@ def svg_of(name: str, make: Callable[[], Any]) -> bytes | None:
             format="svg",
             metadata={"Date": None, "Creator": None, "Format": None, "Type": None},
         )
-    return _embeddable(target.getvalue().decode(), name).encode()
+    return with_readings(_embeddable(target.getvalue().decode(), name), figure).encode()
 
 
 def _embeddable(svg: str, name: str) -> str:

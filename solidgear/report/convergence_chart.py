@@ -6,7 +6,9 @@ from dataclasses import dataclass
 
 from solidgear.evidence.pareto import CHARTED
 from solidgear.evidence.record import BandRecord, LevelRecord, ModelRecord, Record
+from solidgear.report.cells import whole_number
 from solidgear.report.chart_style import as_svg, new_figure, percent_decades
+from solidgear.report.readout import readable
 from solidgear.report.reading import model_name
 from solidgear.report.words import percent
 
@@ -44,14 +46,14 @@ class _Panel:
     """One quantity of one model over its meshes.
 
     ``along`` is what the meshes differ in: ``h``, ``order`` or ``dofs``; ``spots`` are (place along
-    the axis, distance from the extrapolated value), ascending.
+    the axis, distance from the extrapolated value, mesh), ascending.
     """
 
     name: str
     model: ModelRecord
     quantity: str
     along: str
-    spots: list[tuple[float, float]]
+    spots: list[tuple[float, float, LevelRecord]]
     band: BandRecord
 
 
@@ -73,9 +75,9 @@ def _panels(name: str, model: ModelRecord) -> list[_Panel]:
                 continue
             distance = abs(value / band.extrapolated - 1)
             if distance > 0:
-                spots.append((_on_axis(along, place), distance))
+                spots.append((_on_axis(along, place), distance, level))
         if len(spots) >= 2:
-            panels.append(_Panel(name, model, quantity, along, sorted(spots), band))
+            panels.append(_Panel(name, model, quantity, along, sorted(spots, key=lambda spot: spot[:2]), band))
     return panels
 
 
@@ -102,9 +104,16 @@ def _on_axis(along: str, value: float) -> float:
 
 
 def _draw(ax, panel: _Panel) -> None:
-    xs, ys = zip(*panel.spots)
+    xs, ys, levels = zip(*panel.spots)
     colour, band = panel.model.colour, panel.band
     ax.loglog(xs, ys, panel.model.marker + "-", color=colour, ms=6, lw=1.2)
+    told = {
+        f"{panel.quantity}, from extrapolated": ("", [percent(y, signed=False) for y in ys]),
+        "mesh": ("", [str(level.mesh.get("element") or "") for level in levels]),
+        "size h": ("mm", [f"{1e3 * level.h:.3g}" if level.h else "" for level in levels]),
+        "unknowns": ("", [whole_number(level.dofs) for level in levels]),
+    }
+    readable(ax, xs, ys, panel.name, told, colour=colour)
     low, high = min(ys) / 3, max(ys) * 3
     if band.gci is not None and band.gci > 0:
         low, high = min(low, band.gci / 3), max(high, band.gci * 2)

@@ -6,7 +6,9 @@ from dataclasses import dataclass
 
 from solidgear.evidence.pareto import CHARTED
 from solidgear.evidence.record import ModelRecord, Record
+from solidgear.report.cells import whole_number
 from solidgear.report.chart_style import as_svg, new_figure, percent_decades, tolerance_line
+from solidgear.report.readout import readable
 from solidgear.report.reading import (
     answer_seconds,
     headline,
@@ -14,6 +16,7 @@ from solidgear.report.reading import (
     model_name,
     reference_of,
 )
+from solidgear.report.words import percent, seconds
 
 
 @as_svg
@@ -34,7 +37,7 @@ def cost_chart(record: Record):
         tolerance = None
     for ax, (quantity, points) in zip(figure.subplots(1, 2), spots.items()):
         for point in points:
-            _draw(ax, point)
+            _draw(ax, point, quantity)
         ax.set(
             xscale="log",
             yscale="log",
@@ -100,7 +103,7 @@ def _own_band(model: ModelRecord, quantity: str) -> float | None:
     return band if band is not None and band > 0 else None
 
 
-def _draw(ax, spot: _Spot) -> None:
+def _draw(ax, spot: _Spot, quantity: str) -> None:
     colour = spot.model.colour
     ax.plot(
         [spot.seconds],
@@ -114,6 +117,13 @@ def _draw(ax, spot: _Spot) -> None:
     remarks = [spot.remark] if spot.remark else []
     if spot.rejected:
         remarks.append("rejected")
+    told = {
+        f"{quantity}, from reference": ("", [percent(spot.error, signed=False)]),
+        "building and solving": ("s", [seconds(spot.seconds)]),
+        "unknowns": ("", [whole_number(spot.model.dofs)]),
+        "remark": ("", [", ".join(remarks)]),
+    }
+    readable(ax, [spot.seconds], [spot.error], spot.name, told, colour=colour)
     remark = f"\n({', '.join(remarks)})" if remarks else ""
     ax.annotate(
         spot.name + remark,

@@ -6,7 +6,9 @@ from collections.abc import Mapping
 
 from solidgear.evidence.record import MacTable, ModelRecord, ModeRecord, Record
 from solidgear.report.chart_style import as_svg, new_figure
+from solidgear.report.readout import readable
 from solidgear.report.reading import model_name, model_of, reference_of, relative_change
+from solidgear.report.words import hertz, percent
 
 #: families of modes along the axis
 FAMILIES = {"bending": 0, "axial": 1, "torsion": 2}
@@ -40,8 +42,15 @@ def mode_chart(record: Record):
         places = [x for x, _ in spots]
         frequencies = [modes[key][name].frequency_hz for _, name in spots]
         _stems(axes[0], model, places, frequencies, label=model_name(record, key))
-        if relative and base is not None and key != reference:
-            _differences(axes[1], model, spots, modes[key], base)
+        compared = base if key != reference and base is not None else {}
+        told = _told([name for _, name in spots], modes[key], compared)
+        readable(axes[0], places, frequencies, model_name(record, key), told, colour=model.colour)
+        if relative and compared:
+            shared = [(x, name) for x, name in spots if name in compared]
+            told = _told([name for _, name in shared], modes[key], compared)
+            at, apart = [x for x, _ in shared], _apart(shared, modes[key], compared)
+            _stems(axes[1], model, at, apart)
+            readable(axes[1], at, apart, model_name(record, key), told, colour=model.colour)
     axes[0].set(ylabel="frequency, Hz", ylim=(0, None))
     axes[0].legend(ncols=4, loc="upper left", bbox_to_anchor=(0, 1.14), borderaxespad=0)
     if relative and reference is not None:
@@ -87,19 +96,32 @@ def _stems(ax, model: ModelRecord, xs: list, ys: list, **label) -> None:
     ax.plot(xs, ys, model.marker, color=model.colour, ms=5, lw=0, **label)
 
 
-def _differences(
-    ax,
-    model: ModelRecord,
+def _apart(
     spots: list[tuple[float, str]],
     own: Mapping[str, ModeRecord],
     reference: Mapping[str, ModeRecord],
-) -> None:
-    """Stems of the differences of one model from the reference, where both have a mode."""
-    shared = [(x, name) for x, name in spots if name in reference]
-    apart = []
-    for _, name in shared:
-        apart.append(relative_change(own[name].frequency_hz, reference[name].frequency_hz))
-    _stems(ax, model, [x for x, _ in shared], apart)
+) -> list[float]:
+    """How far frequencies of one model are from those of the reference, which both have."""
+    changes = []
+    for _, name in spots:
+        change = relative_change(own[name].frequency_hz, reference[name].frequency_hz)
+        changes.append(float("nan") if change is None else change)
+    return changes
+
+
+def _told(
+    names: list[str], own: Mapping[str, ModeRecord], reference: Mapping[str, ModeRecord]
+) -> dict[str, tuple[str, list[str]]]:
+    """What is to be read of modes of one model."""
+    from_reference = []
+    for name in names:
+        base = reference[name].frequency_hz if name in reference else None
+        from_reference.append(percent(relative_change(own[name].frequency_hz, base), nothing=""))
+    return {
+        "mode": ("", names),
+        "frequency": ("Hz", [hertz(own[name].frequency_hz) for name in names]),
+        "from reference": ("", from_reference),
+    }
 
 
 def _as_differences(ax, record: Record, reference: str) -> None:
@@ -135,18 +157,28 @@ def mac_chart(record: Record):
     size = _text_size(widest)
     reference = model_name(record, record.mac.reference)
     for ax, (key, found) in zip(axes, models.items()):
-        _draw_mac(ax, found, size)
+        _draw_mac(ax, found, size, model_name(record, key), reference)
         ax.set_title(f"{model_name(record, key)} (rows) against {reference}", fontsize=8.5)
     for ax in axes[len(models) :]:
         ax.axis("off")
     return figure
 
 
-def _draw_mac(ax, found: MacTable, size: float) -> None:
+def _draw_mac(ax, found: MacTable, size: float, name: str, reference: str) -> None:
     """One matrix, a mode of the model a row; figures of `size` pt in its cells."""
     values = [[float("nan") if v is None else v for v in row] for row in found.values]
     ax.pcolormesh(values, cmap="Blues", vmin=0, vmax=1, edgecolors="white", linewidth=0.5)
     ax.invert_yaxis()
+    spots = [(i, j) for i, row in enumerate(values) for j in range(len(row))]
+    rows = found.rows or [""] * len(values)
+    columns = found.columns or [""] * len(values[0])
+    told = {
+        "mode": ("", [rows[i] for i, _ in spots]),
+        f"against, of the {reference}": ("", [columns[j] for _, j in spots]),
+        "MAC": ("", [f"{values[i][j]:.4f}" for i, j in spots]),
+    }
+    places = [j + 0.5 for _, j in spots], [i + 0.5 for i, _ in spots]
+    readable(ax, *places, name, told, colour="#1f5f99")
     for i, row in enumerate(values):
         for j, value in enumerate(row):
             if value >= 0.005:
@@ -161,7 +193,7 @@ def _draw_mac(ax, found: MacTable, size: float) -> None:
                 )
     ax.set_xticks(
         [j + 0.5 for j in range(len(values[0]))],
-        found.columns or [""] * len(values[0]),
+        columns,
         rotation=60,
         ha="right",
         rotation_mode="anchor",
@@ -169,7 +201,7 @@ def _draw_mac(ax, found: MacTable, size: float) -> None:
     )
     ax.set_yticks(
         [i + 0.5 for i in range(len(values))],
-        found.rows or [""] * len(values),
+        rows,
         fontsize=7.5,
     )
     ax.grid(visible=False)

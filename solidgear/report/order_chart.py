@@ -10,16 +10,21 @@ import numpy as np
 
 from solidgear.machine.whole_file import whole
 from solidgear.report.chart_style import new_figure, styled
+from solidgear.report.readout import readable
+from solidgear.report.units import ENGINEERING, Units, plain
+from solidgear.report.words import hertz
 
 #: least distance of two names beside the chart, of its height
 APART = 0.021
 #: widest line, pt, and how many decades of force below the largest are told apart
 WIDEST, DECADES = 5.0, 2.0
+#: places at which a line without a force is read
+PLACES = 101
 PLAIN = {"mesh": "#666666", "pinion": "#b3305c", "gear": "#5a3e8c"}
 HEAD = ("order", "mode", "frequency [Hz]", "pinion speed [rpm]", "mesh force [N]")
 
 
-def order_figure(found: Any, title: str, teeth: int):
+def order_figure(found: Any, title: str, teeth: int, units: Units = ENGINEERING):
     """Order lines and natural frequencies.
 
     Parameters
@@ -28,6 +33,7 @@ def order_figure(found: Any, title: str, teeth: int):
     title : str
     teeth : int
         Of the pinion, for the upper axis.
+    units : Units, optional
 
     Returns
     -------
@@ -44,8 +50,9 @@ def order_figure(found: Any, title: str, teeth: int):
         loaded = [line for line in found.lines if line.force is not None]
         largest = max((line.force.max() for line in loaded), default=1.0)
         for line in found.lines:
-            _line(axis, line, found, largest)
-        _scale(figure, axis, loaded, largest)
+            _line(axis, line, found, largest, units)
+        if loaded:
+            _scale(figure, axis, units.value(largest, "N"), units.unit("N"))
         at = [c for c in found.crossings if c.force is not None]
         axis.plot(
             [c.rpm for c in at],
@@ -56,6 +63,7 @@ def order_figure(found: Any, title: str, teeth: int):
             ms=3.5,
             zorder=5,
         )
+        _read_crossings(axis, found, units)
         upper = axis.secondary_xaxis(
             "top", functions=(lambda n: n * teeth / 60, lambda f: 60 * f / teeth)
         )
@@ -115,7 +123,29 @@ def spread(places: np.ndarray, apart: float) -> np.ndarray:
     return np.minimum(out, below)
 
 
-def _line(axis, line: Any, found: Any, largest: float) -> None:
+def _read_crossings(axis, found: Any, units: Units) -> None:
+    """Every crossing, to be read with the mode that is met."""
+    for name in dict.fromkeys(c.line for c in found.crossings):
+        met = [c for c in found.crossings if c.line == name]
+        speeds, heights = [c.rpm for c in met], [c.frequency_hz for c in met]
+        told = {"meets": ("", [c.mode for c in met])}
+        told |= _told(speeds, heights, [c.force for c in met], units)
+        readable(axis, speeds, heights, name, told, colour=PLAIN[name.split()[0]])
+
+
+def _told(rpm, hz, force, units: Units) -> dict[str, tuple[str, list[str]]]:
+    """What is to be read along an order; no force where there is none."""
+    return {
+        "pinion speed": ("rpm", [f"{v:.0f}" for v in rpm]),
+        "frequency": ("Hz", [hertz(float(v)) for v in hz]),
+        "mesh force": (
+            units.unit("N"),
+            ["" if v is None else plain(units.value(float(v), "N"), 4) for v in force],
+        ),
+    }
+
+
+def _line(axis, line: Any, found: Any, largest: float, units: Units) -> None:
     from matplotlib.collections import LineCollection
 
     kind = line.name.split()[0]
@@ -124,7 +154,9 @@ def _line(axis, line: Any, found: Any, largest: float) -> None:
     if line.force is None:
         style = "--" if kind == "mesh" else ":"
         axis.plot([0, rpm], [0, hz], style, color=PLAIN[kind], lw=1.0, zorder=3)
+        speeds, force = np.linspace(0, rpm, PLACES), [None] * PLACES
     else:
+        speeds, force = line.rpm, line.force
         points = np.column_stack([line.rpm, line.rpm * line.per_turn / 60])
         share = 1 + np.log10(np.maximum(line.force / largest, 10**-DECADES)) / DECADES
         wide = 0.8 + (WIDEST - 0.8) * share
@@ -138,6 +170,9 @@ def _line(axis, line: Any, found: Any, largest: float) -> None:
         )
         pieces.set_array(np.sqrt(line.force[:-1] * line.force[1:]))
         axis.add_collection(pieces)
+    heights = speeds * line.per_turn / 60
+    told = _told(speeds, heights, force, units)
+    readable(axis, speeds, heights, line.name, told, colour=PLAIN[kind], marked=False)
     # names of a shaft's orders are staggered: those of the gear run close together
     place = 0.93 if kind == "mesh" or line.name.endswith(" 2") else 0.8
     axis.annotate(
@@ -158,13 +193,11 @@ def _norm(largest: float):
     return LogNorm(largest * 10**-DECADES, largest)
 
 
-def _scale(figure, axis, loaded: list, largest: float) -> None:
+def _scale(figure, axis, largest: float, unit: str) -> None:
     """The bar that tells what a colour is."""
     from matplotlib.cm import ScalarMappable
     from matplotlib.ticker import FuncFormatter, NullFormatter
 
-    if not loaded:
-        return
     bar = figure.colorbar(
         ScalarMappable(_norm(largest), "viridis_r"),
         ax=axis,
@@ -173,7 +206,7 @@ def _scale(figure, axis, loaded: list, largest: float) -> None:
         aspect=40,
         pad=0.02,
     )
-    bar.set_label("mesh force along an order, N", fontsize=8)
+    bar.set_label(f"mesh force along an order, {unit}", fontsize=8)
     bar.ax.xaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
     bar.ax.xaxis.set_minor_formatter(NullFormatter())
 

@@ -10,6 +10,9 @@ from typing import Any
 import numpy as np
 
 from solidgear.report.chart_style import new_figure, styled
+from solidgear.report.readout import readable
+from solidgear.report.units import ENGINEERING, Units, plain
+from solidgear.report.words import hertz
 
 COLOURS = ("#00805e", "#0072b2", "#c98a00", "#b3305c", "#5a3e8c", "#444444", "#1f9bb8", "#8a6d3b")
 #: labels of peaks closer than this share of a decade would lie on one another
@@ -20,14 +23,20 @@ ROOM = 0.55
 TICKS = (1.0, 2.0, 5.0)
 #: how far up the dotted lines of departures reach, of the panel
 DEPARTS = 0.5
+#: column of a response, its name on a panel, and its SI unit
 PANELS = (
-    ("mesh force [N]", "mesh force in N"),
-    ("dynamic transmission error [m]", "dynamic transmission error in m"),
+    ("mesh force [N]", "mesh force", "N"),
+    ("dynamic transmission error [m]", "dynamic transmission error", "m moved"),
 )
 
 
 def response_figure(
-    responses: Sequence[Any], title: str, teeth: int, band: float, marks: Mapping[str, float]
+    responses: Sequence[Any],
+    title: str,
+    teeth: int,
+    band: float,
+    marks: Mapping[str, float],
+    units: Units = ENGINEERING,
 ):
     """Mesh force and dynamic transmission error over frequency, the first response the reference.
 
@@ -42,6 +51,7 @@ def response_figure(
         Drawn around the first where there are others, dB.
     marks : mapping of str to float
         Where a model leaves the band, Hz, by label.
+    units : Units, optional
 
     Returns
     -------
@@ -53,13 +63,18 @@ def response_figure(
         last = responses[0].frequency_hz[-1]
         # where models differ is the upper end; below half the first departure they are one line
         first = max(responses[0].frequency_hz[0], min(marks.values(), default=0.0) / 2)
-        for axis, (column, words) in zip(axes, PANELS):
-            _curves(axis, responses, column, band)
-            axis.set_ylabel(words)
+        for axis, (column, words, si) in zip(axes, PANELS):
+            sizes = [units.values(np.abs(r.columns[column]), si) for r in responses]
+            _curves(axis, responses, sizes, band)
+            for k, (response, size) in enumerate(zip(responses, sizes)):
+                told = _told(response.frequency_hz, size, teeth, words, units.unit(si))
+                _read(axis, k, response, response.frequency_hz, size, told)
+            axis.set_ylabel(f"{words} in {units.unit(si)}")
             axis.set_xlim(first, last)
-            axis.set_ylim(_ends(responses, column, first))
-        tops = [(p.frequency_hz, p.force, p.mode) for p in responses[0].peaks]
-        _named(axes[0], tops, first)
+            axis.set_ylim(_ends(responses, sizes, first))
+        tops = [_tops([(p.frequency_hz, p.force, p.mode) for p in r.peaks], "N", units) for r in responses]
+        _named(axes[0], tops[0], first)
+        _read_tops(axes[0], responses, tops, teeth, "mesh force", units.unit("N"))
         for k, response in enumerate(responses[1:], start=1):
             if label(response) in marks:
                 colour = COLOURS[k % len(COLOURS)]
@@ -71,7 +86,9 @@ def response_figure(
         return figure
 
 
-def receptance_figure(found: Sequence[Any], title: str, teeth: int):
+def receptance_figure(
+    found: Sequence[Any], title: str, teeth: int, units: Units = ENGINEERING
+):
     """Amplitude and phase of a receptance over frequency, the peaks of the first model named.
 
     Parameters
@@ -81,25 +98,34 @@ def receptance_figure(found: Sequence[Any], title: str, teeth: int):
     title : str
     teeth : int
         Of the pinion, for the upper axis in rpm.
+    units : Units, optional
 
     Returns
     -------
     matplotlib Figure
     """
     with styled():
-        figure = new_figure(9.0, 6.6)
+        figure, unit = new_figure(9.0, 6.6), units.unit(found[0].unit)
         axes = figure.subplots(2, 1, sharex=True, height_ratios=(2.2, 1))
         for k, one in enumerate(found):
             look = {"color": COLOURS[k % len(COLOURS)], "lw": 1.6 if k == 0 else 1.0}
             look["zorder"] = 9 - k
-            axes[0].loglog(one.frequency_hz, np.abs(one.value), label=label(one), **look)
-            axes[1].semilogx(one.frequency_hz, np.degrees(np.angle(one.value)), ".", ms=1.5, **look)
-        axes[0].set_ylabel(f"receptance in {found[0].unit}")
+            hz, size = one.frequency_hz, units.values(np.abs(one.value), one.unit)
+            phase = np.degrees(np.angle(one.value))
+            axes[0].loglog(hz, size, label=label(one), **look)
+            axes[1].semilogx(hz, phase, ".", ms=1.5, **look)
+            told = _told(hz, size, teeth, "receptance", unit)
+            told["phase"] = ("degrees", [f"{v:.1f}" for v in phase])
+            _read(axes[0], k, one, hz, size, told)
+            _read(axes[1], k, one, hz, phase, told)
+        axes[0].set_ylabel(f"receptance in {unit}")
         axes[1].set_ylabel("phase in degrees")
         axes[1].set_ylim(-185, 185)
         axes[1].set_yticks((-180, -90, 0, 90, 180))
         axes[1].set_xlim(found[0].frequency_hz[0], found[0].frequency_hz[-1])
-        _named(axes[0], found[0].peaks, found[0].frequency_hz[0])
+        tops = [_tops(one.peaks, one.unit, units) for one in found]
+        _named(axes[0], tops[0], found[0].frequency_hz[0])
+        _read_tops(axes[0], found, tops, teeth, "receptance", unit)
         _finish(figure, axes, "frequency in Hz", title, teeth)
         return figure
 
@@ -132,9 +158,34 @@ def label(response: Any) -> str:
     return f"pinion {response.pinion}, gear {response.gear}"
 
 
-def _curves(axis, responses, column, band) -> None:
-    for k, response in enumerate(responses):
-        size = np.abs(response.columns[column])
+def _told(hz, size, teeth: int, what: str, unit: str) -> dict[str, tuple[str, list[str]]]:
+    """What is to be read of a curve over frequency."""
+    return {
+        "frequency": ("Hz", [hertz(float(v)) for v in hz]),
+        "pinion speed": ("rpm", [f"{60 * v / teeth:.0f}" for v in hz]),
+        what: (unit, [plain(float(v), 4) for v in size]),
+    }
+
+
+def _read(axis, k: int, one: Any, x, y, told: Mapping) -> None:
+    readable(axis, x, y, label(one), told, colour=COLOURS[k % len(COLOURS)], marked=False)
+
+
+def _tops(peaks: Sequence[tuple[float, float, str]], si: str, units: Units) -> list:
+    """Peaks (Hz, size, mode), their sizes in the units chosen."""
+    return [(hz, units.value(size, si), mode) for hz, size, mode in peaks]
+
+
+def _read_tops(axis, models, tops: Sequence, teeth: int, what: str, unit: str) -> None:
+    """The peaks of every model, to be read with the modes that make them."""
+    for k, (one, peaks) in enumerate(zip(models, tops)):
+        hz, sizes, modes = [p[0] for p in peaks], [p[1] for p in peaks], [p[2] for p in peaks]
+        told = {"peak of": ("", modes), **_told(hz, sizes, teeth, what, unit)}
+        readable(axis, hz, sizes, label(one), told, colour=COLOURS[k % len(COLOURS)])
+
+
+def _curves(axis, responses, sizes, band) -> None:
+    for k, (response, size) in enumerate(zip(responses, sizes)):
         colour = COLOURS[k % len(COLOURS)]
         text = label(response)
         width = 1.6 if k == 0 else 1.0
@@ -152,9 +203,9 @@ def _curves(axis, responses, column, band) -> None:
             )
 
 
-def _ends(responses, column, first: float) -> tuple[float, float]:
+def _ends(responses, sizes, first: float) -> tuple[float, float]:
     """Least and largest amplitude from a frequency on, with room."""
-    seen = [np.abs(r.columns[column])[r.frequency_hz >= first] for r in responses]
+    seen = [size[r.frequency_hz >= first] for r, size in zip(responses, sizes)]
     return 0.6 * min(s.min() for s in seen), 1.8 * max(s.max() for s in seen)
 
 

@@ -10,11 +10,17 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 from solidgear.errors import SolidgearError, nearest
 from solidgear.report.words import NOTHING, engineering, is_number
 
+if TYPE_CHECKING:
+    import numpy as np
+
 INCH, POUND = 0.0254, 4.4482216152605
+#: kg in a pound of mass, exact as well
+POUND_MASS = 0.45359237
 #: between groups of three digits: the page must not break a number there
 GROUP = "\u00a0"
 #: sizes, as powers of ten, that are written without an exponent
@@ -33,7 +39,7 @@ class Units:
         The choice in a few words.
     of : mapping of str to (str, float)
         SI unit -> its name here, and how many of it make one of SI; those left out stay as they
-        are.
+        are. ``m moved`` is a metre of motion, which is read finer than one of length.
     exponents : bool
         Whether numbers carry exponents (multiples of three) or all their digits.
     """
@@ -50,6 +56,10 @@ class Units:
     def value(self, value: float | None, si: str) -> float | None:
         """A value of SI in this unit."""
         return value * self.of.get(si, (si, 1.0))[1] if is_number(value) else None
+
+    def values(self, values: np.ndarray, si: str) -> np.ndarray:
+        """Values of SI in this unit."""
+        return values * self.of.get(si, (si, 1.0))[1]
 
     def number(self, value: float | None, si: str, digits: int = 5, nothing: str = NOTHING) -> str:
         """A value of SI in this unit, without its name.
@@ -117,11 +127,13 @@ ENGINEERING = Units(
         "m/N": ("µm/kN", 1e9),
         "rad/N": ("µrad/kN", 1e9),
         "rad/(N m)": ("µrad/(kN m)", 1e9),
+        "m/(N m)": ("µm/(N m)", 1e6),
         "m": ("mm", 1e3),
+        "m moved": ("µm", 1e6),
         "Pa": ("GPa", 1e-9),
     },
 )
-SI = Units("si", "N/m, m/N, N m/rad; lengths in mm", {"m": ("mm", 1e3)}, exponents=True)
+SI = Units("si", "N/m, m/N, N m/rad; lengths in mm", {"m": ("mm", 1e3), "m moved": ("m", 1.0)}, exponents=True)
 US = Units(
     "us",
     "lbf/in, uin/lbf, lbf in/rad, in",
@@ -132,7 +144,11 @@ US = Units(
         "m/N": ("µin/lbf", 1e6 * POUND / INCH),
         "rad/N": ("µrad/lbf", 1e6 * POUND),
         "rad/(N m)": ("µrad/(lbf in)", 1e6 * POUND * INCH),
+        "m/(N m)": ("µin/(lbf in)", 1e6 * POUND),
         "m": ("in", 1 / INCH),
+        "m moved": ("µin", 1e6 / INCH),
+        "kg m²": ("lb in²", 1 / (POUND_MASS * INCH**2)),
+        "N m": ("lbf in", 1 / (POUND * INCH)),
         "Pa": ("ksi", 1e-3 * INCH**2 / POUND),
         "N": ("lbf", 1 / POUND),
     },

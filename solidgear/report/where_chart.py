@@ -12,6 +12,8 @@ import numpy as np
 from solidgear.errors import SolidgearError
 from solidgear.machine.whole_file import whole
 from solidgear.report.chart_style import STYLE, as_svg, new_figure
+from solidgear.report.readout import readable
+from solidgear.report.words import percent
 
 if TYPE_CHECKING:
     from solidgear.evidence.record import Record
@@ -141,6 +143,13 @@ def _figure(points, cells, shares, rows, title: str):
         linewidth=0.3,
     )
     ax.add_collection(drawn)
+    at = corners.mean(axis=1).T
+    told = {
+        "share of the error": ("", [percent(abs(share), signed=False) for share in shares]),
+        "y": ("mm", [f"{v:.4g}" for v in at[0]]),
+        "r": ("mm", [f"{v:.4g}" for v in at[1]]),
+    }
+    readable(ax, *at, "cell", told)
     ax.set_aspect(stretch)
     ax.set_xlim(y.min() - 0.02 * length, y.max() + 0.02 * length)
     ax.set_ylim(0, 1.25 * radius)
