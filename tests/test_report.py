@@ -17,7 +17,7 @@ import solidgear as sg
 from solidgear.errors import SolidgearError
 from solidgear.evidence.record import SCHEMA, Record
 from solidgear.evidence.recording import recorded
-from solidgear.report import charts
+from solidgear.report import charts, readout
 from solidgear.report.html import render_page, write_report
 from solidgear.report.terminal import (
     final_table,
@@ -58,9 +58,17 @@ def shown(renderable, width=80):
 
 
 # ------------------------------------------------------------------------------------------------- the page
+#: the one script of the page
+READS = (
+    f"<script>\n{(Path(readout.__file__).parent / 'readout.js').read_text().rstrip()}</script>"
+)
+
+
 def test_page_needs_no_other_file_and_no_network(page):
     assert not re.search(r"""(src|href)\s*=\s*["'](?!data:|#)""", page)
-    assert "<script" not in page and "@import" not in page and "<link" not in page
+    assert page.count("<script") == 1 and page.count(READS) == 1, "one script, and it is ours"
+    assert not re.search(r"https?:|fetch|XMLHttp|import", READS)
+    assert "@import" not in page and "<link" not in page
     assert not re.search(r"url\((?!#)", page)
     assert page.count("<svg") == 8, "one for each chart"
 
@@ -172,6 +180,7 @@ def test_names_from_a_scene_are_escaped():
     results["models"]["harmonic"]["modes"][1]["name"] = evil
     results["warnings"], results["verdict"]["sentences"] = [evil], [evil]
     page = render_page(results)
+    page = page.replace(READS, "")
     assert "<script" not in page and "<img" not in page and "&lt;script&gt;" in page
     assert page.count("<svg") == 8
 

@@ -126,7 +126,7 @@ def render_page(
     record = as_record(found)
     chosen = units_named(units or record.shown_in)
     warnings = list(record.warnings)
-    drawn = _drawn(record, warnings)
+    drawn = _drawn(record, folder, warnings)
     shown = {
         **_tables(record, chosen),
         **_pictures(record, folder, images),
@@ -179,10 +179,12 @@ def _contents(shown: Mapping[str, Any]) -> dict[str, Any]:
     }
 
 
-def _drawn(record: Record, warnings: list[str]) -> dict[str, bytes | None]:
+def _drawn(
+    record: Record, folder: str | os.PathLike | None, warnings: list[str]
+) -> dict[str, bytes | None]:
     """The charts by name; what could not be drawn is added to the warnings."""
     drawn = {}
-    for name, chart in charts.CHARTS.items():
+    for name, chart in {**charts.CHARTS, "speed": lambda found: race_tables.chart(folder, found.scene)}.items():
         try:
             drawn[name] = chart(record)
         except Exception as error:  # a picture must never cost the reader the numbers

@@ -8,10 +8,12 @@ from typing import Any
 
 from solidgear.evidence.pareto import AUTOMATIC, Race, Row
 from solidgear.report.chart_style import percent_decades, styled, tolerance_line
+from solidgear.report.cells import whole_number
 from solidgear.report.race_legend import FRONT, footer, legend
-from solidgear.report.race_rows import COSTS, replace_file
+from solidgear.report.race_rows import COSTS, error_text, options_text, replace_file
 from solidgear.report.race_style import REFERENCE, Look
-from solidgear.report.words import count, is_number, percent
+from solidgear.report.readout import readable
+from solidgear.report.words import count, is_number, percent, seconds
 
 QUANTITY = {"C_zz": "port compliance C_zz", "bending 1": "first bending frequency"}
 #: the series whose orders are written beside its points
@@ -82,6 +84,13 @@ def _panel(ax, race: Race, quantity: str, cost: str) -> None:
         place = race.reference[cost]
         style: dict[str, Any] = {"ms": 11, "color": REFERENCE, "mfc": "white"}
         ax.plot([place], [floor], "*", zorder=4, clip_on=False, **style)
+        band = percent(race.reference["bands"][quantity], signed=False)
+        told = {
+            "own band": ("", [band]),
+            "time": ("s", [seconds(race.reference["seconds"])]),
+            "unknowns": ("", [whole_number(race.reference["unknowns"])]),
+        }
+        readable(ax, [place], [floor], "reference, harmonic solid", told, colour=REFERENCE)
         right = max(right, 1.5 * place)
     ax.set(xlim=(left, right), ylim=(low, top))
     _ticks(ax, cost)
@@ -189,9 +198,20 @@ def _series(ax, race: Race, rows: list[Row], quantity: str, cost: str) -> None:
         error = race.error(row, quantity)
         if error is not None:
             spots.append((row, getattr(row, cost), error))
+    told = {
+        f"error of {quantity}": ("", [error_text(race, row, quantity) for row, _, _ in spots]),
+        "time": ("s", [seconds(row.seconds) for row, _, _ in spots]),
+        "unknowns": ("", [whole_number(row.unknowns) for row, _, _ in spots]),
+        "setting": ("", [options_text(row) for row, _, _ in spots]),
+    }
+    xs, ys = [x for _, x, _ in spots], [y for _, _, y in spots]
+    readable(ax, xs, ys, look.series, told, colour=look.colour)
+    if not look.converges:
+        likes = [row.like_for_like.get(quantity) or float("nan") for row, _, _ in spots]
+        readable(ax, xs, likes, f"{look.series}, like for like", told, colour=look.colour)
     ax.plot(
-        [x for _, x, _ in spots],
-        [y for _, _, y in spots],
+        xs,
+        ys,
         ls=look.dashes,
         color=look.colour,
         lw=look.width,

@@ -12,6 +12,7 @@ from pathlib import Path
 
 from solidgear.evidence.pareto import CHARTED, Race, Row
 from solidgear.machine.whole_file import whole
+from solidgear.report.words import percent
 
 log = logging.getLogger(__name__)
 ROWS, MACHINE, PICTURE = "rows.csv", "machine.json", "speed_accuracy.png"
@@ -91,6 +92,20 @@ def options_text(row: Row) -> str:
     for name, value in row.options.items():
         parts.append(f"{name}={value:.6g}" if isinstance(value, float) else f"{name}={value}")
     return " ".join(parts)
+
+
+def error_text(race: Race, row: Row, quantity: str) -> str:
+    """Error of a row in per cent, a beam's like for like after a stroke; what the reference does
+    not resolve as its band.
+    """
+    found = race.error(row, quantity)
+    if found is None:
+        return "-"
+    text = percent(found, signed=False)
+    if not race.resolved(row, quantity):
+        text = f"< {text}"
+    like = row.like_for_like.get(quantity)
+    return text if like is None else f"{text} / {percent(like, signed=False)}"
 
 
 def _column(quantity: str) -> str:

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import base64
 from collections.abc import Mapping
-from pathlib import Path
 
 from solidgear.evidence.pareto import Race, Row
 from solidgear.report.cells import whole_number
-from solidgear.report.race_rows import PICTURE, options_text, read_race
+from solidgear.report.chart_style import svg_of
+from solidgear.report.race_figure import figure
+from solidgear.report.race_rows import error_text, options_text, read_race
 from solidgear.report.table import Table
 from solidgear.report.words import count, percent, seconds
 
@@ -37,20 +37,6 @@ def front_rows(race: Race) -> list[tuple[Row, list[str]]]:
         if names:
             rows.append((row, names))
     return sorted(rows, key=lambda pair: pair[0].seconds or 0.0)
-
-
-def error_text(race: Race, row: Row, quantity: str) -> str:
-    """Error of a row in per cent, a beam's like for like after a stroke; what the reference does
-    not resolve as its band.
-    """
-    found = race.error(row, quantity)
-    if found is None:
-        return "-"
-    text = percent(found, signed=False)
-    if not race.resolved(row, quantity):
-        text = f"< {text}"
-    like = row.like_for_like.get(quantity)
-    return text if like is None else f"{text} / {percent(like, signed=False)}"
 
 
 def front_table(race: Race):
@@ -92,15 +78,25 @@ def front_table(race: Race):
     return Group(table, Text(notes))
 
 
-def section(folder, scene: Mapping) -> dict | None:
-    """What the report shows of a race in its folder: picture, words and tables; None where there is
-    none of this scene.
+def chart(folder, scene: Mapping) -> bytes | None:
+    """The chart of a race in its folder, ready to stand in the report; None where there is none of
+    this scene.
     """
+    race = _of_scene(folder, scene)
+    return None if race is None else svg_of("speed", lambda: figure(race))
+
+
+def _of_scene(folder, scene: Mapping) -> Race | None:
     race = read_race(folder) if folder is not None else None
-    if race is None or race.scene != scene:
-        return None
-    picture = Path(folder) / PICTURE
-    if not picture.exists():
+    return race if race is not None and race.scene == scene else None
+
+
+def section(folder, scene: Mapping) -> dict | None:
+    """What the report shows of a race in its folder beside its chart: words and tables; None where
+    there is none of this scene.
+    """
+    race = _of_scene(folder, scene)
+    if race is None:
         return None
     head = [
         "model",
@@ -133,7 +129,6 @@ def section(folder, scene: Mapping) -> dict | None:
         if r.status != "ok" or r.reason
     ]
     return {
-        "uri": f"data:image/png;base64,{base64.b64encode(picture.read_bytes()).decode()}",
         "caption": CAPTION,
         "tables": [
             Table("The Pareto front over wall time", head, rows, note),

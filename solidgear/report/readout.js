@@ -58,19 +58,24 @@ class Reading {
   }
   step(by) {
     const order = this.series[this.s ?? 0].order, at = this.place() + by;
-    this.show(this.s, order[Math.min(Math.max(at, 0), order.length - 1)]);
+    this.go(this.s, order[Math.min(Math.max(at, 0), order.length - 1)]);
   }
   top(by) { // the next top or dip
     const { order, at } = this.series[(this.place(), this.s)], y = n => at[2 * order[n] + 1];
     let n = this.place() + by;
     while (n > 0 && n < order.length - 1 && (y(n) - y(n - 1)) * (y(n + 1) - y(n)) > 0) n += by;
-    this.show(this.s, order[Math.min(Math.max(n, 0), order.length - 1)]);
+    this.go(this.s, order[Math.min(Math.max(n, 0), order.length - 1)]);
   }
   other(by) { // the next series, where it is nearest
     this.place();
     const was = this.series[this.s], x = was.at[2 * this.k], y = was.at[2 * this.k + 1], i = (this.s + by + this.series.length) % this.series.length;
     const far = k => Math.hypot(this.series[i].at[2 * k] - x, this.series[i].at[2 * k + 1] - y);
-    this.show(i, this.series[i].order.reduce((a, b) => far(b) < far(a) ? b : a));
+    this.go(i, this.series[i].order.reduce((a, b) => far(b) < far(a) ? b : a));
+  }
+  go(i, k) { // with keys, to a place that may have to be brought into sight
+    const view = this.paper.parentElement, x = this.scale() * this.series[i].at[2 * k];
+    if (x < view.scrollLeft + 20 || x > view.scrollLeft + view.clientWidth - 20) view.scrollLeft = x - view.clientWidth / 2;
+    this.show(i, k);
   }
   show(i, k) {
     this.s = i; this.k = k;
