@@ -82,9 +82,8 @@ def compare(
             "--solid-element": bool(solid_element),
             "--set": bool(settings),
             "--chart": chart,
-            "--units": units != UNITS,
         }
-        compare_train(scene, out, as_json, renders, given)
+        compare_train(scene, out, as_json, renders, units, given)
         return
     from solidgear.report.folder import held
     from solidgear.studies.comparison import check_models

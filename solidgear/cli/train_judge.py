@@ -10,7 +10,7 @@ from typing import Annotated
 
 import typer
 
-from solidgear.cli.app import JsonFlag, Progress, command, console
+from solidgear.cli.app import UNITS, JsonFlag, Progress, UnitsOption, command, console
 from solidgear.cli.train import (
     Kept,
     LocalHarmonics,
@@ -39,17 +39,18 @@ def judge_system(
     reduction: Reduction = "rubin",
     kept: Kept = 24,
     local_harmonics: LocalHarmonics = None,
+    units: UnitsOption = UNITS,
     as_json: JsonFlag = False,
 ) -> None:
     """What compare does with a train, with further mixes and reductions, and no folder unless
     asked for.
     """
     more = [mix(text) for text in against or []]
-    _judged(train, out, as_json, max_frequency, more, reduction, kept, local=local_harmonics)
+    _judged(train, out, as_json, max_frequency, more, reduction, kept, local=local_harmonics, units=units)
 
 
 def compare_train(
-    train: Path, out: Path, as_json: bool, renders: bool, given: dict[str, bool]
+    train: Path, out: Path, as_json: bool, renders: bool, units: str, given: dict[str, bool]
 ) -> None:
     """The command compare on a train.
 
@@ -57,6 +58,7 @@ def compare_train(
     ----------
     train, out : Path
     as_json, renders : bool
+    units : str
     given : dict of str to bool
         Options of compare that speak of one shaft, and whether they were given.
     """
@@ -64,7 +66,7 @@ def compare_train(
         "every mix of its models is judged; add further ones by solidgear judge-system --against"
     )
     refuse_given(given, train, instead)
-    _judged(train, out, as_json, renders=renders)
+    _judged(train, out, as_json, renders=renders, units=units)
 
 
 def _judged(
@@ -77,9 +79,11 @@ def _judged(
     kept: int = 24,
     renders: bool = False,
     local: str | None = None,
+    units: str = UNITS,
 ) -> None:
     from solidgear.report.folder import held
     from solidgear.report.train_page import write_train
+    from solidgear.report.viewer import viewer_fragment
     from solidgear.studies.axle.comparison import compare_train as run
     from solidgear.studies.axle.modes import unpublished_lines
 
@@ -90,7 +94,9 @@ def _judged(
         if out:
             progress("report")
             draw = found.pictures if renders else None
-            write_train(results, found.drawn, found.marks, found.orders, out, draw)
+            viewer = viewer_fragment([found.turned()], first=found.loudest_name)
+            shown = found.drawn, found.marks, found.orders
+            write_train(results, *shown, out, draw, units, viewer)
     if as_json:
         print(json.dumps(results, allow_nan=False))
         return

@@ -21,6 +21,7 @@ from solidgear.report.order_chart import order_figure, write_crossings
 from solidgear.report.run_tables import pairs_of
 from solidgear.report.train_chart import response_figure
 from solidgear.report.train_files import write_charts, write_table
+from solidgear.report.units import ENGINEERING, Units, units_named
 from solidgear.report.words import seconds
 
 SIDES = ("pinion", "gear")
@@ -33,6 +34,8 @@ def write_train(
     orders: Any,
     out: str | os.PathLike,
     draw: Callable[[Path], Mapping[str, Any]] | None = None,
+    units: str | Units = ENGINEERING,
+    viewer: str = "",
 ) -> Path:
     """Write results.json, response.csv, the charts and report.html of a train.
 
@@ -50,6 +53,10 @@ def write_train(
     draw : callable, optional
         Draws into the folder; gives ``pictures``, files by what they show, and ``left_out``,
         sentences on what could not be drawn.
+    units : str or Units
+        Of tables and charts; results.json and the other tables are SI.
+    viewer : str
+        HTML that shows mode shapes, taken as it is: none of it may come from a file unescaped.
 
     Returns
     -------
@@ -62,12 +69,12 @@ def write_train(
         If the folder cannot be written.
     """
     verdict, train = results["verdict"], results["train"]
-    teeth = train["pinion"]["teeth"]
+    teeth, chosen = train["pinion"]["teeth"], units_named(units)
     charts: dict[str, Callable[[], Any]] = {
         "response": lambda: response_figure(
-            responses, train["title"], teeth, verdict["decibels"], marks
+            responses, train["title"], teeth, verdict["decibels"], marks, chosen
         ),
-        "orders": lambda: order_figure(orders, train["title"], teeth),
+        "orders": lambda: order_figure(orders, train["title"], teeth, chosen),
     }
     with held(out) as folder:
         try:
@@ -85,7 +92,7 @@ def write_train(
             results = {**results, **(draw(folder) if draw else {"pictures": {}, "left_out": []})}
             files += results["pictures"].values()
             _write_json(folder / "results.json", {**results, "files": files})
-            page = _page(results, charts, folder)
+            page = _page(results, charts, folder, chosen, viewer)
             with whole(folder / "report.html") as partial:
                 partial.write_text(page, encoding="utf-8")
         except OSError as error:
@@ -101,7 +108,13 @@ def _write_json(path: Path, results: Mapping[str, Any]) -> None:
         partial.write_text(json.dumps(results, indent=1, allow_nan=False) + "\n", encoding="utf-8")
 
 
-def _page(results: Mapping[str, Any], charts: Mapping[str, Callable[[], Any]], folder: Path) -> str:
+def _page(
+    results: Mapping[str, Any],
+    charts: Mapping[str, Callable[[], Any]],
+    folder: Path,
+    units: Units,
+    viewer: str,
+) -> str:
     from markupsafe import Markup
 
     train, verdict = results["train"], results["verdict"]
@@ -117,13 +130,14 @@ def _page(results: Mapping[str, Any], charts: Mapping[str, Callable[[], Any]], f
         warnings=[*verdict["cautions"], *results["left_out"]],
         notes=results["modes"]["notes"],
         charts={name: Markup(text.decode()) if text else None for name, text in svg.items()},
-        facts=train_tables.facts(train),
+        facts=train_tables.facts(train, units),
         mixes=train_tables.verdict(verdict),
-        peaks=train_tables.peaks(results["peaks"], train["pinion"]["teeth"]),
+        peaks=train_tables.peaks(results["peaks"], train["pinion"]["teeth"], units),
         modes=train_tables.modes(results["modes"]),
-        crossings=train_tables.crossings(results["crossings"]),
-        bearings={side: input_tables.bearings(train[side]["scene"]) for side in SIDES},
+        crossings=train_tables.crossings(results["crossings"], units),
+        bearings={side: input_tables.bearings(train[side]["scene"], units) for side in SIDES},
         renders=[(capital(told), data_uri(told, folder / name)) for told, name in pictures.items()],
+        viewer=Markup(viewer),
         environment=pairs_of(results["environment"], "Environment of the run"),
         total=seconds(results["seconds_total"], DASH),
     )

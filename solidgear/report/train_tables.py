@@ -6,8 +6,9 @@ from collections.abc import Mapping
 from math import degrees
 from typing import Any
 
-from solidgear.report.cells import DASH, eng, mm, pct, whole_number
+from solidgear.report.cells import DASH, pct, whole_number
 from solidgear.report.table import Table
+from solidgear.report.units import ENGINEERING, Units
 from solidgear.report.words import hertz, seconds
 
 SIDES = ("pinion", "gear")
@@ -15,7 +16,7 @@ SIDES = ("pinion", "gear")
 ROUNDING = 1e-12
 
 
-def facts(train: Mapping[str, Any]) -> Table:
+def facts(train: Mapping[str, Any], units: Units = ENGINEERING) -> Table:
     """The train in a few lines, each value with where it comes from."""
     status = train["statuses"]
     pinion, gear = (train[side] for side in SIDES)
@@ -23,16 +24,16 @@ def facts(train: Mapping[str, Any]) -> Table:
     rows = [
         ["teeth", f"{pinion['teeth']} and {gear['teeth']}, ratio {train['ratio']:.4f}", ""],
         ["shaft angle", f"{degrees(train['shaft_angle']):g}°", ""],
-        ["mesh stiffness", f"{eng(train['mesh_stiffness'], 4)} N/m", "mesh.stiffness"],
+        ["mesh stiffness", units.text(train["mesh_stiffness"], "N/m", 4), "mesh.stiffness"],
         ["line of action on the pinion", _vector(pinion["line_of_action"], 4), line],
-        ["mesh point from the lumped points", _points(train), ""],
-        ["lever arms", " and ".join(f"{mm(abs(train[s]['lever']))} mm" for s in SIDES), ""],
-        ["transmission error", _error(train["transmission_error"]), "mesh.transmission_error"],
+        ["mesh point from the lumped points", _points(train, units), ""],
+        ["lever arms", _levers(train, units), ""],
+        ["transmission error", _error(train["transmission_error"], units), "mesh.transmission_error"],
     ]
     for name in ("engine", "load"):
         own = train[name]
-        rows.append([f"{name} inertia", f"{eng(own['inertia'], 4)} kg m²", f"{name}.inertia"])
-        spring = f"{eng(own['spring'], 4)} N m/rad at {own['at']}"
+        rows.append([f"{name} inertia", units.text(own["inertia"], "kg m²", 4), f"{name}.inertia"])
+        spring = f"{units.text(own['spring'], 'N m/rad', 4)} at {own['at']}"
         rows.append([f"{name} spring", spring, f"{name}.spring.stiffness"])
     losses = ", ".join(f"{name} {value:g}" for name, value in train["losses"].items())
     rows.append(["loss factors", losses, "losses"])
@@ -56,17 +57,26 @@ def _vector(values, digits: int) -> str:
     return f"({', '.join(f'{v:.{digits}f}' for v in values)})"
 
 
-def _points(train: Mapping[str, Any]) -> str:
-    points = (_vector([1e3 * v for v in train[s]["point"]], 2) for s in SIDES)
-    return " and ".join(f"{text} mm" for text in points)
+def _points(train: Mapping[str, Any], units: Units) -> str:
+    unit = units.unit("m")
+    digits = 2 if unit == "mm" else 4
+    points = (_vector([units.value(v, "m") for v in train[s]["point"]], digits) for s in SIDES)
+    return " and ".join(f"{text} {unit}" for text in points)
 
 
-def _error(table: Mapping[str, Any]) -> str:
+def _levers(train: Mapping[str, Any], units: Units) -> str:
+    arms = (units.given(abs(train[s]["lever"]), "m") for s in SIDES)
+    return " and ".join(f"{arm} {units.unit('m')}" for arm in arms)
+
+
+def _error(table: Mapping[str, Any], units: Units) -> str:
+    unit = units.unit("m moved")
     if table["orders"]:
-        sizes = ", ".join(f"{1e6 * v:.4g}" for v in table["orders"])
-        return f"{sizes} µm" + (" by order of the mesh" if len(table["orders"]) > 1 else "")
+        sizes = ", ".join(units.given(v, "m moved") for v in table["orders"])
+        return f"{sizes} {unit}" + (" by order of the mesh" if len(table["orders"]) > 1 else "")
     low, high = table["frequency"][0], table["frequency"][-1]
-    return f"a table from {low:g} to {high:g} Hz, up to {1e6 * max(table['amplitude']):.4g} µm"
+    most = units.given(max(table["amplitude"]), "m moved")
+    return f"a table from {low:g} to {high:g} Hz, up to {most} {unit}"
 
 
 def verdict(found: Mapping[str, Any]) -> Table:
@@ -118,8 +128,10 @@ def _end(hz: float | None, found: Mapping[str, Any]) -> str:
     return f"{found['highest_hz']:.0f}+" if hz is None else f"{hz:.0f}"
 
 
-def modes(found: Mapping[str, Any]) -> Table:
-    """Natural frequencies of the judge."""
+def modes(
+    found: Mapping[str, Any], caption: str = "Natural frequencies, both shafts solid"
+) -> Table:
+    """Natural frequencies of a train."""
     rows = []
     for mode in found["modes"]:
         hz = mode["frequency_hz"]
@@ -133,31 +145,36 @@ def modes(found: Mapping[str, Any]) -> Table:
             ]
         )
     return Table(
-        "Natural frequencies, both shafts solid",
+        caption,
         ["mode", "Hz", "pinion rpm at which the teeth meet it", "most strain energy", "bound"],
         rows,
     )
 
 
-def peaks(found: list[Mapping[str, Any]], teeth: int) -> Table:
-    """Peaks of the judge's mesh force."""
+def peaks(
+    found: list[Mapping[str, Any]],
+    teeth: int,
+    units: Units = ENGINEERING,
+    caption: str = "Peaks of the mesh force, both shafts solid",
+) -> Table:
+    """Peaks of the mesh force."""
     rows = [
         [p["mode"], hertz(p["frequency_hz"]), f"{60 * p['frequency_hz'] / teeth:.0f}"]
-        + [f"{p['force']:.1f}"]
+        + [units.number(p["force"], "N")]
         for p in found
     ]
-    head = ["mode that makes it", "Hz", "pinion rpm", "mesh force, N"]
-    return Table("Peaks of the mesh force, both shafts solid", head, rows)
+    head = ["mode that makes it", "Hz", "pinion rpm", f"mesh force, {units.unit('N')}"]
+    return Table(caption, head, rows)
 
 
-def crossings(found: list[Mapping[str, Any]]) -> Table:
+def crossings(found: list[Mapping[str, Any]], units: Units = ENGINEERING) -> Table:
     """Where orders meet natural frequencies."""
     rows = []
     for c in found:
-        force = DASH if c["force"] is None else f"{c['force']:.1f}"
+        force = units.number(c["force"], "N", nothing=DASH)
         rows.append([c["line"], (c["mode"], "text"), hertz(c["frequency_hz"])])
         rows[-1] += [f"{c['rpm']:.0f}", force]
-    head = ["order", "mode", "Hz", "pinion rpm", "mesh force, N"]
+    head = ["order", "mode", "Hz", "pinion rpm", f"mesh force, {units.unit('N')}"]
     return Table(
         "Where orders meet natural frequencies",
         head,

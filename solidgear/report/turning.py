@@ -7,8 +7,8 @@ one that is symmetric about the plane of y and z, so that models side by side be
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
@@ -21,6 +21,8 @@ if TYPE_CHECKING:
 
 #: slices along the axis in which the motions of two models are compared
 SLICES = 12
+#: a body of several turns about its axis if the mean square of that is so many times that of the rest
+TURNS = 10.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -37,7 +39,7 @@ class Shape:
     twists : bool
         Whether sections turn about the axis: drawn enlarged, they are turned, and do not swell.
     displacement : (n, 3) ndarray
-        At the points of the mesh; the largest has length 1.
+        At the points of the mesh; the largest has length 1, of all bodies that move in the mode.
     """
 
     name: str
@@ -58,11 +60,20 @@ class Turned:
     mesh : Mesh
     shapes : tuple of Shape
         In ascending order of frequency; rigid motions are left out.
+    rotation : (3, 3) ndarray
+        From the axes of the body, in which its mesh and shapes are, to those of the picture.
+    origin : (3,) ndarray
+        Of its axes in those of the picture, m.
+    along : tuple of Turned
+        Further bodies that move in the same modes, as the other shaft of a train does.
     """
 
     title: str
     mesh: Mesh
     shapes: tuple[Shape, ...]
+    rotation: np.ndarray = field(default_factory=lambda: np.eye(3))
+    origin: np.ndarray = field(default_factory=lambda: np.zeros(3))
+    along: tuple[Turned, ...] = ()
 
     def index(self, name: str) -> int:
         """Place of the shape of that name, also where bending is named by its plane; -1 if none."""
@@ -125,6 +136,72 @@ def _drawn(body: Body, mode: Mode, mesh: Mesh) -> np.ndarray:
     return out / largest
 
 
+class Member(NamedTuple):
+    """A body among several that move together.
+
+    Attributes
+    ----------
+    body : Body
+    rotation : (3, 3) ndarray
+    origin : (3,) ndarray
+        As of :class:`Turned`.
+    vectors : sequence of mapping
+        What :meth:`Body.surface` draws, a mode each.
+    """
+
+    body: Body
+    rotation: np.ndarray
+    origin: np.ndarray
+    vectors: Sequence[Any]
+
+
+def together(title: str, modes: Sequence[tuple[str, float]], members: Sequence[Member]) -> Turned:
+    """Several bodies that move in the same modes, each in its place.
+
+    Parameters
+    ----------
+    title : str
+    modes : sequence of (str, float)
+        Name and frequency, Hz, of elastic modes.
+    members : sequence of Member
+        Each with a vector for every mode.
+
+    Returns
+    -------
+    Turned
+        The first body, with the others along.
+
+    Raises
+    ------
+    SolidgearError
+        For a body that carries no geometry, or no mode at all.
+    """
+    if not modes:
+        raise SolidgearError(f"{title}: no elastic mode to draw")
+    meshes = [mesh_of(member.body.surface({})) for member in members]
+    shapes: list[list[Shape]] = [[] for _ in members]
+    for k, (name, hz) in enumerate(modes):
+        moved = [m.body.surface(m.vectors[k]).displacement[w.source] for m, w in zip(members, meshes)]
+        largest = max(np.linalg.norm(one, axis=1).max() for one in moved)
+        if not np.isfinite(largest) or not largest > 0:
+            raise SolidgearError(f"mode {name!r}: the displacement is zero or not finite")
+        told = [sections(mesh.points, one) for mesh, one in zip(meshes, moved)]
+        scale = _direction(np.vstack(told)) / largest
+        for own, one, section in zip(shapes, moved, told):
+            own.append(Shape(name, hz, False, _turns(section), scale * one))
+    bodies = [
+        Turned(title, mesh, tuple(own), member.rotation, member.origin)
+        for mesh, own, member in zip(meshes, shapes, members)
+    ]
+    return replace(bodies[0], along=tuple(bodies[1:]))
+
+
+def _turns(told: np.ndarray) -> bool:
+    """Whether the sections of a body do little but turn about its axis."""
+    across, swirl = (told[:, :3] ** 2).sum(), (told[:, 3] ** 2).sum()
+    return bool(swirl > TURNS * across)
+
+
 def symmetric(points: np.ndarray, one: np.ndarray, other: np.ndarray) -> np.ndarray:
     """Of the shapes that a pair spans, that symmetric about the plane of y and z.
 
@@ -172,8 +249,16 @@ def _partner(name: str, like: Sequence[Turned]) -> np.ndarray | None:
 def _sign(points: np.ndarray, moved: np.ndarray, partner: np.ndarray | None) -> float:
     """As its partner moves; else that the largest section motion is positive: up, along y or about y."""
     own = sections(points, moved)
-    told = float(own.ravel()[np.abs(own).argmax()] if partner is None else (own * partner).sum())
-    return -1.0 if told < 0 else 1.0
+    return _direction(own) if partner is None else _sign_of(float((own * partner).sum()))
+
+
+def _direction(told: np.ndarray) -> float:
+    """The sign that makes the largest section motion positive."""
+    return _sign_of(float(told.ravel()[np.abs(told).argmax()]))
+
+
+def _sign_of(value: float) -> float:
+    return -1.0 if value < 0 else 1.0
 
 
 def picks(models: Sequence[Turned]) -> list[Mapping[str, Any]]:

@@ -6,7 +6,8 @@ const SIZE = 0.9; // share of a pane that the shape fills
 const MOVE = `#version 300 es
 precision highp float;
 uniform mat3 uTurn; uniform vec3 uMiddle; uniform vec3 uScale; uniform float uSwing; uniform bool uTwists;
-out vec3 vRest;
+uniform mat3 uAxes; uniform vec3 uOrigin; // of a body
+out vec3 vRest; out vec3 vSite;
 // Torsion enlarged turns sections; along the tangent it would swell them.
 mat2 twist(vec3 rest, vec3 moved) {
   float a = uTwists ? uSwing * dot(moved.xz, vec2(rest.z, -rest.x)) / max(dot(rest, rest) - rest.y * rest.y, 1e-12) : 0.0;
@@ -18,22 +19,23 @@ vec4 place(vec3 rest, vec3 moved) {
     vec2 out_ = normalize(rest.xz + 1e-12);
     p.xz = twist(rest, moved) * (rest.xz + uSwing * dot(moved.xz, out_) * out_);
   }
-  return vec4((uTurn * (p - uMiddle)) * uScale * vec3(1.0, 1.0, -1.0), 1.0);
-}`;
+  return vec4((uTurn * (uAxes * p + uOrigin - uMiddle)) * uScale * vec3(1.0, 1.0, -1.0), 1.0);
+}
+vec3 site(vec3 rest) { return uAxes * rest + uOrigin; }`;
 const FACES = [MOVE + `
 uniform float uTilt;
 layout(location = 0) in vec3 aRest; layout(location = 1) in vec3 aMoved; layout(location = 2) in vec3 aNormal; layout(location = 3) in vec3 aTilt;
 out vec3 vNormal; out float vSize;
 void main() {
-  vRest = aRest; gl_Position = place(aRest, aMoved);
+  vRest = aRest; vSite = site(aRest); gl_Position = place(aRest, aMoved);
   vec3 n = aNormal + (uTwists ? 0.0 : uTilt) * aTilt;
   n.xz = twist(aRest, aMoved) * n.xz;
-  vNormal = uTurn * n;
+  vNormal = uTurn * (uAxes * n);
   vSize = length(aMoved);
 }`, `#version 300 es
 precision highp float;
 uniform vec3 uColours[17]; uniform vec4 uCut; uniform vec3 uHatch[2]; uniform float uPixel; uniform vec2 uGrid;
-in vec3 vRest; in vec3 vNormal; in float vSize;
+in vec3 vRest; in vec3 vSite; in vec3 vNormal; in float vSize;
 out vec4 colour;
 float line(float at, float width) { // where a number is whole, fading where lines would touch
   return (1.0 - smoothstep(0.4, 1.2, abs(fract(at - 0.5) - 0.5) / max(width * uPixel, 1e-9))) * (1.0 - smoothstep(0.1, 0.3, width));
@@ -46,7 +48,7 @@ void main() {
   float step_ = 3.8197186 * (abs(r.x * dx.y - r.y * dx.x) + abs(r.x * dy.y - r.y * dy.x)) / max(dot(r, r), 1e-12);
   vec3 flatly = normalize(cross(dFdx(vRest), dFdy(vRest)));
   float grid = max(line(around, step_), abs(flatly.y) > 0.98 ? 0.0 : line(along, fwidth(along)));
-  if (uCut.w > 0.5 && dot(vRest, uCut.xyz) > 0.0) discard;
+  if (uCut.w > 0.5 && dot(vSite, uCut.xyz) > 0.0) discard;
   // Behind a cut closed surface the first thing seen from inside is where the section is.
   if (uCut.w > 0.5 && !gl_FrontFacing) {
     float stripe = abs(mod(gl_FragCoord.x + gl_FragCoord.y, 11.0 * uPixel) - 5.5 * uPixel);
@@ -68,16 +70,16 @@ void main() {
   vec4 a = place(aRest, aMoved), b = place(aEnd, aEndMoved);
   vec2 along = (b.xy - a.xy) * uPane; along = length(along) > 1e-6 ? normalize(along) : vec2(1.0, 0.0);
   vec2 across = vec2(-along.y, along.x) * ((gl_VertexID & 1) == 0 ? 1.0 : -1.0);
-  vRest = end ? aEnd : aRest; gl_Position = end ? b : a;
+  vRest = end ? aEnd : aRest; vSite = site(vRest); gl_Position = end ? b : a;
   gl_Position.xy += (across + (end ? 0.5 : -0.5) * along) * uWidth / uPane;
   gl_Position.z -= uNearer;
 }`, `#version 300 es
 precision highp float;
 uniform vec4 uCut; uniform vec3 uColour;
-in vec3 vRest;
+in vec3 vSite;
 out vec4 colour;
 void main() {
-  if (uCut.w > 0.5 && dot(vRest, uCut.xyz) > 0.0) discard;
+  if (uCut.w > 0.5 && dot(vSite, uCut.xyz) > 0.0) discard;
   colour = vec4(uColour, 1.0);
 }`];
 
@@ -116,13 +118,27 @@ class Pane {
     this.faces = program(this.gl, FACES); this.lines = program(this.gl, LINES);
     this.buffers = []; this.drawn = null;
   }
-  async show(model, shape) {
+  async show(model, number) {
     await unpack(model);
-    const moved = shape && await values(shape.moved, model, shape.step), swing = this.viewer.data.swing * model.length;
+    const shape = model.shapes[number], swing = this.viewer.data.swing * model.box.length, most = [0, 0, 0];
+    const moved = await Promise.all(bodies(model).map(body => shape && values(body.shapes[number].moved, body, body.shapes[number].step)));
+    this.buffers.forEach(b => this.gl.deleteBuffer(b)); this.buffers = [];
+    const parts = bodies(model).map((body, i) => this.part(body, moved[i], swing));
+    bodies(model).forEach((body, i) => {
+      const { rotation } = placing(body), own = [0, 0, 0];
+      if (moved[i]) moved[i].forEach((v, j) => { own[j % 3] = Math.max(own[j % 3], Math.abs(v)); });
+      most.forEach((v, c) => { most[c] = Math.max(v, own.reduce((sum, u, k) => sum + Math.abs(rotation[3 * c + k]) * u, 0)); });
+      parts[i].twists = shape && body.shapes[number].twists;
+    });
+    this.drawn = { model, shape, swing, most, parts };
+    const words = shape ? `${shape.name}, ${shape.hz.toFixed(1)} Hz${shape.pair ? " (pair)" : ""}` : "none of this name among its modes";
+    this.element.querySelector(".hz").textContent = words;
+    this.canvas.setAttribute("aria-label", `${model.title}: ${words}; deformed shape, can be turned`);
+  }
+  part(model, moved, swing) { // what is drawn of one body
     // Deformed to both sides: between them normals are taken to change evenly.
     const [up, down] = moved ? [1, -1].map(s => normals(model.rest.map((v, i) => v + s * swing * moved[i]), model)) : [];
     const gl = this.gl, still = normals(model.rest, model), none = new Float32Array(model.source.length * 3);
-    this.buffers.forEach(b => gl.deleteBuffer(b)); this.buffers = [];
     const vao = (arrays, elements) => { // edges, which have no elements, take both ends from one array
       const v = gl.createVertexArray(); gl.bindVertexArray(v);
       const field = (i, stride, start) => {
@@ -137,17 +153,12 @@ class Pane {
       gl.bindVertexArray(null);
       return v;
     };
-    const most = [0, 0, 0];
-    if (moved) moved.forEach((v, i) => { most[i % 3] = Math.max(most[i % 3], Math.abs(v)); });
     const at = model.source, ends = model.sharp;
-    this.drawn = {
-      model, shape, swing, most,
+    return {
+      body: model,
       faces: vao([picked(model.rest, at), moved ? picked(moved, at) : none, still, moved ? up.map((v, i) => (v - down[i]) / 2) : none], model.index),
       edges: vao([picked(model.rest, ends), moved ? picked(moved, ends) : new Float32Array(3 * ends.length)]),
     };
-    const words = shape ? `${shape.name}, ${shape.hz.toFixed(1)} Hz${shape.pair ? " (pair)" : ""}` : "none of this name among its modes";
-    this.element.querySelector(".hz").textContent = words;
-    this.canvas.setAttribute("aria-label", `${model.title}: ${words}; deformed shape, can be turned`);
   }
   put(target, array) {
     const b = this.gl.createBuffer(); this.buffers.push(b);
@@ -155,7 +166,7 @@ class Pane {
   }
   fits() { // pixels a metre at which the box around shape and motion fills the pane, as it is turned
     const { model, most, swing } = this.drawn, { turn, scale } = this.viewer;
-    const half = model.low.map((v, c) => (model.high[c] - v) / 2 + swing * scale * most[c]);
+    const half = model.box.low.map((v, c) => (model.box.high[c] - v) / 2 + swing * scale * most[c]);
     const reach = turn.map(row => row.reduce((sum, v, c) => sum + Math.abs(v) * half[c], 0));
     return SIZE / 2 * Math.min(this.canvas.clientWidth / reach[0], this.canvas.clientHeight / reach[1]);
   }
@@ -167,30 +178,37 @@ class Pane {
     gl.viewport(0, 0, w, h);
     gl.clearColor(0, 0, 0, 0); gl.clearStencil(0); gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT | gl.STENCIL_BUFFER_BIT);
     gl.enable(gl.DEPTH_TEST); gl.enable(gl.POLYGON_OFFSET_FILL); gl.polygonOffset(1, 1);
-    const R = viewer.turn, fit = viewer.fit() * pixel, scale = [2 * fit / w, 2 * fit / h, 0.25 / model.length];
+    const R = viewer.turn, fit = viewer.fit() * pixel, scale = [2 * fit / w, 2 * fit / h, 0.25 / model.box.length];
     const swing = drawn.shape ? drawn.swing * viewer.scale * Math.sin(viewer.phase) : 0;
-    const middle = model.low.map((v, c) => (v + model.high[c]) / 2), cut = [Math.sin(viewer.angle), 0, Math.cos(viewer.angle), viewer.cut ? 1 : 0];
+    const middle = model.box.low.map((v, c) => (v + model.box.high[c]) / 2), cut = [Math.sin(viewer.angle), 0, Math.cos(viewer.angle), viewer.cut ? 1 : 0];
     const colour = getComputedStyle(viewer.root), ink = rgb(colour.color), paper = rgb(colour.getPropertyValue("--bg"));
     const use = ({ p, at }, s) => {
       gl.useProgram(p);
       gl.uniformMatrix3fv(at.uTurn, true, R.flat()); gl.uniform3fv(at.uMiddle, middle); gl.uniform3fv(at.uScale, scale);
-      gl.uniform1f(at.uSwing, s); gl.uniform1i(at.uTwists, drawn.shape && drawn.shape.twists ? 1 : 0); gl.uniform4fv(at.uCut, cut);
+      gl.uniform1f(at.uSwing, s); gl.uniform4fv(at.uCut, cut);
       return at;
     };
+    const each = (at, draw) => drawn.parts.forEach(part => { // every body in its place
+      const { rotation, origin } = placing(part.body);
+      gl.uniformMatrix3fv(at.uAxes, true, rotation); gl.uniform3fv(at.uOrigin, origin); gl.uniform1i(at.uTwists, part.twists ? 1 : 0);
+      draw(part);
+    });
     const at = use(this.faces, swing);
     gl.uniform1f(at.uTilt, drawn.shape ? swing / drawn.swing : 0); gl.uniform1f(at.uPixel, pixel);
     gl.uniform3fv(at.uColours, viewer.colours); gl.uniform3fv(at.uHatch, [...mixed(paper, ink, 0.12), ...mixed(paper, ink, 0.5)]);
-    gl.uniform2fv(at.uGrid, [model.low[1], model.length / 16]);
     // The section hides what lies behind it: its pixels are marked, and no edge is drawn there.
     gl.enable(gl.STENCIL_TEST); gl.stencilFunc(gl.ALWAYS, 1, 1);
     gl.stencilOpSeparate(gl.FRONT, gl.KEEP, gl.KEEP, gl.ZERO); gl.stencilOpSeparate(gl.BACK, gl.KEEP, gl.KEEP, viewer.cut ? gl.REPLACE : gl.ZERO);
-    gl.bindVertexArray(drawn.faces); gl.drawElements(gl.TRIANGLES, model.index.length, gl.UNSIGNED_INT, 0);
-    gl.bindVertexArray(drawn.edges); gl.stencilFunc(gl.EQUAL, 0, 1); gl.stencilOp(gl.KEEP, gl.KEEP, gl.KEEP);
+    each(at, ({ body, faces }) => {
+      gl.uniform2fv(at.uGrid, [body.start, model.box.length / 16]);
+      gl.bindVertexArray(faces); gl.drawElements(gl.TRIANGLES, body.index.length, gl.UNSIGNED_INT, 0);
+    });
+    gl.stencilFunc(gl.EQUAL, 0, 1); gl.stencilOp(gl.KEEP, gl.KEEP, gl.KEEP);
     gl.disable(gl.POLYGON_OFFSET_FILL);
     const edges = (s, colour, nearer, width) => {
       const to = use(this.lines, s);
       gl.uniform2fv(to.uPane, [w, h]); gl.uniform1f(to.uWidth, width * pixel); gl.uniform1f(to.uNearer, nearer); gl.uniform3fv(to.uColour, colour);
-      gl.drawArraysInstanced(gl.TRIANGLE_STRIP, 0, 4, model.sharp.length / 2);
+      each(to, part => { gl.bindVertexArray(part.edges); gl.drawArraysInstanced(gl.TRIANGLE_STRIP, 0, 4, part.body.sharp.length / 2); });
     };
     edges(swing, [0.08, 0.09, 0.11], 0.0015, 1.5);
     if (viewer.rest) edges(0, mixed(paper, ink, 0.55), 0, 1.2);
@@ -243,7 +261,7 @@ class Viewer {
     const at = this.data.modes[this.mode].at, turn = this.picking = {};
     for (let i = 0; i < this.panes.length; i++) {
       const pane = this.panes[i], choice = pane.element.querySelector(".model"), k = choice ? +choice.value : 0, model = this.data.models[k];
-      await pane.show(model, model.shapes[at[k]]);
+      await pane.show(model, at[k]);
       if (this.picking !== turn) return; // something else was picked meanwhile
     }
     this.draw();

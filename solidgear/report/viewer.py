@@ -1,6 +1,6 @@
 """A model one can turn: mode shapes in 3D inside a page, without network and without other files.
 
-The viewer is ours (``viewer.js``, WebGL 2, 25 kB) and not a library: three.js alone is 0.7 MB
+The viewer is ours (``viewer.js``, WebGL 2, 27 kB) and not a library: three.js alone is 0.7 MB
 and vtk.js over 1 MB in every report, both need a loader for surfaces that move, and neither hatches
 a section. What is drawn are the product's own surfaces (:mod:`solidgear.body.surface`).
 """
@@ -210,6 +210,14 @@ def _within(models: Sequence[Turned]) -> Iterator[dict[str, Any]]:
 
 
 def _packed(model: Turned) -> dict[str, Any]:
+    along = [_packed(one) for one in model.along]
+    told = _packed_body(model)
+    if np.any(model.rotation != np.eye(3)) or np.any(model.origin):
+        told |= {"rotation": model.rotation.ravel().tolist(), "origin": model.origin.tolist()}
+    return told | ({"along": along} if along else {})
+
+
+def _packed_body(model: Turned) -> dict[str, Any]:
     mesh = model.mesh
     length = float(np.ptp(mesh.points, axis=0).max())
     place, swing = length / packing.PLACES, 1.0 / packing.SWINGS

@@ -102,14 +102,31 @@ const picked = (p, at) => {
   return out;
 };
 
+// A model is a body, or several that move in the same modes: the first, and those along with it, each in axes of its own.
+const bodies = model => [model, ...(model.along || [])];
+const REST = { rotation: [1, 0, 0, 0, 1, 0, 0, 0, 1], origin: [0, 0, 0] };
+const placing = body => body.rotation ? body : REST;
+const placed = (body, p) => { const { rotation: r, origin } = placing(body); return origin.map((v, c) => v + r[3 * c] * p[0] + r[3 * c + 1] * p[1] + r[3 * c + 2] * p[2]); };
+
 async function unpack(model) { // once per model
-  if (model.rest) return model;
+  if (model.box) return model;
+  const low = [Infinity, Infinity, Infinity], high = low.map(v => -v);
+  for (const body of bodies(model)) {
+    await opened(body);
+    for (let i = 0; i < body.rest.length; i += 3) placed(body, body.rest.subarray(i, i + 3)).forEach((v, c) => {
+      low[c] = Math.min(low[c], v); high[c] = Math.max(high[c], v);
+    });
+  }
+  model.box = { low, high, length: Math.max(...low.map((v, c) => high[c] - v)) };
+  return model;
+}
+
+async function opened(model) {
   model.t = corners(await counts(model.triangles));
   model.foretold = foretelling(model.t, model.count);
   const rest = await values(model.points, model, model.step);
-  const low = [0, 1, 2].map(c => { let v = Infinity; for (let i = c; i < rest.length; i += 3) v = Math.min(v, rest[i]); return v; });
-  const high = [0, 1, 2].map(c => { let v = -Infinity; for (let i = c; i < rest.length; i += 3) v = Math.max(v, rest[i]); return v; });
-  model.low = low; model.high = high; model.length = Math.max(...low.map((v, c) => high[c] - v));
+  model.start = Infinity; // of its axis
+  for (let i = 1; i < rest.length; i += 3) model.start = Math.min(model.start, rest[i]);
   model.rest = rest;
   return Object.assign(model, shared(model));
 }

@@ -9,12 +9,13 @@ from time import perf_counter
 from typing import Any
 
 from solidgear.machine.environment import environment
+from solidgear.report.turning import Turned
 from solidgear.scene.train import SIDES
 from solidgear.studies.axle.judge import DRAWN, JUDGE, Verdict, judge_train
 from solidgear.studies.axle.models import Workshop
 from solidgear.studies.axle.modes import TrainModes, train_modes
 from solidgear.studies.axle.orders import OrderMap, order_map
-from solidgear.studies.axle.pictures import draw_modes
+from solidgear.studies.axle.pictures import draw_modes, turned_modes
 from solidgear.studies.axle.respond import TrainResponse
 
 #: modes that are drawn
@@ -68,6 +69,16 @@ class TrainComparison:
         drawn = {told: one.path.name for told, one in done.items() if one.ok}
         reasons = sorted({one.reason for one in done.values() if not one.ok})
         return {"pictures": drawn, "left_out": reasons}
+
+    def turned(self) -> Turned:
+        """The judge's modes, to be turned in a page."""
+        return turned_modes(self.workshop, JUDGE, JUDGE, self.verdict.highest_hz)
+
+    @property
+    def loudest_name(self) -> str:
+        """Name of the mode that makes the largest peak of the judge's mesh force; empty if none."""
+        peaks = self.verdict.responses[0].peaks
+        return max(peaks, key=lambda peak: peak.force).mode if peaks else ""
 
     def results(self) -> dict[str, Any]:
         """Plain data that JSON can hold: all numbers of the page."""

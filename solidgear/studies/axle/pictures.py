@@ -1,4 +1,4 @@
-"""Modes of a train drawn with both shafts in place, several phases a picture."""
+"""Modes of a train drawn with both shafts in place: several phases a picture, or to be turned."""
 
 from __future__ import annotations
 
@@ -14,6 +14,7 @@ from solidgear.errors import SolidgearError, listed
 from solidgear.fidelity.ladder import LADDER
 from solidgear.report.folder import prepare
 from solidgear.report.render import RenderJob, RenderResult, render_modes
+from solidgear.report.turning import Member, Turned, together
 from solidgear.scene.train import SIDES
 from solidgear.studies.axle.models import Workshop
 from solidgear.studies.axle.naming import mode_names
@@ -52,22 +53,69 @@ def system_surface(workshop: Workshop, system: System, rungs: Sequence[str], sha
     True
     """
     pieces = []
-    for side, rung in zip(SIDES, rungs):
-        if rung not in LADDER.bodies:
-            raise SolidgearError(
-                f"the model {rung} of the {side} has no shape to draw; "
-                f"use one of {', '.join(LADDER.bodies)}"
-            )
-        body = workshop.shaft(side, rung).body
+    for side, (body, turn, origin) in _bodies(workshop, system, rungs).items():
         drawn = body.surface(system.expand(side, shape))
-        part = system.parts[side]
-        turn, origin = getattr(part, "rotation", np.eye(3)), getattr(part, "origin", np.zeros(3))
         points, moved = drawn.points @ turn.T + origin, drawn.displacement @ turn.T
         pieces.append((points, moved, drawn.faces, drawn.triangles, drawn.lines))
     first = len(pieces[0][0])
     (points, moved, *cells), (others, also, *more) = pieces
     whole = [np.vstack([mine, its + first]) for mine, its in zip(cells, more)]
     return Surface(np.vstack([points, others]), np.vstack([moved, also]), *whole)
+
+
+def _bodies(workshop: Workshop, system: System, rungs: Sequence[str]) -> dict[str, tuple]:
+    """Body, rotation and origin of both shafts, in the axes of the pinion's scene."""
+    out = {}
+    for side, rung in zip(SIDES, rungs):
+        if rung not in LADDER.bodies:
+            raise SolidgearError(
+                f"the model {rung} of the {side} has no shape to draw; "
+                f"use one of {', '.join(LADDER.bodies)}"
+            )
+        part = system.parts[side]
+        place = getattr(part, "rotation", np.eye(3)), getattr(part, "origin", np.zeros(3))
+        out[side] = (workshop.shaft(side, rung).body, *place)
+    return out
+
+
+def turned_modes(
+    workshop: Workshop, pinion: str, gear: str, highest_hz: float | None = None
+) -> Turned:
+    """Both shafts in their places with the modes of the train, to be turned in a page.
+
+    Parameters
+    ----------
+    workshop : Workshop
+    pinion, gear : str
+        Rungs.
+    highest_hz : float, optional
+        Of the modes; that of the file by default. The first elastic mode is always there.
+
+    Raises
+    ------
+    SolidgearError
+        For a rung without a shape.
+
+    Examples
+    --------
+    >>> import solidgear as sg
+    >>> shop = Workshop(sg.load_train("geometry/axle_overhung.toml"))
+    >>> drawn = turned_modes(shop, "euler", "euler", 700.0)
+    >>> drawn.title, len(drawn.along), [shape.name for shape in drawn.shapes][:2]
+    ('both shafts euler', 1, ['load torsion 1', 'gear torsion 1'])
+    """
+    system = workshop.system(pinion, gear)
+    placed = _bodies(workshop, system, (pinion, gear))
+    limit = 2 * np.pi * (highest_hz or workshop.train.ask.max_frequency)
+    found = system.modes(max(1, int((system.elastic[0] <= limit).sum())))
+    names = mode_names(workshop, system, found)
+    elastic = [k for k, hz in enumerate(found.frequency_hz) if hz > 0]
+    members = [
+        Member(*place, [system.expand(side, found.shapes[:, k]) for k in elastic])
+        for side, place in placed.items()
+    ]
+    both = f"both shafts {gear}" if pinion == gear else f"pinion {pinion}, gear {gear}"
+    return together(both, [(names[k], float(found.frequency_hz[k])) for k in elastic], members)
 
 
 def draw_modes(
