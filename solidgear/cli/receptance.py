@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from solidgear.cli.app import FIDELITY, JsonFlag, command
+from solidgear.cli.app import FIDELITY, UNITS, JsonFlag, UnitsOption, command
 from solidgear.cli.train import (
     Against,
     Damping,
@@ -47,11 +47,13 @@ def receptance(
     reduction: Reduction = "rubin",
     kept: Kept = 24,
     local_harmonics: LocalHarmonics = None,
+    units: UnitsOption = UNITS,
     as_json: JsonFlag = False,
 ) -> None:
     """Receptance between any two ports of a train: table, chart, and peaks with their modes."""
     from solidgear.report.folder import held
     from solidgear.report.receptance_files import write_receptance
+    from solidgear.studies.axle.comparison import described
     from solidgear.studies.axle.modes import unpublished_lines
     from solidgear.studies.axle.receptance import receptance as run
 
@@ -65,13 +67,12 @@ def receptance(
             run(shop, *pair, *ends, max_frequency, damping, matched_at or 0.0) for pair in mixes
         ]
         notes = {"from": from_, "to": to, "unpublished": unpublished, "cautions": list(cautions)}
-        files = write_receptance(out, found, title, shop.train.pinion.teeth, notes)
+        files = write_receptance(out, found, title, shop.train.pinion.teeth, notes, described(shop), units)
     if as_json:
         print((out / "receptance.json").read_text(encoding="utf-8"))
         return
     say(f"{title}; pinion {pinion}, gear {gear}, {damping} losses")
-    peaks_table(
-        "Peaks of the receptance", found[0].unit, found[0].peaks, shop.train.pinion.teeth, ".3e"
-    )
+    tops, teeth = found[0].peaks, shop.train.pinion.teeth
+    peaks_table("Peaks of the receptance", "", tops, teeth, found[0].unit, units)
     say(*unpublished_lines(unpublished), *map(caution, cautions))
     say(f"Written: {', '.join(map(str, files))}")

@@ -9,7 +9,7 @@ from typing import Annotated
 
 import typer
 
-from solidgear.cli.app import FIDELITY, JsonFlag, command, console
+from solidgear.cli.app import FIDELITY, UNITS, JsonFlag, UnitsOption, command, console
 from solidgear.errors import SceneError, SolidgearError, show
 from solidgear.fidelity.ladder import LADDER
 
@@ -131,9 +131,14 @@ def system_modes(
         list[int] | None,
         typer.Option("--mode", help="Only draw this one, counted from 1 as listed; repeatable."),
     ] = None,
+    turn: Annotated[
+        Path | None,
+        typer.Option(help="HTML file: all modes of both shafts in 3D, to be turned and animated."),
+    ] = None,
     reduction: Reduction = "rubin",
     kept: Kept = 24,
     local_harmonics: LocalHarmonics = None,
+    units: UnitsOption = UNITS,
     as_json: JsonFlag = False,
 ) -> None:
     """Natural frequencies of a geared rotor system, each with its name and its proven bound."""
@@ -143,7 +148,14 @@ def system_modes(
     if mode and pictures is None:
         raise SolidgearError("--mode says which mode to draw; add --pictures and a folder")
     found = train_modes(shop, pinion, gear, max_frequency)
+    if units != UNITS and turn is None:
+        raise SolidgearError(
+            f"--units {units}: the table has Hz and rpm alone; add --turn model.html, whose page "
+            "shows the train in these units"
+        )
     drawn = _drawn(shop, pinion, gear, pictures, mode, found) if pictures else []
+    if turn is not None:
+        drawn += _turned(shop, found, turn, max_frequency, units)
     if as_json:
         print(json.dumps(found.as_dict(), allow_nan=False))
         return
@@ -161,6 +173,35 @@ def _drawn(shop, pinion: str, gear: str, folder: Path, numbers: list[int] | None
     written = [str(one.path) for one in done if one.ok]
     lines = [f"Written: {', '.join(written)}"] if written else []
     return lines + sorted({one.reason for one in done if not one.ok})
+
+
+def _turned(shop, found, path: Path, max_frequency: float | None, units: str) -> list[str]:
+    """Write the page in which modes can be turned; what is to be said of it."""
+    from solidgear.report import train_tables
+    from solidgear.report.train_sheet import write_sheet
+    from solidgear.report.units import units_named
+    from solidgear.report.viewer import viewer_fragment
+    from solidgear.studies.axle.comparison import described
+    from solidgear.studies.axle.pictures import still_of, turned_modes
+
+    models = turned_modes(shop, found.pinion, found.gear, max_frequency)
+    names = [mode.name for mode in found.modes]
+    elastic = [shape.name for shape in models.shapes]
+    first = next((name for name in elastic if "bending" in name), elastic[0])
+    still, said = still_of(shop, found.pinion, found.gear, names.index(first) + 1)
+    write_sheet(
+        path,
+        found.train,
+        f"Natural frequencies and mode shapes: pinion {found.pinion}, gear {found.gear}.",
+        [
+            train_tables.modes(found.as_dict(), "Natural frequencies"),
+            train_tables.facts(described(shop), units_named(units)),
+        ],
+        viewer=viewer_fragment([models], still=still, first=first),
+        notes=found.notes(),
+        cautions=found.cautions,
+    )
+    return [*filter(None, [said]), f"Written: {path}"]
 
 
 def say(*sentences: str) -> None:
@@ -222,11 +263,13 @@ def response(
     reduction: Reduction = "rubin",
     kept: Kept = 24,
     local_harmonics: LocalHarmonics = None,
+    units: UnitsOption = UNITS,
     as_json: JsonFlag = False,
 ) -> None:
     """Steady response to the transmission error: mesh force, reactions, motions, and a chart."""
     from solidgear.report.folder import held
     from solidgear.report.train_files import write_response
+    from solidgear.studies.axle.comparison import described
     from solidgear.studies.axle.modes import unpublished_lines
     from solidgear.studies.axle.orders import order_map
     from solidgear.studies.axle.respond import respond
@@ -246,14 +289,15 @@ def response(
         # a force on a port has no order of the mesh
         kind = (damping, matched_at or 0.0)
         lines = None if forces else order_map(shop, pinion, gear, max_frequency, *kind, orders)
-        files = write_response(out, found, title, teeth, band, notes, lines)
+        told = described(shop)
+        files = write_response(out, found, title, teeth, band, notes, lines, told, units)
     if as_json:
         print((out / "response.json").read_text(encoding="utf-8"))
         return
     terminal = console()
     terminal.print(f"{title}: pinion {pinion}, gear {gear}, {damping} losses", markup=False)
     tops = [(p.frequency_hz, p.force, p.mode) for p in found[0].peaks]
-    peaks_table("Peaks of the mesh force", "mesh force N", tops, teeth, ".1f")
+    peaks_table("Peaks of the mesh force", "mesh force", tops, teeth, "N", units)
     say(*unpublished_lines(unpublished), *map(caution, found[0].cautions))
     say(f"Written: {', '.join(map(str, files))}")
 
@@ -301,18 +345,27 @@ def end_of(option: str, text: str, more: str = "") -> tuple[str, str]:
 
 
 def peaks_table(
-    title: str, head: str, peaks: Sequence[tuple[float, float, str]], teeth: int, digits: str
+    title: str,
+    head: str,
+    peaks: Sequence[tuple[float, float, str]],
+    teeth: int,
+    si: str,
+    units: str,
 ) -> None:
-    """Print peaks (Hz, size, mode), or that there is none."""
+    """Print peaks (Hz, size in an SI unit, mode), or that there is none."""
     from rich.table import Table
+
+    from solidgear.report.units import in_ascii, units_named
+
+    shown = units_named(units)
 
     terminal = console()
     table = Table(title=title, title_justify="left", show_edge=False)
     table.add_column("mode")
-    for words in ("Hz", "pinion rpm", head):
+    for words in ("Hz", "pinion rpm", f"{head} {in_ascii(shown.unit(si))}".strip()):
         table.add_column(words, justify="right")
     for hz, size, mode in peaks:
-        table.add_row(mode, f"{hz:.1f}", f"{60 * hz / teeth:.0f}", f"{size:{digits}}")
+        table.add_row(mode, f"{hz:.1f}", f"{60 * hz / teeth:.0f}", in_ascii(shown.number(size, si, 4)))
     if peaks:
         terminal.print(table)
     else:

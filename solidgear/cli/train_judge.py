@@ -46,7 +46,8 @@ def judge_system(
     asked for.
     """
     more = [mix(text) for text in against or []]
-    _judged(train, out, as_json, max_frequency, more, reduction, kept, local=local_harmonics, units=units)
+    how = max_frequency, more, reduction, kept
+    _judged(train, out, as_json, *how, renders=True, local=local_harmonics, units=units)
 
 
 def compare_train(

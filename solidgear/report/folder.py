@@ -28,7 +28,7 @@ LOCK = ".solidgear.lock"
 #: what is ever listed, and so ever removed: a damaged list can name nothing else
 OWN = re.compile(
     r"(report\.html|mode_\w+\.png|modes_\w+\.vtu|modes\.html|system_mode_\d+\.png"
-    r"|(response|orders)\.(csv|png|svg))"
+    r"|(response|orders)\.(csv|png|svg|html))"
 )
 #: what a process that was killed can have left half written, see
 #: :func:`solidgear.machine.whole_file.whole`

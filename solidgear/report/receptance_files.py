@@ -1,4 +1,4 @@
-"""The files of a receptance: a table, its peaks, and a chart as PNG and SVG."""
+"""The files of a receptance: a table, its peaks, a chart as PNG and SVG, and a page to read it."""
 
 from __future__ import annotations
 
@@ -11,17 +11,27 @@ from typing import Any
 import numpy as np
 
 from solidgear.machine.whole_file import whole
-from solidgear.report.train_chart import receptance_figure
+from solidgear.report import train_tables
+from solidgear.report.train_chart import label, receptance_figure
 from solidgear.report.train_files import write_charts
+from solidgear.report.train_sheet import write_sheet
+from solidgear.report.units import ENGINEERING, Units, units_named
 
 STEM = "receptance"
 
 
 def write_receptance(
-    folder: Path, found: Sequence[Any], title: str, teeth: int, notes: Mapping[str, Any]
+    folder: Path,
+    found: Sequence[Any],
+    title: str,
+    teeth: int,
+    notes: Mapping[str, Any],
+    train: Mapping[str, Any] | None = None,
+    units: str | Units = ENGINEERING,
 ) -> list[Path]:
     """``receptance.csv`` of the first model, ``receptance.png``, ``receptance.svg`` of all, and
-    ``receptance.json`` with the peaks and what else is told.
+    ``receptance.json`` with the peaks and what else is told; with `train` also the page
+    ``receptance.html``.
 
     Parameters
     ----------
@@ -32,6 +42,10 @@ def write_receptance(
     teeth : int
         Of the pinion.
     notes : mapping
+    train : mapping, optional
+        What is known of the train, as plain data.
+    units : str or Units
+        Of chart and page; all else is SI.
 
     Returns
     -------
@@ -52,7 +66,26 @@ def write_receptance(
     with whole(files[1]) as partial:
         data = {"title": title, "unit": unit, "models": [_plain(one) for one in found], **notes}
         partial.write_text(json.dumps(data, indent=1, allow_nan=False), encoding="utf-8")
-    return files + write_charts(folder / STEM, receptance_figure(found, title, teeth))
+    shown = units_named(units)
+
+    def draw() -> Any:
+        return receptance_figure(found, title, teeth, shown)
+
+    files += write_charts(folder / STEM, draw())
+    if train is None:
+        return files
+    page = write_sheet(
+        folder / f"{STEM}.html",
+        title,
+        f"Steady motion for a unit force, {first.damping} losses; table of {label(first)}.",
+        [
+            train_tables.receptance_peaks(first.peaks, unit, teeth, shown),
+            train_tables.facts(train, shown),
+        ],
+        charts={STEM: draw},
+        cautions=notes.get("cautions", ()),
+    )
+    return [page, *files]
 
 
 def _plain(one: Any) -> dict[str, Any]:

@@ -1,18 +1,21 @@
-"""The files of a response: a table, and its chart as PNG and SVG."""
+"""The files of a response: a table, its chart as PNG and SVG, and a page to read it."""
 
 from __future__ import annotations
 
 import csv
 import json
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from solidgear.machine.whole_file import whole
+from solidgear.report import train_tables
 from solidgear.report.order_chart import order_figure, write_crossings
-from solidgear.report.train_chart import response_figure
+from solidgear.report.train_chart import label, response_figure
+from solidgear.report.train_sheet import write_sheet
+from solidgear.report.units import ENGINEERING, Units, units_named
 
 
 def write_response(
@@ -23,9 +26,14 @@ def write_response(
     band: float,
     notes: Mapping[str, Any],
     orders: Any = None,
+    train: Mapping[str, Any] | None = None,
+    units: str | Units = ENGINEERING,
 ) -> list[Path]:
     """``response.csv`` of the first response, ``response.png``, ``response.svg`` of all,
-    ``response.json`` with peaks and what else is told, and ``orders`` as table and charts.
+    ``response.json`` with peaks and what else is told, and ``orders`` as table and charts; with
+    `train`, what is known of it as plain data, also the page ``response.html``.
+
+    Charts and page are in `units`, all else in SI.
 
     Returns
     -------
@@ -40,12 +48,33 @@ def write_response(
     with whole(files[1]) as partial:
         data = {"title": title, "responses": peaks, **notes}
         partial.write_text(json.dumps(data, indent=1, allow_nan=False), encoding="utf-8")
-    files += write_charts(folder / "response", response_figure(responses, title, teeth, band, {}))
+    shown = units_named(units)
+    charts: dict[str, Callable[[], Any]] = {
+        "response": lambda: response_figure(responses, title, teeth, band, {}, shown)
+    }
     if orders is not None:
         write_crossings(folder / "orders.csv", orders)
         files += [folder / "orders.csv"]
-        files += write_charts(folder / "orders", order_figure(orders, title, teeth))
-    return files
+        charts["orders"] = lambda: order_figure(orders, title, teeth, shown)
+    for name, figure in charts.items():
+        files += write_charts(folder / name, figure())
+    if train is None:
+        return files
+    first = responses[0]
+    caption = f"Peaks of the mesh force, {label(first)}"
+    tables = [train_tables.peaks([vars(p) for p in first.peaks], teeth, shown, caption)]
+    if orders is not None:
+        crossings = [vars(c) for c in orders.crossings]
+        tables.append(train_tables.crossings(crossings, shown))
+    page = write_sheet(
+        folder / "response.html",
+        title,
+        f"Steady response, {first.damping} losses; tables of {label(first)}.",
+        [*tables, train_tables.facts(train, shown)],
+        charts=charts,
+        cautions=first.cautions,
+    )
+    return [page, *files]
 
 
 def write_charts(stem: Path, figure: Any) -> list[Path]:

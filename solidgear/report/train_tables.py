@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from math import degrees
 from typing import Any
 
 from solidgear.report.cells import DASH, pct, whole_number
 from solidgear.report.table import Table
-from solidgear.report.units import ENGINEERING, Units
+from solidgear.report.units import ENGINEERING, GROUP, Units
 from solidgear.report.words import hertz, seconds
 
 SIDES = ("pinion", "gear")
@@ -88,7 +88,7 @@ def verdict(found: Mapping[str, Any]) -> Table:
         name = f"both {mix['gear']}" if same else f"{mix['pinion']} + {mix['gear']}"
         off = DASH
         if mix["mode"]:
-            by = "no counterpart" if mix["error"] is None else pct(mix["error"])
+            by = "no counterpart" if mix["error"] is None else pct(mix["error"]).replace(" ", GROUP)
             off = f"{mix['mode']}: {by}"
         best = {"pinion": mix["pinion"], "gear": mix["gear"]} == found["cheapest"]
         rows.append(
@@ -146,8 +146,9 @@ def modes(
         )
     return Table(
         caption,
-        ["mode", "Hz", "pinion rpm at which the teeth meet it", "most strain energy", "bound"],
+        ["mode", "Hz", "pinion rpm", "most strain energy", "bound"],
         rows,
+        note="Pinion rpm: the speed at which its teeth mesh at this frequency.",
     )
 
 
@@ -160,18 +161,30 @@ def peaks(
     """Peaks of the mesh force."""
     rows = [
         [p["mode"], hertz(p["frequency_hz"]), f"{60 * p['frequency_hz'] / teeth:.0f}"]
-        + [units.number(p["force"], "N")]
+        + [units.number(p["force"], "N", 4)]
         for p in found
     ]
     head = ["mode that makes it", "Hz", "pinion rpm", f"mesh force, {units.unit('N')}"]
     return Table(caption, head, rows)
 
 
+def receptance_peaks(
+    found: Sequence[tuple[float, float, str]], si: str, teeth: int, units: Units = ENGINEERING
+) -> Table:
+    """Peaks (Hz, amplitude, mode) of a receptance."""
+    rows = [
+        [mode, hertz(hz), f"{60 * hz / teeth:.0f}", units.number(size, si, 4)]
+        for hz, size, mode in found
+    ]
+    head = ["mode that makes it", "Hz", "pinion rpm", f"receptance, {units.unit(si)}"]
+    return Table("Peaks of the receptance", head, rows)
+
+
 def crossings(found: list[Mapping[str, Any]], units: Units = ENGINEERING) -> Table:
     """Where orders meet natural frequencies."""
     rows = []
     for c in found:
-        force = units.number(c["force"], "N", nothing=DASH)
+        force = units.number(c["force"], "N", 4, DASH)
         rows.append([c["line"], (c["mode"], "text"), hertz(c["frequency_hz"])])
         rows[-1] += [f"{c['rpm']:.0f}", force]
     head = ["order", "mode", "Hz", "pinion rpm", f"mesh force, {units.unit('N')}"]

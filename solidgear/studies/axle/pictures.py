@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import tempfile
 from collections.abc import Sequence
 from math import cos, radians
 from pathlib import Path
@@ -13,6 +14,7 @@ from solidgear.body.surface import Surface
 from solidgear.errors import SolidgearError, listed
 from solidgear.fidelity.ladder import LADDER
 from solidgear.report.folder import prepare
+from solidgear.report.html import data_uri
 from solidgear.report.render import RenderJob, RenderResult, render_modes
 from solidgear.report.turning import Member, Turned, together
 from solidgear.scene.train import SIDES
@@ -163,3 +165,20 @@ def draw_modes(
         jobs[told] = RenderJob(surface, f"{told} ({both})", path, frames, along=False)
     prepare(folder)
     return dict(zip(jobs, render_modes(jobs.values(), timeout=PATIENCE * len(jobs))))
+
+
+def still_of(workshop: Workshop, pinion: str, gear: str, number: int) -> tuple[str, str]:
+    """A picture of one mode for a page: its data URI, and else why there is none.
+
+    Parameters
+    ----------
+    workshop, pinion, gear
+        As of :func:`draw_modes`.
+    number : int
+        Of the mode, from 1.
+    """
+    with tempfile.TemporaryDirectory(prefix="solidgear-turn-") as folder:
+        (one,) = draw_modes(workshop, pinion, gear, folder, [number]).values()
+        if not one.ok:
+            return "", f"no picture for print: {one.reason}"
+        return data_uri("mode", one.path) or "", ""
