@@ -9,7 +9,8 @@ import solidgear as sg
 from solidgear.cli import app
 from solidgear.report.folder import clear
 from solidgear.studies.axle.models import Workshop
-from solidgear.studies.axle.pictures import draw_modes, system_surface
+from solidgear.studies.axle.naming import mode_names
+from solidgear.studies.axle.pictures import draw_modes, system_surface, turned_modes
 
 TRAIN = sg.load_train(OVERHUNG)
 FINE = {**COARSE, "harmonic": {"order": 2, "layers": 1}}
@@ -106,6 +107,7 @@ def test_modes_are_drawn_with_four_phases(shop, tmp_path):
     # four frames side by side, each with a shape in it, the first and the last moved apart
     frames = np.array_split(picture[150:600], 4, axis=1)
     assert all((frame < 0.98).any(axis=2).mean() > 0.1 for frame in frames)
+    assert all((frame > 0.98).all(axis=2).mean() > 0.3 for frame in frames)  # on white paper
     assert np.abs(frames[0] - frames[3]).mean() > 0.01
 
 
@@ -139,3 +141,55 @@ def test_pictures_of_an_earlier_run_are_cleared(tmp_path):
         (tmp_path / name).write_text("")
     clear(tmp_path)
     assert {p.name for p in tmp_path.iterdir()} == {"results.json", "mine.png"}
+
+
+@pytest.mark.parametrize("rungs", [("timoshenko", "timoshenko"), ("harmonic", "euler")])
+def test_what_is_turned_stands_and_moves_as_in_the_pictures(shop, rungs):
+    """Both shafts put in their places are the surface of the picture, in rest and in motion, with
+    one scale for both: the largest displacement of the two is 1.
+    """
+    model = turned_modes(shop, *rungs, 900.0)
+    system = shop.system(*rungs)
+    found = system.modes(len(model.shapes))
+    assert len(model.shapes) > 3 and [s.name for s in model.shapes] == mode_names(shop, system, found)[1:]
+    for k, shape in enumerate(model.shapes):
+        assert shape.frequency_hz == found.frequency_hz[k + 1] > 0
+        drawn = halves(shop, system, rungs, found.shapes[:, k + 1])
+        both = [(one, one.shapes[k].displacement) for one in (model, *model.along)]
+        moved = []
+        for (one, motion), (points, displacement) in zip(both, drawn):
+            source = one.mesh.source
+            placed = one.mesh.points @ one.rotation.T + one.origin
+            np.testing.assert_allclose(placed, points[source], atol=1e-12)
+            moved.append((motion @ one.rotation.T, displacement[source]))
+        ours, theirs = (np.vstack(own) for own in zip(*moved))
+        scale = (ours * theirs).sum() / (theirs**2).sum()
+        np.testing.assert_allclose(ours, scale * theirs, atol=1e-9)
+        assert np.linalg.norm(ours, axis=1).max() == pytest.approx(1.0)
+
+
+def test_only_a_shaft_that_turns_is_drawn_as_turning(shop):
+    """Enlarged along the tangent a turning section would swell; one that bends must not be turned."""
+    model = turned_modes(shop, "timoshenko", "timoshenko", 1000.0)
+    by = {s.name: (s.twists, model.along[0].shapes[k].twists) for k, s in enumerate(model.shapes)}
+    # the shafts wind up against engine and load, nearly rigid themselves
+    assert by["load torsion 1"] == (True, True)
+    assert by["gear bending 1"][1] is False
+
+
+def test_the_page_of_system_modes_has_modes_to_turn_and_units(tmp_path):
+    page = tmp_path / "modes.html"
+    told = ["system-modes", str(OVERHUNG), "--pinion", "euler", "--gear", "timoshenko"]
+    told += ["--max-frequency", "700"]
+    done = CliRunner().invoke(app, [*told, "--turn", str(page), "--units", "us"])
+    assert done.exit_code == 0, done.output
+    text = page.read_text(encoding="utf-8")
+    assert "sg-turn" in text and '"along"' in text and "gear bending 1" in text
+    # 250 N/um: 250e6 / 4.4482216152605 * 0.0254 lbf/in
+    assert "1\u00a0428\u00a0000 lbf/in" in text and "78.7402 µin" in text
+    refused = CliRunner().invoke(app, [*told, "--units", "us"])
+    assert refused.exit_code == 1 and "add --turn model.html" in str(refused.exception)
+    nothing = CliRunner().invoke(app, [*told[:3], "lumped", "--turn", str(tmp_path / "no.html")])
+    assert nothing.exit_code == 1
+    assert "lumped of the pinion has no shape" in str(nothing.exception)
+    assert not (tmp_path / "no.html").exists()

@@ -54,6 +54,8 @@ def _main(room: Path) -> int:
 
 
 def _draw(pv, job, path, points, displacement, faces, triangles, lines):
+    from PIL import Image  # pyvista brings it along
+
     size = np.linalg.norm(displacement, axis=1)
     if not np.isfinite(size).all() or not size.max() > 0:
         raise ValueError("the displacement is zero or not finite")
@@ -68,26 +70,27 @@ def _draw(pv, job, path, points, displacement, faces, triangles, lines):
     frames = job["frames"]
     extremes = np.vstack([points, *(points + factor * displacement for factor, _ in frames)])
     down, across = _layout(len(frames), extremes, view)
-    p = pv.Plotter(
-        off_screen=True, window_size=SIZE, lighting="none", shape=(down, across), border=False
-    )
-    p.set_background("white")
-    p.enable_anti_aliasing("ssaa")
+    tile = [SIZE[0] // across, SIZE[1] // down]
+    picture = np.full((SIZE[1], SIZE[0], 3), 255, np.uint8)
+    # A window a frame: smoothing of edges leaves all but one part of a divided window black.
     for k, (factor, caption) in enumerate(frames):
-        p.subplot(k // across, k % across)
+        p = pv.Plotter(off_screen=True, window_size=tile, lighting="none")
+        p.set_background("white")
+        p.enable_anti_aliasing("ssaa")
         deformed = pv.PolyData(points + factor * displacement, cells)
         deformed["size"] = abs(factor) * size / size.max()
         body = _frame(pv, p, rest, deformed, lines, length, view, job["along"])
+        _words(p, "" if k else job["title"], caption, len(frames))
         if k == 0:
-            _words(p, job["title"], caption, len(frames))
             _axes(p)
-        else:
-            _words(p, "", caption, len(frames))
         if k == len(frames) - 1:
             _bar(p, body, len(frames))
-        _aim(p, points, extremes, SIZE[1] / down / (SIZE[0] / across), *view[1:])
-    p.screenshot(str(path))
-    p.close()
+        _aim(p, points, extremes, tile[1] / tile[0], *view[1:])
+        drawn = p.screenshot(return_img=True)
+        p.close()
+        top, left = k // across * tile[1], k % across * tile[0]
+        picture[top : top + tile[1], left : left + tile[0]] = drawn[..., :3]
+    Image.fromarray(picture).save(path)
 
 
 def _layout(count: int, points, view) -> tuple[int, int]:

@@ -123,6 +123,7 @@ def receptance_figure(
         axes[1].set_ylim(-185, 185)
         axes[1].set_yticks((-180, -90, 0, 90, 180))
         axes[1].set_xlim(found[0].frequency_hz[0], found[0].frequency_hz[-1])
+        _plain(axes[0].yaxis, (1.0,))
         tops = [_tops(one.peaks, one.unit, units) for one in found]
         _named(axes[0], tops[0], found[0].frequency_hz[0])
         _read_tops(axes[0], found, tops, teeth, "receptance", unit)
