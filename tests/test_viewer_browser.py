@@ -10,8 +10,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from test_train_models import COARSE, OVERHUNG
+
 import solidgear as sg
 from solidgear.report.viewer import Turning, turn, viewer_page
+from solidgear.studies.axle.models import Workshop
+from solidgear.studies.axle.pictures import turned_modes
 
 ROOT = Path(__file__).parents[1]
 BROWSER = next(
@@ -45,7 +49,8 @@ EXPERIMENT = """async w => {
   const key = name => d.querySelector("canvas").dispatchEvent(new w.KeyboardEvent("keydown", { key: name }));
   out.on = d.querySelector(".sg-turn").classList.contains("on");
   out.overflow = d.documentElement.scrollWidth - w.innerWidth;
-  out.wide = d.querySelectorAll(".pane")[1].getBoundingClientRect().top === d.querySelector(".pane").getBoundingClientRect().top;
+  const tops = [...d.querySelectorAll(".pane")].map(e => e.getBoundingClientRect().top);
+  out.wide = tops.every(top => top === tops[0]);
   const before = view.phase;
   view.play(true); await new Promise(done => w.setTimeout(done, 700));
   out.played = view.phase !== before;
@@ -57,17 +62,25 @@ EXPERIMENT = """async w => {
   api.section(true, Math.PI / 2); take("cut"); api.section(false);
   const scale = d.querySelector(".scale"); scale.value = 2; scale.dispatchEvent(new w.Event("input")); take("scaled");
   scale.value = 1; scale.dispatchEvent(new w.Event("input"));
-  await api.pick("torsion 1"); take("torsion"); out.torsion = told();
+  await api.pick([...d.querySelector(".mode").options].find(o => o.text.includes("torsion")).text); take("torsion"); out.torsion = told();
   const c = d.createElement("canvas").getContext("2d"), all = {}, numbers = new Map();
   for (const [name, urls] of Object.entries(frames)) all[name] = urls.map(u => { if (!numbers.has(u)) numbers.set(u, numbers.size); return numbers.get(u); });
   out.frames = all;
   const model = view.data.models[0];
-  out.rest = [...model.rest]; out.sharp = model.sharp.length / 2;
+  out.rest = [...model.rest]; out.sharp = model.sharp.length / 2; out.box = model.box;
+  out.along = (model.along || []).map(body => [...body.rest]);
   const canvas = d.querySelector("canvas"); view.draw(); c.canvas.width = canvas.width; c.canvas.height = canvas.height;
-  c.drawImage(canvas, 0, 0);
-  const pixels = c.getImageData(0, 0, canvas.width, canvas.height).data;
-  let filled = 0; for (let i = 3; i < pixels.length; i += 4) filled += pixels[i] > 0;
-  out.filled = filled / (canvas.width * canvas.height);
+  const seenPixels = () => {
+    c.clearRect(0, 0, canvas.width, canvas.height); c.drawImage(canvas, 0, 0);
+    const pixels = c.getImageData(0, 0, canvas.width, canvas.height).data, at = [[], []];
+    let filled = 0;
+    for (let i = 3; i < pixels.length; i += 4) if (pixels[i] > 0) { filled++; at[0].push((i - 3) / 4 % canvas.width); at[1].push(Math.floor(i / 4 / canvas.width)); }
+    return { filled, size: at.map(v => v.reduce((a, b) => Math.max(a, b), 0) - v.reduce((a, b) => Math.min(a, b), 1e9)) };
+  };
+  out.filled = seenPixels().filled / (canvas.width * canvas.height);
+  view.rest = false; api.frame(0);
+  const pixel = canvas.width / canvas.clientWidth;
+  out.resting = seenPixels().size.map(v => v / pixel / view.fit()); out.turn = view.turn;
   return out;
 }"""
 
@@ -83,12 +96,21 @@ def models():
 
 
 @pytest.fixture(scope="module")
-def found(models: Turning, tmp_path_factory):
+def train():
+    """A pinion and its ring gear in their places."""
+    shop = Workshop(sg.load_train(OVERHUNG), settings=COARSE)
+    return turned_modes(shop, "timoshenko", "euler", 900.0)
+
+
+@pytest.fixture(scope="module")
+def found(models: Turning, train, tmp_path_factory):
     """What the experiment saw at a desk, on a phone, and where there is no WebGL."""
     page = viewer_page(models.models, "pinion").replace("<head>", "<head>" + EARS)
     blind = "<script>HTMLCanvasElement.prototype.getContext = () => null;</script>"
+    both = viewer_page([train], "train", first="gear axial 1").replace("<head>", "<head>" + EARS)
     frames = {
         "desk": (1200, page),
+        "train": (900, both),
         "phone": (390, page),
         "blind": (600, page.replace("<head>", "<head>" + blind)),
     }
@@ -105,7 +127,7 @@ def found(models: Turning, tmp_path_factory):
         [
             BROWSER,
             *("--headless", "--no-sandbox", "--enable-unsafe-swiftshader"),
-            *("--window-size=2300,1000", "--virtual-time-budget=30000", "--dump-dom"),
+            *("--window-size=3300,1000", "--virtual-time-budget=30000", "--dump-dom"),
             f"--user-data-dir={folder / 'profile'}",
             path.as_uri(),
         ],
@@ -118,21 +140,21 @@ def found(models: Turning, tmp_path_factory):
     return json.loads(html.unescape(said[1]))
 
 
-@pytest.mark.parametrize("place", ["desk", "phone"])
+@pytest.mark.parametrize("place", ["desk", "phone", "train"])
 def test_it_turns_plays_picks_and_cuts_without_an_error(found, place):
     saw = found[place]
     assert saw.get("failed") is None and saw["heard"] == []
     assert saw["on"] and saw["played"]
     frames = saw["frames"]
-    for pane in (0, 1):
+    for pane in range(len(saw["told"])):
         at = {name: pictures[pane] for name, pictures in frames.items()}
         # the shape passes its rest twice a period, and comes back to where it was
         assert at["rest"] == at["half a period"]
         assert at["reset"] == at["out"]
         changed = ["rest", "out", "back", "turned", "key", "cut", "scaled", "torsion"]
-        assert len({at[name] for name in changed}) == len(changed), at
+    assert len({at[name] for name in changed}) == len(changed), at
     assert saw["told"] != saw["torsion"]
-    assert all(words.startswith("torsion 1, ") for words in saw["torsion"])
+    assert all("torsion 1, " in words for words in saw["torsion"])
     # neither an empty pane nor one that the shape does not fit
     assert 0.1 < saw["filled"] < 0.8
 
@@ -149,6 +171,24 @@ def test_the_browser_unpacks_what_was_packed(found, models):
     np.testing.assert_allclose(drawn, mesh.points, atol=1e-6 * length)
     # both ends, and both rims of the head where it meets cone and shaft, in 48 pieces each
     assert found["desk"]["sharp"] == 48 * 4
+
+
+def test_both_shafts_of_a_train_stand_in_their_places(found, train):
+    """The box that the browser fits into the pane is that around both surfaces, each in its place."""
+    saw = found["train"]
+    (gear,) = train.along
+    for rest, body in ((saw["rest"], train), (saw["along"][0], gear)):
+        drawn = np.reshape(rest, (-1, 3))
+        np.testing.assert_allclose(drawn, body.mesh.points, atol=1e-6 * np.ptp(body.mesh.points))
+    placed = [body.mesh.points @ body.rotation.T + body.origin for body in (train, gear)]
+    size = np.ptp(np.vstack(placed), axis=0).max()
+    np.testing.assert_allclose(saw["box"]["low"], np.vstack(placed).min(axis=0), atol=1e-5 * size)
+    np.testing.assert_allclose(saw["box"]["high"], np.vstack(placed).max(axis=0), atol=1e-5 * size)
+    # and so do the pixels, as the model is turned; edges are drawn some pixels wide
+    seen = np.vstack(placed) @ np.transpose(saw["turn"])[:, :2]
+    np.testing.assert_allclose(saw["resting"], np.ptp(seen, axis=0), atol=0.02 * size)
+    # the axes of the shafts cross at a right angle: the ring gear is wide across its own
+    assert np.ptp(placed[1][:, 1]) > 2 * np.ptp(gear.mesh.points[:, 1])
 
 
 def test_where_there_is_no_webgl_the_still_picture_stands(found):
