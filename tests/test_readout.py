@@ -122,12 +122,20 @@ def drawn(found, units):
     )
 
 
-@pytest.mark.parametrize("units, newton, micrometre", [("si", 1, 1e-6), ("engineering", 1, 1), ("us", 1 / 4.4482216152605, 1e3 / 25.4)])
+@pytest.mark.parametrize(
+    "units, newton, micrometre",
+    [("si", 1, 1e-6), ("engineering", 1, 1), ("us", 1 / 4.4482216152605, 1e3 / 25.4)],
+)
 def test_a_response_is_read_in_the_units_chosen(found, units, newton, micrometre):
     force, peaks, error = drawn(found, units)
     for series, what, si, one in (
         (force, "mesh force", np.abs(found.force), newton),
-        (error, "dynamic transmission error", 1e6 * np.abs(found.columns["dynamic transmission error [m]"]), micrometre),
+        (
+            error,
+            "dynamic transmission error",
+            1e6 * np.abs(found.columns["dynamic transmission error [m]"]),
+            micrometre,
+        ),
     ):
         hz = np.array([number(text) for text in column(series, "frequency")])
         read = np.array([number(text) for text in column(series, what)])
@@ -151,4 +159,6 @@ def test_a_receptance_is_read_with_its_phase_and_its_ticks_are_numbers(shop):
     size, mode = max((size, mode) for _, size, mode in one.peaks)
     at = column(peaks, "peak of").index(mode)
     assert number(column(peaks, "receptance")[at]) == pytest.approx(4.4482216e6 * size, rel=6e-4)
-    assert {float(v) for v in column(phase, "phase")} <= set(np.round(np.degrees(np.angle(one.value)), 1))
+    assert {float(v) for v in column(phase, "phase")} <= set(
+        np.round(np.degrees(np.angle(one.value)), 1)
+    )

@@ -84,7 +84,9 @@ addEventListener("load", async () => {
 def pages(tmp_path_factory):
     folder = tmp_path_factory.mktemp("response")
     shop = Workshop(sg.load_train(OVERHUNG), settings=COARSE)
-    found = [respond(shop, *sides, 900.0) for sides in (("timoshenko", "euler"), ("euler", "euler"))]
+    found = [
+        respond(shop, *sides, 900.0) for sides in (("timoshenko", "euler"), ("euler", "euler"))
+    ]
     lines = order_map(shop, "timoshenko", "euler", 900.0)
     write_response(folder, found, "A train", 14, 3.0, {}, lines, described(shop), "us")
     train = (folder / "response.html").read_text(encoding="utf-8")
@@ -170,7 +172,9 @@ def test_on_paper_nothing_is_left_of_a_value_that_was_read(pages, tmp_path):
     shown = pages["train"].replace("</body>", f"<script>{ask}</script></body>")
     browse(tmp_path, shown, "--no-pdf-header-footer", f"--print-to-pdf={tmp_path / 'page.pdf'}")
     told, title = (
-        subprocess.run([*how, "page.pdf", *out], capture_output=True, text=True, cwd=tmp_path).stdout
+        subprocess.run(
+            [*how, "page.pdf", *out], capture_output=True, text=True, cwd=tmp_path
+        ).stdout
         for how, out in ((["pdftotext"], ["-"]), (["pdfinfo"], []))
     )
     assert "peak of" in title  # it was shown on the screen

@@ -59,9 +59,7 @@ def shown(renderable, width=80):
 
 # ------------------------------------------------------------------------------------------------- the page
 #: the one script of the page
-READS = (
-    f"<script>\n{(Path(readout.__file__).parent / 'readout.js').read_text().rstrip()}</script>"
-)
+READS = f"<script>\n{(Path(readout.__file__).parent / 'readout.js').read_text().rstrip()}</script>"
 
 
 def test_page_needs_no_other_file_and_no_network(page):

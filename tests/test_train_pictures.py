@@ -151,7 +151,10 @@ def test_what_is_turned_stands_and_moves_as_in_the_pictures(shop, rungs):
     model = turned_modes(shop, *rungs, 900.0)
     system = shop.system(*rungs)
     found = system.modes(len(model.shapes))
-    assert len(model.shapes) > 3 and [s.name for s in model.shapes] == mode_names(shop, system, found)[1:]
+    assert (
+        len(model.shapes) > 3
+        and [s.name for s in model.shapes] == mode_names(shop, system, found)[1:]
+    )
     for k, shape in enumerate(model.shapes):
         assert shape.frequency_hz == found.frequency_hz[k + 1] > 0
         drawn = halves(shop, system, rungs, found.shapes[:, k + 1])

@@ -9,7 +9,6 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-
 from test_train_models import COARSE, OVERHUNG
 
 import solidgear as sg

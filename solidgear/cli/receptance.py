@@ -67,7 +67,9 @@ def receptance(
             run(shop, *pair, *ends, max_frequency, damping, matched_at or 0.0) for pair in mixes
         ]
         notes = {"from": from_, "to": to, "unpublished": unpublished, "cautions": list(cautions)}
-        files = write_receptance(out, found, title, shop.train.pinion.teeth, notes, described(shop), units)
+        files = write_receptance(
+            out, found, title, shop.train.pinion.teeth, notes, described(shop), units
+        )
     if as_json:
         print((out / "receptance.json").read_text(encoding="utf-8"))
         return

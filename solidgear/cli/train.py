@@ -365,7 +365,9 @@ def peaks_table(
     for words in ("Hz", "pinion rpm", f"{head} {in_ascii(shown.unit(si))}".strip()):
         table.add_column(words, justify="right")
     for hz, size, mode in peaks:
-        table.add_row(mode, f"{hz:.1f}", f"{60 * hz / teeth:.0f}", in_ascii(shown.number(size, si, 4)))
+        table.add_row(
+            mode, f"{hz:.1f}", f"{60 * hz / teeth:.0f}", in_ascii(shown.number(size, si, 4))
+        )
     if peaks:
         terminal.print(table)
     else:

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from solidgear.evidence.record import CauseRecord, Record
 from solidgear.report.chart_style import as_svg, new_figure
-from solidgear.report.readout import readable
 from solidgear.report.reading import model_name, relative_change
+from solidgear.report.readout import readable
 from solidgear.report.words import percent
 
 #: quantity -> colour of its bars
@@ -32,7 +32,10 @@ def _bars(ax, labels: list[str], columns: dict[str, list[float | None]]) -> None
             label=name,
         )
         told = {
-            "case": ("", [labels[i].replace("\n", " ") for i, v in enumerate(values) if v is not None]),
+            "case": (
+                "",
+                [labels[i].replace("\n", " ") for i, v in enumerate(values) if v is not None],
+            ),
             f"change of {name}": ("", [percent(v) for _, v in spots]),
         }
         ys, ends = [y for y, _ in spots], [v for _, v in spots]

@@ -8,8 +8,8 @@ from solidgear.evidence.pareto import CHARTED
 from solidgear.evidence.record import BandRecord, LevelRecord, ModelRecord, Record
 from solidgear.report.cells import whole_number
 from solidgear.report.chart_style import as_svg, new_figure, percent_decades
-from solidgear.report.readout import readable
 from solidgear.report.reading import model_name
+from solidgear.report.readout import readable
 from solidgear.report.words import percent
 
 #: what the meshes differ in -> label of the axis
@@ -77,7 +77,9 @@ def _panels(name: str, model: ModelRecord) -> list[_Panel]:
             if distance > 0:
                 spots.append((_on_axis(along, place), distance, level))
         if len(spots) >= 2:
-            panels.append(_Panel(name, model, quantity, along, sorted(spots, key=lambda spot: spot[:2]), band))
+            panels.append(
+                _Panel(name, model, quantity, along, sorted(spots, key=lambda spot: spot[:2]), band)
+            )
     return panels
 
 

@@ -8,7 +8,6 @@ from solidgear.evidence.pareto import CHARTED
 from solidgear.evidence.record import ModelRecord, Record
 from solidgear.report.cells import whole_number
 from solidgear.report.chart_style import as_svg, new_figure, percent_decades, tolerance_line
-from solidgear.report.readout import readable
 from solidgear.report.reading import (
     answer_seconds,
     headline,
@@ -16,6 +15,7 @@ from solidgear.report.reading import (
     model_name,
     reference_of,
 )
+from solidgear.report.readout import readable
 from solidgear.report.words import percent, seconds
 
 

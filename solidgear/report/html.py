@@ -184,7 +184,10 @@ def _drawn(
 ) -> dict[str, bytes | None]:
     """The charts by name; what could not be drawn is added to the warnings."""
     drawn = {}
-    for name, chart in {**charts.CHARTS, "speed": lambda found: race_tables.chart(folder, found.scene)}.items():
+    for name, chart in {
+        **charts.CHARTS,
+        "speed": lambda found: race_tables.chart(folder, found.scene),
+    }.items():
         try:
             drawn[name] = chart(record)
         except Exception as error:  # a picture must never cost the reader the numbers

@@ -6,8 +6,8 @@ from collections.abc import Mapping
 
 from solidgear.evidence.record import MacTable, ModelRecord, ModeRecord, Record
 from solidgear.report.chart_style import as_svg, new_figure
-from solidgear.report.readout import readable
 from solidgear.report.reading import model_name, model_of, reference_of, relative_change
+from solidgear.report.readout import readable
 from solidgear.report.words import hertz, percent
 
 #: families of modes along the axis

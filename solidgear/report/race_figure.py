@@ -7,8 +7,8 @@ from pathlib import Path
 from typing import Any
 
 from solidgear.evidence.pareto import AUTOMATIC, Race, Row
-from solidgear.report.chart_style import percent_decades, styled, tolerance_line
 from solidgear.report.cells import whole_number
+from solidgear.report.chart_style import percent_decades, styled, tolerance_line
 from solidgear.report.race_legend import FRONT, footer, legend
 from solidgear.report.race_rows import COSTS, error_text, options_text, replace_file
 from solidgear.report.race_style import REFERENCE, Look

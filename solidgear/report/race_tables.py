@@ -10,7 +10,7 @@ from solidgear.report.chart_style import svg_of
 from solidgear.report.race_figure import figure
 from solidgear.report.race_rows import error_text, options_text, read_race
 from solidgear.report.table import Table
-from solidgear.report.words import count, percent, seconds
+from solidgear.report.words import count, seconds
 
 CAPTION = (
     "Error against the refined harmonic solid with the attachments of the scene, over wall time "

@@ -72,7 +72,10 @@ def response_figure(
             axis.set_ylabel(f"{words} in {units.unit(si)}")
             axis.set_xlim(first, last)
             axis.set_ylim(_ends(responses, sizes, first))
-        tops = [_tops([(p.frequency_hz, p.force, p.mode) for p in r.peaks], "N", units) for r in responses]
+        tops = [
+            _tops([(p.frequency_hz, p.force, p.mode) for p in r.peaks], "N", units)
+            for r in responses
+        ]
         _named(axes[0], tops[0], first)
         _read_tops(axes[0], responses, tops, teeth, "mesh force", units.unit("N"))
         for k, response in enumerate(responses[1:], start=1):
@@ -86,9 +89,7 @@ def response_figure(
         return figure
 
 
-def receptance_figure(
-    found: Sequence[Any], title: str, teeth: int, units: Units = ENGINEERING
-):
+def receptance_figure(found: Sequence[Any], title: str, teeth: int, units: Units = ENGINEERING):
     """Amplitude and phase of a receptance over frequency, the peaks of the first model named.
 
     Parameters

@@ -28,7 +28,11 @@ def facts(train: Mapping[str, Any], units: Units = ENGINEERING) -> Table:
         ["line of action on the pinion", _vector(pinion["line_of_action"], 4), line],
         ["mesh point from the lumped points", _points(train, units), ""],
         ["lever arms", _levers(train, units), ""],
-        ["transmission error", _error(train["transmission_error"], units), "mesh.transmission_error"],
+        [
+            "transmission error",
+            _error(train["transmission_error"], units),
+            "mesh.transmission_error",
+        ],
     ]
     for name in ("engine", "load"):
         own = train[name]

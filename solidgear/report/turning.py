@@ -181,7 +181,9 @@ def together(title: str, modes: Sequence[tuple[str, float]], members: Sequence[M
     meshes = [mesh_of(member.body.surface({})) for member in members]
     shapes: list[list[Shape]] = [[] for _ in members]
     for k, (name, hz) in enumerate(modes):
-        moved = [m.body.surface(m.vectors[k]).displacement[w.source] for m, w in zip(members, meshes)]
+        moved = [
+            m.body.surface(m.vectors[k]).displacement[w.source] for m, w in zip(members, meshes)
+        ]
         largest = max(np.linalg.norm(one, axis=1).max() for one in moved)
         if not np.isfinite(largest) or not largest > 0:
             raise SolidgearError(f"mode {name!r}: the displacement is zero or not finite")

@@ -133,7 +133,12 @@ ENGINEERING = Units(
         "Pa": ("GPa", 1e-9),
     },
 )
-SI = Units("si", "N/m, m/N, N m/rad; lengths in mm", {"m": ("mm", 1e3), "m moved": ("m", 1.0)}, exponents=True)
+SI = Units(
+    "si",
+    "N/m, m/N, N m/rad; lengths in mm",
+    {"m": ("mm", 1e3), "m moved": ("m", 1.0)},
+    exponents=True,
+)
 US = Units(
     "us",
     "lbf/in, uin/lbf, lbf in/rad, in",
