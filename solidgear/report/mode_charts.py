@@ -40,7 +40,7 @@ def mode_chart(record: Record):
         spots = [(i + shift, name) for i, name in enumerate(names) if name in modes[key]]
         model = record.models[key]
         places = [x for x, _ in spots]
-        frequencies = [modes[key][name].frequency_hz for _, name in spots]
+        frequencies = [modes[key][name].frequency_hz or 0.0 for _, name in spots]
         _stems(axes[0], model, places, frequencies, label=model_name(record, key))
         compared = base if key != reference and base is not None else {}
         told = _told([name for _, name in spots], modes[key], compared)

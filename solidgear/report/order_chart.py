@@ -52,7 +52,7 @@ def order_figure(found: Any, title: str, teeth: int, units: Units = ENGINEERING)
         for line in found.lines:
             _line(axis, line, found, largest, units)
         if loaded:
-            _scale(figure, axis, units.value(largest, "N"), units.unit("N"))
+            _scale(figure, axis, units.value(largest, "N") or largest, units.unit("N"))
         at = [c for c in found.crossings if c.force is not None]
         axis.plot(
             [c.rpm for c in at],

@@ -129,7 +129,7 @@ def readings(figure: Any) -> list[dict[str, Any]]:
                 "marked": reading.marked,
                 "at": np.rint(STEPS * at[kept]).astype(int).ravel().tolist(),
                 "told": [
-                    [what, unit, [texts[k] for k in kept]]
+                    [what, unit, [texts[k] for k in kept.tolist()]]
                     for what, (unit, texts) in reading.told.items()
                 ],
             }

@@ -149,7 +149,7 @@ def _figure(points, cells, shares, rows, title: str):
         "y": ("mm", [f"{v:.4g}" for v in at[0]]),
         "r": ("mm", [f"{v:.4g}" for v in at[1]]),
     }
-    readable(ax, *at, "cell", told)
+    readable(ax, at[0], at[1], "cell", told)
     ax.set_aspect(stretch)
     ax.set_xlim(y.min() - 0.02 * length, y.max() + 0.02 * length)
     ax.set_ylim(0, 1.25 * radius)

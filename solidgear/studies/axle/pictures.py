@@ -10,6 +10,7 @@ from pathlib import Path
 
 import numpy as np
 
+from solidgear.body import Body
 from solidgear.body.surface import Surface
 from solidgear.errors import SolidgearError, listed
 from solidgear.fidelity.ladder import LADDER
@@ -65,7 +66,9 @@ def system_surface(workshop: Workshop, system: System, rungs: Sequence[str], sha
     return Surface(np.vstack([points, others]), np.vstack([moved, also]), *whole)
 
 
-def _bodies(workshop: Workshop, system: System, rungs: Sequence[str]) -> dict[str, tuple]:
+def _bodies(
+    workshop: Workshop, system: System, rungs: Sequence[str]
+) -> dict[str, tuple[Body, np.ndarray, np.ndarray]]:
     """Body, rotation and origin of both shafts, in the axes of the pinion's scene."""
     out = {}
     for side, rung in zip(SIDES, rungs):
@@ -75,8 +78,8 @@ def _bodies(workshop: Workshop, system: System, rungs: Sequence[str]) -> dict[st
                 f"use one of {', '.join(LADDER.bodies)}"
             )
         part = system.parts[side]
-        place = getattr(part, "rotation", np.eye(3)), getattr(part, "origin", np.zeros(3))
-        out[side] = (workshop.shaft(side, rung).body, *place)
+        turn, origin = getattr(part, "rotation", np.eye(3)), getattr(part, "origin", np.zeros(3))
+        out[side] = workshop.shaft(side, rung).body, turn, origin
     return out
 
 
@@ -113,8 +116,8 @@ def turned_modes(
     names = mode_names(workshop, system, found)
     elastic = [k for k, hz in enumerate(found.frequency_hz) if hz > 0]
     members = [
-        Member(*place, [system.expand(side, found.shapes[:, k]) for k in elastic])
-        for side, place in placed.items()
+        Member(body, turn, origin, [system.expand(side, found.shapes[:, k]) for k in elastic])
+        for side, (body, turn, origin) in placed.items()
     ]
     both = f"both shafts {gear}" if pinion == gear else f"pinion {pinion}, gear {gear}"
     return together(both, [(names[k], float(found.frequency_hz[k])) for k in elastic], members)
