@@ -99,7 +99,7 @@ def test_the_command_writes_a_table_and_charts(tmp_path):
     args = [*ARGS, "--from", "gear.gear:z", "--to", "pinion.pinion:thx", "--out", str(out)]
     done = CliRunner().invoke(app, [*args, "--against", "euler+euler", "--json"])
     assert done.exit_code == 0, done.output
-    kinds = ("csv", "json", "png", "svg")
+    kinds = ("csv", "html", "json", "png", "svg")
     assert {p.name for p in out.iterdir()} == {f"receptance.{kind}" for kind in kinds}
     told = json.loads(done.stdout)
     assert told["unit"] == "rad/N" and len(told["models"]) == 2

@@ -184,7 +184,7 @@ def test_the_command_writes_a_table_and_charts(tmp_path):
     out = tmp_path / "out"
     done = CliRunner().invoke(app, [*ARGS, "--out", str(out), "--against", "euler+euler"])
     assert done.exit_code == 0, done.output
-    kinds = {"response": ("csv", "json", "png", "svg"), "orders": ("csv", "png", "svg")}
+    kinds = {"response": ("csv", "html", "json", "png", "svg"), "orders": ("csv", "png", "svg")}
     assert {p.name for p in out.iterdir()} == {f"{n}.{k}" for n in kinds for k in kinds[n]}
     with (out / "response.csv").open() as file:
         rows = list(csv.DictReader(file))

@@ -74,6 +74,7 @@ def readable(
     >>> from matplotlib.figure import Figure
     >>> figure = Figure()
     >>> ax = figure.subplots()
+    >>> _ = ax.set(xlim=(0, 5), ylim=(0, 5))
     >>> readable(ax, [1.0, 2.0], [3.0, 4.0], "beam", {"error": ("%", ["3", "4"])})
     >>> [one["name"] for one in readings(figure)]
     ['beam']
