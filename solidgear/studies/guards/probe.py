@@ -18,6 +18,7 @@ import scipy.sparse.linalg as spla
 
 from solidgear.body import Body, Supports, as_supports
 from solidgear.errors import SolidgearError
+from solidgear.evidence.answer import ENOUGH, solve
 from solidgear.evidence.quantities import judged
 from solidgear.evidence.study import Solution, study
 from solidgear.evidence.ties import rigid_seats
@@ -35,6 +36,8 @@ if TYPE_CHECKING:
 
 #: modes enough for the first bending pair, the first axial one and the rigid ones between them
 FEW = 8
+#: meshes of the light harmonic solid, of which the last one speaks
+LIGHT = 2
 #: a clamp this much stiffer than the shaft on its bearings moves a frequency by about the inverse
 CLAMP = 1e6
 
@@ -114,7 +117,7 @@ class Probe:
         """A beam, or the harmonic solid on its two coarsest meshes."""
         if model not in self.rungs:
             options = {name: True for name in SOFT if self.asked(model).get(name)}
-            self.rungs[model] = study(self.scene, model, options, most=2, evidence=False)
+            self.rungs[model] = study(self.scene, model, options, most=LIGHT, evidence=False)
         return self.rungs[model]
 
     def asked(self, model: str) -> Mapping[str, Any]:
@@ -140,7 +143,9 @@ class Probe:
             if attachment == "rigid"
             else self.scene.with_attachment(attachment)
         )
-        return study(scene, "harmonic", most=2, evidence=False).quantities
+        light = LADDER["harmonic"].meshes_of(scene, {}).levels[:LIGHT][-1]
+        n, upto = max(scene.ask.modes, ENOUGH), scene.ask.max_frequency
+        return solve(scene, "harmonic", n, max_frequency=upto, **light).quantities
 
     def _gaps(self, model: str) -> list[dict]:
         """Deviations of a beam from the light solid in what is judged, the largest first."""
