@@ -15,6 +15,14 @@ signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
 @pytest.fixture
+def no_charts(monkeypatch):
+    """Reports without their charts: drawing is what takes the time, and few tests look at them."""
+    from solidgear.report import charts
+
+    monkeypatch.setattr(charts, "CHARTS", dict.fromkeys(charts.CHARTS, lambda results: None))
+
+
+@pytest.fixture
 def refused(tmp_path):
     """Asks for one sentence from a scene in which one text stands for another."""
     import solidgear as sg

@@ -4,6 +4,7 @@ import dataclasses
 import json
 import subprocess
 import sys
+from functools import cache
 from pathlib import Path
 
 import numpy as np
@@ -33,26 +34,32 @@ def scenes():
 @pytest.fixture(scope="module")
 def truth(scenes):
     """A mesh or two above what a tolerance of 1e-3 takes: measured within 4e-5 of the next one."""
-    found = {}
-    for name, scene in scenes.items():
-        found[name] = solve(scene, "harmonic", 12, **HARMONIC[3]).quantities
+
+    @cache
+    def found(name):
+        return solve(scenes[name], "harmonic", 12, **HARMONIC[3]).quantities
+
     return found
 
 
+#: an overhung head and a plain shaft; the others differ in their seats and bores
+FEW = [n if n in SCENES[:2] else pytest.param(n, marks=pytest.mark.slow) for n in SCENES]
+
+
 @pytest.mark.parametrize("tol", [0.1, 0.01, 1e-3])
-@pytest.mark.parametrize("name", SCENES)
+@pytest.mark.parametrize("name", FEW)
 def test_the_truth_is_within_the_bar_and_the_bar_within_the_tolerance(scenes, truth, name, tol):
     found = answer(scenes[name], tol, ALL)
     assert found.reached and found.rung == "harmonic"
     values = {v.quantity: v.value for v in found.values}
-    assert set(values) == {q for q in ALL if q in truth[name]}
+    assert set(values) == {q for q in ALL if q in truth(name)}
     for row in found.values:
         assert row.bar <= tol
         # the reference is a mesh too: a twentieth of the tightest tolerance
-        assert abs(change(values, truth[name], row.quantity)) <= row.bar + 5e-5
+        assert abs(change(values, truth(name), row.quantity)) <= row.bar + 5e-5
 
 
-@pytest.mark.parametrize("name", SCENES)
+@pytest.mark.parametrize("name", FEW)
 def test_a_bar_with_one_sign_points_to_the_truth(scenes, truth, name):
     found = answer(scenes[name], tol=1e-2, ask=ALL)
     sides = {v.quantity: v.side for v in found.values}
@@ -60,7 +67,7 @@ def test_a_bar_with_one_sign_points_to_the_truth(scenes, truth, name):
     assert sides["C_z,thx"] == "both"  # a coupling may err either way
     for v in found.values:
         # The truth is a finer mesh of the same solid, which is too stiff as well, but by less.
-        beyond = (truth[name][v.quantity] - v.value) / v.size
+        beyond = (truth(name)[v.quantity] - v.value) / v.size
         assert v.side == "both" or (beyond > 0) == (v.side == "above"), v
 
 
@@ -72,7 +79,7 @@ def test_bars_of_solids_whose_geometry_is_not_exact_have_two_sides(scenes):
 
 def test_a_looser_tolerance_costs_less(scenes):
     costs = [
-        sum(s.unknowns for s in answer(scenes["pinion_overhung"], tol, "C_thx").steps if s.valid)
+        sum(s.unknowns for s in answer(scenes["shaft_stepped"], tol, "C_thx").steps if s.valid)
         for tol in (0.1, 1e-3, 1e-4)
     ]
     assert costs[0] < costs[1] < costs[2]

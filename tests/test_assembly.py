@@ -435,7 +435,7 @@ def harmonic_by_skfem(scene, body, order, n):
 
 
 @pytest.mark.parametrize("bore", [0.0, 0.02])
-@pytest.mark.parametrize("order", [1, 2, 4, 6])
+@pytest.mark.parametrize("order", [1, 2, 4, pytest.param(6, marks=pytest.mark.slow)])
 def test_harmonic_blocks_match_skfem(order, bore):
     scene = stepped(bore)
     further = (2, 3) if order < 6 else ()  # scikit-fem's own vector forms take seconds at order 6

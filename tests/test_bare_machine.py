@@ -95,6 +95,7 @@ def test_beams_and_the_harmonic_solid_answer_without_gmsh_and_vtk(bare):
 def test_a_comparison_writes_its_report_without_any_of_it(bare, tmp_path):
     out = tmp_path / "out"
     models = ("--models", "timoshenko,harmonic", "--set", "harmonic.order=2")
+    models += ("--set", "harmonic.layers=0")
     asked = solidgear("compare", scene("shaft_stepped"), "--out", out, *models)
     found = bare(*asked, without=DRAWN + EXTRAS + POSIX, functions=FUNCTIONS)
     assert found.returncode == 0, found.stderr

@@ -223,11 +223,12 @@ def test_beams_show_like_for_like_beside_their_own_error(raced):
 def test_the_automatic_choice_is_a_line_of_its_own_and_within_its_tolerance():
     rows = [replace(row) for row in AUTOMATIC[:2]]
     found = race(
-        sg.load(SCENE), rows, runs=1, against={"order": 6, "layers": 4}, solver=automatic.solved
+        sg.load(SCENE), rows, runs=1, against={"order": 4, "layers": 3}, solver=automatic.solved
     )
+    # a twentieth of the tighter tolerance
+    assert max(found.reference["bands"].values()) < 5e-4
     assert [row.status for row in found.rows] == ["ok", "ok"]
     for row in found.rows:
-        # the reference is good to 1e-4: what is beyond the tolerance by less says nothing
         assert max(row.errors.values()) < row.options["tol"]
         assert row.unknowns > 0
     panel = figure(found).axes[0]
@@ -292,7 +293,7 @@ def test_section_numbers_in_the_report_are_those_of_its_contents(raced):
 
 
 # ------------------------------------------------------------------------------------------------- command
-def test_command_writes_everything_and_puts_the_chart_into_a_report(run, tmp_path):
+def test_command_writes_everything_and_puts_the_chart_into_a_report(run, tmp_path, no_charts):
     scene = sg.load(SCENE)
     out = tmp_path / "there"
     results = {"scene": json.loads(json.dumps(scene.as_dict())), "models": {}}
@@ -318,12 +319,6 @@ def test_command_writes_everything_and_puts_the_chart_into_a_report(run, tmp_pat
     assert json.loads((out / "results.json").read_text()) == results
 
 
-def test_command_leaves_the_report_of_another_scene_alone(run, tmp_path, undrawn):
-    (tmp_path / "results.json").write_text(json.dumps({"scene": {"name": "another"}, "models": {}}))
-    code, text, _ = run("chart", SCENE, "--out", tmp_path, "--runs", "1")
-    assert code == 0 and "report.html" not in text and not (tmp_path / "report.html").exists()
-
-
 def test_command_refuses_a_comparison_of_an_older_version_before_it_times_anything(
     run, tmp_path, monkeypatch
 ):
@@ -337,8 +332,10 @@ def test_command_refuses_a_comparison_of_an_older_version_before_it_times_anythi
     assert (tmp_path / "results.json").read_text() == text
 
 
-def test_json_is_for_machines(run, tmp_path, undrawn):
+def test_json_is_for_machines_and_the_report_of_another_scene_stays(run, tmp_path, undrawn):
+    (tmp_path / "results.json").write_text(json.dumps({"scene": {"name": "another"}, "models": {}}))
     code, text, err = run("chart", SCENE, "--out", tmp_path, "--runs", "1", "--json")
+    assert "report.html" not in text and not (tmp_path / "report.html").exists()
     found = json.loads(text, parse_constant=lambda word: pytest.fail(word))
     assert code == 0 and err == ""
     assert (

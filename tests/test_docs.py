@@ -7,6 +7,7 @@ a machine's own.
 
 import doctest
 import re
+import shlex
 import shutil
 import sys
 from pathlib import Path
@@ -14,6 +15,7 @@ from pathlib import Path
 import pytest
 
 import solidgear as sg
+from solidgear import cli
 
 ROOT = Path(__file__).parent.parent
 DOCS = ROOT / "docs"
@@ -50,14 +52,53 @@ def kinds(page):
 SHOWING = [p for p in PAGES if "console" in kinds(p)]
 
 
-@pytest.mark.parametrize(
-    "page", [pytest.param(p, marks=pytest.mark.slow) if p in LONG else p for p in SHOWING]
-)
-def test_a_page_shows_what_the_program_prints(page):
+@pytest.fixture
+def here(monkeypatch, capfd):
+    """Commands of pages in this process: starting one costs more than most of them take.
+
+    That the program starts as one is the claim of `tests/test_cli.py`, and of the slow pages.
+    """
+    starts = console.run
+
+    def run(command, folder):
+        plain, tell, _ = command.partition(" ; echo exit code $?")
+        words = shlex.split(plain)
+        if words[0] != "solidgear" or set(plain) & set("|<>&;$"):
+            return starts(command, folder)
+        with pytest.MonkeyPatch.context() as patch:
+            patch.chdir(folder)
+            for name, value in {
+                "COLUMNS": console.COLUMNS,
+                "TERM": "dumb",
+                "NO_COLOR": "1",
+            }.items():
+                patch.setenv(name, value)
+            patch.setattr(sys, "argv", ["solidgear", "--quiet", *words[1:]])
+            code = 0
+            capfd.readouterr()
+            try:
+                cli.main()
+            except SystemExit as end:
+                code = end.code or 0
+            printed = "".join(capfd.readouterr())
+        lines = [line.rstrip() for line in printed.splitlines()]
+        return "\n".join([*lines, f"exit code {code}"] if tell else lines)
+
+    monkeypatch.setattr(console, "run", run)
+
+
+@pytest.mark.parametrize("page", [p for p in SHOWING if p not in LONG])
+def test_a_page_shows_what_the_program_prints(page, here):
     assert console.check(DOCS / page) == []
 
 
-def test_the_tutorial_runs_but_for_its_long_step():
+@pytest.mark.slow
+@pytest.mark.parametrize("page", [p for p in SHOWING if p in LONG])
+def test_a_long_page_shows_what_the_program_prints(page):
+    assert console.check(DOCS / page) == []
+
+
+def test_the_tutorial_runs_but_for_its_long_step(here):
     assert console.check(DOCS / "tutorial.md", without="compare") == []
 
 

@@ -41,16 +41,16 @@ def nothing_found(fuzz, cases, seed, **more):
 
 
 def test_spoilt_scenes_are_refused_or_solved(fuzz):
-    outcomes, sentences = nothing_found(fuzz, 200, seed=1, commands=0.0, every_harmonic=10)
+    outcomes, sentences = nothing_found(fuzz, 100, seed=1, commands=0.0, every_harmonic=10)
     # a fuzz that never gets past the parser, or never meets a refusal, tests nothing
-    assert outcomes["accepted", "euler"] > 20 and outcomes["accepted", "harmonic"] > 0
-    assert len(sentences) > 30
+    assert outcomes["accepted", "euler"] > 10 and outcomes["accepted", "harmonic"] > 0
+    assert len(sentences) > 15
 
 
 def test_command_lines_are_refused_or_answered(fuzz):
-    outcomes, sentences = nothing_found(fuzz, 60, seed=1, commands=1.0)
-    assert sum(n for (outcome, _), n in outcomes.items() if outcome == "accepted") > 8
-    assert len({stage for _, stage in outcomes}) > 4 and len(sentences) > 15
+    outcomes, sentences = nothing_found(fuzz, 30, seed=1, commands=1.0)
+    assert sum(n for (outcome, _), n in outcomes.items() if outcome == "accepted") > 4
+    assert len({stage for _, stage in outcomes}) > 3 and len(sentences) > 8
 
 
 @pytest.mark.slow

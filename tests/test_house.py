@@ -1,6 +1,7 @@
 """The house: which room may import which, no circle, and no file that has become two things."""
 
 import ast
+import functools
 import graphlib
 from pathlib import Path
 
@@ -58,6 +59,7 @@ def room(path):
     return first.removesuffix(".py")
 
 
+@functools.cache
 def arrows():
     found = {}
     for path in sorted(PACKAGE.rglob("*.py")):

@@ -97,7 +97,7 @@ def test_against_dense_eigenvalues(name, fidelity):
 def test_small_and_large_solvers_agree(name):
     # below 400 unknowns a block is solved densely, above by Lanczos
     scene = shipped(name)
-    body = sg.build(scene, "timoshenko", elements=260)
+    body = sg.build(scene, "timoshenko", elements=210)
     assert max(b.size for b in body.blocks) > 400
     found = every_shape(sg.modes(body, scene, n=6))
     assert found[1:] == pytest.approx(

@@ -18,6 +18,8 @@ from solidgear.report import charts
 from solidgear.report.folder import LOCK, held
 from solidgear.studies.comparison import compare
 
+pytestmark = pytest.mark.usefixtures("no_charts")
+
 ROOT = Path(__file__).parent.parent
 SCENE = str(ROOT / "geometry" / "pinion_overhung.toml")
 OTHER = sg.load(ROOT / "geometry" / "shaft_stepped.toml")
@@ -148,16 +150,21 @@ def test_ctrl_c_while_modules_are_read():
 
 
 # --------------------------------------------------------------------------- killed
+@pytest.fixture(scope="module")
+def two_runs():
+    """One run of another scene, and one of this: what stands in a folder and what is to come."""
+    return compare(OTHER, ("euler", "timoshenko")), compare(sg.load(SCENE), ("euler",))
+
+
 @posix
 @pytest.mark.parametrize("at", range(1, 6))
-def test_killed_while_files_are_written(at, tmp_path):
+def test_killed_while_files_are_written(at, two_runs, tmp_path):
     """Before each file takes its place in turn: all others are whole, and no report or shape stands
     beside numbers that are not its own.
     """
-    before = compare(OTHER, ("euler", "timoshenko"))
+    before, found = two_runs
     before.write_report(tmp_path, renders=False)
     old = {p.name: p.read_bytes() for p in tmp_path.iterdir()}
-    found = compare(sg.load(SCENE), ("euler",))
     child = os.fork()
     if child == 0:
         real, count = os.replace, []

@@ -30,8 +30,8 @@ settings.register_profile(
     phases=[Phase.explicit, Phase.generate],
     suppress_health_check=list(HealthCheck),
 )
-BEAMS = settings(settings.get_profile("properties"), max_examples=12)
-HARMONICS = settings(settings.get_profile("properties"), max_examples=3)
+BEAMS = settings(settings.get_profile("properties"), max_examples=8)
+HARMONICS = settings(settings.get_profile("properties"), max_examples=2)
 SOLIDS = settings(settings.get_profile("properties"), max_examples=2)
 
 COUNT = 8  # elastic shapes that are compared

@@ -137,6 +137,7 @@ def test_rows_are_read_as_numbers(tmp_path):
         ratios.read_rows(path)
 
 
+@pytest.mark.slow
 def test_a_slice_of_the_step_part():
     # Two coarse meshes of the part from its file: compliance rises and frequency falls as a mesh of
     # displacements is refined, and the plain part is stiffer, for it has no keyway.

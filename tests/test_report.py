@@ -41,12 +41,6 @@ def si_page():
     return render_page(fixture_results(), units="si")
 
 
-@pytest.fixture
-def no_charts(monkeypatch):
-    """Drawing is what takes the time, and most tests do not look at it."""
-    monkeypatch.setattr(charts, "CHARTS", dict.fromkeys(charts.CHARTS, lambda results: None))
-
-
 def text_of(page):
     return re.sub(r"\s+", " ", re.sub(r"<[^>]+>", " ", page))  # a space that does not break, too
 

@@ -27,6 +27,7 @@ def test_a_crossing_is_read_off_a_power_law(script):
     assert np.isnan(crossing(x, x, 0.5))
 
 
+@pytest.mark.slow
 def test_euler_needs_sixteen_diameters_and_timoshenko_one(script):
     slenderness = script("slenderness")
     euler, timoshenko = slenderness.measure(quick=True)
@@ -75,6 +76,7 @@ def test_a_beam_with_soft_shoulders_is_the_solid_under_a_moment_a_pull_and_a_twi
         assert plain[component, component] / own - 1 < -0.03
 
 
+@pytest.mark.slow
 def test_a_ring_line_sinks_in_by_the_logarithm(script):
     ties = script("ties")
     rows = ties.measure(quick=True).rows

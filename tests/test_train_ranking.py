@@ -15,6 +15,7 @@ def rows():
     return {row["what is changed"]: row for row in found}
 
 
+@pytest.mark.slow
 def test_data_outrank_models(rows):
     """The figures move by some per cent with the mesh; the ranks have a third between them."""
     size = {name: row["rms dB"] for name, row in rows.items()}
@@ -28,6 +29,7 @@ def test_data_outrank_models(rows):
     assert size["engine spring at the shaft's end"] < 0.2
 
 
+@pytest.mark.slow
 def test_below_1_khz_the_gear_must_not_be_a_beam_and_the_pinion_may(rows):
     low = {name: row["below 1 kHz"] for name, row in rows.items()}
     assert low["gear as a beam"] == pytest.approx(4.4, rel=0.15)
@@ -36,6 +38,7 @@ def test_below_1_khz_the_gear_must_not_be_a_beam_and_the_pinion_may(rows):
     assert low["both lumped, six motions"] < 0.75 * low["both lumped, axial mass total"]
 
 
+@pytest.mark.slow
 def test_where_teeth_push_matters_less_than_every_model(rows):
     local = rows["teeth push where they touch, n = 2, 3"]
     assert local["rms dB"] < 0.4 and local["most dB"] < 1.1

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import cache
 from pathlib import Path
 
 from solidgear.scene.shaft import resolved
@@ -19,4 +20,10 @@ def shipped_shafts() -> list[Path]:
 
 def shafts_of_revolution() -> list[Path]:
     """Those that a model of revolution holds."""
-    return [path for path in shipped_shafts() if not resolved(load(path))]
+    return [path for path in shipped_shafts() if _of_revolution(path)]
+
+
+@cache
+def _of_revolution(path: Path) -> bool:
+    # a part from a file is read in a process of its own
+    return not resolved(load(path))
