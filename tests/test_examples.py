@@ -52,6 +52,7 @@ def test_two_gears():
     assert found["push"] == pytest.approx(2.58e-6, rel=0.01)
 
 
+@pytest.mark.slow
 def test_which_model():
     assert run("which_model") == {"trust": "harmonic", "cheapest": "harmonic"}
 

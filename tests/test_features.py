@@ -135,6 +135,7 @@ def test_two_halves_equal_the_whole(angle):
     assert max(one.multiplicity) == max(other.multiplicity) == 1  # a split pair stays split
 
 
+@pytest.mark.slow
 def test_the_plane_of_the_key_is_the_softer_one():
     scene = shaft(KEY)
     body = sg.build(scene, "solid", refinement=0.6)

@@ -144,7 +144,7 @@ def test_check_does_not_condemn_a_rigid_seat(checked):
 @pytest.mark.parametrize(
     "name",
     [
-        "symmetric_shaft",
+        pytest.param("symmetric_shaft", marks=pytest.mark.slow),
         "false_valid_port_section",
         pytest.param("check_rigid_seat", marks=pytest.mark.slow),
     ],

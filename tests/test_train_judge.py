@@ -72,6 +72,7 @@ def test_the_judge_tells_how_far_its_own_mesh_has_converged(verdict):
     assert 0 < found.judge_change < 0.1
 
 
+@pytest.mark.slow
 def test_the_command_writes_the_verdict(tmp_path, monkeypatch):
     from solidgear.studies.axle import models
 

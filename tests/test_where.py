@@ -221,6 +221,7 @@ def test_command_line(tmp_path):
     assert wrong.exit_code != 0
 
 
+@pytest.mark.slow
 def test_a_comparison_keeps_where_the_error_of_its_judge_sits(scenes):
     found = sg.compare(scenes["shaft_stepped"], models=("harmonic",)).record.where
     assert found.model == "harmonic" and found.quantity in PLACED
