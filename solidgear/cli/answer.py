@@ -51,7 +51,7 @@ def answer(
         str,
         typer.Option(
             "--ask",
-            help="Comma-separated: C_zz, K_thx, bending, ...; by default what the scene asks for.",
+            help="Comma-separated: C_zz, K_thx, bending, ..., C_zz@gear at a further point, C_zz@wheel@pinion between two; by default what the scene asks for.",
         ),
     ] = "",
     where: Annotated[
@@ -132,7 +132,9 @@ def _values(found: Answered, units: str) -> Table:
     if any(row.side in (ABOVE, BELOW) for row in found.values):
         notes.append("a bar with one sign: the exact answer lies on that side only")
     if any(diagonals(row.quantity) for row in found.values):
-        notes.append("bars of couplings are relative to the mean of both diagonal entries")
+        notes.append(
+            "bars of couplings are relative to the geometric mean of both diagonal entries"
+        )
     if notes:
         table.caption = "\n".join(notes)
         table.caption_justify = "left"

@@ -111,9 +111,12 @@ def _largest(settled: Settled, where: str) -> list[str]:
 
     if settled.largest is None:
         return []
+    from solidgear.evidence.quantities import AT, in_words
+
     quantity, bar = settled.largest
+    main = settled.point if any(AT in name for name in settled.bars) else ""
     width = percent(bar, signed=False, nothing="unknown")
-    return [f"Largest mesh bar{where}: +- {width}, of {quantity}."]
+    return [f"Largest mesh bar{where}: +- {width}, of {in_words(quantity, main)}."]
 
 
 def without_bar(found: ModeSet, settled: Settled) -> list[str]:

@@ -24,8 +24,11 @@ from solidgear.cli.app import (
 from solidgear.cli.settled import body_for, ended, heading, told
 
 if TYPE_CHECKING:
+    from rich.table import Table
+
     from solidgear.scene import Scene
     from solidgear.solve.condensed import Condensed, Coupled
+    from solidgear.studies.settle import Settled
 
 
 @command
@@ -82,10 +85,9 @@ def stiffness(
         _tell(terminal, head, loaded, found, units)
     else:
         _tell_coupled(terminal, head, loaded, coupled, units)
+        if settled is not None:
+            terminal.print(_bars(settled, coupled))
     for line in told(settled):
-        terminal.print(line, markup=False, soft_wrap=True)
-    if coupled is not None and settled is not None:
-        line = "Bars are those of each point alone; couplings between points have no larger one in compliance."
         terminal.print(line, markup=False, soft_wrap=True)
     for sentence in said:
         terminal.print(f"caution: {sentence}", markup=False)
@@ -162,6 +164,38 @@ def _tell(terminal, head: str, scene: Scene, found: Condensed, units: str) -> No
         terminal.print(f"Free: the motion ({parts}), m and rad; a compliance does not exist.")
 
 
+def _bars(settled: Settled, found: Coupled) -> Table:
+    """The largest mesh bar of every block."""
+    from rich import box
+    from rich.table import Table
+
+    from solidgear.evidence.quantities import AT, points_of
+    from solidgear.report.words import band_percent
+
+    largest: dict[tuple[str, str, str], float] = {}
+    for name, bar in settled.bars.items():
+        point = name.partition(AT)[2] or found.ports[0]
+        if points_of(name) or name.startswith(
+            "C_"
+        ):  # what one point resists alone is not told here
+            key = (name[0], *sorted(points_of(name) or (point, point), key=found.ports.index))
+            largest[key] = max(bar, largest.get(key, 0.0))
+    table = Table(box=box.SIMPLE_HEAD, pad_edge=False)
+    table.add_column("largest mesh bar of a block")
+    for kind in ("stiffness", "compliance"):
+        table.add_column(kind, justify="right")
+    for k, a in enumerate(found.ports):
+        for b in found.ports[k:]:
+            cells = [band_percent(largest.get((kind, a, b)), "-") for kind in "KC"]
+            where = f"between {a} and {b}" if a != b else f"{a} itself"
+            table.add_row(where, *(f"+- {told}" if told != "-" else told for told in cells))
+    table.caption = (
+        "couplings: relative to the geometric mean of what both motions have of their own"
+    )
+    table.caption_justify = "left"
+    return table
+
+
 def _tell_coupled(terminal, head: str, scene: Scene, found: Coupled, units: str) -> None:
     import numpy as np
 
@@ -180,7 +214,9 @@ def _tell_coupled(terminal, head: str, scene: Scene, found: Coupled, units: str)
             words = {"stiffness": "load on", "compliance": "motion of"}[kind]
             other = {"stiffness": "motion of", "compliance": "load on"}[kind]
             caption = f"{kind}: {words} {a}, {other} {b}"
-            terminal.print(matrix_table(found.between(a, b, kind), kind, units, caption))
+            own = [np.diag(found.between(one, one, kind)).tolist() for one in (a, b)]
+            table = matrix_table(found.between(a, b, kind), kind, units, caption, own)
+            terminal.print(table)
     several = "both points" if len(found.ports) == 2 else "all points"
     if stiff:
         line = f"Stiffness holds {several}: one moves, all else is held. The blocks left out are the transposed ones."

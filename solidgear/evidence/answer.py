@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 from solidgear.body import Body, Supports, as_supports
-from solidgear.evidence.quantities import QUANTITIES, described, measure
+from solidgear.evidence.quantities import QUANTITIES, described, measure, points_of
 from solidgear.fidelity import build
 from solidgear.machine.meter import Meter
 from solidgear.solve.condensed import Condensed, Coupled
@@ -42,14 +42,18 @@ def numbers(
     statics: Condensed | None,
     found: ModeSet | None,
     further: Mapping[str, Condensed] | None = None,
+    coupled: Coupled | None = None,
 ) -> Numbers:
-    """The compared numbers of statics and modes, either of which may not have been solved."""
-    values = measure(statics, found, further)
-    return Numbers(values, _left(statics, found, values))
+    """The compared numbers of statics and modes, any of which may not have been solved."""
+    values = measure(statics, found, further, coupled)
+    return Numbers(values, _left(statics, found, coupled, values))
 
 
 def _left(
-    statics: Condensed | None, found: ModeSet | None, values: Iterable[str]
+    statics: Condensed | None,
+    found: ModeSet | None,
+    coupled: Coupled | None,
+    values: Iterable[str],
 ) -> dict[str, float]:
     """Relative error that the solver may have left in every quantity."""
     solver = {}
@@ -59,6 +63,8 @@ def _left(
             mode = found.named(place) if found is not None and isinstance(place, str) else None
             if mode is not None:
                 solver[name] = mode.error
+        elif coupled is not None and points_of(name) and kind == "stiffness":
+            solver[name] = coupled.evidence["stiffness_error"]
         elif statics is not None:
             solver[name] = statics.evidence["residual"]
     return solver
@@ -92,7 +98,7 @@ class Answer:
     @property
     def numbers(self) -> Numbers:
         """Its numbers and what the solver may have left in them; they outlive the body."""
-        left = _left(self.condensed, self.modes, self.quantities)
+        left = _left(self.condensed, self.modes, self.coupled, self.quantities)
         return Numbers(self.quantities, left)
 
 
@@ -192,5 +198,5 @@ def answered(
         )
     # Evidence, not part of the answer: kept apart from what the modes cost.
     meter.move("modes", "count", found.evidence.get("count_seconds", 0.0))
-    values = measure(condensed, found, further)
+    values = measure(condensed, found, further, coupled)
     return Answer(body, condensed, found, values, further, coupled)

@@ -13,7 +13,8 @@ distance.  The factors are measured, by ``validation/attack/bands.py`` on random
 A change that is small by accident, since a quantity passes through an extremum on its way, is not
 believed: the change before it, and for couplings the changes of both diagonal entries, set a floor.
 Displacement elements are too stiff, so the error of the compliance is a positive semidefinite
-matrix and that of a coupling no larger than the geometric mean of its diagonal entries'. A rung
+matrix and that of a coupling no larger than the geometric mean of its diagonal entries'. So is a term between two points, which is
+related to the geometric mean of what each point has of its own, never to itself: it may vanish by symmetry. A rung
 that stands on another model's modes errs in ways that no mesh of its own tells of: its bands hold at
 least a share of what features change. What the
 solver leaves (residuals of statics and modes) is added, and of hexahedra what the cells around
@@ -28,7 +29,7 @@ from dataclasses import asdict, dataclass
 from typing import TYPE_CHECKING
 
 from solidgear.evidence.converge import gci
-from solidgear.evidence.quantities import change, diagonals, in_order
+from solidgear.evidence.quantities import AT, change, diagonals, in_order
 from solidgear.fidelity.rung import STEPPED
 
 if TYPE_CHECKING:
@@ -145,7 +146,7 @@ def layered_bands(
             if len(own) == 2:
                 rests_on = max(rests_on, DIAGONAL * (own[0] * own[1]) ** 0.5)
         left = solver.get(name, 0.0)
-        least = factors.effect.get(name, 0.0) * effect.get(name, 0.0)
+        least = factors.effect.get(name.partition(AT)[0], 0.0) * effect.get(name, 0.0)
         out[name] = Band(
             values=tuple(float(level[name]) for level in levels if name in level),
             gci=float(

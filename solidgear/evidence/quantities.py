@@ -1,20 +1,23 @@
 """The handful of numbers by which models are compared, and where they are found in results.
 
 Numbers of the main lumped point have plain names, those of further points have the point's behind
-an ``@``: ``C_zz@pinion``.
+an ``@``: ``C_zz@pinion``. Terms between points have both: ``C_z,thx@wheel@pinion`` is the motion z
+of the wheel under a moment thx on the pinion. Of a stiffness between points the others are held, so
+that its own diagonal, ``K_zz@wheel@wheel``, is not the stiffness of one point alone.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
+from itertools import combinations_with_replacement
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from solidgear.errors import SolidgearError
 from solidgear.scene.ask import AT
-from solidgear.scene.rules import no_such_point
-from solidgear.solve.condensed import Condensed
+from solidgear.scene.rules import no_such_point, no_term
+from solidgear.solve.condensed import Condensed, Coupled
 from solidgear.solve.modes import ModeSet
 
 if TYPE_CHECKING:
@@ -74,12 +77,104 @@ def diagonals(name: str) -> tuple[str, str] | None:
     --------
     >>> diagonals("C_z,thx@pinion")
     ('C_zz@pinion', 'C_thx@pinion')
+    >>> diagonals("C_zz@wheel@pinion")
+    ('C_zz@wheel@wheel', 'C_zz@pinion@pinion')
     """
     base, at, point = name.partition(AT)
-    if base not in COUPLINGS:
+    pair = points_of(name)
+    if pair is None and base in COUPLINGS:
+        one, two = COUPLINGS[base]
+        return f"{one}{at}{point}", f"{two}{at}{point}"
+    if pair is None or base not in COUPLINGS and pair[0] == pair[1]:
         return None
-    one, two = COUPLINGS[base]
-    return f"{one}{at}{point}", f"{two}{at}{point}"
+    one, two = COUPLINGS.get(base, (base, base))
+    a, b = pair
+    return f"{one}{AT}{a}{AT}{a}", f"{two}{AT}{b}{AT}{b}"
+
+
+def points_of(name: str) -> tuple[str, str] | None:
+    """The two points of a term between points: of the motion (of a stiffness: the load) and of the
+    load (the motion); None of all else.
+
+    Parameters
+    ----------
+    name : str
+
+    Examples
+    --------
+    >>> points_of("C_zz@wheel@pinion"), points_of("C_zz@pinion")
+    (('wheel', 'pinion'), None)
+    """
+    parts = name.split(AT)
+    return (parts[1], parts[2]) if len(parts) == 3 else None
+
+
+def in_words(quantity: str, main: str) -> str:
+    """A quantity with its points in words.
+
+    Parameters
+    ----------
+    quantity : str
+    main : str
+        Name of the main point where there are several, else nothing.
+
+    Examples
+    --------
+    >>> in_words("C_zz", "wheel"), in_words("C_zz@wheel@pinion", "wheel")
+    ('C_zz at wheel', 'C_zz between wheel and pinion')
+    """
+    name, _, point = quantity.partition(AT)
+    pair = points_of(quantity)
+    if pair is not None and pair[0] == pair[1]:
+        return f"{name} at {pair[0]} with the other points held"
+    if pair is not None:
+        return f"{name} between {pair[0]} and {pair[1]}"
+    if not main or name[:2] not in ("C_", "K_"):
+        return quantity
+    return f"{name} at {point or main}"
+
+
+def repeats(name: str) -> bool:
+    """Whether a quantity is another one over again: a compliance "between" a point and itself,
+    which stands there to relate others to.
+
+    Parameters
+    ----------
+    name : str
+
+    Examples
+    --------
+    >>> repeats("C_zz@wheel@wheel"), repeats("K_zz@wheel@wheel")
+    (True, False)
+    """
+    pair = points_of(name)
+    return pair is not None and pair[0] == pair[1] and described(name)[0] == "compliance"
+
+
+def between(names: Iterable[str], points: Sequence[str]) -> tuple[str, ...]:
+    """Terms between some points of quantities that are of a point; of stiffnesses the diagonal too,
+    for it holds all of them.
+
+    Parameters
+    ----------
+    names : iterable of str
+        Of the main point.
+    points : sequence of str
+        In the order of the scene.
+
+    Examples
+    --------
+    >>> between(["C_zz", "C_z,thx", "bending 1"], ["a", "b"])
+    ('C_zz@a@b', 'C_z,thx@a@b', 'C_z,thx@b@a')
+    """
+    of_points = [name for name in names if not isinstance(QUANTITIES[name][1], str)]
+    found = (
+        f"{name}{AT}{one}{AT}{other}"
+        for a, b in combinations_with_replacement(points, 2)
+        for name in of_points
+        for one, other in ([(a, b), (b, a)] if name in COUPLINGS and a != b else [(a, b)])
+    )
+    return tuple(name for name in found if not repeats(name))
 
 
 def at_points(names: Iterable[str], points: Iterable[str]) -> tuple[str, ...]:
@@ -110,30 +205,44 @@ def judged(scene: Scene) -> tuple[str, ...]:
 
 
 def own_name(scene: Scene, name: str) -> str:
-    """A quantity as results call it: that of the main point has no name behind it.
+    """A quantity as results call it: that of the main point has no name behind it, and points stand
+    in the order of the scene where it does not matter.
 
     Raises
     ------
     SolidgearError
-        If the scene has no such point.
+        If the scene has no such point, or for a stiffness between points.
     """
     base, at, point = name.partition(AT)
     known = [port.name for port in scene.ports]
-    if at and point not in known:
-        raise SolidgearError(f"{name}: {no_such_point(point, known)}")
-    return base if point == known[0] else name
+    asked = [point] if not at or point in known else point.split(AT)
+    for one in asked if at else ():
+        if one not in known:
+            raise SolidgearError(f"{name}: {no_such_point(one, known)}")
+    reason = "" if len(asked) == 1 else no_term(base, asked)
+    if reason:
+        raise SolidgearError(f"{name}: {reason}")
+    if len(set(asked)) == 1:
+        return base if asked[0] in ("", known[0]) else f"{base}{AT}{asked[0]}"
+    if base not in COUPLINGS:
+        asked.sort(key=known.index)
+    return AT.join([base, *asked])
 
 
 def in_order(names: Iterable[str]) -> list[str]:
-    """Names as they are listed: of the main point as in `QUANTITIES`, then those of further ones."""
+    """Names as they are listed: of the main point as in `QUANTITIES`, then those of further ones and
+    between points; without those that only repeat another.
+    """
     names = list(names)
-    return [*(q for q in QUANTITIES if q in names), *(q for q in names if AT in q)]
+    further = (q for q in names if AT in q and not repeats(q))
+    return [*(q for q in QUANTITIES if q in names), *further]
 
 
 def measure(
     condensed: Condensed | None,
     modes: ModeSet | None,
     further: Mapping[str, Condensed] | None = None,
+    coupled: Coupled | None = None,
 ) -> dict[str, float]:
     """The compared numbers of one solution; those that do not exist (free motions, missing modes)
     or were not solved (None) are left out.
@@ -145,10 +254,32 @@ def measure(
     modes : ModeSet or None
     further : mapping of str to Condensed, optional
         At further points, by name.
+    coupled : Coupled, optional
+        Of several points, for the terms between them; what these are related to comes along
+        (:func:`repeats`).
     """
     out = _measured(condensed, modes)
     for point, there in (further or {}).items():
         out |= {f"{name}{AT}{point}": value for name, value in _measured(there, None).items()}
+    return out | (_between(coupled) if coupled is not None else {})
+
+
+def _between(coupled: Coupled) -> dict[str, float]:
+    """Terms between points, and what they are related to."""
+    names = [name for name in QUANTITIES if name.startswith(("C_", "K_"))]
+    own = [f"{name}{AT}{a}{AT}{a}" for a in coupled.ports for name in names]
+    # those of the diagonal first: a term of motions that nothing resists is no number
+    out: dict[str, float] = {}
+    for name in sorted(
+        dict.fromkeys((*own, *between(names, coupled.ports))),
+        key=lambda q: diagonals(q) is not None,
+    ):
+        kind, place, _ = described(name)
+        value = float(coupled.between(*(points_of(name) or ()), kind)[place])
+        pair = diagonals(name)
+        there = value > 0.0 if pair is None else all(d in out for d in pair)
+        if np.isfinite(value) and there:
+            out[name] = value
     return out
 
 

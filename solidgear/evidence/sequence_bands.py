@@ -9,10 +9,11 @@ from typing import TYPE_CHECKING
 
 from solidgear.evidence.answer import solve
 from solidgear.evidence.bands import Band, layered_bands, refined_bands
-from solidgear.evidence.quantities import size
+from solidgear.evidence.quantities import AT, measure, points_of, size
 from solidgear.fidelity.edges import sharpest_edge
 from solidgear.fidelity.ladder import LADDER
 from solidgear.meshing.corners import sharpest_corner
+from solidgear.solve.statics import condense
 
 if TYPE_CHECKING:
     from solidgear.fidelity.levels import Sequence
@@ -96,10 +97,12 @@ def feature_effect(
         Relative and positive; empty where the rung has no shares. A bending frequency is held
         against the nearest one of the plain part: features may change their order and their names.
     """
-    asked = [q for q in factors.effect if q in values]
+    asked = [q for q in values if q.partition(AT)[0] in factors.effect]
     if not asked:
         return {}
-    plain, bending = _plain(scene.plain, factors.plain)
+    pairs = {point for q in asked for point in points_of(q) or ()}
+    both = tuple(port.name for port in scene.ports if port.name in pairs)
+    plain, bending = _plain(scene.plain, factors.plain, both)
     out = {}
     for name in asked:
         known = bending if name.startswith("bending") else [plain[name]] if name in plain else []
@@ -109,10 +112,15 @@ def feature_effect(
 
 
 @lru_cache(maxsize=8)
-def _plain(plain: Scene, rung: str) -> tuple[dict[str, float], list[float]]:
-    """Quantities of a plain part, and all bending frequencies; every finer mesh asks for them."""
+def _plain(
+    plain: Scene, rung: str, points: tuple[str, ...]
+) -> tuple[dict[str, float], list[float]]:
+    """Quantities of a plain part, those between some points included, and all bending frequencies;
+    every finer mesh asks for them.
+    """
     meshes = LADDER[rung].meshes
     assert meshes is not None  # of a solid
     found = solve(plain, rung, **meshes({}).levels[PLAIN_MESH])
     bending = [m.frequency_hz for m in found.modes.modes if m.name.startswith("bending")]
-    return found.quantities, bending
+    coupled = condense(found.body, plain, points) if points else None
+    return found.quantities | measure(None, None, None, coupled), bending

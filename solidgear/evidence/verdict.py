@@ -18,7 +18,11 @@ from solidgear.evidence.quantities import (
     QUANTITIES,
     change,
     described,
+    diagonals,
+    in_words,
     judged,
+    points_of,
+    repeats,
     usual,
 )
 from solidgear.evidence.study import Solution
@@ -83,7 +87,7 @@ def _deviations(
 ) -> Iterable[dict]:
     mine, theirs = rung.ties[tie], base.ties[tie]
     partners = Partners(mine.modes, theirs.modes)
-    further = [name for name in mine.quantities if AT in name]
+    further = [name for name in mine.quantities if AT in name and not repeats(name)]
     for name in (*QUANTITIES, *further):
         _, place, unit = described(name)
         value, how = mine.quantities.get(name), ""
@@ -237,10 +241,7 @@ def _judged(model, rungs, reference, why, gaps, judged, tolerance, notices) -> J
 def _said(gap: dict, rungs: dict[str, Solution]) -> str:
     """The quantity of a gap; with its lumped point where there are several."""
     found = rungs[gap["reference"]].ties[SCENE]
-    name, _, point = gap["quantity"].partition(AT)
-    if not found.further or name[:2] not in ("C_", "K_"):
-        return gap["quantity"]
-    return f"{name} at {point or found.condensed.port}"
+    return in_words(gap["quantity"], found.condensed.port if found.further else "")
 
 
 def _why(gap: dict, rungs: dict[str, Solution], reference: str, kind: str, tolerance: float) -> str:
@@ -254,7 +255,7 @@ def _why(gap: dict, rungs: dict[str, Solution], reference: str, kind: str, toler
 
 def _side(gap: dict) -> str:
     """What the sign of a gap means to an engineer."""
-    if gap["quantity"].partition(AT)[0] in ("C_z,thx", "K_z,thx"):
+    if diagonals(gap["quantity"]):
         return "off (of the geometric mean of the two diagonal entries)"
     if gap["quantity"].startswith("C_"):
         return "too small (too stiff)" if gap["relative"] < 0 else "too large (too soft)"
@@ -312,11 +313,19 @@ def _points(scene: Scene, names) -> list[str]:
     """At which of several lumped points models are judged."""
     if not scene.further_ports:
         return []
-    asked = {name.partition(AT)[2] or scene.port.name for name in names if name[:2] in ("C_", "K_")}
+    of_points = [name for name in names if name[:2] in ("C_", "K_")]
+    pairs = [pair for pair in map(points_of, of_points) if pair]
+    asked = {q.partition(AT)[2] or scene.port.name for q in of_points if not points_of(q)}
     at = [port.name for port in scene.ports if port.name in asked]
     left = [port.name for port in scene.ports if port.name not in asked]
-    where = f"Compliances are judged at {' and '.join(at)}" if at else "No compliance is judged"
-    return [f"{where}{'; not at ' * bool(left)}{' and '.join(left)}."]
+    told = [f"at {_all_of(at)}"] if at else []
+    told += [f"between {a} and {b}" for a, b in dict.fromkeys(pairs)]
+    where = f"Compliances are judged {', '.join(told)}" if told else "No compliance is judged"
+    return [f"{where}{'; not at ' * bool(left)}{_all_of(left)}."]
+
+
+def _all_of(names: list[str]) -> str:
+    return " and ".join([", ".join(names[:-1]), names[-1]] if len(names) > 1 else names)
 
 
 def _cheapest(rungs, cheapest, tolerance) -> list[str]:

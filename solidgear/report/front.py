@@ -13,11 +13,13 @@ from solidgear.evidence.record import ModelRecord, Record, VerdictRecord
 from solidgear.evidence.ties import SCENE
 from solidgear.report.cells import DASH, short_percent
 from solidgear.report.reading import (
+    AT,
     BEAM,
     LUMPED,
     entry,
     first_frequency,
     is_resolved,
+    matrix_of,
     model_name,
     model_of,
     reference_of,
@@ -80,6 +82,8 @@ def numbers(record: Record, units: Units) -> Table:
     model = model_of(record, key)
     asked = (record.scene.get("ask") or {}).get("quantities") or []
     rows: dict[str, Row] = {**ROWS, **{q: ON_REQUEST[q] for q in asked if q in ON_REQUEST}}
+    # by the names that results have: a scene may write those of points in another way
+    rows |= {q: _at_points(q) for q in (record.verdict.judged if asked else ()) if AT in q}
     cells = [_number(model, name, row, units) for name, row in rows.items()]
     cells += _other_direction(model, units)
     caption = f"At the lumped point {(record.scene.get('port') or {}).get('name', '')}".strip()
@@ -93,6 +97,13 @@ def numbers(record: Record, units: Units) -> Table:
         "leave open; it says nothing of bearings or load.",
         css="numbers",
     )
+
+
+def _at_points(quantity: str) -> Row:
+    """The row of a quantity at a further point or between two."""
+    base, _, where = quantity.partition(AT)
+    words, symbol, *rest = {**ROWS, **ON_REQUEST}[base]
+    return (f"{words}, {' and '.join(where.split(AT))}", symbol, *rest)
 
 
 def _number(model: ModelRecord, name: str, row: Row, units: Units) -> list[Any]:
@@ -109,7 +120,7 @@ def _number(model: ModelRecord, name: str, row: Row, units: Units) -> list[Any]:
 
 def _value(model: ModelRecord, name: str, kind: str, place: tuple[int, int] | None) -> float | None:
     if place is not None:
-        return entry(getattr(model, kind), *place)
+        return entry(matrix_of(model, name, kind), *place)
     exact = next((m.frequency_hz for m in model.modes if m.name == name), None)
     return exact if exact is not None or name.endswith("2") else first_frequency(model, kind)
 

@@ -2,12 +2,21 @@
 
 from __future__ import annotations
 
-from solidgear.evidence.record import CoupledRecord, Matrix, ModelRecord, Record
+from solidgear.evidence.record import ModelRecord, Record
 from solidgear.report.cells import DASH, capital, pct
-from solidgear.report.reading import LUMPED, entry, headline, is_resolved, model_name, reference_of
+from solidgear.report.reading import (
+    LUMPED,
+    block,
+    entry,
+    headline,
+    is_resolved,
+    model_name,
+    reference_of,
+)
 from solidgear.report.result_tables import Cell, matrix
 from solidgear.report.table import Table
 from solidgear.report.units import ENGINEERING, Units
+from solidgear.report.words import band_percent
 
 #: what is told of every point in the summary: quantity, unit, place
 SUMMED = (("C_zz", "m/N", (2, 2)), ("C_yy", "m/N", (1, 1)), ("C_thx", "rad/(N m)", (3, 3)))
@@ -23,18 +32,20 @@ def points(record: Record, units: Units = ENGINEERING) -> Table:
             values = [_entry(m, port.name, place) for m in record.models.values()]
             cells = [units.number(value, unit, nothing=DASH) for value in values]
             rows.append([f"{name} at {port.name}, {units.unit(unit)}", *cells])
-            rows.append(["against reference", *(_apart(record, key, at) for key in record.models)])
+            rows += _beside(record, at)
     for a, b in _pairs(record):
-        for name, unit, (i, j) in SUMMED[:2]:
-            blocks = [_block(m.coupled, a, b, "compliance") for m in record.models.values()]
-            values = [entry(block, i, j) for block in blocks]
+        for name, unit, (i, j) in SUMMED:
+            blocks = [block(m.coupled, a, b, "compliance") for m in record.models.values()]
+            values = [entry(one, i, j) for one in blocks]
             cells = [units.number(value, unit, nothing=DASH) for value in values]
-            rows.append([f"{name}, {a} for a load on {b}, {units.unit(unit)}", *cells])
+            moment = "a moment" if i > 2 else "a load"
+            rows.append([f"{name}, {a} for {moment} on {b}, {units.unit(unit)}", *cells])
+            rows += _beside(record, f"{name}@{a}@{b}")
     note = (
         f"Headlines, lumped models and attachments above are those of {main}, the main point; "
-        "compliances of every point are judged unless the scene asks for others. Terms between "
-        "points have no band of their own: in a solid none errs by more than the geometric mean "
-        "of its two points' errors."
+        "compliances of every point are judged unless the scene asks for others. Bars and "
+        "differences of terms between points are shares of the geometric mean of what both points "
+        "have of their own, for such a term may vanish."
     )
     return Table(
         "Further lumped points",
@@ -63,8 +74,8 @@ def matrices(record: Record, units: Units = ENGINEERING) -> list[tuple[str, list
         shown = []
         for key, model in models.items():
             for kind in ("stiffness", "compliance"):
-                block = _block(model.coupled, a, b, kind)
-                own = [_block(model.coupled, one, one, kind) for one in (a, b)]
+                found = block(model.coupled, a, b, kind)
+                own = [block(model.coupled, one, one, kind) for one in (a, b)]
                 sizes = [[entry(one, k, k) for k in range(6)] for one in own]
                 first, second = (
                     ("load on", "motion of")
@@ -75,8 +86,8 @@ def matrices(record: Record, units: Units = ENGINEERING) -> list[tuple[str, list
                     )
                 )
                 caption = f"{model_name(record, key)}: {kind}, {first} {a}, {second} {b}"
-                if block and any(v is not None for row in block for v in row):
-                    shown.append(matrix(caption, kind, block, [], units, sizes))
+                if found and any(v is not None for row in found for v in row):
+                    shown.append(matrix(caption, kind, found, [], units, sizes))
         out.append((f"Between {a} and {b}", shown))
     return out
 
@@ -92,13 +103,14 @@ def _entry(model: ModelRecord, port: str, place: tuple[int, int]) -> float | Non
     return entry(found.compliance, *place) if found else None
 
 
-def _block(found: CoupledRecord | None, a: str, b: str, kind: str) -> Matrix | None:
-    """The 6x6 of two points."""
-    values = getattr(found, kind, None)
-    if found is None or values is None or not {a, b} <= set(found.ports):
-        return None
-    i, j = 6 * found.ports.index(a), 6 * found.ports.index(b)
-    return [row[j : j + 6] for row in values[i : i + 6]]
+def _beside(record: Record, quantity: str) -> list[list[Cell]]:
+    """How far every model is from the reference in a quantity, and how sure each is of its own."""
+    bands = [m.band.each.get(quantity) if m.band else None for m in record.models.values()]
+    bars: list[Cell] = [f"± {band_percent(bar)}" if bar is not None else DASH for bar in bands]
+    return [
+        ["against reference", *(_apart(record, key, quantity) for key in record.models)],
+        ["bar", *bars],
+    ]
 
 
 def _apart(record: Record, key: str, quantity: str) -> Cell:

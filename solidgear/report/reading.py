@@ -4,12 +4,21 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from solidgear.evidence.record import DeviationRecord, ModelRecord, ModeRecord, Record
+from solidgear.evidence.record import (
+    CoupledRecord,
+    DeviationRecord,
+    Matrix,
+    ModelRecord,
+    ModeRecord,
+    Record,
+)
 from solidgear.evidence.ties import SCENE, SECTION
 from solidgear.report.words import NOTHING, is_number
 
 #: families of models, as the ladder has them
 LUMPED, BEAM = "lumped", "beam"
+#: between a quantity and its lumped points
+AT = "@"
 #: below this share of the geometric mean of its diagonal entries a coupling is next to nothing
 FAINT = 1e-6
 
@@ -40,6 +49,26 @@ def entry(matrix: Sequence[Sequence[float | None]] | None, i: int, j: int) -> fl
     if matrix is None or i >= len(matrix) or j >= len(matrix[i]):
         return None
     return matrix[i][j]
+
+
+def matrix_of(model: ModelRecord, quantity: str, kind: str) -> Matrix | None:
+    """The 6x6 that a quantity of a point, or a term between points, stands in."""
+    _, _, where = quantity.partition(AT)
+    if not where:
+        return getattr(model, kind)
+    if AT in where:
+        return block(model.coupled, *where.split(AT), kind)
+    found = model.points.get(where)
+    return getattr(found, kind) if found else None
+
+
+def block(found: CoupledRecord | None, a: str, b: str, kind: str) -> Matrix | None:
+    """The 6x6 of two points; None where there is none."""
+    values = getattr(found, kind, None)
+    if found is None or values is None or not {a, b} <= set(found.ports):
+        return None
+    i, j = 6 * found.ports.index(a), 6 * found.ports.index(b)
+    return [row[j : j + 6] for row in values[i : i + 6]]
 
 
 def is_faint(matrix: Sequence[Sequence[float | None]] | None, i: int, j: int) -> bool:

@@ -203,6 +203,7 @@ def matrix_table(
     kind: str,
     units: str | Units = SI,
     title: str = "",
+    sizes: Sequence[Sequence[float]] | None = None,
 ) -> Table:
     """A 6x6 with its units; free components (None or NaN) show as a dash.
 
@@ -215,6 +216,9 @@ def matrix_table(
         To show it in.
     title : str
         By default the kind.
+    sizes : two lists of six numbers, optional
+        Diagonal entries beside which a coupling may be next to nothing, of rows and of columns; by
+        default those of the matrix.
 
     Returns
     -------
@@ -228,7 +232,7 @@ def matrix_table(
         padding=0,
         pad_edge=False,
         title=Text(
-            f"{title or kind}, {f'{chosen.name} units' if chosen is not SI else 'SI'}",
+            f"{title or kind}, {chosen.title}",
             "table.title",
         ),
         title_justify="left",
@@ -243,7 +247,12 @@ def matrix_table(
             cells = []
             for j, value in enumerate(rows[i]):
                 # a weak coupling has few figures that mean something, and a row has 80 columns
-                digits = WEAK if not chosen.exponents and reading.is_faint(rows, i, j) else 5
+                faint = (
+                    reading.is_nothing(value, sizes[0][i], sizes[1][j])
+                    if sizes
+                    else reading.is_faint(rows, i, j)
+                )
+                digits = WEAK if not chosen.exponents and faint else 5
                 cells.append(in_ascii(chosen.number(value, pair[j // 3], digits)))
             table.add_row(DOF_NAMES[i], *cells, end_section=i == 2)
     return table

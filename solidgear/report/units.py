@@ -49,6 +49,11 @@ class Units:
     of: Mapping[str, tuple[str, float]]
     exponents: bool = False
 
+    @property
+    def title(self) -> str:
+        """The choice at the head of a table."""
+        return "SI" if self is SI else f"{self.name.upper() if self is US else self.name} units"
+
     def unit(self, si: str) -> str:
         """The name of an SI unit here."""
         return self.of.get(si, (si, 1.0))[0]

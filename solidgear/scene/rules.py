@@ -231,6 +231,11 @@ def station_problems(
                 f"{others} has this name; each needs its own", path=(*path[:-1], "name")
             )
         names.add(here.name)
+        if what == "attached span" and len(ports) > 1 and "@" in here.name:
+            reason = (
+                "the name of one of several points has no @, which stands before it in C_zz@name"
+            )
+            yield SceneError(reason, path=(*path[:-1], "name"))
         reason = _misplaced(here, what, places[:k], length, jumps)
         if reason:
             yield SceneError(reason, path=path)
@@ -275,9 +280,35 @@ def question_problems(ports: Sequence[Port], quantities: Sequence[str]) -> Itera
     """
     known = [port.name for port in ports]
     for k, quantity in enumerate(quantities):
-        _, at, point = quantity.partition("@")
-        if at and point not in known:
-            yield SceneError(no_such_point(point, known), path=("ask", "quantities", k))
+        base, at, point = quantity.partition("@")
+        asked = [point] if point in known else point.split("@")
+        unknown = [name for name in asked if at and name not in known]
+        reason = no_such_point(unknown[0], known) if unknown else no_term(base, asked)
+        if reason:
+            yield SceneError(reason, path=("ask", "quantities", k))
+
+
+def no_term(base: str, points: Sequence[str]) -> str:
+    """The reason to refuse a quantity between points; empty where there is none.
+
+    Parameters
+    ----------
+    base : str
+        The quantity without its points.
+    points : sequence of str
+
+    Returns
+    -------
+    str
+    """
+    if len(points) > 2:
+        return f"a term is between two points; write for example {base}@{points[0]}@{points[1]}"
+    if len(points) == 2 and base.startswith("K_"):
+        return (
+            "a stiffness between points depends on which of them are held; ask for the compliance, "
+            f"C{base[1:]}@{'@'.join(points)}, or run solidgear stiffness --port {','.join(points)}"
+        )
+    return ""
 
 
 def mass_problems(

@@ -39,6 +39,8 @@ if TYPE_CHECKING:
 # Relative error of a compliance where refinement tells none, and that of a stiffness above which
 # two points count as one.
 ROUNDING, APART = 1e-14, 1e-4
+# Of the geometric mean of two diagonal entries: a coupling that is none.
+LAST_DIGIT = 1e-15
 # Of the lowest elastic eigenvalue.  Rounding in the factor is amplified by the highest eigenvalue
 # of the mesh over the shift: 1e-3 left 5e-3 of the frequencies of slender tubes wrong, 3e-2 leaves
 # what refinement can mend.  Statics takes a solve more for it.
@@ -255,13 +257,13 @@ def condense(body, supports, port, attachment=None):
         small = (small + small.T) / 2
         left = 0.0 if len(names) == 1 else _inverted(small, flex.residual)
         k = loads @ _spd_solve(small, loads.T) if left < APART else np.full_like(k, np.nan)
-        k = (k + k.T) / 2
+        k = _apart((k + k.T) / 2)
         on = _still(p_l @ free)
         if len(names) > 1:
             evidence["stiffness_error"] = left
         elif on.sum() < loads.shape[1]:
             on[:] = False  # of one point a compliance is told as a whole or not at all
-        c[np.ix_(on, on)] = ((full + full.T) / 2)[np.ix_(on, on)]
+        c[np.ix_(on, on)] = _apart(((full + full.T) / 2)[np.ix_(on, on)])
     tied = tuple(body.ports[index].attachment for index in indices)
     if isinstance(port, str):
         return Condensed(port, tied[0], k, c, p_l @ free, evidence)
@@ -288,6 +290,12 @@ def _full_compliance(body, supports, flex, here, there, free) -> np.ndarray:
     x = (p_l @ held - reach.T @ rigid).T
     swing = _half_inverse(rigid, x)
     return f_ll - reach.T @ reach + swing.T @ swing
+
+
+def _apart(found: np.ndarray) -> np.ndarray:
+    """The same without what rounding couples: less than a last digit of both diagonal entries."""
+    size = np.sqrt(np.abs(np.diag(found)))
+    return np.where(np.abs(found) <= LAST_DIGIT * np.outer(size, size), 0.0, found)
 
 
 def _inverted(small: np.ndarray, residual: float) -> float:

@@ -16,13 +16,14 @@ from typing import TYPE_CHECKING, Any
 from solidgear.body import Body, as_supports
 from solidgear.evidence.answer import ENOUGH, Numbers, numbers
 from solidgear.evidence.bands import Band
-from solidgear.evidence.quantities import AT, described, diagonals, size
+from solidgear.evidence.quantities import AT, described, diagonals, points_of, size
 from solidgear.evidence.sequence_bands import sequence_bands
 from solidgear.fidelity import build
 from solidgear.fidelity.rung import Rung
+from solidgear.solve.condensed import Condensed, Coupled
 from solidgear.solve.families import FAMILIES
 from solidgear.solve.modes import ModeSet, modes
-from solidgear.solve.statics import Condensed, condense
+from solidgear.solve.statics import condense
 from solidgear.solve.supported import decoupled, groups
 
 if TYPE_CHECKING:
@@ -306,23 +307,30 @@ class Climb:
         statics: Condensed | None = None
         found: ModeSet | None = None
         further: dict[str, Condensed] = {}
+        coupled: Coupled | None = None
         if kinds & {"compliance", "stiffness"}:
             statics = condense(body, supports, self.scene.port.name)
-            points = dict.fromkeys(q.partition(AT)[2] for q in names if AT in q)
+            alone = [q for q in names if AT in q and not points_of(q)]
+            points = dict.fromkeys(q.partition(AT)[2] for q in alone)
             further = {point: condense(body, supports, point) for point in points}
-            self._keep_statics(families, statics, further)
+            pairs = {point for q in names for point in points_of(q) or ()}
+            if pairs:
+                both = tuple(port.name for port in self.scene.ports if port.name in pairs)
+                coupled = condense(body, supports, both)
+            self._keep_statics(families, statics, further, coupled)
         if "frequency" in kinds:
             count = shapes(families, names)
             found = self.modes = modes(body, supports, count, ovalising=False)
-        return numbers(statics, found, further)
+        return numbers(statics, found, further, coupled)
 
     def _keep_statics(
         self,
         families: tuple[str, ...] | None,
         statics: Condensed,
         further: Mapping[str, Condensed],
+        coupled: Coupled | None,
     ) -> None:
-        """Remember statics at the main point and at further ones."""
+        """Remember statics at the main point, at further ones and between points."""
         self.compliances[families or tuple(FAMILIES)] = statics
 
     def judge(self) -> float | None:

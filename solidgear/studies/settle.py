@@ -17,21 +17,23 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
 
 from solidgear.body import Body
 from solidgear.errors import SolidgearError, show
 from solidgear.evidence.answer import Numbers, numbers
-from solidgear.evidence.quantities import AT, QUANTITIES, at_points
+from solidgear.evidence.quantities import AT, QUANTITIES, at_points, between, repeats
 from solidgear.machine.threads import pinned
-from solidgear.solve.condensed import Condensed
+from solidgear.solve.condensed import Condensed, Coupled
 from solidgear.studies.answering import climbed, usable
 from solidgear.studies.climb import Climb, Progress, Question, Step
 
 if TYPE_CHECKING:
     from solidgear.scene import Scene
+
+Seen = TypeVar("Seen", Condensed, Coupled)
 
 #: what may be asked of a body, and the kinds of quantities by which it is judged
 QUESTIONS: dict[str, tuple[str, ...]] = {
@@ -82,6 +84,8 @@ class Settled:
         Quantities that do not exist for this scene.
     judged_on : int
         Bearing sets that the bars were taken over.
+    point : str
+        The main lumped point.
     """
 
     scene: str
@@ -94,6 +98,7 @@ class Settled:
     reached: bool
     missing: tuple[str, ...]
     judged_on: int = 1
+    point: str = ""
 
     @property
     def setting(self) -> str:
@@ -144,7 +149,7 @@ def settle(
         Compliances and stiffnesses at the lumped point in all six directions, the first frequencies
         of every family, or both.
     points : sequence of str
-        Further lumped points at which the same is asked.
+        Further lumped points at which the same is asked, and between which.
     progress : callable
         Called with a sentence at every step.
 
@@ -173,7 +178,10 @@ def settle(
     if ask not in QUESTIONS:
         raise SolidgearError(f"settle: ask = {show(ask, 40)}; use one of {', '.join(QUESTIONS)}")
     wanted = tuple(q for q, (kind, _, _) in QUANTITIES.items() if kind in QUESTIONS[ask])
-    wanted = at_points(wanted, points)
+    if points:
+        both = {scene.port.name, *points}
+        crossed = between(wanted, [port.name for port in scene.ports if port.name in both])
+        wanted = (*at_points(wanted, points), *crossed)
     climb, steps = climbed(scene, tol, wanted, Whole, progress)
     assert climb.body is not None  # a rung without a single mesh is passed over
     bars = climb.bars()
@@ -188,6 +196,7 @@ def settle(
         tuple(steps),
         judged and all(bar <= tol for bar in bars.values()),
         tuple(q for q in wanted if q not in bars),
+        point=scene.port.name,
     )
 
 
@@ -206,7 +215,8 @@ class Whole(Climb):
         if self.turned:
             finest = self.turned[-1].quantities
             known = self._turned_bands()
-            out |= {_turned_name(name): known.get(name, math.inf) for name in finest}
+            own = [name for name in finest if not repeats(name)]
+            out |= {_turned_name(name): known.get(name, math.inf) for name in own}
         return out
 
     def judge(self) -> float | None:
@@ -226,10 +236,12 @@ class Whole(Climb):
         families: tuple[str, ...] | None,
         statics: Condensed,
         further: Mapping[str, Condensed],
+        coupled: Coupled | None,
     ) -> None:
         there = {point: _turned(found) for point, found in further.items()}
         # residuals are those of the matrix that is turned
-        turned = numbers(_turned(statics), None, there)
+        both = None if coupled is None else _turned(coupled)
+        turned = numbers(_turned(statics), None, there, both)
         self.turned.append(turned)
 
     def _turned_bands(self) -> Mapping[str, float]:
@@ -238,9 +250,10 @@ class Whole(Climb):
         return {name: band.gci for name, band in self.bands_of(self.turned).items()}
 
 
-def _turned(found: Condensed) -> Condensed:
+def _turned(found: Seen) -> Seen:
     """A quarter turn about the axis, torsion in the place of axial motion."""
-    turn = np.ix_(TURN, TURN)
+    rows = np.concatenate([6 * k + np.array(TURN) for k in range(len(found.stiffness) // 6)])
+    turn = np.ix_(rows, rows)
     return replace(found, stiffness=found.stiffness[turn], compliance=found.compliance[turn])
 
 

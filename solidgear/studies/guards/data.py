@@ -124,5 +124,5 @@ def split_pair(probe: Probe) -> Notices:
         yield Notice(
             "fact",
             (),
-            f"bearings that differ in x and z split the first bending pair by {split:.1e} (Timoshenko): 'bending 2' is the twin of 'bending 1'",
+            f"bearings, with what they stand in, that differ in x and z split the first bending pair by {split:.1e} (Timoshenko): 'bending 2' is the twin of 'bending 1'",
         )

@@ -8,7 +8,7 @@ from importlib.util import find_spec
 import numpy as np
 
 from solidgear.errors import SolidgearError
-from solidgear.evidence.quantities import change
+from solidgear.evidence.quantities import change, in_words
 from solidgear.machine.memory import available_mb
 from solidgear.meshing.corners import sharpest_corner
 from solidgear.solve.backends import BACKENDS, INSTALL, missing
@@ -52,7 +52,9 @@ def rigid_seats(probe: Probe) -> Notices:
         for name in ("C_zz", "C_thx", "bending 1")
         if (value := change(stiff, probe.tied("average"), name)) is not None
     }
-    words = ", ".join(f"{name} by {100 * value:+.3g} %" for name, value in moved.items())
+    words = ", ".join(
+        f"{in_words(name, probe.main)} by {100 * value:+.3g} %" for name, value in moved.items()
+    )
     if not chosen:
         yield Notice(
             "fact",

@@ -11,6 +11,7 @@ import numpy as np
 from solidgear.errors import SolidgearError
 from solidgear.evidence import verdict
 from solidgear.evidence.lumped import preferred
+from solidgear.evidence.quantities import diagonals, in_words
 from solidgear.evidence.ties import SCENE
 from solidgear.evidence.verdict import TIES, gap_verdict
 from solidgear.fidelity.ladder import LADDER
@@ -54,14 +55,14 @@ def beam_against_solid(probe: Probe) -> Notices:
         }
         kind, worst = next((kind, rows[0]) for kind, rows in found.items() if rows)
         name, gap = worst["quantity"], worst["relative"]
-        side = (
-            ("larger" if gap > 0 else "smaller")
-            if name.startswith("C_")
-            else "higher"
-            if gap > 0
-            else "lower"
-        )
-        text = f"{name} of the {LADDER[model].title} is {100 * abs(gap):.3g} % {side} than that of a light harmonic solid {TIES[worst['attachment']]}"
+        if diagonals(name):
+            side = "of the geometric mean of its two diagonal entries away from"
+        elif name.startswith("C_"):
+            side = f"{'larger' if gap > 0 else 'smaller'} than"
+        else:
+            side = f"{'higher' if gap > 0 else 'lower'} than"
+        called = in_words(name, probe.main)
+        text = f"{called} of the {LADDER[model].title} is {100 * abs(gap):.3g} % {side} that of a light harmonic solid {TIES[worst['attachment']]}"
         if kind == verdict.BEYOND:
             yield Notice(
                 "avoid",
@@ -309,7 +310,7 @@ def effective_mass(probe: Probe) -> Notices:
         yield Notice(
             "caution",
             ("lumped",),
-            f"the static shape of {probe.scene.port.name!r} holds {100 * point.static_share:.0f} % of the energy of first bending, less than {100 * ENERGY:g} %: the mode lives "
+            f"the static shape of {probe.scene.port.name!r} holds {100 * point.static_share:.4g} % of the energy of first bending, less than {100 * ENERGY:g} %: the mode lives "
             "elsewhere, and a lumped model is good for stiffness only; use the beam",
         )
 

@@ -89,6 +89,11 @@ class Probe:
         fit = [r.name for r in LADDER if r.build is not None and not r.unfit(self.whole)]
         return " or ".join(fit) or "a scene with fewer of its features"
 
+    @property
+    def main(self) -> str:
+        """Name of the main lumped point where there are several, else nothing: for sentences."""
+        return self.scene.port.name if self.scene.further_ports else ""
+
     def diameter(self, y: float) -> float:
         """Outer diameter of the shaft at y, the larger one at a step, m."""
         return 2 * max(
@@ -240,13 +245,18 @@ class Probe:
     @cached_property
     def split(self) -> float:
         """Relative distance of the two first bending frequencies of the Timoshenko beam; 0 where
-        every bearing is alike in x and z.
+        all bearings, with what they stand in, are alike in x and z.
         """
-        turned = [
-            b.stiffness[np.ix_(X, X)] * SIGNS - b.stiffness[np.ix_(Z, Z)]
-            for b in self.scene.bearings
-        ]
-        if not any(t.any() for t in turned):
+        held = self.supports.stiffness
+        count = len(self.supports.ports)
+        x, z = (
+            np.concatenate([6 * p + np.array(on) for p in range(count)] or [[]]).astype(int)
+            for on in (X, Z)
+        )
+        signs = np.tile(SIGNS, (count, count))
+        uneven = np.abs(held[np.ix_(x, x)] * signs - held[np.ix_(z, z)]).max(initial=0.0)
+        uneven = max(uneven, np.abs(held[np.ix_(x, z)]).max(initial=0.0))
+        if uneven == 0.0:
             return 0.0
         body, _, _ = self.beam("timoshenko")
         apart = replace(body, mesh=body.mesh | {"pair_tolerance": 0.0})
