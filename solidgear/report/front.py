@@ -103,7 +103,8 @@ def _at_points(quantity: str) -> Row:
     """The row of a quantity at a further point or between two."""
     base, _, where = quantity.partition(AT)
     words, symbol, *rest = {**ROWS, **ON_REQUEST}[base]
-    return (f"{words}, {' and '.join(where.split(AT))}", symbol, *rest)
+    told = " under loads on ".join(where.split(AT))
+    return (f"{words}, {told}", symbol, *rest)
 
 
 def _number(model: ModelRecord, name: str, row: Row, units: Units) -> list[Any]:

@@ -27,7 +27,7 @@ from pathlib import Path
 import numpy as np
 
 from solidgear.body import as_supports
-from solidgear.evidence.quantities import QUANTITIES, measure, size
+from solidgear.evidence.quantities import QUANTITIES, measure, points_of, size
 from solidgear.machine.whole_file import whole
 from solidgear.scene import Ask, Scene
 from solidgear.solve.modes import modes
@@ -137,11 +137,13 @@ def _level(scene: Scene, mesh, order: int, layers: int) -> Reference:
     runs = [_solve(scene, mesh, p) for p in (order, order + 1, order + 2)]
     shallow = _solve(scene, corner_mesh(scene, layers - 2, SIZE, RATIO), order)
     noise = max(r["noise"] for r in runs)
+    inverted = max(r["inverted"] for r in runs)
     values, uncertainty = {}, {}
-    for name in QUANTITIES:
+    for name in dict.fromkeys((*QUANTITIES, *runs[-1]["values"])):
         if all(name in r["values"] for r in (*runs, shallow)):
             four = [r["values"][name] for r in (*runs, shallow)]
-            values[name], uncertainty[name] = settle(*four, size(runs[-1]["values"], name), noise)
+            left = inverted if points_of(name) and name.startswith("K_") else noise
+            values[name], uncertainty[name] = settle(*four, size(runs[-1]["values"], name), left)
     return Reference(
         values,
         uncertainty,
@@ -205,6 +207,9 @@ def _solve(scene: Scene, mesh, order: int) -> dict:
     body = spectral(scene, mesh, order)
     supports = as_supports(scene)
     condensed = condense(body, supports, scene.port.name)
+    further = {p.name: condense(body, supports, p.name) for p in scene.further_ports}
+    names = tuple(port.name for port in scene.ports)
+    coupled = condense(body, supports, names) if further else None
     found = modes(body, supports, max(scene.ask.modes, 10) + EXTRA_MODES)
     shapes = [
         {
@@ -218,11 +223,13 @@ def _solve(scene: Scene, mesh, order: int) -> dict:
         for m in found.modes
     ]
     return {
-        "values": measure(condensed, found),
+        "values": measure(condensed, found, further, coupled),
         "modes": shapes,
         "gram": found.gram.tolist(),
         # eigenvalues err by the square of the shapes' error, of which the residual is the size
         "noise": float(max(condensed.evidence["residual"], found.evidence["residual"] ** 2)),
+        # what the inverse of several points makes of it
+        "inverted": coupled.evidence["stiffness_error"] if coupled else 0.0,
         "unknowns": body.size,
     }
 

@@ -68,6 +68,30 @@ def random_scene(seed: int, kind: str | None = None, ties: str | None = None) ->
     raise ValueError(f"no valid scene of kind {chosen!r} in {TRIES} draws from seed {seed}")
 
 
+def with_second_point(scene: Scene, seed: int) -> Scene:
+    """A scene with another lumped point, drawn as its first one is.
+
+    Parameters
+    ----------
+    scene : Scene
+    seed : int
+
+    Raises
+    ------
+    ValueError
+        If no draw is valid.
+    """
+    for attempt in range(TRIES):
+        rng = np.random.default_rng([seed, 2, attempt])
+        tie = str(rng.choice(ATTACHMENTS[::2]))  # two rigid seats share no surface
+        port = _port(rng, list(scene.segments), tie).with_changes(name="second")
+        try:
+            return scene.with_changes(further_ports=(port,))
+        except SceneError:
+            continue
+    raise ValueError(f"no valid second point in {TRIES} draws from seed {seed}")
+
+
 def between(rng: np.random.Generator, low: float, high: float) -> float:
     """A number between two positive ones, all orders of magnitude alike."""
     return float(math.exp(rng.uniform(math.log(low), math.log(high))))

@@ -1,0 +1,151 @@
+"""Do the bars of terms between two points hold? Random shafts with a second lumped point, against
+the over-refined harmonic solution.
+
+    python -m validation.attack.points [--scenes 24] [--seed 1]
+
+Every mesh that the harmonic solid of a comparison climbs over is judged, not the last one alone, and
+beside the terms between points those of the second point, and stiffnesses with both points held.
+"""
+
+from __future__ import annotations
+
+import argparse
+import time
+from collections import defaultdict
+from collections.abc import Callable, Iterable
+
+import numpy as np
+
+from solidgear.errors import SolidgearError
+from solidgear.evidence.quantities import AT, points_of, repeats, size
+from solidgear.evidence.study import Solution, study
+from solidgear.evidence.ties import SCENE
+from solidgear.scene import Scene
+from validation.attack.campaign import FINEST
+from validation.attack.judge import Band, band_of, rate
+from validation.attack.reference import MOST_UNKNOWNS, Reference, reference
+from validation.attack.scenes import random_scene, with_second_point
+
+#: what a name is a term of, in the order of the table
+BETWEEN, HELD, SECOND, MAIN = (
+    "compliance between two points",
+    "stiffness, both points held",
+    "at the second point",
+    "at the main point",
+)
+#: a reference that is known worse than this share of a band is refined
+SHARE = 0.1
+#: that are climbed at most: beyond, a reference costs minutes
+MESHES = 3
+
+
+def scene_of(seed: int) -> Scene:
+    """Random shaft with two points."""
+    return with_second_point(random_scene(seed), seed)
+
+
+def sort_of(name: str) -> str:
+    """What a quantity is a term of."""
+    if points_of(name):
+        return BETWEEN if name.startswith("C_") else HELD
+    return SECOND if AT in name else MAIN
+
+
+def solutions(scene: Scene, most: int | None = None) -> list[Solution]:
+    """The harmonic solid on every mesh that has bands, coarse to fine."""
+    kept: list[Solution] = []
+    study(scene, "harmonic", evidence=False, counted=False, most=most, keep=kept.append)
+    return [one for one in kept if one.bands.get(SCENE)]
+
+
+def judged(found: Solution, truth: Reference) -> list[Band]:
+    """Bands of static quantities, held against the truth."""
+    bands = found.bands[SCENE]
+    names = [name for name in bands if name.startswith(("C_", "K_")) and not repeats(name)]
+    values = found.quantities
+    model = {
+        "values": values,
+        "bands": {name: bands[name].gci * size(values, name) for name in names},
+    }
+    out = [band_of(name, model, truth) for name in names]
+    return [band for band in out if band is not None]
+
+
+def truth_of(scene: Scene, found: Iterable[Solution], **rest) -> Reference | None:
+    """The over-refined solution, fine enough to judge these bands by."""
+    goal: dict[str, float] = {}
+    for one in found:
+        for name, band in one.bands[SCENE].items():
+            goal[name] = min(goal.get(name, 1.0), max(SHARE * band.gci, FINEST))
+    return reference(scene, goal, **rest)
+
+
+def campaign(
+    seeds: Iterable[int],
+    limit: int = MOST_UNKNOWNS,
+    most: int = MESHES,
+    tell: Callable[[str], None] = print,
+) -> dict[str, list[Band]]:
+    """Bands of all scenes by what they are of."""
+    out: dict[str, list[Band]] = defaultdict(list)
+    for seed in seeds:
+        start = time.process_time()
+        try:
+            scene = scene_of(seed)
+            found = solutions(scene, most)
+            truth = truth_of(scene, found, limit=limit)
+        except SolidgearError as error:
+            tell(f"seed {seed}: {error}")
+            continue
+        if truth is None:
+            tell(f"seed {seed}: no reference within {limit} unknowns")
+            continue
+        for one in found:
+            for band in judged(one, truth):
+                out[sort_of(band.quantity)].append(band)
+                if band.judged and not band.held:
+                    tell(
+                        f"seed {seed} ({scene.title}), {len(one.levels)} meshes, {band.quantity}: "
+                        f"band {band.band:.1e}, error {band.error:+.1e} +- {band.doubt:.0e}"
+                    )
+        tell(f"seed {seed}: {scene.title}, {time.process_time() - start:.1f} s of processor time")
+    return out
+
+
+def table(bands: dict[str, list[Band]]) -> list[str]:
+    """Markdown: share held and how tight, by what is judged."""
+    out = [
+        "| bars | held | band / error, median | 5 % | 95 % | largest band | not judged |",
+        "| --- | --- | --- | --- | --- | --- | --- |",
+    ]
+    for sort in (BETWEEN, HELD, SECOND, MAIN):
+        mine = [band for band in bands.get(sort, ()) if band.judged]
+        if not mine:
+            continue
+        low, middle, high = np.quantile([b.band / abs(b.error) for b in mine], [0.05, 0.5, 0.95])
+        held = rate(sum(b.held for b in mine), len(mine))
+        left = len(bands[sort]) - len(mine)
+        largest = max(b.band for b in mine)
+        out.append(
+            f"| {sort} | {held} | {middle:.3g} | {low:.3g} | {high:.3g} | {largest:.1e} | {left} |"
+        )
+    return out
+
+
+def main(arguments: list[str] | None = None) -> None:
+    """Command line."""
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    parser.add_argument("--scenes", type=int, default=24)
+    parser.add_argument("--seed", type=int, default=1, help="of the first scene")
+    parser.add_argument("--limit", type=int, default=MOST_UNKNOWNS, help="unknowns of a reference")
+    parser.add_argument("--meshes", type=int, default=MESHES, help="that a scene climbs at most")
+    options = parser.parse_args(arguments)
+    seeds = range(options.seed, options.seed + options.scenes)
+    bands = campaign(seeds, options.limit, options.meshes, lambda text: print(text, flush=True))
+    print("\n".join(table(bands)))
+
+
+if __name__ == "__main__":
+    main()
