@@ -15,7 +15,8 @@ from solidgear.bearings.solved import solved
 from solidgear.body import as_supports
 from solidgear.scene import Bearing, Elastic, Housing
 from solidgear.springs import in_series
-from solidgear.studies.sweep.run import sweep
+from solidgear.studies.sweep import vary
+from solidgear.studies.sweep.run import sweep, variants_of
 
 GEOMETRY = Path(__file__).parent.parent / "geometry"
 COARSE = {"harmonic": {"order": 2, "layers": 0}}
@@ -281,3 +282,76 @@ def test_a_sweep_over_the_housing(shaft, tmp_path):
         assert float(row["C_zz"]) == pytest.approx(c, rel=1e-9)  # the same formulas
     with pytest.raises(sg.SolidgearError, match="no kthz.*what is rigid cannot be varied; it has"):
         sweep(shaft, ["housing.kthz=1e6,2e6"], tmp_path / "b.csv", fidelity="timoshenko")
+
+
+def test_a_sweep_over_what_one_bearing_stands_in(shaft, tmp_path):
+    """Its entries, a coupling that the file leaves out, all of it together, and the box beside it."""
+    out = tmp_path / "rows.csv"
+    texts = [
+        "bearing.B.housing.kzz=3e8,2e9",
+        "bearing.B.housing.kxz=0,2e8",
+        "bearing.B.housing.scale=0.5,3",
+        "housing.scale=1,4",
+    ]
+    sweep(shaft, texts, out, fidelity="harmonic", options=COARSE["harmonic"], n=2)
+    rows = list(csv.DictReader(out.open()))
+    assert len(rows) == 16 and {row["how"] for row in rows} == {"reduced"}  # nothing factored anew
+    body = sg.build(shaft, "harmonic", **COARSE["harmonic"])
+    a, b = shaft.bearings
+    for row in rows:
+        entries = b.housing.entries | {
+            name: float(row[f"bearing.B.housing.{name}"]) for name in ("kzz", "kxz")
+        }
+        factor = float(row["bearing.B.housing.scale"])
+        wall = Elastic(stiffness={name: factor * k for name, k in entries.items()})
+        box = {name: float(row["housing.scale"]) * k for name, k in shaft.housing.entries.items()}
+        there = shaft.with_changes(
+            bearings=(a, b.with_changes(housing=wall)),
+            housing=Housing(stiffness=box, y=shaft.housing.y),
+        )
+        fresh = sg.condense(body, there, "wheel")
+        # the same low-rank formulas, on springs that are put in series another way
+        assert float(row["C_zz"]) == pytest.approx(fresh.compliance[2, 2], rel=1e-9)
+        assert float(row["K_thx"]) == pytest.approx(fresh.stiffness[3, 3], rel=1e-9)
+        first = next(m for m in sg.modes(body, there, 4).modes if m.frequency_hz > 0)
+        # what a sweep promises of frequencies
+        assert float(row["f1_hz"]) == pytest.approx(first.frequency_hz, rel=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("text", "word"),
+    [
+        (
+            "bearing.A.housing.kzz=1e9,2e9",
+            "bearing 'A' stands in no housing of its own; give it one",
+        ),
+        (
+            "bearing.B.housing.kyy=1e9",
+            "the housing of 'B' no kyy, and what is rigid cannot be varied",
+        ),
+        ("bearing.B.housing.kx_thz=1e9", "no kx_thz, and what is rigid"),
+        ("bearing.B.housing.kzq=1e9", "unknown field 'kzq' of a housing"),
+        ("bearing.B.housing.position=0.1", "unknown field 'position' of a housing"),
+        ("bearing.B.housing=1e9", "says nothing of what varies in the housing"),
+        ("bearing.C.housing.kzz=1e9", "there is no bearing 'C'"),
+        ("bearing.B.housing.kzz=1e9 N", "not a unit of force per length"),
+    ],
+)
+def test_what_a_housing_cannot_vary_is_refused_at_once(shaft, text, word):
+    with pytest.raises(sg.SolidgearError, match=word) as error:
+        vary.axes(shaft, [text])
+    assert text in str(error.value)
+
+
+@pytest.mark.parametrize(
+    ("text", "word"),
+    [
+        ("bearing.B.housing.scale=0", 'bearing "B": must be greater than zero'),
+        ("bearing.B.housing.kzz=-1", 'bearing "B": .*negative|bearing "B": .*indefinite'),
+        ("bearing.B.housing.kxz=1e10", 'bearing "B": the stiffness is indefinite'),
+        ("housing.kzz=1e3", "housing: the stiffness is indefinite"),
+    ],
+)
+def test_a_housing_that_a_file_would_be_refused_for_is_refused_as_a_variant(shaft, text, word):
+    with pytest.raises(sg.SceneError, match=word):
+        variants_of(shaft, [text]).of(0)

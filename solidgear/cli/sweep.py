@@ -31,6 +31,7 @@ def sweep(
         typer.Option(
             "--vary",
             help="bearing.NAME.FIELD=VALUES, repeatable. FIELD: position (from y = 0), scale, or an entry such as kxx or kx_thz. "
+            "bearing.NAME.housing.FIELD and housing.FIELD vary what the scene gives a housing. "
             'VALUES: FROM:TO:COUNT, log:FROM:TO:COUNT or A,B,C, such as "0.2 m:0.24 m:9".',
         ),
     ],

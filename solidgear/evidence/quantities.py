@@ -148,7 +148,7 @@ def repeats(name: str) -> bool:
     (True, False)
     """
     pair = points_of(name)
-    return pair is not None and pair[0] == pair[1] and described(name)[0] == "compliance"
+    return pair is not None and pair[0] == pair[1] and name.startswith("C_")
 
 
 def between(names: Iterable[str], points: Sequence[str]) -> tuple[str, ...]:

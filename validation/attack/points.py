@@ -51,11 +51,11 @@ def sort_of(name: str) -> str:
     return SECOND if AT in name else MAIN
 
 
-def solutions(scene: Scene, most: int | None = None) -> list[Solution]:
-    """The harmonic solid on every mesh that has bands, coarse to fine."""
+def solutions(scene: Scene, most: int | None = None) -> dict[int, Solution]:
+    """The harmonic solid on every mesh that has bands, by how many meshes these rest on."""
     kept: list[Solution] = []
     study(scene, "harmonic", evidence=False, counted=False, most=most, keep=kept.append)
-    return [one for one in kept if one.bands.get(SCENE)]
+    return {k: one for k, one in enumerate(kept, start=1) if one.bands.get(SCENE)}
 
 
 def judged(found: Solution, truth: Reference) -> list[Band]:
@@ -85,49 +85,50 @@ def campaign(
     limit: int = MOST_UNKNOWNS,
     most: int = MESHES,
     tell: Callable[[str], None] = print,
-) -> dict[str, list[Band]]:
-    """Bands of all scenes by what they are of."""
-    out: dict[str, list[Band]] = defaultdict(list)
+) -> dict[tuple[str, int], list[Band]]:
+    """Bands of all scenes by what they are of and how many meshes they rest on."""
+    out: dict[tuple[str, int], list[Band]] = defaultdict(list)
     for seed in seeds:
         start = time.process_time()
         try:
             scene = scene_of(seed)
             found = solutions(scene, most)
-            truth = truth_of(scene, found, limit=limit)
+            truth = truth_of(scene, found.values(), limit=limit)
         except SolidgearError as error:
             tell(f"seed {seed}: {error}")
             continue
         if truth is None:
             tell(f"seed {seed}: no reference within {limit} unknowns")
             continue
-        for one in found:
+        for count, one in found.items():
             for band in judged(one, truth):
-                out[sort_of(band.quantity)].append(band)
+                out[sort_of(band.quantity), count].append(band)
                 if band.judged and not band.held:
                     tell(
-                        f"seed {seed} ({scene.title}), {len(one.levels)} meshes, {band.quantity}: "
+                        f"seed {seed} ({scene.title}), {count} meshes, {band.quantity}: "
                         f"band {band.band:.1e}, error {band.error:+.1e} +- {band.doubt:.0e}"
                     )
         tell(f"seed {seed}: {scene.title}, {time.process_time() - start:.1f} s of processor time")
     return out
 
 
-def table(bands: dict[str, list[Band]]) -> list[str]:
-    """Markdown: share held and how tight, by what is judged."""
+def table(bands: dict[tuple[str, int], list[Band]]) -> list[str]:
+    """Markdown: share held and how tight, by what is judged and the meshes behind it."""
     out = [
-        "| bars | held | band / error, median | 5 % | 95 % | largest band | not judged |",
-        "| --- | --- | --- | --- | --- | --- | --- |",
+        "| bars | meshes | held | band / error, median | 5 % | 95 % | largest band | not judged |",
+        "| --- | --- | --- | --- | --- | --- | --- | --- |",
     ]
-    for sort in (BETWEEN, HELD, SECOND, MAIN):
-        mine = [band for band in bands.get(sort, ()) if band.judged]
+    order = (BETWEEN, HELD, SECOND, MAIN)
+    for sort, count in sorted(bands, key=lambda key: (key[1], order.index(key[0]))):
+        mine = [band for band in bands[sort, count] if band.judged]
         if not mine:
             continue
         low, middle, high = np.quantile([b.band / abs(b.error) for b in mine], [0.05, 0.5, 0.95])
         held = rate(sum(b.held for b in mine), len(mine))
-        left = len(bands[sort]) - len(mine)
+        left = len(bands[sort, count]) - len(mine)
         largest = max(b.band for b in mine)
         out.append(
-            f"| {sort} | {held} | {middle:.3g} | {low:.3g} | {high:.3g} | {largest:.1e} | {left} |"
+            f"| {sort} | {count} | {held} | {middle:.3g} | {low:.3g} | {high:.3g} | {largest:.1e} | {left} |"
         )
     return out
 
@@ -143,8 +144,8 @@ def main(arguments: list[str] | None = None) -> None:
     parser.add_argument("--meshes", type=int, default=MESHES, help="that a scene climbs at most")
     options = parser.parse_args(arguments)
     seeds = range(options.seed, options.seed + options.scenes)
-    bands = campaign(seeds, options.limit, options.meshes, lambda text: print(text, flush=True))
-    print("\n".join(table(bands)))
+    found = campaign(seeds, options.limit, options.meshes, lambda text: print(text, flush=True))
+    print("\n".join(table(found)))
 
 
 if __name__ == "__main__":

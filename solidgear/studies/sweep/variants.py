@@ -4,15 +4,16 @@ from __future__ import annotations
 
 import functools
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 
 from solidgear.body import Supports, as_supports
-from solidgear.errors import SceneError, SolidgearError
+from solidgear.errors import SceneError, SolidgearError, show
 from solidgear.scene import (
     Bearing,
     Corner,
+    Elastic,
     Feature,
     Housing,
     PointMass,
@@ -22,7 +23,9 @@ from solidgear.scene import (
 )
 from solidgear.scene.bearing_stiffness import STIFFNESS_NAMES
 from solidgear.scene.body_file import BodyFile
-from solidgear.studies.sweep.vary import HOUSING, Axis
+from solidgear.studies.sweep.vary import HOUSING, WITHIN, Axis
+
+E = TypeVar("E", bound=Elastic)
 
 
 @dataclass(frozen=True)
@@ -175,23 +178,38 @@ def _rehoused(scene: Scene, fields: list[tuple[str, float]]) -> Scene:
     try:
         if scene.housing is None:
             return scene.with_changes(housing_axial=fields[-1][1])
-        entries = scene.housing.entries | dict(fields)
-        given: dict[str, Any] = {"stiffness": entries, "y": scene.housing.y}
-        return scene.with_changes(housing=Housing(**given))
+        return scene.with_changes(housing=_varied(scene.housing, fields))
     except SceneError as error:
         raise SceneError(error.reason, field="housing") from None
+
+
+def _varied(housing: E, fields: list[tuple[str, float]]) -> E:
+    """A housing with some of its entries replaced, then scaled."""
+    given = dict(fields)
+    factor = given.pop("scale", None)
+    if factor is not None and not factor > 0:
+        raise SceneError("must be greater than zero", field="factor", value=show(factor))
+    if given:
+        entries: dict[str, Any] = {"stiffness": housing.entries | given}
+        if isinstance(housing, Housing):
+            entries["y"] = housing.y
+        housing = type(housing)(**entries)
+    return housing if factor is None else housing.scaled(factor)
 
 
 # In a product of axes the same few bearings come again and again.
 @functools.lru_cache(maxsize=1024)
 def _changed(bearing: Bearing, fields: tuple[tuple[str, float], ...]) -> Bearing:
-    """A bearing with some entries of its own matrix replaced, then scaled."""
+    """A bearing with some entries of its own matrix and of its housing replaced, then scaled."""
     matrix, factor = np.array(bearing.matrix), None
+    within = [(f.removeprefix(WITHIN), value) for f, value in fields if f.startswith(WITHIN)]
     for field, value in fields:
         if field == "scale":
             factor = value
-        else:
+        elif not field.startswith(WITHIN):
             i, j, _ = STIFFNESS_NAMES[field]
             matrix[i, j] = matrix[j, i] = value
     bearing = bearing.with_changes(matrix=matrix)
+    if within and bearing.housing is not None:
+        bearing = bearing.with_changes(housing=_varied(bearing.housing, within))
     return bearing if factor is None else bearing.scaled(factor)

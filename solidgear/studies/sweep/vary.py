@@ -1,9 +1,11 @@
 """What a sweep varies: ``bearing.NAME.FIELD=SPEC`` texts, their full product or a Latin hypercube.
 
-``housing.FIELD=SPEC`` varies an entry of the housing that the scene gives a stiffness for, or its
-``axial`` spring.
+``bearing.NAME.housing.FIELD=SPEC`` varies an entry of the housing of one bearing,
+``housing.FIELD=SPEC`` one of the housing of all, or its ``axial`` spring: entries of motions that
+the scene gives a stiffness for (what is rigid cannot be varied), couplings between them, or
+``scale``.
 
-FIELD is ``position`` (middle of the seat from y = 0, whatever the datum in the scene file), an
+FIELD of a bearing is ``position`` (middle of the seat from y = 0, whatever the datum in the scene file), an
 entry of the bearing's own 6x6 as in scene files (``kxx``, ``kx_thz``, ...), or ``scale`` (a factor
 on the whole bearing, series springs included, after its entries). SPEC is ``a:b:n`` (n values,
 evenly), ``log:a:b:n`` (n values, geometrically) or a list ``a,b,c``; a value is a text with a unit
@@ -24,11 +26,13 @@ from solidgear.scene.bearing_stiffness import STIFFNESS_NAMES
 from solidgear.scene.units import POSITION_DECIMALS, quantity
 
 if TYPE_CHECKING:
-    from solidgear.scene import Scene
+    from solidgear.scene import Elastic, Scene
 
 FIELDS = ("position", "scale", *STIFFNESS_NAMES)
 #: in place of a bearing
 HOUSING = -1
+#: before a field of the housing of one bearing
+WITHIN = "housing."
 #: More variants than this are a slip of the keyboard.
 MOST = 10_000_000
 
@@ -42,7 +46,8 @@ class Axis:
     bearing : int
         Place of the bearing in the scene; `HOUSING` for that of all.
     field : str
-        One of `FIELDS`, or ``axial`` of the housing.
+        One of `FIELDS`, or ``axial`` of the housing of all; in the housing of a bearing with
+        ``housing.`` before it.
     label : str
         Name of its column, such as ``bearing.2.kxx``.
     values : tuple of float
@@ -128,6 +133,9 @@ def _axis(scene: Scene, text: str) -> Axis:
             f'--vary {text}: write bearing.NAME.FIELD=VALUES, such as "bearing.2.position=0.2 m:0.3 m:11"'
         )
     names = [b.name for b in scene.bearings]
+    inner = f".{WITHIN}".rstrip(".")
+    housed = name not in names and name.endswith(inner)
+    name = name.removesuffix(inner) if housed else name
     if name in names:
         index = names.index(name)
     elif name.isdecimal() and 1 <= int(name) <= len(names):
@@ -136,6 +144,13 @@ def _axis(scene: Scene, text: str) -> Axis:
         raise SolidgearError(
             f"--vary {text}: there is no bearing {name!r}{nearest(name, names)}; the scene has {', '.join(names) or 'none'}"
         )
+    if housed:
+        return _of_one_housing(scene, text, index, field, spec)
+    if field == inner[1:]:
+        raise SolidgearError(
+            f"--vary {text}: says nothing of what varies in the housing; write for example "
+            f'"bearing.{names[index]}.{field}.kzz=log:1e8 N/m:1e10 N/m:9"'
+        )
     if field not in FIELDS:
         raise SolidgearError(
             f"--vary {text}: unknown field {field!r}{nearest(field, FIELDS)}; valid are {', '.join(FIELDS)}"
@@ -143,17 +158,47 @@ def _axis(scene: Scene, text: str) -> Axis:
     return _read(text, index, field, f"bearing.{names[index]}.{field}", spec)
 
 
-def _of_the_housing(scene: Scene, text: str, field: str, spec: str) -> Axis:
-    known: tuple[str, ...] = ("axial",) if scene.housing_axial else ()
-    if scene.housing is not None:
-        known = tuple(scene.housing.entries)
-    if field not in known:
-        there = f"; it has {', '.join(known)}" if known else ""
+def _of_one_housing(scene: Scene, text: str, index: int, field: str, spec: str) -> Axis:
+    bearing = scene.bearings[index]
+    if bearing.housing is None:
         raise SolidgearError(
-            f"--vary {text}: the scene gives its housing no {field}{nearest(field, known)}, "
-            f"and what is rigid cannot be varied{there}"
+            f"--vary {text}: bearing {bearing.name!r} stands in no housing of its own; "
+            "give it one in the scene, with the entries that are to vary"
         )
+    _refuse_rigid(text, field, _varied_of(bearing.housing), f"the housing of {bearing.name!r}")
+    field = WITHIN + field
+    return _read(text, index, field, f"bearing.{bearing.name}.{field}", spec)
+
+
+def _of_the_housing(scene: Scene, text: str, field: str, spec: str) -> Axis:
+    if scene.housing is None and not scene.housing_axial:
+        raise SolidgearError(
+            f"--vary {text}: the scene has no [housing]; give it one, with the entries that are to vary"
+        )
+    known = ("axial",) if scene.housing is None else _varied_of(scene.housing)
+    _refuse_rigid(text, field, known, "its housing")
     return _read(text, HOUSING, field, f"housing.{field}", spec)
+
+
+def _varied_of(housing: Elastic) -> tuple[str, ...]:
+    """What of a housing can be varied: entries of motions in which it gives, and all together."""
+    gives = {name: {i, j} <= set(housing.gives) for name, (i, j, _) in STIFFNESS_NAMES.items()}
+    return (*(name for name, varied in gives.items() if varied), "scale")
+
+
+def _refuse_rigid(text: str, field: str, known: Sequence[str], what: str) -> None:
+    if field in known:
+        return
+    valid = (*STIFFNESS_NAMES, "scale")
+    if field not in valid:
+        raise SolidgearError(
+            f"--vary {text}: unknown field {field!r} of a housing{nearest(field, known)}; "
+            f"valid are {', '.join(known)}"
+        )
+    raise SolidgearError(
+        f"--vary {text}: the scene gives {what} no {field}, and what is rigid cannot be varied; "
+        f"it has {', '.join(known)}"
+    )
 
 
 def _read(text: str, index: int, field: str, label: str, spec: str) -> Axis:
@@ -166,6 +211,7 @@ def _read(text: str, index: int, field: str, label: str, spec: str) -> Axis:
 
 def _values(field: str, spec: str) -> tuple[tuple[float, ...], str]:
     of_its_own = {"position": "length", "scale": "dimensionless", "axial": "force_per_length"}
+    field = field.removeprefix(WITHIN)
     dimension = of_its_own.get(field) or STIFFNESS_NAMES[field][2]
     spacing, parts = "linear", [part.strip() for part in spec.split(":")]
     if parts[0] == "log":

@@ -1,0 +1,252 @@
+"""Bars of what lies between two points: their names, what they are relative to, that they hold, and
+where they are told.
+"""
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+from typer.testing import CliRunner
+
+import solidgear as sg
+from solidgear.cli.app import app
+from solidgear.evidence.bands import layered_bands
+from solidgear.evidence.quantities import (
+    between,
+    diagonals,
+    measure,
+    own_name,
+    points_of,
+    repeats,
+    size,
+)
+from solidgear.evidence.recording import recorded
+from solidgear.evidence.study import study
+from solidgear.fidelity.ladder import LADDER
+from solidgear.report.front import numbers
+from solidgear.report.point_tables import points
+from solidgear.report.units import ENGINEERING
+from solidgear.scene import Bearing, Port, Scene, Segment
+from solidgear.studies.guards.data import split_pair
+from solidgear.studies.guards.models import beam_against_solid
+from solidgear.studies.guards.probe import Probe
+from solidgear.studies.settle import settle
+from validation.attack.corner_mesh import corner_mesh
+from validation.attack.judge import SMALL
+from validation.attack.points import judged, scene_of, solutions
+from validation.attack.reference import RATIO, SIZE, Reference
+from validation.attack.spectral import spectral
+
+GEOMETRY = Path(__file__).parent.parent / "geometry"
+PATH = GEOMETRY / "intermediate_shaft.toml"
+
+
+@pytest.fixture(scope="module")
+def shaft():
+    return sg.load(PATH)
+
+
+@pytest.fixture(scope="module")
+def settled(shaft):
+    return settle(shaft, 0.05, "stiffness", points=["pinion"])
+
+
+# --------------------------------------------------------------------------- names
+def test_a_term_between_points_is_related_to_what_each_has_of_its_own():
+    assert diagonals("C_z,thx@a@b") == ("C_zz@a@a", "C_thx@b@b")  # z of a, a moment on b
+    assert diagonals("K_thx@a@b") == ("K_thx@a@a", "K_thx@b@b")
+    assert diagonals("K_thx@a@a") is None
+    assert [q for q in ("C_zz@a@a", "K_zz@a@a", "C_zz@a@b", "C_zz@a", "C_zz") if repeats(q)] == [
+        "C_zz@a@a"
+    ]
+    assert points_of("C_zz@a") is None
+
+
+def test_names_as_they_are_asked(shaft):
+    assert own_name(shaft, "C_zz@pinion@wheel") == "C_zz@wheel@pinion"  # by reciprocity
+    # which of both moves and which is loaded matters
+    assert own_name(shaft, "C_z,thx@pinion@wheel") == "C_z,thx@pinion@wheel"
+    assert own_name(shaft, "C_zz@wheel@wheel") == "C_zz"
+    assert own_name(shaft, "C_zz@pinion@pinion") == "C_zz@pinion"
+
+
+@pytest.mark.parametrize(
+    ("asked", "word"),
+    [
+        ("C_zz@wheel@pinon", 'no lumped point "pinon"'),
+        ("K_zz@wheel@pinion", "which of them are held; ask for the compliance, C_zz@wheel@pinion"),
+        ("C_zz@wheel@pinion@wheel", "a term is between two points"),
+        ("bending 1@wheel@pinion", "a frequency is not of a point"),
+    ],
+)
+def test_what_cannot_be_asked_is_refused_with_the_way_out(shaft, asked, word):
+    with pytest.raises(sg.SolidgearError, match=word):
+        sg.answer(shaft, ask=[asked])
+    if not asked.startswith("bending"):
+        with pytest.raises(sg.SceneError, match=word):
+            shaft.with_changes(ask=sg.Ask(quantities=[asked]))
+
+
+def test_a_name_with_the_sign_between_names_is_refused_beside_others(shaft):
+    odd = shaft.further_ports[0].with_changes(name="pin@ion")
+    with pytest.raises(sg.SceneError, match="has no @"):
+        shaft.with_changes(further_ports=(odd,))
+    alone = shaft.with_changes(port=shaft.port.with_changes(name="wh@el"), further_ports=())
+    assert own_name(alone, "C_zz@wh@el") == "C_zz"  # nothing to confuse it with
+
+
+def test_measured_terms_are_entries_of_the_matrices(shaft):
+    both = sg.condense(sg.build(shaft, "timoshenko"), shaft, ("wheel", "pinion"))
+    found = measure(None, None, None, both)
+    c, k = both.compliance, both.stiffness
+    assert found["C_z,thx@wheel@pinion"] == c[2, 9] and found["C_z,thx@pinion@wheel"] == c[8, 3]
+    assert found["K_z,thx@wheel@pinion"] == k[2, 9] and found["K_zz@wheel@wheel"] == k[2, 2]
+    assert set(between(["C_zz", "C_z,thx", "K_yy"], both.ports)) <= set(found)
+    assert not any(name.startswith("C_yy@wheel@wheel@") for name in found)
+
+
+# --------------------------------------------------------------------------- do they hold?
+def light_truth(scene):
+    """Statics of the reference's own elements, of orders 4 and 5 on six layers towards corners; in
+    doubt by what the last order moves.
+    """
+    runs = []
+    for order in (4, 5):
+        body = spectral(scene, corner_mesh(scene, 6, SIZE, RATIO), order)
+        both = sg.condense(body, scene, tuple(port.name for port in scene.ports))
+        runs.append(measure(None, None, None, both))
+    doubt = {q: abs(runs[1][q] - v) / size(runs[1], q) for q, v in runs[0].items()}
+    return Reference(runs[1], doubt, [], [], [], 0, 0.0)
+
+
+@pytest.mark.parametrize("seed", [21, 7, pytest.param(13, marks=pytest.mark.slow)])
+def test_bars_hold_on_random_shafts_with_two_points(seed):
+    """Against orders 5 and more on graded corners; seeds of a light reference, of three kinds."""
+    scene = scene_of(seed)
+    found = solutions(scene, most=2)
+    truth = light_truth(scene)
+    for one in found.values():
+        crossed = [band for band in judged(one, truth) if points_of(band.quantity)]
+        assert len(crossed) >= 9 and all(band.held for band in crossed if band.judged)
+        # errors that are there: a bar that any number would meet is no bar
+        assert max(abs(band.error) for band in crossed) > SMALL
+
+
+def test_a_term_that_symmetry_forbids_has_a_bar():
+    """Two points in the middle plane: pushed there a shaft that is its own mirror does not tilt."""
+    rod = Segment.cylinder("rod", length=0.4, diameter=0.04)
+    disc = {"kxx": 4e8, "kyy": 1e8, "kzz": 4e8}
+    ends = [
+        Bearing(name=n, y=y, seat_width=0.02, stiffness=disc) for n, y in (("A", 0.02), ("B", 0.38))
+    ]
+    ports = [Port(name=n, y=0.2, lo=0.2 - w, hi=0.2 + w) for n, w in (("p", 0.01), ("q", 0.02))]
+    scene = Scene.from_parts([rod], bearings=ends, port=ports[0], further_ports=(ports[1],))
+    found = sg.answer(scene, tol=0.01, ask=["C_z,thx@p@q", "C_zz@p@q"])
+    tilt, push = found.values
+    assert tilt.zero and found.reached
+    # of the geometric mean of C_zz at p and C_thx at q, which is all that there is to compare with
+    assert tilt.size == pytest.approx(
+        (push.size * sg.answer(scene, ask=["C_thx@q"]).values[0].size) ** 0.5, rel=0.1
+    )
+    assert 0 < tilt.bar < 0.01
+
+
+def test_bars_of_the_whole_matrix(settled):
+    bars = settled.bars
+    for name in (
+        "K_zz@wheel@wheel",
+        "K_thy@wheel@pinion",
+        "C_x,thz@pinion@wheel",
+        "C_zz@wheel@pinion",
+    ):
+        assert 0 < bars[name] <= 0.05 and name in bars
+    assert not any(repeats(name) for name in bars)
+    # the error of a compliance is a positive semidefinite matrix: between points no more than at them
+    worst = max(bars[q] for q in ("C_zz", "C_thx", "C_zz@pinion", "C_thx@pinion"))
+    assert max(b for q, b in bars.items() if points_of(q) and q.startswith("C_")) <= worst
+    assert settled.reached and "K_zz@wheel@wheel" not in settled.missing
+
+
+def test_stiffness_between_points_carries_what_its_inverse_loses(shaft):
+    found = study(shaft, "harmonic", evidence=False, most=2, counted=False)
+    here = found.ties["as scene"]
+    lost = here.coupled.evidence["stiffness_error"]
+    assert (
+        here.numbers.solver["K_zz@wheel@pinion"] == lost > here.numbers.solver["C_zz@wheel@pinion"]
+    )
+
+
+def test_effects_of_features_count_at_every_point():
+    factors = LADDER["corrected"].factors
+    levels = [{"C_zz": 1.0, "C_zz@p": 1.0}] * 2
+    effect = {"C_zz": 0.2, "C_zz@p": 0.2}
+    found = layered_bands(levels, {}, factors, effect=effect)
+    assert found["C_zz@p"].gci == found["C_zz"].gci > 0.01  # meshes that agree by accident
+
+
+# --------------------------------------------------------------------------- where they are told
+def run(*args):
+    return CliRunner().invoke(app, [str(a) for a in args])
+
+
+def test_the_command_tells_the_bar_of_every_block(settled):
+    told = run("stiffness", PATH, "--port", "pinion,wheel", "--tol", "0.05")
+    assert told.exit_code == 0
+    for words in ("pinion itself", "between pinion and wheel", "wheel itself", "geometric mean"):
+        assert words in told.stdout
+    found = json.loads(
+        run("stiffness", PATH, "--port", "wheel,pinion", "--tol", "0.05", "--json").stdout
+    )
+    assert found["bars"].keys() == settled.bars.keys()
+
+
+def test_planes_that_nothing_couples_stay_apart(settled, shaft):
+    both = sg.condense(settled.body, shaft, ("wheel", "pinion"))
+    across, along = [0, 5, 6, 11], [2, 3, 8, 9]  # x thz and z thx of both
+    for matrix in (both.stiffness, both.compliance):
+        assert not matrix[np.ix_(across, along)].any()  # exact zeros, and no rounding to be read
+
+
+def test_judged_and_reported(shaft):
+    asked = ["C_zz", "C_zz@pinion@wheel"]
+    scene = shaft.with_changes(ask=sg.Ask(quantities=asked, tolerance=0.05))
+    rungs = {
+        "timoshenko": study(scene, "timoshenko", evidence=False),
+        "harmonic": study(scene, "harmonic", {"order": 4, "layers": 1}, evidence=False),
+    }
+    record = recorded(scene, rungs, {}, [], {}, [], True)
+    assert record.verdict.judged == ["C_zz", "C_zz@wheel@pinion"]
+    said = "Compliances are judged at wheel, between wheel and pinion; not at pinion."
+    assert said in record.verdict.sentences
+    row = next(r for r in record.deviations if r.quantity == "C_zz@wheel@pinion")
+    solid, beam = (rungs[m].quantities for m in ("harmonic", "timoshenko"))
+    apart = beam["C_zz@wheel@pinion"] - solid["C_zz@wheel@pinion"]
+    assert row.relative == pytest.approx(
+        apart / (solid["C_zz"] * solid["C_zz@pinion"]) ** 0.5, rel=1e-9
+    )
+    assert row.band > 0 and not any(repeats(r.quantity) for r in record.deviations)
+    first = {row[0]: row[1:] for row in numbers(record, ENGINEERING).rows}
+    value, bar = first["Compliance across the shaft, wheel under loads on pinion, C_zz"]
+    assert value[0].startswith("2.5") and bar.startswith("± ")
+    table = points(record)
+    assert "shares of the geometric mean" in table.note
+    rows = iter(table.rows)
+    next(row for row in rows if row[0].startswith("C_zz, wheel for a load on pinion"))
+    against, bars = next(rows), next(rows)
+    assert against[2] == "reference" or against[2][0] == "reference"
+    assert bars[0] == "bar" and bars[2].startswith("± ")
+
+
+def test_a_pair_that_only_the_housing_splits_is_told(shaft):
+    alike = shaft.with_changes(
+        housing=None, bearings=tuple(b.with_changes(housing=None) for b in shaft.bearings)
+    )
+    uneven = alike.with_changes(housing=sg.load(PATH).housing)
+
+    def said(scene, guard):
+        return " ".join(n.sentence for n in guard(Probe(scene, sg.build(scene, "timoshenko"))))
+
+    assert not said(alike, split_pair)
+    assert "bearings, with what they stand in, that differ in x and z" in said(uneven, split_pair)
+    assert "C_thx at wheel of the Euler beam" in said(alike, beam_against_solid)  # which of both
