@@ -42,8 +42,9 @@ OBSERVED, SLOWEST = 1.5, 0.7
 LATE = 1.2
 #: least factor after two levels of a stiffness with several points held: only the shaft between
 #: them gives, and a step off the coarsest mesh tells little of its corners. Of 388 errors of 29
-#: random shafts (validation/attack/points.py) 90 % were held without it, 99 % with it
-BETWEEN_HELD = 1.0
+#: random shafts (validation/attack/points.py) 90 % were held without it, and 11 of 78 on fresh ones,
+#: all of one shaft, were up to 1.75 times the change; not judged on fresh seeds since
+BETWEEN_HELD = 2.0
 #: the change of a coupling counts for at least this share of those of its diagonal entries
 DIAGONAL = 0.2
 #: safety on what the cells around leave: in thin walls the coarsest mesh, where it is measured,

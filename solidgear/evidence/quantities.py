@@ -275,7 +275,8 @@ def _between(coupled: Coupled) -> dict[str, float]:
         key=lambda q: diagonals(q) is not None,
     ):
         kind, place, _ = described(name)
-        value = float(coupled.between(*(points_of(name) or ()), kind)[place])
+        _, one, other = name.split(AT)
+        value = float(coupled.between(one, other, kind)[place])
         pair = diagonals(name)
         there = value > 0.0 if pair is None else all(d in out for d in pair)
         if np.isfinite(value) and there:

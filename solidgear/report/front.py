@@ -102,9 +102,9 @@ def numbers(record: Record, units: Units) -> Table:
 def _at_points(quantity: str) -> Row:
     """The row of a quantity at a further point or between two."""
     base, _, where = quantity.partition(AT)
-    words, symbol, *rest = {**ROWS, **ON_REQUEST}[base]
+    words, symbol, kind, place, si = {**ROWS, **ON_REQUEST}[base]
     told = " under loads on ".join(where.split(AT))
-    return (f"{words}, {told}", symbol, *rest)
+    return f"{words}, {told}", symbol, kind, place, si
 
 
 def _number(model: ModelRecord, name: str, row: Row, units: Units) -> list[Any]:

@@ -74,7 +74,7 @@ def matrices(record: Record, units: Units = ENGINEERING) -> list[tuple[str, list
         shown = []
         for key, model in models.items():
             for kind in ("stiffness", "compliance"):
-                found = block(model.coupled, a, b, kind)
+                there = block(model.coupled, a, b, kind)
                 own = [block(model.coupled, one, one, kind) for one in (a, b)]
                 sizes = [[entry(one, k, k) for k in range(6)] for one in own]
                 first, second = (
@@ -86,8 +86,8 @@ def matrices(record: Record, units: Units = ENGINEERING) -> list[tuple[str, list
                     )
                 )
                 caption = f"{model_name(record, key)}: {kind}, {first} {a}, {second} {b}"
-                if found and any(v is not None for row in found for v in row):
-                    shown.append(matrix(caption, kind, found, [], units, sizes))
+                if there and any(v is not None for row in there for v in row):
+                    shown.append(matrix(caption, kind, there, [], units, sizes))
         out.append((f"Between {a} and {b}", shown))
     return out
 

@@ -57,7 +57,8 @@ def matrix_of(model: ModelRecord, quantity: str, kind: str) -> Matrix | None:
     if not where:
         return getattr(model, kind)
     if AT in where:
-        return block(model.coupled, *where.split(AT), kind)
+        one, other = where.split(AT)
+        return block(model.coupled, one, other, kind)
     found = model.points.get(where)
     return getattr(found, kind) if found else None
 

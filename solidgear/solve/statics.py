@@ -302,7 +302,7 @@ def _inverted(small: np.ndarray, residual: float) -> float:
     """Relative error that the inverse of a compliance has: of two points that move as one it is
     nothing but error.
     """
-    size = np.sqrt(np.diag(small))
+    size = np.sqrt(np.maximum(np.diag(small), 0.0))  # of a motion without any, rounding
     if not len(size) or not np.all(size > 0):
         return np.inf if len(size) else 0.0
     least = np.linalg.eigvalsh(small / np.outer(size, size))[0]
