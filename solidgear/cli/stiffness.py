@@ -172,7 +172,7 @@ def _bars(settled: Settled, found: Coupled) -> Table:
     from solidgear.evidence.quantities import AT, points_of
     from solidgear.report.words import band_percent
 
-    largest: dict[tuple[str, str, str], float] = {}
+    largest: dict[tuple[str, ...], float] = {}
     for name, bar in settled.bars.items():
         point = name.partition(AT)[2] or found.ports[0]
         if points_of(name) or name.startswith(

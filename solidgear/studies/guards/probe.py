@@ -249,10 +249,8 @@ class Probe:
         """
         held = self.supports.stiffness
         count = len(self.supports.ports)
-        x, z = (
-            np.concatenate([6 * p + np.array(on) for p in range(count)] or [[]]).astype(int)
-            for on in (X, Z)
-        )
+        first = 6 * np.arange(count)[:, None]
+        x, z = (first + X).ravel(), (first + Z).ravel()
         signs = np.tile(SIGNS, (count, count))
         uneven = np.abs(held[np.ix_(x, x)] * signs - held[np.ix_(z, z)]).max(initial=0.0)
         uneven = max(uneven, np.abs(held[np.ix_(x, z)]).max(initial=0.0))
