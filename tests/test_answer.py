@@ -71,6 +71,22 @@ def test_a_bar_with_one_sign_points_to_the_truth(scenes, truth, name):
         assert v.side == "both" or (beyond > 0) == (v.side == "above"), v
 
 
+def test_two_coarse_meshes_see_what_a_narrow_seat_indents():
+    # without layers of its own the seat's indentation was missed by both: 6.9 % off, bar 0.5 %
+    port = sg.Port(name="gear", y=0.1, lo=0.099, hi=0.101)
+    ends = [
+        Bearing(name=n, y=y, seat_width=0.03, stiffness={"kxx": 1e9, "kyy": 1e9, "kzz": 1e9})
+        for n, y in (("A", 0.03), ("B", 0.17))
+    ]
+    shaft = sg.Segment.cylinder("shaft", length=0.2, diameter=0.1)
+    scene = sg.Scene.from_parts([shaft], port=port, bearings=ends)
+    found = answer(scene, 0.01, ["C_zz", "C_thx"])
+    fine = solve(scene, "harmonic", **HARMONIC[3]).quantities
+    assert found.reached and [v.meshes for v in found.values] == [2, 2]
+    for v in found.values:
+        assert abs(v.value / fine[v.quantity] - 1) <= v.bar
+
+
 def test_bars_of_solids_whose_geometry_is_not_exact_have_two_sides(scenes):
     filleted = sg.load(ROOT / "geometry" / "pinion_filleted.toml")
     assert {v.side for v in answer(filleted, tol=5e-2, ask="C_zz").values} == {"both"}

@@ -350,3 +350,27 @@ def test_segments_that_do_not_touch_are_refused():
     with pytest.raises(SolidgearError):
         broken = shaft((0.1, 0.02, 0.02, 0.0, 0.0), (0.1, 0.04, 0.04, 0.025, 0.025))
         meridian(broken, layout(broken, Grading(**PLAN)))
+
+
+@pytest.mark.parametrize("width", [0.0006, 0.002, 0.006, 0.012])
+def test_cells_beside_a_narrow_seat_are_no_longer_than_it(width):
+    # a load on a ring indents the shaft over a few widths of the ring
+    port = Port(name="gear", y=0.1, lo=0.1 - width / 2, hi=0.1 + width / 2)
+    scene = shaft((0.2, 0.05, 0.05, 0, 0), port=port)
+    plan = layout(scene, Grading(layers=0, edge_layers=0, relative_size=4.0))
+    first = np.searchsorted(plan.y, port.lo - 1e-9)
+    outside = plan.y[first] - plan.y[first - 1]
+    rings = plan.rings(0, (0.0, 0.2), 0.1)
+    assert outside <= width * (1 + 1e-9)
+    assert rings[-1] - rings[-2] <= width * (1 + 1e-9)
+
+
+def test_a_seat_of_usual_width_has_no_further_layers():
+    grading = Grading(layers=0, edge_layers=0, relative_size=4.0)
+    wide, wider = (
+        layout(
+            shaft((0.2, 0.05, 0.05, 0, 0), port=Port(name="gear", y=0.1, lo=a, hi=0.2 - a)), grading
+        )
+        for a in (0.093, 0.08)
+    )
+    assert len(wide.y) == len(wider.y) and len(wide.fractions[0, 0]) == len(wider.fractions[0, 0])

@@ -50,6 +50,14 @@ class Mutation:
 
 MUTATIONS = (
     Mutation(
+        "a narrow seat is meshed as a wide one",
+        "solidgear/meshing/grading.py",
+        "Grading.seat_layers",
+        "max(0, ceil(log(width / start) / log(self.ratio) - ROUNDING))",
+        "0",
+        "tests/test_answer.py::test_two_coarse_meshes_see_what_a_narrow_seat_indents",
+    ),
+    Mutation(
         "phase of the cut faces turned the other way",
         "solidgear/fidelity/cyclic.py",
         "basis",

@@ -3,8 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from math import ceil, log
 
 import numpy as np
+
+from solidgear.scene.rules import TOUCH
 
 #: where grading starts, in local lengths; one layer of ratio 0.2 begins at a twentieth of a radius
 REACH = 0.25
@@ -12,6 +15,9 @@ REACH = 0.25
 SHELL = 2.0
 #: lines nearer to the far end of an interval than this share of it are left out
 ROOM_ONE, ROOM_TWO = 0.75, 0.45
+
+#: of a number of layers that is whole but for it
+ROUNDING = 1e-9
 
 
 @dataclass(frozen=True)
@@ -68,6 +74,30 @@ class Grading:
     def edge(self) -> int:
         """Layers towards the ends of averaged seats, never more than towards shoulders."""
         return min(self.edge_layers, self.layers)
+
+    def seat_layers(self, station, segments) -> int:
+        """Further layers towards the ends of a narrow seat.
+
+        A load on a ring indents the shaft over a few widths of the ring, which cells that know of
+        the radius only do not see: two coarse meshes then agree on what both of them lack.
+
+        Parameters
+        ----------
+        station : Port, Bearing or PointMass
+        segments : sequence of Segment
+
+        Returns
+        -------
+        int
+            As many as bring the last layer down to the width of the seat; none where grading starts
+            within it, or on a line.
+        """
+        width = station.hi - station.lo
+        under = [s for s in segments if s.y0 < station.hi - TOUCH and station.lo + TOUCH < s.y1]
+        if width <= 2 * TOUCH or not under:
+            return 0
+        start = self.reach * max(corner_length(s) for s in under)
+        return max(0, ceil(log(width / start) / log(self.ratio) - ROUNDING))
 
     @property
     def along_corner(self) -> int:

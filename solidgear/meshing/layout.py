@@ -307,14 +307,15 @@ def _marks(scene, grading: Grading, attachments) -> list[_Mark]:
     for station in scene.stations:
         ties = attachments or (station.attachment,)
         held = "rigid" in ties
+        narrow = grading.seat_layers(station, segments)
         for y in (station.lo, station.hi):
             at_face = min(abs(y), abs(y - scene.length)) <= tol
             # An averaged seat that ends at a face meets no edge there; a rigid one is clamped up to
             # the corner.
             if held:
-                add(y, grading.layers)
+                add(y, grading.layers + narrow)
             else:
-                add(y, 0 if at_face else grading.edge)
+                add(y, 0 if at_face else grading.edge + narrow)
         planes = "section" in ties and tol < station.y < scene.length - tol
         add(station.y, max(grading.edge, grading.layers - 1) if planes else 0)
     for a, b in zip(segments, segments[1:]):
@@ -390,8 +391,10 @@ def _radial_needs(
                 add(boundary, k, layers, reach)
     for station in scene.stations:
         held = "rigid" in (attachments or (station.attachment,))
+        narrow = grading.seat_layers(station, segments)
         for i, s in enumerate(segments):
             if s.y0 < station.hi - TOUCH and station.lo + TOUCH < s.y1:
                 layers = grading.across if held else min(grading.edge, grading.across)
+                layers += narrow
                 add(bands[i][1], i, layers, grading.radial_reach * corner_length(s))
     return needs
