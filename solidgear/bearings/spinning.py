@@ -16,9 +16,9 @@ outer ring alone takes the gyroscopic moment).  With g = D / Dpw and the inner r
 
 The angle a of the ball's own motion is that of s, between the two contact angles: a ball that has
 left the inner ring has no angle there.  (With both angles in these formulas a 218 at 10,000 r/min
-under 17.8 kN comes out at 45.4 and 37.4 degrees instead of 45.1 and 37.7.)  For a given s the rest is a convex problem of the ball.
-The tangent is implicit differentiation of its equilibrium, with the turning of a in F_c and M_g.
-Inertia is no spring: the tangent is not quite symmetric.
+under 17.8 kN comes out at 45.4 and 37.4 degrees instead of 45.1 and 37.7.)  For a given s the rest
+is a convex problem of the ball. The tangent is implicit differentiation of its equilibrium, with
+the turning of a in F_c and M_g. Inertia is no spring: the tangent is not quite symmetric.
 """
 
 from __future__ import annotations

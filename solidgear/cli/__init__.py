@@ -63,14 +63,15 @@ def _run() -> None:
     except SolidgearError as error:
         print(f"solidgear: {for_terminal(error)}", file=sys.stderr)
         sys.exit(1)
-    except OSError as error:  # a full disk behind a redirected output, say; files of our own are guarded where they are written
+    except OSError as error:  # a full disk behind a redirected output, say
         if isinstance(error, BrokenPipeError):
             os._exit(141)  # the reader has left; nothing to say, and no way to say it
         print(f"solidgear: cannot write the output ({error.strerror or error})", file=sys.stderr)
         os._exit(1)  # flushing at exit would fail again
     except MemoryError:
         print(
-            "solidgear: not enough memory for this model; use a coarser one (--set refinement=0.5) or the harmonic model",
+            "solidgear: not enough memory for this model; use a coarser one (--set "
+            "refinement=0.5) or the harmonic model",
             file=sys.stderr,
         )
         sys.exit(1)

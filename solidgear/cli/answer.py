@@ -51,7 +51,8 @@ def answer(
         str,
         typer.Option(
             "--ask",
-            help="Comma-separated: C_zz, K_thx, bending, ..., C_zz@gear at a further point, C_zz@wheel@pinion between two; by default what the scene asks for.",
+            help="Comma-separated: C_zz, K_thx, bending, ..., C_zz@gear at a further point, "
+            "C_zz@wheel@pinion between two; by default what the scene asks for.",
         ),
     ] = "",
     where: Annotated[

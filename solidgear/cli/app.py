@@ -27,7 +27,8 @@ R = TypeVar("R")
 
 app = typer.Typer(
     no_args_is_help=True,
-    help="Shafts on their bearings, and two that mesh, as lumped model, beam, axisymmetric-harmonic solid and full 3D solid, side by side.",
+    help="Shafts on their bearings, and two that mesh, as lumped model, beam, "
+    "axisymmetric-harmonic solid and full 3D solid, side by side.",
     epilog="Exit codes: 0 done; 1 refused or failed, in a sentence on standard error; 2 wrong usage; "
     "3 the tolerance is not reached, the numbers are there with their bars; 130 interrupted. "
     "First steps: solidgear new my_shaft, then solidgear check my_shaft.toml.",
@@ -118,7 +119,8 @@ Engine = Annotated[
     str | None,
     typer.Option(
         "--engine",
-        help="Who factors a 3D solid too large for this program: petsc (MUMPS under mpirun) or petsc-gamg (multigrid, statics only); the same as --set engine=...",
+        help="Who factors a 3D solid too large for this program: petsc (MUMPS under mpirun) "
+        "or petsc-gamg (multigrid, statics only); the same as --set engine=...",
     ),
 ]
 

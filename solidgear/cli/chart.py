@@ -26,7 +26,8 @@ def chart(
         typer.Option(
             "--out",
             "-o",
-            help="Folder for rows.csv, machine.json and speed_accuracy.png; a report of `compare` there gets the section.",
+            help="Folder for rows.csv, machine.json and speed_accuracy.png; a report of "
+            "`compare` there gets the section.",
         ),
     ] = Path("out"),
     full: Annotated[

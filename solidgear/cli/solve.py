@@ -59,7 +59,8 @@ def compare(
         list[str] | None,
         typer.Option(
             "--set",
-            help="Builder option of one model as MODEL.key=value, repeatable: solid.around=32, harmonic.order=8. One that speaks of the mesh fixes it.",
+            help="Builder option of one model as MODEL.key=value, repeatable: "
+            "solid.around=32, harmonic.order=8. One that speaks of the mesh fixes it.",
         ),
     ] = None,
     chart: Annotated[
@@ -194,15 +195,18 @@ def modes(
     terminal.print(modes_table(rows))
     e = found.evidence
     terminal.print(
-        f"Residual {e['residual']:.1e}, orthogonality {e['orthogonality']:.1e}, rigid modes {e['rigid_modes']}, {e['method']} on {e['backend']}."
+        f"Residual {e['residual']:.1e}, orthogonality {e['orthogonality']:.1e}, rigid modes "
+        f"{e['rigid_modes']}, {e['method']} on {e['backend']}."
     )
     for one, other, gap in e.get("torn_pairs", []):
         terminal.print(
-            f"caution: {one} and {other} are twins that the mesh has split by {gap:.1e}: refine it, or use hexahedra or the harmonic model."
+            f"caution: {one} and {other} are twins that the mesh has split by {gap:.1e}: refine "
+            "it, or use hexahedra or the harmonic model."
         )
     if e["error"] > 1e-6:
         terminal.print(
-            f"caution: rounding leaves frequencies good to {e['error']:.0e} only: the smallest cells are that stiff beside the shaft; a coarser mesh has less of it."
+            f"caution: rounding leaves frequencies good to {e['error']:.0e} only: the smallest "
+            "cells are that stiff beside the shaft; a coarser mesh has less of it."
         )
     if count:
         from solidgear.evidence.completeness import completeness

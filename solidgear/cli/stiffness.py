@@ -227,5 +227,8 @@ def _tell_coupled(terminal, head: str, scene: Scene, found: Coupled, units: str)
     terminal.print(line, markup=False, soft_wrap=True)
     if found.free_names:
         names = ", ".join(found.free_names)
-        line = f"Free: {names} of {several} together; only what the points do against each other is resisted, and has no entry of its own in the compliance."
+        line = (
+            f"Free: {names} of {several} together; only what the points do against each other is "
+            "resisted, and has no entry of its own in the compliance."
+        )
         terminal.print(line, markup=False, soft_wrap=True)

@@ -30,7 +30,8 @@ def sweep(
         list[str],
         typer.Option(
             "--vary",
-            help="bearing.NAME.FIELD=VALUES, repeatable. FIELD: position (from y = 0), scale, or an entry such as kxx or kx_thz. "
+            help="bearing.NAME.FIELD=VALUES, repeatable. FIELD: position (from y = 0), scale, "
+            "or an entry such as kxx or kx_thz. "
             "bearing.NAME.housing.FIELD and housing.FIELD vary what the scene gives a housing. "
             'VALUES: FROM:TO:COUNT, log:FROM:TO:COUNT or A,B,C, such as "0.2 m:0.24 m:9".',
         ),
@@ -165,7 +166,8 @@ def sweep(
     print(f"{path}: {found.total} rows, {found.skipped} of them there before.")
     if new:
         print(
-            f"{found.unknowns} unknowns with {found.seats} seats solved once in {found.seconds_once:.1f} s; {new} variants of up to {found.basis} unknowns, "
+            f"{found.unknowns} unknowns with {found.seats} seats solved once in "
+            f"{found.seconds_once:.1f} s; {new} variants of up to {found.basis} unknowns, "
             f"{1e3 * found.seconds_each:.1f} ms each; {found.refused} refused, {found.full} solved in full."
         )
     for sentence in over_the_sweep(settled):

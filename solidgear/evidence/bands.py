@@ -1,22 +1,23 @@
 """How sure a solid is of its own numbers: one band a quantity, from the same solid on ever finer
 meshes.
 
-**Layered** sequences (harmonic solid, graded hexahedra) raise order or size and layers together.  One layer of ratio q towards a
-corner of exponent a leaves the share ``q^(2a)`` of what the corner costs: 0.17 at a right-angled shoulder for q = 0.2, 0.32 for
-q = 0.35.  Every level then errs by a nearly fixed share of its distance from the one before, and the band is a factor times that
-distance.  The factors are measured, by ``validation/attack/bands.py`` on random shafts, and stand in the ladder with the rung
-(:class:`solidgear.fidelity.rung.BandFactors`); they are no theorem.
+**Layered** sequences (harmonic solid, graded hexahedra) raise order or size and layers together.
+One layer of ratio q towards a corner of exponent a leaves the share ``q^(2a)`` of what the corner
+costs: 0.17 at a right-angled shoulder for q = 0.2, 0.32 for q = 0.35.  Every level then errs by a
+nearly fixed share of its distance from the one before, and the band is a factor times that
+distance.  The factors are measured, by ``validation/attack/bands.py`` on random shafts, and stand
+in the ladder with the rung (:class:`solidgear.fidelity.rung.BandFactors`); they are no theorem.
 
-**Other** sequences (tetrahedra, linear elements, meshes that were asked for by refinement) use the grid convergence index of
-:mod:`solidgear.evidence.converge`.
+**Other** sequences (tetrahedra, linear elements, meshes that were asked for by refinement) use the
+grid convergence index of :mod:`solidgear.evidence.converge`.
 
 A change that is small by accident, since a quantity passes through an extremum on its way, is not
 believed: the change before it, and for couplings the changes of both diagonal entries, set a floor.
 Displacement elements are too stiff, so the error of the compliance is a positive semidefinite
-matrix and that of a coupling no larger than the geometric mean of its diagonal entries'. So is a term between two points, which is
-related to the geometric mean of what each point has of its own, never to itself: it may vanish by symmetry. A rung
-that stands on another model's modes errs in ways that no mesh of its own tells of: its bands hold at
-least a share of what features change. What the
+matrix and that of a coupling no larger than the geometric mean of its diagonal entries'. So is a
+term between two points, which is related to the geometric mean of what each point has of its own,
+never to itself: it may vanish by symmetry. A rung that stands on another model's modes errs in ways
+that no mesh of its own tells of: its bands hold at least a share of what features change. What the
 solver leaves (residuals of statics and modes) is added, and of hexahedra what the cells around
 leave, which layers do not touch: it is measured on the coarsest level with half as many cells
 around again.

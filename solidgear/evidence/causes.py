@@ -121,7 +121,8 @@ def shoulder_cause(
         ).with_attachment("section")
     except SolidgearError:
         tell(
-            "the share of the shoulders is left out: the shaft at its smallest diameter would be thinner than one of its bores"
+            "the share of the shoulders is left out: the shaft at its smallest diameter would be "
+            "thinner than one of its bores"
         )
         return None
     beam, solid = _solve(plain, "timoshenko"), _solve(plain, "harmonic", **options)

@@ -24,7 +24,10 @@ def completeness(evidence: dict, fidelity: str) -> str:
         return f"Not counted: {bad[0]}."
     rows = evidence["families"]
     counted = [row for row in rows if row["counted"]]
-    text = f"No mode missed below {evidence['complete_below_hz']:.6g} Hz (counted by the inertia of a second factor): {_listed(counted)}"
+    text = (
+        f"No mode missed below {evidence['complete_below_hz']:.6g} Hz (counted by the inertia of "
+        f"a second factor): {_listed(counted)}"
+    )
     if LADDER[fidelity].family == BEAM:
         return f"{text}; a beam knows no others."
     left = _left([row for row in rows if not row["counted"]])

@@ -1,7 +1,8 @@
 """Solution verification: observed order, expected order and grid convergence index (GCI).
 
-After Roache (1994), J. Fluids Eng. 116, 405, and ASME V&V 20-2009, sec. 2-4: three or more similar meshes, safety factor
-1.25 when the observed order is plausible, 3.0 with the expected order when it is not.
+After Roache (1994), J. Fluids Eng. 116, 405, and ASME V&V 20-2009, sec. 2-4: three or more similar
+meshes, safety factor 1.25 when the observed order is plausible, 3.0 with the expected order when it
+is not.
 """
 
 from __future__ import annotations

@@ -104,9 +104,11 @@ class Pairing:
 def pair_modes(model: ModeSet, reference: ModeSet) -> tuple[Pairing, ...]:
     """Which mode of a model is which of the reference, by shape and not by name.
 
-    Every elastic mode of the reference gets the mode whose section motions are most like its own, all at once (an assignment), shapes of pairs
-    counted one by one, so that a pair may meet a split one.  Modes that come near each other mix their shapes: where the space of such a cluster is the same
-    in both models, it is paired by frequency.  Ovalising and breathing modes, which sections do not see, are paired by waves around and rank.
+    Every elastic mode of the reference gets the mode whose section motions are most like its own,
+    all at once (an assignment), shapes of pairs counted one by one, so that a pair may meet a split
+    one.  Modes that come near each other mix their shapes: where the space of such a cluster is the
+    same in both models, it is paired by frequency.  Ovalising and breathing modes, which sections
+    do not see, are paired by waves around and rank.
 
     Parameters
     ----------

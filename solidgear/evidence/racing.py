@@ -195,7 +195,8 @@ def _reference(scene, options: dict, n: int, progress) -> tuple[dict, np.ndarray
     have = [q for q in CHARTED if all(q in v for v in values)]
     if not have:
         raise SolidgearError(
-            f"nothing to chart: the reference has neither {' nor '.join(CHARTED)} at port {scene.port.name!r} (bearings must resist z there)"
+            f"nothing to chart: the reference has neither {' nor '.join(CHARTED)} at port "
+            f"{scene.port.name!r} (bearings must resist z there)"
         )
     # A p-sequence on a corner converges twice as fast as an h-sequence (Babuska and Suri 1987).
     expected = 4 * sharpest_corner(scene)[1]

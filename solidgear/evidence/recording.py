@@ -144,7 +144,8 @@ def _warnings(
     for model, rung in rungs.items():
         for one, other, gap in rung.modes.evidence.get("torn_pairs", ()):
             out.append(
-                f"{LADDER[model].title}: {one} and {other} are twins that the mesh has split by {gap:.1e}: refine it, or use hexahedra"
+                f"{LADDER[model].title}: {one} and {other} are twins that the mesh has split by "
+                f"{gap:.1e}: refine it, or use hexahedra"
             )
     return out
 

@@ -1,8 +1,9 @@
 """Deviations between rungs, and in words which to trust and which is the cheapest that will do.
 
-A rung is judged twice by the reference: as the scene is tied, and like for like with section means at every station.  A gap counts
-with the bands of both sides: within the tolerance even at their far end it is *within*, beyond it even at their near end it is
-*beyond*, else the question is *open*.  Without a band of the reference there is no judgement.
+A rung is judged twice by the reference: as the scene is tied, and like for like with section means
+at every station.  A gap counts with the bands of both sides: within the tolerance even at their far
+end it is *within*, beyond it even at their near end it is *beyond*, else the question is *open*.
+Without a band of the reference there is no judgement.
 """
 
 from __future__ import annotations
@@ -133,7 +134,10 @@ def trusted(
         if worst is None:
             why = f"the {LADDER[model].title} has no band of its own ({_reason(rungs[model])})"
         elif worst > tolerance:
-            why = f"the {LADDER[model].title} is sure of itself to no better than {percent(worst)}, more than the {percent(tolerance)} asked for"
+            why = (
+                f"the {LADDER[model].title} is sure of itself to no better than {percent(worst)}, "
+                f"more than the {percent(tolerance)} asked for"
+            )
         else:
             return model, ""
     return None, why
@@ -245,12 +249,18 @@ def _said(gap: dict, rungs: dict[str, Solution]) -> str:
 
 
 def _why(gap: dict, rungs: dict[str, Solution], reference: str, kind: str, tolerance: float) -> str:
-    text = f"{_said(gap, rungs)} is {percent(abs(gap['relative']))} {_side(gap)} against the {LADDER[reference].title} {TIES[gap['attachment']]}"
+    text = (
+        f"{_said(gap, rungs)} is {percent(abs(gap['relative']))} {_side(gap)} against the "
+        f"{LADDER[reference].title} {TIES[gap['attachment']]}"
+    )
     if gap["pairing"]:
         text += f" ({gap['pairing']})"
     if kind == BEYOND:
         return f"{text}, more than the {percent(tolerance)} asked for"
-    return f"{text}, which with a band of {percent(gap['band'])} may or may not be within the {percent(tolerance)} asked for"
+    return (
+        f"{text}, which with a band of {percent(gap['band'])} may or may not be within the "
+        f"{percent(tolerance)} asked for"
+    )
 
 
 def _side(gap: dict) -> str:
@@ -279,7 +289,8 @@ def _trust(rungs, reference, gaps, judged) -> list[str]:
         size.append(f"{percent(f)} in first bending")
     band = " and ".join(size) or "the numbers it has"
     out = [
-        f"Trust the {LADDER[reference].title}: {LADDER[reference].theory}, sure of itself to {band} ({len(base.levels)} meshes)."
+        f"Trust the {LADDER[reference].title}: {LADDER[reference].theory}, sure of itself to "
+        f"{band} ({len(base.levels)} meshes)."
     ]
     for model in LADDER.of(SOLID):
         if model in rungs and model != reference:
@@ -358,12 +369,14 @@ def _beams(rungs, gaps, judged, tolerance) -> list[str]:
         here, fair = abs(scene["relative"]), abs(like["relative"])
         if here > tolerance >= fair:
             out.append(
-                f"What puts the {LADDER[model].title} out is the tie, not the beam: {_said(scene, rungs)} is {percent(here)} off at the scene's seats, which "
+                f"What puts the {LADDER[model].title} out is the tie, not the beam: "
+                f"{_said(scene, rungs)} is {percent(here)} off at the scene's seats, which "
                 f"distort sections, and nothing is more than {percent(fair)} off like for like."
             )
         elif here <= tolerance < fair:
             out.append(
-                f"The {LADDER[model].title} looks within {percent(here)} at the scene's seats but is {percent(fair)} off in {_said(like, rungs)} like for like: "
+                f"The {LADDER[model].title} looks within {percent(here)} at the scene's seats but "
+                f"is {percent(fair)} off in {_said(like, rungs)} like for like: "
                 "seat flexibility, which a beam has not, hides part of its excess stiffness."
             )
     return out

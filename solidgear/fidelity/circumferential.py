@@ -96,8 +96,8 @@ def _parts(segments) -> np.ndarray:
     """Walls that may ovalise: rows of (largest radius, thickness, overhang over what carries it or
     infinity, E / rho).
 
-    A segment is a wall as thick as it is radially.  Neighbours that together stick out over a radius, or into the bore of others, are a disc as thick as they
-    are long.
+    A segment is a wall as thick as it is radially.  Neighbours that together stick out over a
+    radius, or into the bore of others, are a disc as thick as they are long.
     """
     rows = [
         (

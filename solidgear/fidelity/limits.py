@@ -50,7 +50,8 @@ def number(
         if limit is not None
     ]
     raise SolidgearError(
-        f"{model}: {name} = {show(value)} is not usable; give a {'whole ' if whole else ''}number {' and '.join(limits)}"
+        f"{model}: {name} = {show(value)} is not usable; give a {'whole ' if whole else ''}number "
+        f"{' and '.join(limits)}"
     )
 
 
@@ -69,7 +70,9 @@ def countable(model: str, scene: Shaft, size: float, refinement: float) -> float
     lines = extent / size * refinement
     if lines > MOST_LINES:
         raise SolidgearError(
-            f"{model}: cells of {size / refinement:.3g} m would make {lines:.3g} lines of them, more than {MOST_LINES}; give size of at least {extent * refinement / MOST_LINES:.3g} m "
+            f"{model}: cells of {size / refinement:.3g} m would make {lines:.3g} lines of them, "
+            f"more than {MOST_LINES}; give size of at least "
+            f"{extent * refinement / MOST_LINES:.3g} m "
             "or a smaller refinement"
         )
     return size

@@ -265,7 +265,8 @@ def _thick_enough(model: str, options: Mapping[str, Any]) -> None:
         if options["ratio"] ** count < THINNEST_LAYER:
             most = int(math.log(THINNEST_LAYER) / math.log(options["ratio"]))
             raise SolidgearError(
-                f"{model}: {name} = {count} with ratio = {options['ratio']:g} makes a last layer of {options['ratio'] ** count:.1e} of the first, which costs digits below "
+                f"{model}: {name} = {count} with ratio = {options['ratio']:g} makes a last layer "
+                f"of {options['ratio'] ** count:.1e} of the first, which costs digits below "
                 f"{THINNEST_LAYER:g}; give {name} of at most {most}, or a larger ratio"
             )
 
@@ -307,7 +308,8 @@ def _usable_choice(model: str, name: str, value: Any, option: Option) -> str:
     if isinstance(value, str) and value in option.choices:
         return value
     raise SolidgearError(
-        f"{model}: {name} {show(value)} is unknown{nearest(value, option.choices)}; use one of {', '.join(option.choices)}"
+        f"{model}: {name} {show(value)} is unknown{nearest(value, option.choices)}; use one of "
+        f"{', '.join(option.choices)}"
     )
 
 
@@ -324,7 +326,8 @@ def _usable_harmonics(model: str, name: str, value: Any, option: Option) -> tupl
     ) and len(set(values)) == len(values):
         return values
     raise SolidgearError(
-        f"{model}: {name} {show(value)} is not usable; give whole numbers of at least {option.least:g} and at most {option.most:g} ({option.why}), each once, such as 2,3"
+        f"{model}: {name} {show(value)} is not usable; give whole numbers of at least "
+        f"{option.least:g} and at most {option.most:g} ({option.why}), each once, such as 2,3"
     )
 
 
@@ -338,7 +341,8 @@ def _usable_several(model: str, name: str, value: Any, option: Option) -> tuple[
         return values
     unknown = next((v for v in values if v not in option.choices), "")
     raise SolidgearError(
-        f"{model}: {name} {show(value)} is not usable{nearest(unknown, option.choices)}; give one or more of {', '.join(option.choices)}, each once"
+        f"{model}: {name} {show(value)} is not usable{nearest(unknown, option.choices)}; give one "
+        f"or more of {', '.join(option.choices)}, each once"
     )
 
 

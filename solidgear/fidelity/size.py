@@ -99,7 +99,8 @@ def refuse_too_large(scene: Shaft, model: str, options: dict | None = None) -> S
     what = f"{model}: about {size.unknowns} unknowns"
     if size.largest > MOST_ENTRIES:
         raise SolidgearError(
-            f"{what} make {size.largest:.2g} matrix entries, more than the {MOST_ENTRIES:.0e} that can be numbered; {size.lower}"
+            f"{what} make {size.largest:.2g} matrix entries, more than the {MOST_ENTRIES:.0e} "
+            f"that can be numbered; {size.lower}"
         )
     free = available_mb()
     if free is not None and size.peak_mb > max(free, SMALL_MB):
@@ -107,7 +108,8 @@ def refuse_too_large(scene: Shaft, model: str, options: dict | None = None) -> S
 
         ways = offered(ways_out(scene, model, options or {}, free), free)
         raise SolidgearError(
-            f"{what} need about {size.peak_mb:.0f} MB for mesh, matrices and factor, {free:.0f} MB are free; {size.lower}{ways}"
+            f"{what} need about {size.peak_mb:.0f} MB for mesh, matrices and factor, {free:.0f} "
+            f"MB are free; {size.lower}{ways}"
         )
     expect(size.peak_mb)
     return size

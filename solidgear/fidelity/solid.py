@@ -51,9 +51,9 @@ def solid(
         third of the largest outer radius (tetrahedra).
     layers, edge_layers, radial_layers, ratio
         Geometric grading of hexahedra: layers towards shoulders and towards seat ends along the shaft, towards
-        surfaces across it, and the size of each relative to the last.  The defaults give 1.4e-3 in stiffness at 37k unknowns
-        on the overhung pinion; 1.2e-2, 6e-3 and 3e-3 at 5k, 7k and 14k come of 1, 2 and 3 layers of both kinds, none at
-        seat ends and 8 cells around.
+        surfaces across it, and the size of each relative to the last.  The defaults give 1.4e-3 in
+        stiffness at 37k unknowns on the overhung pinion; 1.2e-2, 6e-3 and 3e-3 at 5k, 7k and 14k
+        come of 1, 2 and 3 layers of both kinds, none at seat ends and 8 cells around.
     around : int
         Elements around the circumference (tetrahedra: at least 16).
     graded_size : float, optional

@@ -10,7 +10,8 @@ attachment fields (Rubin 1975, AIAA J. 13, 996; the rigid part is inertia relief
 on them.  U is invariant under ``A^-1 M`` and the rest lies in its complement, so nothing of the
 mesh is needed but the free eigenvalues, ``G U``, and the moments
 
-    mu_j = G (H M)^j H G':   W_i' A W_j = mu_(i+j),   W_i' M W_j = mu_(i+j+1),   W_i' M A^-1 M W_j = mu_(i+j+2),   G W_j = mu_j.
+    mu_j = G (H M)^j H G':   W_i' A W_j = mu_(i+j),   W_i' M W_j = mu_(i+j+1),   W_i' M A^-1 M W_j =
+    mu_(i+j+2),   G W_j = mu_j.
 
 Any choice of seats is a choice of rows and columns of these.
 """

@@ -184,7 +184,10 @@ def _second(record: Record) -> str:
         if model.family in (BEAM, LUMPED) or key == trust or not rows:
             continue
         worst = max(abs(r.relative or 0.0) for r in rows)
-        text = f"The {model_name(record, key)}, solved apart, differs from it by at most {percent(worst, False)} in any judged number"
+        text = (
+            f"The {model_name(record, key)}, solved apart, differs from it by at most "
+            f"{percent(worst, False)} in any judged number"
+        )
         inside = not any(is_resolved(r) for r in rows)
         told.append(text + (", less than the bars of both." if inside else "."))
     return " ".join(told) or "No second solid was solved that could confirm it."

@@ -22,7 +22,8 @@ CAPTION = (
     "good mesh. The grey steps are the Pareto front, on which no cancellation counts: a beam "
     "stands there with the larger of its two errors, a mesh with the largest of its own and those "
     "of finer meshes of its series. Black stars: the automatic choice at the tolerance beside it, "
-    "all meshes that it tried in its time; it knows its error, the others do not. Points with an arrow, on the edge of the shaded band, lie "
+    "all meshes that it tried in its time; it knows its error, the others do not. Points with an "
+    "arrow, on the edge of the shaded band, lie "
     "below what the reference resolves. Crosses at the top failed, or found no such number; the "
     "reason is in rows.csv."
 )

@@ -278,7 +278,9 @@ def _of_the_body(scene: Scene, body: Body) -> Iterator[Notice]:
     yield Notice(
         "fact",
         (),
-        f"mass {exact.mass:.6g} kg, centre at y = {1e3 * exact.centre:.6g} mm, polar inertia {exact.iyy:.6g}, transverse {exact.ixx:.6g} kg m^2 (closed form{' of the round part' * (scene.body is not None)})",
+        f"mass {exact.mass:.6g} kg, centre at y = {1e3 * exact.centre:.6g} mm, polar inertia "
+        f"{exact.iyy:.6g}, transverse {exact.ixx:.6g} kg m^2 (closed "
+        f"form{' of the round part' * (scene.body is not None)})",
     )
     for name, got, want in closed:
         error = got / want - 1

@@ -264,7 +264,8 @@ def check_models(models: tuple[str, ...]) -> None:
     unknown = [m for m in models if m not in LADDER]
     if unknown or not set(models) & set(LADDER.bodies):
         raise SolidgearError(
-            f"models: {', '.join(unknown or models) or 'none given'}; choose from {', '.join(LADDER.names)}, lumped not alone"
+            f"models: {', '.join(unknown or models) or 'none given'}; choose from "
+            f"{', '.join(LADDER.names)}, lumped not alone"
         )
 
 

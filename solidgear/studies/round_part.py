@@ -112,7 +112,10 @@ def against_the_part(scene: Scene, rungs: dict[str, Solution], probe: Probe) -> 
         if not told:
             continue
         if all(v == WITHIN for v in verdicts):
-            words = f"within the {percent(tolerance)} asked for, the {LADDER[ROUND_MODEL].title} of its segments would do"
+            words = (
+                f"within the {percent(tolerance)} asked for, the {LADDER[ROUND_MODEL].title} of "
+                "its segments would do"
+            )
         elif BEYOND in verdicts:
             words = f"more than the {percent(tolerance)} asked for: the part is needed"
         else:

@@ -101,10 +101,10 @@ class PairModes:
     shapes : (14, 14) ndarray
         One mode a column, mass-normalised.
     energy : (14, 7) ndarray
-        Fraction of each mode's strain energy in every one of `COMPONENTS`.  Rows sum to 1; those of rigid motions, which
-        strain nothing, are zero.  "Translation" and "bending" are the translations and tilts of a lumped point
-        on its 6x6, the cross terms shared equally, so a fraction can be slightly negative;
-        "rotation" is the torsional spring to the engine or load.
+        Fraction of each mode's strain energy in every one of `COMPONENTS`.  Rows sum to 1; those of
+        rigid motions, which strain nothing, are zero.  "Translation" and "bending" are the
+        translations and tilts of a lumped point on its 6x6, the cross terms shared equally, so a
+        fraction can be slightly negative; "rotation" is the torsional spring to the engine or load.
     residual : float
         Largest ``|K u - w^2 M u|`` relative to ``|K| |u|``.
     """

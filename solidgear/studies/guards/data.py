@@ -66,7 +66,9 @@ def units(probe: Probe) -> Notices:
             yield Notice(
                 "caution",
                 (),
-                f"probably a slip in units: {'; '.join(out)}{' (d: mean diameter)' * (found is bearings)}; write the unit beside the number",
+                "probably a slip in units: "
+                f"{'; '.join(out)}{' (d: mean diameter)' * (found is bearings)}; write the unit "
+                "beside the number",
             )
             return
 
@@ -90,7 +92,8 @@ def free_motions(probe: Probe) -> Notices:
         yield Notice(
             "caution",
             (),
-            f"bearings leave {free} rigid motions free; only torsion is meant to be: give the missing entries a stiffness",
+            f"bearings leave {free} rigid motions free; only torsion is meant to be: give the "
+            "missing entries a stiffness",
         )
 
 
@@ -112,7 +115,8 @@ def oblique_softness(probe: Probe) -> Notices:
             yield Notice(
                 "caution",
                 (),
-                f"the couplings of bearing {b.name!r} all but cancel its stiffness in one oblique direction, which {what}: below {FOUR_DIGITS:g} it hangs on the fourth digit of "
+                f"the couplings of bearing {b.name!r} all but cancel its stiffness in one oblique "
+                f"direction, which {what}: below {FOUR_DIGITS:g} it hangs on the fourth digit of "
                 "the entries; check their signs and give more digits",
             )
 
@@ -124,5 +128,6 @@ def split_pair(probe: Probe) -> Notices:
         yield Notice(
             "fact",
             (),
-            f"bearings, with what they stand in, that differ in x and z split the first bending pair by {split:.1e} (Timoshenko): 'bending 2' is the twin of 'bending 1'",
+            "bearings, with what they stand in, that differ in x and z split the first bending "
+            f"pair by {split:.1e} (Timoshenko): 'bending 2' is the twin of 'bending 1'",
         )

@@ -31,7 +31,9 @@ def narrow_seat(probe: Probe) -> Notices:
             yield Notice(
                 "caution",
                 solids(),
-                f"the seat of {s.name!r} is {width:.2g} diameters of the shaft wide: below {limit:g} it ties like a line, {softer:g} % softer than a seat of 0.5, and softer "
+                f"the seat of {s.name!r} is {width:.2g} diameters of the shaft wide: below "
+                f"{limit:g} it ties like a line, {softer:g} % softer than a seat of 0.5, and "
+                "softer "
                 'without limit as it narrows; give the real width, or attachment = "section"',
             )
 
@@ -65,7 +67,8 @@ def rigid_seats(probe: Probe) -> Notices:
         yield Notice(
             "caution",
             solids(),
-            f'rigid seats at {", ".join(chosen)}: rigid rings at all seats move {words} against averaged ones, limit 1 %; they are a stiff bound, use attachment = "average"',
+            f"rigid seats at {', '.join(chosen)}: rigid rings at all seats move {words} against "
+            'averaged ones, limit 1 %; they are a stiff bound, use attachment = "average"',
         )
 
 
@@ -82,7 +85,8 @@ def linear_elements(probe: Probe) -> Notices:
         yield Notice(
             "caution",
             ("solid",),
-            f"element = {element} errs {factor} times as much in first bending as {better} at 9000 unknowns, more on longer cells; use {better}",
+            f"element = {element} errs {factor} times as much in first bending as {better} at "
+            f"9000 unknowns, more on longer cells; use {better}",
         )
     elif element == "Q1":
         yield Notice(
@@ -135,7 +139,8 @@ def nearly_incompressible(probe: Probe) -> Notices:
                 yield Notice(
                     beyond(error, probe.scene.ask.tolerance),
                     (model,),
-                    f"nu = {nu:g} of segment {s.name!r}: element {element} locks and is about {100 * error:.2g} % too stiff in bending, limit {100 * LOCKED:g} %; use the "
+                    f"nu = {nu:g} of segment {s.name!r}: element {element} locks and is about "
+                    f"{100 * error:.2g} % too stiff in bending, limit {100 * LOCKED:g} %; use the "
                     "harmonic solid of order 3 or more",
                 )
 
@@ -147,7 +152,8 @@ def uniform_at_shoulder(probe: Probe) -> Notices:
         yield Notice(
             "caution",
             ("harmonic",),
-            f"layers = 0 at a corner of {np.degrees(angle):.0f} degrees: the mesh converges with order {2 * exponent:.2f} whatever the order of its elements; use layers = 2 or "
+            f"layers = 0 at a corner of {np.degrees(angle):.0f} degrees: the mesh converges with "
+            f"order {2 * exponent:.2f} whatever the order of its elements; use layers = 2 or "
             "more",
         )
 
@@ -183,7 +189,8 @@ def memory(probe: Probe) -> Notices:
         yield Notice(
             "avoid" if need > free else "caution",
             ("solid",),
-            f"{which} 3D solid needs about {need:.0f} MB (good to a factor of {GOOD_TO:g}) and {free:.0f} MB are free; use {smaller}",
+            f"{which} 3D solid needs about {need:.0f} MB (good to a factor of {GOOD_TO:g}) and "
+            f"{free:.0f} MB are free; use {smaller}",
         )
 
 

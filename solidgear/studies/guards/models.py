@@ -62,7 +62,10 @@ def beam_against_solid(probe: Probe) -> Notices:
         else:
             side = f"{'higher' if gap > 0 else 'lower'} than"
         called = in_words(name, probe.main)
-        text = f"{called} of the {LADDER[model].title} is {100 * abs(gap):.3g} % {side} that of a light harmonic solid {TIES[worst['attachment']]}"
+        text = (
+            f"{called} of the {LADDER[model].title} is {100 * abs(gap):.3g} % {side} that of a "
+            f"light harmonic solid {TIES[worst['attachment']]}"
+        )
         if kind == verdict.BEYOND:
             yield Notice(
                 "avoid",
@@ -73,7 +76,8 @@ def beam_against_solid(probe: Probe) -> Notices:
             yield Notice(
                 "open",
                 concerned,
-                f"{text}, and the light solid is too coarse to tell whether that is within the {100 * tolerance:g} % asked for; run compare to find out",
+                f"{text}, and the light solid is too coarse to tell whether that is within the "
+                f"{100 * tolerance:g} % asked for; run compare to find out",
             )
         else:
             yield Notice("fact", concerned, f"{text}, the largest gap of what is compared")
@@ -101,7 +105,8 @@ def slenderness(probe: Probe) -> Notices:
             yield Notice(
                 "caution",
                 models,
-                f"length over mean diameter is {ratio:.2f}: on uniform shafts {name} needs {one:g} for 1 % and {five:g} for 5 %; use {better}",
+                f"length over mean diameter is {ratio:.2f}: on uniform shafts {name} needs "
+                f"{one:g} for 1 % and {five:g} for 5 %; use {better}",
             )
 
 
@@ -139,13 +144,18 @@ def shoulder(probe: Probe) -> Notices:
         yield Notice(
             "caution",
             stiff,
-            f"shoulder between {a.name!r} and {b.name!r} at y = {1e3 * b.y0:.6g} mm {sharp}, ratio of diameters {thick / thin:.2f}: a beam lacks "
-            f"{2e3 * thin * missing:.2g} mm of thin shaft, {100 * lacking:.1f} % of the deflection of an overhang of one diameter; 1 % is passed at {STEP:g}, 5 % at {STEEP:g}; "
+            f"shoulder between {a.name!r} and {b.name!r} at y = {1e3 * b.y0:.6g} mm {sharp}, "
+            f"ratio of diameters {thick / thin:.2f}: a beam lacks "
+            f"{2e3 * thin * missing:.2g} mm of thin shaft, {100 * lacking:.1f} % of the "
+            f"deflection of an overhang of one diameter; 1 % is passed at {STEP:g}, 5 % at "
+            f"{STEEP:g}; "
             f"use {better}",
         )
 
 
-DISC = 0.2  # odd_geometry.py: the tilt compliance of a beam is 10 % further off than with a head of half its diameter, 88 % at 0.1
+# odd_geometry.py: the tilt compliance of a beam is 10 % further off than with a head of half its
+# diameter, 88 % at 0.1
+DISC = 0.2
 
 
 def disc_head(probe: Probe) -> Notices:
@@ -160,7 +170,9 @@ def disc_head(probe: Probe) -> Notices:
             yield Notice(
                 "caution",
                 beams(),
-                f"the head with {port.name!r}, y = {1e3 * low:.6g} to {1e3 * high:.6g} mm, is {(high - low) / widest:.2g} of its diameter long: below {DISC:g} it bends in itself, and "
+                f"the head with {port.name!r}, y = {1e3 * low:.6g} to {1e3 * high:.6g} mm, is "
+                f"{(high - low) / widest:.2g} of its diameter long: below {DISC:g} it bends in "
+                "itself, and "
                 f"a beam's tilt compliance misses 10 % and more; use {probe.instead()}",
             )
 
@@ -177,7 +189,9 @@ def thin_joint(probe: Probe) -> Notices:
             yield Notice(
                 "caution",
                 beams(),
-                f"{a.name!r} and {b.name!r} share a ring of {1e3 * ring:.3g} mm at y = {1e3 * b.y0:.6g} mm, {share:.2g} of the thinner wall: below {JOINT:g} a beam's tilt "
+                f"{a.name!r} and {b.name!r} share a ring of {1e3 * ring:.3g} mm at y = "
+                f"{1e3 * b.y0:.6g} mm, {share:.2g} of the thinner wall: below {JOINT:g} a beam's "
+                "tilt "
                 f"compliance misses 5 %, below 0.3 12 %; use {probe.instead()}",
             )
 
@@ -195,8 +209,11 @@ def point_beyond_surface(probe: Probe) -> Notices:
             yield Notice(
                 "caution",
                 everything(),
-                f"the lumped point {port.name!r} lies {off:.2f} diameters of the shaft beyond its surface ({1e3 * port.lo:.6g} to {1e3 * port.hi:.6g} mm): from {BEYOND:g} on beams "
-                "and solids answer different questions (7 % in tilt at 0.1); move the point, or give it the surface it stands for",
+                f"the lumped point {port.name!r} lies {off:.2f} diameters of the shaft beyond its "
+                f"surface ({1e3 * port.lo:.6g} to {1e3 * port.hi:.6g} mm): from {BEYOND:g} on "
+                "beams "
+                "and solids answer different questions (7 % in tilt at 0.1); move the point, or "
+                "give it the surface it stands for",
             )
 
 
@@ -236,7 +253,8 @@ def ovalising(probe: Probe) -> Notices:
         yield Notice(
             "caution",
             ("solid",),
-            f"sections lose their shape below {where}: {what}; with {cells} cells around hexahedra put such modes of a thin wall up to 25 % too high, with 24 2.3 %, "
+            f"sections lose their shape below {where}: {what}; with {cells} cells around "
+            "hexahedra put such modes of a thin wall up to 25 % too high, with 24 2.3 %, "
             f"with 32 0.9 %; use --set around={needed}",
         )
 
@@ -278,7 +296,9 @@ def _two_waves(probe: Probe) -> float:
     return float(min(discs + rings) * speed / (2 * np.pi))
 
 
-ENERGY = 0.95  # effective_mass_limits.py: held along the head of the overhung pinion; at 7 % the receptance is right to 0.24 of first bending only
+# effective_mass_limits.py: held along the head of the overhung pinion; at 7 % the receptance is
+# right to 0.24 of first bending only
+ENERGY = 0.95
 
 
 def effective_mass(probe: Probe) -> Notices:
@@ -304,13 +324,15 @@ def effective_mass(probe: Probe) -> Notices:
         yield Notice(
             beyond(off, probe.scene.ask.tolerance),
             ("lumped",),
-            f"the mode-matched pair of masses {why}: Guyan's stands in, with first bending {100 * off:+.3g} % off its beam; use the beam",
+            f"the mode-matched pair of masses {why}: Guyan's stands in, with first bending "
+            f"{100 * off:+.3g} % off its beam; use the beam",
         )
     if point.static_share < ENERGY:
         yield Notice(
             "caution",
             ("lumped",),
-            f"the static shape of {probe.scene.port.name!r} holds {100 * point.static_share:.4g} % of the energy of first bending, less than {100 * ENERGY:g} %: the mode lives "
+            f"the static shape of {probe.scene.port.name!r} holds {100 * point.static_share:.4g} "
+            f"% of the energy of first bending, less than {100 * ENERGY:g} %: the mode lives "
             "elsewhere, and a lumped model is good for stiffness only; use the beam",
         )
 
@@ -350,10 +372,9 @@ def lumped_against_solid(probe: Probe) -> Notices:
         )
 
 
-HOLDS, DRIFTS = (
-    0.39,
-    0.63,
-)  # guyan_in_frequency.py: off by 1 % and 10 % of the static stiffness, over the first frequency with the lumped point held
+# guyan_in_frequency.py: off by 1 % and 10 % of the static stiffness, over the first frequency with
+# the lumped point held
+HOLDS, DRIFTS = 0.39, 0.63
 
 
 def frequency_range(probe: Probe) -> Notices:
@@ -363,6 +384,8 @@ def frequency_range(probe: Probe) -> Notices:
         yield Notice(
             "avoid" if asked > pole else "caution",
             ("lumped",),
-            f"{asked:g} Hz are asked for, and with the lumped point held the shaft has a mode at {pole:.4g} Hz that no condensed model has: Guyan's is off by 1 % of the "
-            f"stiffness from {HOLDS * pole:.4g} Hz, by 10 % from {DRIFTS * pole:.4g} Hz; use {probe.instead(BEAM_OR_SOLID, *beams())} above",
+            f"{asked:g} Hz are asked for, and with the lumped point held the shaft has a mode at "
+            f"{pole:.4g} Hz that no condensed model has: Guyan's is off by 1 % of the "
+            f"stiffness from {HOLDS * pole:.4g} Hz, by 10 % from {DRIFTS * pole:.4g} Hz; use "
+            f"{probe.instead(BEAM_OR_SOLID, *beams())} above",
         )

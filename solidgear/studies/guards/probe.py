@@ -175,7 +175,8 @@ class Probe:
                 return synthesise(body, self.supports, self.scene.port.name, found)
         except FloatingPointError:
             raise SolidgearError(
-                "first bending leaves the lumped point at rest in the z plane, in which masses are lumped; bearings differ in x and z"
+                "first bending leaves the lumped point at rest in the z plane, in which masses "
+                "are lumped; bearings differ in x and z"
             ) from None
 
     @cached_property

@@ -1,25 +1,32 @@
 r"""Modes of one bearing set in the reduced basis, with a bound on their error.
 
-The supported body is ``B = A + G' Kb G`` with ``A = K + sigma M``, and its modes are those of ``B^-1 M`` with ``theta = 1 / (lambda + sigma)``.
-The Ritz values theta~ in the span of V (:mod:`solidgear.reduction.moments`) are too small.  By how much at most follows from what V holds:
+The supported body is ``B = A + G' Kb G`` with ``A = K + sigma M``, and its modes are those of
+``B^-1 M`` with ``theta = 1 / (lambda + sigma)``. The Ritz values theta~ in the span of V
+(:mod:`solidgear.reduction.moments`) are too small.  By how much at most follows from what V holds:
 
-- V contains ``A^-1 G'`` of every occupied seat.  A field v with ``V' B v = 0`` therefore has ``(I + G A^-1 G' Kb) G v = 0``, so ``G v = 0``: its seats stand still.
-- V contains the free modes U up to a cut.  With the above, ``0 = U' B v = U' A v``, so v lies in the complement of U and ``v' M v <= theta_c v' B v``,
-  theta_c being the first theta left out of U.
-- In a B-orthonormal basis of V (turned to its Ritz vectors) and of the rest, ``B^-1 M = [[T, E'], [E, C]]`` with ``T = diag(theta~)`` and
-  ``C <= theta_c``.  Eigenvalues above theta_c are those of ``T + E' (theta - C)^-1 E``, counted alike (Schur complement), and this is at most
-  ``T + E'E / (t - theta_c)`` for theta_c < t <= theta.
+- V contains ``A^-1 G'`` of every occupied seat.  A field v with ``V' B v = 0`` therefore has ``(I
+  + G A^-1 G' Kb) G v = 0``, so ``G v = 0``: its seats stand still.
+- V contains the free modes U up to a cut.  With the above, ``0 = U' B v = U' A v``, so v lies in
+  the complement of U and ``v' M v <= theta_c v' B v``, theta_c being the first theta left out of U.
+- In a B-orthonormal basis of V (turned to its Ritz vectors) and of the rest, ``B^-1 M = [[T, E'],
+  [E, C]]`` with ``T = diag(theta~)`` and ``C <= theta_c``.  Eigenvalues above theta_c are those of
+  ``T + E' (theta - C)^-1 E``, counted alike (Schur complement), and this is at most ``T + E'E / (t
+  - theta_c)`` for theta_c < t <= theta.
 
-So the k-th true theta lies between theta~_k and the k-th eigenvalue of ``T + E'E / (t - theta_c)``, t being the least theta~ wanted: an error of second
-order, without any assumption on gaps, for single and repeated frequencies, and no mode can be missed.  ``E'E`` is cheap: in an A-orthonormal basis
-of V with P = ``V'MV``, g = ``V'G'L``, ``L L' = Kb`` and the root ``R = (I + g g')^(-1/2)``, the Ritz matrix is ``R P R`` and
+So the k-th true theta lies between theta~_k and the k-th eigenvalue of ``T + E'E / (t - theta_c)``,
+t being the least theta~ wanted: an error of second order, without any assumption on gaps, for
+single and repeated frequencies, and no mode can be missed.  ``E'E`` is cheap: in an A-orthonormal
+basis of V with P = ``V'MV``, g = ``V'G'L``, ``L L' = Kb`` and the root ``R = (I + g g')^(-1/2)``,
+the Ritz matrix is ``R P R`` and
 
     E'E = R (V' M A^-1 M V - P P) R,
 
-where the bracket has nothing to do with the bearings and is zero on U.  (``B^-1`` by Woodbury; ``L'G A^-1 G'L = g'g`` because V holds ``A^-1 G'``.)
-Masses m on ports change little of it: with ``M' = M + G'm G`` and ``B = A + G'(Kb + sigma m) G`` the complement, whose seats and
-masses stand still, is the same, and so are C and E; in V the mass is ``P + h h'`` with ``h = V'G'N``, ``N N' = m``.
-The bound is one in exact arithmetic; rounding adds about 1e-16 times the ratio of the largest to the wanted theta.
+where the bracket has nothing to do with the bearings and is zero on U.  (``B^-1`` by Woodbury;
+``L'G A^-1 G'L = g'g`` because V holds ``A^-1 G'``.) Masses m on ports change little of it: with
+``M' = M + G'm G`` and ``B = A + G'(Kb + sigma m) G`` the complement, whose seats and masses stand
+still, is the same, and so are C and E; in V the mass is ``P + h h'`` with ``h = V'G'N``, ``N N' =
+m``. The bound is one in exact arithmetic; rounding adds about 1e-16 times the ratio of the largest
+to the wanted theta.
 """
 
 from __future__ import annotations

@@ -237,13 +237,15 @@ def _check_seats(
     seats, most = len(shaft.stations) - len(scene.ports), LADDER[fidelity].most_seats
     if most is not None and seats > most:
         raise SolidgearError(
-            f"{seats} different seats are more than the {most} one {fidelity} body carries; vary fewer positions, sweep them in parts, or use a cheaper model"
+            f"{seats} different seats are more than the {most} one {fidelity} body carries; vary "
+            "fewer positions, sweep them in parts, or use a cheaper model"
         )
     asked = options.get("attachments") or ()
     kinds = asked if isinstance(asked, (tuple, list)) else (asked,)
     if "rigid" in kinds and seats > len(scene.bearings):
         raise SolidgearError(
-            "attachments: a rigid seat stiffens the shaft wherever it is meshed, so seats cannot be rigid in a sweep of positions"
+            "attachments: a rigid seat stiffens the shaft wherever it is meshed, so seats cannot "
+            "be rigid in a sweep of positions"
         )
 
 

@@ -143,7 +143,8 @@ class Variants:
             bearing = self.scene.bearings[self.axes[k].bearing]
             if bearing.attachment == "rigid" and len(self.axes[k].values) > 1:
                 raise SolidgearError(
-                    f"{self.axes[k].label}: a rigid seat stiffens the shaft wherever it is meshed, so it cannot move in one body; use attachment 'average' or 'section'"
+                    f"{self.axes[k].label}: a rigid seat stiffens the shaft wherever it is "
+                    "meshed, so it cannot move in one body; use attachment 'average' or 'section'"
                 )
         seats = {
             seat_name(b): b.with_changes(name=seat_name(b))

@@ -142,7 +142,8 @@ def _axis(scene: Scene, text: str) -> Axis:
         index = int(name) - 1
     else:
         raise SolidgearError(
-            f"--vary {text}: there is no bearing {name!r}{nearest(name, names)}; the scene has {', '.join(names) or 'none'}"
+            f"--vary {text}: there is no bearing {name!r}{nearest(name, names)}; the scene has "
+            f"{', '.join(names) or 'none'}"
         )
     if housed:
         return _of_one_housing(scene, text, index, field, spec)
