@@ -305,3 +305,18 @@ def test_a_mesh_that_cannot_be_names_the_file_and_the_key(tmp_path):
     assert done.exit_code != 0
     assert "wide.toml: pinion.face_width" in str(done.exception)
     assert "reaches past the apex" in str(done.exception)
+
+
+def test_the_name_of_the_lumped_point_means_nothing():
+    # "teeth" was the name of an inner port, and such a pinion was left out of the mesh's rotation
+    pinion, engine = TRAIN_DATA.pinion, TRAIN_DATA.engine
+    port = pinion.scene.port.with_changes(name="teeth")
+    named = TRAIN_DATA.with_changes(
+        pinion=pinion.with_changes(scene=pinion.scene.with_changes(port=port)),
+        engine=engine.with_changes(spring=engine.spring.with_changes(at="teeth")),
+    )
+    usual, other = (
+        Workshop(train, kept=4).system("euler", "euler").modes(6).frequency_hz
+        for train in (TRAIN_DATA, named)
+    )
+    assert other == pytest.approx(usual, rel=1e-9, abs=1e-9)

@@ -41,6 +41,26 @@ def test_shipped_trains_load_and_mesh_in_the_ratio_of_their_teeth(name):
     assert np.allclose(to_gear_frame(found.gear.normal, -np.pi / 2), found.pinion.normal)
 
 
+PARALLEL = (
+    ('pitch_angle = "0.391 rad"', "pitch_angle = 0"),
+    ('shaft_angle = "90 deg"', "shaft_angle = 0"),
+)
+
+
+def test_parallel_shafts_have_cylindrical_gears(tmp_path):
+    train = load_train(written(tmp_path, *PARALLEL))
+    found, teeth = contact(train), train.pinion
+    # axes apart by both radii, levers by the transverse component of the line of action
+    radius = teeth.pitch_radius
+    assert np.allclose(found.origin, [-radius * (1 + train.ratio), 0, 0], rtol=1e-12, atol=1e-15)
+    across = np.cos(train.mesh.pressure_angle) * np.cos(teeth.spiral_angle)
+    assert abs(found.pinion.lever) == pytest.approx(radius * across, rel=1e-12)
+    assert abs(found.gear.lever / found.pinion.lever) == pytest.approx(train.ratio, rel=1e-12)
+    assert not any("pitch angle" in line for line in found.cautions)
+    bevel = contact(load_train(written(tmp_path, PARALLEL[1])))
+    assert "45 teeth (0 rad)" in bevel.cautions[0]
+
+
 def test_values_that_no_source_gives_are_listed():
     found = load_train(GEOMETRY / "axle_overhung.toml").unpublished()
     assert found["mesh.stiffness"] == found["engine.spring.stiffness"] == "identified"

@@ -41,7 +41,7 @@ def with_waves(
     offset: np.ndarray,
     axes: np.ndarray,
     rows: Mapping[int, np.ndarray],
-    name: str = "teeth",
+    name: str = "mesh.point",
     kept: int = KEPT,
 ) -> Superelement:
     """A superelement with harmonics n >= 2, and a port that feels them.

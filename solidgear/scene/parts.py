@@ -71,9 +71,10 @@ class Model(BaseModel):
         SceneError
             As by the constructor.
         """
-        return type(self)(
-            **{name: getattr(self, name) for name in type(self).model_fields} | changes
-        )
+        fields = type(self).model_fields
+        given = {name: getattr(self, name) for name in fields} | changes
+        keys = {name: field.alias or name for name, field in fields.items()}
+        return type(self)(**{keys.get(name, name): value for name, value in given.items()})
 
     def model_copy(
         self: _Self, *, update: Mapping[str, Any] | None = None, deep: bool = False

@@ -17,13 +17,14 @@ from solidgear.scene.train_units import (
     Mass,
     MeshSpring,
     Ordinate,
+    PitchAngle,
     PressureAngle,
     ShaftAngle,
     SpiralAngle,
     TorsionSpring,
     Vector,
 )
-from solidgear.scene.units import Angle, Frequency, Length, PositiveLength, Tolerance
+from solidgear.scene.units import Frequency, Length, PositiveLength, Tolerance
 
 #: teeth that a wheel may have
 FEWEST_TEETH, MOST_TEETH = 3, 2000
@@ -76,7 +77,7 @@ class Member(Model):
     loaded_side: Literal["concave", "convex"] | None = None
     pitch_radius: PositiveLength | None = None
     face_width: PositiveLength | None = None
-    pitch_angle: Angle | None = None
+    pitch_angle: PitchAngle | None = None
     spiral_angle: SpiralAngle | None = None
     apex: Literal["start", "end"] = "start"
     head: HeadInertia | None = None

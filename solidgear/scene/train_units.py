@@ -82,6 +82,9 @@ Ordinate = Annotated[float, _in("length"), AfterValidator(_not_negative)]
 Vector = Annotated[tuple[float, float, float], BeforeValidator(_lengths)]
 Loss = Annotated[float, _in("dimensionless"), AfterValidator(_loss)]
 SpiralAngle = Annotated[float, _in("angle"), _angle(0.0, 1.4, "0 and 80 degrees (0 and 1.4 rad)")]
+PitchAngle = Annotated[
+    float, _in("angle"), _angle(0.0, 1.56, "0 (cylindrical gears) and 89 degrees (1.56 rad)")
+]
 PressureAngle = Annotated[
     float, _in("angle"), _angle(0.05, 0.8, "3 and 45 degrees (0.05 and 0.8 rad)")
 ]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import pi, tan
+from math import cos, sin
 
 import numpy as np
 
@@ -24,6 +24,10 @@ UNIT = 1e-6
 LEVER_TOLD, LEVER_REFUSED = 5e-3, 5e-2
 #: pitch angles whose tangents are off the ratio of the teeth by this are told
 CONE_TOLD = 2e-2
+#: and of pitch angles below this, rad, of this: those of parallel shafts are zero
+LEAST_CONE = 0.05
+#: what needs gear geometry although the line of action is given
+WITHOUT_POSITION = "the place of the gear, without gear_position under [mesh],"
 #: a line that is this much nearer (cosine) to the one of the teeth when it is turned back was
 #: given in the gear's frame
 TURNED = 0.2
@@ -149,6 +153,8 @@ def _gear_position(train: Train, point: np.ndarray) -> np.ndarray:
     """
     if train.mesh.gear_position is not None:
         return np.array(train.mesh.gear_position)
+    if train.mesh.line_of_action is not None or train.mesh.contact_cells:
+        _needs(train, "pitch_radius", "pitch_angle", "face_width", what=WITHOUT_POSITION)
     radius = _mean_radius(train)
     at_gear = mesh_point(train.ratio * radius, member="gear")
     # from the gear's frame back to the pinion's: the opposite turn
@@ -179,10 +185,11 @@ def _given_line(train: Train) -> np.ndarray:
 def _cones(train: Train) -> list[str]:
     """Whether the pitch angle is that of the teeth."""
     angle, shaft = train.pinion.pitch_angle, train.mesh.shaft_angle
-    if angle is None or abs(shaft - pi / 2) > 1e-9:
+    if angle is None:
         return []
-    of_teeth = float(np.arctan(1 / train.ratio))
-    if abs(tan(angle) * train.ratio - 1) < CONE_TOLD:
+    # Shigley's Mechanical Engineering Design, bevel gears: both cones roll on each other
+    of_teeth = float(np.arctan2(sin(shaft), train.ratio + cos(shaft)))
+    if abs(angle - of_teeth) < CONE_TOLD * max(of_teeth, LEAST_CONE):
         return []
     return [
         f"the pitch angle of {angle:.4g} rad is not that of {train.pinion.teeth} and "

@@ -35,8 +35,8 @@ if TYPE_CHECKING:
     from solidgear.studies.axle.models import Workshop
     from solidgear.system.system import System
 
-#: port of a part at its mesh point
-TEETH = "teeth"
+#: port of a part at its mesh point; no station can be called so, for names hold no dot
+TEETH = "mesh.point"
 #: waves around the axis that are looked for among those that nothing drives, at most
 MOST_WAVES = 16
 #: a light mesh finds the lowest frequency of a family too high by less than this
