@@ -4,6 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 
+#: steepest that a boundary inside may cross a segment, radius over length
+STEEPEST = 1.5
+#: of the room between its neighbours that a boundary leaves to each
+LEAST_SHARE = 0.15
+
 
 def first_of_run(bands, band: int, segment: int) -> int:
     """First of the neighbours of a segment that have a band without a gap between them.
@@ -23,6 +28,44 @@ def first_of_run(bands, band: int, segment: int) -> int:
     while segment > 0 and bands[segment - 1][0] <= band < bands[segment - 1][1]:
         segment -= 1
     return segment
+
+
+def _kept(bands, i: int) -> set[int]:
+    """Boundaries that are a surface where segments i and i + 1 meet."""
+    (a, b), (c, d) = bands[i], bands[i + 1]
+    return {a, b, c, d, max(a, c), min(b, d)}
+
+
+def _straighten(segments, bands, left, right, kept, i: int) -> None:
+    """Move boundaries where segments i and i + 1 meet that would cross one of them too steeply.
+
+    Boundaries that are no surface there were spread evenly.  In a thin disc that may take one from
+    the surface of a neighbour on one side far up or down to the other, through cells so skewed that
+    each further order takes away no more than half of the error.
+
+    Parameters
+    ----------
+    segments : sequence of Segment
+    bands : tuple of (int, int)
+    left, right : dict of int to ndarray
+        Radii, which are changed.
+    kept : set of (int, int)
+        Boundaries that are a surface behind a segment, by segment and boundary.
+    i : int
+    """
+    low, high = max(bands[i][0], bands[i + 1][0]), min(bands[i][1], bands[i + 1][1])
+    for place in range(low + 1, high):
+        here, there = place - bands[i][0], place - bands[i + 1][0]
+        for k, before, ends in ((i, i - 1, left), (i + 1, i + 1, right)):
+            if (i, place) in kept or (before, place) not in kept or k not in ends:
+                continue
+            far = ends[k][place - bands[k][0]]
+            if abs(right[i][here] - far) > STEEPEST * segments[k].length:
+                below, above = right[i][here - 1], right[i][here + 1]
+                room = LEAST_SHARE * (above - below)
+                moved = min(max(far, below + room), above - room)
+                right[i][here] = left[i + 1][there] = moved
+                break
 
 
 def radial_bands(segments, raised=None):
@@ -87,6 +130,7 @@ def radial_bands(segments, raised=None):
 
     left: dict[int, np.ndarray] = {}
     right: dict[int, np.ndarray] = {}
+    kept = {(i, place) for i in range(n - 1) for place in _kept(bands, i)}
     for i in range(n - 1):
         a, b = segments[i], segments[i + 1]
         low, high = max(bottoms[i], bottoms[i + 1]), min(tops[i], tops[i + 1])
@@ -102,6 +146,8 @@ def radial_bands(segments, raised=None):
         left[i + 1] = spread(
             *bands[i + 1], {**there, bottoms[i + 1]: b.inner0, tops[i + 1]: b.outer0}
         )
+    for i in range(n - 1):
+        _straighten(segments, bands, left, right, kept, i)
     # A free end divides its radius as the far end of the same segment does.
     for i, s in enumerate(segments):
         if i not in left and i not in right:
