@@ -62,7 +62,7 @@ AROUND, ORDER_AROUND = 8, 4
 #: if the band needs it
 HEAVY = 15_000
 #: and what such a second level must meet to judge
-LIGHT_JUDGE = 3.0
+LIGHT_JUDGE = 2.0
 
 
 @dataclass(frozen=True)
