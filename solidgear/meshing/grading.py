@@ -75,7 +75,7 @@ class Grading:
         """Layers towards the ends of averaged seats, never more than towards shoulders."""
         return min(self.edge_layers, self.layers)
 
-    def seat_layers(self, station, segments) -> int:
+    def seat_layers(self, station, segments, ties) -> int:
         """Further layers towards the ends of a narrow seat.
 
         A load on a ring indents the shaft over a few widths of the ring, which cells that know of
@@ -85,6 +85,8 @@ class Grading:
         ----------
         station : Port, Bearing or PointMass
         segments : sequence of Segment
+        ties : sequence of str
+            That the station is built with; sections spread no load on the seat.
 
         Returns
         -------
@@ -94,7 +96,7 @@ class Grading:
         """
         width = station.hi - station.lo
         under = [s for s in segments if s.y0 < station.hi - TOUCH and station.lo + TOUCH < s.y1]
-        if width <= 2 * TOUCH or not under:
+        if width <= 2 * TOUCH or not under or set(ties) <= {"section"}:
             return 0
         start = self.reach * max(corner_length(s) for s in under)
         return max(0, ceil(log(width / start) / log(self.ratio) - ROUNDING))

@@ -307,7 +307,7 @@ def _marks(scene, grading: Grading, attachments) -> list[_Mark]:
     for station in scene.stations:
         ties = attachments or (station.attachment,)
         held = "rigid" in ties
-        narrow = grading.seat_layers(station, segments)
+        narrow = grading.seat_layers(station, segments, ties)
         for y in (station.lo, station.hi):
             at_face = min(abs(y), abs(y - scene.length)) <= tol
             # An averaged seat that ends at a face meets no edge there; a rigid one is clamped up to
@@ -390,8 +390,8 @@ def _radial_needs(
             for k in (i, i + 1):
                 add(boundary, k, layers, reach)
     for station in scene.stations:
-        held = "rigid" in (attachments or (station.attachment,))
-        narrow = grading.seat_layers(station, segments)
+        ties = attachments or (station.attachment,)
+        held, narrow = "rigid" in ties, grading.seat_layers(station, segments, ties)
         for i, s in enumerate(segments):
             if s.y0 < station.hi - TOUCH and station.lo + TOUCH < s.y1:
                 layers = grading.across if held else min(grading.edge, grading.across)
