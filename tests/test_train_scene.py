@@ -61,6 +61,21 @@ def test_parallel_shafts_have_cylindrical_gears(tmp_path):
     assert "45 teeth (0 rad)" in bevel.cautions[0]
 
 
+def test_a_station_called_start_hides_no_datum(tmp_path):
+    # the spring went to the station, without a word
+    train = load_train(written(tmp_path))
+    scene = train.pinion.scene
+    port = scene.port.with_changes(name="start")
+    spring = train.engine.spring.with_changes(at=None, position=0.01, seat_width=0.01)
+    with pytest.raises(
+        sg.SolidgearError, match="is the start of the pinion's shaft, and a station"
+    ):
+        train.with_changes(
+            pinion=train.pinion.with_changes(scene=scene.with_changes(port=port)),
+            engine=train.engine.with_changes(spring=spring),
+        )
+
+
 def test_values_that_no_source_gives_are_listed():
     found = load_train(GEOMETRY / "axle_overhung.toml").unpublished()
     assert found["mesh.stiffness"] == found["engine.spring.stiffness"] == "identified"

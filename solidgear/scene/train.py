@@ -109,6 +109,12 @@ class Train(Model):
                     f"known here: {listed(known)}",
                     path=(rotor, "spring", key),
                 )
+            elif key == "from" and word in ports and word in ("start", "end"):
+                yield SceneError(
+                    f"is the {word} of the {side}'s shaft, and a station is called so as well; "
+                    "give the station another name",
+                    path=(rotor, "spring", key),
+                )
             elif key == "from":
                 yield from self._on_the_shaft(rotor, side)
 
