@@ -8,8 +8,9 @@ from pathlib import Path
 
 import pytest
 
-from solidgear.errors import SceneError
+from solidgear.errors import SceneError, SolidgearError
 from solidgear.scene.file import load
+from solidgear.studies.loading import explained
 
 GOOD = (Path(__file__).parents[1] / "geometry" / "pinion_overhung.toml").read_text(encoding="utf-8")
 BRG2 = GOOD.index('position = "150 mm"')  # edits marked "2:" are made from here on
@@ -424,3 +425,20 @@ def test_not_a_scene(content, says, tmp_path):
 def test_no_file_or_a_folder(tmp_path):
     assert "absent.toml: there is no such file" in refusal(tmp_path / "absent.toml")
     assert "this is a folder" in refusal(tmp_path)
+
+
+def test_a_name_that_is_no_text_is_no_datum(tmp_path):
+    # such a name was written out among the known ones, some thousand characters of it
+    path = tmp_path / "spoilt.toml"
+    spoilt = GOOD.replace('name = "1"', f"name = {[[1, 0]] * 200}", 1)
+    assert spoilt != GOOD and 'from = "bearing.1"' in GOOD
+    path.write_text(spoilt, encoding="utf-8")
+    with pytest.raises(SceneError, match="must be a text in quotes") as caught:
+        load(path)
+    assert max(map(len, str(caught.value).splitlines())) < 500
+
+
+def test_what_bearings_do_not_settle_on_is_told_with_the_file():
+    with pytest.raises(SceneError, match="^shaft.toml: shaft and bearings find no equilibrium$"):
+        with explained("shaft.toml"):
+            raise SolidgearError("shaft and bearings find no equilibrium")

@@ -187,7 +187,8 @@ def _unknown_names(raw: dict[str, Any], part: Recognised | None) -> Iterator[Sce
         ]
     for i, bearing in enumerate(bearings or ()):
         yield from _unknown_datum(bearing.get("from"), known, ("bearing", i, "from"))
-        known.append(f"bearing.{bearing.get('name')}")
+        if isinstance(bearing.get("name"), str):
+            known.append(f"bearing.{bearing['name']}")
     for i, mass in enumerate(masses or () if bearings is not None else ()):
         yield from _unknown_datum(mass.get("from"), known, ("mass", i, "from"))
     for i, feature in enumerate(_list_of_tables(raw.get("feature", [])) or ()):

@@ -12,7 +12,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from solidgear.errors import SceneError
+from solidgear.errors import SceneError, SolidgearError
 from solidgear.scene import file
 from solidgear.scene.toml_file import parse, place_of
 
@@ -132,6 +132,8 @@ def explained(path: str | os.PathLike) -> Iterator[None]:
     except SceneError as error:
         where = os.fspath(path)
         raise error.located(parse(where), where=place_of(where)) from None
+    except SolidgearError as error:
+        raise SceneError(str(error), where=place_of(os.fspath(path))) from None
 
 
 def shaft(scene: Scene) -> Body | None:
