@@ -15,8 +15,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from solidgear.errors import SolidgearError
-from solidgear.scene.ask import AT
-from solidgear.scene.rules import no_such_point, no_term
+from solidgear.scene.rules import AT, no_such_point, no_term
 from solidgear.solve.condensed import Condensed, Coupled
 from solidgear.solve.modes import ModeSet
 

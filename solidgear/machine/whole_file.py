@@ -7,6 +7,8 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
+from solidgear.errors import SolidgearError
+
 
 @contextmanager
 def whole(path: Path) -> Iterator[Path]:
@@ -42,3 +44,28 @@ def whole(path: Path) -> Iterator[Path]:
         os.replace(partial, path)
     finally:
         partial.unlink(missing_ok=True)
+
+
+def write_page(path: str | os.PathLike, text: str) -> Path:
+    """Write a file that a user named, and the folders above it; there is a whole one or none.
+
+    Parameters
+    ----------
+    path : path
+    text : str
+
+    Raises
+    ------
+    SolidgearError
+        If the file cannot be written.
+    """
+    path = Path(path)
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        with whole(path) as partial:
+            partial.write_text(text, encoding="utf-8")
+    except OSError as error:
+        raise SolidgearError(
+            f"{path}: cannot be written ({error.strerror or error}); name a file you may write"
+        ) from error
+    return path

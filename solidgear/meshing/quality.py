@@ -161,14 +161,12 @@ def element_volumes(mesh: Mesh) -> np.ndarray:
     (n_elements,) ndarray
         m^3.
     """
-    element = mesh.elem()
-    tet, curved = element.refdom.nnodes == 4, element.doflocs.shape[0] > element.refdom.nnodes
-    rule = _bernstein(tet, _DEGREE[tet, curved])
-    parts = [slice(i, i + _BATCH) for i in range(0, mesh.t.shape[1], _BATCH)]
-    dets = [_determinants(mesh, element, rule.points, part) for part in parts]
-    # the mean of a polynomial is that of its coefficients
-    means = [(rule.from_values @ det).mean(axis=0) for det in dets]
-    return np.concatenate(means) / (6 if tet else 1)
+    return np.concatenate([_polynomials(mesh, part)[2] for part in _parts(mesh)])
+
+
+def _parts(mesh) -> list[slice]:
+    """Elements in batches."""
+    return [slice(i, i + _BATCH) for i in range(0, mesh.t.shape[1], _BATCH)]
 
 
 def _measure(mesh):
@@ -181,8 +179,7 @@ def _measure(mesh):
     if mesh.t.shape[1] == 0:
         raise MeshError("the mesh has no elements: check the geometry it was made from")
 
-    parts = [slice(i, i + _BATCH) for i in range(0, mesh.t.shape[1], _BATCH)]
-    found = [_extremes(mesh, part) for part in parts]
+    found = [_extremes(mesh, part) for part in _parts(mesh)]
     low, high, volumes = (np.concatenate(x) for x in zip(*found))
     ratio = np.divide(low, high, out=np.full_like(low, -1.0), where=high > 0.0)
     quality = MeshQuality(
@@ -201,6 +198,19 @@ def _measure(mesh):
 _DEGREE = {(True, False): 0, (True, True): 3, (False, False): 2, (False, True): 5}
 
 
+def _polynomials(mesh, part):
+    """Lattice values of det J, its Bernstein coefficients and volumes of some elements, and the
+    rule behind them.
+    """
+    element = mesh.elem()
+    tet, curved = element.refdom.nnodes == 4, element.doflocs.shape[0] > element.refdom.nnodes
+    rule = _bernstein(tet, _DEGREE[tet, curved])
+    det = _determinants(mesh, element, rule.points, part)
+    coefficients = rule.from_values @ det
+    # the mean of a polynomial is that of its coefficients
+    return det, coefficients, coefficients.mean(axis=0) / (6 if tet else 1), rule
+
+
 def _extremes(mesh, part):
     """Least and greatest det J of some elements, and their volumes.
 
@@ -208,13 +218,8 @@ def _extremes(mesh, part):
     leave a doubt the element is cut in eight, again and again, and only the doubtful pieces are
     kept (Johnen, Remacle and Geuzaine 2013, J. Comput. Phys. 233, 359).
     """
-    element = mesh.elem()
-    tet, curved = element.refdom.nnodes == 4, element.doflocs.shape[0] > element.refdom.nnodes
-    rule = _bernstein(tet, _DEGREE[tet, curved])
-    det = _determinants(mesh, element, rule.points, part)
-    coefficients = rule.from_values @ det
+    det, coefficients, volumes, rule = _polynomials(mesh, part)
     low, high = det.min(axis=0), det.max(axis=0)
-    volumes = coefficients.mean(axis=0) / (6 if tet else 1)
     owner = np.flatnonzero((coefficients.min(axis=0) < _CLEAR * high) & (low > 0.0))
     piece = coefficients[:, owner]
     for _ in range(_CUTS):

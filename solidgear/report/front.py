@@ -9,11 +9,11 @@ import json
 from collections.abc import Iterable, Mapping
 from typing import Any
 
+from solidgear.evidence.quantities import AT
 from solidgear.evidence.record import ModelRecord, Record, VerdictRecord
 from solidgear.evidence.ties import SCENE
 from solidgear.report.cells import DASH, short_percent
 from solidgear.report.reading import (
-    AT,
     BEAM,
     LUMPED,
     entry,

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from solidgear.evidence.quantities import AT
 from solidgear.evidence.record import (
     CoupledRecord,
     DeviationRecord,
@@ -17,8 +18,6 @@ from solidgear.report.words import NOTHING, is_number
 
 #: families of models, as the ladder has them
 LUMPED, BEAM = "lumped", "beam"
-#: between a quantity and its lumped points
-AT = "@"
 #: below this share of the geometric mean of its diagonal entries a coupling is next to nothing
 FAINT = 1e-6
 

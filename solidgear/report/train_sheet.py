@@ -6,8 +6,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from solidgear.errors import SolidgearError
-from solidgear.machine.whole_file import whole
+from solidgear.machine.whole_file import write_page
 from solidgear.report.chart_style import svg_of
 from solidgear.report.html import template
 from solidgear.report.table import Table
@@ -66,12 +65,4 @@ def write_sheet(
         notes=notes,
         cautions=cautions,
     )
-    try:
-        path.parent.mkdir(parents=True, exist_ok=True)
-        with whole(path) as partial:
-            partial.write_text(page, encoding="utf-8")
-    except OSError as error:
-        raise SolidgearError(
-            f"{path}: cannot be written ({error.strerror or error}); name a file you may write"
-        ) from error
-    return path
+    return write_page(path, page)

@@ -17,8 +17,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from solidgear.errors import SolidgearError
-from solidgear.machine.whole_file import whole
+from solidgear.machine.whole_file import write_page
 from solidgear.report import packing
 from solidgear.report.drawing import SWING, colours
 from solidgear.report.turning import Turned, picks, turned
@@ -68,17 +67,7 @@ class Turning:
         SolidgearError
             If the file cannot be written.
         """
-        path = Path(path)
-        text = viewer_page(self.models, self.title, still=still, first=self.first)
-        try:
-            path.parent.mkdir(parents=True, exist_ok=True)
-            with whole(path) as partial:
-                partial.write_text(text, encoding="utf-8")
-        except OSError as error:
-            raise SolidgearError(
-                f"{path}: cannot be written ({error.strerror or error}); name a file you may write"
-            ) from error
-        return path
+        return write_page(path, viewer_page(self.models, self.title, still=still, first=self.first))
 
     def __repr__(self) -> str:
         told = ", ".join(f"{m.title} ({len(m.shapes)} modes)" for m in self.models)

@@ -8,11 +8,8 @@ from pydantic import Field, ValidatorFunctionWrapHandler, WrapValidator
 
 from solidgear.errors import SceneError
 from solidgear.scene.parts import Model
-from solidgear.scene.rules import MOST_MODES
+from solidgear.scene.rules import AT, MOST_MODES
 from solidgear.scene.units import Frequency, Tolerance
-
-#: between a quantity and the lumped point that it is of
-AT = "@"
 
 #: what a model can be judged by: compliance and stiffness at the lumped point, first modes
 Quantity = Literal[

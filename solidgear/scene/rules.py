@@ -26,6 +26,8 @@ SLIMMEST, SHORTEST, THINNEST = 1e-3, 1e-6, 1e-4
 #: frequencies rise above 1e-4 and searches do not end
 MOST_UNLIKE = 1e5
 
+#: between a quantity and the lumped point that it is of
+AT = "@"
 #: elastic modes that can be asked for; of the last of them no mesh here has a digit
 MOST_MODES = 500
 
@@ -231,7 +233,7 @@ def station_problems(
                 f"{others} has this name; each needs its own", path=(*path[:-1], "name")
             )
         names.add(here.name)
-        if what == "attached span" and len(ports) > 1 and "@" in here.name:
+        if what == "attached span" and len(ports) > 1 and AT in here.name:
             reason = (
                 "the name of one of several points has no @, which stands before it in C_zz@name"
             )
@@ -280,8 +282,8 @@ def question_problems(ports: Sequence[Port], quantities: Sequence[str]) -> Itera
     """
     known = [port.name for port in ports]
     for k, quantity in enumerate(quantities):
-        base, at, point = quantity.partition("@")
-        asked = [point] if point in known else point.split("@")
+        base, at, point = quantity.partition(AT)
+        asked = [point] if point in known else point.split(AT)
         unknown = [name for name in asked if at and name not in known]
         reason = no_such_point(unknown[0], known) if unknown else no_term(base, asked)
         if reason:

@@ -31,8 +31,9 @@ if TYPE_CHECKING:
 FIELDS = ("position", "scale", *STIFFNESS_NAMES)
 #: in place of a bearing
 HOUSING = -1
-#: before a field of the housing of one bearing
-WITHIN = "housing."
+#: what is said of the housing of one bearing, and what stands before a field of it
+HOUSED = "housing"
+WITHIN = f"{HOUSED}."
 #: More variants than this are a slip of the keyboard.
 MOST = 10_000_000
 
@@ -133,9 +134,8 @@ def _axis(scene: Scene, text: str) -> Axis:
             f'--vary {text}: write bearing.NAME.FIELD=VALUES, such as "bearing.2.position=0.2 m:0.3 m:11"'
         )
     names = [b.name for b in scene.bearings]
-    inner = f".{WITHIN}".rstrip(".")
-    housed = name not in names and name.endswith(inner)
-    name = name.removesuffix(inner) if housed else name
+    housed = name not in names and name.endswith(f".{HOUSED}")
+    name = name.removesuffix(f".{HOUSED}") if housed else name
     if name in names:
         index = names.index(name)
     elif name.isdecimal() and 1 <= int(name) <= len(names):
@@ -147,7 +147,7 @@ def _axis(scene: Scene, text: str) -> Axis:
         )
     if housed:
         return _of_one_housing(scene, text, index, field, spec)
-    if field == inner[1:]:
+    if field == HOUSED:
         raise SolidgearError(
             f"--vary {text}: says nothing of what varies in the housing; write for example "
             f'"bearing.{names[index]}.{field}.kzz=log:1e8 N/m:1e10 N/m:9"'
