@@ -308,14 +308,10 @@ def _marks(scene, grading: Grading, attachments) -> list[_Mark]:
         ties = attachments or (station.attachment,)
         held = "rigid" in ties
         narrow = grading.seat_layers(station, segments, ties)
+        # A seat that ends at a face needs its layers too: the shear that it carries, along the axis
+        # or in tilting, ends in a corner whose other side is free of it.
         for y in (station.lo, station.hi):
-            at_face = min(abs(y), abs(y - scene.length)) <= tol
-            # An averaged seat that ends at a face meets no edge there; a rigid one is clamped up to
-            # the corner.
-            if held:
-                add(y, grading.layers + narrow)
-            else:
-                add(y, 0 if at_face else grading.edge + narrow)
+            add(y, (grading.layers if held else grading.edge) + narrow)
         planes = "section" in ties and tol < station.y < scene.length - tol
         add(station.y, max(grading.edge, grading.layers - 1) if planes else 0)
     for a, b in zip(segments, segments[1:]):
@@ -394,7 +390,11 @@ def _radial_needs(
         held, narrow = "rigid" in ties, grading.seat_layers(station, segments, ties)
         for i, s in enumerate(segments):
             if s.y0 < station.hi - TOUCH and station.lo + TOUCH < s.y1:
-                layers = grading.across if held else min(grading.edge, grading.across)
-                layers += narrow
-                add(bands[i][1], i, layers, grading.radial_reach * corner_length(s))
+                edge, reach = (
+                    min(grading.edge, grading.across),
+                    grading.radial_reach * corner_length(s),
+                )
+                add(bands[i][1], i, (grading.across if held else edge) + narrow, reach)
+                if "section" in ties:  # whose plane ends in a ring of the bore as well
+                    add(bands[i][0], i, edge, reach)
     return needs
