@@ -87,6 +87,24 @@ def test_two_coarse_meshes_see_what_a_narrow_seat_indents():
         assert abs(v.value / fine[v.quantity] - 1) <= v.bar
 
 
+@pytest.mark.parametrize(
+    ("tie", "quantity", "level", "before"),
+    [("average", "C_yy", 3, 7.5e-7), ("section", "K_zz", 2, 3.6e-5)],
+)
+def test_fine_meshes_stand_still(tie, quantity, level, before):
+    # A seat that ends at a face, and the ring in the bore where a section tie's plane ends, had no
+    # layers of their own: finer meshes then went on as slowly as their order lets them.
+    shaft = sg.Segment.cylinder("shaft", length=0.02, diameter=0.03, bore=0.007)
+    port = sg.Port(name="gear", y=0.006, lo=0.003, hi=0.009, attachment=tie)
+    held = {"kxx": 1e9, "kyy": 1e9, "kzz": 1e9, "kthx": 1e5, "kthz": 1e5}
+    bearing = Bearing(name="A", y=0.009, seat_width=0.018, stiffness=held, attachment=tie)
+    scene = sg.Scene.from_parts([shaft], port=port, bearings=[bearing])
+    fine, finer = (
+        solve(scene, "harmonic", **HARMONIC[i]).quantities[quantity] for i in (level, level + 1)
+    )
+    assert abs(finer / fine - 1) < before / 2
+
+
 def test_bars_of_solids_whose_geometry_is_not_exact_have_two_sides(scenes):
     filleted = sg.load(ROOT / "geometry" / "pinion_filleted.toml")
     assert {v.side for v in answer(filleted, tol=5e-2, ask="C_zz").values} == {"both"}

@@ -234,6 +234,22 @@ def test_section_planes_and_rigid_ends_are_graded():
         assert y[at] == pytest.approx(place, abs=1e-12) and max(np.diff(y)[at - 1 : at + 1]) < 0.002
 
 
+def test_a_seat_that_ends_at_a_face_is_graded_there_too():
+    # its shear ends in a corner whose other side is free of it
+    port = Port(name="gear", y=0.05, lo=0.0, hi=0.1)
+    scene = shaft((0.4, 0.02, 0.02, 0, 0), port=port)
+    first, last = np.diff(layout(scene, Grading(layers=2, edge_layers=2)).y)[[0, -1]]
+    assert first < 0.05 * last
+
+
+def test_the_plane_of_a_section_tie_is_graded_towards_the_bore_too():
+    # it ends in a ring of either surface
+    scene = shaft((0.4, 0.02, 0.02, 0.01, 0.01), port=Port(y=0.2, lo=0.1, hi=0.3))
+    plan = layout(scene, Grading(layers=2, edge_layers=2), ("section",))
+    rings = np.diff(plan.rings(0, (0.0, 0.4), 0.2))
+    assert rings[0] == pytest.approx(rings[-1]) and rings[0] < 0.05 * rings.max()
+
+
 def test_neighbours_share_the_radii_of_their_common_face(scene):
     plan = layout(scene, Grading(**PLAN))
     for i, (a, b) in enumerate(pairwise(scene.segments)):
