@@ -21,7 +21,7 @@ SMOOTH = 0.05
 
 @dataclass(frozen=True)
 class Place:
-    """A point of the meridian where stress is singular.
+    """A point of the meridian where stress is singular, or jumps.
 
     Attributes
     ----------
@@ -78,13 +78,13 @@ def singular_places(scene: Scene, attachments: tuple[str, ...] | None = None) ->
             what = f"section plane of {station.name}"
             found += _around(what, station.y, r, here, here, corner_length(here))
         if {"average", "rigid"} & set(ties):
+            # also where its surface ends: the shear that the seat carries meets a face that is free
+            # of it, and rotations go with the logarithm of the distance
             for y in (station.lo, station.hi):
-                # an averaged seat that reaches up to the end of its surface meets no edge there
-                if "rigid" in ties or not _ends_at_edge(scene, y, station.y):
-                    here = _segment(scene, y, inside=station.y)
-                    what = f"seat end of {station.name}"
-                    reach = min(corner_length(here), station.hi - station.lo)
-                    found.append(Place(what, y, _outer(here, y), reach))
+                here = _segment(scene, y, inside=station.y)
+                what = f"seat end of {station.name}"
+                reach = min(corner_length(here), station.hi - station.lo)
+                found.append(Place(what, y, _outer(here, y), reach))
     return _distinct(found, 1e-9 * scene.length)
 
 
@@ -126,18 +126,6 @@ def _segment(scene: Scene, y: float, inside: float | None = None) -> Segment:
     """The segment at a place; of two that meet there, the one towards `inside`."""
     toward = y if inside is None else y + 1e-6 * (inside - y)
     return next((s for s in scene.segments if toward <= s.y1), scene.segments[-1])
-
-
-def _ends_at_edge(scene: Scene, y: float, inside: float) -> bool:
-    """Whether the surface that a seat is on ends at y in a corner that sticks out."""
-    tolerance = 1e-9 * scene.length
-    if min(abs(y), abs(y - scene.length)) <= tolerance:
-        return True
-    for a, b in zip(scene.segments, scene.segments[1:]):
-        if abs(y - a.y1) <= tolerance:
-            own, other = (a.outer1, b.outer0) if inside < y else (b.outer0, a.outer1)
-            return own > other + tolerance
-    return False
 
 
 def _outer(segment: Segment, y: float) -> float:
