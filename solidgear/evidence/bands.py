@@ -30,7 +30,7 @@ from dataclasses import asdict, dataclass
 from typing import TYPE_CHECKING
 
 from solidgear.evidence.converge import gci
-from solidgear.evidence.quantities import AT, change, diagonals, in_order, points_of
+from solidgear.evidence.quantities import AT, change, described, diagonals, in_order, points_of
 from solidgear.fidelity.rung import STEPPED
 
 if TYPE_CHECKING:
@@ -140,7 +140,7 @@ def layered_bands(
                 (change(levels[-3], finest, name) or 0.0) - (change(before, finest, name) or 0.0)
             )
         rests_on = max(last, factors.earlier * (earlier or 0.0))
-        factor = usual if len(levels) > 2 else _first(factors.first[edge], rests_on)
+        factor = usual if len(levels) > 2 else _first(_rule(factors, edge, name), rests_on)
         if len(levels) == 2 and points_of(name) and name.startswith("K_"):
             factor = max(factor, BETWEEN_HELD)
         if earlier and len(levels) > 3:  # the step off the coarsest mesh is no regular one
@@ -169,6 +169,12 @@ def layered_bands(
             extrapolated=float(finest[name] + factors.ahead * (finest[name] - before[name])),
         )
     return out
+
+
+def _rule(factors: BandFactors, edge: str, name: str) -> tuple[float, float, float]:
+    """The rule after two levels."""
+    known = factors.first_of_modes if described(name)[0] == "frequency" else {}
+    return known.get(edge, factors.first[edge])
 
 
 def _first(rule: tuple[float, float, float], step: float) -> float:

@@ -72,6 +72,8 @@ class BandFactors:
         The same after two levels only: the step off the coarsest mesh tells less where it is small,
         perhaps by accident, and more where it is large. Factor of small steps, the band they reach
         at most before the factor of large steps takes over, and that factor.
+    first_of_modes : dict of str to (float, float, float)
+        The same of frequencies, where it is another.
     earlier : float
         The last change counts for at least this share of the one before it.
     ahead : float
@@ -92,6 +94,7 @@ class BandFactors:
     singular: bool = False
     effect: Mapping[str, float] = field(default_factory=dict)
     plain: str = ""
+    first_of_modes: Mapping[str, tuple[float, float, float]] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
