@@ -105,6 +105,30 @@ def test_fine_meshes_stand_still(tie, quantity, level, before):
     assert abs(finer / fine - 1) < before / 2
 
 
+def test_bars_hold_for_a_thin_disc_between_shafts_of_two_diameters():
+    # a mesh line from one surface to the other crossed the disc: 2.2e-3 off, bar 6e-4
+    def scene(*thick):
+        parts = (("thin", 0.0, 0.08, 0.015), ("disc", 0.08, 0.086, 0.07), *thick)
+        segments = [
+            sg.Segment(name=name, y0=y0, y1=y1, outer0=radius, outer1=radius)
+            for name, y0, y1, radius in parts
+        ]
+        springs = {"kxx": 2e8, "kyy": 1e8, "kzz": 2e8}
+        a = Bearing(name="A", y=0.02, seat_width=0.016, stiffness=springs)
+        b = Bearing(name="B", y=0.14, seat_width=0.02, stiffness=springs)
+        port = sg.Port(name="tip", y=0.006, lo=0.0, hi=0.012)
+        return sg.Scene.from_parts(segments, port=port, bearings=[a, b])
+
+    found = answer(scene(("thick", 0.086, 0.166, 0.05)), 1e-3, ["C_thx", "bending 1"])
+    # with its end a hair thinner the surfaces had lines of their own on any mesh
+    hair = scene(("thick", 0.086, 0.158, 0.05), ("end", 0.158, 0.166, 0.049995))
+    truth = solve(hair, "harmonic", **HARMONIC[3]).quantities
+    assert found.reached and max(v.meshes for v in found.values) == 3
+    for v in found.values:
+        # the hair itself is worth some 1e-5
+        assert abs(v.value / truth[v.quantity] - 1) <= v.bar + 2e-5
+
+
 def test_bars_of_solids_whose_geometry_is_not_exact_have_two_sides(scenes):
     filleted = sg.load(ROOT / "geometry" / "pinion_filleted.toml")
     assert {v.side for v in answer(filleted, tol=5e-2, ask="C_zz").values} == {"both"}

@@ -6,7 +6,7 @@ import numpy as np
 
 #: steepest that a boundary inside may cross a segment, radius over length
 STEEPEST = 1.5
-#: of the room between its neighbours that a boundary leaves to each
+#: of the room between two boundaries that stay, the share that a third leaves on either side
 LEAST_SHARE = 0.15
 
 
@@ -36,11 +36,11 @@ def _kept(bands, i: int) -> set[int]:
     return {a, b, c, d, max(a, c), min(b, d)}
 
 
-def _straighten(segments, bands, left, right, kept, i: int) -> None:
-    """Move boundaries where segments i and i + 1 meet that would cross one of them too steeply.
+def _straighten(segments, bands, left, right, kept) -> None:
+    """Move boundaries that would cross a segment too steeply.
 
-    Boundaries that are no surface there were spread evenly.  In a thin disc that may take one from
-    the surface of a neighbour on one side far up or down to the other, through cells so skewed that
+    Boundaries that are no surface were spread evenly.  In a thin disc that may take one from the
+    surface of a neighbour on one side far up or down to the other, through cells so skewed that
     each further order takes away no more than half of the error.
 
     Parameters
@@ -51,21 +51,132 @@ def _straighten(segments, bands, left, right, kept, i: int) -> None:
         Radii, which are changed.
     kept : set of (int, int)
         Boundaries that are a surface behind a segment, by segment and boundary.
-    i : int
     """
-    low, high = max(bands[i][0], bands[i + 1][0]), min(bands[i][1], bands[i + 1][1])
-    for place in range(low + 1, high):
-        here, there = place - bands[i][0], place - bands[i + 1][0]
-        for k, before, ends in ((i, i - 1, left), (i + 1, i + 1, right)):
-            if (i, place) in kept or (before, place) not in kept or k not in ends:
+    fixed = set(kept)
+    joints = range(len(segments) - 1)
+    moving = True
+    while moving:  # a boundary that was moved is followed in the next segment
+        moving = False
+        for i in (*joints, *reversed(joints)):
+            low, high = _common(bands, i)
+            here, there = (slice(low - bands[k][0], high - bands[k][0] + 1) for k in (i, i + 1))
+            for place in range(low + 1, high):
+                for k, before, ends in ((i, i - 1, left), (i + 1, i + 1, right)):
+                    if (i, place) in fixed or (before, place) not in fixed or k not in ends:
+                        continue
+                    far = ends[k][place - bands[k][0]]
+                    if _too_steep(right[i][here][place - low], far, segments[k]):
+                        held = [p - low for p in range(low, high + 1) if (i, p) in fixed]
+                        _move(right[i][here], held, place - low, far)
+                        left[i + 1][there][1:-1] = right[i][here][1:-1]
+                        fixed.add((i, place))
+                        moving = True
+    for i in joints:  # what ends on the face of the larger of two neighbours
+        low, high = _common(bands, i)
+        for k, own, other in ((i, right, left), (i + 1, left, right)):
+            bottom, top = bands[k]
+            for first, last in ((bottom, low), (high, top)):
+                held = [first - bottom, last - bottom]
+                for here in range(first - bottom + 1, last - bottom):
+                    if k in other and _too_steep(own[k][here], other[k][here], segments[k]):
+                        _move(own[k], sorted(held), here, other[k][here])
+                        held.append(here)
+
+
+def _common(bands, i: int) -> tuple[int, int]:
+    """Lowest and highest boundary of the face that segments i and i + 1 share."""
+    return max(bands[i][0], bands[i + 1][0]), min(bands[i][1], bands[i + 1][1])
+
+
+def _too_steep(radius: float, far: float, segment) -> bool:
+    return abs(radius - far) > STEEPEST * segment.length
+
+
+def _move(radii, held, i: int, wanted: float) -> None:
+    """Move one of ascending radii as near to what is wanted as the nearest ones that are held leave
+    room for, and spread those between.
+    """
+    below, above = max(h for h in held if h < i), min(h for h in held if h > i)
+    room = 2 * LEAST_SHARE * (radii[above] - radii[below]) / (above - below)
+    least, most = radii[below] + room * (i - below), radii[above] - room * (above - i)
+    moved = min(max(wanted, least), most)
+    radii[below : i + 1] = np.linspace(radii[below], moved, i - below + 1)
+    radii[i : above + 1] = np.linspace(moved, radii[above], above - i + 1)
+
+
+def _levels(surface, lengths, tol: float) -> list[int]:
+    """Which boundary the surface of every segment is.
+
+    Of two neighbours the smaller one has the lower boundary, and the same where they meet.  Where
+    two surfaces face each other across larger segments between them, one boundary runs from the one
+    to the other; in a thin disc that would be too steep, and each has a boundary of its own.
+
+    Parameters
+    ----------
+    surface : sequence of (float, float)
+        Radius of every segment at its two ends, m; negative in bores.
+    lengths : sequence of float
+        m.
+    tol : float
+        Radii that differ by less meet, m.
+
+    Returns
+    -------
+    list of int
+        From 0, the least that will do.
+    """
+    level = _raised(surface, tol, [])
+    apart: list[tuple[int, int]] = []
+    for _ in surface:
+        steep = [pair for pair in _steep(surface, lengths, level) if pair not in apart]
+        if not steep:
+            break
+        more = _raised(surface, tol, [*apart, *steep])
+        if more is None:  # cones that ask for one order on one side and the other on the other
+            break
+        level, apart = more, [*apart, *steep]
+    return level
+
+
+def _steep(surface, lengths, level) -> list[tuple[int, int]]:
+    """Pairs of segments, smaller first, that face each other across larger ones and whose surfaces
+    are one boundary, or boundaries of the other order, where that is too steep for what is between.
+    """
+    out = []
+    for i in range(len(surface)):
+        for j in range(i + 2, len(surface)):
+            between = min(level[i + 1 : j])
+            if between <= level[i]:
+                break  # nothing beyond is seen across it
+            if between <= level[j]:
                 continue
-            far = ends[k][place - bands[k][0]]
-            if abs(right[i][here] - far) > STEEPEST * segments[k].length:
-                below, above = right[i][here - 1], right[i][here + 1]
-                room = LEAST_SHARE * (above - below)
-                moved = min(max(far, below + room), above - room)
-                right[i][here] = left[i + 1][there] = moved
-                break
+            rise = surface[j][0] - surface[i][1]
+            low, high = (i, j) if rise > 0 else (j, i)
+            if level[low] >= level[high] and abs(rise) > STEEPEST * sum(lengths[i + 1 : j]):
+                out.append((low, high))
+    return out
+
+
+def _raised(surface, tol: float, apart) -> list[int] | None:
+    """Least levels with level_i < level_j where i is the smaller neighbour or stands before j in a
+    pair that must be apart, and = where neighbours meet; None where there are none.
+    """
+    n = len(surface)
+    pairs = [(i, i + 1, surface[i][1] - surface[i + 1][0]) for i in range(n - 1)]
+    level = [0] * n
+    for _ in range(2 * n + len(apart) + 1):
+        before = list(level)
+        for i, j, d in pairs:
+            if abs(d) <= tol:
+                level[i] = level[j] = max(level[i], level[j])
+            else:
+                low, high = (i, j) if d < 0 else (j, i)
+                level[high] = max(level[high], level[low] + 1)
+        for low, high in apart:
+            level[high] = max(level[high], level[low] + 1)
+        if level == before:
+            return level
+    return None if apart else level
 
 
 def radial_bands(segments, raised=None):
@@ -100,27 +211,11 @@ def radial_bands(segments, raised=None):
     n, raised = len(segments), raised or {}
     tol = 1e-9 * max(max(s.outer0, s.outer1) for s in segments)
 
-    def levels(end, start):
-        """Least integers with level_i < level_j where i is the smaller neighbour, = where they
-        meet.
-        """
-        level = [0] * n
-        for _ in range(n + 1):
-            changed = False
-            for i in range(n - 1):
-                d = end(segments[i]) - start(segments[i + 1])
-                lo, hi = (i, i + 1) if d < -tol else (i + 1, i)
-                need = level[lo] + (1 if abs(d) > tol else 0)
-                if level[hi] < need:
-                    level[hi], changed = need, True
-                if abs(d) <= tol and level[lo] < level[hi]:
-                    level[lo], changed = level[hi], True
-            if not changed:
-                return level
-        return level
-
-    tops = [t + 1 for t in levels(lambda s: s.outer1, lambda s: s.outer0)]
-    bottoms = [-b for b in levels(lambda s: -s.inner1, lambda s: -s.inner0)]
+    lengths = [s.y1 - s.y0 for s in segments]
+    outer = [(s.outer0, s.outer1) for s in segments]
+    bore = [(-s.inner0, -s.inner1) for s in segments]
+    tops = [level + 1 for level in _levels(outer, lengths, tol)]
+    bottoms = [-level for level in _levels(bore, lengths, tol)]
     bands = tuple(zip(bottoms, tops))
 
     def spread(lo, hi, known):
@@ -133,7 +228,7 @@ def radial_bands(segments, raised=None):
     kept = {(i, place) for i in range(n - 1) for place in _kept(bands, i)}
     for i in range(n - 1):
         a, b = segments[i], segments[i + 1]
-        low, high = max(bottoms[i], bottoms[i + 1]), min(tops[i], tops[i + 1])
+        low, high = _common(bands, i)
         common = {low: max(a.inner1, b.inner0), high: min(a.outer1, b.outer0)}
         here, there = (
             {
@@ -146,8 +241,7 @@ def radial_bands(segments, raised=None):
         left[i + 1] = spread(
             *bands[i + 1], {**there, bottoms[i + 1]: b.inner0, tops[i + 1]: b.outer0}
         )
-    for i in range(n - 1):
-        _straighten(segments, bands, left, right, kept, i)
+    _straighten(segments, bands, left, right, kept)
     # A free end divides its radius as the far end of the same segment does.
     for i, s in enumerate(segments):
         if i not in left and i not in right:
