@@ -77,10 +77,10 @@ def _straighten(segments, bands, left, right, kept) -> None:
             bottom, top = bands[k]
             for first, last in ((bottom, low), (high, top)):
                 held = [first - bottom, last - bottom]
-                for here in range(first - bottom + 1, last - bottom):
-                    if k in other and _too_steep(own[k][here], other[k][here], segments[k]):
-                        _move(own[k], sorted(held), here, other[k][here])
-                        held.append(here)
+                for at in range(first - bottom + 1, last - bottom):
+                    if k in other and _too_steep(own[k][at], other[k][at], segments[k]):
+                        _move(own[k], held, at, other[k][at])
+                        held.append(at)
 
 
 def _common(bands, i: int) -> tuple[int, int]:
@@ -125,14 +125,14 @@ def _levels(surface, lengths, tol: float) -> list[int]:
     list of int
         From 0, the least that will do.
     """
-    level = _raised(surface, tol, [])
+    level, _ = _raised(surface, tol, [])
     apart: list[tuple[int, int]] = []
     for _ in surface:
         steep = [pair for pair in _steep(surface, lengths, level) if pair not in apart]
         if not steep:
             break
-        more = _raised(surface, tol, [*apart, *steep])
-        if more is None:  # cones that ask for one order on one side and the other on the other
+        more, there = _raised(surface, tol, [*apart, *steep])
+        if not there:  # cones that ask for one order on one side and the other on the other
             break
         level, apart = more, [*apart, *steep]
     return level
@@ -157,9 +157,9 @@ def _steep(surface, lengths, level) -> list[tuple[int, int]]:
     return out
 
 
-def _raised(surface, tol: float, apart) -> list[int] | None:
+def _raised(surface, tol: float, apart) -> tuple[list[int], bool]:
     """Least levels with level_i < level_j where i is the smaller neighbour or stands before j in a
-    pair that must be apart, and = where neighbours meet; None where there are none.
+    pair that must be apart, and = where neighbours meet; and whether there are such levels.
     """
     n = len(surface)
     pairs = [(i, i + 1, surface[i][1] - surface[i + 1][0]) for i in range(n - 1)]
@@ -175,8 +175,8 @@ def _raised(surface, tol: float, apart) -> list[int] | None:
         for low, high in apart:
             level[high] = max(level[high], level[low] + 1)
         if level == before:
-            return level
-    return None if apart else level
+            return level, True
+    return level, False
 
 
 def radial_bands(segments, raised=None):
