@@ -129,6 +129,34 @@ def test_bars_hold_for_a_thin_disc_between_shafts_of_two_diameters():
         assert abs(v.value / truth[v.quantity] - 1) <= v.bar + 2e-5
 
 
+def test_the_other_plane_is_what_the_first_is_with_bearings_turned():
+    def scene(along, across):
+        shaft = sg.Segment.cylinder("shaft", length=0.3, diameter=0.04)
+        stiffness = {f"k{along}{along}": 3e7, f"k{across}{across}": 3e8, "kyy": 1e8, "kthy": 1e4}
+        ends = [
+            Bearing(name=n, y=y, seat_width=0.02, stiffness=stiffness)
+            for n, y in (("A", 0.02), ("B", 0.2))
+        ]
+        port = sg.Port(name="gear", y=0.29, lo=0.28, hi=0.3)
+        return sg.Scene.from_parts([shaft], port=port, bearings=ends)
+
+    one = answer(scene("x", "z"), 1e-3, "C_xx,C_x,thz,C_thz,K_xx,K_x,thz,K_thz,C_thy,C_zz")
+    other = answer(scene("z", "x"), 1e-3, "C_zz,C_z,thx,C_thx,K_zz,K_z,thx,K_thx")
+    # a quarter turn takes x to z and thz to -thx
+    for x, z, sign in (
+        ("C_xx", "C_zz", 1),
+        ("C_x,thz", "C_z,thx", -1),
+        ("C_thz", "C_thx", 1),
+        ("K_xx", "K_zz", 1),
+        ("K_x,thz", "K_z,thx", -1),
+        ("K_thz", "K_thx", 1),
+    ):
+        assert one[x] == pytest.approx(sign * other[z], rel=1e-9)
+    assert one["C_xx"] > 2 * one["C_zz"] and max(v.bar for v in one.values) <= 1e-3
+    # two springs in parallel hold it against turning, and the shaft between twists a little
+    assert 1 < one["C_thy"] * 2e4 < 1.2
+
+
 def test_bars_of_solids_whose_geometry_is_not_exact_have_two_sides(scenes):
     filleted = sg.load(ROOT / "geometry" / "pinion_filleted.toml")
     assert {v.side for v in answer(filleted, tol=5e-2, ask="C_zz").values} == {"both"}

@@ -39,10 +39,27 @@ QUANTITIES: dict[str, tuple[str, tuple[int, int] | str, str]] = {
     "torsion 1": ("frequency", "torsion 1", "Hz"),
 }
 
+#: The other plane and torsion, which differ where bearings or features do: measured at the main
+#: point, given where they are asked for, and no part of what models are judged by.
+ACROSS: dict[str, tuple[str, tuple[int, int] | str, str]] = {
+    "C_xx": ("compliance", (0, 0), "m/N"),
+    "C_x,thz": ("compliance", (0, 5), "rad/N"),
+    "C_thz": ("compliance", (5, 5), "rad/(N m)"),
+    "C_thy": ("compliance", (4, 4), "rad/(N m)"),
+    "K_xx": ("stiffness", (0, 0), "N/m"),
+    "K_x,thz": ("stiffness", (0, 5), "N/rad"),
+    "K_thz": ("stiffness", (5, 5), "N m/rad"),
+    "K_thy": ("stiffness", (4, 4), "N m/rad"),
+}
 
 #: a coupling passes through zero where symmetry wants it to: it is related to the geometric mean
 #: of these two
-COUPLINGS = {"C_z,thx": ("C_zz", "C_thx"), "K_z,thx": ("K_zz", "K_thx")}
+COUPLINGS = {
+    "C_z,thx": ("C_zz", "C_thx"),
+    "K_z,thx": ("K_zz", "K_thx"),
+    "C_x,thz": ("C_xx", "C_thz"),
+    "K_x,thz": ("K_xx", "K_thz"),
+}
 
 #: What models are judged by: compliances and the frequencies a gear designer reads.  Stiffnesses
 #: follow from compliances and are shown, not judged: inverting spreads a small change of one entry
@@ -62,7 +79,8 @@ def described(name: str) -> tuple[str, tuple[int, int] | str, str]:
     >>> described("C_zz@pinion")
     ('compliance', (2, 2), 'm/N')
     """
-    return QUANTITIES[name.partition(AT)[0]]
+    base = name.partition(AT)[0]
+    return ACROSS[base] if base in ACROSS else QUANTITIES[base]
 
 
 def diagonals(name: str) -> tuple[str, str] | None:
@@ -229,12 +247,12 @@ def own_name(scene: Scene, name: str) -> str:
 
 
 def in_order(names: Iterable[str]) -> list[str]:
-    """Names as they are listed: of the main point as in `QUANTITIES`, then those of further ones and
-    between points; without those that only repeat another.
+    """Names as they are listed: of the main point as in `QUANTITIES` and `ACROSS`, then those of
+    further ones and between points; without those that only repeat another.
     """
     names = list(names)
     further = (q for q in names if AT in q and not repeats(q))
-    return [*(q for q in QUANTITIES if q in names), *further]
+    return [*(q for q in (*QUANTITIES, *ACROSS) if q in names), *further]
 
 
 def measure(
@@ -257,9 +275,12 @@ def measure(
         Of several points, for the terms between them; what these are related to comes along
         (:func:`repeats`).
     """
-    out = _measured(condensed, modes)
+    out = _measured(condensed, modes, QUANTITIES | ACROSS)
     for point, there in (further or {}).items():
-        out |= {f"{name}{AT}{point}": value for name, value in _measured(there, None).items()}
+        out |= {
+            f"{name}{AT}{point}": value
+            for name, value in _measured(there, None, QUANTITIES).items()
+        }
     return out | (_between(coupled) if coupled is not None else {})
 
 
@@ -283,9 +304,12 @@ def _between(coupled: Coupled) -> dict[str, float]:
     return out
 
 
-def _measured(condensed: Condensed | None, modes: ModeSet | None) -> dict[str, float]:
+def _measured(
+    condensed: Condensed | None, modes: ModeSet | None, names: Iterable[str]
+) -> dict[str, float]:
     out = {}
-    for name, (kind, place, _) in QUANTITIES.items():
+    for name in names:
+        kind, place, _ = described(name)
         value = np.nan
         if isinstance(place, str):
             mode = modes.named(place) if modes is not None else None

@@ -22,7 +22,7 @@ import numpy as np
 from solidgear.body import Body, as_supports
 from solidgear.errors import SolidgearError, nearest, show
 from solidgear.evidence.places import Place, singular_places
-from solidgear.evidence.quantities import QUANTITIES, change
+from solidgear.evidence.quantities import change, described
 from solidgear.evidence.record import PlaceRecord, WhereRecord
 from solidgear.evidence.ties import SCENE
 from solidgear.fidelity import build
@@ -266,7 +266,7 @@ def _order(options: Mapping[str, Any]) -> int:
 
 
 def _entry(quantity: str) -> tuple[int, int]:
-    _, place, _ = QUANTITIES[quantity]
+    _, place, _ = described(quantity)
     assert not isinstance(place, str)  # as every compliance
     return place
 

@@ -132,13 +132,8 @@ def _other_direction(model: ModelRecord, units: Units) -> Iterable[list[Any]]:
     change = relative_change(other, one)
     if change is None or abs(change) <= ALIKE:
         return []
-    return [
-        [
-            "Stiffness across, other direction, K_xx",
-            (units.text(other, "N/m", 4), "strong"),
-            "no bar",
-        ]
-    ]
+    row: Row = ("Stiffness across, other direction", "K_xx", "stiffness", (0, 0), "N/m")
+    return [_number(model, "K_xx", row, units)]
 
 
 def reasons(record: Record) -> list[str]:

@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, TypeVar
 
 from solidgear.display import Displayed
 from solidgear.errors import SolidgearError, nearest, show
-from solidgear.evidence.quantities import AT, QUANTITIES, described, judged, own_name
+from solidgear.evidence.quantities import ACROSS, AT, QUANTITIES, described, judged, own_name
 from solidgear.fidelity.ladder import LADDER
 from solidgear.fidelity.rung import BEAM, SOLID
 from solidgear.machine.memory import one_run
@@ -217,7 +217,7 @@ def usable(tol: float) -> float:
 
 def _quantities(scene: Scene, ask: Iterable[str] | str) -> tuple[str, ...]:
     # C_z,thx has a comma of its own
-    given = re.split(r",(?!\s*thx)", ask) if isinstance(ask, str) else list(ask)
+    given = re.split(r",(?!\s*th[xz])", ask) if isinstance(ask, str) else list(ask)
     given = [name.strip() for name in given if name.strip()]
     if not given:
         return judged(scene)
@@ -229,8 +229,8 @@ def _quantities(scene: Scene, ask: Iterable[str] | str) -> tuple[str, ...]:
             if described(word)[0] == "frequency":
                 raise SolidgearError(f"ask: {name}: a frequency is not of a point; ask for {word}")
             word = own_name(scene, f"{word}{AT}{point}")
-        elif word not in QUANTITIES:
-            known = (*QUANTITIES, *WORDS)
+        elif at or word not in QUANTITIES | ACROSS:
+            known = (*QUANTITIES, *ACROSS, *WORDS)
             raise SolidgearError(
                 f"ask: there is no quantity {show(name, 40)}{nearest(name, known)}; "
                 f"there are {', '.join(known)}"

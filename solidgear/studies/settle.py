@@ -215,7 +215,7 @@ class Whole(Climb):
         if self.turned:
             finest = self.turned[-1].quantities
             known = self._turned_bands()
-            own = [name for name in finest if not repeats(name)]
+            own = [q for q in finest if q.partition(AT)[0] in TURNED and not repeats(q)]
             out |= {_turned_name(name): known.get(name, math.inf) for name in own}
         return out
 
