@@ -13,6 +13,7 @@ from solidgear.body import Body, Port
 from solidgear.errors import SolidgearError
 from solidgear.fidelity.attachment import tie_rigidly
 from solidgear.fidelity.cyclic import cyclic_blocks
+from solidgear.fidelity.half_sector import half_sector_blocks, half_sector_solid
 from solidgear.fidelity.options import SECTOR_OPTIONS, checked
 from solidgear.fidelity.rung import CYCLIC
 from solidgear.fidelity.scale import elastic_scale
@@ -24,6 +25,7 @@ from solidgear.meshing.element_size import estimated_counts
 from solidgear.meshing.sector import (
     SectorMesh,
     feature_sizes,
+    mirrored,
     replicated,
     sector_mesh,
     sectors_of,
@@ -44,6 +46,7 @@ def sector(
     ovalising: tuple[int, ...] = (),
     attachments: tuple[str, ...] | None = None,
     count: int | None = None,
+    half: bool = True,
 ) -> Body:
     """Free body of a shaft that repeats itself around the axis, from one sector of it.
 
@@ -65,11 +68,15 @@ def sector(
         Attachments to build at every station, the first being the default one.
     count : int, optional
         Sectors around; by default as many as features have in common.
+    half : bool
+        Solve half a sector where its features are even about a plane: straight teeth, and holes
+        that lie evenly with them. The whole sector then has the same elements and their images.
 
     Returns
     -------
     Body
-        Blocks ``cyclic_0`` of axial motion and torsion, and ``cyclic_1`` of bending.
+        Of half a sector blocks ``axial``, ``torsion``, ``bending_z`` and its twin; of a whole one
+        ``cyclic_0`` of axial motion and torsion, and ``cyclic_1`` of bending in both planes.
 
     Raises
     ------
@@ -78,7 +85,7 @@ def sector(
         faces; MeshError where meshing fails.
     """
     own = {"size": size, "graded_size": graded_size, "refinement": refinement}
-    given = {**own, "ovalising": ovalising, "attachments": attachments}
+    given = {**own, "ovalising": ovalising, "attachments": attachments, "half": half}
     attachments = checked("sector", given, SECTOR_OPTIONS)["attachments"]
     wanted = [(s, a) for s in scene.stations for a in (attachments or (s.attachment,))]
     features = cyclic_features(scene)
@@ -89,7 +96,9 @@ def sector(
         raise SolidgearError(
             f"sector: ovalising {high[0]} is not below half of the {made.count} sectors"
         )
-    mesh = sector_solid(made)
+    if not half:
+        made = mirrored(made)
+    mesh = half_sector_solid(made) if made.half else sector_solid(made)
     facets = seats(mesh, made.straight, scene, features)
 
     def parts_of(station, attachment):
@@ -103,7 +112,8 @@ def sector(
         held = mesh.facet_unknowns(found) if attachment == "rigid" else None
         return mesh.over_facets(found), held
 
-    blocks = cyclic_blocks(mesh, scene, mesh.sector, wanted, parts_of, ovalising)
+    solve = half_sector_blocks if made.half else cyclic_blocks
+    blocks = solve(mesh, scene, mesh.sector, wanted, parts_of, ovalising)
     facts = _facts(made, mesh, features, refinement) | {"pair_tolerance": PAIRS}
     return _body("sector", scene, wanted, blocks, facts, mesh)
 
@@ -130,7 +140,7 @@ def whole(scene: Any, wanted: Sequence, *, refinement: float, **own: Any) -> Bod
         As :func:`sector`.
     """
     features = cyclic_features(scene)
-    made = meshed_sector(scene, wanted, features, refinement=refinement, **own)
+    made = mirrored(meshed_sector(scene, wanted, features, refinement=refinement, **own))
     mesh, segment = replicated(made)
     solid = _isoparametric(mesh, "tet10", segment)
     block, ties = free_block(solid, scene, wanted, seats(solid, mesh.p, scene, features))
@@ -234,11 +244,12 @@ def _facts(made: SectorMesh, mesh: SolidMesh, features, refinement: float) -> di
     elements = made.mesh.t.shape[1]
     return {
         "element": "tet10",
-        "elements": elements * made.count,
+        "elements": elements * made.parts,
         "nodes": int(mesh.nodes.shape[1]),
         "sectors": made.count,
+        "solved_part": "half a sector" if made.half else "a sector",
         "refinement": refinement,
-        "volume": made.count * made.quality.volume,
+        "volume": made.parts * made.quality.volume,
         "min_jacobian_ratio": made.quality.min_ratio,
         "representative_size": float((made.quality.volume / elements) ** (1 / 3)),
         "features": [f.name for f in features],

@@ -27,7 +27,7 @@ from solidgear.meshing.quality import MeshError, MeshQuality, check_mesh
 from solidgear.meshing.sector_drawing import draw_sector, drill, pair_faces
 from solidgear.meshing.teeth import hole_size, section_area, tooth_size, turn_at
 from solidgear.meshing.tetrahedra import filled
-from solidgear.scene.cyclic_rules import middle, no_common_sector
+from solidgear.scene.cyclic_rules import middle, mirror_angle, no_common_sector
 
 #: of the length of the shaft: cut faces whose nodes match no better than this do not match
 MATCH = 1e-9
@@ -35,12 +35,12 @@ MATCH = 1e-9
 
 @dataclass(frozen=True)
 class SectorMesh:
-    """A meshed sector.
+    """A meshed sector, or the half of one that is even about its middle.
 
     Attributes
     ----------
     mesh : skfem.MeshTet2
-        Twisted as its teeth are.
+        Twisted as its teeth are; a half has its middle plane in x = 0, whatever ``turn`` is.
     segment : (ne,) ndarray of int
         Segment each element lies in.
     count : int
@@ -50,7 +50,10 @@ class SectorMesh:
     quality : MeshQuality
         Of the twisted mesh.
     drawn : float
-        Volume of the sector that OCC has drawn, m^3.
+        Volume of the sector (of a half, of that half) that OCC has drawn, m^3.
+    turn : float
+        Angle of the middle of the sector at the start of the shaft, rad.
+    half : bool
     """
 
     mesh: MeshTet2
@@ -59,6 +62,13 @@ class SectorMesh:
     straight: np.ndarray
     quality: MeshQuality
     drawn: float
+    turn: float = 0.0
+    half: bool = False
+
+    @property
+    def parts(self) -> int:
+        """Such meshes around the shaft."""
+        return self.count * (2 if self.half else 1)
 
 
 def sectors_of(features: Iterable[Any]) -> int:
@@ -95,7 +105,8 @@ def sector_mesh(
     refinement: float,
     count: int | None = None,
 ) -> SectorMesh:
-    """Mesh one sector of a shaft with cyclic features.
+    """Mesh one sector of a shaft with cyclic features, or half of one where a mirror plane runs
+    through its middle.
 
     Parameters
     ----------
@@ -126,28 +137,33 @@ def sector_mesh(
     shapes = [Frustum.of(s) for s in segments]
     tolerance = tolerance_of(shapes)
     toothed = {f.segment: f for f in features if f.kind != "bolt_circle"}
-    first = next((middle(teeth, count) for teeth in toothed.values()), 0.0)
+    plane = mirror_angle(features, count)
+    half = plane is not None
+    first = next((middle(teeth, count) for teeth in toothed.values()), plane or 0.0)
     twists = [(s, toothed[s.name]) for s in segments if s.name in toothed]
     with Session(gmsh):
-        own = draw_sector(gmsh, segments, shapes, toothed, planes, circles, count, first)
+        own = draw_sector(gmsh, segments, shapes, toothed, planes, circles, count, half)
         holes = [f for f in features if f.kind == "bolt_circle"]
         own = drill(gmsh, own, holes, segments, twists, count, first)
         gmsh.model.occ.fragment(own[:1], own[1:]) if len(own) > 1 else None
         gmsh.model.occ.synchronize()
         drawn = sum(gmsh.model.occ.getMass(3, v) for _, v in gmsh.model.getEntities(3))
-        pair_faces(gmsh, count, tolerance)
+        if not half:
+            pair_faces(gmsh, count, tolerance)
         corners = corners_of(slabs_between(shapes, planes, tolerance), circles, tolerance)
         formulas = size_formulas(shapes, corners, size, graded_size, None, around)
         formulas += feature_sizes(segments, features, refinement)
         set_size(gmsh, formulas, size)
         mesh = filled(gmsh, "gmsh could not mesh the sector ({}): change refinement a little")
-    exact = volume_of_sector(segments, features, count)
-    check_mesh(mesh, volume=exact, rtol=max(1e-3, 4.0 * (pi / around) ** 4 / 30.0))
+    exact = volume_of_sector(segments, features, count) / (2 if half else 1)
+    quality = check_mesh(mesh, volume=exact, rtol=max(1e-3, 4.0 * (pi / around) ** 4 / 30.0))
     y = mesh.p[1][mesh.t].mean(axis=0)
     segment = np.searchsorted([s.y1 for s in segments[:-1]], y)
+    if half:
+        return SectorMesh(mesh, segment, count, mesh.p, quality, drawn, first, True)
     # turned to where the features look
     whole = _turned(mesh, lambda y: first + turn_at(y, twists))
-    return SectorMesh(whole, segment, count, mesh.p, check_mesh(whole), drawn)
+    return SectorMesh(whole, segment, count, mesh.p, check_mesh(whole), drawn, first)
 
 
 def feature_sizes(segments, features, refinement: float) -> list[str]:
@@ -287,13 +303,64 @@ def replicated(made: SectorMesh) -> tuple[MeshTet2, np.ndarray]:
     number[:, high] = np.roll(number, -1, axis=0)[:, master]
     number[:, axis] = len(own) * count + np.arange(len(axis))
     total = len(own) * count + len(axis)
+    turns = [rotation(1, 2 * pi * k / count)[:3, :3] for k in range(count)]
+    return joined(mesh, turns, number, total), np.tile(made.segment, count)
+
+
+def mirrored(made: SectorMesh) -> SectorMesh:
+    """The whole sector from its half: the elements, and their images in the middle plane.
+
+    Parameters
+    ----------
+    made : SectorMesh
+        A half; a whole sector is given back as it is.
+
+    Returns
+    -------
+    SectorMesh
+    """
+    if not made.half:
+        return made
+    mesh = made.mesh
+    used = np.unique(mesh.t)
+    off = used[np.abs(mesh.p[0, used]) > MATCH * np.ptp(mesh.p[1])]
+    number = np.zeros((2, mesh.p.shape[1]), int)
+    number[:, used] = np.arange(len(used))
+    number[1, off] = len(used) + np.arange(len(off))
+    whole = joined(mesh, [np.eye(3), np.diag([-1.0, 1.0, 1.0])], number, len(used) + len(off))
+    turned = _turned(whole, lambda y: made.turn)
+    segment = np.tile(made.segment, 2)
+    quality = check_mesh(turned)
+    return SectorMesh(turned, segment, made.count, whole.p, quality, 2 * made.drawn, made.turn)
+
+
+def joined(mesh: MeshTet2, maps, number: np.ndarray, total: int) -> MeshTet2:
+    """One mesh of turned or mirrored copies of a mesh.
+
+    Parameters
+    ----------
+    mesh : skfem.MeshTet2
+    maps : sequence of (3, 3) ndarray
+        Orthogonal, one a copy.
+    number : (copies, nv) ndarray of int
+        What the vertices of every copy are called; those that copies share come to lie on each
+        other.
+    total : int
+        Vertices of all copies.
+
+    Returns
+    -------
+    skfem.MeshTet2
+    """
     points, cells, keys, middles = np.zeros((3, total)), [], [], []
     at = mesh.doflocs[:, mesh.dofs.edge_dofs[0]]
-    for k in range(count):
-        turn = rotation(1, 2 * pi * k / count)[:3, :3]
-        points[:, number[k, np.r_[own, axis]]] = turn @ mesh.p[:, np.r_[own, axis]]
-        cells.append(number[k][mesh.t])
-        ends = np.sort(number[k][mesh.edges], axis=0)
+    corners = np.unique(mesh.t)
+    for name, turn in zip(number, maps):
+        points[:, name[corners]] = turn @ mesh.p[:, corners]
+        # an image in a mirror is left-handed
+        t = mesh.t if np.linalg.det(turn) > 0 else mesh.t[[0, 2, 1, 3]]
+        cells.append(name[t])
+        ends = np.sort(name[mesh.edges], axis=0).astype(np.int64)
         keys.append(ends[0] * total + ends[1])
         middles.append(turn @ at)
     straight = MeshTet1(points, np.ascontiguousarray(np.hstack(cells).astype(np.int32)))
@@ -303,4 +370,4 @@ def replicated(made: SectorMesh) -> tuple[MeshTet2, np.ndarray]:
     doflocs = whole.doflocs.copy()
     found = first[np.searchsorted(key, ends[0] * total + ends[1])]
     doflocs[:, whole.dofs.edge_dofs[0]] = np.hstack(middles)[:, found]
-    return replace(whole, doflocs=doflocs), np.tile(made.segment, count)
+    return replace(whole, doflocs=doflocs)

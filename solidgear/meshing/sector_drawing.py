@@ -8,18 +8,21 @@ import numpy as np
 
 from solidgear.frames import rotation
 from solidgear.meshing.quality import MeshError
-from solidgear.meshing.teeth import outline, turn_at
+from solidgear.meshing.teeth import half_outline, outline, turn_at
 from solidgear.meshing.tetrahedra import draw_revolved
 
 
-def draw_sector(gmsh, segments, shapes, toothed, planes, circles, count: int, first: float):
-    """Volumes of the sector: wedges of runs of plain segments, and slabs of toothed ones."""
-    turn = 2 * pi / count
+def draw_sector(gmsh, segments, shapes, toothed, planes, circles, count: int, half: bool):
+    """Volumes of the sector, or of its half from the middle on: wedges of runs of plain segments,
+    and slabs of toothed ones.
+    """
+    turn = (pi if half else 2 * pi) / count
+    start = -pi / 2 - (0.0 if half else turn / 2)
     runs: list[list[int]] = []
     for i, s in enumerate(segments):
         if s.name in toothed:
             inside = [y for y in (*planes, *circles) if s.y0 < y < s.y1]
-            _toothed(gmsh, s, toothed[s.name], sorted(set(inside)), count)
+            _toothed(gmsh, s, toothed[s.name], sorted(set(inside)), count, half)
         elif runs and runs[-1][-1] == i - 1:
             runs[-1].append(i)
         else:
@@ -29,15 +32,15 @@ def draw_sector(gmsh, segments, shapes, toothed, planes, circles, count: int, fi
         inside = [
             [y for y in places if own[0].y0 <= y <= own[-1].y1] for places in (planes, circles)
         ]
-        draw_revolved(gmsh, own, inside[0], inside[1], -pi / 2 - turn / 2, turn)
+        draw_revolved(gmsh, own, inside[0], inside[1], start, turn)
     gmsh.model.occ.synchronize()
     return gmsh.model.getEntities(3)
 
 
-def _toothed(gmsh, segment, teeth, cuts: list[float], count: int) -> None:
+def _toothed(gmsh, segment, teeth, cuts: list[float], count: int, half: bool) -> None:
     """A toothed segment between the cut faces, as polyhedra from cut to cut, less its bore."""
     occ = gmsh.model.occ
-    angle, radius = outline(teeth, count)
+    angle, radius = (half_outline if half else outline)(teeth, count)
     places = [segment.y0, *cuts, segment.y1]
     sections = []
     for y in places:

@@ -48,6 +48,34 @@ def outline(teeth: Any, count: int) -> tuple[np.ndarray, np.ndarray]:
     return angle, radius
 
 
+def half_outline(teeth: Any, count: int) -> tuple[np.ndarray, np.ndarray]:
+    """Corners of the section of half a sector, from its middle to a cut face.
+
+    Parameters
+    ----------
+    teeth : Teeth or Spline
+    count : int
+        Sectors around.
+
+    Returns
+    -------
+    angle, radius : (k,) ndarray
+        As of :func:`outline`.
+
+    Examples
+    --------
+    >>> from solidgear.scene import Teeth
+    >>> angle, radius = half_outline(Teeth(name="t", segment="head", count=14), 14)
+    >>> len(angle), float(angle[0])
+    (4, 0.0)
+    """
+    angle, radius = outline(teeth, count)
+    beyond = angle > 0.0
+    # a tip or a land, whose chord the plane meets in its middle
+    k = int(np.argmax(beyond))
+    return np.r_[0.0, angle[beyond]], np.r_[radius[k] * cos(angle[k]), radius[beyond]]
+
+
 def section_area(teeth: Any) -> float:
     """Area of a toothed section of unit pitch radius, closed form.
 

@@ -143,3 +143,51 @@ def middle(teeth: Teeth | Spline, count: int) -> float:
     """
     # with an even number of teeth in a sector its middle lies between two of them
     return teeth.angle + (math.pi / teeth.count if teeth.count // count % 2 == 0 else 0.0)
+
+
+def mirror_angle(features: Sequence[Any], count: int) -> float | None:
+    """Angle of a mirror plane of all features in which the middle of a sector can lie, rad.
+
+    Borders of sectors run between teeth, so that teeth decide; bolt circles alone have the plane
+    through a hole, or the one between two.
+
+    Parameters
+    ----------
+    features : sequence of Teeth, Spline or BoltCircle
+        With a sector in common.
+    count : int
+        Sectors around.
+
+    Returns
+    -------
+    float or None
+        None where there is none: spiral teeth, or holes that lie unevenly beside teeth or other
+        holes.
+
+    Examples
+    --------
+    >>> bolts = BoltCircle(name="b", segment="s", count=6, diameter=0.01, circle=0.1, angle=0.3)
+    >>> mirror_angle([bolts], 6)
+    0.3
+    >>> mirror_angle([bolts, bolts.with_changes(name="c", circle=0.2, angle=0.4)], 6) is None
+    True
+    """
+    toothed = [f for f in features if not isinstance(f, BoltCircle)]
+    if any(teeth.spiral_angle for teeth in toothed):
+        return None
+    holes = [f for f in features if isinstance(f, BoltCircle)]
+    if toothed:
+        planes = [middle(toothed[0], count)]
+    elif holes:
+        first = holes[0]
+        planes = [first.angle + k * math.pi / first.count for k in range(2 * first.count // count)]
+    else:
+        planes = [0.0]
+    return next((a for a in planes if all(_even(f, a) for f in holes)), None)
+
+
+def _even(holes: BoltCircle, plane: float) -> bool:
+    """Whether a plane through the axis takes holes to holes: it runs through one or between two."""
+    half = math.pi / holes.count
+    apart = (plane - holes.angle + half / 2) % half - half / 2
+    return abs(apart) < SAME_ANGLE
