@@ -30,7 +30,7 @@ from solidgear.meshing.sector import (
     sector_mesh,
     sectors_of,
 )
-from solidgear.scene.cyclic_rules import no_common_sector
+from solidgear.scene.cyclic_rules import mirror_angle, no_common_sector
 
 #: eigenvalues of pairs in a real matrix made of a complex one differ by rounding
 PAIRS = 1e-9
@@ -209,6 +209,28 @@ def sectors_around(scene, given: Mapping[str, Any]) -> int:
     return given.get("count") or max(1, sectors_of(cyclic_features(scene)))
 
 
+def halved(scene: Any, count: int) -> bool:
+    """Whether the middle of a sector can lie in a mirror plane of all features.
+
+    Parameters
+    ----------
+    scene : Scene
+    count : int
+        Sectors around.
+
+    Returns
+    -------
+    bool
+
+    Examples
+    --------
+    >>> import solidgear as sg
+    >>> [halved(sg.load(f"geometry/pinion_{kind}.toml"), 14) for kind in ("toothed", "spiral")]
+    [True, False]
+    """
+    return mirror_angle(cyclic_features(scene), count) is not None
+
+
 def sector_counts(scene, given: Mapping[str, Any]) -> tuple[float, float, float, float]:
     """Vertices, edges, faces and cells of the whole shaft at the sizes of its sector, estimated.
 
@@ -228,10 +250,11 @@ def sector_counts(scene, given: Mapping[str, Any]) -> tuple[float, float, float,
     plan = tetrahedra_plan(scene, wanted, refinement=refinement, around=16, **sizes)
     features = cyclic_features(scene)
     more = feature_sizes(scene.segments, features, refinement)
-    # a tooth and the gap beside it take cells of their own
+    # a tooth and the gap beside it take cells of their own, and so do both sides of a middle plane
     strips = max(
         [sectors_of(features), *(2 * f.count for f in features if f.kind != "bolt_circle")]
     )
+    strips *= 2 if halved(scene, sectors_around(scene, given)) else 1
     return estimated_counts(scene.segments, **plan, more=more, sectors=strips)
 
 

@@ -185,15 +185,18 @@ def corrected_size(scene: Shaft, given: Mapping[str, Any]) -> Size:
 
 def sector_size(scene: Shaft, given: Mapping[str, Any]) -> Size:
     """Size of a cyclic sector, estimated: a share of the whole, once for motions that are alike in
-    all sectors and twice, as real and imaginary parts, for others.
+    all sectors and twice, as real and imaginary parts, for others. Of half a sector the first fall
+    into two, and the second are real.
     """
-    from solidgear.fidelity.sector import sector_counts, sectors_around
+    from solidgear.fidelity.sector import halved, sector_counts, sectors_around
 
     around = sectors_around(scene, given)
     counts = sector_counts(scene, given)
     unknowns, entries = (part / around for part in nodes("tet10", counts, 3))
     further = 1 + len(given["ovalising"])
     part = {**given, "element": "tet10"}
+    if given["half"] and halved(scene, around):
+        return _half_sector(scene, part, unknowns, entries, counts[3] / around / 2)
     one = _solid(
         scene, part, unknowns, entries, counts[3] / around, _tetrahedral_fill(unknowns, entries)
     )
@@ -206,6 +209,25 @@ def sector_size(scene: Shaft, given: Mapping[str, Any]) -> Size:
         two.largest,
         one.build_mb + further * two.build_mb,
         one.peak_mb + further * two.peak_mb,
+        "lower refinement, or raise size and graded_size",
+    )
+
+
+def _half_sector(scene: Shaft, part, unknowns: float, entries: float, cells: float) -> Size:
+    """Size of half a sector, from the unknowns and entries of the whole one, real."""
+    further = len(part["ovalising"])
+    half = unknowns / 2, entries / 2
+    still = _solid(scene, part, *half, cells, _tetrahedral_fill(*half))
+    # both parts of waves on the same elements, which meet on the cut face alone
+    fill = 2 * _tetrahedral_fill(*half)
+    waves = _solid(scene, part, unknowns, entries, cells, fill)
+    return Size(
+        # the two planes of bending are twins, of one matrix
+        int(round((3 + further) * unknowns)),
+        int((2 + further) * entries),
+        waves.largest,
+        2 * still.build_mb + (1 + further) * waves.build_mb,
+        2 * still.peak_mb + (1 + further) * waves.peak_mb,
         "lower refinement, or raise size and graded_size",
     )
 
