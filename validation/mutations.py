@@ -63,7 +63,7 @@ MUTATIONS = (
         "basis",
         "1j * h * sector.angle",
         "-1j * h * sector.angle",
-        "tests/test_sector.py::test_a_sector_is_the_whole[straight]",
+        "tests/test_sector.py::test_a_sector_is_the_whole[spiral]",
     ),
     Mutation(
         "the axis of a sector moves against the turn",
@@ -79,7 +79,7 @@ MUTATIONS = (
         "_block",
         "count / 2",
         "count / 1",
-        "tests/test_sector.py::test_a_sector_is_the_whole[straight]",
+        "tests/test_sector.py::test_a_sector_is_the_whole[spiral]",
     ),
     Mutation(
         "ports of waves turned the other way",
@@ -88,6 +88,30 @@ MUTATIONS = (
         "p * turn",
         "p * turn.T",
         "tests/test_sector.py::test_a_sector_is_the_whole[spiral]",
+    ),
+    Mutation(
+        "the cut face of half a sector moves against its phase",
+        "solidgear/fidelity/half_sector.py",
+        "basis",
+        "-sin * around",
+        "sin * around",
+        "tests/test_half_sector.py::test_half_a_sector_is_the_whole_one[teeth]",
+    ),
+    Mutation(
+        "the other part of a tilt with the wrong sign",
+        "solidgear/fidelity/half_sector.py",
+        "_in_parts",
+        "(1.0, -1.0)",
+        "(1.0, 1.0)",
+        "tests/test_half_sector.py::test_half_a_sector_is_the_whole_one[teeth]",
+    ),
+    Mutation(
+        "energy of half a sector counted once",
+        "solidgear/fidelity/half_sector.py",
+        "_block",
+        "2 * half.count",
+        "half.count",
+        "tests/test_half_sector.py::test_half_a_sector_is_the_whole_one[teeth]",
     ),
     Mutation(
         "hand of a spiral turned",

@@ -86,7 +86,8 @@ def heading(scene: Scene, body: Body, settled: Settled | None) -> str:
     model = body.fidelity
     if settled is not None:
         model = f"{model}, {settled.setting} (auto)"
-    return f"{scene.name}: {model}, {body.size} unknowns"
+    part = f"{body.mesh['solved_part']}, " if "solved_part" in body.mesh else ""
+    return f"{scene.name}: {model}, {part}{body.size} unknowns"
 
 
 def told(settled: Settled | None) -> list[str]:

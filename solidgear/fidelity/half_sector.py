@@ -39,12 +39,11 @@ from solidgear.fidelity.solid_mesh import SolidMesh, _isoparametric
 from solidgear.frames import rotation
 from solidgear.meshing.sector import MATCH, SectorMesh
 
-#: blocks that ports move in: harmonic index, components, and for each of them the sign and the
-#: component that b is where a is that of a rigid motion; no sign where the other part stands still
-PORTED: dict[str, tuple[int, tuple[int, ...], tuple[tuple[float, int], ...]]] = {
-    "axial": (0, (1,), ()),
-    "torsion": (0, (4,), ()),
-    "bending_z": (1, (2, 3), ((1.0, 0), (-1.0, 5))),
+#: blocks that ports move in: harmonic index and components
+PORTED: dict[str, tuple[int, tuple[int, ...]]] = {
+    "axial": (0, (1,)),
+    "torsion": (0, (4,)),
+    "bending_z": (1, (2, 3)),
 }
 _MIRROR = np.array([-1.0, 1.0, 1.0])
 #: the mirror on a motion of three displacements and three rotations
@@ -200,17 +199,9 @@ def _around(gram: np.ndarray, half: HalfSector) -> np.ndarray:
 
 
 def _block(name, matrices, t, node, mesh, rigid, half: HalfSector, seats) -> Block:
-    h, components, partners = PORTED.get(name, (2, (), ()))
+    h, components = PORTED.get(name, (2, ()))
     # both halves of all sectors; cos^2 and sin^2 of the phases are one half on the mean
     energy = 2 * half.count if h == 0 else half.count
-
-    def both(six: np.ndarray) -> np.ndarray:
-        """Rigid motions, or loads, in a and b."""
-        own = six[:, list(components)]
-        return np.vstack(
-            [own, *([six[:, [c for _, c in partners]] * [s for s, _ in partners]] * bool(partners))]
-        )
-
     stiffness, mass = (energy * (t.T @ x @ t) for x in matrices)
     rows, ties = [np.zeros((0, t.shape[1]))], []
     for i, (station, held, gram, loads) in enumerate(seats):
@@ -219,7 +210,7 @@ def _block(name, matrices, t, node, mesh, rigid, half: HalfSector, seats) -> Blo
             rows.append(np.zeros((len(components), t.shape[1])))
             continue
         own = gram[np.ix_(components, components)]
-        motion = np.linalg.solve(own, energy * (t.T @ both(loads)).T)
+        motion = np.linalg.solve(own, energy * (t.T @ _in_parts(loads, components)).T)
         motion[np.abs(motion) < ROUNDING * np.abs(motion).max(axis=1, keepdims=True)] = 0.0
         rows.append(motion)
     block = Block(
@@ -227,7 +218,7 @@ def _block(name, matrices, t, node, mesh, rigid, half: HalfSector, seats) -> Blo
         components,
         stiffness.tocsr(),
         mass.tocsr(),
-        t.T @ both(rigid) if components else np.zeros((t.shape[1], 0)),
+        t.T @ _in_parts(rigid, components) if components else np.zeros((t.shape[1], 0)),
         mesh.nodes[1, node],
         sp.csr_matrix(np.vstack(rows)),
         None,
@@ -236,6 +227,16 @@ def _block(name, matrices, t, node, mesh, rigid, half: HalfSector, seats) -> Blo
     )
     tied = tie_rigidly(block, ties)
     return replace(tied, expand=(t @ tied.expand).tocsr()) if ties else block
+
+
+def _in_parts(six: np.ndarray, components: tuple[int, ...]) -> np.ndarray:
+    """Rigid motions, or loads on them, of a whole part as a, and with waves b below it.
+
+    Seen in turned axes a translation along z becomes ``e^{i k alpha} (z + i x)``, and the axis of a
+    tilt about x turns the other way, from x to -z.
+    """
+    own = six[:, list(components)]
+    return np.vstack([own, six[:, [0, 5]] * (1.0, -1.0)]) if components == (2, 3) else own
 
 
 @dataclass(frozen=True, eq=False)

@@ -145,6 +145,7 @@ def whole(scene: Any, wanted: Sequence, *, refinement: float, **own: Any) -> Bod
     solid = _isoparametric(mesh, "tet10", segment)
     block, ties = free_block(solid, scene, wanted, seats(solid, mesh.p, scene, features))
     facts = _facts(made, solid, features, refinement) | {"pair_tolerance": 1e-6}
+    del facts["solved_part"]
     return _body("solid", scene, wanted, (tie_rigidly(block, ties),), facts, solid)
 
 
@@ -270,7 +271,7 @@ def _facts(made: SectorMesh, mesh: SolidMesh, features, refinement: float) -> di
         "elements": elements * made.parts,
         "nodes": int(mesh.nodes.shape[1]),
         "sectors": made.count,
-        "solved_part": "half a sector" if made.half else "a sector",
+        "solved_part": "half a sector" if made.half else "a whole sector",
         "refinement": refinement,
         "volume": made.parts * made.quality.volume,
         "min_jacobian_ratio": made.quality.min_ratio,

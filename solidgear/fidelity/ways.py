@@ -96,13 +96,17 @@ def _ways(scene, model: str, options: dict, free: float) -> Iterator[Way]:
 
 
 def _halves(scene, model: str, options: dict) -> Iterator[Way]:
-    """Half models, where there is a mirror plane that was not used."""
+    """Half models, or half a sector, where there is a mirror plane that was not used."""
+    from solidgear.fidelity.sector import halved, sectors_around
     from solidgear.fidelity.sizes import has_mirror_plane
 
-    if model == "solid" and not options.get("half", True) and has_mirror_plane(scene):
+    if options.get("half", True):
+        return
+    sector = model == "sector"
+    if halved(scene, sectors_around(scene, options)) if sector else has_mirror_plane(scene):
         size = _sized(scene, model, {**options, "half": True})
         if size is not None:
-            yield Way("--set half=true", size.peak_mb, "two half models")
+            yield Way("--set half=true", size.peak_mb, "half a sector" if sector else "two half models")
 
 
 def _other(scene, model: str, other: str) -> Iterator[Way]:

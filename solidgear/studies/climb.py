@@ -283,8 +283,8 @@ class Climb:
 
     def needed(self, body: Body) -> list[tuple[str, ...]] | None:
         """Families that the question is about, each with those that bearings couple to it."""
-        if len(body.blocks) < len(FAMILIES):
-            return None  # one block holds all motions
+        if len(body.blocks) < len(FAMILIES) or "families" not in self.rung.options:
+            return None  # one block holds all motions, or the builder makes all of them at once
         supports = as_supports(self.scene)
         spring, self.left_out = decoupled(body, supports, COUPLING * self.tol)
         asked = {family_of(q) for q in self.wanted}
