@@ -109,8 +109,8 @@ MUTATIONS = (
         "energy of half a sector counted once",
         "solidgear/fidelity/half_sector.py",
         "_block",
-        "2 * half.count",
-        "half.count",
+        "2 * mesh.sector.count",
+        "mesh.sector.count",
         "tests/test_half_sector.py::test_half_a_sector_is_the_whole_one[teeth]",
     ),
     Mutation(

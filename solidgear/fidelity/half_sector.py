@@ -142,9 +142,8 @@ def basis(half: HalfSector, nodes: int, h: int) -> tuple[sp.csr_matrix, np.ndarr
 
 
 def half_sector_blocks(
-    mesh: SolidMesh,
+    mesh: HalfSectorSolid,
     scene: Any,
-    half: HalfSector,
     wanted: Sequence[tuple[Any, str]],
     parts_of: Callable[[Any, str], Any],
     harmonics: Sequence[int] = (),
@@ -153,10 +152,8 @@ def half_sector_blocks(
 
     Parameters
     ----------
-    mesh : SolidMesh
-        Of the half.
+    mesh : HalfSectorSolid
     scene : Scene
-    half : HalfSector
     wanted, parts_of, harmonics
         As for :func:`solidgear.fidelity.cyclic.cyclic_blocks`.
 
@@ -167,7 +164,7 @@ def half_sector_blocks(
         ``ovalising_h`` without ports, which stands for its twin as well.
     """
     k, m = _matrices(mesh, [segment.material for segment in scene.segments])
-    m, n = m.tocsr(), mesh.nodes.shape[1]
+    m, n, half = m.tocsr(), mesh.nodes.shape[1], mesh.sector
     rigid = rigid_motions(mesh.nodes)
     seats = []
     for station, attachment in wanted:
@@ -181,13 +178,13 @@ def half_sector_blocks(
     turning = np.asarray(abs(still[3 * n :]).sum(axis=0)).ravel() > 0
     for name, own, one in (("axial", ~turning, 0), ("torsion", turning, 1)):
         t = still[3 * n * one : 3 * n * (one + 1)][:, own]
-        blocks.append(_block(name, (k, m), t, node[own], mesh, rigid, half, seats))
+        blocks.append(_block(name, (k, m), t, node[own], mesh, rigid, seats))
     t, node = basis(half, n, 1)
-    bending = _block("bending_z", both, t, node, mesh, rigid, half, seats)
+    bending = _block("bending_z", both, t, node, mesh, rigid, seats)
     blocks += [bending, bending.mirrored("bending_x", (0, 5), len(blocks), (1.0, -1.0))]
     for h in harmonics:
         t, node = basis(half, n, h)
-        blocks.append(_block(f"ovalising_{h}", both, t, node, mesh, rigid, half, ()))
+        blocks.append(_block(f"ovalising_{h}", both, t, node, mesh, rigid, ()))
     return tuple(blocks)
 
 
@@ -198,10 +195,10 @@ def _around(gram: np.ndarray, half: HalfSector) -> np.ndarray:
     return sum(turn @ gram @ turn.T for turn in turns)
 
 
-def _block(name, matrices, t, node, mesh, rigid, half: HalfSector, seats) -> Block:
+def _block(name, matrices, t, node, mesh: HalfSectorSolid, rigid, seats) -> Block:
     h, components = PORTED.get(name, (2, ()))
     # both halves of all sectors; cos^2 and sin^2 of the phases are one half on the mean
-    energy = 2 * half.count if h == 0 else half.count
+    energy = 2 * mesh.sector.count if h == 0 else mesh.sector.count
     stiffness, mass = (energy * (t.T @ x @ t) for x in matrices)
     rows, ties = [np.zeros((0, t.shape[1]))], []
     for i, (station, held, gram, loads) in enumerate(seats):
@@ -262,8 +259,10 @@ class HalfSectorSolid(SolidMesh):
         """All copies of the half and of its image, each with its phase."""
         half, parts = self.sector, []
         for name, vector in moved.items():
-            fields = [solid_surface(self, piece).displacement for piece in _real_and_not(self, name, vector)]
-            parts.append((name, *fields))
+            a, b = (
+                solid_surface(self, part).displacement for part in _real_and_not(self, name, vector)
+            )
+            parts.append((name, a, b))
         rest = solid_surface(self, None)
         size, points, displacement = len(rest.points), [], []
         for k in range(half.count):
@@ -272,8 +271,8 @@ class HalfSectorSolid(SolidMesh):
             for side in (1.0, -1.0):
                 local = np.zeros((size, 3))
                 for name, a, b in parts:
-                    for factor, field in zip(_phases(name, angle), (a, side * b)):
-                        local += factor * field
+                    of_a, of_b = _phases(name, angle)
+                    local += of_a * a + side * of_b * b
                 flip = _MIRROR if side < 0 else np.ones(3)
                 points.append((rest.points * flip) @ turn)
                 displacement.append((local * flip) @ turn)
@@ -335,9 +334,7 @@ def half_sector_solid(made: SectorMesh) -> HalfSectorSolid:
     x, _, z = made.mesh.p[:, made.mesh.facets[:, outside]]
     tolerance = MATCH * np.ptp(made.mesh.p[1])
     c, s = np.cos(np.pi / made.count), np.sin(np.pi / made.count)
-    planes = [
-        outside[(np.abs(away) < tolerance).all(axis=0)] for away in (x, x * c - z * s)
-    ]
+    planes = [outside[(np.abs(away) < tolerance).all(axis=0)] for away in (x, x * c - z * s)]
     middle, cut = (plain.facet_unknowns(own) for own in planes)
     axis = np.intersect1d(middle, cut)
     half = HalfSector(

@@ -195,7 +195,9 @@ SECTOR_OPTIONS = {
     ),
     "ovalising": HARMONIC_OPTIONS["ovalising"],
     "attachments": _TIES,
-    "half": Option("whether a sector that is even about its middle is solved by half of it", "flag"),
+    "half": Option(
+        "whether a sector that is even about its middle is solved by half of it", "flag"
+    ),
     **FACTORING_OPTIONS,
 }
 

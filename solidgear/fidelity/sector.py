@@ -4,12 +4,13 @@ the same mesh.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from functools import partial
 from typing import Any
 
 import numpy as np
 
-from solidgear.body import Body, Port
+from solidgear.body import Block, Body, Port
 from solidgear.errors import SolidgearError
 from solidgear.fidelity.attachment import tie_rigidly
 from solidgear.fidelity.cyclic import cyclic_blocks
@@ -98,7 +99,7 @@ def sector(
         )
     if not half:
         made = mirrored(made)
-    mesh = half_sector_solid(made) if made.half else sector_solid(made)
+    mesh, blocks_of = _solved_part(made)
     facets = seats(mesh, made.straight, scene, features)
 
     def parts_of(station, attachment):
@@ -112,10 +113,18 @@ def sector(
         held = mesh.facet_unknowns(found) if attachment == "rigid" else None
         return mesh.over_facets(found), held
 
-    solve = half_sector_blocks if made.half else cyclic_blocks
-    blocks = solve(mesh, scene, mesh.sector, wanted, parts_of, ovalising)
+    blocks = blocks_of(scene, wanted, parts_of, ovalising)
     facts = _facts(made, mesh, features, refinement) | {"pair_tolerance": PAIRS}
     return _body("sector", scene, wanted, blocks, facts, mesh)
+
+
+def _solved_part(made: SectorMesh) -> tuple[SolidMesh, Callable[..., tuple[Block, ...]]]:
+    """The mesh of a sector, or of its half, and what makes blocks of it."""
+    if made.half:
+        half = half_sector_solid(made)
+        return half, partial(half_sector_blocks, half)
+    mesh = sector_solid(made)
+    return mesh, lambda scene, *given: cyclic_blocks(mesh, scene, mesh.sector, *given)
 
 
 def whole(scene: Any, wanted: Sequence, *, refinement: float, **own: Any) -> Body:

@@ -106,7 +106,9 @@ def _halves(scene, model: str, options: dict) -> Iterator[Way]:
     if halved(scene, sectors_around(scene, options)) if sector else has_mirror_plane(scene):
         size = _sized(scene, model, {**options, "half": True})
         if size is not None:
-            yield Way("--set half=true", size.peak_mb, "half a sector" if sector else "two half models")
+            yield Way(
+                "--set half=true", size.peak_mb, "half a sector" if sector else "two half models"
+            )
 
 
 def _other(scene, model: str, other: str) -> Iterator[Way]:
