@@ -98,6 +98,8 @@ def numbers(answer: Answer) -> dict[str, float]:
         pair = lowest[:2]
     else:
         pair = [m.frequency_hz for m in by_plane if m is not None]
+        if "sectors" in answer.body.mesh:
+            pair.sort()  # planes of half a sector are those of no feature: as of the plain part
     return out | dict(zip(PAIR, pair))
 
 
@@ -236,6 +238,6 @@ def _affordable(elements: Callable[[float], int], most: int) -> float:
 
 def _answered(build: Callable[[], Any], scene: sg.Scene) -> Answer:
     body = build()
-    found = answered(body, as_supports(scene), scene.port.name, n=8, meter=Meter())
+    found = answered(body, as_supports(scene), (scene.port.name,), n=8, meter=Meter())
     body.kept.clear()  # its factors
     return found
