@@ -437,6 +437,14 @@ def test_no_line_runs_from_one_surface_to_another_across_a_thin_disc():
     assert steepest(shaft(*cone, *rest)) <= STEEPEST
 
 
+def test_a_joint_that_is_no_step_leaves_lines_straight():
+    # a flange in two pieces drew the shoulder's line from 56 to 60 mm, and the umbrella mode was
+    # 3.7e-3 off with a bar of 1.0e-3
+    thick, thin = (0.09, 0.09, 0, 0), (0.056, 0.056, 0, 0)
+    _, left, right = radial_bands(shaft((0.002, *thick), (0.0043, *thick), (0.023, *thin)).segments)
+    assert [left[0][1], right[0][1], left[1][1], right[1][1]] == pytest.approx(4 * [0.056])
+
+
 def test_few_lines_are_steep_whatever_the_shaft_looks_like():
     # cones so steep that surfaces ask for one order on one side and another on the other remain
     found = []

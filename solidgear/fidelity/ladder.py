@@ -108,10 +108,11 @@ LADDER = Ladder(
             },
             # A mode strains all of the shaft, an edge is a small part of it: of 382 errors of
             # frequencies 98 % are below 0.11, 0.2, 0.17 and 0.21 of the last step at the last four.
+            # In an umbrella mode of a thin flange the shoulder is most of it: 0.2.
             first_of_modes={
                 SMOOTH: (1.2, 1e-4, 0.65),
                 PLANE: (1.5, 3e-4, 0.4),
-                STEPPED: (0.6, 1.5e-4, 0.15),
+                STEPPED: (0.6, 1.5e-4, 0.22),
                 STEPPED_PLANE: (0.6, 1.5e-4, 0.2),
                 HELD: (0.6, 1.5e-4, 0.2),
                 HELD_AT_A_STEP: (0.6, 1.5e-4, 0.26),

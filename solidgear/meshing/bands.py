@@ -4,8 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 
-#: steepest that a boundary inside may cross a segment, radius over length
+#: two surfaces that face each other share a boundary unless it were steeper than this, radius over
+#: length
 STEEPEST = 1.5
+#: a boundary inside that would be steeper than this runs on straight instead: against 1.5 errors of
+#: shouldered shafts are halved
+STRAIGHT = 0.2
 #: of the room between two boundaries that stay, the share that a third leaves on either side
 LEAST_SHARE = 0.15
 
@@ -53,43 +57,49 @@ def _straighten(segments, bands, left, right, kept) -> None:
         Boundaries that are a surface behind a segment, by segment and boundary.
     """
     fixed = set(kept)
-    joints = range(len(segments) - 1)
-    moving = True
-    while moving:  # a boundary that was moved is followed in the next segment
-        moving = False
-        for i in (*joints, *reversed(joints)):
-            low, high = _common(bands, i)
-            here, there = (slice(low - bands[k][0], high - bands[k][0] + 1) for k in (i, i + 1))
-            for place in range(low + 1, high):
-                for k, before, ends in ((i, i - 1, left), (i + 1, i + 1, right)):
-                    if (i, place) in fixed or (before, place) not in fixed or k not in ends:
-                        continue
-                    far = ends[k][place - bands[k][0]]
-                    if _too_steep(right[i][here][place - low], far, segments[k]):
-                        held = [p - low for p in range(low, high + 1) if (i, p) in fixed]
-                        _move(right[i][here], held, place - low, far)
-                        left[i + 1][there][1:-1] = right[i][here][1:-1]
-                        fixed.add((i, place))
-                        moving = True
-    for i in joints:  # what ends on the face of the larger of two neighbours
+    # what is steepest first: a boundary that was moved stays where it is
+    for limit in (STEEPEST, STRAIGHT):
+        while _followed(segments, bands, left, right, fixed, limit):
+            pass
+    for i in range(len(segments) - 1):  # what ends on the face of the larger of two neighbours
         low, high = _common(bands, i)
         for k, own, other in ((i, right, left), (i + 1, left, right)):
             bottom, top = bands[k]
             for first, last in ((bottom, low), (high, top)):
                 held = [first - bottom, last - bottom]
                 for at in range(first - bottom + 1, last - bottom):
-                    if k in other and _too_steep(own[k][at], other[k][at], segments[k]):
-                        _move(own[k], held, at, other[k][at])
+                    far = other[k][at] if k in other else own[k][at]
+                    if abs(own[k][at] - far) > STRAIGHT * segments[k].length:
+                        _move(own[k], held, at, far)
                         held.append(at)
+
+
+def _followed(segments, bands, left, right, fixed, limit: float) -> bool:
+    """Move boundaries to where they stay the same as at the next joint at which they are fixed,
+    where they would be steeper than a limit; whether there were any.
+    """
+    moving = False
+    joints = range(len(segments) - 1)
+    for i in (*joints, *reversed(joints)):
+        low, high = _common(bands, i)
+        here, there = (slice(low - bands[k][0], high - bands[k][0] + 1) for k in (i, i + 1))
+        for place in range(low + 1, high):
+            for k, before, ends in ((i, i - 1, left), (i + 1, i + 1, right)):
+                if (i, place) in fixed or (before, place) not in fixed or k not in ends:
+                    continue
+                far = ends[k][place - bands[k][0]]
+                if abs(right[i][here][place - low] - far) > limit * segments[k].length:
+                    held = [p - low for p in range(low, high + 1) if (i, p) in fixed]
+                    _move(right[i][here], held, place - low, far)
+                    left[i + 1][there][1:-1] = right[i][here][1:-1]
+                    fixed.add((i, place))
+                    moving = True
+    return moving
 
 
 def _common(bands, i: int) -> tuple[int, int]:
     """Lowest and highest boundary of the face that segments i and i + 1 share."""
     return max(bands[i][0], bands[i + 1][0]), min(bands[i][1], bands[i + 1][1])
-
-
-def _too_steep(radius: float, far: float, segment) -> bool:
-    return abs(radius - far) > STEEPEST * segment.length
 
 
 def _move(radii, held, i: int, wanted: float) -> None:
