@@ -157,6 +157,23 @@ def test_the_other_plane_is_what_the_first_is_with_bearings_turned():
     assert 1 < one["C_thy"] * 2e4 < 1.2
 
 
+def test_bars_hold_in_a_narrow_notch():
+    # between a cone of 83 degrees and the face of a disc: 2.1e-2 off, bar 0.9e-2
+    parts = [
+        sg.Segment(name="cone", y0=0.0, y1=0.0026, outer0=0.0343, outer1=0.017),
+        sg.Segment(name="disc", y0=0.0026, y1=0.0041, outer0=0.0899, outer1=0.0423),
+    ]
+    springs = {"kxx": 2e8, "kyy": 1e8, "kzz": 2e8}
+    a = Bearing(name="A", y=0.0004, seat_width=0.0008, stiffness=springs)
+    b = Bearing(name="B", y=0.0037, seat_width=0.0006, stiffness=springs)
+    port = sg.Port(name="p", y=0.0018, lo=0.0014, hi=0.0022)
+    scene = sg.Scene.from_parts(parts, port=port, bearings=[a, b])
+    found = answer(scene, 0.05, ["K_zz", "bending 1", "axial 1"])
+    fine = solve(scene, "harmonic", **HARMONIC[3]).quantities
+    for v in found.values:
+        assert abs(v.value / fine[v.quantity] - 1) <= v.bar
+
+
 def test_bars_of_solids_whose_geometry_is_not_exact_have_two_sides(scenes):
     filleted = sg.load(ROOT / "geometry" / "pinion_filleted.toml")
     assert {v.side for v in answer(filleted, tol=5e-2, ask="C_zz").values} == {"both"}

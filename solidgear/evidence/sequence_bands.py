@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from collections.abc import Sequence as Listed
+from dataclasses import replace
 from functools import lru_cache
 from typing import TYPE_CHECKING
 
 from solidgear.evidence.answer import solve
 from solidgear.evidence.bands import Band, layered_bands, refined_bands
 from solidgear.evidence.quantities import AT, measure, points_of, size
-from solidgear.fidelity.edges import sharpest_edge
+from solidgear.fidelity.edges import acute, sharpest_edge
 from solidgear.fidelity.ladder import LADDER
 from solidgear.meshing.corners import sharpest_corner
 from solidgear.solve.statics import condense
@@ -23,6 +24,9 @@ if TYPE_CHECKING:
 #: exponent at the end of a rigid seat, a clamp on a smooth surface (Williams 1952, clamped-free at
 #: 180 degrees)
 RIGID_EDGE = 0.5
+#: bands of shafts with acute cells, over those of others: of 38 random ones, each solved twice with
+#: other meshes and once finer, eight had errors of up to 2.5 times their band
+ACUTE = 4.0
 #: mesh of the plain part, coarse to fine: good to some 1e-4, of which shares are taken
 PLAIN_MESH = 1
 
@@ -68,7 +72,10 @@ def sequence_bands(
             return {}
         edge = sharpest_edge(scene)
         effect = feature_effect(scene, factors, levels[-1])
-        return layered_bands(levels, solver, factors, edge=edge, around=around, effect=effect)
+        found = layered_bands(levels, solver, factors, edge=edge, around=around, effect=effect)
+        if acute(scene):
+            return {name: replace(band, gci=ACUTE * band.gci) for name, band in found.items()}
+        return found
     last = [size or 0.0 for size in sizes[-3:]]
     if len(levels) < 3 or not last[0] > last[1] > last[2] > 0:
         return {}

@@ -14,6 +14,9 @@ if TYPE_CHECKING:
 
 #: a seat that ends this near to a step, in least outer radii, ends at it: no mesh tells them apart
 NEAR = 0.01
+#: a notch narrower than this, rad, and a surface that rises by more than this over its length, leave
+#: cells so acute that errors go on as more than bars expect
+NARROW_NOTCH, STEEP_SURFACE = np.pi / 6, 4.0
 
 
 def sharpest_edge(scene: Scene) -> str:
@@ -52,3 +55,27 @@ def sharpest_edge(scene: Scene) -> str:
     if corners:
         return STEPPED_PLANE if plane else STEPPED
     return PLANE if plane else SMOOTH
+
+
+def acute(scene: Scene) -> bool:
+    """Whether cells are acute somewhere: in a notch between a steep cone and a face, or in a disc
+    that is all cone.
+
+    Parameters
+    ----------
+    scene : Scene
+
+    Examples
+    --------
+    >>> import solidgear as sg
+    >>> acute(sg.load("geometry/gear_shaft.toml"))  # a bevel gear: its cone rises by 3.4
+    False
+    """
+    pairs = zip(scene.segments, scene.segments[1:])
+    notch = 2 * np.pi - NARROW_NOTCH
+    if any(corner_angle(a, b, filled_at(scene, b.y0)) > notch for a, b in pairs):
+        return True
+    rises = (
+        max(abs(s.outer1 - s.outer0), abs(s.inner1 - s.inner0)) / s.length for s in scene.segments
+    )
+    return any(rise > STEEP_SURFACE for rise in rises)
