@@ -365,3 +365,32 @@ def test_a_free_direction_between_the_axes_is_named_as_one():
     found = sg.condense(sg.build(scene, "timoshenko"), scene, scene.port.name)
     assert found.free_names == ()
     np.testing.assert_allclose(np.abs(found.oblique.T), [[1, 0, 1, 0, 0, 0]], atol=1e-9)
+
+
+def test_one_free_motion_more_takes_only_its_own_compliances():
+    """Without a second kxx the stub turns about A in the x plane as well as about its axis: what
+    neither motion moves keeps its compliance to the digit, and torsion is an exact zero still.
+    """
+
+    def bearing(name, y, diagonal):
+        return Bearing(name=name, y=y, seat_width=0.01, matrix=np.diag([*diagonal, 0, 0, 0]))
+
+    b = bearing("B", 0.037, (2e8, 0, 2e8))
+    held = Scene.from_parts(
+        [Segment.cylinder("stub", length="45 mm", diameter="80 mm")],
+        bearings=[bearing("A", 0.008, (3e8, 1e8, 2e8)), b],
+        port=Port(name="mid", y=0.0225, lo=0.018, hi=0.027),
+    )
+    loose = held.with_changes(bearings=(bearing("A", 0.008, (0, 1e8, 2e8)), b))
+    body = sg.build(held, "timoshenko")
+    want, got = (sg.condense(body, scene, "mid") for scene in (held, loose))
+    assert got.free_names == ("thy",) and not got.stiffness[4].any()
+    # x = thz (y_mid - y_B): the shaft turns about B
+    np.testing.assert_allclose(got.oblique.T, [[0.0145, 0, 0, 0, 0, 1]], rtol=1e-9)
+    on, off = [1, 2, 3], [0, 4, 5]
+    np.testing.assert_allclose(
+        got.compliance[np.ix_(on, on)], want.compliance[np.ix_(on, on)], rtol=1e-12
+    )
+    assert np.isnan(got.compliance[off]).all() and np.isnan(got.compliance[:, off]).all()
+    both = sg.condense(body, loose, ("mid",))
+    np.testing.assert_array_equal(np.isnan(both.compliance), np.isnan(got.compliance))

@@ -8,6 +8,8 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
+import scipy.sparse as sp
+from scipy.sparse.csgraph import connected_components
 
 from solidgear.body.model import Body
 from solidgear.errors import SolidgearError
@@ -173,7 +175,8 @@ class Supports:
         Returns
         -------
         (6, k) ndarray
-            Orthonormal, with rotations times the length.
+            Orthonormal, with rotations times the length; motions that have nothing to do with one
+            another in columns of their own.
 
         Raises
         ------
@@ -189,9 +192,38 @@ class Supports:
         a = a / np.where(norm > 0, norm, 1.0)
         _, s, vt = np.linalg.svd(a)
         rank = int((s > 1e-9).sum())
-        null = vt[rank:].T
-        null[np.abs(null) < 1e-9] = 0.0
-        return size[:, None] * null
+        return size[:, None] * separated(vt[rank:].T)
+
+
+def separated(basis: np.ndarray) -> np.ndarray:
+    """Another orthonormal basis of the same space, in which what has nothing to do with one another
+    shares no column: a coordinate that lies in the space is a column of its own, and what rounding
+    mixes into it is an exact zero.
+
+    Parameters
+    ----------
+    basis : (n, k) ndarray
+        Orthonormal.
+
+    Returns
+    -------
+    (n, k) ndarray
+    """
+    onto = basis @ basis.T
+    onto[np.abs(onto) < 1e-9] = 0.0
+    count, group = connected_components(sp.csr_array(onto != 0), directed=False)
+    out = np.zeros(basis.shape)
+    column = 0
+    for one in range(count):
+        rows = np.flatnonzero(group == one)
+        if len(rows) == 1:
+            inside = np.ones((1, int(onto[rows[0], rows[0]] > 0.5)))
+        else:
+            values, vectors = np.linalg.eigh(onto[np.ix_(rows, rows)])  # ones and zeros
+            inside = np.where(np.abs(vectors) < 1e-9, 0.0, vectors)[:, values > 0.5]
+        out[rows, column : column + inside.shape[1]] = inside
+        column += inside.shape[1]
+    return out
 
 
 def as_supports(source: Holding) -> Supports:

@@ -160,8 +160,11 @@ def _tell(terminal, head: str, scene: Scene, found: Condensed, units: str) -> No
     if found.free_names:
         terminal.print(f"Free: {', '.join(found.free_names)} (stiffness exactly zero).")
     for motion in found.oblique.T:
-        parts = ", ".join(f"{v:.4g} {n}" for v, n in zip(motion, DOF_NAMES) if abs(v) > 1e-9)
-        terminal.print(f"Free: the motion ({parts}), m and rad; a compliance does not exist.")
+        moved = [(v, n) for v, n in zip(motion, DOF_NAMES) if abs(v) > 1e-9]
+        parts = ", ".join(f"{v:.4g} {n}" for v, n in moved)
+        names = " and ".join(n for _, n in moved)
+        line = f"Free: the motion ({parts}), m and rad; a compliance of {names} does not exist."
+        terminal.print(line, markup=False, soft_wrap=True)
 
 
 def _bars(settled: Settled, found: Coupled) -> Table:

@@ -23,7 +23,7 @@ class Condensed(Displayed):
     stiffness : (6, 6) ndarray
         N/m, N/rad, N m/rad; rows of unresisted motions are exactly zero.
     compliance : (6, 6) ndarray
-        Inverse on the resisted motions; NaN in rows and columns that are free.
+        Motions under loads; NaN in rows and columns that a free motion moves.
     free : (6, k) ndarray
         Motions of the port that nothing resists.
     evidence : dict

@@ -26,6 +26,7 @@ import scipy.linalg as sla
 import scipy.sparse as sp
 
 from solidgear.body import Block, Body, as_supports
+from solidgear.body.supports import separated
 from solidgear.errors import SolidgearError, show
 from solidgear.factoring import Factoring
 from solidgear.machine.threads import pinned
@@ -252,17 +253,15 @@ def condense(body, supports, port, attachment=None):
     evidence = {"asymmetry": flex.asymmetry, "residual": flex.residual, "backend": flex.backend}
     if free.shape[1] < 6 or len(names) > 1:  # what is wholly free is stiff between its ports
         full = _full_compliance(body, supports, flex, here, there, free)
-        loads = _allowed_loads(p_l @ free)
+        loads = _allowed_loads(p_l @ free, body.length)
         small = loads.T @ full @ loads
         small = (small + small.T) / 2
         left = 0.0 if len(names) == 1 else _inverted(small, flex.residual)
         k = loads @ _spd_solve(small, loads.T) if left < APART else np.full_like(k, np.nan)
         k = _apart((k + k.T) / 2)
-        on = _still(p_l @ free)
+        on = _still(p_l @ free, body.length)
         if len(names) > 1:
             evidence["stiffness_error"] = left
-        elif on.sum() < loads.shape[1]:
-            on[:] = False  # of one point a compliance is told as a whole or not at all
         c[np.ix_(on, on)] = _apart(((full + full.T) / 2)[np.ix_(on, on)])
     tied = tuple(body.ports[index].attachment for index in indices)
     if isinstance(port, str):
@@ -352,46 +351,28 @@ def _spd_solve(a, b):
         ) from error
 
 
-def _aligned(null: np.ndarray) -> np.ndarray | None:
-    """Mask of the coordinates a null space consists of, or None if it is oblique."""
-    if null.shape[1] == 0:
-        return np.zeros(6, bool)
-    q, _ = np.linalg.qr(null)
-    diagonal = np.einsum("ij,ij->i", q, q)
-    mask = diagonal > 0.5
-    return mask if np.abs(diagonal - mask).max() < 1e-9 else None
-
-
 def _complement(null: np.ndarray, length: float) -> np.ndarray:
     """Basis of the rigid motions that springs resist (any complement will do)."""
-    mask = _aligned(null)
-    if mask is not None:
-        return np.eye(6)[:, ~mask]
-    size = np.array([1.0, 1.0, 1.0, 1 / length, 1 / length, 1 / length])
-    q, _ = np.linalg.qr(null / size[:, None], mode="complete")
-    return size[:, None] * q[:, null.shape[1] :]
+    return _sizes(null, length) * _without(null, length)
 
 
-def _still(null_at_port: np.ndarray) -> np.ndarray:
+def _allowed_loads(null: np.ndarray, length: float) -> np.ndarray:
+    """Basis of the loads that do no work on free motions of ports."""
+    return _without(null, length) / _sizes(null, length)
+
+
+def _without(null: np.ndarray, length: float) -> np.ndarray:
+    """Orthonormal complement of motions, made comparable; coordinate axes where possible."""
+    q, _ = np.linalg.qr(null / _sizes(null, length), mode="complete")
+    return separated(q[:, null.shape[1] :])
+
+
+def _still(null: np.ndarray, length: float) -> np.ndarray:
     """Mask of the components of ports that no free motion moves."""
-    largest = np.abs(null_at_port).max(initial=0.0)
-    return (
-        ~(np.abs(null_at_port) >= 1e-9 * largest).any(axis=1)
-        if largest
-        else np.ones(len(null_at_port), bool)
-    )
+    q, _ = np.linalg.qr(null / _sizes(null, length))
+    return np.abs(q).max(axis=1, initial=0.0) < 1e-9
 
 
-def _allowed_loads(null_at_port: np.ndarray) -> np.ndarray:
-    """Basis of the loads that do no work on free motions; coordinate axes where possible."""
-    still = _still(null_at_port)
-    clean = np.where(
-        np.abs(null_at_port) < 1e-9 * np.abs(null_at_port).max(initial=0.0), 0.0, null_at_port
-    )
-    moved = clean[~still]
-    u, s, _ = np.linalg.svd(moved) if moved.size else (np.eye(len(moved)), np.zeros(0), None)
-    rest = u[:, int((s > 1e-9 * s.max(initial=0.0)).sum()) :]
-    out = np.zeros((len(clean), int(still.sum()) + rest.shape[1]))
-    out[still, : still.sum()] = np.eye(int(still.sum()))
-    out[~still, still.sum() :] = rest
-    return out
+def _sizes(motions: np.ndarray, length: float) -> np.ndarray:
+    """Column of what makes components comparable: one, and one over the length of rotations."""
+    return np.tile([1.0, 1.0, 1.0, 1 / length, 1 / length, 1 / length], len(motions) // 6)[:, None]
