@@ -211,6 +211,14 @@ def test_command_line(tmp_path):
     done = run(scene, "--tol", 0.05, "--ask", "bending", "--picture", file, "--json")
     found = json.loads(done.stdout)["where"]
     assert found["quantity"] == "C_zz" and found["rows"][0]["what"] == "shoulder"
+    assert found["stands_for"] == "bending 1"
+    # what was asked itself comes before what stands for something, whose bar is wider here
+    plain = ROOT / "geometry" / "shaft_stepped.toml"
+    asked = run(plain, "--tol", 0.05, "--ask", "bending,C_yy", "--where", "--json")
+    asked = json.loads(asked.stdout)
+    bars = {value["quantity"]: value["bar"] for value in asked["values"]}
+    assert bars["bending 1"] > bars["C_yy"] and asked["where"]["quantity"] == "C_yy"
+    assert asked["where"]["stands_for"] is None
     assert file.read_bytes().startswith(b"\x89PNG")
     told = run(scene, "--tol", 0.05, "--ask", "C_yy", "--where").stdout
     assert "of what is left in C_yy sits at the shoulder at y = 68.25 mm" in told

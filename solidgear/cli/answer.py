@@ -76,13 +76,13 @@ def answer(
         check_ending(picture)  # before anything is solved
     loaded = load(scene)
     places: Whereabouts | None = None
-    unplaced = ""
+    asked = unplaced = ""
     with Progress(quiet=as_json) as progress:
         found = solve(loaded, tol, ask, progress=progress)
         if where or picture is not None:
             progress("where the error sits")
             try:
-                places = _places(loaded, found)
+                places, asked = _places(loaded, found)
             except SolidgearError as error:
                 unplaced = str(error)
     if places is not None and picture is not None:
@@ -90,7 +90,7 @@ def answer(
     if as_json:
         out = found.as_dict()
         if where or picture is not None:
-            out["where"] = {"error": unplaced} if places is None else _plain(places)
+            out["where"] = {"error": unplaced} if places is None else _plain(places, asked)
         print(json.dumps(out, allow_nan=False))
     else:
         terminal = console()
@@ -99,8 +99,8 @@ def answer(
         for line in sentences(found):
             terminal.print(line, markup=False, soft_wrap=True)
         if places is not None:
-            terminal.print(_where_table(places))
-            terminal.print(_told(places), markup=False, soft_wrap=True)
+            terminal.print(_where_table(places, asked))
+            terminal.print(_told(places, asked), markup=False, soft_wrap=True)
         if unplaced:
             terminal.print(f"Where the error sits: {unplaced}.", markup=False, soft_wrap=True)
         if places is not None and picture is not None:
@@ -167,7 +167,7 @@ def _solved(found: Answered) -> list[Step]:
 
 def sentences(found: Answered | Settled) -> list[str]:
     """What was chosen, what was passed over and why, in plain text."""
-    from solidgear.report.words import percent
+    from solidgear.report.words import percent, seconds
 
     passed: dict[str, list[str]] = {}
     for step in found.steps:
@@ -181,15 +181,17 @@ def sentences(found: Answered | Settled) -> list[str]:
     asked = percent(found.tolerance, signed=False)
     cost = sum(step.seconds for step in found.steps)
     if found.reached:
-        lines.append(f"Within {asked}: {found.rung}, {cost:.2g} s for all meshes tried.")
+        lines.append(f"Within {asked}: {found.rung}, {seconds(cost)} s for all meshes tried.")
         return lines
     why = next((step.why for step in found.steps if step.chosen and step.why), "")
     lines.append(f"Not reached: {asked} was asked for{f'; {why}' if why else ''}.")
     return lines
 
 
-def _places(scene: Scene, found: Answered) -> Whereabouts:
-    """Places of the least certain of the numbers that have some, on the mesh they come from."""
+def _places(scene: Scene, found: Answered) -> tuple[Whereabouts, str]:
+    """Places of the least certain of the numbers that have some, on the mesh they come from, and
+    what was asked: a compliance itself before one that only stands for what was asked.
+    """
     from solidgear.evidence.where import PLACED, where
     from solidgear.fidelity.ladder import LADDER
 
@@ -197,25 +199,28 @@ def _places(scene: Scene, found: Answered) -> Whereabouts:
         raise SolidgearError(
             f"only known of the harmonic solid; this answer is that of the {LADDER[found.rung].title}"
         )
-    least_certain = sorted(found.values, key=lambda value: -value.bar)
-    named = [STANDS_FOR.get(value.quantity, value.quantity) for value in least_certain]
-    known = [(name, v.meshes) for name, v in zip(named, least_certain) if name in PLACED]
+    known = [v for v in found.values if STANDS_FOR.get(v.quantity, v.quantity) in PLACED]
     if not known:
         raise SolidgearError(f"only known of {', '.join(PLACED)}; ask for one of them")
     meshes = LADDER["harmonic"].meshes
     assert meshes is not None  # as every solid
-    name, solved_on = known[0]
-    return where(scene, name, meshes({}).levels[solved_on - 1])
+    first = min(known, key=lambda value: (value.quantity in STANDS_FOR, -value.bar))
+    name = STANDS_FOR.get(first.quantity, first.quantity)
+    return where(scene, name, meshes({}).levels[first.meshes - 1]), first.quantity
 
 
-def _where_table(places: Whereabouts) -> Table:
+def _for(places: Whereabouts, asked: str) -> str:
+    return f", for {asked}" if asked != places.quantity else ""
+
+
+def _where_table(places: Whereabouts, asked: str) -> Table:
     from rich import box
     from rich.table import Table
 
     from solidgear.report.where_chart import worth_naming
 
     table = Table(box=box.SIMPLE_HEAD, pad_edge=False)
-    table.add_column(f"error of {places.quantity}")
+    table.add_column(f"error of {places.quantity}{_for(places, asked)}")
     table.add_column("y, mm", justify="right")
     table.add_column("r, mm", justify="right")
     table.add_column("within, mm", justify="right")
@@ -227,22 +232,26 @@ def _where_table(places: Whereabouts) -> Table:
     return table
 
 
-def _told(places: Whereabouts) -> str:
+def _told(places: Whereabouts, asked: str) -> str:
     from solidgear.report.words import percent, seconds
 
-    return (
+    line = (
         f"{places.sentence} (by what order {places.order + 1} moves on this mesh, "
         f"{percent(places.total, signed=False)}; {seconds(places.seconds)} s)."
     )
+    if asked == places.quantity:
+        return line
+    return f"{line} {asked} has no places of its own; {places.quantity} stands for it."
 
 
-def _plain(places: Whereabouts) -> dict[str, Any]:
+def _plain(places: Whereabouts, asked: str) -> dict[str, Any]:
     """Plain data, without the picture."""
     from dataclasses import asdict
 
     names = ("quantity", "order", "total", "check", "sentence", "seconds")
     rows = [asdict(row) for row in places.rows]
-    return {name: getattr(places, name) for name in names} | {"rows": rows}
+    out = {name: getattr(places, name) for name in names}
+    return out | {"stands_for": asked if asked != places.quantity else None, "rows": rows}
 
 
 def _draw(places: Whereabouts, picture: Path) -> None:
