@@ -702,3 +702,23 @@ def test_advice_on_a_scene_with_features_names_models_that_hold_them():
     assert len(advice) > 3 and set(advice) <= {"corrected or solid", "corrected or solid above"}
     plain = check_scene(keyed.plain, sg.build(keyed.plain, "timoshenko"))["cautions"]
     assert any("use the harmonic solid" in s for s in plain)
+
+
+@pytest.mark.parametrize(
+    ("name", "solids"),
+    [("pinion_keyed", {"corrected", "solid"}), ("pinion_toothed", {"sector", "solid"})],
+)
+def test_with_features_every_model_that_is_advised_has_a_verdict(name, solids):
+    """No beam holds a keyway or teeth: none is advised, and a lumped model rests on a solid, which
+    only a comparison can judge.
+    """
+    scene = sg.load(ROOT / "geometry" / f"{name}.toml")
+    beyond = scene.with_changes(port=scene.port.with_changes(y=scene.port.hi + 0.01))
+    found = check_scene(beyond, sg.build(scene.plain, "timoshenko"))
+    assert not any("use the beam" in s for s in found["cautions"])
+    held = {m for m, told in found["verdicts"].items() if told["verdict"].startswith("holds")}
+    assert held == solids
+    of_lumped = {r["guard"]: r["level"] for r in found["records"] if "lumped" in r["models"]}
+    assert of_lumped["features"] == "open" and "beam_against_solid" not in of_lumped
+    of_seat = next(r for r in found["records"] if r["guard"] == "point_beyond_surface")
+    assert solids <= set(of_seat["models"])

@@ -713,6 +713,14 @@ def test_a_lumped_model_on_a_solid_lacks_nothing_that_a_beam_lacks(overhung):
     assert said == {"timoshenko": ["lumped", "timoshenko"], "harmonic": []}
 
 
+def test_a_lumped_model_on_a_solid_is_not_called_cheaper_than_it():
+    """It is made from the solved solid, and costs as much."""
+    found = compare(scene_of("shaft_stepped"), ("lumped", "harmonic"), settings=LIGHT).results
+    sentences = " ".join(found["verdict"]["sentences"])
+    assert found["models"]["lumped"]["valid"] and found["verdict"]["cheapest"] == "harmonic"
+    assert "masses on the stiffness of the harmonic solid) is within 5 % too" in sentences
+
+
 def test_lumped_alone_has_nothing_to_rest_on(overhung):
     with pytest.raises(SolidgearError, match="not alone"):
         compare(overhung, ("lumped",))

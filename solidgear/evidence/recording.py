@@ -37,7 +37,7 @@ from solidgear.evidence.study import Solution
 from solidgear.evidence.ties import SCENE
 from solidgear.evidence.verdict import Judgement, deviations, judge, percent, trusted
 from solidgear.fidelity.ladder import LADDER
-from solidgear.fidelity.rung import LUMPED
+from solidgear.fidelity.rung import LUMPED, SOLID
 from solidgear.frames import DOF_NAMES
 from solidgear.machine.environment import environment
 
@@ -168,13 +168,19 @@ def _add_lumped(
     (name,) = LADDER.of(LUMPED)
     record.models = {name: own, **record.models}
     verdict = record.verdict
-    if own.valid:
+    source = LADDER[own.source or name]
+    masses = f"{own.variant} masses on the stiffness of the {source.title}"
+    if own.valid and source.family == SOLID:
+        verdict.sentences.append(
+            f"A {LADDER[name].title} ({masses}) is within {percent(tolerance)} too, for first "
+            "bending and below only, and costs as much as what it rests on."
+        )
+    elif own.valid:
         verdict.cheapest = name
         verdict.sentences = [s for s in verdict.sentences if not s.startswith("Cheapest model")]
         verdict.sentences.append(
             f"Cheapest model within {percent(tolerance)}: {LADDER[name].title} "
-            f"({own.variant} masses on the stiffness of the {LADDER[own.source or name].title}), "
-            "for first bending and below only."
+            f"({masses}), for first bending and below only."
         )
     made = record.lumped[base.model].variants if base.model in record.lumped else {}
     if not made or verdict.trust is None or not synthesis:

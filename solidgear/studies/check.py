@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -16,7 +17,7 @@ from solidgear.machine.threads import pinned
 from solidgear.meshing.closed_form import mass_properties
 from solidgear.scene.shaft import named, resolved
 from solidgear.studies.guards import GUARDS, LEVELS, Notice, Probe
-from solidgear.studies.guards.notice import beams, everything
+from solidgear.studies.guards.notice import Notices, beams, everything
 from solidgear.studies.guards.smearing import smearing
 from solidgear.studies.round_part import against_the_part, described
 
@@ -104,7 +105,7 @@ def check_scene(scene: Scene, body: Body, probe: Probe | None = None) -> dict:
         "records": records,
         "verdicts": {
             model: _verdict(model, records)
-            for model in (*beams(), *(m for m in LADDER.of(SOLID) if m in LADDER.fit(scene)))
+            for model in (*beams(), *_solids(scene))
         },
     }
 
@@ -199,7 +200,7 @@ def cautions(scene: Scene, body: Body, fidelity: str | None = None) -> list[str]
 def _heard(name: str, probe: Probe) -> list[Notice]:
     """What a guard says; one that cannot be run must not hide what the others have to say."""
     try:
-        return list(GUARDS[name](probe))
+        return _of_this_lumped(GUARDS[name](probe), name, probe)
     except (
         SolidgearError,
         ArithmeticError,
@@ -211,6 +212,27 @@ def _heard(name: str, probe: Probe) -> list[Notice]:
         # What a comparison would have found out is open; nothing holds for want of a check.
         concerned = beams() if name in COMPARES else ()
         return [Notice("open" if concerned else "caution", concerned, text)]
+
+
+def _of_this_lumped(said: Notices, name: str, probe: Probe) -> list[Notice]:
+    """The same, without the lumped model in what is said of the beams that it does not rest on."""
+    if probe.beam_fits:
+        return list(said)
+    if name == "lumped_against_solid":  # that of the plain part, on its beam
+        return []
+    lumped, beam = set(LADDER.of(LUMPED)), set(LADDER.of(BEAM))
+    return [
+        replace(n, models=tuple(m for m in n.models if m not in lumped))
+        if beam & set(n.models)
+        else n
+        for n in said
+    ]
+
+
+def _solids(scene: Scene) -> list[str]:
+    """Solids that a verdict is told of: those asked without naming any, and those that hold it."""
+    fit = LADDER.fit(scene)
+    return [m for m in LADDER.of(SOLID) if m in fit or not LADDER[m].unfit(scene)]
 
 
 def _verdict(model: str, records: list[dict]) -> dict:
@@ -244,7 +266,16 @@ def _beyond_the_segments(scene: Scene) -> Iterator[Notice]:
     use = f"use {' or '.join(fit)}" if fit else "no model holds all of them"
     for model in (m for m in unfit if LADDER[m].holds):
         yield Notice("avoid", (model,), f"{LADDER[model].unfit(scene)}; {use}")
-    blind = tuple(m for m in unfit if not LADDER[m].holds)
+    blind = tuple(m for m in unfit if LADDER[m].build is not None and not LADDER[m].holds)
+    lumped = tuple(m for m in unfit if LADDER[m].build is None)
+    if lumped:
+        on = " or ".join(m for m in fit if LADDER[m].family == SOLID)
+        yield Notice(
+            "open" if fit else "avoid",
+            lumped,
+            f"the scene has {names}: a lumped model of it rests on a solid that holds them "
+            f"({on or 'there is none'}), and costs as much; run compare for what it is worth",
+        )
     if blind:
         yield Notice(
             "avoid",

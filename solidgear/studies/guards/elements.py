@@ -30,7 +30,7 @@ def narrow_seat(probe: Probe) -> Notices:
         if width < limit and s.attachment != "section":
             yield Notice(
                 "caution",
-                solids(),
+                probe.solids,
                 f"the seat of {s.name!r} is {width:.2g} diameters of the shaft wide: below "
                 f"{limit:g} it ties like a line, {softer:g} % softer than a seat of 0.5, and "
                 "softer "

@@ -18,7 +18,7 @@ from solidgear.fidelity.ladder import LADDER
 from solidgear.fidelity.rung import BEAM, LUMPED
 from solidgear.fidelity.shoulder import MISSING
 from solidgear.meshing.corners import sharpest_corner
-from solidgear.studies.guards.notice import Notice, Notices, beams, beyond, everything
+from solidgear.studies.guards.notice import Notice, Notices, beams, beyond
 from solidgear.studies.guards.probe import Probe
 
 if TYPE_CHECKING:
@@ -208,7 +208,7 @@ def point_beyond_surface(probe: Probe) -> Notices:
         if off > BEYOND and port.attachment != "section":
             yield Notice(
                 "caution",
-                everything(),
+                (*beams(), *probe.solids),
                 f"the lumped point {port.name!r} lies {off:.2f} diameters of the shaft beyond its "
                 f"surface ({1e3 * port.lo:.6g} to {1e3 * port.hi:.6g} mm): from {BEYOND:g} on "
                 "beams "
@@ -316,6 +316,8 @@ def effective_mass(probe: Probe) -> Notices:
             ("lumped",),
             f"the published equations of effective mass have no solution here ({found['thesis'].verdict})",
         )
+    better = probe.instead("the beam", *LADDER.of(BEAM))
+    whose = "its beam" if probe.beam_fits else "the beam of the plain part"
     matched = found["mode-matched"]
     if not (matched.feasible and matched.first):
         off = found["guyan"].frequency_error
@@ -325,7 +327,7 @@ def effective_mass(probe: Probe) -> Notices:
             beyond(off, probe.scene.ask.tolerance),
             ("lumped",),
             f"the mode-matched pair of masses {why}: Guyan's stands in, with first bending "
-            f"{100 * off:+.3g} % off its beam; use the beam",
+            f"{100 * off:+.3g} % off {whose}; use {better}",
         )
     if point.static_share < ENERGY:
         yield Notice(
@@ -333,7 +335,7 @@ def effective_mass(probe: Probe) -> Notices:
             ("lumped",),
             f"the static shape of {probe.scene.port.name!r} holds {100 * point.static_share:.4g} "
             f"% of the energy of first bending, less than {100 * ENERGY:g} %: the mode lives "
-            "elsewhere, and a lumped model is good for stiffness only; use the beam",
+            f"elsewhere, and a lumped model is good for stiffness only; use {better}",
         )
 
 

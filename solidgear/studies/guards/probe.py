@@ -26,6 +26,7 @@ from solidgear.evidence.verdict import deviations
 from solidgear.fidelity import build
 from solidgear.fidelity.ladder import LADDER
 from solidgear.fidelity.levels import HARMONIC
+from solidgear.fidelity.rung import BEAM, SOLID
 from solidgear.reduction.effective_mass import Synthesis, synthesise
 from solidgear.reduction.lumped_point import LumpedPoint
 from solidgear.scene.rules import TOUCH
@@ -88,6 +89,16 @@ class Probe:
             return usual
         fit = [r.name for r in LADDER if r.build is not None and not r.unfit(self.whole)]
         return " or ".join(fit) or "a scene with fewer of its features"
+
+    @property
+    def beam_fits(self) -> bool:
+        """Whether a beam models the scene; where none does, a lumped model rests on a solid."""
+        return any(not LADDER[m].unfit(self.whole) for m in LADDER.of(BEAM))
+
+    @property
+    def solids(self) -> tuple[str, ...]:
+        """Solids that model the scene."""
+        return tuple(m for m in LADDER.of(SOLID) if not LADDER[m].unfit(self.whole))
 
     @property
     def main(self) -> str:
