@@ -193,6 +193,22 @@ CASES = {
         scene(matrices=[stiff(), stiff(x=1e6, z=1e6)]),
         scene(matrices=[stiff(), stiff(x=5e7, z=5e7, thx=2e5, thz=2e5)]),
     ),
+    "axial spring in N/mm": Case(
+        "units",
+        "axial stiffness over E d of bearing 'b0' in y",
+        (),
+        "caution",
+        scene(matrices=[stiff(y=1.5e5), stiff()]),
+        scene(matrices=[stiff(y=1.5e6), stiff()]),
+    ),
+    "axial spring in N/m read as N/mm": Case(
+        "units",
+        "axial stiffness over E d of bearing 'b0' in y",
+        (),
+        "caution",
+        scene(matrices=[stiff(y=1.5e11), stiff()]),
+        scene(matrices=[stiff(y=1.5e10), stiff()]),
+    ),
     "tilt in N mm/rad": Case(
         "units",
         "lever sqrt(tilt / radial stiffness) over d of bearing 'b0'",

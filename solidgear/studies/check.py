@@ -103,10 +103,7 @@ def check_scene(scene: Scene, body: Body, probe: Probe | None = None) -> dict:
     }
     return out | {
         "records": records,
-        "verdicts": {
-            model: _verdict(model, records)
-            for model in (*beams(), *_solids(scene))
-        },
+        "verdicts": {model: _verdict(model, records) for model in (*beams(), *_solids(scene))},
     }
 
 

@@ -34,12 +34,14 @@ SLIPS = {
     "kN/mm read as N/m": {"spring": 1e-6},
     "N/um read as N/m": {"spring": 1e-6},
     "N/m read as N/mm": {"spring": 1e3},
+    "N/mm read as N/m, axial only": {"axial": 1e-3},
+    "N/m read as N/mm, axial only": {"axial": 1e3},
     "N mm/rad read as N m/rad": {"tilt": 1e3},
     "N m/rad read as N mm/rad": {"tilt": 1e-3},
 }
 
 
-def slipped(scene, length=1.0, E=1.0, density=1.0, spring=1.0, tilt=1.0):
+def slipped(scene, length=1.0, E=1.0, density=1.0, spring=1.0, tilt=1.0, axial=1.0):
     """The scene as it would have been read."""
     segments = tuple(
         s.with_changes(
@@ -56,13 +58,13 @@ def slipped(scene, length=1.0, E=1.0, density=1.0, spring=1.0, tilt=1.0):
         for s in scene.segments
     )
     # Couplings carry the geometric mean of the two, so that the matrix stays positive.
-    scale = np.sqrt(np.repeat([spring, tilt], 3))
+    scale = np.sqrt(np.repeat([spring, tilt], 3) * [1.0, axial, 1.0, 1.0, 1.0, 1.0])
     bearings = tuple(
         b.with_changes(
             y=b.y * length,
             seat_width=b.seat_width * length,
             matrix=np.array(b.matrix) * np.outer(scale, scale),
-            axial_series=tuple(k * spring for k in b.axial_series),
+            axial_series=tuple(k * spring * axial for k in b.axial_series),
         )
         for b in scene.bearings
     )
@@ -114,6 +116,7 @@ def ratios(scene) -> dict[str, float]:
     if scene.bearings:
         k = [np.diag(b.matrix) for b in scene.bearings]
         radial = [v for row in k for v in row[[0, 2]] if v > 0]
+        axial = [float(row[1]) for row in k if row[1] > 0]
         turn = [
             (row[3 + i], row[2 - i])
             for row in k
@@ -122,12 +125,20 @@ def ratios(scene) -> dict[str, float]:
         ]
         local = e.mean() * np.mean([2 * s.outer0 for s in scene.segments])
         out["bearing radial / (E d)"] = float(np.exp(np.mean(np.log(radial))) / local)
+        if axial:  # by the one farthest from what is usual
+            out["bearing axial / (E d)"] = max((v / local for v in axial), key=_unusual)
         if turn:
             out["tilt arm over d"] = float(
                 np.sqrt(np.mean([t / r for t, r in turn]))
                 / np.mean([2 * s.outer0 for s in scene.segments])
             )
     return out
+
+
+def _unusual(share: float) -> float:
+    """How far a share is from the middle of its limits, in powers of ten."""
+    low, high = LIMITS["bearing axial / (E d)"]
+    return abs(np.log10(share / np.sqrt(low * high)))
 
 
 #: criterion -> least and greatest value of a sound scene
@@ -138,6 +149,7 @@ LIMITS = {
     "wave speed m/s": (300.0, 20000.0),
     "first bending, free, Hz": (5.0, 2e5),
     "bearing radial / (E d)": (1e-3, 10.0),
+    "bearing axial / (E d)": (1e-4, 5.0),
     "tilt arm over d": (0.03, 2.0),
 }
 
@@ -149,7 +161,7 @@ def measure(quick: bool = False) -> Finding:
     for path in paths[:3] if quick else paths:
         scene = sg.load(path)
         for slip, factors in SLIPS.items():
-            moved = set(factors) & {"spring", "tilt"}
+            moved = set(factors) & {"spring", "tilt", "axial"}
             if (
                 moved
                 and not scene.bearings

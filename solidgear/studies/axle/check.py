@@ -30,6 +30,13 @@ from solidgear.studies.guards import Probe
 
 #: a loss factor below this gives peaks whose height is a matter of the loss alone
 LITTLE_LOSS = 1e-3
+#: what a slip of 1000 in the data of a mesh leaves: ISO 6336 puts some 20 N/(mm um) into a steel
+#: mesh, 0.1 of E times the face width, and a face is 0.1 to 3 lever arms wide; errors of teeth are
+#: some thousandths of the module at most, and 1e-5 of it is what no gear is ground to
+SOUND = {
+    "mesh stiffness over E r": (1e-3, 2.0),
+    "transmission error over 2 r / z": (1e-5, 0.05),
+}
 ALONE = (
     "guards judge each shaft alone; which of them needs the solid for modes and mesh force, and from "
     "which frequency on, is what solidgear compare says of a train"
@@ -75,7 +82,8 @@ def check_train(workshop: Workshop, max_frequency: float | None = None) -> dict:
         light.take(side, JUDGE, probe.rung(JUDGE).body)
     faults: list[str] = []
     facts = [*_facts(workshop, limit), *wrench_lines(workshop.contact)]
-    cautions = [*workshop.contact.cautions, *_losses(train), *_error(train, limit)]
+    cautions = [*workshop.contact.cautions, *_units(workshop)]
+    cautions += [*_losses(train), *_error(train, limit)]
     try:
         facts += _system(light, limit)
     except SolidgearError as error:
@@ -112,6 +120,28 @@ def _facts(workshop: Workshop, limit: float) -> Iterator[str]:
         f"shafts {loss.shafts:g}, bearings {loss.bearings:g}, mesh {loss.mesh:g}, "
         f"springs {loss.springs:g}"
     )
+
+
+def _units(workshop: Workshop) -> Iterator[str]:
+    """Orders of magnitude that a slip in units moves."""
+    train, met = workshop.train, workshop.contact
+    lever, teeth = abs(met.pinion.lever), train.pinion.teeth
+    stiff = max(s.material.E for scene in workshop.scenes.values() for s in scene.segments)
+    table = train.mesh.transmission_error
+    error = max((*table.orders, *table.amplitude), default=0.0)
+    found = dict(zip(SOUND, (met.stiffness / (stiff * lever), error * teeth / (2 * lever))))
+    if not error:
+        del found["transmission error over 2 r / z"]  # told by itself
+    out = [
+        f"{name} is {value:.3g}, outside {SOUND[name][0]:g} to {SOUND[name][1]:g}"
+        for name, value in found.items()
+        if not SOUND[name][0] <= value <= SOUND[name][1]
+    ]
+    if out:
+        yield (
+            f"probably a slip in units: {'; '.join(out)} (r: lever arm of the pinion, "
+            f"{1e3 * lever:.4g} mm; z: its {teeth} teeth); check the number and its unit"
+        )
 
 
 def _losses(train: Train) -> Iterator[str]:

@@ -14,6 +14,7 @@ SOUND = {
     "density in kg/m^3": (500.0, 25e3),
     "wave speed in m/s": (300.0, 20e3),
     "stiffness over E d": (1e-3, 10.0),
+    "axial stiffness over E d": (1e-4, 5.0),
     "lever sqrt(tilt / radial stiffness) over d": (0.03, 2.0),
     "first bending in Hz": (5.0, 2e5),
 }
@@ -36,12 +37,14 @@ def units(probe: Probe) -> Notices:
         if b.catalogue is not None or b.hold:  # worked out at its load, or nothing real
             continue
         k = np.diag(b.stiffness)
+        local = scene.segments[0].material.E * mean
+        if k[1] > 0:
+            where = f"bearing {b.name!r} in {DOF_NAMES[1]}"
+            bearings.append(("axial stiffness over E d", k[1] / local, where))
         for axis, tilt in ((0, 5), (2, 3)):
             if k[axis] > 0:
                 where = f"bearing {b.name!r} in {DOF_NAMES[axis]}"
-                bearings.append(
-                    ("stiffness over E d", k[axis] / (scene.segments[0].material.E * mean), where)
-                )
+                bearings.append(("stiffness over E d", k[axis] / local, where))
                 if k[tilt] > 0:
                     bearings.append(
                         (
@@ -67,8 +70,8 @@ def units(probe: Probe) -> Notices:
                 "caution",
                 (),
                 "probably a slip in units: "
-                f"{'; '.join(out)}{' (d: mean diameter)' * (found is bearings)}; write the unit "
-                "beside the number",
+                f"{'; '.join(out)}{' (d: mean diameter)' * (found is bearings)}; check the number "
+                "and its unit",
             )
             return
 
