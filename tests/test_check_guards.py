@@ -110,6 +110,14 @@ def head(ratio: float) -> Scene:
     return scene(((0.08, ratio * D), (0.22, D)))
 
 
+def headed(ratio: float, softer: float) -> Scene:
+    """The same with a head so many times softer than the shaft."""
+    plain = head(ratio)
+    first, *rest = plain.segments
+    soft = first.with_changes(material=STEEL.with_changes(E=STEEL.E / softer))
+    return plain.with_changes(segments=(soft, *rest))
+
+
 def disc(share: float) -> Scene:
     """A head whose length is that share of its diameter."""
     length = share * 0.12
@@ -297,6 +305,14 @@ CASES = {
     ),
     "shoulder": Case(
         "shoulder", "ratio of diameters 1.18", BEAMS, "caution", head(1.18), head(1.16)
+    ),
+    "shoulder of a soft head": Case(
+        "shoulder",
+        "5 times as much as of one material",
+        BEAMS,
+        "caution",
+        headed(1.3, 5.0),
+        headed(1.3, 0.2),
     ),
     "disc": Case("disc_head", "0.19 of its diameter", BEAMS, "caution", disc(0.19), disc(0.21)),
     "joint": Case(

@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 import solidgear as sg
+from solidgear.fidelity.shoulder import hinges
 
 FOLDER = Path(__file__).resolve().parent.parent / "validation" / "stability"
 
@@ -53,6 +54,39 @@ def test_a_shoulder_is_worth_a_length_of_thin_shaft_whatever_the_overhang(script
     lengths = [rows[r]["missing length / d, 1 d"] for r in sorted(rows)]
     assert np.all(np.diff(lengths) > 0) and lengths[0] < 0.01 and 0.2 < lengths[-1] < 0.26
     assert abs(rows[2.0]["C_zz with a hinge"]) < 0.01 < abs(rows[2.0]["C_zz, 2 d"])
+
+
+@pytest.mark.parametrize("softer", [0.2, 5.0])
+@pytest.mark.parametrize("ratio", [1.5, 3.0])
+def test_what_a_beam_lacks_at_a_shoulder_goes_with_the_softness_of_the_thick_part(
+    script, ratio, softer
+):
+    """The option shoulder leaves at most a fifth of what a soft thick part adds, and a twentieth of
+    a diameter of thin shaft where it is the stiffer.
+    """
+    shoulder_step = script("shoulder_step")
+    scene = shoulder_step.shaft(ratio, 2.0, softer=softer)
+    mesh = {"order": 4, "layers": 2, "edge_layers": 0, "size": shoulder_step.THIN / 2}
+    solid, plain, hinged = (
+        np.diag(sg.condense(sg.build(scene, model, **options), scene, port="port").compliance)
+        for model, options in (
+            ("harmonic", mesh),
+            ("timoshenko", {}),
+            ("timoshenko", {"shoulder": True}),
+        )
+    )
+    thin = plain / scene.segments[0].length * shoulder_step.THIN  # of one diameter, or more
+    left, lacking = (abs(solid - beam)[[1, 3, 4]] for beam in (hinged, plain))
+    assert np.all(left < (0.2 * lacking if softer > 1 else 0.05 * thin[[1, 3, 4]]))
+
+
+def test_steps_between_unlike_materials_too_small_to_tell_have_no_hinge(script):
+    """Measured at 1.05 with a thick part five times softer: not even the sign is that of one."""
+    shaft = script("shoulder_step").shaft
+    alone, like, unlike = (shaft(1.05, 2.0, softer=softer) for softer in (1.0, 1.5, 5.0))
+    alone, like, unlike = (hinges(scene.segments)[0] for scene in (alone, like, unlike))
+    assert like.bend == pytest.approx(1.5 * alone.bend, rel=1e-12)
+    assert unlike.bend == unlike.stretch == unlike.twist == 0.0
 
 
 @pytest.mark.parametrize("ratio, reach", [(1.4, 1.0), (1.9, 2.0), (2.7, 1.0)])  # none in the table

@@ -3,6 +3,12 @@
 Stress cannot fill the thick part right behind a step of the outer radius, as a beam lets it.  The
 solid is softer there, by what a short piece of the thin shaft would add.  How long that piece is,
 in diameters of the thin shaft, depends on the ratio of the diameters and on the kind of load.
+
+What gives is the thick part: of another material it gives as its modulus has it, and the missing
+length goes with E (in twist with G) of the thin part over that of the thick one.  Measured for
+moduli of 0.2 to 20 times each other and ratios of diameters of 1.2 to 6 (``of_two_materials`` in
+``validation/stability/shoulder_step.py``): from 1.5 on, where the thick part is the softer, what is
+lacking is 0.88 to 1.09 times that; where it is the stiffer, little is lacking at all.
 """
 
 from __future__ import annotations
@@ -14,7 +20,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 if TYPE_CHECKING:
-    from solidgear.scene import Segment
+    from solidgear.scene import Material, Segment
 
 #: ratio of diameters, then missing length of the thin shaft over its diameter in bending, stretch
 #: and twist: harmonic solid (order 6, four layers) less beam, for a solid steel shaft two diameters
@@ -37,6 +43,37 @@ MISSING = np.array(
         [6.0, 0.2492, 0.5286, 0.1587],
     ]
 )
+
+#: below this ratio of diameters, parts whose moduli differ by more than this: what is stiffer is no
+#: longer what is thinner, and not even the sign of what a beam lacks is that of one material
+SMALL_STEP, ALIKE = 1.2, 2.0
+
+
+def grown(ratio: float, thin: Material, thick: Material) -> tuple[float, float]:
+    """What the missing length of one material is to be multiplied by where there are two.
+
+    Parameters
+    ----------
+    ratio : float
+        Of the diameters.
+    thin, thick : Material
+
+    Returns
+    -------
+    tuple of float
+        In bending and stretch, and in twist; zeros where what is lacking is not known.
+
+    Examples
+    --------
+    >>> from solidgear.scene import STEEL
+    >>> aluminium = STEEL.with_changes(E=STEEL.E / 3)
+    >>> [round(x, 6) for x in grown(2.0, STEEL, aluminium)], grown(1.1, STEEL, aluminium)
+    ([3.0, 3.0], (0.0, 0.0))
+    """
+    stiffer = thin.E / thick.E
+    if ratio < SMALL_STEP and not 1 / ALIKE <= stiffer <= ALIKE:
+        return 0.0, 0.0
+    return stiffer, stiffer * (1 + thick.nu) / (1 + thin.nu)
 
 
 @dataclass(frozen=True)
@@ -81,7 +118,8 @@ def hinges(segments: Sequence[Segment]) -> tuple[Hinge, ...]:
     out = []
     for a, b in zip(segments, segments[1:]):
         ahead = b.outer0 > a.outer1
-        thin, outer, inner = (a, a.outer1, a.inner1) if ahead else (b, b.outer0, b.inner0)
+        thin, thick = (a, b) if ahead else (b, a)
+        outer, inner = (a.outer1, a.inner1) if ahead else (b.outer0, b.inner0)
         ratio = max(a.outer1, b.outer0) / outer
         if ratio <= 1 + 1e-9:
             continue
@@ -89,6 +127,7 @@ def hinges(segments: Sequence[Segment]) -> tuple[Hinge, ...]:
             2 * outer * np.interp(ratio, MISSING[:, 0], column) for column in MISSING.T[1:]
         )
         material = thin.material
+        straight, turned = grown(ratio, material, thick.material)
         second = np.pi / 4 * (outer**4 - inner**4)
         area = np.pi * (outer**2 - inner**2)
         shear = material.E / (2 * (1 + material.nu))
@@ -96,9 +135,9 @@ def hinges(segments: Sequence[Segment]) -> tuple[Hinge, ...]:
             Hinge(
                 b.y0,
                 ahead,
-                float(bend / (material.E * second)),
-                float(stretch / (material.E * area)),
-                float(twist / (2 * shear * second)),
+                float(straight * bend / (material.E * second)),
+                float(straight * stretch / (material.E * area)),
+                float(turned * twist / (2 * shear * second)),
             )
         )
     return tuple(out)

@@ -24,9 +24,9 @@ REACH = (1.0, 2.0)  # lengths of the thin shaft in its diameters
 LEVELS = (0.01, 0.05)
 
 
-def shaft(ratio: float, reach: float, angle: float | None = None) -> Scene:
+def shaft(ratio: float, reach: float, angle: float | None = None, softer: float = 1.0) -> Scene:
     """Thin shaft, then a thick one held by an immovable section; the thick one may start with a
-    cone.
+    cone, and be of a material so many times softer.
     """
     step, end = reach * THIN, reach * THIN + 1.5 * ratio * THIN
     thick = ratio * THIN
@@ -38,6 +38,8 @@ def shaft(ratio: float, reach: float, angle: float | None = None) -> Scene:
             Segment.cone("cone", y0=step, length=y - step, start_diameter=THIN, end_diameter=thick)
         )
     segments.append(Segment.cylinder("thick", y0=segments[-1].y1, length=end - y, diameter=thick))
+    material = STEEL.with_changes(E=STEEL.E / softer)
+    segments[1:] = [segment.with_changes(material=material) for segment in segments[1:]]
     width = (
         2e-4 * THIN
     )  # what lies beyond a tie is strained along and stiffens: 0.002 d in tilt at a stub of 0.01 d
@@ -57,6 +59,33 @@ def compliance(model: str, scene: Scene, **options) -> tuple[float, float]:
     """Deflection under a unit force and tilt under a unit moment at the thin end."""
     c = sg.condense(sg.build(scene, model, **options), scene, port="port").compliance
     return c[2, 2], c[3, 3]
+
+
+def of_two_materials(
+    ratios=(1.05, 1.2, 1.5, 2.0, 3.0, 6.0), softer=(0.2, 0.5, 2.0, 5.0, 20.0), order=5, layers=3
+) -> list[dict]:
+    """What a beam lacks in bending, stretch and twist where the thick part is so many times softer
+    than the thin one, over what it lacks in one material.
+    """
+    rows = []
+    for ratio in ratios:
+        alone = lacking(ratio, 1.0, order, layers)
+        for times in softer:
+            share = lacking(ratio, times, order, layers) / alone
+            names = ("bending", "stretch", "twist")
+            rows.append({"ratio": ratio, "softer": times} | dict(zip(names, share.tolist())))
+    return rows
+
+
+def lacking(ratio: float, softer: float, order: int, layers: int) -> np.ndarray:
+    """Tilt, stretch and twist of the harmonic solid less those of the beam, under their own load."""
+    scene = shaft(ratio, 2.0, softer=softer)
+    mesh = {"order": order, "layers": layers, "edge_layers": 0, "size": THIN / 2}
+    solid, beam = (
+        np.diag(sg.condense(sg.build(scene, model, **options), scene, port="port").compliance)
+        for model, options in (("harmonic", mesh), ("timoshenko", {}))
+    )
+    return (solid - beam)[[3, 1, 4]]
 
 
 def cone_angle(extra: float, ratio: float) -> float:

@@ -16,7 +16,7 @@ from solidgear.evidence.ties import SCENE
 from solidgear.evidence.verdict import TIES, gap_verdict
 from solidgear.fidelity.ladder import LADDER
 from solidgear.fidelity.rung import BEAM, LUMPED
-from solidgear.fidelity.shoulder import MISSING
+from solidgear.fidelity.shoulder import MISSING, grown
 from solidgear.meshing.corners import sharpest_corner
 from solidgear.studies.guards.notice import Notice, Notices, beams, beyond
 from solidgear.studies.guards.probe import Probe
@@ -135,21 +135,29 @@ def shoulder(probe: Probe) -> Notices:
     stiff = tuple(model for model in beams() if model not in soft)
     segments, degrees = probe.scene.segments, np.degrees(sharpest_corner(probe.scene)[0])
     for a, b in zip(segments, segments[1:]):
-        thin, thick = sorted((a.outer1, b.outer0))
-        if thick / thin < STEP or not stiff:
+        (thin, inside), (thick, outside) = sorted(
+            ((a.outer1, a.material), (b.outer0, b.material)), key=lambda side: side[0]
+        )
+        ratio = thick / thin
+        more, _ = grown(ratio, inside, outside)
+        # of one material; the beam's own deflection is what both are shares of
+        lacking = float(np.interp(ratio, STEPS[:, 0], STEPS[:, 1]))
+        lacking = more * lacking / (1 - lacking + more * lacking)
+        alike = abs(more - 1) < 0.1
+        if (ratio < STEP if alike else lacking < 0.01) or not stiff:
             continue
-        missing = float(np.interp(thick / thin, MISSING[:, 0], MISSING[:, 1]))
-        lacking = float(np.interp(thick / thin, STEPS[:, 0], STEPS[:, 1]))
+        missing = more * float(np.interp(ratio, MISSING[:, 0], MISSING[:, 1]))
+        limits = f"1 % is passed at {STEP:g}, 5 % at {STEEP:g}"
+        if not alike:
+            limits = f"{more:.2g} times as much as of one material, by E of both parts"
         sharp = f"(sharpest corner {degrees:.0f} degrees)" if degrees > 180 else "(with its fillet)"
         yield Notice(
             "caution",
             stiff,
             f"shoulder between {a.name!r} and {b.name!r} at y = {1e3 * b.y0:.6g} mm {sharp}, "
-            f"ratio of diameters {thick / thin:.2f}: a beam lacks "
+            f"ratio of diameters {ratio:.2f}: a beam lacks "
             f"{2e3 * thin * missing:.2g} mm of thin shaft, {100 * lacking:.1f} % of the "
-            f"deflection of an overhang of one diameter; 1 % is passed at {STEP:g}, 5 % at "
-            f"{STEEP:g}; "
-            f"use {better}",
+            f"deflection of an overhang of one diameter; {limits}; use {better}",
         )
 
 
