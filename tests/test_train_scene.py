@@ -261,3 +261,19 @@ def test_catalogue_bearings_of_a_shaft_get_their_stiffness(tmp_path):
     for mine, its in zip(train.pinion.scene.bearings, alone.bearings, strict=True):
         assert np.array_equal(mine.stiffness, its.stiffness)
     assert Workshop(train).system("euler", "euler").modes(3).frequency_hz[0] == 0.0
+
+
+def test_an_apex_that_contradicts_its_scene_is_told(tmp_path):
+    """The pinion's bevel head has its toe at the start of the shaft; parallel shafts have no apex."""
+    start, end = 'apex = "start" ', 'apex = "end" '
+    for changes, told in (
+        (((start, start),), False),
+        (((start, end),), True),
+        (((start, end), *PARALLEL), False),
+    ):
+        cautions = contact(load_train(written(tmp_path, *changes))).cautions
+        found = [line for line in cautions if "contradicts its scene" in line]
+        assert bool(found) == told, changes
+    pinion = 'apex = "end" of the pinion contradicts its scene'
+    line = contact(load_train(written(tmp_path, (start, end)))).cautions[1]
+    assert line.startswith(pinion) and 'unless apex = "start"' in line

@@ -8,7 +8,7 @@ from math import cos, sin
 import numpy as np
 
 from solidgear.errors import SceneError, SolidgearError
-from solidgear.scene.train import Train
+from solidgear.scene.train import SIDES, Train
 from solidgear.system.contact_cells import ContactWrench, contact_wrench
 from solidgear.system.gear_mesh import (
     MeshVector,
@@ -26,6 +26,8 @@ LEVER_TOLD, LEVER_REFUSED = 5e-3, 5e-2
 CONE_TOLD = 2e-2
 #: and of pitch angles below this, rad, of this: those of parallel shafts are zero
 LEAST_CONE = 0.05
+#: a head whose radius changes by less than this of its length is no pitch cone
+CONE_SEEN = 0.02
 #: what needs gear geometry although the line of action is given
 WITHOUT_POSITION = "the place of the gear, without gear_position under [mesh],"
 #: a line that is this much nearer (cosine) to the one of the teeth when it is turned back was
@@ -102,7 +104,7 @@ def contact(train: Train) -> Contact:
     n_gear = to_gear_frame(normal, mesh.shaft_angle)
     r_gear = to_gear_frame(point - origin, mesh.shaft_angle)
     found = MeshVector(normal, point), MeshVector(n_gear, r_gear)
-    cautions += _cones(train)
+    cautions += _cones(train) + _apexes(train)
     for side, vector in zip(("pinion", "gear"), found):
         _on_the_head(train, side, vector.point)
     cautions += _levers(train, *found)
@@ -195,6 +197,27 @@ def _cones(train: Train) -> list[str]:
         f"the pitch angle of {angle:.4g} rad is not that of {train.pinion.teeth} and "
         f"{train.gear.teeth} teeth ({of_teeth:.4g} rad); radii are taken in the ratio of the teeth"
     ]
+
+
+def _apexes(train: Train) -> list[str]:
+    """Whether the pitch apex lies where the head of the scene is narrowest."""
+    if abs(sin(train.mesh.shaft_angle)) < 1e-6:
+        return []  # parallel shafts have none
+    out = []
+    for side in SIDES:
+        scene, apex = train.member(side).scene, train.member(side).apex
+        port = scene.port
+        head = max(scene.segments, key=lambda s: min(s.y1, port.hi) - max(s.y0, port.lo))
+        taper = (head.outer1 - head.outer0) / head.length
+        lies = "start" if taper > 0 else "end"
+        if abs(taper) > CONE_SEEN and lies != apex:
+            out.append(
+                f'apex = "{apex}" of the {side} contradicts its scene: {head.name!r} narrows '
+                f"towards the {lies} of the shaft, and so does a pitch cone towards its apex; the "
+                f'axial mesh force points the wrong way unless apex = "{lies}", or the shaft is '
+                "turned round"
+            )
+    return out
 
 
 def _on_the_head(train: Train, side: str, point: np.ndarray) -> None:
