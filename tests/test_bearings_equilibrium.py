@@ -16,6 +16,9 @@ from solidgear.bearings.solved import solved
 from solidgear.cli import app
 from solidgear.errors import SceneError, SolidgearError
 from solidgear.scene.file import load as read
+from solidgear.report.front import numbers
+from solidgear.report.terminal import closing_lines
+from solidgear.report.units import ENGINEERING
 from solidgear.studies.bearing_study import bearing_range, over_load
 
 SCENE = "geometry/gearbox_catalogue.toml"
@@ -177,6 +180,11 @@ def test_the_report_tells_the_range_beside_the_models():
         next(m.frequency_hz for m in own.modes if m.name == "bending 1"), rel=1e-2
     )
     assert "clearance over its class" in told["varied"]
+    # page one and the terminal say it too: a bar of mesh and solver is not all that is open
+    low, high = (f"{first[end]:.1f}" for end in ("low", "high"))
+    page, lines = numbers(found.record, ENGINEERING).note, closing_lines(found.record)
+    for said in (page, " ".join(lines)):
+        assert f"leaves first bending anywhere from {low} to {high} Hz" in said
     assert not sg.compare(
         sg.load("geometry/shaft_stepped.toml"), ("euler",)
     ).record.bearing_range  # springs as given have none

@@ -693,6 +693,21 @@ def test_command_prints_cautions_and_what_will_hold(capsys, monkeypatch):
     )
 
 
+def test_a_catalogue_bearing_of_which_few_elements_carry_is_not_told_to_give_digits():
+    """Its matrix is worked out, not typed."""
+    data = sg.load(ROOT / "geometry" / "gearbox_catalogue.toml").bearings[1].catalogue
+    typed = scene(matrices=[coupled(1.0), stiff()])
+    first, second = typed.bearings
+    worked_out = typed.with_changes(bearings=[first.with_changes(catalogue=data), second])
+    told = {}
+    for name, here in (("typed", typed), ("worked out", worked_out)):
+        (notice,) = GUARDS["oblique_softness"](Probe(here, sg.build(here, "euler")))
+        told[name] = notice.sentence
+    assert "give more digits" in told["typed"]
+    assert "few rolling elements of bearing 'b0' carry" in told["worked out"]
+    assert "digits" not in told["worked out"] and "it has no stiffness" in told["worked out"]
+
+
 def test_records_are_plain_data(shipped):
     for found in map(shipped, sorted(OFTEN)):
         json.dumps(found, allow_nan=False)

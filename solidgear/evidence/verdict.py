@@ -273,7 +273,9 @@ def _side(gap: dict) -> str:
 
 
 def percent(x: float) -> str:
-    """A share in per cent to two figures."""
+    """A share in per cent to two figures, never with an exponent."""
+    if 0 < abs(x) < 1e-6:
+        return "less than 0.0001 %"
     return f"{100 * x:.2g} %" if abs(x) < 0.995 else f"{100 * x:.0f} %"
 
 

@@ -19,6 +19,7 @@ from solidgear.report.reading import (
     entry,
     first_frequency,
     is_resolved,
+    left_open,
     matrix_of,
     model_name,
     model_of,
@@ -89,12 +90,14 @@ def numbers(record: Record, units: Units) -> Table:
     caption = f"At the lumped point {(record.scene.get('port') or {}).get('name', '')}".strip()
     if key:
         caption += f", by the {model_name(record, key)}"
+    bearings = left_open(record)
+    open_too = f"{bearings}." if bearings else ""
     return Table(
         caption,
         ["quantity", "value", "bar"],
         [row for row in cells if row],
         "K holds all other motions still, C leaves them free. The bar is what mesh and solver "
-        "leave open; it says nothing of bearings or load.",
+        f"leave open; it says nothing of bearings or load. {open_too}".strip(),
         css="numbers",
     )
 

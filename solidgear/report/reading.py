@@ -14,7 +14,7 @@ from solidgear.evidence.record import (
     Record,
 )
 from solidgear.evidence.ties import SCENE, SECTION
-from solidgear.report.words import NOTHING, is_number
+from solidgear.report.words import NOTHING, hertz, is_number, percent
 
 #: families of models, as the ladder has them
 LUMPED, BEAM = "lumped", "beam"
@@ -30,6 +30,22 @@ def model_of(record: Record, key: str | None) -> ModelRecord:
 def model_name(record: Record, key: str | None) -> str:
     """The name of a model in a sentence; one without a title is called by its key."""
     return model_of(record, key).title or key or NOTHING
+
+
+def left_open(record: Record) -> str:
+    """What catalogue bearings leave open of first bending, in a sentence; nothing where there are
+    none.
+    """
+    bounds = record.bearing_range.get("bounds") or []
+    first = next((b for b in bounds if b["mode"] == "bending 1"), None)
+    if first is None:
+        return ""
+    middle, low, high = first["frequency_hz"], first["low"], first["high"]
+    return (
+        f"What is not known of the bearings leaves first bending anywhere from {hertz(low)} to "
+        f"{hertz(high)} Hz ({percent(low / middle - 1)} to {percent(high / middle - 1)}; "
+        f"{record.bearing_range.get('varied')}), and stiffness with it"
+    )
 
 
 def heading(record: Record, key: str) -> str:

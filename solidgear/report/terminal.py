@@ -160,6 +160,8 @@ def closing_lines(found: Record | Mapping[str, Any]) -> list[str]:
     """
     record = as_record(found)
     lines = [f"caution: {w}" for w in record.warnings]
+    if bearings := reading.left_open(record):
+        lines.append(f"{bearings}.")
     trusted = record.verdict.trust
     counted = reading.model_of(record, trusted).evidence.complete
     if counted:

@@ -113,7 +113,19 @@ def oblique_softness(probe: Probe) -> Notices:
             continue
         d = np.sqrt(np.diag(b.stiffness)[on])
         least = float(np.linalg.eigvalsh(b.stiffness[np.ix_(on, on)] / np.outer(d, d))[0])
-        if least < FOUR_DIGITS:
+        if least < FOUR_DIGITS and b.catalogue is not None:
+            share = "no stiffness"
+            if least >= FREE:
+                share = f"{least:.1e} of its stiffness"
+            yield Notice(
+                "caution",
+                (),
+                f"at this load few rolling elements of bearing {b.name!r} carry, all of them to "
+                f"one side: in one oblique direction it has {share}, and what it has changes with "
+                "the load; more load, preload or less clearance makes more of them carry, and "
+                "solidgear bearing --range tells what this leaves open",
+            )
+        elif least < FOUR_DIGITS:
             what = "is taken as free" if least < FREE else f"is {least:.1e} of its entries"
             yield Notice(
                 "caution",
