@@ -327,10 +327,20 @@ def _plain_error(one: Mapping, data: Any, where: str) -> SceneError:
     return SceneError(_plain_words(one, data)).located(data, where=where, path=path)
 
 
+#: what a whole file cannot do without, and how it is written
+WRITE = {
+    "material": 'write material = "steel", or a table with E, nu and density',
+    "segment": 'write segment = [{ kind = "cylinder", name = ..., length = ..., diameter = ... }, ...]',
+    "port": 'write port = { name = "gear", at = "SEGMENT.middle", attach_to = "SEGMENT" } with the '
+    "name of a segment: the point where the gear acts",
+}
+
+
 def _plain_words(one: Mapping, data: Any) -> str:
     kind, ctx = one["type"], one.get("ctx", {})
+    written = WRITE.get(str(one["loc"][0]), "") if len(one["loc"]) == 1 else ""
     words = {
-        "missing": "this key is missing",
+        "missing": f"this key is missing{'; ' * bool(written)}{written}",
         "string_type": "must be a text in quotes",
         "string_unicode": "must be a text of plain letters",
         "int_type": "must be a whole number",

@@ -132,9 +132,18 @@ def test_a_long_list_is_cut(tmp_path):
 
 
 def test_an_empty_file(tmp_path):
-    assert sentences("", tmp_path) == [
-        f"{name}: this key is missing" for name in ("material", "segment", "port")
-    ]
+    told = sentences("", tmp_path)
+    for line, name in zip(told, ("material", "segment", "port"), strict=True):
+        assert line.startswith(f"{name}: this key is missing; write {name} = ")
+
+
+def test_a_place_for_a_position_is_sent_to_its_key(tmp_path):
+    """Also of the shaft itself; what is neither a place nor a number is told as before."""
+    for place in ("seat.middle", "end"):
+        (line,) = sentences(spoilt(('position = "', f'position = "{place}"  # ')), tmp_path)
+        assert line.endswith(f'write position = "0 mm" and from = "{place}"')
+    (line,) = sentences(spoilt(('position = "', 'position = "about"  # ')), tmp_path)
+    assert "must be a number with a unit" in line
 
 
 def test_one_problem_is_one_sentence(tmp_path):

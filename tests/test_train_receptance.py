@@ -118,7 +118,9 @@ def test_the_command_writes_a_table_and_charts(tmp_path):
         ("gear.gear:z", "pinion.pinion:q", "components are x y z"),
         ("gear.7:z", "pinion.pinion:x", "gear.3"),
         ("engine:x", "pinion.pinion:x", "engine does not move in x, only in thy"),
-        ("gear.gear:z", "turbine:thy", "there is no part 'turbine'"),
+        ("gear.gear:z", "turbine:thy", "there is no part 'turbine'; there is engine, pinion"),
+        ("gear.gear:z", "pinion:z", "'pinion' is no port; pinion has pinion."),
+        ("1:z", "pinion.pinion:z", "there is no part '1'; did you mean pinion.1?"),
     ],
 )
 def test_bad_ends_are_told_and_nothing_is_written(from_, to, words, tmp_path):

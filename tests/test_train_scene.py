@@ -277,3 +277,37 @@ def test_an_apex_that_contradicts_its_scene_is_told(tmp_path):
     pinion = 'apex = "end" of the pinion contradicts its scene'
     line = contact(load_train(written(tmp_path, (start, end)))).cautions[1]
     assert line.startswith(pinion) and 'unless apex = "start"' in line
+
+
+def test_all_that_a_line_of_action_lacks_is_told_at_once(tmp_path):
+    lacking = (('hand = "left"', "# "), ('loaded_side = "concave"', "# "))
+    with pytest.raises(sg.SceneError) as error:
+        contact(load_train(written(tmp_path, *lacking)))
+    assert len(error.value.problems) == 2
+    straight = (*lacking, ('spiral_angle = "0.478 rad"', "spiral_angle = 0"))
+    with pytest.raises(sg.SceneError, match="both together say which flank is loaded"):
+        contact(load_train(written(tmp_path, *straight)))
+
+
+def test_wheels_of_one_hand_are_called_what_they_are(tmp_path):
+    alike = ('hand = "left"', 'hand = "right"')
+    for changes, pair in (((), "a spiral bevel pair"), (PARALLEL, "a helical pair on parallel")):
+        with pytest.raises(sg.SceneError, match=pair):
+            load_train(written(tmp_path, alike, *changes))
+
+
+def test_a_spring_is_tied_as_its_shaft_is(tmp_path):
+    """As all bearings and lumped points of the scene are, where they are tied alike."""
+    place = 'position = "20 mm"\nseat_width = "10 mm"'
+    train = load_train(written(tmp_path, ('at = "pinion"', place)))
+    scene = train.pinion.scene
+    first, *rest = (b.with_changes(attachment="section") for b in scene.bearings)
+    mixed = scene.with_changes(bearings=(first, *scene.bearings[1:]))
+    for own, tie in (
+        (scene, "average"),
+        (scene.with_attachment("section"), "section"),
+        (mixed, "average"),
+    ):
+        shaft = train.with_changes(pinion=train.pinion.with_changes(scene=own)).shaft("pinion")
+        assert shaft.bearings[-1].name == "engine spring"
+        assert shaft.bearings[-1].attachment == tie

@@ -83,9 +83,11 @@ class Train(Model):
         hands = (self.pinion.hand, self.gear.hand)
         curved = any(m.spiral_angle for m in (self.pinion, self.gear))
         if curved and None not in hands and hands[0] == hands[1]:
+            pair = (
+                "spiral bevel pair" if self.mesh.shaft_angle else "helical pair on parallel shafts"
+            )
             yield SceneError(
-                f"both wheels are {hands[0]}-handed and cannot mesh; "
-                "a spiral bevel pair has one of each",
+                f"both wheels are {hands[0]}-handed and cannot mesh; a {pair} has one of each",
                 path=("gear", "hand"),
             )
         ratio = self.gear.teeth / self.pinion.teeth
@@ -147,16 +149,18 @@ class Train(Model):
 
     def shaft(self, side: str) -> Scene:
         """Scene of a shaft, with the place of its torsional spring as a free station if that is
-        none of its ports.
+        none of its ports; tied as the others are, where all of them are tied alike.
         """
         scene, spring = self.member(side).scene, self.rotor(side)[1].spring
         if spring.position is None:
             return scene
         datum = {"start": 0.0, "end": scene.length} | {s.name: s.y for s in scene.stations}
+        ties = {s.attachment for s in scene.stations}
         station = Bearing(
             name=self.spring_port(side),
             y=datum[spring.from_] + spring.position,
             seat_width=spring.seat_width or 0.0,
+            attachment=ties.pop() if len(ties) == 1 else "average",
             stiffness=[[0.0] * 6] * 6,
             status=spring.status,
         )

@@ -198,7 +198,7 @@ class Mesh(Model):
     ratio : float or None
         Teeth of the gear over teeth of the pinion, where a source gives it.
     pressure_angle : float or None
-        For a line of action from gear geometry, rad.
+        Normal to the tooth, for a line of action from gear geometry, rad.
     line_of_action, point : tuple of float or None
         Given instead, in the pinion's frame, from its lumped point.
     contact_cells : tuple of Cell

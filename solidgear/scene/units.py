@@ -151,6 +151,10 @@ def quantity(value: Any, dimension: str) -> float:
     return number
 
 
+#: a place of a segment or of the shaft, which goes into another key
+_PLACE = re.compile(r"(?:[^.\d][^.]*\.)?(?:start|middle|end|mid_face)")
+
+
 def _read_text(text: str, dimension: str) -> float:
     si, example, powers = DIMENSIONS[dimension]
     value, name = show(text), dimension.replace("_", " ")
@@ -166,6 +170,12 @@ def _read_text(text: str, dimension: str) -> float:
             value=value,
         )
     match = _TEXT.fullmatch(text)
+    if match is None and dimension == "length" and _PLACE.fullmatch(text):
+        raise SceneError(
+            "names a place, where a number with a unit belongs: write position = "
+            f'"0 mm" and from = {value}',
+            value=value,
+        )
     if match is None:
         raise SceneError(f'must be a number with a unit, such as "{example}"', value=value)
     number, unit = float(match["number"]), match["unit"]

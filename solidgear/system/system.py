@@ -101,7 +101,10 @@ class System:
     def place(self, part: str) -> slice:
         """Where the coordinates of a part are."""
         if part not in self._places:
-            raise SolidgearError(f"there is no part {part!r}; there is {', '.join(self.parts)}")
+            ends = [f"{name}.{part}" for name, one in self.parts.items() if part in one.ports]
+            meant = f"; did you mean {' or '.join(ends)}?" if ends else "; there is "
+            known = "" if ends else ", ".join(self.parts)
+            raise SolidgearError(f"there is no part {part!r}{meant}{known}")
         return self._places[part]
 
     def _at(self, end: str) -> tuple[str, PortMotion]:

@@ -125,9 +125,17 @@ def _in_scene(apex: str, vector: MeshVector) -> MeshVector:
 
 
 def _needs(train: Train, *keys: str, what: str) -> None:
-    for key in keys:
-        if getattr(train.pinion, key) is None:
-            raise SceneError(f"is missing; {what} needs it", path=("pinion", key))
+    missing = [key for key in keys if getattr(train.pinion, key) is None]
+    straight = not train.pinion.spiral_angle
+    words = dict.fromkeys(GEOMETRY, "")
+    if straight and {"hand", "loaded_side"} & set(missing):
+        both = ": of straight teeth both together say which flank is loaded"
+        words |= {"hand": both, "loaded_side": both}
+    if missing:
+        raise SceneError.of(
+            SceneError(f"is missing; {what} needs it{words[key]}", path=("pinion", key))
+            for key in missing
+        )
 
 
 def _of_teeth(train: Train, pressure_angle: float | None) -> np.ndarray:
