@@ -693,6 +693,14 @@ def test_command_prints_cautions_and_what_will_hold(capsys, monkeypatch):
     )
 
 
+def test_no_model_holds_without_a_word_on_a_shaft_that_is_free():
+    """Without an axial spring in either bearing: told of no model, and true of all."""
+    loose = scene(matrices=[stiff(y=0.0), stiff(y=0.0)])
+    verdicts = check_scene(loose, sg.build(loose, "euler"))["verdicts"]
+    assert verdicts["harmonic"]["verdict"] == "holds with caution"
+    assert verdicts["harmonic"]["guards"] == ["free_motions"]
+
+
 def test_a_catalogue_bearing_of_which_few_elements_carry_is_not_told_to_give_digits():
     """Its matrix is worked out, not typed."""
     data = sg.load(ROOT / "geometry" / "gearbox_catalogue.toml").bearings[1].catalogue

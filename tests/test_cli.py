@@ -457,11 +457,12 @@ def test_unknown_backend_is_refused(run, tmp_path, monkeypatch):
     refused(run("stiffness", SCENE, "-f", "euler"), tmp_path, "umfpack", "superlu")
 
 
-def test_module_runs_as_a_program(tmp_path):
-    done = python("-m", "solidgear.cli", "stiffness", SCENE, "-f", "euler", "--json", cwd=tmp_path)
+@pytest.mark.parametrize("module", ["solidgear", "solidgear.cli"])
+def test_module_runs_as_a_program(tmp_path, module):
+    done = python("-m", module, "stiffness", SCENE, "-f", "euler", "--json", cwd=tmp_path)
     assert done.returncode == 0 and done.stderr == ""
     assert strict(done.stdout)["fidelity"] == "euler"
-    done = python("-m", "solidgear.cli", "stiffness", "nowhere.toml", cwd=tmp_path)
+    done = python("-m", module, "stiffness", "nowhere.toml", cwd=tmp_path)
     assert (
         done.returncode == 1
         and done.stdout == ""
@@ -508,3 +509,12 @@ def test_compare_stays_a_function_after_an_import_of_its_module():
         "import solidgear.studies.comparison; import solidgear as sg; print(callable(sg.compare))"
     )
     assert python("-c", code).stdout.strip() == "True"
+
+
+def test_a_list_of_modes_that_its_number_cuts_short_is_told(run):
+    """Not one that ends at the frequency asked for."""
+    cut = run("modes", SCENE, "-f", "euler", "-n", "3", "--max-frequency", "20000", "--json")
+    (line,) = [text for text in strict(cut.out)["cautions"] if "the list ends" in text]
+    assert "with the 3 elastic shapes asked for" in line and "20000 Hz are asked for" in line
+    whole = run("modes", SCENE, "-f", "euler", "-n", "40", "--max-frequency", "4000", "--json")
+    assert not any("the list ends" in text for text in strict(whole.out)["cautions"])

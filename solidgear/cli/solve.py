@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import sys
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
@@ -32,6 +32,9 @@ from solidgear.cli.app import (
 from solidgear.cli.settled import body_for, ended, heading, told, unjudged, without_bar
 from solidgear.errors import SolidgearError, show
 from solidgear.fidelity.ladder import LADDER
+
+if TYPE_CHECKING:
+    from solidgear.solve.modes import ModeSet
 
 
 @command
@@ -164,6 +167,7 @@ def modes(
         count=count,
     )
     said = cautions(loaded, body)
+    said += _cut_short(found, n or loaded.ask.modes, max_frequency or loaded.ask.max_frequency)
     rows = [
         {
             "name": m.name,
@@ -298,3 +302,15 @@ def check(
         print_check(found)
     if found["faults"]:
         raise typer.Exit(1)
+
+
+def _cut_short(found: ModeSet, n: int, asked: float | None) -> list[str]:
+    """What to say where the number of modes ends a list below the frequency asked for."""
+    elastic = [m for m in found.modes if not m.name.startswith("rigid")]
+    if not asked or sum(m.multiplicity for m in elastic) < n:
+        return []  # all that there are up to it
+    return [
+        f"the list ends with the {n} elastic shapes asked for, at {elastic[-1].frequency_hz:.4g} "
+        f"Hz, and {asked:g} Hz are asked for: there may be more between; raise -n, or modes under "
+        "[ask]"
+    ]

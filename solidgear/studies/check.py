@@ -233,7 +233,11 @@ def _solids(scene: Scene) -> list[str]:
 
 
 def _verdict(model: str, records: list[dict]) -> dict:
-    own = [r for r in records if model in r["models"]]
+    own = [
+        r
+        for r in records
+        if model in r["models"] or (r["guard"] == "free_motions" and r["level"] != "fact")
+    ]
     worst = max((r["level"] for r in own), key=LEVELS.index, default="fact")
     return {
         "verdict": VERDICTS[worst],
