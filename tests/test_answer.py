@@ -6,12 +6,14 @@ import subprocess
 import sys
 from functools import cache
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 import solidgear as sg
 from solidgear.body import as_supports
+from solidgear.cli.answer import sentences
 from solidgear.evidence.answer import Numbers, solve
 from solidgear.evidence.quantities import change
 from solidgear.fidelity.ladder import LADDER
@@ -382,3 +384,11 @@ def test_a_coupling_that_symmetry_forbids_is_zero_and_others_are_not(scenes):
     assert even[1].size == pytest.approx((even[0].value * even[2].value) ** 0.5)
     odd = answer(scenes["pinion_overhung"], 0.05, "C_z,thx").values
     assert not odd[0].zero
+
+
+def test_what_an_answer_cost_is_told_in_plain_seconds():
+    """Not as 1.1e+02 s."""
+    step = SimpleNamespace(rung="sector", valid=True, why="", chosen=True, seconds=108.4)
+    found = SimpleNamespace(steps=[step], missing=(), tolerance=1e-3, reached=True, rung="sector")
+    (line,) = sentences(found)
+    assert line == "Within 0.10 %: sector, 108 s for all meshes tried."

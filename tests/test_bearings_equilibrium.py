@@ -15,10 +15,10 @@ from solidgear.bearings.rolling import RollingBearing
 from solidgear.bearings.solved import solved
 from solidgear.cli import app
 from solidgear.errors import SceneError, SolidgearError
-from solidgear.scene.file import load as read
 from solidgear.report.front import numbers
 from solidgear.report.terminal import closing_lines
 from solidgear.report.units import ENGINEERING
+from solidgear.scene.file import load as read
 from solidgear.studies.bearing_study import bearing_range, over_load
 
 SCENE = "geometry/gearbox_catalogue.toml"

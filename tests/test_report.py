@@ -17,7 +17,7 @@ import solidgear as sg
 from solidgear.errors import SolidgearError
 from solidgear.evidence.record import SCHEMA, Record
 from solidgear.evidence.recording import recorded
-from solidgear.report import charts, readout
+from solidgear.report import charts, input_tables, readout
 from solidgear.report.html import render_page, write_report
 from solidgear.report.terminal import (
     final_table,
@@ -25,6 +25,7 @@ from solidgear.report.terminal import (
     modes_table,
     verdict_text,
 )
+from solidgear.report.units import ENGINEERING
 from solidgear.report.words import engineering, hertz, percent
 from tests.made_up_run import STIFFNESS, fixture_results
 
@@ -420,3 +421,10 @@ def test_engineering(value, text):
 def test_percent(value, text):
     assert percent(value) == text
     assert hertz(2758.09) == "2758.1"
+
+
+def test_a_material_of_a_segments_own_has_its_units():
+    steel = {"E": 2.1e11, "nu": 0.3, "density": 7850.0}
+    stack = {"E": 4e10, "nu": 0.28, "density": 7600.0}
+    told = input_tables._own_material(stack, steel, ENGINEERING)
+    assert told == "E 40 GPa, nu 0.28, density 7600 kg/m³"

@@ -12,7 +12,16 @@ from solidgear.evidence.bands import Band
 from solidgear.evidence.quantities import JUDGED
 from solidgear.evidence.study import Solution
 from solidgear.evidence.ties import SCENE, SECTION
-from solidgear.evidence.verdict import BEYOND, OPEN, WITHIN, deviations, gap_verdict, judge, trusted
+from solidgear.evidence.verdict import (
+    BEYOND,
+    OPEN,
+    WITHIN,
+    deviations,
+    gap_verdict,
+    judge,
+    percent,
+    trusted,
+)
 from solidgear.scene import Ask, Bearing, Scene, Segment
 from solidgear.solve.modes import Mode, ModeSet
 from solidgear.studies.comparison import compare
@@ -187,6 +196,15 @@ def test_cheapest_does_not_depend_on_the_order_of_the_rungs():
         "Cheapest model within 5 %: Timoshenko beam (10 unknowns, 2 s)" in s
         for s in verdict["sentences"]
     )
+
+
+def test_a_share_in_words_has_no_exponent():
+    assert [percent(x) for x in (3.5e-7, 5e-6, 0.0123, 1.5)] == [
+        "less than 0.0001 %",
+        "0.0005 %",
+        "1.2 %",
+        "150 %",
+    ]
 
 
 def test_worst_of_the_judged_numbers_is_named():

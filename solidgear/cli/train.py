@@ -46,7 +46,7 @@ LocalHarmonics = Annotated[
     typer.Option(
         "--local-harmonics",
         help="Harmonics n >= 2 of harmonic solids that the teeth drive where they touch, such as "
-        "2,3; by default as [mesh] local_harmonics of the file says.",
+        "2,3; by default as local_harmonics in the table mesh of the file says.",
     ),
 ]
 MOST_KEPT = 200

@@ -144,7 +144,8 @@ def _own_material(material: Mapping, default: Mapping, units: Units) -> str:
     if material == default:
         return "default"
     modulus = f"{units.given(material.get('E'), 'Pa', DASH)} {units.unit('Pa')}"
-    return f"E {modulus}, nu {material.get('nu')}, density {material.get('density')}"
+    density = units.given(material.get("density"), "kg/m³", DASH)
+    return f"E {modulus}, nu {material.get('nu')}, density {density} kg/m³"
 
 
 def bearings(scene: Mapping, units: Units = ENGINEERING) -> Table:
