@@ -70,7 +70,7 @@ def arrows():
     return found
 
 
-FACES = {"__init__", "cli"}
+FACES = {"__init__", "__main__", "cli"}
 
 
 @pytest.mark.parametrize("name", sorted(MAY_IMPORT))

@@ -148,8 +148,7 @@ def shoulder(probe: Probe) -> Notices:
             continue
         missing = more * float(np.interp(ratio, MISSING[:, 0], MISSING[:, 1]))
         limits = f"1 % is passed at {STEP:g}, 5 % at {STEEP:g}"
-        if not alike:
-            limits = f"{more:.2g} times as much as of one material, by E of both parts"
+        own = f"{more:.2g} times as much as of one material, by E of both parts"
         sharp = f"(sharpest corner {degrees:.0f} degrees)" if degrees > 180 else "(with its fillet)"
         yield Notice(
             "caution",
@@ -157,7 +156,7 @@ def shoulder(probe: Probe) -> Notices:
             f"shoulder between {a.name!r} and {b.name!r} at y = {1e3 * b.y0:.6g} mm {sharp}, "
             f"ratio of diameters {ratio:.2f}: a beam lacks "
             f"{2e3 * thin * missing:.2g} mm of thin shaft, {100 * lacking:.1f} % of the "
-            f"deflection of an overhang of one diameter; {limits}; use {better}",
+            f"deflection of an overhang of one diameter; {limits if alike else own}; use {better}",
         )
 
 
