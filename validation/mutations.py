@@ -149,8 +149,8 @@ MUTATIONS = (
         "shoulder as soft in stretch as in bending",
         "solidgear/fidelity/shoulder.py",
         "hinges",
-        "float(stretch / (material.E * area))",
-        "float(bend / (material.E * area))",
+        "float(straight * stretch / (material.E * area))",
+        "float(straight * bend / (material.E * area))",
         "tests/test_stability_models.py::test_a_beam_with_soft_shoulders_is_the_solid_under_a_moment_a_pull_and_a_twist",
     ),
     Mutation(
