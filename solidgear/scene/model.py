@@ -20,6 +20,7 @@ from solidgear.scene.blend_rules import blend_problems
 from solidgear.scene.blends import Blend, Corner, corners_of_blends
 from solidgear.scene.body_file import BodyFile
 from solidgear.scene.catalogue import BearingLoad
+from solidgear.scene.ends import met
 from solidgear.scene.features import Feature, feature_problems
 from solidgear.scene.housing import Housing
 from solidgear.scene.parts import STEEL, Material, Model, Segment
@@ -108,6 +109,9 @@ class Scene(Displayed, Model):
     def _hangs_together(self) -> Scene:
         problems = shaft_problems(self.segments)
         if not problems:  # a station can be judged only on a shaft that is sound
+            for name in ("bearings", "masses", "further_ports"):
+                object.__setattr__(self, name, met(getattr(self, name), self.segments))
+            object.__setattr__(self, "port", met([self.port], self.segments)[0])
             bearings, masses = dict(enumerate(self.bearings)), dict(enumerate(self.masses))
             ports = dict(enumerate(self.ports))
             problems = list(station_problems(self.segments, ports, bearings, masses))

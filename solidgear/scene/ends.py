@@ -1,0 +1,67 @@
+"""Seats that end a hair beside a face or a step end there.
+
+Positions that are rounded in the last digit leave gaps of nanometres, which no workshop makes: a
+cell in one is 1e7 times shorter than its neighbours, drowns soft modes in rounding, and is no line
+to a CAD kernel.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, TypeVar
+
+if TYPE_CHECKING:
+    from solidgear.scene import Bearing, PointMass, Port, Segment
+
+#: what is a hair, m, or over the length of the shaft if that is more: lines of 1e-7 m are none to
+#: the CAD kernel, and the least seat is a millionth of the length
+HAIR, HAIR_OF_LENGTH = 1.5e-7, 5e-7
+#: of its seat, that a hair is at most
+SHARE = 0.25
+
+Station = TypeVar("Station", "Bearing", "Port", "PointMass")
+
+
+def met(stations: Sequence[Station], segments: Sequence[Segment]) -> tuple[Station, ...]:
+    """Stations with the ends of their seats moved onto the faces and joints that they miss by a
+    hair; the same ones where there are none.
+
+    Parameters
+    ----------
+    stations : sequence of Bearing, Port or PointMass
+    segments : sequence of Segment
+        Of one shaft.
+
+    Returns
+    -------
+    tuple of Bearing, Port or PointMass
+
+    Examples
+    --------
+    >>> from solidgear import Bearing, Segment
+    >>> shaft = [Segment.cylinder("shaft", length=0.3, diameter=0.04)]
+    >>> (seat,) = met([Bearing(name="A", y=0.0481584, seat_width=0.0963167, stiffness={})], shaft)
+    >>> seat.lo, seat.y  # 50 nm beside the face as written
+    (0.0, 0.048158375)
+    """
+    marks = [segments[0].y0, *(s.y1 for s in segments)]
+    return tuple(_met(station, marks) for station in stations)
+
+
+def _met(station: Station, marks: Sequence[float]) -> Station:
+    if getattr(station, "seat_width", 0.0) is None:  # a mass on another's seat
+        return station
+    hair = min(
+        max(HAIR, HAIR_OF_LENGTH * (marks[-1] - marks[0])), SHARE * (station.hi - station.lo)
+    )
+    ends = []
+    for y in (station.lo, station.hi):
+        nearest = min(marks, key=lambda mark: abs(mark - y))
+        ends.append(nearest if abs(nearest - y) <= hair else y)
+    lo, hi = ends
+    if (lo, hi) == (station.lo, station.hi):
+        return station
+    if "lo" in type(station).model_fields:
+        return station.model_copy(update={"lo": lo, "hi": hi})
+    y = station.y if getattr(station, "face", None) else (lo + hi) / 2
+    return station.model_copy(update={"y": y, "seat_width": hi - lo})
