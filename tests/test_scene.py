@@ -369,3 +369,22 @@ def test_straddled_pinion():
 def test_a_train_is_told_from_a_shaft():
     with pytest.raises(SceneError, match="describes a train of two shafts and not a shaft"):
         load(GEOMETRY / "axle_overhung.toml")
+
+
+def test_a_seat_a_hair_beside_a_face_or_a_joint_ends_there():
+    # 50 nm of rounding in a position: a sliver of a cell, and a line that gmsh refuses
+    parts = [
+        sg.Segment(name="a", y0=0.0, y1=0.1, outer0=0.02, outer1=0.02),
+        sg.Segment(name="b", y0=0.1, y1=0.2, outer0=0.03, outer1=0.03),
+    ]
+    springs = {"kxx": 1e8, "kyy": 1e8, "kzz": 1e8}
+    a = sg.Bearing(name="A", y=0.0100001, seat_width=0.0200001, stiffness=springs)
+    b = sg.Bearing(name="B", y=0.1100001, seat_width=0.02, stiffness=springs)
+    port = sg.Port(name="gear", y=0.19, lo=0.18, hi=0.20000005)
+    scene = sg.Scene.from_parts(parts, port=port, bearings=[a, b])
+    assert [s.lo for s in scene.bearings] == [0.0, 0.1] and scene.port.hi == 0.2
+    assert scene.bearings[0].hi == a.hi and scene.bearings[1].hi == b.hi
+    assert sg.build(scene, "solid", element="tet10", refinement=0.3).size > 0
+    # a gap that one can see is a gap
+    wide = sg.Bearing(name="A", y=0.0101, seat_width=0.02, stiffness=springs)
+    assert scene.with_changes(bearings=(wide,)).bearings[0].lo == pytest.approx(1e-4)

@@ -213,7 +213,9 @@ LADDER = Ladder(
         size=Later("solidgear.fidelity.sizes", "solid_size"),
         meshes=solid_meshes,
         factors=BandFactors(
-            usual=by_edge(0.8, 1.3),
+            # of hexahedra on seats near shoulders errors fall by half a mesh, and what is left is as
+            # much as the last step: 1.0 on the overhung pinion, 1.1 on a random rotor (64014)
+            usual=by_edge(1.2, 1.5),
             first=by_edge((1.8, 0.009, 0.6), (1.8, 0.036, 0.8)),
             earlier=0.15,
             ahead=0.4,
