@@ -126,7 +126,7 @@ def test_other_ties_add_up_and_have_their_places(attachment):
 def test_a_coupling_is_the_product_of_two_errors(scenes):
     found = where(scenes["pinion_overhung"], "C_z,thx")
     assert found.check == pytest.approx(1.0, abs=SUMS)
-    assert found.rows[0].what == "shoulder" and found.rows[0].share < -0.8  # C_z,thx is negative
+    assert found.rows[0].what == "shoulder" and found.rows[0].share < -0.7  # C_z,thx is negative
     assert sum(abs(row.share) for row in found.rows) == pytest.approx(1.0)
 
 
