@@ -17,7 +17,7 @@ from solidgear.meshing.closed_form import mass_properties
 from solidgear.scene import Bearing, Port, Scene, Segment
 from solidgear.solve.statics import condense
 from validation.attack import __main__ as command
-from validation.attack import campaign
+from validation.attack import campaign, twins
 from validation.attack import reference as finest
 from validation.attack.bands import BandTable, explained
 from validation.attack.corner_mesh import corner_mesh, singular_points
@@ -386,3 +386,17 @@ def test_a_slice_of_the_whole(tmp_path, monkeypatch):
     text = out.read_text()
     assert code == 0, text
     assert "False valid: 0.0 %" in text and "### tet10" in text
+
+
+@pytest.mark.parametrize("seed", [2001, 2004])
+def test_a_wild_shaft_agrees_with_its_twins(seed):
+    # with every piece cut in two, end for end, and finer
+    found = list(twins.gaps(seed))
+    assert {how for how, *_ in found} == {"cut", "turned", "finer"}
+    assert all(gap <= bars + twins.ROUNDING for _, _, gap, bars in found)
+    # another body would be told
+    segments, seats = twins.wild(seed)
+    mine = twins.answer(twins.scene(segments, seats), 0.02, ["C_zz"]).values[0]
+    thinner = [s.with_changes(outer0=0.98 * s.outer0, outer1=0.98 * s.outer1) for s in segments]
+    other = twins.answer(twins.scene(thinner, seats), 0.02, ["C_zz"]).values[0]
+    assert abs(other.value / mine.value - 1) > mine.bar + other.bar
