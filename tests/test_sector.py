@@ -429,4 +429,6 @@ def test_check_does_not_say_of_a_model_that_refuses_that_it_holds():
     for scene in (shaft(TEETH, key), shaft(TEETH).with_changes(blends=(fillet,)), shaft(TEETH)):
         body = sg.build(scene.plain, "timoshenko")
         for model, told in check_scene(scene, body)["verdicts"].items():
-            assert not LADDER[model].unfit(scene) or told["verdict"] == "will not hold", model
+            # a solid that a lumped model rests on may well carry features
+            least = {"will not hold", "uncertain"} if model == "lumped" else {"will not hold"}
+            assert not LADDER[model].unfit(scene) or told["verdict"] in least, model
