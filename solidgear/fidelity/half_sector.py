@@ -22,7 +22,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -32,6 +31,7 @@ from solidgear.body import Block
 from solidgear.body.surface import Surface
 from solidgear.fidelity.attachment import tie_rigidly
 from solidgear.fidelity.cyclic import ROUNDING
+from solidgear.fidelity.sector_solid import PieceSolid
 from solidgear.fidelity.solid_block import rigid_motions
 from solidgear.fidelity.solid_drawing import solid_surface
 from solidgear.fidelity.solid_matrices import _matrices, weighed
@@ -237,23 +237,15 @@ def _in_parts(six: np.ndarray, components: tuple[int, ...]) -> np.ndarray:
 
 
 @dataclass(frozen=True, eq=False)
-class HalfSectorSolid(SolidMesh):
+class HalfSectorSolid(PieceSolid):
     """The mesh of half a sector, which draws the whole part.
 
     Attributes
     ----------
     sector : HalfSector
-    inner : (k,) ndarray of int
-        Facets on the middle plane and on the cut face.
     """
 
     sector: HalfSector
-    inner: np.ndarray
-
-    @cached_property
-    def boundary(self) -> np.ndarray:
-        """Indices of the facets on the surface of the whole part."""
-        return np.setdiff1d(self.mesh.boundary_facets(), self.inner)
 
     def surface(self, moved: Mapping[str, np.ndarray]) -> Surface:
         """All copies of the half and of its image, each with its phase."""
@@ -291,9 +283,6 @@ class HalfSectorSolid(SolidMesh):
             every(rest.triangles),
             every(rest.lines),
         )
-
-    def volume(self) -> None:  # type: ignore[override]
-        """No mesh of the whole part."""
 
 
 def _real_and_not(mesh: SolidMesh, name: str, vector: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -347,6 +336,6 @@ def half_sector_solid(made: SectorMesh) -> HalfSectorSolid:
         plain.dofs,
         plain.nodes,
         plain.segment,
-        half,
         np.concatenate(planes),
+        half,
     )

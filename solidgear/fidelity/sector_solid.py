@@ -65,23 +65,36 @@ def seats(mesh: SolidMesh, straight: np.ndarray, scene, features) -> Facets:
 
 
 @dataclass(frozen=True, eq=False)
-class SectorSolid(SolidMesh):
-    """The mesh of a sector, which draws the whole part.
+class PieceSolid(SolidMesh):
+    """The mesh of a piece of a part, which draws all of it.
 
     Attributes
     ----------
-    sector : Sector
     inner : (k,) ndarray of int
-        Facets on the cut faces.
+        Facets inside the whole part: cut faces, and the middle plane of a half.
     """
 
-    sector: Sector
     inner: np.ndarray
 
     @cached_property
     def boundary(self) -> np.ndarray:
         """Indices of the facets on the surface of the whole part."""
         return np.setdiff1d(self.mesh.boundary_facets(), self.inner)
+
+    def volume(self) -> None:  # type: ignore[override]
+        """No mesh of the whole part."""
+
+
+@dataclass(frozen=True, eq=False)
+class SectorSolid(PieceSolid):
+    """The mesh of a sector, which draws the whole part.
+
+    Attributes
+    ----------
+    sector : Sector
+    """
+
+    sector: Sector
 
     def surface(self, moved: Mapping[str, np.ndarray]) -> Surface:
         """All copies of the sector, each with its phase."""
@@ -109,9 +122,6 @@ class SectorSolid(SolidMesh):
         return Surface(
             points, displacement, every(rest.faces), every(rest.triangles), every(rest.lines)
         )
-
-    def volume(self) -> None:  # type: ignore[override]
-        """No mesh of the whole part."""
 
 
 def sector_solid(made: SectorMesh) -> SectorSolid:
@@ -149,6 +159,6 @@ def sector_solid(made: SectorMesh) -> SectorSolid:
         plain.dofs,
         plain.nodes,
         plain.segment,
-        Sector(made.count, master, slave, on_axis),
         np.concatenate(inner),
+        Sector(made.count, master, slave, on_axis),
     )

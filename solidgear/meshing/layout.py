@@ -390,10 +390,8 @@ def _radial_needs(
         held, narrow = "rigid" in ties, grading.seat_layers(station, segments, ties)
         for i, s in enumerate(segments):
             if s.y0 < station.hi - TOUCH and station.lo + TOUCH < s.y1:
-                edge, reach = (
-                    min(grading.edge, grading.across),
-                    grading.radial_reach * corner_length(s),
-                )
+                edge = min(grading.edge, grading.across)
+                reach = grading.radial_reach * corner_length(s)
                 add(bands[i][1], i, (grading.across if held else edge) + narrow, reach)
                 if "section" in ties:  # whose plane ends in a ring of the bore as well
                     add(bands[i][0], i, edge, reach)
