@@ -8,6 +8,7 @@ import pytest
 import solidgear as sg
 from solidgear.evidence.answer import solve
 from solidgear.evidence.bands import DIAGONAL, LEAST, SURE_AROUND, layered_bands
+from solidgear.evidence.quantities import ACROSS, QUANTITIES
 from solidgear.evidence.sequence_bands import feature_effect
 from solidgear.fidelity.edges import sharpest_edge
 from solidgear.fidelity.ladder import LADDER
@@ -140,3 +141,8 @@ def test_what_is_sharpest_on_a_shaft():
     assert sharpest_edge(shaft("rigid", 0.20)) == HELD_AT_A_STEP
     assert sharpest_edge(shaft("rigid", 0.2 + 5e-8)) == HELD_AT_A_STEP  # but for rounding
     assert sharpest_edge(shaft("rigid", 0.21)) == HELD
+
+
+def test_what_features_change_floors_the_bands_of_both_planes():
+    # meshes of a corrected solid may agree by accident in any entry
+    assert set(LADDER["corrected"].factors.effect) == set(QUANTITIES) | set(ACROSS)

@@ -75,7 +75,10 @@ def sequence_bands(
         effect = feature_effect(scene, factors, levels[-1])
         found = layered_bands(levels, solver, factors, edge=edge, around=around, effect=effect)
         if acute(scene):
-            return {name: replace(band, gci=ACUTE * band.gci) for name, band in found.items()}
+            return {
+                name: replace(band, gci=ACUTE * band.gci, factor=ACUTE * band.factor)
+                for name, band in found.items()
+            }
         return found
     last = [size or 0.0 for size in sizes[-3:]]
     if len(levels) < 3 or not last[0] > last[1] > last[2] > 0:

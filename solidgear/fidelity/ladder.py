@@ -110,7 +110,6 @@ LADDER = Ladder(
             # frequencies 98 % are below 0.11, 0.2, 0.17 and 0.21 of the last step at the last four.
             # In an umbrella mode of a thin flange the shoulder is most of it: 0.2.
             first_of_modes={
-                SMOOTH: (1.2, 1e-4, 0.65),
                 PLANE: (1.5, 3e-4, 0.4),
                 STEPPED: (0.6, 1.5e-4, 0.22),
                 STEPPED_PLANE: (0.6, 1.5e-4, 0.2),
@@ -153,7 +152,9 @@ LADDER = Ladder(
             # stiffness that are cut away nearly cancel), and 0.4 of torsion 1, a free mode.
             effect={
                 **dict.fromkeys(("C_zz", "C_z,thx", "C_thx", "C_yy"), 0.1),
+                **dict.fromkeys(("C_xx", "C_x,thz", "C_thz", "C_thy"), 0.1),
                 **dict.fromkeys(("K_zz", "K_z,thx", "K_thx", "K_yy"), 0.14),
+                **dict.fromkeys(("K_xx", "K_x,thz", "K_thz", "K_thy"), 0.14),
                 **dict.fromkeys(("bending 1", "bending 2"), 0.1),
                 "axial 1": 0.3,
                 "torsion 1": 0.6,
