@@ -9,8 +9,8 @@ import solidgear as sg
 from solidgear.evidence.answer import solve
 from solidgear.evidence.bands import DIAGONAL, LEAST, SURE_AROUND, layered_bands
 from solidgear.evidence.quantities import ACROSS, QUANTITIES
-from solidgear.evidence.sequence_bands import feature_effect
-from solidgear.fidelity.edges import sharpest_edge
+from solidgear.evidence.sequence_bands import feature_effect, sequence_bands
+from solidgear.fidelity.edges import beside_a_step, sharpest_edge
 from solidgear.fidelity.ladder import LADDER
 from solidgear.fidelity.rung import HELD, HELD_AT_A_STEP, PLANE, SMOOTH, STEPPED, STEPPED_PLANE
 
@@ -141,6 +141,28 @@ def test_what_is_sharpest_on_a_shaft():
     assert sharpest_edge(shaft("rigid", 0.20)) == HELD_AT_A_STEP
     assert sharpest_edge(shaft("rigid", 0.2 + 5e-8)) == HELD_AT_A_STEP  # but for rounding
     assert sharpest_edge(shaft("rigid", 0.21)) == HELD
+    # near a step, but not at it, is a class of its own: less than 0.5 mm here
+    assert [beside_a_step(shaft("average", 0.2 + gap)) for gap in (0, 2e-5, 4e-4, 6e-4)] == [
+        *(False, True, True, False)
+    ]
+    assert not beside_a_step(shaft("average", 0.2 + 2e-5, second=0.05))
+
+
+def test_a_seat_that_ends_beside_a_step_widens_bars():
+    def band(y):
+        bearing = sg.Bearing(name="1", y=y, seat_width=0.02, matrix=np.eye(6) * 1e8)
+        parts = [
+            sg.Segment.cylinder("a", length=0.1, diameter=0.05),
+            sg.Segment.cylinder("b", y0=0.1, length=0.1, diameter=0.06),
+        ]
+        port = sg.Port(y=0.05, lo=0.04, hi=0.06)
+        scene = sg.Scene.from_parts(parts, bearings=[bearing], port=port)
+        rung = LADDER["harmonic"]
+        args = (scene, rung.meshes({}), rung.factors, levels(0.05), {}, (None, None))
+        return sequence_bands(*args)["C_zz"]
+
+    assert band(0.1101).gci == pytest.approx(1.5 * band(0.11).gci, rel=1e-9)
+    assert band(0.1101).factor == pytest.approx(1.5 * band(0.11).factor, rel=1e-9)
 
 
 def test_what_features_change_floors_the_bands_of_both_planes():

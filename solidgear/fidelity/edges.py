@@ -8,12 +8,15 @@ import numpy as np
 
 from solidgear.fidelity.rung import HELD, HELD_AT_A_STEP, PLANE, SMOOTH, STEPPED, STEPPED_PLANE
 from solidgear.meshing.corners import corner_angle, filled_at
+from solidgear.scene.rules import TOUCH
 
 if TYPE_CHECKING:
     from solidgear.scene import Scene
 
 #: a seat that ends this near to a step, in least outer radii, ends at it: no mesh tells them apart
 NEAR = 0.01
+#: and one that ends this near to it, in the same measure, is what the corner's next layers meet
+BESIDE = 0.02
 #: a notch narrower than this, rad, and a surface that rises by more than this over its length, leave
 #: cells so acute that errors go on as more than bars expect
 NARROW_NOTCH, STEEP_SURFACE = np.pi / 6, 4.0
@@ -79,3 +82,27 @@ def acute(scene: Scene) -> bool:
         max(abs(s.outer1 - s.outer0), abs(s.inner1 - s.inner0)) / s.length for s in scene.segments
     )
     return any(rise > STEEP_SURFACE for rise in rises)
+
+
+def beside_a_step(scene: Scene) -> bool:
+    """Whether an averaged seat ends close beside a shoulder, but not at it: two singular points in
+    one cell of coarse meshes.
+
+    Parameters
+    ----------
+    scene : Scene
+
+    Examples
+    --------
+    >>> import solidgear as sg
+    >>> beside_a_step(sg.load("geometry/shaft_stepped.toml"))
+    False
+    """
+    near = BESIDE * min(min(s.outer0, s.outer1) for s in scene.segments)
+    seats = [s for s in scene.stations if s.attachment == "average"]
+    pairs = zip(scene.segments, scene.segments[1:])
+    steps = [
+        b.y0 for a, b in pairs if corner_angle(a, b, filled_at(scene, b.y0)) > np.pi * (1 + 1e-9)
+    ]
+    gaps = [abs(y - step) for seat in seats for y in (seat.lo, seat.hi) for step in steps]
+    return any(TOUCH < gap < near for gap in gaps)

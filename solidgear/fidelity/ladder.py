@@ -108,11 +108,13 @@ LADDER = Ladder(
             },
             # A mode strains all of the shaft, an edge is a small part of it: of 382 errors of
             # frequencies 98 % are below 0.11, 0.2, 0.17 and 0.21 of the last step at the last four.
-            # In an umbrella mode of a thin flange the shoulder is most of it: 0.2.
+            # In an umbrella mode of a thin flange the shoulder is most of it: 0.2; on a stiff bearing
+            # what its seat indents is, as of a compliance: 0.26 (axial 1 of a stepped shaft, 1e8 N/m
+            # and more on 10 mm).
             first_of_modes={
                 PLANE: (1.5, 3e-4, 0.4),
-                STEPPED: (0.6, 1.5e-4, 0.22),
-                STEPPED_PLANE: (0.6, 1.5e-4, 0.2),
+                STEPPED: (0.6, 1.5e-4, 0.3),
+                STEPPED_PLANE: (0.6, 1.5e-4, 0.3),
                 HELD: (0.6, 1.5e-4, 0.2),
                 HELD_AT_A_STEP: (0.6, 1.5e-4, 0.26),
             },

@@ -94,12 +94,26 @@ class Grading:
             As many as bring the last layer down to the width of the seat; none where grading starts
             within it, or on a line.
         """
-        width = station.hi - station.lo
-        under = [s for s in segments if s.y0 < station.hi - TOUCH and station.lo + TOUCH < s.y1]
-        if width <= 2 * TOUCH or not under or set(ties) <= {"section"}:
+        depth = self._under(station, segments, ties)
+        if not depth:
             return 0
-        start = self.reach * max(corner_length(s) for s in under)
+        width, start = station.hi - station.lo, self.reach * depth
         return max(0, ceil(log(width / start) / log(self.ratio) - ROUNDING))
+
+    def narrow(self, station, segments, ties) -> bool:
+        """Whether a seat is narrower than the shaft under it is deep; arguments as for
+        :meth:`seat_layers`.
+        """
+        depth = self._under(station, segments, ties)
+        return station.hi - station.lo < depth * (1 - ROUNDING)
+
+    @staticmethod
+    def _under(station, segments, ties) -> float:
+        """Largest corner length (m) of the segments under a seat that a load is spread on, else 0."""
+        if station.hi - station.lo <= 2 * TOUCH or set(ties) <= {"section"}:
+            return 0.0
+        under = [s for s in segments if s.y0 < station.hi - TOUCH and station.lo + TOUCH < s.y1]
+        return max((corner_length(s) for s in under), default=0.0)
 
     @property
     def along_corner(self) -> int:
