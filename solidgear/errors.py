@@ -349,7 +349,12 @@ def _plain_words(one: Mapping, data: Any) -> str:
         "dict_type": "must be a table",
         "model_type": "must be a table of keys",
         "model_attributes_type": "must be a table of keys",
-        "union_tag_not_found": "this key is missing; it says which shape the segment has",
+        "union_tag_not_found": "this key is missing; "
+        + (
+            'it says what the feature is, such as kind = "keyway"'
+            if one["loc"][0] == "feature"
+            else 'it says which shape the segment has, such as kind = "cylinder"'
+        ),
         "union_tag_invalid": f"unknown kind; write one of {ctx.get('expected_tags')}",
         "literal_error": f"must be {ctx.get('expected')}",
     }

@@ -146,6 +146,24 @@ def test_a_place_for_a_position_is_sent_to_its_key(tmp_path):
     assert "must be a number with a unit" in line
 
 
+@pytest.mark.parametrize(
+    ("written", "instead", "meant"),
+    [
+        ("density", "rho", "density"),
+        ("position", "at", "position"),
+        ("seat_width", "width", "seat_width"),
+        ("diameter", "od", "diameter"),
+        ("title", "name", "title"),
+        ("seat_width", "kzz", "stiffness.kzz"),
+        ("seat_width", "contact_angle", "catalogue.contact_angle"),
+        ("seat_width", "seat_widht", "seat_width"),
+    ],
+)
+def test_words_of_the_field_are_sent_to_their_keys(written, instead, meant, tmp_path):
+    told = sentences(spoilt((f"{written} =", f"{instead} =")), tmp_path)
+    assert any(f'unknown key; did you mean "{meant}"?' in line for line in told), told
+
+
 def test_one_problem_is_one_sentence(tmp_path):
     error = refusal(spoilt(("nu = 0.3 ", "nu = 0.7 ")), tmp_path)
     assert error.problems == (error,) and "\n" not in str(error)
