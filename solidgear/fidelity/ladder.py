@@ -88,10 +88,11 @@ LADDER = Ladder(
             # over their last step, after two meshes: 0.5 on smooth shafts, 0.7 with section ties,
             # 0.2 at shoulders, 0.35 at shoulders with section ties, 0.28 at rigid seats, all of it
             # where the step is above 1e-4; below, up to 1.2 at section ties and on smooth shafts. A shaft
-            # of seven small steps has 0.37.
-            # After three: below 0.1, 0.1, 0.2, 0.1, 0.2, and 0.4 at rigid seats beside steps.
+            # with a seat that ends 0.07 mm beside a step has 0.36, a smooth thin tube 0.77.
+            # After three: below 0.1 (0.15 in a disc of 0.05 diameters), 0.1, 0.2, 0.1, 0.2, and 0.4 at
+            # rigid seats beside steps.
             usual={
-                SMOOTH: 0.12,
+                SMOOTH: 0.2,
                 PLANE: 0.15,
                 STEPPED: 0.22,
                 STEPPED_PLANE: 0.22,
@@ -99,7 +100,7 @@ LADDER = Ladder(
                 HELD_AT_A_STEP: 0.5,
             },
             first={
-                SMOOTH: (1.2, 1e-4, 0.65),
+                SMOOTH: (1.2, 1e-4, 0.8),
                 PLANE: (1.5, 3e-4, 0.7),
                 STEPPED: (0.6, 1.5e-4, 0.25),
                 STEPPED_PLANE: (1.2, 3e-4, 0.4),

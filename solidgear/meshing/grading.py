@@ -7,6 +7,7 @@ from math import ceil, log
 
 import numpy as np
 
+from solidgear.meshing.corners import corner_layers
 from solidgear.scene.rules import TOUCH
 
 #: where grading starts, in local lengths; one layer of ratio 0.2 begins at a twentieth of a radius
@@ -92,28 +93,18 @@ class Grading:
         -------
         int
             As many as bring the last layer down to the width of the seat; none where grading starts
-            within it, or on a line.
+            within it, or on a line. On a shaft without shoulders, where nothing else is graded, one
+            for a seat that is narrower than its cells are deep.
         """
-        depth = self._under(station, segments, ties)
-        if not depth:
-            return 0
-        width, start = station.hi - station.lo, self.reach * depth
-        return max(0, ceil(log(width / start) / log(self.ratio) - ROUNDING))
-
-    def narrow(self, station, segments, ties) -> bool:
-        """Whether a seat is narrower than the shaft under it is deep; arguments as for
-        :meth:`seat_layers`.
-        """
-        depth = self._under(station, segments, ties)
-        return station.hi - station.lo < depth * (1 - ROUNDING)
-
-    @staticmethod
-    def _under(station, segments, ties) -> float:
-        """Largest corner length (m) of the segments under a seat that a load is spread on, else 0."""
-        if station.hi - station.lo <= 2 * TOUCH or set(ties) <= {"section"}:
-            return 0.0
+        width = station.hi - station.lo
         under = [s for s in segments if s.y0 < station.hi - TOUCH and station.lo + TOUCH < s.y1]
-        return max((corner_length(s) for s in under), default=0.0)
+        if width <= 2 * TOUCH or not under or set(ties) <= {"section"}:
+            return 0
+        depth = max(corner_length(s) for s in under)
+        more = ceil(log(width / (self.reach * depth)) / log(self.ratio) - ROUNDING)
+        if more > 0 or self.edge or not self.layers or width >= depth * (1 - ROUNDING):
+            return max(0, more)
+        return int(not any(corner_layers(a, b, 1) for a, b in zip(segments, segments[1:])))
 
     @property
     def along_corner(self) -> int:

@@ -22,7 +22,6 @@ from solidgear.meshing.blocks import (
     split_bands,
     strips_of,
 )
-from solidgear.meshing.corners import corner_layers
 from solidgear.meshing.grading import Grading, corner_length, distinct, graded
 from solidgear.scene.rules import TOUCH
 
@@ -308,7 +307,7 @@ def _marks(scene, grading: Grading, attachments) -> list[_Mark]:
     for station in scene.stations:
         ties = attachments or (station.attachment,)
         held = "rigid" in ties
-        narrow = _seat_layers(scene, grading, station, ties)
+        narrow = grading.seat_layers(station, segments, ties)
         # A seat that ends at a face needs its layers too: the shear that it carries, along the axis
         # or in tilting, ends in a corner whose other side is free of it.
         for y in (station.lo, station.hi):
@@ -322,19 +321,6 @@ def _marks(scene, grading: Grading, attachments) -> list[_Mark]:
         here = [layers for y, layers in weight.items() if abs(y - mark) <= tol]
         marks.append(_Mark(mark, max(here)))
     return marks
-
-
-def _seat_layers(scene, grading: Grading, station, ties) -> int:
-    """Further layers towards the ends of a seat, for its width.
-
-    Under a seat on a shaft without shoulders nothing else is graded, and cells are as deep as the
-    shaft: a seat narrower than that gets the layer that shoulders would bring.
-    """
-    more = grading.seat_layers(station, scene.segments, ties)
-    pairs = zip(scene.segments, scene.segments[1:])
-    if more or grading.edge or not grading.layers or any(corner_layers(a, b, 1) for a, b in pairs):
-        return more
-    return int(grading.narrow(station, scene.segments, ties))
 
 
 def _fractions(
@@ -401,7 +387,7 @@ def _radial_needs(
                 add(boundary, k, layers, reach)
     for station in scene.stations:
         ties = attachments or (station.attachment,)
-        held, narrow = "rigid" in ties, _seat_layers(scene, grading, station, ties)
+        held, narrow = "rigid" in ties, grading.seat_layers(station, segments, ties)
         for i, s in enumerate(segments):
             if s.y0 < station.hi - TOUCH and station.lo + TOUCH < s.y1:
                 edge = min(grading.edge, grading.across)
