@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 from solidgear.evidence.record import CauseRecord, Record
-from solidgear.report.chart_style import as_svg, new_figure
+from solidgear.report.chart_style import as_svg, legend_columns, new_figure, paper_width
 from solidgear.report.reading import model_name, relative_change
 from solidgear.report.readout import readable
 from solidgear.report.words import percent
 
 #: quantity -> colour of its bars
 SHOWN = {"C_zz": "#1f5f99", "K_zz": "#9db8d2", "bending 1": "#c4541c"}
+#: in; and room for the figure beside a bar, of the longest bar
+WIDTH, FIGURES = 10.4, 0.22
 #: ways of tying that are held against averaged ones
 TIES = ("rigid", "section")
 
@@ -52,9 +54,10 @@ def _bars(ax, labels: list[str], columns: dict[str, list[float | None]]) -> None
             )
     ax.axvline(0, color="#444444", lw=0.8)
     low, high = min([*sizes, 0.0]), max([*sizes, 0.0])
+    room = FIGURES * reach * WIDTH / paper_width(WIDTH)  # for the figures beside the bars
     ax.set_xlim(
-        low - 0.22 * reach * (low < 0) - 0.04 * reach,
-        high + 0.22 * reach * (high > 0) + 0.04 * reach,
+        low - room * (low < 0) - 0.04 * reach,
+        high + room * (high > 0) + 0.04 * reach,
     )
     ax.set_yticks(range(len(labels)), labels)
     ax.set_ylim(len(labels) - 0.5, -0.5)
@@ -71,12 +74,12 @@ def cause_chart(record: Record):
             rows.append(cause)
     if not rows:
         return None
-    figure = new_figure(10.4, 0.7 + 0.58 * len(rows))
+    figure = new_figure(WIDTH, 0.7 + 0.58 * len(rows))
     ax = figure.subplots()
     columns = {name: [cause.quantities.get(name) for cause in rows] for name in SHOWN}
     _bars(ax, [_label(record, cause) for cause in rows], columns)
     ax.set_xlabel("relative change when this alone is switched")
-    ax.legend(ncols=3, loc="lower right", bbox_to_anchor=(1, 1), borderaxespad=0.1)
+    ax.legend(ncols=legend_columns(3), loc="lower right", bbox_to_anchor=(1, 1), borderaxespad=0.1)
     return figure
 
 
@@ -102,9 +105,9 @@ def attachment_chart(record: Record):
                 column.append(relative_change(own.get(name), average.get(name)))
     if not labels:
         return None
-    figure = new_figure(10.4, 0.7 + 0.46 * len(labels))
+    figure = new_figure(WIDTH, 0.7 + 0.46 * len(labels))
     ax = figure.subplots()
     _bars(ax, labels, columns)
     ax.set_xlabel("relative to averaged ties of the same model")
-    ax.legend(ncols=2, loc="lower right", bbox_to_anchor=(1, 1), borderaxespad=0.1)
+    ax.legend(ncols=legend_columns(2), loc="lower right", bbox_to_anchor=(1, 1), borderaxespad=0.1)
     return figure

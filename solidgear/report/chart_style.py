@@ -7,9 +7,11 @@ import io
 import re
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
+from contextvars import ContextVar
 from typing import TYPE_CHECKING, Any
 
 from solidgear.report.border import as_record
+from solidgear.report.night import for_dark_too
 from solidgear.report.readout import with_readings
 
 if TYPE_CHECKING:
@@ -39,6 +41,9 @@ STYLE: dict[RcKeyType, Any] = {
 }
 
 
+#: in; of narrow paper: on a phone of 390 px a letter of 8 pt is 8.8 px high
+NARROW_WIDTH = 4.55
+_NARROW: ContextVar[bool] = ContextVar("narrow paper", default=False)
 #: a chart of the report: from what a run found to an SVG in bytes, None where there is nothing
 Chart = Callable[["Record | Mapping[str, Any]"], bytes | None]
 
@@ -56,7 +61,8 @@ def as_svg(function: Callable[[Record], Any]) -> Chart:
 
 
 def svg_of(name: str, make: Callable[[], Any]) -> bytes | None:
-    """The SVG of a figure, ready to stand in an HTML page, with what is to be read off it.
+    """The SVGs of a figure, ready to stand in an HTML page, with what is to be read off them: a
+    wide one, and behind it one for a phone, of which ``style.html`` shows either.
 
     Parameters
     ----------
@@ -65,6 +71,14 @@ def svg_of(name: str, make: Callable[[], Any]) -> bytes | None:
     make : callable
         Gives the figure, or None where there is nothing to draw.
     """
+    wide = _drawn(name, make, "wide")
+    with on_narrow_paper():
+        narrow = _drawn(f"{name}_narrow", make, "narrow")
+    return None if wide is None or narrow is None else (wide + narrow).encode()
+
+
+def _drawn(name: str, make: Callable[[], Any], kind: str) -> str | None:
+    """One drawing of a chart: an <svg> of a class, in the colours of the page."""
     import matplotlib
 
     with matplotlib.rc_context():
@@ -73,13 +87,16 @@ def svg_of(name: str, make: Callable[[], Any]) -> bytes | None:
         figure = make()
         if figure is None:
             return None
+        for part in figure.findobj(lambda one: one.get_rasterized()):
+            part.set_rasterized(False)  # pixels would keep their colours in the dark
         target = io.BytesIO()
         figure.savefig(
             target,
             format="svg",
             metadata={"Date": None, "Creator": None, "Format": None, "Type": None},
         )
-    return with_readings(_embeddable(target.getvalue().decode(), name), figure).encode()
+    svg = with_readings(_embeddable(target.getvalue().decode(), name), figure)
+    return for_dark_too(svg.replace("<svg", f'<svg class="{kind}"', 1))
 
 
 def _embeddable(svg: str, name: str) -> str:
@@ -88,6 +105,26 @@ def _embeddable(svg: str, name: str) -> str:
     svg = re.sub(r"\s*<metadata>.*?</metadata>", "", svg, flags=re.S)
     svg = re.sub(r'(\sid=")', rf"\g<1>{name}-", svg)
     return re.sub(r'(url\(#|href="#)', rf"\g<1>{name}-", svg)
+
+
+@contextmanager
+def on_narrow_paper() -> Iterator[None]:
+    """Inside of it charts are drawn for a phone."""
+    before = _NARROW.set(True)
+    try:
+        yield
+    finally:
+        _NARROW.reset(before)
+
+
+def paper_width(wide: float) -> float:
+    """How wide a chart becomes that is so wide on a wide page, in."""
+    return min(wide, NARROW_WIDTH) if _NARROW.get() else wide
+
+
+def legend_columns(wide: int) -> int:
+    """In how many columns a legend stands that has so many on a wide page."""
+    return min(wide, 2) if _NARROW.get() else wide
 
 
 @contextmanager
@@ -102,8 +139,13 @@ def styled() -> Iterator[None]:
 
 
 def new_figure(width: float, height: float):
+    """A figure of so many inches, or what becomes of it on narrow paper."""
     from matplotlib.figure import Figure
 
+    from solidgear.report.narrow import NarrowFigure
+
+    if _NARROW.get():
+        return NarrowFigure(width, height, layout="constrained")
     return Figure(figsize=(width, height), layout="constrained")
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from solidgear.evidence.record import MacTable, ModelRecord, ModeRecord, Record
-from solidgear.report.chart_style import as_svg, new_figure
+from solidgear.report.chart_style import as_svg, legend_columns, new_figure
 from solidgear.report.reading import model_name, model_of, reference_of, relative_change
 from solidgear.report.readout import readable
 from solidgear.report.words import hertz, percent
@@ -52,7 +52,9 @@ def mode_chart(record: Record):
             _stems(axes[1], model, at, apart)
             readable(axes[1], at, apart, model_name(record, key), told, colour=model.colour)
     axes[0].set(ylabel="frequency, Hz", ylim=(0, None))
-    axes[0].legend(ncols=4, loc="upper left", bbox_to_anchor=(0, 1.14), borderaxespad=0)
+    axes[0].legend(
+        ncols=legend_columns(4), loc="lower left", bbox_to_anchor=(0, 1.02), borderaxespad=0
+    )
     if relative and reference is not None:
         _as_differences(axes[1], record, reference)
     for ax in axes:
@@ -148,12 +150,12 @@ def mac_chart(record: Record):
     models = {key: m for key, m in record.mac.models.items() if m.values and m.values[0]}
     if not models:
         return None
-    columns = min(len(models), 3)
-    rows = -(-len(models) // columns)
+    across = min(len(models), 3)
+    rows = -(-len(models) // across)
     widest = max(len(m.values[0]) for m in models.values())
     tallest = max(len(m.values) for m in models.values())
     figure = new_figure(10.4, rows * min(max(1.2 + 0.33 * tallest, 2.6), 6.5))
-    axes = figure.subplots(rows, columns, squeeze=False).ravel()
+    axes = figure.subplots(rows, across, squeeze=False).ravel()
     size = _text_size(widest)
     reference = model_name(record, record.mac.reference)
     for ax, (key, found) in zip(axes, models.items()):

@@ -8,7 +8,7 @@ from typing import Any
 
 from solidgear.evidence.pareto import AUTOMATIC, Race, Row
 from solidgear.report.cells import whole_number
-from solidgear.report.chart_style import percent_decades, styled, tolerance_line
+from solidgear.report.chart_style import new_figure, percent_decades, styled, tolerance_line
 from solidgear.report.race_legend import FRONT, footer, legend
 from solidgear.report.race_rows import COSTS, error_text, options_text, replace_file
 from solidgear.report.race_style import REFERENCE, Look
@@ -36,10 +36,8 @@ def draw(race: Race, path) -> Path:
 
 def figure(race: Race):
     """Panels of error over seconds and over unknowns, one line of panels a quantity, log-log."""
-    from matplotlib.figure import Figure
-
     quantities = list(race.reference["values"])
-    out = Figure(figsize=(13.2, 1.5 + 4.1 * len(quantities)), layout="constrained")
+    out = new_figure(13.2, 1.5 + 4.1 * len(quantities))
     axes = out.subplots(len(quantities), len(COSTS), squeeze=False, sharex="col", sharey="row")
     for line, quantity in zip(axes, quantities):
         for ax, cost in zip(line, COSTS):

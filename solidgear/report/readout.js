@@ -1,4 +1,5 @@
 // Reads values off charts: what readout.py put into each SVG, under a mouse, a finger or the arrow keys.
+// A chart has two drawings, a wide one and one for a phone; what is read is the one that is shown.
 (() => {
 "use strict";
 const STEPS = 10; // of a place, as in readout.py
@@ -6,10 +7,13 @@ const REACH = 44; // px; nothing is read farther away
 const MARKED = 8; // px that a marker is taken before a curve
 
 class Reading {
-  constructor(paper, svg, text) {
-    this.paper = paper; this.svg = svg; this.series = JSON.parse(text);
+  constructor(paper) {
+    this.paper = paper;
+    this.drawings = [...paper.querySelectorAll("svg metadata.readings")].map(data => ({ svg: data.closest("svg"), series: JSON.parse(data.textContent) }));
     // From left to right is what the arrow keys go.
-    this.series.forEach(s => { s.order = s.told[0][2].map((_, k) => k).sort((a, b) => s.at[2 * a] - s.at[2 * b] || a - b); });
+    for (const { series } of this.drawings)
+      series.forEach(s => { s.order = s.told[0][2].map((_, k) => k).sort((a, b) => s.at[2 * a] - s.at[2 * b] || a - b); });
+    this.drawing = this.shown();
     this.box = this.part("readout"); this.mark = this.part("readmark");
     this.box.setAttribute("role", "status");
     paper.classList.add("reading");
@@ -25,7 +29,15 @@ class Reading {
     paper.addEventListener("focus", () => { if (paper.matches(":focus-visible") && this.box.hidden) this.step(0); });
     paper.addEventListener("blur", () => this.hide());
     paper.addEventListener("keydown", e => this.key(e));
-    new ResizeObserver(() => { if (!this.box.hidden) this.show(this.s, this.k); }).observe(paper);
+    new ResizeObserver(() => this.resized()).observe(paper);
+  }
+  get svg() { return this.drawing.svg; }
+  get series() { return this.drawing.series; }
+  shown() { return this.drawings.find(one => one.svg.getClientRects().length) ?? this.drawings[0]; }
+  resized() {
+    const shown = this.shown();
+    if (shown !== this.drawing) { this.drawing = shown; this.s = this.k = undefined; this.hide(); }
+    else if (!this.box.hidden) this.show(this.s, this.k);
   }
   part(name) {
     const element = document.createElement("div");
@@ -103,8 +115,6 @@ class Reading {
 }
 
 const all = window.solidgearReadings = [];
-for (const data of document.querySelectorAll(".paper svg metadata.readings")) {
-  const svg = data.closest("svg");
-  all.push(new Reading(svg.closest(".paper"), svg, data.textContent));
-}
+for (const paper of document.querySelectorAll(".paper"))
+  if (paper.querySelector("svg metadata.readings")) all.push(new Reading(paper));
 })();

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from solidgear.report import sketch_details as details
+from solidgear.report.chart_style import paper_width
 from solidgear.report.sketch_details import FILL, INK, MASS
 from solidgear.report.sketch_features import draw_feature
 from solidgear.report.words import is_number
@@ -13,8 +14,13 @@ from solidgear.report.words import is_number
 PART_NAMES = {"shaft": "shaft", "frustum": "gear head (pitch cone)", "backcone": "backcone"}
 SEAT, SPAN = "#1f5f99", "#c4541c"
 #: inches on paper
-WIDTH, DRAWN, TALLEST, FLATTEST = 10.6, 8.8, 1.75, 0.45
+WIDTH, TALLEST, FLATTEST = 10.6, 1.75, 0.45
+#: in; beside the shaft, on either side, of a wide and of a narrow paper
+BESIDE, NARROWLY = 0.9, 0.6
 CHAR = 0.075  # of a letter at the size of the labels
+LINE = 0.17  # from one line of letters to the next
+#: in; the most that a name in the legend takes
+ENTRY = 2.2
 
 
 def draw(scene: Mapping[str, Any]) -> Any:
@@ -31,23 +37,31 @@ def draw(scene: Mapping[str, Any]) -> Any:
         return None
     length = max(s["y1"] for s in segments)
     radius = max(max(s["outer0"], s["outer1"]) for s in segments)
-    inch = min(DRAWN / length, TALLEST / radius)  # inches per metre
+    width = paper_width(WIDTH)
+    drawn = width - 2 * (BESIDE if width == WIDTH else NARROWLY)
+    inch = min(drawn / length, TALLEST / radius)  # inches per metre
     enlarged = 1.0 if radius * inch >= FLATTEST else FLATTEST / (radius * inch)
     top = radius * inch * enlarged
-    left = (WIDTH - length * inch) / 2
+    left = (width - length * inch) / 2
 
     stations = [(b, False) for b in scene.get("bearings") or []]
     points = [port for port in (scene.get("port"), *(scene.get("further_ports") or [])) if port]
     stations += [(port, True) for port in points]
-    labels = _labels(stations, lambda y: left + y * inch)
+    labels = _labels(stations, lambda y: left + y * inch, width)
     ordinates = _staggered([(left + y * inch, f"{1e3 * y:.1f}") for y in _marks(scene, length)])
     above = top + 0.62 + 0.34 * (1 + max((level for *_, level in labels), default=0))
-    above += 0.25 if scene.get("body") else 0.0  # room for a note over the names
-    below = top + 1.62 + 0.17 * max((level for *_, level in ordinates), default=0)
+    notes = _notes(scene, enlarged)
+    above += LINE * len(notes)  # room over the names
+    handles = _handles(segments, scene)
+    columns = max(1, min(len(handles), int(width / ENTRY)))
+    chain = _chain(segments, lambda y: left + y * inch)
+    deep = LINE * max((level for *_, level in chain), default=0)
+    below = top + 1.62 + deep + LINE * max((level for *_, level in ordinates), default=0)
+    below += LINE * (-(-len(handles) // columns) - 1)
 
-    figure = Figure(figsize=(WIDTH, above + below))
+    figure = Figure(figsize=(width, above + below))
     ax = figure.add_axes((0, 0, 1, 1))
-    ax.set(xlim=(0, WIDTH), ylim=(-below, above))
+    ax.set(xlim=(0, width), ylim=(-below, above))
     ax.axis("off")
     pen = _Pen(ax, left, inch, enlarged, top)
     for s in segments:
@@ -64,11 +78,15 @@ def draw(scene: Mapping[str, Any]) -> Any:
         details.mass(pen, mass)
     for port in points:
         pen.port(port, segments)
-    for x, _, text, is_port, level in labels:
+    for x, text, station, is_port, level in labels:
         colour = SPAN if is_port else SEAT
         height = top + 0.62 + 0.34 * level
         ax.plot(
-            [x, x], [0.08 if is_port else top + 0.45, height - 0.04], color=colour, lw=0.6, zorder=6
+            [station, station],
+            [0.08 if is_port else top + 0.45, height - 0.04],
+            color=colour,
+            lw=0.6,
+            zorder=6,
         )
         ax.text(
             x,
@@ -83,34 +101,28 @@ def draw(scene: Mapping[str, Any]) -> Any:
             bbox={"facecolor": "white", "edgecolor": "none", "pad": 0.6},
             zorder=7,
         )
-    pen.lengths(segments, -top - 0.72)
-    pen.ruler(ordinates, length, -top - 1.04)
-    if enlarged > 1:
-        ax.text(
-            WIDTH - 0.15,
-            above - 0.1,
-            f"radii drawn {enlarged:.2g} times larger than lengths",
-            ha="right",
-            va="top",
-            fontsize=8,
-            style="italic",
-        )
-    if body := scene.get("body"):
-        note = f"round part of {body['name']}, {100 * body['round_share']:.3g} % of its surface"
+    pen.lengths(segments, chain, -top - 0.72)
+    pen.ruler(ordinates, length, -top - 1.04 - deep)
+    for k, note in enumerate(notes):
         how: dict[str, Any] = {"va": "top", "fontsize": 8, "style": "italic", "parse_math": False}
-        ax.text(0.15, above - 0.1, note, **how)
+        ax.text(0.15, above - 0.1 - LINE * k, note, **how)
+    _legend(ax, handles, columns, (width / 2, -below + 0.1))
+    return figure
+
+
+def _notes(scene: Mapping, enlarged: float) -> list[str]:
+    """What the drawing does not show, or not to scale, a line each."""
+    notes = []
+    if body := scene.get("body"):
+        notes.append(
+            f"round part of {body['name']}, {100 * body['round_share']:.3g} % of its surface"
+        )
+    if enlarged > 1:
+        notes.append(f"radii drawn {enlarged:.2g} times larger than lengths")
     if scene.get("housing") or is_number(scene.get("housing_axial")):
         around = "a 6x6 spring" if scene.get("housing") else "an axial spring"
-        ax.text(
-            0.15,
-            -top - 1.04,
-            f"not drawn: housing on\n{around}",
-            va="center",
-            fontsize=8,
-            style="italic",
-        )
-    _legend(ax, segments, scene, -below + 0.1)
-    return figure
+        notes.append(f"not drawn: housing on {around}")
+    return notes
 
 
 def _marks(scene: Mapping, length: float) -> list[float]:
@@ -120,19 +132,27 @@ def _marks(scene: Mapping, length: float) -> list[float]:
     return sorted({0.0, length, *points, *(b["y"] for b in scene.get("bearings") or [])})
 
 
-def _staggered(items: list[tuple[float, str]]) -> list[tuple[float, str, int]]:
-    """(x, text) and the lowest level at which the text runs into no earlier one."""
+def _staggered(items: list[tuple]) -> list[tuple]:
+    """(x of the middle, text, more), and behind it the lowest level at which the text runs into no
+    earlier one.
+    """
     ends: list[float] = []
     placed = []
-    for x, text in sorted(items):
-        half = CHAR * max(len(line) for line in text.splitlines() or [""]) / 2 + 0.05
+    for item in sorted(items, key=lambda item: item[:2]):
+        x, half = item[0], _half(item[1]) + 0.05
         level = next((k for k, end in enumerate(ends) if x - half >= end), len(ends))
         ends[level : level + 1] = [x + half]
-        placed.append((x, text, level))
+        placed.append((*item, level))
     return placed
 
 
-def _labels(stations, at):
+def _half(text: str) -> float:
+    """Half of the width of a text at the size of the labels, in."""
+    return CHAR * max(len(line) for line in text.splitlines() or [""]) / 2
+
+
+def _labels(stations, at, width: float) -> list[tuple]:
+    """(x of the text, text, x of the station, whether it is a lumped point, level)."""
     texts = []
     for s, is_port in stations:
         name = str(s.get("name", ""))
@@ -141,10 +161,20 @@ def _labels(stations, at):
         what = f"lumped point {name}" if is_port else f"{held} {name}"
         surface = "span" if is_port else "seat"
         below = f"{s.get('attachment', '')}, {surface} {1e3 * (s['hi'] - s['lo']):.1f} mm"
-        texts.append((at(s["y"]), f"{what}\n{below}", is_port, s["y"]))
-    placed = _staggered([(x, text) for x, text, *_ in texts])
-    by_place = {(x, text): level for x, text, level in placed}
-    return [(x, y, text, is_port, by_place[x, text]) for x, text, is_port, y in texts]
+        text, x = f"{what}\n{below}", at(s["y"])
+        half = min(_half(text), width / 2)
+        texts.append((min(max(x, half), width - half), text, x, is_port))
+    return _staggered(texts)
+
+
+def _chain(segments, at) -> list[tuple]:
+    """(x of the middle, text, both ends on paper, level) of the length of every segment."""
+    found = []
+    for s in segments:
+        a, b = at(s["y0"]), at(s["y1"])
+        text = f"{1e3 * (s['y1'] - s['y0']):.2f}".rstrip("0").rstrip(".")
+        found.append(((a + b) / 2, text, (a, b)))
+    return _staggered(found)
 
 
 def _surface(segments, lo: float, hi: float) -> list[tuple[float, float]]:
@@ -280,13 +310,10 @@ class _Pen:
         self.ax.plot([x], [0], marker="o", ms=8, mfc="white", mec=SPAN, mew=1.6, zorder=8)
         self.ax.plot([x], [0], marker="+", ms=8, mec=SPAN, mew=1.0, zorder=9)
 
-    def lengths(self, segments, level: float) -> None:
-        """The chain of segment lengths."""
+    def lengths(self, segments, chain: list[tuple], level: float) -> None:
+        """The chain of segment lengths; a text that has no room stands below it."""
         for s in segments:
-            a, b = self.x(s["y0"]), self.x(s["y1"])
-            text = f"{1e3 * (s['y1'] - s['y0']):.2f}".rstrip("0").rstrip(".")
-            wide = b - a > CHAR * len(text) + 0.2
-            for x, y in ((a, s["outer0"]), (b, s["outer1"])):
+            for x, y in ((self.x(s["y0"]), s["outer0"]), (self.x(s["y1"]), s["outer1"])):
                 self.ax.plot(
                     [x, x],
                     [-self.radial * y - 0.04, level - 0.06],
@@ -294,6 +321,8 @@ class _Pen:
                     lw=0.4,
                     zorder=1,
                 )
+        for middle, text, (a, b), step in chain:
+            wide = b - a > CHAR * len(text) + 0.2
             self.ax.annotate(
                 "",
                 (a, level),
@@ -308,11 +337,11 @@ class _Pen:
                 },
             )
             self.ax.text(
-                (a + b) / 2,
-                level + (0.02 if wide else 0.07),
+                middle,
+                level - 0.07 - LINE * (step - 1) if step else level + (0.02 if wide else 0.07),
                 text,
                 ha="center",
-                va="bottom",
+                va="top" if step else "bottom",
                 fontsize=8,
                 bbox={"facecolor": "white", "edgecolor": "none", "pad": 0.5},
                 zorder=6,
@@ -324,10 +353,11 @@ class _Pen:
         for x, text, step in ordinates:
             self.ax.plot([x, x], [level + 0.05, level - 0.05 - 0.17 * step], color=INK, lw=0.6)
             self.ax.text(x, level - 0.07 - 0.17 * step, text, ha="center", va="top", fontsize=8)
-        self.ax.text(self.x(length) + 0.3, level, "y, mm", va="center", fontsize=8, style="italic")
+        self.ax.text(self.x(length) + 0.22, level, "y, mm", va="center", fontsize=8, style="italic")
 
 
-def _legend(ax, segments, scene, y: float) -> None:
+def _handles(segments, scene) -> list[Any]:
+    """What the legend names."""
     from matplotlib.lines import Line2D
     from matplotlib.patches import Patch
 
@@ -345,12 +375,16 @@ def _legend(ax, segments, scene, y: float) -> None:
         handles.append(
             Line2D([], [], color=SPAN, lw=4, label="surface that carries the lumped point")
         )
+    return handles
+
+
+def _legend(ax, handles: list[Any], columns: int, place: tuple[float, float]) -> None:
     ax.legend(
         handles=handles,
         loc="lower center",
-        bbox_to_anchor=(WIDTH / 2, y),
+        bbox_to_anchor=place,
         bbox_transform=ax.transData,
-        ncols=len(handles),
+        ncols=columns,
         frameon=False,
         fontsize=8,
         borderaxespad=0,

@@ -11,7 +11,7 @@ import numpy as np
 
 from solidgear.errors import SolidgearError
 from solidgear.machine.whole_file import whole
-from solidgear.report.chart_style import STYLE, as_svg, new_figure
+from solidgear.report.chart_style import STYLE, as_svg, new_figure, paper_width
 from solidgear.report.readout import readable
 from solidgear.report.words import percent
 
@@ -129,8 +129,9 @@ def _figure(points, cells, shares, rows, title: str):
     length, radius = np.ptp(y), r.max()
     stretch = max(1.0, length / (SLENDEREST * radius))
     shape = 1.25 * stretch * radius / length
-    height = min(0.8 * WIDTH * shape, HIGHEST)
-    width = min(WIDTH, max(height / shape + 2.0, NARROWEST))
+    widest = paper_width(WIDTH)
+    height = min(0.8 * widest * shape, HIGHEST)
+    width = min(widest, max(height / shape + 2.0, NARROWEST))
     figure = new_figure(width, max(height, 1.0) + 1.0 + 0.16 * len(places))
     ax = figure.add_subplot()
     corners = np.stack([y[cells], r[cells]], axis=-1).transpose(1, 0, 2)
