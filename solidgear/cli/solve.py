@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import sys
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import typer
 
@@ -32,9 +32,6 @@ from solidgear.cli.app import (
 from solidgear.cli.settled import body_for, ended, heading, told, unjudged, without_bar
 from solidgear.errors import SolidgearError, show
 from solidgear.fidelity.ladder import LADDER
-
-if TYPE_CHECKING:
-    from solidgear.solve.modes import ModeSet
 
 
 @command
@@ -147,6 +144,7 @@ def modes(
 ) -> None:
     """Natural frequencies on the bearings, with the evidence for them."""
     from solidgear.cli.reading import load
+    from solidgear.evidence.completeness import cut_short
     from solidgear.scene.rules import MOST_MODES
     from solidgear.solve.modes import modes as solve
     from solidgear.studies.check import cautions
@@ -167,7 +165,8 @@ def modes(
         count=count,
     )
     said = cautions(loaded, body)
-    said += _cut_short(found, n or loaded.ask.modes, max_frequency or loaded.ask.max_frequency)
+    asked = n or loaded.ask.modes, max_frequency or loaded.ask.max_frequency
+    said += cut_short(found.modes, *asked, option="-n")
     rows = [
         {
             "name": m.name,
@@ -302,15 +301,3 @@ def check(
         print_check(found)
     if found["faults"]:
         raise typer.Exit(1)
-
-
-def _cut_short(found: ModeSet, n: int, asked: float | None) -> list[str]:
-    """What to say where the number of modes ends a list below the frequency asked for."""
-    elastic = [m for m in found.modes if not m.name.startswith("rigid")]
-    if not asked or sum(m.multiplicity for m in elastic) < n:
-        return []  # all that there are up to it
-    return [
-        f"the list ends with the {n} elastic shapes asked for, at {elastic[-1].frequency_hz:.4g} "
-        f"Hz, and {asked:g} Hz are asked for: there may be more between; raise -n, or modes under "
-        "[ask]"
-    ]

@@ -95,7 +95,7 @@ def _judged(
         if out:
             progress("report")
             draw = found.pictures if renders else None
-            viewer = viewer_fragment([found.turned()], first=found.loudest_name)
+            viewer = viewer_fragment(found.turned(), first=found.loudest_name)
             shown = found.drawn, found.marks, found.orders
             write_train(results, *shown, out, draw, units, viewer)
     if as_json:

@@ -1,11 +1,17 @@
-"""What a count of modes proves, in a sentence: which families were counted, and where the others
-begin.
+"""What a list of modes is worth, in sentences: which families were counted, where the others begin,
+and whether the number asked for ends it early.
 """
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+from typing import TYPE_CHECKING
+
 from solidgear.fidelity.ladder import LADDER
 from solidgear.fidelity.rung import BEAM
+
+if TYPE_CHECKING:
+    from solidgear.solve.modes import Mode
 
 
 def completeness(evidence: dict, fidelity: str) -> str:
@@ -32,6 +38,34 @@ def completeness(evidence: dict, fidelity: str) -> str:
         return f"{text}; a beam knows no others."
     left = _left([row for row in rows if not row["counted"]])
     return f"{text}; {left}." if left else f"{text}."
+
+
+def cut_short(modes: Iterable[Mode], n: int, asked_hz: float | None, option: str = "") -> list[str]:
+    """What to say where the number of modes ends a list below the frequency asked for.
+
+    Parameters
+    ----------
+    modes : iterable of Mode
+    n : int
+        Elastic shapes that were asked for; twins count twice.
+    asked_hz : float or None
+        Up to where modes were asked for, if anywhere.
+    option : str, optional
+        What else can be raised than the number in the scene.
+
+    Returns
+    -------
+    list of str
+        One sentence, or none.
+    """
+    elastic = [m for m in modes if not m.name.startswith("rigid")]
+    if not asked_hz or not elastic or sum(m.multiplicity for m in elastic) < n:
+        return []  # all that there are up to it
+    return [
+        f"the list ends with the {n} elastic shapes asked for, at {elastic[-1].frequency_hz:.4g} "
+        f"Hz, and {asked_hz:g} Hz are asked for: there may be more between; raise "
+        f"{option + ', or ' if option else ''}modes under [ask]"
+    ]
 
 
 def _listed(rows: list[dict]) -> str:

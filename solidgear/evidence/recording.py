@@ -5,9 +5,9 @@ from __future__ import annotations
 from dataclasses import asdict
 from typing import TYPE_CHECKING
 
-from solidgear.evidence.answer import Answer
+from solidgear.evidence.answer import ENOUGH, Answer
 from solidgear.evidence.causes import Cause
-from solidgear.evidence.completeness import completeness
+from solidgear.evidence.completeness import completeness, cut_short
 from solidgear.evidence.correlate import correlate
 from solidgear.evidence.lumped import drawn, model_record
 from solidgear.evidence.quantities import usual
@@ -102,6 +102,9 @@ def recorded(
     if lumped and reference:
         _add_lumped(out, rungs[reference], guards, scene.ask.tolerance, scene.ask.lumped)
     out.warnings = _warnings(rungs, guards, out.models)
+    if listed := rungs.get(reference or next(reversed(rungs), "")):
+        n = max(scene.ask.modes, ENOUGH)
+        out.warnings += cut_short(listed.modes.modes, n, scene.ask.max_frequency)
     return out
 
 

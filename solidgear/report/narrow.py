@@ -20,6 +20,8 @@ from solidgear.report.chart_style import NARROW_WIDTH as WIDTH
 BESIDE = 0.36
 #: in; empty paper that is worth cutting off
 EMPTY = 0.15
+#: most parts of an axis below a panel
+TICKS = 5
 #: rotation of labels below a panel that would run into one another
 TURNED = 55.0
 
@@ -55,12 +57,22 @@ class NarrowFigure(Figure):
     def savefig(self, *where: Any, **settings: Any) -> None:
         """Make what is written fit the paper, and write the figure."""
         self._label_panels()
+        self._thin_ticks()
+        self._arrange()
+        self._wrap_words()
         self._arrange()
         self._turn_labels()
-        self._wrap_words()
         if any(ax.get_aspect() != "auto" for ax in self.axes):
             self._cut_off()
         super().savefig(*where, **settings)
+
+    def _thin_ticks(self) -> None:
+        """No more numbers below a panel than there is room for."""
+        from matplotlib.ticker import MaxNLocator
+
+        for ax in self.axes:
+            if isinstance(ax.xaxis.get_major_locator(), MaxNLocator):
+                ax.locator_params(axis="x", nbins=TICKS)
 
     def _arrange(self) -> None:
         """Put everything in its place, so that it can be measured."""

@@ -173,8 +173,9 @@ def _line(axis, line: Any, found: Any, largest: float, units: Units) -> None:
     heights = speeds * line.per_turn / 60
     told = _told(speeds, heights, force, units)
     readable(axis, speeds, heights, line.name, told, colour=PLAIN[kind], marked=False)
-    # names of a shaft's orders are staggered: those of the gear run close together
-    place = 0.93 if kind == "mesh" or line.name.endswith(" 2") else 0.8
+    # names are staggered: lines of one kind run close together
+    steps = -0.06 if kind == "mesh" else 0.13
+    place = (0.93 if kind == "mesh" else 0.67) + steps * (int(line.name.split()[1]) % 3)
     axis.annotate(
         line.name,
         (place * rpm, place * hz),

@@ -19,8 +19,8 @@ WIDTH, TALLEST, FLATTEST = 10.6, 1.75, 0.45
 BESIDE, NARROWLY = 0.9, 0.6
 CHAR = 0.075  # of a letter at the size of the labels
 LINE = 0.17  # from one line of letters to the next
-#: in; the most that a name in the legend takes
-ENTRY = 2.2
+#: in; of what stands before a name in the legend
+HANDLE = 0.5
 
 
 def draw(scene: Mapping[str, Any]) -> Any:
@@ -53,11 +53,13 @@ def draw(scene: Mapping[str, Any]) -> Any:
     notes = _notes(scene, enlarged)
     above += LINE * len(notes)  # room over the names
     handles = _handles(segments, scene)
-    columns = max(1, min(len(handles), int(width / ENTRY)))
+    columns = len(handles)
+    if sum(2 * _half(one.get_label()) + HANDLE for one in handles) > width:
+        columns = 2
     chain = _chain(segments, lambda y: left + y * inch)
     deep = LINE * max((level for *_, level in chain), default=0)
     below = top + 1.62 + deep + LINE * max((level for *_, level in ordinates), default=0)
-    below += LINE * (-(-len(handles) // columns) - 1)
+    below += LINE * (-(-len(handles) // max(columns, 1)) - 1)
 
     figure = Figure(figsize=(width, above + below))
     ax = figure.add_axes((0, 0, 1, 1))
@@ -384,7 +386,7 @@ def _legend(ax, handles: list[Any], columns: int, place: tuple[float, float]) ->
         loc="lower center",
         bbox_to_anchor=place,
         bbox_transform=ax.transData,
-        ncols=columns,
+        ncols=max(columns, 1),
         frameon=False,
         fontsize=8,
         borderaxespad=0,

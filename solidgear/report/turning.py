@@ -155,7 +155,12 @@ class Member(NamedTuple):
     vectors: Sequence[Any]
 
 
-def together(title: str, modes: Sequence[tuple[str, float]], members: Sequence[Member]) -> Turned:
+def together(
+    title: str,
+    modes: Sequence[tuple[str, float]],
+    members: Sequence[Member],
+    like: Turned | None = None,
+) -> Turned:
     """Several bodies that move in the same modes, each in its place.
 
     Parameters
@@ -165,6 +170,8 @@ def together(title: str, modes: Sequence[tuple[str, float]], members: Sequence[M
         Name and frequency, Hz, of elastic modes.
     members : sequence of Member
         Each with a vector for every mode.
+    like : Turned, optional
+        The same bodies by other models: a shape takes the sign of theirs of the same name.
 
     Returns
     -------
@@ -188,7 +195,7 @@ def together(title: str, modes: Sequence[tuple[str, float]], members: Sequence[M
         if not np.isfinite(largest) or not largest > 0:
             raise SolidgearError(f"mode {name!r}: the displacement is zero or not finite")
         told = [sections(mesh.points, one) for mesh, one in zip(meshes, moved)]
-        scale = _direction(np.vstack(told)) / largest
+        scale = _sign_like(np.vstack(told), name, like) / largest
         for own, one, section in zip(shapes, moved, told):
             own.append(Shape(name, hz, False, _turns(section), scale * one))
     bodies = [
@@ -196,6 +203,15 @@ def together(title: str, modes: Sequence[tuple[str, float]], members: Sequence[M
         for mesh, own, member in zip(meshes, shapes, members)
     ]
     return replace(bodies[0], along=tuple(bodies[1:]))
+
+
+def _sign_like(told: np.ndarray, name: str, like: Turned | None) -> float:
+    """The sign of the shape of that name of the same bodies; else the usual one."""
+    at = -1 if like is None else like.index(name)
+    if like is None or at < 0:
+        return _direction(told)
+    others = [sections(b.mesh.points, b.shapes[at].displacement) for b in (like, *like.along)]
+    return _sign_of(float((told * np.vstack(others)).sum()))
 
 
 def _turns(told: np.ndarray) -> bool:

@@ -27,6 +27,8 @@ WIDTH, HIGHEST = 9.0, 4.0
 #: in; the names of the places need so much
 NARROWEST = 4.0
 FORMATS = (".png", ".svg")
+#: in; of paper that the number of a place takes
+DIGIT = 0.13
 #: places that are named, and the share from which on they are
 MOST_PLACES, WORTH_NAMING = 5, 5e-4
 
@@ -155,11 +157,13 @@ def _figure(points, cells, shares, rows, title: str):
     ax.set_xlim(y.min() - 0.02 * length, y.max() + 0.02 * length)
     ax.set_ylim(0, 1.25 * radius)
     ax.grid(False)
-    for number, place in enumerate(places, 1):
+    scale = 0.8 * width / length  # in on paper, about
+    spots = [(1e3 * scale * p.y, 1e3 * scale * stretch * p.r) for p in places]
+    for number, (place, raised) in enumerate(zip(places, _raised(spots)), 1):
         ax.annotate(
             str(number),
             (1e3 * place.y, 1e3 * place.r),
-            xytext=(0, 12),
+            xytext=(0, 12 + 72 * raised),
             textcoords="offset points",
             ha="center",
             fontsize=9,
@@ -178,6 +182,16 @@ def _figure(points, cells, shares, rows, title: str):
     bar.ax.yaxis.set_major_formatter(FuncFormatter(lambda v, _: f"{100 * v:g} %"))
     bar.set_label("share of the cell")
     return figure
+
+
+def _raised(spots: Sequence[tuple[float, float]]) -> list[float]:
+    """How far the number over each spot (inches) is to be raised so that it lies on none before."""
+    taken: list[tuple[float, float]] = []
+    for x, y in spots:
+        while any(abs(x - a) < DIGIT and abs(y - b) < DIGIT for a, b in taken):
+            y += 1.01 * DIGIT
+        taken.append((x, y))
+    return [y - base for (_, y), (_, base) in zip(taken, spots)]
 
 
 @as_svg

@@ -23,8 +23,8 @@ import solidgear as sg
 from solidgear.reduction.effective_mass import synthesise
 from solidgear.scene import Scene
 from solidgear.scene.train import Train
-from solidgear.studies.axle.judge import _mac, _modes
 from solidgear.studies.axle.models import Workshop
+from solidgear.studies.axle.pairing import mac, seen_modes
 from solidgear.studies.axle.respond import Drive, respond
 from solidgear.system.lumped_pair import diagonal_mass
 from solidgear.system.steady import peaks
@@ -126,9 +126,9 @@ def bending(scene: Scene) -> tuple[float, dict]:
 def deviations(case: Train, rung: str, highest: float) -> list[tuple[float, float]]:
     """(Hz, relative error) of the elastic modes of the whole rotor, Euler beams as reference."""
     shop = Workshop(case)
-    found, seen = _modes(shop, shop.system("euler", "euler"), highest)
-    other, motions = _modes(shop, shop.system(rung, rung), 3 * highest)
-    alike = _mac(seen, motions)
+    found, seen = seen_modes(shop, shop.system("euler", "euler"), highest)
+    other, motions = seen_modes(shop, shop.system(rung, rung), 3 * highest)
+    alike = mac(seen, motions)
     mine, its = linear_sum_assignment(-alike)
     hz = found.frequency_hz[found.rigid :]
     return [

@@ -11,11 +11,11 @@ from typing import Any
 from solidgear.machine.environment import environment
 from solidgear.report.turning import Turned
 from solidgear.scene.train import SIDES
-from solidgear.studies.axle.judge import DRAWN, JUDGE, Verdict, judge_train
+from solidgear.studies.axle.judge import DRAWN, JUDGE, MIXED, Verdict, judge_train
 from solidgear.studies.axle.models import Workshop
 from solidgear.studies.axle.modes import TrainModes, train_modes
 from solidgear.studies.axle.orders import OrderMap, order_map
-from solidgear.studies.axle.pictures import draw_modes, turned_modes
+from solidgear.studies.axle.pictures import draw_modes, turned_beside
 from solidgear.studies.axle.respond import TrainResponse
 
 #: modes that are drawn
@@ -70,9 +70,10 @@ class TrainComparison:
         reasons = sorted({one.reason for one in done.values() if not one.ok})
         return {"pictures": drawn, "left_out": reasons}
 
-    def turned(self) -> Turned:
-        """The judge's modes, to be turned in a page."""
-        return turned_modes(self.workshop, JUDGE, JUDGE, self.verdict.highest_hz)
+    def turned(self) -> list[Turned]:
+        """The judge's modes and those of both shafts as the best beams, to be turned side by side."""
+        both = (JUDGE, JUDGE), (MIXED[-2], MIXED[-2])
+        return turned_beside(self.workshop, *both, self.verdict.highest_hz)
 
     @property
     def loudest_name(self) -> str:

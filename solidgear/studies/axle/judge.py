@@ -14,7 +14,6 @@ from collections.abc import Callable, Sequence
 from dataclasses import asdict, dataclass, replace
 
 import numpy as np
-from scipy.optimize import linear_sum_assignment
 
 from solidgear.fidelity.ladder import LADDER
 from solidgear.fidelity.rung import BEAM
@@ -22,8 +21,8 @@ from solidgear.scene.train import SIDES
 from solidgear.studies.axle.local import local_lines
 from solidgear.studies.axle.models import JUDGE, LUMPED, Workshop, checked_rung
 from solidgear.studies.axle.naming import driven, mode_names
+from solidgear.studies.axle.pairing import BEYOND, partners, seen_modes
 from solidgear.studies.axle.respond import Drive, TrainResponse, respond
-from solidgear.system.system import System
 
 #: models of one shaft that are mixed, cheapest first
 MIXED = (*LADDER.of(BEAM), JUDGE)
@@ -36,10 +35,6 @@ DRAWN = (
     (LUMPED[0], LUMPED[0]),
     (LUMPED[-1], LUMPED[-1]),
 )
-#: two modes whose motions of the ports are less alike than this are different ones
-ALIKE = 0.3
-#: modes of a mix are looked for up to this times the highest frequency
-BEYOND = 1.7
 #: a shaft put back to the solid must carry a mix this much further to be the cause alone
 FURTHER = 1.05
 #: lumped models: the one with an assumption less, and that assumption
@@ -282,7 +277,7 @@ class _Judge:
     def __init__(self, workshop: Workshop, highest: float):
         self.workshop, self.highest = workshop, highest
         self.system = workshop.system(JUDGE, JUDGE)
-        self.found, self.seen = _modes(workshop, self.system, highest)
+        self.found, self.seen = seen_modes(workshop, self.system, highest)
         self.names = mode_names(workshop, self.system, self.found)
         self.driven = driven(self.system, self.found)[1:]
         self.drive = Drive(workshop, JUDGE, JUDGE)
@@ -305,19 +300,16 @@ class _Judge:
 
     def _first_mode(self, pinion: str, gear: str):
         system = self.workshop.system(pinion, gear)
-        other, seen = _modes(self.workshop, system, self.highest * BEYOND)
-        alike = _mac(self.seen, seen)
-        # of several that are alike, the one at the nearest frequency
-        near = np.abs(np.log(self.found.frequency_hz[1:, None] / other.frequency_hz[None, 1:]))
-        mine, its = linear_sum_assignment(-(alike - 0.05 * np.minimum(near, 4.0)))
-        pair = dict(zip(mine, its))
+        other, seen = seen_modes(self.workshop, system, self.highest * BEYOND)
+        its_hz = other.frequency_hz[1:]
+        pair = partners(self.found.frequency_hz[1:], self.seen, its_hz, seen)
         for k, hz in enumerate(self.found.frequency_hz[1:]):
             name = self.names[k + 1]
             if not self.driven[k]:  # moves no port: nothing could tell it from another
                 continue
-            if k not in pair or alike[k, pair[k]] < ALIKE:
+            if k not in pair:
                 return float(hz), name, None
-            error = float(other.frequency_hz[1 + pair[k]] / hz - 1)
+            error = float(its_hz[pair[k]] / hz - 1)
             if abs(error) > self.workshop.train.ask.tolerance:
                 return float(hz), name, error
         return None, "", None
@@ -342,28 +334,3 @@ class _Judge:
         coarse = Workshop(self.workshop.train, self.workshop.reduction, self.workshop.kept, COARSER)
         other = coarse.system(JUDGE, JUDGE).modes(len(self.found.frequency_hz) - 1)
         return float(np.abs(other.frequency_hz[1:] / self.found.frequency_hz[1:] - 1).max())
-
-
-def _modes(workshop: Workshop, system: System, highest: float):
-    """Modes up to a frequency, and the motions of all ports in the elastic ones, rotations times
-    the length of the shaft.
-    """
-    count = max(1, int((system.elastic[0] <= 2 * np.pi * highest).sum()))
-    found = system.modes(count)
-    elastic = found.shapes[:, found.rigid :]
-    rows = []
-    for side in SIDES:
-        scene = workshop.scenes[side]
-        scale = np.array([1.0] * 3 + [scene.length] * 3)[:, None]
-        rows += [scale * (system.motion(f"{side}.{s.name}") @ elastic) for s in scene.stations]
-    rows += [
-        workshop.scenes[side].length * (system.motion(name)[4:5] @ elastic)
-        for side, name in zip(SIDES, ("engine", "load"))
-    ]
-    return found, np.vstack(rows)
-
-
-def _mac(one: np.ndarray, other: np.ndarray) -> np.ndarray:
-    """Modal assurance criterion of every pair of columns."""
-    size = np.outer((one**2).sum(axis=0), (other**2).sum(axis=0))
-    return (one.T @ other) ** 2 / np.maximum(size, np.finfo(float).tiny)

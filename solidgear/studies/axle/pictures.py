@@ -21,6 +21,8 @@ from solidgear.report.turning import Member, Turned, together
 from solidgear.scene.train import SIDES
 from solidgear.studies.axle.models import Workshop
 from solidgear.studies.axle.naming import mode_names
+from solidgear.studies.axle.pairing import BEYOND, partners, seen_modes
+from solidgear.system.modes import SystemModes
 from solidgear.system.system import System
 
 #: phases of a vibration that a picture shows, degrees
@@ -110,17 +112,78 @@ def turned_modes(
     ('both shafts euler', 1, ['load torsion 1', 'gear torsion 1'])
     """
     system = workshop.system(pinion, gear)
-    placed = _bodies(workshop, system, (pinion, gear))
-    limit = 2 * np.pi * (highest_hz or workshop.train.ask.max_frequency)
-    found = system.modes(max(1, int((system.elastic[0] <= limit).sum())))
+    found, _ = seen_modes(workshop, system, highest_hz or workshop.train.ask.max_frequency)
     names = mode_names(workshop, system, found)
-    elastic = [k for k, hz in enumerate(found.frequency_hz) if hz > 0]
+    elastic = range(found.rigid, len(found.frequency_hz))
+    return _turned(workshop, (pinion, gear), system, found, [(k, names[k]) for k in elastic])
+
+
+def turned_beside(
+    workshop: Workshop,
+    first: tuple[str, str],
+    second: tuple[str, str],
+    highest_hz: float | None = None,
+) -> list[Turned]:
+    """Two mixes of models of a train, to be turned side by side.
+
+    Modes of the second are called like their partners of the first, paired by the motions of all
+    ports, and drawn with their sign. One without a partner says so in its name.
+
+    Parameters
+    ----------
+    workshop : Workshop
+    first, second : (str, str)
+        Rungs of pinion and gear.
+    highest_hz : float, optional
+        Of the modes of both; a partner may lie beyond it.
+
+    Returns
+    -------
+    list of Turned
+
+    Raises
+    ------
+    SolidgearError
+        For a rung without a shape.
+    """
+    limit = highest_hz or workshop.train.ask.max_frequency
+    one, other = workshop.system(*first), workshop.system(*second)
+    found, seen = seen_modes(workshop, one, limit)
+    names = mode_names(workshop, one, found)
+    elastic = range(found.rigid, len(found.frequency_hz))
+    base = _turned(workshop, first, one, found, [(k, names[k]) for k in elastic])
+    its, its_seen = seen_modes(workshop, other, BEYOND * limit)
+    hz, its_hz = found.frequency_hz[found.rigid :], its.frequency_hz[its.rigid :]
+    partner = {j: k for k, j in partners(hz, seen, its_hz, its_seen).items()}
+    own = mode_names(workshop, other, its)
+    kept = []
+    for j, frequency in enumerate(its_hz):
+        if j in partner:
+            kept.append((its.rigid + j, names[found.rigid + partner[j]]))
+        elif frequency <= limit:
+            kept.append((its.rigid + j, f"{own[its.rigid + j]}, {_title(*second)} alone"))
+    return [base, _turned(workshop, second, other, its, kept, base)]
+
+
+def _title(pinion: str, gear: str) -> str:
+    return f"both shafts {gear}" if pinion == gear else f"pinion {pinion}, gear {gear}"
+
+
+def _turned(
+    workshop: Workshop,
+    rungs: tuple[str, str],
+    system: System,
+    found: SystemModes,
+    kept: Sequence[tuple[int, str]],
+    like: Turned | None = None,
+) -> Turned:
+    """One mix with modes of these numbers and names, in the signs of another."""
     members = [
-        Member(body, turn, origin, [system.expand(side, found.shapes[:, k]) for k in elastic])
-        for side, (body, turn, origin) in placed.items()
+        Member(body, turn, origin, [system.expand(side, found.shapes[:, k]) for k, _ in kept])
+        for side, (body, turn, origin) in _bodies(workshop, system, rungs).items()
     ]
-    both = f"both shafts {gear}" if pinion == gear else f"pinion {pinion}, gear {gear}"
-    return together(both, [(names[k], float(found.frequency_hz[k])) for k in elastic], members)
+    modes = [(name, float(found.frequency_hz[k])) for k, name in kept]
+    return together(_title(*rungs), modes, members, like)
 
 
 def draw_modes(
