@@ -22,7 +22,7 @@ from solidgear.cli.train import (
     caution,
     end_of,
     mix,
-    peaks_table,
+    print_peaks,
     say,
     workshop,
 )
@@ -75,6 +75,6 @@ def receptance(
         return
     say(f"{title}; pinion {pinion}, gear {gear}, {damping} losses")
     tops, teeth = found[0].peaks, shop.train.pinion.teeth
-    peaks_table("Peaks of the receptance", "", tops, teeth, found[0].unit, units)
+    print_peaks(tops, "receptance", found[0].unit, teeth, units)
     say(*unpublished_lines(unpublished), *map(caution, cautions))
     say(f"Written: {', '.join(map(str, files))}")

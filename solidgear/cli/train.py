@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Sequence
 from pathlib import Path
 from typing import Annotated
 
@@ -297,7 +296,7 @@ def response(
     terminal = console()
     terminal.print(f"{title}: pinion {pinion}, gear {gear}, {damping} losses", markup=False)
     tops = [(p.frequency_hz, p.force, p.mode) for p in found[0].peaks]
-    peaks_table("Peaks of the mesh force", "mesh force", tops, teeth, "N", units)
+    print_peaks(tops, "mesh force", "N", teeth, units)
     say(*unpublished_lines(unpublished), *map(caution, found[0].cautions))
     say(f"Written: {', '.join(map(str, files))}")
 
@@ -344,31 +343,21 @@ def end_of(option: str, text: str, more: str = "") -> tuple[str, str]:
     return port, dof
 
 
-def peaks_table(
-    title: str,
-    head: str,
-    peaks: Sequence[tuple[float, float, str]],
-    teeth: int,
-    si: str,
-    units: str,
-) -> None:
+def print_peaks(found, what: str, si: str, teeth: int, units: str) -> None:
     """Print peaks (Hz, size in an SI unit, mode), or that there is none."""
     from rich.table import Table
 
+    from solidgear.report.train_tables import peaks
     from solidgear.report.units import in_ascii, units_named
 
-    shown = units_named(units)
-
+    told = peaks(found, what, si, teeth, units_named(units))
     terminal = console()
-    table = Table(title=title, title_justify="left", show_edge=False)
-    table.add_column("mode")
-    for words in ("Hz", "pinion rpm", f"{head} {in_ascii(shown.unit(si))}".strip()):
-        table.add_column(words, justify="right")
-    for hz, size, mode in peaks:
-        table.add_row(
-            mode, f"{hz:.1f}", f"{60 * hz / teeth:.0f}", in_ascii(shown.number(size, si, 4))
-        )
-    if peaks:
-        terminal.print(table)
-    else:
-        terminal.print(f"{title}: none in this range.", markup=False)
+    if not told:
+        terminal.print(f"{told.caption}: none in this range.", markup=False)
+        return
+    table = Table(title=told.caption, title_justify="left", show_edge=False)
+    for k, head in enumerate(told.head):
+        table.add_column(in_ascii(head), justify="right" if k else "left")
+    for row in told.rows:
+        table.add_row(*map(in_ascii, row))
+    terminal.print(table)

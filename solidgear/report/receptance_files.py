@@ -79,7 +79,7 @@ def write_receptance(
         title,
         f"Steady motion for a unit force, {first.damping} losses; table of {label(first)}.",
         [
-            train_tables.receptance_peaks(first.peaks, unit, teeth, shown),
+            train_tables.peaks(first.peaks, "receptance", unit, teeth, shown),
             train_tables.facts(train, shown),
         ],
         charts={STEM: draw},

@@ -61,8 +61,8 @@ def write_response(
     if train is None:
         return files
     first = responses[0]
-    caption = f"Peaks of the mesh force, {label(first)}"
-    tables = [train_tables.peaks([vars(p) for p in first.peaks], teeth, shown, caption)]
+    tops = [(p.frequency_hz, p.force, p.mode) for p in first.peaks]
+    tables = [train_tables.peaks(tops, "mesh force", "N", teeth, shown, label(first))]
     if orders is not None:
         crossings = [vars(c) for c in orders.crossings]
         tables.append(train_tables.crossings(crossings, shown))

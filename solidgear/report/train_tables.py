@@ -157,31 +157,36 @@ def modes(
 
 
 def peaks(
-    found: list[Mapping[str, Any]],
+    found: Sequence[tuple[float, float, str]],
+    what: str,
+    si: str,
     teeth: int,
     units: Units = ENGINEERING,
-    caption: str = "Peaks of the mesh force, both shafts solid",
+    of: str = "",
 ) -> Table:
-    """Peaks of the mesh force."""
-    rows = [
-        [p["mode"], hertz(p["frequency_hz"]), f"{60 * p['frequency_hz'] / teeth:.0f}"]
-        + [units.number(p["force"], "N", 4)]
-        for p in found
-    ]
-    head = ["mode that makes it", "Hz", "pinion rpm", f"mesh force, {units.unit('N')}"]
-    return Table(caption, head, rows)
+    """Peaks of what a train does over frequency, for pages and for terminals.
 
-
-def receptance_peaks(
-    found: Sequence[tuple[float, float, str]], si: str, teeth: int, units: Units = ENGINEERING
-) -> Table:
-    """Peaks (Hz, amplitude, mode) of a receptance."""
+    Parameters
+    ----------
+    found : sequence of (float, float, str)
+        Frequency, Hz, size and mode.
+    what : str
+        What has them, such as ``mesh force``.
+    si : str
+        Unit of their sizes.
+    teeth : int
+        Of the pinion.
+    units : Units, optional
+        To show them in.
+    of : str, optional
+        The model.
+    """
     rows = [
         [mode, hertz(hz), f"{60 * hz / teeth:.0f}", units.number(size, si, 4)]
         for hz, size, mode in found
     ]
-    head = ["mode that makes it", "Hz", "pinion rpm", f"receptance, {units.unit(si)}"]
-    return Table("Peaks of the receptance", head, rows)
+    head = ["mode that makes it", "Hz", "pinion rpm", f"{what}, {units.unit(si)}"]
+    return Table(f"Peaks of the {what}{', ' + of if of else ''}", head, rows)
 
 
 def crossings(found: list[Mapping[str, Any]], units: Units = ENGINEERING) -> Table:

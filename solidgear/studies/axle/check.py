@@ -27,6 +27,7 @@ from solidgear.studies.axle.modes import (
 )
 from solidgear.studies.check import check_scene
 from solidgear.studies.guards import Probe
+from solidgear.studies.guards.notice import slip_in_units
 
 #: a loss factor below this gives peaks whose height is a matter of the loss alone
 LITTLE_LOSS = 1e-3
@@ -129,19 +130,13 @@ def _units(workshop: Workshop) -> Iterator[str]:
     stiff = max(s.material.E for scene in workshop.scenes.values() for s in scene.segments)
     table = train.mesh.transmission_error
     error = max((*table.orders, *table.amplitude), default=0.0)
-    found = dict(zip(SOUND, (met.stiffness / (stiff * lever), error * teeth / (2 * lever))))
+    values = met.stiffness / (stiff * lever), error * teeth / (2 * lever)
+    found = [(name, value, "") for name, value in zip(SOUND, values)]
     if not error:
-        del found["transmission error over 2 r / z"]  # told by itself
-    out = [
-        f"{name} is {value:.3g}, outside {SOUND[name][0]:g} to {SOUND[name][1]:g}"
-        for name, value in found.items()
-        if not SOUND[name][0] <= value <= SOUND[name][1]
-    ]
-    if out:
-        yield (
-            f"probably a slip in units: {'; '.join(out)} (r: lever arm of the pinion, "
-            f"{1e3 * lever:.4g} mm; z: its {teeth} teeth); check the number and its unit"
-        )
+        found.pop()  # told by itself
+    legend = f"r: lever arm of the pinion, {1e3 * lever:.4g} mm; z: its {teeth} teeth"
+    if sentence := slip_in_units(found, SOUND, legend):
+        yield sentence
 
 
 def _losses(train: Train) -> Iterator[str]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from solidgear.frames import DOF_NAMES
-from solidgear.studies.guards.notice import Notice, Notices
+from solidgear.studies.guards.notice import Notice, Notices, slip_in_units
 from solidgear.studies.guards.probe import Probe
 
 # wrong_units.py: a slip of a factor of 1000 leaves at least one of these in every shipped scene
@@ -60,19 +60,9 @@ def units(probe: Probe) -> Notices:
     )
     # What is wrong early moves all that comes after it.
     for found in (materials, bearings, first):
-        out = [
-            f"{name} of {where} is {value:.3g}, outside {SOUND[name][0]:g} to {SOUND[name][1]:g}"
-            for name, value, where in found
-            if not SOUND[name][0] <= value <= SOUND[name][1]
-        ]
-        if out:
-            yield Notice(
-                "caution",
-                (),
-                "probably a slip in units: "
-                f"{'; '.join(out)}{' (d: mean diameter)' * (found is bearings)}; check the number "
-                "and its unit",
-            )
+        legend = "d: mean diameter" if found is bearings else ""
+        if sentence := slip_in_units(found, SOUND, legend):
+            yield Notice("caution", (), sentence)
             return
 
 

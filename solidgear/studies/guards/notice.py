@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 
 from solidgear.fidelity.ladder import LADDER
@@ -53,3 +53,34 @@ def everything() -> tuple[str, ...]:
 def beyond(error: float, tolerance: float) -> str:
     """``avoid`` for an error out of the tolerance, else ``caution``."""
     return "avoid" if abs(error) > tolerance else "caution"
+
+
+def slip_in_units(
+    found: Iterable[tuple[str, float, str]], sound: Mapping[str, tuple[float, float]], legend: str
+) -> str:
+    """What is to be said of numbers whose order of magnitude no part has; nothing if there are none.
+
+    Parameters
+    ----------
+    found : iterable of (str, float, str)
+        What it is, a key of `sound`; its value; and of what it is, which may be empty.
+    sound : mapping of str to (float, float)
+        Least and largest value of a part that can be made.
+    legend : str
+        Symbols in the names, in brackets behind them.
+
+    Examples
+    --------
+    >>> slip_in_units([("E in Pa", 2.1e5, "segment 'seat'")], {"E in Pa": (1e8, 1.5e12)}, "")
+    "probably a slip in units: E in Pa of segment 'seat' is 2.1e+05, outside 1e+08 to 1.5e+12; check the number and its unit"
+    """
+    out = []
+    for name, value, where in found:
+        least, most = sound[name]
+        if not least <= value <= most:
+            what = f"{name} of {where}" if where else name
+            out.append(f"{what} is {value:.3g}, outside {least:g} to {most:g}")
+    if not out:
+        return ""
+    told = f" ({legend})" if legend else ""
+    return f"probably a slip in units: {'; '.join(out)}{told}; check the number and its unit"

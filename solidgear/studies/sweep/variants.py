@@ -23,7 +23,7 @@ from solidgear.scene import (
 )
 from solidgear.scene.bearing_stiffness import STIFFNESS_NAMES
 from solidgear.scene.body_file import BodyFile
-from solidgear.studies.sweep.vary import HOUSING, WITHIN, Axis
+from solidgear.studies.sweep.vary import Axis
 
 E = TypeVar("E", bound=Elastic)
 
@@ -102,19 +102,20 @@ class Variants:
         placed = self._placed[tuple(row[self._moves].tolist())]
         if isinstance(placed, str):
             raise SceneError(placed)
-        changes: dict[int, list[tuple[str, float]]] = {}
+        changes: dict[tuple[int | None, bool], list[tuple[str, float]]] = {}
         for axis, value in zip(self.axes, row.tolist()):
             if axis.field != "position":
-                changes.setdefault(axis.bearing, []).append((axis.field, value))
+                changes.setdefault(axis.place, []).append((axis.field, value))
         if not changes:
             return placed
-        around = changes.pop(HOUSING, [])
+        around = changes.pop((None, True), [])
         if around:
             placed = _rehoused(placed, around)
         bearings = list(placed.bearings)
-        for b, fields in changes.items():
+        for b in dict.fromkeys(bearing for bearing, _ in changes if bearing is not None):
+            own, within = (tuple(changes.get((b, housed), ())) for housed in (False, True))
             try:
-                bearings[b] = _changed(bearings[b], tuple(fields))
+                bearings[b] = _changed(bearings[b], own, within)
             except SceneError as error:
                 raise SceneError(error.reason, field=f'bearing "{bearings[b].name}"') from None
         return placed.with_changes(bearings=tuple(bearings))
@@ -200,17 +201,18 @@ def _varied(housing: E, fields: list[tuple[str, float]]) -> E:
 
 # In a product of axes the same few bearings come again and again.
 @functools.lru_cache(maxsize=1024)
-def _changed(bearing: Bearing, fields: tuple[tuple[str, float], ...]) -> Bearing:
+def _changed(
+    bearing: Bearing, own: tuple[tuple[str, float], ...], within: tuple[tuple[str, float], ...]
+) -> Bearing:
     """A bearing with some entries of its own matrix and of its housing replaced, then scaled."""
     matrix, factor = np.array(bearing.matrix), None
-    within = [(f.removeprefix(WITHIN), value) for f, value in fields if f.startswith(WITHIN)]
-    for field, value in fields:
+    for field, value in own:
         if field == "scale":
             factor = value
-        elif not field.startswith(WITHIN):
+        else:
             i, j, _ = STIFFNESS_NAMES[field]
             matrix[i, j] = matrix[j, i] = value
     bearing = bearing.with_changes(matrix=matrix)
     if within and bearing.housing is not None:
-        bearing = bearing.with_changes(housing=_varied(bearing.housing, within))
+        bearing = bearing.with_changes(housing=_varied(bearing.housing, list(within)))
     return bearing if factor is None else bearing.scaled(factor)

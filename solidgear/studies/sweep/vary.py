@@ -29,11 +29,8 @@ if TYPE_CHECKING:
     from solidgear.scene import Elastic, Scene
 
 FIELDS = ("position", "scale", *STIFFNESS_NAMES)
-#: in place of a bearing
-HOUSING = -1
-#: what is said of the housing of one bearing, and what stands before a field of it
-HOUSED = "housing"
-WITHIN = f"{HOUSED}."
+#: how a housing is called in what is given
+HOUSING = "housing"
 #: More variants than this are a slip of the keyboard.
 MOST = 10_000_000
 
@@ -44,11 +41,12 @@ class Axis:
 
     Attributes
     ----------
-    bearing : int
-        Place of the bearing in the scene; `HOUSING` for that of all.
+    bearing : int or None
+        Place of the bearing in the scene; None for the housing of all.
+    housed : bool
+        Whether it is of a housing: that of the bearing, or of all.
     field : str
-        One of `FIELDS`, or ``axial`` of the housing of all; in the housing of a bearing with
-        ``housing.`` before it.
+        One of `FIELDS`, or ``axial`` of the housing of all.
     label : str
         Name of its column, such as ``bearing.2.kxx``.
     values : tuple of float
@@ -58,11 +56,17 @@ class Axis:
         all.
     """
 
-    bearing: int
+    bearing: int | None
+    housed: bool
     field: str
     label: str
     values: tuple[float, ...]
     spacing: str
+
+    @property
+    def place(self) -> tuple[int | None, bool]:
+        """What the field is of: a bearing, its housing, or that of all."""
+        return self.bearing, self.housed
 
     def draw(self, u: np.ndarray) -> np.ndarray:
         """Values for numbers between 0 and 1.
@@ -89,7 +93,7 @@ def axes(scene: Scene, texts: Iterable[str]) -> tuple[Axis, ...]:
     out: list[Axis] = []
     for text in texts:
         axis = _axis(scene, text)
-        if any((a.bearing, a.field) == (axis.bearing, axis.field) for a in out):
+        if any(a.place == axis.place and a.field == axis.field for a in out):
             raise SolidgearError(
                 f"--vary {text}: {axis.label} is varied already; give all its values in one list"
             )
@@ -127,15 +131,15 @@ def _axis(scene: Scene, text: str) -> Axis:
     target, equals, spec = text.partition("=")
     head, _, field = target.strip().rpartition(".")
     word, _, name = head.partition(".")
-    if equals and head == "housing":
+    if equals and head == HOUSING:
         return _of_the_housing(scene, text, field, spec)
     if not equals or word != "bearing" or not name:
         raise SolidgearError(
             f'--vary {text}: write bearing.NAME.FIELD=VALUES, such as "bearing.2.position=0.2 m:0.3 m:11"'
         )
     names = [b.name for b in scene.bearings]
-    housed = name not in names and name.endswith(f".{HOUSED}")
-    name = name.removesuffix(f".{HOUSED}") if housed else name
+    housed = name not in names and name.endswith(f".{HOUSING}")
+    name = name.removesuffix(f".{HOUSING}") if housed else name
     if name in names:
         index = names.index(name)
     elif name.isdecimal() and 1 <= int(name) <= len(names):
@@ -147,7 +151,7 @@ def _axis(scene: Scene, text: str) -> Axis:
         )
     if housed:
         return _of_one_housing(scene, text, index, field, spec)
-    if field == HOUSED:
+    if field == HOUSING:
         raise SolidgearError(
             f"--vary {text}: says nothing of what varies in the housing; write for example "
             f'"bearing.{names[index]}.{field}.kzz=log:1e8 N/m:1e10 N/m:9"'
@@ -156,7 +160,7 @@ def _axis(scene: Scene, text: str) -> Axis:
         raise SolidgearError(
             f"--vary {text}: unknown field {field!r}{nearest(field, FIELDS)}; valid are {', '.join(FIELDS)}"
         )
-    return _read(text, index, field, f"bearing.{names[index]}.{field}", spec)
+    return _read(text, (index, False), field, f"bearing.{names[index]}.{field}", spec)
 
 
 def _of_one_housing(scene: Scene, text: str, index: int, field: str, spec: str) -> Axis:
@@ -167,8 +171,8 @@ def _of_one_housing(scene: Scene, text: str, index: int, field: str, spec: str) 
             "give it one in the scene, with the entries that are to vary"
         )
     _refuse_rigid(text, field, _varied_of(bearing.housing), f"the housing of {bearing.name!r}")
-    field = WITHIN + field
-    return _read(text, index, field, f"bearing.{bearing.name}.{field}", spec)
+    label = f"bearing.{bearing.name}.{HOUSING}.{field}"
+    return _read(text, (index, True), field, label, spec)
 
 
 def _of_the_housing(scene: Scene, text: str, field: str, spec: str) -> Axis:
@@ -178,7 +182,7 @@ def _of_the_housing(scene: Scene, text: str, field: str, spec: str) -> Axis:
         )
     known = ("axial",) if scene.housing is None else _varied_of(scene.housing)
     _refuse_rigid(text, field, known, "its housing")
-    return _read(text, HOUSING, field, f"housing.{field}", spec)
+    return _read(text, (None, True), field, f"{HOUSING}.{field}", spec)
 
 
 def _varied_of(housing: Elastic) -> tuple[str, ...]:
@@ -202,17 +206,16 @@ def _refuse_rigid(text: str, field: str, known: Sequence[str], what: str) -> Non
     )
 
 
-def _read(text: str, index: int, field: str, label: str, spec: str) -> Axis:
+def _read(text: str, place: tuple[int | None, bool], field: str, label: str, spec: str) -> Axis:
     try:
         values, spacing = _values(field, spec)
     except SceneError as error:
         raise SolidgearError(f"--vary {text}: {error}") from None
-    return Axis(index, field, label, values, spacing)
+    return Axis(*place, field, label, values, spacing)
 
 
 def _values(field: str, spec: str) -> tuple[tuple[float, ...], str]:
     of_its_own = {"position": "length", "scale": "dimensionless", "axial": "force_per_length"}
-    field = field.removeprefix(WITHIN)
     dimension = of_its_own.get(field) or STIFFNESS_NAMES[field][2]
     spacing, parts = "linear", [part.strip() for part in spec.split(":")]
     if parts[0] == "log":
