@@ -61,7 +61,7 @@ async function ask(frame) {
     key("Escape"); said.escaped = words();
     key("Home"); const home = words(), seen = inside();
     key("ArrowRight"); said.stepped = words() !== home || first.at.length < 4; key("ArrowLeft"); said.back = words() === home;
-    key("ArrowDown"); said.other = one.series.length < 2 || one.s === 1; key("End"); said.inside = seen && inside();
+    const was = one.s; key("ArrowDown"); said.other = one.s === (was + 1) % one.series.length; key("End"); said.inside = seen && inside();
     const style = w.getComputedStyle(box), [a, b] = [light(style.color), light(style.backgroundColor)];
     said.contrast = (Math.max(a, b) + 0.05) / (Math.min(a, b) + 0.05);
     said.focusable = paper.tabIndex; said.label = paper.getAttribute("aria-label"); said.role = box.getAttribute("role");

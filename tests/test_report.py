@@ -63,7 +63,7 @@ def test_page_needs_no_other_file_and_no_network(page):
     assert not re.search(r"https?:|fetch|XMLHttp|import", READS)
     assert "@import" not in page and "<link" not in page
     assert not re.search(r"url\((?!#)", page)
-    assert page.count("<svg") == 8, "one for each chart"
+    assert page.count("<svg") == 2 * 8, "a wide and a narrow one for each chart"
 
 
 def test_identifiers_of_the_charts_do_not_collide(page):
@@ -175,7 +175,7 @@ def test_names_from_a_scene_are_escaped():
     page = render_page(results)
     page = page.replace(READS, "")
     assert "<script" not in page and "<img" not in page and "&lt;script&gt;" in page
-    assert page.count("<svg") == 8
+    assert page.count("<svg") == 2 * 8
 
 
 # ------------------------------------------------------------------------------------------------- missing parts
@@ -256,7 +256,7 @@ def test_chart_that_fails_costs_only_itself(monkeypatch):
         charts, "CHARTS", dict.fromkeys(charts.CHARTS, broken) | {"causes": charts.cause_chart}
     )
     page = render_page(fixture_results())
-    assert "no pen" in page and page.count("<svg") == 1 and "</html>" in page
+    assert "no pen" in page and page.count("<svg") == 2 and "</html>" in page
 
 
 def test_models_without_a_record_are_named_by_the_ladder():

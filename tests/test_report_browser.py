@@ -22,6 +22,8 @@ CHROMIUM = next(
 )
 pytestmark = pytest.mark.skipif(CHROMIUM is None, reason="there is no chromium here")
 WIDTHS = (390, 768, 1280)
+#: px; letters on a phone, which are 12 px high in its tables
+LETTER = 8
 #: contrast of text that WCAG 2.1 asks for (AA, 1.4.3)
 READABLE = 4.5
 #: dark in the words of the browser's settings
@@ -64,7 +66,26 @@ function measure(frame) {
     const ratio = (Math.max(a, b) + 0.05) / (Math.min(a, b) + 0.05);
     if (ratio < found.worst[0]) found.worst = [ratio, element.textContent.trim().slice(0, 60)];
   }
+  found.charts = charts(page, view);
   return found;
+}
+function charts(page, view) { // what is seen of every chart
+  return [...page.querySelectorAll(".paper")].map(paper => {
+    const shown = [...paper.querySelectorAll("svg")].filter(svg => svg.getClientRects().length), svg = shown[0];
+    const box = svg.getBoundingClientRect(), scale = box.width / svg.viewBox.baseVal.width;
+    const said = { shown: shown.map(one => one.getAttribute("class")), least: 99, outside: [], worst: [99, ""], scrolls: paper.parentElement.scrollWidth > paper.parentElement.clientWidth };
+    const back = light(behind(paper, view));
+    for (const text of svg.querySelectorAll("text")) {
+      if (!text.textContent.trim()) continue;
+      const style = view.getComputedStyle(text), b = text.getBoundingClientRect(), ink = light(style.fill);
+      said.least = Math.min(said.least, scale * parseFloat(style.fontSize));
+      if (b.left < box.left - 1 || b.right > box.right + 1 || b.top < box.top - 1 || b.bottom > box.bottom + 1) said.outside.push(text.textContent);
+      const ratio = (Math.max(ink, back) + 0.05) / (Math.min(ink, back) + 0.05);
+      // figures in the dark cells of a map are in the colour of the paper
+      if (ratio > 1.02 && ratio < said.worst[0]) said.worst = [ratio, text.textContent];
+    }
+    return said;
+  });
 }
 addEventListener("load", () => {
   const found = {};
@@ -123,6 +144,17 @@ def test_every_text_is_readable(seen):
         assert ratio >= READABLE, words
         assert one["dark"] == (mode == "dark")
         assert (one["paper"] < 60) == (mode == "dark")
+
+
+def test_charts_fit_a_phone_and_follow_the_dark(seen):
+    """A drawing for the width of the screen; every word in it stands on the paper and can be read."""
+    for width, one in seen[1].items():
+        assert len(one["charts"]) == 8
+        for chart in one["charts"]:
+            assert chart["shown"] == ["narrow" if width < 640 else "wide"]
+            assert not chart["scrolls"] and chart["outside"] == []
+            assert chart["worst"][0] >= READABLE, chart["worst"]
+            assert width > 640 or chart["least"] >= LETTER
 
 
 def test_a_bad_page_is_seen_to_be_bad(tmp_path):

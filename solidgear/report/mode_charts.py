@@ -5,11 +5,13 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from solidgear.evidence.record import MacTable, ModelRecord, ModeRecord, Record
-from solidgear.report.chart_style import as_svg, legend_columns, new_figure
+from solidgear.report.chart_style import as_svg, legend_columns, new_figure, paper_width
 from solidgear.report.reading import model_name, model_of, reference_of, relative_change
 from solidgear.report.readout import readable
 from solidgear.report.words import hertz, percent
 
+#: in; and how crowded a matrix is on narrow paper, where it has the whole width
+WIDTH, ALONE = 10.4, 0.67
 #: families of modes along the axis
 FAMILIES = {"bending": 0, "axial": 1, "torsion": 2}
 
@@ -29,10 +31,10 @@ def mode_chart(record: Record):
     base = modes.get(reference or "")
     relative = base is not None and len(models) > 1
     if relative:
-        figure = new_figure(10.4, 5.0)
+        figure = new_figure(WIDTH, 5.0)
         axes = list(figure.subplots(2, 1, sharex=True, height_ratios=(3, 2)))
     else:
-        figure = new_figure(10.4, 3.2)
+        figure = new_figure(WIDTH, 3.2)
         axes = [figure.subplots()]
     step = 0.7 / max(len(models), 1)
     for k, key in enumerate(models):
@@ -154,9 +156,9 @@ def mac_chart(record: Record):
     rows = -(-len(models) // across)
     widest = max(len(m.values[0]) for m in models.values())
     tallest = max(len(m.values) for m in models.values())
-    figure = new_figure(10.4, rows * min(max(1.2 + 0.33 * tallest, 2.6), 6.5))
+    figure = new_figure(WIDTH, rows * min(max(1.2 + 0.33 * tallest, 2.6), 6.5))
     axes = figure.subplots(rows, across, squeeze=False).ravel()
-    size = _text_size(widest)
+    size = _text_size(widest * ALONE if paper_width(WIDTH) < WIDTH else widest)
     reference = model_name(record, record.mac.reference)
     for ax, (key, found) in zip(axes, models.items()):
         _draw_mac(ax, found, size, model_name(record, key), reference)
@@ -209,7 +211,7 @@ def _draw_mac(ax, found: MacTable, size: float, name: str, reference: str) -> No
     ax.grid(visible=False)
 
 
-def _text_size(columns: int) -> float:
+def _text_size(columns: float) -> float:
     """Size of the figures in a map of so many columns, pt."""
     if columns <= 9:
         return 7.5
