@@ -108,10 +108,17 @@ def test_panels_stand_below_one_another_and_keep_their_names():
             row[0].set_ylabel(f"height {len(seen)}")
             for k, ax in enumerate(row):
                 ax.plot([0, 1e6], [0, 1])
-                ax.set_title(f"a title of many words that no phone is wide enough for, {k}")
+                ax.set_title(
+                    f"a title of so many words that no phone there is, nor any there will be, shows them in one line, {k}"
+                )
         for k, ax in enumerate(grid[-1]):
             ax.set_xlabel(f"length {k}")
         figure.legend(["a", "b"], loc="outside right upper", ncols=legend_columns(4))
+        figure.supxlabel(
+            "where all of it comes from, in a sentence that needs more lines than one",
+            x=0.01,
+            ha="left",
+        )
         seen.append(figure)
         return figure
 
@@ -123,6 +130,9 @@ def test_panels_stand_below_one_another_and_keep_their_names():
     assert all(upper.y0 > lower.y1 for upper, lower in zip(boxes, boxes[1:]))
     assert [ax.get_xlabel() for ax in narrow.axes] == ["length 0", "length 1", "length 2"] * 2
     assert [ax.get_ylabel() for ax in narrow.axes] == ["height 1"] * 6
+    (legend,), foot = narrow.legends, narrow._supxlabel.get_window_extent()
+    assert foot.y1 <= legend.get_window_extent().y0
+    assert legend.get_window_extent().y1 <= narrow.axes[-1].get_tightbbox().y0
     page = narrow.get_window_extent()
     for ax in narrow.axes:
         for text in (ax._left_title, ax.title, ax.xaxis.label):

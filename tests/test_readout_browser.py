@@ -68,6 +68,11 @@ async function ask(frame) {
     found.charts.push(said);
   }
   found.width = d.documentElement.scrollWidth;
+  // turned from upright to lying or back, a page shows its other drawings
+  frame.width = frame.width > 640 ? 390 : 1280;
+  // what the browser calls at every change of size, here without its clock
+  for (const one of w.solidgearReadings) one.resized();
+  found.turned = w.solidgearReadings.every(one => one.svg.getClientRects().length && one.box.hidden);
   return found;
 }
 addEventListener("load", async () => {
@@ -132,6 +137,11 @@ def test_arrow_keys_go_along_a_curve_and_to_the_next(answers):
     for name, said in charts_of(answers):
         assert said["focusable"] == 0 and "Arrow keys" in said["label"] and said["role"] == "status"
         assert said["stepped"] and said["back"] and said["other"] and said["inside"], (name, said)
+
+
+def test_what_is_read_is_the_drawing_that_is_shown(answers):
+    """Also once a phone is turned."""
+    assert all(one["turned"] for one in answers[0].values())
 
 
 def test_no_overflow_no_error_and_readable_in_the_dark(answers):

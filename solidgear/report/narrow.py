@@ -18,10 +18,14 @@ from solidgear.report.chart_style import NARROW_WIDTH as WIDTH
 
 #: of the width, that labels beside a panel may take
 BESIDE = 0.36
+#: of a room, that words may fill: letters differ in width
+FULL = 0.94
 #: in; empty paper that is worth cutting off
 EMPTY = 0.15
 #: most parts of an axis below a panel
 TICKS = 5
+#: in; between the foot of a figure and what stands above it
+FOOT = 0.12
 #: rotation of labels below a panel that would run into one another
 TURNED = 55.0
 
@@ -60,6 +64,7 @@ class NarrowFigure(Figure):
         self._thin_ticks()
         self._arrange()
         self._wrap_words()
+        self._part_legend()
         self._arrange()
         self._turn_labels()
         if any(ax.get_aspect() != "auto" for ax in self.axes):
@@ -107,6 +112,19 @@ class NarrowFigure(Figure):
                 letters = int(BESIDE * across / max(sizes) * max(map(_longest, labels)))
                 ax.set_yticks(ax.get_yticks(), [_filled(label, letters) for label in labels])
 
+    def _part_legend(self) -> None:
+        """A legend of the figure stands above what is written at its foot."""
+        foot, engine = self._supxlabel, self.get_layout_engine()
+        if foot is None or not foot.get_text() or engine is None:
+            return
+        high = self.get_figheight() * self.dpi
+        for legend in self.legends:
+            # the layout makes room for the higher one of the two only
+            own, below = (one.get_window_extent().height / high for one in (legend, foot))
+            gap = FOOT / self.get_figheight()
+            legend.set_bbox_to_anchor((0.0, below + gap))
+            engine.set(rect=(0.0, own + gap, 1.0, 1.0 - own - gap))
+
     def _turn_labels(self) -> None:
         """Names below a panel are turned where they would run into one another."""
         self.draw_without_rendering()
@@ -134,8 +152,9 @@ def _longest(text: str) -> int:
 def _wrapped(text: Any, room: float) -> None:
     """A text in lines that fit a room, pixels."""
     size = text.get_window_extent().width
-    if size > room:
-        text.set_text(_filled(text.get_text(), int(room / size * _longest(text.get_text()))))
+    if size > FULL * room:
+        letters = int(FULL * room / size * _longest(text.get_text()))
+        text.set_text(_filled(text.get_text(), letters))
 
 
 def _filled(text: str, letters: int) -> str:

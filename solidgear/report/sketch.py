@@ -51,7 +51,7 @@ def draw(scene: Mapping[str, Any]) -> Any:
     ordinates = _staggered([(left + y * inch, f"{1e3 * y:.1f}") for y in _marks(scene, length)])
     above = top + 0.62 + 0.34 * (1 + max((level for *_, level in labels), default=0))
     notes = _notes(scene, enlarged)
-    above += LINE * len(notes)  # room over the names
+    above += LINE * len(notes) + 0.1 * bool(notes)  # room over the names
     handles = _handles(segments, scene)
     columns = len(handles)
     if sum(2 * _half(one.get_label()) + HANDLE for one in handles) > width:
