@@ -1,4 +1,4 @@
-"""Pictures of the pages, drawn by the program from the scene of the tutorial and a shipped train.
+"""Pictures of the pages, drawn by the program from the scene of the tutorial, a shipped one and a train.
 
 python docs/tools/pictures.py
 """
@@ -53,6 +53,34 @@ def turning(page: Path, target: Path) -> None:
     subprocess.run([*command, f"--screenshot={target}", page.as_uri()], check=True)
 
 
+def report(page: Path) -> None:
+    """Page one of a report on a desk, in the dark and on a phone, as a browser shows it."""
+    browser = shutil.which("chromium") or shutil.which("google-chrome")
+    if browser is None:
+        raise SystemExit("pictures of the report need Chromium")
+    dark = "--blink-settings=preferredColorScheme=0"
+    for name, (width, height), flags in (
+        ("report_page_one", (1280, 1120), []),
+        ("report_dark", (1280, 1120), [dark]),
+        ("report_phone", (390, 1360), []),
+    ):
+        # a window has a least width; a frame has not
+        frame = (
+            f'<iframe style="border: 0" width="{width}" height="{height}" src="{page.as_uri()}">'
+        )
+        shell = page.with_name(f"{name}.html")
+        shell.write_text(f'<!DOCTYPE html><body style="margin: 0">{frame}</iframe>')
+        target = page.with_name(f"{name}.png")
+        command = [browser, "--headless", "--no-sandbox", "--hide-scrollbars", *flags]
+        command += [f"--window-size={max(width, 600)},{height}", "--virtual-time-budget=4000"]
+        subprocess.run([*command, f"--screenshot={target}", shell.as_uri()], check=True)
+        from PIL import Image
+
+        with Image.open(target) as picture:
+            cut = picture.convert("RGB").crop((0, 0, width, height))
+            cut.quantize(64).save(PICTURES / f"{name}.png", optimize=True)
+
+
 def main() -> int:
     """Draw them all."""
     import solidgear as sg
@@ -71,6 +99,9 @@ def main() -> int:
     said += run(
         f"solidgear response {train} --gear harmonic --against euler+euler --out out", folder
     )
+    pinion = ROOT / "geometry" / "pinion_overhung.toml"
+    said += run(f"solidgear compare {pinion} --out report", folder)
+    report(folder / "report" / "report.html")
     small(folder / "mode.png", "mode")
     small(folder / "out" / "response.png", "response")
     print(said)

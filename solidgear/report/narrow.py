@@ -9,12 +9,15 @@ drawing or the other (``style.html``).
 from __future__ import annotations
 
 import textwrap
-from typing import Any
+from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 from matplotlib.figure import Figure
 
 from solidgear.report.chart_style import NARROW_WIDTH as WIDTH
+
+if TYPE_CHECKING:
+    from matplotlib.layout_engine import ConstrainedLayoutEngine
 
 #: of the width, that labels beside a panel may take
 BESIDE = 0.36
@@ -39,11 +42,14 @@ class NarrowFigure(Figure):
         That it would have on a wide page, in.
     """
 
+    _suptitle: Any
+    _supxlabel: Any
+
     def __init__(self, width: float, height: float, **settings: Any):
         super().__init__(figsize=(min(width, WIDTH), height), **settings)
         self._grids: list[np.ndarray] = []
 
-    def subplots(self, nrows: int = 1, ncols: int = 1, **settings: Any) -> Any:  # type: ignore[override]
+    def subplots(self, nrows: int = 1, ncols: int = 1, **settings: Any) -> Any:
         """Panels as of :meth:`matplotlib.figure.Figure.subplots`, each as high as it would be there."""
         squeeze = settings.pop("squeeze", True)
         if ncols > 1:
@@ -99,8 +105,9 @@ class NarrowFigure(Figure):
     def _wrap_words(self) -> None:
         """Titles and labels in lines that fit the width."""
         across = self.get_figwidth() * self.dpi
-        titles = [self._suptitle, self._supxlabel]
-        for ax in self.axes:
+        titles: list[Any] = [self._suptitle, self._supxlabel]
+        panels: list[Any] = self.axes
+        for ax in panels:
             titles += [ax.title, ax._left_title, ax.xaxis.label]
         for text in titles:
             if text is not None and text.get_text():
@@ -114,7 +121,7 @@ class NarrowFigure(Figure):
 
     def _part_legend(self) -> None:
         """A legend of the figure stands above what is written at its foot."""
-        foot, engine = self._supxlabel, self.get_layout_engine()
+        foot, engine = self._supxlabel, cast("ConstrainedLayoutEngine", self.get_layout_engine())
         if foot is None or not foot.get_text() or engine is None:
             return
         high = self.get_figheight() * self.dpi

@@ -83,7 +83,7 @@ class Variants:
             bearings = list(self.scene.bearings)
             try:
                 for k, y in zip(self._moves, key):
-                    b = self.axes[k].bearing
+                    b = self.axes[k].seat
                     bearings[b] = bearings[b].with_changes(y=y)
                 out[key] = self.scene.with_changes(bearings=tuple(bearings))
             except SceneError as error:
@@ -141,7 +141,7 @@ class Variants:
                 f"no variant can be solved; the first one is refused: {next(iter(self._placed.values()))}"
             )
         for k in self._moves:
-            bearing = self.scene.bearings[self.axes[k].bearing]
+            bearing = self.scene.bearings[self.axes[k].seat]
             if bearing.attachment == "rigid" and len(self.axes[k].values) > 1:
                 raise SolidgearError(
                     f"{self.axes[k].label}: a rigid seat stiffens the shaft wherever it is "

@@ -68,6 +68,13 @@ class Axis:
         """What the field is of: a bearing, its housing, or that of all."""
         return self.bearing, self.housed
 
+    @property
+    def seat(self) -> int:
+        """Place of the bearing whose position or own stiffness varies."""
+        if self.bearing is None:
+            raise TypeError(f"{self.label} is of no bearing")
+        return self.bearing
+
     def draw(self, u: np.ndarray) -> np.ndarray:
         """Values for numbers between 0 and 1.
 
