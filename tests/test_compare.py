@@ -733,3 +733,12 @@ def test_a_free_shaft_has_no_lumped_rung():
         "lumped" not in found["models"]
         and "leave it free" in found["lumped"]["timoshenko"]["why_not"]
     )
+
+
+def test_a_list_of_modes_that_its_number_cuts_short_is_told():
+    """In the words of ``modes``; not where the list ends at the frequency asked for."""
+    rod = sg.Segment.cylinder("rod", length=0.6, diameter=0.02)
+    for highest, told in ((1e5, True), (2e3, False)):
+        scene = sg.Scene.from_parts([rod]).with_changes(ask=sg.Ask(max_frequency=highest))
+        said = sg.compare(scene, models=("euler",)).record.warnings
+        assert any("the list ends with the 10 elastic shapes" in text for text in said) == told

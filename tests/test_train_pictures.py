@@ -8,9 +8,10 @@ from typer.testing import CliRunner
 import solidgear as sg
 from solidgear.cli import app
 from solidgear.report.folder import clear
+from solidgear.report.turning import sections
 from solidgear.studies.axle.models import Workshop
 from solidgear.studies.axle.naming import mode_names
-from solidgear.studies.axle.pictures import draw_modes, system_surface, turned_modes
+from solidgear.studies.axle.pictures import draw_modes, system_surface, turned_beside, turned_modes
 
 TRAIN = sg.load_train(OVERHUNG)
 FINE = {**COARSE, "harmonic": {"order": 2, "layers": 1}}
@@ -196,3 +197,27 @@ def test_the_page_of_system_modes_has_modes_to_turn_and_units(tmp_path):
     assert nothing.exit_code == 1
     assert "lumped of the pinion has no shape" in str(nothing.exception)
     assert not (tmp_path / "no.html").exists()
+
+
+def test_two_mixes_side_by_side_show_partners_under_one_name(shop):
+    """Paired by what the ports do, with one sign; what has no partner says so."""
+    one, other = turned_beside(shop, ("harmonic", "harmonic"), ("euler", "euler"), 900.0)
+    assert [t.title for t in (one, other)] == ["both shafts harmonic", "both shafts euler"]
+    shared = {s.name for s in one.shapes} & {s.name for s in other.shapes}
+    assert {"load torsion 1", "gear torsion 1", "gear bending 1"} <= shared
+    alone = [s.name for s in other.shapes if s.name not in shared]
+    assert all(name.endswith(", both shafts euler alone") for name in alone)
+    for name in shared:
+        mine, its = (t.shapes[t.index(name)] for t in (one, other))
+        if name == "gear bending 1":  # a beam without shear is the stiffer one
+            assert 1 < its.frequency_hz / mine.frequency_hz < 1.5
+        told = [
+            np.vstack(
+                [
+                    sections(b.mesh.points, b.shapes[t.index(name)].displacement)
+                    for b in (t, *t.along)
+                ]
+            )
+            for t in (one, other)
+        ]
+        assert (told[0] * told[1]).sum() > 0

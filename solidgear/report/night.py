@@ -77,7 +77,7 @@ def in_the_dark(colour: str) -> str:
     Examples
     --------
     >>> in_the_dark("#ffffff"), in_the_dark("#000000"), in_the_dark("#1f5f99")
-    ('#15181c', '#e4e7ea', '#5297d3')
+    ('#15181c', '#e4e7ea', '#60a3e6')
     """
     contrast = (1.0 + FLARE) / (luminance(colour) + FLARE)
     wanted = min((luminance(PAPER) + FLARE) * contrast - FLARE, luminance(INK))
