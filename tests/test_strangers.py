@@ -98,12 +98,14 @@ def test_no_twin_is_lost_on_a_small_solid():
 
 def test_modes_of_other_shapes_are_not_compared():
     light = {"harmonic": COARSE}
-    found = compare(scene_of("mispaired_axial"), ("timoshenko", "harmonic"), settings=light)
-    gaps = found.results["deviations"]
-    frequencies = [g["relative"] for g in gaps if g["unit"] == "Hz"]
-    # 2476 % was the distance of two different modes; on a cone of this stoutness a beam is off by
-    # some tens of per cent
-    assert frequencies and max(map(abs, frequencies)) < 0.6
+    found = compare(scene_of("mispaired_axial"), ("euler", "harmonic"), settings=light)
+    gaps = [g for g in found.results["deviations"] if g["unit"] == "Hz"]
+    # The solid's first axial mode moves sideways as well, and the Euler beam calls that shape
+    # bending 3: what it calls axial 1 is another mode, 2476 % above.
+    axial = [g["relative"] for g in gaps if g["quantity"] == "axial 1"]
+    assert axial and max(map(abs, axial)) < 0.05
+    # on a cone of this stoutness a beam is off by some tens of per cent
+    assert max(abs(g["relative"]) for g in gaps) < 0.6
 
 
 # --------------------------------------------------------------------------- verdicts
