@@ -45,7 +45,11 @@ def truth(scenes):
 
 
 #: an overhung head and a plain shaft; the others differ in their seats and bores
-FEW = [n if n in SCENES[:2] else pytest.param(n, marks=pytest.mark.slow) for n in SCENES]
+FEW = [
+    SCENES[0],
+    pytest.param(SCENES[1], marks=pytest.mark.long),
+    *(pytest.param(n, marks=pytest.mark.slow) for n in SCENES[2:]),
+]
 
 
 @pytest.mark.parametrize("tol", [0.1, 0.01, 1e-3])
@@ -122,7 +126,10 @@ def test_modes_on_a_stiff_bearing_err_as_its_seat_does():
 
 @pytest.mark.parametrize(
     ("tie", "quantity", "level", "before"),
-    [("average", "C_yy", 3, 7.5e-7), ("section", "K_zz", 2, 3.6e-5)],
+    [
+        pytest.param("average", "C_yy", 3, 7.5e-7, marks=pytest.mark.long),
+        ("section", "K_zz", 2, 3.6e-5),
+    ],
 )
 def test_fine_meshes_stand_still(tie, quantity, level, before):
     # A seat that ends at a face, and the ring in the bore where a section tie's plane ends, had no
@@ -138,6 +145,7 @@ def test_fine_meshes_stand_still(tie, quantity, level, before):
     assert abs(finer / fine - 1) < before / 2
 
 
+@pytest.mark.long
 def test_bars_hold_for_a_thin_disc_between_shafts_of_two_diameters():
     # a mesh line from one surface to the other crossed the disc: 2.2e-3 off, bar 6e-4
     def scene(*thick):
@@ -190,7 +198,10 @@ def test_the_other_plane_is_what_the_first_is_with_bearings_turned():
     assert 1 < one["C_thy"] * 2e4 < 1.2
 
 
-def test_bars_hold_in_a_narrow_notch():
+@pytest.mark.parametrize(
+    "ask", [["K_zz"], pytest.param(["bending 1", "axial 1"], marks=pytest.mark.long)]
+)
+def test_bars_hold_in_a_narrow_notch(ask):
     # between a cone of 83 degrees and the face of a disc: 2.1e-2 off, bar 0.9e-2
     parts = [
         sg.Segment(name="cone", y0=0.0, y1=0.0026, outer0=0.0343, outer1=0.017),
@@ -201,7 +212,7 @@ def test_bars_hold_in_a_narrow_notch():
     b = Bearing(name="B", y=0.0037, seat_width=0.0006, stiffness=springs)
     port = sg.Port(name="p", y=0.0018, lo=0.0014, hi=0.0022)
     scene = sg.Scene.from_parts(parts, port=port, bearings=[a, b])
-    found = answer(scene, 0.05, ["K_zz", "bending 1", "axial 1"])
+    found = answer(scene, 0.05, ask)
     fine = solve(scene, "harmonic", **HARMONIC[3]).quantities
     for v in found.values:
         assert abs(v.value / fine[v.quantity] - 1) <= v.bar

@@ -138,7 +138,9 @@ def test_own_elements_twist_a_bar_exactly():
     assert twist == pytest.approx(exact, rel=1e-10)
 
 
-@pytest.mark.parametrize("attachment", ["average", "rigid", "section"])
+@pytest.mark.parametrize(
+    "attachment", ["average", "rigid", pytest.param("section", marks=pytest.mark.long)]
+)
 def test_own_elements_agree_with_the_product(attachment):
     scene = _stepped(attachment)
     mine = spectral(scene, corner_mesh(scene, 5, 2.0, 0.2), 4)
@@ -181,6 +183,7 @@ def test_settling_doubts_what_does_not():
     assert settle(1.0, 1.0, 1.0, 1.0, 1.0, noise=1e-5) == (1.0, 1e-5)
 
 
+@pytest.mark.long
 def test_the_reference_is_as_good_as_it_says(tmp_path, monkeypatch):
     monkeypatch.setattr(finest, "LEVELS", ((2, 2), (3, 3)))
     scene = _stepped("rigid")
@@ -358,6 +361,7 @@ def test_a_worker_survives_what_it_runs():
             worker.close()
 
 
+@pytest.mark.long
 def test_one_scene_end_to_end():
     """A coarse harmonic solid of a random bar has the bands and the verdict that its reference
     asks for.
@@ -388,7 +392,7 @@ def test_a_slice_of_the_whole(tmp_path, monkeypatch):
     assert "False valid: 0.0 %" in text and "### tet10" in text
 
 
-@pytest.mark.parametrize("seed", [2001, 2004])
+@pytest.mark.parametrize("seed", [2001, pytest.param(2004, marks=pytest.mark.long)])
 def test_a_wild_shaft_agrees_with_its_twins(seed):
     # with every piece cut in two, end for end, and finer
     found = list(twins.gaps(seed))

@@ -92,6 +92,7 @@ def test_beams_and_the_harmonic_solid_answer_without_gmsh_and_vtk(bare):
     assert "Within 1.00 %: harmonic" in found.stdout
 
 
+@pytest.mark.long
 def test_a_comparison_writes_its_report_without_any_of_it(bare, tmp_path):
     out = tmp_path / "out"
     models = ("--models", "timoshenko,harmonic", "--set", "harmonic.order=2")

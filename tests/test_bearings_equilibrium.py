@@ -170,6 +170,7 @@ def test_range_holds_what_the_scene_says():
     assert all(b.low == pytest.approx(b.high, rel=1e-9) for b in torsion)
 
 
+@pytest.mark.long
 def test_the_report_tells_the_range_beside_the_models():
     found = sg.compare(sg.load(SCENE), ("timoshenko",))
     told = found.record.bearing_range

@@ -167,6 +167,7 @@ def test_first_bending_falls_exponentially_with_the_order(radius, least):
     assert np.all(errors[:-1] > least * errors[1:])
 
 
+@pytest.mark.long
 def test_a_sharp_shoulder_does_not():
     f = [first_bending(stepped(), order=p, layers=0, edge_layers=0) for p in (4, 5, 6)]
     reference = first_bending(stepped(), order=6, layers=6, edge_layers=0)

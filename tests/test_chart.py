@@ -220,6 +220,7 @@ def test_beams_show_like_for_like_beside_their_own_error(raced):
     ]
 
 
+@pytest.mark.long
 def test_the_automatic_choice_is_a_line_of_its_own_and_within_its_tolerance():
     rows = [replace(row) for row in AUTOMATIC[:2]]
     found = race(
@@ -284,6 +285,7 @@ def test_report_has_the_section_when_its_folder_has_a_race_of_the_scene(raced, t
     assert SPEED not in render_page(results)
 
 
+@pytest.mark.long
 def test_section_numbers_in_the_report_are_those_of_its_contents(raced):
     # a record as the command leaves one, so that the part for the customer and the appendix have sections
     page = render_page(fixture_results())
@@ -332,6 +334,7 @@ def test_command_refuses_a_comparison_of_an_older_version_before_it_times_anythi
     assert (tmp_path / "results.json").read_text() == text
 
 
+@pytest.mark.long
 def test_json_is_for_machines_and_the_report_of_another_scene_stays(run, tmp_path, undrawn):
     (tmp_path / "results.json").write_text(json.dumps({"scene": {"name": "another"}, "models": {}}))
     code, text, err = run("chart", SCENE, "--out", tmp_path, "--runs", "1", "--json")
@@ -387,6 +390,7 @@ def test_an_interrupt_leaves_rows_and_chart_of_what_there_was(run, tmp_path, mon
     assert [r["reason"] for r in records(found)].count("interrupted") == 3
 
 
+@pytest.mark.long
 def test_rows_are_written_as_they_come(run, tmp_path, monkeypatch, undrawn):
     """A process that is killed leaves what it had measured."""
     lengths, real = [], race_rows.write_rows

@@ -761,7 +761,10 @@ def test_advice_on_a_scene_with_features_names_models_that_hold_them():
 
 @pytest.mark.parametrize(
     ("name", "solids"),
-    [("pinion_keyed", {"corrected", "solid"}), ("pinion_toothed", {"sector", "solid"})],
+    [
+        ("pinion_keyed", {"corrected", "solid"}),
+        ("pinion_toothed", {"sector", "solid"}),
+    ],
 )
 def test_with_features_every_model_that_is_advised_has_a_verdict(name, solids):
     """No beam holds a keyway or teeth: none is advised, and a lumped model rests on a solid, which

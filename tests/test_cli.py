@@ -174,6 +174,7 @@ def test_attachment_for_every_port(run):
     assert c["section"] > c["average"] > c["rigid"]
 
 
+@pytest.mark.long
 def test_builder_options(run):
     sizes = {
         order: strict(run("stiffness", SCENE, *HARMONIC, "--set", f"order={order}", "--json").out)[
@@ -275,6 +276,7 @@ def test_interrupt_elsewhere_is_a_sentence(run, monkeypatch, tmp_path):
     refused(run("stiffness", SCENE, "-f", "euler"), tmp_path, "interrupted", code=130)
 
 
+@pytest.mark.long
 def test_render_or_a_sentence_that_helps(run, monkeypatch, tmp_path):
     done = run("render", SCENE, "-f", "timoshenko", "--mode", "axial 1", "--out", "mode.png")
     if done.code == 0:
@@ -457,7 +459,9 @@ def test_unknown_backend_is_refused(run, tmp_path, monkeypatch):
     refused(run("stiffness", SCENE, "-f", "euler"), tmp_path, "umfpack", "superlu")
 
 
-@pytest.mark.parametrize("module", ["solidgear", "solidgear.cli"])
+@pytest.mark.parametrize(
+    "module", ["solidgear", pytest.param("solidgear.cli", marks=pytest.mark.long)]
+)
 def test_module_runs_as_a_program(tmp_path, module):
     done = python("-m", module, "stiffness", SCENE, "-f", "euler", "--json", cwd=tmp_path)
     assert done.returncode == 0 and done.stderr == ""

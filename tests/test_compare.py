@@ -333,6 +333,7 @@ def test_subset_of_models(overhung):
     json.dumps(found, allow_nan=False)
 
 
+@pytest.mark.long
 def test_solid_alone_is_its_own_reference(overhung):
     # coarse: C_thx is known to 16 %, so a fifth is asked
     scene = overhung.with_changes(ask=overhung.ask.with_changes(tolerance=0.2))
@@ -466,6 +467,7 @@ def test_interrupt_keeps_what_is_there(overhung, tmp_path):
     assert (tmp_path / "report.html").stat().st_size > 1000
 
 
+@pytest.mark.long
 def test_interrupt_between_meshes_keeps_the_coarser_one(overhung):
     stop = Interrupt("solid: mesh 3")
     # with the mesh left to the program it goes on from coarse to fine
@@ -631,6 +633,7 @@ def test_hollow_shaft():
     assert results["models"]["harmonic"]["valid"]
 
 
+@pytest.mark.long
 def test_ring_gear_shaft():
     results = compare(scene_of("gear_shaft"), BEAMS_AND_HARMONIC, settings=LIGHTEST).results
     json.dumps(results, allow_nan=False)
@@ -659,6 +662,7 @@ def lumped(overhung):
     return found
 
 
+@pytest.mark.long
 def test_lumped_rung_rests_on_a_body(lumped):
     found = lumped(False).results
     record = found["models"]["lumped"]

@@ -87,7 +87,18 @@ def here(monkeypatch, capfd):
     monkeypatch.setattr(console, "run", run)
 
 
-@pytest.mark.parametrize("page", [p for p in SHOWING if p not in LONG])
+#: some seconds each; shorter pages show what these do, commands beside what they print
+SECONDS = {"guide/machine.md", "guide/large.md", "guide/points.md"}
+
+
+@pytest.mark.parametrize(
+    "page",
+    [
+        pytest.param(p, marks=pytest.mark.long if p in SECONDS else ())
+        for p in SHOWING
+        if p not in LONG
+    ],
+)
 def test_a_page_shows_what_the_program_prints(page, here):
     assert console.check(DOCS / page) == []
 
@@ -98,6 +109,7 @@ def test_a_long_page_shows_what_the_program_prints(page):
     assert console.check(DOCS / page) == []
 
 
+@pytest.mark.long
 def test_the_tutorial_runs_but_for_its_long_step(here):
     assert console.check(DOCS / "tutorial.md", without="compare") == []
 

@@ -12,6 +12,8 @@ import solidgear as sg
 ROOT = Path(__file__).parent.parent
 PACKAGE = ROOT / "solidgear"
 WITH_EXAMPLES = sorted(p for p in PACKAGE.rglob("*.py") if ">>>" in p.read_text())
+#: a train is checked and settled from its file on; the tests of trains do so by default
+DEAR = {PACKAGE / "studies" / "axle" / "check.py"}
 NOUNS = [name for name in sg.__all__ if callable(getattr(sg, name))]
 
 
@@ -27,7 +29,9 @@ def module_of(path):
 
 
 @pytest.mark.parametrize(
-    "path", WITH_EXAMPLES, ids=lambda p: "-".join(p.relative_to(PACKAGE).with_suffix("").parts)
+    "path",
+    [pytest.param(p, marks=pytest.mark.long if p in DEAR else ()) for p in WITH_EXAMPLES],
+    ids=lambda p: "-".join(p.relative_to(PACKAGE).with_suffix("").parts),
 )
 def test_examples_run(path, monkeypatch):
     monkeypatch.chdir(ROOT)  # scenes are named as a user names them, geometry/...

@@ -117,7 +117,7 @@ def test_count_of_a_free_body_includes_its_rigid_motions(solid):
     )  # two shapes more than asked for are found, and counted where the gap is behind them
 
 
-@pytest.mark.parametrize("lost", [0, 1, 5])
+@pytest.mark.parametrize("lost", [0, *(pytest.param(k, marks=pytest.mark.long) for k in (1, 5))])
 def test_count_notices_a_lost_mode(scene, solid, lost):
     on = supported(solid, scene)
     solved = lowest(on, 10)
@@ -151,6 +151,7 @@ def test_a_lost_mode_is_searched_again(scene, solid, monkeypatch):
     )
 
 
+@pytest.mark.long
 def test_a_mode_lost_twice_ends_in_a_sentence(scene, solid, monkeypatch):
     real = parts.lowest
     monkeypatch.setattr(

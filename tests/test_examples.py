@@ -25,6 +25,7 @@ def test_first_answer():
     assert found["bending 1"] == pytest.approx(2758.0, rel=1e-3)
 
 
+@pytest.mark.long
 def test_shaft_in_python():
     found = run("shaft_in_python")
     assert found["euler"] == pytest.approx(found["formula"], rel=1e-6)
@@ -33,12 +34,14 @@ def test_shaft_in_python():
     assert found["harmonic"] == pytest.approx(found["timoshenko"], rel=1e-5)
 
 
+@pytest.mark.long
 def test_attachments():
     found = run("attachments")
     assert found["section"] < found["average"] < found["rigid"]
     assert found["rigid"] / found["section"] > 1.1
 
 
+@pytest.mark.long
 def test_many_bearings():
     found = run("many_bearings")
     # a stiffer bearing never makes a softer shaft
@@ -57,6 +60,7 @@ def test_which_model():
     assert run("which_model") == {"trust": "harmonic", "cheapest": "harmonic"}
 
 
+@pytest.mark.long
 def test_ovalising():
     found = run("ovalising")
     assert found["harmonic"][0].startswith("ovalising n=2")
@@ -68,6 +72,7 @@ def test_ovalising():
     assert "ovalising n=2" in found["counted"]
 
 
+@pytest.mark.long
 def test_how_sure():
     assert all(0 < band < 2.5e-3 for band in run("how_sure").values())  # a twentieth of 5 %
 
@@ -89,6 +94,7 @@ def test_before_solving():
     assert found["euler"] == found["timoshenko"] == "will not hold" and found["solid"] == "holds"
 
 
+@pytest.mark.long
 def test_two_shafts():
     found = run("two_shafts")
     modes = found["modes"]
@@ -100,6 +106,7 @@ def test_two_shafts():
     assert found["loudest"] == pytest.approx(strained, rel=1e-3)
 
 
+@pytest.mark.long
 def test_way_back():
     found = run("way_back")
     assert found["bound"]["rubin"] < 1e-9 < found["bound"]["craig_bampton"] < 1e-2

@@ -7,7 +7,13 @@ import pytest
 from validation.stability import circumferential_families as families
 
 
-@pytest.mark.parametrize("kind", families.KINDS)
+@pytest.mark.parametrize(
+    "kind",
+    [
+        pytest.param(k, marks=pytest.mark.long if k == "flanged tube" else ())
+        for k in families.KINDS
+    ],
+)
 def test_rule_misses_no_family(kind):
     row = families.shaft(3, kind, waves=range(2, 8), order=3)
     assert row["missed, program"] == 0

@@ -40,17 +40,19 @@ def nothing_found(fuzz, cases, seed, **more):
     )
 
 
-def test_spoilt_scenes_are_refused_or_solved(fuzz):
-    outcomes, sentences = nothing_found(fuzz, 100, seed=1, commands=0.0, every_harmonic=10)
+@pytest.mark.parametrize("cases", [50, pytest.param(100, marks=pytest.mark.long)])
+def test_spoilt_scenes_are_refused_or_solved(fuzz, cases):
+    outcomes, sentences = nothing_found(fuzz, cases, seed=1, commands=0.0, every_harmonic=10)
     # a fuzz that never gets past the parser, or never meets a refusal, tests nothing
-    assert outcomes["accepted", "euler"] > 10 and outcomes["accepted", "harmonic"] > 0
-    assert len(sentences) > 15
+    assert outcomes["accepted", "euler"] > cases // 10 and outcomes["accepted", "harmonic"] > 0
+    assert len(sentences) > cases // 7
 
 
-def test_command_lines_are_refused_or_answered(fuzz):
-    outcomes, sentences = nothing_found(fuzz, 30, seed=1, commands=1.0)
-    assert sum(n for (outcome, _), n in outcomes.items() if outcome == "accepted") > 4
-    assert len({stage for _, stage in outcomes}) > 3 and len(sentences) > 8
+@pytest.mark.parametrize("cases", [10, pytest.param(30, marks=pytest.mark.long)])
+def test_command_lines_are_refused_or_answered(fuzz, cases):
+    outcomes, sentences = nothing_found(fuzz, cases, seed=1, commands=1.0)
+    assert sum(n for (outcome, _), n in outcomes.items() if outcome == "accepted") > cases // 7
+    assert len({stage for _, stage in outcomes}) > cases // 10 and len(sentences) > cases // 4
 
 
 @pytest.mark.slow

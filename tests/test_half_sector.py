@@ -43,12 +43,14 @@ def wanted(scene):
     return [(s, s.attachment) for s in scene.stations]
 
 
-LONG = ("bolts between bolts",)
+MARKS = {
+    "bolts between bolts": pytest.mark.slow,
+    "bolts": pytest.mark.long,
+    "rigid seats": pytest.mark.long,
+}
 
 
-@pytest.mark.parametrize(
-    "name", [pytest.param(n, marks=pytest.mark.slow) if n in LONG else n for n in PARTS]
-)
+@pytest.mark.parametrize("name", [pytest.param(n, marks=MARKS.get(n, ())) for n in PARTS])
 def test_half_a_sector_is_the_whole_one(name):
     """The same elements: real matrices of half the sector against complex ones of all of it. What is
     left is rounding; a sign on the cut face would be of order one.
@@ -146,6 +148,7 @@ def test_holes_are_where_they_are_said_to_be():
                 assert (np.abs(away[inside] - f.diameter / 2) < 1e-9).sum() > 8
 
 
+@pytest.mark.long
 def test_pictures_of_all_copies():
     """The surface of the copies of a half moves as that of the whole part, point by point, also where
     its middle looks elsewhere than along z.
@@ -174,6 +177,7 @@ def test_pictures_of_all_copies():
         assert volume == pytest.approx(one.mesh["volume"], rel=1e-2)
 
 
+@pytest.mark.long
 def test_further_waves():
     """Two and three waves around: the pairs of the whole sector, of which the half has one each."""
     scene = shaft(TEETH, bore=0.034)

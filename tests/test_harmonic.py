@@ -31,7 +31,7 @@ def rod(bore=0.0, length=LENGTH, radius=RADIUS):
 
 
 # --------------------------------------------------------------------------- torsion
-@pytest.mark.parametrize("bore", [0.0, 0.02])
+@pytest.mark.parametrize("bore", [pytest.param(0.0, marks=pytest.mark.long), 0.02])
 def test_free_free_torsion(bore):
     body = sg.build(rod(bore), "harmonic", order=7, layers=1, edge_layers=1)
     found = [
@@ -149,7 +149,12 @@ def fine_rod():
 
 
 @pytest.mark.parametrize(
-    "m", [pytest.param(1, marks=pytest.mark.slow), 2, pytest.param(3, marks=pytest.mark.slow)]
+    "m",
+    [
+        pytest.param(1, marks=pytest.mark.slow),
+        pytest.param(2, marks=pytest.mark.long),
+        pytest.param(3, marks=pytest.mark.slow),
+    ],
 )
 def test_bending_wave_of_a_cylinder_between_sliding_ends(fine_rod, m):
     # u_y = 0 and no shear at the end faces: the travelling wave of wave number m pi / L fits

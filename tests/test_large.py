@@ -48,7 +48,11 @@ def usual():
         pytest.param({"precision": "single"}, "superlu"),
         pytest.param({"precision": "single"}, "pardiso", marks=PARDISO),
         pytest.param({"out_of_core": True}, "pardiso", marks=PARDISO),
-        pytest.param({"out_of_core": True, "precision": "single"}, "pardiso", marks=PARDISO),
+        pytest.param(
+            {"out_of_core": True, "precision": "single"},
+            "pardiso",
+            marks=[PARDISO, pytest.mark.long],
+        ),
     ],
 )
 def test_equal_to_a_double_factor_in_memory(usual, options, backend, monkeypatch):

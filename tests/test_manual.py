@@ -16,13 +16,13 @@ from validation.manual.cases import free_beams, held_beams, pinion, spur_train, 
 from validation.manual.page import FOLDER, INDEX, SAME_SIZE, index, lines, read, render
 
 
-def models(without=()):
-    """Every case with every letter; the slow ones are left to the slow tests."""
+def models(without=(), others=()):
+    """Every case with every letter; the slow ones are left to the slow tests, and the others are marked."""
     out = []
     for case in CASES.values():
         for letter, model in case.lettered:
             if case.name not in without:
-                marks = [pytest.mark.slow] if model.slow else []
+                marks = [pytest.mark.slow] if model.slow else others
                 out.append(pytest.param(case, letter, id=f"{case.name}-{letter}", marks=marks))
     return out
 
@@ -151,7 +151,7 @@ def spoilt(monkeypatch, key, factor):
         monkeypatch.setattr(module, "from_scene", lambda scene: spans(other(scene)))
 
 
-@pytest.mark.parametrize("case, letter", models(without=NO_MATERIAL))
+@pytest.mark.parametrize("case, letter", models(without=NO_MATERIAL, others=[pytest.mark.long]))
 def test_another_material_is_not_ok(case, letter, monkeypatch):
     model = model_of(case, letter)
     # A frequency sees half of a change, and the model may be near the other end of its tolerance:

@@ -93,7 +93,9 @@ def test_against_dense_eigenvalues(name, fidelity):
     assert len(found) >= 11
 
 
-@pytest.mark.parametrize("name", ["pinion_overhung", "shaft_hollow"])
+@pytest.mark.parametrize(
+    "name", [pytest.param("pinion_overhung", marks=pytest.mark.long), "shaft_hollow"]
+)
 def test_small_and_large_solvers_agree(name):
     # below 400 unknowns a block is solved densely, above by Lanczos
     scene = shipped(name)

@@ -70,12 +70,14 @@ def test_it_is_compared_and_judged(found):
     assert "coarse" in judged or record.models["coarse"].why_not
 
 
+@pytest.mark.long
 def test_it_is_in_the_tables_and_on_the_page(found, tmp_path):
     assert "coarse" in printed(final_table(found.record))
     page = render_page(found.record, tmp_path)
     assert "Coarse beam" in page and "#123456" in page
 
 
+@pytest.mark.long
 def test_it_is_drawn_and_written(found, ladder, tmp_path):
     body, modes = found.rungs["coarse"].body, found.rungs["coarse"].modes
     assert body.fidelity == "coarse"
@@ -92,6 +94,7 @@ def test_guards_have_a_verdict_on_it(ladder, scene):
     assert set(verdicts) == {rung.name for rung in ladder if not rung.for_features}
 
 
+@pytest.mark.long
 def test_it_is_charted(ladder, scene):
     rows = [row for row in plan(scene) if row.model == "coarse"]
     assert [(row.family, row.series, row.options) for row in rows] == [("beam", "coarse", {})]
@@ -107,6 +110,7 @@ def test_it_has_its_own_colour(found):
     assert found.record.models["coarse"].marker == "X"
 
 
+@pytest.mark.long
 def test_it_is_in_the_help_and_among_the_choices():
     code = (
         "import dataclasses, sys\n"

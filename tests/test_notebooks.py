@@ -13,7 +13,7 @@ import notebooks  # noqa: E402
 
 FOLDER = ROOT / "examples" / "notebooks"
 #: compares all models, refined until the solid can judge: some ten seconds
-LONG = {"compare"}
+MARKS = {"compare": pytest.mark.slow, "tutorial": pytest.mark.long}
 NAMES = sorted(p.stem for p in FOLDER.glob("*.ipynb"))
 
 
@@ -21,9 +21,7 @@ def test_there_are_three():
     assert NAMES == ["bearings_and_systems", "compare", "tutorial"]
 
 
-@pytest.mark.parametrize(
-    "name", [pytest.param(n, marks=pytest.mark.slow) if n in LONG else n for n in NAMES]
-)
+@pytest.mark.parametrize("name", [pytest.param(n, marks=MARKS.get(n, ())) for n in NAMES])
 def test_a_notebook_shows_what_it_computes(name):
     assert notebooks.check(FOLDER / f"{name}.ipynb") == []
 

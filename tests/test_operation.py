@@ -105,7 +105,10 @@ COMMANDS = {
 @posix
 @pytest.mark.parametrize(
     "name",
-    [n if n in ("compare", "modes") else pytest.param(n, marks=pytest.mark.slow) for n in COMMANDS],
+    [
+        pytest.param(n, marks={"modes": (), "compare": pytest.mark.long}.get(n, pytest.mark.slow))
+        for n in COMMANDS
+    ],
 )
 def test_ctrl_c_in_the_middle_of_a_factorisation(name, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
@@ -308,6 +311,7 @@ def test_the_same_process_may_enter_again(tmp_path):
 
 
 # --------------------------------------------------------------------------- without pictures
+@pytest.mark.long
 def test_the_terminal_says_that_pictures_are_missing_and_what_brings_them(
     tmp_path, run, monkeypatch
 ):

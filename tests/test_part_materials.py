@@ -67,7 +67,8 @@ def series(folder, ending, first, second, planes=(0, 20, 40, 60, 80, 120, 160, 2
 @pytest.mark.parametrize(
     "ending",
     # the other formats are read in the last test here
-    [pytest.param(e, marks=() if e in ("inp", "msh") else pytest.mark.slow) for e in ENDINGS],
+    ["msh", pytest.param("inp", marks=pytest.mark.long)]
+    + [pytest.param(e, marks=pytest.mark.slow) for e in ENDINGS if e not in ("inp", "msh")],
 )
 def test_a_rod_of_two_materials_in_series(ending, tmp_path):
     """C = L1 / (E1 A) + L2 / (E2 A), exactly: where lateral strains are the same, which they are at
@@ -139,6 +140,7 @@ def test_a_sleeve_on_a_core(tmp_path):
     assert mean.material.E == pytest.approx(share * 200e9 + (1 - share) * 70e9, rel=5e-3)
 
 
+@pytest.mark.long
 def test_one_material_by_groups_changes_nothing(tmp_path):
     """To the last bit but the order of sums."""
     plain = series(tmp_path, "inp", STEEL, STEEL)
@@ -248,6 +250,7 @@ def numbers(body, scene):
     return np.array([compliance[2, 2], *sg.modes(body, scene, n=4).frequency_hz[1:2]])
 
 
+@pytest.mark.long
 def test_two_solids_are_a_shaft_of_two_segments(tmp_path):
     """A STEP file of two solids end to end against the harmonic solid of a file of segments: what
     is left is the coarse mesh of tetrahedra, which is too stiff.

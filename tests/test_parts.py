@@ -212,7 +212,12 @@ def written(body, path, digits=9):
 # a Nastran field holds ten digits
 @pytest.mark.parametrize(
     "ending, digits",
-    [("msh", 9), pytest.param("inp", 9, marks=pytest.mark.slow), ("vtu", 9), ("bdf", 8)],
+    [
+        ("msh", 9),
+        pytest.param("inp", 9, marks=pytest.mark.slow),
+        pytest.param("vtu", 9, marks=pytest.mark.long),
+        ("bdf", 8),
+    ],
 )
 def test_a_mesh_file_gives_the_same_numbers(ending, digits, shipped, tmp_path):
     scene, body = shipped
@@ -226,7 +231,8 @@ def test_a_mesh_file_gives_the_same_numbers(ending, digits, shipped, tmp_path):
     )
 
 
-@pytest.mark.parametrize("element", ["hex20", pytest.param("hex8", marks=pytest.mark.slow)])
+@pytest.mark.parametrize("element", ["hex20", "hex8"])
+@pytest.mark.long
 def test_other_elements_of_a_mesh_file(element, stepped, tmp_path):
     """The same as the in-memory mesh, whose seats are whole faces."""
     (tmp_path / "part.step").write_bytes(stepped)
@@ -479,7 +485,9 @@ def test_the_shipped_scene_has_a_sequence_of_meshes(shipped):
 
 
 @pytest.mark.parametrize(
-    "cases, seed", [(6, 7), pytest.param(30, 8, marks=pytest.mark.slow)], ids=["few", "many"]
+    "cases, seed",
+    [pytest.param(6, 7, marks=pytest.mark.long), pytest.param(30, 8, marks=pytest.mark.slow)],
+    ids=["few", "many"],
 )
 def test_broken_files_end_in_a_sentence(cases, seed, tmp_path):
     """Nothing that a process of its own does not catch, and no traceback."""

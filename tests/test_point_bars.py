@@ -120,7 +120,9 @@ def light_truth(scene):
     return Reference(runs[1], doubt, [], [], [], 0, 0.0)
 
 
-@pytest.mark.parametrize("seed", [21, 7, pytest.param(13, marks=pytest.mark.slow)])
+@pytest.mark.parametrize(
+    "seed", [21, pytest.param(7, marks=pytest.mark.long), pytest.param(13, marks=pytest.mark.slow)]
+)
 def test_bars_hold_on_random_shafts_with_two_points(seed):
     """Against orders 5 and more on graded corners; seeds of a light reference, of three kinds."""
     scene = scene_of(seed)

@@ -63,7 +63,9 @@ def with_mass_in_the_matrix(body, supports):
     return replace(body, blocks=tuple(blocks), kept=Kept())
 
 
-@pytest.mark.parametrize("rung", LIGHT)
+@pytest.mark.parametrize(
+    "rung", [pytest.param(r, marks=pytest.mark.long if r == "solid" else ()) for r in LIGHT]
+)
 def test_low_rank_equals_mass_in_the_matrix(bodies, scene, rung):
     supports = as_supports(scene)
     low = sg.modes(bodies[rung], supports, n=8, ovalising=False)

@@ -254,6 +254,7 @@ def test_changes_of_couplings_at_a_point_are_of_its_own_diagonal():
     assert change(old | {"C_z,thx": 3.0}, old, "C_z,thx") == pytest.approx(2 / 6)
 
 
+@pytest.mark.long
 def test_models_are_judged_at_every_point():
     """A head at the second point that no beam can know: it is out there, and only there."""
     parts = [Segment.cylinder("rod", length=0.6, diameter=0.03)]

@@ -54,7 +54,7 @@ theories = st.sampled_from(("euler", "timoshenko"))
 
 
 def on_all_models(kind, **more):
-    """One property on beams, harmonic solids and (slow) 3D solids: registers the tests, named after
+    """One property on beams, (long) harmonic solids and (slow) 3D solids: registers the tests, named after
     it.
 
     ``kind`` restricts the scenes, ``more`` are strategies of further arguments of the property.
@@ -73,7 +73,7 @@ def on_all_models(kind, **more):
         few = scenes(**{"most_segments": 2} | kind)
         tests = (
             BEAMS(given(scene=scenes(**kind), theory=theories, **more)(on_beams)),
-            HARMONICS(given(scene=few, **more)(on_harmonic_solids)),
+            pytest.mark.long(HARMONICS(given(scene=few, **more)(on_harmonic_solids))),
             pytest.mark.slow(SOLIDS(given(scene=few, **more)(on_solids))),
         )
         for test in tests:

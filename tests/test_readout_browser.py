@@ -23,7 +23,11 @@ from solidgear.studies.axle.orders import order_map
 from solidgear.studies.axle.respond import respond
 from tests.made_up_run import fixture_results
 
-pytestmark = pytest.mark.skipif(CHROMIUM is None, reason="there is no chromium here")
+# one start of the browser by default is that of `test_report_browser.py`
+pytestmark = [
+    pytest.mark.long,
+    pytest.mark.skipif(CHROMIUM is None, reason="there is no chromium here"),
+]
 ASKS = """<script>
 const light = c => c.match(/[\\d.]+/g).slice(0, 3).map(v => v / 255)
   .map(v => v <= 0.03928 ? v / 12.92 : ((v + 0.055) / 1.055) ** 2.4)

@@ -57,7 +57,13 @@ def unit_motion(body, component):
     }
 
 
-@pytest.mark.parametrize("name", ["pinion_overhung", "shaft_hollow", "shaft_stepped"])
+@pytest.mark.parametrize(
+    "name",
+    [
+        "pinion_overhung",
+        *(pytest.param(n, marks=pytest.mark.long) for n in ("shaft_hollow", "shaft_stepped")),
+    ],
+)
 @pytest.mark.parametrize(
     "fidelity, options",
     [

@@ -148,6 +148,7 @@ def test_compliance_comes_first_among_differences(page):
     assert re.findall(r'<tr><th scope="row">([^<]+)</th>', part) == ["C_zz", "K_zz", "bending 1"]
 
 
+@pytest.mark.long
 def test_same_results_same_page_from_numpy_or_plain(page):
     results = fixture_results()
     for model in results["models"].values():

@@ -196,6 +196,7 @@ def torn(sheets, page):
 
 
 @pytest.mark.skipif(shutil.which("pdftotext") is None, reason="there is no pdftotext here")
+@pytest.mark.long
 def test_on_paper_captions_stay_with_what_they_name(page, tmp_path):
     sheets = sheets_of(tmp_path, page)
     assert sheets[1][0] == "1. Shaft and bearings"  # page one is one page
@@ -205,6 +206,7 @@ def test_on_paper_captions_stay_with_what_they_name(page, tmp_path):
 
 
 @pytest.mark.skipif(shutil.which("pdftotext") is None, reason="there is no pdftotext here")
+@pytest.mark.long
 def test_on_paper_captions_stay_wherever_they_fall(page, tmp_path):
     """The same table and the same figure at many heights of a sheet of 297 mm."""
     head = page[: page.index("<body>")]

@@ -57,6 +57,8 @@ PARTS = {
         TEETH.with_changes(count=14), BOLTS.with_changes(count=7, angle=0.1)
     ),
 }
+#: one tooth in a sector tells what two do, and seats that average what rigid ones do
+MARKS = {"two teeth in a sector": pytest.mark.slow, "rigid seats in a bore": pytest.mark.long}
 
 
 def apart(one, other):
@@ -71,7 +73,7 @@ def apart(one, other):
 
 @pytest.mark.parametrize(
     "name",
-    [pytest.param(n, marks=pytest.mark.slow) if n == "two teeth in a sector" else n for n in PARTS],
+    [pytest.param(n, marks=MARKS.get(n, ())) for n in PARTS],
 )
 def test_a_sector_is_the_whole(name):
     """The same elements, once as one sector with phases and once as all of its copies: rounding is
@@ -229,6 +231,7 @@ def test_a_node_on_the_axis():
     assert doubled(basis(around, 1, 1)[0]).shape == (6, 2)
 
 
+@pytest.mark.long
 def test_smeared_teeth_change_no_model_of_revolution():
     """The default is the segment as it is; the sector resolves teeth where it is asked by name."""
     smeared = TEETH.with_changes(model="pitch_cone")
@@ -419,6 +422,7 @@ def test_a_model_that_says_it_fits_can_be_built():
     assert "no fillets" in LADDER["sector"].unfit(cone) and not LADDER["solid"].unfit(cone)
 
 
+@pytest.mark.long
 def test_check_does_not_say_of_a_model_that_refuses_that_it_holds():
     from solidgear.fidelity.ladder import LADDER
     from solidgear.scene import Fillet

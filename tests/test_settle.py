@@ -277,6 +277,7 @@ def test_a_sweep_settles_on_the_scene_and_at_the_ends_of_what_varies(run, scene,
     assert found["options"]["order"] == 3 and {"C_zz", "bending 1"} <= set(found["bars"])
 
 
+@pytest.mark.long
 def test_a_sweep_takes_the_mesh_that_its_hardest_bearings_need(scene):
     """Clamped as hard as this, a compliance is all shaft, and errs as the shaft does."""
     hard = settled_for_sweep(scene, ["bearing.1.scale=1,1e4", "bearing.2.scale=1,1e4"], 0.01)

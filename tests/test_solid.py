@@ -111,7 +111,10 @@ def test_rigid_motions_cost_no_energy(element):
     assert body.rigid_residual() < 1e-14
 
 
-@pytest.mark.parametrize("element", list(SMALL))
+@pytest.mark.parametrize(
+    "element",
+    [pytest.param(e, marks=pytest.mark.long if e in ("tet4", "hex27") else ()) for e in SMALL],
+)
 def test_free_cylinder_has_six_rigid_modes_and_no_spurious_one(element):
     scene = sg.load(GEOMETRY / "cylinder_free.toml")
     found = sg.modes(sg.build(scene, "solid", element=element, **SMALL[element]), scene, n=6)
@@ -155,6 +158,7 @@ def test_smallest_eigenvalues_of_one_stiffness():
 
 
 # --------------------------------------------------------------------------- convergence on the pinion
+@pytest.mark.long
 def test_light_hexahedra_are_near_the_reference(overhung, light):
     k = sg.condense(light, overhung, "pinion").stiffness
     # 14k unknowns: the graded mesh is above the reference, as displacement elements are, by less
@@ -162,6 +166,7 @@ def test_light_hexahedra_are_near_the_reference(overhung, light):
     assert 0 < k[2, 2] / K_ZZ - 1 < 5e-3
 
 
+@pytest.mark.long
 def test_light_hexahedra_keep_the_pair(overhung, light):
     k = sg.condense(light, overhung, "pinion").stiffness
     # the O-grid has fourfold symmetry, hence equal planes to rounding; bearings' weak couplings

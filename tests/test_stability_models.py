@@ -42,6 +42,7 @@ def test_euler_needs_sixteen_diameters_and_timoshenko_one(script):
         )
 
 
+@pytest.mark.long
 def test_a_shoulder_is_worth_a_length_of_thin_shaft_whatever_the_overhang(script):
     shoulder_step = script("shoulder_step")
     rows = {r["ratio"]: r for r in shoulder_step.measure(quick=True).rows}

@@ -162,7 +162,13 @@ def test_check_is_never_the_opposite_of_compare(name, compared, checked):
 
 
 # --------------------------------------------------------------------------- cost
-@pytest.mark.parametrize("name", ["input_shaft", "motor_rotor", "hypoid_pinion"])
+@pytest.mark.parametrize(
+    "name",
+    [
+        "input_shaft",
+        *(pytest.param(n, marks=pytest.mark.long) for n in ("motor_rotor", "hypoid_pinion")),
+    ],
+)
 def test_an_ordinary_shaft_needs_no_large_mesh(name):
     scene = scene_of(name)
     # 189,000 to 309,000 unknowns of either solid, and 7 to 16 GB, were what small shoulders once

@@ -230,6 +230,7 @@ def test_a_plan_with_a_number_that_is_none_is_the_same_plan(tmp_path):
 
 
 # ------------------------------------------------------------------------------------- the command
+@pytest.mark.long
 def test_the_command_tells_what_it_mended(tmp_path):
     out = tmp_path / "rows.csv"
     assert call(out).exit_code == 0

@@ -82,6 +82,7 @@ def test_names_are_moved_apart_and_stay_in_order():
     assert shown[3] == 0.5 and shown[1] == pytest.approx(0.101)
 
 
+@pytest.mark.long
 def test_the_command_writes_the_map(tmp_path):
     args = ["response", str(OVERHUNG), "--pinion", "euler", "--gear", "euler", "--out"]
     done = CliRunner().invoke(app, [*args, str(tmp_path), "--orders", "2"])

@@ -181,6 +181,7 @@ def test_only_a_shaft_that_turns_is_drawn_as_turning(shop):
     assert by["gear bending 1"][1] is False
 
 
+@pytest.mark.long
 def test_the_page_of_system_modes_has_modes_to_turn_and_units(tmp_path):
     page = tmp_path / "modes.html"
     told = ["system-modes", str(OVERHUNG), "--pinion", "euler", "--gear", "timoshenko"]

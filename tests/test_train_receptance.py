@@ -94,6 +94,7 @@ def test_no_peak_is_missed(shop):
 ARGS = ["receptance", str(OVERHUNG), "--pinion", "euler", "--gear", "timoshenko"]
 
 
+@pytest.mark.long
 def test_the_command_writes_a_table_and_charts(tmp_path):
     out = tmp_path / "out"
     args = [*ARGS, "--from", "gear.gear:z", "--to", "pinion.pinion:thx", "--out", str(out)]

@@ -350,6 +350,7 @@ def plain_shaft(**ask):
     )
 
 
+@pytest.mark.long
 def test_a_plain_symmetric_shaft_is_within_every_models_reach():
     found = compare(plain_shaft(), ("timoshenko", "harmonic")).results
     models, gaps = (
@@ -386,6 +387,7 @@ def test_like_for_like_means_every_station():
     assert not found["models"]["euler"]["valid"]
 
 
+@pytest.mark.long
 def test_a_stubby_pinion_is_no_beam_by_either_tie():
     scene = sg.load(GEOMETRY / "pinion_overhung.toml")
     found = compare(scene, ("timoshenko", "harmonic"), settings=LIGHT).results

@@ -221,6 +221,7 @@ def test_rigid_motions_are_no_modes_to_turn(solved):
         turned(body, rigid)
 
 
+@pytest.mark.long
 def test_a_comparison_puts_it_into_its_report(tmp_path, monkeypatch):
     monkeypatch.setenv("SOLIDGEAR_RENDERER", "none")
     scene = sg.load(ROOT / "geometry" / "cylinder_free.toml")

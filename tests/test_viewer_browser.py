@@ -20,7 +20,11 @@ ROOT = Path(__file__).parents[1]
 BROWSER = next(
     filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), ""
 )
-pytestmark = pytest.mark.skipif(not BROWSER, reason="no Chromium on this machine")
+# one start of the browser by default is that of `test_report_browser.py`
+pytestmark = [
+    pytest.mark.long,
+    pytest.mark.skipif(not BROWSER, reason="no Chromium on this machine"),
+]
 
 #: heard from before the page's own scripts
 EARS = """<script>
