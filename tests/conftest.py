@@ -14,6 +14,13 @@ pin()
 signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
+def pytest_collection_modifyitems(items):
+    """A test is `long` or `slow`: otherwise `-m long`, which CI runs, would run slow ones as well."""
+    for item in items:
+        if item.get_closest_marker("long") and item.get_closest_marker("slow"):
+            raise pytest.UsageError(f"{item.nodeid} is marked long and slow; one of them is right")
+
+
 @pytest.fixture
 def no_charts(monkeypatch):
     """Reports without their charts: drawing is what takes the time, and few tests look at them."""

@@ -113,9 +113,10 @@ def skfem_elasticity(geometry, materials, quadrature=None, intorder=None):
     return stiffness.assemble(basis), mass.assemble(basis)
 
 
-# scikit-fem's own forms on curved tetrahedra take the longest; two kinds of hexahedra stay
+# scikit-fem's own forms on curved tetrahedra take the longest, and on bricks of 27 nodes
 @pytest.mark.parametrize(
-    "element", [pytest.param(e, marks=pytest.mark.long if e == "tet10" else ()) for e in SOLID]
+    "element",
+    [pytest.param(e, marks=pytest.mark.long if e in ("tet10", "hex27") else ()) for e in SOLID],
 )
 def test_curved_solid_matches_skfem_with_the_same_quadrature(element):
     scene, body = small_solid(element)

@@ -12,8 +12,8 @@ import solidgear as sg
 ROOT = Path(__file__).parent.parent
 PACKAGE = ROOT / "solidgear"
 WITH_EXAMPLES = sorted(p for p in PACKAGE.rglob("*.py") if ">>>" in p.read_text())
-#: a train is checked and settled from its file on; the tests of trains do so by default
-DEAR = {PACKAGE / "studies" / "axle" / "check.py"}
+#: some seconds; the tests of trains and of sweeps do the same by default
+DEAR = {PACKAGE / "studies" / "axle" / "check.py", PACKAGE / "studies" / "sweep" / "choice.py"}
 NOUNS = [name for name in sg.__all__ if callable(getattr(sg, name))]
 
 

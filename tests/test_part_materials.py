@@ -99,6 +99,7 @@ def tets(points, cells, members):
     return volume.sum(), squares.sum(axis=1)  # of x^2, y^2, z^2
 
 
+@pytest.mark.long
 def test_a_sleeve_on_a_core(tmp_path):
     """Curvature M / (E1 I1 + E2 I2): between two lengths ends make no difference; mass and inertia
     are those of the tetrahedra.

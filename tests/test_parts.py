@@ -216,7 +216,7 @@ def written(body, path, digits=9):
         ("msh", 9),
         pytest.param("inp", 9, marks=pytest.mark.slow),
         pytest.param("vtu", 9, marks=pytest.mark.long),
-        ("bdf", 8),
+        pytest.param("bdf", 8, marks=pytest.mark.long),
     ],
 )
 def test_a_mesh_file_gives_the_same_numbers(ending, digits, shipped, tmp_path):

@@ -95,6 +95,7 @@ def test_a_model_without_a_shape_says_so(shop, tmp_path):
     assert not (tmp_path / "out").exists()
 
 
+@pytest.mark.long
 def test_modes_are_drawn_with_four_phases(shop, tmp_path):
     from matplotlib.image import imread
 
