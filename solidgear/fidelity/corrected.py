@@ -44,12 +44,16 @@ KEPT, SPARE = 16, 10
 #: free modes of the plain part on both meshes are the same where sections hold this much of one in
 #: the others, and frequencies differ by less
 ALIKE, SAME = 0.9, 0.1
+#: and with the features, which change it, this much: those found had 0.75 and more, those that were
+#: not there, and had another put in their place, below 0.05
+STILL = 0.5
 #: share of the largest flexibility of a port that is none
 NOTHING = 1e-9
 #: eigenvalues nearer than this, relative, are those of a pair
 TWIN = 1e-6
 #: fewest of them that are worth a body
 FEWEST = 2
+Families = list[tuple[str, tuple[int, ...]]]
 
 
 def corrected(
@@ -108,11 +112,12 @@ def corrected(
     with_ = featured_body(scene, wanted, made, refinement)
     exact = modal(base, modes)
     before, after = modal(without, modes + SPARE), modal(with_, modes + SPARE)
-    exact = _recognised(exact, before, after.motions.shape[1])
-    numbers = _corrected(exact, before, after)
+    families = _families(made.plane)
+    exact = _recognised(exact, before, after, families)
+    numbers = _corrected(exact, before, after, families)
     while not _positive_enough(numbers.static) and exact.motions.shape[1] > FEWEST:
         exact = exact.first(_fewer(exact))
-        numbers = _corrected(exact, before, after)
+        numbers = _corrected(exact, before, after, families)
     blocks = _blocks(numbers, base, exact, made.plane)
     return Body(
         "corrected",
@@ -143,13 +148,12 @@ class _Numbers:
     inert: np.ndarray
 
 
-def _corrected(exact: Modal, before: Modal, after: Modal) -> _Numbers:
-    gram = exact.gram
+def _corrected(exact: Modal, before: Modal, after: Modal, families: Families) -> _Numbers:
     # modes of the plain shaft on the 3D mesh that stand for the harmonic ones, then those with the
     # feature that stand for these
-    turn = alike_turn(before.sections, exact.sections, gram)
+    turn = _alike(before, exact, exact.sections, families)
     plain = turn.T @ before.value @ turn, before.motions @ turn
-    again = alike_turn(after.sections, before.sections @ turn, gram)
+    again = _alike(after, exact, before.sections @ turn, families)
     cut = again.T @ after.value @ again, after.motions @ again
     value = exact.value + (cut[0] - plain[0])
     motions = exact.motions + (cut[1] - plain[1])
@@ -160,6 +164,19 @@ def _corrected(exact: Modal, before: Modal, after: Modal) -> _Numbers:
     # meshes would be that of large numbers: it is left as it is
     mass = exact.rigid_mass + (after.rigid_mass - before.rigid_mass)
     return _Numbers(mass, (value + value.T) / 2, motions, static, inert)
+
+
+def _alike(found: Modal, exact: Modal, sections: np.ndarray, families: Families) -> np.ndarray:
+    """The turn of modes that makes them most like others, which stand for the harmonic ones and
+    move ``sections``. None stands for one of another family: what one of them gives up, no block
+    of the other could hold.
+    """
+    turn = np.zeros((found.motions.shape[1], exact.motions.shape[1]))
+    for _, own in families:
+        mine, theirs = found.within(own), exact.within(own)
+        at = np.ix_(mine, theirs)
+        turn[at] = alike_turn(found.sections[:, mine], sections[:, theirs], exact.gram)
+    return turn
 
 
 def _positive_enough(static: np.ndarray) -> bool:
@@ -176,23 +193,31 @@ def _fewer(exact: Modal) -> int:
     return len(value) - (2 if value[-1] < value[-2] * (1 + TWIN) else 1)
 
 
-def _recognised(exact: Modal, before: Modal, most: int) -> Modal:
-    """The lowest of the harmonic modes, as far as each is found among those of the 3D mesh, and no
-    more than ``most``: on a stub, many of these move no sections and stand for none.
+def _recognised(exact: Modal, before: Modal, after: Modal, families: Families) -> Modal:
+    """The lowest of the harmonic modes, as far as each is found among those of the 3D mesh, its
+    frequency (not its square, which is what modes hold) nearly the same, and no more of any family
+    than both 3D solids have: on a stub, many of theirs move no sections and stand for none.
     """
     count = 0
     value = np.diag(exact.value)
-    for k in range(1, min(len(value), before.motions.shape[1], most) + 1):
+    for k in range(1, len(value) + 1):
         if k < len(value) and value[k] < value[k - 1] * (1 + TWIN):
             continue  # a pair is turned as one, and not cut in two
         own = exact.first(k)
-        turn = alike_turn(before.sections, own.sections, exact.gram)
+        if any(
+            len(own.within(f)) > min(len(m.within(f)) for m in (before, after)) for _, f in families
+        ):
+            break
+        turn = _alike(before, own, own.sections, families)
         theirs = np.diag(turn.T @ before.value @ turn)
-        seen = before.sections @ turn
-        shared = np.einsum("ik,ij,jk->k", seen, exact.gram, own.sections)
-        size = np.einsum("ik,ij,jk->k", own.sections, exact.gram, own.sections)
-        apart = np.abs(theirs / np.diag(own.value) - 1)
-        if (shared < ALIKE * size).any() or (apart > SAME).any():
+        apart = np.abs(np.sqrt(theirs / np.diag(own.value)) - 1)
+        plain = before.sections @ turn
+        cut = after.sections @ _alike(after, own, plain, families)
+        if (
+            (_shared(plain, own.sections, own.gram) < ALIKE).any()
+            or (apart > SAME).any()
+            or (_shared(cut, plain, own.gram) < STILL).any()
+        ):
             break
         count = k
     if count < FEWEST:
@@ -203,7 +228,14 @@ def _recognised(exact: Modal, before: Modal, most: int) -> Modal:
     return exact.first(count)
 
 
-def _families(plane: int | None) -> list[tuple[str, tuple[int, ...]]]:
+def _shared(found: np.ndarray, wanted: np.ndarray, gram: np.ndarray) -> np.ndarray:
+    """Share of each of some modes that the one that stands for it has, by what sections do."""
+    each = "ik,ij,jk->k"
+    return np.einsum(each, found, gram, wanted) / np.einsum(each, wanted, gram, wanted)
+
+
+def _families(plane: int | None) -> Families:
+    """What modes cannot mix: names of blocks, and port components of each."""
     return [("full", tuple(range(6)))] if plane is None else list(PARTS[plane])
 
 

@@ -47,6 +47,8 @@ class Modal:
         mu_0 and mu_1 before any mode is taken out of H.
     vectors : list of dict of int to ndarray
         The modes on the mesh.
+    moves : list of tuple of int
+        Port components of the block that each mode is of.
     fields : dict of int to ndarray
         ``H G'`` on the mesh likewise, by block, columns of that block's port components.
     """
@@ -59,6 +61,7 @@ class Modal:
     static: np.ndarray
     inert: np.ndarray
     vectors: list[dict[int, np.ndarray]]
+    moves: list[tuple[int, ...]]
     fields: dict[int, np.ndarray]
 
     def residual(self, turn: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -102,7 +105,12 @@ class Modal:
             motions=self.motions[:, :count],
             sections=self.sections[:, :count],
             vectors=self.vectors[:count],
+            moves=self.moves[:count],
         )
+
+    def within(self, own: tuple[int, ...]) -> np.ndarray:
+        """Places of the modes that move in some port components and in no others."""
+        return np.array([k for k, moved in enumerate(self.moves) if set(moved) <= set(own)], int)
 
 
 def modal(body: Body, count: int) -> Modal:
@@ -138,6 +146,7 @@ def modal(body: Body, count: int) -> Modal:
         static,
         inert,
         vectors,
+        [body.blocks[next(iter(vector))].components for vector in vectors],
         fields,
     )
 
