@@ -194,6 +194,25 @@ def test_a_stub_is_corrected_on_its_coarsest_mesh():
     assert found.mesh["modes_kept"] >= 6
 
 
+def test_what_ports_feel_beside_the_modes_stays_what_it_was(plain):
+    """A 3D mesh a tenth too stiff, and a feature that takes a fifth of the stiffness of every mode and
+    nothing else: as all flexibility is corrected by a difference, so must be that of the modes, or
+    what is left for the ports comes out too small, even negative.
+    """
+    exact = modal(plain, 10)
+
+    def mesh(share):
+        value = exact.value * share
+        rest = exact.residual(np.eye(len(value)))[0]
+        whole = rest + exact.motions @ np.linalg.solve(value, exact.motions.T)
+        return replace(exact, value=value, static=whole)
+
+    found = module._corrected(exact, mesh(1.1), mesh(1.1 * 0.8), module._families(0))
+    rest = exact.residual(np.eye(10))[0]
+    assert np.abs(found.static - rest).max() < 1e-9 * np.abs(exact.static).max()
+    assert (np.diag(found.value) < 0.83 * np.diag(exact.value)).all()
+
+
 def test_no_more_modes_are_recognised_than_the_3d_mesh_has(plain):
     """Of a stub most 3D modes move no sections and are left out: what is left decides, and no pair
     is cut in two.

@@ -9,7 +9,7 @@ A 3D mesh errs at seat ends and shoulders, and by nearly as much with a feature 
 keeps of the 3D error only what the feature changes of it (Stetter 1978, Numer. Math. 29, 425). The
 harmonic solid errs by 1e-5 to 1e-4, so that a few thousand 3D unknowns give a keyed shaft to 1e-3.
 
-The numbers corrected are: the rigid mass matrix; the stiffness among the lowest free modes and
+The numbers corrected are: the rigid mass matrix; the flexibility of the lowest free modes and
 their port motions, modes turned so that those with the feature are most like those without, and
 these most like the harmonic ones; and the residual flexibility of the ports, such that all of the
 flexibility is corrected. (The residual mass stays that of the plain part.) No more modes are kept
@@ -155,7 +155,10 @@ def _corrected(exact: Modal, before: Modal, after: Modal, families: Families) ->
     plain = turn.T @ before.value @ turn, before.motions @ turn
     again = _alike(after, exact, before.sections @ turn, families)
     cut = again.T @ after.value @ again, after.motions @ again
-    value = exact.value + (cut[0] - plain[0])
+    # of modes the flexibility, as of all: what a mesh lacks at seats and shoulders is a part of it by
+    # itself, and what a feature adds is another, so that neither is scaled by the other
+    soft, softer, own = (np.linalg.inv(v) for v in (plain[0], cut[0], exact.value))
+    value = np.linalg.inv(own + (softer - soft))
     motions = exact.motions + (cut[1] - plain[1])
     whole = exact.static + (after.static - before.static)
     static = whole - motions @ np.linalg.solve(value, motions.T)
