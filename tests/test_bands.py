@@ -7,7 +7,7 @@ import pytest
 
 import solidgear as sg
 from solidgear.evidence.answer import solve
-from solidgear.evidence.bands import DIAGONAL, LEAST, SURE_AROUND, layered_bands
+from solidgear.evidence.bands import DIAGONAL, LEAST, SURE_AROUND, layered_bands, rough_bands
 from solidgear.evidence.quantities import ACROSS, QUANTITIES
 from solidgear.evidence.sequence_bands import feature_effect, sequence_bands
 from solidgear.fidelity.edges import beside_a_step, sharpest_edge
@@ -110,6 +110,62 @@ def test_cells_around_and_the_solver_are_added():
     assert added["bending 1"] == pytest.approx(
         SURE_AROUND * 4e-3
     )  # not measured: as much as in the worst
+
+
+SIZES = (1.96, 1.4, 1.0)
+#: of a sector, after two meshes and after three
+ROUGH = LADDER["sector"].factors.rough
+
+
+def test_sectors_have_a_band_from_two_meshes_on():
+    """Of what converges at the order of a right-angled shoulder, 2 x 0.5445, a change tells the
+    error: bars are their factors of safety over that, whatever the sizes.
+    """
+    order = 2 * 0.5445
+    for sizes, factor in ((SIZES[1:], ROUGH[0]), (SIZES, ROUGH[1])):
+        errors = [1e-3 * h**order for h in sizes]
+        values = [{q: v * (1 - e) for q, v in FINEST.items()} for e in errors]
+        bands = rough_bands(values, {}, sizes, order / 2, ROUGH)
+        # the change before the last one is larger, and counts
+        earlier = 1.4**order if len(sizes) > 2 else 1.0
+        found = {q: bands[q].gci for q in ("C_zz", "C_thx", "bending 1")}
+        assert found == {q: pytest.approx(factor * earlier * 1e-3, rel=1e-2) for q in found}
+        assert bands["C_zz"].extrapolated == pytest.approx(FINEST["C_zz"], rel=1e-6)
+
+
+def test_a_place_that_keeps_its_error_over_a_step_of_a_sector_is_not_forgotten():
+    """One cell across the lands of teeth on two meshes: the last change is small, the error is not
+    (random part 16: K_z,thx changed by 1.0e-3, then 2e-4, then 1.6e-3).
+    """
+    stalled, coupled = levels(1.2e-3, 2e-4), levels(1.2e-3, 2e-4)
+    bands = rough_bands(stalled, {"C_zz": 1e-5}, SIZES, 0.5445, ROUGH)
+    assert bands["C_zz"].gci > 4e-3
+    assert bands["C_zz"].gci - bands["C_thx"].gci == pytest.approx(1e-5, rel=1e-3)
+    # nor a coupling that happens not to move
+    for level in coupled:
+        level["C_z,thx"] = 1.0
+    still = rough_bands(coupled, {}, SIZES, 0.5445, ROUGH)["C_z,thx"]
+    assert still.change == 0.0
+    assert still.gci == pytest.approx(DIAGONAL * bands["C_thx"].gci, rel=1e-3)
+
+
+def test_the_ends_of_teeth_are_corners_where_the_meridian_has_none():
+    """A spline along all of a bar: its meridian is a rectangle, its bars are those of a shoulder."""
+    from solidgear.scene import Spline
+
+    rod = sg.Segment.cylinder("rod", length=0.1, diameter=0.06)
+    port = sg.Port(y=0.05, lo=0.04, hi=0.06)
+    plain = sg.Scene.from_parts([rod], bearings=[], port=port)
+    toothed = plain.with_changes(
+        features=(Spline(name="s", segment="rod", count=12, addendum=0.6, dedendum=0.5),)
+    )
+    rung = LADDER["sector"]
+    bars = [
+        sequence_bands(s, rung.meshes({}), rung.factors, levels(1e-3), {}, SIZES[1:])["C_zz"].gci
+        for s in (plain, toothed)
+    ]
+    # 1.4^2 - 1 over 1.4^1.089 - 1
+    assert bars[1] / bars[0] == pytest.approx(2.17, abs=0.02)
 
 
 def test_what_is_sharpest_on_a_shaft():

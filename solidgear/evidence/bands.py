@@ -11,6 +11,12 @@ in the ladder with the rung (:class:`solidgear.fidelity.rung.BandFactors`); they
 **Other** sequences (tetrahedra, linear elements, meshes that were asked for by refinement) use the
 grid convergence index of :mod:`solidgear.evidence.converge`.
 
+**Rough** sequences (sectors with teeth or holes) are refined plainly too, but whole numbers of cells
+across narrow faces make their meshes similar only roughly: a place may keep its error over a step and
+give it up in the next one. An observed order says nothing then. With the order p of the sharpest
+corner a change d leaves ``d / (r^p - 1)``; the band is a measured factor times that of the largest
+change so far, from two meshes on.
+
 A change that is small by accident, since a quantity passes through an extremum on its way, is not
 believed: the change before it, and for couplings the changes of both diagonal entries, set a floor.
 Displacement elements are too stiff, so the error of the compliance is a positive semidefinite
@@ -243,6 +249,63 @@ def refined_bands(
             expected_order=found.expected_order,
             used_order=found.used_order,
             method="grid convergence index",
+        )
+    return out
+
+
+def rough_bands(
+    levels: Sequence[Values],
+    solver: Values,
+    sizes: Sequence[float],
+    exponent: float,
+    safety: tuple[float, float],
+) -> dict[str, Band]:
+    """Bands of the finest of two or more levels of meshes that are similar only roughly.
+
+    Parameters
+    ----------
+    levels, solver
+        As for :func:`layered_bands`; of more than three levels the last three count.
+    sizes : sequence of float
+        Representative cell size of every level, descending.
+    exponent : float
+        Of the sharpest corner or rigid seat end.
+    safety : (float, float)
+        Band over what the largest change leaves, of two levels and of more.
+
+    Returns
+    -------
+    dict of str to Band
+    """
+    expected = 2 * exponent
+    left_over = 1 / ((sizes[-2] / sizes[-1]) ** expected - 1)
+    factor = safety[len(levels) > 2]
+    last = levels[-3:]
+    steps: dict[str, list[float]] = {
+        name: [abs(change(a, b, name) or 0.0) for a, b in zip(last, last[1:]) if name in a]
+        for name in in_order(levels[-1])
+        if name in levels[-2]
+    }
+    out = {}
+    for name, known in steps.items():
+        rests_on = max(known)
+        pair = diagonals(name)
+        if pair and all(d in steps for d in pair):
+            one, two = (max(steps[d]) for d in pair)
+            rests_on = max(rests_on, DIAGONAL * (one * two) ** 0.5)
+        left = solver.get(name, 0.0)
+        finest, before = levels[-1][name], levels[-2][name]
+        out[name] = Band(
+            values=tuple(float(level[name]) for level in levels if name in level),
+            gci=float(factor * left_over * rests_on + left + LEAST),
+            change=float(known[-1]),
+            reduction=float(known[-1] / known[-2]) if len(known) > 1 and known[-2] else None,
+            factor=factor * left_over,
+            solver=float(left),
+            extrapolated=float(finest + left_over * (finest - before)),
+            expected_order=expected,
+            used_order=expected,
+            method="order of the sharpest corner",
         )
     return out
 

@@ -9,11 +9,11 @@ from functools import lru_cache
 from typing import TYPE_CHECKING
 
 from solidgear.evidence.answer import solve
-from solidgear.evidence.bands import Band, layered_bands, refined_bands
+from solidgear.evidence.bands import Band, layered_bands, refined_bands, rough_bands
 from solidgear.evidence.quantities import AT, measure, points_of, size
 from solidgear.fidelity.edges import acute, beside_a_step, sharpest_edge
 from solidgear.fidelity.ladder import LADDER
-from solidgear.meshing.corners import sharpest_corner
+from solidgear.meshing.corners import SHOULDER, sharpest_corner
 from solidgear.solve.statics import condense
 
 if TYPE_CHECKING:
@@ -24,6 +24,9 @@ if TYPE_CHECKING:
 #: exponent at the end of a rigid seat, a clamp on a smooth surface (Williams 1952, clamped-free at
 #: 180 degrees)
 RIGID_EDGE = 0.5
+#: kinds of features with right-angled re-entrant corners, where the meridian has none: teeth end at
+#: the next segment or in its face, holes and keyways have a bottom
+NOTCHED = frozenset({"teeth", "spline", "bolt_circle", "keyway", "flat"})
 #: bands of shafts with acute cells, over those of others: of some 50 wild shafts, each solved on
 #: other meshes too and once finer (validation/attack/twins.py), ten had errors of up to 5 times
 #: their band, all of them in discs that are all cone or beside a narrow notch
@@ -51,7 +54,8 @@ def sequence_bands(
     scene : Scene
         Tied as the levels are.
     plan : Sequence
-        That the meshes are of: layered ones have bands from two levels on, others from three.
+        That the meshes are of: layered ones and rough ones have bands from two levels on, others
+        from three.
     factors : BandFactors
         Of the rung.
     levels : sequence of mappings
@@ -66,7 +70,8 @@ def sequence_bands(
     Returns
     -------
     dict of str to Band
-        Empty where there are too few levels, or they are not ever finer; and for layered hexahedra
+        Empty where there are too few levels (of tetrahedra below three, of sectors below two), or
+        they are not ever finer; and for layered hexahedra
         beside a fillet or a chamfer, where no factors of bands hold.
     """
     if scene.corners and plan.turned is not None:  # what only layered hexahedra have
@@ -83,10 +88,16 @@ def sequence_bands(
             for name, band in found.items()
         }
     last = [size or 0.0 for size in sizes[-3:]]
-    if len(levels) < 3 or not last[0] > last[1] > last[2] > 0:
+    least = 2 if factors.rough else 3
+    if len(levels) < least or not all(a > b > 0 for a, b in zip(last, last[1:])):
         return {}
     held = any(s.attachment == "rigid" for s in scene.stations)
-    exponent = min(sharpest_corner(scene)[1], RIGID_EDGE if held else 1.0)
+    notched = bool({f.kind for f in scene.features} & NOTCHED)
+    exponent = min(
+        sharpest_corner(scene)[1], RIGID_EDGE if held else 1.0, SHOULDER if notched else 1.0
+    )
+    if factors.rough:
+        return rough_bands(levels, solver, last, exponent, factors.rough)
     return refined_bands(levels, solver, last, exponent, singular=factors.singular)
 
 

@@ -80,6 +80,10 @@ class BandFactors:
         Share of the last change by which a layered sequence is still expected to go on.
     singular : bool
         Whether plain refinement stays at the order of the sharpest corner.
+    rough : (float, float) or ()
+        For meshes of plain refinement that are similar only roughly: band over what the largest change
+        leaves at the order of the sharpest corner, after two meshes and after more. Empty where three
+        meshes give a grid convergence index.
     effect : dict of str to float
         By quantity, the share of what features change of it that a band holds at least: meshes may
         agree by accident, and of some errors no mesh tells. The change is told by ``plain``.
@@ -87,11 +91,12 @@ class BandFactors:
         Rung that solves the plain part, on the first of its meshes that has shoulders graded.
     """
 
-    usual: Mapping[str, float]
-    first: Mapping[str, tuple[float, float, float]]
-    earlier: float
-    ahead: float
+    usual: Mapping[str, float] = field(default_factory=dict)
+    first: Mapping[str, tuple[float, float, float]] = field(default_factory=dict)
+    earlier: float = 0.0
+    ahead: float = 0.0
     singular: bool = False
+    rough: tuple[float, float] | tuple[()] = ()
     effect: Mapping[str, float] = field(default_factory=dict)
     plain: str = ""
     first_of_modes: Mapping[str, tuple[float, float, float]] = field(default_factory=dict)

@@ -7,7 +7,10 @@ With ``X`` a number of the part and ``P`` that of its plain shaft, both of one m
     compliances, stiffnesses:  X + (H - P),        frequencies:  X H / P
 
 are free of what the mesh errs at seats and shoulders. Three meshes, each 1.4 times finer than the one
-before and twice as fine at features, are extrapolated. Nothing of this passes through free modes,
+before and twice as fine at features, are extrapolated. Sectors have no mesh in common with their plain
+part: there the truth is that of three sectors of which the finest is two meshes beyond the last that
+is judged (one, where that is too large), extrapolated at the order of the sharpest corner. Nothing of
+this passes through free modes,
 their turning or port numbers, which is what `corrected` is made of; bearings are on the 3D solid.
 """
 
@@ -25,11 +28,14 @@ import solidgear as sg
 from solidgear.body import as_supports
 from solidgear.evidence.answer import Answer, answered, solve
 from solidgear.evidence.quantities import QUANTITIES, size
+from solidgear.evidence.sequence_bands import RIGID_EDGE
 from solidgear.fidelity.featured import featured_body, meshed
 from solidgear.fidelity.ladder import LADDER
-from solidgear.fidelity.sector import cyclic_features, meshed_sector, sector, sectors_around
+from solidgear.fidelity.sector import sector
+from solidgear.fidelity.size import estimated_size
 from solidgear.fidelity.solid import tetrahedra_plan
 from solidgear.machine.meter import Meter
+from solidgear.meshing.corners import SHOULDER
 from solidgear.meshing.cuts import mirror_plane
 from solidgear.scene.shaft import resolved
 from validation.common import ROOT
@@ -42,11 +48,16 @@ COARSER = {"order": 4, "layers": 2, "edge_layers": 1, "relative_size": 4.0}
 LEFT = 0.25
 #: refinement away from features and at them
 CUT_LEVELS = ((0.22, 0.45), (0.3, 0.64), (0.42, 0.9))
-#: refinement of sectors: the last is finer than the third mesh of the rung, which is judged
-SECTOR_LEVELS = (0.85, 1.2, 1.7)
-#: elements of the finest mesh (of a half, of a sector) above which all three are coarser; a part
-#: without a mirror plane has twice as many
-MOST = {"cut": 4_000, "cyclic": 12_000}
+#: refinement of sectors: the rung's meshes from the third on, which is the last that is judged, or
+#: from the second on
+SECTOR_LEVELS = ((1.4, 2.0, 2.8), (1.0, 1.4, 2.0))
+#: estimated unknowns of the first of these above which the second are taken
+MOST_OF_SECTORS = 50_000
+#: elements of the finest mesh (of a half) above which all three are coarser; a part without a mirror
+#: plane has twice as many
+MOST = 4_000
+#: doubt over what the larger of the last two changes leaves at the order of the sharpest corner
+DOUBT_OF_SECTORS = 0.4
 #: size of elements at seats and shoulders over the largest, of cuts
 AT_EDGES = 1 / 8
 #: the limit over the last step: 2.2 at the order of a right-angled shoulder (1.09), 1 at second order
@@ -134,22 +145,22 @@ def truth(scene: sg.Scene, text: str, folder: Path = FOLDER) -> Truth:
     """
     key = json.dumps(
         [PLAIN, COARSER, LEFT, CUT_LEVELS, SECTOR_LEVELS, AT_EDGES, AHEAD, DOUBT, MOST]
+        + [MOST_OF_SECTORS, DOUBT_OF_SECTORS]
     )
     path = folder / f"{hashlib.sha256((key + text).encode()).hexdigest()[:16]}.json"
     if path.exists():
         return Truth(**json.loads(path.read_text()))
-    found = _solved(scene)
+    found = _of_cuts(scene) if LADDER["sector"].unfit(scene) else _of_sectors(scene)
     folder.mkdir(parents=True, exist_ok=True)
     path.write_text(json.dumps(asdict(found)))
     return found
 
 
-def _solved(scene: sg.Scene) -> Truth:
+def _of_cuts(scene: sg.Scene) -> Truth:
     plain, coarser = (solve(scene.plain, "harmonic", **level) for level in (PLAIN, COARSER))
-    cyclic = not LADDER["sector"].unfit(scene)
-    split = not cyclic and not _whole(scene)
+    split = not _whole(scene)
     steps, raw, unknowns = [], {}, 0
-    for with_, without in (_sectors if cyclic else _cuts)(scene):
+    for with_, without in _cuts(scene):
         x, p = numbers(with_), numbers(without)
         h = _like(plain, split)
         steps.append(
@@ -200,7 +211,7 @@ def _cuts(scene: sg.Scene) -> Iterator[tuple[Answer, Answer]]:
         plan["graded_size"] = plan["size"] * AT_EDGES
         return meshed(scene, plan, scale * level[1], True)
 
-    most = MOST["cut"] * (2 if _whole(scene) else 1)
+    most = MOST * (2 if _whole(scene) else 1)
     scale = _affordable(lambda s: made_at(CUT_LEVELS[-1], s).mesh.t.shape[1], most)
     for level in CUT_LEVELS:
         made, own = made_at(level, scale), scale * level[1]
@@ -210,19 +221,46 @@ def _cuts(scene: sg.Scene) -> Iterator[tuple[Answer, Answer]]:
         )
 
 
-def _sectors(scene: sg.Scene) -> Iterator[tuple[Answer, Answer]]:
-    count = sectors_around(scene, {})
-    wanted = [(s, s.attachment) for s in scene.stations]
-    features = cyclic_features(scene)
+def _of_sectors(scene: sg.Scene) -> Truth:
+    size_of = LADDER["sector"].given(scene, {"refinement": SECTOR_LEVELS[0][0]})
+    large = estimated_size(scene, "sector", size_of).unknowns > MOST_OF_SECTORS
+    found = []
+    for refinement in SECTOR_LEVELS[large]:
+        one = _answered(partial(sector, scene, refinement=refinement), scene)
+        found.append((numbers(one), one.body.mesh["representative_size"], one.body.size))
+    return extrapolated(scene, found)
 
-    def elements(scale: float) -> int:
-        made = meshed_sector(scene, wanted, features, refinement=scale * SECTOR_LEVELS[-1])
-        return made.mesh.t.shape[1]
 
-    scale = _affordable(elements, MOST["cyclic"])
-    for refinement in SECTOR_LEVELS:
-        more = {"refinement": scale * refinement, "count": count}
-        yield tuple(_answered(partial(sector, s, **more), scene) for s in (scene, scene.plain))
+def extrapolated(scene: sg.Scene, found: list[tuple[dict[str, float], float, int]]) -> Truth:
+    """The truth from three sectors.
+
+    Parameters
+    ----------
+    scene : Scene
+    found : list of (dict, float, int)
+        Numbers, size of cells and unknowns, coarse to fine.
+
+    Returns
+    -------
+    Truth
+    """
+    plain = numbers(solve(scene.plain, "harmonic", **PLAIN))
+    order = 2 * min(SHOULDER, *(RIGID_EDGE for s in scene.stations if s.attachment == "rigid"), 1.0)
+    ahead = 1 / ((found[-2][1] / found[-1][1]) ** order - 1)
+    values, doubt, effect, raw = {}, {}, {}, {}
+    for q, finest in found[-1][0].items():
+        if any(q not in v for v, *_ in found):
+            continue
+        v = [own[q] for own, *_ in found]
+        last, before = v[-1] - v[-2], v[-2] - v[-3]
+        values[q] = finest + ahead * last
+        doubt[q] = DOUBT_OF_SECTORS * ahead * max(abs(last), abs(before))
+    for q in values:
+        scale = size(values, q)
+        doubt[q] /= scale
+        effect[q] = (values[q] - plain[q]) / scale if q in plain else 0.0
+        raw[q] = (found[-1][0][q] - values[q]) / scale
+    return Truth(values, doubt, effect, raw, found[-1][2])
 
 
 def _affordable(elements: Callable[[float], int], most: int) -> float:
