@@ -5,6 +5,7 @@ import random
 import numpy as np
 import pytest
 
+import solidgear as sg
 from solidgear.meshing.decks import read
 from solidgear.meshing.mesh_file import mesh_from
 from solidgear.meshing.placing import TURNS, Placing
@@ -209,3 +210,55 @@ def test_commands_tell_what_is_doubtful(tmp_path, capsys):
     said = capsys.readouterr()
     assert "caution: part.inp has groups of_left, of_right, and all of it is taken" in said.err
     assert not said.out
+
+
+def test_a_list_of_elements_that_ends_early_is_told(tmp_path):
+    """Elements in any order, the last of them lost while what is left needs every node: their numbers
+    run through, the file ends as it should, and only the surface shows it.
+    """
+    from solidgear.meshing.tetrahedra import tetrahedra
+
+    mesh = tetrahedra([sg.Segment.cylinder("rod", length=0.04, diameter=0.02)], size=0.006).mesh
+    used, corners = np.unique(mesh.t, return_inverse=True)
+    cells = np.random.default_rng(1).permutation(corners.reshape(4, -1).T)
+    left = cells[: len(cells) * 95 // 100]
+    while len(np.unique(left)) < len(used):
+        left = cells[: len(left) + 1]
+    assert len(left) < len(cells)
+    for ending in DECKS:
+        path = tmp_path / f"short.{ending}"
+        write_mesh(path, 1e3 * mesh.p[:, used].T, "tetra", left, {})
+        try:
+            said = "; ".join(mesh_from(str(path), PLACE).remarks)
+        except MeshError as error:
+            said = str(error)
+        assert "as large as an element" in said and "line" in said, said
+
+
+def test_sound_parts_have_no_pits():
+    """A keyway, whose corners are pockets, and a hollow shaft, whose bore is hollow everywhere; and
+    with an element less at the surface they have.
+    """
+    from skfem import MeshTet1
+
+    from solidgear.fidelity.featured import meshed
+    from solidgear.fidelity.solid import tetrahedra_plan
+    from solidgear.meshing.featured import without
+    from solidgear.meshing.pits import pits
+    from solidgear.meshing.tetrahedra import tetrahedra
+
+    keyed, hollow = (sg.load(f"geometry/{n}.toml") for n in ("pinion_keyed", "shaft_hollow"))
+    keyed = keyed.with_changes(
+        features=tuple(f.with_changes(ends="square") for f in keyed.features)
+    )
+    plan = tetrahedra_plan(keyed, [], size=None, graded_size=None, refinement=0.4, around=12)
+    made = meshed(keyed, plan, 0.4, True)
+    plan = tetrahedra_plan(hollow, [], size=None, graded_size=None, refinement=0.4, around=12)
+    for mesh in (without(made.mesh, ~made.cut), tetrahedra(hollow.segments, **plan).mesh):
+        assert pits(mesh).shape[1] == 0
+        outside = mesh.f2t[0, mesh.boundary_facets()]
+        seen = [
+            pits(MeshTet1(mesh.p, np.delete(mesh.t, k, axis=1))).shape[1] for k in outside[::40]
+        ]
+        # not those at convex rims, whose edge goes with them
+        assert np.mean(np.array(seen) > 0) > 0.3

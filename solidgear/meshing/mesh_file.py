@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -13,6 +14,7 @@ from skfem import Mesh, MeshHex1, MeshHex2, MeshTet1, MeshTet2
 from solidgear.meshing.decks import Deck, read
 from solidgear.meshing.decks.deck import KINDS
 from solidgear.meshing.groups import owners, told
+from solidgear.meshing.pits import pits
 from solidgear.meshing.placing import Placing
 from solidgear.meshing.quality import MeshError, check_mesh, element_volumes
 
@@ -133,7 +135,7 @@ def mesh_from(path: str, place: Placing, named: tuple[str, ...] = ()) -> FileMes
         mesh, KINDS[deck.kind], check_mesh(mesh).volume, owner, rest, told(deck), deck.remarks
     )
     _no_holes(found)
-    return found
+    return replace(found, remarks=(*found.remarks, *_pitted(found, deck)))
 
 
 def _sound(deck: Deck, points, corners: int) -> None:
@@ -190,6 +192,21 @@ def _no_holes(found: FileMesh) -> None:
                 "element is missing there".format(faces_of_it, *at)
                 + "".join(f", for {remark}" for remark in found.remarks)
             )
+
+
+def _pitted(found: FileMesh, deck: Deck) -> Iterator[str]:
+    """A surface that lost elements have left."""
+    if not found.element.startswith("tet"):
+        return
+    places = 1e3 * pits(found.mesh)
+    if places.shape[1]:
+        x, y, z = places[:, 0]
+        last = f" (the last one is in line {deck.lines[-1]})" if deck.lines is not None else ""
+        yield (
+            f"the surface has pits as large as an element, the first near ({x:.4g}, {y:.4g}, "
+            f"{z:.4g}) mm in the scene: unless left out on purpose, elements are missing there or "
+            f"their list ends early{last}; compare with the mass of the part (mass_check)"
+        )
 
 
 def _tets(points, cells) -> Mesh:
