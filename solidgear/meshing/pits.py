@@ -57,6 +57,6 @@ def pits(mesh: Any) -> np.ndarray:
     lo, hi = np.sort([across[one], across[other]], axis=0)
     own = np.sort(mesh.edges.astype(np.int64), axis=0)
     joined = np.isin(lo.astype(np.int64) * total + hi, own[0] * total + own[1])
-    rim = (np.abs(turn.reshape(3, -1)) > TURN).all(axis=0)
+    rim = np.abs(turn.reshape(3, -1)).min(axis=0) > TURN
     found = (turn[one] > TURN) & joined & rim[face[one]] & rim[face[other]]
     return (p[:, a[found]] + p[:, b[found]]) / 2
