@@ -71,8 +71,8 @@ def sequence_bands(
     -------
     dict of str to Band
         Empty where there are too few levels (of tetrahedra below three, of sectors below two), or
-        they are not ever finer; and for layered hexahedra
-        beside a fillet or a chamfer, where no factors of bands hold.
+        they are not ever finer; and for layered hexahedra beside a fillet or a chamfer, where no
+        factors of bands hold.
     """
     if scene.corners and plan.turned is not None:  # what only layered hexahedra have
         return {}

@@ -189,7 +189,7 @@ LADDER = Ladder(
             # Lands and tips of teeth hold one cell from the first mesh to the third, or two on the way,
             # and every middle plane and cut face is an edge of cells: such a place keeps its error over
             # a step, and gives it up in the next one. So an observed order says nothing, and the larger
-            # of two changes counts. On twelve parts (splines, toothed heads, bolt circles) 98 % of
+            # of two changes counts. On eight parts (splines, toothed heads, bolt circles) 98 % of
             # errors are below 2.1 of what a change leaves after two meshes, 1.8 after three
             # (python -m validation.real_parts --judge --sort cyclic, docs/validation/random.md).
             rough=(3.0, 2.5),
