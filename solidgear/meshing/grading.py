@@ -102,7 +102,8 @@ class Grading:
             return 0
         depth = max(corner_length(s) for s in under)
         more = ceil(log(width / (self.reach * depth)) / log(self.ratio) - ROUNDING)
-        if more > 0 or self.edge or not self.layers or width >= depth * (1 - ROUNDING):
+        graded = self.layers if "rigid" in ties else self.edge
+        if more > 0 or graded or not self.layers or width >= depth * (1 - ROUNDING):
             return max(0, more)
         return int(not any(corner_layers(a, b, 1) for a, b in zip(segments, segments[1:])))
 
