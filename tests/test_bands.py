@@ -12,7 +12,15 @@ from solidgear.evidence.quantities import ACROSS, QUANTITIES
 from solidgear.evidence.sequence_bands import feature_effect, sequence_bands
 from solidgear.fidelity.edges import beside_a_step, sharpest_edge
 from solidgear.fidelity.ladder import LADDER
-from solidgear.fidelity.rung import HELD, HELD_AT_A_STEP, PLANE, SMOOTH, STEPPED, STEPPED_PLANE
+from solidgear.fidelity.rung import (
+    HELD,
+    HELD_AT_A_STEP,
+    PLANE,
+    SMOOTH,
+    STEPPED,
+    STEPPED_APART,
+    STEPPED_PLANE,
+)
 
 FINEST = {"C_zz": 2.0, "C_thx": 8.0, "C_z,thx": 1.0, "bending 1": 100.0}
 
@@ -37,7 +45,9 @@ def test_a_step_that_is_small_by_accident_is_not_believed():
     assert all(band.gci > 1e-3 * 0.1 for band in lucky.values())
 
 
-@pytest.mark.parametrize("edge", [SMOOTH, PLANE, STEPPED, STEPPED_PLANE, HELD, HELD_AT_A_STEP])
+@pytest.mark.parametrize(
+    "edge", [SMOOTH, PLANE, STEPPED, STEPPED_PLANE, STEPPED_APART, HELD, HELD_AT_A_STEP]
+)
 def test_after_two_levels_of_hexahedra_larger_steps_give_larger_bands_and_lesser_shares(edge):
     steps = np.geomspace(1e-5, 0.3, 60)
     bands = np.array(
@@ -169,11 +179,11 @@ def test_the_ends_of_teeth_are_corners_where_the_meridian_has_none():
 
 
 def test_what_is_sharpest_on_a_shaft():
-    def shaft(attachment, lo, second=0.08):
+    def shaft(attachment, lo, second=0.08, first=0.05):
         width = 0.04
         return sg.Scene.from_parts(
             [
-                sg.Segment.cylinder("a", length=0.2, diameter=0.05),
+                sg.Segment.cylinder("a", length=0.2, diameter=first),
                 sg.Segment.cylinder("b", y0=0.2, length=0.2, diameter=second),
             ],
             bearings=[
@@ -197,11 +207,31 @@ def test_what_is_sharpest_on_a_shaft():
     assert sharpest_edge(shaft("rigid", 0.20)) == HELD_AT_A_STEP
     assert sharpest_edge(shaft("rigid", 0.2 + 5e-8)) == HELD_AT_A_STEP  # but for rounding
     assert sharpest_edge(shaft("rigid", 0.21)) == HELD
+    # on the larger side, too wide for a layer of its own and far from what the shoulder grades
+    wide = [shaft("average", 0.28, 0.06, first) for first in (0.03, 0.022, 0.015)]
+    assert [sharpest_edge(one) for one in wide] == [STEPPED, STEPPED_APART, STEPPED]
     # near a step, but not at it, is a class of its own: less than 0.5 mm here
     assert [beside_a_step(shaft("average", 0.2 + gap)) for gap in (0, 2e-5, 4e-4, 6e-4)] == [
         *(False, True, True, False)
     ]
     assert not beside_a_step(shaft("average", 0.2 + 2e-5, second=0.05))
+
+
+def test_cells_in_a_steep_kink_widen_bars():
+    def band(top, step=0.0):
+        parts = [
+            sg.Segment.cylinder("a", length=0.1, diameter=0.05),
+            sg.Segment(name="b", y0=0.1, y1=0.12, outer0=0.025 + step, outer1=top),
+        ]
+        bearing = sg.Bearing(name="1", y=0.05, seat_width=0.02, matrix=np.eye(6) * 1e8)
+        scene = sg.Scene.from_parts(parts, bearings=[bearing], port=sg.Port(y=0.1, lo=0.08, hi=0.1))
+        rung = LADDER["harmonic"]
+        args = (scene, rung.meshes({}), rung.factors, levels(0.05), {}, (None, None))
+        return sequence_bands(*args)["C_zz"].gci
+
+    gentle, steep, from_a_step = band(0.04), band(0.075), band(0.075, step=0.01)
+    assert steep == pytest.approx(0.75 * 2.5 * gentle, rel=1e-9)  # a rise of 50 mm over 20
+    assert from_a_step == pytest.approx(gentle, rel=1e-9)
 
 
 def test_a_seat_that_ends_beside_a_step_widens_bars():

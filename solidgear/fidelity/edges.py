@@ -6,8 +6,17 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from solidgear.fidelity.rung import HELD, HELD_AT_A_STEP, PLANE, SMOOTH, STEPPED, STEPPED_PLANE
+from solidgear.fidelity.rung import (
+    HELD,
+    HELD_AT_A_STEP,
+    PLANE,
+    SMOOTH,
+    STEPPED,
+    STEPPED_APART,
+    STEPPED_PLANE,
+)
 from solidgear.meshing.corners import corner_angle, filled_at
+from solidgear.meshing.grading import DEEP, corner_length, segments_under, ungraded_depth
 from solidgear.scene.rules import TOUCH
 
 if TYPE_CHECKING:
@@ -17,6 +26,8 @@ if TYPE_CHECKING:
 NEAR = 0.01
 #: and one that ends this near to it, in the same measure, is what the corner's next layers meet
 BESIDE = 0.02
+#: a shoulder grades a surface that is no further above it than this share of the wall
+FAR = 0.6
 #: a notch narrower than this, rad, and a surface that rises by more than this over its length, leave
 #: cells so acute that errors go on as more than bars expect
 NARROW_NOTCH, STEEP_SURFACE = np.pi / 6, 4.0
@@ -24,7 +35,7 @@ NARROW_NOTCH, STEEP_SURFACE = np.pi / 6, 4.0
 
 def sharpest_edge(scene: Scene) -> str:
     """What limits how fast meshes converge: one of `SMOOTH`, `PLANE`, `STEPPED`,
-    `STEPPED_PLANE`, `HELD`, `HELD_AT_A_STEP`.
+    `STEPPED_PLANE`, `STEPPED_APART`, `HELD`, `HELD_AT_A_STEP`.
 
     Exponents of displacement there are 1 (the jump of the load at the end of a seat), 0.54, 0.50
     and 0.33, so that a layer of ratio q leaves the shares ``q^2``, ``q^1.09``, ``q`` and
@@ -56,8 +67,26 @@ def sharpest_edge(scene: Scene) -> str:
     # a plane that carries a load ends in a ring of the surface
     plane = any(s.attachment == "section" for s in scene.stations)
     if corners:
-        return STEPPED_PLANE if plane else STEPPED
+        if plane:
+            return STEPPED_PLANE
+        return STEPPED_APART if _far_from_steps(scene) else STEPPED
     return PLANE if plane else SMOOTH
+
+
+def _far_from_steps(scene: Scene) -> bool:
+    """Whether a seat is on a surface that no shoulder grades, its lines being far below it, and so
+    wide that it has no layers of its own on coarse meshes.
+    """
+    segments = scene.segments
+    for station in scene.stations:
+        width = station.hi - station.lo
+        if station.attachment != "average" or width <= TOUCH:
+            continue
+        for k in segments_under(station, segments):
+            depth = ungraded_depth(segments, k)
+            if width >= DEEP * depth and depth > FAR * corner_length(segments[k]):
+                return True
+    return False
 
 
 def acute(scene: Scene) -> bool:
@@ -106,3 +135,25 @@ def beside_a_step(scene: Scene) -> bool:
     ]
     gaps = [abs(y - step) for seat in seats for y in (seat.lo, seat.hi) for step in steps]
     return any(TOUCH < gap < near for gap in gaps)
+
+
+def steepest_kink(scene: Scene) -> float:
+    """Rise over length of the steepest surface that turns up from another without a step; zero of
+    none. Cells there are as acute as the surface is steep.
+
+    Parameters
+    ----------
+    scene : Scene
+
+    Examples
+    --------
+    >>> import solidgear as sg
+    >>> steepest_kink(sg.load("geometry/shaft_stepped.toml"))
+    0.0
+    """
+    rises = [0.0]
+    for a, b in zip(scene.segments, scene.segments[1:]):
+        kink = corner_angle(a, b, filled_at(scene, b.y0)) > np.pi * (1 + 1e-9)
+        if kink and abs(a.outer1 - b.outer0) < TOUCH:
+            rises += [abs(s.outer1 - s.outer0) / s.length for s in (a, b)]
+    return max(rises)

@@ -27,6 +27,7 @@ from solidgear.fidelity.rung import (
     SMOOTH,
     SOLID,
     STEPPED,
+    STEPPED_APART,
     STEPPED_PLANE,
     BandFactors,
     Ladder,
@@ -89,6 +90,7 @@ LADDER = Ladder(
             # 0.2 at shoulders, 0.35 at shoulders with section ties, 0.28 at rigid seats, all of it
             # where the step is above 1e-4; below, up to 1.2 at section ties and on smooth shafts. A shaft
             # with a seat that ends 0.07 mm beside a step has 0.36, a smooth thin tube 0.77.
+            # Seats on a rotor that stands out far from its shaft have 0.4, as those of a smooth shaft.
             # After three: below 0.1 (0.15 in a disc of 0.05 diameters), 0.1, 0.2, 0.1, 0.2, and 0.4 at
             # rigid seats beside steps.
             usual={
@@ -96,6 +98,7 @@ LADDER = Ladder(
                 PLANE: 0.15,
                 STEPPED: 0.22,
                 STEPPED_PLANE: 0.22,
+                STEPPED_APART: 0.22,
                 HELD: 0.25,
                 HELD_AT_A_STEP: 0.5,
             },
@@ -104,6 +107,7 @@ LADDER = Ladder(
                 PLANE: (1.5, 3e-4, 0.7),
                 STEPPED: (0.6, 1.5e-4, 0.25),
                 STEPPED_PLANE: (1.2, 3e-4, 0.4),
+                STEPPED_APART: (1.2, 1.5e-4, 0.5),
                 HELD: (1.2, 2e-4, 0.26),
                 HELD_AT_A_STEP: (1.2, 2e-4, 0.26),
             },

@@ -7,7 +7,6 @@ from math import ceil, log
 
 import numpy as np
 
-from solidgear.meshing.corners import corner_layers
 from solidgear.scene.rules import TOUCH
 
 #: where grading starts, in local lengths; one layer of ratio 0.2 begins at a twentieth of a radius
@@ -17,6 +16,9 @@ SHELL = 2.0
 #: lines nearer to the far end of an interval than this share of it are left out
 ROOM_ONE, ROOM_TWO = 0.75, 0.45
 
+#: seats narrower than this many cells' depths indent what cells do not see: after two meshes a plain
+#: bar with a seat as wide as its radius was 2.5e-3 off, one of two radii 1e-4
+DEEP = 2.0
 #: of a number of layers that is whole but for it
 ROUNDING = 1e-9
 
@@ -93,19 +95,19 @@ class Grading:
         -------
         int
             As many as bring the last layer down to the width of the seat; none where grading starts
-            within it, or on a line. On a shaft without shoulders, where nothing else is graded, one
-            for a seat that is narrower than its cells are deep.
+            within it, or on a line. Where no shoulder grades the surface (:func:`ungraded_depth`)
+            one for a seat that is narrower than twice the depth of its cells.
         """
         width = station.hi - station.lo
-        under = [s for s in segments if s.y0 < station.hi - TOUCH and station.lo + TOUCH < s.y1]
+        under = segments_under(station, segments)
         if width <= 2 * TOUCH or not under or set(ties) <= {"section"}:
             return 0
-        depth = max(corner_length(s) for s in under)
-        more = ceil(log(width / (self.reach * depth)) / log(self.ratio) - ROUNDING)
+        start = self.reach * max(corner_length(segments[k]) for k in under)
+        more = ceil(log(width / start) / log(self.ratio) - ROUNDING)
         graded = self.layers if "rigid" in ties else self.edge
-        if more > 0 or graded or not self.layers or width >= depth * (1 - ROUNDING):
+        if more > 0 or graded or not self.layers:
             return max(0, more)
-        return int(not any(corner_layers(a, b, 1) for a, b in zip(segments, segments[1:])))
+        return int(width < DEEP * max(ungraded_depth(segments, k) for k in under) * (1 - ROUNDING))
 
     @property
     def along_corner(self) -> int:
@@ -168,6 +170,57 @@ def corner_length(segment) -> float:
         m.
     """
     return min(_wall(segment), _radius(segment))
+
+
+def segments_under(station, segments) -> list[int]:
+    """Places of the segments that a seat lies on.
+
+    Parameters
+    ----------
+    station : Port, Bearing or PointMass
+    segments : sequence of Segment
+    """
+    lo, hi = station.lo + TOUCH, station.hi - TOUCH
+    return [k for k, s in enumerate(segments) if s.y0 < hi and lo < s.y1]
+
+
+def ungraded_depth(segments, k: int) -> float:
+    """How deep the cells of a coarse mesh are under the surface of a segment.
+
+    A shoulder grades the surface of its smaller side, and lines run on from there into the larger
+    one: between them and a surface that no shoulder ends at there is nothing.
+
+    Parameters
+    ----------
+    segments : sequence of Segment
+    k : int
+        Place of the segment.
+
+    Returns
+    -------
+    float
+        m; zero where the surface itself is graded.
+
+    Examples
+    --------
+    >>> from solidgear import Segment
+    >>> thin, thick = (
+    ...     Segment.cylinder(n, y0=y, length=0.1, diameter=d)
+    ...     for n, y, d in (("a", 0.0, 0.04), ("b", 0.1, 0.1))
+    ... )
+    >>> [round(ungraded_depth((thin, thick), k), 6) for k in (0, 1)]
+    [0.0, 0.03]
+    >>> ungraded_depth((thin,), 0)
+    0.02
+    """
+    depth = corner_length(segments[k])
+    after = [(a.outer1, b.outer0) for a, b in zip(segments[k:], segments[k + 1 :])]
+    before = [(b.outer0, a.outer1) for a, b in zip(segments[:k], segments[1 : k + 1])]
+    for pairs in (after, reversed(before)):
+        step = next(((own, other) for own, other in pairs if abs(own - other) > TOUCH), None)
+        if step:
+            depth = min(depth, max(step[0] - step[1], 0.0))
+    return depth
 
 
 def _radius(segment) -> float:
