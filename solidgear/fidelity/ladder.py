@@ -123,7 +123,7 @@ LADDER = Ladder(
                 HELD: (0.6, 1.5e-4, 0.2),
                 HELD_AT_A_STEP: (0.6, 1.5e-4, 0.26),
             },
-            earlier=0.02,
+            earlier=0.03,
             ahead=0.12,
         ),
         share=20.0,
