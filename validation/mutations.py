@@ -61,7 +61,7 @@ MUTATIONS = (
         "a narrow seat on a plain bar has no layer",
         "solidgear/meshing/grading.py",
         "Grading.seat_layers",
-        "return int(not any(corner_layers(a, b, 1) for a, b in zip(segments, segments[1:])))",
+        "return int(width < DEEP * max(ungraded_depth(segments, k) for k in under) * (1 - ROUNDING))",
         "return 0",
         "tests/test_answer.py::test_seats_narrower_than_a_bar_is_thick_are_held_by_two_meshes",
     ),
