@@ -208,7 +208,7 @@ def test_what_is_sharpest_on_a_shaft():
     assert sharpest_edge(shaft("rigid", 0.2 + 5e-8)) == HELD_AT_A_STEP  # but for rounding
     assert sharpest_edge(shaft("rigid", 0.21)) == HELD
     # on the larger side, too wide for a layer of its own and far from what the shoulder grades
-    wide = [shaft("average", 0.28, 0.06, first) for first in (0.03, 0.022, 0.015)]
+    wide = [shaft("average", 0.28, 0.06, first) for first in (0.046, 0.03, 0.015)]
     assert [sharpest_edge(one) for one in wide] == [STEPPED, STEPPED_APART, STEPPED]
     # near a step, but not at it, is a class of its own: less than 0.5 mm here
     assert [beside_a_step(shaft("average", 0.2 + gap)) for gap in (0, 2e-5, 4e-4, 6e-4)] == [

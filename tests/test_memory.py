@@ -1,5 +1,7 @@
 """Memory and processors granted: read from a made-up root, so that every kind of limit is seen."""
 
+import mmap
+
 import pytest
 
 from solidgear.errors import SolidgearError
@@ -58,6 +60,14 @@ def test_cgroup_v1_in_a_container(root, limit, expected):
             "sys__fs__cgroup__memory__memory_DOT_usage_in_bytes": str(600 * MB),
         }
     )
+    assert available_mb(at) == expected
+
+
+@pytest.mark.parametrize("limit, expected", [(str(3000 * MB), 2000), ("unlimited", 8000)])
+def test_a_limit_of_address_space(root, limit, expected):
+    pages = 1000 * MB // mmap.PAGESIZE
+    limits = f"Limit  Soft Limit  Hard Limit  Units\nMax address space  {limit}  unlimited  bytes\n"
+    at = root(proc__self__limits=limits, proc__self__statm=f"{pages} 17 5 1 0 9 0\n")
     assert available_mb(at) == expected
 
 

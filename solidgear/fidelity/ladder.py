@@ -107,7 +107,7 @@ LADDER = Ladder(
                 PLANE: (1.5, 3e-4, 0.7),
                 STEPPED: (0.6, 1.5e-4, 0.25),
                 STEPPED_PLANE: (1.2, 3e-4, 0.4),
-                STEPPED_APART: (1.2, 1.5e-4, 0.5),
+                STEPPED_APART: (1.2, 1.5e-4, 0.45),
                 HELD: (1.2, 2e-4, 0.26),
                 HELD_AT_A_STEP: (1.2, 2e-4, 0.26),
             },

@@ -42,7 +42,7 @@ def available_mb(root: str | Path = "/") -> float | None:
     """Memory that can still be taken.
 
     The least of ``MemAvailable``, the room below the limit of every control group (v1 and v2) this
-    process is in, and the environment variable ``SOLIDGEAR_MEMORY_MB``, which can only lower it
+    process is in, what a limit of address space (``ulimit -v``) leaves, and the environment variable ``SOLIDGEAR_MEMORY_MB``, which can only lower it
     (see :func:`one_run`).
 
     Parameters
@@ -61,7 +61,7 @@ def available_mb(root: str | Path = "/") -> float | None:
         If ``SOLIDGEAR_MEMORY_MB`` is not a number above zero.
     """
     root = Path(root)
-    found = [*_machine(root), *_groups(root)]
+    found = [*_machine(root), *_groups(root), *_address_space(root)]
     text = os.environ.get("SOLIDGEAR_MEMORY_MB", "").strip()
     if text:
         try:
@@ -136,6 +136,15 @@ def _groups(root: Path) -> Iterator[float]:
             # Cached files count as used but are given back on demand.
             cached = _field(text_of(place / "memory.stat"), names[2])
             yield max(0, int(ceiling) - int(taken) + cached) / 2**20
+
+
+def _address_space(root: Path) -> Iterator[float]:
+    """Below a limit of address space, of which a process takes more than it holds."""
+    rows = text_of(root / "proc/self/limits").splitlines()
+    soft = next((row.split()[3] for row in rows if row.startswith("Max address space")), "")
+    taken = text_of(root / "proc/self/statm").split()
+    if soft.isdigit() and taken:
+        yield max(0, int(soft) - int(taken[0]) * mmap.PAGESIZE) / 2**20
 
 
 def _field(text: str, name: str) -> int:
