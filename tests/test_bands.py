@@ -15,6 +15,7 @@ from solidgear.fidelity.ladder import LADDER
 from solidgear.fidelity.rung import (
     HELD,
     HELD_AT_A_STEP,
+    HELD_PLANE,
     PLANE,
     SMOOTH,
     STEPPED,
@@ -207,6 +208,12 @@ def test_what_is_sharpest_on_a_shaft():
     assert sharpest_edge(shaft("rigid", 0.20)) == HELD_AT_A_STEP
     assert sharpest_edge(shaft("rigid", 0.2 + 5e-8)) == HELD_AT_A_STEP  # but for rounding
     assert sharpest_edge(shaft("rigid", 0.21)) == HELD
+    beside = shaft("rigid", 0.21).bearings[0].with_changes(name="2", y=0.05, attachment="section")
+    both = shaft("rigid", 0.21)
+    both = sg.Scene.from_parts(
+        both.segments, bearings=[*both.bearings, beside], port=both.ports[0], name="both"
+    )
+    assert sharpest_edge(both) == HELD_PLANE
     # on the larger side, too wide for a layer of its own and far from what the shoulder grades
     wide = [shaft("average", 0.28, 0.06, first) for first in (0.046, 0.03, 0.015)]
     assert [sharpest_edge(one) for one in wide] == [STEPPED, STEPPED_APART, STEPPED]

@@ -9,6 +9,7 @@ import numpy as np
 from solidgear.fidelity.rung import (
     HELD,
     HELD_AT_A_STEP,
+    HELD_PLANE,
     PLANE,
     SMOOTH,
     STEPPED,
@@ -35,7 +36,7 @@ NARROW_NOTCH, STEEP_SURFACE = np.pi / 6, 4.0
 
 def sharpest_edge(scene: Scene) -> str:
     """What limits how fast meshes converge: one of `SMOOTH`, `PLANE`, `STEPPED`,
-    `STEPPED_PLANE`, `STEPPED_APART`, `HELD`, `HELD_AT_A_STEP`.
+    `STEPPED_PLANE`, `STEPPED_APART`, `HELD`, `HELD_PLANE`, `HELD_AT_A_STEP`.
 
     Exponents of displacement there are 1 (the jump of the load at the end of a seat), 0.54, 0.50
     and 0.33, so that a layer of ratio q leaves the shares ``q^2``, ``q^1.09``, ``q`` and
@@ -62,10 +63,10 @@ def sharpest_edge(scene: Scene) -> str:
     seats = [s for s in scene.stations if s.attachment == "rigid"]
     near = NEAR * min(min(s.outer0, s.outer1) for s in scene.segments)
     touched = any(s.lo - near <= y <= s.hi + near for s in seats for y in corners)
-    if seats:
-        return HELD_AT_A_STEP if touched else HELD
     # a plane that carries a load ends in a ring of the surface
     plane = any(s.attachment == "section" for s in scene.stations)
+    if seats:
+        return HELD_AT_A_STEP if touched else HELD_PLANE if plane else HELD
     if corners:
         if plane:
             return STEPPED_PLANE

@@ -51,6 +51,7 @@ SMOOTH, PLANE, STEPPED = "smooth", "section tie", "shoulder"
 STEPPED_PLANE = "shoulder and section tie"
 STEPPED_APART = "shoulder, and a seat far from any"
 HELD, HELD_AT_A_STEP = "rigid seat", "rigid seat at a shoulder"
+HELD_PLANE = "rigid seat and section tie"
 
 
 def by_edge(free: Any, held: Any) -> dict[str, Any]:
