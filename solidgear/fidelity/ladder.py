@@ -88,12 +88,11 @@ LADDER = Ladder(
             # q**(2 a) / (1 - q**(2 a)): 0.04, 0.21, 0.25 and 0.53 for q = 0.2. Measured on 71 random
             # shafts (seeds 80001 to 80120) and 34 more (53001 to 53020, 53101 to 53120), 98 % of errors
             # over their last step, after two meshes: 0.5 on smooth shafts, 0.7 with section ties,
-            # 0.2 at shoulders (0.28 on one gearbox shaft), 0.35 at shoulders with section ties, 0.28 at rigid
-            # seats, all of it where the step is above 1e-4; below, up to 1.2 at section ties and on smooth shafts. A shaft
-            # with a seat that ends 0.07 mm beside a step has 0.36, a smooth thin tube 0.77.
-            # A section's plane close beside a rigid seat on a thin tube has 0.9, of the stiffness with
-            # that seat held.
-            # Seats on a rotor that stands out far from its shaft have 0.4, as those of a smooth shaft.
+            # 0.2 at shoulders (0.28 on one gearbox shaft), 0.35 at shoulders with section ties, 0.28 at
+            # rigid seats, all of it where the step is above 1e-4; below, up to 1.2 at section ties and
+            # on smooth shafts. A seat that ends 0.07 mm beside a step has 0.36, a smooth thin tube 0.77,
+            # a section's plane close beside a rigid seat on a thin tube 0.9 of the stiffness with that
+            # seat held, seats on a rotor that stands out far from its shaft 0.4, as on a smooth one.
             # After three: below 0.1 (0.15 in a disc of 0.05 diameters), 0.1, 0.2, 0.1, 0.2, and 0.4 at
             # rigid seats beside steps.
             usual={
