@@ -180,8 +180,7 @@ def test_the_ends_of_teeth_are_corners_where_the_meridian_has_none():
 
 
 def test_what_is_sharpest_on_a_shaft():
-    def shaft(attachment, lo, second=0.08, first=0.05):
-        width = 0.04
+    def shaft(attachment, lo, second=0.08, first=0.05, width=0.04):
         return sg.Scene.from_parts(
             [
                 sg.Segment.cylinder("a", length=0.2, diameter=first),
@@ -215,7 +214,7 @@ def test_what_is_sharpest_on_a_shaft():
     )
     assert sharpest_edge(both) == HELD_PLANE
     # on the larger side, too wide for a layer of its own and far from what the shoulder grades
-    wide = [shaft("average", 0.28, 0.06, first) for first in (0.046, 0.03, 0.015)]
+    wide = [shaft("average", 0.275, 0.06, first, 0.05) for first in (0.03, 0.0235, 0.015)]
     assert [sharpest_edge(one) for one in wide] == [STEPPED, STEPPED_APART, STEPPED]
     # near a step, but not at it, is a class of its own: less than 0.5 mm here
     assert [beside_a_step(shaft("average", 0.2 + gap)) for gap in (0, 2e-5, 4e-4, 6e-4)] == [

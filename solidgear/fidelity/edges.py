@@ -28,7 +28,7 @@ NEAR = 0.01
 #: and one that ends this near to it, in the same measure, is what the corner's next layers meet
 BESIDE = 0.02
 #: a shoulder grades a surface that is no further above it than this share of the wall
-FAR = 0.3
+FAR = 0.6
 #: a notch narrower than this, rad, and a surface that rises by more than this over its length, leave
 #: cells so acute that errors go on as more than bars expect
 NARROW_NOTCH, STEEP_SURFACE = np.pi / 6, 4.0

@@ -108,7 +108,7 @@ LADDER = Ladder(
             first={
                 SMOOTH: (1.2, 1e-4, 0.8),
                 PLANE: (1.5, 3e-4, 0.7),
-                STEPPED: (0.6, 1.5e-4, 0.3),
+                STEPPED: (0.6, 1.5e-4, 0.32),
                 STEPPED_PLANE: (1.2, 3e-4, 0.4),
                 STEPPED_APART: (1.2, 1.5e-4, 0.45),
                 HELD: (1.2, 2e-4, 0.26),
@@ -122,7 +122,7 @@ LADDER = Ladder(
             # and more on 10 mm).
             first_of_modes={
                 PLANE: (1.5, 3e-4, 0.4),
-                STEPPED: (0.6, 1.5e-4, 0.3),
+                STEPPED: (0.6, 1.5e-4, 0.32),
                 STEPPED_PLANE: (0.6, 1.5e-4, 0.3),
                 HELD: (0.6, 1.5e-4, 0.2),
                 HELD_PLANE: (0.6, 1.5e-4, 0.4),

@@ -18,7 +18,7 @@ ROOM_ONE, ROOM_TWO = 0.75, 0.45
 
 #: seats narrower than this many cells' depths indent what cells do not see: after two meshes a plain
 #: bar with a seat as wide as its radius was 2.5e-3 off, one of two radii 1e-4
-DEEP = 2.0
+DEEP = 2.5
 #: of a number of layers that is whole but for it
 ROUNDING = 1e-9
 
@@ -96,7 +96,7 @@ class Grading:
         int
             As many as bring the last layer down to the width of the seat; none where grading starts
             within it, or on a line. Where no shoulder grades the surface (:func:`ungraded_depth`)
-            one for a seat that is narrower than twice the depth of its cells.
+            one for a seat that is narrower than two and a half depths of its cells.
         """
         width = station.hi - station.lo
         under = segments_under(station, segments)
