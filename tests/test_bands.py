@@ -240,6 +240,20 @@ def test_cells_in_a_steep_kink_widen_bars():
     assert from_a_step == pytest.approx(gentle, rel=1e-9)
 
 
+def test_plates_widen_bars_most_after_two_meshes():
+    def bands(length, *steps):
+        disc = sg.Segment.cylinder("disc", length=length, diameter=0.2)
+        port = sg.Port(y=length / 2, lo=0.0, hi=length)
+        scene = sg.Scene.from_parts([disc], port=port)
+        rung = LADDER["harmonic"]
+        found = levels(*steps)
+        args = (scene, rung.meshes({}), rung.factors, found, {}, [None] * len(found))
+        return sequence_bands(*args)["C_zz"].gci
+
+    assert bands(0.009, 0.05) == pytest.approx(12 * bands(0.011, 0.05), rel=1e-9)
+    assert bands(0.009, 0.05, 0.01) == pytest.approx(3 * bands(0.011, 0.05, 0.01), rel=1e-9)
+
+
 def test_a_seat_that_ends_beside_a_step_widens_bars():
     def band(y):
         bearing = sg.Bearing(name="1", y=y, seat_width=0.02, matrix=np.eye(6) * 1e8)

@@ -11,7 +11,14 @@ from typing import TYPE_CHECKING
 from solidgear.evidence.answer import solve
 from solidgear.evidence.bands import Band, layered_bands, refined_bands, rough_bands
 from solidgear.evidence.quantities import AT, measure, points_of, size
-from solidgear.fidelity.edges import acute, beside_a_step, sharpest_edge, steepest_kink
+from solidgear.fidelity.edges import (
+    acute,
+    beside_a_step,
+    has_chamfered_root,
+    is_plate,
+    sharpest_edge,
+    steepest_kink,
+)
 from solidgear.fidelity.ladder import LADDER
 from solidgear.meshing.corners import SHOULDER, sharpest_corner
 from solidgear.solve.statics import condense
@@ -34,6 +41,13 @@ ACUTE = 8.0
 #: the same where a cone rises from a cylinder, over its rise: cones of 20, 45, 65 and 75 degrees have
 #: 0.23, 0.15, 0.28 and 0.45 of the last step after three meshes
 KINK = 0.75
+#: the same of a chamfer in a shoulder: against the same outline as a cone, compliances of nine
+#: shafts erred by 2.2 to 6 times their bands
+CHAMFERED = 8.0
+#: the same of plates, after two meshes and later: cells across are coarse beside the thickness, so
+#: that two meshes may agree by accident; bending 2 and axial 1 of discs of 0.005 to 0.03 diameters
+#: erred by 3 to 9.5 times their bands
+PLATE_AT_FIRST, PLATE_LATER = 12.0, 3.0
 #: the same beside a step: a seat that ends 0.01 to 0.1 mm from the shoulder of a 40 mm shaft has 1.1
 #: to 1.4 times the error over its last step of one that ends there, a random shaft 1.44 times its bar
 BESIDE = 1.5
@@ -87,6 +101,9 @@ def sequence_bands(
         found = layered_bands(levels, solver, factors, edge=edge, around=around, effect=effect)
         more = ACUTE if acute(scene) else max(1.0, KINK * steepest_kink(scene))
         more *= BESIDE if beside_a_step(scene) else 1.0
+        more *= CHAMFERED if has_chamfered_root(scene) else 1.0
+        if is_plate(scene):
+            more *= PLATE_AT_FIRST if len(levels) == 2 else PLATE_LATER
         return {
             name: replace(band, gci=more * band.gci, factor=more * band.factor)
             for name, band in found.items()

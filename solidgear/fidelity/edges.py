@@ -29,6 +29,8 @@ NEAR = 0.01
 BESIDE = 0.02
 #: a shoulder grades a surface that is no further above it than this share of the wall
 FAR = 0.6
+#: a shaft shorter than this many of its diameters is a plate, whose modes bend it
+PLATE = 0.05
 #: a notch narrower than this, rad, and a surface that rises by more than this over its length, leave
 #: cells so acute that errors go on as more than bars expect
 NARROW_NOTCH, STEEP_SURFACE = np.pi / 6, 4.0
@@ -158,3 +160,29 @@ def steepest_kink(scene: Scene) -> float:
         if kink and abs(a.outer1 - b.outer0) < TOUCH:
             rises += [abs(s.outer1 - s.outer0) / s.length for s in (a, b)]
     return max(rises)
+
+
+def is_plate(scene: Scene) -> bool:
+    """Whether the whole shaft is a plate.
+
+    Parameters
+    ----------
+    scene : Scene
+
+    Examples
+    --------
+    >>> import solidgear as sg
+    >>> is_plate(sg.load("geometry/shaft_stepped.toml"))
+    False
+    """
+    return scene.length < PLATE * 2 * max(max(s.outer0, s.outer1) for s in scene.segments)
+
+
+def has_chamfered_root(scene: Scene) -> bool:
+    """Whether a chamfer fills a shoulder: it leaves two corners, to which no layers lead.
+
+    Parameters
+    ----------
+    scene : Scene
+    """
+    return any(c.root and c.kind == "chamfer" for c in scene.corners)

@@ -106,7 +106,7 @@ def _seats() -> Iterator[tuple[str, Maker]]:
                 f"bar, seats {w:g} D wide on {k:g} N/m",
                 lambda w=w, k=k: _two(shaft((8 * D, D)), w * D, k),
             )
-    for ratio in (0.05, 0.1, 0.2, 0.5, 1, 20, 50):
+    for ratio in (0.03, 0.05, 0.1, 0.2, 0.5, 1, 20, 50):
         wide = (0.2 * ratio if ratio < 3 else 0.4) * D
         held = seat(0.25 * ratio * D, wide, tilt=1e5)
         yield (
