@@ -181,7 +181,10 @@ def sentences(found: Answered | Settled) -> list[str]:
     asked = percent(found.tolerance, signed=False)
     cost = sum(step.seconds for step in found.steps)
     if found.reached:
-        lines.append(f"Within {asked}: {found.rung}, {seconds(cost)} s for all meshes tried.")
+        there = ", what is there" if found.missing else ""
+        lines.append(
+            f"Within {asked}{there}: {found.rung}, {seconds(cost)} s for all meshes tried."
+        )
         return lines
     why = next((step.why for step in found.steps if step.chosen and step.why), "")
     lines.append(f"Not reached: {asked} was asked for{f'; {why}' if why else ''}.")

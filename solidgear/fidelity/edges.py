@@ -13,11 +13,9 @@ from solidgear.fidelity.rung import (
     PLANE,
     SMOOTH,
     STEPPED,
-    STEPPED_APART,
     STEPPED_PLANE,
 )
 from solidgear.meshing.corners import corner_angle, filled_at
-from solidgear.meshing.grading import DEEP, corner_length, segments_under, ungraded_depth
 from solidgear.scene.rules import TOUCH
 
 if TYPE_CHECKING:
@@ -27,8 +25,6 @@ if TYPE_CHECKING:
 NEAR = 0.01
 #: and one that ends this near to it, in the same measure, is what the corner's next layers meet
 BESIDE = 0.02
-#: a shoulder grades a surface that is no further above it than this share of the wall
-FAR = 0.6
 #: a shaft shorter than this many of its diameters is a plate, whose modes bend it
 PLATE = 0.05
 #: a notch narrower than this, rad, and a surface that rises by more than this over its length, leave
@@ -38,7 +34,7 @@ NARROW_NOTCH, STEEP_SURFACE = np.pi / 6, 4.0
 
 def sharpest_edge(scene: Scene) -> str:
     """What limits how fast meshes converge: one of `SMOOTH`, `PLANE`, `STEPPED`,
-    `STEPPED_PLANE`, `STEPPED_APART`, `HELD`, `HELD_PLANE`, `HELD_AT_A_STEP`.
+    `STEPPED_PLANE`, `HELD`, `HELD_PLANE`, `HELD_AT_A_STEP`.
 
     Exponents of displacement there are 1 (the jump of the load at the end of a seat), 0.54, 0.50
     and 0.33, so that a layer of ratio q leaves the shares ``q^2``, ``q^1.09``, ``q`` and
@@ -70,26 +66,8 @@ def sharpest_edge(scene: Scene) -> str:
     if seats:
         return HELD_AT_A_STEP if touched else HELD_PLANE if plane else HELD
     if corners:
-        if plane:
-            return STEPPED_PLANE
-        return STEPPED_APART if _far_from_steps(scene) else STEPPED
+        return STEPPED_PLANE if plane else STEPPED
     return PLANE if plane else SMOOTH
-
-
-def _far_from_steps(scene: Scene) -> bool:
-    """Whether a seat is on a surface that no shoulder grades, its lines being far below it, and so
-    wide that it has no layers of its own on coarse meshes.
-    """
-    segments = scene.segments
-    for station in scene.stations:
-        width = station.hi - station.lo
-        if station.attachment != "average" or width <= TOUCH:
-            continue
-        for k in segments_under(station, segments):
-            depth = ungraded_depth(segments, k)
-            if width >= DEEP * depth and depth > FAR * corner_length(segments[k]):
-                return True
-    return False
 
 
 def acute(scene: Scene) -> bool:

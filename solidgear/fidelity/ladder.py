@@ -28,7 +28,6 @@ from solidgear.fidelity.rung import (
     SMOOTH,
     SOLID,
     STEPPED,
-    STEPPED_APART,
     STEPPED_PLANE,
     BandFactors,
     Ladder,
@@ -92,7 +91,7 @@ LADDER = Ladder(
             # rigid seats, all of it where the step is above 1e-4; below, up to 1.2 at section ties and
             # on smooth shafts. A seat that ends 0.07 mm beside a step has 0.36, a smooth thin tube 0.77,
             # a section's plane close beside a rigid seat on a thin tube 0.9 of the stiffness with that
-            # seat held, seats on a rotor that stands out far from its shaft 0.4, as on a smooth one.
+            # seat held; seats of one to two radii on a rotor or a gearbox shaft 0.3, below errors of 3e-4.
             # After three: below 0.1 (0.15 in a disc of 0.05 diameters), 0.1, 0.2, 0.1, 0.2, and 0.4 at
             # rigid seats beside steps.
             usual={
@@ -100,7 +99,6 @@ LADDER = Ladder(
                 PLANE: 0.15,
                 STEPPED: 0.22,
                 STEPPED_PLANE: 0.22,
-                STEPPED_APART: 0.22,
                 HELD: 0.25,
                 HELD_PLANE: 0.25,
                 HELD_AT_A_STEP: 0.5,
@@ -108,9 +106,8 @@ LADDER = Ladder(
             first={
                 SMOOTH: (1.2, 1e-4, 0.8),
                 PLANE: (1.5, 3e-4, 0.7),
-                STEPPED: (0.6, 1.5e-4, 0.32),
+                STEPPED: (0.6, 3e-4, 0.25),
                 STEPPED_PLANE: (1.2, 3e-4, 0.4),
-                STEPPED_APART: (1.2, 1.5e-4, 0.45),
                 HELD: (1.2, 2e-4, 0.26),
                 HELD_PLANE: (1.5, 3e-4, 1.0),
                 HELD_AT_A_STEP: (1.2, 2e-4, 0.26),
@@ -122,7 +119,7 @@ LADDER = Ladder(
             # and more on 10 mm).
             first_of_modes={
                 PLANE: (1.5, 3e-4, 0.4),
-                STEPPED: (0.6, 1.5e-4, 0.32),
+                STEPPED: (0.6, 3e-4, 0.3),
                 STEPPED_PLANE: (0.6, 1.5e-4, 0.3),
                 HELD: (0.6, 1.5e-4, 0.2),
                 HELD_PLANE: (0.6, 1.5e-4, 0.4),

@@ -49,16 +49,15 @@ class Later:
 #: what is sharpest on a shaft, from nothing at all to a rigid seat that ends at a shoulder
 SMOOTH, PLANE, STEPPED = "smooth", "section tie", "shoulder"
 STEPPED_PLANE = "shoulder and section tie"
-STEPPED_APART = "shoulder, and a seat far from any"
 HELD, HELD_AT_A_STEP = "rigid seat", "rigid seat at a shoulder"
 HELD_PLANE = "rigid seat and section tie"
 
 
 def by_edge(free: Any, held: Any) -> dict[str, Any]:
     """One value for shafts that no rigid seat holds, and one for those that one does."""
-    return dict.fromkeys(
-        (SMOOTH, PLANE, STEPPED, STEPPED_PLANE, STEPPED_APART), free
-    ) | dict.fromkeys((HELD, HELD_AT_A_STEP), held)
+    return dict.fromkeys((SMOOTH, PLANE, STEPPED, STEPPED_PLANE), free) | dict.fromkeys(
+        (HELD, HELD_AT_A_STEP), held
+    )
 
 
 @dataclass(frozen=True)
