@@ -14,7 +14,7 @@ from solidgear.evidence.quantities import AT, measure, points_of, size
 from solidgear.fidelity.edges import (
     acute,
     beside_a_step,
-    has_chamfered_root,
+    chamfered_roots,
     is_plate,
     sharpest_edge,
     steepest_kink,
@@ -99,11 +99,7 @@ def sequence_bands(
         edge = sharpest_edge(scene)
         effect = feature_effect(scene, factors, levels[-1])
         found = layered_bands(levels, solver, factors, edge=edge, around=around, effect=effect)
-        more = ACUTE if acute(scene) else max(1.0, KINK * steepest_kink(scene))
-        more *= BESIDE if beside_a_step(scene) else 1.0
-        more *= CHAMFERED if has_chamfered_root(scene) else 1.0
-        if is_plate(scene):
-            more *= PLATE_AT_FIRST if len(levels) == 2 else PLATE_LATER
+        more = _widening(scene, len(levels))
         return {
             name: replace(band, gci=more * band.gci, factor=more * band.factor)
             for name, band in found.items()
@@ -120,6 +116,16 @@ def sequence_bands(
     if factors.rough:
         return rough_bands(levels, solver, last, exponent, factors.rough)
     return refined_bands(levels, solver, last, exponent, singular=factors.singular)
+
+
+def _widening(scene: Scene, meshes: int) -> float:
+    """Bands of a shaft after some meshes, over those of others with the same sharpest edge."""
+    more = ACUTE if acute(scene) else max(1.0, KINK * steepest_kink(scene))
+    more *= BESIDE if beside_a_step(scene) else 1.0
+    more *= CHAMFERED if chamfered_roots(scene) else 1.0
+    if is_plate(scene):
+        more *= PLATE_AT_FIRST if meshes == 2 else PLATE_LATER
+    return more
 
 
 def feature_effect(

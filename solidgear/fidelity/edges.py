@@ -19,7 +19,7 @@ from solidgear.meshing.corners import corner_angle, filled_at
 from solidgear.scene.rules import TOUCH
 
 if TYPE_CHECKING:
-    from solidgear.scene import Scene
+    from solidgear.scene import Corner, Scene, Segment
 
 #: a seat that ends this near to a step, in least outer radii, ends at it: no mesh tells them apart
 NEAR = 0.01
@@ -53,13 +53,10 @@ def sharpest_edge(scene: Scene) -> str:
     >>> sharpest_edge(scene), sharpest_edge(scene.with_attachment("rigid"))
     ('shoulder', 'rigid seat at a shoulder')
     """
-    pairs = zip(scene.segments, scene.segments[1:])
-    sharp = np.pi * (1 + 1e-9)
-    corners = [b.y0 for a, b in pairs if corner_angle(a, b, filled_at(scene, b.y0)) > sharp]
     # a chamfer in a shoulder leaves two corners, a fillet none
-    corners += [c.y for c in scene.corners if c.root and c.kind == "chamfer"]
+    corners = [b.y0 for _, b in _re_entrant(scene)] + [c.y for c in chamfered_roots(scene)]
     seats = [s for s in scene.stations if s.attachment == "rigid"]
-    near = NEAR * min(min(s.outer0, s.outer1) for s in scene.segments)
+    near = NEAR * _least_radius(scene)
     touched = any(s.lo - near <= y <= s.hi + near for s in seats for y in corners)
     # a plane that carries a load ends in a ring of the surface
     plane = any(s.attachment == "section" for s in scene.stations)
@@ -84,9 +81,7 @@ def acute(scene: Scene) -> bool:
     >>> acute(sg.load("geometry/gear_shaft.toml"))  # a bevel gear: its cone rises by 3.4
     False
     """
-    pairs = zip(scene.segments, scene.segments[1:])
-    notch = 2 * np.pi - NARROW_NOTCH
-    if any(corner_angle(a, b, filled_at(scene, b.y0)) > notch for a, b in pairs):
+    if _re_entrant(scene, 2 * np.pi - NARROW_NOTCH):
         return True
     rises = (
         max(abs(s.outer1 - s.outer0), abs(s.inner1 - s.inner0)) / s.length for s in scene.segments
@@ -108,14 +103,10 @@ def beside_a_step(scene: Scene) -> bool:
     >>> beside_a_step(sg.load("geometry/shaft_stepped.toml"))
     False
     """
-    near = BESIDE * min(min(s.outer0, s.outer1) for s in scene.segments)
-    seats = [s for s in scene.stations if s.attachment == "average"]
-    pairs = zip(scene.segments, scene.segments[1:])
-    steps = [
-        b.y0 for a, b in pairs if corner_angle(a, b, filled_at(scene, b.y0)) > np.pi * (1 + 1e-9)
-    ]
-    gaps = [abs(y - step) for seat in seats for y in (seat.lo, seat.hi) for step in steps]
-    return any(TOUCH < gap < near for gap in gaps)
+    near = BESIDE * _least_radius(scene)
+    steps = [b.y0 for _, b in _re_entrant(scene)]
+    ends = [y for s in scene.stations if s.attachment == "average" for y in (s.lo, s.hi)]
+    return any(TOUCH < abs(y - step) < near for y in ends for step in steps)
 
 
 def steepest_kink(scene: Scene) -> float:
@@ -132,12 +123,9 @@ def steepest_kink(scene: Scene) -> float:
     >>> steepest_kink(sg.load("geometry/shaft_stepped.toml"))
     0.0
     """
-    rises = [0.0]
-    for a, b in zip(scene.segments, scene.segments[1:]):
-        kink = corner_angle(a, b, filled_at(scene, b.y0)) > np.pi * (1 + 1e-9)
-        if kink and abs(a.outer1 - b.outer0) < TOUCH:
-            rises += [abs(s.outer1 - s.outer0) / s.length for s in (a, b)]
-    return max(rises)
+    kinks = [pair for pair in _re_entrant(scene) if abs(pair[0].outer1 - pair[1].outer0) < TOUCH]
+    rises = (abs(s.outer1 - s.outer0) / s.length for pair in kinks for s in pair)
+    return max(rises, default=0.0)
 
 
 def is_plate(scene: Scene) -> bool:
@@ -156,11 +144,21 @@ def is_plate(scene: Scene) -> bool:
     return scene.length < PLATE * 2 * max(max(s.outer0, s.outer1) for s in scene.segments)
 
 
-def has_chamfered_root(scene: Scene) -> bool:
-    """Whether a chamfer fills a shoulder: it leaves two corners, to which no layers lead.
+def chamfered_roots(scene: Scene) -> list[Corner]:
+    """Chamfers that fill a shoulder: each leaves two corners, to which no layers lead.
 
     Parameters
     ----------
     scene : Scene
     """
-    return any(c.root and c.kind == "chamfer" for c in scene.corners)
+    return [c for c in scene.corners if c.root and c.kind == "chamfer"]
+
+
+def _re_entrant(scene: Scene, beyond: float = np.pi * (1 + 1e-9)) -> list[tuple[Segment, Segment]]:
+    """Neighbours whose sharp corner holds more material than this angle, rad."""
+    pairs = zip(scene.segments, scene.segments[1:])
+    return [(a, b) for a, b in pairs if corner_angle(a, b, filled_at(scene, b.y0)) > beyond]
+
+
+def _least_radius(scene: Scene) -> float:
+    return min(min(s.outer0, s.outer1) for s in scene.segments)

@@ -42,8 +42,8 @@ def available_mb(root: str | Path = "/") -> float | None:
     """Memory that can still be taken.
 
     The least of ``MemAvailable``, the room below the limit of every control group (v1 and v2) this
-    process is in, what a limit of address space (``ulimit -v``) leaves, and the environment variable ``SOLIDGEAR_MEMORY_MB``, which can only lower it
-    (see :func:`one_run`).
+    process is in, what a limit of address space (``ulimit -v``) leaves, and the environment variable
+    ``SOLIDGEAR_MEMORY_MB``, which can only lower it (see :func:`one_run`).
 
     Parameters
     ----------

@@ -22,7 +22,7 @@ from solidgear.meshing.blocks import (
     split_bands,
     strips_of,
 )
-from solidgear.meshing.grading import Grading, corner_length, distinct, graded
+from solidgear.meshing.grading import Grading, corner_length, distinct, graded, segments_under
 from solidgear.scene.rules import TOUCH
 
 
@@ -388,11 +388,10 @@ def _radial_needs(
     for station in scene.stations:
         ties = attachments or (station.attachment,)
         held, narrow = "rigid" in ties, grading.seat_layers(station, segments, ties)
-        for i, s in enumerate(segments):
-            if s.y0 < station.hi - TOUCH and station.lo + TOUCH < s.y1:
-                edge = min(grading.edge, grading.across)
-                reach = grading.radial_reach * corner_length(s)
-                add(bands[i][1], i, (grading.across if held else edge) + narrow, reach)
-                if "section" in ties:  # whose plane ends in a ring of the bore as well
-                    add(bands[i][0], i, edge, reach)
+        for i in segments_under(station, segments):
+            edge = min(grading.edge, grading.across)
+            reach = grading.radial_reach * corner_length(segments[i])
+            add(bands[i][1], i, (grading.across if held else edge) + narrow, reach)
+            if "section" in ties:  # whose plane ends in a ring of the bore as well
+                add(bands[i][0], i, edge, reach)
     return needs

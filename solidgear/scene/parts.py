@@ -9,6 +9,7 @@ from pydantic import BaseModel, ConfigDict, ValidationError, model_validator
 from pydantic.fields import FieldInfo
 
 from solidgear.errors import TOLD, SceneError, did_you_mean, near, scene_error
+from solidgear.scene.bearing_stiffness import STIFFNESS_NAMES
 from solidgear.scene.rules import TOUCH
 from solidgear.scene.units import (
     Density,
@@ -47,8 +48,6 @@ OTHER_WORDS = {
     "m": "mass",
     "k": "stiffness",
 }
-#: diagonal entries of a stiffness, which stand in a table of their own
-STIFFNESSES = ("kxx", "kyy", "kzz", "kthx", "kthy", "kthz")
 
 
 class Model(BaseModel):
@@ -88,7 +87,7 @@ class Model(BaseModel):
         word = OTHER_WORDS.get(key.lower())
         if word in known:
             return word
-        if "stiffness" in known and key in STIFFNESSES:
+        if "stiffness" in known and key in STIFFNESS_NAMES:  # which stand in a table of their own
             return f"stiffness.{key}"
         inside = [name for name in known if key in _keys_of(cls.model_fields.get(name))]
         return near(key, known) or (f"{inside[0]}.{key}" if inside else "")
