@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import functools
-import io
 import re
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
@@ -81,21 +80,15 @@ def _drawn(name: str, make: Callable[[], Any], kind: str) -> str | None:
     """One drawing of a chart: an <svg> of a class, in the colours of the page."""
     import matplotlib
 
+    from solidgear.report.paper import written
+
     with matplotlib.rc_context():
         matplotlib.rcdefaults()  # the user's own matplotlibrc must not change a report
         matplotlib.rcParams.update({**STYLE, "svg.hashsalt": f"solidgear {name}"})
         figure = make()
         if figure is None:
             return None
-        for part in figure.findobj(lambda one: one.get_rasterized()):
-            part.set_rasterized(False)  # pixels would keep their colours in the dark
-        target = io.BytesIO()
-        figure.savefig(
-            target,
-            format="svg",
-            metadata={"Date": None, "Creator": None, "Format": None, "Type": None},
-        )
-    svg = with_readings(_embeddable(target.getvalue().decode(), name), figure)
+        svg = with_readings(_embeddable(written(figure), name), figure)
     return for_dark_too(svg.replace("<svg", f'<svg class="{kind}"', 1))
 
 

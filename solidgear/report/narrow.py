@@ -64,18 +64,18 @@ class NarrowFigure(Figure):
         settings |= {"loc": "outside lower left", "ncols": 1}
         return super().legend(*handles, **settings)
 
-    def savefig(self, *where: Any, **settings: Any) -> None:
-        """Make what is written fit the paper, and write the figure."""
+    def fit(self) -> None:
+        """Make what is written fit the paper, and put everything in its place."""
         self._label_panels()
         self._thin_ticks()
         self._arrange()
-        self._wrap_words()
-        self._part_legend()
-        self._arrange()
-        self._turn_labels()
-        if any(ax.get_aspect() != "auto" for ax in self.axes):
-            self._cut_off()
-        super().savefig(*where, **settings)
+        wrapped = self._wrap_words()
+        if self._part_legend() or wrapped:
+            self._arrange()
+        if self._turn_labels():
+            self._arrange()
+        if any(ax.get_aspect() != "auto" for ax in self.axes) and self._cut_off():
+            self._arrange()
 
     def _thin_ticks(self) -> None:
         """No more numbers below a panel than there is room for."""
@@ -102,8 +102,9 @@ class NarrowFigure(Figure):
                 if ax.axison and not ax.get_ylabel():
                     ax.set_ylabel(grid[row, 0].get_ylabel())
 
-    def _wrap_words(self) -> None:
-        """Titles and labels in lines that fit the width."""
+    def _wrap_words(self) -> bool:
+        """Titles and labels in lines that fit the width; whether any had to be changed."""
+        changed = False
         across = self.get_figwidth() * self.dpi
         titles: list[Any] = [self._suptitle, self._supxlabel]
         panels: list[Any] = self.axes
@@ -111,19 +112,22 @@ class NarrowFigure(Figure):
             titles += [ax.title, ax._left_title, ax.xaxis.label]
         for text in titles:
             if text is not None and text.get_text():
-                _wrapped(text, across - max(text.get_window_extent().x0, 0.0))
+                room = across - max(text.get_window_extent().x0, 0.0)
+                changed = _wrapped(text, room) or changed
         for ax in self.axes:
             labels = [label.get_text() for label in ax.get_yticklabels()]
             sizes = [label.get_window_extent().width for label in ax.get_yticklabels()]
             if max(sizes, default=0.0) > BESIDE * across:
                 letters = int(BESIDE * across / max(sizes) * max(map(_longest, labels)))
                 ax.set_yticks(ax.get_yticks(), [_filled(label, letters) for label in labels])
+                changed = True
+        return changed
 
-    def _part_legend(self) -> None:
-        """A legend of the figure stands above what is written at its foot."""
+    def _part_legend(self) -> bool:
+        """A legend of the figure stands above what is written at its foot; whether there are both."""
         foot, engine = self._supxlabel, cast("ConstrainedLayoutEngine", self.get_layout_engine())
-        if foot is None or not foot.get_text() or engine is None:
-            return
+        if foot is None or not foot.get_text() or engine is None or not self.legends:
+            return False
         high = self.get_figheight() * self.dpi
         for legend in self.legends:
             # the layout makes room for the higher one of the two only
@@ -131,10 +135,11 @@ class NarrowFigure(Figure):
             gap = FOOT / self.get_figheight()
             legend.set_bbox_to_anchor((0.0, below + gap))
             engine.set(rect=(0.0, own + gap, 1.0, 1.0 - own - gap))
+        return True
 
-    def _turn_labels(self) -> None:
-        """Names below a panel are turned where they would run into one another."""
-        self.draw_without_rendering()
+    def _turn_labels(self) -> bool:
+        """Names below a panel are turned where they would run into one another; whether any were."""
+        turned = False
         for ax in self.axes:
             labels = [
                 one for one in ax.get_xticklabels() if one.get_text() and not one.get_rotation()
@@ -143,25 +148,30 @@ class NarrowFigure(Figure):
             if any(one.x1 > other.x0 for one, other in zip(boxes, boxes[1:])):
                 for label in labels:
                     label.set(rotation=TURNED, ha="right", rotation_mode="anchor")
+                turned = True
+        return turned
 
-    def _cut_off(self) -> None:
-        """No empty paper above and below a panel that keeps its proportions."""
-        self._arrange()
+    def _cut_off(self) -> bool:
+        """No empty paper above and below a panel that keeps its proportions; whether there was any."""
         empty = self.get_figheight() - self.get_tightbbox().height
         if self._grids and empty > EMPTY:
             self.set_figheight(self.get_figheight() - empty + EMPTY)
+            return True
+        return False
 
 
 def _longest(text: str) -> int:
     return max(map(len, text.split("\n")))
 
 
-def _wrapped(text: Any, room: float) -> None:
-    """A text in lines that fit a room, pixels."""
+def _wrapped(text: Any, room: float) -> bool:
+    """Put a text in lines that fit a room, pixels; whether it did not."""
     size = text.get_window_extent().width
     if size > FULL * room:
         letters = int(FULL * room / size * _longest(text.get_text()))
         text.set_text(_filled(text.get_text(), letters))
+        return True
+    return False
 
 
 def _filled(text: str, letters: int) -> str:

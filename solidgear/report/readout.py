@@ -111,7 +111,7 @@ def readings(figure: Any) -> list[dict[str, Any]]:
         downwards), ``told`` (what, unit, values).
     """
     out = []
-    for artist in figure.findobj(lambda one: hasattr(one, "reading")):
+    for artist in (one for ax in figure.axes for one in ax.artists if hasattr(one, "reading")):
         reading: Reading = artist.reading
         at = artist.axes.transData.transform(np.column_stack([reading.x, reading.y]))
         at *= PER_INCH / figure.dpi
