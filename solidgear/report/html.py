@@ -14,7 +14,7 @@ import logging
 import os
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 from solidgear.evidence.record import Record, VerdictRecord
 from solidgear.machine.whole_file import whole
@@ -75,6 +75,7 @@ def write_report(
     images: Mapping[str, Picture] | None = None,
     units: str | Units | None = None,
     viewer: str = "",
+    drawn: Drawn | None = None,
 ) -> Path:
     """Write ``report.html`` into `folder`.
 
@@ -92,6 +93,8 @@ def write_report(
     viewer : str
         HTML that shows mode shapes, for the section of the mode shape, taken as it is: none of it
         may come from a scene unescaped.
+    drawn : Drawn, optional
+        The charts, where :func:`drawn_charts` has drawn them before.
 
     Returns
     -------
@@ -108,7 +111,7 @@ def write_report(
     folder.mkdir(parents=True, exist_ok=True)
     target = folder / "report.html"
     with whole(target) as partial:
-        page = render_page(record, folder, images, units, viewer)
+        page = render_page(record, folder, images, units, viewer, drawn)
         partial.write_text(page, encoding="utf-8")
     return target
 
@@ -119,23 +122,26 @@ def render_page(
     images: Mapping[str, Picture] | None = None,
     units: str | Units | None = None,
     viewer: str = "",
+    drawn: Drawn | None = None,
 ) -> str:
     """The page as text; parameters and errors are those of `write_report`."""
     from markupsafe import Markup
 
     record = as_record(found)
     chosen = units_named(units or record.shown_in)
-    warnings = list(record.warnings)
-    drawn = _drawn(record, folder, warnings)
+    drawn = drawn or drawn_charts(record, folder)
     shown = {
         **_tables(record, chosen),
         **_pictures(record, folder, images),
-        "charts": {name: Markup(svg.decode()) if svg else None for name, svg in drawn.items()},
+        "charts": {name: Markup(svg.decode()) if svg else None for name, svg in drawn.svg.items()},
         "race": race_tables.section(folder, record.scene),
         "viewer": Markup(viewer) if viewer else _viewer(record, folder),
     }
     return template("report.html").render(
-        **_opening(record, chosen), **_contents(shown), **shown, warnings=warnings
+        **_opening(record, chosen),
+        **_contents(shown),
+        **shown,
+        warnings=[*record.warnings, *drawn.failed],
     )
 
 
@@ -179,22 +185,42 @@ def _contents(shown: Mapping[str, Any]) -> dict[str, Any]:
     }
 
 
-def _drawn(
-    record: Record, folder: str | os.PathLike | None, warnings: list[str]
-) -> dict[str, bytes | None]:
-    """The charts by name; what could not be drawn is added to the warnings."""
-    drawn = {}
+class Drawn(NamedTuple):
+    """The charts of a page.
+
+    Attributes
+    ----------
+    svg : dict of str to bytes
+        By name; None where there is nothing to draw.
+    failed : list of str
+        A sentence for every chart that could not be drawn.
+    """
+
+    svg: dict[str, bytes | None]
+    failed: list[str]
+
+
+def drawn_charts(found: Record | Mapping[str, Any], folder: str | os.PathLike | None) -> Drawn:
+    """All charts of the page of a record, which need none of its pictures.
+
+    Parameters
+    ----------
+    found : Record or mapping
+    folder : path, optional
+        Of the page, where a race may have left its rows.
+    """
+    record, out = as_record(found), Drawn({}, [])
     for name, chart in {
         **charts.CHARTS,
         "speed": lambda found: race_tables.chart(folder, found.scene),
     }.items():
         try:
-            drawn[name] = chart(record)
+            out.svg[name] = chart(record)
         except Exception as error:  # a picture must never cost the reader the numbers
             log.warning("chart %s: %s", name, error, exc_info=True)
-            warnings.append(f"the chart of {name} could not be drawn: {error}")
-            drawn[name] = None
-    return drawn
+            out.failed.append(f"the chart of {name} could not be drawn: {error}")
+            out.svg[name] = None
+    return out
 
 
 def _opening(record: Record, units: Units) -> dict[str, Any]:

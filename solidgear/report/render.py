@@ -30,6 +30,8 @@ PACKAGES = (
 )
 WINDOW = "VTK_DEFAULT_OPENGL_WINDOW"
 ARRAYS = ("points", "displacement", "faces", "triangles", "lines")
+#: what a child writes to its standard error
+SAID = "said.txt"
 #: a shape as it is, without a caption
 STILL = ((1.0, ""),)
 
@@ -93,30 +95,123 @@ def render_modes(jobs: Iterable[RenderJob], *, timeout: float = 120) -> list[Ren
     list of RenderResult
         One per job, in order. Nothing is raised for a picture that could not be drawn or written.
     """
-    jobs = list(jobs)
-    if not jobs:
-        return []
-    deadline = time.monotonic() + timeout
-    with tempfile.TemporaryDirectory(prefix="solidgear-render-") as folder:
-        room = Path(folder)
+    with Drawing(jobs, timeout=timeout) as drawing:
+        return drawing.results()
+
+
+class Drawing:
+    """Pictures being drawn by a child, while the caller does something else.
+
+    As a context manager: the child starts where it is entered, and is gone where it is left.
+
+    Parameters
+    ----------
+    jobs, timeout
+        As of :func:`render_modes`; the time runs from the start.
+    """
+
+    def __init__(self, jobs: Iterable[RenderJob], *, timeout: float = 120):
+        self.jobs, self.timeout = list(jobs), timeout
+        self._child: subprocess.Popen | None = None
+
+    def __enter__(self) -> Drawing:
+        self._deadline = time.monotonic() + self.timeout
+        self._folder = tempfile.TemporaryDirectory(prefix="solidgear-render-")
+        self._windows = _windows()
+        try:
+            if self.jobs:
+                self._hand_over()
+                self._end = self._start()
+        except BaseException:
+            self.__exit__()
+            raise
+        return self
+
+    def __exit__(self, *_) -> None:
+        if self._child is not None and self._child.poll() is None:
+            self._child.kill()
+            self._child.wait()
+        self._folder.cleanup()
+
+    def results(self) -> list[RenderResult]:
+        """Wait for the pictures and put them in their places.
+
+        Returns
+        -------
+        list of RenderResult
+            One per job, in order.
+        """
+        if not self.jobs:
+            return []
+        end = self._end or self._wait()
+        # A child that reached the end of its list has said all there is to say.
+        while end and self._windows and self._left() > 0:
+            end = self._start() or self._wait()
+        works = (self._room / "window").exists()
+        return [
+            _collect(self._room, i, Path(job.path), end, works, self.timeout)
+            for i, job in enumerate(self.jobs)
+        ]
+
+    @property
+    def _room(self) -> Path:
+        return Path(self._folder.name)
+
+    def _left(self) -> float:
+        return self._deadline - time.monotonic()
+
+    def _hand_over(self) -> None:
+        """The jobs as files, for the child to read."""
         arrays = {
             f"{i}.{name}": getattr(job.surface, name)
-            for i, job in enumerate(jobs)
+            for i, job in enumerate(self.jobs)
             for name in ARRAYS
         }
-        np.savez(room / "surfaces.npz", **arrays)
-        told = [{"title": j.title, "frames": list(j.frames), "along": j.along} for j in jobs]
-        (room / "jobs.json").write_text(json.dumps(told), encoding="utf-8")
-        end = ""
-        for window in _windows():
-            end = _child(room, window, deadline - time.monotonic())
-            # A child that reached the end of its list has said all there is to say.
-            if not end or deadline - time.monotonic() <= 0:
-                break
-        works = (room / "window").exists()
-        return [
-            _collect(room, i, Path(job.path), end, works, timeout) for i, job in enumerate(jobs)
-        ]
+        np.savez(self._room / "surfaces.npz", **arrays)
+        told = [{"title": j.title, "frames": list(j.frames), "along": j.along} for j in self.jobs]
+        (self._room / "jobs.json").write_text(json.dumps(told), encoding="utf-8")
+
+    def _start(self) -> str:
+        """Start a child on what is still to be drawn, in the next window; why it could not, if so."""
+        env = dict(os.environ)
+        window = self._windows.pop(0)
+        if window:
+            env[WINDOW] = window
+        # The child must find the same solidgear, wherever the caller runs.
+        here = str(Path(__file__).resolve().parents[2])
+        env["PYTHONPATH"] = os.pathsep.join(filter(None, [here, env.get("PYTHONPATH")]))
+        command = [sys.executable, "-m", "solidgear.report.drawing", str(self._room)]
+        try:
+            # into a file: nobody empties a pipe meanwhile
+            with (self._room / SAID).open("wb") as said:
+                self._child = subprocess.Popen(
+                    command,
+                    env=env,
+                    stdin=subprocess.DEVNULL,
+                    stdout=subprocess.DEVNULL,
+                    stderr=said,
+                )
+        except OSError as error:
+            return f"could not be started ({error})"
+        return ""
+
+    def _wait(self) -> str:
+        """Wait for the child; how it died, or nothing."""
+        child = self._child
+        assert child is not None
+        try:
+            child.wait(max(self._left(), 0.1))
+        except subprocess.TimeoutExpired:
+            child.kill()
+            child.wait()
+            return "timeout"
+        if child.returncode == 0:
+            return ""
+        if child.returncode < 0:
+            return f"was ended by signal {-child.returncode}"
+        text = (self._room / SAID).read_text(encoding="utf-8", errors="replace")
+        last = next((line.strip() for line in reversed(text.splitlines()) if line.strip()), "")
+        return f"ended with status {child.returncode}" + (f" ({last[:200]})" if last else "")
 
 
 def _windows() -> list[str | None]:
@@ -128,36 +223,6 @@ def _windows() -> list[str | None]:
         "vtkEGLRenderWindow",
         "vtkOSOpenGLRenderWindow",
     ]
-
-
-def _child(room: Path, window: str | None, seconds: float) -> str:
-    """Run one child on what is still to be drawn; returns how it died, or nothing."""
-    env = dict(os.environ)
-    if window:
-        env[WINDOW] = window
-    # The child must find the same solidgear, wherever the caller runs.
-    here = str(Path(__file__).resolve().parents[2])
-    env["PYTHONPATH"] = os.pathsep.join(filter(None, [here, env.get("PYTHONPATH")]))
-    command = [sys.executable, "-m", "solidgear.report.drawing", str(room)]
-    try:
-        done = subprocess.run(
-            command,
-            env=env,
-            stdin=subprocess.DEVNULL,
-            capture_output=True,
-            timeout=max(seconds, 0.1),
-            errors="replace",
-        )
-    except subprocess.TimeoutExpired:
-        return "timeout"
-    except OSError as error:
-        return f"could not be started ({error})"
-    if done.returncode == 0:
-        return ""
-    if done.returncode < 0:
-        return f"was ended by signal {-done.returncode}"
-    last = next((line.strip() for line in reversed(done.stderr.splitlines()) if line.strip()), "")
-    return f"ended with status {done.returncode}" + (f" ({last[:200]})" if last else "")
 
 
 def _collect(

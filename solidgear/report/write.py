@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import os
 import tempfile
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -18,6 +18,7 @@ from solidgear.report.reading import model_name
 if TYPE_CHECKING:
     from solidgear.body import Body
     from solidgear.evidence.record import Record
+    from solidgear.report.render import RenderJob, RenderResult
     from solidgear.solve.modes import ModeSet
     from solidgear.studies.comparison import Comparison
 
@@ -38,7 +39,8 @@ def write_all(
     could not be drawn or written. After an interrupt there are numbers and a report, and no shapes:
     who has pressed Ctrl-C does not want to wait for them.
     """
-    from solidgear.report.html import write_report
+    from solidgear.report.html import drawn_charts, write_report
+    from solidgear.report.render import Drawing
     from solidgear.report.viewer import TURNED
 
     record = comparison.record
@@ -59,19 +61,24 @@ def write_all(
                 *([TURNED] if shapes and renders else []),
             ]
             _write_json(folder / "results.json", record)
-            for model, rung in shapes.items():
-                target = folder / f"modes_{model}.vtu"
-                _try(record, f"vtu of {model}", _write_vtu, rung, target)
             if renders and shapes:
                 progress("renders")
-                _draw(comparison, folder)
+            jobs = _jobs(comparison, folder) if renders else {}
+            # They are drawn in a process beside this one, which writes and draws the rest meanwhile.
+            with Drawing(jobs.values()) as drawing:
+                for model, rung in shapes.items():
+                    target = folder / f"modes_{model}.vtu"
+                    _try(record, f"vtu of {model}", _write_vtu, rung, target)
+                progress("report")
+                drawn = drawn_charts(record, folder)
+                _note(record, jobs, drawing.results())
+            if renders and shapes:
                 _try(record, "viewer of mode shapes", _write_turned, comparison, folder)
-            progress("report")
             record.files = [
                 name for name in record.files if name == "report.html" or (folder / name).exists()
             ]
             _write_json(folder / "results.json", record)
-            write_report(record, folder)
+            write_report(record, folder, drawn=drawn)
         except OSError as error:
             raise SolidgearError(
                 f"--out {out}: writing stopped ({error.strerror or error}); "
@@ -118,12 +125,11 @@ def _job(body, modes, name: str, path: Path, model: str):
     return RenderJob(body.surface(mode.vectors[0]), title, path)
 
 
-def _draw(comparison: Comparison, folder: Path) -> None:
-    from solidgear.report.render import RenderJob, render_modes
-
+def _jobs(comparison: Comparison, folder: Path) -> dict[str, RenderJob]:
+    """The pictures to be drawn, by model."""
     record = comparison.record
     jobs: dict[str, RenderJob] = {}
-    for model, rung in comparison.rungs.items():
+    for model, rung in (comparison.rungs if record.complete else {}).items():
         name = _drawn_mode(rung.modes)
         if name is None:
             continue
@@ -134,8 +140,13 @@ def _draw(comparison: Comparison, folder: Path) -> None:
             jobs[model] = _job(rung.body, rung.modes, name, path, model_name(record, model))
 
         _try(record, f"render of {model}", add)
+    return jobs
+
+
+def _note(record: Record, jobs: Iterable[str], results: Iterable[RenderResult]) -> None:
+    """What became of the pictures."""
     reasons: dict[str, list[str]] = {}
-    for model, done in zip(jobs, render_modes(jobs.values())):
+    for model, done in zip(jobs, results):
         if done.ok:
             record.images[model] = done.path.name
         else:
