@@ -3,15 +3,22 @@
 import colorsys
 import json
 import re
+from collections import Counter
 from html import unescape
+from io import BytesIO
 from pathlib import Path
 
+import matplotlib
 import pytest
+from matplotlib.figure import Figure
+from matplotlib.layout_engine import ConstrainedLayoutEngine
 
 from solidgear.report import night
 from solidgear.report.chart_style import NARROW_WIDTH, legend_columns, new_figure, svg_of
+from solidgear.report.chart_style import STYLE as STYLE_OF_CHARTS
 from solidgear.report.charts import CHARTS
 from solidgear.report.night import INK, PAPER, in_the_dark, luminance
+from solidgear.report.paper import WITHOUT, written
 from solidgear.report.readout import PER_INCH
 from tests.made_up_run import fixture_results
 
@@ -95,6 +102,54 @@ def test_the_narrow_drawing_says_what_the_wide_one_does(drawings):
             series = json.loads(unescape(found[1])) if found else []
             told.append(sorted([s["name"], s["colour"], s["told"]] for s in series))
         assert told[0] == told[1], name
+
+
+def example_figure(*_):
+    """Panels whose layout depends on what is written: decades, a bar of colours, legends, a foot."""
+    figure = new_figure(9.0, 4.0)
+    first, second = figure.subplots(1, 2)
+    first.loglog([1, 1e3], [2e-7, 3], label="a curve")
+    first.set_title("twelve decades, and a title")
+    first.legend()
+    drawn = second.pcolormesh([[0.0, 1.0], [2.0, 3.0]])
+    figure.colorbar(drawn, ax=second, label="per cent")
+    second.set_aspect("equal")
+    figure.legend(loc="outside lower left")
+    figure.supxlabel("a foot", x=0.01, ha="left")
+    return figure
+
+
+def test_a_figure_is_laid_out_as_matplotlib_would_save_it():
+    """To the byte: one layout and one drawing, measured by one renderer, where savefig takes two."""
+    theirs, ours = BytesIO(), []
+    with matplotlib.rc_context({**STYLE_OF_CHARTS, "svg.hashsalt": "one"}):
+        figure = example_figure()
+        for part in figure.findobj(lambda one: one.get_rasterized()):
+            part.set_rasterized(False)
+        figure.savefig(theirs, format="svg", metadata=WITHOUT)
+        # the second is measured with what the renderer remembers of the first
+        ours = [written(example_figure()) for _ in range(2)]
+    assert ours == [theirs.getvalue().decode()] * 2
+
+
+def test_a_chart_is_drawn_once_wide_and_once_narrow(monkeypatch):
+    """And laid out no more often than what is fitted to narrow paper asks for."""
+    calls = Counter()
+
+    def counted(owner, name):
+        original = getattr(owner, name)
+
+        def call(*args, **more):
+            calls[name] += 1
+            return original(*args, **more)
+
+        monkeypatch.setattr(owner, name, call)
+
+    counted(Figure, "draw")
+    counted(ConstrainedLayoutEngine, "execute")
+    svg_of("example", example_figure)
+    # narrow: before, with the legend above the foot, and on paper without its empty part
+    assert calls["draw"] == 2 and calls["execute"] <= 1 + 3
 
 
 def test_panels_stand_below_one_another_and_keep_their_names():

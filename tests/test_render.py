@@ -4,6 +4,7 @@ import json
 import os
 import subprocess
 import sys
+import time
 from collections import Counter
 from pathlib import Path
 
@@ -20,7 +21,7 @@ from solidgear.errors import SolidgearError
 from solidgear.meshing.closed_form import volume_of
 from solidgear.report import render
 from solidgear.report.export import write_vtu
-from solidgear.report.render import PACKAGES, RenderJob, render_modes
+from solidgear.report.render import PACKAGES, Drawing, RenderJob, render_modes
 from solidgear.solve.modes import Mode
 
 ROOT = Path(__file__).parents[1]
@@ -221,6 +222,25 @@ def test_a_child_that_dies_or_hangs_is_survived(
     assert all(PACKAGES in r.reason for r in results)
     assert ("signal 11" in results[0].reason) == ("SIGSEGV" in death)
     assert not out.exists()
+
+
+def test_a_child_is_gone_when_its_caller_has_left(pinion, solved, tmp_path, monkeypatch):
+    """Pictures are drawn beside what the caller does; Ctrl-C in there leaves no process behind."""
+    fake, told = tmp_path / "python", tmp_path / "told"
+    fake.write_text(
+        f"#!{sys.executable}\nimport os, pathlib, time\n"
+        f"pathlib.Path({str(told)!r}).write_text(str(os.getpid()))\ntime.sleep(60)\n"
+    )
+    fake.chmod(0o755)
+    monkeypatch.setattr(render.sys, "executable", str(fake))
+    with pytest.raises(KeyboardInterrupt), Drawing(drawing(pinion, solved, tmp_path)):
+        while not (told.exists() and told.read_text()):
+            time.sleep(0.01)
+        os.kill(int(told.read_text()), 0)  # it is there
+        raise KeyboardInterrupt
+    with pytest.raises(ProcessLookupError):
+        os.kill(int(told.read_text()), 0)
+    assert not list(tmp_path.glob("*.png"))
 
 
 def test_the_child_starts_without_the_rest_of_the_package():
