@@ -2,18 +2,63 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
 import numpy as np
 
 from solidgear.body.surface import PIECES, Surface
 from solidgear.fidelity.assembly import reference
 
+if TYPE_CHECKING:
+    from solidgear.fidelity.solid_mesh import SolidMesh
 
-def solid_surface(geometry, vector) -> Surface:
+
+@dataclass(frozen=True, eq=False)
+class Outline:
+    """The boundary at rest, and how the motion of its points follows from that of the nodes.
+
+    Attributes
+    ----------
+    points : (n, 3) ndarray
+        m.
+    quads, triangles, lines : (m, 4), (m, 3), (m, 2) ndarray of int
+    parts : list of ((nb, q), (nb, e)) ndarray
+        Values of the basis in a face, and the unknowns of elements that have such a face.
+    first : (n,) ndarray of int
+        Where each point is found among all points of all faces.
+    """
+
+    points: np.ndarray
+    quads: np.ndarray
+    triangles: np.ndarray
+    lines: np.ndarray
+    parts: list[tuple[np.ndarray, np.ndarray]]
+    first: np.ndarray
+
+
+def solid_surface(geometry: SolidMesh, vector: np.ndarray | None) -> Surface:
     """The boundary of the volume mesh; faces of second order are divided, so that curved ones look
     curved.
     """
-    moved = np.zeros((geometry.nodes.shape[1], 3)) if vector is None else vector.reshape(-1, 3)
-    fields = np.column_stack([geometry.nodes.T, moved])
+    rest = geometry.outline
+    if vector is None:
+        moved = np.zeros_like(rest.points)
+    else:
+        moved = _on_faces(rest.parts, vector.reshape(-1, 3))[rest.first]
+    return Surface(rest.points, moved, rest.quads, rest.triangles, rest.lines)
+
+
+def _on_faces(parts: Iterable[tuple[np.ndarray, np.ndarray]], field: np.ndarray) -> np.ndarray:
+    """A field of the nodes at all points of all faces."""
+    return np.concatenate(
+        [np.einsum("bq,bef->eqf", value, field[dofs]).reshape(-1, 3) for value, dofs in parts]
+    )
+
+
+def outline(geometry: SolidMesh) -> Outline:
+    """What all surfaces of a mesh have in common, whatever moves it."""
     refdom, element, dofs = geometry.mesh.refdom, geometry.element, geometry.dofs
     linear = len(dofs) == refdom.nnodes
     # Two pieces end at the nodes in the middle of edges; more only pay where the mesh is coarse
@@ -26,16 +71,12 @@ def solid_surface(geometry, vector) -> Surface:
     # Every rim point lies k pieces along the edge from corner a to corner b (k = 0 at a).
     a = np.repeat(np.arange(corners), m)
     b, k = (a + 1) % corners, np.tile(np.arange(m), corners)
-    values, keys, faces, lines, done = [], [], [], [], 0
+    parts, keys, faces, lines, done = [], [], [], [], 0
     for place, elements in geometry.local_facets(geometry.boundary):
         corner = refdom.p[:, refdom.facets[place]]
         s, t = corner[:, 1] - corner[:, 0], corner[:, -1] - corner[:, 0]
         points = corner[:, :1] + np.outer(s, grid[:, 0] / m) + np.outer(t, grid[:, 1] / m)
-        values.append(
-            np.einsum(
-                "bq,bef->eqf", reference(element, points)[0], fields[dofs[:, elements]]
-            ).reshape(-1, 6)
-        )
+        parts.append((reference(element, points)[0], dofs[:, elements]))
         serial = done + np.arange(len(elements) * len(grid)).reshape(-1, len(grid))
         done += serial.size
         # A point inside a face is its own; one on an edge is named by the edge's vertices, so that
@@ -54,11 +95,10 @@ def solid_surface(geometry, vector) -> Surface:
         np.concatenate(keys), axis=0, return_index=True, return_inverse=True
     )
     number = number.ravel()
-    at = np.concatenate(values)[first]
     found = {corners: number[np.concatenate(faces)]}
     edges = np.unique(np.sort(number[np.concatenate(lines)], axis=1), axis=0)
     quads, triangles = (found.get(n, np.zeros((0, n), int)) for n in (4, 3))
-    return Surface(at[:, :3], at[:, 3:], quads, triangles, edges)
+    return Outline(_on_faces(parts, geometry.nodes.T)[first], quads, triangles, edges, parts, first)
 
 
 def _grid(m: int, corners: int):

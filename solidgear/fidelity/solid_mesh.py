@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
+from typing import TYPE_CHECKING
 
 import numpy as np
 from skfem import Element, Mesh
@@ -14,6 +15,9 @@ from skfem.refdom import RefTet, RefTri
 
 from solidgear.body.surface import Surface, Volume
 from solidgear.fidelity.assembly import reference, tabulate, unknowns
+
+if TYPE_CHECKING:
+    from solidgear.fidelity.solid_drawing import Outline
 
 ELEMENTS = {
     "tet4": ElementTetP1,
@@ -64,6 +68,13 @@ class SolidMesh:
     def boundary(self) -> np.ndarray:
         """Indices of the facets on the surface."""
         return self.mesh.boundary_facets()
+
+    @cached_property
+    def outline(self) -> Outline:
+        """How the boundary is drawn."""
+        from solidgear.fidelity.solid_drawing import outline
+
+        return outline(self)
 
     def local_facets(self, facets: np.ndarray):
         """Group facets by their place in the element they are seen from: yields (place, elements)."""
