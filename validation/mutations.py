@@ -55,7 +55,7 @@ MUTATIONS = (
         "Grading.seat_layers",
         "return max(0, more)",
         "return 0",
-        "tests/test_answer.py::test_two_coarse_meshes_see_what_a_narrow_seat_indents",
+        "tests/test_answer_bars.py::test_two_coarse_meshes_see_what_a_narrow_seat_indents",
     ),
     Mutation(
         "a narrow seat on a plain bar has no layer",
@@ -63,7 +63,7 @@ MUTATIONS = (
         "Grading.seat_layers",
         "return int(width < DEEP * max(ungraded_depth(segments, k) for k in under) * (1 - ROUNDING))",
         "return 0",
-        "tests/test_answer.py::test_seats_narrower_than_a_bar_is_thick_are_held_by_two_meshes",
+        "tests/test_answer_bars.py::test_seats_narrower_than_a_bar_is_thick_are_held_by_two_meshes",
     ),
     Mutation(
         "phase of the cut faces turned the other way",
