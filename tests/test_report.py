@@ -18,7 +18,7 @@ from solidgear.errors import SolidgearError
 from solidgear.evidence.record import SCHEMA, Record
 from solidgear.evidence.recording import recorded
 from solidgear.report import charts, input_tables, readout
-from solidgear.report.html import render_page, write_report
+from solidgear.report.html import drawn_charts, render_page, write_report
 from solidgear.report.terminal import (
     final_table,
     matrix_table,
@@ -33,13 +33,19 @@ ROOT = Path(__file__).parent.parent
 
 
 @pytest.fixture(scope="module")
-def page():
-    return render_page(fixture_results())
+def drawn():
+    """Charts, which are the same in all units."""
+    return drawn_charts(fixture_results(), None)
 
 
 @pytest.fixture(scope="module")
-def si_page():
-    return render_page(fixture_results(), units="si")
+def page(drawn):
+    return render_page(fixture_results(), drawn=drawn)
+
+
+@pytest.fixture(scope="module")
+def si_page(drawn):
+    return render_page(fixture_results(), units="si", drawn=drawn)
 
 
 def text_of(page):
