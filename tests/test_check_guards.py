@@ -19,7 +19,7 @@ from solidgear.scene import STEEL, Ask, Bearing, Fillet, Port, Scene, Segment
 from solidgear.studies import check, guards
 from solidgear.studies.check import cautions, check_scene, notices
 from solidgear.studies.guards import GUARDS, Notice, elements, models
-from solidgear.studies.guards.notice import everything
+from solidgear.studies.guards.notice import against, everything
 from solidgear.studies.guards.probe import Probe
 from validation.shipped import shafts_of_revolution
 
@@ -780,3 +780,8 @@ def test_with_features_every_model_that_is_advised_has_a_verdict(name, solids):
     assert of_lumped["features"] == "open" and "beam_against_solid" not in of_lumped
     of_seat = next(r for r in found["records"] if r["guard"] == "point_beyond_surface")
     assert solids <= set(of_seat["models"])
+
+
+def test_more_than_twice_as_large_is_told_as_a_factor():
+    told = [against(gap, "larger", "smaller") for gap in (-0.5, 0.0123, 1.0, 12.8)]
+    assert told == ["50 % smaller than", "1.23 % larger than", "100 % larger than", "13.8 times"]

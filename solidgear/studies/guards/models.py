@@ -18,7 +18,7 @@ from solidgear.fidelity.ladder import LADDER
 from solidgear.fidelity.rung import BEAM, LUMPED
 from solidgear.fidelity.shoulder import MISSING, grown
 from solidgear.meshing.corners import sharpest_corner
-from solidgear.studies.guards.notice import Notice, Notices, beams, beyond
+from solidgear.studies.guards.notice import Notice, Notices, against, beams, beyond
 from solidgear.studies.guards.probe import Probe
 
 if TYPE_CHECKING:
@@ -55,15 +55,15 @@ def beam_against_solid(probe: Probe) -> Notices:
         }
         kind, worst = next((kind, rows[0]) for kind, rows in found.items() if rows)
         name, gap = worst["quantity"], worst["relative"]
-        if diagonals(name):
-            side = "of the geometric mean of its two diagonal entries away from"
-        elif name.startswith("C_"):
-            side = f"{'larger' if gap > 0 else 'smaller'} than"
+        if diagonals(name):  # a share of their mean is no ratio of the two numbers
+            share = f"{abs(gap):.3g} times" if abs(gap) > 1 else f"{100 * abs(gap):.3g} % of"
+            told = f"{share} the geometric mean of its two diagonal entries away from"
         else:
-            side = f"{'higher' if gap > 0 else 'lower'} than"
+            words = ("larger", "smaller") if name.startswith("C_") else ("higher", "lower")
+            told = against(gap, *words)
         called = in_words(name, probe.main)
         text = (
-            f"{called} of the {LADDER[model].title} is {100 * abs(gap):.3g} % {side} that of a "
+            f"{called} of the {LADDER[model].title} is {told} that of a "
             f"light harmonic solid {TIES[worst['attachment']]}"
         )
         if kind == verdict.BEYOND:
@@ -363,8 +363,8 @@ def lumped_against_solid(probe: Probe) -> Notices:
     band = bands["bending 1"].gci if "bending 1" in bands else 0.0
     kind = gap_verdict(gap, CAUTIOUS * band, tolerance)
     text = (
-        f"first bending of the lumped model is {100 * abs(gap):.3g} % "
-        f"{'higher' if gap > 0 else 'lower'} than that of a light harmonic solid"
+        f"first bending of the lumped model is {against(gap, 'higher', 'lower')} "
+        "that of a light harmonic solid"
     )
     if kind == verdict.BEYOND:
         yield Notice(

@@ -84,3 +84,17 @@ def slip_in_units(
         return ""
     told = f" ({legend})" if legend else ""
     return f"probably a slip in units: {'; '.join(out)}{told}; check the number and its unit"
+
+
+def against(gap: float, more: str, less: str) -> str:
+    """What a number is of another, by the gap between them as a share of the other: in per cent,
+    and as a factor where it is more than twice as large.
+
+    Examples
+    --------
+    >>> against(-0.12, "higher", "lower"), against(12.8, "higher", "lower")
+    ('12 % lower than', '13.8 times')
+    """
+    if gap > 1:
+        return f"{1 + gap:.3g} times"
+    return f"{100 * abs(gap):.3g} % {more if gap > 0 else less} than"
