@@ -193,7 +193,8 @@ def _judged(
 ) -> Judgement:
     """What the lumped rung is worth: its source's stiffness, and its own first bending."""
     if not base.valid:
-        why = f"its stiffness is that of the {LADDER[source].title}, which is out: {base.why_not}"
+        state = base.why_not if base.open else f"which is out: {base.why_not}"
+        why = f"its stiffness is that of the {LADDER[source].title}, {state}"
         return Judgement(False, why, open=base.open)
     if against := spoken_against("lumped", notices):
         return Judgement(False, against[0])

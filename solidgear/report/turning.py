@@ -78,10 +78,12 @@ class Turned:
     def index(self, name: str) -> int:
         """Place of the shape of that name, also where bending is named by its plane; -1 if none."""
         names = [shape.name for shape in self.shapes]
-        for wanted in (name, name.replace("bending ", "bending z "), name.replace(" z ", " ")):
-            if wanted in names:
-                return names.index(wanted)
-        return -1
+        planes = {name.replace("bending ", f"bending {plane} ") for plane in "zx"}
+        # shapes ascend, so that the first of both planes is the lower
+        lower = next((one for one in names if one in planes), "")
+        plain = name.replace("bending z ", "bending ").replace("bending x ", "bending ")
+        found = [names.index(wanted) for wanted in (name, lower, plain) if wanted in names]
+        return found[0] if found else -1
 
 
 def turned(

@@ -134,15 +134,18 @@ class ModeSet(Displayed):
         Parameters
         ----------
         name : str
-            Such as ``bending 1``. Where bending is named by its plane, ``bending 1`` is ``bending z
-            1``: that of the plane of C_zz.
+            Such as ``bending 1``. Where bending is named by its plane, ``bending 1`` is the lower of
+            ``bending z 1`` and ``bending x 1``: whichever way a keyway looks, first bending is the
+            lowest.
 
         Returns
         -------
         Mode or None
         """
         every = {m.name: m for m in reversed((*self.modes, *self.beyond))}
-        return every.get(name) or every.get(name.replace("bending ", "bending z ", 1))
+        planes = [every.get(name.replace("bending ", f"bending {plane} ", 1)) for plane in "zx"]
+        there = [mode for mode in (every.get(name), *planes) if mode is not None]
+        return every.get(name) or min(there, key=lambda mode: mode.frequency_hz, default=None)
 
 
 @pinned
