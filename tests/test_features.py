@@ -203,6 +203,7 @@ BAD = {
     'length = "100 mm"': ('length = "160 mm"', "reaches from"),
     'width = "25 mm"': ('width = "110 mm"', "wider than the radius"),
     'ends = "round"': ('ends = "oval"', "ends"),
+    'angle = "0 deg"\n': ("angle = 90\n", 'write "90 deg"'),
     'segment = "shaft"': ('segment = "shift"', "unknown segment"),
     'kind = "keyway"': ('kind = "slot"', "kind"),
     'angle = "0 deg"': ('angle = "12 mm"', "not a unit of angle"),

@@ -19,6 +19,7 @@ from solidgear.meshing.mesh_file import mesh_from
 from solidgear.meshing.placing import TURNS, Placing
 from solidgear.report.export import CELLS, node_order
 from solidgear.scene import Keyway
+from solidgear.studies import check, round_part
 from validation.step_parts import shaft_step, with_unit, write_step
 
 ROOT = Path(__file__).parent.parent
@@ -96,6 +97,14 @@ def test_the_round_part_is_what_was_drawn():
         volume_of(segments) - volume(key, 0.02, 0.0), rel=2e-6
     )
     assert not scene.body.round
+    (told,) = [
+        n.sentence for n in check._beyond_the_segments(scene) if n.sentence.startswith("not of rev")
+    ]
+    assert "plain part" in told
+    round_body = scene.body.model_copy(update={"round_share": 1.0, "round_volume": 1 + 1e-15})
+    plain = scene.model_copy(update={"body": round_body})
+    assert not list(check._beyond_the_segments(plain))
+    assert "segments is that of the part" in next(round_part.described(plain)).sentence
     assert scene.body.round_volume == pytest.approx(volume_of(segments) / scene.body.volume)
 
 

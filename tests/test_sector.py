@@ -3,6 +3,7 @@ harmonic solid, and the scenes that are refused.
 """
 
 import math
+import re
 from pathlib import Path
 
 import numpy as np
@@ -16,6 +17,7 @@ from solidgear.meshing.closed_form import volume_of
 from solidgear.meshing.sector import volume_of_sector
 from solidgear.meshing.teeth import section_area, section_polar
 from solidgear.scene import BoltCircle, Keyway, Spline, Teeth
+from solidgear.scene.cyclic_rules import no_common_sector
 
 ROOT = Path(__file__).parent.parent
 TOOTHED = ROOT / "geometry" / "pinion_toothed.toml"
@@ -407,10 +409,11 @@ def test_a_model_that_says_it_fits_can_be_built():
 
     fillet = Fillet(name="root", y=0.06, radius=0.002)
     spline = Spline(name="s", segment="rod", count=7, angle=0.1, dedendum=0.5, model="sector")
+    blended = [shaft(f).with_changes(blends=(fillet,)) for f in (TEETH, BOLTS)]
     scenes = {
-        'no fillets or chamfers yet.*"root"': shaft(TEETH).with_changes(blends=(fillet,)),
+        'no fillets or chamfers yet.*"root"': blended[0],
         "no sector of a third": shaft(TEETH, BOLTS),
-        "gaps of spline .*turn it by": shaft(TEETH, spline),
+        "gaps of spline .*write angle": shaft(TEETH, spline),
     }
     for says, scene in scenes.items():
         for rung in ("sector", "solid"):
@@ -418,6 +421,11 @@ def test_a_model_that_says_it_fits_can_be_built():
                 sg.build(scene, rung)
             assert LADDER[rung].unfit(scene) in str(caught.value)
         assert "no model holds all that the scene has" in str(caught.value)
+    told = no_common_sector((TEETH, spline))
+    turned = spline.with_changes(angle=re.search('angle = "(.*)"', told)[1])
+    assert no_common_sector((TEETH, turned)) == ""  # as it was printed
+    smear, bolted = ("smear the teeth" in LADDER["sector"].unfit(s) for s in blended)
+    assert smear and not bolted  # holes are no teeth
     cone = shaft(TEETH.with_changes(model="pitch_cone")).with_changes(blends=(fillet,))
     assert "no fillets" in LADDER["sector"].unfit(cone) and not LADDER["solid"].unfit(cone)
 

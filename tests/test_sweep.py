@@ -113,6 +113,7 @@ def test_refused_variants_are_rows_that_say_why(finished):
     for row in rows:
         outside, negative = row["bearing.2.position"] == 0.9, row["bearing.2.scale"] == -1
         if outside:
+            assert row["status"].startswith('bearing "2" at 0.9 m: ')
             assert "inside the shaft" in row["status"]
         elif negative:
             assert 'bearing "2"' in row["status"] and "greater than zero" in row["status"]

@@ -17,6 +17,7 @@ from solidgear.cli.app import (
     UnitsOption,
     command,
     console,
+    share,
 )
 from solidgear.errors import SolidgearError
 
@@ -45,7 +46,12 @@ def answer(
     scene: SceneFile,
     tol: Annotated[
         float | None,
-        typer.Option("--tol", help="Relative error allowed, such as 1e-3; else the scene's own."),
+        typer.Option(
+            "--tol",
+            parser=share,
+            metavar="FLOAT",
+            help="Relative error allowed, such as 1e-3; else the scene's own.",
+        ),
     ] = None,
     ask: Annotated[
         str,

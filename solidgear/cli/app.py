@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import functools
+import re
 import sys
 from collections.abc import Callable, Collection
 from enum import StrEnum
@@ -92,9 +93,32 @@ AutoFidelityOption = Annotated[
         help="Model to solve with; auto: the cheapest whose bars are within --tol.",
     ),
 ]
+
+
+def share(text: str) -> float:
+    """A relative error from the command line."""
+    try:
+        return float(text)
+    except ValueError:
+        percent = text.strip().removesuffix("%").strip()
+        meant = f"{float(percent) / 100:g}" if _is_number(percent) else "0.01"
+        raise typer.BadParameter(
+            f'"{text}" is no plain number; a tolerance is a share: write {meant}'
+        ) from None
+
+
+def _is_number(text: str) -> bool:
+    return re.fullmatch(r"[0-9]*[.]?[0-9]+", text) is not None
+
+
 Tolerance = Annotated[
     float | None,
-    typer.Option("--tol", help="Of -f auto: relative error allowed; else the scene's own."),
+    typer.Option(
+        "--tol",
+        parser=share,
+        metavar="FLOAT",
+        help="Of -f auto: relative error allowed; else the scene's own.",
+    ),
 ]
 JsonFlag = Annotated[
     bool, typer.Option("--json", help="Print JSON for machines instead of tables; always SI.")

@@ -179,7 +179,8 @@ def _print(terminal, fact: BearingFacts) -> None:
     ]
     say(f"Displacement: {', '.join(moved) or 'none'}")
     terminal.print(matrix_table(fact.stiffness, "stiffness"))
-    if fact.spread is not None:
+    # a bearing that carries nothing has no stiffness at either end
+    if fact.spread is not None and np.any(fact.spread[1] > 0):
         ends = [
             f"{n} {engineering(low, 3)} to {engineering(high, 3)}"
             for n, low, high in zip(DOF_NAMES, *fact.spread)

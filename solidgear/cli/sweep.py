@@ -170,6 +170,9 @@ def sweep(
             f"{found.seconds_once:.1f} s; {new} variants of up to {found.basis} unknowns, "
             f"{1e3 * found.seconds_each:.1f} ms each; {found.refused} refused, {found.full} solved in full."
         )
+        if found.why:
+            others = "; others say theirs" if found.refused > 1 else ""
+            print(f"Refused: {found.why} (column status{others}).")
     for sentence in over_the_sweep(settled):
         print(sentence)
     ended(settled)

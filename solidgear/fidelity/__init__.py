@@ -13,6 +13,9 @@ if TYPE_CHECKING:
     from solidgear.body import Body
     from solidgear.scene.shaft import Shaft
 
+#: what to use instead, where there is nothing
+NO_MODEL = "no model holds all that the scene has"
+
 
 @pinned
 def build(scene: Shaft, fidelity: str, **options) -> Body:
@@ -59,7 +62,7 @@ def build(scene: Shaft, fidelity: str, **options) -> Body:
     unfit = rung.unfit(scene)
     if unfit:
         fit = [r.name for r in LADDER if r.build is not None and not r.unfit(scene)]
-        use = f"use {' or '.join(fit)}" if fit else "no model holds all that the scene has"
+        use = f"use {' or '.join(fit)}" if fit else NO_MODEL
         raise SolidgearError(f"{unfit}; {use}")
     options = rung.checked(rung.given(scene, options))
     refuse_too_large(scene, fidelity, options)

@@ -31,6 +31,7 @@ from solidgear.meshing.sector import (
     sector_mesh,
     sectors_of,
 )
+from solidgear.scene.cyclic_features import Spline, Teeth
 from solidgear.scene.cyclic_rules import mirror_angle, no_common_sector
 
 #: eigenvalues of pairs in a real matrix made of a complex one differ by rounding
@@ -194,9 +195,10 @@ def no_sector(scene: Any) -> str:
     features = cyclic_features(scene)
     if features and scene.corners:
         names = ", ".join(f'{c.kind} "{c.name}"' for c in scene.corners)
+        teeth = all(isinstance(f, (Teeth, Spline)) for f in features)
         return (
-            f"a sector holds no fillets or chamfers yet, and the scene has {names}: leave them out, "
-            'or smear the teeth (model = "pitch_cone")'
+            f"a sector holds no fillets or chamfers yet, and the scene has {names}: leave them out"
+            + ', or smear the teeth (model = "pitch_cone")' * teeth
         )
     return no_common_sector(features) if features else ""
 

@@ -125,9 +125,12 @@ def no_common_sector(features: Sequence[Any], count: int | None = None) -> str:
         pitch = 2 * math.pi / teeth.count
         apart = (middle(teeth, count) - middle(toothed[0], count) + pitch / 2) % pitch - pitch / 2
         if abs(apart) > SAME_ANGLE:
+            # in as many digits as it takes to be the same angle when written down
+            right = math.degrees((teeth.angle - apart) % pitch)
             return (
                 f'the gaps of {teeth.what} "{teeth.name}" do not lie behind those of the other '
-                f"teeth: no sector border runs between both; turn it by {-apart:.6g} rad"
+                f"teeth: no sector border runs between both; write angle = "
+                f'"{right:.11g} deg" for it'
             )
     return ""
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
-from typing import Annotated
+from typing import Annotated, Any
 
 from pydantic import BeforeValidator
 
@@ -16,7 +16,19 @@ from solidgear.scene.units import Position, quantity
 #: least size of a feature over the radius of the shaft; smaller ones ask for meshes without end
 SMALLEST = 1e-2
 
-Turn = Annotated[float, BeforeValidator(lambda value: quantity(value, "angle") % (2 * math.pi))]
+
+def _turn(value: Any) -> float:
+    """An angle within one turn, rad; a plain number beyond it was meant in degrees."""
+    angle = quantity(value, "angle")
+    if not isinstance(value, str) and abs(angle) > 2 * math.pi * (1 + 1e-9):
+        raise SceneError(
+            f"is more than a turn of 2 pi: a plain number is in rad; for degrees write "
+            f'"{angle:.6g} deg"'
+        )
+    return angle % (2 * math.pi)
+
+
+Turn = Annotated[float, BeforeValidator(_turn)]
 
 
 class OnSegment(Model):

@@ -20,6 +20,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, TypeVar
 from solidgear.display import Displayed
 from solidgear.errors import SolidgearError, nearest, show
 from solidgear.evidence.quantities import ACROSS, AT, QUANTITIES, described, judged, own_name
+from solidgear.fidelity import NO_MODEL
 from solidgear.fidelity.ladder import LADDER
 from solidgear.fidelity.rung import BEAM, SOLID
 from solidgear.machine.memory import one_run
@@ -31,6 +32,8 @@ if TYPE_CHECKING:
 
 C = TypeVar("C", bound=Climb)
 
+#: what tables head the first frequencies with
+SHORT = {"f1": "bending 1", "f2": "bending 2"}
 #: short words for quantities
 WORDS = {"bending": "bending 1", "axial": "axial 1", "torsion": "torsion 1"}
 #: below this, rounding of stiffness matrices decides what an answer is worth
@@ -190,7 +193,11 @@ def climbed(
                     continue
                 climb.stop(str(error) or "not enough memory")
             return climb, steps + climb.steps
-    failed = [f"{step.rung}: {step.why}" for step in steps if step.rung in LADDER.of(SOLID)]
+    whys: dict[str, list[str]] = {}
+    for step in steps:
+        if step.rung in LADDER.of(SOLID):
+            whys.setdefault(step.why.removesuffix(f"; {NO_MODEL}"), []).append(step.rung)
+    failed = [f"{' and '.join(rungs)}: {why}" for why, rungs in whys.items()]
     raise SolidgearError(f"no model can answer: {'; '.join(failed)}")
 
 
@@ -231,9 +238,10 @@ def _quantities(scene: Scene, ask: Iterable[str] | str) -> tuple[str, ...]:
             word = own_name(scene, f"{word}{AT}{point}")
         elif at or word not in QUANTITIES | ACROSS:
             known = (*QUANTITIES, *ACROSS, *WORDS)
+            meant = SHORT.get(base.lower(), "")
+            hint = f'; did you mean "{meant}"?' if meant else nearest(name, known)
             raise SolidgearError(
-                f"ask: there is no quantity {show(name, 40)}{nearest(name, known)}; "
-                f"there are {', '.join(known)}"
+                f"ask: there is no quantity {show(name, 40)}{hint}; there are {', '.join(known)}"
             )
         out.append(word)
     return tuple(dict.fromkeys(out))

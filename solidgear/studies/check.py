@@ -253,16 +253,16 @@ def _beyond_the_segments(scene: Scene) -> Iterator[Notice]:
     features = resolved(scene)
     if not features:
         return
+    unfit = [m for m in LADDER.names if m in (*everything(), *LADDER.fit(scene))]
+    unfit = [m for m in unfit if LADDER[m].unfit(scene)]
+    if not unfit:
+        return  # a part from a file may be of revolution all through
     names = named(features)
     yield Notice(
         "fact",
         (),
         f"not of revolution: {names}; all that is told of the shaft is of its plain part",
     )
-    unfit = [m for m in LADDER.names if m in (*everything(), *LADDER.fit(scene))]
-    unfit = [m for m in unfit if LADDER[m].unfit(scene)]
-    if not unfit:
-        return
     fit = [r.name for r in LADDER if r.build is not None and not r.unfit(scene)]
     use = f"use {' or '.join(fit)}" if fit else "no model holds all of them"
     for model in (m for m in unfit if LADDER[m].holds):
@@ -271,11 +271,14 @@ def _beyond_the_segments(scene: Scene) -> Iterator[Notice]:
     lumped = tuple(m for m in unfit if LADDER[m].build is None)
     if lumped:
         on = " or ".join(m for m in fit if LADDER[m].family == SOLID)
+        rests = f"the scene has {names}: a lumped model of it rests on a solid that holds "
+        rests += "it" if len(features) == 1 else "them"
         yield Notice(
             "open" if fit else "avoid",
             lumped,
-            f"the scene has {names}: a lumped model of it rests on a solid that holds them "
-            f"({on or 'there is none'}), and costs as much; run compare for what it is worth",
+            f"{rests} ({on}), and costs as much; run compare for what it is worth"
+            if fit
+            else f"{rests}, and there is none",
         )
     if blind:
         yield Notice(

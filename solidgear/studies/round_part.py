@@ -32,13 +32,14 @@ def described(scene: Scene) -> Iterator[Notice]:
     body = scene.body
     if body is None:
         return
+    off = 100 * (body.round_volume - 1)
+    same = "that of the part" if abs(off) < 1e-6 else f"{off:+.2g} % from that of the part"
     yield Notice(
         "fact",
         (),
         f"{body.name}: {1e6 * body.volume:.6g} cm^3, of which {len(scene.segments)} segments are the "
         f"round part: {100 * body.round_share:.3g} % of its surface beside end faces and shoulders "
-        f"is of revolution, and the volume of the segments is {100 * (body.round_volume - 1):+.2g} % "
-        "from that of the part",
+        f"is of revolution, and the volume of the segments is {same}",
     )
     yield from _of_materials(scene)
     for sentence in body.doubts:

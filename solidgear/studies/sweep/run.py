@@ -43,6 +43,8 @@ class Summary:
         left to do.
     seconds_once, seconds_each : float
         Wall seconds for body and reduction, and per variant of this run.
+    why : str
+        Why the first of the refused ones is none; empty if none is refused.
     repairs : tuple of str
         What was found damaged in the files and how it was mended, a sentence each.
     """
@@ -58,6 +60,7 @@ class Summary:
     seconds_once: float = 0.0
     seconds_each: float = 0.0
     repairs: tuple[str, ...] = ()
+    why: str = ""
 
 
 def sweep(
@@ -167,12 +170,13 @@ def _solve(found, file, variants, body, n, tolerance, todo, team, jobs, progress
         solver.settle(range(total)[:: max(1, total // PROBES)])
         file.basis = solver.task.reduced.level
     once, start = time.perf_counter() - start, time.perf_counter()
-    refused = full = 0
+    refused, full, why = 0, 0, ""
     size = max(1, min(50, len(todo) // (4 * jobs)))
     for rows in team(lambda: solver.task, [todo[i : i + size] for i in range(0, len(todo), size)]):
         rows = [solver.repaired(row) for row in rows]
         file.append(rows)
-        refused += sum(row["status"] != "ok" for row in rows)
+        whys = [row["status"] for row in rows if row["status"] != "ok"]
+        refused, why = refused + len(whys), why or next(iter(whys), "")
         full += sum(row["how"] == "full" for row in rows)
         progress(len(file.done), total, "solving")
     return replace(
@@ -184,6 +188,7 @@ def _solve(found, file, variants, body, n, tolerance, todo, team, jobs, progress
         basis=solver.task.largest.size,
         seconds_once=once,
         seconds_each=(time.perf_counter() - start) / len(todo),
+        why=why,
     )
 
 

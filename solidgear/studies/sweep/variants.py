@@ -87,7 +87,12 @@ class Variants:
                     bearings[b] = bearings[b].with_changes(y=y)
                 out[key] = self.scene.with_changes(bearings=tuple(bearings))
             except SceneError as error:
-                out[key] = str(error)
+                # the field is that of a scene in memory: what was varied is said as it was asked for
+                where = ", ".join(
+                    f'bearing "{self.scene.bearings[self.axes[k].seat].name}" at {y:.6g} m'
+                    for k, y in zip(self._moves, key)
+                )
+                out[key] = f"{where}: {error.reason}"
         return out
 
     def of(self, index: int) -> Scene:
