@@ -44,13 +44,12 @@ KINK = 0.75
 #: the same of a chamfer in a shoulder: against the same outline as a cone, compliances of nine
 #: shafts erred by 2.2 to 6 times their bands
 CHAMFERED = 8.0
-#: the same of plates, after two meshes and later: cells across are coarse beside the thickness, so
-#: that two meshes may agree by accident; bending 2 and axial 1 of discs of 0.005 to 0.03 diameters
-#: erred by 3 to 9.5 times their bands
-PLATE_AT_FIRST, PLATE_LATER = 12.0, 3.0
 #: the same beside a step: a seat that ends 0.01 to 0.1 mm from the shoulder of a 40 mm shaft has 1.1
 #: to 1.4 times the error over its last step of one that ends there, a random shaft 1.44 times its bar
 BESIDE = 1.5
+#: least band of a plate: rounding of what thin cells resist takes up to 7e-7 of the modes of a disc of
+#: 0.006 diameters, on meshes whose steps are a tenth of it
+PLATE_LEAST = 2e-6
 #: mesh of the plain part, coarse to fine: good to some 1e-4, of which shares are taken
 PLAIN_MESH = 1
 
@@ -99,9 +98,10 @@ def sequence_bands(
         edge = sharpest_edge(scene)
         effect = feature_effect(scene, factors, levels[-1])
         found = layered_bands(levels, solver, factors, edge=edge, around=around, effect=effect)
-        more = _widening(scene, len(levels))
+        more = _widening(scene)
+        least = PLATE_LEAST if is_plate(scene) else 0.0
         return {
-            name: replace(band, gci=more * band.gci, factor=more * band.factor)
+            name: replace(band, gci=max(more * band.gci, least), factor=more * band.factor)
             for name, band in found.items()
         }
     last = [size or 0.0 for size in sizes[-3:]]
@@ -118,14 +118,11 @@ def sequence_bands(
     return refined_bands(levels, solver, last, exponent, singular=factors.singular)
 
 
-def _widening(scene: Scene, meshes: int) -> float:
-    """Bands of a shaft after some meshes, over those of others with the same sharpest edge."""
+def _widening(scene: Scene) -> float:
+    """Bands of a shaft over those of others with the same sharpest edge."""
     more = ACUTE if acute(scene) else max(1.0, KINK * steepest_kink(scene))
     more *= BESIDE if beside_a_step(scene) else 1.0
-    more *= CHAMFERED if chamfered_roots(scene) else 1.0
-    if is_plate(scene):
-        more *= PLATE_AT_FIRST if meshes == 2 else PLATE_LATER
-    return more
+    return more * (CHAMFERED if chamfered_roots(scene) else 1.0)
 
 
 def feature_effect(

@@ -70,7 +70,7 @@ def _straighten(segments, bands, left, right, kept) -> None:
                 for at in range(first - bottom + 1, last - bottom):
                     far = other[k][at] if k in other else own[k][at]
                     if abs(own[k][at] - far) > STRAIGHT * segments[k].length:
-                        _move(own[k], held, at, far)
+                        _move(own[k], held, at, far, other.get(k))
                         held.append(at)
 
 
@@ -102,13 +102,18 @@ def _common(bands, i: int) -> tuple[int, int]:
     return max(bands[i][0], bands[i + 1][0]), min(bands[i][1], bands[i + 1][1])
 
 
-def _move(radii, held, i: int, wanted: float) -> None:
+def _move(radii, held, i: int, wanted: float, far=None) -> None:
     """Move one of ascending radii as near to what is wanted as the nearest ones that are held leave
     room for, and spread those between.
+
+    What is as near to one of them at the far end may be so here.
     """
     below, above = max(h for h in held if h < i), min(h for h in held if h > i)
     room = 2 * LEAST_SHARE * (radii[above] - radii[below]) / (above - below)
-    least, most = radii[below] + room * (i - below), radii[above] - room * (above - i)
+    down, up = room * (i - below), room * (above - i)
+    if far is not None:
+        down, up = min(down, far[i] - far[below]), min(up, far[above] - far[i])
+    least, most = radii[below] + down, radii[above] - up
     moved = min(max(wanted, least), most)
     radii[below : i + 1] = np.linspace(radii[below], moved, i - below + 1)
     radii[i : above + 1] = np.linspace(moved, radii[above], above - i + 1)
@@ -189,6 +194,65 @@ def _raised(surface, tol: float, apart) -> tuple[list[int], bool]:
     return level, False
 
 
+def _facing(segments, lengths, bottoms, tops) -> list[tuple[int, int]]:
+    """Pairs of a segment and one whose bore faces the surface of the first across a disc, too far
+    away for one boundary from the one to the other: shaft and drum of a bell.
+    """
+    out, n = [], len(segments)
+    for i in range(n):
+        for j in (*range(i + 2, n), *range(i - 2, -1, -1)):
+            between = range(min(i, j) + 1, max(i, j))
+            a, b = segments[i], segments[j]
+            rise = b.inner0 - a.outer1 if j > i else b.inner1 - a.outer0
+            seen = all(tops[k] > tops[i] and bottoms[k] < bottoms[j] for k in between)
+            if seen and rise > STEEPEST * sum(lengths[k] for k in between):
+                out.append((i, j))
+    return out
+
+
+def _above(segments, lengths, bottoms, tops) -> tuple[list[int], list[int]]:
+    """Boundaries of bores and surfaces such that a bore that faces a smaller surface is the higher
+    boundary of the two; elsewhere every surface is higher than every bore.
+
+    Parameters
+    ----------
+    segments : sequence of Segment
+    lengths : sequence of float
+        m.
+    bottoms, tops : list of int
+        Boundaries of bores, 0 at most, and of surfaces, 1 at least.
+
+    Returns
+    -------
+    bottoms, tops : list of int
+        As given where nothing faces so.
+    """
+    facing = _facing(segments, lengths, bottoms, tops)
+    if not facing:
+        return bottoms, tops
+    n = len(segments)
+    low, high = list(bottoms), list(tops)
+    order = [
+        (level, *((k, k + 1) if given[k] <= given[k + 1] else (k + 1, k)), given[k] == given[k + 1])
+        for given, level in ((bottoms, low), (tops, high))
+        for k in range(n - 1)
+    ]
+    for _ in range(4 * n * (len(facing) + 1)):
+        before = *low, *high
+        for i, j in facing:
+            low[j] = max(low[j], high[i] + 1)
+        for k in range(n):  # a segment has a wall, and a face that it shares with either neighbour
+            high[k] = max(high[k], *(low[i] + 1 for i in (k - 1, k, k + 1) if 0 <= i < n))
+        for level, lower, higher, same in order:
+            level[higher] = max(level[higher], level[lower] + (not same))
+            if same:
+                level[lower] = level[higher]
+        if before == (*low, *high):
+            rank = {level: k for k, level in enumerate(sorted({*low, *high}))}
+            return [rank[k] for k in low], [rank[k] for k in high]
+    return bottoms, tops
+
+
 def radial_bands(segments, raised=None):
     """Radial bands of every segment such that neighbours share mesh lines.
 
@@ -226,6 +290,7 @@ def radial_bands(segments, raised=None):
     bore = [(-s.inner0, -s.inner1) for s in segments]
     tops = [level + 1 for level in _levels(outer, lengths, tol)]
     bottoms = [-level for level in _levels(bore, lengths, tol)]
+    bottoms, tops = _above(segments, lengths, bottoms, tops)
     bands = tuple(zip(bottoms, tops))
 
     def spread(lo, hi, known):

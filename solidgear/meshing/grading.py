@@ -172,6 +172,60 @@ def corner_length(segment) -> float:
     return min(_wall(segment), _radius(segment))
 
 
+def joint_length(segments, k: int) -> float:
+    """Length over which stress at the corners of a joint is singular, m.
+
+    The least of the walls on both sides, and of a disc that stands out further than it is thick, its
+    thickness.
+
+    Parameters
+    ----------
+    segments : sequence of Segment
+    k : int
+        Place of the segment before the joint.
+
+    Returns
+    -------
+    float
+        m.
+
+    Examples
+    --------
+    >>> from solidgear import Segment
+    >>> shaft = Segment.cylinder("shaft", length=0.3, diameter=0.1)
+    >>> disc = Segment.cylinder("disc", y0=0.3, length=0.01, diameter=0.5)
+    >>> [round(joint_length(pair, 0), 6) for pair in ((shaft, shaft), (shaft, disc))]
+    [0.05, 0.01]
+    """
+    length = min(corner_length(segments[k]), corner_length(segments[k + 1]))
+    for surface in (_outer, _bore):
+        before, after = surface(segments[k])[1], surface(segments[k + 1])[0]
+        standing = segments[k + 1 :] if after > before else segments[k::-1]
+        thickness = _thickness(standing, surface, min(before, after))
+        if TOUCH < thickness < abs(after - before):
+            length = min(length, thickness)
+    return length
+
+
+def _thickness(segments, surface, low: float) -> float:
+    """Length of the first segments whose surface stays above a level, m."""
+    total = 0.0
+    for segment in segments:
+        if min(surface(segment)) <= low + TOUCH:
+            break
+        total += segment.length
+    return total
+
+
+def _outer(segment) -> tuple[float, float]:
+    return segment.outer0, segment.outer1
+
+
+def _bore(segment) -> tuple[float, float]:
+    """Its bore, the higher the further it stands in."""
+    return -segment.inner0, -segment.inner1
+
+
 def segments_under(station, segments) -> list[int]:
     """Places of the segments that a seat lies on.
 

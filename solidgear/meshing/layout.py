@@ -22,7 +22,8 @@ from solidgear.meshing.blocks import (
     split_bands,
     strips_of,
 )
-from solidgear.meshing.grading import Grading, corner_length, distinct, graded, segments_under
+from solidgear.meshing.grading import Grading, corner_length, distinct, graded, joint_length
+from solidgear.meshing.rings import fractions_of
 from solidgear.scene.rules import TOUCH
 
 
@@ -207,7 +208,7 @@ def layout(scene, grading: Grading, attachments: tuple[str, ...] | None = None) 
     middle = (y[1:] + y[:-1]) / 2
     segment = np.minimum(np.searchsorted([s.y1 for s in segments], middle), len(segments) - 1)
     strips = strips_of(joints, bands, left, right, raised, grading)
-    fractions = _fractions(scene, grading, attachments, bands, left, right, joints, strips)
+    fractions = fractions_of(scene, grading, attachments, bands, left, right, joints, strips)
     if joints:
         bands, left, right, fractions = split_bands(
             joints, bands, left, right, raised, strips, fractions
@@ -216,8 +217,11 @@ def layout(scene, grading: Grading, attachments: tuple[str, ...] | None = None) 
 
 
 def _length_at(y: float, segments, tol: float) -> float:
-    """Least of the corner lengths (m) of the segments that meet at y."""
-    return min(corner_length(s) for s in segments if s.y0 < y + tol and y < s.y1 + tol)
+    """Length (m) over which stress at a place is singular: of the joint there, or of the segment."""
+    near = [k for k, s in enumerate(segments) if s.y0 < y + tol and y < s.y1 + tol]
+    if len(near) > 1:
+        return min(joint_length(segments, k) for k in near[:-1])
+    return corner_length(segments[near[0]])
 
 
 @dataclass(frozen=True)
@@ -273,7 +277,7 @@ def _layers(scene, grading: Grading, joint: Joint) -> int:
     if not 0 < k < len(scene.segments):
         return 0
     a, b = scene.segments[k - 1 : k + 1]
-    reach = grading.reach * min(corner_length(a), corner_length(b))
+    reach = grading.reach * joint_length(scene.segments, k - 1)
     return layers_at(joint, a, b, "", grading.layers, reach, grading.ratio)
 
 
@@ -321,77 +325,3 @@ def _marks(scene, grading: Grading, attachments) -> list[_Mark]:
         here = [layers for y, layers in weight.items() if abs(y - mark) <= tol]
         marks.append(_Mark(mark, max(here)))
     return marks
-
-
-def _fractions(
-    scene, grading: Grading, attachments, bands, left, right, joints, strips
-) -> dict[tuple[int, int], np.ndarray]:
-    """Subdivision of every radial band, graded towards the surfaces that carry singular points."""
-    segments = scene.segments
-    needs = _radial_needs(scene, grading, attachments, bands, joints)
-    fractions = {}
-    for band in range(min(b[0] for b in bands), max(b[1] for b in bands)):
-        having = [k for k, b in enumerate(bands) if b[0] <= band < b[1]]
-        first_of = {k: first_of_run(bands, band, k) for k in having}
-        for first in sorted(set(first_of.values())):
-            run = [k for k in having if first_of[k] == first]
-            place = {k: band - bands[k][0] for k in run}
-            thickness = max(
-                float(max(np.diff(left[k])[i], np.diff(right[k])[i])) for k, i in place.items()
-            )
-            for side in (0, 1):
-                strip = strips.get((band, first, side))
-                thickness -= strip.depth if strip else 0.0
-            # The axis is the only band boundary that is no surface anywhere.
-            on_axis = any(
-                i == 0 and left[k][0] == 0.0 and right[k][0] == 0.0 for k, i in place.items()
-            )
-            near, far = zip(*(grading.cell(segments[k]) for k in run))
-            cell = min(near), min(far)
-            inside = max(needs.get((band, k), (0, thickness)) for k in run)
-            outside = max(needs.get((band + 1, k), (0, thickness)) for k in run)
-            layers, reach = (inside[0], outside[0]), (inside[1], outside[1])
-            if on_axis:
-                layers = (0, outside[0])
-            whole = not (on_axis and grading.core)
-            part = thickness if whole else thickness / 2
-            lines = graded(part, cell, grading.ratio, reach, grading.refinement, *layers)
-            lines = lines if whole else np.concatenate([[0.0], part + lines])
-            fractions[band, first] = lines / thickness
-    return fractions
-
-
-def _radial_needs(
-    scene, grading: Grading, attachments, bands, joints
-) -> dict[tuple[int, int], tuple[int, float]]:
-    """Layers and reach (m) that a band boundary needs in a segment."""
-    segments = scene.segments
-    needs: dict[tuple[int, int], tuple[int, float]] = {}
-
-    def add(boundary: int, segment: int, layers: int, reach: float) -> None:
-        if layers:
-            needs[boundary, segment] = max(
-                needs.get((boundary, segment), (0, 0.0)), (layers, reach)
-            )
-
-    for i, (a, b) in enumerate(zip(segments, segments[1:])):
-        reach = grading.radial_reach * min(corner_length(a), corner_length(b))
-        joint = next((j for j in joints if j.index == i + 1), None)
-        # A band boundary meets a shoulder where it is the surface of the smaller neighbour.
-        for boundary, surface in (
-            (min(bands[i][1], bands[i + 1][1]), "outer"),
-            (max(bands[i][0], bands[i + 1][0]), "bore"),
-        ):
-            layers = layers_at(joint, a, b, surface, grading.across, reach, grading.ratio)
-            for k in (i, i + 1):
-                add(boundary, k, layers, reach)
-    for station in scene.stations:
-        ties = attachments or (station.attachment,)
-        held, narrow = "rigid" in ties, grading.seat_layers(station, segments, ties)
-        for i in segments_under(station, segments):
-            edge = min(grading.edge, grading.across)
-            reach = grading.radial_reach * corner_length(segments[i])
-            add(bands[i][1], i, (grading.across if held else edge) + narrow, reach)
-            if "section" in ties:  # whose plane ends in a ring of the bore as well
-                add(bands[i][0], i, edge, reach)
-    return needs

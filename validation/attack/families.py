@@ -87,7 +87,7 @@ def scene(
 def families() -> dict[str, Maker]:
     """Every shaft by its name."""
     out: dict[str, Maker] = {}
-    for family in (_seats, _tubes, _steps, _rotors, _flanges, _materials, _ties, _cones, _crowded):
+    for family in FAMILIES:
         out |= dict(family())
     return out
 
@@ -183,6 +183,48 @@ def _flanges() -> Iterator[tuple[str, Maker]]:
                 )
 
 
+def _plates() -> Iterator[tuple[str, Maker]]:
+    wide = 5 * D
+    for ratio in (0.006, 0.01, 0.03, 0.08, 0.2):
+        for bore in (0, 0.05, 0.3, 0.8):
+            for k in (1e7, 1e10):
+                yield (
+                    f"plate {ratio:g} D thick, bore {bore:g} D, on {k:g} N/m",
+                    lambda thick=ratio * wide, bore=bore * wide, k=k: scene(
+                        shaft((thick, wide, bore)),
+                        0.7 * thick,
+                        0.2 * thick,
+                        seat(0.25 * thick, 0.2 * thick, k, tilt=1e5),
+                    ),
+                )
+
+
+def _bells() -> Iterator[tuple[str, Maker]]:
+    for wall in (0.01, 0.03, 0.1):
+        for disc in (0.01, 0.03, 0.1):
+            inside = 3 * (1 - wall) * D
+            yield (
+                f"bell, disc of {disc:g} D, wall of {wall:g} radii, loaded on its drum",
+                lambda disc=disc, inside=inside: scene(
+                    shaft((2.5 * D, D), (disc * D, 3 * D), (2.5 * D, 3 * D, inside)),
+                    4.5 * D,
+                    0.5 * D,
+                    seat(0.5 * D, 0.4 * D),
+                    seat(2 * D, 0.4 * D),
+                ),
+            )
+            yield (
+                f"bell, disc of {disc:g} D, wall of {wall:g} radii, drum first",
+                lambda disc=disc, inside=inside: scene(
+                    shaft((D, 3 * D, inside), (disc * D, 3 * D), (1.5 * D, D)),
+                    0.5 * D,
+                    0.3 * D,
+                    seat((1.5 + disc) * D, 0.4 * D),
+                    seat((2.2 + disc) * D, 0.4 * D),
+                ),
+            )
+
+
 def _materials() -> Iterator[tuple[str, Maker]]:
     for times in (0.01, 0.1, 0.35, 3, 30):
         other = Material(E=times * STEEL.E, nu=0.3, density=7850)
@@ -276,6 +318,12 @@ def _crowded() -> Iterator[tuple[str, Maker]]:
                 *(seat(y, 0.4 * D) for y in (2 * D, (2.4 + gap) * D)),
             ),
         )
+
+
+FAMILIES = (
+    *(_seats, _tubes, _steps, _rotors, _flanges, _plates),
+    *(_bells, _materials, _ties, _cones, _crowded),
+)
 
 
 def judged(one: Scene, levels: int = LEVELS, most: int = MOST) -> list[Held]:
