@@ -281,8 +281,18 @@ def did_you_mean(word: str | None) -> str:
 
 
 def near(word: Any, known: Iterable[str]) -> str:
-    """The known word that is nearest to `word`, or an empty text."""
-    return next(iter(difflib.get_close_matches(str(word)[:60], list(known), 1)), "")
+    """The known word that is nearest to `word`, or an empty text.
+
+    Examples
+    --------
+    Parts in another order are nearer than other parts:
+
+    >>> near("diameter_start", ["end_diameter", "start_diameter"])
+    'start_diameter'
+    """
+    asked, words = str(word)[:60], list(known)
+    turned = [one for one in words if sorted(one.split("_")) == sorted(asked.split("_"))]
+    return next(iter(turned or difflib.get_close_matches(asked, words, 1)), "")
 
 
 def listed(words: Iterable[Any], most: int = 24) -> str:
