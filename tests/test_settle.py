@@ -117,8 +117,8 @@ def test_the_plane_that_rests_on_the_mesh_decides(scene):
         stiffness = {"kxx": 4e9, "kyy": 4e6, "kzz": 4e6, "kthx": 1e3, "kthz": 1e6}
         bearings.append(Bearing(name=b.name, y=b.y, seat_width=b.seat_width, stiffness=stiffness))
     uneven = scene.with_changes(bearings=tuple(bearings))
-    found = settle(uneven, 1.5e-3, "stiffness")
-    soft_plane = answer(uneven, 1.5e-3, ("C_zz", "C_thx", "C_yy", "K_zz", "K_thx", "K_yy"))
+    found = settle(uneven, 5e-4, "stiffness")
+    soft_plane = answer(uneven, 5e-4, ("C_zz", "C_thx", "C_yy", "K_zz", "K_thx", "K_yy"))
     assert found.reached and found.largest[0] == "K_thz"
     coarse, mine, exact = (
         sg.condense(sg.build(uneven, "harmonic", **options), uneven, "pinion").stiffness[5, 5]
@@ -127,7 +127,7 @@ def test_the_plane_that_rests_on_the_mesh_decides(scene):
     assert abs(mine / exact - 1) <= found.bars["K_thz"]
     # the mesh that suits the soft plane is outside the tolerance here
     assert soft_plane.reached and len([s for s in soft_plane.steps if s.valid]) == 2
-    assert abs(coarse / exact - 1) > 1.5e-3
+    assert abs(coarse / exact - 1) > 5e-4
 
 
 def test_attachments_are_honoured(run):
