@@ -102,6 +102,9 @@ class Block:
         the same.
     sections : callable, optional
         See :mod:`solidgear.body.sections`; None where all unknowns are values at points, ``y``.
+    reflections : tuple of (partner, sign)
+        Mirror planes that the mesh has, x = 0, z = 0 and x = z: (n,) unknown in the mirror of each,
+        and the sign of its motion there. A factor may use them (:mod:`solidgear.solve.folded`).
     """
 
     name: str
@@ -116,6 +119,7 @@ class Block:
     border: int = 0
     expand: sp.csr_matrix | None = None
     sections: Sections | None = None
+    reflections: tuple[tuple[np.ndarray, np.ndarray], ...] = ()
 
     def mirrored(
         self, name: str, components: tuple[int, ...], index: int, signs: tuple[float, ...]

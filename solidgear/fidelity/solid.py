@@ -6,6 +6,7 @@ blocks from one Gram matrix of basis gradients per element.
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 from solidgear.body import Body, Port
@@ -15,7 +16,7 @@ from solidgear.fidelity.limits import countable
 from solidgear.fidelity.options import SOLID_OPTIONS, checked
 from solidgear.fidelity.rung import CYCLIC, PARTS
 from solidgear.fidelity.scale import elastic_scale
-from solidgear.fidelity.solid_block import free_block, seat_facets
+from solidgear.fidelity.solid_block import free_block, mirrored, seat_facets
 from solidgear.fidelity.solid_mesh import _isoparametric
 from solidgear.meshing.grading import Grading
 from solidgear.scene.shaft import named, resolved
@@ -128,8 +129,13 @@ def solid(
     else:
         mesh, segment, quality = _hexes(scene, wanted, grading)
     body_mesh = _isoparametric(mesh, element, segment)
+    reflections: tuple = ()
+    if not tet:
+        nodes, reflections = mirrored(body_mesh.nodes, 1e-7 * scene.length)
+        body_mesh = replace(body_mesh, nodes=nodes)
     facets = seat_facets(body_mesh, scene.segments, 1e-7 * scene.length)
     block, ties = free_block(body_mesh, scene, wanted, facets)
+    block = replace(block, reflections=reflections)
     facts = {
         "element": element,
         "elements": int(body_mesh.dofs.shape[1]),

@@ -13,6 +13,11 @@ from solidgear.errors import SolidgearError
 from solidgear.fidelity.solid_matrices import _matrices, _mean
 from solidgear.fidelity.solid_mesh import SolidMesh
 
+#: (3 n,) unknown in the mirror of each, and (3 n,) sign of its motion there
+Reflection = tuple[np.ndarray, np.ndarray]
+#: components of a node by those of its mirror image, in the planes x = 0, z = 0 and x = z
+SWAPPED = [2, 1, 0]
+PLANES = (([0, 1, 2], (-1, 1, 1)), ([0, 1, 2], (1, 1, -1)), (SWAPPED, (1, 1, 1)))
 #: facets of a mesh that carry a station attached in some way
 Facets = Callable[[Any, str], np.ndarray]
 
@@ -102,6 +107,50 @@ def rigid_motions(nodes: np.ndarray) -> np.ndarray:
     rigid[:, :, 4] = np.column_stack([z, zero, -x])
     rigid[:, :, 5] = np.column_stack([-y, x, zero])
     return rigid.reshape(3 * n, 6)
+
+
+def mirrored(nodes: np.ndarray, hair: float) -> tuple[np.ndarray, tuple[Reflection, ...]]:
+    """Mirror planes x = 0, z = 0 and x = z that the nodes of a mesh have.
+
+    Parameters
+    ----------
+    nodes : (3, n) ndarray
+        m.
+    hair : float
+        Nodes nearer than this to each other are one, m.
+
+    Returns
+    -------
+    nodes : (3, n) ndarray
+        Moved by the rounding that kept images from lying where they should: beside the thickness of
+        a thin cell that is a hundred times the rounding of a matrix.
+    reflections : tuple of (partner, sign)
+        As :class:`~solidgear.body.Block` takes them; none for a plane in which a node has no image,
+        nor for x = z without the others.
+
+    Examples
+    --------
+    >>> nodes, ((partner, sign),) = mirrored(np.array([[1.0, -1.0], [0.0, 0.0], [2.0, 2.0]]), 1e-6)
+    >>> partner, sign
+    (array([3, 4, 5, 0, 1, 2]), array([-1.,  1.,  1., -1.,  1.,  1.]))
+    """
+    found: list[Reflection] = []
+    for order, sign in PLANES:
+        turn = np.array(sign)[:, None]
+        places = np.rint(nodes / hair).astype(np.int64)
+        seen = places[order] * turn
+        here, there = np.lexsort(places), np.lexsort(seen)
+        if not np.array_equal(places[:, here], seen[:, there]):
+            continue
+        if order == SWAPPED and len(found) < 2:
+            continue
+        partner = np.empty(nodes.shape[1], int)
+        partner[here] = there
+        nodes = (nodes + turn * nodes[:, partner][order]) / 2
+        found.append(
+            ((3 * partner[:, None] + order).ravel(), np.tile(np.array(sign, float), len(partner)))
+        )
+    return nodes, tuple(found)
 
 
 def free_block(

@@ -31,7 +31,8 @@ from solidgear.errors import SolidgearError, show
 from solidgear.factoring import Factoring
 from solidgear.machine.threads import pinned
 from solidgear.solve.condensed import Condensed, Coupled
-from solidgear.solve.factor import Factor, factorise
+from solidgear.solve.factor import USUAL, Factor, factorise
+from solidgear.solve.folded import folded
 from solidgear.solve.relief import elastic_fields
 
 if TYPE_CHECKING:
@@ -117,7 +118,8 @@ def _factor(block: Block, shift: float, factoring: Factoring) -> Factor:
         from solidgear.solve.petsc import factor_on_ranks
 
         return factor_on_ranks(block, matrix, factoring)
-    return factorise(
+    in_pieces = folded(matrix, block.reflections) if factoring == USUAL else None
+    return in_pieces or factorise(
         matrix,
         planar=block.planar,
         border=block.border,

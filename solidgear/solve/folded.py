@@ -1,0 +1,175 @@
+"""Factors of a matrix that mirror planes leave as it is, made in independent pieces.
+
+A body of revolution in hexahedra looks the same in the mirror of the planes x = 0 and z = 0. Each
+reflection is an orthogonal matrix P of one entry a row, P P = I, and ``P A = A P``: motions that
+are symmetric and antisymmetric to each plane do not meet in A. On an orthonormal basis T of every
+such kind A falls into pieces ``T' A T``, and ``A^-1 = sum T (T' A T)^-1 T'`` (Bossavit 1986,
+"Symmetry, groups, and boundary value problems"). Two planes leave four pieces of a quarter of the
+unknowns: a quarter of the arithmetic of a factorisation of a 3D solid, and less than half of its
+entries. Where the plane x = z between them is a mirror as well it makes one of the two kinds of
+bending into the other: T of the second is P T of the first, their pieces are one matrix, and one
+factor serves both.
+
+Only the factor is folded. The body, its shapes and everything that is judged stay on all of the
+mesh, so that what is solved is still checked against the whole matrix.
+"""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Sequence
+
+import numpy as np
+import scipy.sparse as sp
+
+from solidgear.solve.factor import choice, factorise
+from solidgear.solve.factored import Factor
+
+#: A row of a matrix and of its reflection may differ by so much of it. Assembling leaves 2e-15 to
+#: 3e-14, more where cells are thin; a mesh that only nearly has a mirror plane is off by far more.
+ALIKE = 1e-11
+
+#: (n,) unknown that stands in the mirror of each, and (n,) sign that its motion has there
+Reflection = tuple[np.ndarray, np.ndarray]
+
+
+def folded(matrix: sp.csr_matrix, reflections: Sequence[Reflection]) -> Factor | None:
+    """Factor of a symmetric positive definite matrix by its pieces.
+
+    Parameters
+    ----------
+    matrix : (n, n) sparse
+        Of a solid; both triangles given.
+    reflections : sequence of (partner, sign)
+        Each its own inverse; the first two in either order the same, a third one that turns the
+        first into the second.
+
+    Returns
+    -------
+    Factor or None
+        None where there is no reflection, or one does not leave the matrix as it is.
+
+    Raises
+    ------
+    FactorError
+        As :func:`~solidgear.solve.factor.factorise`.
+
+    Examples
+    --------
+    Three equal masses in a row, which the mirror turns end for end:
+
+    >>> matrix = sp.csr_matrix(np.array([[3.0, -1.0, 0.0], [-1.0, 3.0, -1.0], [0.0, -1.0, 3.0]]))
+    >>> found = folded(matrix, [(np.array([2, 1, 0]), np.ones(3))])
+    >>> bool(np.allclose(matrix @ found.solve(np.arange(3.0)), np.arange(3.0)))
+    True
+    """
+    if not reflections or not all(_alike(matrix, reflection) for reflection in reflections):
+        return None
+    backend, reason = choice(matrix)
+    kinds = folds(matrix.shape[0], reflections[:2])
+    pieces = []
+    for kind, fold in kinds.items():
+        twin = kind[::-1] if len(reflections) == 3 and kind[0] != kind[-1] else None
+        if twin is not None and kind < twin:
+            continue  # solved beside the other one
+        both = [fold] if twin is None else [fold, _seen(fold, reflections[2])]
+        # All columns of K T are as symmetric as those of T: one row of each orbit tells the others.
+        first, size = _first_of(fold)
+        small = (sp.diags(np.sqrt(size)) @ matrix[first]) @ fold
+        small.sort_indices()
+        pieces.append((both, [f.T.tocsr() for f in both], factorise(small, backend)))
+
+    def solve(rhs):
+        columns = rhs.reshape(len(rhs), -1)
+        width = columns.shape[1]
+        out = np.zeros_like(columns, dtype=float)
+        for both, back, factor in pieces:
+            found = factor.solve(np.hstack([b @ columns for b in back]))
+            for i, fold in enumerate(both):
+                out += fold @ found[:, i * width : (i + 1) * width]
+        return out.reshape(rhs.shape)
+
+    made = [factor for _, _, factor in pieces]
+    return Factor(
+        made[0].backend,
+        f"{reason}; in {len(made)} pieces by mirror planes",
+        solve,
+        _total(factor.estimate_mb for factor in made),
+        _total(factor.nnz for factor in made),
+    )
+
+
+def folds(n: int, reflections: Sequence[Reflection]) -> dict[tuple[float, ...], sp.csr_matrix]:
+    """Orthonormal bases of the motions that are symmetric or antisymmetric to every plane.
+
+    Parameters
+    ----------
+    n : int
+        Unknowns.
+    reflections : sequence of (partner, sign)
+
+    Returns
+    -------
+    dict of tuple of float to (n, p) sparse
+        By the parity of the kind in every plane. At most one entry a row; together as many columns
+        as there are unknowns.
+    """
+    here = np.arange(n)
+    # what every product of reflections makes of an unknown: its place, its sign
+    places, signs = [here], [np.ones(n)]
+    for partner, sign in reflections:
+        places += [place[partner] for place in places]
+        signs += [turn[partner] * sign for turn in signs]
+    first = np.min(places, axis=0) == here
+    found = {}
+    for kind in itertools.product((1.0, -1.0), repeat=len(reflections)):
+        parity = [1.0]
+        for one in kind:
+            parity += [one * p for p in parity]
+        # a motion on a plane that is turned into its opposite is none of this kind
+        turned = [p * s for p, s in zip(parity, signs)]
+        kept = first & np.all(
+            [(place != here) | (t > 0) for place, t in zip(places, turned)], axis=0
+        )
+        start = np.flatnonzero(kept)
+        if not len(start):
+            continue
+        column = np.arange(len(start))
+        # unknowns on a plane are met more than once, each time with the same sign
+        weight = np.zeros(n)
+        at = np.zeros(n, int)
+        for place, t in zip(places, turned):
+            weight[place[start]], at[place[start]] = t[start], column
+        rows = np.flatnonzero(weight)
+        size = np.bincount(at[rows], minlength=len(start))
+        entries = weight[rows] / np.sqrt(size[at[rows]])
+        found[kind] = sp.csr_matrix((entries, (rows, at[rows])), shape=(n, len(start)))
+    return found
+
+
+def _seen(fold: sp.csr_matrix, reflection: Reflection) -> sp.csr_matrix:
+    """A basis in the mirror."""
+    partner, sign = reflection
+    return (sp.diags(sign) @ fold[partner]).tocsr()
+
+
+def _first_of(fold: sp.csr_matrix) -> tuple[np.ndarray, np.ndarray]:
+    """First unknown of every column, and how many unknowns the column has."""
+    columns = fold.tocsc()
+    return columns.indices[columns.indptr[:-1]], np.diff(columns.indptr)
+
+
+def _alike(matrix: sp.csr_matrix, reflection: Reflection) -> bool:
+    """Whether a reflection leaves a matrix as it is, to rounding."""
+    partner, sign = reflection
+    probe = np.random.default_rng(0).standard_normal(matrix.shape[0])
+    left = matrix @ (sign * probe[partner])
+    right = sign * (matrix @ probe)[partner]
+    # row by row: what stands beside large entries is not lost in their sum
+    size = np.sqrt(np.add.reduceat(matrix.data**2, matrix.indptr[:-1]))
+    return bool((np.abs(left - right) <= ALIKE * np.maximum(size, size[partner])).all())
+
+
+def _total(numbers):
+    known = list(numbers)
+    return None if None in known else sum(known)
