@@ -63,7 +63,7 @@ def folded(matrix: sp.csr_matrix, reflections: Sequence[Reflection]) -> Factor |
     >>> bool(np.allclose(matrix @ found.solve(np.arange(3.0)), np.arange(3.0)))
     True
     """
-    if not reflections or not all(_alike(matrix, reflection) for reflection in reflections):
+    if not reflections or not _alike(matrix, reflections):
         return None
     backend, reason = choice(matrix)
     kinds = folds(matrix.shape[0], reflections[:2])
@@ -159,15 +159,16 @@ def _first_of(fold: sp.csr_matrix) -> tuple[np.ndarray, np.ndarray]:
     return columns.indices[columns.indptr[:-1]], np.diff(columns.indptr)
 
 
-def _alike(matrix: sp.csr_matrix, reflection: Reflection) -> bool:
-    """Whether a reflection leaves a matrix as it is, to rounding."""
-    partner, sign = reflection
+def _alike(matrix: sp.csr_matrix, reflections: Sequence[Reflection]) -> bool:
+    """Whether every reflection leaves a matrix as it is, to rounding."""
     probe = np.random.default_rng(0).standard_normal(matrix.shape[0])
-    left = matrix @ (sign * probe[partner])
-    right = sign * (matrix @ probe)[partner]
+    seen = matrix @ np.column_stack([probe, *(s * probe[p] for p, s in reflections)])
     # row by row: what stands beside large entries is not lost in their sum
     size = np.sqrt(np.add.reduceat(matrix.data**2, matrix.indptr[:-1]))
-    return bool((np.abs(left - right) <= ALIKE * np.maximum(size, size[partner])).all())
+    return all(
+        (np.abs(there - sign * seen[partner, 0]) <= ALIKE * np.maximum(size, size[partner])).all()
+        for there, (partner, sign) in zip(seen.T[1:], reflections)
+    )
 
 
 def _total(numbers):
