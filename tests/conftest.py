@@ -21,6 +21,17 @@ def pytest_collection_modifyitems(items):
             raise pytest.UsageError(f"{item.nodeid} is marked long and slow; one of them is right")
 
 
+@pytest.fixture(scope="session")
+def made_up_charts():
+    """Charts of the made-up run as its page draws them, once for all files of a process: three
+    seconds, and many look at them.
+    """
+    from solidgear.report.html import drawn_charts
+    from tests.made_up_run import fixture_results
+
+    return drawn_charts(fixture_results(), None)
+
+
 @pytest.fixture
 def no_charts(monkeypatch):
     """Reports without their charts: drawing is what takes the time, and few tests look at them."""

@@ -20,18 +20,16 @@ from solidgear.report.charts import CHARTS
 from solidgear.report.night import INK, PAPER, in_the_dark, luminance
 from solidgear.report.paper import WITHOUT, written
 from solidgear.report.readout import PER_INCH
-from tests.made_up_run import fixture_results
 
 STYLE = Path(night.__file__).with_name("style.html").read_text()
 
 
 @pytest.fixture(scope="module")
-def drawings():
+def drawings(made_up_charts):
     """Wide and narrow SVG of every chart."""
-    found = fixture_results()
     return {
-        name: re.findall(r"<svg.*?</svg>", chart(found).decode(), re.S)
-        for name, chart in CHARTS.items()
+        name: re.findall(r"<svg.*?</svg>", made_up_charts.svg[name].decode(), re.S)
+        for name in CHARTS
     }
 
 

@@ -18,7 +18,7 @@ from solidgear.errors import SolidgearError
 from solidgear.evidence.record import SCHEMA, Record
 from solidgear.evidence.recording import recorded
 from solidgear.report import charts, input_tables, readout
-from solidgear.report.html import drawn_charts, render_page, write_report
+from solidgear.report.html import render_page, write_report
 from solidgear.report.terminal import (
     final_table,
     matrix_table,
@@ -33,19 +33,14 @@ ROOT = Path(__file__).parent.parent
 
 
 @pytest.fixture(scope="module")
-def drawn():
-    """Charts, which are the same in all units."""
-    return drawn_charts(fixture_results(), None)
+def page(made_up_charts):
+    return render_page(fixture_results(), drawn=made_up_charts)
 
 
 @pytest.fixture(scope="module")
-def page(drawn):
-    return render_page(fixture_results(), drawn=drawn)
-
-
-@pytest.fixture(scope="module")
-def si_page(drawn):
-    return render_page(fixture_results(), units="si", drawn=drawn)
+def si_page(made_up_charts):
+    """Charts are the same in all units."""
+    return render_page(fixture_results(), units="si", drawn=made_up_charts)
 
 
 def text_of(page):
