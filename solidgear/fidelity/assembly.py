@@ -141,9 +141,8 @@ class Tabulation:
         """
         nn, dim, nq = self._dshape.shape
         nodes = np.ascontiguousarray(nodes.transpose(0, 2, 1))
-        # from a node of the element: places would round what a thin cell differs in
         jac = (
-            ((nodes - nodes[:, :, :1]) @ self._dshape.reshape(nn, dim * nq))
+            (nodes @ self._dshape.reshape(nn, dim * nq))
             .reshape(dim, -1, dim, nq)
             .transpose(0, 2, 1, 3)
         )

@@ -44,7 +44,9 @@ def _matrices(m: SolidMesh, materials: Sequence[Material]):
             stiffness.add(part, tensor @ slopes)
             mass.add(part, np.outer(rho * det, weights @ products))
         for part in batches(np.flatnonzero(here & ~is_straight), 8 * (3 * nb * nq + 30 * nb * nb)):
-            t = basis.on(m.nodes[:, m.dofs[:, part]])
+            places = m.nodes[:, m.dofs[:, part]]
+            # from a node of each: places would round what the nodes of a thin cell differ in
+            t = basis.on(places - places[:, :1])
             dv = t.det * weights
             g = t.gradient(np.sqrt(dv)).reshape(len(part), 3 * nb, nq)
             gram = (g @ g.transpose(0, 2, 1)).reshape(-1, 3, nb, 3, nb).transpose(1, 3, 0, 2, 4)
