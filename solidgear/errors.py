@@ -269,8 +269,8 @@ def nearest(word: Any, known: Iterable[str]) -> str:
 
     Examples
     --------
-    >>> nearest("positon", ["position", "seat_width"])
-    '; did you mean "position"?'
+    >>> nearest("diameter_start", ["end_diameter", "start_diameter"])
+    '; did you mean "start_diameter"?'
     """
     return did_you_mean(near(word, known))
 
@@ -281,15 +281,7 @@ def did_you_mean(word: str | None) -> str:
 
 
 def near(word: Any, known: Iterable[str]) -> str:
-    """The known word that is nearest to `word`, or an empty text.
-
-    Examples
-    --------
-    Parts in another order are nearer than other parts:
-
-    >>> near("diameter_start", ["end_diameter", "start_diameter"])
-    'start_diameter'
-    """
+    """The known word that is nearest to `word`, first of its own parts; or an empty text."""
     asked, words = str(word)[:60], list(known)
     turned = [one for one in words if sorted(one.split("_")) == sorted(asked.split("_"))]
     return next(iter(turned or difflib.get_close_matches(asked, words, 1)), "")

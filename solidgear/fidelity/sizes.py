@@ -12,6 +12,7 @@ import numpy as np
 
 from solidgear.factoring import Factoring
 from solidgear.fidelity.counts import KINDS, nodes, sections, solved_as
+from solidgear.fidelity.factor_memory import ENTRY, MB, parts_of, solid_factor_mb
 from solidgear.fidelity.rung import CUTS, CYCLIC
 from solidgear.fidelity.size import Size
 from solidgear.meshing.blocks import blocks_beyond
@@ -20,10 +21,6 @@ from solidgear.scene.shaft import resolved
 if TYPE_CHECKING:
     from solidgear.scene.body_file import BodyFile
     from solidgear.scene.shaft import Shaft
-
-MB = 2.0**20
-#: bytes of a matrix entry
-ENTRY = 12.0
 
 
 def _ports(scene: Shaft, given: Mapping[str, Any]) -> int:
@@ -343,7 +340,8 @@ def _solid(
     )
     asked = {f.name: given[f.name] for f in fields(Factoring) if f.name in given}
     factoring = Factoring(**asked)
-    peak = built + beside + _solid_factor_mb(unknowns, entries, fill, factoring)
+    parts = parts_of(scene, given["element"], given["attachments"], factoring)
+    peak = built + beside + solid_factor_mb(unknowns, entries, fill, factoring, parts)
     return Size(
         int(round(unknowns)),
         int(entries),
@@ -352,45 +350,3 @@ def _solid(
         float(peak),
         lower,
     )
-
-
-def _solid_factor_mb(unknowns: float, entries: float, fill: float, factoring: Factoring) -> float:
-    """Peak memory of factoring the matrix of a solid by the back end that will be taken.
-
-    PARDISO needs its factor, its copy of the matrix and work by the entry: its own estimate for 47
-    meshes within 1 % where the fill is known. In single precision the same with numbers of four
-    bytes (five meshes within 1 %); out of core what it keeps of the factor goes with the entries
-    (27,000 to 142,000 unknowns; it takes 5 % less than this at most).
-    """
-    from solidgear.solve.backends.memory_law import Outline, law
-    from solidgear.solve.backends.superlu import SINGLE_SHARE
-    from solidgear.solve.factor import FactorError, choice
-    from solidgear.solve.petsc import elsewhere
-
-    matrix = Outline((unknowns, unknowns), entries)
-    if factoring.engine != "own":
-        here = 2 * ENTRY * entries / MB
-        return here if elsewhere() else here + ranks_mb(unknowns, entries, fill, factoring)
-    try:
-        name, _ = choice(matrix, factoring=factoring)
-    except FactorError:
-        name = "superlu"  # said where it is factored
-    single = factoring.precision == "single"
-    if name == "pardiso" and factoring.out_of_core:
-        return (36.0 if single else 38.0) * entries / MB + 20
-    if name == "pardiso":
-        number, work = (4.0, 22.5) if single else (8.0, 24.5)
-        return (number * 1.05 * fill + work * entries) / MB + 20
-    # MUMPS's own estimate was 1.46 to 1.84 times this law on four shafts
-    if name == "mumps":
-        return 1.8 * law("cholmod", matrix, False)
-    return law(name, matrix, False) * (SINGLE_SHARE if single and name == "superlu" else 1.0)
-
-
-def ranks_mb(unknowns: float, entries: float, fill: float, factoring: Factoring) -> float:
-    """Memory of all ranks of PETSc together: libraries, rows and numbering of each, and a factor by
-    MUMPS or the levels of multigrid. Of three runs of 14,000 and 57,000 unknowns by MUMPS within a
-    sixth; multigrid was seen once.
-    """
-    factor = 10.5 * fill if factoring.engine == "petsc" else 400.0 * entries
-    return (factor + 40.0 * entries) / MB + 90.0 * factoring.ranks

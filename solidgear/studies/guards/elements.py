@@ -173,10 +173,9 @@ def memory(probe: Probe) -> Notices:
             break
         absent.append(f"{why}; {INSTALL[name]}")
     matrix = Outline((size, size), entries)
-    need, free = (
-        OVER_LAW.get(name, 1.0) * law("cholmod" if name in OVER_LAW else "superlu", matrix, False),
-        available_mb(),
-    )
+    whole = law("cholmod" if name in OVER_LAW else "superlu", matrix, False)
+    need = probe.solid_parts.memory * OVER_LAW.get(name, 1.0) * whole
+    free = available_mb()
     smaller = probe.instead("the harmonic solid, or --set refinement=0.7")
     which = "the" if probe.body.fidelity == "solid" else "the default"
     yield Notice(

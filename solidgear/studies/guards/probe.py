@@ -23,7 +23,9 @@ from solidgear.evidence.quantities import judged
 from solidgear.evidence.study import Solution, study
 from solidgear.evidence.ties import rigid_seats
 from solidgear.evidence.verdict import deviations
+from solidgear.factoring import Factoring
 from solidgear.fidelity import build
+from solidgear.fidelity.factor_memory import PIECES, WHOLE, Parts, parts_of
 from solidgear.fidelity.ladder import LADDER
 from solidgear.fidelity.levels import HARMONIC
 from solidgear.fidelity.rung import BEAM, SOLID
@@ -301,3 +303,11 @@ class Probe:
 
         size = estimated_size(self.scene, "solid")
         return size.unknowns, size.entries
+
+    @property
+    def solid_parts(self) -> Parts:
+        """In how many pieces the matrix of that solid is factored."""
+        if self.body.fidelity == "solid":
+            return WHOLE if not self.body.blocks[0].reflections else PIECES
+        element = LADDER["solid"].given(self.scene, {}).get("element", "hex20")
+        return parts_of(self.scene, element, None, Factoring())
