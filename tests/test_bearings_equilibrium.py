@@ -111,6 +111,31 @@ def test_linear_bearings_give_what_condense_gives(three):
     assert found.motion["mesh"][keep] == pytest.approx(expected, rel=1e-8)
 
 
+def test_a_preloaded_pair_settles_without_load(three):
+    # its contacts press 14 x 2 times some 20 N and cancel: rounding of that is no load left over
+    body = sg.build(three, "timoshenko")
+    mounts = [Mounted("A", PAIR), Mounted("B", ROLLERS), Mounted("C", PAIR)]
+    at_rest = PAIR.tangent(np.zeros(6))
+    for load in (0.0, 1e-9):
+        found = equilibrium(body, mounts, {"mesh": [load, 0, 0, 0, 0, 0]})
+        assert max(np.abs(motion).max() for motion in found.motion.values()) < 1e-16
+        assert found.tangent["A"] == pytest.approx(at_rest, rel=1e-9, abs=1e-6)
+    assert PAIR.at_work(np.zeros(6)) > 100 and found.lost == ("B",)
+    assert np.abs(PAIR.motion(np.zeros(6))).max() < 1e-16
+
+
+def test_a_scene_without_load_is_told_without_rounding(tmp_path):
+    path = tmp_path / "idle.toml"
+    load = ('x = "3.8 kN"', 'y = "-1.0 kN"', 'z = "1.4 kN"')
+    text = open(SCENE).read()
+    for line in load:
+        text = text.replace(line, line[:5] + '0 N"')
+    path.write_text(text)
+    done = run("bearing", path)
+    assert done.exit_code == 0, done.output
+    assert done.output.count("Load: none") == 2 and "e-" not in done.output
+
+
 def test_series_spring_and_housing_take_the_bearings_load(three):
     body = sg.build(three, "timoshenko")
     mounts = [Mounted("A", ROLLERS), Mounted("C", PAIR, spring=2e7)]

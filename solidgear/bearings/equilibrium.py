@@ -54,6 +54,9 @@ class Holds(Protocol):
     def tangent(self, motion: np.ndarray) -> np.ndarray:
         """Its derivative, (6, 6)."""
 
+    def at_work(self, motion: np.ndarray) -> float:
+        """Forces inside it at a motion, N, also those that balance each other."""
+
 
 @dataclass(frozen=True)
 class Linear:
@@ -73,6 +76,10 @@ class Linear:
     def tangent(self, motion: np.ndarray) -> np.ndarray:
         """``K``."""
         return self.stiffness
+
+    def at_work(self, motion: np.ndarray) -> float:
+        """None: a spring has no preload."""
+        return 0.0
 
 
 @dataclass(frozen=True)
@@ -159,7 +166,7 @@ class Equilibrium:
     lost : tuple of str
         Bearings that carry nothing.
     unbalanced : float
-        What is left of the loads, relative.
+        What is left of the loads, of the largest of them or of the preloads.
     iterations : int
     """
 
@@ -247,7 +254,9 @@ def equilibrium(
     system = _System(body, bearings, loads, housing)
     begin = start._state if start is not None and start._state.size == system.count else None
     try:
-        found = settle(system.load, system.tangent, system.target, system.size, begin)
+        found = settle(
+            system.load, system.tangent, system.target, system.size, begin, system.at_work(begin)
+        )
     except NothingHolds as error:
         raise SolidgearError(system.not_held(error.direction)) from None
     if found.unbalanced > LEFT:
@@ -316,6 +325,11 @@ class _System:
         for bearing, read in zip(self.bearings, self.reads):
             out = out + read.T @ bearing.bearing.load(read @ at)
         return out
+
+    def at_work(self, at: np.ndarray | None) -> float:
+        """Forces inside the bearings, N; at rest those of their preloads."""
+        at = np.zeros(self.count) if at is None else at
+        return sum(b.bearing.at_work(read @ at) for b, read in zip(self.bearings, self.reads))
 
     def tangent(self, at: np.ndarray) -> np.ndarray:
         """Its Hessian."""

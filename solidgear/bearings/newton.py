@@ -33,7 +33,8 @@ class Settled(NamedTuple):
     ----------
     motion : (n,) ndarray
     unbalanced : float
-        Largest part of the load that is left, of the largest load, in scaled units.
+        Largest part of the load that is left, of the largest load or of the forces at work without
+        any, in scaled units.
     iterations : int
     """
 
@@ -62,6 +63,7 @@ def settle(
     target: np.ndarray,
     size: np.ndarray,
     start: np.ndarray | None = None,
+    at_work: float = 0.0,
 ) -> Settled:
     """Motion at which a convex system carries a load.
 
@@ -75,6 +77,9 @@ def settle(
         Motion of each unknown that counts as one metre: 1 for translations, one over a length for
         rotations.
     start : (n,) ndarray, optional
+    at_work : float
+        Forces that balance each other at `start`, such as those of a preload, N: what is left of
+        a load is judged on them where they are larger, since its rounding is theirs.
 
     Returns
     -------
@@ -97,7 +102,7 @@ def settle(
     at = np.zeros(len(target)) if start is None else np.array(start, float)
     goal, reach = size * target, FIRST_STEP
     missing = goal - size * load(at)
-    scale = max(float(np.abs(goal).max(initial=0.0)), float(np.abs(missing).max(initial=0.0)))
+    scale = max(at_work, *(float(np.abs(one).max(initial=0.0)) for one in (goal, missing)))
     if scale == 0.0:
         return Settled(at, 0.0, 0)
     best, best_at, stalled = np.inf, at, 0

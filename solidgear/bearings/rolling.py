@@ -80,6 +80,10 @@ class RollingBearing:
         """What every element of every row carries at one motion."""
         return tuple(row.contacts(motion) for row in self.rows)
 
+    def at_work(self, motion: np.ndarray) -> float:
+        """Sum of all contact forces at one motion, N, whether or not they balance each other."""
+        return float(sum(row.load.sum() for row in self.contacts(motion)))
+
     def motion(
         self, load: Sequence[float] | np.ndarray, held: Sequence[int] = (), start=None
     ) -> np.ndarray:
@@ -125,6 +129,7 @@ class RollingBearing:
                 wanted[move],
                 self.size[move],
                 begin[move],
+                self.at_work(begin),
             )
         except NothingHolds as error:
             raise SolidgearError(_not_carried(wanted, move, error.direction)) from None

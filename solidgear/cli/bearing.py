@@ -166,10 +166,12 @@ def _print(terminal, fact: BearingFacts) -> None:
     if fact.estimated:
         words = ", ".join(fact.estimated).replace("_", " ")
         say(f"Estimated from boundary dimensions and ratings: {words}.")
+    # contacts that balance each other leave the rounding of their sum
+    at_work = max(np.abs(fact.load).max(), sum(row.load.sum() for row in fact.rows))
     parts = [
         f"{n} {engineering(v, 4)} {u}"
         for n, v, u in zip(DOF_NAMES, fact.load, UNITS)
-        if abs(v) > 1e-9 * np.abs(fact.load).max()
+        if abs(v) > 1e-9 * at_work
     ]
     say(f"Load: {', '.join(parts) or 'none'}")
     moved = [
@@ -178,7 +180,9 @@ def _print(terminal, fact: BearingFacts) -> None:
         if abs(v) > 1e-12
     ]
     say(f"Displacement: {', '.join(moved) or 'none'}")
-    terminal.print(matrix_table(fact.stiffness, "stiffness"))
+    own = np.sqrt(np.abs(np.diag(fact.stiffness)))
+    told = np.where(np.abs(fact.stiffness) > 1e-12 * np.outer(own, own), fact.stiffness, 0.0)
+    terminal.print(matrix_table(told, "stiffness"))
     # a bearing that carries nothing has no stiffness at either end
     if fact.spread is not None and np.any(fact.spread[1] > 0):
         ends = [
