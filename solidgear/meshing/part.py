@@ -90,6 +90,8 @@ def recognise(table: BodyTable, folder: Path) -> Recognised:
         volume=found_in.volume,
         round_share=found.share,
         round_volume=volume_of(walls) / found_in.volume,  # type: ignore[arg-type]
+        # the volume of a STEP file is that of its surfaces, and no triangle comes into it
+        facets=0.0 if table.step is not None else found.facets / found_in.volume,
         groups=found_in.groups,
         told=() if table.materials else found_in.told,
         mixed=tuple(f"s{k}" for k, share in enumerate(shares, 1) if share.mixed),
@@ -291,21 +293,26 @@ def _not_round(table: BodyTable, place: Placing, points, triangles, found: Round
     words = f"{100 * found.share:.0f} % of the surface is round about this axis"
     if shares[best] >= LEAST_ROUND:
         return f'{words}, and {100 * shares[best]:.0f} % about "{best}"'
-    # points on a circle miss its outermost places by a little, and axes lie at round numbers
-    middle = (raw.max(axis=1) + raw.min(axis=1)) / 2
-    off = 0.0
-    for digits in (4, 5, 8):
-        x, y, z = (round(float(v), digits) for v in middle)
-        off = round_part(Placing(1.0, place.turn, (x, y, z)).of(raw), triangles).share
-        if off >= LEAST_ROUND:
-            break
-    if off >= LEAST_ROUND:
-        x, y, z = 1e3 * x, 1e3 * y, 1e3 * z
-        return (
-            f"{words}, which goes through ({', '.join(f'{1e3 * v:.4g}' for v in place.foot)}) mm of "
-            f"the file, and {100 * off:.0f} % about one through ({x:.5g}, {y:.5g}, {z:.5g}) mm: "
-            "write that point as origin"
-        )
+    # of an axis beside that point: where it leaves the lower end, so that places count from there as
+    # they do without an origin
+    for axis in sorted(shares, key=lambda one: one != table.axis):
+        turned = Placing(1.0, TURNS[axis], place.foot)
+        there = turned.of(raw)
+        low, high = there.min(axis=1), there.max(axis=1)
+        foot = (low + high) / 2
+        foot[1] = low[1] if table.origin is None else 0.0
+        # points on a circle miss its outermost places by a little, and axes lie at round numbers
+        for digits in (4, 5, 8):
+            x, y, z = (round(float(v), digits) + 0.0 for v in turned.back(foot[:, None])[:, 0])
+            off = round_part(Placing(1.0, TURNS[axis], (x, y, z)).of(raw), triangles).share
+            if off >= LEAST_ROUND:
+                given = ", ".join(f"{1e3 * v:.4g}" for v in place.foot)
+                about = "one" if axis == table.axis else f'"{axis}"'
+                return (
+                    f"{words}, which goes through ({given}) mm of the file, and {100 * off:.0f} % "
+                    f"about {about} through ({', '.join(f'{1e3 * v:.8g}' for v in (x, y, z))}) mm: "
+                    f"write that point as origin{', and that axis' * (axis != table.axis)}"
+                )
     return f"{words}, at least {100 * LEAST_ROUND:.0f} % makes a shaft"
 
 

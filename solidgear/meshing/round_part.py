@@ -27,6 +27,11 @@ SAME_PLACE = 2e-6
 RAYS, SLICES = 180, 6
 #: a chord of eight to a turn lies this share of the radius inside its circle
 CHORD = 0.08
+#: rad; facets of a mesh of something round: about twelve or more to a turn, and none that many times
+#: as wide as the others (a bar of six or eight edges is none, nor is a shaft with a flat)
+WIDEST, MUCH_WIDER = 0.6, 3.0
+#: of the volume beside flat facets: what curved ones leave at most, six to a turn and more
+CURVED = 0.02
 
 
 class Lathe(NamedTuple):
@@ -66,11 +71,16 @@ class RoundPart:
         Round surfaces, outer ones and bores.
     share : float
         Share of the surface that is round, faces across the axis left out.
+    facets : float
+        Volume that a mesh may lack beside the round surfaces, m^3: that outside flat triangles
+        with corners on them, or a small part of it where they are so wide that the part itself may
+        be many-sided, and no facet but a curved one speaks for something round.
     """
 
     walls: tuple[Wall, ...]
     surfaces: tuple[Lathe, ...]
     share: float
+    facets: float = 0.0
 
 
 def round_part(points: np.ndarray, triangles: np.ndarray) -> RoundPart:
@@ -108,17 +118,42 @@ def round_part(points: np.ndarray, triangles: np.ndarray) -> RoundPart:
     area = np.linalg.norm(np.cross((b - a).T, (c - a).T), axis=1) / 2
     flat = np.ptp(y[triangles], axis=0) <= 1e-7 * length
     groups = list(_lines(y[triangles], r[triangles], area, ~flat, largest))
-    surfaces, on = [], np.zeros(len(area), bool)
+    surfaces, on, facets = [], np.zeros(len(area), bool), 0.0
     for members in groups:
         for own in _runs(y[triangles], members, SAME_PLACE * length):
             found = _lathe(y[triangles[:, own]], r[triangles[:, own]], area[own], largest)
             if found is not None and found.share > MOST_OF_A_TURN:
                 surfaces.append(found)
                 on[own] = True
+                facets += _between(points, triangles[:, own], found)
     if not surfaces:
         return RoundPart((), (), 0.0)
-    walls = _walls(points, triangles, surfaces, y.min(), y.max())
-    return RoundPart(tuple(walls), tuple(surfaces), float(area[on].sum() / area[~flat].sum()))
+    walls, by_rays = _walls(points, triangles, surfaces, y.min(), y.max())
+    share = float(area[on].sum() / area[~flat].sum())
+    if by_rays:  # mean radii have the volume of the part, whatever its surface is
+        facets = 0.0
+    elif not _narrow(points, triangles[:, on], ON_LINE * largest):
+        facets *= CURVED
+    return RoundPart(tuple(walls), tuple(surfaces), share, facets)
+
+
+def _between(points, triangles, surface: Lathe) -> float:
+    """Volume between a round surface and its triangles, m^3, by the flux of (x, z) / 2."""
+    a, b, c = (points[:, t] for t in triangles)
+    normal = np.cross((b - a).T, (c - a).T).T / 2
+    middle = (a + b + c) / 3
+    flat = np.abs((middle[[0, 2]] * normal[[0, 2]]).sum(axis=0) / 2).sum()
+    r0, r1 = surface.r0, surface.r1
+    return abs(float(np.pi * (surface.y1 - surface.y0) * (r0 * r0 + r0 * r1 + r1 * r1) / 3 - flat))
+
+
+def _narrow(points, triangles, near) -> bool:
+    """Whether triangles are as narrow around the axis as those of a mesh of something round."""
+    x, z = points[0][triangles], points[2][triangles]
+    turn = np.where(np.hypot(x, z) > near, np.arctan2(x, z), np.nan)
+    gaps = np.abs((turn - np.roll(turn, 1, axis=0) + np.pi) % (2 * np.pi) - np.pi)
+    spans = np.nanmax(gaps, axis=0)
+    return bool(spans.max() <= min(WIDEST, MUCH_WIDER * np.median(spans)))
 
 
 def _lines(y, r, area, free, largest) -> Iterator[np.ndarray]:
@@ -184,8 +219,10 @@ def _lathe(y, r, area, largest) -> Lathe | None:
     return Lathe(y0, y1, max(r0, 0.0), max(r1, 0.0), float(area.sum() / whole))
 
 
-def _walls(points, triangles, surfaces, first, last) -> list[Wall]:
-    """Frusta end to end between the places where something begins or ends."""
+def _walls(points, triangles, surfaces, first, last) -> tuple[list[Wall], bool]:
+    """Frusta end to end between the places where something begins or ends, and whether some of
+    them are of mean radii.
+    """
     near = SAME_PLACE * (last - first)
     places = [first, *sorted(p for s in surfaces for p in (s.y0, s.y1)), last]
     cuts = [first]
@@ -194,6 +231,7 @@ def _walls(points, triangles, surfaces, first, last) -> list[Wall]:
             cuts.append(place)
     cuts[-1] = last
     walls: list[Wall] = []
+    by_rays = False
     for y0, y1 in zip(cuts, cuts[1:]):
         here = [s for s in surfaces if s.y0 < y0 + near and s.y1 > y1 - near]
         middle = _inside(y0, y1)
@@ -210,7 +248,8 @@ def _walls(points, triangles, surfaces, first, last) -> list[Wall]:
             walls.append(Wall(float(y0), float(y1), *map(float, ends)))
         else:
             walls += _sliced(points, triangles, y0, y1, out, bore)
-    return _joined(walls, near)
+            by_rays = True
+    return _joined(walls, near), by_rays
 
 
 def _inside(y0, y1) -> float:

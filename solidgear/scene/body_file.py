@@ -153,6 +153,9 @@ class BodyFile(Model):
         Share of its surface, faces across the axis left out, that is of revolution.
     round_volume : float
         Of the segments over that of the part.
+    facets : float
+        Volume between round surfaces and the facets that a mesh file has of them, over that of the
+        part: so far its volume may be off of a part that is round.
     element : str
         Of a mesh file.
     counts : tuple of int or None
@@ -189,6 +192,7 @@ class BodyFile(Model):
     volume: float
     round_share: float
     round_volume: float
+    facets: float = 0.0
     element: str = ""
     counts: tuple[int, int, int, int] | None = None
     groups: tuple[PartGroup, ...] = ()
@@ -206,7 +210,8 @@ class BodyFile(Model):
         """Whether it is its segments, and nothing else."""
         if self.mixed:
             return False
-        return self.round_share >= ALL_ROUND and abs(self.round_volume - 1) <= SAME_VOLUME
+        off = abs(self.round_volume - 1)
+        return self.round_share >= ALL_ROUND and off <= SAME_VOLUME + self.facets
 
     @property
     def doubts(self) -> tuple[str, ...]:

@@ -34,6 +34,14 @@ def described(scene: Scene) -> Iterator[Notice]:
         return
     off = 100 * (body.round_volume - 1)
     same = "that of the part" if abs(off) < 1e-6 else f"{off:+.2g} % from that of the part"
+    if body.round and abs(off) > 1e-4:
+        same += ", as facets of its mesh explain"
+        if abs(off) > 0.1:
+            same += (
+                f": models of its segments are of the round part, a solid of the mesh is so much "
+                f"{'lighter' if off > 0 else 'heavier'} and bends about twice as much "
+                f"{'more' if off > 0 else 'less'}"
+            )
     yield Notice(
         "fact",
         (),
