@@ -192,10 +192,14 @@ def modes(
         ended(settled)
         return
     from solidgear.report.terminal import modes_table
+    from solidgear.report.words import by_plane
 
     terminal = console()
     terminal.print(heading(loaded, body, settled), markup=False)
     terminal.print(modes_table(rows))
+    planes = by_plane(found.names)
+    if planes:
+        terminal.print(planes.strip(), markup=False, soft_wrap=True)
     e = found.evidence
     terminal.print(
         f"Residual {e['residual']:.1e}, orthogonality {e['orthogonality']:.1e}, rigid modes "

@@ -21,6 +21,7 @@ from solidgear.report.reading import (
     is_resolved,
     left_open,
     matrix_of,
+    mode_of,
     model_name,
     model_of,
     reference_of,
@@ -125,7 +126,8 @@ def _number(model: ModelRecord, name: str, row: Row, units: Units) -> list[Any]:
 def _value(model: ModelRecord, name: str, kind: str, place: tuple[int, int] | None) -> float | None:
     if place is not None:
         return entry(matrix_of(model, name, kind), *place)
-    exact = next((m.frequency_hz for m in model.modes if m.name == name), None)
+    mode = mode_of(model, name)
+    exact = mode.frequency_hz if mode else None
     return exact if exact is not None or name.endswith("2") else first_frequency(model, kind)
 
 

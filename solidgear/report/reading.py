@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from solidgear.body.mode_names import meant
 from solidgear.evidence.quantities import AT
 from solidgear.evidence.record import (
     CoupledRecord,
@@ -107,6 +108,13 @@ def first_mode(model: ModelRecord, family: str) -> ModeRecord | None:
         if of_family and elastic and mode.frequency_hz is not None:
             return mode
     return None
+
+
+def mode_of(model: ModelRecord, name: str) -> ModeRecord | None:
+    """The mode that a name such as 'bending 2' means, or None."""
+    modes = sorted(model.modes, key=lambda mode: mode.frequency_hz or 0.0)
+    place = meant(name, [mode.name for mode in modes])
+    return None if place is None else modes[place]
 
 
 def first_frequency(model: ModelRecord, family: str) -> float | None:

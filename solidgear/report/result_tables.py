@@ -15,11 +15,11 @@ from solidgear.report.reading import (
     answer_seconds,
     entry,
     first_frequency,
-    first_mode,
     headline,
     is_beam,
     is_nothing,
     is_resolved,
+    mode_of,
     model_name,
     model_of,
     reference_of,
@@ -28,7 +28,7 @@ from solidgear.report.reading import (
 )
 from solidgear.report.table import Table
 from solidgear.report.units import ENGINEERING, Units
-from solidgear.report.words import BLOCK_UNITS, band_percent, hertz, seconds
+from solidgear.report.words import BLOCK_UNITS, band_percent, by_plane, hertz, seconds
 
 #: a text, or a text and its css class
 Cell = str | tuple[str, str]
@@ -200,18 +200,19 @@ def matrix(
 def own_frequencies(record: Record, key: str | None) -> Table:
     """Natural frequencies of one model with their bars."""
     model = model_of(record, key)
-    each, first = model.band.each if model.band else {}, first_mode(model, "bending")
-    rows = []
+    each, rows = model.band.each if model.band else {}, []
+    # in two planes that differ, the first ones of both are judged
+    judged = {id(mode_of(model, name)): name for name in each}
+
     for mode in sorted(model.modes, key=lambda m: m.frequency_hz or 0.0):
-        # in two planes that differ, the first of both is the one that is judged
-        name = "bending 1" if mode is first else mode.name
-        bar = each.get(name)
+        bar = each.get(judged.get(id(mode), mode.name))
         told = "0 (rigid)" if mode.frequency_hz == 0 else hertz(mode.frequency_hz, DASH)
         cell = DASH if bar is None else f"± {band_percent(bar)}"
         rows.append([mode.name, told, str(mode.multiplicity), cell])
     note = "Two shapes: a pair of the same frequency in two planes."
     if any(row[-1] == DASH and row[1] != "0 (rigid)" for row in rows):
         note += " A dash: no bar of its own; the higher a mode, the more it asks of a mesh."
+    note += by_plane(mode.name for mode in model.modes)
     return Table(
         f"Natural frequencies of the {model_name(record, key)}",
         ["mode", "Hz", "shapes", "bar"],
@@ -247,6 +248,7 @@ def frequencies(record: Record) -> Table:
             f"In brackets: against the {model_name(record, reference)}. Two shapes: a pair of the "
             "same frequency in two planes. A dash: not among the modes asked for."
         )
+        note += by_plane(ordered)
     return Table(
         "Natural frequencies in Hz, attachments as in the scene",
         ["mode", "family", "shapes", *(capital(model_name(record, key)) for key in modes)],

@@ -9,6 +9,7 @@ import numpy as np
 
 from solidgear.display import Table
 from solidgear.frames import DOF_NAMES
+from solidgear.report.reading import mode_of
 from solidgear.report.words import BLOCK_UNITS, bar_of, percent
 
 if TYPE_CHECKING:
@@ -177,7 +178,7 @@ def comparison(told: Any) -> Table:
     """Verdict and first numbers of every model."""
     record, rows = told.record, []
     for name, model in record.models.items():
-        first = next((m for m in model.modes if m.name == "bending 1"), None)
+        first = mode_of(model, "bending 1")
         c_zz = model.compliance[2][2] if model.compliance else None
         spent = round(sum(v for v in model.seconds.values() if v is not None), 3)
         rows.append(

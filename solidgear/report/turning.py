@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from solidgear.body.mode_names import meant
 from solidgear.errors import SolidgearError
 from solidgear.report.packing import Mesh, mesh_of
 
@@ -78,12 +79,9 @@ class Turned:
     def index(self, name: str) -> int:
         """Place of the shape of that name, also where bending is named by its plane; -1 if none."""
         names = [shape.name for shape in self.shapes]
-        planes = {name.replace("bending ", f"bending {plane} ") for plane in "zx"}
-        # shapes ascend, so that the first of both planes is the lower
-        lower = next((one for one in names if one in planes), "")
         plain = name.replace("bending z ", "bending ").replace("bending x ", "bending ")
-        found = [names.index(wanted) for wanted in (name, lower, plain) if wanted in names]
-        return found[0] if found else -1
+        found = [meant(wanted, names) for wanted in (name, plain)]
+        return next((place for place in found if place is not None), -1)
 
 
 def turned(

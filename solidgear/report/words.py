@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
 from typing import Any, TypeGuard
+
+from solidgear.body.mode_names import BY_PLANE
 
 #: kind -> unit of the blocks (translation, translation), (mixed), (rotation, rotation)
 BLOCK_UNITS = {
@@ -86,6 +89,16 @@ def count(value: float | None, nothing: str = NOTHING) -> str:
         if value >= 9.9995 * size / 10:
             return f"{value / size:.3g}{mark}"
     return f"{value:.0f}"
+
+
+def by_plane(names: Iterable[str]) -> str:
+    """A sentence, led by a space, on what bending 1 is where modes have the names of planes."""
+    if not any(map(BY_PLANE.fullmatch, names)):
+        return ""
+    return (
+        " Bending z and bending x are those in the plane of y and z and in that of x and y; bending 1 "
+        "and 2 without a plane are the first and second of both, in order of frequency."
+    )
 
 
 def band_percent(value: float | None, nothing: str = NOTHING) -> str:

@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, ClassVar
 import numpy as np
 
 from solidgear.body import FURTHER, Body, as_supports
+from solidgear.body.mode_names import meant
 from solidgear.display import Displayed
 from solidgear.errors import SolidgearError
 from solidgear.machine.threads import pinned
@@ -134,18 +135,17 @@ class ModeSet(Displayed):
         Parameters
         ----------
         name : str
-            Such as ``bending 1``. Where bending is named by its plane, ``bending 1`` is the lower of
-            ``bending z 1`` and ``bending x 1``: whichever way a keyway looks, first bending is the
-            lowest.
+            Such as ``bending 1``. Where bending is named by its plane, ``bending 1`` and ``bending
+            2`` are the first and the second of both planes in order of frequency, as they are of a
+            part without a mirror plane: which way a keyway looks does not matter.
 
         Returns
         -------
         Mode or None
         """
-        every = {m.name: m for m in reversed((*self.modes, *self.beyond))}
-        planes = [every.get(name.replace("bending ", f"bending {plane} ", 1)) for plane in "zx"]
-        there = [mode for mode in (every.get(name), *planes) if mode is not None]
-        return every.get(name) or min(there, key=lambda mode: mode.frequency_hz, default=None)
+        every = sorted((*self.modes, *self.beyond), key=lambda mode: mode.frequency_hz)
+        place = meant(name, [mode.name for mode in every])
+        return None if place is None else every[place]
 
 
 @pinned
