@@ -18,7 +18,7 @@ from solidgear.evidence.answer import Numbers, solve
 from solidgear.evidence.quantities import change
 from solidgear.fidelity.ladder import LADDER
 from solidgear.fidelity.levels import HARMONIC, Sequence
-from solidgear.scene import Bearing
+from solidgear.scene import Bearing, BoltCircle
 from solidgear.studies import climb as climbing
 from solidgear.studies.answering import answer
 from solidgear.studies.climb import Climb
@@ -227,6 +227,54 @@ def test_a_frequency_that_rises_is_rounding_and_widens_the_bar(scenes):
     climb.levels[-1] = Numbers({"bending 1": 99.999}, known)
     climb.judge()
     assert climb.bar("bending 1") < 1e-3
+
+
+def test_a_climb_ends_where_no_mesh_makes_bars_narrow_enough():
+    """Meshes of a corrected solid that agree to 1e-5 on a feature that takes 3 % of C_zz: its bar
+    holds a tenth of that, and a finer mesh would change nothing.
+    """
+    scene = sg.load(ROOT / "geometry" / "pinion_keyed.toml")
+    body = sg.build(scene.plain, "harmonic", order=3, layers=1, edge_layers=0)
+    plain = sg.condense(body, scene.plain, "pinion").compliance
+    c_zz, c_yy = 1.03 * plain[2, 2], 1.0001 * plain[1, 1]
+
+    def climb(tol):
+        made = Climb(scene, LADDER["corrected"], ("C_zz", "C_yy"), tol, lambda _: None)
+        for off in (1e-5, 0.0):
+            made.levels.append(Numbers({"C_zz": c_zz * (1 + off), "C_yy": c_yy * (1 + off)}, {}))
+            made.sizes.append(None)
+        made.judge()
+        return made
+
+    stuck = climb(1e-3)
+    # the effect is 0.03 / 1.03, by a plain part good to 1e-4
+    assert stuck.floors()["C_zz"] == pytest.approx(0.1 * 0.03 / 1.03, rel=0.02)
+    assert "sure of a quantity to a share of what features change" in stuck._in_vain()
+    assert "of C_zz at best" in stuck._in_vain()
+    assert not climb(4e-3)._in_vain()
+    # something else is open that a finer mesh will narrow: for that alone it is solved
+    stuck.levels[0] = Numbers({"C_zz": c_zz, "C_yy": c_yy * 1.01}, {})
+    stuck.judge()
+    assert not stuck._in_vain()
+    assert [q for _, names in stuck._questions() for q in names] == ["C_yy"]
+
+
+def test_what_heavy_meshes_cost_is_told_before_they_are_made():
+    """Holes of 2 mm through 60 mm; those of 12 mm are no matter."""
+    from solidgear.studies.effort import heavy_meshes
+
+    def told(diameter):
+        rim = sg.Segment.cylinder("rim", length=0.06, diameter=0.05)
+        holes = BoltCircle(name="b", segment="rim", count=6, diameter=diameter, circle=0.036)
+        scene = sg.Scene.from_parts([rim], features=[holes])
+        return list(heavy_meshes(scene, LADDER["sector"]))
+
+    (sentence,) = told(0.0015)
+    assert (
+        "its coarsest mesh takes about" in sentence and "without which there is no bar" in sentence
+    )
+    assert "unknowns" in sentence and "GB" in sentence and "min" in sentence
+    assert not told(0.012)
 
 
 @pytest.mark.parametrize("tol", [0, -1e-3, 1.5, float("nan"), "x", True])

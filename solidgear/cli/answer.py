@@ -122,7 +122,7 @@ def _values(found: Answered, units: str) -> Table:
     from solidgear.evidence.quantities import diagonals
     from solidgear.report.units import in_ascii, units_named
     from solidgear.report.words import bar_of
-    from solidgear.studies.climb import ABOVE, BELOW
+    from solidgear.studies.steps import ABOVE, BELOW
 
     chosen = units_named(units)
     table = Table(box=box.SIMPLE_HEAD, pad_edge=False)

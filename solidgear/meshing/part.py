@@ -296,14 +296,14 @@ def _not_round(table: BodyTable, place: Placing, points, triangles, found: Round
     # of an axis beside that point: where it leaves the lower end, so that places count from there as
     # they do without an origin
     for axis in sorted(shares, key=lambda one: one != table.axis):
-        turned = Placing(1.0, TURNS[axis], place.foot)
-        there = turned.of(raw)
+        lying = Placing(1.0, TURNS[axis], place.foot)
+        there = lying.of(raw)
         low, high = there.min(axis=1), there.max(axis=1)
         foot = (low + high) / 2
         foot[1] = low[1] if table.origin is None else 0.0
         # points on a circle miss its outermost places by a little, and axes lie at round numbers
         for digits in (4, 5, 8):
-            x, y, z = (round(float(v), digits) + 0.0 for v in turned.back(foot[:, None])[:, 0])
+            x, y, z = (round(float(v), digits) + 0.0 for v in lying.back(foot[:, None])[:, 0])
             off = round_part(Placing(1.0, TURNS[axis], (x, y, z)).of(raw), triangles).share
             if off >= LEAST_ROUND:
                 given = ", ".join(f"{1e3 * v:.4g}" for v in place.foot)

@@ -16,6 +16,7 @@ from solidgear.fidelity.rung import BEAM, LUMPED, SOLID
 from solidgear.machine.threads import pinned
 from solidgear.meshing.closed_form import mass_properties
 from solidgear.scene.shaft import named, resolved
+from solidgear.studies.effort import heavy_meshes
 from solidgear.studies.guards import GUARDS, LEVELS, Notice, Probe
 from solidgear.studies.guards.notice import Notices, beams, everything
 from solidgear.studies.guards.smearing import smearing
@@ -267,6 +268,10 @@ def _beyond_the_segments(scene: Scene) -> Iterator[Notice]:
     use = f"use {' or '.join(fit)}" if fit else "no model holds all of them"
     for model in (m for m in unfit if LADDER[m].holds):
         yield Notice("avoid", (model,), f"{LADDER[model].unfit(scene)}; {use}")
+    for model in (m for m in fit if m in LADDER.fit(scene)):
+        for sentence in heavy_meshes(scene, LADDER[model]):
+            small = "features that are small beside the part make cells as small around them"
+            yield Notice("fact", (model,), f"{sentence}; {small}")
     blind = tuple(m for m in unfit if LADDER[m].build is not None and not LADDER[m].holds)
     lumped = tuple(m for m in unfit if LADDER[m].build is None)
     if lumped:

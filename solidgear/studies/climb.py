@@ -10,14 +10,14 @@ from __future__ import annotations
 import math
 import time
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from solidgear.body import Body, as_supports
 from solidgear.evidence.answer import ENOUGH, Numbers, numbers
 from solidgear.evidence.bands import Band
 from solidgear.evidence.quantities import AT, described, diagonals, points_of, size
-from solidgear.evidence.sequence_bands import sequence_bands
+from solidgear.evidence.sequence_bands import feature_effect, sequence_bands
 from solidgear.fidelity import build
 from solidgear.fidelity.rung import Rung
 from solidgear.solve.condensed import Condensed, Coupled
@@ -25,6 +25,8 @@ from solidgear.solve.families import FAMILIES
 from solidgear.solve.modes import ModeSet, modes
 from solidgear.solve.statics import condense
 from solidgear.solve.supported import decoupled, groups
+from solidgear.studies.effort import foretold
+from solidgear.studies.steps import ABOVE, BELOW, BOTH, Step, Value
 
 if TYPE_CHECKING:
     from solidgear.scene import Scene
@@ -44,87 +46,10 @@ SETTINGS = {
 #: a frequency that rises with a finer mesh, by more than the eigensolver leaves, is rounding: the
 #: bar is this many times the rise
 RISE = 2.0
-#: a coupling this small against its diagonal entries is zero
-ROUNDING = 1e-9
 #: what a mesh was solved for is named up to so many numbers
 FEW = 3
-#: sides on which the exact answer may lie
-ABOVE, BELOW, BOTH = "above", "below", "both"
 #: a bar has one side where the solver has left no more than this share of it
 SOLVER_SHARE = 0.01
-
-
-@dataclass(frozen=True)
-class Value:
-    """A number with its bar.
-
-    Attributes
-    ----------
-    quantity, unit : str
-    value : float
-        SI.
-    bar : float
-        Relative; of couplings, to the geometric mean of their diagonal entries. Infinite where
-        nothing is known.
-    meshes : int
-        That the value and its bar rest on.
-    size : float
-        What the bar is relative to, SI.
-    side : str
-        Where the exact answer of the model lies: ``above`` or ``below`` the value, or ``both`` where
-        it may be either.
-    """
-
-    quantity: str
-    value: float
-    unit: str
-    bar: float
-    meshes: int
-    size: float
-    side: str = BOTH
-
-    @property
-    def how(self) -> str:
-        """Where the bar comes from, in words."""
-        return f"{self.meshes} meshes" if self.meshes > 1 else "one mesh only, not judged"
-
-    @property
-    def zero(self) -> bool:
-        """Whether it is nothing but rounding, as a coupling that symmetry forbids."""
-        return abs(self.value) <= ROUNDING * self.size
-
-
-@dataclass(frozen=True)
-class Step:
-    """Something that was tried, or passed over.
-
-    Attributes
-    ----------
-    rung : str
-    setting : str
-        Of the mesh, in words.
-    valid : bool
-        Whether it could be an answer at all.
-    why : str
-        Why it was passed over, or what came after it.
-    bar : float or None
-        The largest over the quantities asked for; None where there is none yet.
-    unknowns : int or None
-    seconds : float
-    chosen : bool
-    only : tuple of str
-        What was still open, where a mesh was not solved for everything asked for.
-    """
-
-    rung: str
-    setting: str
-    valid: bool
-    why: str = ""
-    bar: float | None = None
-    unknowns: int | None = None
-    seconds: float = 0.0
-    chosen: bool = False
-    only: tuple[str, ...] = ()
 
 
 #: families of motion that are solved together, None for all of them, and what is asked of them
@@ -170,6 +95,7 @@ class Climb:
         self.bands: dict[str, Band] = {}
         self.missing: set[str] = set()
         self.groups: list[tuple[str, ...]] | None = None
+        self._changes: list[Mapping[str, float]] = []
         self.left_out = 0.0
         self.body: Body | None = None
         self.options: dict[str, Any] = {}
@@ -186,7 +112,8 @@ class Climb:
                 tuple(q for q in self.wanted if q in asked) if len(asked) < len(self.wanted) else ()
             )
             setting = _words(level) + (f", for {_few(only)}" if only else "")
-            self.progress(f"{self.rung.title}: {setting}")
+            cost = "" if self.rung.unfit(self.scene) else foretold(self.scene, self.rung, level)
+            self.progress(f"{self.rung.title}: {setting}{cost}")
             unknowns = self._solve(level, questions)
             self.options = dict(level)
             self.missing = (self.missing | asked) - set(self.levels[-1].quantities)
@@ -200,6 +127,9 @@ class Climb:
                 return
             if bar is not None and bar <= self.tol:
                 self._choose("")
+                return
+            if bar is not None and (why := self._in_vain()):
+                self._choose(why)
                 return
         only_one = self.plan.fixed and len(self.plan.levels) == 1
         self._choose(
@@ -250,11 +180,38 @@ class Climb:
         if len(self.levels) < 2:
             families = None if self.groups is None else tuple(f for g in self.groups for f in g)
             return [(families, self.wanted)]
-        open_ = [q for q in self._known() if not self.bar(q) <= self.tol]
+        floors = self.floors()
+        open_ = [q for q in self._open() if not floors.get(q, 0.0) > self.tol]
         if self.groups is None:
             return [(None, tuple(open_))]
         by_group = [(g, tuple(q for q in open_ if family_of(q) in g)) for g in self.groups]
         return [(group, names) for group, names in by_group if names]
+
+    def _open(self) -> list[str]:
+        """What is there, and not yet within the tolerance."""
+        return [q for q in self._known() if not self.bar(q) <= self.tol]
+
+    def floors(self) -> dict[str, float]:
+        """Least bars whatever the mesh: a share of what features change, where the rung has one."""
+        factors = self.rung.factors
+        if factors is None or not factors.effect:
+            return {}
+        for level in self.levels[len(self._changes) :]:
+            self._changes.append(feature_effect(self.scene, factors, level.quantities))
+        finest = {name: change for level in self._changes for name, change in level.items()}
+        return {q: factors.effect[q.partition(AT)[0]] * change for q, change in finest.items()}
+
+    def _in_vain(self) -> str:
+        """Why no finer mesh would help, if none would: all that is open is at its floor."""
+        floors, open_ = self.floors(), self._open()
+        if not open_ or not all(floors.get(q, 0.0) > self.tol for q in open_):
+            return ""
+        top = max(open_, key=floors.__getitem__)
+        return (
+            f"no mesh makes bars of {_few(tuple(open_))} as narrow: the {self.rung.title} is sure "
+            "of a quantity to a share of what features change of it, here to "
+            f"{100 * floors[top]:.2g} % of {top} at best"
+        )
 
     def _solve(self, level: Mapping[str, Any], questions: list[Question]) -> int:
         """Solve a mesh for some questions; its unknowns."""

@@ -28,7 +28,8 @@ from solidgear.evidence.quantities import AT, QUANTITIES, at_points, between, re
 from solidgear.machine.threads import pinned
 from solidgear.solve.condensed import Condensed, Coupled
 from solidgear.studies.answering import climbed, usable
-from solidgear.studies.climb import Climb, Progress, Question, Step
+from solidgear.studies.climb import Climb, Progress, Question
+from solidgear.studies.steps import Step
 
 if TYPE_CHECKING:
     from solidgear.scene import Scene
@@ -218,6 +219,12 @@ class Whole(Climb):
             own = [q for q in finest if q.partition(AT)[0] in TURNED and not repeats(q)]
             out |= {_turned_name(name): known.get(name, math.inf) for name in own}
         return out
+
+    def _open(self) -> list[str]:
+        # the body is wanted, and one number that no mesh makes sure enough is enough to refuse it
+        floors = self.floors()
+        stuck = [q for q in super()._open() if floors.get(q, 0.0) > self.tol]
+        return stuck or super()._open()
 
     def judge(self) -> float | None:
         super().judge()

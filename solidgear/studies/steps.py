@@ -1,0 +1,83 @@
+"""Numbers with their bars, and the meshes that were tried on the way to them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+#: a coupling this small against its diagonal entries is zero
+ROUNDING = 1e-9
+#: sides on which the exact answer may lie
+ABOVE, BELOW, BOTH = "above", "below", "both"
+
+
+@dataclass(frozen=True)
+class Value:
+    """A number with its bar.
+
+    Attributes
+    ----------
+    quantity, unit : str
+    value : float
+        SI.
+    bar : float
+        Relative; of couplings, to the geometric mean of their diagonal entries. Infinite where
+        nothing is known.
+    meshes : int
+        That the value and its bar rest on.
+    size : float
+        What the bar is relative to, SI.
+    side : str
+        Where the exact answer of the model lies: ``above`` or ``below`` the value, or ``both`` where
+        it may be either.
+    """
+
+    quantity: str
+    value: float
+    unit: str
+    bar: float
+    meshes: int
+    size: float
+    side: str = BOTH
+
+    @property
+    def how(self) -> str:
+        """Where the bar comes from, in words."""
+        return f"{self.meshes} meshes" if self.meshes > 1 else "one mesh only, not judged"
+
+    @property
+    def zero(self) -> bool:
+        """Whether it is nothing but rounding, as a coupling that symmetry forbids."""
+        return abs(self.value) <= ROUNDING * self.size
+
+
+@dataclass(frozen=True)
+class Step:
+    """Something that was tried, or passed over.
+
+    Attributes
+    ----------
+    rung : str
+    setting : str
+        Of the mesh, in words.
+    valid : bool
+        Whether it could be an answer at all.
+    why : str
+        Why it was passed over, or what came after it.
+    bar : float or None
+        The largest over the quantities asked for; None where there is none yet.
+    unknowns : int or None
+    seconds : float
+    chosen : bool
+    only : tuple of str
+        What was still open, where a mesh was not solved for everything asked for.
+    """
+
+    rung: str
+    setting: str
+    valid: bool
+    why: str = ""
+    bar: float | None = None
+    unknowns: int | None = None
+    seconds: float = 0.0
+    chosen: bool = False
+    only: tuple[str, ...] = ()
