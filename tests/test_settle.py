@@ -13,14 +13,15 @@ import pytest
 
 import solidgear as sg
 from solidgear import cli
-from solidgear.evidence.answer import solve
+from solidgear.evidence.answer import numbers, solve
 from solidgear.evidence.quantities import change
 from solidgear.fidelity.ladder import LADDER
 from solidgear.fidelity.levels import HARMONIC, Sequence
 from solidgear.scene import Bearing
+from solidgear.solve.statics import condense
 from solidgear.studies import climb as climbing
 from solidgear.studies.answering import answer
-from solidgear.studies.settle import settle
+from solidgear.studies.settle import Whole, _turned, settle
 from solidgear.studies.sweep.choice import settled_for_sweep
 
 ROOT = Path(__file__).parent.parent
@@ -287,3 +288,27 @@ def test_a_sweep_takes_the_mesh_that_its_hardest_bearings_need(scene):
         if hard.options == base.options:
             assert hard.bars[quantity] >= bar
     assert hard.largest[1] > base.largest[1] or hard.body.size > base.body.size
+
+
+def test_couplings_of_the_other_plane_have_bars_of_their_own_sign():
+    """Two meshes that say of a keyed part what its plain part is: nothing is changed by features, in
+    neither plane. Against minus the coupling of the plain part it would be twice all of it.
+    """
+    scene = sg.load(ROOT / "geometry" / "pinion_keyed.toml")
+    body = sg.build(scene.plain, "harmonic", order=5, layers=3, edge_layers=2)
+    plain = condense(body, scene.plain, "pinion")
+    wanted = ("C_zz", "C_z,thx", "C_thx", "K_zz", "K_z,thx", "K_thx")
+    climb = Whole(scene, LADDER["corrected"], wanted, 0.01, lambda _: None)
+    for _ in range(2):
+        climb.levels.append(numbers(plain, None))
+        climb.turned.append(numbers(_turned(plain), None, {"further": _turned(plain)}))
+        climb.sizes.append(None)
+    climb.judge()
+    bars = climb.bars()
+    assert {"C_x,thz", "K_x,thz", "C_x,thz@further"} < set(bars)
+    # the plain part on a lighter mesh, which is what features are held against, is good to 1e-3
+    assert max(bars.values()) < 1e-3, bars
+    # a quarter turn of a round part on bearings that are alike across is the part itself
+    same, turned = plain.stiffness, _turned(plain).stiffness
+    bending = np.ix_((0, 2, 3, 5), (0, 2, 3, 5))
+    assert turned[bending] == pytest.approx(same[bending], rel=1e-9, abs=1e-8 * same.max())

@@ -24,7 +24,7 @@ import numpy as np
 from solidgear.body import Body
 from solidgear.errors import SolidgearError, show
 from solidgear.evidence.answer import Numbers, numbers
-from solidgear.evidence.quantities import AT, QUANTITIES, at_points, between, repeats
+from solidgear.evidence.quantities import ACROSS, AT, QUANTITIES, at_points, between, repeats
 from solidgear.machine.threads import pinned
 from solidgear.solve.condensed import Condensed, Coupled
 from solidgear.studies.answering import climbed, usable
@@ -45,8 +45,10 @@ QUESTIONS: dict[str, tuple[str, ...]] = {
 #: bars closer than this part of themselves are equal
 SAME = 1e-6
 #: components in whose place others stand for a moment: a quarter turn about the axis takes x to z
-#: and thz to thx, and torsion takes the place of axial motion (signs do not matter to a band)
+#: and thz to -thx, and torsion takes the place of axial motion.  With the wrong sign a coupling is held
+#: against minus that of the plain part, and what features change of it is twice all of it
 TURN = (2, 4, 0, 5, 1, 3)
+SIGNS = np.array([-1.0, 1.0, 1.0, -1.0, 1.0, 1.0])
 #: what the quantities of the turned matrix are
 TURNED = {
     "C_zz": "C_xx",
@@ -214,10 +216,13 @@ class Whole(Climb):
         """
         out = {v.quantity: v.bar for v in self.values()}
         if self.turned:
+            # at the main point the other plane is measured as it is
+            own = [q for q in self.levels[-1].quantities if q in ACROSS]
+            out |= {q: self.bands[q].gci if q in self.bands else math.inf for q in own}
             finest = self.turned[-1].quantities
             known = self._turned_bands()
-            own = [q for q in finest if q.partition(AT)[0] in TURNED and not repeats(q)]
-            out |= {_turned_name(name): known.get(name, math.inf) for name in own}
+            own = [q for q in finest if AT in q and q.partition(AT)[0] in TURNED]
+            out |= {_turned_name(q): known.get(q, math.inf) for q in own if not repeats(q)}
         return out
 
     def _open(self) -> list[str]:
@@ -261,7 +266,10 @@ def _turned(found: Seen) -> Seen:
     """A quarter turn about the axis, torsion in the place of axial motion."""
     rows = np.concatenate([6 * k + np.array(TURN) for k in range(len(found.stiffness) // 6)])
     turn = np.ix_(rows, rows)
-    return replace(found, stiffness=found.stiffness[turn], compliance=found.compliance[turn])
+    sign = np.tile(SIGNS, len(rows) // 6)
+    both = np.outer(sign, sign)
+    stiffness, compliance = found.stiffness[turn] * both, found.compliance[turn] * both
+    return replace(found, stiffness=stiffness, compliance=compliance)
 
 
 def _turned_name(name: str) -> str:
