@@ -12,8 +12,9 @@ import solidgear as sg
 from solidgear.cli import app
 from solidgear.frames import DOF_NAMES
 from solidgear.studies.axle.models import Workshop
+from solidgear.studies.axle.naming import mode_names
 from solidgear.studies.axle.receptance import receptance
-from solidgear.studies.axle.respond import Drive
+from solidgear.studies.axle.respond import NO_MODE, Drive
 from solidgear.system.steady import peaks
 
 TRAIN = sg.load_train(OVERHUNG)
@@ -89,6 +90,23 @@ def test_no_peak_is_missed(shop):
         assert np.abs(tops / fine[top] - 1).min() < 2e-3, fine[top]
     assert {round(hz) for hz, *_ in found.peaks} <= {round(hz) for hz in tops}
     assert len(found.peaks) >= 5 and found.peaks[0][2] == "load torsion 1"
+
+
+def test_a_top_far_from_all_natural_frequencies_has_the_name_of_none(shop):
+    """A resonance lies within its own width of the frequency it is called after; the rise between
+    two is of neither.
+    """
+    drive = Drive(shop, *MIX)
+    omega, shapes = drive.system.elastic
+    found = drive.system.modes(12)
+    names = mode_names(shop, drive.system, found)[found.rigid :]
+    load, row = (own_row(drive.system, end) for end in PAIRS[3])
+    drive.load = load
+    hertz = omega[:2] / (2 * np.pi)
+    near, far = hertz[1] * 1.005, np.sqrt(hertz[0] * hertz[1])
+    size = np.array([1.0, 2.0, 1.0, 2.0, 1.0])
+    tops = drive.tops(np.array([hertz[0], far, far * 1.1, near, near * 1.1]), size, row)
+    assert [mode for *_, mode in tops] == [NO_MODE, names[1]]
 
 
 ARGS = ["receptance", str(OVERHUNG), "--pinion", "euler", "--gear", "timoshenko"]

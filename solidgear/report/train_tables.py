@@ -181,6 +181,7 @@ def peaks(
     of : str, optional
         The model.
     """
+    units = units.fitting([size for _, size, _ in found], si)
     rows = [
         [mode, hertz(hz), f"{60 * hz / teeth:.0f}", units.number(size, si, 4)]
         for hz, size, mode in found

@@ -8,8 +8,9 @@ appendix B).
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
-from dataclasses import dataclass
+import re
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from solidgear.errors import SolidgearError, nearest
@@ -87,6 +88,22 @@ class Units:
         written = f"{here:.6g}"
         return engineering(here, 4) if "e" in written else written
 
+    def fitting(self, values: Iterable[float], si: str) -> Units:
+        """The same with a prefix in which the largest of some values is no small fraction.
+
+        Examples
+        --------
+        >>> small = ENGINEERING.fitting([2.495e-13, 1e-14], "m/N")
+        >>> small.text(2.495e-13, "m/N", 4), small.text(1e-14, "m/N", 4)
+        ('249.5 pm/kN', '10.00 pm/kN')
+        """
+        name, factor = self.of.get(si, (si, 1.0))
+        top = max((abs(v) * factor for v in values), default=0.0)
+        if self.exponents or not name.startswith("µm") or not 0 < top < 10.0**SMALLEST:
+            return self
+        prefix, finer = ("n", 1e3) if top * 1e3 >= 1 else ("p", 1e6)
+        return replace(self, of={**self.of, si: (prefix + name[1:], factor * finer)})
+
     def text(self, value: float | None, si: str, digits: int = 5, nothing: str = NOTHING) -> str:
         """The number with its unit."""
         number = self.number(value, si, digits, nothing)
@@ -120,7 +137,8 @@ def in_ascii(text: str) -> str:
     """The same for terminals, which may know no Greek, and where groups of digits would look like
     two columns.
     """
-    return text.replace("µ", "u").replace(GROUP, "")
+    # between digits it groups; elsewhere it keeps a unit on one line
+    return re.sub(rf"(?<=\d){GROUP}(?=\d)", "", text).replace("µ", "u").replace(GROUP, " ")
 
 
 ENGINEERING = Units(

@@ -78,7 +78,8 @@ class TrainComparison:
     @property
     def loudest_name(self) -> str:
         """Name of the mode that makes the largest peak of the judge's mesh force; empty if none."""
-        peaks = self.verdict.responses[0].peaks
+        names = {mode.name for mode in self.modes.modes}
+        peaks = [peak for peak in self.verdict.responses[0].peaks if peak.mode in names]
         return max(peaks, key=lambda peak: peak.force).mode if peaks else ""
 
     def results(self) -> dict[str, Any]:

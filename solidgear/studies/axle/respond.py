@@ -31,6 +31,10 @@ FORCE_UNITS = ("N",) * 3 + ("N m",) * 3
 MOTION_UNITS = ("m",) * 3 + ("rad",) * 3
 #: the first frequency of a response, over the first elastic one
 BEGIN = 0.25
+#: half-widths from a natural frequency, and share of it where losses are small, within which a top is
+#: called after its mode; and what is told of one that is near none
+NEAR, LEAST_NEAR = 4.0, 0.02
+NO_MODE = "none near: several together"
 #: peaks of a mesh force; a train has some tens of modes in any range
 MOST_PEAKS = 400
 #: points between the neighbours of the top of a peak
@@ -275,8 +279,12 @@ class Drive:
             # what makes a peak is the term that changes fastest there, not the largest one:
             # far modes give much of the force, but the same everywhere
             gap = omega[:within] ** 2 * (1 + 1j * lost) - w**2
-            most = np.abs(share / gap**2).argmax()
-            out.append((float(frequency_hz[k]), float(size[k]), names[most]))
+            # a broad top between two of them is of neither
+            width = np.maximum(NEAR * lost / 2, LEAST_NEAR) * omega[:within]
+            near = np.abs(omega[:within] - w) <= width
+            fast = np.where(near, np.abs(share / gap**2), -1.0)
+            name = names[fast.argmax()] if near.any() else NO_MODE
+            out.append((float(frequency_hz[k]), float(size[k]), name))
         return out
 
     def _loss_of(self, found, k: int) -> float:
