@@ -785,3 +785,13 @@ def test_with_features_every_model_that_is_advised_has_a_verdict(name, solids):
 def test_more_than_twice_as_large_is_told_as_a_factor():
     told = [against(gap, "larger", "smaller") for gap in (-0.5, 0.0123, 1.0, 12.8)]
     assert told == ["50 % smaller than", "1.23 % larger than", "100 % larger than", "13.8 times"]
+
+
+def test_narrow_seats_are_told_in_one_sentence():
+    rod = Segment.cylinder("rod", length=0.3, diameter=0.04)
+    ways = {"seat_width": 0.001, "stiffness": {"kxx": 1e8, "kzz": 1e8}}
+    seats = [Bearing(name=n, y=y, **ways) for n, y in (("A", 0.02), ("B", 0.15), ("C", 0.28))]
+    scene = Scene.from_parts([rod], bearings=seats, port=Port(name="p", y=0.1, lo=0.09, hi=0.11))
+    probe = Probe(scene, sg.build(scene, "harmonic", order=2, layers=0, edge_layers=0))
+    (notice,) = elements.narrow_seat(probe)
+    assert "the seats of 'A', 'B', 'C' are 0.025, 0.025, 0.025 diameters" in notice.sentence

@@ -194,8 +194,10 @@ def test_singular_matrix_is_refused_in_a_sentence(matrix, backend):
 @pytest.mark.parametrize("backend", BACKENDS)
 def test_indefinite_border_is_refused(backend):
     matrix = sp.diags(np.r_[np.ones(9), -1.0]).tocsr()
-    with pytest.raises(FactorError, match="not positive definite"):
+    with pytest.raises(FactorError, match="not positive definite") as caught:
         factorise(matrix, backend, border=2)
+    if backend == "superlu":  # which beams come to
+        assert "very short or thin beside their diameter" in str(caught.value)
 
 
 @pytest.mark.parametrize("backend", BACKENDS)

@@ -123,6 +123,10 @@ def compare(
         raise typer.Exit(1)
 
 
+#: rows of a list whose beginning has left the terminal
+MANY = 30
+
+
 @command
 def modes(
     scene: SceneFile,
@@ -197,6 +201,9 @@ def modes(
     terminal = console()
     terminal.print(heading(loaded, body, settled), markup=False)
     terminal.print(modes_table(rows))
+    if len(rows) > MANY:
+        shapes = sum(m.multiplicity for m in found.modes)
+        terminal.print(f"{shapes} shapes up to {found.frequency_hz[-1]:.6g} Hz.")
     planes = by_plane(found.names)
     if planes:
         terminal.print(planes.strip(), markup=False, soft_wrap=True)

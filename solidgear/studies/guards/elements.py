@@ -7,7 +7,7 @@ from importlib.util import find_spec
 
 import numpy as np
 
-from solidgear.errors import SolidgearError
+from solidgear.errors import SolidgearError, listed
 from solidgear.evidence.quantities import change, in_words
 from solidgear.machine.memory import available_mb
 from solidgear.meshing.corners import sharpest_corner
@@ -23,19 +23,25 @@ NARROW, NARROW_POINT = (0.1, 5.0), (0.02, 1.2)
 
 
 def narrow_seat(probe: Probe) -> Notices:
-    """Seats that tie like a line."""
+    """Seats that tie like a line, those of one kind in one sentence."""
+    narrow: dict[tuple[float, float], dict[str, float]] = {}
     for s in probe.scene.stations:
         width = (s.hi - s.lo) / probe.diameter(s.y)
-        limit, softer = NARROW_POINT if s in probe.scene.ports else NARROW
-        if width < limit and s.attachment != "section":
-            yield Notice(
-                "caution",
-                probe.solids,
-                f"the seat of {s.name!r} is {width:.2g} diameters of the shaft wide: below "
-                f"{limit:g} it ties like a line, {softer:g} % softer than a seat of 0.5, and "
-                "softer "
-                'without limit as it narrows; give the real width, or attachment = "section"',
-            )
+        rule = NARROW_POINT if s in probe.scene.ports else NARROW
+        if width < rule[0] and s.attachment != "section":
+            narrow.setdefault(rule, {})[s.name] = width
+    for (limit, softer), seats in narrow.items():
+        several = len(seats) > 1
+        widths = listed([f"{width:.2g}" for width in seats.values()])
+        yield Notice(
+            "caution",
+            probe.solids,
+            f"the {'seats' if several else 'seat'} of {listed(map(repr, seats))} "
+            f"{'are' if several else 'is'} {widths} diameters of the shaft wide: below {limit:g} "
+            f"{'they tie' if several else 'it ties'} like a line, {softer:g} % softer than a seat "
+            "of 0.5, and softer "
+            'without limit as it narrows; give the real width, or attachment = "section"',
+        )
 
 
 def rigid_seats(probe: Probe) -> Notices:
