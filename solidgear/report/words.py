@@ -6,8 +6,6 @@ import math
 from collections.abc import Iterable
 from typing import Any, TypeGuard
 
-from solidgear.body.mode_names import BY_PLANE
-
 #: kind -> unit of the blocks (translation, translation), (mixed), (rotation, rotation)
 BLOCK_UNITS = {
     "stiffness": ("N/m", "N/rad", "N m/rad"),
@@ -93,6 +91,8 @@ def count(value: float | None, nothing: str = NOTHING) -> str:
 
 def by_plane(names: Iterable[str]) -> str:
     """A sentence, led by a space, on what bending 1 is where modes have the names of planes."""
+    from solidgear.body.mode_names import BY_PLANE  # which brings NumPy
+
     if not any(map(BY_PLANE.fullmatch, names)):
         return ""
     return (
