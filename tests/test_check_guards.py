@@ -536,7 +536,7 @@ def test_every_guard_has_a_case():
     assert {case.guard for case in CASES.values()} | {"memory", "renderer"} == set(GUARDS)
 
 
-@pytest.mark.parametrize("allowed, level", ((100, "avoid"), (400, "caution"), (None, "fact")))
+@pytest.mark.parametrize("allowed, level", ((100, "avoid"), (300, "caution"), (None, "fact")))
 def test_memory(monkeypatch, allowed, level):
     monkeypatch.setattr(elements, "missing", lambda name: "")
     monkeypatch.setattr(elements, "available_mb", lambda: allowed)
