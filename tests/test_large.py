@@ -128,11 +128,23 @@ def test_files_of_a_factor_go_with_it():
 
 @PARDISO
 def test_what_is_counted_of_memory_falls_as_asked():
-    sizes = [
-        estimated_size(SCENES["pinion_overhung"], "solid", {"refinement": 2.0, **more}).peak_mb
-        for more in ({}, {"precision": "single"}, {"out_of_core": True})
-    ]
-    assert sizes[0] > 1.2 * sizes[1] > 1.2 * sizes[2]
+    def sizes(scene):
+        return [
+            estimated_size(scene, "solid", {"refinement": 2.0, **more}).peak_mb
+            for more in ({}, {"precision": "single"}, {"out_of_core": True})
+        ]
+
+    whole = sizes(SCENES["pinion_overhung"].with_attachment("rigid"))
+    assert whole[0] > 1.2 * whole[1] > 1.2 * whole[2]
+    # without rigid seats a double factor is made in pieces, which is less than one of half the digits
+    pieces = sizes(SCENES["pinion_overhung"])
+    assert pieces[1] > 1.2 * pieces[0] > 1.2 * pieces[2]
+
+
+def test_no_way_out_takes_more_than_what_did_not_fit():
+    found = ways_out(SCENES["pinion_overhung"], "solid", {"refinement": 2.0}, 1e9)
+    words = [way.words for way in found]
+    assert "--set out_of_core=true" in words and "--set precision=single" not in words
 
 
 # ------------------------------------------------------------------------------------------------- refusals

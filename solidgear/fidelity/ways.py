@@ -79,6 +79,7 @@ def _ways(scene, model: str, options: dict, free: float) -> Iterator[Way]:
         yield from _other(scene, model, other)
     yield from _coarser(scene, model, options, free)
     single, files = {"precision": "single"}, {"out_of_core": True}
+    now = _sized(scene, model, options)
     for words, more, note in (
         ("--set precision=single", single, "same digits, solutions refined in double"),
         ("--set out_of_core=true", files, "the factor in files, several times slower"),
@@ -86,7 +87,8 @@ def _ways(scene, model: str, options: dict, free: float) -> Iterator[Way]:
     ):
         if any(options.get(name) != value for name, value in more.items()):
             size = _sized(scene, model, {**options, **more})
-            if size is not None:
+            # a factor in double precision may fall into pieces by mirror planes, others do not
+            if size is not None and (now is None or size.peak_mb < now.peak_mb):
                 yield Way(words, size.peak_mb, note)
     if options.get("engine", "own") == "own":
         size = _sized(scene, model, {**options, "engine": "petsc"})
