@@ -97,3 +97,9 @@ def test_beams_share_no_code_with_solids():
 @pytest.mark.parametrize("path", sorted(PACKAGE.rglob("*.py")), ids=lambda p: p.stem)
 def test_a_file_is_one_thing(path):
     assert len(path.read_text().splitlines()) <= LONGEST
+
+
+@pytest.mark.parametrize("path", sorted(PACKAGE.rglob("*.py")), ids=lambda p: p.stem)
+def test_modules_are_imported_at_the_top_or_by_a_statement(path):
+    calls = [n for n in ast.walk(ast.parse(path.read_text())) if isinstance(n, ast.Call)]
+    assert "__import__" not in {getattr(call.func, "id", None) for call in calls}

@@ -14,8 +14,6 @@ from solidgear.meshing.bands import first_of_run
 from solidgear.meshing.blocks import layers_at
 from solidgear.meshing.grading import Grading, corner_length, graded, joint_length, segments_under
 
-#: a disc is a plate where it is thinner than this share of a band's height
-PLATE = 0.3
 #: longest cell of a plate, in its outer radii. With one cell from the axis to the rim the second mesh
 #: of a plate of 0.01 diameters was 1e-2 off in bending 1, with three 1e-4; in thicker ones cells as
 #: long as they are thick do
@@ -76,7 +74,7 @@ def fractions_of(
             )
             near, far = (min(sizes) for sizes in zip(*(grading.cell(segments[k]) for k in run)))
             thick = sum(segments[k].length for k in run)
-            if thick < float(__import__("os").environ.get("TH", "1")) * thickness:
+            if thick < thickness:
                 longest = max(thick, PLATE_CELL * max(_outermost(segments[k]) for k in run))
                 near, far = min(near, longest), min(far, longest)
                 edge = min(1, grading.across), min(FREE_EDGE * thick, grading.reach * thickness)
