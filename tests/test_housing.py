@@ -346,7 +346,7 @@ def test_what_a_housing_cannot_vary_is_refused_at_once(shaft, text, word):
 @pytest.mark.parametrize(
     ("text", "word"),
     [
-        ("bearing.B.housing.scale=0", 'bearing "B": must be greater than zero'),
+        ("bearing.B.housing.scale=0", 'bearing "B": scale = 0: must be greater than zero'),
         ("bearing.B.housing.kzz=-1", 'bearing "B": .*negative|bearing "B": .*indefinite'),
         ("bearing.B.housing.kxz=1e10", 'bearing "B": the stiffness is indefinite'),
         ("housing.kzz=1e3", "housing: the stiffness is indefinite"),

@@ -1,13 +1,14 @@
 """What --vary says, and the points it stands for."""
 
 import re
+from pathlib import Path
 
 import numpy as np
 import pytest
 
 import solidgear as sg
 from solidgear.errors import SceneError, SolidgearError
-from solidgear.studies.sweep import vary
+from solidgear.studies.sweep import sweep, vary
 from solidgear.studies.sweep.run import variants_of
 
 SCENE = sg.load("geometry/pinion_overhung.toml")
@@ -176,3 +177,53 @@ def test_a_rigid_seat_cannot_move():
     variants_of(rigid, ["bearing.2.scale=1,2"]).shaft()
     with pytest.raises(SolidgearError, match="no variant can be solved"):
         variants_of(SCENE, ["bearing.2.position=0.8,0.9"]).shaft()
+
+
+CATALOGUE = sg.load("geometry/gearbox_catalogue.toml")
+
+
+def stiffness_at(scene, name):
+    return np.array(next(b for b in scene.bearings if b.name == name).matrix)
+
+
+def test_catalogue_bearings_that_move_carry_what_the_load_brings_them_there(tmp_path):
+    # Bearing A at 20 mm in place of 15 mm is a shorter span: both bearings carry other loads. The
+    # same scene read from a file finds its equilibrium there by itself.
+    text = Path("geometry/gearbox_catalogue.toml").read_text()
+    assert text.count('position = "15 mm"') == 1
+    (tmp_path / "moved.toml").write_text(text.replace('position = "15 mm"', 'position = "20 mm"'))
+    there = sg.load(tmp_path / "moved.toml")
+    swept = variants_of(CATALOGUE, ["bearing.A.position=15 mm,20 mm"])
+    for name in ("A", "B"):
+        want = stiffness_at(there, name)
+        assert stiffness_at(swept.of(1), name) == pytest.approx(want, rel=1e-6)
+        # the load is not what it was, by far more than the equilibrium leaves open
+        here = stiffness_at(CATALOGUE, name)
+        assert abs(want[0, 0] / here[0, 0] - 1) > 3e-3
+        assert stiffness_at(swept.of(0), name) == pytest.approx(here, rel=1e-6)
+
+
+def test_what_varies_of_a_catalogue_bearing_itself_varies_from_its_tangent():
+    swept = variants_of(CATALOGUE, ["bearing.A.position=15 mm,20 mm", "bearing.A.scale=1,2"])
+    once, twice = (stiffness_at(swept.of(k), "A") for k in (2, 3))
+    assert twice == pytest.approx(2 * once, rel=1e-12)
+    assert stiffness_at(swept.of(2), "B") == pytest.approx(stiffness_at(swept.of(3), "B"))
+
+
+def test_a_sweep_says_at_which_load_catalogue_bearings_are_taken(tmp_path):
+    def settling(*texts):
+        rows = sweep(CATALOGUE, texts, tmp_path / "r.csv", fidelity="timoshenko", overwrite=True)
+        return rows.settling
+
+    assert "bearings A, B: the tangent under [load], found anew" in settling(
+        "bearing.A.position=15 mm,20 mm"
+    )
+    assert "bearing.A.scale varies from there, with the loads" in settling("bearing.A.scale=1,2")
+    plain = sweep(SCENE, ["bearing.1.scale=1,2"], tmp_path / "p.csv", fidelity="timoshenko")
+    assert plain.settling == ""
+
+
+@pytest.mark.parametrize("scale", ["0", "-1"])
+def test_a_scale_that_is_none_is_told_with_its_value(scale):
+    with pytest.raises(SceneError, match=rf'bearing "2": scale = {scale}: must be greater'):
+        variants_of(SCENE, [f"bearing.2.scale={scale},1"]).of(0)

@@ -173,6 +173,8 @@ def sweep(
         if found.why:
             others = "; others say theirs" if found.refused > 1 else ""
             print(f"Refused: {found.why} (column status{others}).")
+    if found.settling:
+        print(found.settling)
     for sentence in over_the_sweep(settled):
         print(sentence)
     ended(settled)

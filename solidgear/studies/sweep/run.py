@@ -19,7 +19,7 @@ from solidgear.scene import Scene
 from solidgear.studies.sweep import vary
 from solidgear.studies.sweep.rows import RowFile, tell_in_log
 from solidgear.studies.sweep.task import Task, columns
-from solidgear.studies.sweep.variants import SeatedShaft, Variants
+from solidgear.studies.sweep.variants import SeatedShaft, Variants, waiting
 from solidgear.studies.sweep.workers import workers
 
 #: Most elastic shapes of a row, two columns each; a basis that holds as many is no small problem.
@@ -47,6 +47,8 @@ class Summary:
         Why the first of the refused ones is none; empty if none is refused.
     repairs : tuple of str
         What was found damaged in the files and how it was mended, a sentence each.
+    settling : str
+        Of bearings of catalogue data: at which load their stiffness is taken, in a sentence.
     """
 
     path: Path
@@ -61,6 +63,7 @@ class Summary:
     seconds_each: float = 0.0
     repairs: tuple[str, ...] = ()
     why: str = ""
+    settling: str = ""
 
 
 def sweep(
@@ -152,7 +155,7 @@ def sweep(
     with RowFile(Path(out), columns(variants, n), plan, total, overwrite, mended) as file:
         skipped = len(file.done)
         todo = [i for i in range(total) if i not in file.done]
-        found = Summary(file.path, total, skipped)
+        found = Summary(file.path, total, skipped, settling=_settling(variants))
         if todo:
             found = _solve(found, file, variants, body, n, tolerance, todo, team, jobs, progress)
         file.finish()
@@ -200,6 +203,22 @@ def variants_of(
     return Variants(
         scene, axes, vary.product(axes) if sample is None else vary.sample(axes, sample, seed)
     )
+
+
+def _settling(variants: Variants) -> str:
+    """At which load the stiffness of catalogue bearings is taken in the rows."""
+    names = waiting(variants.scene)
+    if not names:
+        return ""
+    which = f"Catalogue {'bearing' if len(names) == 1 else 'bearings'} {', '.join(names)}"
+    fixed = [axis.label for axis in variants.axes if axis.field != "position"]
+    moved = len(fixed) < len(variants.axes)
+    anew = "the tangent under [load], found anew at every position"
+    if not fixed:
+        return f"{which}: {anew}."
+    held = f"{', '.join(fixed)} {'varies' if len(fixed) == 1 else 'vary'} from there"
+    start = anew if moved else "the tangent under [load] as the scene has it"
+    return f"{which}: {start}; {held}, with the loads of the bearings left as they are."
 
 
 class _Solver:
@@ -276,4 +295,6 @@ def _plan(variants: Variants, sample, seed, fidelity, options, n, tolerance) -> 
         "n": n,
         "tolerance": tolerance,
         "version": __version__,
+        # rows from before positions were settled anew are of another sweep
+        **({"settled": "every position"} if waiting(variants.scene) else {}),
     }

@@ -85,7 +85,7 @@ class Variants:
                 for k, y in zip(self._moves, key):
                     b = self.axes[k].seat
                     bearings[b] = bearings[b].with_changes(y=y)
-                out[key] = self.scene.with_changes(bearings=tuple(bearings))
+                out[key] = settled_anew(self.scene.with_changes(bearings=tuple(bearings)))
             except SceneError as error:
                 # the field is that of a scene in memory: what was varied is said as it was asked for
                 where = ", ".join(
@@ -168,6 +168,53 @@ class Variants:
         )
 
 
+def settled_anew(scene: Scene) -> Scene:
+    """A scene with seats elsewhere, whose catalogue bearings carry what the load of the scene brings
+    them there.
+
+    A bearing's tangent is that of its load, and where a seat moves, loads move with it.
+
+    Parameters
+    ----------
+    scene : Scene
+
+    Returns
+    -------
+    Scene
+        The same where no bearing waits for the load of the scene.
+
+    Raises
+    ------
+    SceneError
+        Where shaft and bearings find no equilibrium.
+    """
+    if not waiting(scene):
+        return scene
+    from solidgear.bearings.solved import solved
+    from solidgear.studies.loading import shaft
+
+    try:
+        return solved(scene, shaft(scene)).scene
+    except SceneError:
+        raise
+    except SolidgearError as error:
+        raise SceneError(str(error)) from None
+
+
+def waiting(scene: Scene) -> tuple[str, ...]:
+    """Names of the bearings whose stiffness hangs on what the load of the scene brings them."""
+    if all(b.catalogue is None for b in scene.bearings):
+        return ()
+    from solidgear.bearings.solved import wants_equilibrium
+
+    if not wants_equilibrium(scene):
+        return ()
+    own = (
+        b for b in scene.bearings if b.catalogue is not None and b.catalogue.displacement is None
+    )
+    return tuple(b.name for b in own if b.catalogue is not None and b.catalogue.load is None)
+
+
 def _port_name(station: Port | Bearing | PointMass) -> str:
     """Name of the port of a station in the shaft of a sweep: seats of bearings are shared."""
     return seat_name(station) if isinstance(station, Bearing) else station.name
@@ -194,14 +241,19 @@ def _varied(housing: E, fields: list[tuple[str, float]]) -> E:
     """A housing with some of its entries replaced, then scaled."""
     given = dict(fields)
     factor = given.pop("scale", None)
-    if factor is not None and not factor > 0:
-        raise SceneError("must be greater than zero", field="factor", value=show(factor))
+    _refuse_scale(factor)
     if given:
         entries: dict[str, Any] = {"stiffness": housing.entries | given}
         if isinstance(housing, Housing):
             entries["y"] = housing.y
         housing = type(housing)(**entries)
     return housing if factor is None else housing.scaled(factor)
+
+
+def _refuse_scale(factor: float | None) -> None:
+    if factor is not None and not factor > 0:
+        reason = f"scale = {factor:g}: must be greater than zero"
+        raise SceneError(reason, field="scale", value=show(factor))
 
 
 # In a product of axes the same few bearings come again and again.
@@ -213,7 +265,7 @@ def _changed(
     matrix, factor = np.array(bearing.matrix), None
     for field, value in own:
         if field == "scale":
-            factor = value
+            _refuse_scale(factor := value)
         else:
             i, j, _ = STIFFNESS_NAMES[field]
             matrix[i, j] = matrix[j, i] = value
