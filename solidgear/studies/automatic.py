@@ -6,8 +6,9 @@ one mesh, of which nobody has shown that it will do.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -21,6 +22,7 @@ from solidgear.studies.answering import climbed
 from solidgear.studies.climb import Climb
 
 if TYPE_CHECKING:
+    from solidgear.body import Body
     from solidgear.scene import Scene
 
 #: name of the model in rows of a chart
@@ -53,10 +55,24 @@ def solved(scene: Scene, model: str, options: dict, n: int) -> Answer:
     """
     if model != AUTO:
         return answer(scene, model, options, n)
-    climb, _ = climbed(scene, options["tol"], tuple(QUANTITIES), Climb, lambda _: None)
-    assert climb.body is not None and climb.modes is not None  # everything was asked
+    climb, _ = climbed(scene, options["tol"], tuple(QUANTITIES), _Charted, lambda _: None)
+    assert climb.largest is not None and climb.modes is not None  # everything was asked
     values = {v.quantity: v.value for v in climb.values()}
-    return Answer(climb.body, _together(climb), climb.modes, values)
+    return Answer(climb.largest, _together(climb), climb.modes, values)
+
+
+class _Charted(Climb):
+    """A climb that keeps the largest body it solved: the last one may be that of a small question,
+    torsion alone, and a chart over unknowns would take its size for that of the whole answer.
+    """
+
+    largest: Body | None = None
+
+    def _body(self, level: Mapping[str, Any], families: tuple[str, ...] | None) -> Body:
+        body = super()._body(level, families)
+        if self.largest is None or body.size > self.largest.size:
+            self.largest = body
+        return body
 
 
 def _together(climb: Climb) -> Condensed:
