@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from solidgear.evidence.record import Record
+from solidgear.report.bearing_words import catalogue, load_row, without_column
 from solidgear.report.cells import DASH, short_percent
 from solidgear.report.reading import model_name
 from solidgear.report.table import Table
@@ -38,6 +39,7 @@ def scene_facts(record: Record, units: Units = ENGINEERING) -> Table:
         ["free motions there", ", ".join(free) or "none"],
         *_further_points(scene, units),
         _housing(scene, units),
+        *load_row(scene, units),
         ["asked for", _asked(scene.get("ask") or {})],
     ]
     return Table("Scene", ["item", "value"], rows if scene else [], css="facts")
@@ -165,7 +167,7 @@ def bearings(scene: Mapping, units: Units = ENGINEERING) -> Table:
                 (b.get("attachment", DASH), "word text"),
                 *(cells or (units.number(value, si, 4, DASH) for value, si in shown)),
                 (status, f"word text mark {status}"),
-                (_note(b), "text"),
+                (_note(b, units), "text"),
             ]
         )
     head = [
@@ -183,18 +185,22 @@ def bearings(scene: Mapping, units: Units = ENGINEERING) -> Table:
         rows,
         note=(
             "Status says where the stiffness comes from: published, measured, identified (fitted), "
-            "assumed, or from catalogue data: calculated, or estimated where the inner geometry is."
-        ),
+            "assumed, or from catalogue data: calculated, or estimated where the inner geometry is. "
+            + without_column(
+                scene.get("bearings") or [], [(i, j) for i, j, _ in BEARING_ENTRIES.values()]
+            )
+        ).strip(),
     )
 
 
-def _note(bearing: Mapping) -> str:
-    """What is told of a bearing in words, the housing at its seat included."""
+def _note(bearing: Mapping, units: Units) -> str:
+    """What is told of a bearing in words, catalogue data and the housing at its seat included."""
+    words = [catalogue(bearing.get("catalogue"), units), str(bearing.get("note") or "")]
     own = bearing.get("housing")
-    if not own:
-        return str(bearing.get("note") or "")
-    entries = ", ".join(f"{name} {engineering(value, 4)}" for name, value in own.items())
-    return f"{bearing.get('note') or ''} Stands in a housing of its own, SI: {entries}.".strip()
+    if own:
+        entries = ", ".join(f"{name} {engineering(value, 4)}" for name, value in own.items())
+        words.append(f"Stands in a housing of its own, SI: {entries}.")
+    return " ".join(filter(None, words))
 
 
 def bearing_range(record: Record) -> Table:

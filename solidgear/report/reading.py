@@ -42,9 +42,11 @@ def left_open(record: Record) -> str:
     if first is None:
         return ""
     middle, low, high = first["frequency_hz"], first["low"], first["high"]
+    model = model_name(record, record.bearing_range.get("model"))
     return (
         f"What is not known of the bearings leaves first bending anywhere from {hertz(low)} to "
-        f"{hertz(high)} Hz ({percent(low / middle - 1)} to {percent(high / middle - 1)}; "
+        f"{hertz(high)} Hz ({percent(low / middle - 1)} to {percent(high / middle - 1)} of the "
+        f"{hertz(middle)} Hz of the {model}, which it was worked out with; "
         f"{record.bearing_range.get('varied')}), and stiffness with it"
     )
 

@@ -1,0 +1,112 @@
+"""What a report says of bearings beside the table of their stiffness: which they are, at what load."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from solidgear.report.cells import DASH
+from solidgear.report.units import Units
+from solidgear.report.words import is_number
+
+#: of a load, in its order, with their units
+LOADS = {"x": "N", "y": "N", "z": "N", "thx": "N m", "thz": "N m"}
+
+
+def load_row(scene: Mapping[str, Any], units: Units) -> list[list[str]]:
+    """The load under which catalogue bearings have their stiffness, as a row; none without one.
+
+    Parameters
+    ----------
+    scene : mapping
+        As a record has it.
+    units : Units
+
+    Returns
+    -------
+    list of list of str
+    """
+    told = loads(scene.get("load") or {}, units)
+    return [["load at the lumped point", f"{told}; bearings are taken under it"]] if told else []
+
+
+def loads(load: Mapping[str, Any], units: Units) -> str:
+    """A load in words: forces and moments that are there."""
+    there = {name: load.get(name) for name in LOADS if is_number(load.get(name)) and load[name]}
+    return ", ".join(
+        f"{name} {units.given(value, LOADS[name])} {units.unit(LOADS[name])}"
+        for name, value in there.items()
+    )
+
+
+def catalogue(data: Mapping[str, Any] | None, units: Units) -> str:
+    """Which bearing it is, from its catalogue data; nothing for a 6x6 that was given.
+
+    Parameters
+    ----------
+    data : mapping or None
+        ``catalogue`` of a bearing in a record.
+    units : Units
+
+    Returns
+    -------
+    str
+        A sentence.
+    """
+    if not data:
+        return ""
+    length = units.unit("m")
+    sizes = " x ".join(
+        units.given(data.get(name), "m", DASH) for name in ("bore", "outer_diameter", "width")
+    )
+    name = data.get("designation") or str(data.get("kind", "")).replace("_", " ")
+    words = [f"{name}, {sizes} {length}"]
+    if data.get("arrangement") not in (None, "single"):
+        words.append(str(data["arrangement"]).replace("_", " "))
+    preload = data.get("preload") or {}
+    if is_number(preload.get("force")):
+        words.append(f"preload {units.given(preload['force'], 'N')} {units.unit('N')}")
+    if is_number(preload.get("displacement")):
+        words.append(f"preload {units.given(preload['displacement'], 'm')} {length}")
+    clearance = data.get("clearance")
+    if is_number(clearance) and clearance:
+        words.append(f"clearance {units.given(clearance, 'm')} {length}")
+    elif isinstance(clearance, str):
+        words.append(f"clearance {clearance}")
+    own = loads(data.get("load") or {}, units)
+    if own:
+        words.append(f"under {own}")
+    return ", ".join(words) + "."
+
+
+def without_column(bearings: Sequence[Mapping[str, Any]], shown: Sequence[tuple[int, int]]) -> str:
+    """Which bearings have entries that a table of some entries leaves out, in a sentence.
+
+    Parameters
+    ----------
+    bearings : sequence of mapping
+        Of a record.
+    shown : sequence of (int, int)
+        Places of the entries that have a column.
+
+    Returns
+    -------
+    str
+        Nothing where nothing is left out. K_x,thz stands with K_z,thx where one is the other turned.
+    """
+    names = [f"'{b.get('name', '')}'" for b in bearings if not b.get("hold") and _more(b, shown)]
+    if not names:
+        return ""
+    return (
+        f"Entries without a column, couplings among them, has the 6x6 of {', '.join(names)}; "
+        "results.json has all of them, in SI."
+    )
+
+
+def _more(bearing: Mapping[str, Any], shown: Sequence[tuple[int, int]]) -> bool:
+    stiffness = bearing.get("stiffness") or []
+    if len(stiffness) != 6:
+        return False
+    turned = stiffness[0][5] == -stiffness[2][3]
+    known = {*shown, *((j, i) for i, j in shown)} | ({(0, 5), (5, 0)} if turned else set())
+    return any(stiffness[i][j] for i in range(6) for j in range(6) if (i, j) not in known)

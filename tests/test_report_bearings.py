@@ -1,0 +1,62 @@
+"""A report says which bearings a shaft stands on and at what load, and owns up to what it leaves out."""
+
+import solidgear as sg
+from solidgear.evidence.record import Record
+from solidgear.report.input_tables import bearings, scene_facts
+from solidgear.report.reading import left_open
+from solidgear.report.units import US
+
+CATALOGUE = sg.load("geometry/gearbox_catalogue.toml").as_dict()
+GIVEN = sg.load("geometry/shaft_stepped.toml").as_dict()
+
+
+def record(scene=CATALOGUE, **more):
+    return Record.model_validate({"scene": scene, **more})
+
+
+def cell(one):
+    return one[0] if isinstance(one, tuple) else one
+
+
+def test_the_load_that_bearings_are_taken_under_is_a_fact_of_the_scene():
+    facts = {row[0]: cell(row[1]) for row in scene_facts(record()).rows}
+    told = facts["load at the lumped point"]
+    assert told == "x 3800 N, y -1000 N, z 1400 N; bearings are taken under it"
+    pounds = {row[0]: cell(row[1]) for row in scene_facts(record(), US).rows}
+    # 3800 N / 4.4482216 N
+    assert pounds["load at the lumped point"].startswith("x 854.274 lbf, ")
+    assert "load at the lumped point" not in {row[0] for row in scene_facts(record(GIVEN)).rows}
+
+
+def test_a_catalogue_bearing_is_told_by_its_designation():
+    notes = {row[0]: cell(row[-1]) for row in bearings(CATALOGUE).rows}
+    assert notes["A"] == "NU 207, 35 x 72 x 17 mm, clearance CN."
+    assert notes["B"] == "7208 B, 40 x 80 x 18 mm, back to back, preload 400 N."
+    assert {cell(row[-1]) for row in bearings(GIVEN).rows} == {""}
+
+
+def test_entries_without_a_column_are_owned_up_to():
+    # K_xz of the loaded roller bearing is a quarter of K_xx
+    assert "6x6 of 'A', 'B'; results.json has all of them" in bearings(CATALOGUE).note
+    assert "without a column" not in bearings(GIVEN).note
+
+
+def test_the_mirrored_coupling_is_no_further_entry():
+    scene = {"bearings": [{"name": "one", "stiffness": [[0.0] * 6 for _ in range(6)]}]}
+    matrix = scene["bearings"][0]["stiffness"]
+    matrix[2][3] = matrix[3][2] = 4.0
+    matrix[0][5] = matrix[5][0] = -4.0
+    assert "without a column" not in bearings(scene).note
+    matrix[0][5] = matrix[5][0] = -5.0
+    assert "6x6 of 'one'" in bearings(scene).note
+
+
+def test_the_range_of_bearings_names_the_model_it_was_worked_out_with():
+    # page one tells the trusted solid's frequency above: per cents of a beam's are not of that
+    bound = {"mode": "bending 1", "frequency_hz": 1590.5, "low": 717.4, "high": 1821.2}
+    found = record(
+        bearing_range={"bounds": [bound], "model": "timoshenko", "varied": "load 0.2 to 1.2 times"},
+        models={"timoshenko": {"title": "Timoshenko beam"}},
+    )
+    said = left_open(found)
+    assert "(-54.9 % to +14.5 % of the 1590.5 Hz of the Timoshenko beam" in said
