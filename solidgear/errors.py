@@ -271,6 +271,8 @@ def nearest(word: Any, known: Iterable[str]) -> str:
     --------
     >>> nearest("diameter_start", ["end_diameter", "start_diameter"])
     '; did you mean "start_diameter"?'
+    >>> nearest("c_zz", ["K_zz", "C_zz"])  # not the first that differs by one letter
+    '; did you mean "C_zz"?'
     """
     return did_you_mean(near(word, known))
 
@@ -281,10 +283,11 @@ def did_you_mean(word: str | None) -> str:
 
 
 def near(word: Any, known: Iterable[str]) -> str:
-    """The known word that is nearest to `word`, first of its own parts; or an empty text."""
+    """The known word that is nearest to `word`: in other capitals, of its own parts; or an empty text."""
     asked, words = str(word)[:60], list(known)
+    alike = [one for one in words if one.casefold() == asked.casefold()]
     turned = [one for one in words if sorted(one.split("_")) == sorted(asked.split("_"))]
-    return next(iter(turned or difflib.get_close_matches(asked, words, 1)), "")
+    return next(iter(alike or turned or difflib.get_close_matches(asked, words, 1)), "")
 
 
 def listed(words: Iterable[Any], most: int = 24) -> str:

@@ -103,3 +103,15 @@ def test_a_file_is_one_thing(path):
 def test_modules_are_imported_at_the_top_or_by_a_statement(path):
     calls = [n for n in ast.walk(ast.parse(path.read_text())) if isinstance(n, ast.Call)]
     assert "__import__" not in {getattr(call.func, "id", None) for call in calls}
+
+
+def test_a_division_by_zero_in_our_own_code_is_an_error_and_in_others_is_theirs():
+    # warnings go to the module whose line divides
+    divide = "import numpy as np\ndef divide():\n    return np.zeros(2) / np.zeros(2)"
+    ours, theirs = {"__name__": "solidgear.made_up"}, {"__name__": "made_up"}
+    exec(divide, ours)
+    exec(divide, theirs)
+    with pytest.raises(RuntimeWarning, match="invalid value"):
+        ours["divide"]()
+    with pytest.warns(RuntimeWarning, match="invalid value"):
+        theirs["divide"]()
