@@ -13,7 +13,7 @@ import pytest
 
 import solidgear as sg
 from solidgear.body import as_supports
-from solidgear.cli.answer import sentences
+from solidgear.cli.answer import _absent, sentences
 from solidgear.evidence.answer import Numbers, solve
 from solidgear.evidence.quantities import change
 from solidgear.fidelity.ladder import LADDER
@@ -302,6 +302,11 @@ def test_what_does_not_exist_is_said_to_be_missing():
     free = sg.load(ROOT / "geometry" / "cylinder_free.toml")
     found = answer(free, 0.1, "C_zz,bending")
     assert found.missing == ("C_zz",) and [v.quantity for v in found.values] == ["bending 1"]
+    (told,) = (line for line in sentences(found) if line.startswith("Not there"))
+    assert told == "Not there: C_zz (a motion that no bearing resists)."
+    assert _absent(("C_zz", "K_thy", "torsion 1")) == (
+        "C_zz, K_thy (motions that no bearing resists); torsion 1 (no such mode among the lowest)"
+    )
     nothing = answer(free, 0.1, "C_zz")
     assert not nothing.reached and nothing.values == () and "exists" in nothing.steps[-1].why
 

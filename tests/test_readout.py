@@ -123,6 +123,19 @@ def drawn(found, units):
     )
 
 
+def test_a_response_that_is_drawn_from_further_up_says_so(found):
+    def words(marks):
+        axes = response_figure([found], "", 14, 3.0, marks).axes[1]
+        return axes.get_xlabel(), axes.get_xlim()[0]
+
+    assert words({}) == ("mesh frequency in Hz", pytest.approx(found.frequency_hz[0]))
+    told, first = words({"both euler": 500.0})
+    below = [peak for peak in found.peaks if peak.frequency_hz < first]
+    assert first == pytest.approx(250.0) and len(below) > 1
+    assert "from half of where the first model leaves the band" in told
+    assert told.endswith(f"; {len(below)} peaks lie below")
+
+
 @pytest.mark.parametrize(
     "units, newton, micrometre",
     [("si", 1, 1e-6), ("engineering", 1, 1), ("us", 1 / 4.4482216152605, 1e3 / 25.4)],

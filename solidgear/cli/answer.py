@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -181,9 +182,7 @@ def sentences(found: Answered | Settled) -> list[str]:
             passed.setdefault(step.why, []).append(step.rung)
     lines = [f"Passed over: {', '.join(names)} ({why})." for why, names in passed.items()]
     if found.missing:
-        lines.append(
-            f"Not there: {', '.join(found.missing)} (a free motion, or no such mode among the lowest)."
-        )
+        lines.append(f"Not there: {_absent(found.missing)}.")
     asked = percent(found.tolerance, signed=False)
     cost = sum(step.seconds for step in found.steps)
     if found.reached:
@@ -195,6 +194,18 @@ def sentences(found: Answered | Settled) -> list[str]:
     why = next((step.why for step in found.steps if step.chosen and step.why), "")
     lines.append(f"Not reached: {asked} was asked for{f'; {why}' if why else ''}.")
     return lines
+
+
+def _absent(missing: Sequence[str]) -> str:
+    """Quantities that a scene does not have, each kind with why."""
+    free = [q for q in missing if q.startswith(("C_", "K_"))]
+    modes = [q for q in missing if q not in free]
+    one = len(free) == 1
+    whys = [
+        (free, f"{'a motion' if one else 'motions'} that no bearing resists"),
+        (modes, "no such mode among the lowest"),
+    ]
+    return "; ".join(f"{', '.join(names)} ({why})" for names, why in whys if names)
 
 
 def _places(scene: Scene, found: Answered) -> tuple[Whereabouts, str]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
+from solidgear.evidence.correlate import FOREIGN
 from solidgear.evidence.record import (
     BandRecord,
     DeviationRecord,
@@ -262,7 +263,8 @@ def pairs(record: Record) -> Table:
         f"MAC of every mode with its partner in the {reference}",
         ["mode", *(_named(record, key) for key in own)],
         rows,
-        "In brackets: the partner, where it has another name.",
+        "In brackets: the partner, where it has another name; less alike than "
+        f"{FOREIGN:g} is none.",
     )
 
 
@@ -270,5 +272,7 @@ def _pair(pair: PartnerRecord | None) -> str:
     """How like its partner a mode is."""
     if pair is None or pair.mac is None:
         return DASH
+    if pair.mac < FOREIGN:
+        return f"{pair.mac:.4f} (none)"
     other = "" if pair.partner == pair.mode else f" ({pair.partner or 'none'})"
     return f"{pair.mac:.4f}{other}"

@@ -85,8 +85,17 @@ def response_figure(
                 axes[0].axvline(place, ymax=DEPARTS, color=colour, lw=1.2, ls=":")
         for axis in axes:
             _plain(axis.yaxis, (1.0,))
-        _finish(figure, axes, "mesh frequency in Hz", title, teeth)
+        _finish(figure, axes, f"mesh frequency in Hz{_cut(responses[0], first)}", title, teeth)
         return figure
+
+
+def _cut(response: Any, first: float) -> str:
+    """What an axis leaves out below, in words; nothing where it begins with the response."""
+    if first <= response.frequency_hz[0]:
+        return ""
+    below = sum(peak.frequency_hz < first for peak in response.peaks)
+    peaks = {0: "", 1: "; 1 peak lies below"}.get(below, f"; {below} peaks lie below")
+    return f", from half of where the first model leaves the band{peaks}"
 
 
 def receptance_figure(found: Sequence[Any], title: str, teeth: int, units: Units = ENGINEERING):

@@ -1,7 +1,8 @@
-"""A report says which bearings a shaft stands on and at what load, and owns up to what it leaves out."""
+"""Tables of a report say which bearings a shaft stands on, at what load, and own up to what is left out."""
 
 import solidgear as sg
 from solidgear.evidence.record import Record
+from solidgear.report import evidence_tables
 from solidgear.report.input_tables import bearings, scene_facts
 from solidgear.report.reading import left_open
 from solidgear.report.units import US
@@ -60,3 +61,17 @@ def test_the_range_of_bearings_names_the_model_it_was_worked_out_with():
     )
     said = left_open(found)
     assert "(-54.9 % to +14.5 % of the 1590.5 Hz of the Timoshenko beam" in said
+
+
+def test_a_mode_that_is_like_no_other_has_no_partner_by_name():
+    # of an Euler beam's second axial mode beside a solid without one
+    pair = {"mode": "axial 2", "partner": "bending 8", "mac": 0.0237}
+    table = evidence_tables.pairs(
+        Record.model_validate({"mac": {"models": {"euler": {"pairs": [pair]}}}})
+    )
+    assert table.rows == [["axial 2", "0.0237 (none)"]]
+    pair["mac"] = 0.8
+    table = evidence_tables.pairs(
+        Record.model_validate({"mac": {"models": {"euler": {"pairs": [pair]}}}})
+    )
+    assert table.rows == [["axial 2", "0.8000 (bending 8)"]]
