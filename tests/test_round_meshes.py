@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import solidgear as sg
+from solidgear.cli.answer import _of_round_part
 from solidgear.fidelity.ladder import LADDER
 from solidgear.meshing.round_part import round_part
 from solidgear.studies.round_part import described
@@ -102,3 +103,19 @@ def test_an_axis_beside_the_origin_is_told_as_it_can_be_written(axis, tmp_path):
     path.write_text(SCENE.replace('unit = "mm"', f'unit = "mm", origin = [{point}]'))
     scene = sg.load(path)
     assert scene.body.round and scene.port.y == pytest.approx(0.1)
+
+
+def test_a_round_part_from_a_mesh_file_is_answered_as_its_segments_are(tmp_path):
+    # revolution is meshed coarse to fine whatever the mesh of the file, which the solid alone has
+    scene = scene_of(tmp_path, 24)
+    assert LADDER["solid"].meshes_of(scene, {}).fixed
+    assert len(LADDER["harmonic"].meshes_of(scene, {}).levels) > 1
+    plain = sg.answer(scene.plain, 0.01, "bending")
+    found = sg.answer(scene, 0.01, "bending")
+    assert found.reached and found.rung == "harmonic"
+    assert found.bar == pytest.approx(plain.bar, rel=1e-6)
+    assert found["bending 1"] == pytest.approx(plain["bending 1"], rel=1e-9)
+    (told,) = _of_round_part(scene, found)
+    # chords of 24 sides leave out 1.1 % of the circle
+    assert "Numbers of the round part of part.msh, whose volume is +1.1" in told
+    assert not _of_round_part(scene.plain, plain)

@@ -103,7 +103,7 @@ def answer(
         terminal = console()
         terminal.print(_values(found, units))
         terminal.print(_path(found))
-        for line in sentences(found):
+        for line in [*sentences(found), *_of_round_part(loaded, found)]:
             terminal.print(line, markup=False, soft_wrap=True)
         if places is not None:
             terminal.print(_where_table(places, asked))
@@ -194,6 +194,22 @@ def sentences(found: Answered | Settled) -> list[str]:
     why = next((step.why for step in found.steps if step.chosen and step.why), "")
     lines.append(f"Not reached: {asked} was asked for{f'; {why}' if why else ''}.")
     return lines
+
+
+def _of_round_part(scene: Scene, found: Answered) -> list[str]:
+    """Whose numbers they are, where a mesh file is of a round part and a model of revolution answers."""
+    from solidgear.fidelity.ladder import LADDER
+    from solidgear.fidelity.rung import PARTS
+    from solidgear.report.words import percent
+
+    body = scene.body
+    if body is None or not body.one_mesh or PARTS in LADDER[found.rung].holds:
+        return []
+    return [
+        f"Numbers of the round part of {body.name}, whose volume is "
+        f"{percent(body.round_volume - 1, nothing='0 %')} from that of its mesh; the mesh itself is solved "
+        "by -f solid of stiffness and modes, without a bar."
+    ]
 
 
 def _absent(missing: Sequence[str]) -> str:

@@ -260,7 +260,9 @@ class Rung:
 
         assert self.meshes is not None  # asked of rungs that have them
         given = self.given(scene, options)
-        if getattr(getattr(scene, "body", None), "one_mesh", False):
+        # what is of revolution is meshed from the segments of the round part, coarse to fine
+        own = PARTS in self.holds
+        if own and getattr(getattr(scene, "body", None), "one_mesh", False):
             return Sequence((given,), True, False)
         return self.meshes(given)
 
