@@ -278,6 +278,14 @@ def test_a_sweep_settles_on_the_scene_and_at_the_ends_of_what_varies(run, scene,
     assert found["options"]["order"] == 3 and {"C_zz", "bending 1"} <= set(found["bars"])
 
 
+def test_a_sweep_whose_ends_are_refused_is_judged_on_the_scene_alone(run):
+    # a coupling beyond both diagonal entries is no spring, on either side
+    words = ["sweep", SCENE, "--tol", "0.05", "-n", "3", "-o", "rows.csv"]
+    code, out, _ = run(*words, "--vary", "bearing.1.kx_thz=-1e15,0,1e15")
+    assert code == 0 and "2 refused" in out
+    assert "on the bearing set of the scene alone (what lies at the ends is refused)" in out
+
+
 @pytest.mark.long
 def test_a_sweep_takes_the_mesh_that_its_hardest_bearings_need(scene):
     """Clamped as hard as this, a compliance is all shaft, and errs as the shaft does."""

@@ -72,7 +72,11 @@ def chart(
                     f"failed: {row.series}, level {row.level}: {row.reason}", markup=False
                 )
         if left_out(found):
-            terminal.print(f"left out: {left_out(found)}", markup=False)
+            terminal.print(
+                f"left out ({found.budget:g} s allowed; reasons in {out / 'rows.csv'}): {left_out(found)}",
+                markup=False,
+                soft_wrap=True,
+            )
         terminal.print(
             f"Chart: {out / PICTURE}" + (f", and in {out / 'report.html'}" if reported else ""),
             markup=False,

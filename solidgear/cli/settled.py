@@ -101,9 +101,10 @@ def over_the_sweep(settled: Settled | None) -> list[str]:
     """The same of a sweep, whose mesh is judged on the scene and at the ends of what varies."""
     if settled is None:
         return []
-    sets = "set" if settled.judged_on == 1 else "sets"
     mesh = f"Mesh: {settled.rung}, {settled.setting}."
-    where = f" over {settled.judged_on} bearing {sets} (the scene's and those at the ends)"
+    where = f" over {settled.judged_on} bearing sets (the scene's and those at the ends)"
+    if settled.judged_on == 1:
+        where = " on the bearing set of the scene alone (what lies at the ends is refused)"
     return [mesh, *_largest(settled, where), *sentences(settled)]
 
 
