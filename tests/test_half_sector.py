@@ -143,8 +143,9 @@ def test_holes_are_where_they_are_said_to_be():
             for k in range(f.count):
                 at = f.angle + 2 * np.pi * k / f.count
                 away = np.hypot(x - f.circle / 2 * np.sin(at), z - f.circle / 2 * np.cos(at))
-                # edges of curved elements leave the circle by 1e-3 of it
-                assert away[inside].min() > 0.49 * f.diameter
+                # edges of curved elements leave the circle by 1e-3 of it, and one of the eight that
+                # had to be straightened by 1 - cos 22.5 degrees
+                assert away[inside].min() > 0.46 * f.diameter
                 assert (np.abs(away[inside] - f.diameter / 2) < 1e-9).sum() > 8
 
 

@@ -23,13 +23,15 @@ from solidgear.fidelity.solid import tetrahedra_plan
 from solidgear.fidelity.solid_block import free_block
 from solidgear.fidelity.solid_mesh import SolidMesh, _isoparametric
 from solidgear.meshing.element_size import estimated_counts
+from solidgear.meshing.holes import around_holes
 from solidgear.meshing.sector import (
     SectorMesh,
-    feature_sizes,
+    hole_sizes,
     mirrored,
     replicated,
     sector_mesh,
     sectors_of,
+    tooth_sizes,
 )
 from solidgear.scene.cyclic_features import Spline, Teeth
 from solidgear.scene.cyclic_rules import mirror_angle, no_common_sector
@@ -261,13 +263,18 @@ def sector_counts(scene, given: Mapping[str, Any]) -> tuple[float, float, float,
     sizes = {"size": given["size"], "graded_size": given["graded_size"]}
     plan = tetrahedra_plan(scene, wanted, refinement=refinement, around=16, **sizes)
     features = cyclic_features(scene)
-    more = feature_sizes(scene.segments, features, refinement)
+    more = tooth_sizes(scene.segments, features, refinement)
+    of = {s.name: s for s in scene.segments}
+    holes = [
+        partial(around_holes, hole, of[f.segment].inner0, of[f.segment].outer0)
+        for f, hole in hole_sizes(scene.segments, features, refinement)
+    ]
     # a tooth and the gap beside it take cells of their own, and so do both sides of a middle plane
     strips = max(
         [sectors_of(features), *(2 * f.count for f in features if f.kind != "bolt_circle")]
     )
     strips *= 2 if halved(scene, sectors_around(scene, given)) else 1
-    return estimated_counts(scene.segments, **plan, more=more, sectors=strips)
+    return estimated_counts(scene.segments, **plan, more=more, holes=holes, sectors=strips)
 
 
 def _body(fidelity, scene, wanted, blocks, facts, drawing) -> Body:

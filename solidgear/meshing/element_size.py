@@ -21,6 +21,7 @@ def estimated_counts(
     around=16,
     blends=(),
     more=(),
+    holes=(),
     sectors=0,
 ):
     """Size of the mesh that :func:`~solidgear.meshing.tetrahedra.tetrahedra` makes of the same
@@ -36,6 +37,9 @@ def estimated_counts(
         As there, m.
     more : sequence of str
         Further formulas of size, the same all around.
+    holes : sequence of callable
+        Each gives, from the element edge without it, what it adds to the sums over volume, surface
+        and rims: :func:`solidgear.meshing.holes.around_holes`.
     sectors : int
         Equal strips around that cells do not reach across; 0 for a whole shaft.
 
@@ -99,6 +103,9 @@ def estimated_counts(
     rim = sum(
         max(2 * pi * r / float(edge(np.array(r), np.array(y))), sectors) for y, r in set(corners)
     )
+    for added in holes:
+        own = added(edge)
+        volume, surface, rim = volume + own[0], surface + own[1], rim + own[2]
     return tuple(np.array(_FILL) @ (volume, surface, rim))
 
 

@@ -22,10 +22,11 @@ from skfem import MeshTet1, MeshTet2
 from solidgear.frames import rotation
 from solidgear.meshing.element_size import set_size, size_formulas
 from solidgear.meshing.gmsh_session import Session, import_gmsh
+from solidgear.meshing.holes import Hole, hole_of, hole_places, hole_size
 from solidgear.meshing.outline import Frustum, corners_of, slabs_between, tolerance_of
 from solidgear.meshing.quality import MeshError, MeshQuality, check_mesh
 from solidgear.meshing.sector_drawing import draw_sector, drill, pair_faces
-from solidgear.meshing.teeth import hole_size, section_area, tooth_size, turn_at
+from solidgear.meshing.teeth import section_area, tooth_size, turn_at
 from solidgear.meshing.tetrahedra import filled
 from solidgear.scene.cyclic_rules import middle, mirror_angle, no_common_sector
 
@@ -152,7 +153,12 @@ def sector_mesh(
             pair_faces(gmsh, count, tolerance)
         corners = corners_of(slabs_between(shapes, planes, tolerance), circles, tolerance)
         formulas = size_formulas(shapes, corners, size, graded_size, None, around)
-        formulas += feature_sizes(segments, features, refinement)
+        formulas += tooth_sizes(segments, features, refinement)
+        for f, hole in hole_sizes(segments, features, refinement):
+            here = next(s for s in segments if s.name == f.segment)
+            # those in the sector, and on either side of it
+            within = pi / count + 2 * pi / f.count
+            formulas.append(hole_size(hole, hole_places(f, here, twists, first, within)))
         set_size(gmsh, formulas, size)
         mesh = filled(gmsh, "gmsh could not mesh the sector ({}): change refinement a little")
     exact = volume_of_sector(segments, features, count) / (2 if half else 1)
@@ -166,8 +172,8 @@ def sector_mesh(
     return SectorMesh(whole, segment, count, mesh.p, check_mesh(whole), drawn, first)
 
 
-def feature_sizes(segments, features, refinement: float) -> list[str]:
-    """Formulas of element size at features, as gmsh reads them.
+def tooth_sizes(segments, features, refinement: float) -> list[str]:
+    """Formulas of element size at teeth, as gmsh reads them.
 
     Parameters
     ----------
@@ -181,8 +187,26 @@ def feature_sizes(segments, features, refinement: float) -> list[str]:
     """
     of = {s.name: s for s in segments}
     return [
-        (hole_size if f.kind == "bolt_circle" else tooth_size)(f, of[f.segment], refinement)
-        for f in features
+        tooth_size(f, of[f.segment], refinement) for f in features if f.kind != "bolt_circle"
+    ]
+
+
+def hole_sizes(segments, features, refinement: float) -> list[tuple[Any, Hole]]:
+    """Element sizes at holes.
+
+    Parameters
+    ----------
+    segments : sequence of Segment
+    features : sequence of Teeth, Spline or BoltCircle
+    refinement : float
+
+    Returns
+    -------
+    list of (BoltCircle, Hole)
+    """
+    of = {s.name: s for s in segments}
+    return [
+        (f, hole_of(f, of[f.segment], refinement)) for f in features if f.kind == "bolt_circle"
     ]
 
 

@@ -7,8 +7,9 @@ from math import cos, pi, sin
 import numpy as np
 
 from solidgear.frames import rotation
+from solidgear.meshing.holes import hole_places
 from solidgear.meshing.quality import MeshError
-from solidgear.meshing.teeth import half_outline, outline, turn_at
+from solidgear.meshing.teeth import half_outline, outline
 from solidgear.meshing.tetrahedra import draw_revolved
 
 
@@ -74,13 +75,9 @@ def drill(gmsh, volumes, holes, segments, twists, count: int, first: float):
     for f in holes:
         here = next(s for s in segments if s.name == f.segment)
         lo, hi = f.reach(here)
-        start = f.angle - first - float(turn_at(np.array([(lo + hi) / 2]), twists)[0])
         half = pi / count + 2 * f.diameter / f.circle
-        for k in range(f.count):
-            t = (start + 2 * pi * k / f.count + pi) % (2 * pi) - pi
-            if abs(t) < half:
-                x, z = f.circle / 2 * sin(t), f.circle / 2 * cos(t)
-                tools.append((3, occ.addCylinder(x, lo, z, 0.0, hi - lo, 0.0, f.diameter / 2)))
+        for x, z in hole_places(f, here, twists, first, half):
+            tools.append((3, occ.addCylinder(x, lo, z, 0.0, hi - lo, 0.0, f.diameter / 2)))
     if not tools:
         return volumes
     cut, _ = occ.cut(volumes, tools)

@@ -205,26 +205,3 @@ def tooth_size(teeth: Any, segment: Any, refinement: float) -> str:
     below = f"Max(0,{_num(teeth.root)}*{pitch}-Sqrt(x^2+z^2))"
     outside = f"(y-{inside})"
     return f"{_num(share)}*{pitch}+{_num(GROWTH)}*Sqrt({below}^2+{outside}^2)"
-
-
-def hole_size(bolts: Any, segment: Any, refinement: float) -> str:
-    """Formula of the element edge at the holes of a bolt circle, whatever their angle.
-
-    Parameters
-    ----------
-    bolts : BoltCircle
-    segment : Segment
-    refinement : float
-        Divides the size.
-
-    Returns
-    -------
-    str
-        In x, y, z, m, as gmsh's parser reads it.
-    """
-    lo, hi = bolts.reach(segment)
-    # a circle of fewer than eight edges is no hole
-    least = pi * bolts.diameter / 8 / max(1.0, ACROSS * refinement)
-    across = f"Max(0,Sqrt((Sqrt(x^2+z^2)-{_num(bolts.circle / 2)})^2)-{_num(bolts.diameter / 2)})"
-    along = f"Max(0,Max({_num(lo)}-y,y-{_num(hi)}))"
-    return f"{_num(least)}+{_num(GROWTH)}*Sqrt({across}^2+{along}^2)"

@@ -1,0 +1,180 @@
+"""Holes along the axis: where they lie in a sector, element sizes at them, and how many elements
+these sizes make.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from math import cos, hypot, pi, sin, sqrt
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from solidgear.meshing.cuts import ACROSS, GROWTH
+from solidgear.meshing.element_size import _num
+from solidgear.meshing.teeth import turn_at
+
+Place = tuple[float, float]
+#: share of the section that holes take from which elements at them are refined as all others are.
+#: What elements leave at a hole is of second order and counts by that share: the edge may grow with
+#: its root. Eight edges instead of sixteen around holes of 0.7 and 3 % changed no number by 1e-4
+FULL_SHARE = 0.1
+#: how many more elements lie around a hole than the sums say, whose size changes within few of them:
+#: fitted to 12 half sectors of 24,000 to 156,000 unknowns, which come out within 7 %
+CROWD = 1.75
+#: points of the sums of :func:`around_holes`: along a ray from a hole, rays, and along the hole
+_RAY, _RAYS, _ALONG = 48, 32, 6
+
+
+class Hole(NamedTuple):
+    """Holes of a bolt circle and the edge of elements at them, m.
+
+    Attributes
+    ----------
+    circle, radius : float
+        Radius of the circle of middles, and of a hole.
+    lo, hi : float
+        Ends along the axis.
+    count : int
+        On the circle.
+    least : float
+        Element edge on the wall.
+    """
+
+    circle: float
+    radius: float
+    lo: float
+    hi: float
+    count: int
+    least: float
+
+
+def hole_of(bolts: Any, segment: Any, refinement: float) -> Hole:
+    """Holes of a bolt circle with the element edge that a refinement asks of them.
+
+    Parameters
+    ----------
+    bolts : BoltCircle
+    segment : Segment
+    refinement : float
+        Divides the size.
+
+    Returns
+    -------
+    Hole
+    """
+    # a circle of fewer than eight edges is no hole
+    taken = bolts.count * bolts.diameter**2 / 4
+    share = taken / (min(segment.outer0, segment.outer1) ** 2 - segment.inner0**2)
+    divided = ACROSS * refinement * min(1.0, sqrt(share / FULL_SHARE))
+    least = pi * bolts.diameter / 8 / max(1.0, divided)
+    lo, hi = bolts.reach(segment)
+    return Hole(bolts.circle / 2, bolts.diameter / 2, lo, hi, bolts.count, least)
+
+
+def hole_places(
+    bolts: Any, segment: Any, twists: list[tuple[Any, Any]], first: float, within: float
+) -> list[Place]:
+    """Middles of holes in the straight sector, whose middle looks to +z.
+
+    Parameters
+    ----------
+    bolts : BoltCircle
+    segment : Segment
+    twists : list of (Segment, Teeth or Spline)
+        What turns the sections later.
+    first : float
+        Angle of the middle of the sector in the shaft, rad.
+    within : float
+        Angle from the middle of the sector up to which holes are wanted, rad.
+
+    Returns
+    -------
+    list of (float, float)
+        x and z, m.
+
+    Examples
+    --------
+    >>> from solidgear import Segment
+    >>> from solidgear.scene import BoltCircle
+    >>> disc = Segment.cylinder("disc", length=0.02, diameter=0.2)
+    >>> four = BoltCircle(name="b", segment="disc", count=4, diameter=0.01, circle=0.1)
+    >>> [len(hole_places(four, disc, [], 0.0, t)) for t in (0.1, 1.6)]
+    [1, 3]
+    """
+    lo, hi = bolts.reach(segment)
+    start = bolts.angle - first - float(turn_at(np.array([(lo + hi) / 2]), twists)[0])
+    angles = [
+        (start + 2 * pi * k / bolts.count + pi) % (2 * pi) - pi for k in range(bolts.count)
+    ]
+    r = bolts.circle / 2
+    return [(r * sin(t), r * cos(t)) for t in angles if abs(t) < within]
+
+
+def hole_size(hole: Hole, places: Sequence[Place]) -> str:
+    """Formula of the element edge at holes: fine at their walls, growing with the distance from the
+    nearest one.
+
+    Parameters
+    ----------
+    hole : Hole
+    places : sequence of (float, float)
+        x and z of the middles of all holes that may be the nearest one, m.
+
+    Returns
+    -------
+    str
+        In x, y, z, m, as gmsh's parser reads it.
+    """
+    away = ""
+    for x, z in places:
+        own = f"Sqrt((x-{_num(x)})^2+(z-{_num(z)})^2)"
+        away = f"Min({own},{away})" if away else own
+    across = f"Max(0,{away}-{_num(hole.radius)})"
+    along = f"Max(0,Max({_num(hole.lo)}-y,y-{_num(hole.hi)}))"
+    return f"{_num(hole.least)}+{_num(GROWTH)}*Sqrt({across}^2+{along}^2)"
+
+
+def around_holes(
+    hole: Hole, inner: float, outer: float, beside: Callable[[Any, Any], Any]
+) -> tuple[float, ...]:
+    """What holes add to the sums of :func:`solidgear.meshing.element_size.estimated_counts`, where
+    elements beside them are of a size.
+
+    Parameters
+    ----------
+    hole : Hole
+    inner, outer : float
+        Radii of the wall that they go through, m.
+    beside : callable
+        Element edge without holes, from radius and y.
+
+    Returns
+    -------
+    volume, surface, rim : float
+        Integrals of h^-3, h^-2 and h^-1 over all holes, less those without holes.
+    """
+    # as far as half the way to the next hole, and to the walls; rays from the middle of a hole
+    far = hypot(outer, hole.circle)
+    ends = np.geomspace(hole.radius, far, _RAY + 1)
+    s, wide = np.sqrt(ends[1:] * ends[:-1])[:, None], np.diff(ends)[:, None]
+    t = (np.arange(_RAYS) + 0.5) * pi / _RAYS
+    x, z = s * np.sin(t), hole.circle + s * np.cos(t)
+    r = np.hypot(x, z)
+    own = (r < outer) & (r > inner) & (np.abs(np.arctan2(x, z)) < pi / hole.count)
+    area = 2 * hole.count * own * s * wide * (pi / _RAYS)
+    steps = (np.arange(_ALONG) + 0.5) / _ALONG
+    length = hole.hi - hole.lo
+    volume = surface = rim = 0.0
+    for y in hole.lo + length * steps:
+        without = beside(r, np.array(y))
+        with_ = np.minimum(without, hole.least + GROWTH * (s - hole.radius))
+        volume += (area * (with_**-3.0 - without**-3.0)).sum() * length / _ALONG
+        at_wall = min(hole.least, float(beside(np.array(hole.circle), np.array(y))))
+        surface += 2 * pi * hole.radius * hole.count / at_wall**2 * length / _ALONG
+    for y in (hole.lo, hole.hi):
+        without = beside(r, np.array(y))
+        with_ = np.minimum(without, hole.least + GROWTH * (s - hole.radius))
+        surface += (area * (with_**-2.0 - without**-2.0)).sum()
+        rim += 2 * pi * hole.radius * hole.count / hole.least
+    return tuple(CROWD * float(part) for part in (volume, surface, rim))
