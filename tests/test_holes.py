@@ -25,7 +25,9 @@ def test_elements_are_fine_beside_a_hole_and_coarse_between_two():
     """On the circle of middles, an element halfway to the next hole is as large as away from holes. A
     size that did not know the angle would make the whole ring as fine as the walls.
     """
-    made = meshed_sector(SCENE, [(s, s.attachment) for s in SCENE.stations], (SMALL,), refinement=0.3)
+    made = meshed_sector(
+        SCENE, [(s, s.attachment) for s in SCENE.stations], (SMALL,), refinement=0.3
+    )
     middle = made.mesh.p[:, made.mesh.t].mean(axis=1)
     corners = made.mesh.p[:, made.mesh.t]
     edge = np.linalg.norm(corners[:, 0] - corners[:, 1], axis=0)

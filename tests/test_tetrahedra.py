@@ -191,8 +191,9 @@ def test_mid_nodes_lie_on_the_true_surface(meshed):
     neck = np.all((np.abs(np.hypot(ends[0], ends[2]) - 0.03) < 1e-9) & (ends[1] > 1e-6), axis=0)
     on_surface = np.abs(np.hypot(middle[0], middle[2]) - 0.03)[neck]
     assert neck.sum() > 100
-    # a mid node given to the wrong edge would be off by a good part of the edge length of 8 mm
-    assert np.quantile(on_surface, 0.95) < 1e-9
+    # beyond it only by what keeps the volume, a hundredth of a sagitta of 0.1 to 0.3 mm; a mid node
+    # given to the wrong edge would be off by a good part of the edge length of 8 mm
+    assert np.quantile(on_surface, 0.95) < 2e-6
 
 
 def test_the_same_call_gives_the_same_mesh(meshed):

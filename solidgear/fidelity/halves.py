@@ -20,6 +20,9 @@ from solidgear.fidelity.solid_block import Facets, middles, rigid_motions
 from solidgear.fidelity.solid_matrices import _matrices, _mean
 from solidgear.fidelity.solid_mesh import SolidMesh
 
+#: of the sagitta of an edge, how far its middle node may lie beyond the surface; where elements keep
+#: the volume it is a fiftieth at most, and the floor of a feature is all of it away
+BEYOND = 0.1
 #: by the axis at right angles to the plane: name and port components of the symmetric and of the
 #: antisymmetric motions
 PARTS: dict[int, tuple[tuple[str, tuple[int, ...]], tuple[str, tuple[int, ...]]]] = {
@@ -162,6 +165,11 @@ def seat_on_cylinder(mesh: SolidMesh, segments, tolerance: float) -> Facets:
     y, r = mesh.mesh.p[1, corners], np.hypot(*mesh.mesh.p[[0, 2]][:, corners])
     middle_y, middle_r = middles(mesh, corners)
     every_y, every_r = np.vstack([y, middle_y]), np.vstack([r, middle_r])
+    x, _, z = mesh.mesh.p
+    pairs = [(i, j) for i in range(3) for j in range(i)]
+    chord = np.array(
+        [np.hypot(*((p[corners[i]] + p[corners[j]]) / 2 for p in (x, z))) for i, j in pairs]
+    )
 
     def facets(station, attachment):
         if attachment == "section":
@@ -174,7 +182,10 @@ def seat_on_cylinder(mesh: SolidMesh, segments, tolerance: float) -> Facets:
             t = (every_y - s.y0) / (s.y1 - s.y0)
             outer = s.outer0 + (s.outer1 - s.outer0) * t
             here = (t > -1e-9).all(axis=0) & (t < 1 + 1e-9).all(axis=0)
-            on |= here & (np.abs(every_r - outer) < 1e-6 * outer.max(initial=1.0)).all(axis=0)
+            # nodes in the middle of curved edges lie a little beyond the surface
+            near = np.full(every_r.shape, 1e-6 * outer.max(initial=1.0))
+            near[3:] += BEYOND * np.abs(outer[3:] - chord)
+            on |= here & (np.abs(every_r - outer) < near).all(axis=0)
         steep = y.max(axis=0) - y.min(axis=0) > tolerance
         return boundary[inside & steep & on]
 

@@ -104,9 +104,7 @@ def hole_places(
     """
     lo, hi = bolts.reach(segment)
     start = bolts.angle - first - float(turn_at(np.array([(lo + hi) / 2]), twists)[0])
-    angles = [
-        (start + 2 * pi * k / bolts.count + pi) % (2 * pi) - pi for k in range(bolts.count)
-    ]
+    angles = [(start + 2 * pi * k / bolts.count + pi) % (2 * pi) - pi for k in range(bolts.count)]
     r = bolts.circle / 2
     return [(r * sin(t), r * cos(t)) for t in angles if abs(t) < within]
 

@@ -186,9 +186,7 @@ def tooth_sizes(segments, features, refinement: float) -> list[str]:
     list of str
     """
     of = {s.name: s for s in segments}
-    return [
-        tooth_size(f, of[f.segment], refinement) for f in features if f.kind != "bolt_circle"
-    ]
+    return [tooth_size(f, of[f.segment], refinement) for f in features if f.kind != "bolt_circle"]
 
 
 def hole_sizes(segments, features, refinement: float) -> list[tuple[Any, Hole]]:
@@ -205,9 +203,7 @@ def hole_sizes(segments, features, refinement: float) -> list[tuple[Any, Hole]]:
     list of (BoltCircle, Hole)
     """
     of = {s.name: s for s in segments}
-    return [
-        (f, hole_of(f, of[f.segment], refinement)) for f in features if f.kind == "bolt_circle"
-    ]
+    return [(f, hole_of(f, of[f.segment], refinement)) for f in features if f.kind == "bolt_circle"]
 
 
 def volume_of_sector(segments, features, count: int) -> float:

@@ -14,12 +14,13 @@ from typing import Any
 
 import numpy as np
 
+from solidgear.meshing.curving import relaxed
 from solidgear.meshing.element_size import set_size
 from solidgear.meshing.gmsh_session import Session, import_gmsh
 from solidgear.meshing.placing import Placing
 from solidgear.meshing.quality import MeshError
 from solidgear.meshing.solids import fragmented, mm, read_solids, solid_owners
-from solidgear.meshing.tetrahedra import relaxed, to_skfem
+from solidgear.meshing.tetrahedra import to_skfem
 
 #: sides of a turn in the triangles that a part is looked at by
 SIDES = 32
