@@ -3,10 +3,12 @@ whole, and the scenes that are refused.
 """
 
 import math
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
+from skfem import MeshTet1, MeshTet2
 
 import solidgear as sg
 from solidgear.evidence.record import ModelRecord, ModeRecord
@@ -301,3 +303,29 @@ def test_a_cut_of_another_volume_is_refused(monkeypatch):
     monkeypatch.setattr(featured, "without", loses_some)
     with pytest.raises(MeshError, match=r'elements of "key" fill .* more than 1% apart'):
         meshed(scene, plan, 0.4, True)
+
+
+def test_elements_keep_their_middle_nodes_in_large_meshes():
+    """Numbers of two vertices make one key of an edge: from 46,341 vertices on it does not fit 32 bits.
+    Here two elements have the last of 70,000 numbers, and every middle node is where no other is.
+    """
+    many = 70_000
+    points = np.zeros((3, many))
+    points[:, -5:] = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1], [1, 1, 1]]).T
+    cells = (many - 5 + np.array([[0, 1, 2, 3], [1, 2, 3, 4]]).T).astype(np.int32)
+    mesh = MeshTet2.from_mesh(MeshTet1(points, cells))
+    middles = mesh.dofs.edge_dofs[0]
+    nodes = mesh.doflocs.copy()
+    nodes[:, middles] += 0.01 * np.arange(middles.size)
+    mesh = replace(mesh, doflocs=nodes)
+    part = without(mesh, np.array([False, True]))
+    ends = part.p[:, part.edges]
+    own = part.doflocs[:, part.dofs.edge_dofs[0]]
+    for k in range(part.edges.shape[1]):
+        same = [
+            i
+            for i in range(mesh.edges.shape[1])
+            if {tuple(p) for p in mesh.p[:, mesh.edges[:, i]].T}
+            == {tuple(p) for p in ends[:, :, k].T}
+        ]
+        assert (own[:, k] == mesh.doflocs[:, middles[same[0]]]).all()

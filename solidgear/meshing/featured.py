@@ -175,7 +175,8 @@ def without(mesh: MeshTet2, keep: np.ndarray) -> MeshTet2:
     part = MeshTet2.from_mesh(straight)
     count = mesh.p.shape[1]
     old = np.sort(mesh.edges.astype(np.int64), axis=0)
-    new = np.sort(used[part.edges.astype(np.int64)], axis=0)
+    # of 64 bits: products of numbers pass 2^31 from 46,341 vertices on
+    new = np.sort(used.astype(np.int64)[part.edges], axis=0)
     key = old[0] * count + old[1]
     order = np.argsort(key)
     at = order[np.searchsorted(key[order], new[0] * count + new[1])]
