@@ -21,6 +21,7 @@ from solidgear.fidelity.edges import (
 )
 from solidgear.fidelity.ladder import LADDER
 from solidgear.meshing.corners import SHOULDER, sharpest_corner
+from solidgear.scene.coned import coned
 from solidgear.solve.statics import condense
 
 if TYPE_CHECKING:
@@ -41,9 +42,12 @@ ACUTE = 8.0
 #: the same where a cone rises from a cylinder, over its rise: cones of 20, 45, 65 and 75 degrees have
 #: 0.23, 0.15, 0.28 and 0.45 of the last step after three meshes
 KINK = 0.75
-#: the same of a chamfer in a shoulder: against the same outline as a cone, compliances of nine
-#: shafts erred by 2.2 to 6 times their bands
+#: the same of a chamfer in a shoulder that no cone could stand for: against the same outline as a
+#: cone, compliances of nine shafts erred by 2.2 to 6 times their bands
 CHAMFERED = 8.0
+#: the same of one that is meshed as a cone: three shafts erred by 0.7 times the bars of other shoulders
+#: at most, one with a chamfer of 60 degrees and half the diameter by 1.7 times on the third mesh
+CONED = 2.0
 #: the same beside a step: a seat that ends 0.01 to 0.1 mm from the shoulder of a 40 mm shaft has 1.1
 #: to 1.4 times the error over its last step of one that ends there, a random shaft 1.44 times its bar
 BESIDE = 1.5
@@ -95,10 +99,12 @@ def sequence_bands(
     if plan.layered:
         if len(levels) < 2:
             return {}
-        edge = sharpest_edge(scene)
+        # as the harmonic solid is meshed
+        cones = coned(scene)
+        edge = sharpest_edge(cones)
         effect = feature_effect(scene, factors, levels[-1])
         found = layered_bands(levels, solver, factors, edge=edge, around=around, effect=effect)
-        more = _widening(scene)
+        more = _widening(cones) * (CONED if cones is not scene else 1.0)
         least = PLATE_LEAST if is_plate(scene) else 0.0
         return {
             name: replace(band, gci=max(more * band.gci, least), factor=more * band.factor)

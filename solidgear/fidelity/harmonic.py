@@ -25,6 +25,7 @@ from solidgear.fidelity.scale import elastic_scale
 from solidgear.meshing.grading import Grading
 from solidgear.meshing.layout import Layout, layout
 from solidgear.meshing.meridian import Meridian, meridian
+from solidgear.scene.coned import coned
 
 
 @dataclass(frozen=True)
@@ -119,6 +120,8 @@ def harmonic(
     )
     attachments, ovalising = given["attachments"], given["ovalising"]
     families = given["families"]
+    # chamfers in shoulders as cones, to whose ends layers lead
+    scene = coned(scene)
     plan = harmonic_layout(scene, attachments, **grading)
     flat = meridian(scene, plan)
     mesh = MeshQuad1(flat.points, flat.cells, sort_t=False)
@@ -174,7 +177,10 @@ def harmonic(
 def harmonic_layout(
     scene, attachments=None, *, layers, edge_layers, ratio, relative_size, size, refinement
 ) -> Layout:
-    """Mesh lines of :func:`harmonic`, before anything is meshed; parameters as there."""
+    """Mesh lines of :func:`harmonic`, before anything is meshed; parameters as there.
+
+    Those of the shaft as it is given, which has no chamfers in its shoulders there.
+    """
     countable(
         "harmonic",
         scene,

@@ -16,6 +16,7 @@ from solidgear.fidelity.factor_memory import ENTRY, MB, parts_of, solid_factor_m
 from solidgear.fidelity.rung import CUTS, CYCLIC
 from solidgear.fidelity.size import Size
 from solidgear.meshing.blocks import blocks_beyond
+from solidgear.scene.coned import coned
 from solidgear.scene.shaft import resolved
 
 if TYPE_CHECKING:
@@ -70,6 +71,7 @@ def harmonic_size(scene: Shaft, given: Mapping[str, Any]) -> Size:
     """Size of a harmonic solid; counted."""
     from solidgear.fidelity.harmonic import harmonic_layout
 
+    scene = coned(scene)
     order = given["order"]
     names = ("layers", "edge_layers", "ratio", "relative_size", "size", "refinement")
     laid = harmonic_layout(scene, given["attachments"], **{k: given[k] for k in names})

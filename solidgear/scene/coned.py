@@ -1,0 +1,78 @@
+"""Chamfers in shoulders as what they are: short cones."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from solidgear.errors import SceneError
+
+if TYPE_CHECKING:
+    from solidgear.scene.blends import Corner
+    from solidgear.scene.parts import Segment
+
+
+def coned(scene: Any) -> Any:
+    """The shaft of a scene with a cone of its own for every chamfer that fills a shoulder.
+
+    Its two ends are corners of the outline like others then, to which meshes have layers.
+
+    Parameters
+    ----------
+    scene : Scene, or anything with segments
+        Its features do not count; where there are chamfers to exchange, the shaft has none.
+
+    Returns
+    -------
+    Scene
+        As it was where no chamfer fills a shoulder, or where another fillet or chamfer needs the
+        length of the cone.
+
+    Examples
+    --------
+    >>> from solidgear import Scene, Segment
+    >>> from solidgear.scene import Chamfer
+    >>> head, rod = (
+    ...     Segment.cylinder("ab"[k], y0=0.1 * k, length=0.1, diameter=0.08 - 0.04 * k) for k in (0, 1)
+    ... )
+    >>> scene = Scene.from_parts([head, rod], blends=[Chamfer(name="c", y=0.1, length="5 mm")])
+    >>> [(s.name, round(s.outer0, 3), round(s.outer1, 3)) for s in coned(scene).segments]
+    [('a', 0.04, 0.04), ('b (c)', 0.025, 0.02), ('b', 0.02, 0.02)]
+    """
+    filled = [c for c in getattr(scene, "corners", ()) if c.root and c.kind == "chamfer"]
+    if not filled:
+        return scene
+    segments: list[Segment] = []
+    for k, whole in enumerate(scene.segments):
+        segments += _pieces(whole, [c for c in filled if c.owner == k])
+    names = {c.name for c in filled}
+    blends = tuple(b for b in scene.blends if b.name not in names)
+    try:
+        return scene.with_changes(segments=tuple(segments), blends=blends, features=())
+    except SceneError:
+        return scene
+
+
+def _pieces(whole: Segment, chamfers: list[Corner]) -> list[Segment]:
+    """A segment cut where its chamfers end, the longest piece by its own name."""
+    marks = sorted({whole.y0, whole.y1, *(y for c in chamfers for y in c.span)})
+    cuts = list(zip(marks, marks[1:]))
+    longest = max(cuts, key=lambda ends: ends[1] - ends[0])
+    pieces = []
+    for a, b in cuts:
+        own: dict[str, Any] = {"y0": a, "y1": b}
+        for field in ("outer", "inner"):
+            for end, y in (("0", a), ("1", b)):
+                at = (y - whole.y0) / (whole.y1 - whole.y0)
+                low, high = getattr(whole, field + "0"), getattr(whole, field + "1")
+                own[field + end] = low + at * (high - low)
+        there = [c for c in chamfers if c.span[0] <= a and b <= c.span[1]]
+        for c in there:
+            field = "outer" if c.surface == "outer" else "inner"
+            for end, y in (("0", a), ("1", b)):
+                # all of its height at the step, and nothing where it meets the cylinder
+                share = round(1 - abs(y - c.y) / c.axial, 12)
+                own[field + end] += c.out * c.radial * share
+        if (a, b) != longest:
+            own["name"] = f"{whole.name} ({', '.join(c.name for c in there)})"
+        pieces.append(whole.with_changes(**own))
+    return pieces
