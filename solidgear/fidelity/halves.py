@@ -16,13 +16,10 @@ from solidgear.body import Block
 from solidgear.body.surface import Surface, Volume
 from solidgear.errors import SolidgearError
 from solidgear.fidelity.attachment import tie_rigidly
-from solidgear.fidelity.solid_block import Facets, middles, rigid_motions
+from solidgear.fidelity.solid_block import BEYOND, Facets, chords, middles, rigid_motions
 from solidgear.fidelity.solid_matrices import _matrices, _mean
 from solidgear.fidelity.solid_mesh import SolidMesh
 
-#: of the sagitta of an edge, how far its middle node may lie beyond the surface; where elements keep
-#: the volume it is a fiftieth at most, and the floor of a feature is all of it away
-BEYOND = 0.1
 #: by the axis at right angles to the plane: name and port components of the symmetric and of the
 #: antisymmetric motions
 PARTS: dict[int, tuple[tuple[str, tuple[int, ...]], tuple[str, tuple[int, ...]]]] = {
@@ -165,11 +162,7 @@ def seat_on_cylinder(mesh: SolidMesh, segments, tolerance: float) -> Facets:
     y, r = mesh.mesh.p[1, corners], np.hypot(*mesh.mesh.p[[0, 2]][:, corners])
     middle_y, middle_r = middles(mesh, corners)
     every_y, every_r = np.vstack([y, middle_y]), np.vstack([r, middle_r])
-    x, _, z = mesh.mesh.p
-    pairs = [(i, j) for i in range(3) for j in range(i)]
-    chord = np.array(
-        [np.hypot(*((p[corners[i]] + p[corners[j]]) / 2 for p in (x, z))) for i, j in pairs]
-    )
+    chord = chords(mesh, corners)
 
     def facets(station, attachment):
         if attachment == "section":

@@ -11,7 +11,7 @@ from solidgear.body import Body, Port
 from solidgear.errors import SolidgearError
 from solidgear.fidelity.attachment import tie_rigidly
 from solidgear.fidelity.scale import elastic_scale
-from solidgear.fidelity.solid_block import Facets, free_block, middles
+from solidgear.fidelity.solid_block import BEYOND, Facets, chords, free_block, middles
 from solidgear.fidelity.solid_mesh import SolidMesh, _isoparametric
 from solidgear.meshing.quality import check_mesh
 
@@ -133,11 +133,14 @@ def faces_on(mesh: SolidMesh, segments: Sequence[Any], clipped: bool) -> Facets:
     y, r = mesh.mesh.p[1, corners], np.hypot(*mesh.mesh.p[[0, 2]][:, corners])
     middle_y, middle_r = middles(mesh, corners)
 
-    def on_surface(at_y, at_r, s) -> np.ndarray:
+    chord = chords(mesh, corners)
+
+    def on_surface(at_y, at_r, s, curved=False) -> np.ndarray:
         outer = s.outer0 + (s.outer1 - s.outer0) * (at_y - s.y0) / (s.y1 - s.y0)
         hair = 1e-7 * segments[-1].y1
         inside = (at_y > s.y0 - hair) & (at_y < s.y1 + hair)
-        return (inside & (np.abs(at_r - outer) < ON_SURFACE * outer)).all(axis=0)
+        near = ON_SURFACE * outer + (BEYOND * np.abs(chord - outer) if curved else 0.0)
+        return (inside & (np.abs(at_r - outer) < near)).all(axis=0)
 
     def facets(station, attachment):
         if attachment == "section":
@@ -160,7 +163,7 @@ def faces_on(mesh: SolidMesh, segments: Sequence[Any], clipped: bool) -> Facets:
             if s.y1 > station.lo + hair and s.y0 < station.hi - hair:
                 own = near & on_surface(y, r, s)
                 if middle_y is not None:
-                    true = own & on_surface(middle_y, middle_r, s)
+                    true = own & on_surface(middle_y, middle_r, s, curved=True)
                     own = true if true.sum() > CURVED * own.sum() else own
                 out |= own
         return boundary[out]

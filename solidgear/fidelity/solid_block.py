@@ -46,6 +46,11 @@ def seat_facets(mesh: SolidMesh, segments: Sequence[Any], tolerance: float) -> F
     return facets
 
 
+#: of the sagitta of an edge, how far its middle node may lie off the surface; where elements keep the
+#: volume it is a fiftieth at most, and the floor of a feature is all of it away
+BEYOND = 0.1
+
+
 def middles(mesh: SolidMesh, corners: np.ndarray) -> tuple[Any, Any]:
     """Places of the middle nodes of facets.
 
@@ -82,6 +87,25 @@ def middles(mesh: SolidMesh, corners: np.ndarray) -> tuple[Any, Any]:
             found.append(np.where(real, spot, ends))
     places = np.stack(found, axis=1)
     return places[1], np.hypot(places[0], places[2])
+
+
+def chords(mesh: SolidMesh, corners: np.ndarray) -> np.ndarray:
+    """Radii halfway between the ends of the edges of facets, in the order of :func:`middles`.
+
+    Parameters
+    ----------
+    mesh : SolidMesh
+    corners : (c, f) ndarray of int
+        Vertices of the facets.
+
+    Returns
+    -------
+    (m, f) ndarray
+        m.
+    """
+    p = mesh.mesh.p[[0, 2]]
+    pairs = [(i, j) for i in range(len(corners)) for j in range(i)]
+    return np.array([np.hypot(*((p[:, corners[i]] + p[:, corners[j]]) / 2)) for i, j in pairs])
 
 
 def rigid_motions(nodes: np.ndarray) -> np.ndarray:
