@@ -5,8 +5,9 @@ these sizes make.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from math import cos, hypot, pi, sin, sqrt
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
@@ -26,7 +27,8 @@ CROWD = 1.75
 _RAY, _RAYS, _ALONG = 48, 32, 6
 
 
-class Hole(NamedTuple):
+@dataclass(frozen=True)
+class Hole:
     """Holes of a bolt circle and the edge of elements at them, m.
 
     Attributes
