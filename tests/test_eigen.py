@@ -69,7 +69,7 @@ def test_lanczos_and_arpack_agree(scene, fidelity, bearings, request):
 
 def test_dense_is_the_oracle(scene):
     body = sg.build(scene, "timoshenko")
-    dense = sg.modes(body, scene, n=8)
+    dense = sg.modes(body, scene, n=8, method="dense")
     assert dense.evidence["method"] == "dense"
     fine = sg.build(scene, "timoshenko", elements=400)
     exact = lowest(supported(fine, scene), 6, "dense")

@@ -238,11 +238,10 @@ def _places(scene: Scene, found: Answered) -> tuple[Whereabouts, str]:
     known = [v for v in found.values if STANDS_FOR.get(v.quantity, v.quantity) in PLACED]
     if not known:
         raise SolidgearError(f"only known of {', '.join(PLACED)}; ask for one of them")
-    meshes = LADDER["harmonic"].meshes
-    assert meshes is not None  # as every solid
     first = min(known, key=lambda value: (value.quantity in STANDS_FOR, -value.bar))
     name = STANDS_FOR.get(first.quantity, first.quantity)
-    return where(scene, name, meshes({}).levels[first.meshes - 1]), first.quantity
+    solved = [s for s in _solved(found) if not s.only or first.quantity in s.only]
+    return where(scene, name, dict(solved[-1].options)), first.quantity
 
 
 def _for(places: Whereabouts, asked: str) -> str:

@@ -99,17 +99,10 @@ def sequence_bands(
     if plan.layered:
         if len(levels) < 2:
             return {}
-        # as the harmonic solid is meshed
-        cones = coned(scene)
-        edge = sharpest_edge(cones)
+        edge = sharpest_edge(coned(scene))  # as the harmonic solid is meshed
         effect = feature_effect(scene, factors, levels[-1])
         found = layered_bands(levels, solver, factors, edge=edge, around=around, effect=effect)
-        more = _widening(cones) * (CONED if cones is not scene else 1.0)
-        least = PLATE_LEAST if is_plate(scene) else 0.0
-        return {
-            name: replace(band, gci=max(more * band.gci, least), factor=more * band.factor)
-            for name, band in found.items()
-        }
+        return _widened(scene, found)
     last = [size or 0.0 for size in sizes[-3:]]
     least = 2 if factors.rough else 3
     if len(levels) < least or not all(a > b > 0 for a, b in zip(last, last[1:])):
@@ -122,6 +115,49 @@ def sequence_bands(
     if factors.rough:
         return rough_bands(levels, solver, last, exponent, factors.rough)
     return refined_bands(levels, solver, last, exponent, singular=factors.singular)
+
+
+def pair_bands(
+    scene: Scene,
+    factors: BandFactors,
+    pair: int,
+    orders: Listed[Mapping[str, float]],
+    solver: Mapping[str, float],
+) -> dict[str, Band]:
+    """Bands of the higher of two orders on one mesh.
+
+    Parameters
+    ----------
+    scene : Scene
+    factors : BandFactors
+        Of the rung.
+    pair : int
+        Place of the mesh among :data:`solidgear.fidelity.levels.PAIRS`.
+    orders : (mapping, mapping)
+        Quantity to value, of the lower order and of the higher one.
+    solver : mapping
+        Relative error the solver may have left with the higher order.
+
+    Returns
+    -------
+    dict of str to Band
+    """
+    edge = sharpest_edge(coned(scene))
+    usual = factors.same_mesh[edge][pair]
+    own = replace(factors, first={edge: (usual, 0.0, usual)}, first_of_modes={})
+    found = layered_bands(orders, solver, own, edge=edge)
+    return _widened(scene, found)
+
+
+def _widened(scene: Scene, found: dict[str, Band]) -> dict[str, Band]:
+    """Bands of a shaft as wide as its cells ask for."""
+    cones = coned(scene)
+    more = _widening(cones) * (CONED if cones is not scene else 1.0)
+    least = PLATE_LEAST if is_plate(scene) else 0.0
+    return {
+        name: replace(band, gci=max(more * band.gci, least), factor=more * band.factor)
+        for name, band in found.items()
+    }
 
 
 def _widening(scene: Scene) -> float:

@@ -69,6 +69,8 @@ class BandFactors:
     usual : dict of str to float
         Band over the last change, by what is sharpest on the shaft
         (:func:`solidgear.fidelity.edges.sharpest_edge`).
+    same_mesh : dict of str to tuple of float
+        Band over the step from one order to the next on the same mesh, of every pair of orders.
     first : dict of str to (float, float, float)
         The same after two levels only: the step off the coarsest mesh tells less where it is small,
         perhaps by accident, and more where it is large. Factor of small steps, the band they reach
@@ -93,6 +95,7 @@ class BandFactors:
     """
 
     usual: Mapping[str, float] = field(default_factory=dict)
+    same_mesh: Mapping[str, tuple[float, ...]] = field(default_factory=dict)
     first: Mapping[str, tuple[float, float, float]] = field(default_factory=dict)
     earlier: float = 0.0
     ahead: float = 0.0

@@ -1,15 +1,16 @@
 """One solid on ever finer meshes, until the bands of what is asked are within a tolerance.
 
-The two coarsest meshes are solved for everything that is asked.  From the third on a mesh is solved
-only for what is still open: what is within the tolerance keeps its value and its bar.  A first
-torsion that needs a finer mesh than all else then costs the torsion of that mesh alone.
+A bar needs two solutions: those of the two coarsest meshes, or, where a rung has pairs, of two orders
+on one mesh.  They are solved for everything that is asked, all further ones only for what is still
+open: what is within the tolerance keeps its value and its bar.  A first torsion that needs a finer
+mesh than all else then costs the torsion of that mesh alone.
 """
 
 from __future__ import annotations
 
 import math
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
@@ -17,7 +18,7 @@ from solidgear.body import Body, as_supports
 from solidgear.evidence.answer import ENOUGH, Numbers, numbers
 from solidgear.evidence.bands import Band
 from solidgear.evidence.quantities import AT, described, diagonals, points_of, size
-from solidgear.evidence.sequence_bands import feature_effect, sequence_bands
+from solidgear.evidence.sequence_bands import feature_effect, pair_bands, sequence_bands
 from solidgear.fidelity import build
 from solidgear.fidelity.rung import Rung
 from solidgear.solve.condensed import Condensed, Coupled
@@ -99,12 +100,13 @@ class Climb:
         self.left_out = 0.0
         self.body: Body | None = None
         self.options: dict[str, Any] = {}
+        self.pair = 0
         self.compliances: dict[tuple[str, ...], Condensed] = {}
         self.modes: ModeSet | None = None
 
     def run(self) -> None:
         """Climb until every band is within the tolerance, or there is no finer mesh."""
-        for level in self.plan.levels:
+        for level in self._meshes():
             start = time.perf_counter()
             questions = self._questions()
             asked = {q for _, names in questions for q in names}
@@ -120,7 +122,9 @@ class Climb:
             bar = self.judge()
             spent = time.perf_counter() - start
             self.steps.append(
-                Step(self.rung.name, setting, True, "", bar, unknowns, spent, only=only)
+                Step(
+                    self.rung.name, setting, True, "", bar, unknowns, spent, False, only, self.options
+                )
             )
             if len(self.levels) == 2 and not self.values():
                 self._choose("nothing that was asked for exists in this scene")
@@ -138,6 +142,13 @@ class Climb:
             else "no finer mesh is calibrated"
         )
 
+    def _meshes(self) -> Iterator[Mapping[str, Any]]:
+        """All meshes, coarse to fine."""
+        if not self.plan.pairs:
+            yield from self.plan.levels
+        for self.pair, orders in self.plan.pairs_for(self.tol).items():
+            yield from orders
+
     def stop(self, why: str) -> None:
         """End with what there is."""
         self._choose(f"the next mesh could not be solved: {why}")
@@ -150,7 +161,8 @@ class Climb:
             finest = history[-1].quantities
             unit, scale = described(name)[2], size(finest, name)
             bar, side = self.bar(name), self._side(name)
-            out.append(Value(name, finest[name], unit, bar, len(history), scale, side))
+            rests_on = min(len(history), 2) if self.plan.pairs else len(history)
+            out.append(Value(name, finest[name], unit, bar, rests_on, scale, side))
         return tuple(out)
 
     def _known(self) -> list[str]:
@@ -159,7 +171,12 @@ class Climb:
 
     def _history(self, name: str) -> list[Numbers]:
         """The meshes that a quantity was solved on, coarse to fine."""
-        return [level for level in self.levels if name in level.quantities]
+        return [level for level in self._judged(self.levels) if name in level.quantities]
+
+    def _judged(self, levels: list[Numbers]) -> list[Numbers]:
+        """Without the lower order of a pair that is not whole."""
+        whole = len(levels) // 2 * 2 if self.plan.pairs else 0
+        return levels[:whole] if whole else levels
 
     def _side(self, name: str) -> str:
         """Where the exact answer lies.
@@ -294,7 +311,8 @@ class Climb:
         """Bands of what the finest mesh was solved for, and the largest bar of all that was asked."""
         if len(self.levels) < 2:
             return None
-        self.bands |= self.bands_of(self.levels)
+        if len(self._judged(self.levels)) == len(self.levels):
+            self.bands |= self.bands_of(self.levels)
         bars = [self.bar(q) for q in self._known()]
         return max(bars, default=None) if self.bands else None
 
@@ -302,6 +320,10 @@ class Climb:
         """Bands of the finest of two or more meshes of this rung."""
         assert self.rung.factors is not None  # as every solid
         values = [level.quantities for level in levels]
+        if self.plan.pairs:
+            return pair_bands(
+                self.scene, self.rung.factors, self.pair, values[-2:], levels[-1].solver
+            )
         return sequence_bands(
             self.scene, self.plan, self.rung.factors, values, levels[-1].solver, self.sizes
         )

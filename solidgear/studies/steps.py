@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any
 
 #: a coupling this small against its diagonal entries is zero
 ROUNDING = 1e-9
@@ -70,6 +72,8 @@ class Step:
     chosen : bool
     only : tuple of str
         What was still open, where a mesh was not solved for everything asked for.
+    options : dict
+        Of the mesh, for its builder.
     """
 
     rung: str
@@ -81,3 +85,4 @@ class Step:
     seconds: float = 0.0
     chosen: bool = False
     only: tuple[str, ...] = ()
+    options: Mapping[str, Any] = field(default_factory=dict)
