@@ -4,7 +4,7 @@ import copy
 
 import pytest
 
-from solidgear.fidelity.levels import HARMONIC
+from solidgear.fidelity.levels import PAIRS
 from validation.choice.__main__ import main
 from validation.choice.members import MEMBERS, options_of
 from validation.choice.walk import Tally, cheapest, walk
@@ -21,7 +21,7 @@ def member(which, away, seconds):
 
 
 def row(*away):
-    meshes = ((2, 0, 0, 4), (3, 1, 0, 4), (4, 2, 1, 4))
+    meshes = ((2, 1, 0, 4), (3, 1, 0, 4), (3, 2, 1, 4), (4, 2, 1, 4))
     members = [member(m, a, 10.0**k) for k, (m, a) in enumerate(zip(meshes, away))]
     truth = {"values": TRUE, "uncertainty": dict.fromkeys(TRUE, 1e-9)}
     groups = [["bending"], ["axial", "torsion"]]
@@ -35,22 +35,22 @@ def walked(one, tol):
 
 
 def test_a_climb_ends_where_its_bars_are_within_the_tolerance():
-    found = walked(row(1e-2, 1e-4, 1e-6), 0.1)
+    found = walked(row(5e-3, 1e-3, 1e-4, 1e-5), 0.01)
     assert (found.scenes, found.reached, found.first) == (1, 1, [2])
-    assert found.cost == [pytest.approx(11.0)]  # both meshes over the first, which would have done
+    assert found.cost == [pytest.approx(11.0)]  # both orders over the first, which would have done
     assert not found.wrong and not found.short and min(found.ratios) > 1
-    assert walked(row(1e-2, 1e-4, 1e-6), 1e-4).first == [3]
+    assert walked(row(5e-3, 1e-3, 1e-4, 1e-5), 1e-3).first == [4]
 
 
 def test_an_error_beyond_bar_and_tolerance_is_counted():
-    # the second step is small by accident, and what is left is large
-    found = walked(row(5.0e-2, 4.9e-2, 4.9e-2), 1e-2)
+    # the step is small by accident, and what is left is large
+    found = walked(row(5.0e-2, 4.9e-2), 1e-2)
     assert len(found.wrong) == len(found.short) == 2
     assert "error 4.90e-02" in found.wrong[0]
 
 
 def test_what_was_not_reached_is_not_called_wrong():
-    found = walked(row(0.9, 0.5, 0.3), 1e-3)
+    found = walked(row(0.9, 0.5, 0.4, 0.3), 1e-3)
     assert found.reached == 0 and not found.wrong
 
 
@@ -66,17 +66,17 @@ def test_the_cheapest_mesh_is_looked_for_among_all():
     assert cheapest(one, 1e-6) == 0.5 and cheapest(one, 1e-9) is None
 
 
-def test_a_third_mesh_costs_what_it_was_solved_for():
-    one = row(1e-2, 0.9e-4, 1e-6)
+def test_a_second_pair_costs_what_it_was_solved_for():
+    one = row(8e-3, 2e-3, 1e-4, 1e-5)
     for mesh in one["members"]:
         mesh["q"]["bending 1"] = TRUE["bending 1"]
-    # two whole meshes, and of the third the statics of bending
-    assert walked(one, 1e-4).cost == [pytest.approx((1 + 10 + 60) / 10)]
+    # one pair whole, and of the other the statics of bending
+    assert walked(one, 1e-3).cost == [pytest.approx((1 + 10 + 60 + 600) / 100)]
 
 
 def test_members_hold_the_ladder():
     known = [options_of(m) for m in MEMBERS]
-    assert all(level in known for level in HARMONIC[:4])
+    assert all(order in known for pair in PAIRS[:5] for order in pair)
 
 
 @pytest.mark.slow

@@ -201,7 +201,7 @@ def test_a_finer_mesh_that_fails_leaves_the_body_before_it(scene, monkeypatch):
         return real(scene, rung, **options)
 
     monkeypatch.setattr(climbing, "build", build)
-    found = settle(scene, 1e-4, "stiffness")
+    found = settle(scene, 1e-5, "stiffness")
     assert not found.reached and found.options == calls[1]
     assert found.body.size == [s for s in found.steps if s.chosen][0].unknowns
 

@@ -18,6 +18,7 @@ from solidgear.fidelity.edges import (
     is_plate,
     sharpest_edge,
     steepest_kink,
+    thin_walled,
 )
 from solidgear.fidelity.ladder import LADDER
 from solidgear.meshing.corners import SHOULDER, sharpest_corner
@@ -54,6 +55,8 @@ BESIDE = 1.5
 #: least band of a plate: rounding of what thin cells resist takes up to 7e-7 of the modes of a disc of
 #: 0.006 diameters, on meshes whose steps are a tenth of it
 PLATE_LEAST = 2e-6
+#: bands of pairs up to which a step counts twice, by place: steps as small as that may be accidents
+ACCIDENT = (1e-4, 1e-5, 1e-6, 1e-7)
 #: mesh of the plain part, coarse to fine: good to some 1e-4, of which shares are taken
 PLAIN_MESH = 1
 
@@ -144,7 +147,10 @@ def pair_bands(
     """
     edge = sharpest_edge(coned(scene))
     usual = factors.same_mesh[edge][pair]
-    own = replace(factors, first={edge: (usual, 0.0, usual)}, first_of_modes={})
+    if thin_walled(scene):  # whose cells are as short as layers anyway: the first two meshes are one
+        usual = max(usual, factors.same_mesh[edge][max(pair - 1, 0)])
+    small = ACCIDENT[min(pair, len(ACCIDENT) - 1)]
+    own = replace(factors, first={edge: (2 * usual, small, usual)}, first_of_modes={})
     found = layered_bands(orders, solver, own, edge=edge)
     return _widened(scene, found)
 

@@ -25,6 +25,8 @@ if TYPE_CHECKING:
 NEAR = 0.01
 #: and one that ends this near to it, in the same measure, is what the corner's next layers meet
 BESIDE = 0.02
+#: a wall thinner than this share of its outer radius is a shell, that bends along its edges
+THIN_WALL = 0.1
 #: a shaft shorter than this many of its diameters is a plate, whose modes bend it
 PLATE = 0.05
 #: a notch narrower than this, rad, and a surface that rises by more than this over its length, leave
@@ -142,6 +144,26 @@ def is_plate(scene: Scene) -> bool:
     False
     """
     return scene.length < PLATE * 2 * max(max(s.outer0, s.outer1) for s in scene.segments)
+
+
+def thin_walled(scene: Scene) -> bool:
+    """Whether a tube of the shaft is a shell.
+
+    Parameters
+    ----------
+    scene : Scene
+
+    Examples
+    --------
+    >>> import solidgear as sg
+    >>> thin_walled(sg.load("geometry/shaft_stepped.toml"))
+    False
+    """
+    return any(
+        outer - inner < THIN_WALL * outer
+        for s in scene.segments
+        for outer, inner in ((s.outer0, s.inner0), (s.outer1, s.inner1))
+    )
 
 
 def chamfered_roots(scene: Scene) -> list[Corner]:

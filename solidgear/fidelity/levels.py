@@ -8,7 +8,6 @@ the other leaves (two levels that differ only in layers are one mesh on a shaft 
 
 from __future__ import annotations
 
-from bisect import bisect_left
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
@@ -106,10 +105,12 @@ class Sequence:
     turned: Options | None = None
     pairs: tuple[tuple[Options, Options], ...] = ()
 
-    def pairs_for(self, tol: float) -> dict[int, tuple[Options, Options]]:
-        """Pairs that are worth a try at a tolerance, by their place among all, coarse to fine."""
-        from_here = bisect_left([-least for least in TRIED_FROM], -tol)
-        return dict(list(enumerate(self.pairs))[min(from_here, len(self.pairs) - 1) :])
+    def pairs_for(self, tol: float, least: int = 0) -> dict[int, tuple[Options, Options]]:
+        """Pairs that are worth a try at a tolerance, by their place among all, coarse to fine; none
+        before the place ``least``.
+        """
+        first = max(least, sum(tol < from_here for from_here in TRIED_FROM))
+        return dict(list(enumerate(self.pairs))[first:])
 
     @property
     def left_around(self) -> float:

@@ -78,6 +78,9 @@ class Climb:
         Statics at the main point by families of motion, on the finest mesh that was solved for them.
     """
 
+    #: place of the first pair of orders that may be tried
+    least_pair = 0
+
     def __init__(
         self,
         scene: Scene,
@@ -100,7 +103,8 @@ class Climb:
         self.left_out = 0.0
         self.body: Body | None = None
         self.options: dict[str, Any] = {}
-        self.pair = 0
+        self._places: list[int] = []
+        self._last: tuple[Body | None, dict[str, Any]] = (None, {})
         self.compliances: dict[tuple[str, ...], Condensed] = {}
         self.modes: ModeSet | None = None
 
@@ -146,11 +150,14 @@ class Climb:
         """All meshes, coarse to fine."""
         if not self.plan.pairs:
             yield from self.plan.levels
-        for self.pair, orders in self.plan.pairs_for(self.tol).items():
+        for place, orders in self.plan.pairs_for(self.tol, self.least_pair).items():
+            self._places.append(place)
             yield from orders
 
     def stop(self, why: str) -> None:
-        """End with what there is."""
+        """End with what there is: the lower order of a pair is nothing that could be judged."""
+        if self._last[0] is not None:
+            self.body, self.options = self._last
         self._choose(f"the next mesh could not be solved: {why}")
 
     def values(self) -> tuple[Value, ...]:
@@ -175,8 +182,8 @@ class Climb:
 
     def _judged(self, levels: list[Numbers]) -> list[Numbers]:
         """Without the lower order of a pair that is not whole."""
-        whole = len(levels) // 2 * 2 if self.plan.pairs else 0
-        return levels[:whole] if whole else levels
+        odd = self.plan.pairs and len(levels) % 2 and len(levels) > 1
+        return levels[:-1] if odd else levels
 
     def _side(self, name: str) -> str:
         """Where the exact answer lies.
@@ -311,18 +318,21 @@ class Climb:
         """Bands of what the finest mesh was solved for, and the largest bar of all that was asked."""
         if len(self.levels) < 2:
             return None
-        if len(self._judged(self.levels)) == len(self.levels):
-            self.bands |= self.bands_of(self.levels)
+        self.bands |= self.bands_of(self.levels)
+        if self._judged(self.levels) is self.levels:
+            self._last = self.body, self.options
         bars = [self.bar(q) for q in self._known()]
         return max(bars, default=None) if self.bands else None
 
     def bands_of(self, levels: list[Numbers]) -> dict[str, Band]:
         """Bands of the finest of two or more meshes of this rung."""
         assert self.rung.factors is not None  # as every solid
+        levels = self._judged(levels)
         values = [level.quantities for level in levels]
         if self.plan.pairs:
+            place = self._places[len(levels) // 2 - 1]
             return pair_bands(
-                self.scene, self.rung.factors, self.pair, values[-2:], levels[-1].solver
+                self.scene, self.rung.factors, place, values[-2:], levels[-1].solver
             )
         return sequence_bands(
             self.scene, self.plan, self.rung.factors, values, levels[-1].solver, self.sizes

@@ -206,6 +206,9 @@ def settle(
 class Whole(Climb):
     """A climb on which every mesh carries all families, judged in all six directions."""
 
+    #: the body has modes without a bar too, to which the shoulders of a mesh without layers are blunt
+    least_pair = 1
+
     def __init__(self, *args: Any) -> None:
         super().__init__(*args)
         self.turned: list[Numbers] = []

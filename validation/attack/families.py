@@ -1,10 +1,11 @@
 """Bars on families of very simple shafts, one length or constant varied at a time.
 
-    python -m validation.attack.families [WORD ...]
+    python -m validation.attack.families [--sequence] [WORD ...]
 
 Random shafts mix what a bar rests on; a family shows where one thing goes wrong.  Every shaft is
-solved on four or five meshes of the climb, the finest being the truth, and the bars that two, three
-and four of them give are held against it.  Words select the families whose names have one of them.
+solved on ever finer meshes, the finest being the truth, and bars are held against it: those of two
+orders on one mesh, as an answer gives them, or of two, three and four meshes, as a comparison does.
+Words select the families whose names have one of them.
 """
 
 from __future__ import annotations
@@ -20,16 +21,18 @@ import numpy as np
 from solidgear.errors import SolidgearError
 from solidgear.evidence.answer import solve
 from solidgear.evidence.quantities import size
-from solidgear.evidence.sequence_bands import sequence_bands
+from solidgear.evidence.sequence_bands import pair_bands, sequence_bands
 from solidgear.fidelity.edges import sharpest_edge
 from solidgear.fidelity.ladder import LADDER
-from solidgear.fidelity.levels import HARMONIC
+from solidgear.fidelity.levels import HARMONIC, PAIRS
 from solidgear.scene import Bearing, Material, Port, Scene, Segment
 
 D = 0.04
 STEEL = Material(E=2.07e11, nu=0.3, density=7850)
 #: meshes solved, and unknowns after which no finer one is
 LEVELS, MOST = 5, 90_000
+#: pairs of orders that are judged, the one after them being the truth
+JUDGED_PAIRS = 3
 #: errors below this say nothing; the truth may err by this share of the finest mesh but one
 LEAST, DOUBT = 1e-7, 0.3
 
@@ -38,7 +41,9 @@ Maker = Callable[[], Scene]
 
 @dataclass(frozen=True)
 class Held:
-    """Bars after so many meshes: how many hold, and the number that comes nearest to its bar."""
+    """Bars after so many meshes, or pairs of orders: how many hold, and the number that comes nearest
+    to its bar.
+    """
 
     meshes: int
     unknowns: int
@@ -52,7 +57,7 @@ class Held:
     def told(self) -> str:
         """In words."""
         return (
-            f"{self.meshes} meshes ({self.unknowns} unknowns): {self.held} of {self.count} held; "
+            f"mesh {self.meshes} ({self.unknowns} unknowns): {self.held} of {self.count} held; "
             f"{self.worst} {self.error:.1e} off, bar {self.bar:.1e}"
         )
 
@@ -365,20 +370,60 @@ def judged(one: Scene, levels: int = LEVELS, most: int = MOST) -> list[Held]:
     return out
 
 
+def judged_pairs(one: Scene, pairs: int = JUDGED_PAIRS, most: int = MOST) -> list[Held]:
+    """Bars of two orders on one mesh, against the finest mesh solved.
+
+    Parameters
+    ----------
+    one : Scene
+    pairs, most : int
+        Pairs at most, and unknowns after which no finer one is solved.
+    """
+    factors = LADDER["harmonic"].factors
+    assert factors is not None
+    found: list[tuple[dict[str, float], dict[str, float]]] = []
+    unknowns: list[int] = []
+    for lower, higher in PAIRS[: pairs + 1]:
+        solved = [solve(one, "harmonic", **level) for level in (lower, higher)]
+        found.append((dict(solved[0].quantities), dict(solved[1].quantities)))
+        unknowns.append(solved[1].body.size)
+        if unknowns[-1] > most:
+            break
+    truth, out = found[-1][1], []
+    for k, orders in enumerate(found[:-1]):
+        rows = []
+        for name, band in pair_bands(one, factors, k, orders, {}).items():
+            if name not in truth:
+                continue
+            scale = size(truth, name)
+            error = abs(orders[1][name] - truth[name]) / scale
+            # the truth errs by a share of its own last step
+            doubt = DOUBT * abs(found[-1][0].get(name, truth[name]) - truth[name]) / scale
+            if error > LEAST:
+                rows.append((error / band.gci, error - doubt <= band.gci, name, error, band.gci))
+        if rows:
+            _, _, name, error, bar = max(rows)
+            held = sum(row[1] for row in rows)
+            out.append(Held(k + 1, unknowns[k], held, len(rows), name, error, bar))
+    return out
+
+
 def main(arguments: list[str] | None = None) -> int:
     """The exit code is 1 if a bar did not hold."""
     parser = argparse.ArgumentParser(
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
     parser.add_argument("words", nargs="*")
-    words = parser.parse_args(arguments).words
+    parser.add_argument("--sequence", action="store_true", help="bars of a comparison")
+    options = parser.parse_args(arguments)
+    words, judge = options.words, judged if options.sequence else judged_pairs
     missed = total = 0
     for name, make in families().items():
         if words and not any(word in name for word in words):
             continue
         one = make()
         try:
-            bars = judged(one)
+            bars = judge(one)
         except SolidgearError as error:
             print(f"{name}: {error}", flush=True)
             continue

@@ -26,18 +26,19 @@ from validation.attack.scenes import random_scene
 T = TypeVar("T")
 
 #: order, layers, edge layers and size of cells in least radii, from cheap to dear: those of the
-#: ladder, and what lies between them
+#: pairs, and what lies between them
 MEMBERS = (
     (2, 0, 0, 4),
+    (3, 0, 0, 4),
     (2, 1, 0, 4),
     (3, 1, 0, 4),
     (3, 2, 0, 4),
     (4, 2, 0, 4),
+    (3, 2, 1, 4),
     (4, 2, 1, 4),
-    (4, 3, 1, 4),
-    (5, 3, 1, 4),
+    (4, 3, 2, 4),
     (5, 3, 2, 4),
-    (6, 4, 2, 4),
+    (5, 4, 3, 4),
     (6, 4, 3, 4),
 )
 #: no further mesh is solved after one of so many unknowns, unless told otherwise
@@ -107,6 +108,7 @@ def row_of(seed: int, most: int = MOST) -> dict[str, Any]:
     out["ties"] = [s.attachment for s in scene.stations]
     out["groups"] = together(scene)
     out["members"] = []
+    solved(scene, MEMBERS[0])  # what every scene is asked but once belongs to no mesh
     for member in MEMBERS:
         try:
             out["members"].append(solved(scene, member, out["groups"]))
