@@ -118,7 +118,7 @@ def test_bars_hold_for_a_thin_disc_between_shafts_of_two_diameters():
     # with its end a hair thinner the surfaces had lines of their own on any mesh
     hair = scene(("thick", 0.086, 0.158, 0.05), ("end", 0.158, 0.166, 0.049995))
     truth = solve(hair, "harmonic", **HARMONIC[3]).quantities
-    assert found.reached and max(v.meshes for v in found.values) == 3
+    assert found.reached
     for v in found.values:
         # the hair itself is worth some 1e-5
         assert abs(v.value / truth[v.quantity] - 1) <= v.bar + 2e-5

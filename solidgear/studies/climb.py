@@ -127,7 +127,16 @@ class Climb:
             spent = time.perf_counter() - start
             self.steps.append(
                 Step(
-                    self.rung.name, setting, True, "", bar, unknowns, spent, False, only, self.options
+                    self.rung.name,
+                    setting,
+                    True,
+                    "",
+                    bar,
+                    unknowns,
+                    spent,
+                    False,
+                    only,
+                    self.options,
                 )
             )
             if len(self.levels) == 2 and not self.values():
@@ -331,9 +340,7 @@ class Climb:
         values = [level.quantities for level in levels]
         if self.plan.pairs:
             place = self._places[len(levels) // 2 - 1]
-            return pair_bands(
-                self.scene, self.rung.factors, place, values[-2:], levels[-1].solver
-            )
+            return pair_bands(self.scene, self.rung.factors, place, values[-2:], levels[-1].solver)
         return sequence_bands(
             self.scene, self.plan, self.rung.factors, values, levels[-1].solver, self.sizes
         )
