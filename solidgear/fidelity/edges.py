@@ -146,6 +146,22 @@ def is_plate(scene: Scene) -> bool:
     return scene.length < PLATE * 2 * max(max(s.outer0, s.outer1) for s in scene.segments)
 
 
+def thin_disc(scene: Scene) -> bool:
+    """Whether a segment of the shaft is as thin as a plate.
+
+    Parameters
+    ----------
+    scene : Scene
+
+    Examples
+    --------
+    >>> import solidgear as sg
+    >>> thin_disc(sg.load("geometry/shaft_stepped.toml"))
+    False
+    """
+    return any(s.length < PLATE * 2 * max(s.outer0, s.outer1) for s in scene.segments)
+
+
 def thin_walled(scene: Scene) -> bool:
     """Whether a tube of the shaft is a shell.
 

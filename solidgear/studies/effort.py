@@ -70,9 +70,7 @@ def heavy_meshes(scene: Scene, rung: Rung) -> Iterator[str]:
     """
     if rung.meshes is None:
         return
-    plan = rung.meshes_of(scene, {})
-    first = [*plan.pairs_for(scene.ask.tolerance).values()][0] if plan.pairs else plan.levels[:2]
-    costs = [foretold(scene, rung, level) for level in first]
+    costs = [foretold(scene, rung, level) for level in rung.meshes_of(scene, {}).levels[:2]]
     if any(costs):
         places = ("its coarsest mesh", "the next, without which there is no bar,")
         words = [f"{where} takes {cost[2:]}" for where, cost in zip(places, costs) if cost]
