@@ -180,9 +180,17 @@ class Climb:
             finest = history[-1].quantities
             unit, scale = described(name)[2], size(finest, name)
             bar, side = self.bar(name), self._side(name)
-            rests_on = min(len(history), 2) if self.plan.pairs else len(history)
-            out.append(Value(name, finest[name], unit, bar, rests_on, scale, side))
+            orders = self._orders(name)
+            rests_on = len(orders) or len(history)
+            out.append(Value(name, finest[name], unit, bar, rests_on, scale, side, orders))
         return tuple(out)
+
+    def _orders(self, name: str) -> tuple[int, ...]:
+        """Orders of the pair that a quantity's value and bar come from."""
+        known = [k for k, level in enumerate(self._judged(self.levels)) if name in level.quantities]
+        if not self.plan.pairs or len(known) < 2:
+            return ()
+        return tuple(mesh["order"] for mesh in self.plan.pairs[self._places[known[-1] // 2]])
 
     def _known(self) -> list[str]:
         """What was asked for and is there."""

@@ -25,12 +25,14 @@ class Value:
         Relative; of couplings, to the geometric mean of their diagonal entries. Infinite where
         nothing is known.
     meshes : int
-        That the value and its bar rest on.
+        Solutions that the value and its bar rest on.
     size : float
         What the bar is relative to, SI.
     side : str
         Where the exact answer of the model lies: ``above`` or ``below`` the value, or ``both`` where
         it may be either.
+    orders : tuple of int
+        Of the elements, where these are solutions on one mesh.
     """
 
     quantity: str
@@ -40,10 +42,13 @@ class Value:
     meshes: int
     size: float
     side: str = BOTH
+    orders: tuple[int, ...] = ()
 
     @property
     def how(self) -> str:
         """Where the bar comes from, in words."""
+        if self.orders:
+            return f"orders {' and '.join(map(str, self.orders))}"
         return f"{self.meshes} meshes" if self.meshes > 1 else "one mesh only, not judged"
 
     @property
