@@ -147,9 +147,8 @@ def pair_bands(
     """
     edge = sharpest_edge(coned(scene))
     usual = factors.same_mesh[edge][pair]
-    if thin_walled(
-        scene
-    ):  # whose cells are as short as layers anyway: the first two meshes are one
+    # cells of a thin wall are as short as layers anyway, so that the first two meshes are one
+    if thin_walled(scene):
         usual = max(usual, factors.same_mesh[edge][max(pair - 1, 0)])
     small = ACCIDENT[min(pair, len(ACCIDENT) - 1)]
     own = replace(factors, first={edge: (2 * usual, small, usual)}, first_of_modes={})
