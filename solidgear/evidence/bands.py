@@ -114,6 +114,7 @@ def layered_bands(
     edge: str = STEPPED,
     around: Values | None = None,
     effect: Values | None = None,
+    diagonal: float = DIAGONAL,
 ) -> dict[str, Band]:
     """Bands of the finest of two or more levels of a layered sequence.
 
@@ -131,6 +132,8 @@ def layered_bands(
         Relative error that the cells around leave in each quantity.
     effect : mapping, optional
         What features change of each quantity, relative, where the rung has shares of it.
+    diagonal : float
+        The change of a coupling counts for at least this share of those of its diagonal entries.
     """
     around, effect = around or {}, effect or {}
     usual = factors.usual[edge]
@@ -157,7 +160,7 @@ def layered_bands(
                 abs(change(before, finest, d) or 0.0) for d in pair if d in before and d in finest
             ]
             if len(own) == 2:
-                rests_on = max(rests_on, DIAGONAL * (own[0] * own[1]) ** 0.5)
+                rests_on = max(rests_on, diagonal * (own[0] * own[1]) ** 0.5)
         left = solver.get(name, 0.0)
         least = factors.effect.get(name.partition(AT)[0], 0.0) * effect.get(name, 0.0)
         out[name] = Band(
