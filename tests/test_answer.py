@@ -277,7 +277,7 @@ def test_a_climb_ends_where_no_mesh_makes_bars_narrow_enough():
 
 
 def test_what_heavy_meshes_cost_is_told_before_they_are_made():
-    """Holes of 2 mm through 60 mm; those of 12 mm are no matter."""
+    """Holes of 0.5 mm through 60 mm; those of 12 mm are no matter."""
     from solidgear.studies.effort import heavy_meshes
 
     def told(diameter):
@@ -286,7 +286,7 @@ def test_what_heavy_meshes_cost_is_told_before_they_are_made():
         scene = sg.Scene.from_parts([rim], features=[holes])
         return list(heavy_meshes(scene, LADDER["sector"]))
 
-    (sentence,) = told(0.0015)
+    (sentence,) = told(0.0005)
     assert (
         "its coarsest mesh takes about" in sentence and "without which there is no bar" in sentence
     )
