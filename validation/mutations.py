@@ -85,7 +85,7 @@ MUTATIONS = (
         "bars of a thin wall are those of a thick one",
         "solidgear/evidence/sequence_bands.py",
         "pair_bands",
-        "usual = max(usual, factors.same_mesh[edge][max(pair - 1, 0)])",
+        "usual = max(usual, SHELL[pair])",
         "pass",
         "tests/test_pairs.py::test_a_second_mesh_of_a_thin_tube_is_the_first",
     ),

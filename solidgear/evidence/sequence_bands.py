@@ -60,6 +60,9 @@ ACCIDENT = (1e-4, 1e-5, 1e-6, 1e-7)
 #: least share of a pair's changes of both diagonal entries that the change of a coupling counts for: of
 #: 55 random shafts and ten of strangers 0.2 left out five couplings, by 5 to 26 %
 PAIR_DIAGONAL = 0.35
+#: least factors of the first pairs where a wall is a shell: tubes of walls of 0.02 and 0.05 radii left
+#: 0.88 and 0.78 of a step. Their cells are as short as layers anyway, so that both meshes are one
+SHELL = (1.1, 1.1)
 #: mesh of the plain part, coarse to fine: good to some 1e-4, of which shares are taken
 PLAIN_MESH = 1
 
@@ -150,9 +153,8 @@ def pair_bands(
     """
     edge = sharpest_edge(coned(scene))
     usual = factors.same_mesh[edge][pair]
-    # cells of a thin wall are as short as layers anyway, so that the first two meshes are one
-    if thin_walled(scene):
-        usual = max(usual, factors.same_mesh[edge][max(pair - 1, 0)])
+    if thin_walled(scene) and pair < len(SHELL):
+        usual = max(usual, SHELL[pair])
     small = ACCIDENT[min(pair, len(ACCIDENT) - 1)]
     own = replace(factors, first={edge: (2 * usual, small, usual)}, first_of_modes={})
     found = layered_bands(orders, solver, own, edge=edge, diagonal=PAIR_DIAGONAL)

@@ -139,7 +139,7 @@ LADDER = Ladder(
             # shoulders, 2.8 and 1.4 at rigid seats, 2.0 with one layer where both meet. Of higher
             # orders theory is taken, at shoulders three quarters of it.
             same_mesh={
-                SMOOTH: (1.1, 0.5, 0.4, 0.7, 0.9, 1.2),
+                SMOOTH: (0.8, 0.45, 0.4, 0.7, 0.9, 1.2),
                 PLANE: (1.6, 1.6, 0.5, 0.7, 0.9, 1.2),
                 STEPPED: (2.3, 0.6, 0.8, 1.2, 1.5, 1.8),
                 STEPPED_PLANE: (2.3, 0.7, 0.8, 1.2, 1.5, 1.8),
