@@ -6,6 +6,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, fields, replace
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -293,12 +294,19 @@ def _given_mesh(scene: Shaft, given: Mapping[str, Any], body: BodyFile) -> Size:
 
 def _tetrahedra(scene: Shaft, given: Mapping[str, Any]) -> Size:
     from solidgear.fidelity.solid import tetrahedra_plan
+    from solidgear.meshing.cut_counts import around_cut
     from solidgear.meshing.element_size import estimated_counts
 
     wanted = [(s, a) for s in scene.stations for a in (given["attachments"] or (s.attachment,))]
+    holes = [
+        partial(around_cut, feature, scene.segments, given["refinement"])
+        for feature in resolved(scene)
+        if feature.kind in CUTS
+    ]
     counts = estimated_counts(
         scene.segments,
         blends=scene.corners,
+        holes=holes,
         **tetrahedra_plan(
             scene, wanted, **{k: given[k] for k in ("size", "graded_size", "refinement", "around")}
         ),

@@ -39,7 +39,8 @@ def estimated_counts(
         Further formulas of size, the same all around.
     holes : sequence of callable
         Each gives, from the element edge without it, what it adds to the sums over volume, surface
-        and rims: :func:`solidgear.meshing.holes.around_holes`.
+        and rims: :func:`solidgear.meshing.holes.around_holes`,
+        :func:`solidgear.meshing.cut_counts.around_cut`.
     sectors : int
         Equal strips around that cells do not reach across; 0 for a whole shaft.
 
