@@ -12,7 +12,7 @@ from solidgear.fidelity.size import estimated_size
 from solidgear.meshing.closed_form import mass_properties, volume_of
 from solidgear.scene import Chamfer, Fillet
 from solidgear.scene.coned import coned
-from solidgear.studies.guards import Probe
+from solidgear.studies.guards import Probe, elements
 from solidgear.studies.guards.edges import fillets
 
 HEAD, SHAFT = ("head", 0.068, 0.134), ("shaft", 0.208, 0.09)
@@ -363,3 +363,17 @@ def test_the_shipped_scene():
     assert fillet.on_cylinder[1] == pytest.approx(scene.steps[0] + 0.004, abs=1e-12)
     assert chamfer.on_face[0] == pytest.approx(0.042, abs=1e-12)
     assert [row["edge"] for row in scene.as_dict()["blends"]] == ["root", "rim"]
+
+
+def test_check_tells_of_the_mesh_that_holds_a_chamfer():
+    """Of tetrahedra, and not of the hexahedra whose blocks the end of a seat would fall into: that was
+    no matter of memory, and the solid asked for by default is meshed without them.
+    """
+    scene = stepped(Chamfer(name="root", y=0.068, length=0.01, angle="30 deg")).with_changes(
+        port=Port(y=0.04, lo=0.014, hi=0.066)
+    )
+    with pytest.raises(sg.SolidgearError, match="among the cells of the chamfer"):
+        estimated_size(scene, "solid", {"element": "hex20"})
+    foretold = estimated_size(scene, "solid", {"element": "tet10"}).unknowns
+    fact = next(elements.memory(Probe(scene, sg.build(scene, "timoshenko")))).sentence
+    assert f"the default 3D solid, about {foretold} unknowns" in fact

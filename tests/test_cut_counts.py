@@ -1,4 +1,4 @@
-"""Meshes at keyways, flats and cross holes are foretold."""
+"""Meshes at keyways, flats and cross holes are foretold, and told of."""
 
 import math
 
@@ -11,6 +11,7 @@ from solidgear.fidelity.size import estimated_size
 from solidgear.meshing.cut_counts import around_cut
 from solidgear.meshing.featured import without
 from solidgear.scene import CrossHole
+from solidgear.studies.guards import Probe, elements
 
 SMALL = CrossHole(name="small", segment="rod", y=0.12, diameter=0.002)
 WIDE = SMALL.with_changes(diameter=0.012)
@@ -71,3 +72,21 @@ def test_sums_around_a_hole_against_their_integral():
 
     inside = primitive(big) - primitive(least) - math.pi * b**2 / big**3
     assert volume == pytest.approx(1.75 * 0.4 * inside, rel=0.05)
+
+
+@pytest.mark.parametrize("name", ["small hole", "three that share no plane"])
+def test_check_tells_of_the_part_with_its_features(name):
+    scene = PARTS[name]
+    probe = Probe(scene.plain, sg.build(scene.plain, "timoshenko"), whole=scene)
+    fact = next(elements.memory(probe)).sentence
+    assert f"the default 3D solid, about {foretold(scene, 1.0)} unknowns" in fact
+
+
+def test_check_tells_of_both_halves():
+    """The solid that is asked for, of which each half is factored by itself."""
+    scene = PARTS["flat"]
+    body = sg.build(scene, "solid", element="tet10", refinement=0.25)
+    assert len(body.blocks) == 2
+    probe = Probe(scene.plain, body, whole=scene)
+    assert f"the 3D solid, about {body.size} unknowns" in next(elements.memory(probe)).sentence
+    assert [n for n, _ in probe.solid_matrices] == [b.size for b in body.blocks]

@@ -8,7 +8,9 @@ import pytest
 import solidgear as sg
 from solidgear.cli.answer import _of_round_part
 from solidgear.fidelity.ladder import LADDER
+from solidgear.fidelity.size import estimated_unknowns
 from solidgear.meshing.round_part import round_part
+from solidgear.studies.guards import Probe, elements
 from solidgear.studies.round_part import described
 from validation.mesh_files import rod, write_mesh
 
@@ -119,3 +121,12 @@ def test_a_round_part_from_a_mesh_file_is_answered_as_its_segments_are(tmp_path)
     # chords of 24 sides leave out 1.1 % of the circle
     assert "Numbers of the round part of part.msh, whose volume is +1.1" in told
     assert not _of_round_part(scene.plain, plain)
+
+
+def test_check_tells_of_the_mesh_of_the_file(tmp_path):
+    # which is the only one that a 3D solid of it has; hexahedra in its segments would be several times it
+    scene = scene_of(tmp_path, 24)
+    probe = Probe(scene.plain, sg.build(scene.plain, "timoshenko"), whole=scene)
+    fact = next(elements.memory(probe)).sentence
+    assert f"the 3D solid, about {sg.build(scene, 'solid').size} unknowns" in fact
+    assert estimated_unknowns(scene.plain, "solid") > 3 * probe.solid_matrices[0][0]

@@ -9,6 +9,7 @@ import numpy as np
 
 from solidgear.errors import SolidgearError, listed
 from solidgear.evidence.quantities import change, in_words
+from solidgear.fidelity.ladder import LADDER
 from solidgear.machine.memory import available_mb
 from solidgear.meshing.corners import sharpest_corner
 from solidgear.solve.backends import BACKENDS, INSTALL, missing
@@ -172,22 +173,27 @@ GOOD_TO = 1.5  # of the laws, whose estimate over measured is 0.68 to 1.41
 
 def memory(probe: Probe) -> Notices:
     """What will factor the 3D solid, and whether it will fit."""
-    size, entries = probe.solid_unknowns
+    size = sum(unknowns for unknowns, _ in probe.solid_matrices)
+    largest = max(unknowns for unknowns, _ in probe.solid_matrices)
     absent, forced = [], os.environ.get("SOLIDGEAR_BACKEND")
-    for name in (forced,) if forced in BACKENDS else FASTEST if size > SMALL else ("superlu",):
+    for name in (forced,) if forced in BACKENDS else FASTEST if largest > SMALL else ("superlu",):
         if not (why := missing(name)):
             break
         absent.append(f"{why}; {INSTALL[name]}")
-    matrix = Outline((size, size), entries)
-    whole = law("cholmod" if name in OVER_LAW else "superlu", matrix, False)
+    fill = "cholmod" if name in OVER_LAW else "superlu"
+    whole = sum(law(fill, Outline((n, n), entries), False) for n, entries in probe.solid_matrices)
     need = probe.solid_parts.memory * OVER_LAW.get(name, 1.0) * whole
     free = available_mb()
-    smaller = probe.instead("the harmonic solid, or --set refinement=0.7")
-    which = "the" if probe.body.fidelity == "solid" else "the default"
+    smaller = "the harmonic solid, or --set refinement=0.7"
+    if LADDER["harmonic"].unfit(probe.whole):
+        smaller = " or ".join([*(m for m in probe.solids if m != "solid"), "a coarser mesh"])
+    # a mesh file is the only mesh there is
+    only = probe.body.fidelity == "solid" or getattr(probe.meshed.body, "one_mesh", False)
+    which = "the" if only else "the default"
     yield Notice(
         "fact",
         ("solid",),
-        f"{which} 3D solid, about {size} unknowns, is factored by {name} in about {need:.0f} MB"
+        f"{which} 3D solid, about {size:.0f} unknowns, is factored by {name} in about {need:.0f} MB"
         + "".join(f"; faster but absent: {why}" for why in absent),
     )
     if free is not None and GOOD_TO * need > free:

@@ -292,22 +292,28 @@ class Probe:
         return len(np.unique(np.round(np.arctan2(x[rim], z[rim]) % (2 * np.pi), 6)))
 
     @cached_property
-    def solid_unknowns(self) -> tuple[int, int]:
-        """Unknowns and matrix entries of the 3D solid: of the body if it is one, else estimated for
-        the default HEX20 mesh.
+    def solid_matrices(self) -> list[tuple[float, float]]:
+        """Unknowns and entries of every matrix of the 3D solid: of the body if it is one, else estimated
+        for the mesh that the scene has by default, with all that is cut out of it.
         """
         if self.body.fidelity == "solid":
-            matrix = self.body.blocks[0].stiffness
-            return matrix.shape[0], matrix.nnz
+            return [(b.size, b.stiffness.nnz) for b in self.body.blocks]
         from solidgear.fidelity.size import estimated_size
+        from solidgear.fidelity.sizes import has_mirror_plane
 
-        size = estimated_size(self.scene, "solid")
-        return size.unknowns, size.entries
+        size = estimated_size(self.meshed, "solid", LADDER["solid"].given(self.meshed, {}))
+        halves = 2 if has_mirror_plane(self.meshed) else 1
+        return [(size.unknowns / halves, size.entries / halves)] * halves
+
+    @property
+    def meshed(self) -> Scene:
+        """What a 3D solid is of: all of the scene, or its plain part where no mesh holds all."""
+        return self.scene if LADDER["solid"].unfit(self.whole) else self.whole
 
     @property
     def solid_parts(self) -> Parts:
-        """In how many pieces the matrix of that solid is factored."""
+        """In how many pieces the matrices of that solid are factored."""
         if self.body.fidelity == "solid":
             return WHOLE if not self.body.blocks[0].reflections else PIECES
-        element = LADDER["solid"].given(self.scene, {}).get("element", "hex20")
-        return parts_of(self.scene, element, None, Factoring())
+        element = LADDER["solid"].given(self.meshed, {}).get("element", "hex20")
+        return parts_of(self.meshed, element, None, Factoring())
