@@ -37,17 +37,21 @@ def described(scene: Scene) -> Iterator[Notice]:
     if body.round and abs(off) > 1e-4:
         same += ", as facets of its mesh explain"
         if abs(off) > 0.1:
+            # of a polygon on the circle, n sin(t) / 2 and n sin(t) (2 + cos t) / 24 with t = 2 pi / n
             same += (
-                f": models of its segments are of the round part, a solid of the mesh is so much "
-                f"{'lighter' if off > 0 else 'heavier'} and bends about twice as much "
-                f"{'more' if off > 0 else 'less'}"
+                ": models of its segments are of the round part; a solid of the mesh is so much "
+                f"{'lighter' if off > 0 else 'heavier'}, and the second moment of its sections is "
+                f"{'lower' if off > 0 else 'higher'} by about twice that; how it bends rests on its "
+                "elements too"
             )
+    several = len(scene.segments) > 1
+    segments = f"{len(scene.segments)} segments are" if several else "1 segment is"
     yield Notice(
         "fact",
         (),
-        f"{body.name}: {1e6 * body.volume:.6g} cm^3, of which {len(scene.segments)} segments are the "
-        f"round part: {100 * body.round_share:.3g} % of its surface beside end faces and shoulders "
-        f"is of revolution, and the volume of the segments is {same}",
+        f"{body.name}: {1e6 * body.volume:.6g} cm^3, of which {segments} the round part: "
+        f"{100 * body.round_share:.3g} % of its surface beside end faces and shoulders "
+        f"is of revolution, and the volume of the segment{'s' * several} is {same}",
     )
     yield from _of_materials(scene)
     for sentence in body.doubts:
