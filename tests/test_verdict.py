@@ -272,6 +272,18 @@ def test_solid_inside_the_bands_is_said_to_be_not_resolved():
     assert "not resolved" not in sentences and "beyond the bands in C_zz" in sentences
 
 
+def test_a_solid_without_bands_is_not_said_to_be_beyond_them():
+    """One mesh of a solid may err by all of its gap; of several quantities some may have a band."""
+    alone = rung(1.01)
+    said = " ".join(judged({"harmonic": rung(band=1e-3), "solid": alone}, 0.05)[0]["sentences"])
+    assert "beyond" not in said and "inside the bands" not in said
+    assert "within 1 % of it in every judged number; it has no bands of its own" in said
+    half = rung(1.01, 101.0, band=1e-3)
+    del half.bands[SCENE]["bending 1"]
+    said = " ".join(judged({"harmonic": rung(band=1e-3), "solid": half}, 0.05)[0]["sentences"])
+    assert "beyond the bands in C_zz; of bending 1 it has no band of its own" in said
+
+
 # --------------------------------------------------------------------------- no evidence, no verdict
 def test_beams_alone_are_not_judged():
     for rungs in ({"euler": rung(0.9)}, {"euler": rung(0.9), "timoshenko": rung()}):

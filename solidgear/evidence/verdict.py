@@ -298,11 +298,11 @@ def _trust(rungs, reference, gaps, judged) -> list[str]:
         if model in rungs and model != reference:
             same = all("sectors" in rungs[m].body.mesh for m in (model, reference))
             kind = "copies of the same mesh" if same else "another mesh and another formulation"
-            out += _other_solid(model, kind, gaps, judged)
+            out += _other_solid(model, kind, rungs[model], gaps, judged)
     return out
 
 
-def _other_solid(model: str, kind: str, gaps: list[dict], judged) -> list[str]:
+def _other_solid(model: str, kind: str, rung: Solution, gaps: list[dict], judged) -> list[str]:
     """How far a solid that does not judge is from the one that does."""
     mine = [
         g
@@ -312,14 +312,20 @@ def _other_solid(model: str, kind: str, gaps: list[dict], judged) -> list[str]:
     if not mine:
         return []
     worst = max(mine, key=lambda g: abs(g["relative"]))
-    beyond = [g["quantity"] for g in mine if g["verdict"] == "resolved"]
     text = (
         f"The {LADDER[model].title}, {kind}, is within "
         f"{percent(abs(worst['relative']))} of it in every judged number"
     )
-    if beyond:
-        return [f"{text}, beyond the bands in {', '.join(beyond)}."]
-    return [f"{text}; all gaps lie inside the bands (not resolved)."]
+    # what has no band of its own may err by all of a gap
+    own = rung.bands.get(SCENE, {})
+    unknown = [g["quantity"] for g in mine if g["quantity"] not in own]
+    if len(unknown) == len(mine):
+        return [f"{text}; it has no bands of its own, which would tell whose the gaps are."]
+    beyond = [g["quantity"] for g in mine if g["quantity"] in own and g["verdict"] == "resolved"]
+    text += f", beyond the bands in {', '.join(beyond)}" * bool(beyond)
+    if unknown:
+        return [f"{text}; of {', '.join(unknown)} it has no band of its own."]
+    return [f"{text}{'; all gaps lie inside the bands (not resolved)' * (not beyond)}."]
 
 
 def _points(scene: Scene, names) -> list[str]:
