@@ -36,6 +36,10 @@ from solidgear.meshing.sector import (
 from solidgear.scene.cyclic_features import Spline, Teeth
 from solidgear.scene.cyclic_rules import mirror_angle, no_common_sector
 
+#: strips of a tooth that cells do not reach across, from its root outwards: its flanks and the middles of
+#: land and gap. 20 shafts of 1 to 12 teeth in a sector come out with 0.79 to 1.12 of their cells at
+#: refinements of 0.3 to 1; strips of teeth all the way to the axis made up to four times as many
+OF_TEETH = 4
 #: eigenvalues of pairs in a real matrix made of a complex one differ by rounding
 PAIRS = 1e-9
 
@@ -269,12 +273,23 @@ def sector_counts(scene, given: Mapping[str, Any]) -> tuple[float, float, float,
         partial(around_holes, hole, of[f.segment].inner0, of[f.segment].outer0)
         for f, hole in hole_sizes(scene.segments, features, refinement)
     ]
-    # a tooth and the gap beside it take cells of their own, and so do both sides of a middle plane
-    strips = max(
-        [sectors_of(features), *(2 * f.count for f in features if f.kind != "bolt_circle")]
-    )
-    strips *= 2 if halved(scene, sectors_around(scene, given)) else 1
+    around = sectors_of(features) * (2 if halved(scene, sectors_around(scene, given)) else 1)
+    toothed = [(of[f.segment], f) for f in features if f.kind != "bolt_circle"]
+    # along a shaft with teeth cells are held by both ends of every sector
+    strips = partial(_strips, around * (2 if toothed else 1), toothed)
     return estimated_counts(scene.segments, **plan, more=more, holes=holes, sectors=strips)
+
+
+def _strips(around: int, toothed: Sequence, r: np.ndarray, y: np.ndarray) -> np.ndarray:
+    """Strips around that cells do not reach across: of sectors, and of teeth where these are."""
+    shape = np.broadcast_shapes(r.shape, y.shape)
+    out = np.full(shape, float(around))
+    for segment, teeth in toothed:
+        share = np.clip((y - segment.y0) / (segment.y1 - segment.y0), 0.0, 1.0)
+        pitch = segment.outer0 + share * (segment.outer1 - segment.outer0)
+        inside = (y > segment.y0) & (y < segment.y1) & (r > teeth.root * pitch)
+        out = np.where(inside, np.maximum(out, OF_TEETH * teeth.count), out)
+    return out
 
 
 def _body(fidelity, scene, wanted, blocks, facts, drawing) -> Body:

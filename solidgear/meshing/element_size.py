@@ -22,7 +22,7 @@ def estimated_counts(
     blends=(),
     more=(),
     holes=(),
-    sectors=0,
+    sectors=None,
 ):
     """Size of the mesh that :func:`~solidgear.meshing.tetrahedra.tetrahedra` makes of the same
     arguments, without meshing.
@@ -41,8 +41,8 @@ def estimated_counts(
         Each gives, from the element edge without it, what it adds to the sums over volume, surface
         and rims: :func:`solidgear.meshing.holes.around_holes`,
         :func:`solidgear.meshing.cut_counts.around_cut`.
-    sectors : int
-        Equal strips around that cells do not reach across; 0 for a whole shaft.
+    sectors : callable, optional
+        Equal strips around that cells do not reach across, from radius and y; none in a whole shaft.
 
     Returns
     -------
@@ -72,9 +72,9 @@ def estimated_counts(
             np.minimum(h, field(r, y, 0.0), out=h)
         return h
 
-    def crowded(r, h):
+    def crowded(r, y, h):
         """How many more cells there are where they do not reach across strips; fitted to sectors."""
-        return 1.0 + 0.8 * h * sectors / (2 * pi * r) if sectors else 1.0
+        return 1.0 + 0.8 * h * sectors(r, y) / (2 * pi * r) if sectors else 1.0
 
     marks = sorted({y for y, _ in corners} | {s.y0 for s in segments} | {segments[-1].y1})
     volume = surface = 0.0
@@ -89,21 +89,23 @@ def estimated_counts(
             r = bore[:, None] + (outer - bore)[:, None] * part
             h = edge(r, y[:, None])
             ring = 2 * pi * along[:, None] * (outer - bore)[:, None] * across * r
-            volume += (ring * crowded(r, h) / h**3).sum()
+            volume += (ring * crowded(r, y[:, None], h) / h**3).sum()
             # the outermost and innermost points lie a hair from the surfaces
             for at, radius in ((-1, outer), (0, bore)):
-                narrow = crowded(np.maximum(radius, 1e-12), h[:, at])
+                narrow = crowded(np.maximum(radius, 1e-12), y, h[:, at])
                 surface += (2 * pi * along * radius * narrow / h[:, at] ** 2).sum()
     for y, inner, outer in _faces(segments):
         r, across = _graded_points(inner, outer, least)
         h = edge(r, np.array(y))
-        surface += (2 * pi * across * r * crowded(r, h) / h**2).sum()
+        surface += (2 * pi * across * r * crowded(r, np.array(y), h) / h**2).sum()
     for blend in blends:
         own = _around_edge(blend, size, graded_size, float(edge(*map(np.array, blend.middle))))
         volume, surface = volume + own[0], surface + own[1]
-    rim = sum(
-        max(2 * pi * r / float(edge(np.array(r), np.array(y))), sectors) for y, r in set(corners)
-    )
+    rim = 0.0
+    for y, r in sorted(set(corners)):
+        there = np.array(r), np.array(y)
+        least_around = float(sectors(*there)) if sectors else 0.0
+        rim += max(2 * pi * r / float(edge(*there)), least_around)
     for added in holes:
         own = added(edge)
         volume, surface, rim = volume + own[0], surface + own[1], rim + own[2]
