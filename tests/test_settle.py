@@ -14,14 +14,14 @@ import pytest
 import solidgear as sg
 from solidgear import cli
 from solidgear.evidence.answer import numbers, solve
-from solidgear.evidence.quantities import change
+from solidgear.evidence.quantities import at_points, between, change
 from solidgear.fidelity.ladder import LADDER
 from solidgear.fidelity.levels import HARMONIC, Sequence
 from solidgear.scene import Bearing
 from solidgear.solve.statics import condense
 from solidgear.studies import climb as climbing
 from solidgear.studies.answering import answer
-from solidgear.studies.settle import Whole, _turned, settle
+from solidgear.studies.settle import Whole, settle
 from solidgear.studies.sweep.choice import settled_for_sweep
 
 ROOT = Path(__file__).parent.parent
@@ -31,6 +31,8 @@ FREE = str(ROOT / "geometry" / "cylinder_free.toml")
 ROUNDING = 1e-9
 #: own error of a reference two orders and two layers finer than what is judged: its bands are below
 REFERENCE = 5e-5
+#: root of what is left of the stiffness of bearings in x and about z
+SOFTER = np.array([0.5, 1.0, 1.0, 1.0, 1.0, 0.5])
 
 
 @pytest.fixture(scope="module")
@@ -298,25 +300,38 @@ def test_a_sweep_takes_the_mesh_that_its_hardest_bearings_need(scene):
     assert hard.largest[1] > base.largest[1] or hard.body.size > base.body.size
 
 
-def test_couplings_of_the_other_plane_have_bars_of_their_own_sign():
+def test_features_are_held_against_the_plane_that_a_number_is_of():
     """Two meshes that say of a keyed part what its plain part is: nothing is changed by features, in
-    neither plane. Against minus the coupling of the plain part it would be twice all of it.
+    neither plane, at neither point and not between them, and also where bearings are softer across.
+    Against numbers of the other plane, or minus a coupling, the key would seem to change half of them.
     """
-    scene = sg.load(ROOT / "geometry" / "pinion_keyed.toml")
+    keyed = sg.load(ROOT / "geometry" / "pinion_keyed.toml")
+    softer = [
+        b.with_changes(stiffness=b.stiffness * np.outer(SOFTER, SOFTER)) for b in keyed.bearings
+    ]
+    end = sg.Port(name="end", y=0.24, lo=0.22, hi=0.26)
+    scene = keyed.with_changes(bearings=tuple(softer), further_ports=(end,))
     body = sg.build(scene.plain, "harmonic", order=5, layers=3, edge_layers=2)
-    plain = condense(body, scene.plain, "pinion")
-    wanted = ("C_zz", "C_z,thx", "C_thx", "K_zz", "K_z,thx", "K_thx")
+    here, there = (condense(body, scene.plain, name) for name in ("pinion", "end"))
+    both = condense(body, scene.plain, ("pinion", "end"))
+    assert here.compliance[0, 0] > 1.5 * here.compliance[2, 2]
+    of_one = ("C_zz", "C_z,thx", "C_thx", "K_zz", "K_z,thx", "K_thx")
+    wanted = (*at_points(of_one, ["end"]), *between(of_one, ["pinion", "end"]))
     climb = Whole(scene, LADDER["corrected"], wanted, 0.01, lambda _: None)
     for _ in range(2):
-        climb.levels.append(numbers(plain, None))
-        climb.turned.append(numbers(_turned(plain), None, {"further": _turned(plain)}))
+        climb.levels.append(numbers(here, None, {"end": there}, both))
+        climb._keep_statics(None, here, {"end": there}, both)
         climb.sizes.append(None)
     climb.judge()
     bars = climb.bars()
-    assert {"C_x,thz", "K_x,thz", "C_x,thz@further"} < set(bars)
+    own = {"C_x,thz", "K_xx", "C_xx@end", "C_x,thz@end", "C_xx@pinion@end", "K_thy@pinion@end"}
+    assert own < set(bars)
     # the plain part on a lighter mesh, which is what features are held against, is good to 1e-3
     assert max(bars.values()) < 1e-3, bars
-    # a quarter turn of a round part on bearings that are alike across is the part itself
-    same, turned = plain.stiffness, _turned(plain).stiffness
-    bending = np.ix_((0, 2, 3, 5), (0, 2, 3, 5))
-    assert turned[bending] == pytest.approx(same[bending], rel=1e-9, abs=1e-8 * same.max())
+    # and what a key does change has its share in the bar, in that plane too
+    shifted = climb.across[-1].quantities | {
+        q: 1.1 * v for q, v in climb.across[-1].quantities.items() if q.startswith("C_xx")
+    }
+    climb.across = [dataclasses.replace(climb.across[-1], quantities=shifted)] * 2
+    share = LADDER["corrected"].factors.effect["C_xx"] * (1 - 1 / 1.1)
+    assert climb.bars()["C_xx@end"] == pytest.approx(share, rel=0.02)

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 from solidgear.body import Body, Supports, as_supports
-from solidgear.evidence.quantities import QUANTITIES, described, measure, points_of
+from solidgear.evidence.quantities import QUANTITIES, described, measure, measure_across, points_of
 from solidgear.fidelity import build
 from solidgear.machine.meter import Meter
 from solidgear.solve.condensed import Condensed, Coupled
@@ -47,6 +47,14 @@ def numbers(
     """The compared numbers of statics and modes, any of which may not have been solved."""
     values = measure(statics, found, further, coupled)
     return Numbers(values, _left(statics, found, coupled, values))
+
+
+def numbers_across(
+    statics: Condensed, further: Mapping[str, Condensed], coupled: Coupled | None = None
+) -> Numbers:
+    """Those of the other bending plane and of torsion away from the main point, by their own names."""
+    values = measure_across(further, coupled)
+    return Numbers(values, _left(statics, None, coupled, values))
 
 
 def _left(

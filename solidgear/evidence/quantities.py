@@ -184,7 +184,7 @@ def between(names: Iterable[str], points: Sequence[str]) -> tuple[str, ...]:
     >>> between(["C_zz", "C_z,thx", "bending 1"], ["a", "b"])
     ('C_zz@a@b', 'C_z,thx@a@b', 'C_z,thx@b@a')
     """
-    of_points = [name for name in names if not isinstance(QUANTITIES[name][1], str)]
+    of_points = [name for name in names if not isinstance(described(name)[1], str)]
     found = (
         f"{name}{AT}{one}{AT}{other}"
         for a, b in combinations_with_replacement(points, 2)
@@ -284,9 +284,30 @@ def measure(
     return out | (_between(coupled) if coupled is not None else {})
 
 
-def _between(coupled: Coupled) -> dict[str, float]:
+def measure_across(
+    further: Mapping[str, Condensed], coupled: Coupled | None = None
+) -> dict[str, float]:
+    """The numbers of the other bending plane and of torsion (`ACROSS`) away from the main point, where
+    :func:`measure` has them.
+
+    Parameters
+    ----------
+    further : mapping of str to Condensed
+        At further points, by name.
+    coupled : Coupled, optional
+        Of several points.
+    """
+    out = {
+        f"{name}{AT}{point}": value
+        for point, there in further.items()
+        for name, value in _measured(there, None, ACROSS).items()
+    }
+    return out | (_between(coupled, ACROSS) if coupled is not None else {})
+
+
+def _between(coupled: Coupled, known: Iterable[str] = QUANTITIES) -> dict[str, float]:
     """Terms between points, and what they are related to."""
-    names = [name for name in QUANTITIES if name.startswith(("C_", "K_"))]
+    names = [name for name in known if name.startswith(("C_", "K_"))]
     own = [f"{name}{AT}{a}{AT}{a}" for a in coupled.ports for name in names]
     # those of the diagonal first: a term of motions that nothing resists is no number
     out: dict[str, float] = {}

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 from solidgear.evidence.answer import solve
 from solidgear.evidence.bands import Band, layered_bands, refined_bands, rough_bands
-from solidgear.evidence.quantities import AT, measure, points_of, size
+from solidgear.evidence.quantities import AT, measure, measure_across, points_of, size
 from solidgear.fidelity.edges import (
     acute,
     beside_a_step,
@@ -225,4 +225,5 @@ def _plain(
     found = solve(plain, rung, **meshes({}).levels[PLAIN_MESH])
     bending = [m.frequency_hz for m in found.modes.modes if m.name.startswith("bending")]
     coupled = condense(found.body, plain, points) if points else None
-    return found.quantities | measure(None, None, None, coupled), bending
+    across = measure_across(found.further, coupled)
+    return found.quantities | measure(None, None, None, coupled) | across, bending

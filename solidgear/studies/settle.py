@@ -9,22 +9,20 @@ of a stiffness matrix, from the other side: no entry errs by more than the geome
 diagonal entries' errors.  Bands of all six diagonal entries therefore hold all of the matrix.
 :data:`~solidgear.evidence.quantities.QUANTITIES` names one bending plane and axial motion; where
 bearings differ between planes, the other one may rest on the mesh far more than the first, so it is
-measured as well, by a quarter turn of the same matrix, and torsion with it.
+measured as well, and torsion with it (:data:`~solidgear.evidence.quantities.ACROSS`).
 """
 
 from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any, TypeVar
-
-import numpy as np
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
 
 from solidgear.body import Body
 from solidgear.errors import SolidgearError, show
-from solidgear.evidence.answer import Numbers, numbers
-from solidgear.evidence.quantities import ACROSS, AT, QUANTITIES, at_points, between, repeats
+from solidgear.evidence.answer import Numbers, numbers_across
+from solidgear.evidence.quantities import ACROSS, QUANTITIES, at_points, between, repeats
 from solidgear.machine.threads import pinned
 from solidgear.solve.condensed import Condensed, Coupled
 from solidgear.studies.answering import climbed, usable
@@ -34,8 +32,6 @@ from solidgear.studies.steps import Step
 if TYPE_CHECKING:
     from solidgear.scene import Scene
 
-Seen = TypeVar("Seen", Condensed, Coupled)
-
 #: what may be asked of a body, and the kinds of quantities by which it is judged
 QUESTIONS: dict[str, tuple[str, ...]] = {
     "stiffness": ("compliance", "stiffness"),
@@ -44,22 +40,6 @@ QUESTIONS: dict[str, tuple[str, ...]] = {
 }
 #: bars closer than this part of themselves are equal
 SAME = 1e-6
-#: components in whose place others stand for a moment: a quarter turn about the axis takes x to z
-#: and thz to -thx, and torsion takes the place of axial motion.  With the wrong sign a coupling is held
-#: against minus that of the plain part, and what features change of it is twice all of it
-TURN = (2, 4, 0, 5, 1, 3)
-SIGNS = np.array([-1.0, 1.0, 1.0, -1.0, 1.0, 1.0])
-#: what the quantities of the turned matrix are
-TURNED = {
-    "C_zz": "C_xx",
-    "C_z,thx": "C_x,thz",
-    "C_thx": "C_thz",
-    "C_yy": "C_thy",
-    "K_zz": "K_xx",
-    "K_z,thx": "K_x,thz",
-    "K_thx": "K_thz",
-    "K_yy": "K_thy",
-}
 
 
 @dataclass(frozen=True)
@@ -211,21 +191,19 @@ class Whole(Climb):
 
     def __init__(self, *args: Any) -> None:
         super().__init__(*args)
-        self.turned: list[Numbers] = []
+        self.across: list[Numbers] = []
 
     def bars(self) -> dict[str, float]:
         """Relative bars by quantity, those of the other plane and of torsion by names of their
         own.
         """
         out = {v.quantity: v.bar for v in self.values()}
-        if self.turned:
-            # at the main point the other plane is measured as it is
+        if self.across:
             own = [q for q in self.levels[-1].quantities if q in ACROSS]
             out |= {q: self.bands[q].gci if q in self.bands else math.inf for q in own}
-            finest = self.turned[-1].quantities
-            known = self._turned_bands()
-            own = [q for q in finest if AT in q and q.partition(AT)[0] in TURNED]
-            out |= {_turned_name(q): known.get(q, math.inf) for q in own if not repeats(q)}
+            known = self._bands_across()
+            there = [q for q in self.across[-1].quantities if not repeats(q)]
+            out |= {q: known.get(q, math.inf) for q in there}
         return out
 
     def _open(self) -> list[str]:
@@ -253,28 +231,9 @@ class Whole(Climb):
         further: Mapping[str, Condensed],
         coupled: Coupled | None,
     ) -> None:
-        there = {point: _turned(found) for point, found in further.items()}
-        # residuals are those of the matrix that is turned
-        both = None if coupled is None else _turned(coupled)
-        turned = numbers(_turned(statics), None, there, both)
-        self.turned.append(turned)
+        self.across.append(numbers_across(statics, further, coupled))
 
-    def _turned_bands(self) -> Mapping[str, float]:
-        if len(self.turned) < 2:
+    def _bands_across(self) -> Mapping[str, float]:
+        if len(self.across) < 2:
             return {}
-        return {name: band.gci for name, band in self.bands_of(self.turned).items()}
-
-
-def _turned(found: Seen) -> Seen:
-    """A quarter turn about the axis, torsion in the place of axial motion."""
-    rows = np.concatenate([6 * k + np.array(TURN) for k in range(len(found.stiffness) // 6)])
-    turn = np.ix_(rows, rows)
-    sign = np.tile(SIGNS, len(rows) // 6)
-    both = np.outer(sign, sign)
-    stiffness, compliance = found.stiffness[turn] * both, found.compliance[turn] * both
-    return replace(found, stiffness=stiffness, compliance=compliance)
-
-
-def _turned_name(name: str) -> str:
-    base, at, point = name.partition(AT)
-    return f"{TURNED[base]}{at}{point}"
+        return {name: band.gci for name, band in self.bands_of(self.across).items()}
