@@ -48,7 +48,7 @@ def foretold(scene, refinement):
     + [pytest.param(n, 1.0, marks=() if n in FINE else pytest.mark.long) for n in PARTS],
 )
 def test_the_size_is_foretold(name, refinement):
-    """Within 0.3, twice as far as 11 other parts were off. The plain part has a sixth of the unknowns of
+    """Within 0.3, twice as far as 11 other parts were off. The plain part has a fifth of the unknowns of
     the one with a small hole.
     """
     found = foretold(PARTS[name], refinement) / unknowns(PARTS[name], refinement)
