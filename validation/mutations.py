@@ -77,8 +77,8 @@ MUTATIONS = (
         "a thin disc is solved without layers",
         "solidgear/studies/climb.py",
         "Climb._meshes",
-        "1 if thin_disc(self.scene) else 0",
-        "0",
+        "thin_disc(self.scene) or crowded(self.scene)",
+        "crowded(self.scene)",
         "tests/test_pairs.py::test_a_thin_disc_is_never_solved_without_layers",
     ),
     Mutation(

@@ -15,6 +15,7 @@ from solidgear.fidelity.edges import (
     acute,
     beside_a_step,
     chamfered_roots,
+    crowded,
     is_plate,
     sharpest_edge,
     steepest_kink,
@@ -155,6 +156,7 @@ def pair_bands(
     usual = factors.same_mesh[edge][pair]
     if thin_walled(scene) and pair < len(SHELL):
         usual = max(usual, SHELL[pair])
+    usual *= BESIDE if crowded(scene) else 1.0
     small = ACCIDENT[min(pair, len(ACCIDENT) - 1)]
     own = replace(factors, first={edge: (2 * usual, small, usual)}, first_of_modes={})
     found = layered_bands(orders, solver, own, edge=edge, diagonal=PAIR_DIAGONAL)

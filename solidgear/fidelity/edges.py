@@ -25,6 +25,9 @@ if TYPE_CHECKING:
 NEAR = 0.01
 #: and one that ends this near to it, in the same measure, is what the corner's next layers meet
 BESIDE = 0.02
+#: marks nearer to each other than this, in least outer radii, are crowded: two rigid seats 0.006 apart
+#: left 20 steps of two orders without layers, and 1.1 with one layer
+CROWDED = 0.1
 #: a wall thinner than this share of its outer radius is a shell, that bends along its edges
 THIN_WALL = 0.1
 #: a shaft shorter than this many of its diameters is a plate, whose modes bend it
@@ -144,6 +147,26 @@ def is_plate(scene: Scene) -> bool:
     False
     """
     return scene.length < PLATE * 2 * max(max(s.outer0, s.outer1) for s in scene.segments)
+
+
+def crowded(scene: Scene) -> bool:
+    """Whether ends of seats or joints of segments stand so close that one cell of a mesh without layers
+    holds two of them, and no order tells what is between.
+
+    Parameters
+    ----------
+    scene : Scene
+
+    Examples
+    --------
+    >>> import solidgear as sg
+    >>> crowded(sg.load("geometry/shaft_stepped.toml"))
+    False
+    """
+    ends = {y for s in scene.stations for y in (s.lo, s.hi)}
+    marks = sorted(ends | {s.y0 for s in scene.segments} | {scene.segments[-1].y1})
+    gaps = [b - a for a, b in zip(marks, marks[1:])]
+    return any(TOUCH < gap < CROWDED * _least_radius(scene) for gap in gaps)
 
 
 def thin_disc(scene: Scene) -> bool:

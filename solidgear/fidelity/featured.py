@@ -60,7 +60,8 @@ def featured_body(
     mesh = made.mesh if plain else without(made.mesh, keep)
     quality = check_mesh(mesh)
     solid = _isoparametric(mesh, "tet10", made.segment[keep])
-    facets = seat_on_cylinder(solid, scene.segments, 1e-7 * scene.length)
+    flats = any(f.kind == "flat" for f in scene.features)
+    facets = seat_on_cylinder(solid, scene.segments, 1e-7 * scene.length, flats)
     if made.plane is None:
         block, ties = free_block(solid, scene, wanted, facets)
         blocks: tuple[Block, ...] = (tie_rigidly(block, ties),)

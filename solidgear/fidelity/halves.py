@@ -138,11 +138,12 @@ class HalfDrawing:
         return None
 
 
-def seat_on_cylinder(mesh: SolidMesh, segments, tolerance: float) -> Facets:
+def seat_on_cylinder(mesh: SolidMesh, segments, tolerance: float, flats: bool = True) -> Facets:
     """Facets of seats on what is left of the surface of revolution, and of sections.
 
-    A facet counts whose corners and edge nodes lie on the surface: floors and walls of features,
-    which may have all corners on it, do not.
+    A facet counts whose corners and edge nodes lie on the surface.  Where elements would have folded
+    their edges are chords, as those of the floor of a flat are, whose corners may all lie on the
+    surface too: chords count only on parts without flats.
 
     Parameters
     ----------
@@ -151,6 +152,8 @@ def seat_on_cylinder(mesh: SolidMesh, segments, tolerance: float) -> Facets:
     segments : sequence of Segment
     tolerance : float
         m.
+    flats : bool
+        Whether the part has flats.
 
     Returns
     -------
@@ -178,7 +181,11 @@ def seat_on_cylinder(mesh: SolidMesh, segments, tolerance: float) -> Facets:
             # nodes in the middle of curved edges lie a little beyond the surface
             near = np.full(every_r.shape, 1e-6 * outer.max(initial=1.0))
             near[3:] += BEYOND * np.abs(outer[3:] - chord)
-            on |= here & (np.abs(every_r - outer) < near).all(axis=0)
+            off = every_r - outer
+            if not flats:
+                sagitta = np.abs(outer[3:] - chord)
+                off[3:] = np.where((off[3:] < 0) & (off[3:] > -sagitta - near[3:]), 0.0, off[3:])
+            on |= here & (np.abs(off) < near).all(axis=0)
         steep = y.max(axis=0) - y.min(axis=0) > tolerance
         return boundary[inside & steep & on]
 

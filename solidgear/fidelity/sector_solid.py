@@ -39,7 +39,7 @@ def seats(mesh: SolidMesh, straight: np.ndarray, scene, features) -> Facets:
     toothed = {f.segment: f for f in features if f.kind != "bolt_circle"}
     tolerance = 1e-7 * scene.length
     plain = [s for s in scene.segments if s.name not in toothed]
-    on_cylinder = seat_on_cylinder(mesh, plain, tolerance)
+    on_cylinder = seat_on_cylinder(mesh, plain, tolerance, flats=False)
     corners = mesh.mesh.facets[:, mesh.boundary]
     y, r = straight[1, corners], np.hypot(*straight[[0, 2]][:, corners])
 

@@ -20,7 +20,7 @@ from solidgear.evidence.bands import Band
 from solidgear.evidence.quantities import AT, described, diagonals, points_of, size
 from solidgear.evidence.sequence_bands import feature_effect, pair_bands, sequence_bands
 from solidgear.fidelity import build
-from solidgear.fidelity.edges import thin_disc
+from solidgear.fidelity.edges import crowded, thin_disc
 from solidgear.fidelity.rung import Rung
 from solidgear.solve.condensed import Condensed, Coupled
 from solidgear.solve.families import FAMILIES
@@ -160,8 +160,10 @@ class Climb:
         """All meshes, coarse to fine."""
         if not self.plan.pairs:
             yield from self.plan.levels
-        # without a layer towards its free edge a thin disc bends as neither order tells
-        least = max(self.least_pair, 1 if thin_disc(self.scene) else 0)
+        # what neither order tells without layers: a thin disc bends towards its free edge, and shafts
+        # strain between seats that all but touch
+        blind = thin_disc(self.scene) or crowded(self.scene)
+        least = max(self.least_pair, 1 if blind else 0)
         for place, orders in self.plan.pairs_for(self.tol, least).items():
             self._places.append(place)
             yield from orders
