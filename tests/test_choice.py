@@ -25,7 +25,7 @@ def row(*away):
     members = [member(m, a, 10.0**k) for k, (m, a) in enumerate(zip(meshes, away))]
     truth = {"values": TRUE, "uncertainty": dict.fromkeys(TRUE, 1e-9)}
     groups = [["bending"], ["axial", "torsion"]]
-    return {"seed": 3, "groups": groups, "members": members, "ref": truth}
+    return {"seed": 5, "groups": groups, "members": members, "ref": truth}
 
 
 def walked(one, tol):
