@@ -178,14 +178,15 @@ def seat_on_cylinder(mesh: SolidMesh, segments, tolerance: float, flats: bool = 
             t = (every_y - s.y0) / (s.y1 - s.y0)
             outer = s.outer0 + (s.outer1 - s.outer0) * t
             here = (t > -1e-9).all(axis=0) & (t < 1 + 1e-9).all(axis=0)
-            # nodes in the middle of curved edges lie a little beyond the surface
-            near = np.full(every_r.shape, 1e-6 * outer.max(initial=1.0))
-            near[3:] += BEYOND * np.abs(outer[3:] - chord)
-            off = every_r - outer
+            # nodes in the middle of curved edges lie a little beyond the surface, those of chords
+            # below it
+            off, sagitta = every_r - outer, np.abs(outer[3:] - chord)
+            above = np.full(every_r.shape, 1e-6 * outer.max(initial=1.0))
+            above[3:] += BEYOND * sagitta
+            below = above.copy()
             if not flats:
-                sagitta = np.abs(outer[3:] - chord)
-                off[3:] = np.where((off[3:] < 0) & (off[3:] > -sagitta - near[3:]), 0.0, off[3:])
-            on |= here & (np.abs(off) < near).all(axis=0)
+                below[3:] += sagitta
+            on |= here & ((-below < off) & (off < above)).all(axis=0)
         steep = y.max(axis=0) - y.min(axis=0) > tolerance
         return boundary[inside & steep & on]
 
