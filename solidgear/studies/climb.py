@@ -130,14 +130,12 @@ class Climb:
                 Step(
                     self.rung.name,
                     setting,
-                    True,
-                    "",
-                    bar,
-                    unknowns,
-                    spent,
-                    False,
-                    only,
-                    self.options,
+                    valid=True,
+                    bar=bar,
+                    unknowns=unknowns,
+                    seconds=spent,
+                    only=only,
+                    options=self.options,
                 )
             )
             if len(self.levels) == 2 and not self.values():
@@ -160,6 +158,7 @@ class Climb:
         """All meshes, coarse to fine."""
         if not self.plan.pairs:
             yield from self.plan.levels
+            return
         # what neither order tells without layers: a thin disc bends towards its free edge, and shafts
         # strain between seats that all but touch
         blind = thin_disc(self.scene) or crowded(self.scene)
