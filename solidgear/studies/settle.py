@@ -208,9 +208,8 @@ class Whole(Climb):
 
     def _open(self) -> list[str]:
         # the body is wanted, and one number that no mesh makes sure enough is enough to refuse it
-        floors = self.floors()
-        stuck = [q for q in super()._open() if floors.get(q, 0.0) > self.tol]
-        return stuck or super()._open()
+        floors, open_ = self.floors(), super()._open()
+        return [q for q in open_ if floors.get(q, 0.0) > self.tol] or open_
 
     def judge(self) -> float | None:
         super().judge()
