@@ -109,10 +109,11 @@ def sequence_bands(
     if plan.layered:
         if len(levels) < 2:
             return {}
-        edge = sharpest_edge(coned(scene))  # as the harmonic solid is meshed
+        cones = coned(scene)  # as the harmonic solid is meshed
+        edge = sharpest_edge(cones)
         effect = feature_effect(scene, factors, levels[-1])
         found = layered_bands(levels, solver, factors, edge=edge, around=around, effect=effect)
-        return _widened(scene, found)
+        return _widened(scene, cones, found)
     last = [size or 0.0 for size in sizes[-3:]]
     least = 2 if factors.rough else 3
     if len(levels) < least or not all(a > b > 0 for a, b in zip(last, last[1:])):
@@ -152,7 +153,8 @@ def pair_bands(
     -------
     dict of str to Band
     """
-    edge = sharpest_edge(coned(scene))
+    cones = coned(scene)
+    edge = sharpest_edge(cones)
     usual = factors.same_mesh[edge][pair]
     if thin_walled(scene) and pair < len(SHELL):
         usual = max(usual, SHELL[pair])
@@ -160,12 +162,11 @@ def pair_bands(
     small = ACCIDENT[min(pair, len(ACCIDENT) - 1)]
     own = replace(factors, first={edge: (2 * usual, small, usual)}, first_of_modes={})
     found = layered_bands(orders, solver, own, edge=edge, diagonal=PAIR_DIAGONAL)
-    return _widened(scene, found)
+    return _widened(scene, cones, found)
 
 
-def _widened(scene: Scene, found: dict[str, Band]) -> dict[str, Band]:
-    """Bands of a shaft as wide as its cells ask for."""
-    cones = coned(scene)
+def _widened(scene: Scene, cones: Scene, found: dict[str, Band]) -> dict[str, Band]:
+    """Bands of a shaft as wide as its cells ask for; ``cones``: the shaft as it is meshed."""
     more = _widening(cones) * (CONED if cones is not scene else 1.0)
     least = PLATE_LEAST if is_plate(scene) else 0.0
     return {
