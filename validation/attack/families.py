@@ -12,7 +12,7 @@ from __future__ import annotations
 
 import argparse
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -20,11 +20,12 @@ import numpy as np
 
 from solidgear.errors import SolidgearError
 from solidgear.evidence.answer import solve
+from solidgear.evidence.bands import Band
 from solidgear.evidence.quantities import size
 from solidgear.evidence.sequence_bands import pair_bands, sequence_bands
 from solidgear.fidelity.edges import sharpest_edge
 from solidgear.fidelity.ladder import LADDER
-from solidgear.fidelity.levels import HARMONIC, PAIRS
+from solidgear.fidelity.levels import HARMONIC, PAIRS, Options
 from solidgear.scene import Bearing, Material, Port, Scene, Segment
 
 D = 0.04
@@ -37,6 +38,7 @@ JUDGED_PAIRS = 3
 LEAST, DOUBT = 1e-7, 0.3
 
 Maker = Callable[[], Scene]
+Numbers = dict[str, float]
 
 
 @dataclass(frozen=True)
@@ -342,31 +344,13 @@ def judged(one: Scene, levels: int = LEVELS, most: int = MOST) -> list[Held]:
     """
     rung = LADDER["harmonic"]
     assert rung.meshes is not None and rung.factors is not None
-    found: list[dict[str, float]] = []
-    unknowns: list[int] = []
-    for level in HARMONIC[:levels]:
-        solved = solve(one, "harmonic", **level)
-        found.append(dict(solved.quantities))
-        unknowns.append(solved.body.size)
-        if unknowns[-1] > most:
-            break
-    truth, out = found[-1], []
+    plan: Any = rung.meshes({})
+    solved = _solved(one, [(level,) for level in HARMONIC[:levels]], most)
+    found = [values for (values,), _ in solved]
+    out: list[Held] = []
     for k in range(1, len(found) - 1):
-        plan: Any = rung.meshes({})
         bands = sequence_bands(one, plan, rung.factors, found[: k + 1], {}, [None] * (k + 1))
-        rows = []
-        for name, band in bands.items():
-            if name not in truth:
-                continue
-            scale = size(truth, name)
-            error = abs(found[k][name] - truth[name]) / scale
-            doubt = DOUBT * abs(found[-2][name] - truth[name]) / scale
-            if error > LEAST:
-                rows.append((error / band.gci, error - doubt <= band.gci, name, error, band.gci))
-        if rows:
-            _, _, name, error, bar = max(rows)
-            held = sum(row[1] for row in rows)
-            out.append(Held(k + 1, unknowns[k], held, len(rows), name, error, bar))
+        out += _held(k + 1, solved[k][1], bands, found[k], found[-2:])
     return out
 
 
@@ -381,31 +365,51 @@ def judged_pairs(one: Scene, pairs: int = JUDGED_PAIRS, most: int = MOST) -> lis
     """
     factors = LADDER["harmonic"].factors
     assert factors is not None
-    found: list[tuple[dict[str, float], dict[str, float]]] = []
-    unknowns: list[int] = []
-    for lower, higher in PAIRS[: pairs + 1]:
-        solved = [solve(one, "harmonic", **level) for level in (lower, higher)]
-        found.append((dict(solved[0].quantities), dict(solved[1].quantities)))
-        unknowns.append(solved[1].body.size)
-        if unknowns[-1] > most:
-            break
-    truth, out = found[-1][1], []
-    for k, orders in enumerate(found[:-1]):
-        rows = []
-        for name, band in pair_bands(one, factors, k, orders, {}).items():
-            if name not in truth:
-                continue
-            scale = size(truth, name)
-            error = abs(orders[1][name] - truth[name]) / scale
-            # the truth errs by a share of its own last step
-            doubt = DOUBT * abs(found[-1][0].get(name, truth[name]) - truth[name]) / scale
-            if error > LEAST:
-                rows.append((error / band.gci, error - doubt <= band.gci, name, error, band.gci))
-        if rows:
-            _, _, name, error, bar = max(rows)
-            held = sum(row[1] for row in rows)
-            out.append(Held(k + 1, unknowns[k], held, len(rows), name, error, bar))
+    solved = _solved(one, PAIRS[: pairs + 1], most)
+    finest, _ = solved[-1]
+    out: list[Held] = []
+    for k, (orders, unknowns) in enumerate(solved[:-1]):
+        bands = pair_bands(one, factors, k, orders, {})
+        out += _held(k + 1, unknowns, bands, orders[1], finest)
     return out
+
+
+def _solved(
+    one: Scene, groups: Sequence[Sequence[Options]], most: int
+) -> list[tuple[list[Numbers], int]]:
+    """Numbers of meshes by groups, coarse to fine, each group with the unknowns of its last mesh; none
+    after one of more than ``most``.
+    """
+    out = []
+    for group in groups:
+        answers = [solve(one, "harmonic", **level) for level in group]
+        out.append(([dict(answer.quantities) for answer in answers], answers[-1].body.size))
+        if answers[-1].body.size > most:
+            break
+    return out
+
+
+def _held(
+    meshes: int, unknowns: int, bands: dict[str, Band], values: Numbers, finest: Sequence[Numbers]
+) -> Iterator[Held]:
+    """How many of some bars hold against the last of the two finest solutions; nothing where all
+    errors are too small to tell.
+    """
+    before, truth = finest
+    rows = []
+    for name, band in bands.items():
+        if name not in truth:
+            continue
+        scale = size(truth, name)
+        error = abs(values[name] - truth[name]) / scale
+        # the truth errs by a share of its own last step
+        doubt = DOUBT * abs(before.get(name, truth[name]) - truth[name]) / scale
+        if error > LEAST:
+            rows.append((error / band.gci, error - doubt <= band.gci, name, error, band.gci))
+    if rows:
+        _, _, name, error, bar = max(rows)
+        held = sum(row[1] for row in rows)
+        yield Held(meshes, unknowns, held, len(rows), name, error, bar)
 
 
 def main(arguments: list[str] | None = None) -> int:
