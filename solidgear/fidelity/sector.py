@@ -270,8 +270,8 @@ def sector_counts(scene, given: Mapping[str, Any]) -> tuple[float, float, float,
     more = tooth_sizes(scene.segments, features, refinement)
     of = {s.name: s for s in scene.segments}
     holes = [
-        partial(around_holes, hole, of[f.segment].inner0, of[f.segment].outer0)
-        for f, hole in hole_sizes(scene.segments, features, refinement)
+        partial(around_holes, hole, here.inner0, here.outer0)
+        for _, here, hole in hole_sizes(scene.segments, features, refinement)
     ]
     around = sectors_of(features) * (2 if halved(scene, sectors_around(scene, given)) else 1)
     toothed = [(of[f.segment], f) for f in features if f.kind != "bolt_circle"]

@@ -154,8 +154,7 @@ def sector_mesh(
         corners = corners_of(slabs_between(shapes, planes, tolerance), circles, tolerance)
         formulas = size_formulas(shapes, corners, size, graded_size, None, around)
         formulas += tooth_sizes(segments, features, refinement)
-        for f, hole in hole_sizes(segments, features, refinement):
-            here = next(s for s in segments if s.name == f.segment)
+        for f, here, hole in hole_sizes(segments, features, refinement):
             # those in the sector, and on either side of it
             within = pi / count + 2 * pi / f.count
             formulas.append(hole_size(hole, hole_places(f, here, twists, first, within)))
@@ -189,8 +188,8 @@ def tooth_sizes(segments, features, refinement: float) -> list[str]:
     return [tooth_size(f, of[f.segment], refinement) for f in features if f.kind != "bolt_circle"]
 
 
-def hole_sizes(segments, features, refinement: float) -> list[tuple[Any, Hole]]:
-    """Element sizes at holes.
+def hole_sizes(segments, features, refinement: float) -> list[tuple[Any, Any, Hole]]:
+    """Holes with their element sizes, and the segments that they are in.
 
     Parameters
     ----------
@@ -200,10 +199,11 @@ def hole_sizes(segments, features, refinement: float) -> list[tuple[Any, Hole]]:
 
     Returns
     -------
-    list of (BoltCircle, Hole)
+    list of (BoltCircle, Segment, Hole)
     """
     of = {s.name: s for s in segments}
-    return [(f, hole_of(f, of[f.segment], refinement)) for f in features if f.kind == "bolt_circle"]
+    found = [(f, of[f.segment]) for f in features if f.kind == "bolt_circle"]
+    return [(f, here, hole_of(f, here, refinement)) for f, here in found]
 
 
 def volume_of_sector(segments, features, count: int) -> float:
