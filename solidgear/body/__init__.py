@@ -1,6 +1,6 @@
 """The one currency of the house: free elastic parts with ports, and what holds them."""
 
-from solidgear.body.model import FURTHER, SINE, Block, Body, Port, component_rows
+from solidgear.body.model import FURTHER, SINE, Block, Body, Port, Reflection, component_rows
 from solidgear.body.supports import Supports, as_supports
 
 __all__ = [
@@ -8,6 +8,7 @@ __all__ = [
     "Body",
     "FURTHER",
     "Port",
+    "Reflection",
     "SINE",
     "Supports",
     "as_supports",

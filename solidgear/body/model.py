@@ -29,6 +29,8 @@ from solidgear.frames import shift
 FURTHER = 1000
 #: Index of the same block a quarter of a wave further round (its sine form): this plus n.
 SINE = 2000
+#: (n,) unknown that stands in the mirror of each, and (n,) sign that its motion has there
+Reflection = tuple[np.ndarray, np.ndarray]
 
 
 @dataclass(frozen=True)
@@ -103,8 +105,8 @@ class Block:
     sections : callable, optional
         See :mod:`solidgear.body.sections`; None where all unknowns are values at points, ``y``.
     reflections : tuple of (partner, sign)
-        Mirror planes that the mesh has, x = 0, z = 0 and x = z: (n,) unknown in the mirror of each,
-        and the sign of its motion there. A factor may use them (:mod:`solidgear.solve.folded`).
+        In the mirror planes that the mesh has, x = 0, z = 0 and x = z. A factor may use them
+        (:mod:`solidgear.solve.folded`).
     """
 
     name: str
@@ -119,7 +121,7 @@ class Block:
     border: int = 0
     expand: sp.csr_matrix | None = None
     sections: Sections | None = None
-    reflections: tuple[tuple[np.ndarray, np.ndarray], ...] = ()
+    reflections: tuple[Reflection, ...] = ()
 
     def mirrored(
         self, name: str, components: tuple[int, ...], index: int, signs: tuple[float, ...]

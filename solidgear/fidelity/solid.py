@@ -9,7 +9,7 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import Any
 
-from solidgear.body import Body, Port
+from solidgear.body import Body, Port, Reflection
 from solidgear.errors import SolidgearError
 from solidgear.fidelity.attachment import tie_rigidly
 from solidgear.fidelity.limits import countable
@@ -129,7 +129,7 @@ def solid(
     else:
         mesh, segment, quality = _hexes(scene, wanted, grading)
     body_mesh = _isoparametric(mesh, element, segment)
-    reflections: tuple = ()
+    reflections: tuple[Reflection, ...] = ()
     if not tet:
         nodes, reflections = mirrored(body_mesh.nodes, 1e-7 * scene.length)
         body_mesh = replace(body_mesh, nodes=nodes)

@@ -8,13 +8,11 @@ from typing import Any
 import numpy as np
 import scipy.sparse as sp
 
-from solidgear.body import Block
+from solidgear.body import Block, Reflection
 from solidgear.errors import SolidgearError
 from solidgear.fidelity.solid_matrices import _matrices, _mean
 from solidgear.fidelity.solid_mesh import SolidMesh
 
-#: (3 n,) unknown in the mirror of each, and (3 n,) sign of its motion there
-Reflection = tuple[np.ndarray, np.ndarray]
 #: components of a node by those of its mirror image, in the planes x = 0, z = 0 and x = z
 SWAPPED = [2, 1, 0]
 PLANES = (([0, 1, 2], (-1, 1, 1)), ([0, 1, 2], (1, 1, -1)), (SWAPPED, (1, 1, 1)))

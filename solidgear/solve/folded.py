@@ -22,15 +22,13 @@ from collections.abc import Sequence
 import numpy as np
 import scipy.sparse as sp
 
+from solidgear.body import Reflection
 from solidgear.solve.factor import choice, factorise
 from solidgear.solve.factored import Factor
 
 #: A row of a matrix and of its reflection may differ by so much of it. Assembling leaves 2e-15 to
 #: 3e-14, more where cells are thin; a mesh that only nearly has a mirror plane is off by far more.
 ALIKE = 1e-11
-
-#: (n,) unknown that stands in the mirror of each, and (n,) sign that its motion has there
-Reflection = tuple[np.ndarray, np.ndarray]
 
 
 def folded(matrix: sp.csr_matrix, reflections: Sequence[Reflection]) -> Factor | None:
