@@ -69,12 +69,12 @@ def solid_factor_mb(
     from solidgear.solve.factor import FactorError, choice
     from solidgear.solve.petsc import elsewhere
 
-    fill, entries = parts.fill * fill, parts.pieces * parts.share * entries
-    one = parts.share * unknowns, parts.share * unknowns
-    matrix = Outline(one, entries / parts.pieces)
+    rows = parts.share * unknowns
+    matrix = Outline((rows, rows), parts.share * entries)
+    fill, entries = parts.fill * fill, parts.pieces * matrix.nnz
     if factoring.engine != "own":
         here = 2 * ENTRY * entries / MB
-        return here if elsewhere() else here + ranks_mb(unknowns, entries, fill, factoring)
+        return here if elsewhere() else here + ranks_mb(entries, fill, factoring)
     try:
         name, _ = choice(matrix, factoring=factoring)
     except FactorError:
@@ -95,7 +95,7 @@ def solid_factor_mb(
     )
 
 
-def ranks_mb(unknowns: float, entries: float, fill: float, factoring: Factoring) -> float:
+def ranks_mb(entries: float, fill: float, factoring: Factoring) -> float:
     """Memory of all ranks of PETSc together: libraries, rows and numbering of each, and a factor by
     MUMPS or the levels of multigrid. Of three runs of 14,000 and 57,000 unknowns by MUMPS within a
     sixth; multigrid was seen once.
