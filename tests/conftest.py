@@ -41,6 +41,29 @@ def no_charts(monkeypatch):
 
 
 @pytest.fixture
+def builds_until(monkeypatch):
+    """Lets a climb build so many meshes and refuses every further one for want of memory; gives the
+    options that each was asked for with.
+    """
+    from solidgear.errors import SolidgearError
+    from solidgear.studies import climb
+
+    def limit(count: int) -> list[dict]:
+        real, calls = climb.build, []
+
+        def build(scene, rung, **options):
+            calls.append(options)
+            if len(calls) > count:
+                raise SolidgearError("12000 MB are needed, 3000 MB are free")
+            return real(scene, rung, **options)
+
+        monkeypatch.setattr(climb, "build", build)
+        return calls
+
+    return limit
+
+
+@pytest.fixture
 def refused(tmp_path):
     """Asks for one sentence from a scene in which one text stands for another."""
     import solidgear as sg

@@ -189,30 +189,14 @@ def test_past_the_finest_mesh_the_best_is_given_and_not_called_reached(scenes, m
     assert "no finer mesh" in found.steps[-1].why and found.steps[-1].chosen
 
 
-def test_a_finer_mesh_that_fails_leaves_the_coarser_answer(scenes, monkeypatch):
-    real, calls = climbing.build, []
-
-    def build(scene, rung, **options):
-        calls.append(rung)
-        if len(calls) > 2:
-            raise sg.SolidgearError("12000 MB are needed, 3000 MB are free")
-        return real(scene, rung, **options)
-
-    monkeypatch.setattr(climbing, "build", build)
+def test_a_finer_mesh_that_fails_leaves_the_coarser_answer(scenes, builds_until):
+    builds_until(2)
     found = answer(scenes["pinion_overhung"], 1e-5, "C_thx")
     assert not found.reached and found.values and "3000 MB are free" in found.steps[-1].why
 
 
-def test_the_lower_order_of_a_pair_alone_is_no_answer(scenes, monkeypatch):
-    real, calls = climbing.build, []
-
-    def build(scene, rung, **options):
-        calls.append(options)
-        if len(calls) > 3:
-            raise sg.SolidgearError("12000 MB are needed, 3000 MB are free")
-        return real(scene, rung, **options)
-
-    monkeypatch.setattr(climbing, "build", build)
+def test_the_lower_order_of_a_pair_alone_is_no_answer(scenes, builds_until):
+    calls = builds_until(3)
     scene = scenes["pinion_overhung"]
     (found,) = answer(scene, 1e-5, "C_thx").values
     alone = solve(scene, "harmonic", **{k: v for k, v in calls[1].items() if k != "families"})

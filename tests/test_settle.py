@@ -19,7 +19,6 @@ from solidgear.fidelity.ladder import LADDER
 from solidgear.fidelity.levels import HARMONIC, Sequence
 from solidgear.scene import Bearing
 from solidgear.solve.statics import condense
-from solidgear.studies import climb as climbing
 from solidgear.studies.answering import answer
 from solidgear.studies.settle import Whole, settle
 from solidgear.studies.sweep.choice import settled_for_sweep
@@ -193,31 +192,15 @@ def test_what_is_not_reached_is_said(run, two_meshes):
     assert "K_thx" in out and "compliance, engineering units" in out
 
 
-def test_a_finer_mesh_that_fails_leaves_the_body_before_it(scene, monkeypatch):
-    real, calls = climbing.build, []
-
-    def build(scene, rung, **options):
-        calls.append(options)
-        if len(calls) > 2:
-            raise sg.SolidgearError("12000 MB are needed, 3000 MB are free")
-        return real(scene, rung, **options)
-
-    monkeypatch.setattr(climbing, "build", build)
+def test_a_finer_mesh_that_fails_leaves_the_body_before_it(scene, builds_until):
+    calls = builds_until(2)
     found = settle(scene, 1e-5, "stiffness")
     assert not found.reached and found.options == calls[1]
     assert found.body.size == [s for s in found.steps if s.chosen][0].unknowns
 
 
-def test_one_mesh_alone_has_no_bar(run, monkeypatch):
-    real, calls = climbing.build, []
-
-    def build(scene, rung, **options):
-        calls.append(options)
-        if len(calls) > 1:
-            raise sg.SolidgearError("12000 MB are needed, 3000 MB are free")
-        return real(scene, rung, **options)
-
-    monkeypatch.setattr(climbing, "build", build)
+def test_one_mesh_alone_has_no_bar(run, builds_until):
+    calls = builds_until(1)
     code, out, _ = run("stiffness", SCENE, "--json")
     found = json.loads(out)
     assert code == 3 and not found["reached"] and set(found["bars"].values()) == {None}
