@@ -225,8 +225,17 @@ def _absent(missing: Sequence[str]) -> str:
 
 
 def _places(scene: Scene, found: Answered) -> tuple[Whereabouts, str]:
-    """Places of the least certain of the numbers that have some, on the mesh they come from, and
-    what was asked: a compliance itself before one that only stands for what was asked.
+    """Where the error of the widest bar sits, and the quantity that was asked for with that bar.
+
+    Only some compliances have places (:data:`solidgear.evidence.where.PLACED`); stiffnesses and
+    frequencies are shown those of the compliance in :data:`STANDS_FOR`, and only where no compliance
+    was asked for. The mesh is the finest one that the quantity was solved on.
+
+    Raises
+    ------
+    SolidgearError
+        For the answer of another model than the harmonic solid, or where nothing that was asked for
+        has places.
     """
     from solidgear.evidence.where import PLACED, where
     from solidgear.fidelity.ladder import LADDER
@@ -245,10 +254,12 @@ def _places(scene: Scene, found: Answered) -> tuple[Whereabouts, str]:
 
 
 def _for(places: Whereabouts, asked: str) -> str:
+    """For what a compliance stands; nothing where it was itself asked for."""
     return f", for {asked}" if asked != places.quantity else ""
 
 
 def _where_table(places: Whereabouts, asked: str) -> Table:
+    """Places of the error with their shares of it, the largest first."""
     from rich import box
     from rich.table import Table
 
@@ -268,6 +279,7 @@ def _where_table(places: Whereabouts, asked: str) -> Table:
 
 
 def _told(places: Whereabouts, asked: str) -> str:
+    """Where most of the error sits, by what step of the order that was told, and what it cost."""
     from solidgear.report.words import percent, seconds
 
     line = (
@@ -280,7 +292,9 @@ def _told(places: Whereabouts, asked: str) -> str:
 
 
 def _plain(places: Whereabouts, asked: str) -> dict[str, Any]:
-    """Plain data, without the picture."""
+    """What ``--json`` says of the places: all but the mesh and the share of every cell, which only a
+    picture needs.
+    """
     from dataclasses import asdict
 
     names = ("quantity", "order", "total", "check", "sentence", "seconds")
@@ -290,6 +304,7 @@ def _plain(places: Whereabouts, asked: str) -> dict[str, Any]:
 
 
 def _draw(places: Whereabouts, picture: Path) -> None:
+    """Write a picture of the share that every cell has of the error."""
     from solidgear.report.where_chart import draw_where
 
     title = f"Error of {places.quantity} at order {places.order}, by cell"

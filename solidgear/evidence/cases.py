@@ -55,7 +55,8 @@ from solidgear.machine.threads import pin
 pin()
 import numpy, scipy.sparse.linalg, scipy.optimize
 lap("numpy and scipy")
-import solidgear.fidelity.harmonic, solidgear.fidelity.solid, solidgear.fidelity.beam, solidgear.solve.modes, solidgear.scene.file
+import solidgear.fidelity.harmonic, solidgear.fidelity.solid, solidgear.fidelity.beam
+import solidgear.solve.modes, solidgear.scene.file
 lap("solidgear and scikit-fem")
 try:
     import gmsh

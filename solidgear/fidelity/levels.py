@@ -107,8 +107,26 @@ class Sequence:
     pairs: tuple[tuple[Options, Options], ...] = ()
 
     def pairs_for(self, tol: float, least: int = 0) -> dict[int, tuple[Options, Options]]:
-        """Pairs that are worth a try at a tolerance, by their place among all, coarse to fine; none
-        before the place ``least``.
+        """Pairs that are worth a try at a tolerance.
+
+        Parameters
+        ----------
+        tol : float
+            Relative.
+        least : int
+            Place of the first pair that may be tried.
+
+        Returns
+        -------
+        dict of int to (dict, dict)
+            By their place among all pairs, coarse to fine: builder options of the lower order and of
+            the higher one. Empty where the solid has no pairs.
+
+        Examples
+        --------
+        >>> plan = harmonic_meshes({})
+        >>> [min(plan.pairs_for(tol)) for tol in (0.01, 1e-4)], min(plan.pairs_for(0.01, least=2))
+        ([0, 1], 2)
         """
         first = max(least, sum(tol < from_here for from_here in TRIED_FROM))
         return dict(list(enumerate(self.pairs))[first:])

@@ -203,7 +203,6 @@ def own_frequencies(record: Record, key: str | None) -> Table:
     each, rows = model.band.each if model.band else {}, []
     # in two planes that differ, the first ones of both are judged
     judged = {id(mode_of(model, name)): name for name in each}
-
     for mode in sorted(model.modes, key=lambda m: m.frequency_hz or 0.0):
         bar = each.get(judged.get(id(mode), mode.name))
         told = "0 (rigid)" if mode.frequency_hz == 0 else hertz(mode.frequency_hz, DASH)

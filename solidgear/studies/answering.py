@@ -4,8 +4,8 @@ A solid is solved on ever finer meshes until the band of every quantity asked fo
 (:mod:`solidgear.evidence.bands`) is within the tolerance; only the families of motion that the
 question needs are built, statics only if a compliance or a stiffness is asked for, modes only if a
 frequency is.  A beam has no error of its own to show: what it lacks is known from a solid only,
-whose coarsest mesh with two orders costs about as much as the beam, so it is the answer as well.  Rungs
-that were passed over, and why, are part of the answer.
+whose coarsest mesh with two orders costs about as much as the beam, so it is the answer as well.
+Rungs that were passed over, and why, are part of the answer.
 """
 
 from __future__ import annotations
