@@ -227,9 +227,9 @@ def _absent(missing: Sequence[str]) -> str:
 def _places(scene: Scene, found: Answered) -> tuple[Whereabouts, str]:
     """Where the error of the widest bar sits, and the quantity that was asked for with that bar.
 
-    Only some compliances have places (:data:`solidgear.evidence.where.PLACED`); stiffnesses and
-    frequencies are shown those of the compliance in :data:`STANDS_FOR`, and only where no compliance
-    was asked for. The mesh is the finest one that the quantity was solved on.
+    Only some compliances have places (:data:`solidgear.evidence.where.PLACED`). Where none of them
+    was asked for, stiffnesses and frequencies are shown those of the compliance in
+    :data:`STANDS_FOR`. The mesh is the finest one that the quantity was solved on.
 
     Raises
     ------
@@ -292,8 +292,8 @@ def _told(places: Whereabouts, asked: str) -> str:
 
 
 def _plain(places: Whereabouts, asked: str) -> dict[str, Any]:
-    """What ``--json`` says of the places: all but the mesh and the share of every cell, which only a
-    picture needs.
+    """What ``--json`` says of the places: all but the mesh and the share of every cell, which only
+    a picture needs.
     """
     from dataclasses import asdict
 

@@ -11,10 +11,10 @@ in the ladder with the rung (:class:`solidgear.fidelity.rung.BandFactors`); they
 **Pairs** are two orders on one mesh, where a rung has them and one number is wanted
 (:func:`solidgear.evidence.sequence_bands.pair_bands`). The space of the lower order is part of that
 of the higher one, so that the step between them is what the higher one takes away of the error, and
-what it leaves is a share that hardly depends on the shaft: ``1 / ((p / (p - 1))^(4a) - 1)`` of what a
-corner costs (Babuška, Szabó and Katz 1981). The band is the factor of the pair times that step
-(:attr:`solidgear.fidelity.rung.BandFactors.same_mesh`); a step so small that it may be an accident
-counts twice.
+what it leaves is a share of that step that hardly depends on the shaft: of what a corner of
+exponent a costs ``1 / ((p / (p - 1))^(4a) - 1)`` (Babuška, Szabó and Katz 1981). The band is the
+factor of the pair (:attr:`solidgear.fidelity.rung.BandFactors.same_mesh`) times the step; one so
+small that it may be an accident counts twice.
 
 **Other** sequences (tetrahedra, linear elements, meshes that were asked for by refinement) use the
 grid convergence index of :mod:`solidgear.evidence.converge`.

@@ -134,7 +134,8 @@ def steepest_kink(scene: Scene) -> float:
 
 
 def is_plate(scene: Scene) -> bool:
-    """Whether the whole shaft is a plate.
+    """Whether the whole shaft is shorter than `PLATE` of its largest diameter: its modes bend it,
+    and rounding of its thin cells shows in them.
 
     Parameters
     ----------
@@ -142,16 +143,18 @@ def is_plate(scene: Scene) -> bool:
 
     Examples
     --------
-    >>> import solidgear as sg
-    >>> is_plate(sg.load("geometry/shaft_stepped.toml"))
-    False
+    >>> from solidgear import Scene, Segment
+    >>> disc = Segment.cylinder("disc", y0=0.0, length=0.004, diameter=0.1)
+    >>> rod = Segment.cylinder("rod", y0=0.004, length=0.1, diameter=0.03)
+    >>> is_plate(Scene.from_parts([disc])), is_plate(Scene.from_parts([disc, rod]))
+    (True, False)
     """
     return scene.length < PLATE * 2 * max(max(s.outer0, s.outer1) for s in scene.segments)
 
 
 def crowded(scene: Scene) -> bool:
-    """Whether ends of seats or joints of segments stand so close that one cell of a mesh without layers
-    holds two of them, and no order tells what is between.
+    """Whether ends of seats or joints of segments stand closer than `CROWDED` of the least outer
+    radius: one cell of a mesh without layers holds two of them, and no order tells what is between.
 
     Parameters
     ----------
@@ -160,8 +163,11 @@ def crowded(scene: Scene) -> bool:
     Examples
     --------
     >>> import solidgear as sg
-    >>> crowded(sg.load("geometry/shaft_stepped.toml"))
-    False
+    >>> scene = sg.load("geometry/shaft_stepped.toml")
+    >>> seat = scene.bearings[0]
+    >>> near = seat.with_changes(name="near", y=seat.y + seat.seat_width + 1e-4)
+    >>> crowded(scene), crowded(scene.with_changes(bearings=(*scene.bearings, near)))
+    (False, True)
     """
     ends = {y for s in scene.stations for y in (s.lo, s.hi)}
     marks = sorted(ends | {s.y0 for s in scene.segments} | {scene.segments[-1].y1})
@@ -170,7 +176,8 @@ def crowded(scene: Scene) -> bool:
 
 
 def thin_disc(scene: Scene) -> bool:
-    """Whether a segment of the shaft is as thin as a plate.
+    """Whether a segment of the shaft is shorter than `PLATE` of its diameter: it bends towards its
+    free edge, which no order tells without layers.
 
     Parameters
     ----------
@@ -178,15 +185,19 @@ def thin_disc(scene: Scene) -> bool:
 
     Examples
     --------
-    >>> import solidgear as sg
-    >>> thin_disc(sg.load("geometry/shaft_stepped.toml"))
-    False
+    >>> from solidgear import Scene, Segment
+    >>> disc = Segment.cylinder("disc", y0=0.0, length=0.004, diameter=0.1)
+    >>> rod = Segment.cylinder("rod", y0=0.004, length=0.1, diameter=0.03)
+    >>> alone = rod.with_changes(y0=0.0)
+    >>> thin_disc(Scene.from_parts([disc, rod])), thin_disc(Scene.from_parts([alone]))
+    (True, False)
     """
     return any(s.length < PLATE * 2 * max(s.outer0, s.outer1) for s in scene.segments)
 
 
 def thin_walled(scene: Scene) -> bool:
-    """Whether a tube of the shaft is a shell.
+    """Whether a wall of the shaft is thinner than `THIN_WALL` of its outer radius somewhere: a
+    shell, that bends along its edges.
 
     Parameters
     ----------
@@ -194,9 +205,11 @@ def thin_walled(scene: Scene) -> bool:
 
     Examples
     --------
-    >>> import solidgear as sg
-    >>> thin_walled(sg.load("geometry/shaft_stepped.toml"))
-    False
+    >>> from solidgear import Scene, Segment
+    >>> thick = Segment.cylinder("tube", length=0.2, diameter=0.1, bore=0.085)
+    >>> thin = Segment.cylinder("tube", length=0.2, diameter=0.1, bore=0.095)
+    >>> [thin_walled(Scene.from_parts([tube])) for tube in (thick, thin)]
+    [False, True]
     """
     return any(
         outer - inner < THIN_WALL * outer

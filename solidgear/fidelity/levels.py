@@ -119,8 +119,8 @@ class Sequence:
         Returns
         -------
         dict of int to (dict, dict)
-            By their place among all pairs, coarse to fine: builder options of the lower order and of
-            the higher one. Empty where the solid has no pairs.
+            By their place among all pairs, coarse to fine: builder options of the lower order and
+            of the higher one. Empty where the solid has no pairs.
 
         Examples
         --------

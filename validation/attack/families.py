@@ -104,8 +104,8 @@ def judged_pairs(one: Scene, pairs: int = JUDGED_PAIRS, most: int = MOST) -> lis
 def _solved(
     one: Scene, groups: Sequence[Sequence[Options]], most: int
 ) -> list[tuple[list[Numbers], int]]:
-    """Numbers of meshes by groups, coarse to fine, each group with the unknowns of its last mesh; none
-    after one of more than ``most``.
+    """Numbers of meshes by groups, coarse to fine, each group with the unknowns of its last mesh;
+    none after one of more than ``most``.
     """
     out = []
     for group in groups:
