@@ -3,17 +3,9 @@
 from __future__ import annotations
 
 from solidgear.evidence.record import ModelRecord, Record
-from solidgear.report.cells import DASH, capital, pct
-from solidgear.report.reading import (
-    LUMPED,
-    block,
-    entry,
-    headline,
-    is_resolved,
-    model_name,
-    reference_of,
-)
-from solidgear.report.result_tables import Cell, matrix
+from solidgear.report.cells import DASH, capital
+from solidgear.report.reading import LUMPED, block, entry, model_name
+from solidgear.report.result_tables import Cell, apart, matrix
 from solidgear.report.table import Table
 from solidgear.report.units import ENGINEERING, Units
 from solidgear.report.words import band_percent
@@ -108,17 +100,6 @@ def _beside(record: Record, quantity: str) -> list[list[Cell]]:
     bands = [m.band.each.get(quantity) if m.band else None for m in record.models.values()]
     bars: list[Cell] = [f"± {band_percent(bar)}" if bar is not None else DASH for bar in bands]
     return [
-        ["against reference", *(_apart(record, key, quantity) for key in record.models)],
+        ["against reference", *(apart(record, key, quantity) for key in record.models)],
         ["bar", *bars],
     ]
-
-
-def _apart(record: Record, key: str, quantity: str) -> Cell:
-    """How far a model is from the reference at a further point."""
-    if key == reference_of(record):
-        return ("reference", "quiet")
-    found = headline(record, key, quantity)
-    if found is None:
-        return DASH
-    difference = pct(found.relative)
-    return difference if is_resolved(found) else (f"not resolved ({difference})", "quiet")

@@ -54,8 +54,8 @@ def summary(record: Record, units: Units = ENGINEERING) -> Table:
             lambda m: units.number(entry(getattr(m, kind), place, place), si, nothing=DASH),
         )
 
-    def apart(label: str, quantity: str) -> list[Cell]:
-        return [label, *(_apart(record, key, quantity) for key in record.models)]
+    def from_reference(label: str, quantity: str) -> list[Cell]:
+        return [label, *(apart(record, key, quantity) for key in record.models)]
 
     def band(label: str, values: list[float | None]) -> list[Cell]:
         pairs = zip(record.models, values)
@@ -68,8 +68,8 @@ def summary(record: Record, units: Units = ENGINEERING) -> Table:
         value("C_zz", "compliance", 2, "m/N"),
         value("K_yy", "stiffness", 1, "N/m"),
         value("K_thx", "stiffness", 3, "N m/rad"),
-        apart("C_zz against reference", "C_zz"),
-        apart("first bending against reference", "bending 1"),
+        from_reference("C_zz against reference", "C_zz"),
+        from_reference("first bending against reference", "bending 1"),
         band("band, worst compliance", [b.compliance if b else None for b in bands]),
         band("band, first bending", [b.each.get("bending 1") if b else None for b in bands]),
         row("degrees of freedom", lambda m: whole_number(m.dofs)),
@@ -96,8 +96,8 @@ def models(record: Record) -> Table:
                 capital(model_name(record, key)),
                 WORTH[validity(model)],
                 hertz(first_frequency(model, "bending"), DASH),
-                _apart(record, key, "bending 1"),
-                _apart(record, key, "C_zz"),
+                apart(record, key, "bending 1"),
+                apart(record, key, "C_zz"),
                 seconds(answer_seconds(model), DASH),
                 (model.why_not or "", "text"),
             ]
@@ -115,8 +115,22 @@ def models(record: Record) -> Table:
     return Table("Models of this scene", head, rows)
 
 
-def _apart(record: Record, key: str, quantity: str) -> Cell:
-    """How far a model is from the reference."""
+def apart(record: Record, key: str, quantity: str) -> Cell:
+    """How far a model is from the reference.
+
+    Parameters
+    ----------
+    record : Record
+    key : str
+        Of the model.
+    quantity : str
+        ``C_zz@gear`` at a further point, ``C_zz@wheel@pinion`` between two.
+
+    Returns
+    -------
+    str or (str, str)
+        A cell, said with less weight where bars do not tell the models apart.
+    """
     if key == reference_of(record):
         return ("reference", "quiet")
     found = headline(record, key, quantity)
