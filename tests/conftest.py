@@ -41,6 +41,30 @@ def no_charts(monkeypatch):
 
 
 @pytest.fixture
+def run(monkeypatch, capsys, tmp_path):
+    """The installed command's entry point, in an empty folder: exit code, standard output and error."""
+    import sys
+
+    from solidgear import cli
+
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.delenv("SOLIDGEAR_BACKEND", raising=False)
+    monkeypatch.setenv("COLUMNS", "100")
+
+    def call(*arguments) -> tuple[int, str, str]:
+        monkeypatch.setattr(sys, "argv", ["solidgear", *map(str, arguments)])
+        capsys.readouterr()
+        code = 0
+        try:
+            cli.main()
+        except SystemExit as end:
+            code = end.code or 0
+        return code, *capsys.readouterr()
+
+    return call
+
+
+@pytest.fixture
 def builds_until(monkeypatch):
     """Lets a climb build so many meshes and refuses every further one for want of memory; gives the
     options that each was asked for with.

@@ -6,14 +6,12 @@ import csv
 import html
 import json
 import re
-import sys
 from dataclasses import asdict, replace
 from pathlib import Path
 
 import pytest
 
 import solidgear as sg
-from solidgear import cli
 from solidgear.evidence import cases, racing
 from solidgear.evidence.pareto import Race, Row
 from solidgear.evidence.racing import race
@@ -78,24 +76,6 @@ AUTOMATIC = automatic.automatic_rows()
 @pytest.fixture(scope="module")
 def raced():
     return race(sg.load(SCENE), few(), runs=2, setup=SETUP)
-
-
-@pytest.fixture
-def run(monkeypatch, capsys, tmp_path):
-    monkeypatch.chdir(tmp_path)
-    monkeypatch.setenv("COLUMNS", "100")
-
-    def call(*arguments):
-        monkeypatch.setattr(sys, "argv", ["solidgear", *map(str, arguments)])
-        capsys.readouterr()
-        code = 0
-        try:
-            cli.main()
-        except SystemExit as end:
-            code = end.code or 0
-        return code, *capsys.readouterr()
-
-    return call
 
 
 @pytest.fixture

@@ -12,7 +12,6 @@ from pathlib import Path
 
 import pytest
 
-from solidgear import cli
 from solidgear.fidelity.ladder import LADDER
 from solidgear.solve.factor import pardiso_missing
 from solidgear.studies import climb
@@ -44,24 +43,9 @@ class Done:
 
 
 @pytest.fixture
-def run(monkeypatch, capsys, tmp_path):
-    """The installed command's entry point, in an empty folder."""
-    monkeypatch.chdir(tmp_path)
-    monkeypatch.delenv("SOLIDGEAR_BACKEND", raising=False)
-    monkeypatch.setenv("COLUMNS", "100")
-
-    def call(*arguments):
-        monkeypatch.setattr(sys, "argv", ["solidgear", *map(str, arguments)])
-        capsys.readouterr()
-        try:
-            cli.main()
-            code = 0
-        except SystemExit as end:
-            code = end.code
-        streams = capsys.readouterr()
-        return Done(code or 0, streams.out, streams.err)
-
-    return call
+def run(run):
+    """The same with names for what a command gives."""
+    return lambda *arguments: Done(*run(*arguments))
 
 
 def environment(**more):

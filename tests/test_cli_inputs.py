@@ -2,31 +2,11 @@
 solved, and nothing that fills the screen.
 """
 
-import sys
 from pathlib import Path
 
 import pytest
 
-from solidgear import cli
-
 SCENE = Path(__file__).parents[1] / "geometry" / "pinion_overhung.toml"
-
-
-@pytest.fixture
-def run(monkeypatch, capsys, tmp_path):
-    monkeypatch.chdir(tmp_path)
-
-    def call(*arguments):
-        monkeypatch.setattr(sys, "argv", ["solidgear", *map(str, arguments)])
-        try:
-            cli.main()
-            code = 0
-        except SystemExit as end:
-            code = end.code or 0
-        streams = capsys.readouterr()
-        return code, streams.out, streams.err
-
-    return call
 
 
 @pytest.mark.parametrize(

@@ -254,24 +254,16 @@ def test_bearings_of_catalogue_data_settle_on_the_plain_part(tmp_path):
         assert np.array_equal(a.stiffness, b.stiffness)
 
 
-def test_a_sweep_over_a_shaft_with_features_ends_well(tmp_path, monkeypatch, capsys):
+def test_a_sweep_over_a_shaft_with_features_ends_well(tmp_path, run):
     """Rows are written, cautions are those of the plain part, and the exit code is that of success."""
-    import sys
-
-    from solidgear import cli
-
     file = tmp_path / "keyed.toml"
     text = (ROOT / "geometry" / "pinion_keyed.toml").read_text(encoding="utf-8")
     file.write_text(text, encoding="utf-8")
     rows = tmp_path / "rows.csv"
     coarse = ("--set", "size=0.04", "--set", "graded_size=0.04", "--set", "refinement=0.5")
     vary = ("--vary", "bearing.1.scale=1,2", "-o", str(rows))
-    command = ("solidgear", "-q", "sweep", str(file), "-f", "solid", *coarse, *vary)
-    monkeypatch.setattr(sys, "argv", list(command))
-    try:
-        cli.main()
-    except SystemExit as end:
-        assert not end.code, capsys.readouterr().err
+    code, _, err = run("-q", "sweep", file, "-f", "solid", *coarse, *vary)
+    assert code == 0, err
     assert len(rows.read_text().splitlines()) == 3
 
 

@@ -13,8 +13,6 @@ from pathlib import Path
 import pytest
 
 import solidgear as sg
-from solidgear import cli
-from solidgear.report import charts
 from solidgear.report.folder import LOCK, held
 from solidgear.studies.comparison import compare
 
@@ -46,26 +44,6 @@ def endless(self):
 SuperLU.factor = endless
 main()
 """
-
-
-@pytest.fixture(autouse=True)
-def uncharted(monkeypatch):
-    """Charts are most of the time of a report, and nothing here looks at them."""
-    monkeypatch.setattr(charts, "CHARTS", dict.fromkeys(charts.CHARTS, lambda results: None))
-
-
-@pytest.fixture
-def run(monkeypatch, capsys):
-    """The installed command's entry point: exit code, standard output and error."""
-
-    def call(*arguments):
-        monkeypatch.setattr(sys, "argv", ["solidgear", *map(str, arguments)])
-        capsys.readouterr()
-        with pytest.raises(SystemExit) as end:
-            cli.main()
-        return end.value.code or 0, *capsys.readouterr()
-
-    return call
 
 
 def whole(path):

@@ -11,17 +11,14 @@ import pytest
 import solidgear as sg
 from solidgear.errors import SolidgearError
 from solidgear.evidence.record import Record
-from solidgear.report import charts, front
+from solidgear.report import front
 from solidgear.report.html import APPENDIX, CUSTOMER, render_page
 from solidgear.report.terminal import final_table, matrix_table
 from solidgear.report.units import ENGINEERING, SI, SYSTEMS, US, digits_for, in_ascii, plain
 from tests.made_up_run import fixture_results
 from tests.test_report import shown, text_of
 
-
-@pytest.fixture(autouse=True)
-def no_charts(monkeypatch):
-    monkeypatch.setattr(charts, "CHARTS", dict.fromkeys(charts.CHARTS, lambda results: None))
+pytestmark = pytest.mark.usefixtures("no_charts")
 
 
 def record_of(**changes):

@@ -5,14 +5,12 @@ the bars, in both planes, and what is not reached is said.
 import csv
 import dataclasses
 import json
-import sys
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 import solidgear as sg
-from solidgear import cli
 from solidgear.evidence.answer import numbers, solve
 from solidgear.evidence.quantities import at_points, between, change
 from solidgear.fidelity.ladder import LADDER
@@ -42,24 +40,6 @@ def scene():
 @pytest.fixture(scope="module")
 def truth(scene):
     return solve(scene, "harmonic", 4, **HARMONIC[3])
-
-
-@pytest.fixture
-def run(monkeypatch, capsys, tmp_path):
-    monkeypatch.chdir(tmp_path)
-    monkeypatch.setenv("COLUMNS", "100")
-
-    def call(*arguments):
-        monkeypatch.setattr(sys, "argv", ["solidgear", *map(str, arguments)])
-        try:
-            cli.main()
-            code = 0
-        except SystemExit as end:
-            code = end.code or 0
-        streams = capsys.readouterr()
-        return code, streams.out, streams.err
-
-    return call
 
 
 @pytest.fixture
