@@ -1,5 +1,7 @@
 """Shafts that more than one test file meshes."""
 
+from solidgear.scene import Scene, Segment
+
 #: (length, outer at both ends, inner at both ends): steps up and down outside and in the bore,
 #: cones next to steps, a blind bore, a conical bore
 NASTY = (
@@ -11,3 +13,18 @@ NASTY = (
     (0.02, 0.040, 0.040, 0.0, 0.0),
     (0.05, 0.020, 0.035, 0.0, 0.0),
 )
+
+
+def shaft(*parts, **rest):
+    """A scene of parts end to end: (length, outer at both ends, inner at both ends), m."""
+    segments, y = [], 0.0
+    for k, (length, a, b, i, j) in enumerate(parts):
+        segments.append(
+            Segment(
+                name=f"s{k}", y0=y, y1=round(y + length, 9), outer0=a, outer1=b, inner0=i, inner1=j
+            )
+        )
+        y = segments[-1].y1
+    if "port" not in rest:
+        return Scene.from_parts(segments, **rest)
+    return Scene(segments=tuple(segments), **rest)

@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from scipy.spatial import cKDTree
-from shafts import NASTY
+from shafts import NASTY, shaft
 from skfem.quadrature import get_quadrature
 
 import solidgear as sg
@@ -14,29 +14,13 @@ from solidgear.meshing.grading import Grading
 from solidgear.meshing.hexahedra import hexahedra
 from solidgear.meshing.layout import layout
 from solidgear.meshing.quality import MeshError
-from solidgear.scene import Scene, Segment
 
 GEOMETRY = Path(__file__).parent.parent / "geometry"
 PLAN = {"size": 0.03, "layers": 1, "edge_layers": 1, "ratio": 0.35, "core": True}
 
 
-def shaft(*parts):
-    """A scene of (length, outer0, outer1, inner0, inner1) parts."""
-    segments, y = [], 0.0
-    for k, (length, a, b, i, j) in enumerate(parts):
-        segments.append(
-            Segment(
-                name=f"s{k}", y0=y, y1=round(y + length, 9), outer0=a, outer1=b, inner0=i, inner1=j
-            )
-        )
-        y = segments[-1].y1
-    return Scene.from_parts(segments)
-
-
 def nasty():
-    return shaft(
-        *NASTY,
-    )
+    return shaft(*NASTY)
 
 
 SCENES = {

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from shafts import NASTY
+from shafts import NASTY, shaft
 
 import solidgear as sg
 from solidgear.errors import SolidgearError
@@ -16,28 +16,13 @@ from solidgear.meshing.bands import STEEPEST, first_of_run, radial_bands
 from solidgear.meshing.grading import Grading, graded, joint_length
 from solidgear.meshing.layout import layout
 from solidgear.meshing.meridian import meridian
-from solidgear.scene import Bearing, Port, Scene, Segment
+from solidgear.scene import Bearing, Port
 from validation.shipped import shipped_shafts
 
 GEOMETRY = Path(__file__).parent.parent / "geometry"
 # blocks of cells at fillets are not of lines and rings: tests/test_blends.py
 SHIPPED = [p.stem for p in shipped_shafts() if not sg.load(p).blends]
 PLAN = {"size": 0.02, "layers": 3, "edge_layers": 1, "ratio": 0.3}
-
-
-def shaft(*parts, **rest):
-    """A scene of (length, outer0, outer1, inner0, inner1) parts."""
-    segments, y = [], 0.0
-    for k, (length, a, b, i, j) in enumerate(parts):
-        segments.append(
-            Segment(
-                name=f"s{k}", y0=y, y1=round(y + length, 9), outer0=a, outer1=b, inner0=i, inner1=j
-            )
-        )
-        y = segments[-1].y1
-    if "port" not in rest:
-        return Scene.from_parts(segments, **rest)
-    return Scene(segments=tuple(segments), **rest)
 
 
 def nasty():
