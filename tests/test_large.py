@@ -135,10 +135,12 @@ def test_what_is_counted_of_memory_falls_as_asked():
         ]
 
     whole = sizes(SCENES["pinion_overhung"].with_attachment("rigid"))
-    assert whole[0] > 1.2 * whole[1] > 1.2 * whole[2]
-    # without rigid seats a double factor is made in pieces, which is less than one of half the digits
-    pieces = sizes(SCENES["pinion_overhung"])
-    assert pieces[1] > 1.2 * pieces[0] > 1.2 * pieces[2]
+    # of half the digits numbers take half, and the work by the entry nearly all; in files that alone
+    assert whole[0] > 1.5 * whole[1] and whole[1] > 1.5 * whole[2]
+    # without rigid seats a double factor is made in pieces, of a quarter of the fill: less than a whole
+    # one of half the digits, and little more than a whole one in files
+    double, single, files = sizes(SCENES["pinion_overhung"])
+    assert single > 1.2 * double and double > 1.1 * files
 
 
 def test_no_way_out_takes_more_than_what_did_not_fit():
@@ -178,9 +180,9 @@ def test_no_back_end_for_files(monkeypatch):
         factorise(sp.identity(9, format="csr"), factoring=Factoring(out_of_core=True))
 
 
-# of hexahedra that fall into pieces neither takes less than what did not fit
 SMALLER = ["--set precision=single (", "--set out_of"]
 OFFERED = (
+    # hexahedra that fall into pieces: on this mesh neither takes less than what did not fit
     ("pinion_overhung", {}, 450, ["-f harmonic", "--set refinement="]),
     (
         "pinion_keyed",
@@ -204,6 +206,7 @@ def test_a_refusal_offers_what_fits(scene, options, free, wanted, monkeypatch):
     # all of them, in the order in which they should be tried
     places = [at for at in first if at >= 0]
     assert len(places) == len(first)
+    assert not [word for word in SMALLER if word not in wanted and word in message]
     fit = message.partition("too large as well")[0]
     assert [at for at in places if at < len(fit)] == sorted(at for at in places if at < len(fit))
     for way in ways_out(SCENES[scene], "solid", options, free):
