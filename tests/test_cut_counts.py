@@ -10,6 +10,7 @@ import solidgear as sg
 from solidgear.fidelity.size import estimated_size
 from solidgear.meshing.cut_counts import around_cut
 from solidgear.meshing.featured import without
+from solidgear.meshing.holes import CROWD
 from solidgear.scene import CrossHole
 from solidgear.studies.guards import Probe, elements
 
@@ -71,7 +72,8 @@ def test_sums_around_a_hole_against_their_integral():
         return 2 * math.pi * (-1 / u + c / (2 * u**2))
 
     inside = primitive(big) - primitive(least) - math.pi * b**2 / big**3
-    assert volume == pytest.approx(1.75 * 0.4 * inside, rel=0.05)
+    # midpoints of steps that begin with half an edge miss 4 % of a function as convex as h^-3
+    assert volume == pytest.approx(CROWD * 2 * rod.outer0 * inside, rel=0.05)
 
 
 @pytest.mark.parametrize("name", ["small hole", "three that share no plane"])

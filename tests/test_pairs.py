@@ -6,6 +6,7 @@ import pytest
 
 import solidgear as sg
 from solidgear.evidence.answer import solve
+from solidgear.evidence.bands import LEAST
 from solidgear.evidence.quantities import size
 from solidgear.evidence.sequence_bands import ACCIDENT, SHELL, pair_bands
 from solidgear.fidelity.edges import HELD, HELD_AT_A_STEP, SMOOTH, crowded, thin_walled
@@ -49,7 +50,8 @@ def test_factors_of_high_orders_are_what_an_edge_leaves(edge, exponent):
     for place in (3, 4, 5):
         p = PAIRS[place][1]["order"]
         left = 1 / ((p / (p - 1)) ** (4 * exponent) - 1)
-        assert FACTORS.same_mesh[edge][place] == pytest.approx(left, rel=0.05)
+        # less by no more than two digits round off, and hardly more
+        assert left - 0.05 <= FACTORS.same_mesh[edge][place] <= 1.05 * left
 
 
 def test_errors_are_within_their_bars_and_bars_are_no_wider_than_they_must(scene):
@@ -70,7 +72,8 @@ def test_a_step_as_small_as_an_accident_counts_twice(scene):
     for pair in range(len(PAIRS)):
         small = ACCIDENT[min(pair, len(ACCIDENT) - 1)]
         large, little = (steps(scene, pair, 1 + s) / s for s in (100 * small, small / 10))
-        assert little == pytest.approx(2 * large, rel=0.05)
+        # bars hold 1e-10 of rounding, which is a hundredth of the least step
+        assert little == pytest.approx(2 * large, abs=1.1 * LEAST / (small / 10))
 
 
 def test_a_second_mesh_of_a_thin_tube_is_the_first():
@@ -112,7 +115,7 @@ def test_a_thin_disc_is_never_solved_without_layers():
 
 
 def test_rigid_seats_that_all_but_touch_are_never_solved_without_layers():
-    # C_yy was 2.3e-3 off, bar 2.4e-4
+    # C_yy was 7.6e-4 off, bar 1.5e-4
     shaft = sg.Segment.cylinder("shaft", length=0.03, diameter=0.014, bore=0.0025)
     port = sg.Port(name="gear", y=0.008, lo=0.0066, hi=0.0094, attachment="rigid")
     springs = {"kxx": 4.6e6, "kyy": 8.5e6, "kzz": 4.6e6, "kthx": 88.0, "kthz": 88.0}
@@ -123,6 +126,7 @@ def test_rigid_seats_that_all_but_touch_are_never_solved_without_layers():
     assert crowded(scene)
     (found,) = answer(scene, 0.1, "C_yy").values
     blunt, truth = (solve(scene, "harmonic", **PAIRS[k][1]).quantities["C_yy"] for k in (0, 2))
-    # without layers an eighth of all that the shaft yields is not there, and no order tells
-    assert abs(blunt / truth - 1) > 3 * abs(found.value / truth - 1)
+    # without layers a tenth of what the shaft itself yields is there, and no order tells
+    bearing = 1 / springs["kyy"]
+    assert blunt - bearing < 0.2 * (truth - bearing)
     assert abs(found.value / truth - 1) < found.bar
