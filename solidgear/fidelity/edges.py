@@ -144,10 +144,9 @@ def is_plate(scene: Scene) -> bool:
     Examples
     --------
     >>> from solidgear import Scene, Segment
-    >>> disc = Segment.cylinder("disc", y0=0.0, length=0.004, diameter=0.1)
-    >>> rod = Segment.cylinder("rod", y0=0.004, length=0.1, diameter=0.03)
-    >>> is_plate(Scene.from_parts([disc])), is_plate(Scene.from_parts([disc, rod]))
-    (True, False)
+    >>> discs = [Segment.cylinder("disc", length=length, diameter=0.1) for length in (0.004, 0.006)]
+    >>> [is_plate(Scene.from_parts([disc])) for disc in discs]
+    [True, False]
     """
     return scene.length < PLATE * 2 * max(max(s.outer0, s.outer1) for s in scene.segments)
 
