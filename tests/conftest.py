@@ -65,6 +65,21 @@ def run(monkeypatch, capsys, tmp_path):
 
 
 @pytest.fixture
+def two_meshes(monkeypatch):
+    """A harmonic solid that ends where a tolerance of 1e-5 is far away."""
+    import dataclasses
+
+    from solidgear.fidelity.ladder import LADDER
+    from solidgear.fidelity.levels import HARMONIC, Sequence
+
+    short = dataclasses.replace(
+        LADDER["harmonic"], meshes=lambda options: Sequence(HARMONIC[:2], False, True)
+    )
+    rungs = tuple(short if r.name == "harmonic" else r for r in LADDER)
+    monkeypatch.setattr(LADDER, "rungs", rungs)
+
+
+@pytest.fixture
 def builds_until(monkeypatch):
     """Lets a climb build so many meshes and refuses every further one for want of memory; gives the
     options that each was asked for with.

@@ -179,12 +179,7 @@ def test_beams_are_passed_over_with_the_reason(scenes):
     assert sum(s.chosen for s in found.steps) == 1
 
 
-def test_past_the_finest_mesh_the_best_is_given_and_not_called_reached(scenes, monkeypatch):
-    short = dataclasses.replace(
-        LADDER["harmonic"], meshes=lambda options: Sequence(HARMONIC[:2], False, True)
-    )
-    rungs = tuple(short if r.name == "harmonic" else r for r in LADDER)
-    monkeypatch.setattr(LADDER, "rungs", rungs)
+def test_past_the_finest_mesh_the_best_is_given_and_not_called_reached(scenes, two_meshes):
     found = answer(scenes["pinion_overhung"], 1e-5, "C_zz")
     assert not found.reached and found.bar > 1e-5
     assert "no finer mesh" in found.steps[-1].why and found.steps[-1].chosen

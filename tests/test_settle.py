@@ -14,7 +14,7 @@ import solidgear as sg
 from solidgear.evidence.answer import numbers, solve
 from solidgear.evidence.quantities import at_points, between, change
 from solidgear.fidelity.ladder import LADDER
-from solidgear.fidelity.levels import HARMONIC, Sequence
+from solidgear.fidelity.levels import HARMONIC
 from solidgear.scene import Bearing
 from solidgear.solve.statics import condense
 from solidgear.studies.answering import answer
@@ -40,16 +40,6 @@ def scene():
 @pytest.fixture(scope="module")
 def truth(scene):
     return solve(scene, "harmonic", 4, **HARMONIC[3])
-
-
-@pytest.fixture
-def two_meshes(monkeypatch):
-    """A harmonic solid that ends where a tolerance of 1e-5 is far away."""
-    short = dataclasses.replace(
-        LADDER["harmonic"], meshes=lambda options: Sequence(HARMONIC[:2], False, True)
-    )
-    rungs = tuple(short if r.name == "harmonic" else r for r in LADDER)
-    monkeypatch.setattr(LADDER, "rungs", rungs)
 
 
 def apart(matrix, exact):
