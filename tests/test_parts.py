@@ -299,7 +299,7 @@ def test_a_seat_ends_where_it_is_said_to(stepped, tmp_path):
 
 def test_the_area_of_a_clipped_seat(tmp_path):
     """2 pi r b to what curved faces leave of the circle, wherever faces end."""
-    from solidgear.fidelity.own_mesh import faces_on
+    from solidgear.fidelity.own_seats import Seats
     from solidgear.fidelity.solid_mesh import _isoparametric
     from solidgear.meshing.tetrahedra import tetrahedra
 
@@ -307,7 +307,7 @@ def test_the_area_of_a_clipped_seat(tmp_path):
     mesh = _isoparametric(tetrahedra([rod], size=0.02).mesh, "tet10", np.zeros(0))
     for lo, hi in ((0.0, 0.2), (0.031, 0.0777), (0.1, 0.105)):
         scene = sg.Scene.from_parts([rod], port=sg.Port(y=0.1, lo=lo, hi=hi))
-        facets = faces_on(mesh, [rod], True)(scene.port, "average")
+        facets = Seats(mesh, [rod], True)(scene.port, "average")
         area = sum(a.sum() for _, _, a, _ in mesh.over_facets(facets, (lo, hi)))
         # the ends, cut across pieces of a twelfth of a face
         assert area == pytest.approx(2 * math.pi * 0.03 * (hi - lo), rel=2e-3 if lo else 2e-4)
@@ -466,7 +466,7 @@ def test_a_keyed_mesh_has_no_seat_on_the_floor_of_the_key():
     cylinder less the opening.
     """
     from solidgear.fidelity.featured import meshed
-    from solidgear.fidelity.own_mesh import faces_on
+    from solidgear.fidelity.own_seats import Seats
     from solidgear.fidelity.solid import tetrahedra_plan
     from solidgear.fidelity.solid_mesh import _isoparametric
     from solidgear.meshing.featured import without
@@ -481,7 +481,7 @@ def test_a_keyed_mesh_has_no_seat_on_the_floor_of_the_key():
     plan = tetrahedra_plan(scene, wanted, size=None, graded_size=None, refinement=0.5, around=16)
     made = meshed(scene, plan, 0.5, half=False)
     mesh = _isoparametric(without(made.mesh, ~made.cut), "tet10", made.segment[~made.cut])
-    facets = faces_on(mesh, [rod], True)(port, "average")
+    facets = Seats(mesh, [rod], True)(port, "average")
     area = sum(a.sum() for _, _, a, _ in mesh.over_facets(facets))
     opening = 2 * math.asin(0.009 / 0.03) * 0.03 * 0.06
     assert area == pytest.approx(2 * math.pi * 0.03 * 0.06 - opening, rel=1e-3)

@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from solidgear.body import Body, Port
-from solidgear.errors import SolidgearError
 from solidgear.fidelity.attachment import tie_rigidly
+from solidgear.fidelity.own_seats import Seats
 from solidgear.fidelity.scale import elastic_scale
-from solidgear.fidelity.solid_block import BEYOND, Facets, chords, free_block, middles
-from solidgear.fidelity.solid_mesh import SolidMesh, _isoparametric
+from solidgear.fidelity.solid_block import free_block
+from solidgear.fidelity.solid_mesh import _isoparametric
 from solidgear.meshing.quality import check_mesh
 
 if TYPE_CHECKING:
@@ -20,12 +20,6 @@ if TYPE_CHECKING:
 
     from solidgear.scene import Material
     from solidgear.scene.shaft import Shaft
-
-#: distance of a node from a surface of revolution, over its radius, at which it is on it
-ON_SURFACE = 2e-5
-#: share of the faces with all corners on a surface whose middle nodes are there too, above which
-#: the mesh is taken for curved, and the others for faces of something else
-CURVED = 0.3
 
 
 def solid_body(
@@ -69,7 +63,7 @@ def solid_body(
     Raises
     ------
     SolidgearError
-        If no face lies on a seat; MeshError for inverted elements.
+        If no face lies on a seat, or faces are missing from one; MeshError for inverted elements.
 
     Examples
     --------
@@ -88,7 +82,7 @@ def solid_body(
         owner = np.searchsorted([s.y1 for s in shaft.segments[:-1]], y)
         materials = None
     solid = _isoparametric(mesh, element, owner)
-    facets = faces_on(solid, shaft.segments, clipped)
+    facets = Seats(solid, shaft.segments, clipped)
     block, ties = free_block(solid, shaft, wanted, facets, clipped=clipped, materials=materials)
     own = {
         "element": element,
@@ -111,61 +105,3 @@ def solid_body(
         {**own, **(facts or {})},
         solid,
     )
-
-
-def faces_on(mesh: SolidMesh, segments: Sequence[Any], clipped: bool) -> Facets:
-    """Facets of seats on what there is of a surface of revolution, and of sections.
-
-    Parameters
-    ----------
-    mesh : SolidMesh
-    segments : sequence of Segment
-    clipped : bool
-        Whether to take facets that reach beyond the ends of a seat.
-
-    Returns
-    -------
-    callable
-        ``facets(station, attachment)``.
-    """
-    boundary = mesh.boundary
-    corners = mesh.mesh.facets[:, boundary]
-    y, r = mesh.mesh.p[1, corners], np.hypot(*mesh.mesh.p[[0, 2]][:, corners])
-    middle_y, middle_r = middles(mesh, corners)
-
-    chord = chords(mesh, corners)
-
-    def on_surface(at_y, at_r, s, curved=False) -> np.ndarray:
-        outer = s.outer0 + (s.outer1 - s.outer0) * (at_y - s.y0) / (s.y1 - s.y0)
-        hair = 1e-7 * segments[-1].y1
-        inside = (at_y > s.y0 - hair) & (at_y < s.y1 + hair)
-        near = ON_SURFACE * outer + (BEYOND * np.abs(chord - outer) if curved else 0.0)
-        return (inside & (np.abs(at_r - outer) < near)).all(axis=0)
-
-    def facets(station, attachment):
-        if attachment == "section":
-            found = mesh.section(station.y, 1e-7 * segments[-1].y1)
-            if not len(found):
-                raise SolidgearError(
-                    f"port {station.name!r}: the mesh has no section at y = {station.y:.6g} m; "
-                    "use attachment 'average' or 'rigid'"
-                )
-            return found
-        hair = 1e-7 * (station.hi - station.lo)
-        low, high = y.min(axis=0), y.max(axis=0)
-        if clipped:
-            near = (high > station.lo + hair) & (low < station.hi - hair)
-        else:
-            near = (low > station.lo - hair) & (high < station.hi + hair)
-        near &= high - low > 1e-7 * segments[-1].y1
-        out = np.zeros(len(boundary), bool)
-        for s in segments:
-            if s.y1 > station.lo + hair and s.y0 < station.hi - hair:
-                own = near & on_surface(y, r, s)
-                if middle_y is not None:
-                    true = own & on_surface(middle_y, middle_r, s, curved=True)
-                    own = true if true.sum() > CURVED * own.sum() else own
-                out |= own
-        return boundary[out]
-
-    return facets

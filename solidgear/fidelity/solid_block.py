@@ -49,6 +49,43 @@ def seat_facets(mesh: SolidMesh, segments: Sequence[Any], tolerance: float) -> F
 BEYOND = 0.1
 
 
+def edges_of(mesh: SolidMesh, corners: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Edges between the corners of facets, and their middle nodes.
+
+    Parameters
+    ----------
+    mesh : SolidMesh
+        Of elements with middle nodes.
+    corners : (c, f) ndarray of int
+        Vertices of the facets.
+
+    Returns
+    -------
+    edge : (m, f) ndarray of int
+        -1 for a diagonal of a quadrilateral, which is no edge.
+    places : (3, m, f) ndarray
+        m; a corner for a diagonal.
+    """
+    vertices = mesh.mesh.p.shape[1]
+    edges = np.sort(mesh.mesh.edges.astype(np.int64), axis=0)
+    key = edges[0] * vertices + edges[1]
+    order = np.argsort(key)
+    at = np.zeros(edges.shape[1], int)
+    at[mesh.mesh.t2e] = mesh.dofs[len(mesh.mesh.t) : len(mesh.mesh.t) + len(mesh.mesh.t2e)]
+    named, places = [], []
+    # of four corners of a quadrilateral two pairs are its diagonals
+    for i in range(len(corners)):
+        for j in range(i):
+            a, b = np.sort(corners[[i, j]].astype(np.int64), axis=0)
+            pair = a * vertices + b
+            place = np.minimum(np.searchsorted(key[order], pair), len(key) - 1)
+            edge = order[place]
+            real = key[edge] == pair
+            named.append(np.where(real, edge, -1))
+            places.append(np.where(real, mesh.nodes[:, at[edge]], mesh.mesh.p[:, corners[i]]))
+    return np.array(named), np.stack(places, axis=1)
+
+
 def middles(mesh: SolidMesh, corners: np.ndarray) -> tuple[Any, Any]:
     """Places of the middle nodes of facets.
 
@@ -65,25 +102,7 @@ def middles(mesh: SolidMesh, corners: np.ndarray) -> tuple[Any, Any]:
     """
     if not mesh.element.edge_dofs:
         return None, None
-    vertices = mesh.mesh.p.shape[1]
-    edges = np.sort(mesh.mesh.edges.astype(np.int64), axis=0)
-    key = edges[0] * vertices + edges[1]
-    order = np.argsort(key)
-    at = np.zeros(edges.shape[1], int)
-    at[mesh.mesh.t2e] = mesh.dofs[len(mesh.mesh.t) : len(mesh.mesh.t) + len(mesh.mesh.t2e)]
-    found = []
-    # of four corners of a quadrilateral two pairs are its diagonals, which are no edges
-    for i in range(len(corners)):
-        for j in range(i):
-            a, b = np.sort(corners[[i, j]].astype(np.int64), axis=0)
-            pair = a * vertices + b
-            place = np.minimum(np.searchsorted(key[order], pair), len(key) - 1)
-            edge = order[place]
-            real = key[edge] == pair
-            spot = mesh.nodes[:, at[edge]]
-            ends = mesh.mesh.p[:, corners[i]]
-            found.append(np.where(real, spot, ends))
-    places = np.stack(found, axis=1)
+    _, places = edges_of(mesh, corners)
     return places[1], np.hypot(places[0], places[2])
 
 

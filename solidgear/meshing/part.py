@@ -313,7 +313,19 @@ def _not_round(table: BodyTable, place: Placing, points, triangles, found: Round
                     f"about {about} through ({', '.join(f'{1e3 * v:.8g}' for v in (x, y, z))}) mm: "
                     f"write that point as origin{', and that axis' * (axis != table.axis)}"
                 )
-    return f"{words}, at least {100 * LEAST_ROUND:.0f} % makes a shaft"
+    words = f"{words}, at least {100 * LEAST_ROUND:.0f} % makes a shaft"
+    own = raw / place.unit
+    for digits in range(6 if table.mesh else 0):
+        step = 10.0**-digits * 1e3 * place.unit
+        if np.abs(own - np.round(own, digits)).max() < 1e-4 * 10.0**-digits:
+            near = 1e3 * ON_LINE * float(np.hypot(points[0], points[2]).max())
+            if step > near:
+                words += (
+                    f"; coordinates of the file are rounded to {step:.2g} mm, and nodes of a round "
+                    f"surface must lie within {near:.2g} mm of it: write more digits"
+                )
+            break
+    return words
 
 
 def seat_share(

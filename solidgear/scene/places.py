@@ -30,6 +30,7 @@ from solidgear.scene.station_places import (
     mass_of,
     of_port,
     port_of,
+    with_seats,
 )
 from solidgear.scene.tables import (
     ChamferTable,
@@ -158,7 +159,7 @@ def resolve(
         source=table.source,
         masses=tuple(masses.values()),
         features=tuple(features),
-        body=part.body if part is not None else None,
+        body=with_seats(part, stations, segments) if part is not None else None,
         blends=tuple(blends),
         housing_axial=table.housing.axial if table.housing else None,
         housing=housing,
