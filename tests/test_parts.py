@@ -299,7 +299,7 @@ def test_a_seat_ends_where_it_is_said_to(stepped, tmp_path):
 
 def test_the_area_of_a_clipped_seat(tmp_path):
     """2 pi r b to what curved faces leave of the circle, wherever faces end."""
-    from solidgear.fidelity.own_seats import Seats
+    from solidgear.fidelity.seat_faces import Seats
     from solidgear.fidelity.solid_mesh import _isoparametric
     from solidgear.meshing.tetrahedra import tetrahedra
 
@@ -466,7 +466,7 @@ def test_a_keyed_mesh_has_no_seat_on_the_floor_of_the_key():
     cylinder less the opening.
     """
     from solidgear.fidelity.featured import meshed
-    from solidgear.fidelity.own_seats import Seats
+    from solidgear.fidelity.seat_faces import Seats
     from solidgear.fidelity.solid import tetrahedra_plan
     from solidgear.fidelity.solid_mesh import _isoparametric
     from solidgear.meshing.featured import without

@@ -302,3 +302,20 @@ def test_a_mesh_pulled_inside_out_is_refused(meshed):
     doflocs[:, mesh.dofs.edge_dofs[0, edge]] = doflocs[:, a] + 1.5 * (doflocs[:, b] - doflocs[:, a])
     with pytest.raises(MeshError, match="inverted, the worst is element"):
         check_mesh(replace(mesh, doflocs=doflocs))
+
+
+@pytest.mark.parametrize("change", [1e-5, 5e-5, 2e-4])
+def test_a_shallow_cone_is_no_cylinder(change):
+    """OCC turns a line whose radius changes by less than a tenth of a millimetre into a cylinder: its
+    nodes lay half of the change off, and its seats had no faces.
+    """
+    cone = SimpleNamespace(y0=0.0, y1=0.038, outer0=0.05, outer1=0.05 + change, inner0=0, inner1=0)
+    made = tetrahedra([cone], circles=[0.012, 0.026], size=0.02)
+    mesh = made.mesh
+    corners = np.unique(mesh.facets[:, mesh.boundary_facets()])
+    y, r = mesh.p[1, corners], np.hypot(*mesh.p[[0, 2]][:, corners])
+    true = 0.05 + change * y / 0.038
+    lateral = r > 0.0495
+    assert lateral.sum() > 60
+    assert np.abs(r - true)[lateral].max() < 1e-9
+    assert made.quality.volume == pytest.approx(volume_of([cone]), rel=1e-5)

@@ -10,8 +10,9 @@ import numpy as np
 
 from solidgear.body import Block, Body, Port
 from solidgear.fidelity.attachment import tie_rigidly
-from solidgear.fidelity.halves import HalfDrawing, half_blocks, seat_on_cylinder
+from solidgear.fidelity.halves import HalfDrawing, half_blocks
 from solidgear.fidelity.scale import elastic_scale
+from solidgear.fidelity.seat_faces import Seats
 from solidgear.fidelity.solid_block import free_block
 from solidgear.fidelity.solid_mesh import SolidMesh, _isoparametric
 from solidgear.meshing.featured import FeaturedMesh, featured_mesh, without
@@ -60,8 +61,7 @@ def featured_body(
     mesh = made.mesh if plain else without(made.mesh, keep)
     quality = check_mesh(mesh)
     solid = _isoparametric(mesh, "tet10", made.segment[keep])
-    flats = any(f.kind == "flat" for f in scene.features)
-    facets = seat_on_cylinder(solid, scene.segments, 1e-7 * scene.length, flats)
+    facets = Seats(solid, scene.segments, clipped=False)
     if made.plane is None:
         block, ties = free_block(solid, scene, wanted, facets)
         blocks: tuple[Block, ...] = (tie_rigidly(block, ties),)

@@ -16,7 +16,7 @@ from solidgear.body import Block
 from solidgear.body.surface import Surface, Volume
 from solidgear.errors import SolidgearError
 from solidgear.fidelity.attachment import tie_rigidly
-from solidgear.fidelity.solid_block import BEYOND, Facets, chords, middles, rigid_motions
+from solidgear.fidelity.solid_block import Facets, rigid_motions
 from solidgear.fidelity.solid_matrices import _matrices, _mean
 from solidgear.fidelity.solid_mesh import SolidMesh
 
@@ -136,58 +136,3 @@ class HalfDrawing:
     def volume(self) -> Volume | None:
         """No single mesh of the whole part."""
         return None
-
-
-def seat_on_cylinder(mesh: SolidMesh, segments, tolerance: float, flats: bool = True) -> Facets:
-    """Facets of seats on what is left of the surface of revolution, and of sections.
-
-    A facet counts whose corners and edge nodes lie on the surface.  Where elements would have folded
-    their edges are chords, as those of the floor of a flat are, whose corners may all lie on the
-    surface too: chords count only on parts without flats.
-
-    Parameters
-    ----------
-    mesh : SolidMesh
-        Curved, of second order.
-    segments : sequence of Segment
-    tolerance : float
-        m.
-    flats : bool
-        Whether the part has flats.
-
-    Returns
-    -------
-    callable
-        ``facets(station, attachment)``.
-    """
-    boundary = mesh.boundary
-    corners = mesh.mesh.facets[:, boundary]
-    y, r = mesh.mesh.p[1, corners], np.hypot(*mesh.mesh.p[[0, 2]][:, corners])
-    middle_y, middle_r = middles(mesh, corners)
-    every_y, every_r = np.vstack([y, middle_y]), np.vstack([r, middle_r])
-    chord = chords(mesh, corners)
-
-    def facets(station, attachment):
-        if attachment == "section":
-            return mesh.section(station.y, tolerance)
-        inside = (y.min(axis=0) >= station.lo - tolerance) & (
-            y.max(axis=0) <= station.hi + tolerance
-        )
-        on = np.zeros(len(boundary), bool)
-        for s in segments:
-            t = (every_y - s.y0) / (s.y1 - s.y0)
-            outer = s.outer0 + (s.outer1 - s.outer0) * t
-            here = (t > -1e-9).all(axis=0) & (t < 1 + 1e-9).all(axis=0)
-            # nodes in the middle of curved edges lie a little beyond the surface, those of chords
-            # below it
-            off, sagitta = every_r - outer, np.abs(outer[3:] - chord)
-            above = np.full(every_r.shape, 1e-6 * outer.max(initial=1.0))
-            above[3:] += BEYOND * sagitta
-            below = above.copy()
-            if not flats:
-                below[3:] += sagitta
-            on |= here & ((-below < off) & (off < above)).all(axis=0)
-        steep = y.max(axis=0) - y.min(axis=0) > tolerance
-        return boundary[inside & steep & on]
-
-    return facets

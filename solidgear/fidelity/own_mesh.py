@@ -9,8 +9,8 @@ import numpy as np
 
 from solidgear.body import Body, Port
 from solidgear.fidelity.attachment import tie_rigidly
-from solidgear.fidelity.own_seats import Seats
 from solidgear.fidelity.scale import elastic_scale
+from solidgear.fidelity.seat_faces import Seats
 from solidgear.fidelity.solid_block import free_block
 from solidgear.fidelity.solid_mesh import _isoparametric
 from solidgear.meshing.quality import check_mesh

@@ -10,7 +10,7 @@ import numpy as np
 
 from solidgear.body.surface import Surface
 from solidgear.fidelity.cyclic import Sector
-from solidgear.fidelity.halves import seat_on_cylinder
+from solidgear.fidelity.seat_faces import Seats
 from solidgear.fidelity.solid_block import Facets
 from solidgear.fidelity.solid_drawing import solid_surface
 from solidgear.fidelity.solid_mesh import SolidMesh, _isoparametric
@@ -39,7 +39,7 @@ def seats(mesh: SolidMesh, straight: np.ndarray, scene, features) -> Facets:
     toothed = {f.segment: f for f in features if f.kind != "bolt_circle"}
     tolerance = 1e-7 * scene.length
     plain = [s for s in scene.segments if s.name not in toothed]
-    on_cylinder = seat_on_cylinder(mesh, plain, tolerance, flats=False)
+    on_cylinder = Seats(mesh, plain, clipped=False)
     corners = mesh.mesh.facets[:, mesh.boundary]
     y, r = straight[1, corners], np.hypot(*straight[[0, 2]][:, corners])
 

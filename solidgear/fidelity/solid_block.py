@@ -86,28 +86,8 @@ def edges_of(mesh: SolidMesh, corners: np.ndarray) -> tuple[np.ndarray, np.ndarr
     return np.array(named), np.stack(places, axis=1)
 
 
-def middles(mesh: SolidMesh, corners: np.ndarray) -> tuple[Any, Any]:
-    """Places of the middle nodes of facets.
-
-    Parameters
-    ----------
-    mesh : SolidMesh
-    corners : (c, f) ndarray of int
-        Vertices of the facets.
-
-    Returns
-    -------
-    y, radius : (m, f) ndarray or None
-        m; None for elements without middle nodes.
-    """
-    if not mesh.element.edge_dofs:
-        return None, None
-    _, places = edges_of(mesh, corners)
-    return places[1], np.hypot(places[0], places[2])
-
-
 def chords(mesh: SolidMesh, corners: np.ndarray) -> np.ndarray:
-    """Radii halfway between the ends of the edges of facets, in the order of :func:`middles`.
+    """Radii halfway between the ends of the edges of facets, in the order of :func:`edges_of`.
 
     Parameters
     ----------

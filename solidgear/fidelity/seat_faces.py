@@ -1,4 +1,4 @@
-"""Faces of seats in a mesh of one's own.
+"""Faces of seats in meshes of tetrahedra, and in those of one's own.
 
 A face lies on a surface of revolution if its corners do and its middle nodes lie between the chords of
 its edges and the surface: meshers straighten edges where elements would fold, and such faces are as much
@@ -44,7 +44,8 @@ class Seats:
 
     def __init__(self, mesh: SolidMesh, segments: Sequence[Any], clipped: bool) -> None:
         self.mesh, self.segments, self.clipped = mesh, segments, clipped
-        self.length = segments[-1].y1
+        # teeth may leave no segment of revolution
+        self.length = segments[-1].y1 if len(segments) else float(mesh.mesh.p[1].max())
         self.corners = mesh.mesh.facets[:, mesh.boundary]
         self.y = mesh.mesh.p[1, self.corners]
         self.r = np.hypot(*mesh.mesh.p[[0, 2]][:, self.corners])
@@ -69,7 +70,7 @@ class Seats:
             return found
         near = self._near(station)
         on, meant = np.zeros(len(near), bool), np.zeros(len(near), bool)
-        hair = 1e-7 * (station.hi - station.lo)
+        hair = 1e-7 * self.length
         for s in self.segments:
             if s.y1 > station.lo + hair and s.y0 < station.hi - hair:
                 counted, floors = self._sorted(s)
@@ -96,7 +97,7 @@ class Seats:
 
     def _near(self, station) -> np.ndarray:
         """Facets within the ends of a seat, or, of those to be clipped, that reach into it."""
-        hair = 1e-7 * (station.hi - station.lo)
+        hair = 1e-7 * self.length
         low, high = self.y.min(axis=0), self.y.max(axis=0)
         if self.clipped:
             return (high > station.lo + hair) & (low < station.hi - hair)
@@ -133,7 +134,9 @@ def _lateral(mesh: SolidMesh, corners, on, s) -> tuple[np.ndarray, np.ndarray]:
     inwards = outer - np.hypot(places[0], places[2])
     hair = ON_SURFACE * outer + BEYOND * sagitta
     bent = (np.abs(inwards) < hair) | (edge < 0)
-    between = ((inwards > -hair) & (inwards < sagitta + hair) | (edge < 0)).all(axis=0)
+    # curved edges along the axis may lie off by a little of what those around are curved by
+    near, deep = hair.max(axis=0), sagitta.max(axis=0)
+    between = ((inwards > -near) & (inwards < deep + near) | (edge < 0)).all(axis=0)
     around = (sagitta > hair) & (edge >= 0)
     counted = np.zeros(len(on), bool)
     # in a mesh without curved edges every face is plane

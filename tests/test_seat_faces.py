@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import solidgear as sg
-from solidgear.fidelity.own_seats import Seats
+from solidgear.fidelity.seat_faces import Seats
 from solidgear.fidelity.solid_mesh import _isoparametric
 from solidgear.meshing.mesh_file import _hexes
 from solidgear.meshing.tetrahedra import tetrahedra
