@@ -197,6 +197,7 @@ def modes(
         return
     from solidgear.report.terminal import modes_table
     from solidgear.report.words import by_plane
+    from solidgear.solve.mixtures import mixtures
 
     terminal = console()
     terminal.print(heading(loaded, body, settled), markup=False)
@@ -217,6 +218,8 @@ def modes(
             f"caution: {one} and {other} are twins that the mesh has split by {gap:.1e}: refine "
             "it, or use hexahedra or the harmonic model."
         )
+    for mixture in mixtures(found):
+        terminal.print(f"caution: {mixture.sentence}.", markup=False, soft_wrap=True)
     if e["error"] > 1e-6:
         terminal.print(
             f"caution: rounding leaves frequencies good to {e['error']:.0e} only: the smallest "

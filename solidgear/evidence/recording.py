@@ -40,6 +40,7 @@ from solidgear.fidelity.ladder import LADDER
 from solidgear.fidelity.rung import LUMPED, SOLID
 from solidgear.frames import DOF_NAMES
 from solidgear.machine.environment import environment
+from solidgear.solve.mixtures import mixtures
 
 if TYPE_CHECKING:
     from solidgear.scene import Scene
@@ -150,6 +151,7 @@ def _warnings(
                 f"{LADDER[model].title}: {one} and {other} are twins that the mesh has split by "
                 f"{gap:.1e}: refine it, or use hexahedra"
             )
+        out += [f"{LADDER[model].title}: {one.sentence}" for one in mixtures(rung.modes)]
     return out
 
 
