@@ -127,7 +127,9 @@ def volume(feature: CutFeature, outer: float, inner: float) -> float | None:
     return 2 * quad(lambda x: height(x) * along(x), 0, half, epsabs=0, epsrel=1e-12)[0]
 
 
-def feature_size(feature: CutFeature, radius: float, refinement: float) -> tuple[str, float]:
+def feature_size(
+    feature: CutFeature, radius: float, refinement: float, finer: float = 1.0
+) -> tuple[str, float]:
     """Formula of the element edge around a feature, and its least value.
 
     Parameters
@@ -137,6 +139,8 @@ def feature_size(feature: CutFeature, radius: float, refinement: float) -> tuple
         Of its segment, m.
     refinement : float
         Divides the size.
+    finer : float
+        Divides it too, and the largest that a hole or a round end may have.
 
     Returns
     -------
@@ -166,6 +170,7 @@ def feature_size(feature: CutFeature, radius: float, refinement: float) -> tuple
     least = least / (max(1.0, divided) if feature.kind == "cross_hole" else divided)
     if feature.kind == "keyway" and feature.ends == "round":
         least = min(least, pi * feature.width / 10 / max(1.0, divided))
+    least /= finer
     return f"{_num(least)}+{_num(GROWTH)}*{distance}", least
 
 

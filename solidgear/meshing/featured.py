@@ -29,6 +29,9 @@ _START = {0: -pi / 2, 2: 0.0}
 #: share of its volume that the cut may be off by in the mesh: three times what a circle of eight
 #: curved edges loses, 4 / 30 (pi / 8)^4; one of six would lose as much
 OF_CUT = 1e-2
+#: how many times finer features are meshed where elements beside them fold, and their edges have to be
+#: straightened: a hole of 20 mm in a shaft of 60 lost 1.2 to 2 % so, and 0.1 to 0.2 % at 1.2
+FINER = (1.0, 1.2, 1.5)
 
 
 @dataclass(frozen=True)
@@ -100,39 +103,42 @@ def featured_mesh(
     plane = mirror_plane(features) if half else None
     start, turn = (0.0, 2 * pi) if plane is None else (_START[plane], pi)
     radii = {s.name: float(s.outer0) for s in segments}
-    with Session(gmsh):
-        corners = draw_revolved(gmsh, shapes, planes, circles, start, turn, blends)
-        pieces = _cut(gmsh, features, radii)
-        formulas = size_formulas(shapes, corners, size, graded_size, None, around, blends)
-        formulas += [feature_size(f, radii[f.segment], refinement)[0] for f in features]
-        set_size(gmsh, formulas, size)
-        removed = sum(gmsh.model.occ.getMass(3, piece) for piece in pieces)
-        mesh = filled(
-            gmsh,
-            "gmsh could not mesh the shaft with its features ({}): "
-            "change refinement a little, or look for features that all but touch",
+    for finer in FINER:
+        with Session(gmsh):
+            corners = draw_revolved(gmsh, shapes, planes, circles, start, turn, blends)
+            pieces = _cut(gmsh, features, radii)
+            formulas = size_formulas(shapes, corners, size, graded_size, None, around, blends)
+            formulas += [feature_size(f, radii[f.segment], refinement, finer)[0] for f in features]
+            set_size(gmsh, formulas, size)
+            removed = sum(gmsh.model.occ.getMass(3, piece) for piece in pieces)
+            mesh = filled(
+                gmsh,
+                "gmsh could not mesh the shaft with its features ({}): "
+                "change refinement a little, or look for features that all but touch",
+            )
+            every = gmsh.model.mesh.getElements(3)[1][0]
+            own = [gmsh.model.mesh.getElements(3, piece)[1][0] for piece in pieces]
+            cut = np.isin(every, np.concatenate(own))
+        lacking = _lacking(mesh, cut, removed)
+        if lacking <= OF_CUT:
+            break
+    else:
+        names = ", ".join(f'"{f.name}"' for f in features)
+        raise MeshError(
+            f"the elements of {names} miss {100 * lacking:.2g} % of the {1e9 * removed:.6g} mm^3 that "
+            f"the solid cut out of the mesh has, more than {OF_CUT:.0%}: raise refinement"
         )
-        every = gmsh.model.mesh.getElements(3)[1][0]
-        own = [gmsh.model.mesh.getElements(3, piece)[1][0] for piece in pieces]
-        cut = np.isin(every, np.concatenate(own))
     share = turn / (2 * pi)
     arcs = 4.0 * (pi / around) ** 4 / 30.0
     quality = check_mesh(mesh, volume=share * volume_of(segments, blends), rtol=max(1e-3, arcs))
-    _check_cut(mesh, cut, removed, features)
     y = mesh.p[1][mesh.t].mean(axis=0)
     segment = np.searchsorted([s.y1 for s in segments[:-1]], y)
     return FeaturedMesh(mesh, segment, cut, plane, quality, removed / share)
 
 
-def _check_cut(mesh: MeshTet2, cut: np.ndarray, removed: float, features) -> None:
-    """Refuse a mesh whose features have not the volume that OCC says they have."""
-    volume = check_mesh(without(mesh, cut)).volume
-    if not abs(volume / removed - 1) <= OF_CUT:
-        names = ", ".join(f'"{f.name}"' for f in features)
-        raise MeshError(
-            f"the elements of {names} fill {1e9 * volume:.6g} mm^3, and the solid cut out of the mesh "
-            f"has {1e9 * removed:.6g} mm^3: more than {OF_CUT:.0%} apart; raise refinement"
-        )
+def _lacking(mesh: MeshTet2, cut: np.ndarray, removed: float) -> float:
+    """Share that the volume of the elements of features is off by what OCC says they have."""
+    return abs(check_mesh(without(mesh, cut)).volume / removed - 1)
 
 
 def _cut(gmsh, features, radii) -> list[int]:
