@@ -55,9 +55,14 @@ def parts_of(
 
 
 def solid_factor_mb(
-    unknowns: float, entries: float, fill: float, factoring: Factoring, parts: Parts = WHOLE
+    unknowns: float,
+    entries: float,
+    fill: float,
+    factoring: Factoring,
+    parts: Parts = WHOLE,
+    name: str | None = None,
 ) -> float:
-    """Peak memory of factoring the matrix of a solid by the back end that will be taken.
+    """Peak memory of factoring the matrix of a solid by a back end, or the one that will be taken.
 
     PARDISO needs its factor, its copy of the matrix and work by the entry: its own estimate for 47
     meshes within 1 % where the fill is known. In single precision the same with numbers of four
@@ -76,7 +81,7 @@ def solid_factor_mb(
         here = 2 * ENTRY * entries / MB
         return here if elsewhere() else here + ranks_mb(entries, fill, factoring)
     try:
-        name, _ = choice(matrix, factoring=factoring)
+        name = name or choice(matrix, factoring=factoring)[0]
     except FactorError:
         name = "superlu"  # said where it is factored
     single = factoring.precision == "single"

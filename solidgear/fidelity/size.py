@@ -47,6 +47,8 @@ class Size:
         and first modes.
     lower : str
         What to lower, in words.
+    fill : float
+        Entries of the factors of a 3D solid were its matrix factored whole.
     """
 
     unknowns: int
@@ -55,6 +57,7 @@ class Size:
     build_mb: float
     peak_mb: float
     lower: str
+    fill: float = 0.0
 
 
 def estimated_unknowns(scene: Shaft, model: str, options: dict | None = None) -> int:

@@ -359,4 +359,5 @@ def _solid(
         float(built),
         float(peak),
         lower,
+        float(fill),
     )

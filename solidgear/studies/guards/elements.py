@@ -9,11 +9,12 @@ import numpy as np
 
 from solidgear.errors import SolidgearError, listed
 from solidgear.evidence.quantities import change, in_words
+from solidgear.factoring import Factoring
+from solidgear.fidelity.factor_memory import solid_factor_mb
 from solidgear.fidelity.ladder import LADDER
 from solidgear.machine.memory import available_mb
 from solidgear.meshing.corners import sharpest_corner
 from solidgear.solve.backends import BACKENDS, INSTALL, missing
-from solidgear.solve.backends.memory_law import Outline, law
 from solidgear.solve.factor import FASTEST, SMALL
 from solidgear.studies.guards.notice import Notice, Notices, beyond, everything, solids
 from solidgear.studies.guards.probe import Probe
@@ -165,24 +166,21 @@ def uniform_at_shoulder(probe: Probe) -> Notices:
         )
 
 
-# Memory over CHOLMOD's law: PARDISO's own estimate 1.49 to 1.55, MUMPS's 1.46 to 1.84, on four
-# shipped scenes.
-OVER_LAW = {"pardiso": 1.55, "mumps": 1.8, "cholmod": 1.0}
 GOOD_TO = 1.5  # of the laws, whose estimate over measured is 0.68 to 1.41
 
 
 def memory(probe: Probe) -> Notices:
     """What will factor the 3D solid, and whether it will fit."""
-    size = sum(unknowns for unknowns, _ in probe.solid_matrices)
-    largest = max(unknowns for unknowns, _ in probe.solid_matrices)
+    matrices = probe.solid_matrices
+    size = sum(unknowns for unknowns, *_ in matrices)
+    largest = max(unknowns for unknowns, *_ in matrices)
     absent, forced = [], os.environ.get("SOLIDGEAR_BACKEND")
     for name in (forced,) if forced in BACKENDS else FASTEST if largest > SMALL else ("superlu",):
         if not (why := missing(name)):
             break
         absent.append(f"{why}; {INSTALL[name]}")
-    fill = "cholmod" if name in OVER_LAW else "superlu"
-    whole = sum(law(fill, Outline((n, n), entries), False) for n, entries in probe.solid_matrices)
-    need = probe.solid_parts.memory * OVER_LAW.get(name, 1.0) * whole
+    parts = probe.solid_parts
+    need = sum(solid_factor_mb(*matrix, Factoring(), parts, name) for matrix in matrices)
     free = available_mb()
     smaller = "the harmonic solid, or --set refinement=0.7"
     if LADDER["harmonic"].unfit(probe.whole):

@@ -292,18 +292,25 @@ class Probe:
         return len(np.unique(np.round(np.arctan2(x[rim], z[rim]) % (2 * np.pi), 6)))
 
     @cached_property
-    def solid_matrices(self) -> list[tuple[float, float]]:
-        """Unknowns and entries of every matrix of the 3D solid: of the body if it is one, else estimated
-        for the mesh that the scene has by default, with all that is cut out of it.
+    def solid_matrices(self) -> list[tuple[float, float, float]]:
+        """Unknowns, entries and entries of the factor of every matrix of the 3D solid: of the body if it
+        is one, else estimated for the mesh that the scene has by default, with all that is cut out
+        of it. Fill is estimated in both cases.
         """
-        if self.body.fidelity == "solid":
-            return [(b.size, b.stiffness.nnz) for b in self.body.blocks]
         from solidgear.fidelity.size import estimated_size
         from solidgear.fidelity.sizes import has_mirror_plane
 
-        size = estimated_size(self.meshed, "solid", LADDER["solid"].given(self.meshed, {}))
+        built = self.body.fidelity == "solid"
+        own = {k: v for k, v in self.body.mesh.items() if built and k in ("element", "refinement")}
+        size = estimated_size(self.meshed, "solid", LADDER["solid"].given(self.meshed, own))
+        if built:
+            # of one shape the fill goes with the unknowns to the power 1.3
+            fill = size.fill * (self.body.size / size.unknowns) ** 1.3
+            blocks = [(b.size, b.stiffness.nnz) for b in self.body.blocks]
+            whole = sum(entries for _, entries in blocks)
+            return [(rows, entries, fill * entries / whole) for rows, entries in blocks]
         halves = 2 if has_mirror_plane(self.meshed) else 1
-        return [(size.unknowns / halves, size.entries / halves)] * halves
+        return [(size.unknowns / halves, size.entries / halves, size.fill / halves)] * halves
 
     @property
     def meshed(self) -> Scene:
