@@ -9,7 +9,7 @@ from dataclasses import replace
 import numpy as np
 from skfem import MeshTet2
 
-from solidgear.meshing.quality import element_ratios
+from solidgear.meshing.quality import element_ratios, element_volumes
 
 #: below this min/max det J the edges of an element are straightened
 FOLD = 0.05
@@ -18,14 +18,17 @@ FOLD = 0.05
 #: larger by (s / c)^2 / 5 encloses the same area. Of regular triangles on a cylinder the same holds at
 #: 0.22 to 0.27, as they lie on it
 OUT = 0.25
+#: of a sagitta, how far an edge may move to give back volume: a fifth of what seats allow
+MOST_GIVEN = 0.02
 
 
 def relaxed(mesh: MeshTet2) -> MeshTet2:
     """The mesh with the mid nodes of folded elements drawn towards the middle of their edges, as
     far as needed.
 
-    Only the tip of a cone and wedges of few degrees fold elements of a sensible size; what is lost
-    there is below the volume gate.
+    Only the tip of a cone, wedges of few degrees and slivers at a bore fold elements of a sensible size.
+    What chords take from the volume there, the other curved sides give back, each by the share that it
+    has in what all of them can give: some 1e-3 of their sagittas.
 
     Parameters
     ----------
@@ -37,6 +40,7 @@ def relaxed(mesh: MeshTet2) -> MeshTet2:
     """
     straight = mesh.p[:, mesh.edges].mean(axis=1)
     middles = mesh.dofs.edge_dofs[0]
+    whole = mesh
     keep = np.ones(mesh.edges.shape[1])
     curve = mesh.doflocs[:, middles] - straight
     # a straight edge may fold the element beside it, which then is straightened in its turn
@@ -49,7 +53,50 @@ def relaxed(mesh: MeshTet2) -> MeshTet2:
         doflocs = mesh.doflocs.copy()
         doflocs[:, middles] = straight + keep * curve
         mesh = replace(mesh, doflocs=doflocs)
-    return mesh
+    return _given_back(mesh, whole, curve, keep)
+
+
+def _given_back(mesh: MeshTet2, whole: MeshTet2, curve: np.ndarray, keep: np.ndarray) -> MeshTet2:
+    """A mesh with the volume of the one whose edges were not straightened, which is what its sides
+    enclose, as folded elements count with their sign; as it is where an edge would have to move by
+    too much or an element would fold.
+    """
+    if (keep == 1.0).all():
+        return mesh
+    lost = float(element_volumes(whole).sum() - element_volumes(mesh).sum())
+    gain = np.where(keep == 1.0, _gain(whole, curve), 0.0)
+    able = (gain**2).sum()
+    if not able > 0 or abs(lost) * np.abs(gain).max() > MOST_GIVEN * able:
+        return mesh
+    middles = mesh.dofs.edge_dofs[0]
+    share = lost * gain / able
+    doflocs = mesh.doflocs.copy()
+    doflocs[:, middles] += share * curve
+    given = replace(mesh, doflocs=doflocs)
+    return mesh if (element_ratios(given) < FOLD).any() else given
+
+
+def _gain(mesh: MeshTet2, curve: np.ndarray) -> np.ndarray:
+    """Volume for each edge between curved sides, were its sagitta twice as large: a third of the area
+    of each side times what moves along its normal. Edges in the plane of a side, such as those of cut
+    faces, give none.
+    """
+    facets = mesh.boundary_facets()
+    a, b, c = (mesh.p[:, corner] for corner in mesh.facets[:, facets])
+    normal = np.cross((b - a).T, (c - a).T).T / 2
+    inside = mesh.p[:, mesh.t[:, mesh.f2t[0, facets]]].mean(axis=1)
+    normal *= np.sign(((a - inside) * normal).sum(axis=0))
+    order = np.argsort(mesh.edges[0].astype(np.int64) * mesh.p.shape[1] + mesh.edges[1])
+    key = mesh.edges[0].astype(np.int64)[order] * mesh.p.shape[1] + mesh.edges[1][order]
+    gain, least = np.zeros(curve.shape[1]), np.full(curve.shape[1], np.inf)
+    depth = np.maximum(np.linalg.norm(curve, axis=0), 1e-300)
+    for one, other in ((0, 1), (1, 2), (0, 2)):
+        ends = np.sort(mesh.facets[[one, other]][:, facets].astype(np.int64), axis=0)
+        at = order[np.searchsorted(key, ends[0] * mesh.p.shape[1] + ends[1])]
+        along = (normal * curve[:, at]).sum(axis=0)
+        np.add.at(gain, at, along / 3)
+        np.minimum.at(least, at, np.abs(along) / np.linalg.norm(normal, axis=0) / depth[at])
+    return np.where((least > 0.5) & (depth > 1e-9 * np.ptp(mesh.p)), gain, 0.0)
 
 
 def volume_kept(mesh: MeshTet2) -> MeshTet2:
