@@ -259,10 +259,12 @@ def _beyond_the_segments(scene: Scene) -> Iterator[Notice]:
     if not unfit:
         return  # a part from a file may be of revolution all through
     names = named(features)
+    # fillets of a part from a file are neither, and are not recognised
+    known = ", as far as cylinders and cones tell" if scene.body is not None else ""
     yield Notice(
         "fact",
         (),
-        f"not of revolution: {names}; all that is told of the shaft is of its plain part",
+        f"not of revolution{known}: {names}; all that is told of the shaft is of its plain part",
     )
     fit = [r.name for r in LADDER if r.build is not None and not r.unfit(scene)]
     use = f"use {' or '.join(fit)}" if fit else "no model holds all of them"
