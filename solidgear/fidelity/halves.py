@@ -17,7 +17,7 @@ from solidgear.body.surface import Surface, Volume
 from solidgear.errors import SolidgearError
 from solidgear.fidelity.attachment import tie_rigidly
 from solidgear.fidelity.solid_block import Facets, rigid_motions
-from solidgear.fidelity.solid_matrices import _matrices, _mean
+from solidgear.fidelity.solid_matrices import _matrices, rigid_part, weighed
 from solidgear.fidelity.solid_mesh import SolidMesh
 
 #: by the axis at right angles to the plane: name and port components of the symmetric and of the
@@ -62,20 +62,24 @@ def half_blocks(
     for (station, _), found in zip(wanted, facets):
         if not len(found):
             raise SolidgearError(f"port {station.name!r}: no element faces lie on its seat")
+    seats = [
+        None if attachment == "rigid" else weighed(mesh.over_facets(found), station.y, n)
+        for (station, attachment), found in zip(wanted, facets)
+    ]
     across = np.zeros(3, bool)
     across[axis] = True
     blocks = []
     for (name, own), held in zip(PARTS[axis], (across, ~across)):
         free = np.flatnonzero(~(on_plane[:, None] & held).ravel())
         rows, ties = [], []
-        for i, ((station, attachment), found) in enumerate(zip(wanted, facets)):
-            if attachment == "rigid":
+        for i, ((station, _), found, seat) in enumerate(zip(wanted, facets, seats)):
+            if seat is None:
                 mask = np.zeros((n, 3), bool)
                 mask[mesh.facet_unknowns(found)] = True
                 ties.append((i, station.y, mask.ravel()[free]))
                 rows.append(sp.csr_matrix((len(own), len(free))))
             else:
-                rows.append(_mean(mesh, found, station.y, n, own)[:, free])
+                rows.append(rigid_part(*seat, own)[:, free])
         block = Block(
             name,
             own,

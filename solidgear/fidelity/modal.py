@@ -14,11 +14,11 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.optimize import linear_sum_assignment
+import scipy.sparse as sp
+from scipy.sparse.csgraph import min_weight_full_bipartite_matching
 
 from solidgear.body import Body
 from solidgear.solve.modes import modes
-from solidgear.solve.naming import Projection
 from solidgear.solve.relief import elastic_fields
 from solidgear.solve.statics import factors
 
@@ -125,24 +125,24 @@ def modal(body: Body, count: int) -> Modal:
     -------
     Modal
     """
-    found = modes(body, (), n=count, ovalising=False)
-    project = Projection(body, np.linspace(0.0, body.length, STATIONS))
-    vectors, values = [], []
+    found = modes(body, (), n=count, ovalising=False, stations=STATIONS)
+    vectors, values, moved = [], [], []
     for mode in found.modes:
         if mode.frequency_hz == 0.0 or mode.captured < SHAFT:
             continue
-        for vector in mode.vectors:
+        for vector, motion in zip(mode.vectors, mode.motions):
             vectors.append(vector)
+            moved.append(motion.ravel())
             values.append(sum(v @ (body.blocks[b].stiffness @ v) for b, v in vector.items()))
     motions = np.array([_port_motions(body, v) for v in vectors]).T
-    sections = np.array([project(v).ravel() for v in vectors]).T
+    sections = np.array(moved).T
     static, inert, fields = _static(body)
     return Modal(
         body.mass_matrix(),
         np.diag(values),
         motions.reshape(6 * len(body.ports), len(vectors)),
         sections.reshape(6 * STATIONS, len(vectors)),
-        project.gram,
+        found.gram,
         static,
         inert,
         vectors,
@@ -208,7 +208,9 @@ def alike_turn(sections: np.ndarray, other: np.ndarray, gram: np.ndarray) -> np.
     """
     product = sections.T @ gram @ other
     size, wanted = (np.einsum("ik,ij,jk->k", s, gram, s) for s in (sections, other))
-    _, chosen = linear_sum_assignment(-(product.T**2) / np.outer(wanted, size))
+    # of 1 and more, for a zero in a sparse matrix is a pair that may not be
+    cosines = sp.csr_matrix(1.0 + product.T**2 / np.outer(wanted, size))
+    _, chosen = min_weight_full_bipartite_matching(cosines, maximize=True)
     u, _, vt = np.linalg.svd(product[chosen])
     turn = np.zeros(product.shape)
     turn[chosen] = u @ vt

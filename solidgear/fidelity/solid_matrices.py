@@ -68,13 +68,17 @@ def _elastic(gram, lame: float, mu: float):
     return out
 
 
-def _mean(m: SolidMesh, facets, y0, n, components=range(6), within=None) -> sp.csr_matrix:
-    """(6, 3n) area-weighted least-squares rigid motion of facets about the axis point at y0, or
-    only some components of it; of their parts between two places along y where these are given.
+def _mean(m: SolidMesh, facets, y0, n, within=None) -> sp.csr_matrix:
+    """(6, 3n) area-weighted least-squares rigid motion of facets about the axis point at y0; of
+    their parts between two places along y where these are given.
     """
-    a, b = weighed(m.over_facets(facets, within), y0, n)
+    return rigid_part(*weighed(m.over_facets(facets, within), y0, n), tuple(range(6)))
+
+
+def rigid_part(gram: np.ndarray, loads: np.ndarray, components: tuple[int, ...]) -> sp.csr_matrix:
+    """(c, 3n) least-squares rigid motion, some components of it, from :func:`weighed`."""
     own = list(components)
-    g = np.linalg.solve(a[np.ix_(own, own)], b.T[own])
+    g = np.linalg.solve(gram[np.ix_(own, own)], loads.T[own])
     g[np.abs(g) < 1e-14 * np.abs(g).max(axis=1, keepdims=True)] = 0.0
     return sp.csr_matrix(g)
 

@@ -14,6 +14,7 @@ import numpy as np
 import scipy.linalg as sla
 import scipy.sparse.linalg as spla
 
+from solidgear.body import Block
 from solidgear.errors import SolidgearError
 from solidgear.solve.backends.matrix import FactorError
 from solidgear.solve.factor import indefinite
@@ -26,9 +27,11 @@ log = logging.getLogger(__name__)
 #: unknowns up to which LAPACK is quicker: 385 take it 27 ms and ARPACK 3
 DENSE = 120
 METHODS = ("lanczos", "arpack", "dense")
-# SuperLU solves eight right-hand sides no faster than eight times one, and ARPACK needs fewer:
-# measured 0.3 s against 0.6 s on a meridian.
+# SuperLU solves eight right-hand sides no faster than eight times one, nor does PARDISO where the
+# factor stays in the cache, and ARPACK needs fewer: measured 0.3 s against 0.6 s on a meridian, 1.5 s
+# against 1.7 s for four halves of 4,000 to 5,000 unknowns; as many for 7,000.
 SINGLE = ("superlu",)
+CACHED = 6_000  # unknowns
 WIDTH = 8
 TOLERANCE = 1e-7  # of shapes; frequencies are good to its square
 
@@ -110,8 +113,9 @@ def lowest(supported: Supported, n: int, method: str | None = None) -> Solved:
         if method is None:
             # One vector sees one of two equal modes only through rounding: it is for a group that
             # holds no twins.
-            alone = len(supported.blocks) == 1 and supported.blocks[0].planar
-            method = "arpack" if alone and supported.backend in SINGLE else "lanczos"
+            alone = len(supported.blocks) == 1 and _without_twins(supported.blocks[0])
+            one_by_one = supported.backend in SINGLE or total <= CACHED
+            method = "arpack" if alone and one_by_one else "lanczos"
         if total <= DENSE or wanted >= total - 2 - WIDTH:
             method = "dense"
         theta, u, method = {"dense": _dense, "arpack": _arpack, "lanczos": _lanczos}[method](
@@ -127,6 +131,14 @@ def lowest(supported: Supported, n: int, method: str | None = None) -> Solved:
     ]
     free = [Raw(0.0, supported.split(rigid[:, i]), 0.0, 0.0) for i in range(rigid.shape[1])]
     return Solved(elastic, free, orthogonality, method, found.steps)
+
+
+def _without_twins(block: Block) -> bool:
+    """Whether symmetry puts no two equal modes into a block: twins of a half of a part lie in the
+    other half.
+    """
+    moves = set(block.components)
+    return block.planar or bool(moves) and not {0, 2} <= moves
 
 
 def _dense(supported: Supported, wanted: int):

@@ -33,8 +33,9 @@ __all__ = [
 # SuperLU's indices overflow on the factors of planar meshes of very high order ("not enough
 # memory").
 LARGE_PLANAR = 30_000_000  # entries
-# Solids below this size: what PARDISO gains is what it costs to load MKL (0.2 s, once).
-SMALL = 6_000
+# Solids below this size: what PARDISO gains is what it costs to load MKL (0.2 s, once). A corrected
+# solid of four halves of 4,000 to 5,000 unknowns gains 0.25 s.
+SMALL = 3_500
 # Fastest first, for solids. Factorisation against PARDISO at 41 000 (HEX20) and 93 000 unknowns
 # (TET10), two runs in turn on two busy cores: CHOLMOD 0.65 to 1.3, MUMPS 1.4 to 1.8 with OpenBLAS;
 # 2.7 and 5 with the reference BLAS (TET10, one run); SuperLU about 14 (HEX20, one run apart from

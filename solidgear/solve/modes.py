@@ -54,7 +54,7 @@ class Mode:
         2 for a degenerate pair.
     vectors : tuple of dict
         One per shape: block index -> (n,) vector, mass-normalised over all blocks.
-    motions : (multiplicity, STATIONS, 6) ndarray
+    motions : (multiplicity, s, 6) ndarray
         Section motions along the axis (mass-weighted projection).
     captured : float
         Share of the modal mass that section motions describe; small for ovalising modes and for
@@ -159,6 +159,7 @@ def modes(
     method: str | None = None,
     count: bool = False,
     ovalising: bool = True,
+    stations: int = STATIONS,
 ) -> ModeSet:
     """Lowest modes of a supported body.
 
@@ -183,6 +184,8 @@ def modes(
     ovalising : bool
         Solve the families of two waves around and more that begin below the highest mode reported,
         for a body that can build them (a harmonic solid).
+    stations : int
+        Number of sections along the shaft whose motions are told of every mode.
 
     Returns
     -------
@@ -232,7 +235,7 @@ def modes(
         reach = reach_of(parts, n, highest)
         verdicts = [complete(part, reach, method) for part in parts]
     spent = time.perf_counter() - start
-    project = Projection(body, np.linspace(0.0, body.length, STATIONS))
+    project = Projection(body, np.linspace(0.0, body.length, stations))
     names = Names(body, supports, project)
     rigid = [r for part in parts for r in part.everywhere(part.solved.free)]
     listed, beyond, torn, every = _named(body, names, parts, n, max_frequency)
@@ -259,7 +262,7 @@ def modes(
     return ModeSet(
         body.fidelity,
         (*_rigid(names, rigid), *listed),
-        np.linspace(0.0, body.length, STATIONS),
+        np.linspace(0.0, body.length, stations),
         project.gram,
         evidence,
         beyond,

@@ -9,6 +9,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
+from solidgear.fidelity.levels import FEWER
 from validation.common import ROOT
 from validation.peers.ours import held
 
@@ -69,7 +70,10 @@ def _corrected(*levels: tuple[int, int, int, float]) -> list[dict[str, Any]]:
 
 
 _PLAIN = _harmonic((3, 1, 0), (4, 2, 1), (5, 3, 2))
-_CORRECTED = _corrected((3, 1, 1, 0.18), (3, 1, 1, 0.25), (4, 2, 2, 0.35), (4, 2, 2, 0.5))
+_CORRECTED = [
+    *({**level, "modes": FEWER} for level in _corrected((3, 1, 1, 0.18), (3, 1, 1, 0.25))),
+    *_corrected((4, 2, 2, 0.35), (4, 2, 2, 0.5)),
+]
 _BEST = _corrected((6, 4, 3, 0.5), (6, 4, 3, 0.7), (6, 4, 3, 1.0))
 
 LINES: dict[str, dict[str, list[dict[str, Any]]]] = {
