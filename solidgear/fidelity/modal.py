@@ -165,6 +165,15 @@ def _static(body: Body) -> tuple[np.ndarray, np.ndarray, dict[int, np.ndarray]]:
     static, inert = np.zeros((2, n, n))
     fields: dict[int, np.ndarray] = {}
     for index, (block, factor) in enumerate(zip(body.blocks, factors(body))):
+        rows = np.ix_(body.rows(block), body.rows(block))
+        if block.mirror is not None:
+            original, signs = block.mirror
+            turn = np.tile(signs, len(body.ports))
+            own = body.rows(body.blocks[original])
+            for matrix in (static, inert):
+                matrix[rows] = matrix[np.ix_(own, own)] * np.outer(turn, turn)
+            fields[index] = fields[original] * turn
+            continue
         load = block.ports.T.toarray()
         load, u, _ = elastic_fields(
             factor.solve,
@@ -174,7 +183,6 @@ def _static(body: Body) -> tuple[np.ndarray, np.ndarray, dict[int, np.ndarray]]:
             load,
             1e-20,
         )
-        rows = np.ix_(body.rows(block), body.rows(block))
         # stationary at the solution (Clapeyron)
         work = u.T @ load
         static[rows] = work + work.T - u.T @ (block.stiffness @ u)

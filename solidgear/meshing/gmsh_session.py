@@ -59,6 +59,9 @@ class Session:
         "Mesh.MeshSizeFactor": 1,
         "Mesh.MeshSizeMin": 0,
         "Mesh.MeshSizeMax": 1e22,
+        # of the length of a curve in elements: at the 1e-9 of gmsh a formula of size is read so often
+        # that points on curves take as long as surfaces and volumes together
+        "Mesh.LcIntegrationPrecision": 1e-6,
         "Mesh.SaveAll": 0,
     }
 

@@ -19,7 +19,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.sparse.csgraph import connected_components
 
-from solidgear.body import Body, Supports
+from solidgear.body import Block, Body, Supports
 from solidgear.frames import rotation
 from solidgear.solve.circumference import Circumference, of_body
 from solidgear.solve.families import FAMILIES, family_of, repeats, several, waves_of
@@ -71,6 +71,10 @@ class Shape:
         return f"{self.family} {self.plane}" if self.plane else self.family
 
 
+#: loads, Gram matrix and columns of the section motions of a block
+_Loads = tuple[np.ndarray, np.ndarray, np.ndarray]
+
+
 class Projection:
     """Mass-weighted projection of shapes onto section motions along the axis.
 
@@ -91,11 +95,10 @@ class Projection:
         self.count = len(stations)
         self.gram = np.zeros((size, size))
         self.parts = []
+        found: list[_Loads] = []
         for block in body.blocks:
-            if not block.components:
-                self.parts.append((np.zeros((block.size, 0)), np.zeros(0, int), np.zeros((0, 0))))
-                continue
-            loaded, gram, columns = block.section_loads(stations)
+            loaded, gram, columns = _section_loads(block, stations, found)
+            found.append((loaded, gram, columns))
             self.gram[np.ix_(columns, columns)] += gram
             self.parts.append((loaded, columns, np.linalg.pinv(gram, rcond=1e-12, hermitian=True)))
 
@@ -126,6 +129,19 @@ class Projection:
             part = motion.ravel()[at]
             out[family] = float(part @ self.gram[np.ix_(at, at)] @ part)
         return out
+
+
+def _section_loads(block: Block, stations: np.ndarray, found: list[_Loads]) -> _Loads:
+    """Loads, Gram matrix and columns of a block; of a twin those of its original, turned."""
+    own = np.array([6 * s + c for s in range(len(stations)) for c in block.components], int)
+    if not block.components:
+        return np.zeros((block.size, 0)), np.zeros((0, 0)), own
+    if block.mirror is None:
+        return block.section_loads(stations)
+    original, signs = block.mirror
+    loaded, gram, _ = found[original]
+    turn = np.tile(signs, len(stations))
+    return loaded * turn, gram * np.outer(turn, turn), own
 
 
 class Names:
