@@ -50,7 +50,9 @@ def test_pieces_solve_as_the_whole_does(body, matrix, planes):
     whole = factorise(matrix).solve(load)
     # what rounding leaves of a matrix whose condition is about 1e7
     assert np.abs(found.solve(load) - whole).max() < 1e-8 * np.abs(whole).max()
-    assert np.allclose(found.solve(load[:, 0]), found.solve(load)[:, 0], rtol=1e-12, atol=0)
+    # back ends add up one right-hand side in another order than several
+    one, several = found.solve(load[:, 0]), found.solve(load)[:, 0]
+    assert np.abs(one - several).max() < 1e-8 * np.abs(several).max()
 
 
 def test_kinds_of_motion_are_all_motions_and_orthonormal(body):

@@ -351,7 +351,8 @@ def test_a_pair_torn_by_the_mesh_is_told(overhung):
     """Coarse linear tetrahedra: 'bending 2' is the twin of 'bending 1'. Bearings that differ in x
     and z split pairs for good reason.
     """
-    coarse = sg.build(overhung, "solid", element="tet4", size=0.04)
+    # the pair is split by 0.5 %: on finer meshes it may pass for one
+    coarse = sg.build(overhung, "solid", element="tet4", size=0.05)
     assert sg.modes(coarse, overhung, n=6).evidence["torn_pairs"][0][:2] == (
         "bending 1",
         "bending 2",

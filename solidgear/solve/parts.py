@@ -151,8 +151,11 @@ def solved_parts(
         else:
             parts.append(Part(Supported(body, supports, spring, group), n))
     if len(parts) > 1:
+        # Bending pairs make most of a spectrum, and half of a part holds one of each; a group
+        # searched too little is searched again.
         for part in parts:
-            part.ask = _first_ask(part, n)
+            half = sum(len(block.components) for block in part.blocks) >= 3
+            part.ask = n // (3 if part.copies > 1 else 2 if half else 4) + 1
     waiting = parts
     while waiting:
         for part in waiting:
@@ -167,17 +170,6 @@ def solved_parts(
         for part in waiting:
             part.ask = min(2 * part.ask, n)
     return parts
-
-
-def _first_ask(part: Part, n: int) -> int:
-    """Modes to search for at first among some that other groups share; one searched too little is
-    searched again from the beginning.
-    """
-    if part.copies > 1:
-        return n // 3 + 1  # bending pairs make most of a spectrum
-    # half of a part with a mirror plane holds one bending of each pair and axial or torsion
-    moves = sum(len(block.components) for block in part.blocks)
-    return n // 2 + 1 if moves >= 3 else n // 4 + 1
 
 
 def reach_of(parts: list[Part], n: int, highest: float = np.inf) -> float:
