@@ -64,7 +64,7 @@ def test_sums_around_a_hole_against_their_integral():
     rod = sg.Segment.cylinder("rod", length=2.0, diameter=0.4)
     hole = CrossHole(name="hole", segment="rod", y=1.0, diameter=0.008)
     least, a = math.pi * hole.diameter / 8 / 2, hole.diameter / 2
-    volume, _, _ = around_cut(hole, [rod], 1.0, lambda r, y: np.full(np.shape(r), big))
+    volume, _, _ = around_cut(hole, [rod], 1.0, False, lambda r, y: np.full(np.shape(r), big))
     # from a to b, where the size is H: int 2 pi s (least + s - a)^-3 ds, with u = least + s - a
     c, b = least - a, big - least + a
 

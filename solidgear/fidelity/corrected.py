@@ -56,7 +56,20 @@ NOTHING = 1e-9
 TWIN = 1e-6
 #: fewest of them that are worth a body
 FEWEST = 2
+#: how many times smaller elements are at seat ends and shoulders
+GRADED = 2.0
 Families = list[tuple[str, tuple[int, ...]]]
+
+
+def sizes(scene) -> dict[str, float]:
+    """Element edges away from everything, and at seat ends and shoulders, m, of the 3D mesh at
+    refinement 1.
+
+    What a mesh lacks at seat ends and shoulders drops out of the difference, but for what a feature
+    close to them changes there; what it lacks at the edges of features does not.
+    """
+    size = max(max(s.outer0, s.outer1) for s in scene.segments) / 3
+    return {"size": size, "graded_size": size / GRADED}
 
 
 def corrected(
@@ -66,7 +79,7 @@ def corrected(
     layers: int = 2,
     edge_layers: int = 2,
     harmonic_size: float = 4.0,
-    refinement: float = 0.35,
+    refinement: float = 0.5,
     modes: int = KEPT,
     attachments: tuple[str, ...] | None = None,
 ) -> Body:
@@ -107,10 +120,8 @@ def corrected(
         attachments=attachments,
     )
     wanted = [(s, a) for s in scene.stations for a in (attachments or (s.attachment,))]
-    plan = tetrahedra_plan(
-        scene, wanted, size=None, graded_size=None, refinement=refinement, around=12
-    )
-    made = meshed(scene, plan, refinement, True)
+    plan = tetrahedra_plan(scene, wanted, refinement=refinement, around=12, **sizes(scene))
+    made = meshed(scene, plan, refinement, True, edges=True)
     without = featured_body(scene, wanted, made, refinement, plain=True)
     with_ = featured_body(scene, wanted, made, refinement)
     exact = modal(base, modes)

@@ -20,8 +20,10 @@ from solidgear.meshing.quality import check_mesh
 from solidgear.scene.shaft import resolved
 
 
-def meshed(scene, plan: dict, refinement: float, half: bool) -> FeaturedMesh:
-    """The mesh of a scene with features; ``plan`` holds planes, circles and sizes."""
+def meshed(scene, plan: dict, refinement: float, half: bool, edges: bool = False) -> FeaturedMesh:
+    """The mesh of a scene with features; ``plan`` holds planes, circles and sizes, and ``edges``
+    asks for smaller elements at the re-entrant edges of features.
+    """
     return featured_mesh(
         scene.segments,
         resolved(scene),
@@ -29,6 +31,7 @@ def meshed(scene, plan: dict, refinement: float, half: bool) -> FeaturedMesh:
         **plan,
         refinement=refinement,
         half=half,
+        edges=edges,
     )
 
 

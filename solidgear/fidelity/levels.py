@@ -146,13 +146,13 @@ class Sequence:
 FEWER = 10
 #: defect correction: the harmonic solid and the 3D mesh finer together
 CORRECTED: tuple[Options, ...] = (
-    {"order": 3, "layers": 1, "edge_layers": 1, "refinement": 0.25, "modes": FEWER},
+    {"order": 3, "layers": 1, "edge_layers": 1, "refinement": 0.35, "modes": FEWER},
     *(
         {"order": order, "layers": layers, "edge_layers": edges, "refinement": refinement}
         for order, layers, edges, refinement in (
-            (4, 2, 2, 0.35),
-            (5, 3, 2, 0.5),
-            (6, 4, 3, 0.7),
+            (4, 2, 2, 0.5),
+            (5, 3, 2, 0.7),
+            (6, 4, 3, 1.0),
         )
     ),
 )

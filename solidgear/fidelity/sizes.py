@@ -164,6 +164,7 @@ def corrected_size(scene: Shaft, given: Mapping[str, Any]) -> Size:
 
     The body itself is small; what it is made of decides.
     """
+    from solidgear.fidelity.corrected import sizes
     from solidgear.fidelity.ladder import LADDER
 
     plain = {**LADDER["harmonic"].defaults(), "attachments": given["attachments"]}
@@ -172,7 +173,7 @@ def corrected_size(scene: Shaft, given: Mapping[str, Any]) -> Size:
     round_part = harmonic_size(scene, plain)
     solid_part = {**LADDER["solid"].defaults(), "element": "tet10"}
     solid_part |= {"refinement": given["refinement"], "attachments": given["attachments"]}
-    cut = solid_size(scene, solid_part)
+    cut = _tetrahedra(scene, {**solid_part, **sizes(scene)}, edges=True)
     return Size(
         cut.unknowns,
         cut.entries,
@@ -292,14 +293,14 @@ def _given_mesh(scene: Shaft, given: Mapping[str, Any], body: BodyFile) -> Size:
     return replace(size, lower="mesh the part coarser, or use the harmonic model of its round part")
 
 
-def _tetrahedra(scene: Shaft, given: Mapping[str, Any]) -> Size:
+def _tetrahedra(scene: Shaft, given: Mapping[str, Any], edges: bool = False) -> Size:
     from solidgear.fidelity.solid import tetrahedra_plan
     from solidgear.meshing.cut_counts import around_cut
     from solidgear.meshing.element_size import estimated_counts
 
     wanted = [(s, a) for s in scene.stations for a in (given["attachments"] or (s.attachment,))]
     holes = [
-        partial(around_cut, feature, scene.segments, given["refinement"])
+        partial(around_cut, feature, scene.segments, given["refinement"], edges)
         for feature in resolved(scene)
         if feature.kind in CUTS
     ]

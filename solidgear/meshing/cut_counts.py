@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from solidgear.meshing.cuts import GROWTH, feature_size
+from solidgear.meshing.cuts import GROWTH, edge_size, feature_size
 from solidgear.meshing.holes import CROWD
 
 #: how many more elements lie around a keyway or a flat than the sums say; around a cross hole as many
@@ -40,7 +40,9 @@ class _Wall:
         return inner, outer
 
 
-def around_cut(feature: Any, segments: Sequence[Any], refinement: float, beside: Edge) -> Counted:
+def around_cut(
+    feature: Any, segments: Sequence[Any], refinement: float, edges: bool, beside: Edge
+) -> Counted:
     """What a cut adds to the sums of :func:`solidgear.meshing.element_size.estimated_counts`, where
     elements beside it are of a size.
 
@@ -50,6 +52,8 @@ def around_cut(feature: Any, segments: Sequence[Any], refinement: float, beside:
     segments : sequence of Segment
     refinement : float
         Divides the size at the cut.
+    edges : bool
+        Whether elements are smaller at re-entrant edges.
     beside : callable
         Element edge without the cut, from radius and y.
 
@@ -66,7 +70,9 @@ def around_cut(feature: Any, segments: Sequence[Any], refinement: float, beside:
     >>> from solidgear.scene import CrossHole
     >>> rod = sg.Segment.cylinder("rod", length=0.2, diameter=0.04)
     >>> oil = CrossHole(name="oil", segment="rod", y=0.1, diameter=0.004)
-    >>> coarse, fine = (around_cut(oil, [rod], n, lambda r, y: 0.01 + 0 * r * y)[0] for n in (1, 2))
+    >>> coarse, fine = (
+    ...     around_cut(oil, [rod], n, False, lambda r, y: 0.01 + 0 * r * y)[0] for n in (1, 2)
+    ... )
     >>> bool(fine > 2 * coarse)
     True
     """
@@ -76,6 +82,9 @@ def around_cut(feature: Any, segments: Sequence[Any], refinement: float, beside:
         crowd, found = CROWD, _around_hole(feature, own, _Wall(segments), least, beside)
     else:
         crowd, found = CROWD_OF_SLOTS, _around_slot(feature, own, _Wall(segments), least, beside)
+        if edges:
+            more = _along_edges(feature, own, refinement, least, beside)
+            found = tuple(a + b for a, b in zip(found, more))
     volume, surface, rim = (crowd * float(part) for part in found)
     return volume, surface, rim
 
@@ -164,6 +173,30 @@ def _around_slot(feature, own, wall: _Wall, least: float, beside: Edge) -> Count
         rims = 2 * length + ends * 2 * (wide + radius * turned)
     surface += (2 * wide * length + walls) / at**2
     return volume, surface, rims / at
+
+
+def _along_edges(feature, own, refinement: float, around: float, beside: Edge) -> Counted:
+    """Sums around the re-entrant edges of a keyway or a flat, all the way around, for what is cut out
+    is meshed too; ``around`` is the size beside them.
+    """
+    _, least = edge_size(feature, own.outer0, refinement)
+    lo, hi = feature.reach
+    floor = own.outer0 - feature.depth
+    far = min(around, float(beside(np.array(floor), np.array((lo + hi) / 2))))
+    if feature.kind == "flat":
+        length = 2 * 2 * sqrt(own.outer0**2 - floor**2)
+    elif feature.ends == "round":
+        length = 2 * (hi - lo - feature.width) + pi * feature.width
+    else:
+        length = 2 * (hi - lo) + 2 * feature.width
+    if least >= far:
+        return 0.0, 0.0, 0.0
+    away, away_w = _even(0.0, (far - least) / GROWTH, _AWAY)
+    size = least + GROWTH * away
+    volume = length * (2 * pi * away * away_w * (size**-3 - far**-3)).sum()
+    # floor and wall
+    surface = length * 2 * (away_w * (size**-2 - far**-2)).sum()
+    return float(volume), float(surface), length * (1 / least - 1 / far)
 
 
 def _around_hole(feature, own, wall: _Wall, least: float, beside: Edge) -> Counted:

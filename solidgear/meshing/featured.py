@@ -16,7 +16,7 @@ import numpy as np
 from skfem import MeshTet1, MeshTet2
 
 from solidgear.meshing.closed_form import volume_of
-from solidgear.meshing.cuts import feature_size, mirror_plane, tool
+from solidgear.meshing.cuts import edge_size, feature_size, mirror_plane, tool
 from solidgear.meshing.element_size import set_size, size_formulas
 from solidgear.meshing.gmsh_session import Session, import_gmsh
 from solidgear.meshing.outline import Frustum
@@ -73,6 +73,7 @@ def featured_mesh(
     refinement: float,
     half: bool = True,
     blends: tuple[Any, ...] = (),
+    edges: bool = False,
 ) -> FeaturedMesh:
     """Mesh a shaft with features.
 
@@ -88,6 +89,8 @@ def featured_mesh(
         Whether to draw half of the shaft where features have a mirror plane.
     blends : tuple of Corner
         Edges with fillets and chamfers.
+    edges : bool
+        Whether elements are smaller at the re-entrant edges of features.
 
     Returns
     -------
@@ -109,6 +112,8 @@ def featured_mesh(
             pieces = _cut(gmsh, features, radii)
             formulas = size_formulas(shapes, corners, size, graded_size, None, around, blends)
             formulas += [feature_size(f, radii[f.segment], refinement, finer)[0] for f in features]
+            sharp = [edge_size(f, radii[f.segment], refinement) for f in features if edges]
+            formulas += [found[0] for found in sharp if found]
             set_size(gmsh, formulas, size)
             removed = sum(gmsh.model.occ.getMass(3, piece) for piece in pieces)
             mesh = filled(

@@ -71,10 +71,10 @@ def _corrected(*levels: tuple[int, int, int, float]) -> list[dict[str, Any]]:
 
 _PLAIN = _harmonic((3, 1, 0), (4, 2, 1), (5, 3, 2))
 _CORRECTED = [
-    *({**level, "modes": FEWER} for level in _corrected((3, 1, 1, 0.18), (3, 1, 1, 0.25))),
-    *_corrected((4, 2, 2, 0.35), (4, 2, 2, 0.5)),
+    *({**level, "modes": FEWER} for level in _corrected((3, 1, 1, 0.25), (3, 1, 1, 0.35))),
+    *_corrected((4, 2, 2, 0.5), (5, 3, 2, 0.7)),
 ]
-_BEST = _corrected((6, 4, 3, 0.5), (6, 4, 3, 0.7), (6, 4, 3, 1.0))
+_BEST = _corrected((6, 4, 3, 0.7), (6, 4, 3, 1.0), (6, 4, 3, 1.4))
 
 LINES: dict[str, dict[str, list[dict[str, Any]]]] = {
     "keyed": {
