@@ -91,4 +91,4 @@ def test_check_tells_of_both_halves():
     assert len(body.blocks) == 2
     probe = Probe(scene.plain, body, whole=scene)
     assert f"the 3D solid, about {body.size} unknowns" in next(elements.memory(probe)).sentence
-    assert [n for n, _ in probe.solid_matrices] == [b.size for b in body.blocks]
+    assert [n for n, *_ in probe.solid_matrices] == [b.size for b in body.blocks]
