@@ -170,7 +170,7 @@ def layered_bands(
             if len(own) == 2:
                 rests_on = max(rests_on, diagonal * (own[0] * own[1]) ** 0.5)
         left = solver.get(name, 0.0)
-        least = factors.effect.get(name.partition(AT)[0], 0.0) * effect.get(name, 0.0)
+        least = factors.least_share(name.partition(AT)[0], len(levels)) * effect.get(name, 0.0)
         out[name] = Band(
             values=tuple(float(level[name]) for level in levels if name in level),
             gci=float(

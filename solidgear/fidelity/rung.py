@@ -88,8 +88,10 @@ class BandFactors:
         leaves at the order of the sharpest corner, after two meshes and after more. Empty where three
         meshes give a grid convergence index.
     effect : dict of str to float
-        By quantity, the share of what features change of it that a band holds at least: meshes may
-        agree by accident, and of some errors no mesh tells. The change is told by ``plain``.
+        By quantity, the share of what features change of it that a band holds at least after two
+        meshes: they may agree by accident. The change is told by ``plain``.
+    shrinks : float
+        What each finer mesh leaves of that share.
     plain : str
         Rung that solves the plain part, on the first of its meshes that has shoulders graded.
     """
@@ -102,8 +104,21 @@ class BandFactors:
     singular: bool = False
     rough: tuple[float, float] | tuple[()] = ()
     effect: Mapping[str, float] = field(default_factory=dict)
+    shrinks: float = 1.0
     plain: str = ""
     first_of_modes: Mapping[str, tuple[float, float, float]] = field(default_factory=dict)
+
+    def least_share(self, quantity: str, meshes: int) -> float:
+        """Share of what features change of a quantity, without its points, that a band holds at least
+        after some meshes.
+
+        Examples
+        --------
+        >>> factors = BandFactors(effect={"C_zz": 0.1}, shrinks=0.5)
+        >>> factors.least_share("C_zz", 2), factors.least_share("C_zz", 3), factors.least_share("f", 2)
+        (0.1, 0.05, 0.0)
+        """
+        return self.effect.get(quantity, 0.0) * self.shrinks ** max(0, meshes - 2)
 
 
 @dataclass(frozen=True)

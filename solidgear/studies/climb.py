@@ -237,14 +237,15 @@ class Climb:
         return [q for q in self._known() if not self.bar(q) <= self.tol]
 
     def floors(self) -> dict[str, float]:
-        """Least bars whatever the mesh: a share of what features change, where the rung has one."""
+        """Least bars on the finest mesh: a share of what features change, where the rung has one."""
         factors = self.rung.factors
         if factors is None or not factors.effect:
             return {}
         for level in self.levels[len(self._changes) :]:
             self._changes.append(feature_effect(self.scene, factors, level.quantities))
         finest = {name: change for level in self._changes for name, change in level.items()}
-        return {q: factors.effect[q.partition(AT)[0]] * change for q, change in finest.items()}
+        meshes = len(self.plan.levels)
+        return {q: factors.least_share(q.partition(AT)[0], meshes) * c for q, c in finest.items()}
 
     def _in_vain(self) -> str:
         """Why no finer mesh would help, if none would: all that is open is at its floor."""
