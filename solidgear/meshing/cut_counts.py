@@ -53,7 +53,7 @@ def around_cut(
     refinement : float
         Divides the size at the cut.
     edges : bool
-        Whether elements are smaller at re-entrant edges.
+        Whether elements are smaller at re-entrant edges and at holes.
     beside : callable
         Element edge without the cut, from radius and y.
 
@@ -79,6 +79,7 @@ def around_cut(
     own = next(s for s in segments if s.name == feature.segment)
     least = feature_size(feature, own.outer0, refinement)[1]
     if feature.kind == "cross_hole":
+        least = edge_size(feature, own.outer0, refinement)[1] if edges else least
         crowd, found = CROWD, _around_hole(feature, own, _Wall(segments), least, beside)
     else:
         crowd, found = CROWD_OF_SLOTS, _around_slot(feature, own, _Wall(segments), least, beside)

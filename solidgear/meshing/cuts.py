@@ -15,6 +15,8 @@ ACROSS = 2.0
 #: and as many times more at its re-entrant edges, where those are graded towards. On the keyed pinion
 #: 14,000 unknowns so give C_zz to 8e-5, without 1.1e-4
 EDGES = 3.0
+#: refinement from which on a hole has more than eight edges around where sizes are graded towards edges
+LEAST = 0.35
 #: growth of the element size per distance from a feature
 GROWTH = 1.0
 #: how far a tool reaches beyond the surface, in radii
@@ -177,9 +179,9 @@ def feature_size(
     return f"{_num(least)}+{_num(GROWTH)}*{distance}", least
 
 
-def edge_size(feature: CutFeature, radius: float, refinement: float) -> tuple[str, float] | None:
-    """Formula of the element edge around the re-entrant edges of a feature, where stresses have no
-    bound: around the floor of a keyway, at the ends of a flat.
+def edge_size(feature: CutFeature, radius: float, refinement: float) -> tuple[str, float]:
+    """Formula of the element edge where stresses around a feature are highest: at the re-entrant
+    edges of the floor of a keyway and of the ends of a flat, at the wall of a hole.
 
     Parameters
     ----------
@@ -194,21 +196,22 @@ def edge_size(feature: CutFeature, radius: float, refinement: float) -> tuple[st
     formula : str
         In x, y, z, m.
     least : float
-        m. Both None of a cross hole, which has no such edges.
+        m. That of a hole, which eight edges around are the least of, differs from refinement
+        ``LEAST`` on.
 
     Examples
     --------
-    >>> from solidgear.scene import CrossHole, Flat
+    >>> from solidgear.scene import Flat
     >>> flat = Flat(name="flat", segment="rod", y=0.1, length=0.03, depth=0.006)
     >>> round(edge_size(flat, 0.03, 1.0)[1], 12)
     0.001
-    >>> edge_size(CrossHole(name="oil", segment="rod", y=0.1, diameter=0.01), 0.03, 1.0) is None
-    True
     """
-    if feature.kind == "cross_hole":
-        return None
-    lo, hi = feature.reach
     c, s = _num(cos(feature.angle)), _num(sin(feature.angle))
+    if feature.kind == "cross_hole":
+        least = pi * feature.diameter / (8 * max(1.0, refinement / LEAST))
+        off = f"Sqrt((x*{c}-z*{s})^2+(y-{_num(feature.y)})^2)"
+        return f"{_num(least)}+{_num(GROWTH)}*Max(0,{off}-{_num(feature.diameter / 2)})", least
+    lo, hi = feature.reach
     up, floor = f"(z*{c}+x*{s})", radius - feature.depth
     across = f"Sqrt((x*{c}-z*{s})^2)"
     if feature.kind == "flat":

@@ -93,7 +93,7 @@ def featured_mesh(
     blends : tuple of Corner
         Edges with fillets and chamfers.
     edges : bool
-        Whether elements are smaller at the re-entrant edges of features.
+        Whether elements are smaller at the re-entrant edges of features and at holes.
 
     Returns
     -------
@@ -122,7 +122,7 @@ def featured_mesh(
             formulas = size_formulas(shapes, corners, size, graded, None, around, blends)
             formulas += [feature_size(f, radii[f.segment], refinement, finer)[0] for f in features]
             sharp = [edge_size(f, radii[f.segment], refinement) for f in features if edges]
-            formulas += [found[0] for found in sharp if found]
+            formulas += [found[0] for found in sharp]
             set_size(gmsh, formulas, size)
             removed = sum(gmsh.model.occ.getMass(3, piece) for piece in pieces)
             mesh = filled(
