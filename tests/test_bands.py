@@ -68,13 +68,15 @@ def test_a_rigid_seat_costs_more():
 
 
 def test_bands_of_a_corrected_solid_hold_a_share_of_what_features_change():
-    """Random parts (docs/validation/random.md): meshes that agree by chance say nothing."""
+    """Random parts (docs/validation/random.md): meshes that agree by chance say nothing, three say
+    more than two.
+    """
     factors = LADDER["corrected"].factors
     effect = {"bending 1": 0.05, "C_zz": 0.05}
-    for steps in ((0.0,), (0.0, 0.0)):
+    for steps, left in (((0.0,), 1.0), ((0.0, 0.0), 0.7)):
         found = layered_bands(levels(*steps), {}, factors, effect=effect)
         for name, share in effect.items():
-            assert found[name].gci == pytest.approx(share * factors.effect[name], rel=1e-6)
+            assert found[name].gci == pytest.approx(left * share * factors.effect[name], rel=1e-6)
     large = layered_bands(levels(0.1), {}, factors, effect=effect)
     assert large["bending 1"].gci == layered_bands(levels(0.1), {}, factors)["bending 1"].gci
 

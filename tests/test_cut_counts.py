@@ -7,8 +7,13 @@ import pytest
 from test_features import FLAT, KEY, mesh_of, shaft
 
 import solidgear as sg
+from solidgear.fidelity.corrected import sizes
+from solidgear.fidelity.featured import meshed
 from solidgear.fidelity.size import estimated_size
+from solidgear.fidelity.solid import tetrahedra_plan
+from solidgear.meshing.closed_form import volume_of
 from solidgear.meshing.cut_counts import around_cut
+from solidgear.meshing.cuts import edge_size, feature_size
 from solidgear.meshing.featured import without
 from solidgear.meshing.holes import CROWD
 from solidgear.scene import CrossHole
@@ -32,7 +37,11 @@ FINE = ("small hole", "keyway")
 
 def unknowns(scene, refinement):
     """Of the cut part, as its mesh has them: both halves, what lies on the mirror plane once."""
-    _, made = mesh_of(scene, refinement)
+    return of_whole(mesh_of(scene, refinement)[1])
+
+
+def of_whole(made):
+    """Unknowns of a cut part from the mesh of it or of its half."""
     nodes = without(made.mesh, ~made.cut).doflocs
     if made.plane is None:
         return 3 * nodes.shape[1]
@@ -92,3 +101,69 @@ def test_check_tells_of_both_halves():
     probe = Probe(scene.plain, body, whole=scene)
     assert f"the 3D solid, about {body.size} unknowns" in next(elements.memory(probe)).sentence
     assert [n for n, *_ in probe.solid_matrices] == [b.size for b in body.blocks]
+
+
+@pytest.mark.parametrize("name", ["wide hole through a bore", "keyway", "flat"])
+def test_the_size_of_a_corrected_solid_is_foretold(name):
+    """Its mesh is graded towards edges of features and holes; within 0.3, as above."""
+    scene, refinement = PARTS[name], 0.5
+    wanted = [(s, s.attachment) for s in scene.stations]
+    plan = tetrahedra_plan(scene, wanted, refinement=refinement, around=12, **sizes(scene))
+    made = meshed(scene, plan, refinement, True, edges=True)
+    found = estimated_size(scene, "corrected", {"refinement": refinement}).unknowns
+    assert found / of_whole(made) == pytest.approx(1.0, rel=0.3)
+
+
+def on_the_floor_of_a_key(x, y, z):
+    straight = (y > KEY.y + KEY.width / 2) & (y < KEY.y + KEY.length - KEY.width / 2)
+    return straight & near(np.abs(x), KEY.width / 2) & near(z, 0.03 - KEY.depth)
+
+
+def at_the_ends_of_a_flat(x, y, z):
+    return (near(y, FLAT.y) | near(y, FLAT.y + FLAT.length)) & near(z, 0.03 - FLAT.depth)
+
+
+def on_the_wall_of_a_hole(x, y, z):
+    return near(np.hypot(x, y - WIDE.y), WIDE.diameter / 2) & near(np.hypot(x, z), 0.03)
+
+
+def near(a, b):
+    return np.abs(a - b) < 1e-6
+
+
+@pytest.mark.parametrize(
+    "feature, there",
+    [(KEY, on_the_floor_of_a_key), (FLAT, at_the_ends_of_a_flat), (WIDE, on_the_wall_of_a_hole)],
+    ids=["key", "flat", "hole"],
+)
+def test_elements_are_smaller_at_edges_where_they_are_asked_to_be(feature, there):
+    """Edges of elements along those of features are as long as asked for, but for whole numbers of
+    them, and longer without.
+    """
+    scene = shaft(feature)
+    plan = {"planes": [], "circles": [], "size": 0.02, "graded_size": None, "around": 8}
+    mean = []
+    for edges in (True, False):
+        mesh = meshed(scene, plan, 1.0, True, edges=edges).mesh
+        ends = mesh.p[:, mesh.edges]
+        own = ends[:, :, there(*ends).all(axis=0)]
+        mean.append(np.linalg.norm(own[:, 0] - own[:, 1], axis=0).mean())
+    asked = [size(feature, 0.03, 1.0)[1] for size in (edge_size, feature_size)]
+    assert mean == pytest.approx(asked, rel=0.3)
+    assert asked[1] > 1.4 * asked[0]
+
+
+def test_a_small_step_is_meshed_with_smaller_elements():
+    """Rings of 0.05 mm: edges between their circles would fold, and the volume be 0.5 % short."""
+    steps = [
+        sg.Segment.cylinder("a", y0=0.0, length=0.054, diameter=0.0694),
+        sg.Segment.cylinder("rod", y0=0.054, length=0.07, diameter=0.0693),
+        sg.Segment.cylinder("c", y0=0.124, length=0.05, diameter=0.092),
+    ]
+    scene = sg.Scene.from_parts(
+        steps, features=[FLAT.with_changes(y=0.08, length=0.03, depth=0.01)]
+    )
+    plan = tetrahedra_plan(scene, [], refinement=0.25, around=12, **sizes(scene))
+    made = meshed(scene, plan, 0.25, True, edges=True)
+    true = volume_of(scene.segments) / 2
+    assert made.quality.volume == pytest.approx(true, rel=3.2e-3)

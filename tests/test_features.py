@@ -332,7 +332,9 @@ def test_a_cut_of_another_volume_is_refused(monkeypatch):
     plan = tetrahedra_plan(scene, [], size=None, graded_size=None, refinement=0.4, around=12)
     meshed(scene, plan, 0.4, True)
     monkeypatch.setattr(featured, "without", loses_some)
-    with pytest.raises(MeshError, match=r'elements of "key" miss [\d.]+ % of .* more than 1%: raise'):
+    with pytest.raises(
+        MeshError, match=r'elements of "key" miss [\d.]+ % of .* more than 1%: raise'
+    ):
         meshed(scene, plan, 0.4, True)
 
 

@@ -166,19 +166,19 @@ LADDER = Ladder(
         size=Later("solidgear.fidelity.sizes", "corrected_size"),
         meshes=corrected_meshes,
         factors=BandFactors(
-            # Of both parts at once, whose meshes are finer from level to level. On 21 random parts 95 %
+            # Of both parts at once, whose meshes are finer from level to level. On 22 random parts 95 %
             # of errors are below 3.7 times the last change after two and three meshes, half below 0.6.
             usual=by_edge(3.5, 5.0),
             first=by_edge((3.5, 0.0, 3.5), (5.0, 0.0, 5.0)),
             earlier=0.5,
             ahead=0.5,
-            # Meshes may agree and err all the same: the mesh at a cross hole is one and the same up to
-            # refinement 0.5, a flat with a keyway agreed by accident, few free modes are turned from
-            # one mesh to the other, the residual mass is that of the plain part. Where a step did not
-            # tell of them, errors on 21 random parts were up to 0.16 of what features change after two
-            # meshes, 0.15 after three, but for five of 318 below 0.07 then, and for five of 304 below 0.05
-            # after four (docs/validation/random.md); on 9 others 0.2 of axial 1, where mass and
-            # stiffness that are cut away nearly cancel, and 0.4 of torsion 1, a free mode.
+            # Meshes may agree and err all the same: a flat with a keyway agreed by accident, few free
+            # modes are turned from one mesh to the other, the residual mass is that of the plain part.
+            # Where a step did not tell of them, errors on 22 random parts were up to 0.16 of what
+            # features change after two meshes, 0.15 after three, but for five of 318 below 0.07 then,
+            # and for five of 304 below 0.05 after four (docs/validation/random.md); on 9 others 0.2 of
+            # axial 1, where mass and stiffness that are cut away nearly cancel, and 0.4 of torsion 1, a
+            # free mode.
             effect={
                 **dict.fromkeys(("C_zz", "C_z,thx", "C_thx", "C_yy"), 0.1),
                 **dict.fromkeys(("C_xx", "C_x,thz", "C_thz", "C_thy"), 0.1),

@@ -85,7 +85,7 @@ def around_cut(
         crowd, found = CROWD_OF_SLOTS, _around_slot(feature, own, _Wall(segments), least, beside)
         if edges:
             more = _along_edges(feature, own, refinement, least, beside)
-            found = tuple(a + b for a, b in zip(found, more))
+            found = (found[0] + more[0], found[1] + more[1], found[2] + more[2])
     volume, surface, rim = (crowd * float(part) for part in found)
     return volume, surface, rim
 
