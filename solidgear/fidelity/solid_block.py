@@ -12,6 +12,7 @@ from solidgear.body import Block, Reflection
 from solidgear.errors import SolidgearError
 from solidgear.fidelity.solid_matrices import _matrices, _mean
 from solidgear.fidelity.solid_mesh import SolidMesh
+from solidgear.meshing.edge_places import edge_places
 
 #: components of a node by those of its mirror image, in the planes x = 0, z = 0 and x = z
 SWAPPED = [2, 1, 0]
@@ -66,24 +67,17 @@ def edges_of(mesh: SolidMesh, corners: np.ndarray) -> tuple[np.ndarray, np.ndarr
     places : (3, m, f) ndarray
         m; a corner for a diagonal.
     """
-    vertices = mesh.mesh.p.shape[1]
-    edges = np.sort(mesh.mesh.edges.astype(np.int64), axis=0)
-    key = edges[0] * vertices + edges[1]
-    order = np.argsort(key)
-    at = np.zeros(edges.shape[1], int)
+    at = np.zeros(mesh.mesh.edges.shape[1], int)
     at[mesh.mesh.t2e] = mesh.dofs[len(mesh.mesh.t) : len(mesh.mesh.t) + len(mesh.mesh.t2e)]
-    named, places = [], []
     # of four corners of a quadrilateral two pairs are its diagonals
-    for i in range(len(corners)):
-        for j in range(i):
-            a, b = np.sort(corners[[i, j]].astype(np.int64), axis=0)
-            pair = a * vertices + b
-            place = np.minimum(np.searchsorted(key[order], pair), len(key) - 1)
-            edge = order[place]
-            real = key[edge] == pair
-            named.append(np.where(real, edge, -1))
-            places.append(np.where(real, mesh.nodes[:, at[edge]], mesh.mesh.p[:, corners[i]]))
-    return np.array(named), np.stack(places, axis=1)
+    one, other = np.array(_pairs(corners)).T
+    edge = edge_places(mesh.mesh.edges, np.array([corners[one], corners[other]]))
+    return edge, np.where(edge >= 0, mesh.nodes[:, at[edge]], mesh.mesh.p[:, corners[one]])
+
+
+def _pairs(corners: np.ndarray) -> list[tuple[int, int]]:
+    """Places of any two corners of a facet."""
+    return [(i, j) for i in range(len(corners)) for j in range(i)]
 
 
 def chords(mesh: SolidMesh, corners: np.ndarray) -> np.ndarray:
@@ -101,8 +95,8 @@ def chords(mesh: SolidMesh, corners: np.ndarray) -> np.ndarray:
         m.
     """
     p = mesh.mesh.p[[0, 2]]
-    pairs = [(i, j) for i in range(len(corners)) for j in range(i)]
-    return np.array([np.hypot(*((p[:, corners[i]] + p[:, corners[j]]) / 2)) for i, j in pairs])
+    middles = [(p[:, corners[i]] + p[:, corners[j]]) / 2 for i, j in _pairs(corners)]
+    return np.array([np.hypot(*middle) for middle in middles])
 
 
 def rigid_motions(nodes: np.ndarray) -> np.ndarray:

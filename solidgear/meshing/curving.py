@@ -9,6 +9,7 @@ from dataclasses import replace
 import numpy as np
 from skfem import MeshTet2
 
+from solidgear.meshing.edge_places import edge_places
 from solidgear.meshing.quality import element_ratios, element_volumes
 
 #: below this min/max det J the edges of an element are straightened
@@ -86,13 +87,10 @@ def _gain(mesh: MeshTet2, curve: np.ndarray) -> np.ndarray:
     normal = np.cross((b - a).T, (c - a).T).T / 2
     inside = mesh.p[:, mesh.t[:, mesh.f2t[0, facets]]].mean(axis=1)
     normal *= np.sign(((a - inside) * normal).sum(axis=0))
-    order = np.argsort(mesh.edges[0].astype(np.int64) * mesh.p.shape[1] + mesh.edges[1])
-    key = mesh.edges[0].astype(np.int64)[order] * mesh.p.shape[1] + mesh.edges[1][order]
+    sides = mesh.facets[[[0, 1, 0], [1, 2, 2]]][:, :, facets]
     gain, least = np.zeros(curve.shape[1]), np.full(curve.shape[1], np.inf)
     depth = np.maximum(np.linalg.norm(curve, axis=0), 1e-300)
-    for one, other in ((0, 1), (1, 2), (0, 2)):
-        ends = np.sort(mesh.facets[[one, other]][:, facets].astype(np.int64), axis=0)
-        at = order[np.searchsorted(key, ends[0] * mesh.p.shape[1] + ends[1])]
+    for at in edge_places(mesh.edges, sides):
         along = (normal * curve[:, at]).sum(axis=0)
         np.add.at(gain, at, along / 3)
         np.minimum.at(least, at, np.abs(along) / np.linalg.norm(normal, axis=0) / depth[at])

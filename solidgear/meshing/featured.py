@@ -17,6 +17,7 @@ from skfem import MeshTet1, MeshTet2
 
 from solidgear.meshing.closed_form import volume_of
 from solidgear.meshing.cuts import edge_size, feature_size, mirror_plane, tool
+from solidgear.meshing.edge_places import edge_places
 from solidgear.meshing.element_size import set_size, size_formulas
 from solidgear.meshing.gmsh_session import Session, import_gmsh
 from solidgear.meshing.outline import Frustum
@@ -199,13 +200,7 @@ def without(mesh: MeshTet2, keep: np.ndarray) -> MeshTet2:
         np.ascontiguousarray(small.reshape(corners.shape).astype(np.int32)),
     )
     part = MeshTet2.from_mesh(straight)
-    count = mesh.p.shape[1]
-    old = np.sort(mesh.edges.astype(np.int64), axis=0)
-    # of 64 bits: products of numbers pass 2^31 from 46,341 vertices on
-    new = np.sort(used.astype(np.int64)[part.edges], axis=0)
-    key = old[0] * count + old[1]
-    order = np.argsort(key)
-    at = order[np.searchsorted(key[order], new[0] * count + new[1])]
+    at = edge_places(mesh.edges, used[part.edges])
     doflocs = part.doflocs.copy()
     doflocs[:, part.dofs.edge_dofs[0]] = mesh.doflocs[:, mesh.dofs.edge_dofs[0][at]]
     return replace(part, doflocs=doflocs)

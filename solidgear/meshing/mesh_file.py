@@ -13,6 +13,7 @@ from skfem import Mesh, MeshHex1, MeshHex2, MeshTet1, MeshTet2
 
 from solidgear.meshing.decks import Deck, read
 from solidgear.meshing.decks.deck import KINDS
+from solidgear.meshing.edge_places import edge_places
 from solidgear.meshing.groups import owners, told
 from solidgear.meshing.pits import pits
 from solidgear.meshing.placing import Placing
@@ -240,12 +241,8 @@ def _hexes(points, cells) -> Mesh:
 def _with_middles(mesh: Any, corners, edges, middles) -> Any:
     """A second-order mesh with its middle nodes where the file has them."""
     pairs = corners[np.array(edges)]  # (edge, 2, ne)
-    total = mesh.p.shape[1]
-    key = pairs.min(axis=1).astype(np.int64) * total + pairs.max(axis=1)
-    key, first = np.unique(key.ravel(), return_index=True)
-    own = np.sort(mesh.edges.astype(np.int64), axis=0)
+    at = edge_places(np.moveaxis(pairs, 1, 0).reshape(2, -1), mesh.edges)
     doflocs = mesh.doflocs.copy()
-    at = first[np.searchsorted(key, own[0] * total + own[1])]
     # nodes are listed cell by cell for each edge
     doflocs[:, mesh.dofs.edge_dofs[0]] = middles.reshape(3, -1)[:, at]
     return replace(mesh, doflocs=doflocs)

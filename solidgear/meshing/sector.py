@@ -20,6 +20,7 @@ from scipy.spatial import cKDTree
 from skfem import MeshTet1, MeshTet2
 
 from solidgear.frames import rotation
+from solidgear.meshing.edge_places import edge_places
 from solidgear.meshing.element_size import set_size, size_formulas
 from solidgear.meshing.gmsh_session import Session, import_gmsh
 from solidgear.meshing.holes import Hole, hole_of, hole_places, hole_size
@@ -372,7 +373,7 @@ def joined(mesh: MeshTet2, maps, number: np.ndarray, total: int) -> MeshTet2:
     -------
     skfem.MeshTet2
     """
-    points, cells, keys, middles = np.zeros((3, total)), [], [], []
+    points, cells, ends, middles = np.zeros((3, total)), [], [], []
     at = mesh.doflocs[:, mesh.dofs.edge_dofs[0]]
     corners = np.unique(mesh.t)
     for name, turn in zip(number, maps):
@@ -380,14 +381,11 @@ def joined(mesh: MeshTet2, maps, number: np.ndarray, total: int) -> MeshTet2:
         # an image in a mirror is left-handed
         t = mesh.t if np.linalg.det(turn) > 0 else mesh.t[[0, 2, 1, 3]]
         cells.append(name[t])
-        ends = np.sort(name[mesh.edges], axis=0).astype(np.int64)
-        keys.append(ends[0] * total + ends[1])
+        ends.append(name[mesh.edges])
         middles.append(turn @ at)
     straight = MeshTet1(points, np.ascontiguousarray(np.hstack(cells).astype(np.int32)))
     whole = MeshTet2.from_mesh(straight)
-    key, first = np.unique(np.concatenate(keys), return_index=True)
-    ends = np.sort(whole.edges.astype(np.int64), axis=0)
+    found = edge_places(np.hstack(ends), whole.edges)
     doflocs = whole.doflocs.copy()
-    found = first[np.searchsorted(key, ends[0] * total + ends[1])]
     doflocs[:, whole.dofs.edge_dofs[0]] = np.hstack(middles)[:, found]
     return replace(whole, doflocs=doflocs)

@@ -18,6 +18,7 @@ from skfem import MeshTet1, MeshTet2
 from solidgear.machine.interruptible import call
 from solidgear.meshing.closed_form import volume_of
 from solidgear.meshing.curving import relaxed, volume_kept
+from solidgear.meshing.edge_places import edge_places
 from solidgear.meshing.element_size import set_size, size_formulas
 from solidgear.meshing.gmsh_session import Session, import_gmsh
 from solidgear.meshing.outline import (
@@ -338,13 +339,9 @@ def to_skfem(gmsh):
     mesh = MeshTet2.from_mesh(straight)
 
     pairs = corners[:, _mid_node_corners(gmsh)]  # (element, 6, 2)
-    key = pairs.min(axis=2) * len(used) + pairs.max(axis=2)
-    key, first = np.unique(key, return_index=True)
-    middle = cells[:, 4:].reshape(-1)[first]
-    edges = np.sort(mesh.edges.astype(np.int64), axis=0)
-    wanted = edges[0] * len(used) + edges[1]
+    at = edge_places(pairs.reshape(-1, 2).T, mesh.edges)
     doflocs = mesh.doflocs.copy()
-    doflocs[:, mesh.dofs.edge_dofs[0]] = position[middle[np.searchsorted(key, wanted)]].T
+    doflocs[:, mesh.dofs.edge_dofs[0]] = position[cells[:, 4:].reshape(-1)[at]].T
     return replace(mesh, doflocs=doflocs)
 
 
