@@ -66,17 +66,10 @@ def run(monkeypatch, capsys, tmp_path):
 
 @pytest.fixture
 def two_meshes(monkeypatch):
-    """A harmonic solid that ends where a tolerance of 1e-5 is far away."""
-    import dataclasses
+    """A climb that ends with its second mesh, where a tolerance of 1e-8 is far away."""
+    from solidgear.studies import climb
 
-    from solidgear.fidelity.ladder import LADDER
-    from solidgear.fidelity.levels import HARMONIC, Sequence
-
-    short = dataclasses.replace(
-        LADDER["harmonic"], meshes=lambda options: Sequence(HARMONIC[:2], False, True)
-    )
-    rungs = tuple(short if r.name == "harmonic" else r for r in LADDER)
-    monkeypatch.setattr(LADDER, "rungs", rungs)
+    monkeypatch.setattr(climb, "MOST_MESHES", 2)
 
 
 @pytest.fixture

@@ -7,7 +7,7 @@ import scipy.sparse.linalg as spla
 
 import solidgear as sg
 from solidgear import Port, Scene, SceneError, Segment
-from solidgear.fidelity.edges import sharpest_edge
+from solidgear.fidelity.harmonic_bounds import richer_space
 from solidgear.fidelity.size import estimated_size
 from solidgear.meshing.closed_form import mass_properties, volume_of
 from solidgear.scene import Chamfer, Fillet
@@ -155,8 +155,7 @@ def test_a_chamfer_in_a_shoulder_is_meshed_as_a_cone():
 
 @pytest.mark.long
 def test_bars_beside_a_chamfer_hold_against_the_same_outline_as_a_cone():
-    # without layers to the two corners that it leaves C_zz was 1.0e-3 off and needed a bar of eight
-    # times that of other shoulders
+    # its two corners are cut as those of a cone are
     scene, cones = chamfer_and_cone()
     asked = ["C_zz", "C_thx"]
     found = sg.answer(scene, tol=1e-3, ask=asked)
@@ -282,10 +281,27 @@ def test_solids_agree_within_what_their_meshes_leave():
         assert found == pytest.approx(reference, rel=tolerance)
 
 
-def test_what_is_sharpest_knows_fillets():
-    assert sharpest_edge(stepped()) == "shoulder"
-    assert sharpest_edge(stepped(root(0.004))) == "smooth"
-    assert sharpest_edge(stepped(Chamfer(name="c", y=0.068, length=0.004))) == "shoulder"
+def test_what_is_singular_knows_fillets():
+    """A fillet leaves no corner on the meridian, a chamfer two in place of one."""
+
+    def corners(*blends):
+        scene = stepped(*blends)
+        options = {"order": 3, "layers": 0, "edge_layers": 0, "families": ("torsion",)}
+        body = sg.build(scene, "harmonic", **options)
+        found = richer_space(coned(scene), body).corners
+        points = body.geometry.meridian.points
+        return sorted(
+            (round(float(points[1, v]), 9), round(float(points[0, v]), 9), round(float(angle), 3))
+            for v, (kind, angle) in found.items()
+            if kind == "re-entrant"
+        )
+
+    # at right angles and at half of them beyond a straight one
+    right, half = round(1.5 * np.pi, 3), round(1.25 * np.pi, 3)
+    assert corners() == [(0.068, 0.045, right)]
+    assert corners(root(0.004)) == []
+    chamfer = Chamfer(name="c", y=0.068, length=0.004)
+    assert corners(chamfer) == [(0.068, 0.049, half), (0.072, 0.045, half)]
 
 
 @pytest.mark.parametrize(

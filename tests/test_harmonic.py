@@ -270,3 +270,49 @@ def test_order_and_grading_converge_from_above():
     assert stiffness[2] == pytest.approx(
         4.70996e9, rel=2e-4
     )  # order 4 with two layers is good to 1e-4
+
+
+@pytest.mark.parametrize(
+    ("family", "exponent"),
+    # of a right-angled shoulder: of twist 2/3, of all else the root of sin(1.5 pi a) = -a sin(1.5 pi)
+    [("torsion", 2 / 3), ("axial", brentq(lambda a: np.sin(1.5 * np.pi * a) - a, 0.5, 0.6))],
+)
+def test_a_cut_towards_a_shoulder_leaves_the_share_that_its_exponent_says(family, exponent):
+    """0.15^(2 a) each, where the order is high enough for nothing else to be left."""
+    parts = [
+        Segment.cylinder("a", length=0.06, diameter=0.04),
+        Segment.cylinder("b", y0=0.06, length=0.06, diameter=0.06),
+    ]
+    scene = Scene.from_parts(parts, port=Port(y=0.03, lo=0.0, hi=0.06))
+    found = []
+    for count in (1, 2, 3, 4):
+        body = sg.build(
+            scene,
+            "harmonic",
+            order=8,
+            layers=0,
+            edge_layers=0,
+            plain=True,
+            families=(family,),
+            cuts=((0.06, 0.02, count),),
+        )
+        found.append(sg.modes(body, n=3, ovalising=False).named(f"{family} 1").frequency_hz)
+    steps = -np.diff(found)
+    assert (steps > 0).all()  # from above, as an energy method does
+    assert steps[1:] / steps[:-1] == pytest.approx(0.15 ** (2 * exponent), rel=0.02)
+
+
+def test_rigid_seats_hold_a_tube_against_ovalising():
+    """As in the 3D solid: seats that cannot deform leave the walls between them to do it."""
+    tube = Segment.cylinder("tube", length=0.2, diameter=0.1, bore=0.092)
+    springs = {"kxx": "1e8 N/m", "kyy": "1e8 N/m", "kzz": "1e8 N/m"}
+    found = {}
+    for tie in ("average", "rigid"):
+        bearings = [
+            sg.Bearing(name=n, y=y, seat_width=0.02, stiffness=springs, attachment=tie)
+            for n, y in (("A", 0.02), ("B", 0.18))
+        ]
+        scene = Scene.from_parts([tube], bearings=bearings, port=Port(y=0.1, lo=0.09, hi=0.11))
+        body = sg.build(scene, "harmonic", order=4, layers=0, edge_layers=0)
+        found[tie] = sg.modes(body, scene, 24).named("ovalising n=2 1").frequency_hz
+    assert found["rigid"] > 3 * found["average"]

@@ -564,3 +564,17 @@ def test_layers_at_a_thin_disc_begin_within_its_thickness():
     # a low collar is no disc
     low = shaft((0.1, 0.02, 0.02, 0, 0), (0.002, 0.021, 0.021, 0, 0), (0.1, 0.02, 0.02, 0, 0))
     assert joint_length(low.segments, 0) == pytest.approx(0.02)
+
+
+def test_a_plain_mesh_has_no_lines_for_what_is_narrow_or_thin():
+    plate = {"layers": 0, "plain": True}
+    assert rings_of(0.002, 0.0, **plate) == pytest.approx([0.0, 0.1])
+    assert rings_of(0.002, 0.03, **plate) == pytest.approx([0.03, 0.1])
+    grading = Grading(layers=0, edge_layers=0, relative_size=4.0, plain=True)
+    lines = []
+    for width in (0.0002, 0.006, 0.02):
+        ring = Port(name="gear", y=0.1, lo=0.1 - width / 2, hi=0.1 + width / 2)
+        scene = shaft((0.2, 0.05, 0.05, 0, 0), port=ring)
+        lines.append(len(layout(scene, grading).y))
+        assert grading.seat_layers(ring, scene.segments, ("average",)) == 0
+    assert len(set(lines)) == 1

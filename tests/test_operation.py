@@ -73,8 +73,8 @@ def started(code, *arguments, **more):
 # --------------------------------------------------------------------------- Ctrl-C
 COMMANDS = {
     "compare": ["compare", SCENE, "--models", "timoshenko,harmonic", "--out", "out"],
-    "modes": ["modes", SCENE],
-    "stiffness": ["stiffness", SCENE],
+    "modes": ["modes", SCENE, "--tol", "1e-4"],
+    "stiffness": ["stiffness", SCENE, "--tol", "1e-4"],
     "chart": ["chart", SCENE, "--out", "out"],
     "sweep": ["sweep", SCENE, "--vary", "bearing.1.scale=1,2", "--out", "rows.csv"],
 }

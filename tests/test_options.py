@@ -95,6 +95,11 @@ REFUSED = {
         "give one or more of average, rigid, section",
     ),
     "no tie": ("harmonic", {"attachments": ()}, "attachments"),
+    "a cut without a number": ("harmonic", {"cuts": ((0.12, 0.025),)}, "give 3 numbers, y and r"),
+    "cuts without end": ("harmonic", {"cuts": ((0.12, 0.025, 13),)}, "between 1 and 12"),
+    "half a cut": ("harmonic", {"cuts": ((0.12, 0.025, 0.5),)}, "a whole number"),
+    "a word for a place": ("harmonic", {"cuts": ("shoulder",)}, "give 3 numbers"),
+    "a line through nowhere": ("harmonic", {"across": ((0.1, np.nan),)}, "give 2 numbers"),
 }
 
 
@@ -142,6 +147,18 @@ def test_a_single_name_or_number_is_a_list_of_one():
         "ovalising": (2,),
         "attachments": ("rigid",),
     }
+
+
+@pytest.mark.parametrize(("name", "place"), [("cuts", (0.12, 0.025, 1)), ("across", (0.12, 0.01))])
+def test_a_single_place_is_a_list_of_one(name, place):
+    assert LADDER["harmonic"].checked({name: place}) == {name: (place,)}
+
+
+@pytest.mark.parametrize("name", ["cuts", "across"])
+def test_a_place_that_is_not_on_the_mesh_is_named(name):
+    nowhere = {"cuts": ((0.5, 0.5, 1),), "across": ((0.5, 0.5),)}[name]
+    with pytest.raises(sg.SolidgearError, match=f"{name}: no .* of the mesh .* y = 0.5 m"):
+        sg.build(SCENE, "harmonic", order=2, layers=0, **{name: nowhere})
 
 
 def test_the_thinnest_layer_still_has_digits():

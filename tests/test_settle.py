@@ -3,7 +3,6 @@ the bars, in both planes, and what is not reached is said.
 """
 
 import csv
-import dataclasses
 import json
 from pathlib import Path
 
@@ -11,10 +10,10 @@ import numpy as np
 import pytest
 
 import solidgear as sg
-from solidgear.evidence.answer import numbers, solve
-from solidgear.evidence.quantities import at_points, between, change
+from solidgear.evidence.answer import Numbers, solve
+from solidgear.evidence.bounded import Statics
+from solidgear.evidence.quantities import at_points, between, change, measure
 from solidgear.fidelity.ladder import LADDER
-from solidgear.fidelity.levels import HARMONIC
 from solidgear.scene import Bearing
 from solidgear.solve.statics import condense
 from solidgear.studies.answering import answer
@@ -26,7 +25,8 @@ SCENE = str(ROOT / "geometry" / "pinion_overhung.toml")
 FREE = str(ROOT / "geometry" / "cylinder_free.toml")
 #: the same system, factored again
 ROUNDING = 1e-9
-#: own error of a reference two orders and two layers finer than what is judged: its bands are below
+#: layers towards all corners, and what such a mesh errs by itself
+FINE = {"order": 5, "layers": 3, "edge_layers": 2, "relative_size": 4.0}
 REFERENCE = 5e-5
 #: root of what is left of the stiffness of bearings in x and about z
 SOFTER = np.array([0.5, 1.0, 1.0, 1.0, 1.0, 0.5])
@@ -39,7 +39,7 @@ def scene():
 
 @pytest.fixture(scope="module")
 def truth(scene):
-    return solve(scene, "harmonic", 4, **HARMONIC[3])
+    return solve(scene, "harmonic", 4, **FINE)
 
 
 def apart(matrix, exact):
@@ -57,9 +57,8 @@ def test_stiffness_is_that_of_the_mesh_it_names_and_the_truth_is_within_its_bars
     code, out, err = run("stiffness", SCENE, "--tol", "0.01", "--json")
     found = json.loads(out)
     assert code == 0 and err == "" and found["reached"]
-    assert (
-        found["rung"] == found["fidelity"] == "harmonic" and found["setting"] == "order 3, layers 1"
-    )
+    assert found["rung"] == found["fidelity"] == "harmonic"
+    assert found["setting"].startswith(f"order {found['options']['order']}, ")
     bars = found["bars"]
     assert found["tolerance"] == 0.01 and max(bars.values()) <= 0.01
     assert {"C_zz", "C_thx", "C_yy", "K_z,thx", "C_xx", "K_thz"} <= set(bars)
@@ -70,9 +69,10 @@ def test_stiffness_is_that_of_the_mesh_it_names_and_the_truth_is_within_its_bars
     assert apart(stiffness, again.condensed.stiffness) < ROUNDING
     assert apart(compliance, again.condensed.compliance) < ROUNDING
     assert apart(stiffness, truth.condensed.stiffness) <= max(bars.values()) + REFERENCE
-    for name in ("C_zz", "C_z,thx", "C_thx", "C_yy", "K_zz", "K_thx"):
-        off = abs(change(again.quantities, truth.quantities, name))
-        assert off <= bars[name] + REFERENCE
+    # and every number by itself, couplings too: of the body, which stands at an end of what is open
+    assert set(bars) <= set(again.quantities)
+    for name, bar in bars.items():
+        assert abs(change(again.quantities, truth.quantities, name)) <= bar + REFERENCE, name
 
 
 def test_a_tighter_tolerance_takes_a_finer_mesh_and_the_scene_has_one_of_its_own(scene):
@@ -80,6 +80,16 @@ def test_a_tighter_tolerance_takes_a_finer_mesh_and_the_scene_has_one_of_its_own
     assert loose.tolerance == scene.ask.tolerance
     assert tight.body.size > loose.body.size and tight.reached
     assert max(tight.bars.values()) <= 1e-3 < max(loose.bars.values())
+
+
+def test_bars_of_a_body_hold_its_own_couplings(scene):
+    """A coarse body errs by all that its bars hold, and a coupling by as much as its diagonal does."""
+    found = settle(scene, 0.1, "stiffness")
+    fine = sg.build(scene, "harmonic", **FINE)
+    mine, exact = (measure(condense(body, scene, "pinion"), None) for body in (found.body, fine))
+    off = {q: abs(change(mine, exact, q)) for q in ("C_z,thx", "C_x,thz", "K_z,thx", "K_x,thz")}
+    # errors that are there, well above that of the fine mesh
+    assert all(10 * REFERENCE < error <= found.bars[q] for q, error in off.items()), off
 
 
 def test_the_plane_that_rests_on_the_mesh_decides(scene):
@@ -94,12 +104,11 @@ def test_the_plane_that_rests_on_the_mesh_decides(scene):
     assert found.reached and found.largest[0] == "K_thz"
     coarse, mine, exact = (
         sg.condense(sg.build(uneven, "harmonic", **options), uneven, "pinion").stiffness[5, 5]
-        for options in (HARMONIC[1], found.options, HARMONIC[3])
+        for options in (soft_plane.steps[-1].options, found.options, FINE)
     )
-    assert abs(mine / exact - 1) <= found.bars["K_thz"]
+    assert abs(mine / exact - 1) <= found.bars["K_thz"] + REFERENCE
     # the mesh that suits the soft plane is outside the tolerance here
-    assert soft_plane.reached and len([s for s in soft_plane.steps if s.valid]) == 2
-    assert abs(coarse / exact - 1) > 5e-4
+    assert soft_plane.reached and abs(coarse / exact - 1) > 5e-4
 
 
 def test_attachments_are_honoured(run):
@@ -142,7 +151,7 @@ def test_modes_are_those_of_the_mesh_and_the_first_of_every_family_have_a_bar(ru
 def test_modes_for_people(run):
     code, out, err = run("modes", SCENE, "--max-frequency", "9000", "-n", "14")
     assert code == 0 and err == ""
-    assert "pinion_overhung: harmonic, order 3, layers 1 (auto), " in out
+    assert "pinion_overhung: harmonic, order 3 (auto), " in out
     assert "Largest mesh bar: +- 0." in out and "Passed over: euler, timoshenko (" in out
     assert "No bar of their own: bending 3, axial 2; " in out
 
@@ -150,33 +159,31 @@ def test_modes_for_people(run):
 # --------------------------------------------------------------------------- not reached
 @pytest.mark.parametrize("command", ["stiffness", "modes"])
 def test_what_is_not_reached_is_given_with_its_bar_and_an_exit_code(run, two_meshes, command):
-    code, out, err = run(command, SCENE, "--tol", "1e-5", "--json")
+    code, out, err = run(command, SCENE, "--tol", "1e-8", "--json")
     found = json.loads(out)
     assert code == 3 and err == "" and found["reached"] is False
-    assert found[command] and max(found["bars"].values()) > 1e-5
+    assert found[command] and max(found["bars"].values()) > 1e-8
 
 
 def test_what_is_not_reached_is_said(run, two_meshes):
-    code, out, _ = run("stiffness", SCENE, "--tol", "1e-5")
-    assert code == 3 and "Not reached: " in out and "no finer mesh" in out
+    code, out, _ = run("stiffness", SCENE, "--tol", "1e-8")
+    assert code == 3 and "Not reached: " in out and "2 meshes did not do" in out
     assert "K_thx" in out and "compliance, engineering units" in out
 
 
 def test_a_finer_mesh_that_fails_leaves_the_body_before_it(scene, builds_until):
-    calls = builds_until(2)
-    found = settle(scene, 1e-5, "stiffness")
-    assert not found.reached and found.options == calls[1]
-    assert found.body.size == [s for s in found.steps if s.chosen][0].unknowns
-
-
-def test_one_mesh_alone_has_no_bar(run, builds_until):
     calls = builds_until(1)
-    code, out, _ = run("stiffness", SCENE, "--json")
-    found = json.loads(out)
-    assert code == 3 and not found["reached"] and set(found["bars"].values()) == {None}
-    calls.clear()
-    _, out, _ = run("stiffness", SCENE)
-    assert "+- unknown" in out and "3000 MB are free" in out
+    found = settle(scene, 1e-5, "stiffness")
+    assert not found.reached and found.options == calls[0] and len(calls) == 2
+    assert found.body.size == [s for s in found.steps if s.chosen][0].unknowns
+    # one mesh tells its own error
+    assert all(0 < bar < 1 for bar in found.bars.values())
+
+
+def test_a_finer_mesh_that_fails_is_told_with_the_bars_there_are(run, builds_until):
+    builds_until(1)
+    code, out, _ = run("stiffness", SCENE, "--tol", "1e-5")
+    assert code == 3 and "Not reached: " in out and "3000 MB are free" in out
 
 
 # --------------------------------------------------------------------------- refused
@@ -271,10 +278,8 @@ def test_features_are_held_against_the_plane_that_a_number_is_of():
     of_one = ("C_zz", "C_z,thx", "C_thx", "K_zz", "K_z,thx", "K_thx")
     wanted = (*at_points(of_one, ["end"]), *between(of_one, ["pinion", "end"]))
     climb = Whole(scene, LADDER["corrected"], wanted, 0.01, lambda _: None)
-    for _ in range(2):
-        climb.levels.append(numbers(here, None, {"end": there}, both))
-        climb._keep_statics(None, here, {"end": there}, both)
-        climb.sizes.append(None)
+    values = Statics(here, {"end": there}, both).values()
+    climb.levels, climb.sizes = [Numbers(values, {})] * 2, [None] * 2
     climb.judge()
     bars = climb.bars()
     own = {"C_x,thz", "K_xx", "C_xx@end", "C_x,thz@end", "C_xx@pinion@end", "K_thy@pinion@end"}
@@ -282,9 +287,8 @@ def test_features_are_held_against_the_plane_that_a_number_is_of():
     # the plain part on a lighter mesh, which is what features are held against, is good to 1e-3
     assert max(bars.values()) < 1e-3, bars
     # and what a key does change has its share in the bar, in that plane too
-    shifted = climb.across[-1].quantities | {
-        q: 1.1 * v for q, v in climb.across[-1].quantities.items() if q.startswith("C_xx")
-    }
-    climb.across = [dataclasses.replace(climb.across[-1], quantities=shifted)] * 2
-    share = LADDER["corrected"].factors.effect["C_xx"] * (1 - 1 / 1.1)
+    shifted = values | {q: 1.1 * v for q, v in values.items() if q.startswith("C_xx")}
+    climb.levels = [Numbers(shifted, {})] * 2
+    climb.judge()
+    share = LADDER["corrected"].safety.share * (1 - 1 / 1.1)
     assert climb.bars()["C_xx@end"] == pytest.approx(share, rel=0.02)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Sequence
+from dataclasses import asdict, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -29,17 +30,6 @@ if TYPE_CHECKING:
     from solidgear.scene import Scene
     from solidgear.studies.answering import Answered, Step
     from solidgear.studies.settle import Settled
-
-#: compliances whose error is placed for numbers that have no places of their own
-STANDS_FOR = {
-    "K_zz": "C_zz",
-    "K_z,thx": "C_z,thx",
-    "K_thx": "C_thx",
-    "K_yy": "C_yy",
-    "bending 1": "C_zz",
-    "bending 2": "C_zz",
-    "axial 1": "C_yy",
-}
 
 
 @command
@@ -83,13 +73,13 @@ def answer(
         check_ending(picture)  # before anything is solved
     loaded = load(scene)
     places: Whereabouts | None = None
-    asked = unplaced = ""
+    unplaced = ""
     with Progress(quiet=as_json) as progress:
         found = solve(loaded, tol, ask, progress=progress)
         if where or picture is not None:
             progress("where the error sits")
             try:
-                places, asked = _places(loaded, found)
+                places = _places(loaded, found)
             except SolidgearError as error:
                 unplaced = str(error)
     if places is not None and picture is not None:
@@ -97,7 +87,7 @@ def answer(
     if as_json:
         out = found.as_dict()
         if where or picture is not None:
-            out["where"] = {"error": unplaced} if places is None else _plain(places, asked)
+            out["where"] = {"error": unplaced} if places is None else _plain(places)
         print(json.dumps(out, allow_nan=False))
     else:
         terminal = console()
@@ -106,8 +96,8 @@ def answer(
         for line in [*sentences(found), *_of_round_part(loaded, found)]:
             terminal.print(line, markup=False, soft_wrap=True)
         if places is not None:
-            terminal.print(_where_table(places, asked))
-            terminal.print(_told(places, asked), markup=False, soft_wrap=True)
+            terminal.print(_where_table(places))
+            terminal.print(_told(places), markup=False, soft_wrap=True)
         if unplaced:
             terminal.print(f"Where the error sits: {unplaced}.", markup=False, soft_wrap=True)
         if places is not None and picture is not None:
@@ -224,41 +214,30 @@ def _absent(missing: Sequence[str]) -> str:
     return "; ".join(f"{', '.join(names)} ({why})" for names, why in whys if names)
 
 
-def _places(scene: Scene, found: Answered) -> tuple[Whereabouts, str]:
-    """Where the error of the widest bar sits, and the quantity that was asked for with that bar.
-
-    Only some compliances have places (:data:`solidgear.evidence.where.PLACED`). Where none of them
-    was asked for, stiffnesses and frequencies are shown those of the compliance in
-    :data:`STANDS_FOR`. The mesh is the finest one that the quantity was solved on.
+def _places(scene: Scene, found: Answered) -> Whereabouts:
+    """Where the error of the number with the widest bar sits, on the finest mesh it was solved on.
 
     Raises
     ------
     SolidgearError
-        For the answer of another model than the harmonic solid, or where nothing that was asked for
-        has places.
+        For the answer of another model than the harmonic solid, or where nothing was answered.
     """
-    from solidgear.evidence.where import PLACED, where
+    from solidgear.evidence.where import where
     from solidgear.fidelity.ladder import LADDER
 
     if found.rung != "harmonic":
         raise SolidgearError(
             f"only known of the harmonic solid; this answer is that of the {LADDER[found.rung].title}"
         )
-    known = [v for v in found.values if STANDS_FOR.get(v.quantity, v.quantity) in PLACED]
-    if not known:
-        raise SolidgearError(f"only known of {', '.join(PLACED)}; ask for one of them")
-    first = min(known, key=lambda value: (value.quantity in STANDS_FOR, -value.bar))
-    name = STANDS_FOR.get(first.quantity, first.quantity)
-    solved = [s for s in _solved(found) if not s.only or first.quantity in s.only]
-    return where(scene, name, dict(solved[-1].options)), first.quantity
+    if not found.values:
+        raise SolidgearError("nothing that was asked for exists in this scene")
+    widest = max(found.values, key=lambda value: value.bar)
+    solved = [step for step in _solved(found) if not step.only or widest.quantity in step.only]
+    places = where(scene, widest.quantity, solved[-1].options)
+    return replace(places, total=widest.bar)
 
 
-def _for(places: Whereabouts, asked: str) -> str:
-    """For what a compliance stands; nothing where it was itself asked for."""
-    return f", for {asked}" if asked != places.quantity else ""
-
-
-def _where_table(places: Whereabouts, asked: str) -> Table:
+def _where_table(places: Whereabouts) -> Table:
     """Places of the error with their shares of it, the largest first."""
     from rich import box
     from rich.table import Table
@@ -266,7 +245,7 @@ def _where_table(places: Whereabouts, asked: str) -> Table:
     from solidgear.report.where_chart import worth_naming
 
     table = Table(box=box.SIMPLE_HEAD, pad_edge=False)
-    table.add_column(f"error of {places.quantity}{_for(places, asked)}")
+    table.add_column(f"error of {places.quantity}")
     table.add_column("y, mm", justify="right")
     table.add_column("r, mm", justify="right")
     table.add_column("within, mm", justify="right")
@@ -278,34 +257,26 @@ def _where_table(places: Whereabouts, asked: str) -> Table:
     return table
 
 
-def _told(places: Whereabouts, asked: str) -> str:
-    """Where most of the error sits, by what step of the order that was told, and what it cost."""
+def _told(places: Whereabouts) -> str:
+    """Where most of the error sits, of how wide a bar, and what it cost to tell."""
     from solidgear.report.words import percent, seconds
 
-    line = (
-        f"{places.sentence} (by what order {places.order + 1} moves on this mesh, "
-        f"{percent(places.total, signed=False)}; {seconds(places.seconds)} s)."
-    )
-    if asked == places.quantity:
-        return line
-    return f"{line} {asked} has no places of its own; {places.quantity} stands for it."
+    total = percent(places.total, signed=False)
+    return f"{places.sentence} (a bound by local problems, {total}; {seconds(places.seconds)} s)."
 
 
-def _plain(places: Whereabouts, asked: str) -> dict[str, Any]:
+def _plain(places: Whereabouts) -> dict[str, Any]:
     """What ``--json`` says of the places: all but the mesh and the share of every cell, which only
     a picture needs.
     """
-    from dataclasses import asdict
-
-    names = ("quantity", "order", "total", "check", "sentence", "seconds")
-    rows = [asdict(row) for row in places.rows]
+    names = ("quantity", "order", "total", "sentence", "seconds")
     out = {name: getattr(places, name) for name in names}
-    return out | {"stands_for": asked if asked != places.quantity else None, "rows": rows}
+    return out | {"rows": [asdict(row) for row in places.rows]}
 
 
 def _draw(places: Whereabouts, picture: Path) -> None:
-    """Write a picture of the share that every cell has of the error."""
+    """Write a picture of the mesh, every cell with its share of the error."""
     from solidgear.report.where_chart import draw_where
 
-    title = f"Error of {places.quantity} at order {places.order}, by cell"
+    title = f"Bar of {places.quantity} by cells, order {places.order}"
     draw_where(picture, places.points, places.cells, places.shares, places.rows, title)

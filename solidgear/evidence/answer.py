@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any
 
 from solidgear.body import Body, Supports, as_supports
@@ -17,6 +17,8 @@ from solidgear.solve.statics import condense
 if TYPE_CHECKING:
     from solidgear.scene import Scene
 
+#: shapes that are searched at most for a mode that is asked for
+MOST_MODES = 160
 #: modes that hold the first bending pair and the first axial mode of anything that looks like a
 #: shaft
 ENOUGH = 10
@@ -94,6 +96,8 @@ class Answer:
         Statics at further lumped points.
     coupled : Coupled or None
         All lumped points together, where there are several.
+    supports : Supports or None
+        That hold it.
     """
 
     body: Body
@@ -102,12 +106,64 @@ class Answer:
     quantities: dict[str, float]
     further: dict[str, Condensed] = field(default_factory=dict)
     coupled: Coupled | None = None
+    supports: Supports | None = None
 
     @property
     def numbers(self) -> Numbers:
         """Its numbers and what the solver may have left in them; they outlive the body."""
         left = _left(self.condensed, self.modes, self.coupled, self.quantities)
         return Numbers(self.quantities, left)
+
+
+def searched(
+    body: Body,
+    supports: Supports,
+    n: int,
+    wanted: Iterable[str],
+    *,
+    spare: bool = False,
+    **options: Any,
+) -> ModeSet:
+    """Modes that hold all that are asked for, however high they lie.
+
+    Parameters
+    ----------
+    body : Body
+    supports : Supports
+    n : int
+        Elastic shapes of the list; what is found above stands beyond its end.
+    wanted : iterable of str
+        Names of modes.
+    spare : bool
+        Whether one more of the same motion is wanted above each.
+    **options
+        Of :func:`solidgear.solve.modes.modes`.
+
+    Returns
+    -------
+    ModeSet
+        Without those that are not among the lowest `MOST_MODES` shapes.
+    """
+    wanted = list(wanted)
+    found = modes(body, supports, n, **options)
+    count, wider = n, found
+    while count < MOST_MODES and not all(_held(wider, name, spare) for name in wanted):
+        count *= 2
+        wider = modes(body, supports, count, ovalising=False)
+    if wider is found:
+        return found
+    known = {m.name for m in (*found.modes, *found.beyond)}
+    more = tuple(m for m in (*wider.modes, *wider.beyond) if m.name not in known)
+    return replace(found, beyond=(*found.beyond, *more))
+
+
+def _held(found: ModeSet, name: str, spare: bool) -> bool:
+    """Whether a mode is there, and one above it of the same motion."""
+    mode = found.named(name)
+    if mode is None or not spare:
+        return mode is not None
+    above = (m for m in (*found.modes, *found.beyond) if m.frequency_hz > mode.frequency_hz)
+    return any(m.family == mode.family for m in above)
 
 
 def solve(
@@ -178,6 +234,8 @@ def answered(
     max_frequency: float | None = None,
     count: bool = False,
     ovalising: bool = False,
+    wanted: Iterable[str] = (),
+    spare: bool = False,
     meter: Meter,
 ) -> Answer:
     """What a body answers on some supports; parameters as for :func:`solve`.
@@ -190,6 +248,10 @@ def answered(
         Names of the lumped points, the main one first.
     attachments : str or sequence of str, optional
         Of the lumped points; by default the body's first.
+    wanted : iterable of str
+        Names of modes that are searched for until they are there.
+    spare : bool
+        Whether one more of the same motion is wanted above each.
     """
     if attachments is None or isinstance(attachments, str):
         attachments = [attachments] * len(ports)
@@ -201,10 +263,17 @@ def answered(
         coupled = condense(body, supports, tuple(ports), kinds) if others else None
     further = dict(zip(ports[1:], others))
     with meter.stage("modes"):
-        found = modes(
-            body, supports, n, max_frequency=max_frequency, count=count, ovalising=ovalising
+        found = searched(
+            body,
+            supports,
+            n,
+            wanted,
+            spare=spare,
+            max_frequency=max_frequency,
+            count=count,
+            ovalising=ovalising,
         )
     # Evidence, not part of the answer: kept apart from what the modes cost.
     meter.move("modes", "count", found.evidence.get("count_seconds", 0.0))
     values = measure(condensed, found, further, coupled)
-    return Answer(body, condensed, found, values, further, coupled)
+    return Answer(body, condensed, found, values, further, coupled, supports)

@@ -321,7 +321,6 @@ class WhereRecord(Part):
     quantity: str = ""
     order: int = 0
     total: Number = None
-    check: Number = None
     sentence: str = ""
     rows: list[PlaceRecord] = []
     points: list[list[float]] = []

@@ -12,20 +12,26 @@ from __future__ import annotations
 import logging
 import math
 from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Sequence as Listed
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
-from solidgear.body import Body, Supports, as_supports
+import numpy as np
+
+from solidgear.body import Body, as_supports
 from solidgear.errors import SolidgearError
-from solidgear.evidence.answer import ENOUGH, Answer, Numbers, answered
+from solidgear.evidence.answer import ENOUGH, Answer, Numbers, searched
 from solidgear.evidence.bands import Band
+from solidgear.evidence.bounded import Bounded, Statics, bounded
 from solidgear.evidence.quantities import JUDGED, change, usual
 from solidgear.evidence.sequence_bands import sequence_bands
+from solidgear.evidence.tied import facts_of, judged_modes, solved_ties, tied_answer
 from solidgear.evidence.ties import SCENE, SECTION, rigid_seats
 from solidgear.fidelity import build
 from solidgear.fidelity.ladder import LADDER
 from solidgear.fidelity.levels import HEAVY, LIGHT_JUDGE, Sequence
 from solidgear.fidelity.options import ATTACHMENTS
+from solidgear.fidelity.refining import MOST_MESHES, Meshed, refined
 from solidgear.machine.meter import Meter
 from solidgear.solve.modes import ModeSet
 from solidgear.solve.statics import Condensed
@@ -138,9 +144,21 @@ def study(
     own = LADDER[model]
     if own.meshes is None:
         progress(f"{model}: build, statics, modes")
-        ties = _solved(scene, model, options, meter, 0 if evidence and counted else math.inf)
+        ties = solved_ties(scene, model, options, meter, 0 if evidence and counted else math.inf)
         rung = Solution(model, ties, meter, options=options)
         keep(rung)
+    elif own.bounded:
+        rung = _refined(
+            scene,
+            model,
+            own.meshes_of(scene, options),
+            meter,
+            scene.ask.tolerance / (share or own.share),
+            most,
+            evidence and counted,
+            progress,
+            keep,
+        )
     else:
         rung = _climbed(
             scene,
@@ -156,6 +174,89 @@ def study(
     if evidence:
         _add_variants(scene, rung, progress)
     return rung
+
+
+def _refined(
+    scene: Scene,
+    model: str,
+    plan: Sequence,
+    meter: Meter,
+    target: float,
+    most: int | None,
+    counted: bool,
+    progress: Progress,
+    keep: Callable[[Solution], None],
+) -> Solution:
+    """On meshes that follow where the bars come from, or on the one that was asked for."""
+    mesh = Meshed(given={} if plan.fixed else plan.levels[0])
+    level = plan.levels[-1] if plan.fixed else mesh.options()
+    facts: list[dict] = []
+    rung: Solution | None = None
+    names = usual(scene)
+    for k in range(1 if plan.fixed else most or MOST_MESHES):
+        progress(f"{model}: mesh {k + 1}")
+        before = dict(meter.seconds)
+        try:
+            ties = solved_ties(scene, model, level, meter, spare=True)
+        except (SolidgearError, MemoryError) as error:
+            if rung is None:
+                raise
+            rung.failed["finer mesh"] = str(error) or "not enough memory"
+            break
+        if rung is not None:
+            _book_as_evidence(meter, before)
+        facts.append(facts_of(ties[SCENE]))
+        failed = rung.failed if rung else {}
+        rung = Solution(model, ties, meter, levels=facts, failed=failed, options=dict(level))
+        with meter.stage("band"):
+            told = _judged(scene, ties[SCENE], names)
+        rung.bands = {SCENE: told.bands}
+        keep(rung)
+        open_ = [q for q in names if q in told.bands and told.bands[q].gci > target]
+        if not open_ or k == (0 if plan.fixed else (most or MOST_MESHES) - 1):
+            break
+        score = np.max([told.bands[q].gci * told.scores[q] for q in open_], axis=0)
+        mesh = refined(scene, rung.body, mesh, score, target)
+        level = mesh.options()
+        rung.body.kept.clear()  # its factor need not be held beside the next one
+    assert rung is not None
+    _finished(scene, rung, names, counted, progress)
+    return rung
+
+
+def _finished(
+    scene: Scene, rung: Solution, names: Listed[str], counted: bool, progress: Progress
+) -> None:
+    """Bars with section ties, and modes counted."""
+    progress(f"{rung.model}: section ties")
+    tied = rung.ties.get(SECTION)
+    if tied is not None:
+        same = tied is rung.ties[SCENE]
+        with rung.meter.stage("band"):
+            plain = scene.with_attachment("section")
+            rung.bands[SECTION] = rung.bands[SCENE] if same else _judged(plain, tied, names).bands
+    if counted:
+        found = rung.ties[SCENE]
+        assert found.supports is not None  # of what was just answered
+        with rung.meter.stage("count"):
+            found.modes = searched(
+                found.body,
+                found.supports,
+                max(scene.ask.modes, ENOUGH),
+                judged_modes(scene),
+                max_frequency=scene.ask.max_frequency,
+                count=True,
+                ovalising=True,
+            )
+
+
+def _judged(scene: Scene, found: Answer, names: Listed[str]) -> Bounded:
+    """Bars of an answer by local problems."""
+    numbers = found.numbers
+    statics = Statics(found.condensed, found.further, found.coupled)
+    known = [q for q in dict.fromkeys((*names, *found.quantities)) if q in found.quantities]
+    assert found.supports is not None  # of what was just answered
+    return bounded(scene, found.body, found.supports, statics, found.modes, known, numbers.solver)
 
 
 def _climbed(
@@ -185,7 +286,7 @@ def _climbed(
         # the second level is counted as well where a third one may be too dear to be solved
         least = 0 if last else HEAVY + 1 if not plan.fixed and k == 1 else math.inf
         try:
-            ties = _solved(scene, model, level, meter, least if counted else math.inf)
+            ties = solved_ties(scene, model, level, meter, least if counted else math.inf)
         except (SolidgearError, MemoryError) as error:
             why = str(error) or "not enough memory"
             if plan.fixed and k < len(levels) - 1:
@@ -198,7 +299,7 @@ def _climbed(
         if rung is not None:
             _book_as_evidence(meter, before)
         solved.append({tie: found.numbers for tie, found in ties.items()})
-        facts.append(_facts(ties[SCENE]))
+        facts.append(facts_of(ties[SCENE]))
         if plan.turned is not None and not around:
             progress(f"{model}: mesh {k + 1} with more cells around")
             around = _around(scene, model, plan, solved[0], meter)
@@ -225,29 +326,13 @@ def _book_as_evidence(meter: Meter, before: dict[str, float]) -> None:
         meter.move(stage, "band", seconds)
 
 
-def _facts(found: Answer) -> dict:
-    body = found.body
-    order = body.mesh.get("order")
-    return {
-        "dofs": body.size,
-        "h": None if order else body.mesh.get("representative_size"),
-        "order": order,
-        "quantities": {
-            name: found.quantities[name]
-            for name in ("C_zz", "bending 1")
-            if name in found.quantities
-        },
-        "mesh": body.mesh,
-    }
-
-
 def _around(
     scene: Scene, model: str, plan: Sequence, ties: dict[str, Numbers], meter: Meter
 ) -> dict[str, dict[str, float]]:
     """Relative error that the cells around leave, per way of tying and quantity."""
     spare = Meter()
     with meter.stage("band"):
-        turned = _solved(scene, model, plan.turned or {}, spare)
+        turned = solved_ties(scene, model, plan.turned or {}, spare)
     out = {}
     for tie in set(ties) & set(turned):
         finer = turned[tie].quantities
@@ -266,8 +351,6 @@ def _bands(
 ) -> dict[str, dict[str, Band]]:
     """Bands of the finest level for every way of tying that all of the last levels have."""
     out = {}
-    factors = LADDER[model].factors
-    assert factors is not None  # of a rung with several meshes
     for tie in (SCENE, SECTION):
         known = [s for s in solved if tie in s]
         if len(known) < 2 or tie not in solved[-1]:
@@ -275,82 +358,10 @@ def _bands(
         values, solver = [s[tie].quantities for s in known], known[-1][tie].solver
         sizes = [f["mesh"].get("representative_size") for f in facts]
         tied = scene if tie == SCENE else scene.with_attachment("section")
-        found = sequence_bands(tied, plan, factors, values, solver, sizes, around.get(tie))
+        found = sequence_bands(tied, plan, LADDER[model], values, solver, sizes, around.get(tie))
         if found:
             out[tie] = found
     return out
-
-
-def _solved(
-    scene: Scene,
-    model: str,
-    options: Mapping[str, Any],
-    meter: Meter,
-    counted_from: float = math.inf,
-) -> dict[str, Answer]:
-    """What one mesh answers, tied as in the scene and by section means; modes are counted from
-    so many unknowns on.
-    """
-    given = {s.attachment for s in scene.stations}
-    # Means over seats and over sections are only rows on the same matrices; a rigid seat is another
-    # matrix.
-    together = "rigid" not in given
-    sections = LADDER[model].section_ties
-    wanted = (*sorted(given), "section") if sections else sorted(given)
-    kinds = tuple(dict.fromkeys(wanted)) if together else None
-    extra = {"attachments": kinds} if together else {}
-    body = _built(scene, model, {**options, **extra}, meter)
-    supports, count = as_supports(scene), body.size >= counted_from
-    if together:
-        supports = supports.on_stations(scene.stations)
-    ties = {
-        SCENE: _tied(scene, body, supports, _as_tied(scene) if together else None, meter, count)
-    }
-    if given == {"section"}:
-        ties[SECTION] = ties[SCENE]
-    elif not sections:
-        pass  # planes of section ties would have to be graded; another solid judges like for like
-    elif together:
-        ties[SECTION] = _tied(
-            scene, body, supports.with_attachment("section"), "section", meter, False
-        )
-    else:
-        plain = scene.with_attachment("section")
-        other = _built(plain, model, options, meter)
-        ties[SECTION] = _tied(plain, other, as_supports(plain), None, meter, False)
-    return ties
-
-
-def _as_tied(scene: Scene) -> list[str]:
-    return [port.attachment for port in scene.ports]
-
-
-def _built(scene: Scene, model: str, options: Mapping[str, Any], meter: Meter) -> Body:
-    with meter.stage("build"):
-        return build(scene, model, **options)
-
-
-def _tied(
-    scene: Scene,
-    body: Body,
-    supports: Supports,
-    attachments: list[str] | str | None,
-    meter: Meter,
-    count: bool,
-) -> Answer:
-    # Families of two waves and more are reported for the mesh that is; bearings do not move them,
-    # nor do bands rest on them.
-    return answered(
-        body,
-        supports,
-        [port.name for port in scene.ports],
-        attachments,
-        n=max(scene.ask.modes, ENOUGH),
-        max_frequency=scene.ask.max_frequency,
-        count=count,
-        ovalising=count,
-        meter=meter,
-    )
 
 
 def _add_variants(scene: Scene, rung: Solution, progress: Progress) -> None:
@@ -372,7 +383,7 @@ def _add_variants(scene: Scene, rung: Solution, progress: Progress) -> None:
                         else scene.with_attachment(attachment)
                     )
                     body = build(changed, rung.model, **rung.options)
-                    rung.variants[attachment] = _tied(
+                    rung.variants[attachment] = tied_answer(
                         changed, body, as_supports(changed), None, spare, False
                     )
             except SolidgearError as error:

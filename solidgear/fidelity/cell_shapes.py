@@ -28,13 +28,13 @@ class Kind:
     ----------
     cells : (m,) ndarray of int
     curved : bool
-    flip : int
-        Local edge whose odd functions have the other sign, or -1.
+    flip : tuple of bool
+        Local edges whose odd functions have the other sign.
     """
 
     cells: np.ndarray
     curved: bool
-    flip: int
+    flip: tuple[bool, ...]
 
 
 class Shapes:
@@ -52,7 +52,7 @@ class Shapes:
         self.curved = np.flatnonzero(flat.arc >= 0)
         self._place = {int(cell): k for k, cell in enumerate(self.curved)}
         self._nodes = self._curved_nodes()
-        marks = list(zip(flat.arc >= 0, flat.flip))
+        marks = list(zip(flat.arc >= 0, map(tuple, flat.flip.T)))
         self.kinds = [
             Kind(np.array([k for k, mark in enumerate(marks) if mark == kind]), *kind)
             for kind in sorted(set(marks))
@@ -61,8 +61,8 @@ class Shapes:
     def tabulation(self, kind: Kind, points: np.ndarray) -> Tabulation:
         """Basis of some cells at reference points."""
         made = Tabulation(self.element if kind.curved else _CORNERS, self.element, points)
-        if kind.flip >= 0:
-            odd = self._odd(kind.flip)
+        odd = [f for edge in np.flatnonzero(kind.flip) for f in self._odd(int(edge))]
+        if odd:
             made.value, made.slope = made.value.copy(), made.slope.copy()
             made.value[odd] *= -1
             made.slope[odd] *= -1

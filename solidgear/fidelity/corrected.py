@@ -37,7 +37,7 @@ from solidgear.fidelity.featured import featured_body, meshed
 from solidgear.fidelity.halves import PARTS
 from solidgear.fidelity.harmonic import harmonic
 from solidgear.fidelity.modal import Modal, alike_turn, modal
-from solidgear.fidelity.solid import tetrahedra_plan
+from solidgear.fidelity.solid import tetrahedra_plan, usual_size
 
 #: free modes kept, twins counted twice: these hold the supported modes of a plain pinion to 2e-7
 #: (bending 1) and 3e-5 (bending 3)
@@ -68,7 +68,7 @@ def sizes(scene) -> dict[str, float]:
     What a mesh lacks at seat ends and shoulders drops out of the difference, but for what a feature
     close to them changes there; what it lacks at the edges of features does not.
     """
-    size = max(max(s.outer0, s.outer1) for s in scene.segments) / 3
+    size = usual_size(scene)
     return {"size": size, "graded_size": size / GRADED}
 
 

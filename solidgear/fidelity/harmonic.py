@@ -24,18 +24,22 @@ from solidgear.fidelity.options import HARMONIC_OPTIONS, checked
 from solidgear.fidelity.scale import elastic_scale
 from solidgear.meshing.grading import Grading
 from solidgear.meshing.layout import Layout, layout
-from solidgear.meshing.meridian import Meridian, meridian
+from solidgear.meshing.meridian import Cut, Meridian, cut_meridian, drawn_across, meridian
 from solidgear.scene.coned import coned
 
 
 @dataclass(frozen=True)
 class HarmonicMesh:
-    """The mesh of a meridian, with the unknowns of one component of the displacement."""
+    """The mesh of a meridian, with the unknowns of one component of the displacement; the same before
+    cells were cut towards corners, and the cell there of every cell.
+    """
 
     mesh: MeshQuad1
     element: object
     dofs: np.ndarray
     meridian: Meridian
+    uncut: Meridian
+    parent: np.ndarray
 
     def surface(self, moved: Mapping[str, np.ndarray]) -> Surface:
         """The outline of the meridian turned around the axis."""
@@ -61,6 +65,9 @@ def harmonic(
     attachments: tuple[str, ...] | None = None,
     families: tuple[str, ...] | None = None,
     ovalising: tuple[int, ...] = (),
+    cuts: tuple[Cut, ...] = (),
+    across: tuple[tuple[float, float], ...] = (),
+    plain: bool = False,
 ) -> Body:
     """Free harmonic solid of a scene.
 
@@ -89,6 +96,12 @@ def harmonic(
         (:meth:`solidgear.body.Supports.on`).
     ovalising : tuple of int
         Further harmonics n >= 2 to build at once; they carry no port motion.  Others are built when modes need them.
+    cuts : tuple of (float, float, int)
+        y and r of corners of the mesh, m, and how often all cells around each are cut towards it.
+    across : tuple of (float, float)
+        y and r of points on sides of cells, m, through which lines are drawn before that.
+    plain : bool
+        Whether the mesh to be cut has one cell a band and strip, however narrow seats and discs are.
 
     Returns
     -------
@@ -97,7 +110,7 @@ def harmonic(
     Raises
     ------
     SolidgearError
-        For an unknown order or attachment.
+        For an unknown order or attachment, or a cut where the mesh has no corner.
     """
     grading = {
         "layers": layers,
@@ -115,6 +128,9 @@ def harmonic(
             "attachments": attachments,
             "families": families,
             "ovalising": ovalising,
+            "cuts": cuts,
+            "across": across,
+            "plain": plain,
         },
         HARMONIC_OPTIONS,
     )
@@ -122,8 +138,13 @@ def harmonic(
     families = given["families"]
     # chamfers in shoulders as cones, to whose ends layers lead
     scene = coned(scene)
-    plan = harmonic_layout(scene, attachments, **grading)
-    flat = meridian(scene, plan)
+    plan = harmonic_layout(scene, attachments, **grading, plain=plain)
+    uncut = flat = meridian(scene, plan)
+    parent = np.arange(flat.cells.shape[1])
+    if given["across"]:
+        uncut = flat = drawn_across(flat, given["across"])
+    if given["cuts"]:
+        flat, parent = cut_meridian(uncut, given["cuts"])
     mesh = MeshQuad1(flat.points, flat.cells, sort_t=False)
     element = _element(order)
     dofs = unknowns(mesh, element)
@@ -153,13 +174,15 @@ def harmonic(
         "ratio": ratio,
         "relative_size": relative_size,
         "refinement": refinement,
+        "cuts": len(given["cuts"]),
+        "plain": plain,
         "representative_size": float(np.sqrt(work.area / flat.cells.shape[1])),
         "pair_tolerance": 1e-9,
     }
     further = Families(
         scene,
         lambda n: _Work(scene, mesh, element, dofs, flat, order).bending_block(
-            f"ovalising_{n}", (), n, ()
+            f"ovalising_{n}", (), n, wanted
         ),
     )
     return Body(
@@ -169,13 +192,22 @@ def harmonic(
         elastic_scale(scene),
         scene.length,
         facts,
-        HarmonicMesh(mesh, element, dofs, flat),
+        HarmonicMesh(mesh, element, dofs, flat, uncut, parent),
         further,
     )
 
 
 def harmonic_layout(
-    scene, attachments=None, *, layers, edge_layers, ratio, relative_size, size, refinement
+    scene,
+    attachments=None,
+    *,
+    layers,
+    edge_layers,
+    ratio,
+    relative_size,
+    size,
+    refinement,
+    plain=False,
 ) -> Layout:
     """Mesh lines of :func:`harmonic`, before anything is meshed; parameters as there.
 
@@ -189,7 +221,16 @@ def harmonic_layout(
     )
     return layout(
         scene,
-        Grading(layers, edge_layers, None, ratio, relative_size, size, refinement=refinement),
+        Grading(
+            layers,
+            edge_layers,
+            None,
+            ratio,
+            relative_size,
+            size,
+            refinement=refinement,
+            plain=plain,
+        ),
         attachments,
     )
 

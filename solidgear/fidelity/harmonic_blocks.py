@@ -10,6 +10,8 @@ semi-analytical idea; the choice of unknowns is ours.
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import scipy.sparse as sp
 from skfem import ElementQuad1
@@ -169,7 +171,9 @@ class _Work:
         rigid = rigid.reshape(self.n * c, -1)[keep]
         k, m = k[keep][:, keep], m[keep][:, keep]
         if not components:
-            return Block(name, (), k, m, rigid, y, sp.csr_matrix((0, k.shape[0])))
+            return self._held(
+                Block(name, (), k, m, rigid, y, sp.csr_matrix((0, k.shape[0]))), wanted, c, keep
+            )
         rows, ties = [], []
         for i, (station, attachment) in enumerate(wanted):
             if attachment == "rigid":
@@ -183,6 +187,26 @@ class _Work:
         ports = sp.csr_matrix(np.vstack(rows))
         sections = self._sections(BENDING if n else AXIAL, c, keep)
         return tie_rigidly(Block(name, components, k, m, rigid, y, ports, sections=sections), ties)
+
+    def _held(self, block: Block, wanted, c: int, keep: np.ndarray) -> Block:
+        """A block of waves that no motion of a port goes with: rigid seats stand still in it."""
+        still = np.zeros((self.n, c), bool)
+        for station, attachment in wanted:
+            if attachment == "rigid":
+                still[self._edge_unknowns(self._seat_cells(station), 0, 1.0)] = True
+        free = np.flatnonzero(~still.ravel()[keep])
+        if len(free) == block.size:
+            return block
+        to = sp.identity(block.size, format="csc")[:, free].tocsr()
+        return replace(
+            block,
+            stiffness=(to.T @ block.stiffness @ to).tocsr(),
+            mass=(to.T @ block.mass @ to).tocsr(),
+            rigid=block.rigid[free],
+            y=block.y[free],
+            ports=block.ports[:, free],
+            expand=to,
+        )
 
     def kept(self, n: int) -> np.ndarray:
         """Mask of the unknowns of harmonic n, numbered together at each node, that the axis leaves

@@ -35,28 +35,8 @@ def _hexahedra(layers: int, edge_layers: int, relative_size: float) -> Options:
     }
 
 
-HARMONIC: tuple[Options, ...] = (
-    _harmonic(2, 0, 0, 4.0),
-    _harmonic(3, 1, 0, 4.0),
-    _harmonic(4, 2, 1, 4.0),
-    _harmonic(5, 3, 2, 4.0),
-    _harmonic(6, 4, 3, 4.0),
-    _harmonic(7, 5, 3, 2.0),
-)
-#: the same for one answer: two orders on one mesh a time. The spaces are nested, and an order more
-#: takes a share of the error that hardly depends on the shaft
-PAIRS: tuple[tuple[Options, Options], ...] = (
-    (_harmonic(2, 0, 0, 4.0), _harmonic(3, 0, 0, 4.0)),
-    (_harmonic(2, 1, 0, 4.0), _harmonic(3, 1, 0, 4.0)),
-    (_harmonic(3, 2, 1, 4.0), _harmonic(4, 2, 1, 4.0)),
-    (_harmonic(4, 3, 2, 4.0), _harmonic(5, 3, 2, 4.0)),
-    (_harmonic(5, 4, 3, 4.0), _harmonic(6, 4, 3, 4.0)),
-    (_harmonic(6, 5, 3, 2.0), _harmonic(7, 5, 3, 2.0)),
-)
-#: least tolerances at which it pays to begin with the first pairs: for most numbers they do, and only
-#: the others are solved on finer meshes. On 15 random shafts cost over the cheapest mesh fell from 3.2,
-#: 3.7 and 4.5 to 2.5, 2.5 and 2.9 at 1e-2, 1e-3 and 1e-4 against a start one pair later
-TRIED_FROM = (8e-4, 4e-5, 1e-6)
+#: a usual mesh of the harmonic solid, good to some 1e-4: where no bar is asked for
+HARMONIC: Options = _harmonic(4, 2, 1, 4.0)
 HEXAHEDRA: tuple[Options, ...] = (
     _hexahedra(0, 0, 1.5),
     _hexahedra(1, 1, 1.0),
@@ -96,40 +76,12 @@ class Sequence:
     turned : dict or None
         The coarsest level with half as many cells around again: what they leave is measured there,
         where it is cheap.
-    pairs : tuple of (dict, dict)
-        Two orders on one mesh each, coarse to fine, where one answer is wanted and no comparison.
     """
 
     levels: tuple[Options, ...]
     fixed: bool
     layered: bool
     turned: Options | None = None
-    pairs: tuple[tuple[Options, Options], ...] = ()
-
-    def pairs_for(self, tol: float, least: int = 0) -> dict[int, tuple[Options, Options]]:
-        """Pairs that are worth a try at a tolerance.
-
-        Parameters
-        ----------
-        tol : float
-            Relative.
-        least : int
-            Place of the first pair that may be tried.
-
-        Returns
-        -------
-        dict of int to (dict, dict)
-            By their place among all pairs, coarse to fine: builder options of the lower order and
-            of the higher one. Empty where the solid has no pairs.
-
-        Examples
-        --------
-        >>> plan = harmonic_meshes({})
-        >>> [min(plan.pairs_for(tol)) for tol in (0.01, 1e-4)], min(plan.pairs_for(0.01, least=2))
-        ([0, 1], 2)
-        """
-        first = max(least, sum(tol < from_here for from_here in TRIED_FROM))
-        return dict(list(enumerate(self.pairs))[first:])
 
     @property
     def left_around(self) -> float:
@@ -183,19 +135,17 @@ def _turned(level: Options) -> Options:
 
 
 def harmonic_meshes(options: Mapping[str, Any]) -> Sequence:
-    """Meshes on which to solve a harmonic solid.
+    """Meshes on which to solve a harmonic solid: the one that was asked for, or those that follow its
+    bars (:mod:`solidgear.fidelity.refining`).
 
     Parameters
     ----------
     options : mapping
-        Builder options that were asked for.  Where they speak of the mesh, they are the finest of
-        three levels (of two, for order 3).
+        Builder options that were asked for.
     """
     if set(options) - set(FREE):
-        return _below_harmonic(dict(options))
-    levels = tuple({**level, **options} for level in HARMONIC)
-    pairs = tuple(({**lower, **options}, {**higher, **options}) for lower, higher in PAIRS)
-    return Sequence(levels, False, True, pairs=pairs)
+        return Sequence((dict(options),), True, False)
+    return Sequence((dict(options),), False, False)
 
 
 def solid_meshes(options: Mapping[str, Any]) -> Sequence:
@@ -212,24 +162,6 @@ def solid_meshes(options: Mapping[str, Any]) -> Sequence:
         return Sequence(levels, False, True, _turned(levels[0]))
     known = TETRAHEDRA if element == "tet10" else LINEAR
     return Sequence(tuple({**level, **options} for level in known), False, False)
-
-
-def _below_harmonic(options: Options) -> Sequence:
-    finest = {"order": 5, "layers": 3, "edge_layers": 1, **options}
-    order = finest["order"]
-    if not isinstance(order, int) or order < 3:
-        return _refinements(dict(options))
-    steps = (2, 1) if order > 3 else (1,)
-    coarser = [
-        {
-            **finest,
-            "order": order - k,
-            "layers": max(finest["layers"] - k, 0),
-            "edge_layers": max(finest["edge_layers"] - k, 0),
-        }
-        for k in steps
-    ]
-    return Sequence((*coarser, finest), True, True)
 
 
 def _below_hexahedra(options: Options) -> Sequence:

@@ -20,7 +20,7 @@ from scipy.sparse.csgraph import min_weight_full_bipartite_matching
 from solidgear.body import Body
 from solidgear.solve.modes import modes
 from solidgear.solve.relief import elastic_fields
-from solidgear.solve.statics import factors
+from solidgear.solve.statics import factors, of_twin
 
 #: stations by whose motions modes of two meshes are recognised
 STATIONS = 25
@@ -168,11 +168,9 @@ def _static(body: Body) -> tuple[np.ndarray, np.ndarray, dict[int, np.ndarray]]:
         rows = np.ix_(body.rows(block), body.rows(block))
         if block.mirror is not None:
             original, signs = block.mirror
-            turn = np.tile(signs, len(body.ports))
-            own = body.rows(body.blocks[original])
             for matrix in (static, inert):
-                matrix[rows] = matrix[np.ix_(own, own)] * np.outer(turn, turn)
-            fields[index] = fields[original] * turn
+                matrix[rows] = of_twin(body, block, matrix)
+            fields[index] = fields[original] * np.tile(signs, len(body.ports))
             continue
         load = block.ports.T.toarray()
         load, u, _ = elastic_fields(

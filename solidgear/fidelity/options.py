@@ -1,12 +1,10 @@
-"""Builder options come from people: what there is, within which limits and why, and one place that
-refuses nonsense in a sentence.
-"""
+"""Builder options come from people: what there is, within which limits and why."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from numbers import Integral, Real
 from typing import Any
 
@@ -21,7 +19,7 @@ class Option:
     Attributes
     ----------
     meaning : str
-    kind : {'number', 'whole', 'choice', 'flag', 'harmonics', 'several'}
+    kind : {'number', 'whole', 'choice', 'flag', 'harmonics', 'several', 'places'}
     least, most : float, optional
         Limits that may be met.
     above, below : float, optional
@@ -46,8 +44,7 @@ class Option:
 
 #: ways of tying a station to the shaft
 ATTACHMENTS = ("average", "rigid", "section")
-#: a last layer below this part of the first one costs digits: residuals of modes rise from 1e-8 to
-#: 1e-4 there, whatever layers and ratio make it
+#: a last layer below this part of the first costs digits: residuals of modes rise from 1e-8 to 1e-4
 THINNEST_LAYER = 1e-6
 
 _REFINEMENT = Option(
@@ -144,6 +141,15 @@ HARMONIC_OPTIONS = {
         most=100,
         why="the lowest modes of the thinnest and shortest tube a scene may have take fewer",
     ),
+    "cuts": Option(
+        "corners of the mesh, y and r in m, and how often the cells around each are cut towards it",
+        "places",
+        least=1,
+        most=12,
+        why="further cuts are thinner than rounding allows",
+    ),
+    "across": Option("points on sides of cells, y and r in m, to draw lines through", "places"),
+    "plain": Option("whether one cell fills every band and strip", "flag"),
 }
 
 CORRECTED_OPTIONS = {
@@ -349,6 +355,21 @@ def _usable_several(model: str, name: str, value: Any, option: Option) -> tuple[
     )
 
 
+def _usable_places(model: str, name: str, value: Any, option: Option) -> tuple[tuple, ...]:
+    """Places as y and r, m, and with limits a whole number behind them."""
+    size = 2 + (option.most is not None)
+    single = not isinstance(value, (tuple, list)) or any(map(is_number, value))
+    values = tuple(tuple(v) if isinstance(v, list) else v for v in ((value,) if single else value))
+    for v in values:
+        if not isinstance(v, tuple) or len(v) != size or not all(is_number(x) for x in v):
+            raise SolidgearError(
+                f"{model}: {name} {show(v)} is not usable; give {size} numbers, y and r in m first"
+            )
+        for count in v[2:]:
+            _usable_number(model, name, count, replace(option, kind="whole"))
+    return values
+
+
 _USABLE = {
     "number": _usable_number,
     "whole": _usable_number,
@@ -356,6 +377,7 @@ _USABLE = {
     "flag": _usable_flag,
     "harmonics": _usable_harmonics,
     "several": _usable_several,
+    "places": _usable_places,
 }
 
 

@@ -16,6 +16,7 @@ from solidgear.fidelity.options import FACTORING_OPTIONS, Option, checked
 if TYPE_CHECKING:
     from solidgear.body import Body
     from solidgear.fidelity.levels import Sequence
+    from solidgear.fidelity.safety import Safety
     from solidgear.fidelity.size import Size
     from solidgear.scene.shaft import Shaft
 
@@ -46,81 +47,6 @@ class Later:
         return self.load()(*args, **kwargs)
 
 
-#: what is sharpest on a shaft, from nothing at all to a rigid seat that ends at a shoulder
-SMOOTH, PLANE, STEPPED = "smooth", "section tie", "shoulder"
-STEPPED_PLANE = "shoulder and section tie"
-HELD, HELD_AT_A_STEP = "rigid seat", "rigid seat at a shoulder"
-HELD_PLANE = "rigid seat and section tie"
-
-
-def by_edge(free: Any, held: Any) -> dict[str, Any]:
-    """One value for shafts that no rigid seat holds, and one for those that one does."""
-    return dict.fromkeys((SMOOTH, PLANE, STEPPED, STEPPED_PLANE), free) | dict.fromkeys(
-        (HELD, HELD_AT_A_STEP), held
-    )
-
-
-@dataclass(frozen=True)
-class BandFactors:
-    """Calibration of the bands of a solid; see :mod:`solidgear.evidence.bands` for what each does.
-
-    Attributes
-    ----------
-    usual : dict of str to float
-        Band over the last change, by what is sharpest on the shaft
-        (:func:`solidgear.fidelity.edges.sharpest_edge`).
-    same_mesh : dict of str to tuple of float
-        Band over the step from one order to the next on the same mesh, of every pair of orders.
-    first : dict of str to (float, float, float)
-        The same after two levels only: the step off the coarsest mesh tells less where it is small,
-        perhaps by accident, and more where it is large. Factor of small steps, the band they reach
-        at most before the factor of large steps takes over, and that factor.
-    first_of_modes : dict of str to (float, float, float)
-        The same of frequencies, where it is another.
-    earlier : float
-        The last change counts for at least this share of the one before it.
-    ahead : float
-        Share of the last change by which a layered sequence is still expected to go on.
-    singular : bool
-        Whether plain refinement stays at the order of the sharpest corner.
-    rough : (float, float) or ()
-        For meshes of plain refinement that are similar only roughly: band over what the largest change
-        leaves at the order of the sharpest corner, after two meshes and after more. Empty where three
-        meshes give a grid convergence index.
-    effect : dict of str to float
-        By quantity, the share of what features change of it that a band holds at least after two
-        meshes: they may agree by accident. The change is told by ``plain``.
-    shrinks : float
-        What each finer mesh leaves of that share.
-    plain : str
-        Rung that solves the plain part, on the first of its meshes that has shoulders graded.
-    """
-
-    usual: Mapping[str, float] = field(default_factory=dict)
-    same_mesh: Mapping[str, tuple[float, ...]] = field(default_factory=dict)
-    first: Mapping[str, tuple[float, float, float]] = field(default_factory=dict)
-    earlier: float = 0.0
-    ahead: float = 0.0
-    singular: bool = False
-    rough: tuple[float, float] | tuple[()] = ()
-    effect: Mapping[str, float] = field(default_factory=dict)
-    shrinks: float = 1.0
-    plain: str = ""
-    first_of_modes: Mapping[str, tuple[float, float, float]] = field(default_factory=dict)
-
-    def least_share(self, quantity: str, meshes: int) -> float:
-        """Share of what features change of a quantity, without its points, that a band holds at least
-        after some meshes.
-
-        Examples
-        --------
-        >>> factors = BandFactors(effect={"C_zz": 0.1}, shrinks=0.5)
-        >>> factors.least_share("C_zz", 2), factors.least_share("C_zz", 3), factors.least_share("f", 2)
-        (0.1, 0.05, 0.0)
-        """
-        return self.effect.get(quantity, 0.0) * self.shrinks ** max(0, meshes - 2)
-
-
 @dataclass(frozen=True)
 class Rung:
     """One model of the ladder.
@@ -148,8 +74,8 @@ class Rung:
     meshes : callable, optional
         ``meshes(options)`` gives the :class:`~solidgear.fidelity.levels.Sequence` of its coarser
         and finer relatives; None for a rung that is solved once and has no band of its own.
-    factors : BandFactors, optional
-        What a band over these meshes is made of.
+    safety : Safety, optional
+        Of a band over these meshes, where it is not that of meshes with layers or of plain refinement.
     share : float
         Bands are wanted below the tolerance asked for divided by this.
     theory : str
@@ -157,10 +83,10 @@ class Rung:
     section_ties : bool
         Whether its mesh carries the mean motion of any section; otherwise it is not compared like
         for like.
-    from_above : bool
-        Whether its displacements are admissible on the exact geometry, integrated exactly: such a
-        body is too stiff, so that compliances come from below, stiffnesses and frequencies from
-        above.
+    bounded : bool
+        Whether every mesh tells its own error by local problems: its displacements are admissible on
+        the exact geometry, integrated exactly. Such a body is too stiff, so that compliances come
+        from below, stiffnesses and frequencies from above.
     mass_tolerance : float
         Closure of mass and inertia that it owes to the closed form.
     most_seats : int
@@ -197,11 +123,11 @@ class Rung:
     short: str = ""
     preset: Mapping[str, Any] = field(default_factory=dict)
     meshes: Callable[[Mapping[str, Any]], Sequence] | None = None
-    factors: BandFactors | None = None
+    safety: Safety | None = None
     share: float = 1.0
     theory: str = ""
     section_ties: bool = True
-    from_above: bool = False
+    bounded: bool = False
     mass_tolerance: float = 1e-9
     most_seats: int = 12
     series: Callable[[Any, bool], list[Series]] | None = None
@@ -294,7 +220,7 @@ class Rung:
         """
         from solidgear.scene.shaft import resolved
 
-        # layered hexahedra converge too slowly beside fillets for the factors of their bands
+        # layered hexahedra converge too slowly beside fillets for their bands
         special = resolved(scene) or getattr(scene, "corners", ())
         return {**(self.featured if special else {}), **options}
 

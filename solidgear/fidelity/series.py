@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from solidgear.fidelity.ladder import LADDER
 from solidgear.fidelity.levels import CORRECTED, SECTOR
+from solidgear.fidelity.solid import usual_size
 
 if TYPE_CHECKING:
     from solidgear.fidelity.rung import Series
@@ -65,7 +66,7 @@ _UNIFORM_HEXAHEDRA = {
 
 def solid_series(scene: Shaft, full: bool) -> list[Series]:
     """Every element type, on uniform and on graded meshes."""
-    size = max(max(s.outer0, s.outer1) for s in scene.segments) / 3
+    size = usual_size(scene)
     even_tetrahedra = {"size": size, "graded_size": size}
     even_hexahedra = {
         "layers": 0,

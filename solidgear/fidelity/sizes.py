@@ -74,7 +74,7 @@ def harmonic_size(scene: Shaft, given: Mapping[str, Any]) -> Size:
 
     scene = coned(scene)
     order = given["order"]
-    names = ("layers", "edge_layers", "ratio", "relative_size", "size", "refinement")
+    names = ("layers", "edge_layers", "ratio", "relative_size", "size", "refinement", "plain")
     laid = harmonic_layout(scene, given["attachments"], **{k: given[k] for k in names})
     plan = _lines(scene, laid)
     across_rows, across_lines = (np.diff(part).sum() for part in (plan.rows, plan.lines))
@@ -86,6 +86,12 @@ def harmonic_size(scene: Shaft, given: Mapping[str, Any]) -> Size:
     vertices, edges, cells = (
         n + more for n, more in zip((vertices, edges, cells), blocks_beyond(laid.joints))
     )
+    # three cells around a corner become nine by every cut
+    cut = sum(count for *_, count in given["cuts"])
+    vertices, edges, cells = vertices + 7 * cut, edges + 13 * cut, cells + 6 * cut
+    # and a line crosses at most all rows or all rings
+    line = len(given["across"]) * len(plan.lines)
+    vertices, edges, cells = vertices + line, edges + 2 * line, cells + line
     n = int(vertices + edges * (order - 1) + cells * (order - 1) ** 2)
     inner_edges = 4 * cells - edges
     inner_vertices = vertices - (edges - inner_edges)

@@ -200,6 +200,11 @@ def hexahedra_layout(
     return layout(scene, grading, attachments), max(8, 4 * int(round(around * refinement / 4)))
 
 
+def usual_size(scene) -> float:
+    """Element edge of tetrahedra at refinement 1, away from everything, m."""
+    return max(max(s.outer0, s.outer1) for s in scene.segments) / 3
+
+
 def tetrahedra_plan(scene, wanted, *, size, graded_size, refinement, around) -> dict:
     """Arguments of :func:`~solidgear.meshing.tetrahedra.tetrahedra` for the stations ``wanted``
     with their attachments.
@@ -208,7 +213,7 @@ def tetrahedra_plan(scene, wanted, *, size, graded_size, refinement, around) -> 
         countable(
             "solid",
             scene,
-            size or max(max(s.outer0, s.outer1) for s in scene.segments) / 3,
+            size or usual_size(scene),
             refinement,
         )
         / refinement

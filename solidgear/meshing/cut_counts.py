@@ -78,13 +78,13 @@ def around_cut(
     """
     own = next(s for s in segments if s.name == feature.segment)
     least = feature_size(feature, own.outer0, refinement)[1]
+    at_edges = edge_size(feature, own.outer0, refinement)[1] if edges else least
     if feature.kind == "cross_hole":
-        least = edge_size(feature, own.outer0, refinement)[1] if edges else least
-        crowd, found = CROWD, _around_hole(feature, own, _Wall(segments), least, beside)
+        crowd, found = CROWD, _around_hole(feature, own, _Wall(segments), at_edges, beside)
     else:
         crowd, found = CROWD_OF_SLOTS, _around_slot(feature, own, _Wall(segments), least, beside)
         if edges:
-            more = _along_edges(feature, own, refinement, least, beside)
+            more = _along_edges(feature, own, at_edges, _at_floor(feature, own, least, beside))
             found = (found[0] + more[0], found[1] + more[1], found[2] + more[2])
     volume, surface, rim = (crowd * float(part) for part in found)
     return volume, surface, rim
@@ -163,10 +163,10 @@ def _around_slot(feature, own, wall: _Wall, least: float, beside: Edge) -> Count
     here = np.array([lo - least / 2, hi + least / 2])
     ends = np.count_nonzero(wall.at(here)[1] > floor)
     length = hi - lo
-    at = min(least, float(beside(np.array(floor), np.array((lo + hi) / 2))))
+    at = _at_floor(feature, own, least, beside)
     if keyway:
         side = feature.depth - (radius - sqrt(radius**2 - wide**2)) / 2
-        around = 2 * (length - 2 * wide) + 2 * pi * wide if round_ends else 2 * length + 4 * wide
+        around = _around_floor(feature)
         walls, rims = around * side, 2 * around + 4 * side * (not round_ends)
     else:
         turned = np.arcsin(wide / radius)
@@ -176,20 +176,29 @@ def _around_slot(feature, own, wall: _Wall, least: float, beside: Edge) -> Count
     return volume, surface, rims / at
 
 
-def _along_edges(feature, own, refinement: float, around: float, beside: Edge) -> Counted:
-    """Sums around the re-entrant edges of a keyway or a flat, all the way around, for what is cut out
-    is meshed too; ``around`` is the size beside them.
-    """
-    _, least = edge_size(feature, own.outer0, refinement)
+def _at_floor(feature, own, least: float, beside: Edge) -> float:
+    """Element edge at the floor of a keyway or a flat."""
     lo, hi = feature.reach
     floor = own.outer0 - feature.depth
-    far = min(around, float(beside(np.array(floor), np.array((lo + hi) / 2))))
+    return min(least, float(beside(np.array(floor), np.array((lo + hi) / 2))))
+
+
+def _around_floor(key) -> float:
+    """Length around the floor of a keyway, m."""
+    lo, hi = key.reach
+    if key.ends == "round":
+        return 2 * (hi - lo - key.width) + pi * key.width
+    return 2 * (hi - lo) + 2 * key.width
+
+
+def _along_edges(feature, own, least: float, far: float) -> Counted:
+    """Sums around the re-entrant edges of a keyway or a flat, all the way around, for what is cut out
+    is meshed too; elements grow from the least edge to the one far from them.
+    """
     if feature.kind == "flat":
-        length = 2 * 2 * sqrt(own.outer0**2 - floor**2)
-    elif feature.ends == "round":
-        length = 2 * (hi - lo - feature.width) + pi * feature.width
+        length = 2 * 2 * sqrt(own.outer0**2 - (own.outer0 - feature.depth) ** 2)
     else:
-        length = 2 * (hi - lo) + 2 * feature.width
+        length = _around_floor(feature)
     if least >= far:
         return 0.0, 0.0, 0.0
     away, away_w = _even(0.0, (far - least) / GROWTH, _AWAY)

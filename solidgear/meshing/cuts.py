@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 from solidgear.meshing.element_size import _num
 
 if TYPE_CHECKING:
-    from solidgear.scene.features import CutFeature
+    from solidgear.scene.features import CrossHole, CutFeature
 
 #: elements across the smaller size of a feature, at the size asked for
 ACROSS = 2.0
@@ -155,19 +155,16 @@ def feature_size(
         m.
     """
     lo, hi = feature.reach
-    c, s = _num(cos(feature.angle)), _num(sin(feature.angle))
-    across, up = f"(x*{c}-z*{s})", f"(z*{c}+x*{s})"
+    across, up = _towards(feature)
     along = f"Max(0,Max({_num(lo)}-y,y-{_num(hi)}))"
     if feature.kind == "cross_hole":
-        least = pi * feature.diameter / 8
-        place = f"Max(0,Sqrt({across}^2+(y-{_num(feature.y)})^2)-{_num(feature.diameter / 2)})"
-        distance = place
+        least, distance = pi * feature.diameter / 8, _from_hole(feature)
     else:
         floor = radius - feature.depth
         wide = feature.width / 2 if feature.kind == "keyway" else sqrt(radius**2 - floor**2)
         least = min(feature.depth, wide) if feature.kind == "keyway" else wide / 2
         below = f"Max(0,{_num(floor)}-{up})"
-        beside = f"Max(0,Sqrt({across}^2)-{_num(wide)})"
+        beside = f"Max(0,{across}-{_num(wide)})"
         distance = f"Sqrt({below}^2+{beside}^2+{along}^2)"
     divided = ACROSS * refinement
     # a circle of fewer than eight edges is no hole: it loses a fifteenth of its volume; nor is half
@@ -206,14 +203,12 @@ def edge_size(feature: CutFeature, radius: float, refinement: float) -> tuple[st
     >>> round(edge_size(flat, 0.03, 1.0)[1], 12)
     0.001
     """
-    c, s = _num(cos(feature.angle)), _num(sin(feature.angle))
     if feature.kind == "cross_hole":
         least = pi * feature.diameter / (8 * max(1.0, refinement / LEAST))
-        off = f"Sqrt((x*{c}-z*{s})^2+(y-{_num(feature.y)})^2)"
-        return f"{_num(least)}+{_num(GROWTH)}*Max(0,{off}-{_num(feature.diameter / 2)})", least
+        return f"{_num(least)}+{_num(GROWTH)}*{_from_hole(feature)}", least
     lo, hi = feature.reach
-    up, floor = f"(z*{c}+x*{s})", radius - feature.depth
-    across = f"Sqrt((x*{c}-z*{s})^2)"
+    across, up = _towards(feature)
+    floor = radius - feature.depth
     if feature.kind == "flat":
         half = sqrt(radius**2 - floor**2)
         ends = f"Min(Sqrt((y-{_num(lo)})^2),Sqrt((y-{_num(hi)})^2))"
@@ -229,6 +224,18 @@ def edge_size(feature: CutFeature, radius: float, refinement: float) -> tuple[st
             away = f"({outside}+Min(0,Max({aside},{beyond})))"
     least = min(feature.depth, half) / (ACROSS * EDGES * refinement)
     return f"{_num(least)}+{_num(GROWTH)}*Sqrt({away}^2+({up}-{_num(floor)})^2)", least
+
+
+def _towards(feature: CutFeature) -> tuple[str, str]:
+    """Formulas of the distance from the middle plane of a feature, and of the height towards it."""
+    c, s = _num(cos(feature.angle)), _num(sin(feature.angle))
+    return f"Sqrt((x*{c}-z*{s})^2)", f"(z*{c}+x*{s})"
+
+
+def _from_hole(hole: CrossHole) -> str:
+    """Formula of the distance from the wall of a cross hole."""
+    off = f"Sqrt({_towards(hole)[0]}^2+(y-{_num(hole.y)})^2)"
+    return f"Max(0,{off}-{_num(hole.diameter / 2)})"
 
 
 def mirror_plane(features: tuple[CutFeature, ...]) -> int | None:

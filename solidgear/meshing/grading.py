@@ -54,6 +54,8 @@ class Grading:
         Start the band on the axis with one cell of half its width, room for the core of an O-grid.
     corner_cells : int
         Cells along either half of a fillet, at refinement 1.
+    plain : bool
+        Whether nothing narrow or thin asks for lines of its own: those come later, where the error is.
     """
 
     layers: int = 3
@@ -67,6 +69,7 @@ class Grading:
     refinement: float = 1.0
     core: bool = False
     corner_cells: int = 1
+    plain: bool = False
 
     @property
     def across(self) -> int:
@@ -100,7 +103,7 @@ class Grading:
         """
         width = station.hi - station.lo
         under = segments_under(station, segments)
-        if width <= 2 * TOUCH or not under or set(ties) <= {"section"}:
+        if self.plain or width <= 2 * TOUCH or not under or set(ties) <= {"section"}:
             return 0
         start = self.reach * max(corner_length(segments[k]) for k in under)
         more = ceil(log(width / start) / log(self.ratio) - ROUNDING)

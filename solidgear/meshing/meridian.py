@@ -2,16 +2,25 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from solidgear.meshing.blended import quadrilaterals
+from solidgear.errors import SolidgearError
+from solidgear.meshing.blended import ENDS, quadrilaterals
+from solidgear.meshing.corner_layers import Pieces, cut_towards
 from solidgear.meshing.layout import Layout
 
 if TYPE_CHECKING:
     from solidgear.scene.shaft import Shaft
+
+#: y and r of a corner, m, and how often the cells around it are cut
+Cut = tuple[float, float, int]
+#: what a cut leaves of a side: the best ratio of layers towards a singularity of any exponent (Gui
+#: and Babuska 1986, Numer. Math. 49, 613)
+CUT_RATIO = 0.15
 
 
 @dataclass(frozen=True)
@@ -34,8 +43,8 @@ class Meridian:
         Local edge that is part of a circle, or -1: 0 low, 1 outer, 2 high, 3 inner.
     centre : (2, m) ndarray
         r and y of the middle of that circle, m.
-    flip : (m,) ndarray of int
-        Local edge whose odd functions have the other sign, or -1.
+    flip : (4, m) ndarray of bool
+        Local edges whose odd functions have the other sign.
     """
 
     points: np.ndarray
@@ -78,9 +87,12 @@ def meridian(scene: Shaft, plan: Layout) -> Meridian:
     points = np.array([made.places[corner] for corner in index]).T
     cells = np.array([[index[corner] for corner in cell.ids] for cell in made.cells]).T
     edge, centre = np.full(len(made.cells), -1), np.zeros((2, len(made.cells)))
+    flip = np.zeros((4, len(made.cells)), bool)
     for k, cell in enumerate(made.cells):
         if cell.arc:
             edge[k], *centre[:, k] = cell.arc
+        if cell.flip is not None:
+            flip[cell.flip, k] = True
     return Meridian(
         points,
         cells,
@@ -89,5 +101,130 @@ def meridian(scene: Shaft, plan: Layout) -> Meridian:
         np.array([k for k, cell in enumerate(made.cells) if cell.ring == 0]),
         edge,
         centre,
-        np.array([-1 if cell.flip is None else cell.flip for cell in made.cells]),
+        flip,
     )
+
+
+def drawn_across(flat: Meridian, across: Sequence[tuple[float, float]]) -> Meridian:
+    """A mesh with further lines, from side to opposite side through all cells in their way.
+
+    Parameters
+    ----------
+    flat : Meridian
+    across : sequence of (float, float)
+        y and r of a point on a side that each line passes, m.
+
+    Returns
+    -------
+    Meridian
+
+    Raises
+    ------
+    SolidgearError
+        If no side is there.
+    """
+    through = [np.array([r, y]) for y, r in across]
+    return _pieced(flat, cut_towards(flat.cells.T, flat.points.T, {}, CUT_RATIO, through))
+
+
+def cut_meridian(flat: Meridian, cuts: Sequence[Cut]) -> tuple[Meridian, np.ndarray]:
+    """A mesh whose cells are cut towards some of its vertices.
+
+    Parameters
+    ----------
+    flat : Meridian
+    cuts : sequence of (float, float, int)
+        y and r of a vertex, m, and how often all cells around it are cut.
+
+    Returns
+    -------
+    cut : Meridian
+    parent : (m,) ndarray of int
+        Cell of the uncut mesh that each of its cells lies in.
+
+    Raises
+    ------
+    SolidgearError
+        If no vertex is there.
+
+    Examples
+    --------
+    >>> from solidgear import Scene, Segment
+    >>> from solidgear.meshing.grading import Grading
+    >>> from solidgear.meshing.layout import layout
+    >>> scene = Scene.from_parts([Segment.cylinder("rod", length=0.03, diameter=0.06)])
+    >>> mesh = meridian(scene, layout(scene, Grading(layers=0, edge_layers=0)))
+    >>> cut, parent = cut_meridian(mesh, [(0.03, 0.03, 1)])
+    >>> cut.cells.shape[1] - mesh.cells.shape[1]  # the one cell there is three
+    2
+    """
+    wanted = {_vertex_at(flat, y, r): int(count) for y, r, count in cuts}
+    pieces = cut_towards(flat.cells.T, flat.points.T, wanted, CUT_RATIO)
+    return _pieced(flat, pieces), pieces.parent
+
+
+def _pieced(flat: Meridian, pieces: Pieces) -> Meridian:
+    """The mesh of some pieces; what lies on an arc stays on it."""
+    parent, corners = pieces.parent, pieces.corners
+    points = pieces.points.copy()
+    arc = np.full(len(parent), -1)
+    for k in np.flatnonzero(flat.arc[parent] >= 0):
+        edge = int(flat.arc[parent[k]])
+        on = _on_side(pieces.local[k], edge)
+        if on.sum() == 2:
+            arc[k] = edge
+            for v, at in zip(corners[k][on], pieces.local[k][on]):
+                points[v] = _on_arc(flat, int(parent[k]), edge, at)
+    outer, inner = (
+        np.array([_on_side(local, side).sum() == 2 for local in pieces.local]) for side in (1, 3)
+    )
+    return Meridian(
+        points.T,
+        corners.T,
+        flat.segment[parent],
+        np.flatnonzero(outer & np.isin(parent, flat.outer)),
+        np.flatnonzero(inner & np.isin(parent, flat.inner)),
+        arc,
+        flat.centre[:, parent],
+        _conflicts(corners),
+    )
+
+
+def _vertex_at(flat: Meridian, y: float, r: float) -> int:
+    """The vertex at a place."""
+    away = np.hypot(flat.points[0] - r, flat.points[1] - y)
+    nearest = int(away.argmin())
+    if away[nearest] > 1e-8 * flat.points[1].max():
+        raise SolidgearError(
+            f"cuts: no corner of the mesh is at y = {y:.6g} m, r = {r:.6g} m; "
+            f"the nearest is {away[nearest]:.3g} m away"
+        )
+    return nearest
+
+
+def _on_side(local: np.ndarray, side: int) -> np.ndarray:
+    """Which corners of a piece lie on a side of its cell."""
+    axis, at = ((1, 0.0), (0, 1.0), (1, 1.0), (0, 0.0))[side]
+    return np.abs(local[:, axis] - at) < 1e-12
+
+
+def _on_arc(flat: Meridian, cell: int, edge: int, at: np.ndarray) -> np.ndarray:
+    """Place on the arc of a cell, m."""
+    a, b = (flat.points[:, flat.cells[end, cell]] for end in ENDS[edge])
+    share = at[0] if edge in (0, 2) else at[1]
+    va, vb = a - flat.centre[:, cell], b - flat.centre[:, cell]
+    turn = share * np.arctan2(va[0] * vb[1] - va[1] * vb[0], va @ vb)
+    c, s = np.cos(turn), np.sin(turn)
+    return flat.centre[:, cell] + np.array([c * va[0] - s * va[1], s * va[0] + c * va[1]])
+
+
+def _conflicts(corners: np.ndarray) -> np.ndarray:
+    """(4, m) sides that run the other way than in the first cell that has them."""
+    first: dict[tuple[int, int], int] = {}
+    out = np.zeros((4, len(corners)), bool)
+    for k, cell in enumerate(corners):
+        for side, (a, b) in enumerate(ENDS):
+            one, two = int(cell[a]), int(cell[b])
+            start = first.setdefault((min(one, two), max(one, two)), one)
+            out[side, k] = start != one
+    return out

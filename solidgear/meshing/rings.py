@@ -74,7 +74,7 @@ def fractions_of(
             )
             near, far = (min(sizes) for sizes in zip(*(grading.cell(segments[k]) for k in run)))
             thick = sum(segments[k].length for k in run)
-            if thick < thickness:
+            if thick < thickness and not grading.plain:
                 longest = max(thick, PLATE_CELL * max(_outermost(segments[k]) for k in run))
                 near, far = min(near, longest), min(far, longest)
                 edge = min(1, grading.across), min(FREE_EDGE * thick, grading.reach * thickness)

@@ -349,7 +349,7 @@ def _frame(body: Body) -> Body:
         body.scale,
         body.length,
         dict(body.mesh),
-        kept=Kept(flexibility(body)),
+        kept=Kept(replace(flexibility(body), fields={})),
     )
 
 

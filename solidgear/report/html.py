@@ -247,6 +247,7 @@ def _where(record: Record) -> dict[str, Any] | None:
         return None
     return {
         "sentence": found.sentence,
+        "quantity": found.quantity,
         "order": found.order,
         "name": model_name(record, found.model),
         "total": percent(found.total, signed=False),

@@ -8,9 +8,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, NamedTuple
 
-import numpy as np
-
-from solidgear.solve.naming import FAMILIES
+from solidgear.solve.families import FAMILIES
+from solidgear.solve.naming import shares
 
 if TYPE_CHECKING:
     from solidgear.solve.modes import Mode, ModeSet
@@ -80,11 +79,6 @@ def mixtures(found: ModeSet) -> tuple[Mixture, ...]:
 
 def _shares(found: ModeSet, mode: Mode) -> dict[str, float]:
     """What of the section motions of a mode moves as each family does."""
-    motion = mode.motions[0]
-    energy = {}
-    for family, components in FAMILIES.items():
-        at = np.array([6 * s + c for s in range(len(motion)) for c in components])
-        part = motion.ravel()[at]
-        energy[family] = float(part @ found.gram[np.ix_(at, at)] @ part)
+    energy = shares(mode.motions[0], found.gram)
     total = sum(energy.values())
     return {family: value / total for family, value in energy.items()}

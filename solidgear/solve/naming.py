@@ -13,13 +13,14 @@ are reported.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from scipy.sparse.csgraph import connected_components
 
-from solidgear.body import Block, Body, Supports
+from solidgear.body import Block, Body, Supports, component_rows
+from solidgear.body.sections import signed
 from solidgear.frames import rotation
 from solidgear.solve.circumference import Circumference, of_body
 from solidgear.solve.families import FAMILIES, family_of, repeats, several, waves_of
@@ -123,25 +124,37 @@ class Projection:
         dict of str to float
             By the names of ``FAMILIES``.
         """
-        out = {}
-        for family, components in FAMILIES.items():
-            at = np.array([6 * s + c for s in range(self.count) for c in components])
-            part = motion.ravel()[at]
-            out[family] = float(part @ self.gram[np.ix_(at, at)] @ part)
-        return out
+        return shares(motion, self.gram)
+
+
+def shares(motion: np.ndarray, gram: np.ndarray) -> dict[str, float]:
+    """Modal mass that each family of section motions describes, by the names of ``FAMILIES``.
+
+    Parameters
+    ----------
+    motion : (s, 6) ndarray
+    gram : (6 s, 6 s) ndarray
+        Mass matrix of section motions.
+    """
+    return {family: _share(motion, gram, components) for family, components in FAMILIES.items()}
+
+
+def _share(motion: np.ndarray, gram: np.ndarray, components: Sequence[int]) -> float:
+    """Modal mass that some components of section motions describe."""
+    at = component_rows(range(len(motion)), components)
+    part = motion.ravel()[at]
+    return float(part @ gram[np.ix_(at, at)] @ part)
 
 
 def _section_loads(block: Block, stations: np.ndarray, found: list[_Loads]) -> _Loads:
     """Loads, Gram matrix and columns of a block; of a twin those of its original, turned."""
-    own = np.array([6 * s + c for s in range(len(stations)) for c in block.components], int)
     if not block.components:
-        return np.zeros((block.size, 0)), np.zeros((0, 0)), own
+        return np.zeros((block.size, 0)), np.zeros((0, 0)), np.zeros(0, int)
     if block.mirror is None:
         return block.section_loads(stations)
     original, signs = block.mirror
-    loaded, gram, _ = found[original]
-    turn = np.tile(signs, len(stations))
-    return loaded * turn, gram * np.outer(turn, turn), own
+    loaded, gram = signed(lambda _: found[original][:2], signs)(stations)
+    return loaded, gram, component_rows(range(len(stations)), block.components)
 
 
 class Names:
@@ -206,14 +219,9 @@ class Names:
         """The plane of bending of a part with a mirror plane, unless bearings couple both."""
         if not self._planes or family != "bending":
             return ""
-        at = [self._energy(motion, components) for components in ((2, 3), (0, 5))]
+        at = [_share(motion, self.project.gram, components) for components in ((2, 3), (0, 5))]
         share = at[0] / sum(at)
         return "z" if share > 0.99 else "x" if share < 0.01 else ""
-
-    def _energy(self, motion: np.ndarray, components: tuple[int, ...]) -> float:
-        at = np.array([6 * s + c for s in range(len(motion)) for c in components])
-        part = motion.ravel()[at]
-        return float(part @ self.project.gram[np.ix_(at, at)] @ part)
 
     @staticmethod
     def _around(

@@ -17,8 +17,8 @@ is an exact zero and not a penalty.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, overload
 
 import numpy as np
@@ -43,6 +43,8 @@ if TYPE_CHECKING:
 ROUNDING, APART = 1e-14, 1e-4
 # Of the geometric mean of two diagonal entries: a coupling that is none.
 LAST_DIGIT = 1e-15
+# Relative error of the energy of fields that local problems look at.
+SOLVED = 1e-26
 # Of the lowest elastic eigenvalue.  Rounding in the factor is amplified by the highest eigenvalue
 # of the mesh over the shift: 1e-3 left 5e-3 of the frequencies of slender tubes wrong, 3e-2 leaves
 # what refinement can mend.  Statics takes a solve more for it.
@@ -62,12 +64,15 @@ class Flexibility:
     residual : float
         Estimated relative error that refinement left: the square of what the displacements miss.
     backend : str
+    fields : dict of int to ndarray
+        Elastic displacements under unit loads on the ports, by planar blocks.
     """
 
     matrix: np.ndarray
     asymmetry: float
     residual: float
     backend: str
+    fields: Mapping[int, np.ndarray] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -151,19 +156,28 @@ def flexibility(body: Body, tolerance: float = 1e-12) -> Flexibility:
     return body.kept.get(Flexibility, lambda: _flexibility(body, tolerance))
 
 
+def of_twin(body: Body, block: Block, matrix: np.ndarray) -> np.ndarray:
+    """Part of a (6 p, 6 p) matrix of all ports that a block with a mirror has: that of its original, in
+    the other plane.
+    """
+    assert block.mirror is not None
+    original, signs = block.mirror
+    own, turn = body.rows(body.blocks[original]), np.tile(signs, len(body.ports))
+    return matrix[np.ix_(own, own)] * np.outer(turn, turn)
+
+
 def _flexibility(body: Body, tolerance: float) -> Flexibility:
     n = 6 * len(body.ports)
     out = np.zeros((n, n))
     asymmetry = residual = 0.0
     backends = []
-    for block, factor in zip(body.blocks, factors(body)):
+    fields: dict[int, np.ndarray] = {}
+    for index, (block, factor) in enumerate(zip(body.blocks, factors(body))):
         if not block.components:
             continue
         rows = body.rows(block)
         if block.mirror is not None:
-            original = body.rows(body.blocks[block.mirror[0]])
-            signs = np.tile(block.mirror[1], len(body.ports))
-            out[np.ix_(rows, rows)] = out[np.ix_(original, original)] * np.outer(signs, signs)
+            out[np.ix_(rows, rows)] = of_twin(body, block, out)
             continue
         k = block.stiffness
         load = block.ports.T.toarray() if sp.issparse(block.ports) else block.ports.T
@@ -182,9 +196,11 @@ def _flexibility(body: Body, tolerance: float) -> Flexibility:
         residual = max(residual, float(missing))
         out[np.ix_(rows, rows)] = (f_block + f_block.T) / 2
         backends.append(factor.said)
+        if block.planar:
+            fields[index] = u
     if not np.all(np.isfinite(out)):
         raise SolidgearError(f"the static solution of the {body.fidelity} body is not finite")
-    return Flexibility(out, asymmetry, residual, "+".join(sorted(set(backends))))
+    return Flexibility(out, asymmetry, residual, "+".join(sorted(set(backends))), fields)
 
 
 @overload

@@ -1,9 +1,8 @@
-"""One solid on ever finer meshes, until the bands of what is asked are within a tolerance.
+"""One solid on ever finer meshes, until the bars of what is asked are within a tolerance.
 
-A bar needs two solutions: those of the two coarsest meshes, or, where a rung has pairs, of two orders
-on one mesh.  They are solved for everything that is asked, all further ones only for what is still
-open: what is within the tolerance keeps its value and its bar.  A first torsion that needs a finer
-mesh than all else then costs the torsion of that mesh alone.
+The meshes of a harmonic solid follow its bars (:mod:`solidgear.fidelity.refining`), which every mesh
+tells by itself (:mod:`solidgear.evidence.bounded`); of other solids two of a list make a bar. All that
+is asked is solved first, later only what is still open: the rest keeps its value and its bar.
 """
 
 from __future__ import annotations
@@ -14,19 +13,32 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
-from solidgear.body import Body, as_supports
-from solidgear.evidence.answer import ENOUGH, Numbers, numbers
-from solidgear.evidence.bands import Band
+import numpy as np
+
+from solidgear.body import Body, Supports, as_supports
+from solidgear.evidence.answer import Numbers, numbers, searched
+from solidgear.evidence.bands import Band, moves_freely
+from solidgear.evidence.bounded import Statics, bounded
 from solidgear.evidence.quantities import AT, described, diagonals, points_of, size
-from solidgear.evidence.sequence_bands import feature_effect, pair_bands, sequence_bands
+from solidgear.evidence.sequence_bands import feature_effect, sequence_bands
 from solidgear.fidelity import build
-from solidgear.fidelity.edges import crowded, thin_disc
+from solidgear.fidelity.refining import MOST_MESHES, Meshed, refined
 from solidgear.fidelity.rung import Rung
-from solidgear.solve.condensed import Condensed, Coupled
+from solidgear.solve.condensed import Condensed
 from solidgear.solve.families import FAMILIES
-from solidgear.solve.modes import ModeSet, modes
-from solidgear.solve.statics import condense
-from solidgear.solve.supported import decoupled, groups
+from solidgear.solve.modes import ModeSet
+from solidgear.solve.statics import SOLVED, condense, flexibility
+from solidgear.studies.asked import (
+    Question,
+    Solved,
+    coupled_families,
+    family_of,
+    few,
+    is_frequency,
+    mesh_words,
+    most_of,
+    shapes,
+)
 from solidgear.studies.effort import foretold
 from solidgear.studies.steps import ABOVE, BELOW, BOTH, Step, Value
 
@@ -35,35 +47,15 @@ if TYPE_CHECKING:
 
 Progress = Callable[[str], None]
 
-#: couplings by bearings may be left out where they move nothing by more than this part of the
-#: tolerance
+#: couplings by bearings are left out where they move less than this part of the tolerance
 COUPLING = 0.01
-#: options of a mesh that are reported, and in which words
-SETTINGS = {
-    "order": "order",
-    "layers": "layers",
-    "around": "cells around",
-    "refinement": "refinement",
-}
-#: a frequency that rises with a finer mesh, by more than the eigensolver leaves, is rounding: the
-#: bar is this many times the rise
+#: a frequency that rises with a finer mesh of a list, by more than the eigensolver leaves, is
+#: rounding: the bar is this many times the rise
 RISE = 2.0
-#: what a mesh was solved for is named up to so many numbers
-FEW = 3
 #: a bar has one side where the solver has left no more than this share of it
 SOLVER_SHARE = 0.01
-
-
-#: families of motion that are solved together, None for all of them, and what is asked of them
-Question = tuple[tuple[str, ...] | None, tuple[str, ...]]
-
-
-def family_of(quantity: str) -> str:
-    """The family of motion that a quantity belongs to."""
-    _, place, _ = described(quantity)
-    if isinstance(place, str):
-        return place.split()[0]
-    return next(name for name, components in FAMILIES.items() if set(place) <= set(components))
+#: what two meshes must leave of the largest bar at most to go on
+FUTILE = 0.7
 
 
 class Climb:
@@ -79,8 +71,8 @@ class Climb:
         Statics at the main point by families of motion, on the finest mesh that was solved for them.
     """
 
-    #: place of the first pair of orders that may be tried
-    least_pair = 0
+    #: whether a coupling is given in the middle of its bar, and not as the body says it
+    middles = True
 
     def __init__(
         self,
@@ -102,12 +94,15 @@ class Climb:
         self.groups: list[tuple[str, ...]] | None = None
         self._changes: list[Mapping[str, float]] = []
         self.left_out = 0.0
-        self.body: Body | None = None
+        self.last: Solved | None = None
         self.options: dict[str, Any] = {}
-        self._places: list[int] = []
-        self._last: tuple[Body | None, dict[str, Any]] = (None, {})
         self.compliances: dict[tuple[str, ...], Condensed] = {}
         self.modes: ModeSet | None = None
+
+    @property
+    def body(self) -> Body | None:
+        """The last body that was solved."""
+        return None if self.last is None else self.last.body
 
     def run(self) -> None:
         """Climb until every band is within the tolerance, or there is no finer mesh."""
@@ -115,13 +110,14 @@ class Climb:
             start = time.perf_counter()
             questions = self._questions()
             asked = {q for _, names in questions for q in names}
-            only = (
-                tuple(q for q in self.wanted if q in asked) if len(asked) < len(self.wanted) else ()
-            )
-            setting = _words(level) + (f", for {_few(only)}" if only else "")
+            part = len(asked) < len(self.wanted)
+            only = tuple(q for q in self.wanted if part and q in asked)
+            setting = mesh_words(level) + (f", for {few(only)}" if only else "")
             cost = "" if self.rung.unfit(self.scene) else foretold(self.scene, self.rung, level)
             self.progress(f"{self.rung.title}: {setting}{cost}")
-            unknowns = self._solve(level, questions)
+            self.last = self._solve(level, questions)
+            self.levels.append(self.last.numbers)
+            self.sizes.append(self.last.cell)
             self.options = dict(level)
             self.missing = (self.missing | asked) - set(self.levels[-1].quantities)
             bar = self.judge()
@@ -132,13 +128,13 @@ class Climb:
                     setting,
                     valid=True,
                     bar=bar,
-                    unknowns=unknowns,
+                    unknowns=self.last.unknowns,
                     seconds=spent,
                     only=only,
                     options=self.options,
                 )
             )
-            if len(self.levels) == 2 and not self.values():
+            if (self.rung.bounded or len(self.levels) == 2) and not self.values():
                 self._choose("nothing that was asked for exists in this scene")
                 return
             if bar is not None and bar <= self.tol:
@@ -147,30 +143,42 @@ class Climb:
             if bar is not None and (why := self._in_vain()):
                 self._choose(why)
                 return
-        only_one = self.plan.fixed and len(self.plan.levels) == 1
-        self._choose(
-            "the mesh is that of the file, and nothing finer tells how good it is"
-            if only_one
-            else "no finer mesh is calibrated"
-        )
+        self._choose(self._stopped())
 
     def _meshes(self) -> Iterator[Mapping[str, Any]]:
         """All meshes, coarse to fine."""
-        if not self.plan.pairs:
+        if not self.rung.bounded:
             yield from self.plan.levels
             return
-        # what neither order tells without layers: a thin disc bends towards its free edge, and shafts
-        # strain between seats that all but touch
-        blind = thin_disc(self.scene) or crowded(self.scene)
-        least = max(self.least_pair, 1 if blind else 0)
-        for place, orders in self.plan.pairs_for(self.tol, least).items():
-            self._places.append(place)
-            yield from orders
+        if self.plan.fixed:
+            yield from self.plan.levels
+            return
+        mesh = Meshed(given=self.plan.levels[0])
+        yield mesh.options()
+        for _ in range(MOST_MESHES - 1):
+            assert self.last is not None and self.last.score is not None
+            mesh = refined(self.scene, self.last.body, mesh, self.last.score, self.tol)
+            self.last.body.kept.clear()  # its factor need not be held beside the next one
+            yield mesh.options()
+
+    def _stopped(self) -> str:
+        """Why there is no further mesh."""
+        if not self.rung.bounded:
+            only_one = self.plan.fixed and len(self.plan.levels) == 1
+            return (
+                "the mesh is that of the file, and nothing finer tells how good it is"
+                if only_one
+                else "no finer mesh is calibrated"
+            )
+        return f"{MOST_MESHES} meshes did not do; most of the bar comes from {self.stops_at()}"
+
+    def stops_at(self) -> str:
+        """The place that holds most of the bars that are not within the tolerance, in words."""
+        assert self.last is not None and self.last.score is not None
+        return most_of(self.scene, self.last.body, self.last.score)
 
     def stop(self, why: str) -> None:
-        """End with what there is: the lower order of a pair is nothing that could be judged."""
-        if self._last[0] is not None:
-            self.body, self.options = self._last
+        """End with what there is."""
         self._choose(f"the next mesh could not be solved: {why}")
 
     def values(self) -> tuple[Value, ...]:
@@ -180,18 +188,15 @@ class Climb:
             history = self._history(name)
             finest = history[-1].quantities
             unit, scale = described(name)[2], size(finest, name)
-            bar, side = self.bar(name), self._side(name)
-            orders = self._orders(name)
-            rests_on = len(orders) or len(history)
-            out.append(Value(name, finest[name], unit, bar, rests_on, scale, side, orders))
+            band = self.bands.get(name)
+            given = band.middle if band is not None and self.middles else None
+            value = finest[name] if given is None else given
+            how = band.method if band else ""
+            meshes = 1 if self.rung.bounded else len(history)
+            out.append(
+                Value(name, value, unit, self.bar(name), meshes, scale, self._side(name), how)
+            )
         return tuple(out)
-
-    def _orders(self, name: str) -> tuple[int, ...]:
-        """Orders of the pair that a quantity's value and bar come from."""
-        known = [k for k, level in enumerate(self._judged(self.levels)) if name in level.quantities]
-        if not self.plan.pairs or len(known) < 2:
-            return ()
-        return tuple(mesh["order"] for mesh in self.plan.pairs[self._places[known[-1] // 2]])
 
     def _known(self) -> list[str]:
         """What was asked for and is there."""
@@ -199,12 +204,7 @@ class Climb:
 
     def _history(self, name: str) -> list[Numbers]:
         """The meshes that a quantity was solved on, coarse to fine."""
-        return [level for level in self._judged(self.levels) if name in level.quantities]
-
-    def _judged(self, levels: list[Numbers]) -> list[Numbers]:
-        """Without the lower order of a pair that is not whole."""
-        odd = self.plan.pairs and len(levels) % 2 and len(levels) > 1
-        return levels[:-1] if odd else levels
+        return [level for level in self.levels if name in level.quantities]
 
     def _side(self, name: str) -> str:
         """Where the exact answer lies.
@@ -212,8 +212,8 @@ class Climb:
         Of all admissible displacements the exact ones store the least energy under given motions of
         the ports, and the most under given loads; a Rayleigh quotient is least at the exact mode.
         """
-        exact = self.rung.from_above and not self.scene.corners
-        if not exact or diagonals(name) or name not in self.bands or self._rise(name):
+        exact = self.rung.bounded and not self.scene.corners
+        if not exact or diagonals(name) or name not in self.bands:
             return BOTH
         # what the solver leaves, and couplings that were left out, may go either way
         if max(self.bands[name].solver, self.left_out) > SOLVER_SHARE * self.bar(name):
@@ -222,7 +222,7 @@ class Climb:
 
     def _questions(self) -> list[Question]:
         """What the next mesh is solved for."""
-        if len(self.levels) < 2:
+        if not self._started():
             families = None if self.groups is None else tuple(f for g in self.groups for f in g)
             return [(families, self.wanted)]
         floors = self.floors()
@@ -232,51 +232,56 @@ class Climb:
         by_group = [(g, tuple(q for q in open_ if family_of(q) in g)) for g in self.groups]
         return [(group, names) for group, names in by_group if names]
 
+    def _started(self) -> bool:
+        """Whether there is a bar of everything already."""
+        return len(self.levels) >= (1 if self.rung.bounded else 2)
+
     def _open(self) -> list[str]:
         """What is there, and not yet within the tolerance."""
         return [q for q in self._known() if not self.bar(q) <= self.tol]
 
     def floors(self) -> dict[str, float]:
         """Least bars on the finest mesh: a share of what features change, where the rung has one."""
-        factors = self.rung.factors
-        if factors is None or not factors.effect:
+        safety = self.rung.safety
+        if safety is None or not safety.share:
             return {}
         for level in self.levels[len(self._changes) :]:
-            self._changes.append(feature_effect(self.scene, factors, level.quantities))
+            self._changes.append(feature_effect(self.scene, safety, level.quantities))
         finest = {name: change for level in self._changes for name, change in level.items()}
         meshes = len(self.plan.levels)
-        return {q: factors.least_share(q.partition(AT)[0], meshes) * c for q, c in finest.items()}
+        return {q: safety.least_share(moves_freely(q), meshes) * c for q, c in finest.items()}
 
     def _in_vain(self) -> str:
-        """Why no finer mesh would help, if none would: all that is open is at its floor."""
+        """Why no finer mesh would help, if none would."""
+        bars = [step.bar for step in self.steps if step.bar is not None]
+        if self.rung.bounded and len(bars) > 3 and bars[-1] > FUTILE * bars[-3]:
+            return f"finer meshes no longer help; most of the bar comes from {self.stops_at()}"
         floors, open_ = self.floors(), self._open()
         if not open_ or not all(floors.get(q, 0.0) > self.tol for q in open_):
             return ""
         top = max(open_, key=floors.__getitem__)
         return (
-            f"no mesh makes bars of {_few(tuple(open_))} as narrow: the {self.rung.title} is sure "
+            f"no mesh makes bars of {few(tuple(open_))} as narrow: the {self.rung.title} is sure "
             "of a quantity to a share of what features change of it, here to "
             f"{100 * floors[top]:.2g} % of {top} at best"
         )
 
-    def _solve(self, level: Mapping[str, Any], questions: list[Question]) -> int:
-        """Solve a mesh for some questions; its unknowns."""
+    def _solve(self, level: Mapping[str, Any], questions: list[Question]) -> Solved:
+        """Solve a mesh for some questions."""
         values: dict[str, float] = {}
         solver: dict[str, float] = {}
-        unknowns, cells = 0, None
+        unknowns, cells, body, score = 0, None, None, None
         for families, names in questions:
             body = self._body(level, families)
-            found = self._numbers(body, families, names)
+            if not self.levels and self.groups is None:
+                self.groups = self.needed(body)
+            found, share = self._numbers(body, families, names)
             values |= found.quantities
             solver |= found.solver
+            score = share if score is None or share is None else np.maximum(score, share)
             unknowns, cells = unknowns + body.size, body.mesh.get("representative_size")
-            self.body = body
-        if not self.levels:
-            assert self.body is not None  # there is something to ask for
-            self.groups = self.needed(self.body)
-        self.levels.append(Numbers(values, solver))
-        self.sizes.append(cells)
-        return unknowns
+        assert body is not None  # there is something to ask for
+        return Solved(body, Numbers(values, solver), unknowns, cells, score)
 
     def _body(self, level: Mapping[str, Any], families: tuple[str, ...] | None) -> Body:
         options = dict(level)
@@ -288,85 +293,102 @@ class Climb:
         """Families that the question is about, each with those that bearings couple to it."""
         if len(body.blocks) < len(FAMILIES) or "families" not in self.rung.options:
             return None  # one block holds all motions, or the builder makes all of them at once
-        supports = as_supports(self.scene)
-        spring, self.left_out = decoupled(body, supports, COUPLING * self.tol)
+        found, self.left_out = coupled_families(self.scene, body, COUPLING * self.tol)
         asked = {family_of(q) for q in self.wanted}
-        together: list[set[str]] = []
-        for group in groups(body, supports, spring):
-            components = {c for b in group for c in body.blocks[b].components}
-            here = {name for name, own in FAMILIES.items() if components & set(own)}
-            # bending in one plane and in the other are two groups of one family
-            apart = [families for families in together if not families & here]
-            together = [*apart, here.union(*(f for f in together if f & here))]
-        return [tuple(f for f in FAMILIES if f in here) for here in together if here & asked]
+        return [group for group in found if set(group) & asked]
 
     def _numbers(
         self, body: Body, families: tuple[str, ...] | None, names: tuple[str, ...]
-    ) -> Numbers:
+    ) -> tuple[Numbers, np.ndarray | None]:
+        """Values of a body, and where its open bars come from."""
         supports = as_supports(self.scene)
         if families is not None:
             supports = supports.on(c for f in families for c in FAMILIES[f])
         kinds = {described(q)[0] for q in names}
-        statics: Condensed | None = None
+        statics: Statics | None = None
         found: ModeSet | None = None
-        further: dict[str, Condensed] = {}
-        coupled: Coupled | None = None
         if kinds & {"compliance", "stiffness"}:
-            statics = condense(body, supports, self.scene.port.name)
-            alone = [q for q in names if AT in q and not points_of(q)]
-            points = dict.fromkeys(q.partition(AT)[2] for q in alone)
-            further = {point: condense(body, supports, point) for point in points}
-            pairs = {point for q in names for point in points_of(q) or ()}
-            if pairs:
-                both = tuple(port.name for port in self.scene.ports if port.name in pairs)
-                coupled = condense(body, supports, both)
-            self._keep_statics(families, statics, further, coupled)
+            statics = self._statics(body, supports, names)
+            self.compliances[families or tuple(FAMILIES)] = statics.main
         if "frequency" in kinds:
-            count = shapes(families, names)
-            found = self.modes = modes(body, supports, count, ovalising=False)
-        return numbers(statics, found, further, coupled)
+            wanted = [place for q in names if isinstance(place := described(q)[1], str)]
+            found = self.modes = searched(
+                body,
+                supports,
+                shapes(families, names),
+                wanted,
+                spare=self.rung.bounded,
+                ovalising=False,
+            )
+        values = numbers(
+            statics.main if statics else None,
+            found,
+            statics.further if statics else {},
+            statics.coupled if statics else None,
+        )
+        if statics is not None:
+            values = Numbers(
+                values.quantities | statics.values(),
+                {q: statics.main.evidence["residual"] for q in statics.values()} | values.solver,
+            )
+        if not self.rung.bounded:
+            return values, None
+        here = self._judged_names(values, names)
+        judged = bounded(self.scene, body, supports, statics, found, here, values.solver)
+        self.bands |= {q: judged.bands[q] for q in here}
+        # no value without its bar
+        kept = {q: v for q, v in values.quantities.items() if q in here or not is_frequency(q)}
+        values = Numbers(kept, values.solver)
+        score = np.zeros(body.geometry.meridian.cells.shape[1])  # type: ignore[union-attr]
+        for q in here:
+            if not self.bar(q) <= self.tol:
+                score = np.maximum(score, self.bar(q) * judged.scores[q])
+        return values, score
 
-    def _keep_statics(
-        self,
-        families: tuple[str, ...] | None,
-        statics: Condensed,
-        further: Mapping[str, Condensed],
-        coupled: Coupled | None,
-    ) -> None:
-        """Remember statics at the main point, at further ones and between points."""
-        self.compliances[families or tuple(FAMILIES)] = statics
+    def _judged_names(self, found: Numbers, names: tuple[str, ...]) -> list[str]:
+        """Numbers that are there and get a bar: those of this question, and all of statics that are
+        wanted, for which nothing more is solved.
+        """
+        static = (q for q in self.wanted if not is_frequency(q))
+        return [q for q in dict.fromkeys((*names, *static)) if q in found.quantities]
+
+    def _statics(self, body: Body, supports: Supports, names: tuple[str, ...]) -> Statics:
+        """Condensed to the main point, to further ones that are asked for, and between points."""
+        if self.rung.bounded:
+            flexibility(body, SOLVED)
+        main = condense(body, supports, self.scene.port.name)
+        points = dict.fromkeys(q.partition(AT)[2] for q in names if AT in q and not points_of(q))
+        further = {point: condense(body, supports, point) for point in points}
+        pairs = {point for q in names for point in points_of(q) or ()}
+        both = tuple(port.name for port in self.scene.ports if port.name in pairs)
+        return Statics(main, further, condense(body, supports, both) if pairs else None)
 
     def judge(self) -> float | None:
         """Bands of what the finest mesh was solved for, and the largest bar of all that was asked."""
-        if len(self.levels) < 2:
+        if not self._started():
             return None
-        self.bands |= self.bands_of(self.levels)
-        if self._judged(self.levels) is self.levels:
-            self._last = self.body, self.options
+        if not self.rung.bounded:
+            self.bands |= self.bands_of(self.levels)
         bars = [self.bar(q) for q in self._known()]
         return max(bars, default=None) if self.bands else None
 
     def bands_of(self, levels: list[Numbers]) -> dict[str, Band]:
-        """Bands of the finest of two or more meshes of this rung."""
-        assert self.rung.factors is not None  # as every solid
-        levels = self._judged(levels)
-        values = [level.quantities for level in levels]
-        if self.plan.pairs:
-            place = self._places[len(levels) // 2 - 1]
-            return pair_bands(self.scene, self.rung.factors, place, values[-2:], levels[-1].solver)
-        return sequence_bands(
-            self.scene, self.plan, self.rung.factors, values, levels[-1].solver, self.sizes
-        )
+        """Bands of the finest of two or more meshes of a list."""
+        values = [x.quantities for x in levels], levels[-1].solver
+        return sequence_bands(self.scene, self.plan, self.rung, *values, self.sizes)
 
     def bar(self, name: str) -> float:
+        """Relative bar of a quantity; infinite where nothing is known."""
         if name not in self.bands:
             return math.inf
-        return max(self.bands[name].gci, RISE * self._rise(name))
+        band = self.bands[name]
+        width = band.about_middle if self.middles else band.gci
+        return max(width, RISE * self._rise(name)) + self.left_out
 
     def _rise(self, name: str) -> float:
-        """How much a frequency has risen at the last step, beyond what the solver leaves."""
+        """How much a frequency has risen at the last step of a list, beyond what the solver leaves."""
         history = self._history(name)
-        if described(name)[0] != "frequency" or len(history) < 2:
+        if self.rung.bounded or described(name)[0] != "frequency" or len(history) < 2:
             return 0.0
         before, last = history[-2:]
         rise = last.quantities[name] / before.quantities[name] - 1
@@ -376,21 +398,3 @@ class Climb:
     def _choose(self, why: str) -> None:
         if self.steps:
             self.steps[-1] = replace(self.steps[-1], why=why, chosen=True)
-
-
-def _words(level: Mapping[str, Any]) -> str:
-    """A mesh in a few words."""
-    return ", ".join(f"{word} {level[name]}" for name, word in SETTINGS.items() if name in level)
-
-
-def _few(names: tuple[str, ...]) -> str:
-    """Some names, or how many there are."""
-    return ", ".join(names) if len(names) <= FEW else f"{len(names)} numbers"
-
-
-def shapes(families: tuple[str, ...] | None, names: tuple[str, ...]) -> int:
-    """Elastic shapes that hold the modes asked for."""
-    if families is None or len(families) > 1:
-        return ENOUGH
-    places = [int(q.split()[1]) for q in names if described(q)[0] == "frequency"]
-    return 2 * max(places) + 2

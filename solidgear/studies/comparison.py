@@ -287,7 +287,7 @@ def _causes(scene: Scene, rungs: dict[str, Solution], options, progress: Progres
             mesh = (
                 {k: v for k, v in harmonic.options.items() if k not in FREE}
                 if options["harmonic"]
-                else HARMONIC[2]
+                else HARMONIC
             )
             found = shoulder_cause(scene, gap, mesh, progress)
             out += [found] if found else []

@@ -15,18 +15,25 @@ measured as well, and torsion with it (:data:`~solidgear.evidence.quantities.ACR
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from solidgear.body import Body
 from solidgear.errors import SolidgearError, show
-from solidgear.evidence.answer import Numbers, numbers_across
-from solidgear.evidence.quantities import ACROSS, QUANTITIES, at_points, between, repeats
+from solidgear.evidence.answer import Numbers
+from solidgear.evidence.quantities import (
+    QUANTITIES,
+    at_points,
+    between,
+    described,
+    in_order,
+    repeats,
+)
 from solidgear.machine.threads import pinned
-from solidgear.solve.condensed import Condensed, Coupled
 from solidgear.studies.answering import climbed, usable
-from solidgear.studies.climb import Climb, Progress, Question
+from solidgear.studies.asked import Question
+from solidgear.studies.climb import Climb, Progress
 from solidgear.studies.steps import Step
 
 if TYPE_CHECKING:
@@ -186,36 +193,28 @@ def settle(
 class Whole(Climb):
     """A climb on which every mesh carries all families, judged in all six directions."""
 
-    #: the body has modes without a bar too, to which the shoulders of a mesh without layers are blunt
-    least_pair = 1
-
-    def __init__(self, *args: Any) -> None:
-        super().__init__(*args)
-        self.across: list[Numbers] = []
+    #: the body is given, with its own couplings
+    middles = False
 
     def bars(self) -> dict[str, float]:
-        """Relative bars by quantity, those of the other plane and of torsion by names of their
-        own.
-        """
-        out = {v.quantity: v.bar for v in self.values()}
-        if self.across:
-            own = [q for q in self.levels[-1].quantities if q in ACROSS]
-            out |= {q: self.bands[q].gci if q in self.bands else math.inf for q in own}
-            known = self._bands_across()
-            there = [q for q in self.across[-1].quantities if not repeats(q)]
-            out |= {q: known.get(q, math.inf) for q in there}
-        return out
+        """Relative bars by quantity, those of the other plane and of torsion included."""
+        names = [q for q in in_order(self.levels[-1].quantities) if q in self._wanted_here()]
+        return {q: self.bar(q) for q in names}
+
+    def _wanted_here(self) -> set[str]:
+        """What was asked for, and all static numbers that come with it."""
+        static = {described(q)[0] for q in self.wanted} - {"frequency"}
+        every = (q for level in self.levels for q in level.quantities)
+        return set(self.wanted) | {q for q in every if described(q)[0] in static and not repeats(q)}
+
+    def _known(self) -> list[str]:
+        known = super()._known()
+        return [*known, *sorted(self._wanted_here() - set(self.wanted))]
 
     def _open(self) -> list[str]:
         # the body is wanted, and one number that no mesh makes sure enough is enough to refuse it
         floors, open_ = self.floors(), super()._open()
         return [q for q in open_ if floors.get(q, 0.0) > self.tol] or open_
-
-    def judge(self) -> float | None:
-        super().judge()
-        if len(self.levels) < 2:
-            return None
-        return max(self.bars().values(), default=None)
 
     def needed(self, body: Body) -> None:
         return None
@@ -223,16 +222,10 @@ class Whole(Climb):
     def _questions(self) -> list[Question]:
         return [(None, self.wanted)]
 
-    def _keep_statics(
-        self,
-        families: tuple[str, ...] | None,
-        statics: Condensed,
-        further: Mapping[str, Condensed],
-        coupled: Coupled | None,
-    ) -> None:
-        self.across.append(numbers_across(statics, further, coupled))
-
-    def _bands_across(self) -> Mapping[str, float]:
-        if len(self.across) < 2:
-            return {}
-        return {name: band.gci for name, band in self.bands_of(self.across).items()}
+    def _judged_names(self, found: Numbers, names: tuple[str, ...]) -> list[str]:
+        static = {described(q)[0] for q in names} - {"frequency"}
+        return [
+            q
+            for q in found.quantities
+            if q in names or described(q)[0] in static and not repeats(q)
+        ]

@@ -6,6 +6,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
+#: bars that the solution on one mesh tells by itself
+METHOD = "local problems"
 #: a coupling this small against its diagonal entries is zero
 ROUNDING = 1e-9
 #: sides on which the exact answer may lie
@@ -31,8 +33,8 @@ class Value:
     side : str
         Where the exact answer of the model lies: ``above`` or ``below`` the value, or ``both`` where
         it may be either.
-    orders : tuple of int
-        Of the elements, where these are solutions on one mesh.
+    method : str
+        Where the bar comes from.
     """
 
     quantity: str
@@ -42,13 +44,13 @@ class Value:
     meshes: int
     size: float
     side: str = BOTH
-    orders: tuple[int, ...] = ()
+    method: str = ""
 
     @property
     def how(self) -> str:
         """Where the bar comes from, in words."""
-        if self.orders:
-            return f"orders {' and '.join(map(str, self.orders))}"
+        if self.method == METHOD:
+            return METHOD
         return f"{self.meshes} meshes" if self.meshes > 1 else "one mesh only, not judged"
 
     @property

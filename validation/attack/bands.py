@@ -20,11 +20,13 @@ def judge_bands(row: dict, reference, model: str) -> list[Band]:
 
 
 def explained(band: Band, model: dict) -> tuple[str, str]:
-    """What a missed band looks like, from the sequence behind it: a class, and the figures."""
+    """What a missed band looks like, from the meshes behind it: a class, and the figures."""
     found = model["steps"].get(band.quantity) or {}
     three = found.get("values") or ()
     if "there called" in band.how:
         return "another mode by name", band.how
+    if len(three) == 1:
+        return "beyond the richer space", "by local problems on one mesh"
     if len(three) < 3:
         return "no sequence told", ""
     first, second = three[-2] - three[-3], three[-1] - three[-2]

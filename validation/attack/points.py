@@ -52,7 +52,7 @@ def sort_of(name: str) -> str:
 
 
 def solutions(scene: Scene, most: int | None = None) -> dict[int, Solution]:
-    """The harmonic solid on every mesh that has bands, by how many meshes these rest on."""
+    """The harmonic solid on every mesh that has bands, by the number of the mesh."""
     kept: list[Solution] = []
     study(scene, "harmonic", evidence=False, counted=False, most=most, keep=kept.append)
     return {k: one for k, one in enumerate(kept, start=1) if one.bands.get(SCENE)}
@@ -60,9 +60,8 @@ def solutions(scene: Scene, most: int | None = None) -> dict[int, Solution]:
 
 def judged(found: Solution, truth: Reference) -> list[Band]:
     """Bands of static quantities, held against the truth."""
-    bands = found.bands[SCENE]
-    names = [name for name in bands if name.startswith(("C_", "K_")) and not repeats(name)]
-    values = found.quantities
+    bands, values = found.bands[SCENE], found.quantities
+    names = [q for q in bands if q in values and q.startswith(("C_", "K_")) and not repeats(q)]
     model = {
         "values": values,
         "bands": {name: bands[name].gci * size(values, name) for name in names},
@@ -86,7 +85,7 @@ def campaign(
     most: int = MESHES,
     tell: Callable[[str], None] = print,
 ) -> dict[tuple[str, int], list[Band]]:
-    """Bands of all scenes by what they are of and how many meshes they rest on."""
+    """Bands of all scenes by what they are of and the number of the mesh."""
     out: dict[tuple[str, int], list[Band]] = defaultdict(list)
     for seed in seeds:
         start = time.process_time()
@@ -105,7 +104,7 @@ def campaign(
                 out[sort_of(band.quantity), count].append(band)
                 if band.judged and not band.held:
                     tell(
-                        f"seed {seed} ({scene.title}), {count} meshes, {band.quantity}: "
+                        f"seed {seed} ({scene.title}), mesh {count}, {band.quantity}: "
                         f"band {band.band:.1e}, error {band.error:+.1e} +- {band.doubt:.0e}"
                     )
         tell(f"seed {seed}: {scene.title}, {time.process_time() - start:.1f} s of processor time")
@@ -113,9 +112,9 @@ def campaign(
 
 
 def table(bands: dict[tuple[str, int], list[Band]]) -> list[str]:
-    """Markdown: share held and how tight, by what is judged and the meshes behind it."""
+    """Markdown: share held and how tight, by what is judged and the mesh that tells it."""
     out = [
-        "| bars | meshes | held | band / error, median | 5 % | 95 % | largest band | not judged |",
+        "| bars | mesh | held | band / error, median | 5 % | 95 % | largest band | not judged |",
         "| --- | --- | --- | --- | --- | --- | --- | --- |",
     ]
     order = (BETWEEN, HELD, SECOND, MAIN)

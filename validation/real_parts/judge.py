@@ -191,7 +191,7 @@ def _judged(part: Part, scene: sg.Scene, model: str, said: list[Said]) -> None:
     bands = sequence_bands(
         scene,
         rung.meshes(_options(model)),
-        rung.factors,
+        rung,
         [s.quantities for s in said],
         last.solver,
         [s.mesh.get("representative_size") for s in said],

@@ -156,7 +156,7 @@ def nearly_incompressible(probe: Probe) -> Notices:
 def uniform_at_shoulder(probe: Probe) -> Notices:
     """A harmonic mesh that is not graded towards a re-entrant corner."""
     angle, exponent = sharpest_corner(probe.scene)
-    if probe.body.mesh.get("layers") == 0 and exponent < 1:
+    if probe.body.mesh.get("layers") == 0 and not probe.body.mesh.get("plain") and exponent < 1:
         yield Notice(
             "caution",
             ("harmonic",),

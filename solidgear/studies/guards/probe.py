@@ -161,9 +161,8 @@ class Probe:
             if attachment == "rigid"
             else self.scene.with_attachment(attachment)
         )
-        light = LADDER["harmonic"].meshes_of(scene, {}).levels[:LIGHT][-1]
         n, upto = max(scene.ask.modes, ENOUGH), scene.ask.max_frequency
-        return solve(scene, "harmonic", n, max_frequency=upto, **light).quantities
+        return solve(scene, "harmonic", n, max_frequency=upto, **HARMONIC).quantities
 
     def _gaps(self, model: str) -> list[dict]:
         """Deviations of a beam from the light solid in what is judged, the largest first."""
@@ -242,7 +241,7 @@ class Probe:
         )
         if solved:
             return {r["n"]: r["lowest_hz"] for r in solved if r["lowest_hz"]}
-        blocks = build(self.scene, "harmonic", **HARMONIC[1], ovalising=(2, 3)).blocks[-2:]
+        blocks = build(self.scene, "harmonic", **HARMONIC, ovalising=(2, 3)).blocks[-2:]
         lowest = [
             spla.eigsh(
                 b.stiffness.tocsc(),

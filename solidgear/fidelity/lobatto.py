@@ -1,0 +1,100 @@
+"""Products of integrated Legendre polynomials: functions of a quadrilateral of any order."""
+
+from __future__ import annotations
+
+from functools import lru_cache
+
+import numpy as np
+
+
+def lobatto(order: int, x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Functions of one direction and their derivatives.
+
+    Parameters
+    ----------
+    order : int
+    x : (...) ndarray
+        From 0 to 1.
+
+    Returns
+    -------
+    value, slope : (..., order + 1) ndarray
+        ``1 - x`` and ``x`` first, then those that vanish at both ends.
+
+    Examples
+    --------
+    >>> value, slope = lobatto(3, np.array([0.0, 1.0]))
+    >>> np.round(value, 12) + 0.0
+    array([[1., 0., 0., 0.],
+           [0., 1., 0., 0.]])
+    """
+    t = 2 * np.asarray(x, float) - 1
+    legendre = np.polynomial.legendre.legvander(t, max(order, 1))
+    value, slope = np.empty((*t.shape, order + 1)), np.empty((*t.shape, order + 1))
+    value[..., 0], value[..., 1] = (1 - t) / 2, (1 + t) / 2
+    slope[..., 0], slope[..., 1] = -1.0, 1.0
+    for k in range(2, order + 1):
+        value[..., k] = (legendre[..., k] - legendre[..., k - 2]) / np.sqrt(2 * (2 * k - 1))
+        slope[..., k] = np.sqrt(2 * (2 * k - 1)) * legendre[..., k - 1]
+    return value, slope
+
+
+def products(order: int, at: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Functions of a quadrilateral and their gradients.
+
+    Parameters
+    ----------
+    order : int
+    at : (..., q, 2) ndarray
+        Reference points.
+
+    Returns
+    -------
+    value : (..., (order + 1)^2, q) ndarray
+        The first direction counts slowest.
+    slope : (2, ..., (order + 1)^2, q) ndarray
+    """
+    a, da = lobatto(order, at[..., 0])
+    b, db = lobatto(order, at[..., 1])
+
+    def product(u, v):
+        both = u[..., :, None] * v[..., None, :]
+        return np.moveaxis(both.reshape(*both.shape[:-2], -1), -2, -1)
+
+    return product(a, b), np.stack([product(da, b), product(a, db)])
+
+
+@lru_cache(maxsize=32)
+def at_nodes(order: int) -> tuple[np.ndarray, np.ndarray]:
+    """Points on which a product function is told apart from others, and the inverse of its values.
+
+    Returns
+    -------
+    points : ((order + 1)^2, 2) ndarray
+    inverse : ((order + 1)^2, (order + 1)^2) ndarray
+        Values at the points to coefficients.
+    """
+    x = (1 - np.cos(np.pi * np.arange(order + 1) / order)) / 2
+    a, b = np.meshgrid(x, x, indexing="ij")
+    one = np.linalg.inv(lobatto(order, x)[0])
+    return np.stack([a.ravel(), b.ravel()], axis=1), np.kron(one, one)
+
+
+@lru_cache(maxsize=32)
+def gauss(count: int) -> tuple[np.ndarray, np.ndarray]:
+    """Points from 0 to 1 and weights of Gauss's rule."""
+    x, w = np.polynomial.legendre.leggauss(count)
+    return (x + 1) / 2, w / 2
+
+
+@lru_cache(maxsize=32)
+def sides(order: int) -> tuple[np.ndarray, np.ndarray]:
+    """Places of functions among the products: of the four corners and then of the four sides, each
+    in the sense of its coordinate; and of those that vanish on all sides.
+
+    Sides are low, outer, high and inner, as in :data:`solidgear.meshing.blended.ENDS`.
+    """
+    place = np.arange((order + 1) ** 2).reshape(order + 1, order + 1)
+    corner = [place[0, 0], place[1, 0], place[1, 1], place[0, 1]]
+    on_side = np.concatenate([place[2:, 0], place[1, 2:], place[2:, 1], place[0, 2:]])
+    return np.concatenate([corner, on_side]).astype(int), place[2:, 2:].ravel()

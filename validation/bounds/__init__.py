@@ -1,0 +1,1 @@
+"""Error bars held against references, on bodies drawn to break them."""
