@@ -92,7 +92,7 @@ MUTATIONS = (
     Mutation(
         "bounds: bearings do not push a mode",
         "solidgear/fidelity/harmonic_bounds.py",
-        "_loading",
+        "_of_modes",
         "_on_ports(block, left)",
         "0.0 * _on_ports(block, left)",
         "tests/test_bounds.py::test_errors_are_within_bars_and_bars_hardly_wider",
@@ -101,7 +101,7 @@ MUTATIONS = (
         "bounds: rigid motions of a patch are left in",
         "solidgear/fidelity/patches.py",
         "_solved",
-        "_orthonormal(rigid[ids] * size[:, None])",
+        "_orthonormal(rigid[ids] / root[:, None])",
         "_orthonormal(0.0 * rigid[ids])",
         "tests/test_patches.py::test_what_does_not_balance_moves_a_patch_as_a_rigid_body_and_costs_nothing",
     ),

@@ -17,7 +17,7 @@ j-th smallest of all lower ends.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
@@ -26,7 +26,8 @@ import numpy as np
 from solidgear.body import FURTHER, Block, Body
 from solidgear.body.kept import Kept
 from solidgear.body.model import component_rows
-from solidgear.fidelity.meridian_patches import Loading, local_energies
+from solidgear.fidelity.meridian_loads import Loading
+from solidgear.fidelity.meridian_patches import local_energies
 from solidgear.fidelity.meridian_pieces import RicherSpace
 from solidgear.solve.modes import Mode, ModeSet
 from solidgear.solve.statics import flexibility
@@ -127,36 +128,59 @@ def harmonic_bounds(
     """
     space = richer_space(scene, body)
     size, cells = 6 * len(body.ports), space.flat.cells.shape[1]
-    nothing = np.zeros((size, size))
-    out = HarmonicBounds(body, nothing, nothing.copy(), np.zeros((cells, size, size)))
+    nothing = _OfPorts(np.zeros((cells, size, size)), np.zeros((size, size)))
+    of_ports = body.kept.get(_OfPorts, lambda: nothing) if statics else nothing
+    still = statics and of_ports is nothing
     modes = _asked(found, wanted)
     energy = {mode.name: np.zeros(cells) for mode in modes}
     lower = dict.fromkeys(energy, 0.0)
     every = [] if found is None else [*found.modes, *found.beyond]
-    for index, block in _blocks(body, modes):
-        here = [mode for mode in modes if index in mode.vectors[0]]
-        still = statics and bool(block.components) and block.mirror is None
-        if not still and not here:
+    for index, block in _originals(body, modes):
+        parts = [_of_modes(body, k, modes) for k in (index, *_twins(body, index))]
+        count = block.ports.shape[0] if still and block.components else 0
+        if count:
+            parts.insert(0, _of_loads(body, index))
+        names = [mode.name for part in parts for mode in part.modes]
+        if not count and not names:
             continue
-        loading, ports = _loading(body, index, block, here, still)
-        found_here, less = local_energies(space, block, loading)
-        for k, mode in enumerate(here):
-            energy[mode.name] += found_here[:, ports + k, ports + k]
-            lower[mode.name] += float(less[:, ports + k, ports + k].sum())
-        if still:
+        two, one = local_energies(space, block, _together([part.loading for part in parts]))
+        for k, name in enumerate(names, count):
+            energy[name] += two[:, k, k]
+            lower[name] += float(one[:, k, k].sum())
+        if count:
             rows = body.rows(block)
-            out.of_ports[np.ix_(np.arange(cells), rows, rows)] = found_here[:, :ports, :ports]
-            out.less[np.ix_(rows, rows)] = less[:, :ports, :ports].sum(axis=0)
-    if statics:
+            of_ports.whole[np.ix_(np.arange(cells), rows, rows)] = two[:, :count, :count]
+            of_ports.less[np.ix_(rows, rows)] = one[:, :count, :count].sum(axis=0)
+    if still:
         for block in body.blocks:
             if block.mirror is not None:
-                _mirrored(body, block, out.of_ports)
-                _mirrored(body, block, out.less[None])
-        out.more = out.of_ports.sum(axis=0)
-    out.of_modes = energy
+                _mirrored(body, block, of_ports.whole)
+                _mirrored(body, block, of_ports.less[None])
     own = {name: safety * with_tail(e.sum(), lower[name]) for name, e in energy.items()}
-    out.lowest = _lower_ends(modes, every, own)
-    return out
+    return HarmonicBounds(
+        body,
+        of_ports.whole.sum(axis=0),
+        of_ports.less,
+        of_ports.whole,
+        energy,
+        _lower_ends(modes, every, own),
+    )
+
+
+@dataclass(frozen=True)
+class _OfPorts:
+    """Bounds of a flexibility, by cells and for an order less in sum; kept with their body."""
+
+    whole: np.ndarray
+    less: np.ndarray
+
+
+@dataclass(frozen=True)
+class _Part:
+    """Displacements of one block, and the modes that they are, if they are modes."""
+
+    loading: Loading
+    modes: Sequence[Mode] = ()
 
 
 def _asked(found: ModeSet | None, wanted: Sequence[str]) -> list[Mode]:
@@ -182,37 +206,47 @@ def _alike(one: Mode, other: Mode) -> bool:
     )
 
 
-def _blocks(body: Body, modes: Sequence[Mode]):
-    """Blocks by the numbers that modes have for them."""
-    yield from enumerate(body.blocks)
+def _originals(body: Body, modes: Sequence[Mode]) -> Iterator[tuple[int, Block]]:
+    """Blocks that are no mirror images, by the numbers that modes have for them."""
+    yield from ((k, block) for k, block in enumerate(body.blocks) if block.mirror is None)
     further = {b for mode in modes for b in mode.vectors[0] if b >= FURTHER}
-    for b in sorted(further):
-        yield b, body.block(b)
+    yield from ((b, body.block(b)) for b in sorted(further))
 
 
-def _loading(
-    body: Body, index: int, block: Block, modes: Sequence[Mode], still: bool
-) -> tuple[Loading, int]:
-    """Unit loads on the ports balanced by inertia, then modes; and how many loads there are."""
-    fields, forces, carried = [], [], []
+def _twins(body: Body, index: int) -> list[int]:
+    """Blocks that are mirror images of one: the same matrices, so that one factor serves both."""
+    return [k for k, block in enumerate(body.blocks) if block.mirror and block.mirror[0] == index]
+
+
+def _of_loads(body: Body, index: int) -> _Part:
+    """Unit loads on the ports, balanced by inertia."""
+    block = body.blocks[index]
     ports = block.ports.T.toarray()
-    if still:
-        heavy = block.rigid.T @ (block.mass @ block.rigid)
-        fields.append(flexibility(body).fields[index])
-        forces.append(np.eye(ports.shape[1]))
-        carried.append(-block.rigid @ np.linalg.solve(heavy, block.rigid.T @ ports))
-    if modes:
-        shapes = np.column_stack([mode.vectors[0][index] for mode in modes])
-        value = (2 * np.pi * np.array([mode.frequency_hz for mode in modes])) ** 2
-        left = block.stiffness @ shapes - (block.mass @ shapes) * value
-        fields.append(shapes)
-        forces.append(_on_ports(block, left))
-        carried.append(shapes * value)
-    force = np.hstack(forces)
+    heavy = block.rigid.T @ (block.mass @ block.rigid)
+    carried = -block.rigid @ np.linalg.solve(heavy, block.rigid.T @ ports)
+    return _Part(Loading(flexibility(body).fields[index], np.eye(ports.shape[1]), carried))
+
+
+def _of_modes(body: Body, index: int, modes: Sequence[Mode]) -> _Part:
+    """Modes with what bearings and masses do to them, in the sense of the block's original."""
+    block = body.block(index)
+    here = [mode for mode in modes if index in mode.vectors[0]]
+    shapes = np.array([mode.vectors[0][index] for mode in here]).reshape(-1, block.size).T
+    value = (2 * np.pi * np.array([mode.frequency_hz for mode in here])) ** 2
+    left = block.stiffness @ shapes - (block.mass @ shapes) * value
+    force = _on_ports(block, left)
     if block.mirror is not None:
         force = force * np.tile(block.mirror[1], len(body.ports))[:, None]
-    count = ports.shape[1] if still else 0
-    return Loading(np.hstack(fields), force, np.hstack(carried)), count
+    return _Part(Loading(shapes, force, shapes * value), here)
+
+
+def _together(parts: Sequence[Loading]) -> Loading:
+    """Displacements of several loadings beside each other."""
+    return Loading(
+        np.hstack([part.fields for part in parts]),
+        np.hstack([part.forces for part in parts]),
+        np.hstack([part.carried for part in parts]),
+    )
 
 
 def _on_ports(block: Block, left: np.ndarray) -> np.ndarray:

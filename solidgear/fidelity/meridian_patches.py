@@ -1,50 +1,17 @@
 """Local problems of a harmonic solid: the cells of :mod:`solidgear.fidelity.patches` on a meridian.
 
-The residual of displacements u under forces f on the ports and inertia forces of an acceleration b is
-
-    R(v) = f . G v + m(b, v) - a(u, v)
-
-with G the motions of the ports. Weighted by the hats of the mesh it loads the cells of the richer
-space (:mod:`solidgear.fidelity.meridian_pieces`). Functions inside a piece are eliminated at once,
-those inside a cell of the mesh once its pieces are put together.
+Functions inside a piece (:mod:`solidgear.fidelity.meridian_loads`) are eliminated at once, those
+inside a cell of the mesh once its pieces are put together.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from dataclasses import dataclass
-
 import numpy as np
 
 from solidgear.body import Block
-from solidgear.fidelity.assembly import batches
-from solidgear.fidelity.harmonic_families import family_of
-from solidgear.fidelity.lobatto import at_nodes, gauss, products, sides
-from solidgear.fidelity.meridian_pieces import Mapped, RicherSpace, hats, inverted, mapped
-from solidgear.fidelity.patches import Cell, condensed, energies
-
-#: bytes that the arrays of one batch of pieces may take: enough for one call to pay, and no more than
-#: a cache holds some of
-BATCH = 3e7
-
-
-@dataclass(frozen=True)
-class Loading:
-    """Displacements of a block whose error is sought, and what they are the answer to.
-
-    Attributes
-    ----------
-    fields : (n, k) ndarray
-        Displacements, in the unknowns of the block.
-    forces : (p c, k) ndarray
-        On the ports, those of bearings included.
-    carried : (n, k) ndarray
-        Accelerations whose inertia forces load the body.
-    """
-
-    fields: np.ndarray
-    forces: np.ndarray
-    carried: np.ndarray
+from solidgear.fidelity.meridian_loads import Batch, LoadedPieces, Loading
+from solidgear.fidelity.meridian_pieces import RicherSpace
+from solidgear.fidelity.patches import Cell, condensed, energies, merged
 
 
 def local_energies(
@@ -69,55 +36,18 @@ def local_energies(
     return energies(whole, work.rigid), energies(lower, work.rigid)
 
 
-@dataclass(frozen=True)
-class _Batch:
-    """Pieces with their stiffness, loads by the four hats of their cell, and rigid motions; functions
-    on corners and sides first.
-    """
-
-    part: np.ndarray
-    stiffness: np.ndarray
-    loads: np.ndarray
-    rigid: np.ndarray
-
-
 class _Loaded:
     """Cells of one block under some displacements."""
 
     def __init__(self, space: RicherSpace, block: Block, loading: Loading):
-        self.space, self.block, self.loading = space, block, loading
-        self.family = family = family_of(block)
-        self.k = loading.fields.shape[1]
-        self.local = self._strained(space.coefficients(block, family, loading.fields))
-        self.inert = None
-        if np.any(loading.carried):
-            self.inert = space.coefficients(block, family, loading.carried)
+        self.space, self.loading = space, loading
+        self.pieces = LoadedPieces(space, block, loading)
+        self.family = family = self.pieces.family
         self.motions = len(block.components)
         start = space.count * family.count
         self.first = {i: start + self.motions * m for m, i in enumerate(space.tied)}
         count = family.rigid(np.zeros(1), np.zeros(1)).shape[-1]
         self.rigid = np.zeros((start + self.motions * len(space.tied), count))
-        self.order = np.concatenate(sides(space.rich))
-
-    def _strained(self, local: np.ndarray) -> np.ndarray:
-        """Coefficients without the rigid motion of every cell: less to cancel in strains."""
-        space, c = self.space, self.family.count
-        flat = local.reshape(len(local), -1, self.k).copy()
-        nodes, inverse = at_nodes(space.order)
-        for bent in (False, True):
-            cells = np.flatnonzero(space.bent == bent)
-            if not len(cells):
-                continue
-            place = space.places(cells, nodes)
-            middle = place[..., 1].mean(axis=1, keepdims=True)
-            rigid = self.family.rigid(place[..., 0], place[..., 1] - middle)
-            m = rigid.shape[-1]
-            if not m:
-                continue
-            rigid = (inverse @ rigid.reshape(len(cells), -1, c * m)).reshape(len(cells), -1, m)
-            q, _ = np.linalg.qr(rigid / np.abs(rigid).max(axis=1, keepdims=True))
-            flat[cells] -= q @ (q.transpose(0, 2, 1) @ flat[cells])
-        return flat.reshape(local.shape)
 
     def cells(self) -> tuple[list[Cell], list[Cell]]:
         """All cells of the mesh, condensed to what they share: of the richer space, and of the one of
@@ -125,55 +55,47 @@ class _Loaded:
         """
         space = self.space
         made: tuple[dict[int, Cell], dict[int, Cell]] = ({}, {})
-        traction = self._tractions()
-        parts = self._parts(space.rich), self._parts(space.rich - 1)
-        for batch in self._batches():
-            for j, piece in enumerate(batch.part):
-                if int(piece) in traction:
-                    batch.loads[j] += traction[int(piece)]
-            for into, (outside, inside) in zip(made, parts):
-                self._eliminate(batch, outside, inside, into)
+        for batch in self.pieces.batches():
+            self._eliminate(batch, *made)
         for i, first in self.first.items():
             y = space.body.ports[i].y
             own = [[1.0, y], [0.0, 1.0]] if self.family.waves == 1 else [[1.0]]
             self.rigid[first : first + self.motions] = np.array(own)[: self.motions]
         return self._whole(made[0]), self._whole(made[1])
 
-    def _parts(self, order: int) -> tuple[np.ndarray, np.ndarray]:
-        """Places of the functions up to an order among those of the richer space: on corners and
-        sides, and inside.
-        """
-        rich = self.space.rich
-        on_sides = [4 + k * (rich - 1) + np.arange(order - 1) for k in range(4)]
-        inside = np.arange((rich - 1) ** 2).reshape(rich - 1, -1)[: order - 1, : order - 1]
-        return np.concatenate([np.arange(4), *on_sides]), 4 * rich + inside.ravel()
+    def _eliminate(self, batch: Batch, whole: dict[int, Cell], lower: dict[int, Cell]) -> None:
+        """Cells of some pieces without the functions inside them.
 
-    def _eliminate(
-        self, batch: _Batch, outside: np.ndarray, inside: np.ndarray, into: dict[int, Cell]
-    ) -> None:
-        """Cells of some pieces without the functions inside them."""
+        Those of an order less come first, and what is left of the others is the richer space still.
+        """
+        c, (inside, few, outside) = self.family.count, self.pieces.ends
+        k = batch.loads.shape[-1]
+        nothing = np.zeros((len(batch.part), k, k))
+        held = _without(batch.stiffness, batch.loads, nothing, inside * c, front=True)
+        self._add(batch, few, held, lower)
+        # the functions of the top order inside stand last
+        self._add(batch, outside, _without(*held, held[0].shape[1] - outside * c), whole)
+
+    def _add(self, batch: Batch, count: int, held: tuple, into: dict[int, Cell]) -> None:
+        """Cells of pieces from the first of their functions on corners and sides."""
         space, c = self.space, self.family.count
-        part = batch.part
-        of, own = ((places[:, None] * c + np.arange(c)).ravel() for places in (outside, inside))
-        stiffness, loads = batch.stiffness, batch.loads
-        signs = np.repeat(space.signs[part][:, outside], c, axis=1)
-        far, load = stiffness[:, own[:, None], of], loads[:, :, own].sum(axis=1)
-        solved = np.linalg.solve(
-            stiffness[:, own[:, None], own], np.concatenate([far, load], axis=2)
-        )
-        follow, alone = solved[:, :, : len(of)], solved[:, :, len(of) :]
-        left = stiffness[:, of[:, None], of] - far.transpose(0, 2, 1) @ follow
-        left *= signs[:, :, None] * signs[:, None]
-        shared = loads[:, :, of] - follow.transpose(0, 2, 1)[:, None] @ loads[:, :, own]
-        shared *= signs[:, None, :, None]
-        const = load.transpose(0, 2, 1) @ alone
-        ids = (space.ids[part][:, outside, None] * c + np.arange(c)).reshape(len(part), -1)
-        rigid = batch.rigid[:, of] * signs[:, :, None]
+        part, (stiffness, loads, const) = batch.part, held
+        own, n = self.pieces.outside[:count], count * c
+        signs = np.repeat(space.signs[part][:, own], c, axis=1)
+        stiffness = stiffness[:, :n, :n] * (signs[:, :, None] * signs[:, None])
+        loads = loads[:, :, :n] * signs[:, None, :, None]
+        scalar = space.ids[part][:, own]
+        ids = (scalar[..., None] * c + np.arange(c)).reshape(len(part), -1)
+        first = self.pieces.ends[0] * c
+        rigid = batch.rigid[:, first : first + n] * signs[:, :, None]
         self.rigid[ids] = rigid
+        apart = space.on_axis[scalar].any(axis=1)
+        for on in space.tied.values():
+            apart |= on[scalar].any(axis=1)
         at_corners = space.corner_hat[space.flat.cells[:, space.pieces.parent[part]]].T
         for j, piece in enumerate(part):
-            cell = Cell(at_corners[j], ids[j], left[j], shared[j], const[j])
-            into[int(piece)] = self._constrained(cell, rigid[j])
+            cell = Cell(at_corners[j], ids[j], stiffness[j], loads[j], const[j])
+            into[int(piece)] = self._constrained(cell, rigid[j]) if apart[j] else cell
 
     def _constrained(self, cell: Cell, rigid: np.ndarray) -> Cell:
         """A cell without what the axis holds, and with rigid seats moving as their ports."""
@@ -181,8 +103,6 @@ class _Loaded:
         scalar, component = cell.unknowns // c, cell.unknowns % c
         keep = ~(space.on_axis[scalar] & np.isin(component, self.family.held))
         tied = {i: on[scalar] for i, on in space.tied.items() if on[scalar].any()}
-        if keep.all() and not tied:
-            return cell
         for on in tied.values():
             keep = keep & ~on
         ids, columns = [cell.unknowns[keep]], [np.eye(len(keep))[:, keep]]
@@ -210,7 +130,8 @@ class _Loaded:
         pieces: list[list[int]] = [[] for _ in range(space.flat.cells.shape[1])]
         for piece, parent in enumerate(space.pieces.parent):
             pieces[parent].append(piece)
-        whole = [_together([made[p] for p in own]) for own in pieces]
+        numbered = np.empty(len(self.rigid), int)
+        whole = [_together([made[p] for p in own], numbered) for own in pieces]
         owners = np.zeros(len(self.rigid), int)
         for cell in whole:
             owners[cell.unknowns] += 1
@@ -220,162 +141,44 @@ class _Loaded:
             at_seat = space.pieces.parent[space.carrying[i][0][0]]
             seat = int(space.corner_hat[space.flat.cells[1, at_seat]])
             cell = next(c for c in whole if seat in c.hats and first in c.unknowns)
-            places = np.searchsorted(cell.unknowns, first + np.arange(self.motions))
+            places = [list(cell.unknowns).index(first + m) for m in range(self.motions)]
             own = self.loading.forces[i * self.motions : (i + 1) * self.motions]
             cell.loads[list(cell.hats).index(seat), places] += own
             owners[first : first + self.motions] = 2  # loaded from outside: never condensed
         return [condensed(cell, owners[cell.unknowns] == 1) for cell in whole]
 
-    def _tractions(self) -> dict[int, np.ndarray]:
-        """Loads on pieces at seats that are not rigid, and at planes."""
-        space = self.space
-        out: dict[int, np.ndarray] = {}
-        x, w = gauss(space.rich + 3)
-        for i, found in enumerate(space.carrying):
-            if i in space.tied or not found or not self.motions:
-                continue
-            force = self.loading.forces[i * self.motions : (i + 1) * self.motions]
-            there = [_side(space, piece, side, x) for piece, side in found]
-            r = np.array([s.place[:, 0] for s in there])
-            h = np.array([s.place[:, 1] for s in there]) - space.body.ports[i].y
-            weight = np.array([s.length for s in there]) * w
-            density = self.family.means(r, h, weight) @ force
-            for (piece, _), s, own in zip(found, there, density):
-                value = products(space.rich, s.at)[0][self.order]
-                load = np.einsum("bq,hq,qck->hbck", value, s.hats, own).reshape(4, -1, self.k)
-                out[piece] = out[piece] + load if piece in out else load
-        return out
 
-    def _batches(self) -> Iterator[_Batch]:
-        space, c = self.space, self.family.count
-        nb = (space.rich + 1) ** 2
-        # exact for products of functions on straight cells, but for what is divided by r
-        x, w = gauss(space.rich + 1)
-        a, b = np.meshgrid(x, x, indexing="ij")
-        at, area = np.stack([a.ravel(), b.ravel()], axis=1), np.outer(w, w).ravel()
-        value, slope = (f[..., self.order, :] for f in products(space.rich, at))
-        nq = len(area)
-        each = 8 * (16 * nq * c * self.k + 12 * nb * nq + 2 * (c * nb) ** 2 + 9 * nb * nb)
-        segments = space.flat.segment[space.pieces.parent]
-        bent = space.bent[space.pieces.parent]
-        for index, segment in enumerate(space.scene.segments):
-            law = self.family.stiffness(segment.material)
-            for curved in (False, True):
-                those = np.flatnonzero((segments == index) & (bent == curved))
-                for part in batches(those, each * 4e6 / BATCH):
-                    g = mapped(space, part, at)
-                    weight = self.family.weight(g.place[..., 0], g.det * area)
-                    f = _functions(g, value, slope, np.sqrt(weight))
-                    stiffness = _stiffness(f, law, c)
-                    loads = self._loads(part, g, f, value, weight, law, segment.material.density)
-                    yield _Batch(part, stiffness, loads, self._rigid(part))
-
-    def _rigid(self, part: np.ndarray) -> np.ndarray:
-        """(m, nb c, r) rigid motions of pieces."""
-        nodes, inverse = at_nodes(self.space.rich)
-        place = mapped(self.space, part, nodes).place
-        rigid = self.family.rigid(place[..., 0], place[..., 1])
-        found = inverse[self.order] @ rigid.reshape(len(part), len(nodes), np.prod(rigid.shape[2:]))
-        c, count = rigid.shape[-2:]
-        return found.reshape(len(part), len(nodes) * c, count)
-
-    def _loads(self, part, g: Mapped, f, value, weight, law, density) -> np.ndarray:
-        """(m, 4, nb c, k) residual of the displacements, weighted by the hats of the cell."""
-        c, k = self.family.count, self.k
-        parent = self.space.pieces.parent[part]
-        m, _, nb, nq = f.shape
-        own = self.local[parent].reshape(m, -1, c * k)
-        strain = np.empty((m, 3, nq, c * k))
-        strain[:, 0] = (g.value.transpose(0, 2, 1) @ own) / g.place[..., 0][..., None]
-        along = [rate.transpose(0, 2, 1) @ own for rate in g.slope]
-        for d in (0, 1):
-            strain[:, 1 + d] = along[0] * g.outer[:, 0, d][..., None]
-            strain[:, 1 + d] += along[1] * g.outer[:, 1, d][..., None]
-        strain = strain.reshape(m, 3, nq, c, k).transpose(0, 1, 3, 2, 4).reshape(m, 3 * c, -1)
-        stress = (law @ strain).reshape(m, 3, c, nq, k).transpose(0, 1, 3, 2, 4)
-        hat, rate = hats(g.at)
-        fall = [
-            rate[0] * g.outer[:, 0, d][:, None] + rate[1] * g.outer[:, 1, d][:, None]
-            for d in (0, 1)
-        ]
-        right = np.empty((m, 4, 4, nq, c, k))
-        # the functions have the other root of the weight
-        half = stress * np.sqrt(weight)[:, None, :, None, None]
-        right[:, :, :3] = -hat[:, :, None, :, None, None] * half[:, None]
-        full = stress[:, 1:] * weight[:, None, :, None, None]
-        right[:, :, 3] = -fall[0][..., None, None] * full[:, None, 0]
-        right[:, :, 3] -= fall[1][..., None, None] * full[:, None, 1]
-        if self.inert is not None:
-            moved = self.inert[parent].reshape(m, -1, c * k)
-            force = (g.value.transpose(0, 2, 1) @ moved).reshape(m, nq, c, k)
-            force = force * self.family.share[:, None] * (density * weight)[..., None, None]
-            right[:, :, 3] += hat[..., None, None] * force[:, None]
-        left = np.concatenate([f, np.broadcast_to(value, (m, 1, nb, nq))], axis=1)
-        left = left.transpose(0, 2, 1, 3).reshape(m, 1, nb, 4 * nq)
-        return (left @ right.reshape(m, 4, 4 * nq, c * k)).reshape(m, 4, nb * c, k)
+def _without(
+    stiffness: np.ndarray, loads: np.ndarray, const: np.ndarray, count: int, front: bool = False
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Stiffness, loads by hat and energies of pieces without their first or last functions."""
+    n = stiffness.shape[1]
+    gone, left = (
+        (slice(count), slice(count, n)) if front else (slice(n - count, n), slice(n - count))
+    )
+    far, load = stiffness[:, gone, left], loads[:, :, gone].sum(axis=1)
+    solved = np.linalg.solve(stiffness[:, gone, gone], np.concatenate([far, load], axis=2))
+    follow, alone = solved[:, :, : far.shape[2]], solved[:, :, far.shape[2] :]
+    back = follow.transpose(0, 2, 1)
+    return (
+        stiffness[:, left, left] - back @ far,
+        loads[:, :, left] - back[:, None] @ loads[:, :, gone],
+        const + load.transpose(0, 2, 1) @ alone,
+    )
 
 
-def _functions(g: Mapped, value, slope, root: np.ndarray) -> np.ndarray:
-    """(m, 3, nb, nq) values of phi / r, phi,r and phi,y, times the root of the weights."""
-    f = np.empty((len(root), 3, *value.shape))
-    f[:, 0] = value * (root / g.place[..., 0])[:, None]
-    for d in (0, 1):
-        f[:, 1 + d] = slope[0] * (g.inverse[:, 0, d] * root)[:, None]
-        f[:, 1 + d] += slope[1] * (g.inverse[:, 1, d] * root)[:, None]
-    return f
-
-
-def _stiffness(f: np.ndarray, law: np.ndarray, c: int) -> np.ndarray:
-    """(m, nb c, nb c) stiffness of pieces from one Gram matrix of their functions."""
-    m, _, nb, nq = f.shape
-    flat = f.reshape(m, 3 * nb, nq)
-    gram = (flat @ flat.transpose(0, 2, 1)).reshape(m, 3, nb, 3, nb)
-    gram = gram.transpose(0, 1, 3, 2, 4).reshape(m, 9, nb * nb)
-    to = law.reshape(3, c, 3, c).transpose(1, 3, 0, 2).reshape(c * c, 9)
-    out = (to @ gram).reshape(m, c, c, nb, nb).transpose(0, 3, 1, 4, 2)
-    return out.reshape(m, nb * c, nb * c)
-
-
-def _together(pieces: list[Cell]) -> Cell:
+def _together(pieces: list[Cell], numbered: np.ndarray) -> Cell:
     """One cell from its pieces; hats at corners that belong to one seat are added up."""
     first = pieces[0]
     own = list(dict.fromkeys(int(h) for h in first.hats))
     if len(pieces) == 1 and len(own) == len(first.hats):
-        order = np.argsort(first.unknowns)
-        return Cell(
-            own,
-            first.unknowns[order],
-            first.stiffness[order[:, None], order],
-            first.loads[:, order],
-            first.inside,
-        )
+        return first
     add = np.array([[float(h == one) for h in first.hats] for one in own])
-    ids, place = np.unique(np.concatenate([p.unknowns for p in pieces]), return_inverse=True)
+    ids, places = merged([p.unknowns for p in pieces], numbered)
     n, k = len(ids), first.loads.shape[2]
     stiffness, loads = np.zeros((n, n)), np.zeros((len(first.hats), n, k))
-    cuts = np.cumsum([len(p.unknowns) for p in pieces])[:-1]
-    for piece, at in zip(pieces, np.split(place, cuts)):
+    for piece, at in zip(pieces, places):
         stiffness[at[:, None], at] += piece.stiffness
         loads[:, at] += piece.loads
     inside = np.sum([piece.inside for piece in pieces], axis=0)
     return Cell(own, ids, stiffness, np.tensordot(add, loads, axes=1), inside)
-
-
-@dataclass(frozen=True)
-class _Side:
-    """A side of a piece: points on it in its coordinates, places and lengths (m), hats of its cell."""
-
-    at: np.ndarray
-    place: np.ndarray
-    length: np.ndarray
-    hats: np.ndarray
-
-
-def _side(space: RicherSpace, piece: int, side: int, x: np.ndarray) -> _Side:
-    """Points along a side of a piece."""
-    still = np.full_like(x, (0.0, 1.0, 1.0, 0.0)[side])
-    at = np.stack([x, still] if side in (0, 2) else [still, x], axis=1)
-    g = mapped(space, np.array([piece]), at)
-    # derivative of position along the side, from the inverse
-    along = inverted(g.inverse)[0][0, :, 0 if side in (0, 2) else 1]
-    return _Side(at, g.place[0], np.hypot(*along), hats(g.at)[0][0])

@@ -28,7 +28,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-import scipy.linalg as sla
+from scipy.linalg import lapack
 
 #: added to patch matrices whose diagonal is one: nearly dependent functions of slender cells
 REGULAR = 1e-12
@@ -72,15 +72,16 @@ def condensed(cell: Cell, inner: np.ndarray) -> Cell:
     if not inner.any():
         return cell
     outer = ~inner
-    own, across = cell.stiffness[np.ix_(inner, inner)], cell.stiffness[np.ix_(inner, outer)]
-    total = cell.loads[:, inner].sum(axis=0)
-    solved = sla.cho_solve(sla.cho_factor(own, check_finite=False), np.hstack([across, total]))
+    rows = cell.stiffness[inner]
+    own, across, loads = rows[:, inner], rows[:, outer], cell.loads[:, inner]
+    total = loads.sum(axis=0)
+    solved = _solve(own, np.hstack([across, total]))
     follow, alone = solved[:, : across.shape[1]], solved[:, across.shape[1] :]
     return Cell(
         cell.hats,
         cell.unknowns[outer],
-        cell.stiffness[np.ix_(outer, outer)] - across.T @ follow,
-        cell.loads[:, outer] - follow.T @ cell.loads[:, inner],
+        cell.stiffness[outer][:, outer] - across.T @ follow,
+        cell.loads[:, outer] - follow.T @ loads,
         cell.inside + total.T @ alone,
     )
 
@@ -114,37 +115,69 @@ def energies(cells: Sequence[Cell], rigid: np.ndarray) -> np.ndarray:
         for h, hat in enumerate(cell.hats):
             patches.setdefault(hat, []).append((k, h))
     found = [np.zeros(cell.loads.shape[1:]) for cell in cells]
+    numbered = np.empty(len(rigid), int)
     for members in patches.values():
-        for k, x in _solved(cells, members, rigid):
+        for k, x in _solved(cells, members, rigid, numbered):
             found[k] += x
     return np.array([_energy(cell, x, rigid) for cell, x in zip(cells, found)])
 
 
-def _solved(cells: Sequence[Cell], members: list[tuple[int, int]], rigid: np.ndarray):
+def merged(
+    unknowns: Sequence[np.ndarray], numbered: np.ndarray
+) -> tuple[np.ndarray, list[np.ndarray]]:
+    """Unknowns of several cells, each once, and where those of every cell stand among them.
+
+    Parameters
+    ----------
+    unknowns : sequence of (n,) ndarray of int
+    numbered : ndarray of int
+        Written over; as long as there are unknowns in all.
+
+    Examples
+    --------
+    >>> ids, places = merged([np.array([7, 3]), np.array([3, 5])], np.empty(9, int))
+    >>> [ids[place].tolist() for place in places]
+    [[7, 3], [3, 5]]
+    """
+    every = np.concatenate(unknowns)
+    order = np.arange(len(every))
+    numbered[every] = order
+    ids = every[numbered[every] == order]
+    numbered[ids] = order[: len(ids)]
+    return ids, [numbered[own] for own in unknowns]
+
+
+def _solved(
+    cells: Sequence[Cell], members: list[tuple[int, int]], rigid: np.ndarray, numbered: np.ndarray
+):
     """Displacements of the cells of one patch under its hat."""
-    ids, place = np.unique(
-        np.concatenate([cells[k].unknowns for k, _ in members]), return_inverse=True
-    )
-    cuts = np.cumsum([len(cells[k].unknowns) for k, _ in members])[:-1]
-    places = np.split(place, cuts)
+    ids, places = merged([cells[k].unknowns for k, _ in members], numbered)
     n, count = len(ids), cells[members[0][0]].loads.shape[2]
     stiffness, load = np.zeros((n, n)), np.zeros((n, count))
     for (k, h), at in zip(members, places):
         stiffness[at[:, None], at] += cells[k].stiffness
         load[at] += cells[k].loads[h]
     # an unknown that moves all of a condensed cell as a rigid body has no stiffness but rounding
-    diagonal = np.diag(stiffness)
-    size = np.sqrt(np.maximum(diagonal, ROUNDED * diagonal.max()))
-    stiffness /= np.outer(size, size)
-    load /= size[:, None]
-    free = _orthonormal(rigid[ids] * size[:, None])
+    diagonal = stiffness.diagonal()
+    root = 1 / np.sqrt(np.maximum(diagonal, ROUNDED * diagonal.max()))
+    stiffness *= root[:, None]
+    stiffness *= root
+    load *= root[:, None]
+    free = _orthonormal(rigid[ids] / root[:, None])
     load -= free @ (free.T @ load)
     stiffness += free @ free.T
-    stiffness[np.diag_indices(len(size))] += REGULAR
-    factor = sla.cho_factor(stiffness, overwrite_a=True, check_finite=False)
-    x = sla.cho_solve(factor, load, check_finite=False) / size[:, None]
+    stiffness.flat[:: n + 1] += REGULAR
+    x = _solve(stiffness, load) * root[:, None]
     for (k, _), at in zip(members, places):
         yield k, x[at]
+
+
+def _solve(matrix: np.ndarray, right: np.ndarray) -> np.ndarray:
+    """Solution with a positive definite matrix, which is written over."""
+    _, x, info = lapack.dposv(matrix.T, right, lower=True, overwrite_a=True)
+    if info:
+        raise np.linalg.LinAlgError("a local problem is not positive definite")
+    return x
 
 
 def _energy(cell: Cell, x: np.ndarray, rigid: np.ndarray) -> np.ndarray:
