@@ -189,15 +189,16 @@ class LoadedPieces:
             if i in space.tied or not found or not self.motions:
                 continue
             force = self.loading.forces[i * self.motions : (i + 1) * self.motions]
-            there = [_side(space, piece, side, x) for piece, side in found]
-            r = np.array([s.place[:, 0] for s in there])
-            h = np.array([s.place[:, 1] for s in there]) - space.body.ports[i].y
-            weight = np.array([s.length for s in there]) * w
-            density = self.family.means(r, h, weight) @ force
-            for (piece, _), s, own in zip(found, there, density):
-                value = products(space.rich, s.at)[0][self.order]
-                load = np.einsum("bq,hq,qck->hbck", value, s.hats, own).reshape(4, -1, self.k)
-                out[piece] = out[piece] + load if piece in out else load
+            there = _sides(space, found, x)
+            r, y = np.concatenate([side.place for side in there]).transpose(2, 0, 1)
+            weight = np.concatenate([side.length for side in there]) * w
+            density = self.family.means(r, y - space.body.ports[i].y, weight) @ force
+            first = np.cumsum([0, *(len(side.pieces) for side in there)])
+            for side, at in zip(there, map(slice, first, first[1:])):
+                value = products(space.rich, side.at)[0][self.order]
+                load = np.einsum("bq,shq,sqck->shbck", value, side.hats, density[at])
+                for piece, own in zip(side.pieces, load.reshape(len(load), 4, -1, self.k)):
+                    out[piece] = out[piece] + own if piece in out else own
         return out
 
 
@@ -246,20 +247,30 @@ def _stiffness(f: np.ndarray, law: np.ndarray, c: int) -> np.ndarray:
 
 
 @dataclass(frozen=True)
-class _Side:
-    """A side of a piece: points on it in its coordinates, places and lengths (m), hats of its cell."""
+class _Sides:
+    """Like sides of some pieces: points on them in their coordinates, places and lengths (m), hats of
+    their cells.
+    """
 
+    pieces: list[int]
     at: np.ndarray
     place: np.ndarray
     length: np.ndarray
     hats: np.ndarray
 
 
-def _side(space: RicherSpace, piece: int, side: int, x: np.ndarray) -> _Side:
-    """Points along a side of a piece."""
-    still = np.full_like(x, (0.0, 1.0, 1.0, 0.0)[side])
-    at = np.stack([x, still] if side in (0, 2) else [still, x], axis=1)
-    g = mapped(space, np.array([piece]), at)
-    # derivative of position along the side, from the inverse
-    along = inverted(g.inverse)[0][0, :, 0 if side in (0, 2) else 1]
-    return _Side(at, g.place[0], np.hypot(*along), hats(g.at)[0][0])
+def _sides(space: RicherSpace, found: list[tuple[int, int]], x: np.ndarray) -> list[_Sides]:
+    """Points along sides of pieces."""
+    like: dict[tuple[int, bool], list[int]] = {}
+    for piece, side in found:
+        bent = bool(space.bent[space.pieces.parent[piece]])
+        like.setdefault((side, bent), []).append(piece)
+    out = []
+    for (side, _), pieces in like.items():
+        still = np.full_like(x, (0.0, 1.0, 1.0, 0.0)[side])
+        at = np.stack([x, still] if side in (0, 2) else [still, x], axis=1)
+        g = mapped(space, np.array(pieces), at)
+        # derivative of position along the side, from the inverse
+        along = inverted(g.inverse)[0][:, :, 0 if side in (0, 2) else 1]
+        out.append(_Sides(pieces, at, g.place, np.hypot(along[:, 0], along[:, 1]), hats(g.at)[0]))
+    return out
