@@ -271,7 +271,7 @@ CASES = {
     ),
     "Timoshenko beam, pinion": Case(
         "beam_against_solid",
-        "C_thx of the Timoshenko beam is 14.",
+        "C_thx of the Timoshenko beam is 14",
         ("timoshenko", "lumped"),
         "avoid",
         OVERHUNG,

@@ -35,8 +35,8 @@ def _hexahedra(layers: int, edge_layers: int, relative_size: float) -> Options:
     }
 
 
-#: a usual mesh of the harmonic solid, good to some 1e-4: where no bar is asked for
-HARMONIC: Options = _harmonic(4, 2, 1, 4.0)
+#: a usual mesh of the harmonic solid, good to some 1e-3: where no bar is asked for
+HARMONIC: Options = _harmonic(3, 1, 0, 4.0)
 HEXAHEDRA: tuple[Options, ...] = (
     _hexahedra(0, 0, 1.5),
     _hexahedra(1, 1, 1.0),

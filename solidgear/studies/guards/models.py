@@ -24,9 +24,12 @@ from solidgear.studies.guards.probe import Probe
 if TYPE_CHECKING:
     from solidgear.scene import Scene
 
-#: bands of a light solid rest on two meshes only
-CAUTIOUS = 2.0
 BEAM_OR_SOLID = "a beam or a solid"
+
+
+def _sure(band: float | None) -> str:
+    """How sure a gap to a light solid is, in words."""
+    return f", give or take {100 * band:.1g} %" if band else ""
 
 
 def beam_against_solid(probe: Probe) -> Notices:
@@ -49,7 +52,7 @@ def beam_against_solid(probe: Probe) -> Notices:
             kind: [
                 g
                 for g in gaps
-                if gap_verdict(g["relative"], CAUTIOUS * (g["band"] or 0.0), tolerance) == kind
+                if gap_verdict(g["relative"], g["band"] or 0.0, tolerance) == kind
             ]
             for kind in (verdict.BEYOND, verdict.OPEN, verdict.WITHIN)
         }
@@ -64,7 +67,7 @@ def beam_against_solid(probe: Probe) -> Notices:
         called = in_words(name, probe.main)
         text = (
             f"{called} of the {LADDER[model].title} is {told} that of a "
-            f"light harmonic solid {TIES[worst['attachment']]}"
+            f"light harmonic solid {TIES[worst['attachment']]}{_sure(worst['band'])}"
         )
         if kind == verdict.BEYOND:
             yield Notice(
@@ -361,10 +364,10 @@ def lumped_against_solid(probe: Probe) -> Notices:
     gap = lumped.frequency_hz / truth - 1
     bands = solid.bands.get(SCENE, {})
     band = bands["bending 1"].gci if "bending 1" in bands else 0.0
-    kind = gap_verdict(gap, CAUTIOUS * band, tolerance)
+    kind = gap_verdict(gap, band, tolerance)
     text = (
         f"first bending of the lumped model is {against(gap, 'higher', 'lower')} "
-        "that of a light harmonic solid"
+        f"that of a light harmonic solid{_sure(band)}"
     )
     if kind == verdict.BEYOND:
         yield Notice(

@@ -39,8 +39,9 @@ if TYPE_CHECKING:
 
 #: modes enough for the first bending pair, the first axial one and the rigid ones between them
 FEW = 8
-#: meshes of the light harmonic solid, of which the last one speaks
-LIGHT = 2
+#: share of the tolerance that bars of the light harmonic solid are wanted within, and its meshes at
+#: most: what stays open is said
+SHARE, LIGHT = 4.0, 2
 #: a clamp this much stiffer than the shaft on its bearings moves a frequency by about the inverse
 CLAMP = 1e6
 
@@ -132,10 +133,12 @@ class Probe:
         ]
 
     def rung(self, model: str) -> Solution:
-        """A beam, or the harmonic solid on its two coarsest meshes."""
+        """A beam, or the harmonic solid on one mesh or two."""
         if model not in self.rungs:
             options = {name: True for name in SOFT if self.asked(model).get(name)}
-            self.rungs[model] = study(self.scene, model, options, most=LIGHT, evidence=False)
+            self.rungs[model] = study(
+                self.scene, model, options, share=SHARE, most=LIGHT, evidence=False
+            )
         return self.rungs[model]
 
     def asked(self, model: str) -> Mapping[str, Any]:
@@ -150,11 +153,10 @@ class Probe:
         return rung.body, rung.modes, rung.quantities
 
     def _tied(self, attachment: str | None) -> dict[str, float]:
-        """Numbers of the light harmonic solid with one attachment (``rigid``: at the bearings), or
-        as the scene has it (None).
+        """Numbers of a harmonic solid, on one mesh for all, with one attachment (``rigid``: at the
+        bearings), or as the scene has it (None).
         """
-        given = {s.attachment for s in self.scene.stations}
-        if attachment is None or given == {attachment}:
+        if attachment is None:
             return self.rung("harmonic").quantities
         scene = (
             rigid_seats(self.scene)
