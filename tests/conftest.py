@@ -67,9 +67,9 @@ def run(monkeypatch, capsys, tmp_path):
 @pytest.fixture
 def two_meshes(monkeypatch):
     """A climb that ends with its second mesh, where a tolerance of 1e-8 is far away."""
-    from solidgear.studies import climb
+    from solidgear.studies import loop
 
-    monkeypatch.setattr(climb, "MOST_MESHES", 2)
+    monkeypatch.setattr(loop, "MOST_MESHES", 2)
 
 
 @pytest.fixture

@@ -14,7 +14,6 @@ import scipy.linalg as sla
 
 import solidgear as sg
 from solidgear.cli import main
-from solidgear.evidence.study import study
 from solidgear.fidelity.ladder import LADDER
 from solidgear.scene import STEEL, Ask, Bearing, Fillet, Port, Scene, Segment
 from solidgear.studies import check, guards
@@ -22,6 +21,7 @@ from solidgear.studies.check import cautions, check_scene, notices
 from solidgear.studies.guards import GUARDS, Notice, elements, models
 from solidgear.studies.guards.notice import against, everything
 from solidgear.studies.guards.probe import Probe
+from solidgear.studies.study import study
 from validation.shipped import shafts_of_revolution
 
 ROOT = Path(__file__).parent.parent

@@ -22,7 +22,6 @@ from solidgear.evidence.quantities import (
     size,
 )
 from solidgear.evidence.recording import recorded
-from solidgear.evidence.study import study
 from solidgear.fidelity.ladder import LADDER
 from solidgear.report.front import numbers
 from solidgear.report.point_tables import points
@@ -32,6 +31,7 @@ from solidgear.studies.guards.data import split_pair
 from solidgear.studies.guards.models import beam_against_solid
 from solidgear.studies.guards.probe import Probe
 from solidgear.studies.settle import settle
+from solidgear.studies.study import study
 from validation.attack.corner_mesh import corner_mesh
 from validation.attack.judge import SMALL
 from validation.attack.points import judged, scene_of, solutions

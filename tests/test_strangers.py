@@ -12,7 +12,6 @@ import pytest
 
 import solidgear as sg
 from solidgear.evidence.completeness import completeness
-from solidgear.evidence.study import study
 from solidgear.evidence.ties import SCENE
 from solidgear.fidelity.ladder import LADDER
 from solidgear.fidelity.levels import HEXAHEDRA
@@ -21,6 +20,7 @@ from solidgear.scene import Bearing, Port, Scene, Segment
 from solidgear.studies.check import check_scene
 from solidgear.studies.comparison import compare
 from solidgear.studies.guards.probe import Probe
+from solidgear.studies.study import study
 
 SCENES = Path(__file__).parent / "scenes"
 COARSE = {"order": 3, "layers": 1, "edge_layers": 0, "relative_size": 4.0}

@@ -10,7 +10,7 @@ import solidgear as sg
 from solidgear.evidence.answer import Answer
 from solidgear.evidence.bands import Band
 from solidgear.evidence.quantities import JUDGED
-from solidgear.evidence.study import Solution
+from solidgear.evidence.solution import Solution
 from solidgear.evidence.ties import SCENE, SECTION
 from solidgear.evidence.verdict import (
     BEYOND,

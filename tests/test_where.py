@@ -12,11 +12,11 @@ from solidgear.cli.app import app
 from solidgear.errors import SolidgearError
 from solidgear.evidence.places import singular_places
 from solidgear.evidence.quantities import usual
-from solidgear.evidence.study import study
 from solidgear.evidence.ties import SCENE
 from solidgear.evidence.where import ELSEWHERE, Row, recorded_places, where
 from solidgear.fidelity.refining import Meshed
 from solidgear.report.where_chart import draw_where
+from solidgear.studies.study import study
 
 ROOT = Path(__file__).parent.parent
 RADIAL = {"kxx": "5e8 N/m", "kzz": "5e8 N/m"}

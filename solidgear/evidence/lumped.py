@@ -19,7 +19,7 @@ from solidgear.fidelity.rung import BEAM, LUMPED, SOLID
 from solidgear.reduction.effective_mass import Synthesis, synthesise
 
 if TYPE_CHECKING:
-    from solidgear.evidence.study import Solution
+    from solidgear.evidence.solution import Solution
     from solidgear.scene import Scene
 
 #: variants that may stand for the lumped rung, the preferred one first

@@ -33,7 +33,7 @@ from solidgear.evidence.record import (
     VariantRecord,
     VerdictRecord,
 )
-from solidgear.evidence.study import Solution
+from solidgear.evidence.solution import Solution
 from solidgear.evidence.ties import SCENE
 from solidgear.evidence.verdict import Judgement, deviations, judge, percent, trusted
 from solidgear.fidelity.ladder import LADDER

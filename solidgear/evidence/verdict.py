@@ -26,7 +26,7 @@ from solidgear.evidence.quantities import (
     repeats,
     usual,
 )
-from solidgear.evidence.study import Solution
+from solidgear.evidence.solution import Solution
 from solidgear.evidence.ties import SCENE, SECTION
 from solidgear.fidelity.ladder import LADDER
 from solidgear.fidelity.rung import BEAM, SOLID

@@ -43,7 +43,7 @@ from solidgear.solve.modes import ModeSet
 from solidgear.solve.statics import SOLVED, condense, flexibility
 
 if TYPE_CHECKING:
-    from solidgear.evidence.study import Solution
+    from solidgear.evidence.solution import Solution
     from solidgear.scene import Scene
 
 log = logging.getLogger(__name__)

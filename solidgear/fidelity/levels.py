@@ -55,8 +55,6 @@ AROUND, ORDER_AROUND = 8, 4
 #: unknowns of the second level above which a third one, some three times as large, is solved only
 #: if the band needs it
 HEAVY = 15_000
-#: and what such a second level must meet to judge
-LIGHT_JUDGE = 2.0
 
 
 @dataclass(frozen=True)

@@ -25,7 +25,8 @@ from solidgear.fidelity.ladder import LADDER
 from solidgear.fidelity.rung import BEAM, SOLID
 from solidgear.machine.memory import one_run
 from solidgear.machine.threads import pinned
-from solidgear.studies.climb import Climb, Progress
+from solidgear.studies.climb import Climb
+from solidgear.studies.loop import Progress
 from solidgear.studies.steps import Step, Value
 
 if TYPE_CHECKING:

@@ -10,7 +10,7 @@ import numpy as np
 
 from solidgear.body import Body
 from solidgear.errors import SolidgearError
-from solidgear.evidence.study import Solution
+from solidgear.evidence.solution import Solution
 from solidgear.fidelity.ladder import LADDER
 from solidgear.fidelity.rung import BEAM, LUMPED, SOLID
 from solidgear.machine.threads import pinned

@@ -17,7 +17,7 @@ from solidgear.evidence.lumped import synthesise_all
 from solidgear.evidence.quantities import change
 from solidgear.evidence.record import LumpedRecord, Record, WhereRecord
 from solidgear.evidence.recording import recorded
-from solidgear.evidence.study import Solution, study
+from solidgear.evidence.solution import Solution
 from solidgear.evidence.ties import SECTION
 from solidgear.evidence.where import recorded_places
 from solidgear.fidelity.ladder import LADDER
@@ -26,6 +26,7 @@ from solidgear.fidelity.rung import LUMPED, SOLID
 from solidgear.machine.memory import one_run
 from solidgear.machine.meter import Meter
 from solidgear.machine.threads import pinned
+from solidgear.studies.study import study
 
 if TYPE_CHECKING:
     from solidgear.scene import Scene

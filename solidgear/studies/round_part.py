@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from solidgear.errors import listed
 from solidgear.evidence import quantities
 from solidgear.evidence.quantities import change, judged
-from solidgear.evidence.study import Solution
+from solidgear.evidence.solution import Solution
 from solidgear.evidence.ties import SCENE
 from solidgear.evidence.verdict import BEYOND, WITHIN, gap_verdict, percent
 from solidgear.fidelity.ladder import LADDER

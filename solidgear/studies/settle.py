@@ -33,7 +33,8 @@ from solidgear.evidence.quantities import (
 from solidgear.machine.threads import pinned
 from solidgear.studies.answering import climbed, usable
 from solidgear.studies.asked import Question
-from solidgear.studies.climb import Climb, Progress
+from solidgear.studies.climb import Climb
+from solidgear.studies.loop import Progress
 from solidgear.studies.steps import Step
 
 if TYPE_CHECKING:

@@ -11,12 +11,12 @@ import numpy as np
 
 import solidgear as sg
 from solidgear.evidence.quantities import JUDGED
-from solidgear.evidence.study import study
 from solidgear.evidence.ties import SCENE
 from solidgear.fidelity.ladder import LADDER
 from solidgear.fidelity.rung import SOLID
 from solidgear.fidelity.size import estimated_size
 from solidgear.meshing.closed_form import mass_properties
+from solidgear.studies.study import study
 from validation.real_parts.commands import spoken
 from validation.real_parts.volumes import removed_mass, toothed_area
 

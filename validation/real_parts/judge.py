@@ -15,10 +15,11 @@ import numpy as np
 import solidgear as sg
 from solidgear.evidence.quantities import JUDGED, size
 from solidgear.evidence.sequence_bands import sequence_bands
-from solidgear.evidence.study import Solution, study
+from solidgear.evidence.solution import Solution
 from solidgear.evidence.ties import SCENE
 from solidgear.fidelity.ladder import LADDER
 from solidgear.fidelity.size import estimated_size
+from solidgear.studies.study import study
 from validation.real_parts.truth import FOLDER, PAIR, Truth, numbers, truth
 
 #: meshes of each model that are judged: one after the other, as a user would come to them

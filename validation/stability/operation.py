@@ -156,7 +156,7 @@ CASES = (
         ("compare", SCENE, "--models", "timoshenko,solid", "--out", "{out}"),
         (130,),
         "interrupt",
-        stop=("solid: mesh", signal.SIGINT),
+        stop=("solid: layers", signal.SIGINT),
     ),
     Case(
         "interrupt: Ctrl-C at the start",

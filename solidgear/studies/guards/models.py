@@ -28,7 +28,6 @@ BEAM_OR_SOLID = "a beam or a solid"
 
 
 def _sure(band: float | None) -> str:
-    """How sure a gap to a light solid is, in words."""
     return f", give or take {100 * band:.1g} %" if band else ""
 
 
@@ -50,9 +49,7 @@ def beam_against_solid(probe: Probe) -> Notices:
             continue
         found = {
             kind: [
-                g
-                for g in gaps
-                if gap_verdict(g["relative"], g["band"] or 0.0, tolerance) == kind
+                g for g in gaps if gap_verdict(g["relative"], g["band"] or 0.0, tolerance) == kind
             ]
             for kind in (verdict.BEYOND, verdict.OPEN, verdict.WITHIN)
         }

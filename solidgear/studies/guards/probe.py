@@ -20,7 +20,7 @@ from solidgear.body import Body, Supports, as_supports
 from solidgear.errors import SolidgearError
 from solidgear.evidence.answer import ENOUGH, solve
 from solidgear.evidence.quantities import judged
-from solidgear.evidence.study import Solution, study
+from solidgear.evidence.solution import Solution
 from solidgear.evidence.ties import rigid_seats
 from solidgear.evidence.verdict import deviations
 from solidgear.factoring import Factoring
@@ -33,6 +33,7 @@ from solidgear.reduction.effective_mass import Synthesis, synthesise
 from solidgear.reduction.lumped_point import LumpedPoint
 from solidgear.scene.rules import TOUCH
 from solidgear.solve.modes import ModeSet, modes
+from solidgear.studies.study import study
 
 if TYPE_CHECKING:
     from solidgear.scene import Scene

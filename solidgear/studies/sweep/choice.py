@@ -19,7 +19,7 @@ from solidgear.studies.sweep.run import variants_of
 
 if TYPE_CHECKING:
     from solidgear.scene import Scene
-    from solidgear.studies.climb import Progress
+    from solidgear.studies.loop import Progress
     from solidgear.studies.sweep.variants import Variants
 
 #: bearing sets, beside that of the scene, on which a mesh is judged
