@@ -32,8 +32,8 @@ MOST_MESHES = 10
 #: share of the tolerance that a refined mesh is made for: bars of several places add up
 AIM = 0.7
 #: cells beside a corner that was cut leave about this share of what it cost before, and an order
-#: more a sixth of what is left: neither decides a bar, both how many meshes are tried
-BESIDE, BY_ORDER = 0.15, 6.0
+#: more a ninth of what is left: neither decides a bar, both how many meshes are tried
+BESIDE, BY_ORDER = 0.08, 9.0
 #: cuts that one step may add to a corner, and orders to the mesh
 CUTS, ORDERS = 4, 2
 #: largest cell of the first mesh, in local outer radii

@@ -75,7 +75,8 @@ class Climb(Loop):
             found, share = self._numbers(body, families, names)
             values |= found.quantities
             solver |= found.solver
-            score = share if score is None or share is None else np.maximum(score, share)
+            if share is not None:
+                score = share if score is None else np.maximum(score, share)
             unknowns, cells = unknowns + body.size, body.mesh.get("representative_size")
         assert body is not None  # there is something to ask for
         return Solved(body, Numbers(values, solver), unknowns, cells, score)
