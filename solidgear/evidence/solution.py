@@ -11,6 +11,8 @@ from collections.abc import Iterable
 from dataclasses import dataclass, field
 from typing import Any
 
+import numpy as np
+
 from solidgear.body import Body
 from solidgear.evidence.answer import Answer
 from solidgear.evidence.bands import Band
@@ -33,6 +35,9 @@ class Solution:
         ``as scene`` and ``section``, as far as they could be solved.
     bands : dict of str to dict of str to Band
         The same keys; empty for a model without a band of its own.
+    scores : dict of str to ndarray
+        By quantity with the ties of the scene, (ne,) shares of its bar by cells of a meridian; of a
+        model whose bars are computed.
     variants : dict of str to Answer
         The scene with each attachment everywhere: ``average``, ``rigid`` (bearing seats only),
         ``section``.
@@ -46,6 +51,7 @@ class Solution:
     ties: dict[str, Answer]
     meter: Meter
     bands: dict[str, dict[str, Band]] = field(default_factory=dict)
+    scores: dict[str, np.ndarray] = field(default_factory=dict)
     variants: dict[str, Answer] = field(default_factory=dict)
     levels: list[dict] = field(default_factory=list)
     failed: dict[str, str] = field(default_factory=dict)

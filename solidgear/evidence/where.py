@@ -185,24 +185,14 @@ def recorded_places(scene: Scene, rung: Solution) -> WhereRecord | None:
     start = time.perf_counter()
     bands = rung.bands.get(SCENE, {})
     judged = [q for q in usual(scene) if q in bands]
-    own = rung.ties[SCENE]
-    if not judged or own.supports is None:
+    if not judged:
         return None
     quantity = max(judged, key=lambda q: bands[q].gci)
-    statics = None
-    try:
-        if described(quantity)[0] != "frequency":
-            flexibility(own.body, SOLVED)
-            statics = Statics(own.condensed, own.further, own.coupled)
-        _, shares = _shares(scene, own.body, own.supports, statics, own.modes, quantity)
-        places = singular_places(scene)
-        total = bands[quantity].gci
-        found = _whereabouts(scene, own.body, places, quantity, total, shares, start)
-    except SolidgearError as error:
-        log.info("places of the error left out: %s", error)
+    if _rounding(bands[quantity]):
         return None
-    finally:
-        own.body.kept.clear()  # its factor is the largest thing a body holds
+    shares, places = rung.scores[quantity], singular_places(scene)
+    total = bands[quantity].gci
+    found = _whereabouts(scene, rung.body, places, quantity, total, shares, start)
     return WhereRecord(
         model=rung.model,
         quantity=quantity,
@@ -275,11 +265,16 @@ def _shares(
         solver = {quantity: statics.main.evidence["residual"]} | left
     told = bounded(scene, body, supports, statics, found, [quantity], solver)
     band, score = told.bands[quantity], told.scores[quantity]
-    if band.gci - band.solver - LEAST < ROUNDING:
+    if _rounding(band):
         raise SolidgearError(
             f"the bar of {quantity} is {band.gci:.1e}, which is rounding; there is no error to place"
         )
     return band, score / score.sum()
+
+
+def _rounding(band: Band) -> bool:
+    """Whether a bar is no more than rounding, and has no place."""
+    return band.gci - band.solver - LEAST < ROUNDING
 
 
 def _whereabouts(

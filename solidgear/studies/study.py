@@ -152,7 +152,7 @@ class Tied(Loop):
         with self.meter.stage("band"):
             if self.rung.bounded:
                 told = _judged(self.scene, found, self.wanted)
-                rung.bands = {SCENE: told.bands}
+                rung.bands, rung.scores = {SCENE: told.bands}, told.scores
                 self.bands = told.bands
                 score = self.score(told, self.wanted)
             else:
