@@ -11,7 +11,6 @@ import pytest
 from typer.testing import CliRunner
 
 from solidgear.cli import app
-from solidgear.studies.axle import judge as judging
 from solidgear.studies.axle import models
 
 ROOT = Path(__file__).parent.parent
@@ -28,7 +27,6 @@ def compared(tmp_path_factory):
     out = tmp_path_factory.mktemp("train") / "out"
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(models, "MESH", {"harmonic": {"order": 2, "layers": 1}})
-        patch.setattr(judging, "COARSER", {"harmonic": {"order": 1, "layers": 1}})
         done = run("compare", TRAIN, "--out", out, "--json", "--no-renders")
     assert done.exit_code == 0, done.output
     return json.loads(done.stdout), out

@@ -223,6 +223,9 @@ def _modes_table(found):
     table.add_column("pinion rpm", justify="right")
     table.add_column("most strain energy")
     table.add_column("bound", justify="right")
+    meshed = any(mode.mesh is not None for mode in found.modes)
+    if meshed:
+        table.add_column("mesh", justify="right")
     for number, mode in enumerate(found.modes, start=1):
         bound = "exact" if mode.frequency_hz == 0 else f"{max(mode.bound, ROUNDING):.0e}"
         table.add_row(
@@ -232,6 +235,7 @@ def _modes_table(found):
             f"{mode.rpm:.0f}",
             mode.strained,
             bound,
+            *(["" if mode.mesh is None else f"{mode.mesh:.0e}"] * meshed),
         )
     return table
 

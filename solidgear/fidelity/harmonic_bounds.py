@@ -228,16 +228,55 @@ def _of_loads(body: Body, index: int) -> _Part:
 
 
 def _of_modes(body: Body, index: int, modes: Sequence[Mode]) -> _Part:
-    """Modes with what bearings and masses do to them, in the sense of the block's original."""
-    block = body.block(index)
+    """Modes on one block."""
     here = [mode for mode in modes if index in mode.vectors[0]]
-    shapes = np.array([mode.vectors[0][index] for mode in here]).reshape(-1, block.size).T
-    value = (2 * np.pi * np.array([mode.frequency_hz for mode in here])) ** 2
+    none = np.zeros((body.block(index).size, 0))
+    shapes = np.column_stack([none, *(mode.vectors[0][index] for mode in here)])
+    value = np.array([_eigenvalue(mode) for mode in here])
+    return _Part(_vibrating(body, index, shapes, value), here)
+
+
+def _vibrating(body: Body, index: int, shapes: np.ndarray, value: np.ndarray) -> Loading:
+    """Modes of a body in whatever holds it, with what that does to them at the ports, in the sense of
+    the block's original.
+    """
+    block = body.block(index)
     left = block.stiffness @ shapes - (block.mass @ shapes) * value
     force = _on_ports(block, left)
     if block.mirror is not None:
         force = force * np.tile(block.mirror[1], len(body.ports))[:, None]
-    return _Part(Loading(shapes, force, shapes * value), here)
+    return Loading(shapes, force, shapes * value)
+
+
+def vibration_energies(
+    scene: Scene, body: Body, fields: Mapping[int, np.ndarray], value: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """Energies of the local solutions of modes of something that a body is a part of.
+
+    Parameters
+    ----------
+    scene : Scene
+        As for :func:`harmonic_bounds`.
+    body : Body
+    fields : dict of int to (n, k) ndarray
+        Unknowns of blocks by their index, of unit mass of the whole.
+    value : (k,) ndarray
+        Eigenvalues, rad^2/s^2.
+
+    Returns
+    -------
+    whole, less : (k,) ndarray
+        By the richer space, and by one of an order less, rad^2/s^2.
+    """
+    space, out = richer_space(scene, body), np.zeros((2, len(value)))
+    for index, block in _originals(body, ()):
+        own = [k for k in (index, *_twins(body, index)) if k in fields]
+        if not own:
+            continue
+        parts = [_vibrating(body, k, fields[k], value) for k in own]
+        for row, energy in zip(out, local_energies(space, block, _together(parts))):
+            row += energy.sum(axis=0).diagonal().reshape(len(own), -1).sum(axis=0)
+    return out[0], out[1]
 
 
 def _together(parts: Sequence[Loading]) -> Loading:
@@ -288,14 +327,32 @@ def _lower_ends(
         left = [m for m in left if m not in group]
         highest = max(_eigenvalue(m) for m in every if _alike(m, group[0]))
         value = np.array([_eigenvalue(m) for m in group])
-        own = np.array([energy[m.name] for m in group])
-        gap = 1 - value / highest
-        # nothing beyond the last is known: it is looked at for its place only
-        gap = np.where(gap > 0, np.maximum(gap, APART), 1.0)
-        ends = np.sort(value - own / gap)
-        for mode, end in zip(group, ends):
-            out[mode.name] = float(end)
+        ends = lower_ends(value, np.array([energy[m.name] for m in group]), highest)
+        out |= {mode.name: float(end) for mode, end in zip(group, ends)}
     return out
+
+
+def lower_ends(value: np.ndarray, energy: np.ndarray, highest: float) -> np.ndarray:
+    """Least eigenvalues of modes of one eigenproblem.
+
+    Parameters
+    ----------
+    value : (k,) ndarray
+        Rayleigh quotients, ascending.
+    energy : (k,) ndarray
+        Of their local solutions.
+    highest : float
+        The highest one that was found.
+
+    Examples
+    --------
+    >>> lower_ends(np.array([1.0, 2.0]), np.array([0.1, 0.1]), 4.0).round(4)
+    array([0.8667, 1.8   ])
+    """
+    gap = 1 - value / highest
+    # nothing beyond the last is known: it is looked at for its place only
+    gap = np.where(gap > 0, np.maximum(gap, APART), 1.0)
+    return np.sort(value - energy / gap)
 
 
 def _eigenvalue(mode: Mode) -> float:

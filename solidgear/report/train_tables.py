@@ -146,13 +146,15 @@ def modes(
                 f"{mode['rpm']:.0f}",
                 (mode["strained"] or DASH, "text"),
                 "exact" if hz == 0 else f"{max(mode['bound'], ROUNDING):.0e}",
+                DASH if mode["mesh"] is None else f"{mode['mesh']:.0e}",
             ]
         )
     return Table(
         caption,
-        ["mode", "Hz", "pinion rpm", "most strain energy", "bound"],
+        ["mode", "Hz", "pinion rpm", "most strain energy", "bound", "mesh"],
         rows,
-        note="Pinion rpm: the speed at which its teeth mesh at this frequency.",
+        note="Pinion rpm: the speed at which its teeth mesh at this frequency. Bound: what the "
+        "reduction leaves at most. Mesh: what meshes of harmonic solids leave at most.",
     )
 
 

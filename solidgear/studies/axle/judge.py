@@ -19,6 +19,7 @@ from solidgear.fidelity.ladder import LADDER
 from solidgear.fidelity.rung import BEAM
 from solidgear.scene.train import SIDES
 from solidgear.studies.axle.local import local_lines
+from solidgear.studies.axle.meshes import mesh_bars
 from solidgear.studies.axle.models import JUDGE, LUMPED, Workshop, checked_rung
 from solidgear.studies.axle.naming import driven, mode_names
 from solidgear.studies.axle.pairing import BEYOND, partners, seen_modes
@@ -44,8 +45,6 @@ RELAXED = {
     "lumped-matched": ("lumped", "axial mass"),
     "lumped": ("", ""),
 }
-#: order of the judge's own coarser relative
-COARSER = {JUDGE: {"order": 3}}
 
 
 @dataclass(frozen=True)
@@ -105,8 +104,9 @@ class Verdict:
     highest_hz, tolerance, decibels : float
     mixes : tuple of Departure
         Cheapest first, by unknowns; the judge is the last.
-    judge_change : float
-        Largest relative change of the judge's frequencies from its coarser mesh.
+    judge_bar : float or None
+        Largest relative error that the judge's meshes leave in its frequencies, by local problems;
+        None where teeth drive families of two waves and more.
     responses : tuple of TrainResponse
         The judge's and those of the mixes that were told apart from it, for a chart.
     unpublished : dict of str to str
@@ -118,7 +118,7 @@ class Verdict:
     tolerance: float
     decibels: float
     mixes: tuple[Departure, ...]
-    judge_change: float
+    judge_bar: float | None
     responses: tuple[TrainResponse, ...]
     unpublished: dict[str, str]
     cautions: tuple[str, ...]
@@ -142,7 +142,7 @@ class Verdict:
             "decibels": self.decibels,
             "judge": JUDGE,
             "judge_title": LADDER[JUDGE].title,
-            "judge_change": self.judge_change,
+            "judge_bar": self.judge_bar,
             "cheapest": {"pinion": best.pinion, "gear": best.gear},
             "mixes": [asdict(mix) for mix in self.mixes],
             "unpublished": self.unpublished,
@@ -151,10 +151,12 @@ class Verdict:
 
     def sentences(self) -> list[str]:
         """What follows from the table."""
-        out = [
-            f"Judge: both shafts as {LADDER[JUDGE].title}s; from their coarser mesh the frequencies "
-            f"move by {100 * self.judge_change:.2g} % at most."
-        ]
+        sure = (
+            "how sure their meshes are is not told with local harmonics"
+            if self.judge_bar is None
+            else f"their meshes leave {100 * self.judge_bar:.2g} % of a frequency at most"
+        )
+        out = [f"Judge: both shafts as {LADDER[JUDGE].title}s; {sure}."]
         for side in SIDES:
             ends = {}
             for rung in MIXED[:-1]:
@@ -215,7 +217,7 @@ def judge_train(
         found[mix] = judge.departure(*mix)
     told = [_with_cause(found, mix) for mix in mixes]
     own = judge.departure(JUDGE, JUDGE)
-    progress("the judge's own coarser mesh")
+    progress("how sure the judge's meshes are")
     ordered = sorted(told, key=lambda m: (m.unknowns, m.seconds))
     return Verdict(
         workshop.train.title or workshop.train.name,
@@ -223,7 +225,7 @@ def judge_train(
         ask.tolerance,
         ask.decibels,
         (*ordered, own),
-        judge.change(),
+        judge.bar(),
         tuple(judge.responses.values()),
         workshop.train.unpublished(),
         (*workshop.contact.cautions, *local_lines(workshop, judge.system)),
@@ -329,8 +331,8 @@ class _Judge:
         first = [float(grid[k[0]]) if len(k) else None for k in (beyond, apart)]
         return first[0], first[1]
 
-    def change(self) -> float:
-        """How far the judge's frequencies are from those of a coarser mesh."""
-        coarse = Workshop(self.workshop.train, self.workshop.reduction, self.workshop.kept, COARSER)
-        other = coarse.system(JUDGE, JUDGE).modes(len(self.found.frequency_hz) - 1)
-        return float(np.abs(other.frequency_hz[1:] / self.found.frequency_hz[1:] - 1).max())
+    def bar(self) -> float | None:
+        """How far the judge's frequencies may be from those of the exact solids."""
+        count = len(self.found.frequency_hz) - self.found.rigid
+        bars = mesh_bars(self.workshop, self.system, dict.fromkeys(SIDES, JUDGE), count)
+        return None if bars is None else float(bars.max())

@@ -11,6 +11,7 @@ from solidgear.frames import DOF_NAMES
 from solidgear.scene.train import SIDES
 from solidgear.studies.axle.contact import Contact
 from solidgear.studies.axle.local import local_lines, undriven, waves_of
+from solidgear.studies.axle.meshes import mesh_bars
 from solidgear.studies.axle.models import JUDGE, Workshop
 from solidgear.studies.axle.naming import OVALISING, driven, mode_names
 from solidgear.system.system import System
@@ -35,6 +36,9 @@ class TrainMode:
         Largest relative error that the reduction leaves, proven; nothing of the mesh of a solid.
     driven : bool
         Whether it strains the mesh or a bearing at all.
+    mesh : float or None
+        Largest relative error that the meshes of harmonic shafts leave, by local problems; None
+        where there are none, and where teeth drive families of two waves and more.
     """
 
     name: str
@@ -43,6 +47,7 @@ class TrainMode:
     strained: str
     bound: float
     driven: bool = True
+    mesh: float | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -111,14 +116,15 @@ class TrainModes:
 
     def notes(self) -> list[str]:
         """What to know of the numbers."""
-        lines = []
+        lines, meshed = [], any(mode.mesh is not None for mode in self.modes)
         if self.rigid == 1 and not self.free:
             lines.append("The whole train turns freely: one motion at exactly 0 Hz.")
         lines += list(self.free)
         lines += [*self._still(), *self.local]
         lines.append(
-            "Bound: largest relative error that the reduction leaves, proven; "
-            "it says nothing of the meshes of the shafts."
+            "Bound: largest relative error that the reduction leaves, proven"
+            + "; it says nothing of the meshes of the shafts." * (not meshed)
+            + "; mesh: that the meshes of harmonic shafts leave, by local problems." * meshed
         )
         return lines + list(self.contact) + unpublished_lines(self.unpublished)
 
@@ -219,13 +225,16 @@ def train_modes(
     names = mode_names(workshop, system, found)
     most = found.dominant()
     moved = driven(system, found)
+    rungs = {"pinion": pinion, "gear": gear}
+    elastic = len(found.frequency_hz) - found.rigid
+    bars = mesh_bars(workshop, system, rungs, elastic)
+    sure = [None] * len(names) if bars is None else [None] * found.rigid + bars.tolist()
     modes = []
     for k, (name, hz) in enumerate(zip(names, found.frequency_hz)):
         strained = "" if hz == 0 else f"{most[k]} {100 * found.energy[most[k]][k]:.0f} %"
         rpm = 60 * float(hz) / workshop.train.pinion.teeth
         bound = float(found.error_bound[k])
-        modes.append(TrainMode(name, float(hz), rpm, strained, bound, bool(moved[k])))
-    rungs = {"pinion": pinion, "gear": gear}
+        modes.append(TrainMode(name, float(hz), rpm, strained, bound, bool(moved[k]), sure[k]))
     still = {}
     for side, rung in rungs.items():
         if rung == JUDGE:
