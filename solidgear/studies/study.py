@@ -130,6 +130,8 @@ class Tied(Loop):
             self.failed["finer mesh"] = str(error) or "not enough memory"
         assert self.solution is not None
         if self.rung.bounded:
+            if why := self.steps[-1].why * (self.most is None and not self.plan.fixed):
+                self.failed["narrower bars"] = why
             self._finish(self.solution)
         return self.solution
 
