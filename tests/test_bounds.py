@@ -18,6 +18,7 @@ from solidgear.evidence.answer import searched
 from solidgear.evidence.bands import Band
 from solidgear.evidence.bounded import Statics, bounded
 from solidgear.evidence.quantities import diagonals, measure, size
+from solidgear.fidelity import meridian_pieces
 from solidgear.fidelity.harmonic_bounds import (
     HarmonicBounds,
     _lower_ends,
@@ -312,3 +313,18 @@ def test_modes_that_may_change_places_share_their_lower_ends():
     ends = _lower_ends([first, second], [first, second, third], by_name)
     # a millionth for what rounding makes of the exact one
     assert ends[first.name] <= 0.95 and ends[first.name] <= ends[second.name] <= 1.0 + 1e-6
+
+
+def test_the_space_of_an_order_less_is_that_of_a_mesh_an_order_lower(monkeypatch):
+    """One elimination gives both: what is the lower one of three orders more is the higher one of
+    two, where the last functions are eliminated in a step of their own.
+    """
+    scene = SHAFTS["steel on aluminium"]()
+    body = sg.build(scene, "harmonic", **FIRST)
+    two = harmonic_bounds(coned(scene), body, statics=True)
+    body.kept.clear()
+    monkeypatch.setattr(meridian_pieces, "EXTRA", 3)
+    three = harmonic_bounds(coned(scene), body, statics=True)
+    # the richer of both integrates what is divided by r with more points
+    assert np.trace(three.less) == pytest.approx(np.trace(two.more), rel=1e-3)
+    assert np.trace(two.more) > 1.01 * np.trace(two.less)

@@ -135,7 +135,7 @@ MUTATIONS = (
         "_Loaded._eliminate",
         "_without(*held, held[0].shape[1] - outside * c)",
         "held",
-        "tests/test_bounds.py::test_errors_are_within_bars_and_bars_hardly_wider",
+        "tests/test_bounds.py::test_the_space_of_an_order_less_is_that_of_a_mesh_an_order_lower",
     ),
     Mutation(
         "trains: the meshes of one shaft alone count",

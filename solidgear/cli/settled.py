@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
 import typer
@@ -121,19 +121,56 @@ def _largest(settled: Settled, where: str) -> list[str]:
     return [f"Largest mesh bar{where}: +- {width}, of {in_words(quantity, main)}."]
 
 
-def without_bar(found: ModeSet, settled: Settled) -> list[str]:
-    """Names of modes that were not judged."""
-    judged = {mode.name for mode in map(found.named, settled.bars) if mode is not None}
-    return [m.name for m in found.modes if m.frequency_hz > 0 and m.name not in judged]
+def bars_of_modes(
+    scene: Scene, body: Body, found: ModeSet, settled: Settled | None
+) -> dict[str, float]:
+    """Relative bars of frequencies by the names of their modes: of a harmonic solid of all, of
+    others of those that were judged.
+    """
+    from solidgear.body import as_supports
+    from solidgear.evidence.bounded import mode_bars
+    from solidgear.fidelity.ladder import LADDER
+
+    if LADDER[body.fidelity].bounded:
+        return mode_bars(scene, body, as_supports(scene), found)
+    judged = settled.bars if settled is not None else {}
+    return {m.name: judged[m.name] for m in found.modes if m.name in judged}
 
 
-def unjudged(names: Sequence[str]) -> list[str]:
+def without_bar(found: ModeSet, bars: Mapping[str, float]) -> list[str]:
+    """Names of elastic modes that have none."""
+    return [m.name for m in found.modes if m.frequency_hz > 0 and m.name not in bars]
+
+
+def beyond(bars: Mapping[str, float], settled: Settled | None) -> list[str]:
+    """What is to be said of bars that are not within the tolerance although what was judged is."""
+    if settled is None or not settled.reached:
+        return []
+    from solidgear.report.words import percent
+
+    wide = {name: bar for name, bar in bars.items() if bar > settled.tolerance}
+    if not wide:
+        return []
+    named = ", ".join(f"{q} +- {percent(bar, signed=False)}" for q, bar in list(wide.items())[:3])
+    more = f" and {len(wide) - 3} more" if len(wide) > 3 else ""
+    return [
+        f"Beyond {percent(settled.tolerance, signed=False)}: {named}{more}; the first of every "
+        "family are what the tolerance is kept for, a smaller --tol makes these narrower too."
+    ]
+
+
+def unjudged(names: Sequence[str], rung: str) -> list[str]:
     """What is to be said of them."""
+    from solidgear.fidelity.ladder import LADDER
+
     if not names:
         return []
     few = ", ".join(names[:3])
     more = f" and {len(names) - 3} more" if len(names) > 3 else ""
-    return [f"No bar of their own: {few}{more}; the higher a mode, the more it asks of a mesh."]
+    why = "the higher a mode, the more it asks of a mesh"
+    if LADDER[rung].bounded:
+        why = "no further mode of their family was found above, which a bar needs; raise -n"
+    return [f"No bar of their own: {few}{more}; {why}."]
 
 
 def ended(settled: Settled | None) -> None:

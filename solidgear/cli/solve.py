@@ -29,7 +29,16 @@ from solidgear.cli.app import (
     options_by_model,
     with_engine,
 )
-from solidgear.cli.settled import body_for, ended, heading, told, unjudged, without_bar
+from solidgear.cli.settled import (
+    bars_of_modes,
+    beyond,
+    body_for,
+    ended,
+    heading,
+    told,
+    unjudged,
+    without_bar,
+)
 from solidgear.errors import SolidgearError, show
 from solidgear.fidelity.ladder import LADDER
 
@@ -168,6 +177,7 @@ def modes(
         max_frequency=max_frequency or loaded.ask.max_frequency,
         count=count,
     )
+    bars = bars_of_modes(loaded, body, found, settled)
     said = cautions(loaded, body)
     asked = n or loaded.ask.modes, max_frequency or loaded.ask.max_frequency
     said += cut_short(found.modes, *asked, option="-n")
@@ -178,6 +188,7 @@ def modes(
             "frequency_hz": m.frequency_hz,
             "multiplicity": m.multiplicity,
             "error": m.error,
+            "bar": bars.get(m.name),
         }
         for m in found.modes
     ]
@@ -191,7 +202,7 @@ def modes(
             "cautions": said,
         }
         if settled is not None:
-            record |= settled.as_dict() | {"without_bar": without_bar(found, settled)}
+            record |= settled.as_dict() | {"without_bar": without_bar(found, bars)}
         print(json.dumps(record, default=float))
         ended(settled)
         return
@@ -201,7 +212,7 @@ def modes(
 
     terminal = console()
     terminal.print(heading(loaded, body, settled), markup=False)
-    terminal.print(modes_table(rows))
+    terminal.print(modes_table(rows, bars))
     if len(rows) > MANY:
         shapes = sum(m.multiplicity for m in found.modes)
         terminal.print(f"{shapes} shapes up to {found.frequency_hz[-1]:.6g} Hz.")
@@ -230,8 +241,9 @@ def modes(
 
         terminal.print(completeness(e, body.fidelity), markup=False)
     lines = told(settled)
-    if settled is not None:
-        lines += unjudged(without_bar(found, settled))
+    if bars:
+        lines += unjudged(without_bar(found, bars), body.fidelity)
+    lines += beyond(bars, settled)
     for line in lines:
         terminal.print(line, markup=False, soft_wrap=True)
     for sentence in said:

@@ -9,7 +9,7 @@ quotient and what Kato and Temple leave of it (:mod:`solidgear.fidelity.harmonic
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -30,7 +30,7 @@ from solidgear.fidelity.harmonic_bounds import HarmonicBounds, harmonic_bounds, 
 from solidgear.fidelity.safety import LOCAL
 from solidgear.scene.coned import coned
 from solidgear.solve.condensed import Condensed, Coupled
-from solidgear.solve.modes import ModeSet
+from solidgear.solve.modes import Mode, ModeSet, modes
 from solidgear.solve.statics import condense
 
 if TYPE_CHECKING:
@@ -39,6 +39,8 @@ if TYPE_CHECKING:
 Values = Mapping[str, float]
 #: where these bars come from, in words
 METHOD = "local problems"
+#: shapes above a list of modes that are looked at for its bars
+ABOVE = 12
 
 
 @dataclass(frozen=True)
@@ -116,13 +118,13 @@ def bounded(
     solver : mapping
         Relative error that the solver may have left.
     """
-    modes = [place for q in names if isinstance(place := described(q)[1], str)]
+    asked = [place for q in names if isinstance(place := described(q)[1], str)]
     bounds = harmonic_bounds(
         coned(scene),
         body,
         statics=statics is not None,
         found=found,
-        wanted=list(dict.fromkeys(modes)),
+        wanted=list(dict.fromkeys(asked)),
         safety=LOCAL,
     )
     bands: dict[str, Band] = {}
@@ -149,6 +151,55 @@ def bounded(
         bands[name] = _band(mode.frequency_hz, open_, mode.error, least)
         scores[name] = bounds.of_modes[mode.name] / bounds.of_modes[mode.name].sum()
     return Bounded(bands, scores)
+
+
+def mode_bars(scene: Scene, body: Body, supports: Supports, found: ModeSet) -> dict[str, float]:
+    """How far frequencies of a harmonic body may lie above the exact ones, all families included.
+
+    Parameters
+    ----------
+    scene : Scene
+    body : Body
+    supports : Supports
+    found : ModeSet
+        Of the body.
+
+    Returns
+    -------
+    dict of str to float
+        Relative, by the names of elastic modes; without those that no other mode of their family was
+        found above.
+
+    Examples
+    --------
+    >>> import solidgear as sg
+    >>> scene = sg.load("geometry/shaft_stepped.toml")
+    >>> body = sg.build(scene, "harmonic", order=4)
+    >>> bars = mode_bars(scene, body, as_supports(scene), sg.modes(body, scene, 6))
+    >>> list(bars)[0], bars["bending 1"] < 1e-3
+    ('bending 1', True)
+    """
+    names = [m.name for m in found.modes if m.frequency_hz > 0]
+    if not names:
+        return {}
+    # the gap to what lies above counts, in every family
+    wider = modes(body, supports, len(found.modes) + ABOVE, ovalising=True)
+    known = {m.name for m in (*found.modes, *found.beyond)}
+    more = [m for m in (*wider.modes, *wider.beyond) if m.name not in known]
+    every = replace(found, beyond=(*found.beyond, *more))
+    bounds = harmonic_bounds(
+        coned(scene), body, statics=False, found=every, wanted=names, safety=LOCAL
+    )
+    last = {m.family: m.frequency_hz for m in sorted((*every.modes, *every.beyond), key=_frequency)}
+    return {
+        m.name: 1 - bounds.frequency(m) / m.frequency_hz + m.error
+        for m in found.modes
+        if 0 < m.frequency_hz < last[m.family]
+    }
+
+
+def _frequency(mode: Mode) -> float:
+    return mode.frequency_hz
 
 
 def _between(name: str, stiff: Values, two: Values, one: Values, solver: float) -> Band:

@@ -260,18 +260,26 @@ def matrix_table(
     return table
 
 
-def modes_table(modes: Sequence[ModeRecord | Mapping[str, Any]]) -> Table:
-    """Natural frequencies with names and multiplicity."""
+def modes_table(
+    modes: Sequence[ModeRecord | Mapping[str, Any]], bars: Mapping[str, float] | None = None
+) -> Table:
+    """Natural frequencies with names and multiplicity, and relative bars by name where there are
+    any.
+    """
     table = Table(box=box.SIMPLE_HEAD, pad_edge=False)
     table.add_column("mode")
     table.add_column("family")
     table.add_column("frequency, Hz", justify="right")
     table.add_column("shapes", justify="right")
+    if bars:
+        table.add_column("bar", justify="right")
     for mode in map(ModeRecord.model_validate, modes):
+        bar = (bars or {}).get(mode.name or "")
         table.add_row(
             Text(mode.name or NOTHING),
             Text(mode.family or NOTHING),
             words.hertz(mode.frequency_hz),
             str(mode.multiplicity),
+            *(["" if bar is None else words.percent(bar, signed=False)] * bool(bars)),
         )
     return table
