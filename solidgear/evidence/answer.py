@@ -150,19 +150,29 @@ def searched(
     while count < MOST_MODES and not all(_held(wider, name, spare) for name in wanted):
         count *= 2
         wider = modes(body, supports, count, ovalising=False)
-    if wider is found:
-        return found
-    known = {m.name for m in (*found.modes, *found.beyond)}
-    more = tuple(m for m in (*wider.modes, *wider.beyond) if m.name not in known)
-    return replace(found, beyond=(*found.beyond, *more))
+    if wider is not found:
+        known = {m.name for m in (*found.modes, *found.beyond)}
+        more = tuple(m for m in (*wider.modes, *wider.beyond) if m.name not in known)
+        found = replace(found, beyond=(*found.beyond, *more), above=wider.above)
+    asked = [m for name in wanted if (m := _widest(found).named(name)) is not None]
+    names = [m.name for m in (*found.modes, *found.beyond)]
+    more = tuple(m for m in asked if m.name not in names)
+    above = tuple(m for m in found.above if m not in more)
+    return replace(found, beyond=(*found.beyond, *more), above=above)
+
+
+def _widest(found: ModeSet) -> ModeSet:
+    """With all that was solved."""
+    return replace(found, beyond=(*found.beyond, *found.above), above=())
 
 
 def _held(found: ModeSet, name: str, spare: bool) -> bool:
     """Whether a mode is there, and one above it of the same motion."""
-    mode = found.named(name)
+    every = _widest(found)
+    mode = every.named(name)
     if mode is None or not spare:
         return mode is not None
-    above = (m for m in (*found.modes, *found.beyond) if m.frequency_hz > mode.frequency_hz)
+    above = (m for m in (*every.modes, *every.beyond) if m.frequency_hz > mode.frequency_hz)
     return any(m.family == mode.family for m in above)
 
 

@@ -173,6 +173,7 @@ def mode_bars(scene: Scene, body: Body, supports: Supports, found: ModeSet) -> d
     Examples
     --------
     >>> import solidgear as sg
+    >>> from solidgear.body import as_supports
     >>> scene = sg.load("geometry/shaft_stepped.toml")
     >>> body = sg.build(scene, "harmonic", order=4)
     >>> bars = mode_bars(scene, body, as_supports(scene), sg.modes(body, scene, 6))

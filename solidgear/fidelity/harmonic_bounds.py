@@ -134,7 +134,7 @@ def harmonic_bounds(
     modes = _asked(found, wanted)
     energy = {mode.name: np.zeros(cells) for mode in modes}
     lower = dict.fromkeys(energy, 0.0)
-    every = [] if found is None else [*found.modes, *found.beyond]
+    every = [] if found is None else [*found.modes, *found.beyond, *found.above]
     for index, block in _originals(body, modes):
         parts = [_of_modes(body, k, modes) for k in (index, *_twins(body, index))]
         count = block.ports.shape[0] if still and block.components else 0
@@ -187,7 +187,7 @@ def _asked(found: ModeSet | None, wanted: Sequence[str]) -> list[Mode]:
     """Modes wanted, and of their groups those that might change places with them: one more."""
     if found is None or not wanted:
         return []
-    every = [m for m in (*found.modes, *found.beyond) if m.frequency_hz > 0]
+    every = [m for m in (*found.modes, *found.beyond, *found.above) if m.frequency_hz > 0]
     every.sort(key=lambda m: m.frequency_hz)
     out = []
     for name in wanted:

@@ -33,6 +33,7 @@ from solidgear.solve.parts import (
 from solidgear.solve.soundness import sound
 from solidgear.solve.statics import SHIFT, factors
 from solidgear.solve.supported import decoupled
+from solidgear.solve.whole import whole_to
 
 if TYPE_CHECKING:
     from solidgear.body.supports import Holding
@@ -103,6 +104,9 @@ class ModeSet(Displayed):
     beyond : tuple of Mode
         Further modes of the body's own blocks that were solved and lie above the end of the list,
         because ovalising ones took their places.
+    above : tuple of Mode
+        All others of the body's own blocks that were solved to know that the list is whole, as far
+        as none of their family is missing between: what is near to a mode of the list.
     """
 
     shown: ClassVar[str] = "mode_set"
@@ -113,6 +117,7 @@ class ModeSet(Displayed):
     gram: np.ndarray
     evidence: dict = field(default_factory=dict)
     beyond: tuple[Mode, ...] = ()
+    above: tuple[Mode, ...] = ()
 
     @property
     def frequency_hz(self) -> np.ndarray:
@@ -238,7 +243,7 @@ def modes(
     project = Projection(body, np.linspace(0.0, body.length, stations))
     names = Names(body, supports, project)
     rigid = [r for part in parts for r in part.everywhere(part.solved.free)]
-    listed, beyond, torn, every = _named(body, names, parts, n, max_frequency)
+    listed, beyond, above, torn, every = _named(body, names, parts, n, max_frequency)
     evidence = {
         "residual": max((r.residual for r in _lowest(parts, n + 2)), default=0.0),
         "error": max((m.error for m in listed), default=0.0),
@@ -266,6 +271,7 @@ def modes(
         project.gram,
         evidence,
         beyond,
+        above,
     )
 
 
@@ -296,15 +302,17 @@ def _rigid(names: Names, raw: list[Raw]):
 
 
 def _named(body, names: Names, parts: list[Part], n: int, max_frequency: float | None):
-    """Modes of the list, own modes beyond the end of the list, torn pairs, and (family, frequency,
-    shapes) of all that was found: no pair is cut in two.
+    """Modes of the list, own modes beyond the end of the list and those above them, torn pairs, and
+    (family, frequency, shapes) of all that was found: no pair is cut in two.
     """
+    whole = whole_to(parts)
     raw = _lowest(parts, sum(len(part.everywhere(part.solved.elastic)) for part in parts))
     shapes = [names.describe(r.vectors) for r in raw]
     groups, torn = names.pairs(shapes, np.array([r.value for r in raw]))
     labels = numbered([shapes[group[0]].label for group in groups])
     listed: list[Mode] = []
     beyond: list[Mode] = []
+    above: list[Mode] = []
     every: list[tuple[str, float, int]] = []
     of: dict[int, Mode] = {}
     room = own_room = n
@@ -332,6 +340,8 @@ def _named(body, names: Names, parts: list[Part], n: int, max_frequency: float |
             of |= dict.fromkeys(group, mode)
         elif own and own_room > 0:
             beyond.append(mode)
+        elif own and all(r.value <= whole[b] for r in members for b in r.vectors):
+            above.append(mode)
         room -= mode.multiplicity
         own_room -= mode.multiplicity if own else 0
     pairs = [
@@ -339,4 +349,4 @@ def _named(body, names: Names, parts: list[Part], n: int, max_frequency: float |
         for i, j in torn
         if i in of and j in of
     ]
-    return tuple(listed), tuple(beyond), pairs, every
+    return tuple(listed), tuple(beyond), tuple(above), pairs, every

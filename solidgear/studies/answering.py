@@ -13,7 +13,7 @@ from __future__ import annotations
 import math
 import re
 import time
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from dataclasses import asdict, dataclass
 from typing import TYPE_CHECKING, Any, ClassVar, TypeVar
 
@@ -150,7 +150,7 @@ def answer(
 
 
 def climbed(
-    scene: Scene, tol: float, wanted: tuple[str, ...], kind: type[C], progress: Progress
+    scene: Scene, tol: float, wanted: tuple[str, ...], kind: Callable[..., C], progress: Progress
 ) -> tuple[C, list[Step]]:
     """The first solid of the ladder that can be solved at all, on the meshes that it takes.
 
@@ -159,7 +159,7 @@ def climbed(
     scene : Scene
     tol : float
     wanted : tuple of str
-    kind : type of Climb
+    kind : type of Climb, or what makes one
     progress : callable
 
     Returns

@@ -92,6 +92,8 @@ class Loop(ABC):
         assert rung.meshes is not None  # as every solid
         self.plan = rung.meshes_of(scene, options or {})
         self.most = most
+        #: of a harmonic solid, the one it begins with, and later the last one
+        self.mesh = Meshed(given=self.plan.levels[0])
         self.levels: list[Numbers] = []
         self.sizes: list[float | None] = []
         self.steps: list[Step] = []
@@ -173,11 +175,12 @@ class Loop(ABC):
         if not self.rung.bounded or self.plan.fixed:
             yield from self.plan.levels if self.plan.fixed else self.plan.levels[: self.most]
             return
-        mesh = Meshed(given=self.plan.levels[0])
+        mesh = self.mesh
         yield mesh.options()
         for _ in range((self.most or MOST_MESHES) - 1):
             assert self.last is not None and self.last.score is not None
             mesh = refined(self.scene, self.last.body, mesh, self.last.score, self.tol)
+            self.mesh = mesh
             self.last.body.kept.clear()  # its factor need not be held beside the next one
             yield mesh.options()
 

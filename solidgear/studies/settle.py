@@ -15,8 +15,9 @@ measured as well, and torsion with it (:data:`~solidgear.evidence.quantities.ACR
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from solidgear.body import Body
@@ -30,6 +31,7 @@ from solidgear.evidence.quantities import (
     in_order,
     repeats,
 )
+from solidgear.fidelity.refining import Meshed
 from solidgear.machine.threads import pinned
 from solidgear.studies.answering import climbed, usable
 from solidgear.studies.asked import Question
@@ -77,6 +79,8 @@ class Settled:
         Bearing sets that the bars were taken over.
     point : str
         The main lumped point.
+    mesh : Meshed or None
+        Of a harmonic solid.
     """
 
     scene: str
@@ -90,6 +94,7 @@ class Settled:
     missing: tuple[str, ...]
     judged_on: int = 1
     point: str = ""
+    mesh: Meshed | None = None
 
     @property
     def setting(self) -> str:
@@ -127,6 +132,7 @@ def settle(
     ask: str = "all",
     *,
     points: Sequence[str] = (),
+    before: Settled | None = None,
     progress: Progress = lambda _: None,
 ) -> Settled:
     """The cheapest body whose bands of all that is asked are within a tolerance.
@@ -141,6 +147,9 @@ def settle(
         of every family, or both.
     points : sequence of str
         Further lumped points at which the same is asked, and between which.
+    before : Settled, optional
+        What the same shaft was settled on with other bearings in the same seats: a harmonic solid is
+        judged on that body first, with what was already worked out for it.
     progress : callable
         Called with a sentence at every step.
 
@@ -173,7 +182,7 @@ def settle(
         both = {scene.port.name, *points}
         crossed = between(wanted, [port.name for port in scene.ports if port.name in both])
         wanted = (*at_points(wanted, points), *crossed)
-    climb, steps = climbed(scene, tol, wanted, Whole, progress)
+    climb, steps = climbed(scene, tol, wanted, partial(Whole, before=before), progress)
     assert climb.body is not None  # a rung without a single mesh is passed over
     bars = climb.bars()
     judged = bool(bars) or ask == "stiffness"
@@ -188,14 +197,32 @@ def settle(
         judged and all(bar <= tol for bar in bars.values()),
         tuple(q for q in wanted if q not in bars),
         point=scene.port.name,
+        mesh=climb.mesh if climb.rung.bounded else None,
     )
 
 
 class Whole(Climb):
-    """A climb on which every mesh carries all families, judged in all six directions."""
+    """A climb on which every mesh carries all families, judged in all six directions.
+
+    Parameters
+    ----------
+    before : Settled, optional
+        Of the same shaft, on whose mesh and body it begins.
+    """
 
     #: the body is given, with its own couplings
     middles = False
+
+    def __init__(self, *args: Any, before: Settled | None = None):
+        super().__init__(*args)
+        self.before = before if before and before.rung == self.rung.name else None
+        if self.before and self.before.mesh is not None:
+            self.mesh = self.before.mesh
+
+    def _body(self, level: Mapping[str, Any], families: tuple[str, ...] | None) -> Body:
+        if self.before and dict(level) == self.before.options:
+            return self.before.body
+        return super()._body(level, families)
 
     def bars(self) -> dict[str, float]:
         """Relative bars by quantity, those of the other plane and of torsion included."""

@@ -71,8 +71,13 @@ def settled_for_sweep(
     """
     scenes = [scene, *_ends(variants_of(scene, vary_texts, sample, seed))]
     found: list[Settled] = []
+    last: dict[tuple, Settled] = {}
     for k, one in enumerate(scenes, start=1):
-        found.append(settle(one, tol, "all", progress=_numbered(progress, k, len(scenes))))
+        told = _numbered(progress, k, len(scenes))
+        # bearings that sit where others did are other springs on the same body
+        own = settle(one, tol, "all", before=last.get(_seats(one)), progress=told)
+        last[_seats(one)] = own
+        found.append(own)
     finest = max(found, key=lambda settled: settled.body.size)
     bars: dict[str, float] = {}
     for settled in found:
@@ -84,6 +89,11 @@ def settled_for_sweep(
         reached=all(settled.reached for settled in found),
         judged_on=len(found),
     )
+
+
+def _seats(scene: Scene) -> tuple:
+    """Where stations are, and how they are tied."""
+    return tuple((s.name, s.y, s.lo, s.hi, s.attachment) for s in scene.stations)
 
 
 def _ends(variants: Variants) -> list[Scene]:
