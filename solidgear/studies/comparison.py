@@ -108,7 +108,7 @@ def compare(
     """Solve a scene with several fidelities and compare them.
 
     Solids are solved on ever finer meshes until their bands meet the tolerance of the scene: that
-    of the harmonic solid, which judges, a twentieth of it, that of the 3D solid the whole.
+    of the harmonic solid, which judges, a tenth of it, that of the 3D solid the whole.
 
     Parameters
     ----------

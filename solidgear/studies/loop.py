@@ -193,7 +193,9 @@ class Loop(ABC):
                 if only_one
                 else "no finer mesh is calibrated"
             )
-        return f"{len(self.levels)} meshes did not do; most of the bar comes from {self.stops_at()}"
+        count = len(self.levels)
+        tried = "one mesh" if count == 1 else f"{count} meshes"
+        return f"{tried} did not do; most of the bar comes from {self.stops_at()}"
 
     def stops_at(self) -> str:
         """The place that holds most of the bars that are not within the tolerance, in words."""

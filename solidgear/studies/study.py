@@ -53,10 +53,11 @@ def study(
     model : str
         A fidelity.
     options : mapping, optional
-        Builder options; where they speak of the mesh, that mesh and two coarser ones are solved.
+        Builder options; where they speak of the mesh, that mesh is solved, and of a solid on a list of
+        meshes two coarser ones.
     share : float, optional
         Bands of the judged quantities are wanted below the tolerance of the scene divided by this;
-        by default what its rung asks for, 20 for the harmonic solid, which judges.
+        by default what its rung asks for, 10 for the harmonic solid, which judges.
     most : int, optional
         Levels to stop at.
     evidence : bool
