@@ -13,8 +13,11 @@ from scipy.special import jv, jvp
 from skfem import Basis
 
 import solidgear as sg
+from solidgear.body import as_supports
 from solidgear.meshing.closed_form import mass_properties
 from solidgear.scene import STEEL, Port, Scene, Segment
+from solidgear.solve.eigen import lowest
+from solidgear.solve.supported import Supported, decoupled
 from validation.shipped import shafts_of_revolution
 
 GEOMETRY = Path(__file__).parent.parent / "geometry"
@@ -316,3 +319,18 @@ def test_rigid_seats_hold_a_tube_against_ovalising():
         body = sg.build(scene, "harmonic", order=4, layers=0, edge_layers=0)
         found[tie] = sg.modes(body, scene, 24).named("ovalising n=2 1").frequency_hz
     assert found["rigid"] > 3 * found["average"]
+
+
+def test_families_that_no_bearing_holds_are_solved_beside_held_ends():
+    """Springs that stand for a clamp act on no block of two waves; its modes are those of the free
+    body.
+    """
+    scene = sg.load("geometry/rotor_disc.toml")
+    # cells so small that an inverse is refined
+    body = sg.build(scene, "harmonic", order=2, layers=3, ovalising=(2,))
+    own = [k for k, block in enumerate(body.blocks) if block.name == "ovalising_2"]
+    found = []
+    for supports in (as_supports(scene), as_supports(())):
+        spring, _ = decoupled(body, supports, 1e-6)
+        found.append(lowest(Supported(body, supports, spring, own), 2, None).elastic[0].value)
+    assert found[0] == pytest.approx(found[1], rel=1e-9)

@@ -184,7 +184,8 @@ def mode_bars(scene: Scene, body: Body, supports: Supports, found: ModeSet) -> d
     if not names:
         return {}
     # the gap to what lies above counts, in every family
-    wider = modes(body, supports, len(found.modes) + ABOVE, ovalising=True)
+    shapes = sum(m.multiplicity for m in found.modes)
+    wider = modes(body, supports, shapes + ABOVE, ovalising=True)
     known = {m.name for m in (*found.modes, *found.beyond)}
     more = [m for m in (*wider.modes, *wider.beyond) if m.name not in known]
     every = replace(found, beyond=(*found.beyond, *more))

@@ -95,8 +95,9 @@ class Supported:
             self.free = self.free @ (v[:, keep] / np.sqrt(w[keep]))
         self._mass_free = self.mass(self.free) if self.free.shape[1] else self.free
         self.load = self._root_on_ports(body, supports, spring)
-        self._fast = np.abs(spring).max(initial=0.0) > FAST
+        self._fast = False
         if self.load.shape[1]:
+            self._fast = np.abs(spring).max() > FAST
             self._through = self._free_inverse(self.load)
             self._inner = sla.cho_factor(np.eye(self.load.shape[1]) + self.load.T @ self._through)
 
