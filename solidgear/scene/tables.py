@@ -292,9 +292,12 @@ class SceneTable(Model):
             seats = [("bearing", k) for k, one in enumerate(self.bearing) if one.seat is not None]
             seats += [("port", k) for k, one in enumerate(self.port) if one.seat is not None]
             if seats:
+                way = "span, or attach_to with the name of a segment"
+                if seats[0][0] == "bearing":
+                    way = "position and seat_width"
                 raise SceneError(
                     "a seat by diameter is looked for on a part from a file ([body]); on segments "
-                    "write position and seat_width, or span",
+                    f"write {way}",
                     path=(*seats[0], "seat"),
                 )
         if self.material is None and not (self.body and self.body.materials):
