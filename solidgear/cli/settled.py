@@ -125,16 +125,18 @@ def bars_of_modes(
     scene: Scene, body: Body, found: ModeSet, settled: Settled | None
 ) -> dict[str, float]:
     """Relative bars of frequencies by the names of their modes: of a harmonic solid of all, of
-    others of those that were judged.
+    others of those that were judged, and none of a mesh that was set, which may be as large as one
+    likes.
     """
     from solidgear.body import as_supports
     from solidgear.evidence.bounded import mode_bars
     from solidgear.fidelity.ladder import LADDER
 
+    if settled is None:
+        return {}
     if LADDER[body.fidelity].bounded:
         return mode_bars(scene, body, as_supports(scene), found)
-    judged = settled.bars if settled is not None else {}
-    return {m.name: judged[m.name] for m in found.modes if m.name in judged}
+    return {m.name: settled.bars[m.name] for m in found.modes if m.name in settled.bars}
 
 
 def without_bar(found: ModeSet, bars: Mapping[str, float]) -> list[str]:

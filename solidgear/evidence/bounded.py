@@ -30,7 +30,7 @@ from solidgear.fidelity.harmonic_bounds import HarmonicBounds, harmonic_bounds, 
 from solidgear.fidelity.safety import LOCAL
 from solidgear.scene.coned import coned
 from solidgear.solve.condensed import Condensed, Coupled
-from solidgear.solve.modes import Mode, ModeSet, modes
+from solidgear.solve.modes import ModeSet, modes
 from solidgear.solve.statics import condense
 
 if TYPE_CHECKING:
@@ -183,16 +183,18 @@ def mode_bars(scene: Scene, body: Body, supports: Supports, found: ModeSet) -> d
     names = [m.name for m in found.modes if m.frequency_hz > 0]
     if not names:
         return {}
-    # the gap to what lies above counts, in every family
-    shapes = sum(m.multiplicity for m in found.modes)
-    wider = modes(body, supports, shapes + ABOVE, ovalising=True)
-    known = {m.name for m in (*found.modes, *found.beyond)}
-    more = [m for m in (*wider.modes, *wider.beyond) if m.name not in known]
-    every = replace(found, beyond=(*found.beyond, *more))
+    every = found
+    if not _all_below(found):
+        # the gap to what lies above counts, in every family
+        shapes = sum(m.multiplicity for m in found.modes)
+        wider = modes(body, supports, shapes + ABOVE, ovalising=True)
+        known = {m.name for m in (*found.modes, *found.beyond)}
+        more = [m for m in (*wider.modes, *wider.beyond, *wider.above) if m.name not in known]
+        every = replace(found, beyond=(*found.beyond, *more), above=())
     bounds = harmonic_bounds(
         coned(scene), body, statics=False, found=every, wanted=names, safety=LOCAL
     )
-    last = {m.family: m.frequency_hz for m in sorted((*every.modes, *every.beyond), key=_frequency)}
+    last = _highest(every)
     return {
         m.name: 1 - bounds.frequency(m) / m.frequency_hz + m.error
         for m in found.modes
@@ -200,8 +202,18 @@ def mode_bars(scene: Scene, body: Body, supports: Supports, found: ModeSet) -> d
     }
 
 
-def _frequency(mode: Mode) -> float:
-    return mode.frequency_hz
+def _highest(found: ModeSet) -> dict[str, float]:
+    """Highest frequency that was found of every family, Hz."""
+    out: dict[str, float] = {}
+    for mode in (*found.modes, *found.beyond, *found.above):
+        out[mode.family] = max(mode.frequency_hz, out.get(mode.family, 0.0))
+    return out
+
+
+def _all_below(found: ModeSet) -> bool:
+    """Whether a mode of its family was found above each of a list."""
+    last = _highest(found)
+    return all(m.frequency_hz < last[m.family] for m in found.modes if m.frequency_hz > 0)
 
 
 def _between(name: str, stiff: Values, two: Values, one: Values, solver: float) -> Band:
