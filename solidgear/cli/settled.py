@@ -134,9 +134,11 @@ def bars_of_modes(
 
     if settled is None:
         return {}
+    bars: dict[str, float] = {}
     if LADDER[body.fidelity].bounded:
-        return mode_bars(scene, body, as_supports(scene), found)
-    return {m.name: settled.bars[m.name] for m in found.modes if m.name in settled.bars}
+        bars = mode_bars(scene, body, as_supports(scene), found)
+    # what the mesh was chosen by keeps the bar it was chosen with
+    return bars | {m.name: settled.bars[m.name] for m in found.modes if m.name in settled.bars}
 
 
 def without_bar(found: ModeSet, bars: Mapping[str, float]) -> list[str]:

@@ -134,6 +134,8 @@ class Workshop:
         self._made: dict[tuple[str, str], ShaftModel] = {}
         self._local: dict[tuple[str, str], Part] = {}
         self._local_seconds = 0.0
+        #: what meshes leave in the first frequencies, by the models of both shafts
+        self.bars: dict[tuple[str, ...], np.ndarray] = {}
         self.scenes: dict[str, Scene] = {side: self.train.shaft(side) for side in SIDES}
         self.contact: Contact = contact(self.train)
 
@@ -178,6 +180,7 @@ class Workshop:
         body : Body
             Of that rung, on any mesh.
         """
+        self.bars.clear()
         start = perf_counter()
         part = REDUCTIONS[self.reduction](body, n=self.kept)
         seconds = perf_counter() - start
@@ -237,7 +240,7 @@ class Workshop:
         out = copy(self)
         # bodies are free of their bearings; what is condensed on them is not
         kept = {k: m for k, m in self._made.items() if k[1].partition("/")[0] not in LUMPED}
-        out._made, out.scenes = kept, {}
+        out._made, out.scenes, out.bars = kept, {}, {}
         for side, scene in self.scenes.items():
             bearings = [
                 bearing.with_changes(
