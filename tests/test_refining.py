@@ -180,3 +180,19 @@ def test_the_next_mesh_is_always_another(tol):
     spent = replace(mesh, order=8)
     body = sg.build(scene, "harmonic", **spent.options())
     assert refined(scene, body, spent, np.full(count, 1.0), tol).options() != spent.options()
+
+
+def test_orders_are_asked_for_by_what_they_took_before_and_cells_are_halved_where_they_run_out():
+    """A bar of three aims away from corners: an order takes a ninth of it or, as two did before,
+    half of it.
+    """
+    scene, tol = climbed("free tube")[0], 1e-3
+    for order, wanted, halved in ((5, 7, False), (6, 8, True)):
+        mesh = Meshed(order=order)
+        body = sg.build(scene, "harmonic", **mesh.options())
+        score = np.zeros(body.mesh["cells"])
+        score[0] = 2e-3
+        assert refined(scene, body, mesh, score, tol).order == order + 1
+        slow = replace(mesh, smooth=4 * score[0], raised=2)
+        found = refined(scene, body, slow, score, tol)
+        assert found.order == wanted and bool(found.across) == halved

@@ -133,7 +133,12 @@ def refined(scene: Scene, body: Body, mesh: Meshed, score: np.ndarray, tol: floa
         if order >= HIGHEST or slow and not beside:
             lines.halve(np.bincount(mesh_of.parent, away))  # type: ignore[union-attr]
         else:
-            more = math.ceil(math.log(2 * smooth / aim) / math.log(BY_ORDER))
+            rate = BY_ORDER
+            if mesh.raised and not beside:  # as orders did before
+                rate = min(max((mesh.smooth / smooth) ** (1 / mesh.raised), 1 / SLOW), BY_ORDER)
+            more = math.ceil(math.log(2 * smooth / aim) / math.log(rate))
+            if order + more > HIGHEST:
+                lines.halve(np.bincount(mesh_of.parent, away))  # type: ignore[union-attr]
             order = min(order + min(max(more, 1), ORDERS), HIGHEST)
     if (cuts, lines.points, order) == (dict(mesh.cuts), list(mesh.across), mesh.order):
         order = order + 1
