@@ -23,6 +23,9 @@ class Kept:
     [1.0]
     >>> kept.get(list, lambda: [2.0])  # made once
     [1.0]
+    >>> kept.keep({"a": 1})
+    >>> kept.find(dict), kept.find(set)
+    ({'a': 1}, None)
     """
 
     def __init__(self, *things: object):
@@ -33,6 +36,14 @@ class Kept:
         if kind not in self._things:
             self._things[kind] = make()
         return self._things[kind]
+
+    def find(self, kind: type[T]) -> T | None:
+        """The thing of a type, if there is one."""
+        return self._things.get(kind)
+
+    def keep(self, thing: object) -> None:
+        """Keep a thing that was made with others; it takes the place of one of its type."""
+        self._things[type(thing)] = thing
 
     def clear(self) -> None:
         """Forget everything: factors are the largest things that a body holds."""

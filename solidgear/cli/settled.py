@@ -10,7 +10,7 @@ import typer
 
 from solidgear.cli.answer import sentences
 from solidgear.cli.app import AUTO, FIDELITY, NOT_REACHED, Progress, build_body, options
-from solidgear.errors import SolidgearError, show
+from solidgear.errors import SolidgearError, listed, show
 
 if TYPE_CHECKING:
     from solidgear.body import Body
@@ -155,10 +155,9 @@ def beyond(bars: Mapping[str, float], settled: Settled | None) -> list[str]:
     wide = {name: bar for name, bar in bars.items() if bar > settled.tolerance}
     if not wide:
         return []
-    named = ", ".join(f"{q} +- {percent(bar, signed=False)}" for q, bar in list(wide.items())[:3])
-    more = f" and {len(wide) - 3} more" if len(wide) > 3 else ""
+    named = listed((f"{q} +- {percent(bar, signed=False)}" for q, bar in wide.items()), most=3)
     return [
-        f"Beyond {percent(settled.tolerance, signed=False)}: {named}{more}; the first of every "
+        f"Beyond {percent(settled.tolerance, signed=False)}: {named}; the first of every "
         "family are what the tolerance is kept for, a smaller --tol makes these narrower too."
     ]
 
@@ -169,12 +168,10 @@ def unjudged(names: Sequence[str], rung: str) -> list[str]:
 
     if not names:
         return []
-    few = ", ".join(names[:3])
-    more = f" and {len(names) - 3} more" if len(names) > 3 else ""
     why = "the higher a mode, the more it asks of a mesh"
     if LADDER[rung].bounded:
         why = "no further mode of their family was found above, which a bar needs; raise -n"
-    return [f"No bar of their own: {few}{more}; {why}."]
+    return [f"No bar of their own: {listed(names, most=3)}; {why}."]
 
 
 def ended(settled: Settled | None) -> None:

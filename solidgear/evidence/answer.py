@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from solidgear.scene import Scene
 
 #: shapes that are searched at most for a mode that is asked for
-MOST_MODES = 160
+MOST_SHAPES = 160
 #: modes that hold the first bending pair and the first axial mode of anything that looks like a
 #: shaft
 ENOUGH = 10
@@ -142,23 +142,34 @@ def searched(
     Returns
     -------
     ModeSet
-        Without those that are not among the lowest `MOST_MODES` shapes.
+        Without those that are not among the lowest `MOST_SHAPES` shapes.
     """
     wanted = list(wanted)
     found = modes(body, supports, n, **options)
     count, wider = n, found
-    while count < MOST_MODES and not all(_held(wider, name, spare) for name in wanted):
+    while count < MOST_SHAPES and not all(_held(wider, name, spare) for name in wanted):
         count *= 2
         wider = modes(body, supports, count, ovalising=False)
     if wider is not found:
-        known = {m.name for m in (*found.modes, *found.beyond)}
-        more = tuple(m for m in (*wider.modes, *wider.beyond) if m.name not in known)
-        found = replace(found, beyond=(*found.beyond, *more), above=wider.above)
+        found = widened(found, wider)
     asked = [m for name in wanted if (m := _widest(found).named(name)) is not None]
     names = [m.name for m in (*found.modes, *found.beyond)]
     more = tuple(m for m in asked if m.name not in names)
     above = tuple(m for m in found.above if m not in more)
     return replace(found, beyond=(*found.beyond, *more), above=above)
+
+
+def widened(found: ModeSet, wider: ModeSet) -> ModeSet:
+    """A list of modes with all that a longer one of the same body has beyond it.
+
+    Parameters
+    ----------
+    found, wider : ModeSet
+    """
+    known = {m.name for m in (*found.modes, *found.beyond)}
+    beyond = tuple(m for m in (*wider.modes, *wider.beyond) if m.name not in known)
+    above = tuple(m for m in wider.above if m.name not in known)
+    return replace(found, beyond=(*found.beyond, *beyond), above=above)
 
 
 def _widest(found: ModeSet) -> ModeSet:

@@ -9,12 +9,13 @@ quotient and what Kato and Temple leave of it (:mod:`solidgear.fidelity.harmonic
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from solidgear.body import Body, Supports
+from solidgear.evidence.answer import widened
 from solidgear.evidence.bands import LEAST, Band
 from solidgear.evidence.quantities import (
     AT,
@@ -57,6 +58,25 @@ class Statics:
     main: Condensed
     further: Mapping[str, Condensed]
     coupled: Coupled | None = None
+
+    @classmethod
+    def of(cls, scene: Scene, body: Body, supports: Supports, names: Sequence[str]) -> Statics:
+        """What some quantities need: the main point, further ones, and pairs of points together.
+
+        Parameters
+        ----------
+        scene : Scene
+        body : Body
+        supports : Supports
+        names : sequence of str
+            Quantities.
+        """
+        main = condense(body, supports, scene.port.name)
+        points = dict.fromkeys(q.partition(AT)[2] for q in names if AT in q and not points_of(q))
+        further = {point: condense(body, supports, point) for point in points}
+        pairs = {point for q in names for point in points_of(q) or ()}
+        both = tuple(port.name for port in scene.ports if port.name in pairs)
+        return cls(main, further, condense(body, supports, both) if pairs else None)
 
     def again(self, body: Body, supports: Supports) -> Statics:
         """The same of another body."""
@@ -187,10 +207,7 @@ def mode_bars(scene: Scene, body: Body, supports: Supports, found: ModeSet) -> d
     if not _all_below(found):
         # the gap to what lies above counts, in every family
         shapes = sum(m.multiplicity for m in found.modes)
-        wider = modes(body, supports, shapes + ABOVE, ovalising=True)
-        known = {m.name for m in (*found.modes, *found.beyond)}
-        more = [m for m in (*wider.modes, *wider.beyond, *wider.above) if m.name not in known]
-        every = replace(found, beyond=(*found.beyond, *more), above=())
+        every = widened(found, modes(body, supports, shapes + ABOVE, ovalising=True))
     bounds = harmonic_bounds(
         coned(scene), body, statics=False, found=every, wanted=names, safety=LOCAL
     )
@@ -205,7 +222,7 @@ def mode_bars(scene: Scene, body: Body, supports: Supports, found: ModeSet) -> d
 def _highest(found: ModeSet) -> dict[str, float]:
     """Highest frequency that was found of every family, Hz."""
     out: dict[str, float] = {}
-    for mode in (*found.modes, *found.beyond, *found.above):
+    for mode in found.solved:
         out[mode.family] = max(mode.frequency_hz, out.get(mode.family, 0.0))
     return out
 

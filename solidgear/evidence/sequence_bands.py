@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from collections.abc import Sequence as Listed
 from functools import lru_cache
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from solidgear.evidence.answer import solve
 from solidgear.evidence.bands import Band, step_bands
@@ -15,6 +15,7 @@ from solidgear.evidence.quantities import (
     points_of,
     size,
 )
+from solidgear.fidelity.levels import HARMONIC
 from solidgear.fidelity.safety import LAYERS, REFINEMENT
 from solidgear.meshing.corners import SHOULDER, sharpest_corner
 from solidgear.solve.statics import condense
@@ -31,9 +32,8 @@ RIGID_EDGE = 0.5
 #: kinds of features with right-angled re-entrant corners, where the meridian has none: teeth end at
 #: the next segment or in its face, holes and keyways have a bottom
 NOTCHED = frozenset({"teeth", "spline", "bolt_circle", "keyway", "flat"})
-#: rung and mesh that tell what features change: good to some 1e-4, of which shares are taken
+#: rung that tells what features change, on its usual mesh: shares are taken of it
 PLAIN = "harmonic"
-PLAIN_MESH: dict[str, Any] = {"order": 3, "layers": 1, "edge_layers": 0, "relative_size": 4.0}
 
 
 def sequence_bands(
@@ -125,7 +125,7 @@ def _plain(plain: Scene, points: tuple[str, ...]) -> tuple[dict[str, float], lis
     """Quantities of a plain part, those between some points included, and all bending frequencies;
     every finer mesh asks for them.
     """
-    found = solve(plain, PLAIN, **PLAIN_MESH)
+    found = solve(plain, PLAIN, **HARMONIC)
     bending = [m.frequency_hz for m in found.modes.modes if m.name.startswith("bending")]
     coupled = condense(found.body, plain, points) if points else None
     across = measure_across(found.further, coupled)

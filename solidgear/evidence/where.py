@@ -27,7 +27,6 @@ from solidgear.evidence.quantities import (
     QUANTITIES,
     described,
     own_name,
-    points_of,
     usual,
 )
 from solidgear.evidence.record import PlaceRecord, WhereRecord
@@ -40,7 +39,7 @@ from solidgear.machine.threads import pinned
 from solidgear.meshing.meridian import Meridian
 from solidgear.scene.coned import coned
 from solidgear.solve.modes import ModeSet
-from solidgear.solve.statics import SOLVED, condense, flexibility
+from solidgear.solve.statics import SOLVED, flexibility
 
 if TYPE_CHECKING:
     from solidgear.evidence.solution import Solution
@@ -240,13 +239,7 @@ def _solved(
     if isinstance(place, str):
         return None, searched(body, supports, ENOUGH, [place], spare=True, ovalising=False)
     flexibility(body, SOLVED)
-    main = condense(body, supports, scene.port.name)
-    pair = points_of(quantity)
-    if pair is not None:
-        both = tuple(port.name for port in scene.ports if port.name in pair)
-        return Statics(main, {}, condense(body, supports, both)), None
-    point = quantity.partition(AT)[2]
-    return Statics(main, {point: condense(body, supports, point)} if point else {}), None
+    return Statics.of(scene, body, supports, [quantity]), None
 
 
 def _shares(

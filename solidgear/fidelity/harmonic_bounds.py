@@ -18,19 +18,19 @@ j-th smallest of all lower ends.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from solidgear.body import FURTHER, Block, Body
 from solidgear.body.kept import Kept
-from solidgear.body.model import component_rows
 from solidgear.fidelity.meridian_loads import Loading
 from solidgear.fidelity.meridian_patches import local_energies
 from solidgear.fidelity.meridian_pieces import RicherSpace
 from solidgear.solve.modes import Mode, ModeSet
-from solidgear.solve.statics import flexibility
+from solidgear.solve.statics import flexibility, of_twin
 
 if TYPE_CHECKING:
     from solidgear.scene import Scene
@@ -48,11 +48,11 @@ class HarmonicBounds:
     Attributes
     ----------
     body : Body
-    more, less : (6 p, 6 p) ndarray
-        M of its flexibility, N m per unit loads, by the richer space and by one of an order less; zero
-        where statics were not asked for.
     of_ports : (ne, 6 p, 6 p) ndarray
-        The same by cells of the mesh.
+        M of its flexibility by cells of the mesh, N m per unit loads; empty where statics were not
+        asked for.
+    less : (6 p, 6 p) ndarray
+        Its sum by a richer space of an order less.
     of_modes : dict of str to ndarray
         By the name of a mode, (ne,) energies of its local solutions, rad^2/s^2.
     lowest : dict of str to float
@@ -60,11 +60,15 @@ class HarmonicBounds:
     """
 
     body: Body
-    more: np.ndarray
-    less: np.ndarray
     of_ports: np.ndarray
-    of_modes: dict[str, np.ndarray] = field(default_factory=dict)
-    lowest: dict[str, float] = field(default_factory=dict)
+    less: np.ndarray
+    of_modes: dict[str, np.ndarray]
+    lowest: dict[str, float]
+
+    @cached_property
+    def more(self) -> np.ndarray:
+        """(6 p, 6 p) M of its flexibility."""
+        return self.of_ports.sum(axis=0)
 
     def softer(self, more: np.ndarray) -> Body:
         """The body with a larger flexibility; only ports know of it."""
@@ -128,13 +132,14 @@ def harmonic_bounds(
     """
     space = richer_space(scene, body)
     size, cells = 6 * len(body.ports), space.flat.cells.shape[1]
-    nothing = _OfPorts(np.zeros((cells, size, size)), np.zeros((size, size)))
-    of_ports = body.kept.get(_OfPorts, lambda: nothing) if statics else nothing
-    still = statics and of_ports is nothing
+    known = body.kept.find(_OfPorts) if statics else None
+    still = statics and known is None
+    empty = np.zeros((cells if still else 0, size, size))
+    of_ports = known or _OfPorts(empty, np.zeros((size, size)))
     modes = _asked(found, wanted)
     energy = {mode.name: np.zeros(cells) for mode in modes}
     lower = dict.fromkeys(energy, 0.0)
-    every = [] if found is None else [*found.modes, *found.beyond, *found.above]
+    every = () if found is None else found.solved
     for index, block in _originals(body, modes):
         parts = [_of_modes(body, k, modes) for k in (index, *_twins(body, index))]
         count = block.ports.shape[0] if still and block.components else 0
@@ -154,16 +159,15 @@ def harmonic_bounds(
     if still:
         for block in body.blocks:
             if block.mirror is not None:
-                _mirrored(body, block, of_ports.whole)
-                _mirrored(body, block, of_ports.less[None])
+                rows = body.rows(block)
+                of_ports.whole[np.ix_(np.arange(cells), rows, rows)] = of_twin(
+                    body, block, of_ports.whole
+                )
+                of_ports.less[np.ix_(rows, rows)] = of_twin(body, block, of_ports.less)
+        body.kept.keep(of_ports)
     own = {name: safety * with_tail(e.sum(), lower[name]) for name, e in energy.items()}
     return HarmonicBounds(
-        body,
-        of_ports.whole.sum(axis=0),
-        of_ports.less,
-        of_ports.whole,
-        energy,
-        _lower_ends(modes, every, own),
+        body, of_ports.whole, of_ports.less, energy, _lower_ends(modes, every, own)
     )
 
 
@@ -187,7 +191,7 @@ def _asked(found: ModeSet | None, wanted: Sequence[str]) -> list[Mode]:
     """Modes wanted, and of their groups those that might change places with them: one more."""
     if found is None or not wanted:
         return []
-    every = [m for m in (*found.modes, *found.beyond, *found.above) if m.frequency_hz > 0]
+    every = [m for m in found.solved if m.frequency_hz > 0]
     every.sort(key=lambda m: m.frequency_hz)
     out = []
     for name in wanted:
@@ -299,19 +303,6 @@ def _on_ports(block: Block, left: np.ndarray) -> np.ndarray:
     size[size == 0.0] = 1.0
     scaled = rows / size[:, None]
     return np.linalg.lstsq(scaled @ scaled.T, scaled @ left, rcond=1e-12)[0] / size[:, None]
-
-
-def _mirrored(body: Body, block: Block, of_ports: np.ndarray) -> None:
-    """Entries of a twin from those of its original."""
-    assert block.mirror is not None
-    index, signs = block.mirror
-    own = body.rows(block)
-    original = component_rows(range(len(body.ports)), body.blocks[index].components)
-    turn = np.tile(signs, len(body.ports))
-    cells = np.arange(len(of_ports))
-    of_ports[np.ix_(cells, own, own)] = of_ports[np.ix_(cells, original, original)] * np.outer(
-        turn, turn
-    )
 
 
 def _lower_ends(

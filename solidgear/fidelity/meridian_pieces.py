@@ -19,7 +19,7 @@ from solidgear.fidelity.singular import singular_vertices
 from solidgear.meshing.blended import ENDS
 from solidgear.meshing.corner_layers import cut_towards
 from solidgear.meshing.lines import Lines, place_of
-from solidgear.meshing.meridian import CUT_RATIO, Meridian
+from solidgear.meshing.meridian import CUT_RATIO, Meridian, on_side
 
 if TYPE_CHECKING:
     from solidgear.fidelity.harmonic import HarmonicMesh
@@ -179,10 +179,9 @@ class RicherSpace:
 
     def _on_side(self, cells: np.ndarray, side: int) -> list[tuple[int, int]]:
         """Pieces and their sides that lie on a side of some cells."""
-        axis, at = ((1, 0.0), (0, 1.0), (1, 1.0), (0, 0.0))[side]
         out = []
         for piece in np.flatnonzero(np.isin(self.pieces.parent, cells)):
-            on = np.abs(self.pieces.local[piece][:, axis] - at) < 1e-12
+            on = on_side(self.pieces.local[piece], side)
             out += [(int(piece), k) for k, (a, b) in enumerate(ENDS) if on[a] and on[b]]
         return out
 

@@ -33,8 +33,9 @@ def singular_vertices(
     Returns
     -------
     dict of int to (str, float)
-        Kind, and the angle of the material there, rad. ``re-entrant``, ``rigid`` (end of a seat that cannot deform), ``section`` (a plane that
-        carries a load), ``material`` or ``load`` (end of another seat).
+        Kind, and the angle of the material there, rad. ``re-entrant``, ``rigid`` (end of a seat that
+        cannot deform), ``section`` (a plane that carries a load), ``material`` or ``load`` (end of
+        another seat).
     """
     points, tol = flat.points, 1e-9 * scene.length
     outside = _outside(flat)

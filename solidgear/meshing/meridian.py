@@ -170,13 +170,13 @@ def _pieced(flat: Meridian, pieces: Pieces) -> Meridian:
     arc = np.full(len(parent), -1)
     for k in np.flatnonzero(flat.arc[parent] >= 0):
         edge = int(flat.arc[parent[k]])
-        on = _on_side(pieces.local[k], edge)
+        on = on_side(pieces.local[k], edge)
         if on.sum() == 2:
             arc[k] = edge
             for v, at in zip(corners[k][on], pieces.local[k][on]):
                 points[v] = _on_arc(flat, int(parent[k]), edge, at)
     outer, inner = (
-        np.array([_on_side(local, side).sum() == 2 for local in pieces.local]) for side in (1, 3)
+        np.array([on_side(local, side).sum() == 2 for local in pieces.local]) for side in (1, 3)
     )
     return Meridian(
         points.T,
@@ -202,8 +202,8 @@ def _vertex_at(flat: Meridian, y: float, r: float) -> int:
     return nearest
 
 
-def _on_side(local: np.ndarray, side: int) -> np.ndarray:
-    """Which corners of a piece lie on a side of its cell."""
+def on_side(local: np.ndarray, side: int) -> np.ndarray:
+    """(4,) which corners of a piece, (4, 2) in the coordinates of its cell, lie on a side of that."""
     axis, at = ((1, 0.0), (0, 1.0), (1, 1.0), (0, 0.0))[side]
     return np.abs(local[:, axis] - at) < 1e-12
 

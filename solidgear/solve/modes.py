@@ -120,6 +120,11 @@ class ModeSet(Displayed):
     above: tuple[Mode, ...] = ()
 
     @property
+    def solved(self) -> tuple[Mode, ...]:
+        """The list and all others that were solved."""
+        return (*self.modes, *self.beyond, *self.above)
+
+    @property
     def frequency_hz(self) -> np.ndarray:
         """(k,) distinct natural frequencies, Hz."""
         return np.array([m.frequency_hz for m in self.modes])

@@ -157,13 +157,13 @@ def flexibility(body: Body, tolerance: float = 1e-12) -> Flexibility:
 
 
 def of_twin(body: Body, block: Block, matrix: np.ndarray) -> np.ndarray:
-    """Part of a (6 p, 6 p) matrix of all ports that a block with a mirror has: that of its original, in
-    the other plane.
+    """Part of a (..., 6 p, 6 p) matrix of all ports that a block with a mirror has: that of its
+    original, in the other plane.
     """
     assert block.mirror is not None
     original, signs = block.mirror
     own, turn = body.rows(body.blocks[original]), np.tile(signs, len(body.ports))
-    return matrix[np.ix_(own, own)] * np.outer(turn, turn)
+    return matrix[..., own[:, None], own] * np.outer(turn, turn)
 
 
 def _flexibility(body: Body, tolerance: float) -> Flexibility:

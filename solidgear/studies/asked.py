@@ -1,5 +1,5 @@
-"""What is asked of a mesh, and what it was solved for: families of motion that are solved together, how many modes, and both in
-words.
+"""What is asked of a mesh, and what it was solved for: families of motion that are solved together,
+how many modes, and both in words.
 """
 
 from __future__ import annotations

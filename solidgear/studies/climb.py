@@ -9,15 +9,15 @@ from typing import Any
 
 import numpy as np
 
-from solidgear.body import Body, Supports, as_supports
+from solidgear.body import Body, as_supports
 from solidgear.evidence.answer import Numbers, numbers, searched
 from solidgear.evidence.bounded import Statics, bounded
-from solidgear.evidence.quantities import AT, described, points_of
+from solidgear.evidence.quantities import described
 from solidgear.fidelity import build
 from solidgear.solve.condensed import Condensed
 from solidgear.solve.families import FAMILIES
 from solidgear.solve.modes import ModeSet
-from solidgear.solve.statics import SOLVED, condense, flexibility
+from solidgear.solve.statics import SOLVED, flexibility
 from solidgear.studies.asked import (
     Question,
     Solved,
@@ -106,7 +106,9 @@ class Climb(Loop):
         statics: Statics | None = None
         found: ModeSet | None = None
         if kinds & {"compliance", "stiffness"}:
-            statics = self._statics(body, supports, names)
+            if self.rung.bounded:
+                flexibility(body, SOLVED)
+            statics = Statics.of(self.scene, body, supports, names)
             self.compliances[families or tuple(FAMILIES)] = statics.main
         if "frequency" in kinds:
             wanted = [place for q in names if isinstance(place := described(q)[1], str)]
@@ -145,14 +147,3 @@ class Climb(Loop):
         """
         static = (q for q in self.wanted if not is_frequency(q))
         return [q for q in dict.fromkeys((*names, *static)) if q in found.quantities]
-
-    def _statics(self, body: Body, supports: Supports, names: tuple[str, ...]) -> Statics:
-        """Condensed to the main point, to further ones that are asked for, and between points."""
-        if self.rung.bounded:
-            flexibility(body, SOLVED)
-        main = condense(body, supports, self.scene.port.name)
-        points = dict.fromkeys(q.partition(AT)[2] for q in names if AT in q and not points_of(q))
-        further = {point: condense(body, supports, point) for point in points}
-        pairs = {point for q in names for point in points_of(q) or ()}
-        both = tuple(port.name for port in self.scene.ports if port.name in pairs)
-        return Statics(main, further, condense(body, supports, both) if pairs else None)

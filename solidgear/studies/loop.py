@@ -175,14 +175,12 @@ class Loop(ABC):
         if not self.rung.bounded or self.plan.fixed:
             yield from self.plan.levels if self.plan.fixed else self.plan.levels[: self.most]
             return
-        mesh = self.mesh
-        yield mesh.options()
+        yield self.mesh.options()
         for _ in range((self.most or MOST_MESHES) - 1):
             assert self.last is not None and self.last.score is not None
-            mesh = refined(self.scene, self.last.body, mesh, self.last.score, self.tol)
-            self.mesh = mesh
+            self.mesh = refined(self.scene, self.last.body, self.mesh, self.last.score, self.tol)
             self.last.body.kept.clear()  # its factor need not be held beside the next one
-            yield mesh.options()
+            yield self.mesh.options()
 
     def _stopped(self) -> str:
         """Why there is no further mesh."""
