@@ -9,7 +9,7 @@ It illustrates how to:
 from pathlib import Path
 
 import solidgear as sg
-from solidgear.fidelity.krylov import from_scene, krylov
+from validation.thesis.krylov import from_scene, krylov
 
 GEOMETRY = Path(__file__).parent.parent / "geometry"
 

@@ -9,8 +9,8 @@ It illustrates how to:
 from pathlib import Path
 
 import solidgear as sg
-from solidgear.evidence.ties import SCENE
-from solidgear.studies.study import study
+from solidgear.judge.study import study
+from solidgear.judge.ties import SCENE
 
 GEOMETRY = Path(__file__).parent.parent / "geometry"
 

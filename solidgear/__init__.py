@@ -32,7 +32,7 @@ _WHERE = {
     "STEEL": "solidgear.scene",
     "Body": "solidgear.body",
     "Supports": "solidgear.body",
-    "build": "solidgear.fidelity",
+    "build": "solidgear.ladder",
     "Superelement": "solidgear.reduction.superelement",
     "rubin": "solidgear.reduction.rubin",
     "craig_bampton": "solidgear.reduction.craig_bampton",
@@ -49,7 +49,7 @@ _WHERE = {
     "torsion_spring": "solidgear.system",
     "condense": "solidgear.solve.statics",
     "modes": "solidgear.solve.modes",
-    "answer": "solidgear.studies.answering",
+    "answer": "solidgear.judge.answer",
     "compare": "solidgear.studies.comparison",
     "turn": "solidgear.report.viewer",
     "SolidgearError": "solidgear.errors",
@@ -98,7 +98,8 @@ __all__ = [
 if TYPE_CHECKING:
     from solidgear.body import Body, Supports
     from solidgear.errors import SceneError, SolidgearError
-    from solidgear.fidelity import build
+    from solidgear.judge.answer import answer
+    from solidgear.ladder import build
     from solidgear.reduction.craig_bampton import craig_bampton
     from solidgear.reduction.rubin import rubin
     from solidgear.reduction.superelement import Superelement
@@ -117,7 +118,6 @@ if TYPE_CHECKING:
     from solidgear.scene.train import Train
     from solidgear.solve.modes import modes
     from solidgear.solve.statics import condense
-    from solidgear.studies.answering import answer
     from solidgear.studies.comparison import compare
     from solidgear.studies.loading import load, load_train
     from solidgear.system import (

@@ -67,7 +67,7 @@ def run(monkeypatch, capsys, tmp_path):
 @pytest.fixture
 def two_meshes(monkeypatch):
     """A climb that ends with its second mesh, where a tolerance of 1e-8 is far away."""
-    from solidgear.studies import loop
+    from solidgear.judge import refinement as loop
 
     monkeypatch.setattr(loop, "MOST_MESHES", 2)
 
@@ -78,7 +78,7 @@ def builds_until(monkeypatch):
     options that each was asked for with.
     """
     from solidgear.errors import SolidgearError
-    from solidgear.studies import climb
+    from solidgear.judge import climb
 
     def limit(count: int) -> list[dict]:
         real, calls = climb.build, []

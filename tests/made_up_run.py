@@ -8,7 +8,7 @@ import math
 
 import numpy as np
 
-from solidgear.evidence.record import SCHEMA
+from solidgear.judge.record import SCHEMA
 
 LOOKS = {
     "euler": ("Euler beam", "Euler", "beam", "#c98a00", "v"),

@@ -14,14 +14,14 @@ import pytest
 import solidgear as sg
 from solidgear.body import as_supports
 from solidgear.cli.answer import _absent, sentences
-from solidgear.evidence.answer import Numbers, solve
-from solidgear.evidence.quantities import change
-from solidgear.fidelity.ladder import LADDER
-from solidgear.fidelity.levels import Sequence
+from solidgear.judge import climb as climbing
+from solidgear.judge.answer import answer
+from solidgear.judge.climb import Climb
+from solidgear.judge.quantities import change
+from solidgear.judge.solving import Numbers, solve
+from solidgear.ladder.meshes import Sequence
+from solidgear.ladder.registry import LADDER
 from solidgear.scene import Bearing, BoltCircle
-from solidgear.studies import climb as climbing
-from solidgear.studies.answering import answer
-from solidgear.studies.climb import Climb
 
 ROOT = Path(__file__).parent.parent
 SCENES = ["pinion_overhung", "shaft_stepped", "shaft_hollow", "pinion_straddle"]
@@ -341,7 +341,7 @@ def test_a_climb_ends_where_no_mesh_makes_bars_narrow_enough():
 
 def test_what_heavy_meshes_cost_is_told_before_they_are_made():
     """Holes of 0.5 mm through 60 mm; those of 12 mm are no matter."""
-    from solidgear.studies.effort import heavy_meshes
+    from solidgear.judge.effort import heavy_meshes
 
     def told(diameter):
         rim = sg.Segment.cylinder("rim", length=0.06, diameter=0.05)

@@ -3,9 +3,9 @@
 import pytest
 
 import solidgear as sg
-from solidgear.evidence.answer import solve
+from solidgear.judge.answer import answer
+from solidgear.judge.solving import solve
 from solidgear.scene import Bearing
-from solidgear.studies.answering import answer
 
 
 def layered(order):

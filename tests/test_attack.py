@@ -11,8 +11,8 @@ import numpy as np
 import pytest
 
 from solidgear.body import as_supports
-from solidgear.evidence.quantities import size
-from solidgear.fidelity import build
+from solidgear.judge.quantities import size
+from solidgear.ladder import build
 from solidgear.meshing.closed_form import mass_properties
 from solidgear.scene import Bearing, Port, Scene, Segment
 from solidgear.solve.statics import condense

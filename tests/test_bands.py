@@ -5,13 +5,13 @@ truth is asked by validation/attack.
 import pytest
 
 import solidgear as sg
-from solidgear.evidence.answer import solve
-from solidgear.evidence.bands import LEAST, moves_freely, step_bands
-from solidgear.evidence.quantities import ACROSS, QUANTITIES
-from solidgear.evidence.sequence_bands import feature_effect, sequence_bands
-from solidgear.fidelity.ladder import LADDER
-from solidgear.fidelity.levels import Sequence
-from solidgear.fidelity.safety import FEATURES, LAYERS, LOCAL, REFINEMENT, Safety
+from solidgear.bounds.safety import FEATURES, LAYERS, LOCAL, REFINEMENT, Safety
+from solidgear.judge.bars import LEAST, moves_freely, step_bands
+from solidgear.judge.quantities import ACROSS, QUANTITIES
+from solidgear.judge.sequence_bars import feature_effect, sequence_bands
+from solidgear.judge.solving import solve
+from solidgear.ladder.meshes import Sequence
+from solidgear.ladder.registry import LADDER
 from solidgear.scene import Fillet, Spline
 
 FINEST = {"C_zz": 2.0, "C_thx": 8.0, "C_z,thx": 1.0, "bending 1": 100.0}

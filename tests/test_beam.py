@@ -12,7 +12,7 @@ from scipy.optimize import brentq
 
 import solidgear as sg
 from solidgear.errors import SolidgearError
-from solidgear.fidelity.beam_element import shear_coefficient
+from solidgear.models.beam.element import shear_coefficient
 from solidgear.scene import STEEL, Bearing, Port, Scene, Segment
 
 LENGTH, RADIUS = 0.5, 0.03

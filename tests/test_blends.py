@@ -7,8 +7,8 @@ import scipy.sparse.linalg as spla
 
 import solidgear as sg
 from solidgear import Port, Scene, SceneError, Segment
-from solidgear.fidelity.harmonic_bounds import richer_space
-from solidgear.fidelity.size import estimated_size
+from solidgear.bounds.harmonic import richer_space
+from solidgear.ladder.size import estimated_size
 from solidgear.meshing.closed_form import mass_properties, volume_of
 from solidgear.scene import Chamfer, Fillet
 from solidgear.scene.coned import coned

@@ -14,19 +14,19 @@ import pytest
 import solidgear as sg
 from solidgear import Bearing, Port, Scene, Segment
 from solidgear.body import Body, as_supports
-from solidgear.evidence.answer import searched
-from solidgear.evidence.bands import Band
-from solidgear.evidence.bounded import Statics, bounded
-from solidgear.evidence.quantities import diagonals, measure, size
-from solidgear.fidelity import meridian_pieces
-from solidgear.fidelity.harmonic_bounds import (
+from solidgear.bounds import richer_space as meridian_pieces
+from solidgear.bounds.harmonic import (
     HarmonicBounds,
     _lower_ends,
     harmonic_bounds,
     richer_space,
     with_tail,
 )
-from solidgear.fidelity.safety import LOCAL
+from solidgear.bounds.safety import LOCAL
+from solidgear.judge.bars import Band
+from solidgear.judge.bounded import Statics, bounded
+from solidgear.judge.quantities import diagonals, measure, size
+from solidgear.judge.solving import searched
 from solidgear.scene import STEEL, Fillet, Housing, Material
 from solidgear.scene.coned import coned
 from solidgear.solve.modes import Mode

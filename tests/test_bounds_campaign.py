@@ -6,7 +6,7 @@ import json
 
 import pytest
 
-from solidgear.fidelity import build
+from solidgear.ladder import build
 from solidgear.scene import Scene
 from validation.attack.reference import Reference
 from validation.bounds import __main__ as command

@@ -12,9 +12,10 @@ from pathlib import Path
 import pytest
 
 import solidgear as sg
-from solidgear.evidence import cases, racing
-from solidgear.evidence.pareto import Race, Row
-from solidgear.evidence.racing import race
+from solidgear.judge.race import automatic, cases
+from solidgear.judge.race import timing as racing
+from solidgear.judge.race.pareto import Race, Row
+from solidgear.judge.race.timing import race
 from solidgear.report import race_figure, race_rows, race_style
 from solidgear.report.html import render_page, write_report
 from solidgear.report.race_figure import draw, figure
@@ -29,7 +30,6 @@ from solidgear.report.race_rows import (
     write_rows,
 )
 from solidgear.report.race_tables import front_rows, section
-from solidgear.studies import automatic
 from tests.made_up_run import fixture_results
 
 ROOT = Path(__file__).parent.parent

@@ -14,14 +14,14 @@ import scipy.linalg as sla
 
 import solidgear as sg
 from solidgear.cli import main
-from solidgear.fidelity.ladder import LADDER
+from solidgear.judge.study import study
+from solidgear.ladder.registry import LADDER
 from solidgear.scene import STEEL, Ask, Bearing, Fillet, Port, Scene, Segment
 from solidgear.studies import check, guards
 from solidgear.studies.check import cautions, check_scene, notices
 from solidgear.studies.guards import GUARDS, Notice, elements, models
 from solidgear.studies.guards.notice import against, everything
 from solidgear.studies.guards.probe import Probe
-from solidgear.studies.study import study
 from validation.shipped import shafts_of_revolution
 
 ROOT = Path(__file__).parent.parent
@@ -555,8 +555,8 @@ def test_memory_is_told_by_one_law():
     where another law had half as much again.
     """
     from solidgear.factoring import Factoring
-    from solidgear.fidelity.factor_memory import solid_factor_mb
-    from solidgear.fidelity.size import estimated_size
+    from solidgear.ladder.factor_memory import solid_factor_mb
+    from solidgear.ladder.size import estimated_size
 
     keyed = sg.load(ROOT / "geometry" / "pinion_keyed.toml")
     told = next(elements.memory(Probe(keyed, sg.build(keyed.plain, "timoshenko")))).sentence

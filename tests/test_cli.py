@@ -12,9 +12,9 @@ from pathlib import Path
 
 import pytest
 
-from solidgear.fidelity.ladder import LADDER
+from solidgear.judge import climb
+from solidgear.ladder.registry import LADDER
 from solidgear.solve.factor import pardiso_missing
-from solidgear.studies import climb
 
 ROOT = Path(__file__).parent.parent
 SCENE = str(ROOT / "geometry" / "pinion_overhung.toml")
@@ -256,7 +256,7 @@ def test_interrupt_elsewhere_is_a_sentence(run, monkeypatch, tmp_path):
     def stop(*_, **__):
         raise KeyboardInterrupt
 
-    monkeypatch.setattr("solidgear.fidelity.build", stop)
+    monkeypatch.setattr("solidgear.ladder.build", stop)
     refused(run("stiffness", SCENE, "-f", "euler"), tmp_path, "interrupted", code=130)
 
 
@@ -409,7 +409,7 @@ def test_memory_that_runs_out_is_a_sentence(run, tmp_path, monkeypatch):
     def broken(*_, **__):
         raise MemoryError
 
-    monkeypatch.setattr("solidgear.fidelity.build", broken)
+    monkeypatch.setattr("solidgear.ladder.build", broken)
     refused(run("stiffness", SCENE, *HARMONIC), tmp_path, "not enough memory")
     monkeypatch.setattr(climb, "build", broken)
     refused(run("stiffness", SCENE), tmp_path, "not enough memory")

@@ -14,7 +14,7 @@ from solidgear.cli import shipped
 from solidgear.cli.app import app
 from solidgear.cli.starts import STARTS, start
 from solidgear.errors import SolidgearError
-from solidgear.fidelity.ladder import LADDER
+from solidgear.ladder.registry import LADDER
 from solidgear.scene.file import load
 
 ROOT = Path(__file__).parent.parent

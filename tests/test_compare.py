@@ -13,11 +13,11 @@ import pytest
 
 import solidgear as sg
 from solidgear.errors import SolidgearError
-from solidgear.evidence.quantities import ACROSS, COUPLINGS, QUANTITIES
-from solidgear.fidelity.ladder import LADDER
-from solidgear.fidelity.options import ATTACHMENTS
 from solidgear.frames import DOF_NAMES
+from solidgear.judge.quantities import ACROSS, COUPLINGS, QUANTITIES
+from solidgear.ladder.registry import LADDER
 from solidgear.meshing.quality import MeshError
+from solidgear.models.options import ATTACHMENTS
 from solidgear.studies.comparison import compare
 
 #: charts are drawn in the folder that all tests share, once
@@ -376,14 +376,14 @@ def test_settings_reach_the_builder_and_its_relatives(overhung):
 
 # --------------------------------------------------------------------------- when something goes wrong
 def failing(monkeypatch, model, error):
-    from solidgear.fidelity import build
+    from solidgear.ladder import build
 
     def broken(scene, fidelity, **options):
         if fidelity == model:
             raise error
         return build(scene, fidelity, **options)
 
-    monkeypatch.setattr("solidgear.evidence.tied.build", broken)
+    monkeypatch.setattr("solidgear.judge.tied.build", broken)
 
 
 def test_a_model_that_fails_is_reported_and_the_others_go_on(overhung, monkeypatch, tmp_path):
@@ -428,14 +428,14 @@ def test_when_every_model_fails_there_is_still_a_report(overhung, monkeypatch, t
 
 
 def test_band_that_cannot_be_made_is_a_warning(overhung, monkeypatch):
-    from solidgear.fidelity import build
+    from solidgear.ladder import build
 
     def broken(scene, fidelity, **options):
         if options.get("refinement", 1.0) < 0.39:
             raise MeshError("too coarse to mesh")
         return build(scene, fidelity, **options)
 
-    monkeypatch.setattr("solidgear.evidence.tied.build", broken)
+    monkeypatch.setattr("solidgear.judge.tied.build", broken)
     found = compare(
         overhung, ("solid",), settings={"solid": {"element": "tet10", "refinement": 0.4}}
     ).results

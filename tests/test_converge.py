@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import solidgear as sg
-from solidgear.evidence.converge import gci
+from solidgear.judge.convergence import gci
 from solidgear.meshing.corners import corner_exponent, sharpest_corner
 from solidgear.scene import Scene, Segment
 

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import solidgear as sg
-from solidgear.evidence.correlate import correlate, subspace_mac
+from solidgear.judge.correlation import correlate, subspace_mac
 
 GEOMETRY = Path(__file__).parent.parent / "geometry"
 RNG = np.random.default_rng(4)

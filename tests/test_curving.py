@@ -8,13 +8,13 @@ import pytest
 from skfem import MeshTet1, MeshTet2
 
 import solidgear as sg
-from solidgear.fidelity.sector import cyclic_features, meshed_sector
-from solidgear.fidelity.solid import tetrahedra_plan
 from solidgear.meshing.closed_form import volume_of
 from solidgear.meshing.curving import volume_kept
 from solidgear.meshing.quality import element_volumes
 from solidgear.meshing.sector import volume_of_sector
 from solidgear.meshing.tetrahedra import tetrahedra
+from solidgear.models.sector.body import cyclic_features, meshed_sector
+from solidgear.models.solid.body import tetrahedra_plan
 
 GEOMETRY = Path(__file__).parents[1] / "geometry"
 

@@ -7,15 +7,15 @@ import pytest
 from test_features import FLAT, KEY, mesh_of, shaft
 
 import solidgear as sg
-from solidgear.fidelity.corrected import sizes
-from solidgear.fidelity.featured import meshed
-from solidgear.fidelity.size import estimated_size
-from solidgear.fidelity.solid import tetrahedra_plan
+from solidgear.ladder.size import estimated_size
 from solidgear.meshing.closed_form import volume_of
 from solidgear.meshing.cut_counts import around_cut
 from solidgear.meshing.cuts import edge_size, feature_size
 from solidgear.meshing.featured import without
 from solidgear.meshing.holes import CROWD
+from solidgear.models.corrected import sizes
+from solidgear.models.solid.body import tetrahedra_plan
+from solidgear.models.solid.featured import meshed
 from solidgear.scene import CrossHole
 from solidgear.studies.guards import Probe, elements
 

@@ -241,11 +241,11 @@ def test_sound_parts_have_no_pits():
     """
     from skfem import MeshTet1
 
-    from solidgear.fidelity.featured import meshed
-    from solidgear.fidelity.solid import tetrahedra_plan
     from solidgear.meshing.featured import without
     from solidgear.meshing.pits import pits
     from solidgear.meshing.tetrahedra import tetrahedra
+    from solidgear.models.solid.body import tetrahedra_plan
+    from solidgear.models.solid.featured import meshed
 
     keyed, hollow = (sg.load(f"geometry/{n}.toml") for n in ("pinion_keyed", "shaft_hollow"))
     keyed = keyed.with_changes(

@@ -12,7 +12,8 @@ import scipy.linalg as sla
 import solidgear as sg
 from solidgear.body import as_supports
 from solidgear.scene import STEEL, Material, Scene, Segment
-from solidgear.solve import eigen, parts
+from solidgear.solve import eigen
+from solidgear.solve import groups as parts
 from solidgear.solve.eigen import count_below, lowest
 from solidgear.solve.supported import Supported, decoupled, groups
 

@@ -11,16 +11,16 @@ import pytest
 from skfem import MeshTet1, MeshTet2
 
 import solidgear as sg
-from solidgear.evidence.record import ModelRecord, ModeRecord
-from solidgear.fidelity.featured import featured_body, meshed
-from solidgear.fidelity.halves import half_blocks
-from solidgear.fidelity.seat_faces import Seats
-from solidgear.fidelity.solid import tetrahedra_plan
-from solidgear.fidelity.solid_block import free_block
-from solidgear.fidelity.solid_mesh import _isoparametric
+from solidgear.judge.record import ModelRecord, ModeRecord
 from solidgear.meshing.cuts import volume
 from solidgear.meshing.featured import FeaturedMesh, without
 from solidgear.meshing.quality import MeshError, check_mesh
+from solidgear.models.solid.block import free_block
+from solidgear.models.solid.body import tetrahedra_plan
+from solidgear.models.solid.featured import featured_body, meshed
+from solidgear.models.solid.halves import half_blocks
+from solidgear.models.solid.mesh import _isoparametric
+from solidgear.models.solid.seat_faces import Seats
 from solidgear.report.reading import mode_of
 from solidgear.scene import CrossHole, Flat, Keyway
 

@@ -8,10 +8,10 @@ import pytest
 import scipy.sparse as sp
 
 import solidgear as sg
-from solidgear.fidelity.solid_block import mirrored
+from solidgear.models.solid.block import mirrored
 from solidgear.solve.factor import factorise
-from solidgear.solve.folded import folded, folds
 from solidgear.solve.statics import SHIFT, factors
+from solidgear.solve.symmetry import folded, folds
 
 GEOMETRY = Path(__file__).parent.parent / "geometry"
 COARSE = {"refinement": 0.5, "layers": 1, "edge_layers": 0, "radial_layers": 1, "around": 8}

@@ -11,12 +11,12 @@ from scipy.sparse.linalg import eigsh
 from test_sector import BOLTS, SPIRAL, STEEL, TEETH, apart, shaft
 
 import solidgear as sg
-from solidgear.fidelity.half_sector import HalfSector, basis, half_sector_solid
-from solidgear.fidelity.sector import meshed_sector, sector, whole
-from solidgear.fidelity.size import estimated_size
-from solidgear.fidelity.solid_matrices import _matrices
 from solidgear.frames import rotation
+from solidgear.ladder.size import estimated_size
 from solidgear.meshing.sector import mirrored
+from solidgear.models.sector.body import meshed_sector, sector, whole
+from solidgear.models.sector.half import HalfSector, basis, half_sector_solid
+from solidgear.models.solid.matrices import _matrices
 from solidgear.scene import Spline
 from solidgear.scene.cyclic_rules import mirror_angle
 

@@ -7,9 +7,9 @@ import pytest
 from test_sector import BOLTS, shaft
 
 import solidgear as sg
-from solidgear.fidelity.sector import meshed_sector, sector
-from solidgear.fidelity.size import estimated_size
+from solidgear.ladder.size import estimated_size
 from solidgear.meshing.holes import FULL_SHARE, hole_of, hole_places, hole_size
+from solidgear.models.sector.body import meshed_sector, sector
 from solidgear.scene import BoltCircle, Teeth
 
 SMALL = BOLTS.with_changes(count=4, diameter=0.003, depth=0.008, angle=0.3)

@@ -12,9 +12,9 @@ import pytest
 from scipy.optimize import brentq
 
 import solidgear as sg
-from solidgear.fidelity.krylov import Span, Station, from_scene, krylov
-from solidgear.fidelity.krylov_shaft import krylov_duncan
 from solidgear.scene import Scene, Segment
+from validation.thesis.krylov import Span, Station, from_scene, krylov
+from validation.thesis.krylov_shaft import krylov_duncan
 
 GEOMETRY = Path(__file__).parents[1] / "geometry"
 UNIT = Span(1.0, 1.0, 1.0)

@@ -8,8 +8,8 @@ import scipy.sparse as sp
 
 import solidgear as sg
 from solidgear.factoring import Factoring
-from solidgear.fidelity.size import estimated_size
-from solidgear.fidelity.ways import ways_out
+from solidgear.ladder.remedies import ways_out
+from solidgear.ladder.size import estimated_size
 from solidgear.solve import single
 from solidgear.solve.backends import missing
 from solidgear.solve.factor import FactorError, factorise

@@ -8,13 +8,13 @@ from typer.testing import CliRunner
 import solidgear as sg
 from solidgear.cli import app
 from solidgear.errors import SolidgearError
-from solidgear.fidelity.harmonic_patch import Patch, PatchMotion
+from solidgear.models.harmonic.patch import Patch, PatchMotion
 from solidgear.reduction.waves import local_compliance, own_waves, with_waves
 from solidgear.solve.factor import factorise
-from solidgear.studies.axle.local import TEETH, patch_of, undriven
-from solidgear.studies.axle.models import Workshop
-from solidgear.studies.axle.modes import train_modes
-from solidgear.studies.axle.respond import Drive
+from solidgear.studies.train.local import TEETH, patch_of, undriven
+from solidgear.studies.train.models import Workshop
+from solidgear.studies.train.modes import train_modes
+from solidgear.studies.train.respond import Drive
 
 AXLE = "geometry/axle_overhung.toml"
 #: moves no number here by more than 1e-3

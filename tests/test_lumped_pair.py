@@ -12,9 +12,9 @@ import pytest
 from solidgear.errors import SolidgearError
 from solidgear.frames import move_stiffness
 from solidgear.system.gear_mesh import MeshVector, line_of_action, mesh_point, to_gear_frame
-from solidgear.system.highest_frequency import consistency, rayleigh_bound
-from solidgear.system.identify import Unknown, identify, torsion_springs
-from solidgear.system.lumped_pair import (
+from validation.thesis.highest_frequency import consistency, rayleigh_bound
+from validation.thesis.identify import Unknown, identify, torsion_springs
+from validation.thesis.lumped_pair import (
     COMPONENTS,
     ENGINE,
     GEAR,

@@ -7,13 +7,13 @@ from pathlib import Path
 import pytest
 
 import solidgear as sg
-from solidgear.fidelity import beam_element
-from solidgear.fidelity.krylov import from_scene
+from solidgear.models.beam import element as beam_element
 from validation.manual import CASES
 from validation.manual import __main__ as command
 from validation.manual.case import Answer, CaseError, Model, Reference
 from validation.manual.cases import free_beams, held_beams, pinion, spur_train, thesis
 from validation.manual.page import FOLDER, INDEX, SAME_SIZE, index, lines, read, render
+from validation.thesis.krylov import from_scene
 
 
 def models(without=(), others=()):

@@ -111,8 +111,8 @@ def bent():
 
 @pytest.mark.parametrize("mesh, name", [(bent(), "tet10"), (pressed(1.1), "hex27")])
 def test_inversion_between_all_samples_is_seen(mesh, name):
-    from solidgear.fidelity.assembly import tabulate
-    from solidgear.fidelity.solid_matrices import _cell_rule
+    from solidgear.kernel.assembly import tabulate
+    from solidgear.models.solid.matrices import _cell_rule
 
     element, nodes = mesh.elem(), mesh.doflocs[:, mesh.dofs.element_dofs]
     for points in (
@@ -136,8 +136,8 @@ def test_the_least_jacobian_is_that_of_the_polynomial(amount):
 
 @pytest.mark.parametrize("kind, name", [("tet2", "tet10"), ("hex2", "hex27")])
 def test_the_volume_of_any_curved_element_is_exact(kind, name):
-    from solidgear.fidelity.assembly import tabulate
-    from solidgear.fidelity.solid_matrices import _cell_rule
+    from solidgear.kernel.assembly import tabulate
+    from solidgear.models.solid.matrices import _cell_rule
 
     mesh = box(kind, 1)
     # every node moved at random: det J has all the terms it can have, and the rule of the stiffness

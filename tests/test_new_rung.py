@@ -9,9 +9,9 @@ from pathlib import Path
 import pytest
 
 import solidgear as sg
-from solidgear.evidence.cases import plan
-from solidgear.evidence.racing import race
-from solidgear.fidelity.ladder import LADDER
+from solidgear.judge.race.cases import plan
+from solidgear.judge.race.timing import race
+from solidgear.ladder.registry import LADDER
 from solidgear.report.html import render_page
 from solidgear.report.race_figure import figure
 from solidgear.report.terminal import final_table
@@ -114,7 +114,7 @@ def test_it_has_its_own_colour(found):
 def test_it_is_in_the_help_and_among_the_choices():
     code = (
         "import dataclasses, sys\n"
-        "from solidgear.fidelity.ladder import LADDER\n"
+        "from solidgear.ladder.registry import LADDER\n"
         "beam = LADDER['timoshenko']\n"
         "LADDER.rungs += (dataclasses.replace(beam, name='coarse', title='coarse beam'),)\n"
         "from solidgear.cli import main\n"

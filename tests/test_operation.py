@@ -182,7 +182,7 @@ def test_killed_while_files_are_written(at, two_runs, tmp_path):
 
 
 def test_a_chart_that_is_killed_leaves_no_picture_of_another(tmp_path):
-    from solidgear.evidence.pareto import Race, Row
+    from solidgear.judge.race.pareto import Race, Row
     from solidgear.report.race_rows import MACHINE, PICTURE, ROWS, write_rows
 
     (tmp_path / PICTURE).write_bytes(b"of an earlier chart")

@@ -8,12 +8,12 @@ import pytest
 
 import solidgear as sg
 from solidgear.cli.app import build_body, options
-from solidgear.fidelity.beam import beam
-from solidgear.fidelity.harmonic import harmonic
-from solidgear.fidelity.ladder import LADDER
-from solidgear.fidelity.options import FACTORING_OPTIONS, THINNEST_LAYER
-from solidgear.fidelity.solid import solid
-from solidgear.fidelity.solid_mesh import ELEMENTS
+from solidgear.ladder.registry import LADDER
+from solidgear.models.beam.body import beam
+from solidgear.models.harmonic.body import harmonic
+from solidgear.models.options import FACTORING_OPTIONS, THINNEST_LAYER
+from solidgear.models.solid.body import solid
+from solidgear.models.solid.mesh import ELEMENTS
 
 SCENE = sg.load(Path(__file__).parents[1] / "geometry" / "shaft_stepped.toml")
 BUILDERS = {"euler": beam, "timoshenko": beam, "harmonic": harmonic, "solid": solid}

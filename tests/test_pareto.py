@@ -12,10 +12,10 @@ import pytest
 
 import solidgear as sg
 from solidgear.errors import SolidgearError
-from solidgear.evidence import racing
-from solidgear.evidence.cases import plan, setup_seconds
-from solidgear.evidence.pareto import Race, Row, front
-from solidgear.evidence.racing import answer, race, scaled_error
+from solidgear.judge.race import timing as racing
+from solidgear.judge.race.cases import plan, setup_seconds
+from solidgear.judge.race.pareto import Race, Row, front
+from solidgear.judge.race.timing import answer, race, scaled_error
 
 GEOMETRY = Path(__file__).parent.parent / "geometry"
 #: coarse, but enough to give a band

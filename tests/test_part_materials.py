@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 import solidgear as sg
-from solidgear.fidelity.ladder import LADDER
-from solidgear.machine.apart import apart
+from solidgear.ladder.registry import LADDER
+from solidgear.machine.isolated import apart
 from validation.mesh_files import rod, write_mesh, written_by_gmsh
 from validation.step_parts import write_solids
 

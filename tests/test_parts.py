@@ -11,12 +11,12 @@ import numpy as np
 import pytest
 
 import solidgear as sg
-from solidgear.fidelity.ladder import LADDER
-from solidgear.fidelity.own_mesh import solid_body
+from solidgear.ladder.registry import LADDER
 from solidgear.meshing import part
 from solidgear.meshing.closed_form import volume_of
 from solidgear.meshing.mesh_file import mesh_from
 from solidgear.meshing.placing import TURNS, Placing
+from solidgear.models.solid.own_mesh import solid_body
 from solidgear.report.export import CELLS, node_order
 from solidgear.scene import Keyway
 from solidgear.studies import check, round_part
@@ -64,7 +64,7 @@ def read_once():
 
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(part, "apart", apart)
-        patch.setattr("solidgear.fidelity.part.apart", apart)
+        patch.setattr("solidgear.models.solid.part.apart", apart)
         yield
 
 
@@ -299,9 +299,9 @@ def test_a_seat_ends_where_it_is_said_to(stepped, tmp_path):
 
 def test_the_area_of_a_clipped_seat(tmp_path):
     """2 pi r b to what curved faces leave of the circle, wherever faces end."""
-    from solidgear.fidelity.seat_faces import Seats
-    from solidgear.fidelity.solid_mesh import _isoparametric
     from solidgear.meshing.tetrahedra import tetrahedra
+    from solidgear.models.solid.mesh import _isoparametric
+    from solidgear.models.solid.seat_faces import Seats
 
     rod = sg.Segment.cylinder("rod", length=0.2, diameter=0.06)
     mesh = _isoparametric(tetrahedra([rod], size=0.02).mesh, "tet10", np.zeros(0))
@@ -382,7 +382,7 @@ def test_seats_that_are_not_there(tmp_path):
 
 def test_two_solids_and_an_open_shell(tmp_path):
     """Named by number and place."""
-    from solidgear.machine.apart import apart
+    from solidgear.machine.isolated import apart
     from validation.step_parts import write_open, write_two
 
     apart(write_two, str(tmp_path / "part.step"), seconds=60)
@@ -465,11 +465,11 @@ def test_a_keyed_mesh_has_no_seat_on_the_floor_of_the_key():
     """Floors and walls of a keyway that crosses a seat are none of it: its area is that of the
     cylinder less the opening.
     """
-    from solidgear.fidelity.featured import meshed
-    from solidgear.fidelity.seat_faces import Seats
-    from solidgear.fidelity.solid import tetrahedra_plan
-    from solidgear.fidelity.solid_mesh import _isoparametric
     from solidgear.meshing.featured import without
+    from solidgear.models.solid.body import tetrahedra_plan
+    from solidgear.models.solid.featured import meshed
+    from solidgear.models.solid.mesh import _isoparametric
+    from solidgear.models.solid.seat_faces import Seats
 
     rod = sg.Segment.cylinder("rod", length=0.2, diameter=0.06)
     key = Keyway(

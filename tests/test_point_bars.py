@@ -11,8 +11,8 @@ from typer.testing import CliRunner
 
 import solidgear as sg
 from solidgear.cli.app import app
-from solidgear.evidence.bands import step_bands
-from solidgear.evidence.quantities import (
+from solidgear.judge.bars import step_bands
+from solidgear.judge.quantities import (
     between,
     diagonals,
     measure,
@@ -21,8 +21,10 @@ from solidgear.evidence.quantities import (
     repeats,
     size,
 )
-from solidgear.evidence.recording import recorded
-from solidgear.fidelity.ladder import LADDER
+from solidgear.judge.recording import recorded
+from solidgear.judge.settle import settle
+from solidgear.judge.study import study
+from solidgear.ladder.registry import LADDER
 from solidgear.report.front import numbers
 from solidgear.report.point_tables import points
 from solidgear.report.units import ENGINEERING
@@ -30,8 +32,6 @@ from solidgear.scene import Bearing, Port, Scene, Segment
 from solidgear.studies.guards.data import split_pair
 from solidgear.studies.guards.models import beam_against_solid
 from solidgear.studies.guards.probe import Probe
-from solidgear.studies.settle import settle
-from solidgear.studies.study import study
 from validation.attack.corner_mesh import corner_mesh
 from validation.attack.judge import SMALL
 from validation.attack.points import judged, scene_of, solutions

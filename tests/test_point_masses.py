@@ -14,7 +14,7 @@ import scipy.sparse as sp
 
 import solidgear as sg
 from solidgear.body import as_supports
-from solidgear.body.kept import Kept
+from solidgear.body.cache import Kept
 from solidgear.reduction.effective_mass import synthesise
 from solidgear.studies.sweep.run import sweep
 

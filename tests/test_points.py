@@ -12,13 +12,13 @@ from rich.console import Console
 
 import solidgear as sg
 from solidgear.cli.app import app
-from solidgear.evidence.quantities import change
-from solidgear.evidence.record import Record
-from solidgear.evidence.recording import recorded
+from solidgear.judge.quantities import change
+from solidgear.judge.record import Record
+from solidgear.judge.recording import recorded
+from solidgear.judge.study import study
 from solidgear.report.html import render_page
 from solidgear.report.terminal import final_table
 from solidgear.scene import Bearing, Port, Scene, Segment
-from solidgear.studies.study import study
 
 GEOMETRY = Path(__file__).parent.parent / "geometry"
 #: quick meshes; two points that both see the same mesh error are compared on them

@@ -14,9 +14,9 @@ from solidgear.report.charts import CHARTS
 from solidgear.report.readout import STEPS, readable, readings
 from solidgear.report.train_chart import receptance_figure, response_figure
 from solidgear.report.units import SYSTEMS
-from solidgear.studies.axle.models import Workshop
-from solidgear.studies.axle.receptance import receptance
-from solidgear.studies.axle.respond import respond
+from solidgear.studies.train.models import Workshop
+from solidgear.studies.train.receptance import receptance
+from solidgear.studies.train.respond import respond
 from tests.made_up_run import fixture_results
 
 SIDE = ("timoshenko", "euler")

@@ -17,10 +17,10 @@ from test_train_models import COARSE, OVERHUNG
 import solidgear as sg
 from solidgear.report.html import render_page
 from solidgear.report.train_files import write_response
-from solidgear.studies.axle.comparison import described
-from solidgear.studies.axle.models import Workshop
-from solidgear.studies.axle.orders import order_map
-from solidgear.studies.axle.respond import respond
+from solidgear.studies.train.comparison import described
+from solidgear.studies.train.models import Workshop
+from solidgear.studies.train.orders import order_map
+from solidgear.studies.train.respond import respond
 from tests.made_up_run import fixture_results
 
 # one start of the browser by default is that of `test_report_browser.py`

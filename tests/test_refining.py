@@ -12,12 +12,12 @@ import numpy as np
 import pytest
 
 import solidgear as sg
-from solidgear.fidelity.cell_shapes import Shapes
-from solidgear.fidelity.lobatto import gauss
-from solidgear.fidelity.refining import Meshed, refined
+from solidgear.bounds.refining import Meshed, refined
+from solidgear.judge.answer import answer
+from solidgear.kernel.cell_shapes import Shapes
+from solidgear.kernel.lobatto import gauss
 from solidgear.meshing.closed_form import mass_properties
 from solidgear.scene import Fillet
-from solidgear.studies.answering import answer
 from tests.test_bounds import shaft
 
 MM = 1e-3

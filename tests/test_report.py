@@ -15,8 +15,8 @@ from rich.console import Console
 
 import solidgear as sg
 from solidgear.errors import SolidgearError
-from solidgear.evidence.record import SCHEMA, Record
-from solidgear.evidence.recording import recorded
+from solidgear.judge.record import SCHEMA, Record
+from solidgear.judge.recording import recorded
 from solidgear.report import charts, input_tables, readout
 from solidgear.report.html import render_page, write_report
 from solidgear.report.terminal import (

@@ -10,7 +10,7 @@ import pytest
 
 import solidgear as sg
 from solidgear.errors import SolidgearError
-from solidgear.evidence.record import Record
+from solidgear.judge.record import Record
 from solidgear.report import front
 from solidgear.report.html import APPENDIX, CUSTOMER, render_page
 from solidgear.report.terminal import final_table, matrix_table

@@ -1,7 +1,7 @@
 """Tables of a report say which bearings a shaft stands on, at what load, and own up to what is left out."""
 
 import solidgear as sg
-from solidgear.evidence.record import Record
+from solidgear.judge.record import Record
 from solidgear.report import evidence_tables
 from solidgear.report.input_tables import bearings, scene_facts
 from solidgear.report.reading import left_open

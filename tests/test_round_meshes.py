@@ -7,8 +7,8 @@ import pytest
 
 import solidgear as sg
 from solidgear.cli.answer import _of_round_part
-from solidgear.fidelity.ladder import LADDER
-from solidgear.fidelity.size import estimated_unknowns
+from solidgear.ladder.registry import LADDER
+from solidgear.ladder.size import estimated_unknowns
 from solidgear.meshing.round_part import round_part
 from solidgear.studies.guards import Probe, elements
 from solidgear.studies.round_part import described

@@ -9,10 +9,10 @@ import numpy as np
 import pytest
 
 import solidgear as sg
-from solidgear.fidelity.seat_faces import Seats
-from solidgear.fidelity.solid_mesh import _isoparametric
 from solidgear.meshing.mesh_file import _hexes
 from solidgear.meshing.tetrahedra import tetrahedra
+from solidgear.models.solid.mesh import _isoparametric
+from solidgear.models.solid.seat_faces import Seats
 
 RADIUS, WIDTH = 0.03, 0.06
 ROD = sg.Segment.cylinder("rod", length=0.12, diameter=2 * RADIUS)

@@ -10,12 +10,12 @@ import numpy as np
 import pytest
 
 import solidgear as sg
-from solidgear.fidelity.cyclic import Sector, basis, doubled
-from solidgear.fidelity.sector import meshed_sector, sector, whole
-from solidgear.fidelity.size import estimated_unknowns
+from solidgear.ladder.size import estimated_unknowns
 from solidgear.meshing.closed_form import volume_of
 from solidgear.meshing.sector import volume_of_sector
 from solidgear.meshing.teeth import section_area, section_polar
+from solidgear.models.sector.body import meshed_sector, sector, whole
+from solidgear.models.sector.cyclic import Sector, basis, doubled
 from solidgear.scene import BoltCircle, Keyway, Spline, Teeth
 from solidgear.scene.cyclic_rules import no_common_sector
 
@@ -115,8 +115,8 @@ def test_volume_mass_and_inertia(name):
     # edges of a seventh of a turn lose (pi/7)^4/30 of an arc
     assert made.quality.volume == pytest.approx(exact, rel=2e-3)
     if name != "bolts":
-        from solidgear.fidelity.half_sector import half_sector_solid
-        from solidgear.fidelity.sector_solid import sector_solid
+        from solidgear.models.sector.half import half_sector_solid
+        from solidgear.models.sector.mesh import sector_solid
 
         mesh = (half_sector_solid if made.half else sector_solid)(made)
         pieces = mesh.over_cells(np.flatnonzero(made.segment == 0))
@@ -243,7 +243,7 @@ def test_smeared_teeth_change_no_model_of_revolution():
         assert np.array_equal(a.compliance, b.compliance, equal_nan=True)
     assert sg.build(scene, "solid", layers=1, radial_layers=1).mesh["element"] == "hex20"
     assert sg.build(scene, "sector", refinement=COARSE).mesh["features"] == ["teeth"]
-    from solidgear.fidelity.ladder import LADDER
+    from solidgear.ladder.registry import LADDER
 
     assert "sector" not in LADDER.fit(scene) and "sector" in LADDER.fit(shaft(TEETH))
     assert "solid" not in LADDER.fit(shaft(TEETH))  # copies of the sector are no second opinion
@@ -393,7 +393,7 @@ def test_smeared_teeth_stay_smeared_beside_bolts():
     """The segment of revolution stands for them in every model that the scene fits, so that their
     count asks for no common sector.
     """
-    from solidgear.fidelity.ladder import LADDER
+    from solidgear.ladder.registry import LADDER
 
     smeared = TEETH.with_changes(model="pitch_cone", count=14)
     scene, bare = shaft(smeared, BOLTS), shaft(BOLTS)
@@ -404,7 +404,7 @@ def test_smeared_teeth_stay_smeared_beside_bolts():
 
 def test_a_model_that_says_it_fits_can_be_built():
     """Fillets, counts and phases that leave no sector are told before anything is meshed."""
-    from solidgear.fidelity.ladder import LADDER
+    from solidgear.ladder.registry import LADDER
     from solidgear.scene import Fillet
 
     fillet = Fillet(name="root", y=0.06, radius=0.002)
@@ -432,7 +432,7 @@ def test_a_model_that_says_it_fits_can_be_built():
 
 @pytest.mark.long
 def test_check_does_not_say_of_a_model_that_refuses_that_it_holds():
-    from solidgear.fidelity.ladder import LADDER
+    from solidgear.ladder.registry import LADDER
     from solidgear.scene import Fillet
     from solidgear.studies.check import check_scene
 

@@ -13,15 +13,15 @@ import pytest
 
 import solidgear as sg
 from solidgear.body import as_supports
-from solidgear.evidence import bounded
-from solidgear.evidence.answer import Numbers, solve
-from solidgear.evidence.bounded import Statics, mode_bars
-from solidgear.evidence.quantities import at_points, between, change, measure
-from solidgear.fidelity.ladder import LADDER
+from solidgear.judge import bounded
+from solidgear.judge.answer import answer
+from solidgear.judge.bounded import Statics, mode_bars
+from solidgear.judge.quantities import at_points, between, change, measure
+from solidgear.judge.settle import Whole, settle
+from solidgear.judge.solving import Numbers, solve
+from solidgear.ladder.registry import LADDER
 from solidgear.scene import Bearing
 from solidgear.solve.statics import condense
-from solidgear.studies.answering import answer
-from solidgear.studies.settle import Whole, settle
 from solidgear.studies.sweep.choice import settled_for_sweep
 
 ROOT = Path(__file__).parent.parent

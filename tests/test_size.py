@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 import solidgear as sg
-from solidgear.fidelity import size as sizes
-from solidgear.fidelity.size import estimated_size, estimated_unknowns
+from solidgear.ladder import size as sizes
+from solidgear.ladder.size import estimated_size, estimated_unknowns
 from solidgear.meshing.element_size import estimated_counts
 
 GEOMETRY = Path(__file__).parents[1] / "geometry"
@@ -117,7 +117,7 @@ def test_refused_before_meshing(monkeypatch, model, options, lower):
         pytest.fail("meshed before the estimate")
 
     monkeypatch.setenv("SOLIDGEAR_MEMORY_MB", "250")
-    monkeypatch.setattr("solidgear.fidelity.harmonic.meridian", meshed)
+    monkeypatch.setattr("solidgear.models.harmonic.body.meridian", meshed)
     monkeypatch.setattr("solidgear.meshing.hexahedra.hexahedra", meshed)
     monkeypatch.setattr("solidgear.meshing.tetrahedra.tetrahedra", meshed)
     size = estimated_size(SCENES["pinion_overhung"], model, options)
@@ -164,13 +164,13 @@ import json, resource, sys
 from solidgear.machine.threads import pin
 pin()
 import solidgear as sg
-from solidgear.fidelity.size import estimated_size
+from solidgear.ladder.size import estimated_size
 from solidgear.solve.factor import pardiso_missing
 path, model, options = sys.argv[1], sys.argv[2], json.loads(sys.argv[3])
 scene = sg.load(path)
 pardiso_missing()
 sg.condense(sg.build(scene, "timoshenko"), scene, scene.port.name)
-import solidgear.fidelity.harmonic, solidgear.fidelity.solid
+import solidgear.models.harmonic.body, solidgear.models.solid.body
 held = int(open("/proc/self/statm").read().split()[1]) * resource.getpagesize() / 2**20
 body = sg.build(scene, model, **options)
 sg.condense(body, scene, scene.port.name)

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import solidgear as sg
-from solidgear.fidelity.shoulder import hinges
+from solidgear.models.beam.shoulder import hinges
 
 FOLDER = Path(__file__).resolve().parent.parent / "validation" / "stability"
 

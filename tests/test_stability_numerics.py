@@ -56,8 +56,8 @@ def test_closed_form_of_the_overhang():
     """The reference itself, from a solution by other means: two springs and an overhang by the
     exact initial-parameter method at a very low frequency.
     """
-    from solidgear.fidelity.krylov import from_scene, krylov
     from validation.stability import bearing_extremes as case
+    from validation.thesis.krylov import from_scene, krylov
 
     heavy = (
         1e9  # kg at the free end: the first frequency is that of one mass on the static stiffness

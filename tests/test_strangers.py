@@ -11,16 +11,16 @@ import numpy as np
 import pytest
 
 import solidgear as sg
-from solidgear.evidence.completeness import completeness
-from solidgear.evidence.ties import SCENE
-from solidgear.fidelity.ladder import LADDER
-from solidgear.fidelity.levels import HEXAHEDRA
-from solidgear.fidelity.size import estimated_size
+from solidgear.judge.completeness import completeness
+from solidgear.judge.study import study
+from solidgear.judge.ties import SCENE
+from solidgear.ladder.meshes import HEXAHEDRA
+from solidgear.ladder.registry import LADDER
+from solidgear.ladder.size import estimated_size
 from solidgear.scene import Bearing, Port, Scene, Segment
 from solidgear.studies.check import check_scene
 from solidgear.studies.comparison import compare
 from solidgear.studies.guards.probe import Probe
-from solidgear.studies.study import study
 
 SCENES = Path(__file__).parent / "scenes"
 COARSE = {"order": 3, "layers": 1, "edge_layers": 0, "relative_size": 4.0}

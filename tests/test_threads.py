@@ -51,7 +51,7 @@ import solidgear as sg
 from solidgear.machine import threads
 scene = sg.load("geometry/pinion_overhung.toml")
 seen = []
-import solidgear.fidelity.beam as beam
+import solidgear.models.beam.body as beam
 real = beam.beam
 import functools
 beam.beam = functools.wraps(real)(lambda *a, **k: (seen.append(numbers()), real(*a, **k))[1])

@@ -7,9 +7,9 @@ from typer.testing import CliRunner
 
 import solidgear as sg
 from solidgear.cli import app
-from solidgear.studies.axle import check as checked
-from solidgear.studies.axle.check import check_train
-from solidgear.studies.axle.models import Workshop
+from solidgear.studies.train import check as checked
+from solidgear.studies.train.check import check_train
+from solidgear.studies.train.models import Workshop
 
 AXLE = "geometry/axle_overhung.toml"
 TRAIN = sg.load_train(AXLE)

@@ -11,7 +11,7 @@ import pytest
 from typer.testing import CliRunner
 
 from solidgear.cli import app
-from solidgear.studies.axle import models
+from solidgear.studies.train import models
 
 ROOT = Path(__file__).parent.parent
 TRAIN, SHAFT = "geometry/axle_overhung.toml", "geometry/pinion_overhung.toml"

@@ -9,11 +9,11 @@ from typer.testing import CliRunner
 import solidgear as sg
 from solidgear.cli import app
 from solidgear.scene.train import SIDES
-from solidgear.studies.axle import judge as judging
-from solidgear.studies.axle.judge import JUDGE, judge_train
-from solidgear.studies.axle.meshes import mesh_bars
-from solidgear.studies.axle.models import Workshop
-from solidgear.studies.axle.respond import Drive
+from solidgear.studies.train import judge as judging
+from solidgear.studies.train.judge import JUDGE, judge_train
+from solidgear.studies.train.meshes import mesh_bars
+from solidgear.studies.train.models import Workshop
+from solidgear.studies.train.respond import Drive
 
 TRAIN = sg.load_train("geometry/axle_overhung.toml")
 COARSE = {"harmonic": {"order": 2, "layers": 1}}
@@ -85,7 +85,7 @@ def test_the_judge_tells_how_sure_its_own_meshes_are(verdict):
 
 @pytest.mark.slow
 def test_the_command_writes_the_verdict(tmp_path, monkeypatch):
-    from solidgear.studies.axle import models
+    from solidgear.studies.train import models
 
     monkeypatch.setattr(models, "MESH", COARSE)
     args = ["judge-system", "geometry/axle_overhung.toml", "--kept", "12", "--max-frequency", "900"]

@@ -12,10 +12,10 @@ import solidgear as sg
 from solidgear.cli import app
 from solidgear.frames import move_stiffness, shift
 from solidgear.solve.statics import condense
-from solidgear.studies.axle.models import Workshop
-from solidgear.studies.axle.modes import train_modes
-from solidgear.studies.axle.naming import TRAIN, mode_names
-from solidgear.system.lumped_pair import LumpedPair
+from solidgear.studies.train.models import Workshop
+from solidgear.studies.train.modes import train_modes
+from solidgear.studies.train.naming import TRAIN, mode_names
+from validation.thesis.lumped_pair import LumpedPair
 
 OVERHUNG = Path(__file__).parent.parent / "geometry" / "axle_overhung.toml"
 TRAIN_DATA = sg.load_train(OVERHUNG)

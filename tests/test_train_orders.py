@@ -10,10 +10,10 @@ from typer.testing import CliRunner
 import solidgear as sg
 from solidgear.cli import app
 from solidgear.report.order_chart import spread
-from solidgear.studies.axle.models import Workshop
-from solidgear.studies.axle.modes import train_modes
-from solidgear.studies.axle.orders import order_map
-from solidgear.studies.axle.respond import Drive
+from solidgear.studies.train.models import Workshop
+from solidgear.studies.train.modes import train_modes
+from solidgear.studies.train.orders import order_map
+from solidgear.studies.train.respond import Drive
 
 TRAIN = sg.load_train(OVERHUNG)
 MIX = ("timoshenko", "timoshenko")

@@ -9,9 +9,9 @@ import solidgear as sg
 from solidgear.cli import app
 from solidgear.report.folder import clear
 from solidgear.report.turning import sections
-from solidgear.studies.axle.models import Workshop
-from solidgear.studies.axle.naming import mode_names
-from solidgear.studies.axle.pictures import draw_modes, system_surface, turned_beside, turned_modes
+from solidgear.studies.train.models import Workshop
+from solidgear.studies.train.naming import mode_names
+from solidgear.studies.train.pictures import draw_modes, system_surface, turned_beside, turned_modes
 
 TRAIN = sg.load_train(OVERHUNG)
 FINE = {**COARSE, "harmonic": {"order": 2, "layers": 1}}

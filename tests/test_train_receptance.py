@@ -11,10 +11,10 @@ from typer.testing import CliRunner
 import solidgear as sg
 from solidgear.cli import app
 from solidgear.frames import DOF_NAMES
-from solidgear.studies.axle.models import Workshop
-from solidgear.studies.axle.naming import mode_names
-from solidgear.studies.axle.receptance import receptance
-from solidgear.studies.axle.respond import NO_MODE, Drive
+from solidgear.studies.train.models import Workshop
+from solidgear.studies.train.naming import mode_names
+from solidgear.studies.train.receptance import receptance
+from solidgear.studies.train.respond import NO_MODE, Drive
 from solidgear.system.steady import peaks
 
 TRAIN = sg.load_train(OVERHUNG)

@@ -10,8 +10,8 @@ from typer.testing import CliRunner
 import solidgear as sg
 from solidgear.cli import app
 from solidgear.scene.train_tables import ErrorTable
-from solidgear.studies.axle.models import Workshop
-from solidgear.studies.axle.respond import Drive, respond
+from solidgear.studies.train.models import Workshop
+from solidgear.studies.train.respond import Drive, respond
 from solidgear.system.steady import SteadyState, peaks
 
 TRAIN = sg.load_train(OVERHUNG)

@@ -8,9 +8,9 @@ import pytest
 import solidgear as sg
 from solidgear.frames import cross_matrix
 from solidgear.scene.train_file import load_train
-from solidgear.studies.axle.contact import contact
-from solidgear.studies.axle.models import Workshop
-from solidgear.studies.axle.modes import wrench_lines
+from solidgear.studies.train.contact import contact
+from solidgear.studies.train.models import Workshop
+from solidgear.studies.train.modes import wrench_lines
 from solidgear.system.contact_cells import contact_wrench
 from solidgear.system.gear_mesh import to_gear_frame
 

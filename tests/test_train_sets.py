@@ -5,8 +5,8 @@ import pytest
 from test_train_models import COARSE, OVERHUNG
 
 import solidgear as sg
-from solidgear.studies.axle.models import Workshop
-from solidgear.studies.axle.respond import Drive
+from solidgear.studies.train.models import Workshop
+from solidgear.studies.train.respond import Drive
 from solidgear.system.common_loss import common_loss
 from solidgear.system.steady import SteadyState
 

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import solidgear as sg
-from solidgear.evidence.quantities import measure, size
+from solidgear.judge.quantities import measure, size
 from solidgear.scene import STEEL, Bearing, Port, Scene, Segment
 from validation.bounds.triangle_mesh import sharpened, triangle_mesh
 from validation.bounds.triangle_solid import FAMILIES, Solid

@@ -7,12 +7,12 @@ import numpy as np
 import pytest
 
 import solidgear as sg
-from solidgear.evidence.answer import Answer
-from solidgear.evidence.bands import Band
-from solidgear.evidence.quantities import JUDGED
-from solidgear.evidence.solution import Solution
-from solidgear.evidence.ties import SCENE, SECTION
-from solidgear.evidence.verdict import (
+from solidgear.judge.bars import Band
+from solidgear.judge.quantities import JUDGED
+from solidgear.judge.solution import Solution
+from solidgear.judge.solving import Answer
+from solidgear.judge.ties import SCENE, SECTION
+from solidgear.judge.verdict import (
     BEYOND,
     OPEN,
     WITHIN,

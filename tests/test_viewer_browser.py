@@ -13,8 +13,8 @@ from test_train_models import COARSE, OVERHUNG
 
 import solidgear as sg
 from solidgear.report.viewer import Turning, turn, viewer_page
-from solidgear.studies.axle.models import Workshop
-from solidgear.studies.axle.pictures import turned_modes
+from solidgear.studies.train.models import Workshop
+from solidgear.studies.train.pictures import turned_modes
 
 ROOT = Path(__file__).parents[1]
 BROWSER = next(

@@ -8,15 +8,15 @@ import pytest
 from typer.testing import CliRunner
 
 import solidgear as sg
+from solidgear.bounds.refining import Meshed
 from solidgear.cli.app import app
 from solidgear.errors import SolidgearError
-from solidgear.evidence.places import singular_places
-from solidgear.evidence.quantities import usual
-from solidgear.evidence.ties import SCENE
-from solidgear.evidence.where import ELSEWHERE, Row, recorded_places, where
-from solidgear.fidelity.refining import Meshed
+from solidgear.judge.quantities import usual
+from solidgear.judge.singular_places import singular_places
+from solidgear.judge.study import study
+from solidgear.judge.ties import SCENE
+from solidgear.judge.where import ELSEWHERE, Row, recorded_places, where
 from solidgear.report.where_chart import draw_where
-from solidgear.studies.study import study
 
 ROOT = Path(__file__).parent.parent
 RADIAL = {"kxx": "5e8 N/m", "kzz": "5e8 N/m"}

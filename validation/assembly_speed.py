@@ -24,7 +24,8 @@ from skfem.quadrature import get_quadrature
 from skfem.refdom import RefQuad
 
 import solidgear as sg
-from solidgear.fidelity import harmonic_blocks, solid_matrices
+from solidgear.models.harmonic import blocks as harmonic_blocks
+from solidgear.models.solid import matrices as solid_matrices
 from validation.common import ROOT, results_folder, show, write_rows
 
 SCENE = ROOT / "geometry" / "pinion_overhung.toml"

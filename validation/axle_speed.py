@@ -10,8 +10,8 @@ from time import perf_counter, process_time
 import numpy as np
 
 import solidgear as sg
-from solidgear.studies.axle.models import JUDGE, Workshop
-from solidgear.studies.axle.respond import Drive
+from solidgear.studies.train.models import JUDGE, Workshop
+from solidgear.studies.train.respond import Drive
 from validation.common import ROOT, results_folder, show, write_rows
 
 AXLE = ROOT / "geometry" / "axle_overhung.toml"

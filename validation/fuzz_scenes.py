@@ -32,7 +32,7 @@ from pathlib import Path
 import numpy as np
 
 from solidgear.errors import TOLD, SceneError, SolidgearError
-from solidgear.fidelity import build
+from solidgear.ladder import build
 from solidgear.solve.modes import modes
 from solidgear.solve.statics import condense
 from solidgear.studies.check import check_scene

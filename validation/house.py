@@ -160,7 +160,9 @@ def measured(tree: Path) -> dict[str, object]:
     importers = Counter(there for here, theirs in ever.items() for there in theirs - {here})
     return {
         "package": {name: dict(rooms[name]) for name in sorted(rooms)},
-        "other": {kind: _others(tree, kind) for kind in ("tests", "validation", "examples", "docs")},
+        "other": {
+            kind: _others(tree, kind) for kind in ("tests", "validation", "examples", "docs")
+        },
         "pages": sum(len(p.read_text().splitlines()) for p in _pages(package)),
         "circles": circles(now),
         "circles with imports inside functions": circles(ever),

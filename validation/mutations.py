@@ -67,7 +67,7 @@ MUTATIONS = (
     ),
     Mutation(
         "bounds: the richer space has one order more only",
-        "solidgear/fidelity/meridian_pieces.py",
+        "solidgear/bounds/richer_space.py",
         "RicherSpace.__init__",
         "self.order + EXTRA",
         "self.order + 1",
@@ -75,7 +75,7 @@ MUTATIONS = (
     ),
     Mutation(
         "bounds: no cuts towards corners in the richer space",
-        "solidgear/fidelity/meridian_pieces.py",
+        "solidgear/bounds/richer_space.py",
         "RicherSpace.__init__",
         "min(1, LAYERS) if kind == 'load' else LAYERS",
         "0",
@@ -83,7 +83,7 @@ MUTATIONS = (
     ),
     Mutation(
         "bounds: hats of a rigid seat are not one",
-        "solidgear/fidelity/meridian_pieces.py",
+        "solidgear/bounds/richer_space.py",
         "RicherSpace._seats",
         "joined += [np.array([ends[0], v]) for v in ends[1:]]",
         "pass",
@@ -91,7 +91,7 @@ MUTATIONS = (
     ),
     Mutation(
         "bounds: bearings do not push a mode",
-        "solidgear/fidelity/harmonic_bounds.py",
+        "solidgear/bounds/harmonic.py",
         "_vibrating",
         "_on_ports(block, left)",
         "0.0 * _on_ports(block, left)",
@@ -99,7 +99,7 @@ MUTATIONS = (
     ),
     Mutation(
         "bounds: rigid motions of a patch are left in",
-        "solidgear/fidelity/patches.py",
+        "solidgear/kernel/local_problems.py",
         "_solved",
         "_orthonormal(rigid[ids] / root[:, None])",
         "_orthonormal(0.0 * rigid[ids])",
@@ -107,7 +107,7 @@ MUTATIONS = (
     ),
     Mutation(
         "bounds: of the hats of a cell the last one counts alone",
-        "solidgear/fidelity/patches.py",
+        "solidgear/kernel/local_problems.py",
         "energies",
         "found[k] += x",
         "found[k] = x",
@@ -115,7 +115,7 @@ MUTATIONS = (
     ),
     Mutation(
         "bounds: a near mode does not matter",
-        "solidgear/fidelity/harmonic_bounds.py",
+        "solidgear/bounds/harmonic.py",
         "lower_ends",
         "value - energy / gap",
         "value - energy",
@@ -123,7 +123,7 @@ MUTATIONS = (
     ),
     Mutation(
         "bounds: near modes keep their places",
-        "solidgear/fidelity/harmonic_bounds.py",
+        "solidgear/bounds/harmonic.py",
         "lower_ends",
         "np.sort(value - energy / gap)",
         "value - energy / gap",
@@ -131,7 +131,7 @@ MUTATIONS = (
     ),
     Mutation(
         "bounds: functions of the top order inside a cell are forgotten",
-        "solidgear/fidelity/meridian_patches.py",
+        "solidgear/bounds/patches.py",
         "_Loaded._eliminate",
         "_without(*held, held[0].shape[1] - outside * c)",
         "held",
@@ -139,7 +139,7 @@ MUTATIONS = (
     ),
     Mutation(
         "trains: the meshes of one shaft alone count",
-        "solidgear/studies/axle/meshes.py",
+        "solidgear/studies/train/meshes.py",
         "mesh_bars",
         "two + own[0]",
         "own[0]",
@@ -147,7 +147,7 @@ MUTATIONS = (
     ),
     Mutation(
         "bounds: what further orders would see is forgotten",
-        "solidgear/fidelity/harmonic_bounds.py",
+        "solidgear/bounds/harmonic.py",
         "with_tail",
         "two + (two - one) * ratio / (1 - ratio)",
         "two",
@@ -155,7 +155,7 @@ MUTATIONS = (
     ),
     Mutation(
         "a coupling of a body has the bar of the middle of what is open",
-        "solidgear/evidence/bounded.py",
+        "solidgear/judge/bounded.py",
         "_between",
         "half + abs(middle - stiff[name])",
         "half",
@@ -163,7 +163,7 @@ MUTATIONS = (
     ),
     Mutation(
         "phase of the cut faces turned the other way",
-        "solidgear/fidelity/cyclic.py",
+        "solidgear/models/sector/cyclic.py",
         "basis",
         "1j * h * sector.angle",
         "-1j * h * sector.angle",
@@ -171,7 +171,7 @@ MUTATIONS = (
     ),
     Mutation(
         "the axis of a sector moves against the turn",
-        "solidgear/fidelity/cyclic.py",
+        "solidgear/models/sector/cyclic.py",
         "_across",
         "one if np.allclose(turn @ one, np.exp(-1j * angle) * one) else one.conj()",
         "one.conj() if np.allclose(turn @ one, np.exp(-1j * angle) * one) else one",
@@ -179,7 +179,7 @@ MUTATIONS = (
     ),
     Mutation(
         "energy of waves counted once a sector",
-        "solidgear/fidelity/cyclic.py",
+        "solidgear/models/sector/cyclic.py",
         "_block",
         "count / 2",
         "count / 1",
@@ -187,7 +187,7 @@ MUTATIONS = (
     ),
     Mutation(
         "ports of waves turned the other way",
-        "solidgear/fidelity/cyclic.py",
+        "solidgear/models/sector/cyclic.py",
         "_block",
         "p * turn",
         "p * turn.T",
@@ -195,7 +195,7 @@ MUTATIONS = (
     ),
     Mutation(
         "the cut face of half a sector moves against its phase",
-        "solidgear/fidelity/half_sector.py",
+        "solidgear/models/sector/half.py",
         "basis",
         "-sin * around",
         "sin * around",
@@ -203,7 +203,7 @@ MUTATIONS = (
     ),
     Mutation(
         "the other part of a tilt with the wrong sign",
-        "solidgear/fidelity/half_sector.py",
+        "solidgear/models/sector/half.py",
         "_in_parts",
         "(1.0, -1.0)",
         "(1.0, 1.0)",
@@ -211,7 +211,7 @@ MUTATIONS = (
     ),
     Mutation(
         "energy of half a sector counted once",
-        "solidgear/fidelity/half_sector.py",
+        "solidgear/models/sector/half.py",
         "_block",
         "2 * mesh.sector.count",
         "mesh.sector.count",
@@ -235,7 +235,7 @@ MUTATIONS = (
     ),
     Mutation(
         "Young's modulus 1 % high in the beam",
-        "solidgear/fidelity/beam_element.py",
+        "solidgear/models/beam/element.py",
         "Section.__init__",
         "self.bend = mat.E * second",
         "self.bend = 1.01 * mat.E * second",
@@ -243,7 +243,7 @@ MUTATIONS = (
     ),
     Mutation(
         "Young's modulus 1 % high in the harmonic solid",
-        "solidgear/fidelity/harmonic_blocks.py",
+        "solidgear/models/harmonic/blocks.py",
         "_Work.bending_block",
         "stiffness.add(part, (lame * trace + mu * (2 * normal + shear)) @ gram)",
         "stiffness.add(part, 1.01 * (lame * trace + mu * (2 * normal + shear)) @ gram)",
@@ -251,7 +251,7 @@ MUTATIONS = (
     ),
     Mutation(
         "shoulder as soft in stretch as in bending",
-        "solidgear/fidelity/shoulder.py",
+        "solidgear/models/beam/shoulder.py",
         "hinges",
         "float(straight * stretch / (material.E * area))",
         "float(straight * bend / (material.E * area))",
@@ -259,7 +259,7 @@ MUTATIONS = (
     ),
     Mutation(
         "shear coefficient of a rectangle, 5/6",
-        "solidgear/fidelity/beam_element.py",
+        "solidgear/models/beam/element.py",
         "Section.__init__",
         "self.shear = factor * g * area",
         "self.shear = 5 / 6 * g * area",
@@ -267,7 +267,7 @@ MUTATIONS = (
     ),
     Mutation(
         "shear stiffness with E for G",
-        "solidgear/fidelity/beam_element.py",
+        "solidgear/models/beam/element.py",
         "Section.__init__",
         "g = mat.E / (2 * (1 + mat.nu))",
         "g = mat.E / 2",
@@ -275,7 +275,7 @@ MUTATIONS = (
     ),
     Mutation(
         "rotary inertia missing",
-        "solidgear/fidelity/beam_element.py",
+        "solidgear/models/beam/element.py",
         "bending_matrices",
         "c.rotary if rotary else np.zeros_like(s)",
         "np.zeros_like(s)",
@@ -283,7 +283,7 @@ MUTATIONS = (
     ),
     Mutation(
         "lumped for consistent mass in the rod",
-        "solidgear/fidelity/beam_element.py",
+        "solidgear/models/beam/element.py",
         "rod_matrices",
         "m = shape.T @ ((c.w * inertia)[:, None] * shape)",
         "m = np.diag((shape.T @ (c.w * inertia)))",
@@ -291,7 +291,7 @@ MUTATIONS = (
     ),
     Mutation(
         "taper ignored: cone as the cylinder at its start",
-        "solidgear/fidelity/beam_element.py",
+        "solidgear/models/beam/element.py",
         "Section.__init__",
         "a = segment.outer0 + t * (segment.outer1 - segment.outer0)",
         "a = segment.outer0 + 0 * t",
@@ -299,7 +299,7 @@ MUTATIONS = (
     ),
     Mutation(
         "sign of the tilt in the x plane",
-        "solidgear/fidelity/beam.py",
+        "solidgear/models/beam/body.py",
         "beam",
         'bending.mirrored("bending_x", (0, 5), 0, (1.0, -1.0))',
         'bending.mirrored("bending_x", (0, 5), 0, (1.0, 1.0))',
@@ -315,7 +315,7 @@ MUTATIONS = (
     ),
     Mutation(
         "axis condition of bending dropped",
-        "solidgear/fidelity/harmonic_blocks.py",
+        "solidgear/models/harmonic/blocks.py",
         "_Work.kept",
         "keep[self.on_axis, 1:] = False",
         "keep[self.on_axis, 2:] = False",
@@ -323,7 +323,7 @@ MUTATIONS = (
     ),
     Mutation(
         "one sign in the strain of the first harmonic",
-        "solidgear/fidelity/harmonic_blocks.py",
+        "solidgear/models/harmonic/blocks.py",
         "_energy",
         "ty[2, 0], ty[2, 1], ty[0, 2] = -1.0, 1.0, -n",
         "ty[2, 0], ty[2, 1], ty[0, 2] = -1.0, 1.0, n",
@@ -331,7 +331,7 @@ MUTATIONS = (
     ),
     Mutation(
         "mass of p and q taken like that of w",
-        "solidgear/fidelity/harmonic_blocks.py",
+        "solidgear/models/harmonic/blocks.py",
         "_Work.bending_block",
         "np.array([2.0, 2.0, 1.0])",
         "np.array([1.0, 1.0, 1.0])",
@@ -339,7 +339,7 @@ MUTATIONS = (
     ),
     Mutation(
         "torsion with r squared for r cubed",
-        "solidgear/fidelity/harmonic_blocks.py",
+        "solidgear/models/harmonic/blocks.py",
         "_Work.torsion_block",
         "w = 2 * np.pi * dv * t.x[0] ** 3",
         "w = 2 * np.pi * dv * t.x[0] ** 2",
@@ -347,7 +347,7 @@ MUTATIONS = (
     ),
     Mutation(
         "Lame's lambda of plane stress",
-        "solidgear/fidelity/harmonic_blocks.py",
+        "solidgear/models/harmonic/blocks.py",
         "_Work.bending_block",
         "lame = 2 * mu * material.nu / (1 - 2 * material.nu)",
         "lame = 2 * mu * material.nu / (1 - material.nu)",
@@ -355,7 +355,7 @@ MUTATIONS = (
     ),
     Mutation(
         "seat mean without the weight of the radius",
-        "solidgear/fidelity/harmonic_blocks.py",
+        "solidgear/models/harmonic/blocks.py",
         "_Work._mean",
         "out[1, :, 2] = scatter(-np.pi * w * r * r)",
         "out[1, :, 2] = scatter(-np.pi * w * r)",
@@ -363,7 +363,7 @@ MUTATIONS = (
     ),
     Mutation(
         "sign of a rigid rotation of the solid",
-        "solidgear/fidelity/solid_block.py",
+        "solidgear/models/solid/block.py",
         "rigid_motions",
         "np.column_stack([zero, -z, y])",
         "np.column_stack([zero, z, y])",
@@ -427,7 +427,7 @@ MUTATIONS = (
     ),
     Mutation(
         "two points: a term between them related to itself",
-        "solidgear/evidence/quantities.py",
+        "solidgear/judge/quantities.py",
         "diagonals",
         "pair is None or (base not in COUPLINGS and pair[0] == pair[1])",
         "True",
@@ -435,7 +435,7 @@ MUTATIONS = (
     ),
     Mutation(
         "two points: stiffness as sure as the compliance it is inverted from",
-        "solidgear/evidence/answer.py",
+        "solidgear/judge/solving.py",
         "_left",
         "coupled.evidence['stiffness_error']",
         "coupled.evidence['residual']",
@@ -475,7 +475,7 @@ MUTATIONS = (
     ),
     Mutation(
         "shift not refined away in statics",
-        "solidgear/solve/relief.py",
+        "solidgear/solve/inertia_relief.py",
         "elastic_fields",
         "missing < tolerance or share > 0.5 * last",
         "True",
@@ -515,7 +515,7 @@ MUTATIONS = (
     ),
     Mutation(
         "Lame's lambda of plane stress in the 3D solid",
-        "solidgear/fidelity/solid_matrices.py",
+        "solidgear/models/solid/matrices.py",
         "_matrices",
         "lame = 2 * mu * nu / (1 - 2 * nu)",
         "lame = 2 * mu * nu / (1 - nu)",
@@ -539,7 +539,7 @@ MUTATIONS = (
     ),
     Mutation(
         "sign of a lumped mass in the exact beam",
-        "solidgear/fidelity/krylov_shaft.py",
+        "validation/thesis/krylov_shaft.py",
         "_Joint.act",
         "b[2:] - self.mass[:, None, None] * omega**2 * b[:2]",
         "b[2:] + self.mass[:, None, None] * omega**2 * b[:2]",
@@ -611,7 +611,7 @@ MUTATIONS = (
     ),
     Mutation(
         "transmission error added to the stretch of the teeth",
-        "solidgear/studies/axle/respond.py",
+        "solidgear/studies/train/respond.py",
         "Drive._teeth",
         "factor * (dte - error)",
         "factor * (dte + error)",
@@ -619,7 +619,7 @@ MUTATIONS = (
     ),
     Mutation(
         "bearing reactions from the diagonal alone",
-        "solidgear/studies/axle/respond.py",
+        "solidgear/studies/train/respond.py",
         "Drive._reaction_rows",
         "force = -np.array(supports.stiffness) @ seats",
         "force = -np.diag(np.diag(supports.stiffness)) @ seats",
@@ -627,7 +627,7 @@ MUTATIONS = (
     ),
     Mutation(
         "receptance as a sum over modes",
-        "solidgear/studies/axle/receptance.py",
+        "solidgear/studies/train/receptance.py",
         "receptance",
         "drive.steady.solved(hz, drive.load, row[None])[:, 0]",
         "drive.motion(hz, row[None])[:, 0]",
@@ -643,7 +643,7 @@ MUTATIONS = (
     ),
     Mutation(
         "the gear drawn where the pinion is",
-        "solidgear/studies/axle/pictures.py",
+        "solidgear/studies/train/pictures.py",
         "system_surface",
         "drawn.points @ turn.T + origin",
         "drawn.points @ turn.T",
@@ -651,7 +651,7 @@ MUTATIONS = (
     ),
     Mutation(
         "orders of the gear at the speed of the pinion",
-        "solidgear/studies/axle/orders.py",
+        "solidgear/studies/train/orders.py",
         "order_map",
         '("gear", 1 / workshop.train.ratio)',
         '("gear", 1.0)',

@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from solidgear.machine.apart import apart
+from solidgear.machine.isolated import apart
 from solidgear.meshing.cuts import tool
 from solidgear.meshing.gmsh_session import Session, import_gmsh
 from solidgear.meshing.outline import Frustum

@@ -19,7 +19,7 @@ from dataclasses import dataclass
 import numpy as np
 
 import solidgear as sg
-from solidgear.fidelity.sector import sector
+from solidgear.models.sector.body import sector
 from solidgear.scene import Teeth
 from validation.common import ROOT
 

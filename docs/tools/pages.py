@@ -85,7 +85,7 @@ def options() -> str:
     """One table a model, the words of `solidgear options`."""
     # the words of the command itself, which has no other place for them
     from solidgear.cli.files import _default, _may_be
-    from solidgear.fidelity.ladder import LADDER
+    from solidgear.ladder.registry import LADDER
 
     lines = []
     for name in LADDER.bodies:

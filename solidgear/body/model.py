@@ -15,7 +15,7 @@ from typing import Any, ClassVar
 import numpy as np
 import scipy.sparse as sp
 
-from solidgear.body.kept import Kept
+from solidgear.body.cache import Kept
 from solidgear.body.mass import ScalarMass
 from solidgear.body.sections import Sections, from_points, signed
 from solidgear.body.surface import Drawing, Surface, mesh_unknowns
@@ -106,7 +106,7 @@ class Block:
         See :mod:`solidgear.body.sections`; None where all unknowns are values at points, ``y``.
     reflections : tuple of (partner, sign)
         In the mirror planes that the mesh has, x = 0, z = 0 and x = z. A factor may use them
-        (:mod:`solidgear.solve.folded`).
+        (:mod:`solidgear.solve.symmetry`).
     """
 
     name: str
@@ -212,7 +212,7 @@ class Body(Displayed):
         (:class:`solidgear.body.surface.Drawing`).
     further : object or None
         Builder of further circumferential families, such as
-        :class:`solidgear.fidelity.circumferential.Families`; None where the blocks are all that the
+        :class:`solidgear.models.harmonic.circumferential.Families`; None where the blocks are all that the
         fidelity knows.
     kept : Kept
         What solvers have worked out about this body, such as its factors.

@@ -26,10 +26,10 @@ from solidgear.errors import SolidgearError
 if TYPE_CHECKING:
     from rich.table import Table
 
-    from solidgear.evidence.where import Whereabouts
+    from solidgear.judge.answer import Answered, Step
+    from solidgear.judge.settle import Settled
+    from solidgear.judge.where import Whereabouts
     from solidgear.scene import Scene
-    from solidgear.studies.answering import Answered, Step
-    from solidgear.studies.settle import Settled
 
 
 @command
@@ -65,7 +65,7 @@ def answer(
 ) -> None:
     """Numbers within a tolerance, each with its bar, from the cheapest model that can show it."""
     from solidgear.cli.reading import load
-    from solidgear.studies.answering import answer as solve
+    from solidgear.judge.answer import answer as solve
 
     if picture is not None:
         from solidgear.report.where_chart import check_ending
@@ -110,10 +110,10 @@ def _values(found: Answered, units: str) -> Table:
     from rich import box
     from rich.table import Table
 
-    from solidgear.evidence.quantities import diagonals
+    from solidgear.judge.quantities import diagonals
+    from solidgear.judge.steps import ABOVE, BELOW
     from solidgear.report.units import in_ascii, units_named
     from solidgear.report.words import bar_of
-    from solidgear.studies.steps import ABOVE, BELOW
 
     chosen = units_named(units)
     table = Table(box=box.SIMPLE_HEAD, pad_edge=False)
@@ -188,8 +188,8 @@ def sentences(found: Answered | Settled) -> list[str]:
 
 def _of_round_part(scene: Scene, found: Answered) -> list[str]:
     """Whose numbers they are, where a mesh file is of a round part and a model of revolution answers."""
-    from solidgear.fidelity.ladder import LADDER
-    from solidgear.fidelity.rung import PARTS
+    from solidgear.ladder.registry import LADDER
+    from solidgear.models.kinds import PARTS
     from solidgear.report.words import percent
 
     body = scene.body
@@ -222,8 +222,8 @@ def _places(scene: Scene, found: Answered) -> Whereabouts:
     SolidgearError
         For the answer of another model than the harmonic solid, or where nothing was answered.
     """
-    from solidgear.evidence.where import where
-    from solidgear.fidelity.ladder import LADDER
+    from solidgear.judge.where import where
+    from solidgear.ladder.registry import LADDER
 
     if found.rung != "harmonic":
         raise SolidgearError(

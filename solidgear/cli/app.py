@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Annotated, ParamSpec, TypeVar
 import typer
 
 from solidgear.errors import SolidgearError, show
-from solidgear.fidelity.ladder import LADDER
+from solidgear.ladder.registry import LADDER
 from solidgear.report.units import ENGINEERING, SYSTEMS
 
 if TYPE_CHECKING:
@@ -193,7 +193,7 @@ def _value(text: str):
 
 def build_body(scene: Scene, fidelity: str, pairs: list[str] | None) -> Body:
     """Body of a scene at one fidelity, with ``--set`` options."""
-    from solidgear.fidelity import build
+    from solidgear.ladder import build
 
     # Checked here too: an option called scene or fidelity would be taken for an argument of
     # `build`.

@@ -13,8 +13,8 @@ from solidgear.cli.app import JsonFlag, Progress, SceneFile, command, console
 from solidgear.errors import SolidgearError
 
 if TYPE_CHECKING:
-    from solidgear.evidence.pareto import Race
-    from solidgear.evidence.record import Record
+    from solidgear.judge.race.pareto import Race
+    from solidgear.judge.record import Record
     from solidgear.scene import Scene
 
 
@@ -100,7 +100,7 @@ def run_chart(
 
     Returns
     -------
-    race : solidgear.evidence.pareto.Race
+    race : solidgear.judge.race.pareto.Race
         After Ctrl-C with what there was, ``complete`` False.
     reported : bool
         Whether there was such a report.
@@ -111,13 +111,13 @@ def run_chart(
         For a bad number, a folder that cannot be written, a scene with nothing to chart, or a
         comparison of it by another version of solidgear: before anything is timed.
     """
-    from solidgear.evidence.cases import plan, setup_seconds
-    from solidgear.evidence.racing import BUDGET, FULL_BUDGET, race
+    from solidgear.judge.race.automatic import automatic_rows, solved
+    from solidgear.judge.race.cases import plan, setup_seconds
+    from solidgear.judge.race.timing import BUDGET, FULL_BUDGET, race
     from solidgear.report.folder import clear_halves, held
     from solidgear.report.html import write_report
     from solidgear.report.race_figure import draw
     from solidgear.report.race_rows import PICTURE, write_rows
-    from solidgear.studies.automatic import automatic_rows, solved
 
     if runs < 1:
         raise SolidgearError(f"--runs {runs}: give a whole number of at least 1")

@@ -55,8 +55,8 @@ def check_train(train: Path, as_json: bool, given: dict[str, bool]) -> None:
     """
     from solidgear.cli.train import refuse_given, workshop
     from solidgear.scene.train import SIDES
-    from solidgear.studies.axle.check import check_train as run
-    from solidgear.studies.axle.models import KEPT
+    from solidgear.studies.train.check import check_train as run
+    from solidgear.studies.train.models import KEPT
 
     instead = "run check on the file of the shaft for other models and meshes"
     refuse_given(given, train, instead)

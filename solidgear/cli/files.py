@@ -10,10 +10,10 @@ import typer
 from solidgear.cli.app import command, console
 from solidgear.cli.starts import STARTS, start
 from solidgear.errors import SolidgearError, nearest, show
-from solidgear.fidelity.ladder import LADDER
+from solidgear.ladder.registry import LADDER
 
 if TYPE_CHECKING:
-    from solidgear.fidelity.options import Option
+    from solidgear.models.options import Option
 
 KINDS = "; ".join(f"{kind}: {what}" for kind, what in STARTS.items())
 
@@ -94,7 +94,7 @@ def options(
 
 
 def _may_be(option: Option) -> str:
-    from solidgear.fidelity.options import limits
+    from solidgear.models.options import limits
 
     match option.kind:
         case "flag":

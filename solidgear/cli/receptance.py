@@ -53,9 +53,9 @@ def receptance(
     """Receptance between any two ports of a train: table, chart, and peaks with their modes."""
     from solidgear.report.folder import held
     from solidgear.report.receptance_files import write_receptance
-    from solidgear.studies.axle.comparison import described
-    from solidgear.studies.axle.modes import unpublished_lines
-    from solidgear.studies.axle.receptance import receptance as run
+    from solidgear.studies.train.comparison import described
+    from solidgear.studies.train.modes import unpublished_lines
+    from solidgear.studies.train.receptance import receptance as run
 
     shop = workshop(train, reduction, kept, max_frequency, local_harmonics)
     ends = end_of("--from", from_), end_of("--to", to)

@@ -14,9 +14,9 @@ from solidgear.errors import SolidgearError, listed, show
 
 if TYPE_CHECKING:
     from solidgear.body import Body
+    from solidgear.judge.settle import Settled
     from solidgear.scene import Scene
     from solidgear.solve.modes import ModeSet
-    from solidgear.studies.settle import Settled
 
 
 def body_for(
@@ -40,7 +40,7 @@ def body_for(
         ``--tol``.
     ask : str
     points : sequence of str
-        As for :func:`solidgear.studies.settle.settle`.
+        As for :func:`solidgear.judge.settle.settle`.
     """
     if fidelity != AUTO:
         refuse_tolerance(fidelity, tol)
@@ -65,7 +65,7 @@ def settled_for(
     points: Sequence[str] = (),
 ) -> Settled:
     """What ``-f auto`` chooses; parameters as for :func:`body_for`."""
-    from solidgear.studies.settle import settle
+    from solidgear.judge.settle import settle
 
     refuse_settings(pairs)
     # A second or less for most scenes: lines are for those who watch.
@@ -113,7 +113,7 @@ def _largest(settled: Settled, where: str) -> list[str]:
 
     if settled.largest is None:
         return []
-    from solidgear.evidence.quantities import AT, in_words
+    from solidgear.judge.quantities import AT, in_words
 
     quantity, bar = settled.largest
     main = settled.point if any(AT in name for name in settled.bars) else ""
@@ -129,8 +129,8 @@ def bars_of_modes(
     likes.
     """
     from solidgear.body import as_supports
-    from solidgear.evidence.bounded import mode_bars
-    from solidgear.fidelity.ladder import LADDER
+    from solidgear.judge.bounded import mode_bars
+    from solidgear.ladder.registry import LADDER
 
     if settled is None:
         return {}
@@ -164,7 +164,7 @@ def beyond(bars: Mapping[str, float], settled: Settled | None) -> list[str]:
 
 def unjudged(names: Sequence[str], rung: str) -> list[str]:
     """What is to be said of them."""
-    from solidgear.fidelity.ladder import LADDER
+    from solidgear.ladder.registry import LADDER
 
     if not names:
         return []

@@ -40,7 +40,7 @@ from solidgear.cli.settled import (
     without_bar,
 )
 from solidgear.errors import SolidgearError, show
-from solidgear.fidelity.ladder import LADDER
+from solidgear.ladder.registry import LADDER
 
 
 @command
@@ -157,7 +157,7 @@ def modes(
 ) -> None:
     """Natural frequencies on the bearings, with the evidence for them."""
     from solidgear.cli.reading import load
-    from solidgear.evidence.completeness import cut_short
+    from solidgear.judge.completeness import cut_short
     from solidgear.scene.rules import MOST_MODES
     from solidgear.solve.modes import modes as solve
     from solidgear.studies.check import cautions
@@ -237,7 +237,7 @@ def modes(
             "cells are that stiff beside the shaft; a coarser mesh has less of it."
         )
     if count:
-        from solidgear.evidence.completeness import completeness
+        from solidgear.judge.completeness import completeness
 
         terminal.print(completeness(e, body.fidelity), markup=False)
     lines = told(settled)

@@ -26,9 +26,9 @@ from solidgear.cli.settled import body_for, ended, heading, told
 if TYPE_CHECKING:
     from rich.table import Table
 
+    from solidgear.judge.settle import Settled
     from solidgear.scene import Scene
     from solidgear.solve.condensed import Condensed, Coupled
-    from solidgear.studies.settle import Settled
 
 
 @command
@@ -172,7 +172,7 @@ def _bars(settled: Settled, found: Coupled) -> Table:
     from rich import box
     from rich.table import Table
 
-    from solidgear.evidence.quantities import AT, points_of
+    from solidgear.judge.quantities import AT, points_of
     from solidgear.report.words import band_percent
 
     largest: dict[tuple[str, ...], float] = {}

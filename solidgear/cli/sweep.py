@@ -90,8 +90,8 @@ def sweep(
     )
 
     from solidgear.cli.reading import load
-    from solidgear.fidelity import build
-    from solidgear.fidelity.ladder import LADDER
+    from solidgear.ladder import build
+    from solidgear.ladder.registry import LADDER
     from solidgear.studies.check import cautions
     from solidgear.studies.sweep import sweep as run
     from solidgear.studies.sweep.choice import settled_for_sweep

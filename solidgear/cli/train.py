@@ -10,7 +10,7 @@ import typer
 
 from solidgear.cli.app import FIDELITY, UNITS, JsonFlag, UnitsOption, command, console
 from solidgear.errors import SceneError, SolidgearError, show
-from solidgear.fidelity.ladder import LADDER
+from solidgear.ladder.registry import LADDER
 
 TrainFile = Annotated[
     Path, typer.Argument(help="Train file (TOML), such as geometry/axle_overhung.toml.")
@@ -62,8 +62,8 @@ def workshop(
 ):
     """Where the bodies of a train are built, once the options that all commands share are sound."""
     from solidgear.scene.toml_file import parse
-    from solidgear.studies.axle.models import Workshop
     from solidgear.studies.loading import load_train
+    from solidgear.studies.train.models import Workshop
 
     if not 1 <= kept <= MOST_KEPT:
         raise SolidgearError(f"--kept {show(kept)}: give 1 to {MOST_KEPT} modes")
@@ -141,7 +141,7 @@ def system_modes(
     as_json: JsonFlag = False,
 ) -> None:
     """Natural frequencies of a geared rotor system, each with its name and its proven bound."""
-    from solidgear.studies.axle.modes import train_modes
+    from solidgear.studies.train.modes import train_modes
 
     shop = workshop(train, reduction, kept, max_frequency, local_harmonics)
     if mode and pictures is None:
@@ -165,7 +165,7 @@ def system_modes(
 
 def _drawn(shop, pinion: str, gear: str, folder: Path, numbers: list[int] | None, found):
     """Pictures of modes, and what is to be said of them."""
-    from solidgear.studies.axle.pictures import draw_modes
+    from solidgear.studies.train.pictures import draw_modes
 
     listed = [n for n, mode in enumerate(found.modes, start=1) if mode.frequency_hz > 0]
     done = draw_modes(shop, pinion, gear, folder, numbers or listed).values()
@@ -180,8 +180,8 @@ def _turned(shop, found, path: Path, max_frequency: float | None, units: str) ->
     from solidgear.report.train_sheet import write_sheet
     from solidgear.report.units import units_named
     from solidgear.report.viewer import viewer_fragment
-    from solidgear.studies.axle.comparison import described
-    from solidgear.studies.axle.pictures import still_of, turned_modes
+    from solidgear.studies.train.comparison import described
+    from solidgear.studies.train.pictures import still_of, turned_modes
 
     models = turned_modes(shop, found.pinion, found.gear, max_frequency)
     names = [mode.name for mode in found.modes]
@@ -272,10 +272,10 @@ def response(
     """Steady response to the transmission error: mesh force, reactions, motions, and a chart."""
     from solidgear.report.folder import held
     from solidgear.report.train_files import write_response
-    from solidgear.studies.axle.comparison import described
-    from solidgear.studies.axle.modes import unpublished_lines
-    from solidgear.studies.axle.orders import order_map
-    from solidgear.studies.axle.respond import respond
+    from solidgear.studies.train.comparison import described
+    from solidgear.studies.train.modes import unpublished_lines
+    from solidgear.studies.train.orders import order_map
+    from solidgear.studies.train.respond import respond
 
     shop = workshop(train, reduction, kept, max_frequency, local_harmonics)
     mixes = [(pinion, gear), *map(mix, against or [])]

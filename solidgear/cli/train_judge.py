@@ -85,8 +85,8 @@ def _judged(
     from solidgear.report.folder import held
     from solidgear.report.train_page import write_train
     from solidgear.report.viewer import viewer_fragment
-    from solidgear.studies.axle.comparison import compare_train as run
-    from solidgear.studies.axle.modes import unpublished_lines
+    from solidgear.studies.train.comparison import compare_train as run
+    from solidgear.studies.train.modes import unpublished_lines
 
     shop = workshop(train, reduction, kept, max_frequency, local)
     with held(out) if out else nullcontext(), Progress(quiet=as_json) as progress:

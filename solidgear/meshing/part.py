@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from solidgear.errors import SceneError
-from solidgear.machine.apart import ApartError, apart
+from solidgear.machine.isolated import ApartError, apart
 from solidgear.meshing.closed_form import volume_of
 from solidgear.meshing.mesh_file import mesh_from
 from solidgear.meshing.placing import TURNS, Placing, Triple

@@ -1,6 +1,6 @@
 """A part from a STEP file: looked at, and meshed with curved tetrahedra.
 
-What is in here runs in a process of its own (:mod:`solidgear.machine.apart`): the kernel that reads
+What is in here runs in a process of its own (:mod:`solidgear.machine.isolated`): the kernel that reads
 the file ends the process at some that are broken. It reads lengths in metres, whatever the unit of
 the file, and turns and shifts without a change of the kind of a face; a change of scale would make
 every face a spline.

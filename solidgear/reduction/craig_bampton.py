@@ -41,8 +41,8 @@ from solidgear.reduction.superelement import (
     port_rows,
     reduced_motions,
 )
+from solidgear.solve.inertia_relief import elastic_fields
 from solidgear.solve.modes import modes
-from solidgear.solve.relief import elastic_fields
 from solidgear.solve.statics import factors
 
 #: Stiffness of the springs that hold ports fast in a first step, over that of the body there.

@@ -27,7 +27,7 @@ import scipy.linalg as sla
 import scipy.sparse as sp
 
 from solidgear.body import Block, Body, Port
-from solidgear.body.kept import Kept
+from solidgear.body.cache import Kept
 from solidgear.body.mass import ScalarMass
 from solidgear.machine.threads import pinned
 from solidgear.solve.families import FAMILIES

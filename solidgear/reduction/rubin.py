@@ -45,8 +45,8 @@ from solidgear.reduction.superelement import (
     reduced_motions,
 )
 from solidgear.solve.factor import Factor
+from solidgear.solve.inertia_relief import elastic_fields
 from solidgear.solve.modes import ModeSet, modes
-from solidgear.solve.relief import elastic_fields
 from solidgear.solve.statics import factors
 
 #: Relative error of the energy of a field; displacements are good to its root.

@@ -2,7 +2,7 @@ r"""Harmonics n >= 2 of a body of revolution as further coordinates of its super
 
 Ports are mean motions of rings and bearings hold ports, so that these harmonics neither see a
 bearing nor one another; what drives them is a force on a patch of the surface
-(:mod:`solidgear.fidelity.harmonic_patch`).  Each is reduced as blocks with ports are
+(:mod:`solidgear.models.harmonic.patch`).  Each is reduced as blocks with ports are
 (:mod:`solidgear.reduction.rubin`): free modes and residual fields of the mean motions of the patch,
 so that its statics is exact and the bound on frequencies of systems holds on.
 

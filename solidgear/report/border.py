@@ -8,7 +8,7 @@ from typing import Any
 from pydantic import ValidationError
 
 from solidgear.errors import SolidgearError
-from solidgear.evidence.record import SCHEMA, Record
+from solidgear.judge.record import SCHEMA, Record
 
 
 def as_record(found: Record | Mapping[str, Any], name: str = "the results") -> Record:

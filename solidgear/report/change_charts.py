@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from solidgear.evidence.record import CauseRecord, Record
+from solidgear.judge.record import CauseRecord, Record
 from solidgear.report.chart_style import as_svg, legend_columns, new_figure, paper_width
 from solidgear.report.reading import model_name, relative_change
 from solidgear.report.readout import readable

@@ -16,7 +16,7 @@ from solidgear.report.readout import with_readings
 if TYPE_CHECKING:
     from matplotlib.typing import RcKeyType
 
-    from solidgear.evidence.record import Record
+    from solidgear.judge.record import Record
 
 #: how the tolerance asked for is drawn
 TOLERANCE = "#aa2222"

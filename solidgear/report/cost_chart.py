@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from solidgear.evidence.pareto import CHARTED
-from solidgear.evidence.record import ModelRecord, Record
+from solidgear.judge.race.pareto import CHARTED
+from solidgear.judge.record import ModelRecord, Record
 from solidgear.report.cells import whole_number
 from solidgear.report.chart_style import as_svg, new_figure, percent_decades, tolerance_line
 from solidgear.report.reading import (

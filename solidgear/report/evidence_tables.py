@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import Any
 
-from solidgear.evidence.correlate import FOREIGN
-from solidgear.evidence.record import (
+from solidgear.judge.correlation import FOREIGN
+from solidgear.judge.record import (
     BandRecord,
     DeviationRecord,
     EvidenceRecord,
@@ -13,7 +13,7 @@ from solidgear.evidence.record import (
     PartnerRecord,
     Record,
 )
-from solidgear.evidence.ties import SCENE
+from solidgear.judge.ties import SCENE
 from solidgear.report.cells import DASH, capital, pct, short_percent, small, whole_number
 from solidgear.report.reading import is_resolved, model_name, reference_of, relative_change
 from solidgear.report.table import Table

@@ -9,9 +9,9 @@ import json
 from collections.abc import Iterable, Mapping
 from typing import Any
 
-from solidgear.evidence.quantities import AT
-from solidgear.evidence.record import ModelRecord, Record, VerdictRecord
-from solidgear.evidence.ties import SCENE
+from solidgear.judge.quantities import AT
+from solidgear.judge.record import ModelRecord, Record, VerdictRecord
+from solidgear.judge.ties import SCENE
 from solidgear.report.cells import DASH, short_percent
 from solidgear.report.reading import (
     BEAM,

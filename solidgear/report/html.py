@@ -16,7 +16,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from solidgear.evidence.record import Record, VerdictRecord
+from solidgear.judge.record import Record, VerdictRecord
 from solidgear.machine.whole_file import whole
 from solidgear.report import (
     charts,

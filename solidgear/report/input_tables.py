@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from solidgear.evidence.record import Record
+from solidgear.judge.record import Record
 from solidgear.report.bearing_words import catalogue, load_row, without_column
 from solidgear.report.cells import DASH, short_percent
 from solidgear.report.reading import model_name

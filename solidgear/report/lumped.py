@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from solidgear.evidence.record import LumpedRecord, LumpedVariant, Record
+from solidgear.judge.record import LumpedRecord, LumpedVariant, Record
 from solidgear.report.cells import DASH
 from solidgear.report.reading import entry, model_name
 from solidgear.report.table import Table

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from solidgear.evidence.record import MacTable, ModelRecord, ModeRecord, Record
+from solidgear.judge.record import MacTable, ModelRecord, ModeRecord, Record
 from solidgear.report.chart_style import as_svg, legend_columns, new_figure, paper_width
 from solidgear.report.reading import model_name, model_of, reference_of, relative_change
 from solidgear.report.readout import readable

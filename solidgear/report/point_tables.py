@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from solidgear.evidence.record import ModelRecord, Record
+from solidgear.judge.record import ModelRecord, Record
 from solidgear.report.cells import DASH, capital
 from solidgear.report.reading import LUMPED, block, entry, model_name
 from solidgear.report.result_tables import Cell, apart, matrix

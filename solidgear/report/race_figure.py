@@ -6,7 +6,7 @@ import io
 from pathlib import Path
 from typing import Any
 
-from solidgear.evidence.pareto import AUTOMATIC, Race, Row
+from solidgear.judge.race.pareto import AUTOMATIC, Race, Row
 from solidgear.report.cells import whole_number
 from solidgear.report.chart_style import new_figure, percent_decades, styled, tolerance_line
 from solidgear.report.race_legend import FRONT, footer, legend

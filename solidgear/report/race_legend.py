@@ -5,7 +5,7 @@ from __future__ import annotations
 import textwrap
 from typing import Any
 
-from solidgear.evidence.pareto import AUTOMATIC, Race
+from solidgear.judge.race.pareto import AUTOMATIC, Race
 from solidgear.report.race_rows import left_out
 from solidgear.report.race_style import FAMILIES, REFERENCE, Look, family_name, looks
 from solidgear.report.words import seconds

@@ -10,7 +10,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import asdict, fields
 from pathlib import Path
 
-from solidgear.evidence.pareto import CHARTED, Race, Row
+from solidgear.judge.race.pareto import CHARTED, Race, Row
 from solidgear.machine.whole_file import whole
 from solidgear.report.words import percent
 

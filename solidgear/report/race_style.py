@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
-from solidgear.evidence.pareto import AUTOMATIC, Race
+from solidgear.judge.race.pareto import AUTOMATIC, Race
 
 #: of a family that is not listed
 GREY = "#777777"

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from solidgear.evidence.pareto import Race, Row
+from solidgear.judge.race.pareto import Race, Row
 from solidgear.report.cells import whole_number
 from solidgear.report.chart_style import svg_of
 from solidgear.report.race_figure import figure

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from solidgear.body.mode_names import meant
-from solidgear.evidence.quantities import AT
-from solidgear.evidence.record import (
+from solidgear.judge.quantities import AT
+from solidgear.judge.record import (
     CoupledRecord,
     DeviationRecord,
     Matrix,
@@ -14,7 +14,7 @@ from solidgear.evidence.record import (
     ModeRecord,
     Record,
 )
-from solidgear.evidence.ties import SCENE, SECTION
+from solidgear.judge.ties import SCENE, SECTION
 from solidgear.report.words import NOTHING, hertz, is_number, percent
 
 #: families of models, as the ladder has them

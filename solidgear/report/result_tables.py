@@ -7,8 +7,8 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
-from solidgear.evidence.record import Matrix, ModelRecord, ModeRecord, Record
 from solidgear.frames import DOF_NAMES
+from solidgear.judge.record import Matrix, ModelRecord, ModeRecord, Record
 from solidgear.report.cells import DASH, capital, pct, short_percent, whole_number
 from solidgear.report.reading import (
     LUMPED,

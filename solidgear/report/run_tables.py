@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from solidgear.evidence.record import ModelRecord, Record
+from solidgear.judge.record import ModelRecord, Record
 from solidgear.report.cells import DASH, capital, megabytes
 from solidgear.report.reading import model_name, reference_of
 from solidgear.report.table import Table

@@ -14,8 +14,8 @@ from rich.console import Group, RenderableType
 from rich.table import Table
 from rich.text import Text
 
-from solidgear.evidence.record import ModelRecord, ModeRecord, Record, VerdictRecord
 from solidgear.frames import DOF_NAMES
+from solidgear.judge.record import ModelRecord, ModeRecord, Record, VerdictRecord
 from solidgear.report import reading, words
 from solidgear.report.border import as_record
 from solidgear.report.units import SI, Units, in_ascii, units_named

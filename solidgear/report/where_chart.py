@@ -16,7 +16,7 @@ from solidgear.report.readout import readable
 from solidgear.report.words import percent
 
 if TYPE_CHECKING:
-    from solidgear.evidence.record import Record
+    from solidgear.judge.record import Record
 
 #: shares below this are all of one colour
 LEAST = 1e-4

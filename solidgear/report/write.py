@@ -17,7 +17,7 @@ from solidgear.report.reading import model_name
 
 if TYPE_CHECKING:
     from solidgear.body import Body
-    from solidgear.evidence.record import Record
+    from solidgear.judge.record import Record
     from solidgear.report.render import RenderJob, RenderResult
     from solidgear.solve.modes import ModeSet
     from solidgear.studies.comparison import Comparison

@@ -15,9 +15,9 @@ from solidgear.factoring import Factoring
 from solidgear.machine.memory import available_mb
 from solidgear.solve.backends import BACKENDS, INSTALL, OUT_OF_CORE, SINGLE, missing
 from solidgear.solve.backends.matrix import FactorError
-from solidgear.solve.border import any_corner, bordered, definite_corner
 from solidgear.solve.factored import Factor, Indefinite, heard
-from solidgear.solve.relief import Linear
+from solidgear.solve.inertia_relief import Linear
+from solidgear.solve.schur import any_corner, bordered, definite_corner
 from solidgear.solve.single import Refining
 
 __all__ = [

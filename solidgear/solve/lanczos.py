@@ -13,7 +13,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from solidgear.solve.relief import Linear
+from solidgear.solve.inertia_relief import Linear
 
 
 @dataclass(frozen=True)

@@ -21,8 +21,7 @@ from solidgear.errors import SolidgearError
 from solidgear.machine.threads import pinned
 from solidgear.solve.eigen import Raw
 from solidgear.solve.families import numbered
-from solidgear.solve.naming import Names, Projection
-from solidgear.solve.parts import (
+from solidgear.solve.groups import (
     Part,
     complete,
     family_rows,
@@ -30,6 +29,7 @@ from solidgear.solve.parts import (
     reach_of,
     solved_parts,
 )
+from solidgear.solve.naming import Names, Projection
 from solidgear.solve.soundness import sound
 from solidgear.solve.statics import SHIFT, factors
 from solidgear.solve.supported import decoupled

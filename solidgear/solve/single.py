@@ -14,7 +14,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from solidgear.solve.backends.matrix import FactorError
-from solidgear.solve.relief import Linear
+from solidgear.solve.inertia_relief import Linear
 
 #: what a factor in double precision leaves in the energy norm on solids of 50,000 to 150,000 unknowns
 #: (2e-12 to 6e-12)

@@ -8,7 +8,7 @@ import numpy as np
 
 from solidgear.body import Body
 from solidgear.errors import SolidgearError
-from solidgear.solve.parts import Part
+from solidgear.solve.groups import Part
 
 if TYPE_CHECKING:
     from solidgear.solve.modes import Mode

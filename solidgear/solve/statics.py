@@ -32,8 +32,8 @@ from solidgear.factoring import Factoring
 from solidgear.machine.threads import pinned
 from solidgear.solve.condensed import Condensed, Coupled
 from solidgear.solve.factor import USUAL, Factor, factorise
-from solidgear.solve.folded import folded
-from solidgear.solve.relief import elastic_fields
+from solidgear.solve.inertia_relief import elastic_fields
+from solidgear.solve.symmetry import folded
 
 if TYPE_CHECKING:
     from solidgear.body.supports import Holding
@@ -136,7 +136,7 @@ def _factor(block: Block, shift: float, factoring: Factoring) -> Factor:
 
 def flexibility(body: Body, tolerance: float = 1e-12) -> Flexibility:
     """Flexibility of the free body at all its ports (inertia relief), kept with the body; by
-    :func:`solidgear.solve.relief.elastic_fields`.
+    :func:`solidgear.solve.inertia_relief.elastic_fields`.
 
     Parameters
     ----------

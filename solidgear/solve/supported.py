@@ -16,8 +16,8 @@ import scipy.linalg as sla
 
 from solidgear.body import Body, Supports, component_rows
 from solidgear.solve.coupling import decoupled, groups
-from solidgear.solve.laden import Laden
-from solidgear.solve.relief import elastic_fields
+from solidgear.solve.inertia_relief import elastic_fields
+from solidgear.solve.mass_update import Laden
 from solidgear.solve.statics import SHIFT, factors
 from solidgear.springs import root_of
 

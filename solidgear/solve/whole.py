@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from solidgear.solve.families import FAMILIES
-from solidgear.solve.parts import Part
+from solidgear.solve.groups import Part
 
 
 def whole_to(parts: list[Part]) -> dict[int, float]:

@@ -303,7 +303,7 @@ def bearing_range(
         If what the scene itself says cannot be solved.
     """
     if body is None:
-        from solidgear.fidelity import build
+        from solidgear.ladder import build
 
         body = build(scene, fidelity)
     ranges = ranges.for_scene(scene)

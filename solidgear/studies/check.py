@@ -10,13 +10,13 @@ import numpy as np
 
 from solidgear.body import Body
 from solidgear.errors import SolidgearError
-from solidgear.evidence.solution import Solution
-from solidgear.fidelity.ladder import LADDER
-from solidgear.fidelity.rung import BEAM, LUMPED, SOLID
+from solidgear.judge.effort import heavy_meshes
+from solidgear.judge.solution import Solution
+from solidgear.ladder.model import BEAM, LUMPED, SOLID
+from solidgear.ladder.registry import LADDER
 from solidgear.machine.threads import pinned
 from solidgear.meshing.closed_form import mass_properties
 from solidgear.scene.shaft import named, resolved
-from solidgear.studies.effort import heavy_meshes
 from solidgear.studies.guards import GUARDS, LEVELS, Notice, Probe
 from solidgear.studies.guards.notice import Notices, beams, everything
 from solidgear.studies.guards.smearing import smearing

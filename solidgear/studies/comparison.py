@@ -12,21 +12,21 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 from solidgear.display import Displayed
 from solidgear.errors import SolidgearError
-from solidgear.evidence.causes import SHOWN, Cause, attachment_causes, beam_causes, shoulder_cause
-from solidgear.evidence.lumped import synthesise_all
-from solidgear.evidence.quantities import change
-from solidgear.evidence.record import LumpedRecord, Record, WhereRecord
-from solidgear.evidence.recording import recorded
-from solidgear.evidence.solution import Solution
-from solidgear.evidence.ties import SECTION
-from solidgear.evidence.where import recorded_places
-from solidgear.fidelity.ladder import LADDER
-from solidgear.fidelity.levels import FREE, HARMONIC
-from solidgear.fidelity.rung import LUMPED, SOLID
+from solidgear.judge.causes import SHOWN, Cause, attachment_causes, beam_causes, shoulder_cause
+from solidgear.judge.lumped import synthesise_all
+from solidgear.judge.quantities import change
+from solidgear.judge.record import LumpedRecord, Record, WhereRecord
+from solidgear.judge.recording import recorded
+from solidgear.judge.solution import Solution
+from solidgear.judge.study import study
+from solidgear.judge.ties import SECTION
+from solidgear.judge.where import recorded_places
+from solidgear.ladder.meshes import FREE, HARMONIC
+from solidgear.ladder.model import LUMPED, SOLID
+from solidgear.ladder.registry import LADDER
 from solidgear.machine.memory import one_run
 from solidgear.machine.meter import Meter
 from solidgear.machine.threads import pinned
-from solidgear.studies.study import study
 
 if TYPE_CHECKING:
     from solidgear.scene import Scene

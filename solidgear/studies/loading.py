@@ -142,7 +142,7 @@ def shaft(scene: Scene) -> Body | None:
 
     if not wants_equilibrium(scene):
         return None
-    from solidgear.fidelity import build
+    from solidgear.ladder import build
 
     # what is cut out moves the load of a bearing by a small part of a small part
     return build(scene.plain, SHAFT)

@@ -6,13 +6,14 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from solidgear.errors import listed
-from solidgear.evidence import quantities
-from solidgear.evidence.quantities import change, judged
-from solidgear.evidence.solution import Solution
-from solidgear.evidence.ties import SCENE
-from solidgear.evidence.verdict import BEYOND, WITHIN, gap_verdict, percent
-from solidgear.fidelity.ladder import LADDER
-from solidgear.fidelity.rung import PARTS, SOLID
+from solidgear.judge import quantities
+from solidgear.judge.quantities import change, judged
+from solidgear.judge.solution import Solution
+from solidgear.judge.ties import SCENE
+from solidgear.judge.verdict import BEYOND, WITHIN, gap_verdict, percent
+from solidgear.ladder.model import SOLID
+from solidgear.ladder.registry import LADDER
+from solidgear.models.kinds import PARTS
 from solidgear.studies.guards import Notice, Probe
 
 if TYPE_CHECKING:

@@ -8,7 +8,7 @@ from collections import Counter, defaultdict
 
 import numpy as np
 
-from solidgear.evidence.quantities import QUANTITIES
+from solidgear.judge.quantities import QUANTITIES
 from validation.attack.judge import Band, band_of, called, rate
 
 

@@ -10,7 +10,7 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 
 from solidgear.errors import SolidgearError
-from solidgear.evidence.quantities import size
+from solidgear.judge.quantities import size
 from solidgear.scene import Scene
 from validation.attack import judge
 from validation.attack.outcome import SOLIDS, outcome, stamp

@@ -18,7 +18,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from solidgear.fidelity import build
+from solidgear.ladder import build
 from solidgear.scene import Scene
 
 #: edges at a singular vertex are no longer than this many times the shortest one there

@@ -8,8 +8,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from solidgear.evidence.correlate import subspace_mac
-from solidgear.evidence.quantities import size
+from solidgear.judge.correlation import subspace_mac
+from solidgear.judge.quantities import size
 from validation.attack.reference import Reference
 
 #: errors below this are rounding and are not judged

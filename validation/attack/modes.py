@@ -23,7 +23,7 @@ import scipy.linalg as sla
 import scipy.sparse as sp
 
 from solidgear.errors import SceneError, SolidgearError
-from solidgear.fidelity import build
+from solidgear.ladder import build
 from solidgear.scene import STEEL, Bearing, Material, Port, Scene, Segment
 from solidgear.solve.modes import modes
 from validation.common import results_folder, show, write_rows

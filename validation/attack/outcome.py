@@ -10,8 +10,8 @@ from pathlib import Path
 import numpy as np
 
 import solidgear
-from solidgear.evidence.quantities import QUANTITIES, size
-from solidgear.fidelity import build
+from solidgear.judge.quantities import QUANTITIES, size
+from solidgear.ladder import build
 from solidgear.scene import Scene
 from solidgear.studies.check import check_scene
 from solidgear.studies.comparison import compare

@@ -17,11 +17,11 @@ from collections.abc import Callable, Iterable
 import numpy as np
 
 from solidgear.errors import SolidgearError
-from solidgear.evidence.quantities import AT, points_of, repeats, size
-from solidgear.evidence.solution import Solution
-from solidgear.evidence.ties import SCENE
+from solidgear.judge.quantities import AT, points_of, repeats, size
+from solidgear.judge.solution import Solution
+from solidgear.judge.study import study
+from solidgear.judge.ties import SCENE
 from solidgear.scene import Scene
-from solidgear.studies.study import study
 from validation.attack.campaign import FINEST
 from validation.attack.judge import Band, band_of, rate
 from validation.attack.reference import MOST_UNKNOWNS, Reference, reference

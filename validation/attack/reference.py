@@ -27,7 +27,7 @@ from pathlib import Path
 import numpy as np
 
 from solidgear.body import as_supports
-from solidgear.evidence.quantities import QUANTITIES, measure, points_of, size
+from solidgear.judge.quantities import QUANTITIES, measure, points_of, size
 from solidgear.machine.whole_file import whole
 from solidgear.scene import Ask, Scene
 from solidgear.solve.modes import modes

@@ -18,7 +18,7 @@ import numpy as np
 import scipy.sparse as sp
 
 from solidgear.body import Block, Body, Port
-from solidgear.fidelity.attachment import tie_rigidly
+from solidgear.kernel.attachment import tie_rigidly
 from solidgear.scene import Scene
 from validation.attack.corner_mesh import CornerMesh
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import asdict, dataclass
 
-from solidgear.evidence.quantities import described, diagonals
+from solidgear.judge.quantities import described, diagonals
 from validation.bounds.truths import Truth
 
 #: errors below this are rounding

@@ -28,7 +28,7 @@ import scipy.sparse as sp
 from scipy.sparse.linalg import LinearOperator, SuperLU, eigsh, splu
 
 from solidgear.errors import SolidgearError, listed
-from solidgear.evidence.quantities import size
+from solidgear.judge.quantities import size
 from solidgear.scene import Scene
 from validation.bounds.triangle_mesh import triangle_mesh
 from validation.bounds.triangle_solid import FAMILIES, Family, Solid
@@ -108,7 +108,7 @@ def triangle_reference(
     Returns
     -------
     dict of str to Number
-        By the names of :data:`solidgear.evidence.quantities.QUANTITIES` and C_thy, K_thy, "n=2 1".
+        By the names of :data:`solidgear.judge.quantities.QUANTITIES` and C_thy, K_thy, "n=2 1".
         Compliances of motions that nothing resists are left out, and so are free motions among
         the modes.
 

@@ -22,7 +22,7 @@ import numpy as np
 import solidgear as sg
 from solidgear.body import as_supports
 from solidgear.errors import SolidgearError
-from solidgear.evidence.quantities import described, measure, size
+from solidgear.judge.quantities import described, measure, size
 from solidgear.machine.whole_file import whole
 from solidgear.scene import Ask, Scene
 from validation.attack.corner_mesh import TooFine, corner_mesh

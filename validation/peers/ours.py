@@ -115,7 +115,7 @@ def _assembly_seconds(fidelity: str):
     if fidelity != "solid":
         yield spent
         return
-    from solidgear.fidelity import solid_block
+    from solidgear.models.solid import block as solid_block
 
     plain = solid_block._matrices
 

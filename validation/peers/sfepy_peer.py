@@ -35,7 +35,7 @@ def straightened(body, scene):
     from skfem import Basis, BilinearForm, ElementTetP2, MeshTet1
 
     from solidgear.body import Block
-    from solidgear.body.kept import Kept
+    from solidgear.body.cache import Kept
 
     curved = body.geometry.mesh
     basis = Basis(MeshTet1(curved.p[:, : curved.t.max() + 1], curved.t), ElementTetP2(), intorder=4)

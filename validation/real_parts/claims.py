@@ -10,13 +10,13 @@ from typing import Any
 import numpy as np
 
 import solidgear as sg
-from solidgear.evidence.quantities import JUDGED
-from solidgear.evidence.ties import SCENE
-from solidgear.fidelity.ladder import LADDER
-from solidgear.fidelity.rung import SOLID
-from solidgear.fidelity.size import estimated_size
+from solidgear.judge.quantities import JUDGED
+from solidgear.judge.study import study
+from solidgear.judge.ties import SCENE
+from solidgear.ladder.model import SOLID
+from solidgear.ladder.registry import LADDER
+from solidgear.ladder.size import estimated_size
 from solidgear.meshing.closed_form import mass_properties
-from solidgear.studies.study import study
 from validation.real_parts.commands import spoken
 from validation.real_parts.volumes import removed_mass, toothed_area
 
@@ -167,8 +167,8 @@ def _revolved(p: Any) -> np.ndarray:
 
 def softer(scene: sg.Scene, out: Outcome) -> None:
     """On one mesh a cut makes every compliance larger, if seats are not cut themselves."""
-    from solidgear.fidelity.featured import featured_body, meshed
-    from solidgear.fidelity.solid import tetrahedra_plan
+    from solidgear.models.solid.body import tetrahedra_plan
+    from solidgear.models.solid.featured import featured_body, meshed
 
     if not apart_from_seats(scene):
         return

@@ -6,8 +6,8 @@ import subprocess
 import sys
 from pathlib import Path
 
-from solidgear.fidelity.ladder import LADDER
-from solidgear.fidelity.rung import SOLID
+from solidgear.ladder.model import SOLID
+from solidgear.ladder.registry import LADDER
 from solidgear.scene import Scene
 from validation.common import ROOT
 

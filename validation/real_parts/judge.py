@@ -13,13 +13,13 @@ from pathlib import Path
 import numpy as np
 
 import solidgear as sg
-from solidgear.evidence.quantities import JUDGED, size
-from solidgear.evidence.sequence_bands import sequence_bands
-from solidgear.evidence.solution import Solution
-from solidgear.evidence.ties import SCENE
-from solidgear.fidelity.ladder import LADDER
-from solidgear.fidelity.size import estimated_size
-from solidgear.studies.study import study
+from solidgear.judge.quantities import JUDGED, size
+from solidgear.judge.sequence_bars import sequence_bands
+from solidgear.judge.solution import Solution
+from solidgear.judge.study import study
+from solidgear.judge.ties import SCENE
+from solidgear.ladder.registry import LADDER
+from solidgear.ladder.size import estimated_size
 from validation.real_parts.truth import FOLDER, PAIR, Truth, numbers, truth
 
 #: meshes of each model that are judged: one after the other, as a user would come to them

@@ -26,17 +26,17 @@ from typing import Any
 
 import solidgear as sg
 from solidgear.body import as_supports
-from solidgear.evidence.answer import Answer, answered, solve
-from solidgear.evidence.quantities import QUANTITIES, size
-from solidgear.evidence.sequence_bands import RIGID_EDGE
-from solidgear.fidelity.featured import featured_body, meshed
-from solidgear.fidelity.ladder import LADDER
-from solidgear.fidelity.sector import sector
-from solidgear.fidelity.size import estimated_size
-from solidgear.fidelity.solid import tetrahedra_plan
+from solidgear.judge.quantities import QUANTITIES, size
+from solidgear.judge.sequence_bars import RIGID_EDGE
+from solidgear.judge.solving import Answer, answered, solve
+from solidgear.ladder.registry import LADDER
+from solidgear.ladder.size import estimated_size
 from solidgear.machine.meter import Meter
 from solidgear.meshing.corners import SHOULDER
 from solidgear.meshing.cuts import mirror_plane
+from solidgear.models.sector.body import sector
+from solidgear.models.solid.body import tetrahedra_plan
+from solidgear.models.solid.featured import featured_body, meshed
 from solidgear.scene.shaft import resolved
 from solidgear.solve.mixtures import mixtures
 from validation.common import ROOT

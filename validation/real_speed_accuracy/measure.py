@@ -99,7 +99,7 @@ def run(job: Job) -> Found:
 
 def _difference(scene, options, base) -> Found:
     """Harmonic solid of the pitch cone, and what teeth change by two sectors of like meshes."""
-    from solidgear.fidelity.sector import sector
+    from solidgear.models.sector.body import sector
 
     count = scene.features[0].count
     toothed, plain = (read(sector(s, count=count, **options), s) for s in (scene, scene.plain))

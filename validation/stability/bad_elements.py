@@ -17,10 +17,10 @@ import scipy.sparse.linalg as spla
 from skfem import MeshHex, MeshHex2, MeshTet, MeshTet2
 
 import solidgear as sg
-from solidgear.fidelity.assembly import tabulate
-from solidgear.fidelity.solid_matrices import _cell_rule, _matrices
-from solidgear.fidelity.solid_mesh import _isoparametric
+from solidgear.kernel.assembly import tabulate
 from solidgear.meshing.quality import MeshError, check_mesh, element_ratios
+from solidgear.models.solid.matrices import _cell_rule, _matrices
+from solidgear.models.solid.mesh import _isoparametric
 from solidgear.scene import Scene, Segment
 from validation.stability.frame import Finding, main
 

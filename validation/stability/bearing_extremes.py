@@ -17,9 +17,9 @@ import scipy.sparse.linalg as spla
 
 import solidgear as sg
 from solidgear.body import Supports
-from solidgear.fidelity.krylov import from_scene, krylov
 from solidgear.scene import STEEL, Bearing, Port, Scene, Segment
 from validation.stability.frame import Finding, crossing, main
+from validation.thesis.krylov import from_scene, krylov
 
 LENGTH, DIAMETER, AT = 0.4, 0.06, (0.1, 0.35)
 ELEMENTS = (10, 160)

@@ -15,15 +15,15 @@ import numpy as np
 import scipy.sparse.linalg as spla
 from skfem import MeshQuad1
 
-from solidgear.fidelity.assembly import unknowns
-from solidgear.fidelity.circumferential import Families
-from solidgear.fidelity.harmonic import _element
-from solidgear.fidelity.harmonic_blocks import _Work
+from solidgear.kernel.assembly import unknowns
 from solidgear.meshing.grading import Grading
 from solidgear.meshing.layout import layout
 from solidgear.meshing.meridian import meridian
+from solidgear.models.harmonic.blocks import _Work
+from solidgear.models.harmonic.body import _element
+from solidgear.models.harmonic.circumferential import Families
 from solidgear.scene import STEEL, Material, Scene, Segment
-from solidgear.solve.parts import LIGHT, MARGIN
+from solidgear.solve.groups import LIGHT, MARGIN
 from validation.stability.frame import Finding, main
 
 MATERIALS = (

@@ -15,7 +15,7 @@ import scipy.linalg as sla
 
 import solidgear as sg
 from solidgear.body import Supports
-from solidgear.evidence.correlate import subspace_mac
+from solidgear.judge.correlation import subspace_mac
 from solidgear.scene import Bearing, Port, Scene, Segment
 from validation.stability.frame import Finding, main
 from validation.stability.free_body_shift import shift_invert

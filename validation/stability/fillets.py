@@ -8,8 +8,8 @@ from __future__ import annotations
 
 import solidgear as sg
 from solidgear import Port, Scene, Segment
-from solidgear.evidence.answer import solve
-from solidgear.evidence.quantities import change, measure
+from solidgear.judge.quantities import change, measure
+from solidgear.judge.solving import solve
 from solidgear.scene import Chamfer, Fillet
 from validation.shipped import GEOMETRY
 

@@ -12,9 +12,9 @@ from __future__ import annotations
 import numpy as np
 from scipy.optimize import brentq
 
-from solidgear.fidelity.krylov import Span, krylov
-from solidgear.fidelity.krylov_shaft import krylov_duncan
 from validation.stability.frame import Finding, crossing, main
+from validation.thesis.krylov import Span, krylov
+from validation.thesis.krylov_shaft import krylov_duncan
 
 MOST = 64
 CUTS = 8
@@ -115,7 +115,7 @@ def measure(quick: bool = False) -> Finding:
         f"the program's worst error up to kL {max(kl):.0f} is "
         f"{max(r['program error'] for r in rows):.0e}, and it counts "
         f"{min(r['program roots counted'] for r in rows)} root at each.",
-        "`solidgear.fidelity.krylov` orthonormalises after every piece of kL 2 and counts "
+        "`validation.thesis.krylov` orthonormalises after every piece of kL 2 and counts "
         "roots (Wittrick and Williams); each mode comes with the count on both sides of it.",
         "tests/test_krylov.py::test_all_modes_up_to_kl_200",
         rows,

@@ -15,7 +15,7 @@ import scipy.sparse.linalg as spla
 from skfem import ElementQuad1
 
 import solidgear as sg
-from solidgear.fidelity.assembly import reference, tabulate
+from solidgear.kernel.assembly import reference, tabulate
 from solidgear.meshing.corners import sharpest_corner
 from solidgear.scene import STEEL, Bearing, Port, Scene, Segment
 from validation.stability.frame import Finding, main

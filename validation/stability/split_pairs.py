@@ -14,7 +14,7 @@ import numpy as np
 
 import solidgear as sg
 from solidgear.body import Supports, as_supports
-from solidgear.evidence.correlate import subspace_mac
+from solidgear.judge.correlation import subspace_mac
 from validation.stability.frame import ROOT, Finding, crossing, main
 
 BODIES = {

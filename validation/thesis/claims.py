@@ -23,12 +23,12 @@ import solidgear as sg
 from solidgear.reduction.effective_mass import synthesise
 from solidgear.scene import Scene
 from solidgear.scene.train import Train
-from solidgear.studies.axle.models import Workshop
-from solidgear.studies.axle.pairing import mac, seen_modes
-from solidgear.studies.axle.respond import Drive, respond
-from solidgear.system.lumped_pair import diagonal_mass
+from solidgear.studies.train.models import Workshop
+from solidgear.studies.train.pairing import mac, seen_modes
+from solidgear.studies.train.respond import Drive, respond
 from solidgear.system.steady import peaks
 from validation.common import ROOT, results_folder, show, write_rows
+from validation.thesis.lumped_pair import diagonal_mass
 from validation.thesis.pair import CASES, DATA, gear_support, geared_pair
 
 CONFIRMED, CAVEAT = "confirmed", "confirmed with a caveat"

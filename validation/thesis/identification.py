@@ -14,10 +14,10 @@ import numpy as np
 from scipy.linalg import eigh
 
 from solidgear.system.gear_mesh import line_of_action, mean_radius
-from solidgear.system.highest_frequency import consistency
-from solidgear.system.identify import Unknown, torsion_springs
-from solidgear.system.lumped_pair import shaft_stiffness
 from validation.common import results_folder, show, write_rows
+from validation.thesis.highest_frequency import consistency
+from validation.thesis.identify import Unknown, torsion_springs
+from validation.thesis.lumped_pair import shaft_stiffness
 from validation.thesis.pair import (
     CASES,
     DATA,

@@ -20,9 +20,9 @@ from solidgear.system.gear_mesh import (
     mesh_point,
     to_gear_frame,
 )
-from solidgear.system.identify import Unknown, identify
-from solidgear.system.lumped_pair import LumpedPair, diagonal_mass, shaft_stiffness
 from validation.common import ROOT
+from validation.thesis.identify import Unknown, identify
+from validation.thesis.lumped_pair import LumpedPair, diagonal_mass, shaft_stiffness
 
 DATA = tomllib.loads(Path(__file__).with_name("published.toml").read_text())
 CASES = tuple(DATA["support"])

@@ -15,7 +15,7 @@ import numpy as np
 import solidgear as sg
 from solidgear.reduction.superelement import Superelement, Truncation, assemble
 from solidgear.scene.train import SIDES, Train
-from solidgear.studies.axle.models import JUDGE, Workshop
+from solidgear.studies.train.models import JUDGE, Workshop
 from validation.common import ROOT, results_folder, show, write_rows
 
 HIGHEST, REFERENCE = 4000.0, 160

@@ -26,8 +26,8 @@ from solidgear.body import Block
 from solidgear.body.mass import ScalarMass
 from solidgear.factoring import Factoring
 from solidgear.solve.backends.matrix import FactorError
-from solidgear.solve.border import bordered, definite_corner
 from solidgear.solve.factored import Factor
+from solidgear.solve.schur import bordered, definite_corner
 
 WORKER = Path(__file__).parent / "worker.py"
 INSTALL = "apt-get install python3-petsc4py-real python3-slepc4py-real openmpi-bin"

@@ -8,10 +8,10 @@ from importlib.util import find_spec
 import numpy as np
 
 from solidgear.errors import SolidgearError, listed
-from solidgear.evidence.quantities import change, in_words
 from solidgear.factoring import Factoring
-from solidgear.fidelity.factor_memory import solid_factor_mb
-from solidgear.fidelity.ladder import LADDER
+from solidgear.judge.quantities import change, in_words
+from solidgear.ladder.factor_memory import solid_factor_mb
+from solidgear.ladder.registry import LADDER
 from solidgear.machine.memory import available_mb
 from solidgear.meshing.corners import sharpest_corner
 from solidgear.solve.backends import BACKENDS, INSTALL, missing

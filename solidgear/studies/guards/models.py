@@ -9,15 +9,15 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from solidgear.errors import SolidgearError
-from solidgear.evidence import verdict
-from solidgear.evidence.lumped import preferred
-from solidgear.evidence.quantities import diagonals, in_words
-from solidgear.evidence.ties import SCENE
-from solidgear.evidence.verdict import TIES, gap_verdict
-from solidgear.fidelity.ladder import LADDER
-from solidgear.fidelity.rung import BEAM, LUMPED
-from solidgear.fidelity.shoulder import MISSING, grown
+from solidgear.judge import verdict
+from solidgear.judge.lumped import preferred
+from solidgear.judge.quantities import diagonals, in_words
+from solidgear.judge.ties import SCENE
+from solidgear.judge.verdict import TIES, gap_verdict
+from solidgear.ladder.model import BEAM, LUMPED
+from solidgear.ladder.registry import LADDER
 from solidgear.meshing.corners import sharpest_corner
+from solidgear.models.beam.shoulder import MISSING, grown
 from solidgear.studies.guards.notice import Notice, Notices, against, beams, beyond
 from solidgear.studies.guards.probe import Probe
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 
-from solidgear.fidelity.ladder import LADDER
-from solidgear.fidelity.rung import BEAM, LUMPED, SOLID
+from solidgear.ladder.model import BEAM, LUMPED, SOLID
+from solidgear.ladder.registry import LADDER
 
 #: good to know; holds worse than one might think; cannot be decided here; out of the tolerance asked
 #: for; wrong

@@ -18,22 +18,22 @@ import scipy.sparse.linalg as spla
 
 from solidgear.body import Body, Supports, as_supports
 from solidgear.errors import SolidgearError
-from solidgear.evidence.answer import ENOUGH, solve
-from solidgear.evidence.quantities import judged
-from solidgear.evidence.solution import Solution
-from solidgear.evidence.ties import rigid_seats
-from solidgear.evidence.verdict import deviations
 from solidgear.factoring import Factoring
-from solidgear.fidelity import build
-from solidgear.fidelity.factor_memory import PIECES, WHOLE, Parts, parts_of
-from solidgear.fidelity.ladder import LADDER
-from solidgear.fidelity.levels import HARMONIC
-from solidgear.fidelity.rung import BEAM, SOLID
+from solidgear.judge.quantities import judged
+from solidgear.judge.solution import Solution
+from solidgear.judge.solving import ENOUGH, solve
+from solidgear.judge.study import study
+from solidgear.judge.ties import rigid_seats
+from solidgear.judge.verdict import deviations
+from solidgear.ladder import build
+from solidgear.ladder.factor_memory import PIECES, WHOLE, Parts, parts_of
+from solidgear.ladder.meshes import HARMONIC
+from solidgear.ladder.model import BEAM, SOLID
+from solidgear.ladder.registry import LADDER
 from solidgear.reduction.effective_mass import Synthesis, synthesise
 from solidgear.reduction.lumped_point import LumpedPoint
 from solidgear.scene.rules import TOUCH
 from solidgear.solve.modes import ModeSet, modes
-from solidgear.studies.study import study
 
 if TYPE_CHECKING:
     from solidgear.scene import Scene
@@ -299,8 +299,8 @@ class Probe:
         is one, else estimated for the mesh that the scene has by default, with all that is cut out
         of it. Fill is estimated in both cases.
         """
-        from solidgear.fidelity.size import estimated_size
-        from solidgear.fidelity.sizes import has_mirror_plane
+        from solidgear.ladder.size import estimated_size
+        from solidgear.ladder.size_laws import has_mirror_plane
 
         built = self.body.fidelity == "solid"
         own = {k: v for k, v in self.body.mesh.items() if built and k in ("element", "refinement")}

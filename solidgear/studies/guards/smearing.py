@@ -11,10 +11,10 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from solidgear.fidelity.ladder import LADDER
-from solidgear.fidelity.rung import CYCLIC
+from solidgear.ladder.registry import LADDER
 from solidgear.meshing.closed_form import mass_properties
 from solidgear.meshing.teeth import lacking
+from solidgear.models.kinds import CYCLIC
 from solidgear.scene.cyclic_features import Spline, Teeth
 from solidgear.scene.shaft import named
 from solidgear.studies.guards.notice import Notice, Notices, everything

@@ -14,12 +14,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from solidgear.errors import SceneError
-from solidgear.studies.settle import Settled, settle
+from solidgear.judge.settle import Settled, settle
 from solidgear.studies.sweep.run import variants_of
 
 if TYPE_CHECKING:
+    from solidgear.judge.refinement import Progress
     from solidgear.scene import Scene
-    from solidgear.studies.loop import Progress
     from solidgear.studies.sweep.variants import Variants
 
 #: bearing sets, beside that of the scene, on which a mesh is judged
@@ -58,7 +58,7 @@ def settled_for_sweep(
     Raises
     ------
     SolidgearError
-        As :func:`solidgear.studies.settle.settle`, and for texts that cannot be read.
+        As :func:`solidgear.judge.settle.settle`, and for texts that cannot be read.
 
     Examples
     --------

@@ -10,10 +10,10 @@ from typing import Any
 
 from solidgear.body import Body
 from solidgear.errors import SolidgearError
-from solidgear.fidelity import build as build_any
-from solidgear.fidelity.ladder import LADDER
-from solidgear.fidelity.limits import number
-from solidgear.fidelity.size import refuse_too_large
+from solidgear.ladder import build as build_any
+from solidgear.ladder.registry import LADDER
+from solidgear.ladder.size import refuse_too_large
+from solidgear.models.limits import number
 from solidgear.reduction.moments import LEVELS, Reduced, reduce
 from solidgear.scene import Scene
 from solidgear.studies.sweep import vary
@@ -96,7 +96,7 @@ def sweep(
         again; they are in a database beside the file (``rows.csv.sqlite``), from which the file is
         written in one step, see :mod:`solidgear.studies.sweep.rows`.
     fidelity, options
-        As for :func:`solidgear.fidelity.build`.
+        As for :func:`solidgear.ladder.build`.
     n : int, optional
         Elastic shapes, twins counted twice; as many as the scene asks for by default.
     sample, seed : int, optional

@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 
 import solidgear as sg
-from solidgear.fidelity.krylov import from_scene, krylov
 from validation.manual.case import Answer, Case, Model, references
 from validation.manual.exact import STEEL, Tube, beam_frequencies
 from validation.manual.models import frequencies, numbered, shaft
+from validation.thesis.krylov import from_scene, krylov
 
 SLENDER = Tube(length=1.0, outer=0.005)
 ROD, TUBE = Tube(length=0.5, outer=0.03), Tube(length=0.5, outer=0.03, inner=0.015)

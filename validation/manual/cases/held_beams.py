@@ -5,7 +5,6 @@ from __future__ import annotations
 import numpy as np
 
 import solidgear as sg
-from solidgear.fidelity.krylov import from_scene, krylov
 from solidgear.reduction.effective_mass import synthesise
 from validation.manual.case import Answer, Case, Model, Reference, references
 from validation.manual.exact import (
@@ -17,6 +16,7 @@ from validation.manual.exact import (
     rigid_on_springs,
 )
 from validation.manual.models import bearing, frequencies, numbered, shaft
+from validation.thesis.krylov import from_scene, krylov
 
 MATERIAL = "E 207 GPa, Poisson's ratio 0.3, density 7850 kg/m^3."
 

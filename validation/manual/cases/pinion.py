@@ -5,8 +5,8 @@ from __future__ import annotations
 import json
 
 import solidgear as sg
-from solidgear.evidence.quantities import measure
-from solidgear.evidence.ties import rigid_seats
+from solidgear.judge.quantities import measure
+from solidgear.judge.ties import rigid_seats
 from validation.common import ROOT
 from validation.manual.case import Answer, Case, Model, Reference, references
 from validation.manual.models import frequencies

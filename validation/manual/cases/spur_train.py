@@ -12,7 +12,7 @@ import scipy.linalg as sla
 from solidgear.scene import Bearing, Material, Port, Scene, Segment
 from solidgear.scene.point_mass import PointMass
 from solidgear.scene.train import Train
-from solidgear.studies.axle.models import Workshop
+from solidgear.studies.train.models import Workshop
 from validation.manual.case import Answer, Case, Model, Reference, references
 
 RAO = (

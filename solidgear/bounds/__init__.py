@@ -1,0 +1,1 @@
+"""Bounds of the error of harmonic solids by local problems, and meshes that follow it."""

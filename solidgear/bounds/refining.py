@@ -1,0 +1,173 @@
+"""Meshes of a harmonic solid that follow where its bars come from.
+
+The first mesh has one cell a band and strip and no cut at all. Where the local problems show that
+a corner holds the bar back, the cells around it are cut towards it, as often as theory says that it
+takes: a cut of ratio q leaves the share ``q^(2 a)`` of what a corner of exponent a costs. What is
+left away from corners falls with the order of the elements.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from solidgear.body import Body
+from solidgear.bounds.harmonic import richer_space
+from solidgear.meshing.corners import corner_exponent
+from solidgear.meshing.lines import Lines, place_of
+from solidgear.meshing.meridian import CUT_RATIO
+from solidgear.scene.coned import coned
+
+if TYPE_CHECKING:
+    from solidgear.scene import Scene
+
+#: order of the first mesh, and the highest
+FIRST, HIGHEST = 3, 8
+#: meshes that are tried at most
+MOST_MESHES = 10
+#: share of the tolerance that a refined mesh is made for: bars of several places add up
+AIM = 0.7
+#: cells beside a corner that was cut leave about this share of what it cost before, and an order
+#: more a ninth of what is left: neither decides a bar, both how many meshes are tried
+BESIDE, BY_ORDER = 0.08, 9.0
+#: cuts that one step may add to a corner, and orders to the mesh
+CUTS, ORDERS = 4, 2
+#: largest cell of the first mesh, in local outer radii
+SIZE = 4.0
+#: orders that left more than this each of a bar are no longer what it lacks
+SLOW = 0.5
+
+#: exponents of displacement at the ends of rigid and of averaged seats, planes and joined materials
+EXPONENT = {"rigid": 0.5, "load": 1.0, "section": 1.0, "material": 0.7}
+
+
+@dataclass(frozen=True)
+class Meshed:
+    """A mesh of a harmonic solid as options of its builder.
+
+    Attributes
+    ----------
+    order : int
+    size : float
+        Of the largest cells, in local outer radii.
+    cuts : dict of (float, float) to int
+        Corner, y and r in m, to cuts.
+    across : tuple of (float, float)
+        Points that further lines pass, y and r in m.
+    given : dict
+        Options that are not about the mesh.
+    smooth : float
+        What was away from corners when this mesh was asked for; zero at the start.
+    raised : int
+        By how many orders it was raised since.
+    """
+
+    order: int = FIRST
+    size: float = SIZE
+    cuts: Mapping[tuple[float, float], int] = field(default_factory=dict)
+    across: tuple[tuple[float, float], ...] = ()
+    given: Mapping[str, Any] = field(default_factory=dict)
+    smooth: float = 0.0
+    raised: int = 0
+
+    def options(self) -> dict[str, Any]:
+        """For the builder."""
+        return {
+            "order": self.order,
+            "layers": 0,
+            "edge_layers": 0,
+            "relative_size": self.size,
+            "plain": True,
+            "across": self.across,
+            "cuts": tuple((y, r, count) for (y, r), count in sorted(self.cuts.items())),
+            **self.given,
+        }
+
+
+def refined(scene: Scene, body: Body, mesh: Meshed, score: np.ndarray, tol: float) -> Meshed:
+    """The next mesh.
+
+    Parameters
+    ----------
+    scene : Scene
+    body : Body
+        Built on the mesh.
+    mesh : Meshed
+    score : (ne,) ndarray
+        Of every cell, its share of the relative bar of what needs it most.
+    tol : float
+        Relative.
+
+    Returns
+    -------
+    Meshed
+    """
+    corners, mesh_of = richer_space(coned(scene), body).corners, body.geometry
+    cells, uncut = mesh_of.meridian.cells, mesh_of.uncut  # type: ignore[union-attr]
+    away = score.copy()
+    needs: dict[int, tuple[float, float]] = {}
+    for vertex, (kind, angle) in corners.items():
+        around = (cells == vertex).any(axis=0)
+        needs[vertex] = float(score[around].sum()), corner_strength(kind, angle)
+        away[around] = 0.0
+    aim = AIM * tol
+    each = aim / 2 / max(1, sum(share > aim / 8 for share, _ in needs.values()))
+    cuts, lines, beside = dict(mesh.cuts), Lines(uncut, mesh.across), 0.0
+    for vertex, (share, exponent) in needs.items():
+        if share <= each:
+            continue
+        place = place_of(mesh_of.meridian.points[:, vertex])  # type: ignore[union-attr]
+        more = math.ceil(math.log(share / each) / (2 * exponent * math.log(1 / CUT_RATIO)))
+        if place not in cuts:
+            lines.before(place)
+        cuts[place] = min(cuts.get(place, 0) + min(max(more, 1), CUTS), 12)
+        beside += BESIDE * share
+    smooth = max(float(away.sum()), beside)
+    order = mesh.order
+    if smooth > aim / 2:
+        slow = mesh.raised > 0 and smooth > SLOW**mesh.raised * mesh.smooth
+        if order >= HIGHEST or slow and not beside:
+            lines.halve(np.bincount(mesh_of.parent, away))  # type: ignore[union-attr]
+        else:
+            rate = BY_ORDER
+            if mesh.raised and not beside:  # as orders did before
+                rate = min(max((mesh.smooth / smooth) ** (1 / mesh.raised), 1 / SLOW), BY_ORDER)
+            more = math.ceil(math.log(2 * smooth / aim) / math.log(rate))
+            if order + more > HIGHEST:
+                lines.halve(np.bincount(mesh_of.parent, away))  # type: ignore[union-attr]
+            order = min(order + min(max(more, 1), ORDERS), HIGHEST)
+    if (cuts, lines.points, order) == (dict(mesh.cuts), list(mesh.across), mesh.order):
+        order = order + 1
+    return replace(
+        mesh,
+        order=order,
+        cuts=cuts,
+        across=tuple(lines.points),
+        smooth=smooth,
+        raised=order - mesh.order,
+    )
+
+
+def corner_strength(kind: str, angle: float) -> float:
+    """Exponent of displacement at a corner (Williams 1952): the less, the sharper.
+
+    Parameters
+    ----------
+    kind : str
+        See :func:`solidgear.bounds.singular.singular_vertices`.
+    angle : float
+        Of the material, rad.
+
+    Examples
+    --------
+    >>> round(corner_strength("re-entrant", 3 * math.pi / 2), 3)
+    0.544
+    """
+    own = EXPONENT.get(kind, 1.0)
+    if kind == "rigid" and angle > math.pi + 0.02:
+        return 1 / 3
+    return min(own, corner_exponent(angle)) if angle > math.pi else own

@@ -1,0 +1,249 @@
+"""The cheapest answer to a question, with an error that it can be held to.
+
+A solid is solved on ever finer meshes until the band of every quantity asked for
+(:mod:`solidgear.judge.bars`) is within the tolerance; only the families of motion that the
+question needs are built, statics only if a compliance or a stiffness is asked for, modes only if a
+frequency is.  A beam has no error of its own to show: what it lacks is known from a solid only,
+whose coarsest mesh with two orders costs about as much as the beam, so it is the answer as well.
+Rungs that were passed over, and why, are part of the answer.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+import time
+from collections.abc import Callable, Iterable
+from dataclasses import asdict, dataclass
+from typing import TYPE_CHECKING, Any, ClassVar, TypeVar
+
+from solidgear.display import Displayed
+from solidgear.errors import SolidgearError, nearest, show
+from solidgear.judge.climb import Climb
+from solidgear.judge.quantities import ACROSS, AT, QUANTITIES, described, judged, own_name
+from solidgear.judge.refinement import Progress
+from solidgear.judge.steps import Step, Value
+from solidgear.ladder import NO_MODEL
+from solidgear.ladder.model import BEAM, SOLID
+from solidgear.ladder.registry import LADDER
+from solidgear.machine.memory import one_run
+from solidgear.machine.threads import pinned
+
+if TYPE_CHECKING:
+    from solidgear.scene import Scene
+
+C = TypeVar("C", bound=Climb)
+
+#: what tables head the first frequencies with
+SHORT = {"f1": "bending 1", "f2": "bending 2"}
+#: short words for quantities
+WORDS = {"bending": "bending 1", "axial": "axial 1", "torsion": "torsion 1"}
+#: below this, rounding of stiffness matrices decides what an answer is worth
+LEAST_TOLERANCE = 1e-9
+
+
+@dataclass(frozen=True, repr=False)
+class Answered(Displayed):
+    """An answer and the way to it.
+
+    Attributes
+    ----------
+    scene : str
+    tolerance : float
+    values : tuple of Value
+        In the order asked for.
+    steps : tuple of Step
+    reached : bool
+        Whether every bar is within the tolerance.
+    rung : str
+        That the values come from.
+    missing : tuple of str
+        Quantities that do not exist for this scene, such as the compliance of a free motion.
+    seconds : float
+    """
+
+    shown: ClassVar[str] = "answered"
+
+    scene: str
+    tolerance: float
+    values: tuple[Value, ...]
+    steps: tuple[Step, ...]
+    reached: bool
+    rung: str
+    missing: tuple[str, ...]
+    seconds: float
+
+    def __getitem__(self, quantity: str) -> float:
+        return next(v.value for v in self.values if v.quantity == quantity)
+
+    @property
+    def bar(self) -> float:
+        """The largest bar; infinite where nothing that was asked for exists."""
+        return max((v.bar for v in self.values), default=math.inf)
+
+    def as_dict(self) -> dict[str, Any]:
+        """Plain data."""
+        out = asdict(self)
+        for row in (*out["values"], *out["steps"]):
+            if row["bar"] is not None and not math.isfinite(row["bar"]):
+                row["bar"] = None
+        return out
+
+
+@pinned
+def answer(
+    scene: Scene,
+    tol: float | None = None,
+    ask: Iterable[str] | str = (),
+    *,
+    progress: Progress = lambda _: None,
+) -> Answered:
+    """Numbers within a tolerance, from the cheapest rung and mesh that can show it.
+
+    Parameters
+    ----------
+    scene : Scene
+    tol : float, optional
+        Relative error that every quantity may have; by default the tolerance of the scene.
+    ask : str or iterable of str, optional
+        Quantities (:data:`solidgear.judge.quantities.QUANTITIES`), or ``bending``, ``axial``,
+        ``torsion`` for the first frequency of a family; ``C_zz@name`` at a further lumped point; by
+        default those the scene asks for.
+    progress : callable
+        Called with a sentence at every step.
+
+    Returns
+    -------
+    Answered
+        After the last mesh that could be solved; ``reached`` says whether it will do.
+
+    Raises
+    ------
+    SolidgearError
+        For a tolerance that is none or that arithmetic does not allow, an unknown quantity, or a
+        scene that no rung can answer.
+
+    Examples
+    --------
+    >>> import solidgear as sg
+    >>> scene = sg.load("geometry/shaft_stepped.toml")
+    >>> found = sg.answer(scene, tol=0.01, ask=["C_zz"])
+    >>> found.reached, found.rung, found.bar <= 0.01
+    (True, 'harmonic', True)
+    """
+    start = time.perf_counter()
+    tol = usable(scene.ask.tolerance if tol is None else tol)
+    wanted = _quantities(scene, ask)
+    climb, steps = climbed(scene, tol, wanted, Climb, progress)
+    values = climb.values()
+    known = {v.quantity for v in values}
+    return Answered(
+        scene.name,
+        tol,
+        values,
+        tuple(steps),
+        bool(values) and all(v.bar <= tol for v in values),
+        climb.rung.name,
+        tuple(q for q in wanted if q not in known),
+        time.perf_counter() - start,
+    )
+
+
+def climbed(
+    scene: Scene, tol: float, wanted: tuple[str, ...], kind: Callable[..., C], progress: Progress
+) -> tuple[C, list[Step]]:
+    """The first solid of the ladder that can be solved at all, on the meshes that it takes.
+
+    Parameters
+    ----------
+    scene : Scene
+    tol : float
+    wanted : tuple of str
+    kind : type of Climb, or what makes one
+    progress : callable
+
+    Returns
+    -------
+    climb : Climb
+        After its last mesh.
+    steps : list of Step
+        What was passed over and tried, in the order of the ladder.
+
+    Raises
+    ------
+    SolidgearError
+        If no rung can be solved.
+    """
+    steps = [
+        Step(
+            name,
+            "",
+            False,
+            "no error of their own to show; the coarsest solid, which could show it, "
+            "costs as much and is better",
+        )
+        for name in LADDER.of(BEAM)
+    ]
+    with one_run():
+        for name in LADDER.of(SOLID):
+            climb = kind(scene, LADDER[name], wanted, tol, progress)
+            try:
+                climb.run()
+            except (SolidgearError, MemoryError) as error:
+                if not climb.levels:
+                    steps.append(Step(name, "", False, str(error) or "not enough memory"))
+                    continue
+                climb.stop(str(error) or "not enough memory")
+            return climb, steps + climb.steps
+    whys: dict[str, list[str]] = {}
+    for step in steps:
+        if step.rung in LADDER.of(SOLID):
+            whys.setdefault(step.why.removesuffix(f"; {NO_MODEL}"), []).append(step.rung)
+    failed = [f"{' and '.join(rungs)}: {why}" for why, rungs in whys.items()]
+    raise SolidgearError(f"no model can answer: {'; '.join(failed)}")
+
+
+def usable(tol: float) -> float:
+    """A tolerance that can be held.
+
+    Raises
+    ------
+    SolidgearError
+        Unless it is above 0, at most 1, and not below what arithmetic allows.
+    """
+    number = isinstance(tol, (int, float)) and not isinstance(tol, bool) and math.isfinite(tol)
+    if not number or not 0 < tol <= 1:
+        raise SolidgearError(
+            f"tol = {show(tol)} is not usable; give a number above 0 and at most 1"
+        )
+    if tol < LEAST_TOLERANCE:
+        raise SolidgearError(
+            f"tol = {tol:g} is below what arithmetic of sixteen digits allows; "
+            f"give at least {LEAST_TOLERANCE:g}"
+        )
+    return float(tol)
+
+
+def _quantities(scene: Scene, ask: Iterable[str] | str) -> tuple[str, ...]:
+    # C_z,thx has a comma of its own
+    given = re.split(r",(?!\s*th[xz])", ask) if isinstance(ask, str) else list(ask)
+    given = [name.strip() for name in given if name.strip()]
+    if not given:
+        return judged(scene)
+    out = []
+    for name in given:
+        base, at, point = name.partition(AT)
+        word = WORDS.get(base, base.replace("_1", " 1").replace("_2", " 2"))
+        if at and word in QUANTITIES:
+            if described(word)[0] == "frequency":
+                raise SolidgearError(f"ask: {name}: a frequency is not of a point; ask for {word}")
+            word = own_name(scene, f"{word}{AT}{point}")
+        elif at or word not in QUANTITIES | ACROSS:
+            known = (*QUANTITIES, *ACROSS, *WORDS)
+            meant = SHORT.get(base.lower(), "")
+            hint = f'; did you mean "{meant}"?' if meant else nearest(name, known)
+            raise SolidgearError(
+                f"ask: there is no quantity {show(name, 40)}{hint}; there are {', '.join(known)}"
+            )
+        out.append(word)
+    return tuple(dict.fromkeys(out))

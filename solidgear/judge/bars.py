@@ -1,0 +1,162 @@
+"""How sure a solid on a list of meshes is of its own numbers: one band a quantity.
+
+A change d from one mesh to the next leaves ``d / (r^(2a) - 1)`` where the cells shrink by r and the
+sharpest corner has the exponent a (Szabo and Babuska 1991, Finite Element Analysis, ch. 10); where
+layers towards the corners are added with every mesh, about as much as the change itself. The band is
+a measured factor (:mod:`solidgear.bounds.safety`) times that of the larger of the last two
+changes, since one of them may be small by accident.
+
+Displacement elements are too stiff, so the error of a compliance is a positive semidefinite matrix
+and that of a coupling no larger than the geometric mean of its diagonal entries' errors. What the
+solver leaves is added, and of hexahedra what the cells around leave.
+
+A harmonic solid needs none of this: :mod:`solidgear.judge.bounded`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict, dataclass
+
+from solidgear.bounds.safety import Safety
+from solidgear.judge.quantities import change, described, diagonals, in_order
+
+#: rounding: smaller differences mean nothing
+LEAST = 1e-10
+
+
+@dataclass(frozen=True)
+class Band:
+    """Band of one quantity.
+
+    Attributes
+    ----------
+    values : tuple of float
+        Coarse to fine.
+    gci : float
+        The band, relative to the finest value (couplings: to the geometric mean of their diagonal
+        entries).
+    change : float
+        Last change, relative; of local problems the distance of the other end.
+    reduction : float or None
+        Last change over the one before.
+    factor : float
+        Band over what it rests on.
+    solver : float
+        Share of the solver in the band.
+    extrapolated : float
+    method : str
+        Where the band comes from.
+    middle : float or None
+        A better value than the finest one, half of `change` away from it, where there is one.
+    """
+
+    values: tuple[float, ...]
+    gci: float
+    change: float
+    reduction: float | None
+    factor: float
+    solver: float
+    extrapolated: float
+    method: str = "two meshes"
+    middle: float | None = None
+
+    @property
+    def about_middle(self) -> float:
+        """The band about `middle`, which is narrower; about the finest value where there is none."""
+        return self.gci if self.middle is None else self.gci - self.change / 2
+
+    def as_dict(self) -> dict:
+        """Plain data for results.json."""
+        return asdict(self)
+
+
+Values = Mapping[str, float]
+
+
+def step_bands(
+    levels: Sequence[Values],
+    solver: Values,
+    safety: Safety,
+    *,
+    left_over: float | None = None,
+    around: Values | None = None,
+    effect: Values | None = None,
+) -> dict[str, Band]:
+    """Bands of the finest of two or more meshes.
+
+    Parameters
+    ----------
+    levels : sequence of mappings
+        Quantity to value (see :func:`solidgear.judge.quantities.measure`), coarse to fine.
+    solver : mapping
+        Relative error the solver may have left in each quantity of the finest level.
+    safety : Safety
+        Of the rung.
+    left_over : float, optional
+        What a change leaves of itself by plain refinement; None of meshes with layers.
+    around : mapping, optional
+        Relative error that the cells around leave in each quantity.
+    effect : mapping, optional
+        What features change of each quantity, relative.
+
+    Returns
+    -------
+    dict of str to Band
+
+    Examples
+    --------
+    >>> meshes = [{"C_zz": 1.0}, {"C_zz": 1.1}, {"C_zz": 1.12}]
+    >>> band = step_bands(meshes, {}, Safety((3.0, 2.0)), left_over=1.0)["C_zz"]
+    >>> round(band.gci, 4)  # twice the larger change
+    0.1818
+    """
+    around, effect = around or {}, effect or {}
+    factor = safety.steps[len(levels) > 2] * (left_over or 1.0)
+    last, counted = levels[-3:], 2 if left_over else 1
+    steps = {
+        name: [abs(change(a, b, name) or 0.0) for a, b in zip(last, last[1:]) if name in a]
+        for name in in_order(levels[-1])
+        if name in levels[-2]
+    }
+    out = {}
+    for name, known in steps.items():
+        rests_on = max(known[-counted:])
+        pair = diagonals(name)
+        if pair and all(d in steps for d in pair):
+            one, two = (max(steps[d][-counted:]) for d in pair)
+            rests_on = max(rests_on, (one * two) ** 0.5)
+        left = solver.get(name, 0.0)
+        least = safety.least_share(moves_freely(name), len(levels)) * effect.get(name, 0.0)
+        finest, before = levels[-1][name], levels[-2][name]
+        out[name] = Band(
+            values=tuple(float(level[name]) for level in levels if name in level),
+            gci=float(
+                max(factor * rests_on, least)
+                + safety.steps[0] * _left_around(around, name)
+                + left
+                + LEAST
+            ),
+            change=float(known[-1]),
+            reduction=float(known[-1] / known[-2]) if len(known) > 1 and known[-2] else None,
+            factor=factor,
+            solver=float(left),
+            extrapolated=float(finest + min(left_over or 1.0, 1.0) * (finest - before)),
+        )
+    return out
+
+
+def moves_freely(name: str) -> bool:
+    """Whether a quantity is a frequency of a motion that bearings may leave free."""
+    place = described(name)[1]
+    return isinstance(place, str) and place.startswith(("axial", "torsion"))
+
+
+def _left_around(around: Values, name: str) -> float:
+    """What the cells around leave in a quantity; in a coupling as much as in its diagonal entries,
+    in one that was not measured as much as in the worst.
+    """
+    if pair := diagonals(name):
+        own = [around[d] for d in pair if d in around]
+        return max([around.get(name, 0.0), (own[0] * own[1]) ** 0.5 if len(own) == 2 else 0.0])
+    return around.get(name, max(around.values(), default=0.0))

@@ -1,0 +1,341 @@
+"""Numbers of a harmonic solid between two bounds, and where on its mesh their uncertainty sits.
+
+Compliances lie between that of the body and that of its softest relative, stiffnesses the other way
+round, as quadratic forms; a coupling lies within half the geometric mean of what its two diagonal
+entries leave open, about the middle of its own two values. Frequencies lie between the Rayleigh
+quotient and what Kato and Temple leave of it (:mod:`solidgear.bounds.harmonic`).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from solidgear.body import Body, Supports
+from solidgear.bounds.harmonic import HarmonicBounds, harmonic_bounds, with_tail
+from solidgear.bounds.safety import LOCAL
+from solidgear.judge.bars import LEAST, Band
+from solidgear.judge.quantities import (
+    AT,
+    described,
+    diagonals,
+    in_order,
+    measure,
+    measure_across,
+    points_of,
+    size,
+)
+from solidgear.judge.solving import widened
+from solidgear.scene.coned import coned
+from solidgear.solve.condensed import Condensed, Coupled
+from solidgear.solve.modes import ModeSet, modes
+from solidgear.solve.statics import condense
+
+if TYPE_CHECKING:
+    from solidgear.scene import Scene
+
+Values = Mapping[str, float]
+#: where these bars come from, in words
+METHOD = "local problems"
+#: shapes above a list of modes that are looked at for its bars
+ABOVE = 12
+
+
+@dataclass(frozen=True)
+class Statics:
+    """What was condensed of a body, or will be of its softest relative.
+
+    Attributes
+    ----------
+    main : Condensed
+    further : dict of str to Condensed
+    coupled : Coupled or None
+    """
+
+    main: Condensed
+    further: Mapping[str, Condensed]
+    coupled: Coupled | None = None
+
+    @classmethod
+    def of(cls, scene: Scene, body: Body, supports: Supports, names: Sequence[str]) -> Statics:
+        """What some quantities need: the main point, further ones, and pairs of points together.
+
+        Parameters
+        ----------
+        scene : Scene
+        body : Body
+        supports : Supports
+        names : sequence of str
+            Quantities.
+        """
+        main = condense(body, supports, scene.port.name)
+        points = dict.fromkeys(q.partition(AT)[2] for q in names if AT in q and not points_of(q))
+        further = {point: condense(body, supports, point) for point in points}
+        pairs = {point for q in names for point in points_of(q) or ()}
+        both = tuple(port.name for port in scene.ports if port.name in pairs)
+        return cls(main, further, condense(body, supports, both) if pairs else None)
+
+    def again(self, body: Body, supports: Supports) -> Statics:
+        """The same of another body."""
+        coupled = self.coupled and condense(
+            body, supports, self.coupled.ports, self.coupled.attachments
+        )
+        return Statics(
+            condense(body, supports, self.main.port, self.main.attachment),
+            {
+                name: condense(body, supports, name, one.attachment)
+                for name, one in self.further.items()
+            },
+            coupled,
+        )
+
+    def values(self) -> dict[str, float]:
+        """All numbers, those of the other plane and between points included."""
+        return measure(self.main, None, self.further, self.coupled) | measure_across(
+            self.further, self.coupled
+        )
+
+
+@dataclass(frozen=True)
+class Bounded:
+    """Bars of some numbers.
+
+    Attributes
+    ----------
+    bands : dict of str to Band
+    scores : dict of str to ndarray
+        Of every number, (ne,) shares of its bar by cells; in sum one.
+    """
+
+    bands: dict[str, Band]
+    scores: dict[str, np.ndarray]
+
+
+def bounded(
+    scene: Scene,
+    body: Body,
+    supports: Supports,
+    statics: Statics | None,
+    found: ModeSet | None,
+    names: Sequence[str],
+    solver: Mapping[str, float],
+) -> Bounded:
+    """Bars of a harmonic body by local problems.
+
+    Parameters
+    ----------
+    scene : Scene
+    body : Body
+    supports : Supports
+    statics : Statics or None
+        What was condensed, None where nothing static is asked for.
+    found : ModeSet or None
+    names : sequence of str
+        Quantities whose bars are wanted.
+    solver : mapping
+        Relative error that the solver may have left.
+    """
+    asked = [place for q in names if isinstance(place := described(q)[1], str)]
+    bounds = harmonic_bounds(
+        coned(scene),
+        body,
+        statics=statics is not None,
+        found=found,
+        wanted=list(dict.fromkeys(asked)),
+        safety=LOCAL,
+    )
+    bands: dict[str, Band] = {}
+    scores: dict[str, np.ndarray] = {}
+    if statics is not None:
+        stiff = statics.values()
+        two, one = (
+            statics.again(bounds.softer(more), supports).values()
+            for more in (bounds.more, bounds.less)
+        )
+        for name in in_order({q: 0 for q in (*stiff, *names)}):
+            known = all(name in end for end in (stiff, two, one))
+            if known and described(name)[0] != "frequency":
+                bands[name] = _between(name, stiff, two, one, solver.get(name, 0.0))
+        own = [q for q in names if q in bands]
+        scores |= _static_scores(body, supports, bounds, statics, own)
+    for name in names:
+        place = described(name)[1]
+        mode = found.named(place) if found is not None and isinstance(place, str) else None
+        if mode is None:
+            continue
+        least = bounds.frequency(mode)
+        open_ = 1 - least / mode.frequency_hz
+        bands[name] = _band(mode.frequency_hz, open_, mode.error, least)
+        scores[name] = bounds.of_modes[mode.name] / bounds.of_modes[mode.name].sum()
+    return Bounded(bands, scores)
+
+
+def mode_bars(scene: Scene, body: Body, supports: Supports, found: ModeSet) -> dict[str, float]:
+    """How far frequencies of a harmonic body may lie above the exact ones, all families included.
+
+    Parameters
+    ----------
+    scene : Scene
+    body : Body
+    supports : Supports
+    found : ModeSet
+        Of the body.
+
+    Returns
+    -------
+    dict of str to float
+        Relative, by the names of elastic modes; without those that no other mode of their family was
+        found above.
+
+    Examples
+    --------
+    >>> import solidgear as sg
+    >>> from solidgear.body import as_supports
+    >>> scene = sg.load("geometry/shaft_stepped.toml")
+    >>> body = sg.build(scene, "harmonic", order=4)
+    >>> bars = mode_bars(scene, body, as_supports(scene), sg.modes(body, scene, 6))
+    >>> list(bars)[:2], bars["bending 1"] < 1e-3
+    (['axial 1', 'bending 1'], True)
+    """
+    names = [m.name for m in found.modes if m.frequency_hz > 0]
+    if not names:
+        return {}
+    every = found
+    if not _all_below(found):
+        # the gap to what lies above counts, in every family
+        shapes = sum(m.multiplicity for m in found.modes)
+        every = widened(found, modes(body, supports, shapes + ABOVE, ovalising=True))
+    bounds = harmonic_bounds(
+        coned(scene), body, statics=False, found=every, wanted=names, safety=LOCAL
+    )
+    last = _highest(every)
+    return {
+        m.name: 1 - bounds.frequency(m) / m.frequency_hz + m.error
+        for m in found.modes
+        if 0 < m.frequency_hz < last[m.family]
+    }
+
+
+def _highest(found: ModeSet) -> dict[str, float]:
+    """Highest frequency that was found of every family, Hz."""
+    out: dict[str, float] = {}
+    for mode in found.solved:
+        out[mode.family] = max(mode.frequency_hz, out.get(mode.family, 0.0))
+    return out
+
+
+def _all_below(found: ModeSet) -> bool:
+    """Whether a mode of its family was found above each of a list."""
+    last = _highest(found)
+    return all(m.frequency_hz < last[m.family] for m in found.modes if m.frequency_hz > 0)
+
+
+def _between(name: str, stiff: Values, two: Values, one: Values, solver: float) -> Band:
+    """Band of a static number from its ends: the number itself, and as soft as two orders more and one
+    order more see it.
+    """
+    scale = size(stiff, name)
+
+    def move(q: str) -> float:
+        return LOCAL * with_tail(abs(two[q] - stiff[q]), abs(one[q] - stiff[q]))
+
+    pair = diagonals(name)
+    if pair is None or not all(d in end for d in pair for end in (stiff, two, one)):
+        other = stiff[name] + np.copysign(move(name), two[name] - stiff[name])
+        return _band(stiff[name], move(name) / scale, solver, other, scale=scale)
+    half = float(np.sqrt(move(pair[0]) * move(pair[1]))) / 2
+    seen = float(np.sqrt(abs(np.prod([two[d] - stiff[d] for d in pair]))))
+    most = 2 * half / seen if seen else 1.0
+    other = stiff[name] + np.clip(most * (two[name] - stiff[name]), -2 * half, 2 * half)
+    middle = (stiff[name] + other) / 2
+    # the number itself stands aside of the middle
+    open_ = (half + abs(middle - stiff[name])) / scale
+    return _band(stiff[name], open_, solver, other, float(middle), scale)
+
+
+def _band(
+    value: float,
+    open_: float,
+    solver: float,
+    other: float,
+    middle: float | None = None,
+    scale: float | None = None,
+) -> Band:
+    return Band(
+        values=(float(value),),
+        gci=float(open_ + solver + LEAST),
+        change=float(abs(other - value) / (scale or abs(value) or 1.0)),
+        reduction=None,
+        factor=LOCAL,
+        solver=float(solver),
+        extrapolated=float(value + (other - value) / LOCAL),
+        method=METHOD,
+        middle=middle,
+    )
+
+
+def _static_scores(
+    body: Body,
+    supports: Supports,
+    bounds: HarmonicBounds,
+    statics: Statics,
+    names: Sequence[str],
+) -> dict[str, np.ndarray]:
+    """Shares of bars of compliances by cells: the energy of the local solutions under the load and
+    what the bearings answer to it.
+    """
+    ports = [(port.name, port.attachment) for port in body.ports]
+    out: dict[str, np.ndarray] = {}
+    forces: dict[int, np.ndarray] = {}
+    attached = {one.port: one.attachment for one in (statics.main, *statics.further.values())}
+    if statics.coupled is not None:
+        attached |= dict(zip(statics.coupled.ports, statics.coupled.attachments))
+    for name in names:
+        kind, place, _ = described(name)
+        assert not isinstance(place, str)
+        one = name.partition(AT)[2] or statics.main.port
+        total = np.zeros(len(bounds.of_ports))
+        for point, row in set(zip(points_of(name) or (one, one), place)):
+            seat = statics.main if point == statics.main.port else statics.further.get(point)
+            first = 6 * ports.index((point, attached[point]))
+            loads = np.eye(6)[row]
+            if kind == "stiffness" and seat is not None:
+                loads = np.nan_to_num(seat.stiffness[:, row], posinf=0.0, neginf=0.0)
+            f = np.zeros(6 * len(ports))
+            for c in map(int, np.flatnonzero(loads)):
+                if first + c not in forces:
+                    forces[first + c] = _forces(body, supports, first + c)
+                f += loads[c] * forces[first + c]
+            energy = np.einsum("i,cij,j->c", f, bounds.of_ports, f)
+            if energy.sum() > 0:
+                total = np.maximum(total, energy / energy.sum())
+        out[name] = total / (total.sum() or 1.0)
+    return out
+
+
+def _forces(body: Body, supports: Supports, load: int) -> np.ndarray:
+    """(6 p,) forces on all ports under a unit load on one component of one, bearings included."""
+    f = np.zeros(6 * len(body.ports))
+    f[load] = 1.0
+    if not supports.ports:
+        return f
+    from solidgear.solve.statics import flexibility
+
+    there = supports.rows(body)
+    flex, rigid, root = flexibility(body).matrix, body.rigid_ports, supports.root
+    # springs by their root: stretch s with (1 + L'F L) s = L'(F f + R a), R_b'L s = R'f
+    inner = np.eye(root.shape[1]) + root.T @ flex[np.ix_(there, there)] @ root
+    held = root.T @ rigid[there]
+    scale = np.abs(held).max(axis=0)
+    keep = scale > 0
+    held = held[:, keep] / scale[keep]
+    reach = np.linalg.solve(inner, root.T @ flex[there, load])
+    through = np.linalg.solve(inner, held)
+    a = np.linalg.lstsq(
+        held.T @ through, rigid[load, keep] / scale[keep] - held.T @ reach, rcond=1e-12
+    )[0]
+    f[there] -= root @ (reach + through @ a)
+    return f

@@ -1,0 +1,139 @@
+"""Why models differ: switch one assumption at a time and measure what moves."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from solidgear.errors import SolidgearError
+from solidgear.judge.quantities import change
+from solidgear.judge.solving import solve
+
+if TYPE_CHECKING:
+    from solidgear.scene import Scene
+
+
+@dataclass(frozen=True)
+class Cause:
+    """Effect of one assumption: relative changes of quantities, None where one does not exist."""
+
+    cause: str
+    change: str
+    model: str
+    quantities: dict[str, float | None]
+
+
+#: what is shown of a cause
+SHOWN = ("C_zz", "K_zz", "bending 1")
+
+
+def _solve(scene: Scene, rung: str, **options) -> dict[str, float]:
+    return solve(scene, rung, **options).quantities
+
+
+def _row(cause, text, model, new, old) -> Cause:
+    return Cause(
+        cause,
+        text,
+        model,
+        {name: change(new, old, name) for name in SHOWN},
+    )
+
+
+def beam_causes(scene: Scene) -> list[Cause]:
+    """Assumptions inside the beam model, with the beam's own nodes for ports."""
+    scene = scene.with_attachment("section")
+    plain = _solve(scene, "euler")
+    sheared = _solve(scene, "timoshenko", rotary_inertia=False)
+    full = _solve(scene, "timoshenko")
+    out = [
+        _row("shear", "Euler-Bernoulli -> with shear", "beam", sheared, plain),
+        _row("rotary inertia", "without -> with", "timoshenko", full, sheared),
+        _row(
+            "mass lumping",
+            "consistent -> lumped",
+            "timoshenko",
+            _solve(scene, "timoshenko", mass="lumped"),
+            full,
+        ),
+    ]
+    if not any(s.inner0 or s.inner1 for s in scene.segments):
+        cowper = _solve(scene, "timoshenko", kappa="cowper")
+        out.insert(2, _row("shear coefficient", "Hutchinson -> Cowper", "timoshenko", cowper, full))
+    if any(s.outer0 != s.outer1 or s.inner0 != s.inner1 for s in scene.segments):
+        out.insert(
+            -1,
+            _row(
+                "head smearing",
+                "cone -> mean cylinder",
+                "timoshenko",
+                _solve(scene, "timoshenko", head="mean"),
+                full,
+            ),
+        )
+    return out
+
+
+def attachment_causes(variants: dict[str, dict[str, float]], model: str) -> list[Cause]:
+    """Effect of the attachment, from results already at hand (``average``, ``rigid``, ``section``
+    -> quantities).
+    """
+    base = variants.get("average")
+    if base is None:
+        return []
+    words = {"rigid": "average -> rigid seats", "section": "average -> section mean everywhere"}
+    return [_row("attachment", words[a], model, variants[a], base) for a in words if a in variants]
+
+
+def shoulder_cause(
+    scene: Scene,
+    beam_gap: dict[str, float | None],
+    options: dict,
+    tell: Callable[[str], None] = lambda _: None,
+) -> Cause | None:
+    """Share of the beam-to-solid gap that the steps of the shaft are to blame for.
+
+    The gap (Timoshenko over harmonic, section mean everywhere) of the scene, less the gap of the
+    same scene with every outer radius brought down to the smallest one: what stress cannot fill
+    right at a shoulder.
+
+    Parameters
+    ----------
+    scene : Scene
+    beam_gap : dict
+        ``C_zz``, ``K_zz``, ``bending 1`` -> relative gap of the scene itself.
+    options : dict
+        For the harmonic body.
+
+    Returns
+    -------
+    Cause or None
+        None when the shaft has no step, or the plain shaft cannot be made.
+    """
+    if not scene.steps:
+        return None
+    radius = min(min(s.outer0, s.outer1) for s in scene.segments)
+    try:
+        plain = scene.with_changes(
+            segments=tuple(s.with_changes(outer0=radius, outer1=radius) for s in scene.segments),
+            blends=(),
+        ).with_attachment("section")
+    except SolidgearError:
+        tell(
+            "the share of the shoulders is left out: the shaft at its smallest diameter would be "
+            "thinner than one of its bores"
+        )
+        return None
+    beam, solid = _solve(plain, "timoshenko"), _solve(plain, "harmonic", **options)
+
+    def share(name):
+        here, there = beam_gap.get(name), change(beam, solid, name)
+        return None if here is None or there is None else here - there
+
+    return Cause(
+        "shoulder",
+        "gap to the solid with steps, less without",
+        "timoshenko",
+        {name: share(name) for name in SHOWN},
+    )

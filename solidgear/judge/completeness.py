@@ -1,0 +1,110 @@
+"""What a list of modes is worth, in sentences: which families were counted, where the others begin,
+and whether the number asked for ends it early.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import TYPE_CHECKING
+
+from solidgear.ladder.model import BEAM
+from solidgear.ladder.registry import LADDER
+
+if TYPE_CHECKING:
+    from solidgear.solve.modes import Mode
+
+
+def completeness(evidence: dict, fidelity: str) -> str:
+    """Claim about missed modes that the evidence of a :class:`~solidgear.solve.modes.ModeSet`
+    carries.
+
+    Parameters
+    ----------
+    evidence : dict
+        With ``count``: modes must have been asked for with it.
+    fidelity : str
+        A beam has no other families than its own, and says so.
+    """
+    bad = [part["why"] for part in evidence["count"] if not part["checked"]]
+    if bad:
+        return f"Not counted: {bad[0]}."
+    rows = evidence["families"]
+    counted = [row for row in rows if row["counted"]]
+    text = (
+        f"No mode missed below {evidence['complete_below_hz']:.6g} Hz (counted by the inertia of "
+        f"a second factor): {_listed(counted)}"
+    )
+    if LADDER[fidelity].family == BEAM:
+        return f"{text}; a beam knows no others."
+    left = _left([row for row in rows if not row["counted"]])
+    return f"{text}; {left}." if left else f"{text}."
+
+
+def cut_short(modes: Iterable[Mode], n: int, asked_hz: float | None, option: str = "") -> list[str]:
+    """What to say where the number of modes ends a list below the frequency asked for.
+
+    Parameters
+    ----------
+    modes : iterable of Mode
+    n : int
+        Elastic shapes that were asked for; twins count twice.
+    asked_hz : float or None
+        Up to where modes were asked for, if anywhere.
+    option : str, optional
+        What else can be raised than the number in the scene.
+
+    Returns
+    -------
+    list of str
+        One sentence, or none.
+    """
+    elastic = [m for m in modes if not m.name.startswith("rigid")]
+    if not asked_hz or not elastic or sum(m.multiplicity for m in elastic) < n:
+        return []  # all that there are up to it
+    return [
+        f"the list ends with the {n} elastic shapes asked for, at {elastic[-1].frequency_hz:.4g} "
+        f"Hz, and {asked_hz:g} Hz are asked for: there may be more between; raise "
+        f"{option + ', or ' if option else ''}modes under [ask]"
+    ]
+
+
+def _listed(rows: list[dict]) -> str:
+    if any(row["n"] is None for row in rows):
+        return "all motions of the mesh"
+    names = [row["family"] for row in rows if row["n"] < 2]
+    waves = sorted(row["n"] for row in rows if row["n"] >= 2)
+    return ", ".join(names + _ranges(waves))
+
+
+def _ranges(numbers: list[int]) -> list[str]:
+    """``n = 2 to 4``, ``n = 7``."""
+    out: list[list[int]] = []
+    for n in numbers:
+        if out and n == out[-1][-1] + 1:
+            out[-1].append(n)
+        else:
+            out.append([n])
+    return [f"n = {run[0]}" + (f" to {run[-1]}" if len(run) > 1 else "") for run in out]
+
+
+def _left(rows: list[dict]) -> str:
+    """Families left alone; those at the end of the row are reported as one."""
+    rows = sorted(rows, key=lambda row: row["n"])
+    last = [row for row in rows if row.get("above")]
+    if not last:
+        return ""
+    tail = [last[0]]
+    for row in reversed(rows[: rows.index(last[0])]):
+        if row["n"] == tail[0]["n"] - 1:
+            tail.insert(0, row)
+    parts = [
+        f"n = {row['n']} begins above {_hertz(row['lowest_hz'])}" for row in rows if row not in tail
+    ]
+    parts.append(
+        f"n = {tail[0]['n']} and above begin above {_hertz(min(row['lowest_hz'] for row in tail))}"
+    )
+    return ", ".join(parts)
+
+
+def _hertz(value: float) -> str:
+    return f"{value:.0f} Hz" if value < 1e3 else f"{value / 1e3:.3g} kHz"

@@ -1,0 +1,1 @@
+"""Error against cost: discretisations of one scene, timed in turns."""

@@ -1,0 +1,85 @@
+"""The cases of a chart of error against cost, and what a process pays once before the first of
+them.
+"""
+
+from __future__ import annotations
+
+import json
+import logging
+import subprocess
+import sys
+from typing import TYPE_CHECKING
+
+from solidgear.judge.race.pareto import Row
+from solidgear.ladder.registry import LADDER
+
+if TYPE_CHECKING:
+    from solidgear.ladder.model import Rung, Series
+    from solidgear.scene import Scene
+
+log = logging.getLogger(__name__)
+
+
+def plan(scene: Scene, full: bool = False) -> list[Row]:
+    """Series of every family, uniform and graded, level by level.
+
+    Parameters
+    ----------
+    scene : Scene
+    full : bool
+        More levels, up to solids of several hundred thousand unknowns.
+    """
+    rows = [
+        Row(family, label, level, rung.name, options)
+        for rung in LADDER
+        for family, label, all_options in _series(rung, scene, full)
+        for level, options in enumerate(all_options, start=1)
+    ]
+    return sorted(rows, key=lambda row: row.level)
+
+
+def _series(rung: Rung, scene: Scene, full: bool) -> list[Series]:
+    if rung.series is None:
+        return [(rung.family, rung.heading, [{}])]
+    return rung.series(scene, full)
+
+
+_SETUP = """
+import json, time
+seconds, start = {}, time.perf_counter()
+def lap(name):
+    global start
+    now = time.perf_counter()
+    seconds[name], start = now - start, now
+from solidgear.machine.threads import pin
+pin()
+import numpy, scipy.sparse.linalg, scipy.optimize
+lap("numpy and scipy")
+import solidgear.models.harmonic.body, solidgear.models.solid.body, solidgear.models.beam.body
+import solidgear.solve.modes, solidgear.scene.file
+lap("solidgear and scikit-fem")
+try:
+    import gmsh
+    gmsh.initialize(["gmsh", "-noenv"], readConfigFiles=False)
+    lap("gmsh, first use")
+    import pypardiso
+    pypardiso.PyPardisoSolver(mtype=2)
+    lap("MKL, first use")
+except Exception:
+    pass
+print(json.dumps(seconds))
+"""
+
+
+def setup_seconds() -> dict[str, float]:
+    """What a fresh interpreter pays once before the first model, s by what for; empty where none
+    can be started.
+    """
+    try:
+        done = subprocess.run(
+            [sys.executable, "-c", _SETUP], capture_output=True, text=True, timeout=120, check=True
+        )
+        return json.loads(done.stdout.splitlines()[-1])
+    except (OSError, subprocess.SubprocessError, ValueError, IndexError) as error:
+        log.info("set-up costs: %s", error)
+        return {}

@@ -1,0 +1,375 @@
+"""What ``results.json`` holds, typed.
+
+Everything a run found is written by dumping a :class:`Record` and read by validating one; tables,
+charts and tests read its attributes.  Numbers are SI.  A number that does not exist is None: JSON
+knows neither NaN nor infinity.  Quantities are called as in
+:data:`solidgear.judge.quantities.QUANTITIES` everywhere.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Annotated, Any
+
+from pydantic import (
+    BaseModel,
+    BeforeValidator,
+    ConfigDict,
+    Field,
+    ValidationError,
+    ValidatorFunctionWrapHandler,
+    field_validator,
+)
+from pydantic_core import PydanticUseDefault
+
+#: version of this layout; it rises when a field is renamed or removed
+SCHEMA = 3
+
+
+def _plain(value: Any) -> Any:
+    """The same as lists, dicts, texts and finite numbers; all else that numpy may bring is None."""
+    if isinstance(value, dict):
+        return {str(k): _plain(v) for k, v in value.items()}
+    if hasattr(value, "tolist"):
+        value = value.tolist()
+    if isinstance(value, (list, tuple)):
+        return [_plain(v) for v in value]
+    if isinstance(value, float) and not math.isfinite(value):
+        return None
+    return value
+
+
+Number = Annotated[float | None, BeforeValidator(_plain)]
+Numbers = Annotated[list[float | None], BeforeValidator(_plain)]
+Matrix = Annotated[list[list[float | None]], BeforeValidator(_plain)]
+Facts = Annotated[dict[str, Any], BeforeValidator(_plain)]
+Quantities = dict[str, Number]
+
+
+class Part(BaseModel):
+    """Part of a record: fields that are missing, or None where None says nothing, have their
+    default; unknown ones are kept.
+    """
+
+    model_config = ConfigDict(extra="allow")
+
+    @field_validator("*", mode="wrap")
+    @classmethod
+    def _none_is_missing(cls, value: Any, validate: ValidatorFunctionWrapHandler) -> Any:
+        try:
+            return validate(value)
+        except ValidationError:
+            if value is None:
+                raise PydanticUseDefault from None
+            raise
+
+
+class ModeRecord(Part):
+    """A mode, its pair counted in ``multiplicity``."""
+
+    name: str = ""
+    family: str = ""
+    frequency_hz: Number = None
+    multiplicity: int = 1
+    captured: Number = None
+    error: Number = 0.0
+
+
+class BandRecord(Part):
+    """Band of one quantity; see :class:`solidgear.judge.bars.Band`."""
+
+    values: Numbers = []
+    gci: Number = None
+    change: Number = None
+    reduction: Number = None
+    factor: Number = None
+    solver: Number = None
+    extrapolated: Number = None
+    observed_order: Number = None
+    expected_order: Number = None
+    used_order: Number = None
+    method: str = ""
+
+
+class BandSummary(Part):
+    """How sure a model is of itself: relative bands of every quantity, and the worst compliance's."""
+
+    compliance: Number = None
+    method: str = ""
+    each: Quantities = {}
+
+
+class LevelRecord(Part):
+    """One mesh of a sequence."""
+
+    dofs: int | None = None
+    h: Number = None
+    order: int | None = None
+    quantities: Quantities = {}
+    mesh: Facts = {}
+
+
+class ConvergenceRecord(Part):
+    """Meshes from coarse to fine, and the band that each quantity has from them."""
+
+    levels: list[LevelRecord] = []
+    quantities: dict[str, BandRecord] = {}
+
+
+class EvidenceRecord(Part):
+    """Evidence for one solution: residuals, symmetry, count of modes."""
+
+    asymmetry: Number = None
+    refinement_residual: Number = None
+    rigid_residual: Number = None
+    modal_residual: Number = None
+    orthogonality: Number = None
+    eigensolver: str = ""
+    mode_count: list[Facts] = []
+    families: list[Facts] = []
+    complete: str = ""
+    rigid_modes: int | None = None
+    coupling_bound: Number = None
+    shift_rad2: Number = None
+
+
+class PointRecord(Part):
+    """Statics at a further lumped point."""
+
+    stiffness: Matrix | None = None
+    compliance: Matrix | None = None
+
+
+class CoupledRecord(Part):
+    """Statics between all lumped points: 6 n square matrices, point by point.
+
+    ``stiffness_error`` is the relative error that inverting the compliance leaves.
+    """
+
+    ports: list[str] = []
+    stiffness: Matrix | None = None
+    compliance: Matrix | None = None
+    stiffness_error: Number = None
+
+
+class ModelRecord(Part):
+    """One rung.
+
+    ``title``, ``short``, ``theory``, ``family``, ``colour`` and ``marker`` are those of the ladder
+    (:class:`solidgear.ladder.model.Rung`), so that a record can be shown without it.
+    """
+
+    title: str = ""
+    short: str = ""
+    theory: str = ""
+    family: str = ""
+    colour: str = "#777777"
+    marker: str = "P"
+    valid: bool | None = None
+    open: bool = False
+    why_not: str | None = None
+    source: str | None = None
+    variant: str | None = None
+    compliance: Matrix | None = None
+    stiffness: Matrix | None = None
+    points: dict[str, PointRecord] = {}
+    coupled: CoupledRecord | None = None
+    modes: list[ModeRecord] = []
+    band: BandSummary | None = None
+    convergence: ConvergenceRecord | None = None
+    dofs: int | None = None
+    seconds: Quantities = {}
+    peak_mb: Number = None
+    backend: str | None = None
+    mesh: Facts = {}
+    evidence: EvidenceRecord = EvidenceRecord()
+
+
+class VariantRecord(Part):
+    """A rung with one attachment at every station."""
+
+    quantities: Quantities = {}
+    stiffness: Matrix | None = None
+    compliance: Matrix | None = None
+    modes: list[ModeRecord] = []
+
+
+class DeviationRecord(Part):
+    """A quantity of a model against the reference."""
+
+    model: str = ""
+    reference: str = ""
+    attachment: str = ""
+    quantity: str = ""
+    unit: str = ""
+    value: Number = None
+    reference_value: Number = None
+    relative: Number = None
+    band: Number = None
+    verdict: str | None = None
+    pairing: str = ""
+
+
+class CauseRecord(Part):
+    """Relative change of quantities when one assumption is switched."""
+
+    cause: str = ""
+    change: str = ""
+    model: str = ""
+    quantities: Quantities = {}
+
+
+class LumpedVariant(Part):
+    """One lumped mass on a stiffness; further numbers by their own names."""
+
+    mass: Matrix | None = None
+    feasible: bool = False
+    first: bool = False
+    frequency_hz: Number = None
+    frequency_error: Number = None
+    slope_error: Number = None
+    kinetic_error: Number = None
+    valid_to_hz: Number = None
+    verdict: str = ""
+
+
+class LumpedRecord(Part):
+    """Lumped models of one body, on z and thx; ``why_not`` where there is nothing to lump."""
+
+    stiffness: Matrix | None = None
+    motion: Numbers = []
+    frequency_hz: Number = None
+    static_share: Number = None
+    total_mass: Number = None
+    seconds: Number = None
+    variants: dict[str, LumpedVariant] = {}
+    why_not: str | None = None
+
+
+class VerdictRecord(Part):
+    """Which model to trust, and which is the cheapest that will do."""
+
+    trust: str | None = None
+    reference: str | None = None
+    cheapest: str | None = None
+    tolerance: Number = None
+    judged: list[str] = []
+    sentences: list[str] = []
+
+
+class GuardRecord(Part):
+    """What a guard says of some models."""
+
+    guard: str = ""
+    level: str = ""
+    models: list[str] = []
+    sentence: str = ""
+
+
+class PartnerRecord(Part):
+    """A mode and its partner in the reference."""
+
+    mode: str = ""
+    partner: str | None = None
+    mac: Number = None
+    frequency_hz: Number = None
+    reference_hz: Number = None
+    relative: Number = None
+
+
+class MacTable(Part):
+    """Modal assurance criterion of a model's modes (rows) against the reference's (columns)."""
+
+    rows: list[str] = []
+    columns: list[str] = []
+    values: Matrix = []
+    pairs: list[PartnerRecord] = []
+
+
+class MacRecord(Part):
+    """Correlation of all models with the reference, on stations along the axis (m)."""
+
+    reference: str | None = None
+    stations: Numbers = []
+    models: dict[str, MacTable] = {}
+
+
+class PortRecord(Part):
+    """The lumped point, the order of its six components, and those that nothing resists."""
+
+    name: str = ""
+    y: Number = None
+    attachment: str = ""
+    order: list[str] = []
+    free: list[str] = []
+
+
+class PlaceRecord(Part):
+    """A place and its share of the error; see :class:`solidgear.judge.where.Row`."""
+
+    what: str = ""
+    y: Number = None
+    r: Number = None
+    share: Number = None
+    reach: Number = None
+
+
+class WhereRecord(Part):
+    """Where the error of a solid sits; see :class:`solidgear.judge.where.Whereabouts`."""
+
+    model: str = ""
+    quantity: str = ""
+    order: int = 0
+    total: Number = None
+    sentence: str = ""
+    rows: list[PlaceRecord] = []
+    points: list[list[float]] = []
+    cells: list[list[int]] = []
+    shares: list[float] = []
+    seconds: Number = None
+
+
+class Record(Part):
+    """Everything a comparison found.
+
+    ``missing`` are titles of rungs that have a body of their own and no record here.  ``shown_in``
+    is the choice of units of its page (:mod:`solidgear.report.units`); the record itself is in SI.
+
+    Examples
+    --------
+    >>> record = Record.model_validate({"verdict": {"trust": "harmonic"}})
+    >>> record.verdict.trust, record.complete
+    ('harmonic', True)
+    """
+
+    model_config = ConfigDict(extra="allow", populate_by_name=True)
+
+    version: int = Field(SCHEMA, alias="schema")
+    complete: bool = True
+    scene: Facts = {}
+    port: PortRecord | None = None
+    further_ports: list[PortRecord] = []
+    models: dict[str, ModelRecord] = {}
+    missing: list[str] = []
+    attachments: dict[str, dict[str, VariantRecord]] = {}
+    mac: MacRecord | None = None
+    deviations: list[DeviationRecord] = []
+    causes: list[CauseRecord] = []
+    lumped: dict[str, LumpedRecord] = {}
+    verdict: VerdictRecord = VerdictRecord()
+    guards: list[GuardRecord] = []
+    where: WhereRecord | None = None
+    bearing_range: Facts = {}
+    environment: Facts = {}
+    images: dict[str, str] = {}
+    warnings: list[str] = []
+    seconds_total: Number = None
+    peak_mb: Number = None
+    expected_peak_mb: Number = None
+    left_out: list[str] = []
+    files: list[str] | None = None
+    shown_in: str = "engineering"
+
+    def as_dict(self) -> dict[str, Any]:
+        """Plain data, as ``results.json`` has it."""
+        return self.model_dump(mode="json", by_alias=True)

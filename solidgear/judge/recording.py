@@ -1,0 +1,330 @@
+"""From the solutions of a comparison to its record."""
+
+from __future__ import annotations
+
+from dataclasses import asdict
+from typing import TYPE_CHECKING
+
+from solidgear.frames import DOF_NAMES
+from solidgear.judge.causes import Cause
+from solidgear.judge.completeness import completeness, cut_short
+from solidgear.judge.correlation import correlate
+from solidgear.judge.lumped import drawn, model_record
+from solidgear.judge.quantities import usual
+from solidgear.judge.record import (
+    BandRecord,
+    BandSummary,
+    CauseRecord,
+    ConvergenceRecord,
+    CoupledRecord,
+    DeviationRecord,
+    EvidenceRecord,
+    GuardRecord,
+    LevelRecord,
+    LumpedRecord,
+    MacRecord,
+    MacTable,
+    ModelRecord,
+    ModeRecord,
+    PartnerRecord,
+    PointRecord,
+    PortRecord,
+    Record,
+    VariantRecord,
+    VerdictRecord,
+)
+from solidgear.judge.solution import Solution
+from solidgear.judge.solving import ENOUGH, Answer
+from solidgear.judge.ties import SCENE
+from solidgear.judge.verdict import Judgement, deviations, judge, percent, trusted
+from solidgear.ladder.model import LUMPED, SOLID
+from solidgear.ladder.registry import LADDER
+from solidgear.machine.environment import environment
+from solidgear.solve.mixtures import mixtures
+
+if TYPE_CHECKING:
+    from solidgear.scene import Scene
+    from solidgear.solve.modes import Mode
+
+
+def recorded(
+    scene: Scene,
+    rungs: dict[str, Solution],
+    failed: dict[str, str],
+    causes: list[Cause],
+    lumped: dict[str, LumpedRecord],
+    guards: list[dict],
+    complete: bool,
+) -> Record:
+    """Record of a comparison.
+
+    Parameters
+    ----------
+    scene : Scene
+    rungs : dict of str to Solution
+    failed : dict of str to str
+        Models that could not be solved, and why.
+    causes : list of Cause
+    lumped : dict of str to LumpedRecord
+        From :func:`solidgear.judge.lumped.synthesise_all`.
+    guards : list of dict
+        What the guards said: ``guard``, ``level``, ``models``, ``sentence``.
+    complete : bool
+        False after an interrupt.
+    """
+    trust, _ = trusted(rungs, scene.ask.tolerance, usual(scene))
+    # Where nothing may judge, the distances are still reported; they are no judgement.
+    reference = trust or next((m for m in LADDER.judges if m in rungs), None)
+    gaps = deviations(rungs, reference) if reference else []
+    verdict, validity = judge(scene, rungs, gaps, guards)
+    verdict["reference"] = reference
+    models: dict[str, ModelRecord] = {}
+    for model in LADDER.bodies:
+        if model in rungs:
+            models[model] = _model_record(rungs[model], validity[model])
+        elif model in failed:
+            models[model] = ModelRecord(**drawn(model), valid=False, why_not=failed[model])
+    out = Record(
+        complete=complete,
+        scene=scene.as_dict(),
+        port=_port_record(scene, rungs, 0),
+        further_ports=[_port_record(scene, rungs, k) for k in range(1, len(scene.ports)) if rungs],
+        attachments=_attachments(rungs),
+        mac=_mac(rungs, reference),
+        deviations=[DeviationRecord(**gap) for gap in gaps],
+        causes=[CauseRecord(**asdict(c)) for c in causes],
+        lumped=lumped,
+        verdict=VerdictRecord(**verdict),
+        guards=[GuardRecord(**g) for g in guards],
+        environment=environment(),
+        models=models,
+        missing=[LADDER[model].title for model in LADDER.fit(scene) if model not in models],
+    )
+    if lumped and reference:
+        _add_lumped(out, rungs[reference], guards, scene.ask.tolerance, scene.ask.lumped)
+    out.warnings = _warnings(rungs, guards, out.models)
+    if listed := rungs.get(reference or next(reversed(rungs), "")):
+        n = max(scene.ask.modes, ENOUGH)
+        out.warnings += cut_short(listed.modes.modes, n, scene.ask.max_frequency)
+    return out
+
+
+def _port_record(scene: Scene, rungs: dict[str, Solution], k: int) -> PortRecord:
+    port, first = scene.ports[k], next(iter(rungs.values()), None)
+    found = None if first is None else first.ties[SCENE]
+    there = None if found is None else [found.condensed, *found.further.values()][k]
+    return PortRecord(
+        name=port.name,
+        y=port.y,
+        attachment=port.attachment,
+        order=list(DOF_NAMES),
+        free=list(there.free_names) if there else [],
+    )
+
+
+def _attachments(rungs: dict[str, Solution]) -> dict[str, dict[str, VariantRecord]]:
+    return {
+        model: {name: _variant_record(found) for name, found in rung.variants.items()}
+        for model, rung in rungs.items()
+        if rung.variants
+    }
+
+
+def _warnings(
+    rungs: dict[str, Solution], guards: list[dict], models: dict[str, ModelRecord]
+) -> list[str]:
+    out = []
+    for notice in guards:
+        # What speaks against a model that is out anyway is in the record, and nobody's concern.
+        about = [m for m in notice["models"] if m in models and models[m].valid]
+        if about or not notice["models"]:
+            named = ", ".join(models[m].title for m in about)
+            out.append(f"{named}: {notice['sentence']}" if about else notice["sentence"])
+    out += [
+        f"{LADDER[m].title}: {what}: {why}"
+        for m, r in rungs.items()
+        for what, why in r.failed.items()
+    ]
+    for model, rung in rungs.items():
+        for one, other, gap in rung.modes.evidence.get("torn_pairs", ()):
+            out.append(
+                f"{LADDER[model].title}: {one} and {other} are twins that the mesh has split by "
+                f"{gap:.1e}: refine it, or use hexahedra"
+            )
+        out += [f"{LADDER[model].title}: {one.sentence}" for one in mixtures(rung.modes)]
+    return out
+
+
+def _add_lumped(
+    record: Record, base: Solution, guards: list[dict], tolerance: float, synthesis: bool
+) -> None:
+    """The lumped rung among the models; what every synthesis is worth only where it is asked."""
+    band = base.bands.get(SCENE, {}).get("bending 1")
+    own = model_record(
+        record.lumped,
+        record.models,
+        base.quantities.get("bending 1"),
+        tolerance,
+        band.gci if band else None,
+        guards,
+    )
+    if own is None:
+        return
+    (name,) = LADDER.of(LUMPED)
+    record.models = {name: own, **record.models}
+    verdict = record.verdict
+    source = LADDER[own.source or name]
+    masses = f"{own.variant} masses on the stiffness of the {source.title}"
+    if own.valid and source.family == SOLID:
+        verdict.sentences.append(
+            f"A {LADDER[name].title} ({masses}) is within {percent(tolerance)} too, for first "
+            "bending and below only, and costs as much as what it rests on."
+        )
+    elif own.valid:
+        verdict.cheapest = name
+        verdict.sentences = [s for s in verdict.sentences if not s.startswith("Cheapest model")]
+        verdict.sentences.append(
+            f"Cheapest model within {percent(tolerance)}: {LADDER[name].title} "
+            f"({masses}), for first bending and below only."
+        )
+    made = record.lumped[base.model].variants if base.model in record.lumped else {}
+    if not made or verdict.trust is None or not synthesis:
+        return
+    errors = [
+        f"{n} {_error(v.frequency_error)}"
+        for n, v in made.items()
+        if v.feasible and v.frequency_error is not None
+    ]
+    verdict.sentences.append(
+        f"First bending of lumped models made from the {LADDER[base.model].title}: "
+        f"{', '.join(errors)}."
+    )
+    if not made["thesis"].feasible:
+        verdict.sentences.append(
+            "The thesis's equations 52 and 53 have no usable solution here: "
+            f"{made['thesis'].verdict}."
+        )
+
+
+def _error(relative: float) -> str:
+    return "exact" if abs(relative) < 1e-9 else f"{100 * relative:+.2g} %"
+
+
+def _model_record(rung: Solution, judgement: Judgement) -> ModelRecord:
+    return ModelRecord(
+        **drawn(rung.model),
+        valid=judgement.valid,
+        open=judgement.open,
+        why_not=judgement.why_not,
+        compliance=rung.condensed.compliance,
+        stiffness=rung.condensed.stiffness,
+        points=_points(rung.ties[SCENE]),
+        coupled=_coupled(rung.ties[SCENE]),
+        modes=[_mode_record(m) for m in rung.modes.modes],
+        band=_band_summary(rung),
+        convergence=_convergence(rung),
+        dofs=rung.body.size,
+        seconds=rung.meter.total(),
+        peak_mb=rung.meter.peak_mb,
+        backend=rung.condensed.evidence["backend"],
+        mesh=rung.body.mesh,
+        evidence=_evidence(rung),
+    )
+
+
+def _points(found: Answer) -> dict[str, PointRecord]:
+    return {
+        name: PointRecord(stiffness=there.stiffness, compliance=there.compliance)
+        for name, there in found.further.items()
+    }
+
+
+def _coupled(found: Answer) -> CoupledRecord | None:
+    both = found.coupled
+    if both is None:
+        return None
+    return CoupledRecord(
+        ports=list(both.ports),
+        stiffness=both.stiffness,
+        compliance=both.compliance,
+        stiffness_error=both.evidence["stiffness_error"],
+    )
+
+
+def _band_summary(rung: Solution) -> BandSummary | None:
+    own = rung.bands.get(SCENE, {})
+    if not own:
+        return None
+    each = {name: band.gci for name, band in own.items()}
+    method = next(iter(own.values())).method
+    return BandSummary(
+        compliance=max((v for k, v in each.items() if k.startswith("C_")), default=None),
+        method=f"{method}, {len(rung.levels)} meshes",
+        each=each,
+    )
+
+
+def _convergence(rung: Solution) -> ConvergenceRecord | None:
+    own = rung.bands.get(SCENE, {})
+    if not own:
+        return None
+    return ConvergenceRecord(
+        levels=[LevelRecord(**level) for level in rung.levels],
+        quantities={name: BandRecord(**asdict(band)) for name, band in own.items()},
+    )
+
+
+def _evidence(rung: Solution) -> EvidenceRecord:
+    statics, found = rung.condensed.evidence, rung.modes.evidence
+    return EvidenceRecord(
+        asymmetry=statics["asymmetry"],
+        refinement_residual=statics["residual"],
+        rigid_residual=rung.body.rigid_residual(),
+        modal_residual=found["residual"],
+        orthogonality=found["orthogonality"],
+        eigensolver=found["method"],
+        mode_count=found.get("count", []),
+        families=found.get("families", []),
+        complete=completeness(found, rung.model) if "count" in found else "",
+        rigid_modes=found["rigid_modes"],
+        coupling_bound=found["coupling_bound"],
+        shift_rad2=float(found["shift_rad2"]),
+    )
+
+
+def _mode_record(mode: Mode) -> ModeRecord:
+    return ModeRecord(
+        name=mode.name,
+        family=mode.family,
+        frequency_hz=mode.frequency_hz,
+        multiplicity=mode.multiplicity,
+        captured=mode.captured,
+        error=mode.error,
+    )
+
+
+def _variant_record(found: Answer) -> VariantRecord:
+    return VariantRecord(
+        quantities=found.quantities,
+        stiffness=found.condensed.stiffness,
+        compliance=found.condensed.compliance,
+        modes=[_mode_record(m) for m in found.modes.modes],
+    )
+
+
+def _mac(rungs: dict[str, Solution], reference: str | None) -> MacRecord | None:
+    if reference is None:
+        return None
+    base = rungs[reference].modes
+    tables = {}
+    for model, rung in rungs.items():
+        if model == reference:
+            continue
+        found = correlate(rung.modes, base)
+        tables[model] = MacTable(
+            rows=list(found.rows),
+            columns=list(found.columns),
+            values=found.values.tolist(),
+            pairs=[PartnerRecord(**asdict(p)) for p in found.partners],
+        )
+    return MacRecord(reference=reference, stations=base.stations.tolist(), models=tables)

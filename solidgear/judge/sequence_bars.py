@@ -1,0 +1,132 @@
+"""Bands of the finest mesh of a list, by the rule that its meshes allow."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from collections.abc import Sequence as Listed
+from functools import lru_cache
+from typing import TYPE_CHECKING
+
+from solidgear.bounds.safety import LAYERS, REFINEMENT
+from solidgear.judge.bars import Band, step_bands
+from solidgear.judge.quantities import (
+    measure,
+    measure_across,
+    points_of,
+    size,
+)
+from solidgear.judge.solving import solve
+from solidgear.ladder.meshes import HARMONIC
+from solidgear.meshing.corners import SHOULDER, sharpest_corner
+from solidgear.solve.statics import condense
+
+if TYPE_CHECKING:
+    from solidgear.bounds.safety import Safety
+    from solidgear.ladder.meshes import Sequence
+    from solidgear.ladder.model import Rung
+    from solidgear.scene import Scene
+
+#: exponent at the end of a rigid seat, a clamp on a smooth surface (Williams 1952, clamped-free at
+#: 180 degrees)
+RIGID_EDGE = 0.5
+#: kinds of features with right-angled re-entrant corners, where the meridian has none: teeth end at
+#: the next segment or in its face, holes and keyways have a bottom
+NOTCHED = frozenset({"teeth", "spline", "bolt_circle", "keyway", "flat"})
+#: rung that tells what features change, on its usual mesh: shares are taken of it
+PLAIN = "harmonic"
+
+
+def sequence_bands(
+    scene: Scene,
+    plan: Sequence,
+    rung: Rung,
+    levels: Listed[Mapping[str, float]],
+    solver: Mapping[str, float],
+    sizes: Listed[float | None],
+    around: Mapping[str, float] | None = None,
+) -> dict[str, Band]:
+    """Bands of the finest of some meshes.
+
+    Parameters
+    ----------
+    scene : Scene
+        Tied as the levels are.
+    plan : Sequence
+        That the meshes are of.
+    rung : Rung
+        With a :class:`~solidgear.bounds.safety.Safety`.
+    levels : sequence of mappings
+        Quantity to value, coarse to fine.
+    solver : mapping
+        Relative error the solver may have left in the finest level.
+    sizes : sequence of float
+        Representative size of the cells of every level, m.
+    around : mapping, optional
+        Relative error that the cells around leave.
+
+    Returns
+    -------
+    dict of str to Band
+        Empty of a single level, of meshes that are not ever finer, and of layered hexahedra beside a
+        fillet or a chamfer, where no layers lead to the corners.
+    """
+    if len(levels) < 2 or scene.corners and plan.turned is not None:
+        return {}
+    safety = rung.safety or (LAYERS if plan.layered else REFINEMENT)
+    if plan.layered:
+        effect = feature_effect(scene, safety, levels[-1])
+        return step_bands(levels, solver, safety, around=around, effect=effect)
+    last = [size or 0.0 for size in sizes[-3:]]
+    if not all(a > b > 0 for a, b in zip(last, last[1:])):
+        return {}
+    held = any(s.attachment == "rigid" for s in scene.stations)
+    notched = bool({f.kind for f in scene.features} & NOTCHED)
+    exponent = min(
+        sharpest_corner(scene)[1], RIGID_EDGE if held else 1.0, SHOULDER if notched else 1.0
+    )
+    left_over = 1 / ((last[-2] / last[-1]) ** (2 * exponent) - 1)
+    return step_bands(levels, solver, safety, left_over=left_over)
+
+
+def feature_effect(scene: Scene, safety: Safety, values: Mapping[str, float]) -> dict[str, float]:
+    """What features change of the quantities that a rung has shares of.
+
+    Parameters
+    ----------
+    scene : Scene
+        With features.
+    safety : Safety
+        Of the rung.
+    values : mapping
+        What it says of the quantities.
+
+    Returns
+    -------
+    dict of str to float
+        Relative and positive; empty where the rung has no shares. A bending frequency is held
+        against the nearest one of the plain part: features may change their order and their names.
+    """
+    if not safety.share:
+        return {}
+    asked = list(values)
+    pairs = {point for q in asked for point in points_of(q) or ()}
+    both = tuple(port.name for port in scene.ports if port.name in pairs)
+    plain, bending = _plain(scene.plain, both)
+    out = {}
+    for name in asked:
+        known = bending if name.startswith("bending") else [plain[name]] if name in plain else []
+        if known:
+            out[name] = float(min(abs(values[name] - v) for v in known) / size(values, name))
+    return out
+
+
+@lru_cache(maxsize=8)
+def _plain(plain: Scene, points: tuple[str, ...]) -> tuple[dict[str, float], list[float]]:
+    """Quantities of a plain part, those between some points included, and all bending frequencies;
+    every finer mesh asks for them.
+    """
+    found = solve(plain, PLAIN, **HARMONIC)
+    bending = [m.frequency_hz for m in found.modes.modes if m.name.startswith("bending")]
+    coupled = condense(found.body, plain, points) if points else None
+    across = measure_across(found.further, coupled)
+    return found.quantities | measure(None, None, None, coupled) | across, bending

@@ -1,0 +1,259 @@
+"""The cheapest body that answers a whole question within a tolerance.
+
+:func:`solidgear.judge.answer.answer` gives single numbers and builds no more than they need.
+Here the body itself is wanted, with all families of motion: for the 6x6 at the lumped point, for a
+list of modes, or for a sweep over its bearings.
+
+The error of a compliance matrix of displacement elements is positive semidefinite, and so is that
+of a stiffness matrix, from the other side: no entry errs by more than the geometric mean of its two
+diagonal entries' errors.  Bands of all six diagonal entries therefore hold all of the matrix.
+:data:`~solidgear.judge.quantities.QUANTITIES` names one bending plane and axial motion; where
+bearings differ between planes, the other one may rest on the mesh far more than the first, so it is
+measured as well, and torsion with it (:data:`~solidgear.judge.quantities.ACROSS`).
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import partial
+from typing import TYPE_CHECKING, Any
+
+from solidgear.body import Body
+from solidgear.bounds.refining import Meshed
+from solidgear.errors import SolidgearError, show
+from solidgear.judge.answer import climbed, usable
+from solidgear.judge.climb import Climb
+from solidgear.judge.quantities import (
+    QUANTITIES,
+    at_points,
+    between,
+    described,
+    in_order,
+    repeats,
+)
+from solidgear.judge.question import Question
+from solidgear.judge.refinement import Progress
+from solidgear.judge.solving import Numbers
+from solidgear.judge.steps import Step
+from solidgear.machine.threads import pinned
+
+if TYPE_CHECKING:
+    from solidgear.scene import Scene
+
+#: what may be asked of a body, and the kinds of quantities by which it is judged
+QUESTIONS: dict[str, tuple[str, ...]] = {
+    "stiffness": ("compliance", "stiffness"),
+    "modes": ("frequency",),
+    "all": ("compliance", "stiffness", "frequency"),
+}
+#: bars closer than this part of themselves are equal
+SAME = 1e-6
+
+
+@dataclass(frozen=True)
+class Settled:
+    """A body, and how sure it is of what was asked.
+
+    Attributes
+    ----------
+    scene : str
+    tolerance : float
+    rung : str
+    options : dict
+        Of the builder: with these, the rung gives the same body again.
+    body : Body
+        With all families of motion.
+    bars : dict of str to float
+        By quantity, relative; of couplings, to the geometric mean of their diagonal entries.
+        Infinite where nothing is known.
+    steps : tuple of Step
+        What was passed over and tried.
+    reached : bool
+        Whether every bar is within the tolerance. A scene that nothing holds has a stiffness of
+        exactly zero, and no bar to meet.
+    missing : tuple of str
+        Quantities that do not exist for this scene.
+    judged_on : int
+        Bearing sets that the bars were taken over.
+    point : str
+        The main lumped point.
+    mesh : Meshed or None
+        Of a harmonic solid.
+    """
+
+    scene: str
+    tolerance: float
+    rung: str
+    options: dict[str, Any]
+    body: Body
+    bars: dict[str, float]
+    steps: tuple[Step, ...]
+    reached: bool
+    missing: tuple[str, ...]
+    judged_on: int = 1
+    point: str = ""
+    mesh: Meshed | None = None
+
+    @property
+    def setting(self) -> str:
+        """The mesh in words."""
+        return next(step.setting for step in self.steps if step.chosen)
+
+    @property
+    def largest(self) -> tuple[str, float] | None:
+        """The quantity with the largest bar, and the bar; None where nothing is judged.
+
+        Twins of the two planes have equal bars but for rounding: the first listed is named.
+        """
+        if not self.bars:
+            return None
+        top = max(self.bars.values())
+        return next((q, bar) for q, bar in self.bars.items() if bar >= top * (1 - SAME))
+
+    def as_dict(self) -> dict[str, Any]:
+        """Plain data, without the body."""
+        return {
+            "rung": self.rung,
+            "setting": self.setting,
+            "options": self.options,
+            "tolerance": self.tolerance,
+            "bars": {q: bar if math.isfinite(bar) else None for q, bar in self.bars.items()},
+            "reached": self.reached,
+            "judged_on": self.judged_on,
+        }
+
+
+@pinned
+def settle(
+    scene: Scene,
+    tol: float | None = None,
+    ask: str = "all",
+    *,
+    points: Sequence[str] = (),
+    before: Settled | None = None,
+    progress: Progress = lambda _: None,
+) -> Settled:
+    """The cheapest body whose bands of all that is asked are within a tolerance.
+
+    Parameters
+    ----------
+    scene : Scene
+    tol : float, optional
+        Relative; by default the tolerance of the scene.
+    ask : {'all', 'stiffness', 'modes'}
+        Compliances and stiffnesses at the lumped point in all six directions, the first frequencies
+        of every family, or both.
+    points : sequence of str
+        Further lumped points at which the same is asked, and between which.
+    before : Settled, optional
+        What the same shaft was settled on with other bearings in the same seats: a harmonic solid is
+        judged on that body first, with what was already worked out for it.
+    progress : callable
+        Called with a sentence at every step.
+
+    Returns
+    -------
+    Settled
+        After the last mesh that could be solved; ``reached`` says whether it will do.
+
+    Raises
+    ------
+    SolidgearError
+        For a tolerance that is none or that arithmetic does not allow, another question, or a scene
+        that no rung can answer.
+
+    Examples
+    --------
+    >>> import solidgear as sg
+    >>> scene = sg.load("geometry/shaft_stepped.toml")
+    >>> found = settle(scene, 0.01, "stiffness")
+    >>> found.rung, found.reached, found.largest[1] <= 0.01
+    ('harmonic', True, True)
+    >>> found.body.size == sg.build(scene, found.rung, **found.options).size
+    True
+    """
+    tol = usable(scene.ask.tolerance if tol is None else tol)
+    if ask not in QUESTIONS:
+        raise SolidgearError(f"settle: ask = {show(ask, 40)}; use one of {', '.join(QUESTIONS)}")
+    wanted = tuple(q for q, (kind, _, _) in QUANTITIES.items() if kind in QUESTIONS[ask])
+    if points:
+        both = {scene.port.name, *points}
+        crossed = between(wanted, [port.name for port in scene.ports if port.name in both])
+        wanted = (*at_points(wanted, points), *crossed)
+    climb, steps = climbed(scene, tol, wanted, partial(Whole, before=before), progress)
+    assert climb.body is not None  # a rung without a single mesh is passed over
+    bars = climb.bars()
+    judged = bool(bars) or ask == "stiffness"
+    return Settled(
+        scene.name,
+        tol,
+        climb.rung.name,
+        climb.options,
+        climb.body,
+        bars,
+        tuple(steps),
+        judged and all(bar <= tol for bar in bars.values()),
+        tuple(q for q in wanted if q not in bars),
+        point=scene.port.name,
+        mesh=climb.mesh if climb.rung.bounded else None,
+    )
+
+
+class Whole(Climb):
+    """A climb on which every mesh carries all families, judged in all six directions.
+
+    Parameters
+    ----------
+    before : Settled, optional
+        Of the same shaft, on whose mesh and body it begins.
+    """
+
+    #: the body is given, with its own couplings
+    middles = False
+
+    def __init__(self, *args: Any, before: Settled | None = None):
+        super().__init__(*args)
+        self.before = before if before and before.rung == self.rung.name else None
+        if self.before and self.before.mesh is not None:
+            self.mesh = self.before.mesh
+
+    def _body(self, level: Mapping[str, Any], families: tuple[str, ...] | None) -> Body:
+        if self.before and dict(level) == self.before.options:
+            return self.before.body
+        return super()._body(level, families)
+
+    def bars(self) -> dict[str, float]:
+        """Relative bars by quantity, those of the other plane and of torsion included."""
+        names = [q for q in in_order(self.levels[-1].quantities) if q in self._wanted_here()]
+        return {q: self.bar(q) for q in names}
+
+    def _wanted_here(self) -> set[str]:
+        """What was asked for, and all static numbers that come with it."""
+        static = {described(q)[0] for q in self.wanted} - {"frequency"}
+        every = (q for level in self.levels for q in level.quantities)
+        return set(self.wanted) | {q for q in every if described(q)[0] in static and not repeats(q)}
+
+    def _known(self) -> list[str]:
+        known = super()._known()
+        return [*known, *sorted(self._wanted_here() - set(self.wanted))]
+
+    def _open(self) -> list[str]:
+        # the body is wanted, and one number that no mesh makes sure enough is enough to refuse it
+        floors, open_ = self.floors(), super()._open()
+        return [q for q in open_ if floors.get(q, 0.0) > self.tol] or open_
+
+    def needed(self, body: Body) -> None:
+        return None
+
+    def _questions(self) -> list[Question]:
+        return [(None, self.wanted)]
+
+    def _judged_names(self, found: Numbers, names: tuple[str, ...]) -> list[str]:
+        static = {described(q)[0] for q in names} - {"frequency"}
+        return [
+            q
+            for q in found.quantities
+            if q in names or described(q)[0] in static and not repeats(q)
+        ]

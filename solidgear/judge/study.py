@@ -1,0 +1,291 @@
+"""All that a comparison knows of one model of a scene, a solid on as many meshes as its bands need."""
+
+from __future__ import annotations
+
+import logging
+import math
+from collections.abc import Callable, Mapping
+from collections.abc import Sequence as Listed
+from typing import TYPE_CHECKING, Any
+
+from solidgear.body import as_supports
+from solidgear.errors import SolidgearError
+from solidgear.judge.bars import Band
+from solidgear.judge.bounded import Bounded, Statics, bounded
+from solidgear.judge.quantities import change, usual
+from solidgear.judge.question import Solved, mesh_words
+from solidgear.judge.refinement import Loop, Progress
+from solidgear.judge.sequence_bars import sequence_bands
+from solidgear.judge.solution import Solution
+from solidgear.judge.solving import ENOUGH, Answer, Numbers, searched
+from solidgear.judge.tied import facts_of, judged_modes, solved_ties, tied_answer
+from solidgear.judge.ties import SCENE, SECTION, rigid_seats
+from solidgear.ladder import build
+from solidgear.ladder.meshes import HEAVY
+from solidgear.ladder.registry import LADDER
+from solidgear.machine.meter import Meter
+from solidgear.models.options import ATTACHMENTS
+
+if TYPE_CHECKING:
+    from solidgear.scene import Scene
+
+log = logging.getLogger(__name__)
+Keep = Callable[[Solution], None]
+
+
+def study(
+    scene: Scene,
+    model: str,
+    options: Mapping[str, Any] | None = None,
+    *,
+    share: float | None = None,
+    most: int | None = None,
+    evidence: bool = True,
+    counted: bool = True,
+    progress: Progress = lambda _: None,
+    keep: Keep = lambda _: None,
+) -> Solution:
+    """Solve one model of a scene, a solid on as many meshes as its bands need.
+
+    Parameters
+    ----------
+    scene : Scene
+    model : str
+        A fidelity.
+    options : mapping, optional
+        Builder options; where they speak of the mesh, that mesh is solved, and of a solid on a list of
+        meshes two coarser ones.
+    share : float, optional
+        Bands of the judged quantities are wanted below the tolerance of the scene divided by this;
+        by default what its rung asks for, 10 for the harmonic solid, which judges.
+    most : int, optional
+        Levels to stop at.
+    evidence : bool
+        Count the modes, and solve the other attachments.
+    counted : bool
+        Whether modes are counted as part of it.
+    progress : callable
+        Told in words what is going on.
+    keep : callable
+        Given what there is after every mesh, for an interrupt to leave it.
+
+    Raises
+    ------
+    SolidgearError
+        If the first mesh cannot be solved; later ones that cannot are in ``failed``.
+    """
+    options, own = dict(options or {}), LADDER[model]
+    if own.meshes is None:
+        meter = Meter()
+        progress(f"{model}: build, statics, modes")
+        ties = solved_ties(scene, model, options, meter, 0 if evidence and counted else math.inf)
+        rung = Solution(model, ties, meter, options=options)
+        keep(rung)
+    else:
+        tol = scene.ask.tolerance / (share or own.share)
+        loop = Tied(scene, own, usual(scene), tol, progress, options, most)
+        loop.counted, loop.keep = evidence and counted, keep
+        rung = loop.studied()
+    if evidence:
+        _add_variants(scene, rung, progress)
+    return rung
+
+
+class Tied(Loop):
+    """A loop on which every mesh is solved with the ties of the scene and like for like.
+
+    Attributes
+    ----------
+    counted : bool
+        Whether modes are counted on the last mesh.
+    keep : callable
+        Given what there is after every mesh.
+    solution : Solution or None
+        Of the last mesh.
+    """
+
+    middles = False
+    counted = False
+    solution: Solution | None = None
+
+    def __init__(self, *args: Any):
+        super().__init__(*args)
+        self.keep: Keep = lambda _: None
+        self.meter = Meter()
+        self.failed: dict[str, str] = {}
+        self.solved: list[dict[str, Numbers]] = []
+        self.facts: list[dict] = []
+        self.around: dict[str, dict[str, float]] = {}
+
+    @property
+    def called(self) -> str:
+        return self.rung.name
+
+    def studied(self) -> Solution:
+        """What the last mesh that could be solved says."""
+        try:
+            self.run()
+        except (SolidgearError, MemoryError) as error:
+            if self.solution is None or self.plan.fixed:
+                raise
+            self.failed["finer mesh"] = str(error) or "not enough memory"
+        assert self.solution is not None
+        if self.rung.bounded:
+            if why := self.steps[-1].why * (self.most is None and not self.plan.fixed):
+                self.failed["narrower bars"] = why
+            self._finish(self.solution)
+        return self.solution
+
+    def _solve(self, level: Mapping[str, Any]) -> Solved:
+        k, before = len(self.levels), dict(self.meter.seconds)
+        if self.solution is not None:
+            self.solution.body.kept.clear()  # its factor need not be held beside the next one
+        counted_from = self._counted_from(k)
+        ties = solved_ties(
+            self.scene, self.rung.name, level, self.meter, counted_from, self.rung.bounded
+        )
+        if self.solution is not None:
+            _book_as_evidence(self.meter, before)
+        found = ties[SCENE]
+        self.solved.append({tie: one.numbers for tie, one in ties.items()})
+        self.facts.append(facts_of(found))
+        self.solution = rung = Solution(self.rung.name, ties, self.meter)
+        rung.levels, rung.failed, rung.options = self.facts, self.failed, dict(level)
+        score = None
+        with self.meter.stage("band"):
+            if self.rung.bounded:
+                told = _judged(self.scene, found, self.wanted)
+                rung.bands, rung.scores = {SCENE: told.bands}, told.scores
+                self.bands = told.bands
+                score = self.score(told, self.wanted)
+            else:
+                self._turn()
+                rung.bands = self._bands()
+        self.keep(rung)
+        return Solved(found.body, found.numbers, found.body.size, self.facts[-1]["h"], score)
+
+    def _counted_from(self, k: int) -> float:
+        """Unknowns from which on modes of a mesh of a list are counted."""
+        if not self.counted or self.rung.bounded:
+            return math.inf
+        if k == len(self.plan.levels) - 1 if self.plan.fixed else k >= 2:
+            return 0
+        # the second level is counted as well where a third one may be too dear to be solved
+        return HEAVY + 1 if not self.plan.fixed and k == 1 else math.inf
+
+    def judge(self) -> float | None:
+        if not self.rung.bounded:
+            assert self.solution is not None
+            self.bands = self.solution.bands.get(SCENE, {})
+        bars = [band.gci for name, band in self.bands.items() if name in self.wanted]
+        return max(bars, default=None) if self._enough() else None
+
+    def _enough(self) -> bool:
+        """Whether there are meshes enough for bands to end the loop: of a list three, or two large
+        ones.
+        """
+        k = len(self.levels)
+        if self.rung.bounded or self.plan.fixed:
+            return self.rung.bounded or k == len(self.plan.levels)
+        return k > 2 or k == 2 and self.facts[-1]["dofs"] > HEAVY
+
+    def _spared(self, level: Mapping[str, Any], error: Exception) -> bool:
+        coarser = self.plan.fixed and level is not self.plan.levels[-1]
+        if coarser:
+            self.failed["band"] = str(error) or "not enough memory"
+        return coarser
+
+    def _turn(self) -> None:
+        """Measure what the cells around leave, on the first mesh."""
+        turned = self.plan.turned
+        if turned is None or self.around:
+            return
+        self.progress(f"{self.called}: {mesh_words(turned)}")
+        ties = solved_ties(self.scene, self.rung.name, turned, Meter())
+        for tie in set(self.solved[0]) & set(ties):
+            finer = ties[tie].quantities
+            changes = {q: change(self.solved[0][tie].quantities, finer, q) for q in finer}
+            left = self.plan.left_around
+            self.around[tie] = {q: left * abs(c) for q, c in changes.items() if c is not None}
+
+    def _bands(self) -> dict[str, dict[str, Band]]:
+        """Bands of the finest mesh of a list for every way of tying that the last ones have."""
+        out = {}
+        for tie in (SCENE, SECTION):
+            known = [s for s in self.solved if tie in s]
+            if len(known) < 2 or tie not in self.solved[-1]:
+                continue
+            values, solver = [s[tie].quantities for s in known], known[-1][tie].solver
+            sizes = [f["mesh"].get("representative_size") for f in self.facts]
+            tied = self.scene if tie == SCENE else self.scene.with_attachment("section")
+            around = self.around.get(tie)
+            found = sequence_bands(tied, self.plan, self.rung, values, solver, sizes, around)
+            if found:
+                out[tie] = found
+        return out
+
+    def _finish(self, rung: Solution) -> None:
+        """Bars with section ties, and modes counted."""
+        scene, found, tied = self.scene, rung.ties[SCENE], rung.ties.get(SECTION)
+        self.progress(f"{self.called}: section ties")
+        if tied is not None:
+            plain = scene.with_attachment("section")
+            with self.meter.stage("band"):
+                own = (
+                    rung.bands[SCENE] if tied is found else _judged(plain, tied, self.wanted).bands
+                )
+            rung.bands[SECTION] = own
+        if self.counted:
+            assert found.supports is not None  # of what was just answered
+            with self.meter.stage("count"):
+                found.modes = searched(
+                    found.body,
+                    found.supports,
+                    max(scene.ask.modes, ENOUGH),
+                    judged_modes(scene),
+                    max_frequency=scene.ask.max_frequency,
+                    count=True,
+                    ovalising=True,
+                )
+
+
+def _judged(scene: Scene, found: Answer, names: Listed[str]) -> Bounded:
+    """Bars of an answer by local problems."""
+    statics = Statics(found.condensed, found.further, found.coupled)
+    known = [q for q in dict.fromkeys((*names, *found.quantities)) if q in found.quantities]
+    assert found.supports is not None  # of what was just answered
+    left = found.numbers.solver
+    return bounded(scene, found.body, found.supports, statics, found.modes, known, left)
+
+
+def _book_as_evidence(meter: Meter, before: dict[str, float]) -> None:
+    """What coarser levels cost is evidence; the price of the answer is that of the last level."""
+    earlier = {stage: before.get(stage, 0.0) for stage in ("build", "statics", "modes", "count")}
+    for stage, seconds in earlier.items():
+        meter.move(stage, "band", seconds)
+
+
+def _add_variants(scene: Scene, rung: Solution, progress: Progress) -> None:
+    """The same scene with each attachment everywhere; a 3D solid only with those its mesh carries."""
+    given = {s.attachment for s in scene.stations}
+    spare = Meter()
+    progress(f"{rung.model}: attachments")
+    with rung.meter.stage("attachments"):
+        for attachment in ATTACHMENTS:
+            try:
+                if given == {attachment}:
+                    rung.variants[attachment] = rung.ties[SCENE]
+                elif attachment == "section" and SECTION in rung.ties:
+                    rung.variants[attachment] = rung.ties[SECTION]
+                elif LADDER[rung.model].section_ties:
+                    changed = (
+                        rigid_seats(scene)
+                        if attachment == "rigid"
+                        else scene.with_attachment(attachment)
+                    )
+                    body = build(changed, rung.model, **rung.options)
+                    rung.variants[attachment] = tied_answer(
+                        changed, body, as_supports(changed), None, spare, False
+                    )
+            except SolidgearError as error:
+                log.info("%s: attachment %s left out: %s", rung.model, attachment, error)

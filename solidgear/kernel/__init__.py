@@ -1,0 +1,1 @@
+"""Finite elements without a model: assembly, shapes of cells, ties, local problems."""

@@ -1,0 +1,115 @@
+"""A function in a process of its own: what a library does that may end the process, or never
+return, ends that one.
+"""
+
+from __future__ import annotations
+
+import importlib
+import os
+import pickle
+import subprocess
+import sys
+import tempfile
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+_ROOT = str(Path(__file__).resolve().parents[2])
+_CODE = "from solidgear.machine.isolated import _serve; _serve()"
+
+
+class ApartError(RuntimeError):
+    """The process ended without a result: it was killed by a signal, or took too long."""
+
+
+def apart(function: Callable, *arguments: Any, seconds: float, memory_mb: float = 8000.0) -> Any:
+    """Result of a function that is called in a process of its own, or what it raises.
+
+    Parameters
+    ----------
+    function : callable
+        Of a module that can be imported.
+    *arguments
+        Passed to it; they and its result can be pickled.
+    seconds : float
+        After which it is killed.
+    memory_mb : float
+        Address space it may take, where the system can limit it.
+
+    Returns
+    -------
+    object
+
+    Raises
+    ------
+    ApartError
+        If the process ended without a result, or was killed after ``seconds``.
+    Exception
+        Whatever else the function raises.
+
+    Examples
+    --------
+    >>> import math
+    >>> apart(math.hypot, 3.0, 4.0, seconds=60)
+    5.0
+    """
+    place = os.pathsep.join(filter(None, (_ROOT, os.environ.get("PYTHONPATH"))))
+    with tempfile.TemporaryDirectory(prefix="solidgear") as folder:
+        given, made = Path(folder) / "given", Path(folder) / "made"
+        given.write_bytes(pickle.dumps((_name(function), arguments, memory_mb)))
+        try:
+            # what the library prints is no message of ours
+            done = subprocess.run(
+                [sys.executable, "-c", _CODE, str(given), str(made)],
+                env={**os.environ, "PYTHONPATH": place},
+                stdin=subprocess.DEVNULL,
+                stdout=subprocess.DEVNULL,
+                stderr=subprocess.DEVNULL,
+                timeout=seconds,
+            )
+        except subprocess.TimeoutExpired:
+            raise ApartError(f"took longer than {seconds:g} s") from None
+        if not made.exists():
+            how = f"signal {-done.returncode}" if done.returncode < 0 else f"code {done.returncode}"
+            raise ApartError(f"ended by itself ({how})")
+        succeeded, value = pickle.loads(made.read_bytes())
+    if not succeeded:
+        raise value
+    return value
+
+
+def _name(function: Callable) -> tuple[str, str]:
+    """Module and name of a function; of one that is run as a script, its module."""
+    module = function.__module__
+    if module == "__main__":
+        spec = getattr(sys.modules["__main__"], "__spec__", None)
+        module = spec.name if spec is not None else module
+    return module, function.__qualname__
+
+
+def _serve() -> None:
+    """In the process itself: call what was given and leave what it made."""
+    given, made = (Path(name) for name in sys.argv[1:3])
+    (module, name), arguments, memory_mb = pickle.loads(given.read_bytes())
+    _limit(memory_mb)
+    try:
+        function = getattr(importlib.import_module(module), name)
+        out = (True, function(*arguments))
+    except Exception as error:
+        out = (False, error)
+    part = made.with_suffix(".part")
+    try:
+        part.write_bytes(pickle.dumps(out))
+    except Exception as error:  # an exception that cannot be pickled is still told
+        part.write_bytes(pickle.dumps((False, ApartError(f"{type(error).__name__}: {out[1]}"))))
+    part.rename(made)
+
+
+def _limit(memory_mb: float) -> None:
+    try:
+        import resource
+    except ImportError:  # not on Windows
+        return
+    size = int(memory_mb * 2**20)
+    _, hard = resource.getrlimit(resource.RLIMIT_AS)
+    resource.setrlimit(resource.RLIMIT_AS, (size if hard < 0 else min(size, hard), hard))

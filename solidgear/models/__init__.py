@@ -1,0 +1,1 @@
+"""Models of a shaft: from a scene to a free elastic body with ports."""

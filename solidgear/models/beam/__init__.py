@@ -1,0 +1,1 @@
+"""Beams: Euler-Bernoulli and Timoshenko."""

@@ -1,0 +1,1 @@
+"""Axisymmetric-harmonic solids."""

@@ -1,0 +1,123 @@
+r"""Motion of a patch of a surface of revolution by single harmonics: where teeth touch.
+
+A port moves as the mean of a whole ring, which harmonics n >= 2 leave alone.  Teeth touch on a
+patch: an arc of the circumference about the angle t0, over the length of a seat.  With ``s = t -
+t0`` a displacement of harmonic n has a part that is even about the patch and one that is odd,
+
+    u_r = U cos ns,  u_t = -V sin ns,  u_y = W cos ns,        u_r = U sin ns,  u_t = V cos ns,  ...
+
+and its mean over the patch is that of U and W (even) and V (odd) along the meridian, times
+``sin(n b) / (n b)`` with b half the arc.  A patch and not a point: the compliance of a point has no
+limit as harmonics are added, that of a patch has one.
+
+Along the patch directions turn with the surface, as those of teeth do.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from solidgear.body import Body
+from solidgear.errors import SolidgearError
+from solidgear.kernel.assembly import tabulate
+from solidgear.models.harmonic.blocks import _CORNERS, _Work
+from solidgear.models.harmonic.body import HarmonicMesh
+from solidgear.scene import Scene
+
+
+@dataclass(frozen=True)
+class Patch:
+    """Where teeth touch a shaft.
+
+    Attributes
+    ----------
+    first, last : float
+        Its ends along the shaft, m.
+    angle : float
+        Of its middle, rad; 0 on the z axis, a quarter turn on the x axis.
+    arc : float
+        Of the circumference, rad.
+    """
+
+    first: float
+    last: float
+    angle: float
+    arc: float
+
+    @property
+    def axes(self) -> np.ndarray:
+        """(3, 3) radial, tangential and axial direction at its middle, as columns x y z."""
+        c, s = np.cos(self.angle), np.sin(self.angle)
+        return np.array([[s, c, 0.0], [0.0, 0.0, 1.0], [c, -s, 0.0]])
+
+
+class PatchMotion:
+    """Mean motion of a patch of a harmonic solid, harmonic by harmonic.
+
+    Parameters
+    ----------
+    scene : Scene
+    body : Body
+        Of the harmonic solid.
+    patch : Patch
+
+    Raises
+    ------
+    SolidgearError
+        If the body is no harmonic solid, or the shaft has no outer surface there.
+    """
+
+    def __init__(self, scene: Scene, body: Body, patch: Patch):
+        geometry = body.geometry
+        if not isinstance(geometry, HarmonicMesh):
+            raise SolidgearError(
+                f"the {body.fidelity} body has no harmonics around its axis; use harmonic"
+            )
+        flat, order = geometry.meridian, int(body.mesh["order"])
+        self.patch = patch
+        self._work = _Work(scene, geometry.mesh, geometry.element, geometry.dofs, flat, order)
+        self._mean = self._along()
+
+    def _along(self) -> np.ndarray:
+        """(n,) mean over the meridian of the patch, weighted by area, of a scalar unknown."""
+        work, first, last = self._work, self.patch.first, self.patch.last
+        ends = work.flat.points[1][work.flat.cells[1:3, work.flat.outer]]
+        out, area = np.zeros(work.n), 0.0
+        for cell, (one, other) in zip(work.flat.outer, ends.T):
+            # the share of the cell's outer side that lies on the patch
+            low, high = np.clip((np.array([first, last]) - one) / (other - one), 0.0, 1.0)
+            if high - low < 1e-9:
+                continue
+            points = np.vstack([np.ones_like(work.g), low + (high - low) * work.g])
+            t = tabulate(_CORNERS, work._nodes(np.array([cell])), work.element, points)
+            side = np.linalg.norm(t.tangent[:, :, :, 1], axis=2)[0]
+            weight = side * work.gw * (high - low) * t.x[0][0]
+            np.add.at(out, work.dofs[:, cell], np.atleast_2d(t.value) @ weight)
+            area += weight.sum()
+        if area == 0.0:
+            raise SolidgearError(
+                f"there is no outer surface from {1e3 * first:.4g} to {1e3 * last:.4g} mm; "
+                "the patch of the teeth must lie on the shaft"
+            )
+        return out / area
+
+    def rows(self, n: int) -> np.ndarray:
+        """Mean radial, tangential and axial motion: of the even part, the odd one, the even one.
+
+        Parameters
+        ----------
+        n : int
+            Waves around the axis, 1 or more.
+
+        Returns
+        -------
+        (3, m) ndarray
+            On the unknowns of the block of n waves (p, q, w).
+        """
+        half = n * self.patch.arc / 2
+        # u_r = p + q, u_t = p - q, u_y = w
+        parts = np.array([[1.0, 1.0, 0.0], [1.0, -1.0, 0.0], [0.0, 0.0, 1.0]])
+        every = np.einsum("k,ic->ikc", self._mean * np.sinc(half / np.pi), parts)
+        return every.reshape(3, -1)[:, self._work.kept(n)]

@@ -1,0 +1,78 @@
+"""Numbers within limits, or one sentence: single ones, and sizes of cells."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, TypeVar
+
+from solidgear.errors import SolidgearError, show
+from solidgear.models.options import is_number, within
+
+if TYPE_CHECKING:
+    from solidgear.scene.shaft import Shaft
+
+Given = TypeVar("Given")
+#: lines of cells along the shaft, or across it; a mesh of so many has billions of unknowns in 3D
+MOST_LINES = 20_000
+
+
+def number(
+    model: str,
+    name: str,
+    value: Given,
+    *,
+    above: float | None = None,
+    least: float | None = None,
+    below: float | None = None,
+    whole: bool = False,
+) -> Given:
+    """A number within limits, or one sentence.
+
+    Parameters
+    ----------
+    model, name : str
+        Of the builder and its option, for the sentence.
+    value : object
+        None is passed through: the builder's default.
+    above, least, below : float, optional
+        Limits; ``least`` may be met, the others not.
+    whole : bool
+        Whether it must be an integer.
+
+    Raises
+    ------
+    SolidgearError
+    """
+    if value is None or is_number(value, whole) and within(value, above, least, below):
+        return value
+    limits = [
+        f"{word} {limit:g}"
+        for word, limit in (("above", above), ("at least", least), ("below", below))
+        if limit is not None
+    ]
+    raise SolidgearError(
+        f"{model}: {name} = {show(value)} is not usable; give a {'whole ' if whole else ''}number "
+        f"{' and '.join(limits)}"
+    )
+
+
+def countable(model: str, scene: Shaft, size: float, refinement: float) -> float:
+    """A size of cells of which a mesh can be laid out at all, or one sentence.
+
+    Parameters
+    ----------
+    model : str
+    scene : Scene
+    size : float
+        Of cells where nothing asks for smaller ones, m.
+    refinement : float
+    """
+    extent = max(scene.length, *(max(s.outer0, s.outer1) for s in scene.segments))
+    lines = extent / size * refinement
+    if lines > MOST_LINES:
+        raise SolidgearError(
+            f"{model}: cells of {size / refinement:.3g} m would make {lines:.3g} lines of them, "
+            f"more than {MOST_LINES}; give size of at least "
+            f"{extent * refinement / MOST_LINES:.3g} m "
+            "or a smaller refinement"
+        )
+    return size

@@ -1,0 +1,223 @@
+"""A free body seen from its ports: rigid motions, lowest free modes, and what else ports feel.
+
+Rubin's representation (1975, AIAA J. 13, 996): with U the free elastic modes, G the rows of the
+ports and H the inverse of K without rigid motions and without U, a body is
+
+    u = R a + U q + H G' f,    rigid mass, lambda, G U,    mu_0 = G H G',    mu_1 = G H M H G',
+
+numbers of the ports alone, whatever mesh they came from. Two meshes of one part have nearly the same
+ones, so that those of one can be corrected by the difference of two others.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+import scipy.sparse as sp
+from scipy.sparse.csgraph import min_weight_full_bipartite_matching
+
+from solidgear.body import Body
+from solidgear.solve.inertia_relief import elastic_fields
+from solidgear.solve.modes import modes
+from solidgear.solve.statics import factors, of_twin
+
+#: stations by whose motions modes of two meshes are recognised
+STATIONS = 25
+#: share of a mode that sections must hold to be one of a shaft: what ovalises is left to mu_0
+SHAFT = 0.5
+
+
+@dataclass
+class Modal:
+    """Port numbers of a free body.
+
+    Attributes
+    ----------
+    rigid_mass : (6, 6) ndarray
+    value : (k, k) ndarray
+        Stiffness among the modes, rad^2/s^2: diagonal before it is corrected.
+    motions : (6 p, k) ndarray
+        G U.
+    sections : (6 s, k) ndarray
+        Motions of sections in every mode.
+    gram : (6 s, 6 s) ndarray
+        Mass matrix of sections.
+    static, inert : (6 p, 6 p) ndarray
+        mu_0 and mu_1 before any mode is taken out of H.
+    vectors : list of dict of int to ndarray
+        The modes on the mesh.
+    moves : list of tuple of int
+        Port components of the block that each mode is of.
+    fields : dict of int to ndarray
+        ``H G'`` on the mesh likewise, by block, columns of that block's port components.
+    """
+
+    rigid_mass: np.ndarray
+    value: np.ndarray
+    motions: np.ndarray
+    sections: np.ndarray
+    gram: np.ndarray
+    static: np.ndarray
+    inert: np.ndarray
+    vectors: list[dict[int, np.ndarray]]
+    moves: list[tuple[int, ...]]
+    fields: dict[int, np.ndarray]
+
+    def residual(self, turn: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """mu_0 and mu_1 with some combinations of the modes taken out.
+
+        Parameters
+        ----------
+        turn : (k, l) ndarray
+            The combinations, orthonormal.
+
+        Returns
+        -------
+        static, inert : (6 p, 6 p) ndarray
+        """
+        motions, value = self.motions @ turn, turn.T @ self.value @ turn
+        reached = np.linalg.solve(value, motions.T)
+        return self.static - motions @ reached, self.inert - reached.T @ reached
+
+    def without_modes(self, fields: np.ndarray, index: int, rows: np.ndarray) -> np.ndarray:
+        """Fields of unit port loads of a block, the modes taken out.
+
+        Parameters
+        ----------
+        fields : (n, q) ndarray
+        index : int
+            Of the block.
+        rows : (q,) ndarray of int
+            Port components of the loads.
+        """
+        for i, vector in enumerate(self.vectors):
+            if index in vector:
+                reached = self.motions[rows, i] / self.value[i, i]
+                fields = fields - np.outer(vector[index], reached)
+        return fields
+
+    def first(self, count: int) -> Modal:
+        """The same with its lowest modes only."""
+        return replace(
+            self,
+            value=self.value[:count, :count],
+            motions=self.motions[:, :count],
+            sections=self.sections[:, :count],
+            vectors=self.vectors[:count],
+            moves=self.moves[:count],
+        )
+
+    def within(self, own: tuple[int, ...]) -> np.ndarray:
+        """Places of the modes that move in some port components and in no others."""
+        return np.array([k for k, moved in enumerate(self.moves) if set(moved) <= set(own)], int)
+
+
+def modal(body: Body, count: int) -> Modal:
+    """Port numbers of a free body with its ``count`` lowest modes, twins counted twice.
+
+    Parameters
+    ----------
+    body : Body
+    count : int
+
+    Returns
+    -------
+    Modal
+    """
+    found = modes(body, (), n=count, ovalising=False, stations=STATIONS)
+    vectors, values, moved = [], [], []
+    for mode in found.modes:
+        if mode.frequency_hz == 0.0 or mode.captured < SHAFT:
+            continue
+        for vector, motion in zip(mode.vectors, mode.motions):
+            vectors.append(vector)
+            moved.append(motion.ravel())
+            values.append(sum(v @ (body.blocks[b].stiffness @ v) for b, v in vector.items()))
+    motions = np.array([_port_motions(body, v) for v in vectors]).T
+    sections = np.array(moved).T
+    static, inert, fields = _static(body)
+    return Modal(
+        body.mass_matrix(),
+        np.diag(values),
+        motions.reshape(6 * len(body.ports), len(vectors)),
+        sections.reshape(6 * STATIONS, len(vectors)),
+        found.gram,
+        static,
+        inert,
+        vectors,
+        [body.blocks[next(iter(vector))].components for vector in vectors],
+        fields,
+    )
+
+
+def _port_motions(body: Body, vectors: dict[int, np.ndarray]) -> np.ndarray:
+    out = np.zeros(6 * len(body.ports))
+    for b, vector in vectors.items():
+        block = body.blocks[b]
+        out[body.rows(block)] += block.ports @ vector
+    return out
+
+
+def _static(body: Body) -> tuple[np.ndarray, np.ndarray, dict[int, np.ndarray]]:
+    """mu_0, mu_1 and the fields of unit port loads, rigid motions taken out."""
+    n = 6 * len(body.ports)
+    static, inert = np.zeros((2, n, n))
+    fields: dict[int, np.ndarray] = {}
+    for index, (block, factor) in enumerate(zip(body.blocks, factors(body))):
+        rows = np.ix_(body.rows(block), body.rows(block))
+        if block.mirror is not None:
+            original, signs = block.mirror
+            for matrix in (static, inert):
+                matrix[rows] = of_twin(body, block, matrix)
+            fields[index] = fields[original] * np.tile(signs, len(body.ports))
+            continue
+        load = block.ports.T.toarray()
+        load, u, _ = elastic_fields(
+            factor.solve,
+            block.mass.__matmul__,
+            block.stiffness.__matmul__,
+            block.rigid,
+            load,
+            1e-20,
+        )
+        # stationary at the solution (Clapeyron)
+        work = u.T @ load
+        static[rows] = work + work.T - u.T @ (block.stiffness @ u)
+        inert[rows] = u.T @ (block.mass @ u)
+        fields[index] = u
+    return (static + static.T) / 2, (inert + inert.T) / 2, fields
+
+
+def alike_turn(sections: np.ndarray, other: np.ndarray, gram: np.ndarray) -> np.ndarray:
+    """The rotation of some modes that makes them most like others, by what sections do.
+
+    Parameters
+    ----------
+    sections : (6 s, k) ndarray
+    other : (6 s, l) ndarray
+    gram : (6 s, 6 s) ndarray
+
+    Returns
+    -------
+    (k, l) ndarray
+        With orthonormal columns (k >= l). Every one of the others is given a mode of its own, by
+        the squared cosine between them; these are turned among themselves so that ``sections @
+        turn`` is nearest to ``other`` (the orthogonal Procrustes problem). Modes that stand for
+        none take no part: the span stays one of modes.
+
+    Examples
+    --------
+    >>> alike_turn(np.eye(2), -np.eye(2)[:, ::-1], np.eye(2)).round(12)
+    array([[ 0., -1.],
+           [-1.,  0.]])
+    """
+    product = sections.T @ gram @ other
+    size, wanted = (np.einsum("ik,ij,jk->k", s, gram, s) for s in (sections, other))
+    # of 1 and more, for a zero in a sparse matrix is a pair that may not be
+    cosines = sp.csr_matrix(1.0 + product.T**2 / np.outer(wanted, size))
+    _, chosen = min_weight_full_bipartite_matching(cosines, maximize=True)
+    u, _, vt = np.linalg.svd(product[chosen])
+    turn = np.zeros(product.shape)
+    turn[chosen] = u @ vt
+    return turn

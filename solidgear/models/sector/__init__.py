@@ -1,0 +1,1 @@
+"""Parts of equal sectors by cyclic symmetry."""

@@ -1,0 +1,164 @@
+"""The isoparametric mesh of a sector: what repeats itself, its seats, and pictures of all copies."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from solidgear.body.surface import Surface
+from solidgear.frames import rotation
+from solidgear.meshing.sector import SectorMesh, cut_vertices, matched
+from solidgear.models.sector.cyclic import Sector
+from solidgear.models.solid.block import Facets
+from solidgear.models.solid.drawing import solid_surface
+from solidgear.models.solid.mesh import SolidMesh, _isoparametric
+from solidgear.models.solid.seat_faces import Seats
+
+
+def seats(mesh: SolidMesh, straight: np.ndarray, scene, features) -> Facets:
+    """Facets of seats: on what is left of surfaces of revolution, and flanks, tips and roots of
+    teeth.
+
+    Parameters
+    ----------
+    mesh : SolidMesh
+        Of a sector, or of the whole.
+    straight : (3, nv) ndarray
+        Places of its vertices, m; only y and the radius count.
+    scene : Scene
+    features : sequence of Teeth, Spline or BoltCircle
+
+    Returns
+    -------
+    callable
+        ``facets(station, attachment)``.
+    """
+    toothed = {f.segment: f for f in features if f.kind != "bolt_circle"}
+    tolerance = 1e-7 * scene.length
+    plain = [s for s in scene.segments if s.name not in toothed]
+    on_cylinder = Seats(mesh, plain, clipped=False)
+    corners = mesh.mesh.facets[:, mesh.boundary]
+    y, r = straight[1, corners], np.hypot(*straight[[0, 2]][:, corners])
+
+    def facets(station, attachment):
+        found = on_cylinder(station, attachment)
+        if attachment == "section":
+            return found
+        low, high = y.min(axis=0), y.max(axis=0)
+        on = np.zeros(len(mesh.boundary), bool)
+        for s in scene.segments:
+            if s.name in toothed:
+                teeth = toothed[s.name]
+                pitch = s.outer0 + (s.outer1 - s.outer0) * (y - s.y0) / s.length
+                # chords of roots run below their circle by this at most; bores and holes lie deeper
+                least = teeth.root * np.cos(np.pi / teeth.count - teeth.root_half) * (1 - 1e-6)
+                here = (low > s.y0 - tolerance) & (high < s.y1 + tolerance)
+                on |= here & (r > least * pitch).all(axis=0)
+        inside = (low >= station.lo - tolerance) & (high <= station.hi + tolerance)
+        steep = high - low > tolerance
+        return np.union1d(found, mesh.boundary[inside & steep & on])
+
+    return facets
+
+
+@dataclass(frozen=True, eq=False)
+class PieceSolid(SolidMesh):
+    """The mesh of a piece of a part, which draws all of it.
+
+    Attributes
+    ----------
+    inner : (k,) ndarray of int
+        Facets inside the whole part: cut faces, and the middle plane of a half.
+    """
+
+    inner: np.ndarray
+
+    @cached_property
+    def boundary(self) -> np.ndarray:
+        """Indices of the facets on the surface of the whole part."""
+        return np.setdiff1d(self.mesh.boundary_facets(), self.inner)
+
+    def volume(self) -> None:  # type: ignore[override]
+        """No mesh of the whole part."""
+
+
+@dataclass(frozen=True, eq=False)
+class SectorSolid(PieceSolid):
+    """The mesh of a sector, which draws the whole part.
+
+    Attributes
+    ----------
+    sector : Sector
+    """
+
+    sector: Sector
+
+    def surface(self, moved: Mapping[str, np.ndarray]) -> Surface:
+        """All copies of the sector, each with its phase."""
+        parts = {}
+        for name, vector in moved.items():
+            h = int(name.removeprefix("cyclic_"))
+            pieces = (vector,) if h == 0 else (vector[::2], vector[1::2])
+            parts[h] = [solid_surface(self, piece).displacement for piece in pieces]
+        rest = solid_surface(self, None)
+        size, copies = len(rest.points), []
+        for k in range(self.sector.count):
+            angle = k * self.sector.angle
+            local = np.zeros((size, 3))
+            for h, fields in parts.items():
+                for factor, field in zip((np.cos(h * angle), -np.sin(h * angle)), fields):
+                    local += factor * field
+            turn = rotation(1, angle)[:3, :3].T
+            copies.append((rest.points @ turn, local @ turn))
+        points, displacement = (np.vstack(part) for part in zip(*copies))
+        shift = size * np.arange(self.sector.count)[:, None, None]
+
+        def every(cells):
+            return (cells + shift).reshape(-1, cells.shape[1])
+
+        return Surface(
+            points, displacement, every(rest.faces), every(rest.triangles), every(rest.lines)
+        )
+
+
+def sector_solid(made: SectorMesh) -> SectorSolid:
+    """The isoparametric mesh of a sector, its cut faces matched.
+
+    Parameters
+    ----------
+    made : SectorMesh
+
+    Returns
+    -------
+    SectorSolid
+
+    Raises
+    ------
+    MeshError
+        If the cut faces carry different meshes.
+    """
+    plain = _isoparametric(made.mesh, "tet10", made.segment)
+    low, high, axis = cut_vertices(made)
+    outside = made.mesh.boundary_facets()
+    inner, sides = [], []
+    for own in (low, high):
+        on = np.zeros(plain.nodes.shape[1], bool)
+        on[own] = on[axis] = True
+        inner.append(outside[on[made.mesh.facets[:, outside]].all(axis=0)])
+        sides.append(plain.facet_unknowns(inner[-1]))
+    on_axis = np.intersect1d(sides[0], sides[1])
+    master, slave = (np.setdiff1d(side, on_axis) for side in sides)
+    master = matched(plain.nodes, made.count, master, slave)
+    return SectorSolid(
+        plain.mesh,
+        plain.name,
+        plain.element,
+        plain.dofs,
+        plain.nodes,
+        plain.segment,
+        np.concatenate(inner),
+        Sector(made.count, master, slave, on_axis),
+    )

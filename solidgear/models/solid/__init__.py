@@ -1,0 +1,1 @@
+"""3D solids: tetrahedra, hexahedra, parts from files."""

@@ -1,0 +1,228 @@
+"""From a volume mesh, whatever made it, to a free block with ports."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import Any
+
+import numpy as np
+import scipy.sparse as sp
+
+from solidgear.body import Block, Reflection
+from solidgear.errors import SolidgearError
+from solidgear.meshing.edge_places import edge_places
+from solidgear.models.solid.matrices import _matrices, _mean
+from solidgear.models.solid.mesh import SolidMesh
+
+#: components of a node by those of its mirror image, in the planes x = 0, z = 0 and x = z
+SWAPPED = [2, 1, 0]
+PLANES = (([0, 1, 2], (-1, 1, 1)), ([0, 1, 2], (1, 1, -1)), (SWAPPED, (1, 1, 1)))
+#: facets of a mesh that carry a station attached in some way
+Facets = Callable[[Any, str], np.ndarray]
+
+
+def seat_facets(mesh: SolidMesh, segments: Sequence[Any], tolerance: float) -> Facets:
+    """Facets of the seats and sections of a body of revolution.
+
+    Parameters
+    ----------
+    mesh : SolidMesh
+    segments : sequence of Segment
+    tolerance : float
+        m.
+
+    Returns
+    -------
+    callable
+        ``facets(station, attachment)``.
+    """
+
+    def facets(station, attachment):
+        if attachment == "section":
+            return mesh.section(station.y, tolerance)
+        return mesh.seat(station, segments, tolerance)
+
+    return facets
+
+
+#: of the sagitta of an edge, how far its middle node may lie off the surface; where elements keep the
+#: volume it is a fiftieth at most, and the floor of a feature is all of it away
+BEYOND = 0.1
+
+
+def edges_of(mesh: SolidMesh, corners: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Edges between the corners of facets, and their middle nodes.
+
+    Parameters
+    ----------
+    mesh : SolidMesh
+        Of elements with middle nodes.
+    corners : (c, f) ndarray of int
+        Vertices of the facets.
+
+    Returns
+    -------
+    edge : (m, f) ndarray of int
+        -1 for a diagonal of a quadrilateral, which is no edge.
+    places : (3, m, f) ndarray
+        m; a corner for a diagonal.
+    """
+    at = np.zeros(mesh.mesh.edges.shape[1], int)
+    at[mesh.mesh.t2e] = mesh.dofs[len(mesh.mesh.t) : len(mesh.mesh.t) + len(mesh.mesh.t2e)]
+    # of four corners of a quadrilateral two pairs are its diagonals
+    one, other = np.array(_pairs(corners)).T
+    edge = edge_places(mesh.mesh.edges, np.array([corners[one], corners[other]]))
+    return edge, np.where(edge >= 0, mesh.nodes[:, at[edge]], mesh.mesh.p[:, corners[one]])
+
+
+def _pairs(corners: np.ndarray) -> list[tuple[int, int]]:
+    """Places of any two corners of a facet."""
+    return [(i, j) for i in range(len(corners)) for j in range(i)]
+
+
+def chords(mesh: SolidMesh, corners: np.ndarray) -> np.ndarray:
+    """Radii halfway between the ends of the edges of facets, in the order of :func:`edges_of`.
+
+    Parameters
+    ----------
+    mesh : SolidMesh
+    corners : (c, f) ndarray of int
+        Vertices of the facets.
+
+    Returns
+    -------
+    (m, f) ndarray
+        m.
+    """
+    p = mesh.mesh.p[[0, 2]]
+    middles = [(p[:, corners[i]] + p[:, corners[j]]) / 2 for i, j in _pairs(corners)]
+    return np.array([np.hypot(*middle) for middle in middles])
+
+
+def rigid_motions(nodes: np.ndarray) -> np.ndarray:
+    """Unit rigid motions about the origin.
+
+    Parameters
+    ----------
+    nodes : (3, n) ndarray
+        m.
+
+    Returns
+    -------
+    (3 n, 6) ndarray
+        Unknowns node by node.
+    """
+    n = nodes.shape[1]
+    rigid: np.ndarray = np.zeros((n, 3, 6))
+    rigid[:, :, :3] = np.eye(3)
+    x, y, z = nodes
+    zero = np.zeros(n)
+    # th x r, column by column
+    rigid[:, :, 3] = np.column_stack([zero, -z, y])
+    rigid[:, :, 4] = np.column_stack([z, zero, -x])
+    rigid[:, :, 5] = np.column_stack([-y, x, zero])
+    return rigid.reshape(3 * n, 6)
+
+
+def mirrored(nodes: np.ndarray, hair: float) -> tuple[np.ndarray, tuple[Reflection, ...]]:
+    """Mirror planes x = 0, z = 0 and x = z that the nodes of a mesh have.
+
+    Parameters
+    ----------
+    nodes : (3, n) ndarray
+        m.
+    hair : float
+        Nodes nearer than this to each other are one, m.
+
+    Returns
+    -------
+    nodes : (3, n) ndarray
+        Moved by the rounding that kept images from lying where they should: beside the thickness of
+        a thin cell that is a hundred times the rounding of a matrix.
+    reflections : tuple of (partner, sign)
+        As :class:`~solidgear.body.Block` takes them; none for a plane in which a node has no image,
+        nor for x = z without the others.
+
+    Examples
+    --------
+    >>> nodes, ((partner, sign),) = mirrored(np.array([[1.0, -1.0], [0.0, 0.0], [2.0, 2.0]]), 1e-6)
+    >>> partner, sign
+    (array([3, 4, 5, 0, 1, 2]), array([-1.,  1.,  1., -1.,  1.,  1.]))
+    """
+    found: list[Reflection] = []
+    for order, sign in PLANES:
+        turn = np.array(sign)[:, None]
+        places = np.rint(nodes / hair).astype(np.int64)
+        seen = places[order] * turn
+        here, there = np.lexsort(places), np.lexsort(seen)
+        if not np.array_equal(places[:, here], seen[:, there]):
+            continue
+        if order == SWAPPED and len(found) < 2:
+            continue
+        partner = np.empty(nodes.shape[1], int)
+        partner[here] = there
+        nodes = (nodes + turn * nodes[:, partner][order]) / 2
+        found.append(
+            ((3 * partner[:, None] + order).ravel(), np.tile(np.array(sign, float), len(partner)))
+        )
+    return nodes, tuple(found)
+
+
+def free_block(
+    mesh: SolidMesh,
+    scene,
+    wanted: Sequence[tuple[Any, str]],
+    facets_of: Facets,
+    *,
+    clipped: bool = False,
+    materials: Sequence[Any] | None = None,
+) -> tuple[Block, list[tuple[int, float, np.ndarray]]]:
+    """The free block of a mesh with the rows of its ports.
+
+    Parameters
+    ----------
+    mesh : SolidMesh
+        Each element with the segment whose material it has.
+    scene : Scene
+    wanted : sequence of (station, attachment)
+    facets_of : callable
+        From :func:`seat_facets`, say.
+    clipped : bool
+        Facets may reach beyond the ends of their seat, which then end where they are said to.
+    materials : sequence of Material, optional
+        That the elements name; by default those of the segments.
+
+    Returns
+    -------
+    block : Block
+        All six components.
+    ties : list of (port index, y, mask)
+        Rigid seats, for :func:`solidgear.kernel.attachment.tie_rigidly`.
+
+    Raises
+    ------
+    SolidgearError
+        If no face lies on a seat.
+    """
+    k, m = _matrices(mesh, materials or [segment.material for segment in scene.segments])
+    n = mesh.nodes.shape[1]
+    rows, ties = [], []
+    for i, (station, attachment) in enumerate(wanted):
+        facets = facets_of(station, attachment)
+        if not len(facets):
+            where = "section" if attachment == "section" else "seat"
+            raise SolidgearError(f"port {station.name!r}: no element faces lie on its {where}")
+        within = (station.lo, station.hi) if clipped and attachment != "section" else None
+        if attachment == "rigid":
+            mask = np.zeros((n, 3), bool)
+            mask[mesh.facet_unknowns(facets)] = True
+            if within is not None:
+                y, hair = mesh.nodes[1], 1e-7 * scene.length
+                mask[(y < within[0] - hair) | (y > within[1] + hair)] = False
+            ties.append((i, station.y, mask.ravel()))
+            rows.append(sp.csr_matrix((6, 3 * n)))
+        else:
+            rows.append(_mean(mesh, facets, station.y, n, within=within))
+    rigid, y = rigid_motions(mesh.nodes), np.repeat(mesh.nodes[1], 3)
+    ports = sp.vstack(rows).tocsr()
+    return Block("full", tuple(range(6)), k, m, rigid, y, ports, None, False), ties

@@ -1,0 +1,126 @@
+"""The boundary of a volume mesh as a moving surface."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from solidgear.body.surface import PIECES, Surface
+from solidgear.kernel.assembly import reference
+
+if TYPE_CHECKING:
+    from solidgear.models.solid.mesh import SolidMesh
+
+
+@dataclass(frozen=True, eq=False)
+class Outline:
+    """The boundary at rest, and how the motion of its points follows from that of the nodes.
+
+    Attributes
+    ----------
+    points : (n, 3) ndarray
+        m.
+    quads, triangles, lines : (m, 4), (m, 3), (m, 2) ndarray of int
+    parts : list of ((nb, q), (nb, e)) ndarray
+        Values of the basis in a face, and the unknowns of elements that have such a face.
+    first : (n,) ndarray of int
+        Where each point is found among all points of all faces.
+    """
+
+    points: np.ndarray
+    quads: np.ndarray
+    triangles: np.ndarray
+    lines: np.ndarray
+    parts: list[tuple[np.ndarray, np.ndarray]]
+    first: np.ndarray
+
+
+def solid_surface(geometry: SolidMesh, vector: np.ndarray | None) -> Surface:
+    """The boundary of the volume mesh; faces of second order are divided, so that curved ones look
+    curved.
+    """
+    rest = geometry.outline
+    if vector is None:
+        moved = np.zeros_like(rest.points)
+    else:
+        moved = _on_faces(rest.parts, vector.reshape(-1, 3))[rest.first]
+    return Surface(rest.points, moved, rest.quads, rest.triangles, rest.lines)
+
+
+def _on_faces(parts: Iterable[tuple[np.ndarray, np.ndarray]], field: np.ndarray) -> np.ndarray:
+    """A field of the nodes at all points of all faces."""
+    return np.concatenate(
+        [np.einsum("bq,bef->eqf", value, field[dofs]).reshape(-1, 3) for value, dofs in parts]
+    )
+
+
+def outline(geometry: SolidMesh) -> Outline:
+    """What all surfaces of a mesh have in common, whatever moves it."""
+    refdom, element, dofs = geometry.mesh.refdom, geometry.element, geometry.dofs
+    linear = len(dofs) == refdom.nnodes
+    # Two pieces end at the nodes in the middle of edges; more only pay where the mesh is coarse
+    # enough to see it.
+    m = PIECES if len(geometry.boundary) < 4000 else 2
+    if linear:
+        m = 1
+    corners = len(refdom.facets[0])
+    grid, cells, rim = _grid(m, corners)
+    # Every rim point lies k pieces along the edge from corner a to corner b (k = 0 at a).
+    a = np.repeat(np.arange(corners), m)
+    b, k = (a + 1) % corners, np.tile(np.arange(m), corners)
+    parts, keys, faces, lines, done = [], [], [], [], 0
+    for place, elements in geometry.local_facets(geometry.boundary):
+        corner = refdom.p[:, refdom.facets[place]]
+        s, t = corner[:, 1] - corner[:, 0], corner[:, -1] - corner[:, 0]
+        points = corner[:, :1] + np.outer(s, grid[:, 0] / m) + np.outer(t, grid[:, 1] / m)
+        parts.append((reference(element, points)[0], dofs[:, elements]))
+        serial = done + np.arange(len(elements) * len(grid)).reshape(-1, len(grid))
+        done += serial.size
+        # A point inside a face is its own; one on an edge is named by the edge's vertices, so that
+        # neighbours share it.
+        key = np.stack([-1 - serial, 0 * serial, 0 * serial], axis=-1)
+        va, vb = (geometry.mesh.t[refdom.facets[place]][c][:, elements].T for c in (a, b))
+        vb = np.where(k == 0, va, vb)
+        key[:, rim] = np.stack(
+            [np.minimum(va, vb), np.maximum(va, vb), np.where(va <= vb, k, m - k)], axis=-1
+        )
+        keys.append(key.reshape(-1, 3))
+        outward = np.cross(s, t) @ (corner.mean(axis=1) - refdom.p.mean(axis=1)) > 0
+        faces.append(serial[:, cells if outward else cells[:, ::-1]].reshape(-1, corners))
+        lines.append(serial[:, np.column_stack([rim, np.roll(rim, -1)])].reshape(-1, 2))
+    _, first, number = np.unique(
+        np.concatenate(keys), axis=0, return_index=True, return_inverse=True
+    )
+    number = number.ravel()
+    found = {corners: number[np.concatenate(faces)]}
+    edges = np.unique(np.sort(number[np.concatenate(lines)], axis=1), axis=0)
+    quads, triangles = (found.get(n, np.zeros((0, n), int)) for n in (4, 3))
+    return Outline(_on_faces(parts, geometry.nodes.T)[first], quads, triangles, edges, parts, first)
+
+
+def _grid(m: int, corners: int):
+    """Points (i, j), cells and rim (from the first corner on) of a face divided into m pieces along
+    each edge.
+    """
+    i, j = (g.ravel() for g in np.meshgrid(np.arange(m + 1), np.arange(m + 1), indexing="ij"))
+    n = m + 1
+    step = np.arange(m)
+    if corners == 4:
+        c = (i * n + j)[(i < m) & (j < m)]
+        cells = np.column_stack([c, c + n, c + n + 1, c + 1])
+        rim = np.concatenate([step * n, m * n + step, (m - step) * n + m, m - step])
+        return np.column_stack([i, j]), cells, rim
+    inside = i + j <= m
+    place = np.cumsum(inside) - 1
+    low, high = (i * n + j)[i + j < m], (i * n + j)[i + j < m - 1]
+    cells = np.vstack(
+        [
+            np.column_stack([low, low + n, low + 1]),
+            np.column_stack([high + n, high + n + 1, high + 1]),
+        ]
+    )
+    rim = np.concatenate([step * n, (m - step) * n + step, m - step])
+    return np.column_stack([i, j])[inside], place[cells], place[rim]

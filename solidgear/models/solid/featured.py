@@ -1,0 +1,91 @@
+"""3D solid of a shaft with features: curved tetrahedra, in two half models where there is a mirror
+plane.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from solidgear.body import Block, Body, Port
+from solidgear.kernel.attachment import tie_rigidly
+from solidgear.meshing.featured import FeaturedMesh, featured_mesh, without
+from solidgear.meshing.quality import check_mesh
+from solidgear.models.solid.block import free_block
+from solidgear.models.solid.halves import HalfDrawing, half_blocks
+from solidgear.models.solid.mesh import SolidMesh, _isoparametric
+from solidgear.models.solid.seat_faces import Seats
+from solidgear.models.spectrum import elastic_scale
+from solidgear.scene.shaft import resolved
+
+
+def meshed(scene, plan: dict, refinement: float, half: bool, edges: bool = False) -> FeaturedMesh:
+    """The mesh of a scene with features; ``plan`` holds planes, circles and sizes, and ``edges``
+    asks for smaller elements at the re-entrant edges of features.
+    """
+    return featured_mesh(
+        scene.segments,
+        resolved(scene),
+        blends=scene.corners,
+        **plan,
+        refinement=refinement,
+        half=half,
+        edges=edges,
+    )
+
+
+def featured_body(
+    scene, wanted: Sequence, made: FeaturedMesh, refinement: float, *, plain: bool = False
+) -> Body:
+    """Free body of a meshed scene, with its features cut out or left in.
+
+    Parameters
+    ----------
+    scene : Scene
+    wanted : sequence of (station, attachment)
+    made : FeaturedMesh
+    refinement : float
+        For the record.
+    plain : bool
+        Leave the features in: the shaft of revolution on the same mesh.
+
+    Returns
+    -------
+    Body
+        Two blocks where there is a mirror plane, one where there is none.
+
+    Raises
+    ------
+    SolidgearError
+        If no face is left of a seat; MeshError for inverted elements.
+    """
+    keep = np.ones(len(made.cut), bool) if plain else ~made.cut
+    mesh = made.mesh if plain else without(made.mesh, keep)
+    quality = check_mesh(mesh)
+    solid = _isoparametric(mesh, "tet10", made.segment[keep])
+    facets = Seats(solid, scene.segments, clipped=False)
+    if made.plane is None:
+        block, ties = free_block(solid, scene, wanted, facets)
+        blocks: tuple[Block, ...] = (tie_rigidly(block, ties),)
+        drawing: SolidMesh | HalfDrawing = solid
+    else:
+        blocks = half_blocks(solid, scene, wanted, facets, made.plane)
+        drawing = HalfDrawing(solid, made.plane)
+    share = 1 if made.plane is None else 2
+    facts = {
+        "element": "tet10",
+        "elements": int(solid.dofs.shape[1]) * share,
+        "nodes": int(solid.nodes.shape[1]),
+        "refinement": refinement,
+        "volume": share * quality.volume,
+        "min_jacobian_ratio": quality.min_ratio,
+        "representative_size": float((quality.volume / solid.dofs.shape[1]) ** (1 / 3)),
+        "features": [f.name for f in resolved(scene)],
+        "mirror_plane": "none" if made.plane is None else f"{'xyz'[made.plane]} = 0",
+        # nothing promises twins: what is split is split
+        "round": False,
+        "pair_tolerance": 0.0,
+    }
+    ports = tuple(Port(s.name, s.y, a) for s, a in wanted)
+    return Body("solid", blocks, ports, elastic_scale(scene), scene.length, facts, drawing)

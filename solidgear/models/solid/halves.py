@@ -1,0 +1,142 @@
+"""A part with a mirror plane from one half of it: two blocks that cannot mix.
+
+Motions that are symmetric about the plane keep the nodes on it in the plane; antisymmetric ones move
+them at right angles to it. Energies and integrals over seats are twice those of the half.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import scipy.sparse as sp
+
+from solidgear.body import Block
+from solidgear.body.surface import Surface, Volume
+from solidgear.errors import SolidgearError
+from solidgear.kernel.attachment import tie_rigidly
+from solidgear.models.solid.block import Facets, rigid_motions
+from solidgear.models.solid.matrices import _matrices, rigid_part, weighed
+from solidgear.models.solid.mesh import SolidMesh
+
+#: by the axis at right angles to the plane: name and port components of the symmetric and of the
+#: antisymmetric motions
+PARTS: dict[int, tuple[tuple[str, tuple[int, ...]], tuple[str, tuple[int, ...]]]] = {
+    0: (("plane_z", (1, 2, 3)), ("across_x", (0, 4, 5))),
+    2: (("plane_x", (0, 1, 5)), ("across_z", (2, 3, 4))),
+}
+
+
+def half_blocks(
+    mesh: SolidMesh, scene, wanted: Sequence, facets_of: Facets, axis: int
+) -> tuple[Block, Block]:
+    """Blocks of a whole part from the mesh of its half.
+
+    Parameters
+    ----------
+    mesh : SolidMesh
+        Of one half, with the cut faces in the plane.
+    scene : Scene
+    wanted : sequence of (station, attachment)
+    facets_of : callable
+        Facets of the half that carry a station.
+    axis : {0, 2}
+        At right angles to the plane.
+
+    Returns
+    -------
+    symmetric, antisymmetric : Block
+
+    Raises
+    ------
+    SolidgearError
+        If no face lies on a seat.
+    """
+    k, m = _matrices(mesh, [segment.material for segment in scene.segments])
+    m = m.tocsr()
+    n = mesh.nodes.shape[1]
+    rigid, y = rigid_motions(mesh.nodes), np.repeat(mesh.nodes[1], 3)
+    on_plane = np.abs(mesh.nodes[axis]) < 1e-9 * scene.length
+    facets = [facets_of(station, attachment) for station, attachment in wanted]
+    for (station, _), found in zip(wanted, facets):
+        if not len(found):
+            raise SolidgearError(f"port {station.name!r}: no element faces lie on its seat")
+    seats = [
+        None if attachment == "rigid" else weighed(mesh.over_facets(found), station.y, n)
+        for (station, attachment), found in zip(wanted, facets)
+    ]
+    across = np.zeros(3, bool)
+    across[axis] = True
+    blocks = []
+    for (name, own), held in zip(PARTS[axis], (across, ~across)):
+        free = np.flatnonzero(~(on_plane[:, None] & held).ravel())
+        rows, ties = [], []
+        for i, ((station, _), found, seat) in enumerate(zip(wanted, facets, seats)):
+            if seat is None:
+                mask = np.zeros((n, 3), bool)
+                mask[mesh.facet_unknowns(found)] = True
+                ties.append((i, station.y, mask.ravel()[free]))
+                rows.append(sp.csr_matrix((len(own), len(free))))
+            else:
+                rows.append(rigid_part(*seat, own)[:, free])
+        block = Block(
+            name,
+            own,
+            (2 * k[free][:, free]).tocsr(),
+            (2 * m[free][:, free]).tocsr(),
+            rigid[free][:, list(own)],
+            y[free],
+            sp.vstack(rows).tocsr(),
+            None,
+            False,
+            expand=_into(3 * n, free),
+        )
+        tied = tie_rigidly(block, ties)
+        if ties:
+            assert tied.expand is not None  # of the ties
+            object.__setattr__(tied, "expand", (block.expand @ tied.expand).tocsr())
+        blocks.append(tied)
+    return blocks[0], blocks[1]
+
+
+def _into(size: int, free: np.ndarray) -> sp.csr_matrix:
+    ones = np.ones(len(free))
+    return sp.csr_matrix((ones, (free, np.arange(len(free)))), shape=(size, len(free)))
+
+
+@dataclass(frozen=True, eq=False)
+class HalfDrawing:
+    """A whole part drawn from the mesh of its half.
+
+    Attributes
+    ----------
+    mesh : SolidMesh
+    axis : int
+        At right angles to the plane.
+    """
+
+    mesh: SolidMesh
+    axis: int
+
+    def surface(self, moved: Mapping[str, np.ndarray]) -> Surface:
+        """Both halves, the second as a mirror image of the first."""
+        kinds = dict(zip((name for name, _ in PARTS[self.axis]), (1.0, -1.0)))
+        zero = np.zeros(3 * self.mesh.nodes.shape[1])
+        first = sum((vector for name, vector in moved.items() if name in kinds), zero)
+        second = sum((kinds[name] * v for name, v in moved.items() if name in kinds), zero)
+        here, image = self.mesh.surface({"full": first}), self.mesh.surface({"full": second})
+        flip = np.ones(3)
+        flip[self.axis] = -1.0
+        count = len(here.points)
+        return Surface(
+            np.vstack([here.points, image.points * flip]),
+            np.vstack([here.displacement, image.displacement * flip]),
+            np.vstack([here.faces, count + image.faces[:, ::-1]]),
+            np.vstack([here.triangles, count + image.triangles[:, ::-1]]),
+            np.vstack([here.lines, count + image.lines]),
+        )
+
+    def volume(self) -> Volume | None:
+        """No single mesh of the whole part."""
+        return None

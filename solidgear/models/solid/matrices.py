@@ -1,0 +1,131 @@
+"""Integrals over a volume mesh: stiffness, mass, and the mean motion of a surface."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+import scipy.sparse as sp
+from skfem.quadrature import get_quadrature
+from skfem.refdom import RefTet
+
+from solidgear.body.mass import ScalarMass
+from solidgear.frames import cross_matrix
+from solidgear.kernel.assembly import Pattern, Tabulation, batches, inverted, straight
+from solidgear.models.solid.mesh import SolidMesh
+
+if TYPE_CHECKING:
+    from solidgear.scene import Material
+
+
+def _matrices(m: SolidMesh, materials: Sequence[Material]):
+    """Stiffness (3n, 3n) and consistent mass of a solid of isotropic materials."""
+    points, weights = _cell_rule(m.name)
+    basis = Tabulation(m.element, m.element, points)
+    nb, nq = basis.value.shape
+    pattern = Pattern(m.dofs)
+    stiffness, mass = pattern.sum(3), pattern.sum()
+    # products of basis functions, and of reference gradients, of which straight elements take one
+    # multiple each
+    products = (basis.value[:, None] * basis.value).reshape(nb * nb, nq).T
+    slopes = np.einsum("apq,brq,q->prab", basis.slope, basis.slope, weights, optimize=True).reshape(
+        9, nb * nb
+    )
+    is_straight, jac = straight(m.element, m.nodes[:, m.dofs])
+    for index, material in enumerate(materials):
+        nu, mu, rho = material.nu, material.shear_modulus, material.density
+        lame = 2 * mu * nu / (1 - 2 * nu)
+        here = m.segment == index
+        for part in batches(np.flatnonzero(here & is_straight), 8 * 20 * nb * nb):
+            inverse, det = inverted(jac[:, :, part])
+            along = (inverse * det)[:, :, None, None] * inverse  # (reference, space) twice
+            tensor = _elastic(along.transpose(1, 3, 4, 0, 2).reshape(3, 3, len(part), 9), lame, mu)
+            stiffness.add(part, tensor @ slopes)
+            mass.add(part, np.outer(rho * det, weights @ products))
+        for part in batches(np.flatnonzero(here & ~is_straight), 8 * (3 * nb * nq + 30 * nb * nb)):
+            places = m.nodes[:, m.dofs[:, part]]
+            # from a node of each: places would round what the nodes of a thin cell differ in
+            t = basis.on(places - places[:, :1])
+            dv = t.det * weights
+            g = t.gradient(np.sqrt(dv)).reshape(len(part), 3 * nb, nq)
+            gram = (g @ g.transpose(0, 2, 1)).reshape(-1, 3, nb, 3, nb).transpose(1, 3, 0, 2, 4)
+            stiffness.add(part, _elastic(gram, lame, mu))
+            mass.add(part, rho * dv @ products)
+    return stiffness.matrix(), ScalarMass(mass.matrix(), 3)
+
+
+def _elastic(gram, lame: float, mu: float):
+    """Isotropic stiffness from the integrals of products of gradients, components (3, 3, ...) of
+    row and column first.
+    """
+    out = lame * gram
+    shear = mu * gram
+    out += shear.swapaxes(0, 1)
+    trace = shear[0, 0] + shear[1, 1] + shear[2, 2]
+    for i in range(3):
+        out[i, i] += trace
+    return out
+
+
+def _mean(m: SolidMesh, facets, y0, n, within=None) -> sp.csr_matrix:
+    """(6, 3n) area-weighted least-squares rigid motion of facets about the axis point at y0; of
+    their parts between two places along y where these are given.
+    """
+    return rigid_part(*weighed(m.over_facets(facets, within), y0, n), tuple(range(6)))
+
+
+def rigid_part(gram: np.ndarray, loads: np.ndarray, components: tuple[int, ...]) -> sp.csr_matrix:
+    """(c, 3n) least-squares rigid motion, some components of it, from :func:`weighed`."""
+    own = list(components)
+    g = np.linalg.solve(gram[np.ix_(own, own)], loads.T[own])
+    g[np.abs(g) < 1e-14 * np.abs(g).max(axis=1, keepdims=True)] = 0.0
+    return sp.csr_matrix(g)
+
+
+def weighed(pieces, y0: float, n: int) -> tuple[np.ndarray, np.ndarray]:
+    """Normal equations of the rigid motion that is nearest to the motion of some pieces.
+
+    Parameters
+    ----------
+    pieces : iterable of (values, x, weights, unknowns)
+        From :meth:`SolidMesh.over_facets` or :meth:`SolidMesh.over_cells`.
+    y0 : float
+        Point on the axis that motions are about, m.
+    n : int
+        Nodes of the mesh.
+
+    Returns
+    -------
+    gram : (6, 6) ndarray
+    loads : (3 n, 6) ndarray
+        The rigid motion of displacements u is ``gram^-1 loads' u``.
+    """
+    a = np.zeros((6, 6))
+    b = np.zeros((n, 3, 6))
+    for value, x, weight, dofs in pieces:
+        offset = np.moveaxis(x, 0, -1) - np.array([0.0, y0, 0.0])  # (e, q, 3)
+        motion = np.zeros((*offset.shape, 6))
+        motion[..., :3] = np.eye(3)
+        motion[..., 3:] = -np.einsum("abc,eqc->eqab", _CROSS, offset)
+        a += np.einsum("eq,eqci,eqcj->ij", weight, motion, motion)
+        np.add.at(b, dofs.T, np.einsum("bq,eq,eqci->ebci", value, weight, motion, optimize=True))
+    return a, b.reshape(3 * n, 6)
+
+
+# cross_matrix(r)[a, b] = sum_c _CROSS[a, b, c] r[c]
+_CROSS = np.stack([cross_matrix(e) for e in np.eye(3)], axis=-1)
+
+
+def _cell_rule(name):
+    """Quadrature exact for stiffness and mass of affine elements, one order in reserve for curved
+    ones.
+    """
+    if name.startswith("tet"):
+        return get_quadrature(
+            RefTet, 7 if name == "tet10" else 2
+        )  # both rules have positive weights only
+    x, w = np.polynomial.legendre.leggauss(3 if name == "hex8" else 4)
+    x, w = (x + 1) / 2, w / 2
+    grid = np.array([g.ravel() for g in np.meshgrid(x, x, x, indexing="ij")])
+    return grid, np.einsum("i,j,k->ijk", w, w, w).ravel()

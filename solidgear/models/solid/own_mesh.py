@@ -1,0 +1,107 @@
+"""A solid body from a mesh of one's own."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from solidgear.body import Body, Port
+from solidgear.kernel.attachment import tie_rigidly
+from solidgear.meshing.quality import check_mesh
+from solidgear.models.solid.block import free_block
+from solidgear.models.solid.mesh import _isoparametric
+from solidgear.models.solid.seat_faces import Seats
+from solidgear.models.spectrum import elastic_scale
+
+if TYPE_CHECKING:
+    from skfem import Mesh
+
+    from solidgear.scene import Material
+    from solidgear.scene.shaft import Shaft
+
+
+def solid_body(
+    mesh: Mesh,
+    shaft: Shaft,
+    *,
+    element: str,
+    wanted: Sequence[tuple[Any, str]] | None = None,
+    clipped: bool = True,
+    facts: Mapping[str, Any] | None = None,
+    owner: np.ndarray | None = None,
+    materials: Sequence[Material] | None = None,
+) -> Body:
+    """The free body of a mesh, with ports on cylinders and cones of its surface.
+
+    Parameters
+    ----------
+    mesh : skfem mesh
+        Of tetrahedra or hexahedra, m; y is the axis.
+    shaft : Shaft
+        A scene, or what has the same ``segments``, ``stations`` and ``length``: stations are looked
+        for on the outer surface of the segments, and each element has the material of the segment
+        that its middle lies in.
+    element : {'tet4', 'tet10', 'hex8', 'hex20', 'hex27'}
+    wanted : sequence of (station, attachment), optional
+        Ports; by default the stations with the attachments they have.
+    clipped : bool
+        Where faces reach beyond the ends of a seat, integrals stop there; else only whole faces
+        within the seat count.
+    facts : mapping, optional
+        More of them for ``body.mesh``.
+    owner : (ne,) ndarray of int, optional
+        Place of each element's material among ``materials``; by default that of the segment which
+        its middle lies in.
+    materials : sequence of Material, optional
+
+    Returns
+    -------
+    Body
+
+    Raises
+    ------
+    SolidgearError
+        If no face lies on a seat, or faces are missing from one; MeshError for inverted elements.
+
+    Examples
+    --------
+    >>> import solidgear as sg
+    >>> from solidgear.meshing.tetrahedra import tetrahedra
+    >>> rod = sg.Segment.cylinder("rod", length=0.3, diameter=0.06)
+    >>> scene = sg.Scene.from_parts([rod])
+    >>> body = solid_body(tetrahedra([rod], size=0.03).mesh, scene, element="tet10")
+    >>> bool(np.isclose(body.mass_matrix()[0, 0], 7850 * np.pi * 0.03**2 * 0.3, rtol=1e-3))  # kg
+    True
+    """
+    wanted = wanted or [(s, s.attachment) for s in shaft.stations]
+    quality = check_mesh(mesh)
+    if owner is None:
+        y = mesh.p[1][mesh.t].mean(axis=0)
+        owner = np.searchsorted([s.y1 for s in shaft.segments[:-1]], y)
+        materials = None
+    solid = _isoparametric(mesh, element, owner)
+    facets = Seats(solid, shaft.segments, clipped)
+    block, ties = free_block(solid, shaft, wanted, facets, clipped=clipped, materials=materials)
+    own = {
+        "element": element,
+        "elements": int(solid.dofs.shape[1]),
+        "nodes": int(solid.nodes.shape[1]),
+        "volume": quality.volume,
+        "min_jacobian_ratio": quality.min_ratio,
+        "representative_size": float((quality.volume / solid.dofs.shape[1]) ** (1 / 3)),
+        # nothing promises twins: what is split is split
+        "round": False,
+        "pair_tolerance": 0.0,
+    }
+    ports = tuple(Port(s.name, s.y, a) for s, a in wanted)
+    return Body(
+        "solid",
+        (tie_rigidly(block, ties),),
+        ports,
+        elastic_scale(shaft),
+        shaft.length,
+        {**own, **(facts or {})},
+        solid,
+    )

@@ -1,0 +1,205 @@
+"""What will not hold of a train, before anything large is solved: the guards of both shafts, and
+what concerns the system.
+
+Both shafts are looked at up to the frequency and to the tolerance that the train asks for; the
+light solids that the guards solve are coupled as well, and tell what the reduction resolves.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from solidgear.errors import SolidgearError
+from solidgear.ladder import build
+from solidgear.machine.threads import pinned
+from solidgear.scene import Scene
+from solidgear.scene.train import SIDES, Train
+from solidgear.studies.check import check_scene
+from solidgear.studies.guards import Probe
+from solidgear.studies.guards.notice import slip_in_units
+from solidgear.studies.train.local import undriven
+from solidgear.studies.train.models import JUDGE, Workshop
+from solidgear.studies.train.modes import (
+    RESOLVED,
+    free_motions,
+    refuse_unresolved,
+    unpublished_lines,
+    wrench_lines,
+)
+
+#: a loss factor below this gives peaks whose height is a matter of the loss alone
+LITTLE_LOSS = 1e-3
+#: what a slip of 1000 in the data of a mesh leaves: ISO 6336 puts some 20 N/(mm um) into a steel
+#: mesh, 0.1 of E times the face width, and a face is 0.1 to 3 lever arms wide; errors of teeth are
+#: some thousandths of the module at most, and 1e-5 of it is what no gear is ground to
+SOUND = {
+    "mesh stiffness over E r": (1e-3, 2.0),
+    "transmission error over 2 r / z": (1e-5, 0.05),
+}
+ALONE = (
+    "guards judge each shaft alone; which of them needs the solid for modes and mesh force, and from "
+    "which frequency on, is what solidgear compare says of a train"
+)
+#: verdicts in the order in which the worst of two is chosen
+WORST = ("will not hold", "uncertain", "holds with caution", "holds")
+
+
+@pinned
+def check_train(workshop: Workshop, max_frequency: float | None = None) -> dict:
+    """Facts and cautions of a train, in sentences, those of both shafts, and what each model is
+    worth for both.
+
+    Parameters
+    ----------
+    workshop : Workshop
+        Fresh, or with bodies that are there already.
+    max_frequency : float, optional
+        Hz; that of the file by default.
+
+    Returns
+    -------
+    dict
+        ``facts``, ``cautions``, ``faults`` (lists of sentences) of the system; ``pinion`` and
+        ``gear`` as :func:`solidgear.studies.check.check_scene` gives them; ``verdicts`` by model:
+        the worse of both shafts.
+
+    Examples
+    --------
+    >>> import solidgear as sg
+    >>> found = check_train(Workshop(sg.load_train("geometry/axle_overhung.toml")))
+    >>> found["pinion"]["verdicts"]["timoshenko"]["verdict"], found["faults"]
+    ('will not hold', [])
+    """
+    train = workshop.train
+    limit = max_frequency or train.ask.max_frequency
+    out: dict = {}
+    light = Workshop(train, workshop.reduction, workshop.kept)
+    for side in SIDES:
+        scene = _asked(workshop.scenes[side], train, limit)
+        probe = Probe(scene.plain, build(scene.plain, JUDGE), whole=scene)
+        out[side] = check_scene(scene, probe.body, probe)
+        light.take(side, JUDGE, probe.rung(JUDGE).body)
+    faults: list[str] = []
+    facts = [*_facts(workshop, limit), *wrench_lines(workshop.contact)]
+    cautions = [*workshop.contact.cautions, *_units(workshop)]
+    cautions += [*_losses(train), *_error(train, limit)]
+    try:
+        facts += _system(light, limit)
+    except SolidgearError as error:
+        faults.append(str(error))
+    for side in SIDES:
+        cautions += _still(light, side, limit)
+    facts += [*unpublished_lines(train.unpublished()), ALONE]
+    return {"facts": facts, "cautions": cautions, "faults": faults, **out} | {
+        "verdicts": _worse(out["pinion"]["verdicts"], out["gear"]["verdicts"])
+    }
+
+
+def _asked(scene: Scene, train: Train, limit: float) -> Scene:
+    """A shaft that is asked what the train is."""
+    ask = scene.ask.with_changes(max_frequency=limit, tolerance=train.ask.tolerance)
+    return scene.with_changes(ask=ask)
+
+
+def _facts(workshop: Workshop, limit: float) -> Iterator[str]:
+    train, met = workshop.train, workshop.contact
+    levers = [1e3 * abs(vector.lever) for vector in (met.pinion, met.gear)]
+    yield (
+        f"{train.pinion.teeth} and {train.gear.teeth} teeth, lever arms {levers[0]:.2f} and "
+        f"{levers[1]:.2f} mm, mesh {met.stiffness:.4g} N/m along "
+        f"({', '.join(f'{v:.3f}' for v in met.pinion.normal)}) on the pinion"
+    )
+    yield (
+        f"{limit:g} Hz are asked for: teeth mesh at them at {60 * limit / train.pinion.teeth:.0f} "
+        "rpm of the pinion"
+    )
+    loss = train.losses
+    yield (
+        "losses are read as loss factors, twice a damping ratio: "
+        f"shafts {loss.shafts:g}, bearings {loss.bearings:g}, mesh {loss.mesh:g}, "
+        f"springs {loss.springs:g}"
+    )
+
+
+def _units(workshop: Workshop) -> Iterator[str]:
+    """Orders of magnitude that a slip in units moves."""
+    train, met = workshop.train, workshop.contact
+    lever, teeth = abs(met.pinion.lever), train.pinion.teeth
+    stiff = max(s.material.E for scene in workshop.scenes.values() for s in scene.segments)
+    table = train.mesh.transmission_error
+    error = max((*table.orders, *table.amplitude), default=0.0)
+    values = met.stiffness / (stiff * lever), error * teeth / (2 * lever)
+    found = [(name, value, "") for name, value in zip(SOUND, values)]
+    if not error:
+        found.pop()  # told by itself
+    legend = f"r: lever arm of the pinion, {1e3 * lever:.4g} mm; z: its {teeth} teeth"
+    if sentence := slip_in_units(found, SOUND, legend):
+        yield sentence
+
+
+def _losses(train: Train) -> Iterator[str]:
+    loss = train.losses
+    small = [
+        f"{name} {value:g}"
+        for name, value in loss.model_dump().items()
+        if isinstance(value, float) and value < LITTLE_LOSS
+    ]
+    if small:
+        yield (
+            f"a loss factor is below {LITTLE_LOSS:g} ({', '.join(small)}): where such a part takes "
+            "all the energy, the height of a peak is that number and nothing else"
+        )
+
+
+def _error(train: Train, limit: float) -> Iterator[str]:
+    table = train.mesh.transmission_error
+    if table.frequency and table.frequency[-1] < limit:
+        yield (
+            f"the transmission error is given up to {table.frequency[-1]:g} Hz and is taken as "
+            f"constant from there to the {limit:g} Hz asked for"
+        )
+    if not any((*table.orders, *table.amplitude)):
+        yield "the transmission error is zero: there will be no response to it; drive by --force"
+
+
+def _system(shop: Workshop, limit: float) -> Iterator[str]:
+    """Of both light solids coupled."""
+    system = shop.system(JUDGE, JUDGE)
+    refuse_unresolved(shop, system, limit)
+    omega, _ = system.elastic
+    count = int((omega <= 2 * np.pi * limit).sum())
+    found = system.modes(max(1, count))
+    cut = float(np.sqrt(system.truncation.cut) / (2 * np.pi))
+    worst = float(found.error_bound.max())
+    word = "within" if worst < RESOLVED else "NOT within"
+    yield (
+        f"{count} elastic modes up to {limit:g} Hz on light solids; {shop.kept} modes a shaft "
+        f"({shop.reduction}, the first left out at {cut:.0f} Hz) leave at most {worst:.0e} of a "
+        f"frequency, {word} {RESOLVED:g}"
+    )
+    yield from free_motions(shop, system) or ("the whole train turns freely, at exactly 0 Hz",)
+
+
+def _still(shop: Workshop, side: str, limit: float) -> Iterator[str]:
+    """Modes of a light solid that averaged ports cannot drive."""
+    asked = shop.train.mesh.local_harmonics
+    found = undriven(shop.shaft(side, JUDGE).body, limit, asked)
+    if found:
+        told = ", ".join(f"n = {n} at {hz[0]:.0f} Hz" for n, hz in found.items())
+        yield (
+            f"the {side} has modes with nodal diameters below {limit:g} Hz ({told}) that are not "
+            "driven by this mesh model; --local-harmonics shows what they add"
+        )
+
+
+def _worse(one: dict, other: dict) -> dict:
+    """By model, the worse of two verdicts and whose it is."""
+    out = {}
+    for model in one.keys() & other.keys():
+        pair = {"pinion": one[model]["verdict"], "gear": other[model]["verdict"]}
+        worst = min(pair.values(), key=WORST.index)
+        sides = [side for side in SIDES if pair[side] == worst]
+        out[model] = {"verdict": worst, "shafts": sides if worst != WORST[-1] else []}
+    return {model: out[model] for model in one if model in out}

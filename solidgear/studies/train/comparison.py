@@ -1,0 +1,154 @@
+"""A train compared: the verdict on its mixes of models, the judge's modes, and what was given."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from time import perf_counter
+from typing import Any
+
+from solidgear.machine.environment import environment
+from solidgear.report.turning import Turned
+from solidgear.scene.train import SIDES
+from solidgear.studies.train.judge import DRAWN, JUDGE, MIXED, Verdict, judge_train
+from solidgear.studies.train.models import Workshop
+from solidgear.studies.train.modes import TrainModes, train_modes
+from solidgear.studies.train.orders import OrderMap, order_map
+from solidgear.studies.train.pictures import draw_modes, turned_beside
+from solidgear.studies.train.respond import TrainResponse
+
+#: modes that are drawn
+PICTURES = 4
+
+
+@dataclass(frozen=True, eq=False)
+class TrainComparison:
+    """What was found about a train.
+
+    Attributes
+    ----------
+    workshop : Workshop
+    verdict : Verdict
+    modes : TrainModes
+        Of the judge.
+    orders : OrderMap
+        Of the judge.
+    seconds : float
+        The whole run.
+    """
+
+    workshop: Workshop
+    verdict: Verdict
+    modes: TrainModes
+    orders: OrderMap
+    seconds: float
+
+    @property
+    def drawn(self) -> list[TrainResponse]:
+        """Responses that the chart shows, the judge's first."""
+        return [r for r in self.verdict.responses if (r.pinion, r.gear) in DRAWN]
+
+    @property
+    def marks(self) -> dict[str, float]:
+        """Where the mesh force of a mix leaves its band, Hz, by its label."""
+        mixes = self.verdict.mixes
+        return {m.label: m.force_to_hz for m in mixes if m.force_to_hz is not None}
+
+    @property
+    def loudest(self) -> list[int]:
+        """Numbers, from 1, of the modes that make the largest peaks of the judge's mesh force."""
+        names = [mode.name for mode in self.modes.modes]
+        peaks = sorted(self.verdict.responses[0].peaks, key=lambda peak: -peak.force)
+        loud = dict.fromkeys(peak.mode for peak in peaks if peak.mode in names)
+        return sorted(names.index(name) + 1 for name in list(loud)[:PICTURES])
+
+    def pictures(self, folder: Path) -> dict[str, Any]:
+        """Draw the loudest modes into a folder: files by what they show, and what was left out."""
+        done = draw_modes(self.workshop, JUDGE, JUDGE, folder, self.loudest) if self.loudest else {}
+        drawn = {told: one.path.name for told, one in done.items() if one.ok}
+        reasons = sorted({one.reason for one in done.values() if not one.ok})
+        return {"pictures": drawn, "left_out": reasons}
+
+    def turned(self) -> list[Turned]:
+        """The judge's modes and those of both shafts as the best beams, to be turned side by side."""
+        both = (JUDGE, JUDGE), (MIXED[-2], MIXED[-2])
+        return turned_beside(self.workshop, *both, self.verdict.highest_hz)
+
+    @property
+    def loudest_name(self) -> str:
+        """Name of the mode that makes the largest peak of the judge's mesh force; empty if none."""
+        names = {mode.name for mode in self.modes.modes}
+        peaks = [peak for peak in self.verdict.responses[0].peaks if peak.mode in names]
+        return max(peaks, key=lambda peak: peak.force).mode if peaks else ""
+
+    def results(self) -> dict[str, Any]:
+        """Plain data that JSON can hold: all numbers of the page."""
+        return {
+            "kind": "train",
+            "train": described(self.workshop),
+            "verdict": self.verdict.as_dict() | {"sentences": self.verdict.sentences()},
+            "modes": self.modes.as_dict() | {"notes": self.modes.notes()},
+            "peaks": [asdict(peak) for peak in self.verdict.responses[0].peaks],
+            "crossings": [asdict(crossing) for crossing in self.orders.crossings],
+            "environment": environment(),
+            "seconds_total": self.seconds,
+        }
+
+
+def compare_train(
+    workshop: Workshop,
+    highest_hz: float | None = None,
+    more: Sequence[tuple[str, str]] = (),
+    progress: Callable[[str], None] = lambda text: None,
+) -> TrainComparison:
+    """Judge every mix of models of a train, and tell the judge's modes.
+
+    Parameters
+    ----------
+    workshop, highest_hz, more, progress
+        As :func:`solidgear.studies.train.judge.judge_train`.
+
+    Raises
+    ------
+    SolidgearError
+        For a frequency beyond what the reduction resolves, or unknown models.
+    """
+    start = perf_counter()
+    verdict = judge_train(workshop, highest_hz, more, progress)
+    modes = train_modes(workshop, JUDGE, JUDGE, verdict.highest_hz)
+    progress("order lines")
+    orders = order_map(workshop, JUDGE, JUDGE, verdict.highest_hz)
+    return TrainComparison(workshop, verdict, modes, orders, perf_counter() - start)
+
+
+def described(workshop: Workshop) -> dict[str, Any]:
+    """A train as plain data: what the file gives, and what its mesh comes to."""
+    train, met = workshop.train, workshop.contact
+    out: dict[str, Any] = {
+        "title": train.title or train.name,
+        "name": train.name,
+        "source": train.source,
+        "ratio": train.ratio,
+        "shaft_angle": train.mesh.shaft_angle,
+        "mesh_stiffness": met.stiffness,
+        "transmission_error": train.mesh.transmission_error.model_dump(mode="json"),
+        "losses": train.losses.model_dump(mode="json", exclude={"status"}),
+        "statuses": train.statuses(),
+    }
+    for side in SIDES:
+        name, rotor = train.rotor(side)
+        vector = getattr(met, side)
+        out[name] = {
+            "inertia": rotor.inertia,
+            "spring": rotor.spring.stiffness,
+            "at": f"{side}.{train.spring_port(side)}",
+        }
+        out[side] = {
+            "teeth": train.member(side).teeth,
+            "line_of_action": [float(v) for v in vector.normal],
+            "point": [float(v) for v in vector.point],
+            "lever": vector.lever,
+            "scene": train.member(side).scene.as_dict(),
+        }
+    return out

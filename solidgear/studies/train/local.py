@@ -1,0 +1,182 @@
+r"""Harmonics n >= 2 at a local mesh point: what averaged ports cannot drive.
+
+The teeth push on a patch, one tooth pitch of the circumference over the seat of the lumped point,
+and not on the mean of a ring.  The part of that push which has n = 0 and 1 waves around is what the
+port takes, moment included; harmonics from 2 on come in by coordinates of their own.  The mesh then
+stretches by
+
+    dte = h_p q_p + n u_p - h_g q_g - n u_g,
+
+u the mean motion of each patch by its harmonics.  With none of them, and on a rigid shaft, that is
+the present model.
+
+A mesh stiffness that was found on whole elastic gears holds the static give of these harmonics
+already; what they add to the compliance is told, so that it can be taken out.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from solidgear.body import Body
+from solidgear.errors import SolidgearError
+from solidgear.models.harmonic.patch import Patch, PatchMotion
+from solidgear.reduction.superelement import Superelement
+from solidgear.reduction.waves import local_compliance, own_waves, with_waves
+from solidgear.scene import Scene
+from solidgear.scene.train import SIDES, Train
+from solidgear.solve.modes import modes
+from solidgear.system.parts import Part, Placed
+
+if TYPE_CHECKING:
+    from solidgear.studies.train.models import Workshop
+    from solidgear.system.system import System
+
+#: port of a part at its mesh point; no station can be called so, for names hold no dot
+TEETH = "mesh.point"
+#: waves around the axis that are looked for among those that nothing drives, at most
+MOST_WAVES = 16
+#: a light mesh finds the lowest frequency of a family too high by less than this
+LIGHT = 1.15
+#: modes of a family that are looked for
+FEW = 8
+
+
+def patch_of(train: Train, side: str, scene: Scene, point: np.ndarray) -> Patch:
+    """Where teeth push on a shaft: one tooth pitch around the mesh point, over the seat of the
+    lumped point.
+
+    Parameters
+    ----------
+    train : Train
+    side : str
+    scene : Scene
+    point : (3,) ndarray
+        Mesh point from the lumped point, in the axes of the scene, m.
+    """
+    seat = next(s for s in scene.stations if s.name == scene.port.name)
+    angle = float(np.arctan2(point[0], point[2]))
+    return Patch(seat.lo, seat.hi, angle, 2 * np.pi / train.member(side).teeth)
+
+
+def local_teeth(
+    train: Train, side: str, scene: Scene, part: Part, body: Body, point: np.ndarray
+) -> Superelement:
+    """A shaft with the harmonics that its teeth drive, and their port.
+
+    Parameters
+    ----------
+    train : Train
+    side : str
+    scene : Scene
+        Of the shaft.
+    part : Superelement
+    body : Body
+    point : (3,) ndarray
+        As :func:`patch_of`.
+
+    Raises
+    ------
+    SolidgearError
+        For a seat that is tied rigidly, which has no waves.
+    """
+    assert isinstance(part, Superelement)
+    rigid = [s.name for s in scene.stations if s.attachment == "rigid"]
+    if rigid:
+        raise SolidgearError(
+            f"[mesh] local_harmonics: the seat {rigid[0]} of the {side}'s shaft is tied rigidly "
+            "and holds all waves around it; use attachment average or section"
+        )
+    patch = patch_of(train, side, scene, point)
+    motion = PatchMotion(scene, body, patch)
+    rows = {n: motion.rows(n) for n in sorted(train.mesh.local_harmonics)}
+    return with_waves(part, body, scene.port.name, point, patch.axes, rows, TEETH)
+
+
+def reduced(part: Part) -> Superelement | None:
+    """The superelement that a part is or has been placed from; None for another kind."""
+    inner = part.part if isinstance(part, Placed) else part
+    return inner if isinstance(inner, Superelement) else None
+
+
+def waves_of(part: Part) -> dict[int, np.ndarray]:
+    """Coordinates of the harmonics n >= 2 of a part, by n."""
+    inner = reduced(part)
+    return {} if inner is None else own_waves(inner)
+
+
+def local_give(workshop: Workshop, system: System) -> dict[str, float]:
+    """How far the harmonics at the mesh point give way under a constant mesh force, m/N, by shaft
+    that has any.
+    """
+    give = {}
+    for side in SIDES:
+        part = reduced(system.parts[side])
+        if part is not None and TEETH in part.ports:
+            normal = workshop.teeth(side, part)[1].normal
+            give[side] = local_compliance(part, TEETH, normal)
+    return give
+
+
+def local_lines(workshop: Workshop, system: System) -> tuple[str, ...]:
+    """What the harmonics at the mesh point add, in words; empty without any."""
+    asked = workshop.train.mesh.local_harmonics
+    if not asked:
+        return ()
+    give = local_give(workshop, system)
+    listed = ", ".join(map(str, sorted(asked)))
+    if not give:
+        return (
+            f"Local harmonics {listed} are asked for, and neither shaft is a harmonic solid: "
+            "they are left out.",
+        )
+    share = 100 * sum(give.values()) * workshop.contact.stiffness
+    told = ", ".join(f"{side} {value:.2e} m/N" for side, value in give.items())
+    return (
+        f"Local mesh point: harmonics n = {listed} on one tooth pitch of the seat; they give way "
+        f"by {told}, {share:.2g} % of the compliance of the mesh, which a stiffness found on whole "
+        "elastic gears holds already.",
+    )
+
+
+def undriven(
+    body: Body, highest_hz: float, driven: tuple[int, ...] = ()
+) -> dict[int, tuple[float, ...]]:
+    """Free modes with two and more nodal diameters that no port of a harmonic solid drives, Hz, by
+    their number of waves.
+
+    Parameters
+    ----------
+    body : Body
+    highest_hz : float
+    driven : tuple of int
+        Harmonics that are driven, and left out here.
+
+    Returns
+    -------
+    dict of int to tuple of float
+    """
+    if body.further is None:
+        return {}
+    out = {}
+    for n in _reaching(body.further, highest_hz):
+        if n in driven:
+            continue
+        found = modes(body.family(n), (), n=2 * FEW).frequency_hz
+        low = tuple(float(hz) for hz in found if hz <= highest_hz)
+        if low:
+            out[n] = low
+    return out
+
+
+def _reaching(further, highest_hz: float):
+    """Numbers of waves whose first mode may lie below a frequency."""
+    light: Callable[[int], float] = further.light
+    for n in range(2, MOST_WAVES + 1):
+        if further.bound(n) > highest_hz:
+            return
+        if light(n) < LIGHT * highest_hz:
+            yield n

@@ -1,0 +1,387 @@
+"""Each shaft of a train at any rung, and the system that any two of them make.
+
+A rung of a shaft is that of a body (``euler``, ``timoshenko``, ``harmonic``, ``solid``), ``rigid``,
+or ``lumped``: six degrees of freedom at the lumped point, condensed from a body that may be named
+(``lumped/euler``), with one of these masses:
+
+- ``lumped``: Guyan's, of all six motions;
+- ``lumped-bending``: Guyan's in bending, the total mass along the shaft (Hua 2010, equation 55);
+- ``lumped-matched``: the mode-matched pair in bending, the total mass along the shaft;
+- ``lumped-old``: total mass and inertia.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from copy import copy
+from dataclasses import dataclass, field
+from time import perf_counter
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from solidgear.body import Body, as_supports
+from solidgear.errors import SolidgearError, listed, nearest, show
+from solidgear.kernel.counts import KINDS
+from solidgear.ladder import build
+from solidgear.ladder.registry import LADDER
+from solidgear.reduction.condensed import condensed_shaft
+from solidgear.reduction.craig_bampton import craig_bampton
+from solidgear.reduction.effective_mass import synthesise
+from solidgear.reduction.rubin import rubin
+from solidgear.reduction.superelement import Superelement
+from solidgear.scene import Scene
+from solidgear.scene.train import SIDES, Train
+from solidgear.studies.train.contact import Contact, contact
+from solidgear.studies.train.local import TEETH, local_teeth
+from solidgear.system.gear_mesh import MeshVector
+from solidgear.system.links import Link, PortInertia, grounded, mesh_spring, torsion_spring
+from solidgear.system.parts import Inertia, Part, Placed, RigidBody
+from solidgear.system.system import System
+
+RIGID = "rigid"
+LUMPED = ("lumped", "lumped-bending", "lumped-matched", "lumped-old")
+#: body that lumped models come from unless one is named, and the judge of a system
+JUDGE = LADDER.judges[0]
+REDUCTIONS = {"rubin": rubin, "craig_bampton": craig_bampton}
+#: free modes of a shaft that are kept: with residuals, enough for 1e-5 to 4 kHz; the bound tells
+KEPT = 24
+#: a mesh for systems: frequencies move by some 1e-5 against order 5
+MESH: dict[str, dict] = {JUDGE: {"order": 4}}
+
+
+def checked_rung(name: str) -> tuple[str, str]:
+    """Kind of a shaft's model, and the body it rests on (empty for a body of its own).
+
+    Raises
+    ------
+    SolidgearError
+        For a model that there is not.
+    """
+    kind, _, body = name.partition("/")
+    known = [*LADDER.bodies, RIGID, *LUMPED]
+    if kind not in known:
+        raise SolidgearError(
+            f"model {show(name, 40)} of a shaft is unknown{nearest(kind, known)}; "
+            f"use one of {', '.join(known)}"
+        )
+    if body and (kind not in (*LUMPED, RIGID) or body not in LADDER.bodies):
+        raise SolidgearError(
+            f"model {show(name, 40)}: write a lumped model and the body it comes from, "
+            f"such as lumped/{JUDGE}"
+        )
+    if kind in LADDER.bodies:
+        return kind, ""
+    return kind, body or JUDGE
+
+
+@dataclass(frozen=True, eq=False)
+class ShaftModel:
+    """One shaft at one rung, a part of a system.
+
+    Attributes
+    ----------
+    side, rung : str
+    part : Part
+    body : Body
+        What the part was made of.
+    unknowns : int
+        Of the body's mesh.
+    seconds : float
+        To build and reduce it.
+    """
+
+    side: str
+    rung: str
+    part: Part
+    body: Body
+    unknowns: int
+    seconds: float
+
+
+@dataclass(eq=False)
+class Workshop:
+    """Models of the shafts of a train, each made once.
+
+    Attributes
+    ----------
+    train : Train
+    reduction : {'rubin', 'craig_bampton'}
+    kept : int
+        Modes of each shaft.
+    settings : mapping
+        Builder options of rungs.
+
+    Examples
+    --------
+    >>> import solidgear as sg
+    >>> shop = Workshop(sg.load_train("geometry/axle_overhung.toml"))
+    >>> system = shop.system("timoshenko", "euler")
+    >>> list(system.parts), system.modes(3).frequency_hz.round(1)
+    (['engine', 'pinion', 'gear', 'load'], array([  0. ,  16.3,  55.4, 732.4]))
+    """
+
+    train: Train
+    reduction: str = "rubin"
+    kept: int = KEPT
+    settings: Mapping[str, Mapping] = field(default_factory=dict)
+
+    def __post_init__(self):
+        if self.reduction not in REDUCTIONS:
+            raise SolidgearError(
+                f"reduction {show(self.reduction, 30)} is unknown; use {' or '.join(REDUCTIONS)}"
+            )
+        self._made: dict[tuple[str, str], ShaftModel] = {}
+        self._local: dict[tuple[str, str], Part] = {}
+        self._local_seconds = 0.0
+        #: what meshes leave in the first frequencies, by the models of both shafts
+        self.bars: dict[tuple[str, ...], np.ndarray] = {}
+        self.scenes: dict[str, Scene] = {side: self.train.shaft(side) for side in SIDES}
+        self.contact: Contact = contact(self.train)
+
+    def shaft(self, side: str, rung: str) -> ShaftModel:
+        """Model of a shaft, made when it is first asked for."""
+        if (side, rung) not in self._made:
+            kind, base = checked_rung(rung)
+            if base:
+                self._made[side, rung] = self._from_body(side, rung, kind, base)
+            else:
+                start = perf_counter()
+                body = build(self.scenes[side], rung, **self.settings.get(rung, MESH.get(rung, {})))
+                part = REDUCTIONS[self.reduction](body, n=self.kept)
+                seconds = perf_counter() - start
+                self._made[side, rung] = ShaftModel(side, rung, part, body, body.size, seconds)
+        return self._made[side, rung]
+
+    def mesh_limit(self, side: str, part: Part) -> float:
+        """Frequency up to which the mesh under a part follows shear waves, Hz; infinite for what has
+        no cells.
+
+        A quarter of the order in radians a cell: at 0.6 of it frequencies of the pinion, the ring
+        gear and a stepped shaft were off by 0.3 % at most at order 4, at all of it by some 2 % at
+        order 2.
+        """
+        inner = part.part if isinstance(part, Placed) else part
+        model = self._made.get((side, getattr(inner, "fidelity", "")))
+        cell = model.body.mesh.get("representative_size") if model is not None else None
+        if model is None or not cell:
+            return np.inf
+        order = model.body.mesh.get("order") or KINDS[model.body.mesh["element"]].order
+        materials = {segment.material for segment in self.scenes[side].segments}
+        shear = min(np.sqrt(m.shear_modulus / m.density) for m in materials)
+        return float(order * shear / (8 * np.pi * cell))
+
+    def take(self, side: str, rung: str, body: Body) -> None:
+        """Take in a body that is there already as the model of a shaft.
+
+        Parameters
+        ----------
+        side, rung : str
+        body : Body
+            Of that rung, on any mesh.
+        """
+        self.bars.clear()
+        start = perf_counter()
+        part = REDUCTIONS[self.reduction](body, n=self.kept)
+        seconds = perf_counter() - start
+        self._made[side, rung] = ShaftModel(side, rung, part, body, body.size, seconds)
+
+    def put(self, side: str, name: str, part: Part, like: str) -> None:
+        """Take in a part of one's own as a further model of a shaft.
+
+        Parameters
+        ----------
+        side : str
+        name : str
+            What it is asked for by.
+        part : Part
+            With the ports of the shaft.
+        like : str
+            Rung of the body it stands for.
+        """
+        under = self.shaft(side, like)
+        self._made[side, name] = ShaftModel(
+            side, name, part, under.body, under.unknowns, under.seconds
+        )
+
+    def with_bearings(self, stiffness: Mapping[str, ArrayLike]) -> Workshop:
+        """The same train on other bearings; bodies and their reductions are kept.
+
+        Parameters
+        ----------
+        stiffness : mapping of str to (6, 6) array_like
+            By bearing, such as ``pinion.1``, series springs included, SI.
+
+        Returns
+        -------
+        Workshop
+
+        Raises
+        ------
+        SolidgearError
+            For a bearing that there is not, or a matrix that is no stiffness.
+
+        Examples
+        --------
+        >>> import numpy as np
+        >>> import solidgear as sg
+        >>> shop = Workshop(sg.load_train("geometry/axle_overhung.toml"))
+        >>> usual = shop.system("euler", "euler").modes(3).frequency_hz[3]
+        >>> soft = shop.with_bearings({"gear.3": np.diag([1e8, 1e8, 1e8, 0, 0, 0])})
+        >>> bool(soft.system("euler", "euler").modes(3).frequency_hz[3] < usual)
+        True
+        """
+        known = [f"{s}.{b.name}" for s in SIDES for b in self.train.member(s).scene.bearings]
+        for name in stiffness:
+            if name not in known:
+                raise SolidgearError(
+                    f"no bearing {show(name, 40)}{nearest(name, known)}; there are {listed(known)}"
+                )
+        out = copy(self)
+        # bodies are free of their bearings; what is condensed on them is not
+        kept = {k: m for k, m in self._made.items() if k[1].partition("/")[0] not in LUMPED}
+        out._made, out.scenes, out.bars = kept, {}, {}
+        for side, scene in self.scenes.items():
+            bearings = [
+                bearing.with_changes(
+                    matrix=np.asarray(stiffness[f"{side}.{bearing.name}"]).tolist(),
+                    axial_series=(),
+                    catalogue=None,
+                )
+                if f"{side}.{bearing.name}" in stiffness
+                else bearing
+                for bearing in scene.bearings
+            ]
+            out.scenes[side] = scene.with_changes(bearings=tuple(bearings))
+        return out
+
+    def _from_body(self, side: str, rung: str, kind: str, base: str) -> ShaftModel:
+        under = self.shaft(side, base)
+        start = perf_counter()
+        part: Part
+        if kind == RIGID:
+            part = RigidBody.of(under.body)
+        else:
+            part = self._lumped(side, kind, under)
+        seconds = under.seconds + perf_counter() - start
+        return ShaftModel(side, rung, part, under.body, under.unknowns, seconds)
+
+    def _lumped(self, side: str, kind: str, under: ShaftModel) -> Part:
+        scene, shaft = self.scenes[side], under.part
+        supports, port = as_supports(scene), scene.port.name
+        assert isinstance(shaft, Superelement)
+        whole = condensed_shaft(shaft, np.array(supports.stiffness), supports.ports, port)
+        if kind == "lumped":
+            return whole
+        rigid = _mass_about(under.body, scene.port.y)
+        if kind == "lumped-old":
+            return whole.with_mass(np.diag(np.diag(rigid)))
+        mass = np.diag(np.diag(rigid))
+        if kind == "lumped-bending":
+            for plane in ([0, 5], [2, 3]):
+                mass[np.ix_(plane, plane)] = whole.mass[np.ix_(plane, plane)]
+            return whole.with_mass(mass)
+        _, models = synthesise(under.body, supports, port)
+        matched = models["mode-matched"]
+        if matched.mass is None or not matched.feasible:
+            raise SolidgearError(
+                f"the {side} has no mode-matched masses: {matched.verdict}; use lumped"
+            )
+        for plane in ([0, 5], [2, 3]):
+            mass[np.ix_(plane, plane)] = np.diag(np.diag(matched.mass))
+        return whole.with_mass(mass)
+
+    def system(self, pinion: str, gear: str) -> System:
+        """The train with its shafts at two rungs.
+
+        Parameters
+        ----------
+        pinion, gear : str
+            Rungs.
+
+        Returns
+        -------
+        System
+            Parts ``engine``, ``pinion``, ``gear``, ``load``; links ``engine spring``, ``load
+            spring``, ``mesh``, and the bearings.
+        """
+        train, met = self.train, self.contact
+        ports = {side: f"{side}.{self.scenes[side].port.name}" for side in SIDES}
+        parts: dict[str, Part] = {
+            "engine": Inertia(train.engine.inertia),
+            "pinion": self.part("pinion", pinion),
+            "gear": self.placed(self.part("gear", gear)),
+            "load": Inertia(train.load.inertia),
+        }
+        links: dict[str, Link] = {}
+        for side in SIDES:
+            links |= grounded(side, self.scenes[side])
+            name, rotor = train.rotor(side)
+            at = f"{side}.{train.spring_port(side)}"
+            links[f"{name} spring"] = torsion_spring(at, rotor.spring.stiffness, name)
+            head = train.member(side).head
+            if head is not None:
+                diagonal = [head.mass] * 3 + [head.bending, head.torsional, head.bending]
+                links[f"{side} head"] = PortInertia(ports[side], np.diag(diagonal))
+        ends = [
+            self.teeth(side, part) for side, part in zip(SIDES, (parts["pinion"], parts["gear"]))
+        ]
+        links["mesh"] = mesh_spring(*ends[0], *ends[1], met.stiffness)
+        return System(parts, links)
+
+    def part(self, side: str, rung: str) -> Part:
+        """Model of a shaft with the harmonics that its teeth drive, if the train asks for any."""
+        harmonics = self.train.mesh.local_harmonics
+        if not harmonics or rung != JUDGE:
+            return self.shaft(side, rung).part
+        if (side, rung) not in self._local:
+            start = perf_counter()
+            own, vector = self.shaft(side, rung), self._vector(side)
+            self._local[side, rung] = local_teeth(
+                self.train, side, self.scenes[side], own.part, own.body, vector.point
+            )
+            self._local_seconds += perf_counter() - start
+        return self._local[side, rung]
+
+    def teeth(self, side: str, part: Part) -> tuple[str, MeshVector]:
+        """Port of a part that the teeth act on, and along which line from there."""
+        vector = self._vector(side)
+        if TEETH in part.ports:
+            return f"{side}.{TEETH}", MeshVector(vector.normal, np.zeros(3))
+        return f"{side}.{self.scenes[side].port.name}", vector
+
+    def _vector(self, side: str) -> MeshVector:
+        return {"pinion": self.contact.pinion, "gear": self.contact.gear}[side]
+
+    def placed(self, part: Part) -> Placed:
+        """The gear where the teeth meet, in the axes of the pinion's scene."""
+        flip = {"start": np.eye(3), "end": np.diag([-1.0, -1.0, 1.0])}
+        train = self.train
+        c, s = np.cos(train.mesh.shaft_angle), np.sin(train.mesh.shaft_angle)
+        turn = np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
+        turn = flip[train.pinion.apex] @ turn @ flip[train.gear.apex]
+        pinion = np.array([0.0, self.scenes["pinion"].port.y, 0.0]) + self.contact.pinion.point
+        gear = np.array([0.0, self.scenes["gear"].port.y, 0.0]) + self.contact.gear.point
+        return Placed(part, turn, pinion - turn @ gear)
+
+    def losses(self) -> dict[str, float]:
+        """Loss factors of all parts and links."""
+        train, loss = self.train, self.train.losses
+        out = {side: loss.shafts for side in SIDES}
+        for side in SIDES:
+            out |= dict.fromkeys(grounded(side, self.scenes[side]), loss.bearings)
+            out[f"{train.rotor(side)[0]} spring"] = loss.springs
+        return out | {"mesh": loss.mesh}
+
+    def seconds(self, pinion: str, gear: str) -> float:
+        """To build and reduce both shafts."""
+        local = self._local_seconds if JUDGE in (pinion, gear) else 0.0
+        return self.shaft("pinion", pinion).seconds + self.shaft("gear", gear).seconds + local
+
+
+def _mass_about(body: Body, y: float) -> np.ndarray:
+    """(6, 6) rigid mass about a point of the axis."""
+    from solidgear.frames import shift
+
+    back = shift([0.0, -y, 0.0])
+    return back.T @ body.mass_matrix() @ back

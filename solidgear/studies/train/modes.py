@@ -1,0 +1,307 @@
+"""Natural frequencies of a train: names, proven bounds, and what turns freely."""
+
+from __future__ import annotations
+
+from dataclasses import asdict, dataclass, field
+
+import numpy as np
+
+from solidgear.errors import SolidgearError
+from solidgear.frames import DOF_NAMES
+from solidgear.scene.train import SIDES
+from solidgear.studies.train.contact import Contact
+from solidgear.studies.train.local import local_lines, undriven, waves_of
+from solidgear.studies.train.meshes import mesh_bars
+from solidgear.studies.train.models import JUDGE, Workshop
+from solidgear.studies.train.naming import OVALISING, driven, mode_names
+from solidgear.system.system import System
+
+#: a frequency whose bound is above this is not resolved by the reduction
+RESOLVED = 1e-3
+
+
+@dataclass(frozen=True)
+class TrainMode:
+    """One mode of a train.
+
+    Attributes
+    ----------
+    name : str
+    frequency_hz : float
+    rpm : float
+        Speed of the pinion at which its teeth mesh at this frequency.
+    strained : str
+        Part or link with most of the strain energy, and its share.
+    bound : float
+        Largest relative error that the reduction leaves, proven; nothing of the mesh of a solid.
+    driven : bool
+        Whether it strains the mesh or a bearing at all.
+    mesh : float or None
+        Largest relative error that the meshes of harmonic shafts leave, by local problems; None
+        where there are none, and where teeth drive families of two waves and more.
+    """
+
+    name: str
+    frequency_hz: float
+    rpm: float
+    strained: str
+    bound: float
+    driven: bool = True
+    mesh: float | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class TrainModes:
+    """Modes of a train at two rungs.
+
+    Attributes
+    ----------
+    train, pinion, gear, reduction : str
+    coordinates : int
+        Of the coupled system.
+    kept : dict of str to int
+        Coordinates of each shaft.
+    unknowns : dict of str to int
+        Of the bodies they were reduced from.
+    seconds : float
+        To build and reduce both shafts.
+    modes : tuple of TrainMode
+    rigid : int
+        Motions at exactly 0 Hz.
+    free : tuple of str
+        What moves freely beside the train, in words.
+    contact : tuple of str
+        What contact cells leave over, in words; empty without any.
+    unpublished : dict of str to str
+    cautions : tuple of str
+    undriven : dict of str to dict of int to tuple of float
+        Free modes (Hz) of harmonic solids that no port drives, by shaft and number of nodal
+        diameters; they take no part in the train.
+    local : tuple of str
+        What harmonics at a local mesh point add, in words.
+    """
+
+    train: str
+    pinion: str
+    gear: str
+    reduction: str
+    coordinates: int
+    kept: dict[str, int]
+    unknowns: dict[str, int]
+    seconds: float
+    modes: tuple[TrainMode, ...]
+    rigid: int
+    free: tuple[str, ...]
+    contact: tuple[str, ...]
+    unpublished: dict[str, str]
+    cautions: tuple[str, ...]
+    undriven: dict[str, dict[int, tuple[float, ...]]] = field(default_factory=dict)
+    local: tuple[str, ...] = ()
+
+    def as_dict(self) -> dict:
+        """Plain data that JSON can hold."""
+        return asdict(self)
+
+    def heading(self) -> list[str]:
+        """What was solved."""
+        kept = ", ".join(f"{side} {n} of {self.unknowns[side]}" for side, n in self.kept.items())
+        return [
+            f"{self.train}: pinion {self.pinion}, gear {self.gear}",
+            f"Reduction {self.reduction}: {kept} unknowns; {self.coordinates} coordinates in all.",
+        ]
+
+    def remarks(self) -> list[str]:
+        """What to know of the numbers, cautions included."""
+        return self.notes() + [f"caution: {text}" for text in self.cautions]
+
+    def notes(self) -> list[str]:
+        """What to know of the numbers."""
+        lines, meshed = [], any(mode.mesh is not None for mode in self.modes)
+        if self.rigid == 1 and not self.free:
+            lines.append("The whole train turns freely: one motion at exactly 0 Hz.")
+        lines += list(self.free)
+        lines += [*self._still(), *self.local]
+        lines.append(
+            "Bound: largest relative error that the reduction leaves, proven"
+            + "; it says nothing of the meshes of the shafts." * (not meshed)
+            + "; mesh: that the meshes of harmonic shafts leave, by local problems." * meshed
+        )
+        return lines + list(self.contact) + unpublished_lines(self.unpublished)
+
+    def _still(self) -> list[str]:
+        """Modes that the teeth do not drive, shaft by shaft, each n with its frequencies."""
+        at: dict[tuple[str, int], list[float]] = {}
+        for side, families in self.undriven.items():
+            for n, free in families.items():
+                at.setdefault((side, n), []).extend(free)
+        for mode in self.modes:
+            if not mode.driven and OVALISING in mode.name:
+                side, _, wave, *_ = mode.name.split()
+                at.setdefault((side, int(wave.removeprefix("n="))), []).append(mode.frequency_hz)
+        if not at:
+            return []
+        places = [
+            f"{side} n={n} {', '.join(dict.fromkeys(f'{hz:.0f}' for hz in sorted(found)))} Hz"
+            for (side, n), found in sorted(at.items())
+        ]
+        told = f"Ovalising, not driven by this mesh model: {'; '.join(places)} (n nodal diameters)."
+        if self.local:
+            one = "of a pair that is driven, one stands still along the line of action"
+            return [told.removesuffix(").") + f"; {one})."]
+        return [
+            f"{told} Seats and teeth act on mean motions, which these modes have none of; "
+            "--local-harmonics n lets the teeth of a harmonic solid push where they touch."
+        ]
+
+
+def unpublished_lines(unpublished: dict[str, str]) -> list[str]:
+    """One sentence for each of identified and assumed values."""
+    lines = []
+    for status in ("identified", "assumed"):
+        names = [key for key, own in unpublished.items() if own == status]
+        if names:
+            lines.append(f"{status.capitalize()}, not published: {', '.join(names)}.")
+    return lines
+
+
+def wrench_lines(met: Contact) -> tuple[str, ...]:
+    """What contact cells come to, and the moment that no mesh point carries."""
+    wrench = met.wrench
+    if wrench is None:
+        return ()
+
+    def millimetres(point):
+        return ", ".join(f"{1e3 * v:.2f}" for v in point)
+
+    normal = ", ".join(f"{v:.4f}" for v in wrench.normal)
+    least = wrench.left_over(wrench.point)
+    lines = [
+        f"Contact cells: {np.linalg.norm(wrench.force):.1f} N along ({normal}); point on the "
+        f"central axis ({millimetres(wrench.point)}) mm.",
+        f"No mesh point balances {least:.3g} N m about the line of action "
+        f"(pitch {1e3 * wrench.pitch:.3f} mm).",
+    ]
+    try:
+        point = wrench.thesis_point
+    except SolidgearError:
+        return tuple(lines)
+    lines.append(
+        f"By the thesis's formulas the point is ({millimetres(point)}) mm and leaves "
+        f"{wrench.left_over(point):.3g} N m."
+    )
+    return tuple(lines)
+
+
+def train_modes(
+    workshop: Workshop, pinion: str, gear: str, max_frequency: float | None = None
+) -> TrainModes:
+    """Modes of a train with its shafts at two rungs.
+
+    Parameters
+    ----------
+    workshop : Workshop
+    pinion, gear : str
+    max_frequency : float, optional
+        Hz; that of the file by default.
+
+    Raises
+    ------
+    SolidgearError
+        For a frequency beyond what the reduction resolves.
+
+    Examples
+    --------
+    >>> import solidgear as sg
+    >>> shop = Workshop(sg.load_train("geometry/axle_overhung.toml"))
+    >>> found = train_modes(shop, "timoshenko", "timoshenko", 1000.0)
+    >>> [mode.name for mode in found.modes][:2], found.modes[0].frequency_hz
+    (['train rotation', 'load torsion 1'], 0.0)
+    """
+    limit = max_frequency or workshop.train.ask.max_frequency
+    system = workshop.system(pinion, gear)
+    omega, _ = system.elastic
+    found = system.modes(max(1, int((omega <= 2 * np.pi * limit).sum())))
+    refuse_unresolved(workshop, system, limit)
+    names = mode_names(workshop, system, found)
+    most = found.dominant()
+    moved = driven(system, found)
+    rungs = {"pinion": pinion, "gear": gear}
+    elastic = len(found.frequency_hz) - found.rigid
+    bars = mesh_bars(workshop, system, rungs, elastic)
+    sure = [None] * len(names) if bars is None else [None] * found.rigid + bars.tolist()
+    modes = []
+    for k, (name, hz) in enumerate(zip(names, found.frequency_hz)):
+        strained = "" if hz == 0 else f"{most[k]} {100 * found.energy[most[k]][k]:.0f} %"
+        rpm = 60 * float(hz) / workshop.train.pinion.teeth
+        bound = float(found.error_bound[k])
+        modes.append(TrainMode(name, float(hz), rpm, strained, bound, bool(moved[k]), sure[k]))
+    still = {}
+    for side, rung in rungs.items():
+        if rung == JUDGE:
+            have = tuple(waves_of(system.parts[side]))
+            still[side] = undriven(workshop.shaft(side, rung).body, limit, have)
+    return TrainModes(
+        workshop.train.title or workshop.train.name,
+        pinion,
+        gear,
+        workshop.reduction,
+        system.size,
+        {side: system.parts[side].mass.shape[0] for side in SIDES},
+        {side: workshop.shaft(side, rungs[side]).unknowns for side in SIDES},
+        workshop.seconds(pinion, gear),
+        tuple(modes),
+        found.rigid,
+        free_motions(workshop, system),
+        wrench_lines(workshop.contact),
+        workshop.train.unpublished(),
+        workshop.contact.cautions,
+        {side: families for side, families in still.items() if families},
+        local_lines(workshop, system),
+    )
+
+
+def refuse_unresolved(workshop: Workshop, system: System, limit: float) -> None:
+    """Refuse a frequency at which the reduction promises nothing, or the mesh of a shaft.
+
+    Raises
+    ------
+    SolidgearError
+    """
+    cut = float(np.sqrt(system.truncation.cut) / (2 * np.pi))
+    if limit >= 0.9 * cut:
+        raise SolidgearError(
+            f"{limit:g} Hz is beyond what the reduction resolves: the first mode that it leaves "
+            f"out lies at {cut:.0f} Hz; keep more modes (--kept), or ask for less than "
+            f"{0.9 * cut:.0f} Hz"
+        )
+    for side in SIDES:
+        at = workshop.mesh_limit(side, system.parts[side])
+        if limit > at:
+            raise SolidgearError(
+                f"{limit:g} Hz is beyond what the mesh of the {side} resolves, about {at:.0f} Hz: "
+                "shear waves are then shorter than its cells can follow; ask for less"
+            )
+
+
+def free_motions(workshop: Workshop, system: System) -> tuple[str, ...]:
+    """What moves freely, in words, unless it is the one rotation of the whole train."""
+    count = system.free.shape[1]
+    if count == 0:
+        return ("Nothing turns freely: a bearing resists the rotation of a shaft.",)
+    turning = [part for part in system.parts if np.abs(system.free[system.place(part)]).max() > 0]
+    if count == 1 and len(turning) == len(system.parts):
+        return ()
+    if count == 1:
+        still = [part for part in system.parts if part not in turning]
+        return (f"Only {', '.join(turning)} turn freely; {', '.join(still)} do not turn along.",)
+    loose = [words for side in SIDES for words in _loose(workshop, system, side)]
+    where = "; ".join(loose) or f"free to turn by themselves: {', '.join(turning)}"
+    return (f"{count} motions are free, where a train has one: {where}.",)
+
+
+def _loose(workshop: Workshop, system: System, side: str) -> list[str]:
+    """Directions in which the bearings do not hold a shaft, its rotation apart."""
+    port = workshop.scenes[side].port.name
+    size = np.abs(system.motion(f"{side}.{port}") @ system.free).max(axis=1)
+    names = [d for d, s in zip(DOF_NAMES, size) if d != "thy" and s > 1e-6 * size.max()]
+    return [f"the bearings of the {side}'s shaft do not hold it in {' '.join(names)}"] * bool(names)

@@ -1,0 +1,157 @@
+"""Order lines of a train over the speed of its pinion, and the natural frequencies they cross.
+
+Order n of the mesh runs at ``n z_p`` times the speed of the pinion, the first order of a shaft at
+its own speed.  Speeds go up to where the first order of the mesh meets the highest frequency.
+Bearings and teeth do not change with speed here, so natural frequencies are level lines.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from solidgear.errors import SolidgearError
+from solidgear.studies.train.models import Workshop
+from solidgear.studies.train.modes import TrainMode, train_modes
+from solidgear.studies.train.respond import Drive
+
+#: orders of the mesh that are drawn, and at most
+MESH_ORDERS, MOST_ORDERS = 3, 20
+SHAFT_ORDERS = (1, 2)
+
+
+@dataclass(frozen=True, eq=False)
+class OrderLine:
+    """One order over the speed of the pinion.
+
+    Attributes
+    ----------
+    name : str
+        ``mesh 1``, ``pinion 1``, ``gear 2``.
+    per_turn : float
+        Periods in one turn of the pinion.
+    rpm, force : (s,) ndarray or None
+        Speeds of the pinion and amplitude of the mesh force, N, where the transmission error has
+        this order.
+    """
+
+    name: str
+    per_turn: float
+    rpm: np.ndarray | None = None
+    force: np.ndarray | None = None
+
+
+@dataclass(frozen=True)
+class Crossing:
+    """Where an order meets a natural frequency.
+
+    Attributes
+    ----------
+    line, mode : str
+    frequency_hz : float
+    rpm : float
+        Of the pinion.
+    force : float or None
+        Of the mesh there, N; None for an order that the transmission error does not have.
+    """
+
+    line: str
+    mode: str
+    frequency_hz: float
+    rpm: float
+    force: float | None
+
+
+@dataclass(frozen=True, eq=False)
+class OrderMap:
+    """Order lines and natural frequencies of a train.
+
+    Attributes
+    ----------
+    highest_hz, highest_rpm : float
+    lines : tuple of OrderLine
+    modes : tuple of TrainMode
+        Elastic ones.
+    crossings : tuple of Crossing
+        By order, then by frequency.
+    """
+
+    highest_hz: float
+    highest_rpm: float
+    lines: tuple[OrderLine, ...]
+    modes: tuple[TrainMode, ...]
+    crossings: tuple[Crossing, ...]
+
+
+def order_map(
+    workshop: Workshop,
+    pinion: str,
+    gear: str,
+    highest_hz: float | None = None,
+    damping: str = "hysteretic",
+    matched_hz: float = 0.0,
+    mesh_orders: int | None = None,
+    shaft_orders: Sequence[int] = SHAFT_ORDERS,
+) -> OrderMap:
+    """Order lines of a train with its shafts at two rungs.
+
+    Parameters
+    ----------
+    workshop : Workshop
+    pinion, gear : str
+    highest_hz : float, optional
+        That of the file by default.
+    damping, matched_hz
+        As :class:`solidgear.studies.train.respond.Drive`.
+    mesh_orders : int, optional
+        Three by default, or as many as the transmission error has.
+    shaft_orders : sequence of int
+        Of both shafts.
+
+    Raises
+    ------
+    SolidgearError
+        For a frequency beyond what the reduction resolves, or a number of orders that is none.
+
+    Examples
+    --------
+    >>> import solidgear as sg
+    >>> shop = Workshop(sg.load_train("geometry/axle_overhung.toml"))
+    >>> found = order_map(shop, "timoshenko", "timoshenko", 1000.0)
+    >>> first = found.crossings[0]
+    >>> first.line, first.mode, round(first.rpm)  # 16.28 Hz and 14 teeth
+    ('mesh 1', 'load torsion 1', 70)
+    """
+    drive = Drive(workshop, pinion, gear, damping, matched_hz)
+    highest = highest_hz or workshop.train.ask.max_frequency
+    given = len(drive.error.orders) or 1
+    count = max(MESH_ORDERS, given) if mesh_orders is None else mesh_orders
+    if not 1 <= count <= MOST_ORDERS:
+        raise SolidgearError(f"{count} orders of the mesh; ask for 1 to {MOST_ORDERS}")
+    teeth, top = workshop.train.pinion.teeth, 60 * highest / workshop.train.pinion.teeth
+    hz = drive.grid(highest)
+    lines = []
+    for order in range(1, count + 1):
+        own = OrderLine(f"mesh {order}", float(order * teeth))
+        if order <= given:
+            force = np.abs(drive.mesh(hz, order)[1])
+            own = OrderLine(own.name, own.per_turn, 60 * hz / own.per_turn, force)
+        lines.append(own)
+    for side, turns in (("pinion", 1.0), ("gear", 1 / workshop.train.ratio)):
+        lines += [OrderLine(f"{side} {n}", n * turns) for n in shaft_orders]
+    modes = train_modes(workshop, pinion, gear, highest).modes
+    elastic = tuple(m for m in modes if 0 < m.frequency_hz <= highest)
+    crossings = []
+    for k, line in enumerate(lines):
+        met = [mode for mode in elastic if 60 * mode.frequency_hz / line.per_turn <= top]
+        at = np.array([mode.frequency_hz for mode in met])
+        force = np.abs(drive.mesh(at, k + 1)[1]) if line.force is not None else [None] * len(met)
+        for mode, size in zip(met, force):
+            rpm, size = (
+                60 * mode.frequency_hz / line.per_turn,
+                size if size is None else float(size),
+            )
+            crossings.append(Crossing(line.name, mode.name, mode.frequency_hz, rpm, size))
+    return OrderMap(highest, top, tuple(lines), elastic, tuple(crossings))

@@ -1,0 +1,364 @@
+r"""Steady response of a train to its transmission error, or to forces on its ports.
+
+The teeth carry ``F_m = k_m (1 + i eta) (dte - e)`` with the dynamic transmission error ``dte = h_p
+q_p - h_g q_g`` and the unloaded one e (Hua 2010, equations 9 to 13 and 19 to 24), so that e pushes
+like the load ``h' k_m (1 + i eta) e``.  Bearings push back with their stiffness, loss included,
+times what their seats move: all six components, the whole row and not the diagonal alone.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from solidgear.body import as_supports
+from solidgear.errors import SolidgearError, show
+from solidgear.frames import DOF_NAMES
+from solidgear.machine.threads import pinned
+from solidgear.scene.train import SIDES
+from solidgear.studies.train.local import local_lines
+from solidgear.studies.train.models import Workshop
+from solidgear.studies.train.modes import refuse_unresolved
+from solidgear.studies.train.naming import mode_names
+from solidgear.system.steady import SteadyState, peaks
+from solidgear.system.system import System
+
+#: readings of the losses of a file: the three kinds, and the thesis's C = zeta K to the letter
+DAMPING = ("hysteretic", "viscous", "modal", "literal")
+FORCE_UNITS = ("N",) * 3 + ("N m",) * 3
+MOTION_UNITS = ("m",) * 3 + ("rad",) * 3
+#: the first frequency of a response, over the first elastic one
+BEGIN = 0.25
+#: half-widths from a natural frequency, and share of it where losses are small, within which a top is
+#: called after its mode; and what is told of one that is near none
+NEAR, LEAST_NEAR = 4.0, 0.02
+NO_MODE = "none near: several together"
+#: peaks of a mesh force; a train has some tens of modes in any range
+MOST_PEAKS = 400
+#: points between the neighbours of the top of a peak
+TOP = 17
+#: a peak that stands out from the dip beside it by less than this is a ripple, dB
+STANDS_OUT = 0.5
+
+LITERAL = (
+    "damping: C = zeta K is read to the letter, so that the ratios count as seconds; "
+    "at {0:.0f} Hz the mesh then has a loss factor of {1:.0f}. Read them as loss factors 2 zeta "
+    "(--damping hysteretic) unless this very reading is what is asked"
+)
+
+
+@dataclass(frozen=True)
+class Peak:
+    """A peak of the mesh force.
+
+    Attributes
+    ----------
+    frequency_hz : float
+    force : float
+        Amplitude, N.
+    mode : str
+        That makes it.
+    """
+
+    frequency_hz: float
+    force: float
+    mode: str
+
+
+@dataclass(frozen=True, eq=False)
+class TrainResponse:
+    """Amplitudes over frequency.
+
+    Attributes
+    ----------
+    pinion, gear, damping : str
+    frequency_hz : (f,) ndarray
+        Of the excitation; the mesh frequency of its first order.
+    columns : dict of str to (f,) complex ndarray
+        By name and unit, such as ``mesh force [N]``; harmonics of the mesh over the frequency of
+        the first.
+    peaks : tuple of Peak
+        Of the mesh force.
+    cautions : tuple of str
+    seconds : float
+        To build and reduce both shafts.
+    """
+
+    pinion: str
+    gear: str
+    damping: str
+    frequency_hz: np.ndarray
+    columns: dict[str, np.ndarray]
+    peaks: tuple[Peak, ...]
+    cautions: tuple[str, ...]
+    seconds: float
+
+    @property
+    def force(self) -> np.ndarray:
+        """(f,) dynamic mesh force, N, complex."""
+        return self.columns["mesh force [N]"]
+
+
+class Drive:
+    """A train at two rungs with its losses and its excitation.
+
+    Parameters
+    ----------
+    workshop : Workshop
+    pinion, gear : str
+        Rungs.
+    damping : {'hysteretic', 'viscous', 'modal', 'literal'}
+    matched_hz : float
+        Of viscous losses, Hz.
+    forces : mapping of str to (6,) array_like, optional
+        At ports, N and N m; instead of the transmission error.
+    """
+
+    def __init__(
+        self,
+        workshop: Workshop,
+        pinion: str,
+        gear: str,
+        damping: str = "hysteretic",
+        matched_hz: float = 0.0,
+        forces: Mapping[str, np.ndarray] | None = None,
+    ):
+        if damping not in DAMPING:
+            raise SolidgearError(
+                f"damping {show(damping, 30)} is unknown; use one of {', '.join(DAMPING)}"
+            )
+        self.workshop, self.rungs, self.damping = workshop, (pinion, gear), damping
+        self.system: System = workshop.system(pinion, gear)
+        loss = workshop.losses()
+        kind = damping
+        if damping == "literal":
+            loss = {name: eta / 2 for name, eta in loss.items()}
+            kind, matched_hz = "viscous", 1 / (2 * np.pi)
+        self.steady = SteadyState(self.system, loss, kind, matched_hz)
+        met, train = workshop.contact, workshop.train
+        ends = [workshop.teeth(side, self.system.parts[side]) for side in SIDES]
+        stretch = [vector.vector @ self.system.motion(port) for port, vector in ends]
+        self.row = stretch[0] - stretch[1]
+        self.stiffness = met.stiffness
+        self.forces = dict(forces or {})
+        self.error = train.mesh.transmission_error
+        self.load = self.system.load(self.forces) if self.forces else self.stiffness * self.row
+
+    def amplitude(self, frequency_hz: np.ndarray, order: int = 1) -> np.ndarray:
+        """(f,) transmission error e at a frequency of excitation, m."""
+        if self.error.frequency:
+            return np.interp(frequency_hz, self.error.frequency, self.error.amplitude)
+        return np.full(len(frequency_hz), self.error.orders[order - 1])
+
+    def motion(self, frequency_hz: np.ndarray, rows: np.ndarray, order: int = 1) -> np.ndarray:
+        """(f, q) motions at a frequency of excitation."""
+        unit = self.steady.motion(frequency_hz, self.load, rows)
+        if self.forces:
+            return unit
+        scale = self.amplitude(frequency_hz, order) * self.steady.factor("mesh", frequency_hz)
+        return unit * scale[:, None]
+
+    def mesh(self, frequency_hz: np.ndarray, order: int = 1) -> tuple[np.ndarray, np.ndarray]:
+        """(f,) dynamic transmission error, m, and mesh force, N."""
+        dte = self.motion(frequency_hz, self.row[None], order)[:, 0]
+        return self._teeth(frequency_hz, dte, order)
+
+    def _teeth(
+        self, frequency_hz: np.ndarray, dte: np.ndarray, order: int = 1
+    ) -> tuple[np.ndarray, np.ndarray]:
+        error = 0.0 if self.forces else self.amplitude(frequency_hz, order)
+        factor = self.stiffness * self.steady.factor("mesh", frequency_hz)
+        return dte, factor * (dte - error)
+
+    def reactions(self, frequency_hz: np.ndarray) -> dict[str, np.ndarray]:
+        """(f, 6) forces of every bearing on its shaft, in the axes of that shaft, by ``side
+        bearing``.
+        """
+        rows = self._reaction_rows()
+        found = self.motion(frequency_hz, np.vstack([force for _, force in rows.values()]))
+        return self._reactions(frequency_hz, rows, found)
+
+    def _reaction_rows(self) -> dict[str, tuple[str, np.ndarray]]:
+        """Link and rows (6, N) of the elastic force of every bearing, by ``side bearing``."""
+        out = {}
+        for side in SIDES:
+            supports = as_supports(self.workshop.scenes[side])
+            seats = np.vstack([self.system.motion(f"{side}.{b}") for b in supports.ports])
+            link = next(n for n in self.system.links if n.startswith(f"{side}."))
+            force = -np.array(supports.stiffness) @ seats
+            for k, name in enumerate(supports.ports):
+                if np.any(supports.stiffness[6 * k : 6 * k + 6]):
+                    out[f"{side} bearing {name}"] = (link, force[6 * k : 6 * k + 6])
+        return out
+
+    def _reactions(self, frequency_hz, rows, found) -> dict[str, np.ndarray]:
+        """Reactions from the motions (f, 6 b) of their rows, losses included."""
+        return {
+            name: found[:, 6 * k : 6 * k + 6] * self.steady.factor(link, frequency_hz)[:, None]
+            for k, (name, (link, _)) in enumerate(rows.items())
+        }
+
+    def columns(self, frequency_hz: np.ndarray) -> dict[str, np.ndarray]:
+        """All that a response tells of the first order, by name and unit: mesh, reactions of every
+        bearing, motions of both lumped points.
+        """
+        reactions = self._reaction_rows()
+        ports = {side: f"{side}.{self.workshop.scenes[side].port.name}" for side in SIDES}
+        rows = [self.row[None], *(force for _, force in reactions.values())]
+        rows += [self.system.motion(port) for port in ports.values()]
+        found = self.motion(frequency_hz, np.vstack(rows))
+        dte, force = self._teeth(frequency_hz, found[:, 0])
+        out = {"dynamic transmission error [m]": dte, "mesh force [N]": force}
+        for name, reaction in self._reactions(frequency_hz, reactions, found[:, 1:]).items():
+            for c, (dof, unit) in enumerate(zip(DOF_NAMES, FORCE_UNITS)):
+                out[f"{name} {dof} [{unit}]"] = reaction[:, c]
+        moved = found[:, 1 + 6 * len(reactions) :]
+        for k, side in enumerate(ports):
+            for c, (dof, unit) in enumerate(zip(DOF_NAMES, MOTION_UNITS)):
+                out[f"{side} {dof} [{unit}]"] = moved[:, 6 * k + c]
+        return out
+
+    def grid(
+        self,
+        highest_hz: float,
+        lowest_hz: float | None = None,
+        seen: Callable[[np.ndarray], np.ndarray] | None = None,
+    ) -> np.ndarray:
+        """Frequencies on which no peak of the last of some motions is missed.
+
+        Parameters
+        ----------
+        highest_hz, lowest_hz : float
+        seen : callable, optional
+            ``seen(frequency_hz)`` gives motions (f, q); by default the dynamic transmission error
+            and the mesh force.
+        """
+        refuse_unresolved(self.workshop, self.system, highest_hz)
+        first = float(self.system.elastic[0][0] / (2 * np.pi))
+        lowest = lowest_hz or min(BEGIN * first, highest_hz / 100)
+
+        seen = seen or (lambda hz: np.column_stack(self.mesh(hz)))
+        points = self.steady.grid(lowest, highest_hz, seen)
+        tops = peaks(np.abs(seen(points)[:, -1]))
+        if len(tops) > MOST_PEAKS:
+            raise SolidgearError(
+                f"the response has {len(tops)} peaks, which is rounding: a spring or an inertia "
+                "is so large or small beside the others that no digit is left; check their units"
+            )
+        fine = [np.linspace(points[k - 1], points[k + 1], TOP) for k in tops]
+        return np.unique(np.concatenate([points, *fine]))
+
+    def peaks(self, frequency_hz: np.ndarray, force: np.ndarray) -> tuple[Peak, ...]:
+        """Peaks of the mesh force, each with the mode that makes it."""
+        return tuple(Peak(*top) for top in self.tops(frequency_hz, np.abs(force), self.row))
+
+    def tops(
+        self, frequency_hz: np.ndarray, size: np.ndarray, row: np.ndarray
+    ) -> list[tuple[float, float, str]]:
+        """Frequency, size and mode of every peak of an amplitude.
+
+        Parameters
+        ----------
+        frequency_hz, size : (f,) ndarray
+        row : (N,) ndarray
+            Of the motion that is looked at.
+        """
+        omega, shapes = self.system.elastic
+        within = max(1, int((omega <= 4 * np.pi * frequency_hz[-1]).sum()))
+        found = self.system.modes(within)
+        names = mode_names(self.workshop, self.system, found)[found.rigid :]
+        share = (row @ shapes[:, :within]) * (shapes[:, :within].T @ self.load)
+        lost = np.array([self._loss_of(found, found.rigid + k) for k in range(within)])
+        out = []
+        for k in peaks(size):
+            if not stands_out(size, k):
+                continue
+            w = 2 * np.pi * frequency_hz[k]
+            # what makes a peak is the term that changes fastest there, not the largest one:
+            # far modes give much of the force, but the same everywhere
+            gap = omega[:within] ** 2 * (1 + 1j * lost) - w**2
+            # a broad top between two of them is of neither
+            width = np.maximum(NEAR * lost / 2, LEAST_NEAR) * omega[:within]
+            near = np.abs(omega[:within] - w) <= width
+            fast = np.where(near, np.abs(share / gap**2), -1.0)
+            name = names[fast.argmax()] if near.any() else NO_MODE
+            out.append((float(frequency_hz[k]), float(size[k]), name))
+        return out
+
+    def _loss_of(self, found, k: int) -> float:
+        return sum(self.steady.loss.get(name, 0.0) * e[k] for name, e in found.energy.items())
+
+
+def stands_out(size: np.ndarray, k: int) -> bool:
+    """Whether a local maximum rises by more than a ripple above the dips beside it."""
+    left, right = size[:k][::-1], size[k + 1 :]
+    least = size[k] / 10 ** (STANDS_OUT / 20)
+
+    def dips(side):
+        higher = np.flatnonzero(side > size[k])
+        near = side[: higher[0]] if len(higher) else side
+        return bool(len(near) and near.min() < least)
+
+    return dips(left) and dips(right)
+
+
+@pinned
+def respond(
+    workshop: Workshop,
+    pinion: str,
+    gear: str,
+    highest_hz: float | None = None,
+    damping: str = "hysteretic",
+    matched_hz: float = 0.0,
+    forces: Mapping[str, np.ndarray] | None = None,
+    frequency_hz: np.ndarray | None = None,
+) -> TrainResponse:
+    """Steady response of a train with its shafts at two rungs.
+
+    Parameters
+    ----------
+    workshop : Workshop
+    pinion, gear : str
+    highest_hz : float, optional
+        That of the file by default.
+    damping, matched_hz, forces
+        As :class:`Drive`.
+    frequency_hz : (f,) ndarray, optional
+        Instead of an adaptive grid.
+
+    Raises
+    ------
+    SolidgearError
+        For a frequency beyond what the reduction resolves, unknown damping or ports.
+
+    Examples
+    --------
+    >>> import solidgear as sg
+    >>> shop = Workshop(sg.load_train("geometry/axle_overhung.toml"))
+    >>> found = respond(shop, "timoshenko", "timoshenko", 1000.0)
+    >>> found.peaks[0].mode, round(found.peaks[0].frequency_hz)
+    ('load torsion 1', 16)
+    """
+    drive = Drive(workshop, pinion, gear, damping, matched_hz, forces)
+    highest = highest_hz or workshop.train.ask.max_frequency
+    hz = drive.grid(highest) if frequency_hz is None else np.asarray(frequency_hz, float)
+    told = drive.columns(hz)
+    mesh = list(told)[:2]
+    columns = {name: told.pop(name) for name in mesh}
+    force = columns[mesh[1]]
+    orders = len(drive.error.orders) if not drive.forces else 1
+    for order in range(2, orders + 1):
+        there = order * hz <= highest
+        found = np.full(len(hz), np.nan + 0j)
+        found[there] = drive.mesh(order * hz[there], order)[1]
+        columns[f"mesh force, order {order} [N]"] = found
+    columns |= told
+    cautions = [*workshop.contact.cautions, *local_lines(workshop, drive.system)]
+    if damping == "literal":
+        at = float(highest)
+        cautions.append(LITERAL.format(at, np.pi * at * workshop.train.losses.mesh))
+    found_peaks = drive.peaks(hz, force)
+    seconds = workshop.seconds(pinion, gear)
+    return TrainResponse(pinion, gear, damping, hz, columns, found_peaks, tuple(cautions), seconds)
