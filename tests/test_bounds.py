@@ -322,7 +322,7 @@ def test_the_space_of_an_order_less_is_that_of_a_mesh_an_order_lower(monkeypatch
     scene = SHAFTS["steel on aluminium"]()
     body = sg.build(scene, "harmonic", **FIRST)
     two = harmonic_bounds(coned(scene), body, statics=True)
-    body.kept.clear()
+    body.cache.clear()
     monkeypatch.setattr(meridian_pieces, "EXTRA", 3)
     three = harmonic_bounds(coned(scene), body, statics=True)
     # the richer of both integrates what is divided by r with more points

@@ -242,7 +242,7 @@ def test_sound_parts_have_no_pits():
     from skfem import MeshTet1
 
     from solidgear.meshing.featured import without
-    from solidgear.meshing.pits import pits
+    from solidgear.meshing.lost_elements import lost_elements
     from solidgear.meshing.tetrahedra import tetrahedra
     from solidgear.models.solid.body import tetrahedra_plan
     from solidgear.models.solid.featured import meshed
@@ -255,10 +255,11 @@ def test_sound_parts_have_no_pits():
     made = meshed(keyed, plan, 0.4, True)
     plan = tetrahedra_plan(hollow, [], size=None, graded_size=None, refinement=0.4, around=12)
     for mesh in (without(made.mesh, ~made.cut), tetrahedra(hollow.segments, **plan).mesh):
-        assert pits(mesh).shape[1] == 0
+        assert lost_elements(mesh).shape[1] == 0
         outside = mesh.f2t[0, mesh.boundary_facets()]
         seen = [
-            pits(MeshTet1(mesh.p, np.delete(mesh.t, k, axis=1))).shape[1] for k in outside[::40]
+            lost_elements(MeshTet1(mesh.p, np.delete(mesh.t, k, axis=1))).shape[1]
+            for k in outside[::40]
         ]
         # not those at convex rims, whose edge goes with them
         assert np.mean(np.array(seen) > 0) > 0.3

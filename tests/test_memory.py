@@ -103,7 +103,7 @@ def test_bad_limit_is_refused(root, monkeypatch, text):
 def test_processors_of_cgroup_v2(root, monkeypatch, quota, expected):
     monkeypatch.setattr(threads, "_affinity", lambda: 8)
     at = root(**{"proc__self__cgroup": "0::/\n", "sys__fs__cgroup__cpu_DOT_max": quota})
-    assert threads.offered(at) == expected
+    assert threads.usable_cores(at) == expected
 
 
 def test_processors_of_cgroup_v1(root, monkeypatch):
@@ -113,6 +113,6 @@ def test_processors_of_cgroup_v1(root, monkeypatch):
         sys__fs__cgroup__cpu__cpu_DOT_cfs_quota_us="300000",
         sys__fs__cgroup__cpu__cpu_DOT_cfs_period_us="100000",
     )
-    assert threads.offered(at) == 3
+    assert threads.usable_cores(at) == 3
     root(sys__fs__cgroup__cpu__cpu_DOT_cfs_quota_us="-1")
-    assert threads.offered(at) == 8
+    assert threads.usable_cores(at) == 8

@@ -5,7 +5,7 @@ import pytest
 
 import solidgear as sg
 from solidgear.ladder.registry import LADDER
-from solidgear.machine.isolated import apart
+from solidgear.machine.isolated import isolated
 from validation.mesh_files import rod, write_mesh, written_by_gmsh
 from validation.step_parts import write_solids
 
@@ -208,7 +208,7 @@ def test_a_scene_without_material_at_all(tmp_path):
 
 
 def two_solids(folder, solids, materials, usual=None, **more):
-    apart(write_solids, str(folder / "part.step"), solids, seconds=60)
+    isolated(write_solids, str(folder / "part.step"), solids, seconds=60)
     return scene_of(folder, "part.step", materials, usual, **more)
 
 
@@ -353,7 +353,7 @@ def test_gmsh_writes_what_is_read_here(tmp_path):
 
     place = Placing(1e-3, TURNS["y"], (0.0, 0.0, 0.0))
     for hexes, kind in ((False, "tet10"), (True, "hex20")):
-        apart(written_by_gmsh, str(tmp_path / "part"), hexes, seconds=60)
+        isolated(written_by_gmsh, str(tmp_path / "part"), hexes, seconds=60)
         names = {".msh": "sleeve", ".inp": "sleeve", ".bdf": "2", ".unv": "sleeve"}
         for ending, name in names.items():
             found = mesh_from(str(tmp_path / "part") + ending, place, (name,))

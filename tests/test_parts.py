@@ -53,9 +53,9 @@ def read_once():
 
     Each start costs more than the reading; files that end a process are another function's.
     """
-    known, starts = {}, part.apart
+    known, starts = {}, part.isolated
 
-    def apart(function, path, *arguments, **limits):
+    def once(function, path, *arguments, **limits):
         content = hashlib.sha256(Path(path).read_bytes()).digest()
         key = (function.__qualname__, Path(path).suffix, content, pickle.dumps(arguments))
         if key not in known:
@@ -63,8 +63,8 @@ def read_once():
         return pickle.loads(known[key])
 
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(part, "apart", apart)
-        patch.setattr("solidgear.models.solid.part.apart", apart)
+        patch.setattr(part, "isolated", once)
+        patch.setattr("solidgear.models.solid.part.isolated", once)
         yield
 
 
@@ -382,13 +382,13 @@ def test_seats_that_are_not_there(tmp_path):
 
 def test_two_solids_and_an_open_shell(tmp_path):
     """Named by number and place."""
-    from solidgear.machine.isolated import apart
+    from solidgear.machine.isolated import isolated
     from validation.step_parts import write_open, write_two
 
-    apart(write_two, str(tmp_path / "part.step"), seconds=60)
+    isolated(write_two, str(tmp_path / "part.step"), seconds=60)
     with pytest.raises(sg.SceneError, match="holds 2 separate solids .at .0, 50, 0. mm"):
         load(tmp_path, step="part.step")
-    apart(write_open, str(tmp_path / "part.step"), seconds=60)
+    isolated(write_open, str(tmp_path / "part.step"), seconds=60)
     with pytest.raises(sg.SceneError, match="the shell is open at face 1 at .0, 50, "):
         load(tmp_path, step="part.step")
 

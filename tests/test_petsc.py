@@ -38,7 +38,7 @@ def test_mumps_on_two_ranks_equals_this_program():
     ranks = factors(body)[0].ranks
     process, folder = ranks._process, ranks.folder
     del ranks
-    body.kept.clear()
+    body.cache.clear()
     assert process.poll() is not None and not folder.exists()
 
 

@@ -14,7 +14,7 @@ import scipy.sparse as sp
 
 import solidgear as sg
 from solidgear.body import as_supports
-from solidgear.body.cache import Kept
+from solidgear.body.cache import Cache
 from solidgear.reduction.effective_mass import synthesise
 from solidgear.studies.sweep.run import sweep
 
@@ -60,7 +60,7 @@ def with_mass_in_the_matrix(body, supports):
         rows = sp.vstack([rows_of(body, block, name) for name in supports.ports])
         added = rows.T @ sp.csr_matrix(supports.masses[np.ix_(at, at)]) @ rows
         blocks.append(replace(block, mass=(block.mass.tocsr() + added).tocsr()))
-    return replace(body, blocks=tuple(blocks), kept=Kept())
+    return replace(body, blocks=tuple(blocks), cache=Cache())
 
 
 @pytest.mark.parametrize(

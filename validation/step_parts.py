@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from solidgear.machine.isolated import apart
+from solidgear.machine.isolated import isolated
 from solidgear.meshing.cuts import tool
 from solidgear.meshing.gmsh_session import Session, import_gmsh
 from solidgear.meshing.outline import Frustum
@@ -60,7 +60,7 @@ def write_step(
     float
         Its volume as the kernel has it, m^3.
     """
-    return apart(_write, path, tuple(segments), tuple(features), unit, turn, shift, seconds=120)
+    return isolated(_write, path, tuple(segments), tuple(features), unit, turn, shift, seconds=120)
 
 
 def _write(path, segments, features, unit, turn, shift) -> float:

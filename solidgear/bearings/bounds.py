@@ -24,7 +24,7 @@ _ENDS = ("softer", "middle", "stiffer")
 
 @dataclass(frozen=True)
 class Ranges:
-    """What is not known of the bearings of a scene, each with its range.
+    """Unknown data of the bearings of a scene, each with its range.
 
     Attributes
     ----------
@@ -52,7 +52,7 @@ class Ranges:
 
     @property
     def told(self) -> str:
-        """What varies, in words."""
+        """The varied data in words."""
         parts = [
             f"{key} {low:g} to {high:g} times"
             for key, (low, high) in (("load", self.load), ("preload", self.preload))

@@ -83,7 +83,7 @@ def clearance_range(data: Catalogue) -> tuple[float, float]:
 
 
 def mounting_change(data: Catalogue, inside: Inside) -> float:
-    """What fits and temperature add to the clearance, m; negative for a tight fit or a warm shaft.
+    """Change of the clearance by fits and temperature, m; negative for a tight fit or a warm shaft.
 
     Parameters
     ----------

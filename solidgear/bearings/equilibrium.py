@@ -46,7 +46,7 @@ LEFT = 1e-8
 
 
 class Holds(Protocol):
-    """What carries load at a port: a rolling bearing, or a spring."""
+    """Carrier of load at a port: a rolling bearing, or a spring."""
 
     def load(self, motion: np.ndarray) -> np.ndarray:
         """Load (6,) that holds the shaft's seat at a motion (6,)."""
@@ -119,7 +119,7 @@ def foot_of(housing: Elastic, moves: np.ndarray | None = None) -> Foot:
 
 @dataclass(frozen=True)
 class Mounted:
-    """What carries at a port.
+    """Carrier at a port.
 
     Attributes
     ----------
@@ -141,7 +141,7 @@ class Mounted:
 
     @property
     def feet(self) -> tuple[Foot, ...]:
-        """What it stands on by itself."""
+        """Stiffness to ground of the shaft by itself."""
         spring = () if self.spring is None else (_along_y(Elastic, self.spring),)
         own = () if self.housing is None else (self.housing,)
         return tuple(foot_of(one) for one in (*spring, *own))
@@ -339,7 +339,7 @@ class _System:
         return out
 
     def not_held(self, direction: np.ndarray) -> str:
-        """Why no equilibrium was found."""
+        """Error of a search that found no equilibrium."""
         component = DOF_NAMES[FIVE[int(np.argmax(np.abs(direction[: self.ports]))) % 5]]
         pushes = self.target[: self.ports].reshape(-1, 5)
         sums = " and ".join(

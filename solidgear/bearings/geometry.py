@@ -1,4 +1,4 @@
-"""What is inside a bearing: given, or estimated from boundary dimensions and load ratings.
+"""Inner geometry of a bearing: given, or estimated from boundary dimensions and load ratings.
 
 A catalogue gives bore, outside diameter, width and load ratings; the number and size of the rolling
 elements are the maker's.  Three things tie them down: room (an element takes a usual share of

@@ -137,5 +137,5 @@ class SprungRow:
         return stiffness - outer / soft[..., None, None]
 
     def contacts(self, motion: np.ndarray) -> Contacts:
-        """What every element carries."""
+        """Loads of all elements."""
         return self.row.contacts(self._seen(motion)[0])

@@ -19,7 +19,7 @@ UNITS = ("N", "N", "N", "N m", "N m", "N m")
 
 
 class Row(Protocol):
-    """What a bearing asks of a row of rolling elements; see :mod:`solidgear.bearings.row`."""
+    """Interface of a row of rolling elements; see :mod:`solidgear.bearings.row`."""
 
     @property
     def pitch(self) -> float:
@@ -32,7 +32,7 @@ class Row(Protocol):
         """Its derivative, (..., 6, 6)."""
 
     def contacts(self, motion: np.ndarray) -> Contacts:
-        """What every element carries."""
+        """Loads of all elements."""
 
 
 @dataclass(frozen=True)
@@ -77,7 +77,7 @@ class RollingBearing:
         return sum((row.tangent(motion) for row in self.rows), np.zeros(()))
 
     def contacts(self, motion: np.ndarray) -> tuple[Contacts, ...]:
-        """What every element of every row carries at one motion."""
+        """Loads of all elements of all rows at one motion."""
         return tuple(row.contacts(motion) for row in self.rows)
 
     def at_work(self, motion: np.ndarray) -> float:

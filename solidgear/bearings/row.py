@@ -1,4 +1,4 @@
-"""What rows of balls and of rollers share: how a ring's motion is felt at an azimuth.
+"""Kinematics of a row of balls or rollers: the motion of a ring as felt at an azimuth.
 
 Axes are those of the shaft: y along it, order ``(x, y, z, thx, thy, thz)``.  The azimuth phi counts
 from x towards z.  A motion q of the inner ring (with the shaft) against the outer one moves a point
@@ -29,7 +29,7 @@ _PLACE = np.array(FELT)
 
 
 class Contacts(NamedTuple):
-    """What the rolling elements of a row carry.
+    """Loads of the rolling elements of a row.
 
     Attributes
     ----------

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Choice:
-    """Where in the ranges of catalogue data a solution is taken.
+    """Place in the ranges of catalogue data at which a solution is taken.
 
     Attributes
     ----------
@@ -64,7 +64,7 @@ class Solved:
 
 
 def wants_equilibrium(scene: Scene) -> bool:
-    """Whether a bearing of the scene waits for the load that the shaft brings."""
+    """True where a bearing of the scene waits for the load that the shaft brings."""
     return scene.load is not None and any(
         b.catalogue is not None and b.catalogue.load is None and b.catalogue.displacement is None
         for b in scene.bearings

@@ -1,4 +1,4 @@
-"""What solvers have worked out about a body and keep with it, so that it dies with the body."""
+"""Cache of what solvers have worked out about a body: it dies with the body."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import Any, TypeVar
 T = TypeVar("T")
 
 
-class Kept:
+class Cache:
     """Things by their type, one of each.
 
     Parameters
@@ -18,13 +18,13 @@ class Kept:
 
     Examples
     --------
-    >>> kept = Kept()
-    >>> kept.get(list, lambda: [1.0])
+    >>> cache = Cache()
+    >>> cache.get(list, lambda: [1.0])
     [1.0]
-    >>> kept.get(list, lambda: [2.0])  # made once
+    >>> cache.get(list, lambda: [2.0])  # made once
     [1.0]
-    >>> kept.keep({"a": 1})
-    >>> kept.find(dict), kept.find(set)
+    >>> cache.keep({"a": 1})
+    >>> cache.find(dict), cache.find(set)
     ({'a': 1}, None)
     """
 

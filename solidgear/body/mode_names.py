@@ -1,4 +1,4 @@
-"""What a mode is asked for by, whatever its model calls it."""
+"""Names by which a mode is asked for, whatever its model calls it."""
 
 from __future__ import annotations
 

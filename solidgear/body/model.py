@@ -15,7 +15,7 @@ from typing import Any, ClassVar
 import numpy as np
 import scipy.sparse as sp
 
-from solidgear.body.cache import Kept
+from solidgear.body.cache import Cache
 from solidgear.body.mass import ScalarMass
 from solidgear.body.sections import Sections, from_points, signed
 from solidgear.body.surface import Drawing, Surface, mesh_unknowns
@@ -214,7 +214,7 @@ class Body(Displayed):
         Builder of further circumferential families, such as
         :class:`solidgear.models.harmonic.circumferential.Families`; None where the blocks are all that the
         fidelity knows.
-    kept : Kept
+    cache : Cache
         What solvers have worked out about this body, such as its factors.
     factoring : Factoring
         How its matrices are to be factored.
@@ -240,7 +240,7 @@ class Body(Displayed):
     mesh: dict[str, Any] = field(default_factory=dict)
     geometry: Drawing | None = None
     further: Any = None
-    kept: Kept = field(default_factory=Kept, repr=False)
+    cache: Cache = field(default_factory=Cache, repr=False)
     factoring: Factoring = Factoring()
 
     @property
@@ -294,7 +294,7 @@ class Body(Displayed):
             raise SolidgearError(
                 f"the {self.fidelity} body has no motions of {n} waves around its axis"
             )
-        kept = self.kept.get(_Families, _Families)
+        kept = self.cache.get(_Families, _Families)
         if n not in kept:
             scale = (2 * np.pi * self.further.light(n)) ** 2
             kept[n] = Body(

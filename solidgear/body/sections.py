@@ -1,5 +1,5 @@
-"""What cross-sections do in a shape: least squares, weighted by mass, over motions that are linear
-between stations along the axis.
+"""Motions of cross-sections in a shape: least squares, weighted by mass, over motions that are
+linear between stations along the axis.
 
 A shape u of a body is described by section motions q at stations s as ``u = sum_s h_s(y) R(x, z)
 q_s``, with hat functions h_s and the rigid motions R of a section about its own centre. The normal

@@ -1,4 +1,4 @@
-"""What is attached to a body: springs between its ports and ground, and rigid masses on its ports."""
+"""Attachments of a body: springs between its ports and ground, and rigid masses on its ports."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""How a body is drawn: its surface moved by a vector of unknowns, and the mesh of a volume."""
+"""Drawing of a body: its surface moved by a vector of unknowns, and the mesh of a volume."""
 
 from __future__ import annotations
 
@@ -65,7 +65,7 @@ class Volume:
 
 
 class Drawing(Protocol):
-    """What a builder leaves with its body for pictures and files."""
+    """Geometry that a builder leaves with its body for pictures and files."""
 
     def surface(self, moved: Mapping[str, np.ndarray]) -> Surface:
         """Surface moved by the unknowns of some blocks, by name; blocks left out stand still."""

@@ -1,4 +1,4 @@
-"""How far a harmonic solid is from the exact solution: bounds of its flexibility and of its modes,
+"""Distance of a harmonic solid from the exact solution: bounds of its flexibility and of its modes,
 and where on its mesh they come from.
 
 With the flexibility F of the free body at its ports and M from
@@ -25,7 +25,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from solidgear.body import FURTHER, Block, Body
-from solidgear.body.cache import Kept
+from solidgear.body.cache import Cache
 from solidgear.bounds.loads import Loading
 from solidgear.bounds.patches import local_energies
 from solidgear.bounds.richer_space import RicherSpace
@@ -73,7 +73,7 @@ class HarmonicBounds:
     def softer(self, more: np.ndarray) -> Body:
         """The body with a larger flexibility; only ports know of it."""
         known = flexibility(self.body)
-        return replace(self.body, kept=Kept(replace(known, matrix=known.matrix + more)))
+        return replace(self.body, cache=Cache(replace(known, matrix=known.matrix + more)))
 
     def frequency(self, mode: Mode) -> float:
         """Least frequency that a mode may have, Hz."""
@@ -82,12 +82,12 @@ class HarmonicBounds:
 
 def richer_space(scene: Scene, body: Body) -> RicherSpace:
     """The richer space of a harmonic body, kept with it."""
-    return body.kept.get(RicherSpace, lambda: RicherSpace(scene, body))
+    return body.cache.get(RicherSpace, lambda: RicherSpace(scene, body))
 
 
 def with_tail(two: float, one: float) -> float:
-    """What two orders more see of an error, and what they would not: as each order takes a like share
-    of what is left.
+    """Energy of an error as two orders more see it, with the tail that they do not: as each order
+    takes a like share of what is left.
 
     Parameters
     ----------
@@ -132,7 +132,7 @@ def harmonic_bounds(
     """
     space = richer_space(scene, body)
     size, cells = 6 * len(body.ports), space.flat.cells.shape[1]
-    known = body.kept.find(_OfPorts) if statics else None
+    known = body.cache.find(_OfPorts) if statics else None
     still = statics and known is None
     empty = np.zeros((cells if still else 0, size, size))
     of_ports = known or _OfPorts(empty, np.zeros((size, size)))
@@ -164,7 +164,7 @@ def harmonic_bounds(
                     body, block, of_ports.whole
                 )
                 of_ports.less[np.ix_(rows, rows)] = of_twin(body, block, of_ports.less)
-        body.kept.keep(of_ports)
+        body.cache.keep(of_ports)
     own = {name: safety * with_tail(e.sum(), lower[name]) for name, e in energy.items()}
     return HarmonicBounds(
         body, of_ports.whole, of_ports.less, energy, _lower_ends(modes, every, own)
@@ -204,7 +204,7 @@ def _asked(found: ModeSet | None, wanted: Sequence[str]) -> list[Mode]:
 
 
 def _alike(one: Mode, other: Mode) -> bool:
-    """Whether two modes belong to one eigenproblem."""
+    """True where two modes belong to one eigenproblem."""
     return set(one.vectors[0]) == set(other.vectors[0]) or (
         one.family == other.family and one.multiplicity == other.multiplicity
     )

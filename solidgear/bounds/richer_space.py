@@ -152,7 +152,7 @@ class RicherSpace:
         self.on_axis = np.concatenate([near, np.repeat(near[edges].all(axis=1), each)])
 
     def _seats(self) -> None:
-        """Where ports act, what rigid seats hold, and hats that are one."""
+        """Ends of loads, unknowns that rigid seats hold, and hats that are one."""
         self.carrying: list[list[tuple[int, int]]] = []
         self.tied: dict[int, np.ndarray] = {}
         joined = _short_sides(self.flat)

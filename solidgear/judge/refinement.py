@@ -179,7 +179,7 @@ class Loop(ABC):
         for _ in range((self.most or MOST_MESHES) - 1):
             assert self.last is not None and self.last.score is not None
             self.mesh = refined(self.scene, self.last.body, self.mesh, self.last.score, self.tol)
-            self.last.body.kept.clear()  # its factor need not be held beside the next one
+            self.last.body.cache.clear()  # its factor need not be held beside the next one
             yield self.mesh.options()
 
     def _stopped(self) -> str:

@@ -139,7 +139,7 @@ class Tied(Loop):
     def _solve(self, level: Mapping[str, Any]) -> Solved:
         k, before = len(self.levels), dict(self.meter.seconds)
         if self.solution is not None:
-            self.solution.body.kept.clear()  # its factor need not be held beside the next one
+            self.solution.body.cache.clear()  # its factor need not be held beside the next one
         counted_from = self._counted_from(k)
         ties = solved_ties(
             self.scene, self.rung.name, level, self.meter, counted_from, self.rung.bounded

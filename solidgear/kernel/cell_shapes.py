@@ -150,7 +150,7 @@ def _on_edge(edge: int, x: np.ndarray) -> tuple[np.ndarray, int]:
 
 
 def _bulge(a, b, centre, t) -> tuple[np.ndarray, np.ndarray]:
-    """How far an arc from a to b lies from its chord at shares t of its angle, and the derivative;
+    """Distance of an arc from a to b from its chord at shares t of its angle, and the derivative;
     (2, len(t)), m.
     """
     va, vb = a - centre, b - centre

@@ -1,4 +1,4 @@
-r"""How far a discrete solution is from one in a richer space, patch by patch.
+r"""Distance of a discrete solution from one in a richer space, patch by patch.
 
 The residual of a discrete displacement u,
 

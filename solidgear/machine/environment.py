@@ -1,4 +1,4 @@
-"""What a result was made with."""
+"""Environment that a result was made with."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import platform
 from datetime import UTC, datetime
 from importlib.metadata import PackageNotFoundError, version
 
-from solidgear.machine.threads import offered
+from solidgear.machine.threads import usable_cores
 
 
 def environment() -> dict:
@@ -30,7 +30,7 @@ def environment() -> dict:
     out["platform"] = f"{platform.system()} {platform.machine()}"
     out["cpu"] = _cpu()
     # those this process may use, not those of the machine
-    out["cores"] = offered()
+    out["cores"] = usable_cores()
     out["date"] = datetime.now(UTC).strftime("%Y-%m-%d %H:%M UTC")
     return out
 

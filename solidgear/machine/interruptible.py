@@ -68,7 +68,7 @@ def call(function: Callable, *arguments, **options) -> Any:
 
 
 def abandoned() -> bool:
-    """Whether a call that was interrupted is still running."""
+    """True while a call that was interrupted is still running."""
     _lost[:] = [job for job in _lost if not job.done.is_set()]
     return bool(_lost)
 
@@ -120,7 +120,7 @@ class Made:
 
     @property
     def value(self) -> Any:
-        """What was made."""
+        """The result of the call."""
         return self._box[0]
 
 

@@ -18,11 +18,11 @@ _ROOT = str(Path(__file__).resolve().parents[2])
 _CODE = "from solidgear.machine.isolated import _serve; _serve()"
 
 
-class ApartError(RuntimeError):
+class IsolatedError(RuntimeError):
     """The process ended without a result: it was killed by a signal, or took too long."""
 
 
-def apart(function: Callable, *arguments: Any, seconds: float, memory_mb: float = 8000.0) -> Any:
+def isolated(function: Callable, *arguments: Any, seconds: float, memory_mb: float = 8000.0) -> Any:
     """Result of a function that is called in a process of its own, or what it raises.
 
     Parameters
@@ -42,7 +42,7 @@ def apart(function: Callable, *arguments: Any, seconds: float, memory_mb: float 
 
     Raises
     ------
-    ApartError
+    IsolatedError
         If the process ended without a result, or was killed after ``seconds``.
     Exception
         Whatever else the function raises.
@@ -50,7 +50,7 @@ def apart(function: Callable, *arguments: Any, seconds: float, memory_mb: float 
     Examples
     --------
     >>> import math
-    >>> apart(math.hypot, 3.0, 4.0, seconds=60)
+    >>> isolated(math.hypot, 3.0, 4.0, seconds=60)
     5.0
     """
     place = os.pathsep.join(filter(None, (_ROOT, os.environ.get("PYTHONPATH"))))
@@ -68,10 +68,10 @@ def apart(function: Callable, *arguments: Any, seconds: float, memory_mb: float 
                 timeout=seconds,
             )
         except subprocess.TimeoutExpired:
-            raise ApartError(f"took longer than {seconds:g} s") from None
+            raise IsolatedError(f"took longer than {seconds:g} s") from None
         if not made.exists():
             how = f"signal {-done.returncode}" if done.returncode < 0 else f"code {done.returncode}"
-            raise ApartError(f"ended by itself ({how})")
+            raise IsolatedError(f"ended by itself ({how})")
         succeeded, value = pickle.loads(made.read_bytes())
     if not succeeded:
         raise value
@@ -101,7 +101,7 @@ def _serve() -> None:
     try:
         part.write_bytes(pickle.dumps(out))
     except Exception as error:  # an exception that cannot be pickled is still told
-        part.write_bytes(pickle.dumps((False, ApartError(f"{type(error).__name__}: {out[1]}"))))
+        part.write_bytes(pickle.dumps((False, IsolatedError(f"{type(error).__name__}: {out[1]}"))))
     part.rename(made)
 
 

@@ -1,5 +1,5 @@
-"""How much memory this process may still take: of the machine, of its control groups, of what the
-user allows.
+"""Memory that this process may still take: of the machine, of its control groups, of what the user
+allows.
 """
 
 from __future__ import annotations

@@ -135,7 +135,7 @@ def _openblas() -> tuple:
     return tuple(ThreadpoolController().select(internal_api="openblas").lib_controllers)
 
 
-def offered(root: str | Path = "/") -> int:
+def usable_cores(root: str | Path = "/") -> int:
     """Processors this process may use: its affinity, or what a control group (v1 or v2) grants,
     whichever is less.
 
@@ -151,7 +151,7 @@ def offered(root: str | Path = "/") -> int:
 
     Examples
     --------
-    >>> offered() >= 1
+    >>> usable_cores() >= 1
     True
     """
     return max(1, min([_affinity(), *(math.ceil(share) for share in _shares(Path(root)))]))

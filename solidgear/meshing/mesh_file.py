@@ -15,7 +15,7 @@ from solidgear.meshing.decks import Deck, read
 from solidgear.meshing.decks.deck import KINDS
 from solidgear.meshing.edge_places import edge_places
 from solidgear.meshing.groups import owners, told
-from solidgear.meshing.pits import pits
+from solidgear.meshing.lost_elements import lost_elements
 from solidgear.meshing.placing import Placing
 from solidgear.meshing.quality import MeshError, check_mesh, element_volumes
 
@@ -199,7 +199,7 @@ def _pitted(found: FileMesh, deck: Deck) -> Iterator[str]:
     """A surface that lost elements have left."""
     if not found.element.startswith("tet"):
         return
-    places = 1e3 * pits(found.mesh)
+    places = 1e3 * lost_elements(found.mesh)
     if places.shape[1]:
         x, y, z = places[:, 0]
         last = f" (the last one is in line {deck.lines[-1]})" if deck.lines is not None else ""

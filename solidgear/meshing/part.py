@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from solidgear.errors import SceneError
-from solidgear.machine.isolated import ApartError, apart
+from solidgear.machine.isolated import IsolatedError, isolated
 from solidgear.meshing.closed_form import volume_of
 from solidgear.meshing.mesh_file import mesh_from
 from solidgear.meshing.placing import TURNS, Placing, Triple
@@ -196,11 +196,11 @@ def _surface(table: BodyTable, path: Path, place: Placing) -> _Found:
     named = tuple(table.materials)
     try:
         if table.step is not None:
-            seen = apart(look, str(path), place, named, seconds=LOOK_SECONDS)
+            seen = isolated(look, str(path), place, named, seconds=LOOK_SECONDS)
             groups = _groups(table, seen.volumes, seen.rest)
             return _Found(seen.points, seen.triangles, seen.sides, seen.volume, groups)
-        found = apart(mesh_from, str(path), place, named, seconds=LOOK_SECONDS)
-    except (ApartError, MemoryError) as error:
+        found = isolated(mesh_from, str(path), place, named, seconds=LOOK_SECONDS)
+    except (IsolatedError, MemoryError) as error:
         raise MeshError(
             f"cannot be read: the reader {error or 'ran out of memory'}; the file is broken or too "
             "large"

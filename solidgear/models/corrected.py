@@ -198,7 +198,7 @@ def _alike(found: Modal, exact: Modal, sections: np.ndarray, families: Families)
 
 
 def _positive_enough(static: np.ndarray) -> bool:
-    """Whether no load meets a flexibility that is clearly negative."""
+    """True where no load meets a flexibility that is clearly negative."""
     size = np.sqrt(np.maximum(np.diag(static), 0.0))
     size = np.where(size > 0, size, 1.0)
     w = np.linalg.eigvalsh(static / np.outer(size, size))
@@ -253,7 +253,7 @@ def _shared(found: np.ndarray, wanted: np.ndarray, gram: np.ndarray) -> np.ndarr
 
 
 def _families(plane: int | None) -> Families:
-    """What modes cannot mix: names of blocks, and port components of each."""
+    """Groups that modes cannot mix: names of blocks, and port components of each."""
     return [("full", tuple(range(6)))] if plane is None else list(PARTS[plane])
 
 

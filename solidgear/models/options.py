@@ -382,7 +382,7 @@ _USABLE = {
 
 
 def is_number(value: Any, whole: bool = False) -> bool:
-    """Whether a value is a finite number, and a whole one if asked."""
+    """True for a finite number, and a whole one if asked."""
     return (
         isinstance(value, Integral if whole else Real)
         and not isinstance(value, bool)
@@ -391,7 +391,7 @@ def is_number(value: Any, whole: bool = False) -> bool:
 
 
 def within(value, above=None, least=None, below=None, most=None) -> bool:
-    """Whether a number meets its limits; ``least`` and ``most`` may be met."""
+    """True where a number meets its limits; ``least`` and ``most`` may be met."""
     return (
         (above is None or value > above)
         and (least is None or value >= least)

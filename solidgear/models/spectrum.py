@@ -1,4 +1,4 @@
-"""Where the spectrum of a free shaft begins, roughly.
+"""Rough estimate of the lowest eigenvalue of a free shaft.
 
 The shaft is cut into slices: bending, stretch and twist of the chain of slices are solved as small
 banded eigenproblems over the true distribution of stiffness and mass, and what sticks out of it

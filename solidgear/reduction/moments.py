@@ -27,7 +27,7 @@ import scipy.linalg as sla
 import scipy.sparse as sp
 
 from solidgear.body import Block, Body, Port
-from solidgear.body.cache import Kept
+from solidgear.body.cache import Cache
 from solidgear.body.mass import ScalarMass
 from solidgear.machine.threads import pinned
 from solidgear.solve.families import FAMILIES
@@ -186,7 +186,7 @@ def _reduce_block(body: Body, index: int, count: int, steps: int) -> ReducedBloc
         body.length,
         body.mesh,
         body.geometry,
-        kept=Kept(Factored([factor])),
+        cache=Cache(Factored([factor])),
     )
     found = [
         (v[0], m.family)
@@ -349,7 +349,7 @@ def _frame(body: Body) -> Body:
         body.scale,
         body.length,
         dict(body.mesh),
-        kept=Kept(replace(flexibility(body), fields={})),
+        cache=Cache(replace(flexibility(body), fields={})),
     )
 
 

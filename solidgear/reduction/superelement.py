@@ -73,7 +73,7 @@ class PortMotion:
 
 @dataclass(frozen=True, eq=False)
 class Truncation:
-    """What a reduced part leaves out; see the head of this module.
+    """Truncation of a reduced part; see the head of this module.
 
     Attributes
     ----------
@@ -180,7 +180,7 @@ class Superelement:
 
     @cached_property
     def truncation(self) -> Truncation:
-        """What all blocks leave out together."""
+        """Truncation of all blocks together."""
         return joined(b.truncation for b in self.blocks)
 
     def expand(self, coordinates: np.ndarray) -> dict[int, np.ndarray]:
@@ -209,7 +209,7 @@ class Superelement:
 
 
 def joined(truncations: Iterable[Truncation]) -> Truncation:
-    """What parts that share no coordinates leave out together."""
+    """Truncation of parts that share no coordinates, together."""
     every = list(truncations)
     cut = min((t.cut for t in every), default=np.inf)
     return Truncation(cut, sla.block_diag(*(t.defect for t in every)))

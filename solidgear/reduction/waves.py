@@ -128,7 +128,7 @@ def own_waves(part: Superelement) -> dict[int, np.ndarray]:
 
 
 def local_compliance(part: Superelement, name: str, direction: np.ndarray) -> float:
-    """How far the harmonics n >= 2 let a port give way under a constant force, m/N.
+    """Compliance of a port by the harmonics n >= 2 under a constant force, m/N.
 
     Parameters
     ----------

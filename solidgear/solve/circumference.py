@@ -1,4 +1,4 @@
-"""What a shape of a 3D mesh does around the axis: its parts in cos nt and sin nt, whatever the
+"""Motion of a shape of a 3D mesh around the axis: its parts in cos nt and sin nt, whatever the
 mesh.
 
 Nodes are gathered in bins of like (r, y), divided until each has just enough of them to separate
@@ -140,7 +140,7 @@ def of_body(body: Body) -> tuple[Circumference, Callable[[np.ndarray], np.ndarra
     nodes = getattr(body.geometry, "nodes", None)
     if len(body.blocks) != 1 or nodes is None or getattr(body.geometry, "dofs", None) is None:
         return None
-    fit = body.kept.get(Circumference, lambda: Circumference(nodes, _volumes(body.geometry)))
+    fit = body.cache.get(Circumference, lambda: Circumference(nodes, _volumes(body.geometry)))
 
     def displacements(vector):
         return (vector if block.expand is None else block.expand @ vector).reshape(-1, 3)

@@ -1,4 +1,4 @@
-"""What condensation finds: stiffness and compliance at one lumped point, or between several."""
+"""Results of condensation: stiffness and compliance at one lumped point, or between several."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Which blocks of a body belong together, by what bearings and masses on ports couple."""
+"""Groups of blocks of a body that bearings and masses on ports couple."""
 
 from __future__ import annotations
 

@@ -134,8 +134,8 @@ def lowest(supported: Supported, n: int, method: str | None = None) -> Solved:
 
 
 def _without_twins(block: Block) -> bool:
-    """Whether symmetry puts no two equal modes into a block: twins of a half of a part lie in the
-    other half.
+    """True where symmetry puts no two equal modes into a block: twins of a half of a part lie in
+    the other half.
     """
     moves = set(block.components)
     return block.planar or bool(moves) and not {0, 2} <= moves

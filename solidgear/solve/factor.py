@@ -337,7 +337,7 @@ def _backward_error(matrix, solve):
 
 
 def less_memory(factoring: Factoring) -> str:
-    """What of a factor could be asked for that takes less memory than it does so far, or nothing."""
+    """Settings of a factor that takes less memory than it does so far, or nothing."""
     more = [] if factoring.precision == "single" else ["precision = single"]
     more += [] if factoring.out_of_core else ["out_of_core = true"]
     return f"a 3D solid also takes {' or '.join(more)}" if more else ""

@@ -25,7 +25,7 @@ def waves_of(block: Block) -> int:
 
 
 def repeats(block: Block) -> bool:
-    """Whether every shape of a block stands for its twin as well, a quarter of a wave further
+    """True where every shape of a block stands for its twin as well, a quarter of a wave further
     round.
 
     Parameters
@@ -36,7 +36,7 @@ def repeats(block: Block) -> bool:
 
 
 def several(block: Block) -> bool:
-    """Whether section motions tell the families of a block apart, and not the block alone.
+    """True where section motions tell the families of a block apart, and not the block alone.
 
     Parameters
     ----------

@@ -332,7 +332,7 @@ def families(parts: list[Part]) -> list[tuple[str, int | None, bool]]:
 def family_rows(
     parts: list[Part], left: list[Uncounted], found: list[tuple[str, float, int]]
 ) -> list[dict]:
-    """Which families were solved and counted, and which were left alone.
+    """Families that were solved and counted, and those that were left alone.
 
     Parameters
     ----------
@@ -383,7 +383,7 @@ def family_rows(
 
 
 def _is_twin(body, supports, spring, group: list[int], other: list[int]) -> bool:
-    """Whether a lone block mirrors another one, springs and masses included."""
+    """True where a lone block mirrors another one, springs and masses included."""
     block = body.blocks[group[0]]
     if len(group) != 1 or block.mirror is None or other != [block.mirror[0]]:
         return False

@@ -11,7 +11,7 @@ if TYPE_CHECKING:
     from solidgear.solve.supported import Supported
 
 
-class Laden:
+class MassUpdate:
     """Inverse of ``K + shift (M + J J')`` by that of the body without the masses J on its ports.
 
     Parameters

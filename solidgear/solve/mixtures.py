@@ -41,7 +41,7 @@ class Mixture(NamedTuple):
 
     @property
     def sentence(self) -> str:
-        """What a reader must know."""
+        """Sentence for a reader."""
         return (
             f"{self.name} and {self.other} ({100 * self.apart:+.2g} %) are mixtures of the same two "
             f"motions, the first {100 * self.share:.0f} % what its name says: another mesh or model may "
@@ -78,7 +78,7 @@ def mixtures(found: ModeSet) -> tuple[Mixture, ...]:
 
 
 def _shares(found: ModeSet, mode: Mode) -> dict[str, float]:
-    """What of the section motions of a mode moves as each family does."""
+    """Share of the section motions of a mode that moves as each family does."""
     energy = shares(mode.motions[0], found.gram)
     total = sum(energy.values())
     return {family: value / total for family, value in energy.items()}

@@ -1,5 +1,5 @@
-"""What a mode is called: its family by what the shape does around the axis, twins by symmetry,
-numbers by frequency.
+"""Name of a mode: its family by what the shape does around the axis, twins by symmetry, numbers by
+frequency.
 
 Families are ``axial``, ``breathing`` and ``torsion`` (nothing varies around the axis: n = 0),
 ``bending`` (n = 1) and ``ovalising n=2`` and so on. For a body in blocks n is that of the block,
@@ -262,7 +262,7 @@ class Names:
         return float(radial @ (block.mass @ radial)) / float(v @ (block.mass @ v))
 
     def overlap(self, a: Shape, b: Shape) -> float:
-        """How much one shape, a quarter of a wave further round, is like another (a MAC).
+        """MAC of one shape, turned by a quarter of a wave, with another.
 
         Parameters
         ----------
@@ -320,7 +320,7 @@ class Names:
     def pairs(
         self, shapes: list[Shape], value: np.ndarray
     ) -> tuple[list[tuple[int, ...]], list[tuple[int, int]]]:
-        """Which shapes belong together.
+        """Groups of shapes that belong together.
 
         Parameters
         ----------

@@ -1,5 +1,5 @@
-"""How much a quarter turn of what is attached to a shaft may change: twins need bearings and masses
-that it leaves as they are.
+"""Tolerance of a quarter turn of what is attached to a shaft: twins need bearings and masses that
+it leaves as they are.
 """
 
 from __future__ import annotations

@@ -270,8 +270,8 @@ def _columns(a, b):
 
 
 def _rounding(supported, u, rest, stretch):
-    """How far the rounding of products and of the matrix itself may move each energy, rad^2/s^2
-    (held to dense solutions by validation/attack/modes.py).
+    """Rounding of each energy by products and by the matrix itself, rad^2/s^2 (held to dense
+    solutions by validation/attack/modes.py).
     """
     own = np.linalg.norm(supported.diagonal[:, None] * rest**2, axis=0)
     # A stretch that came from the load (see Supported.stretch) is good to the digits that the

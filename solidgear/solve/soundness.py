@@ -1,4 +1,4 @@
-"""Whether rounding leaves a frequency enough digits to be reported."""
+"""Digits that rounding leaves a frequency: enough to be reported or not."""
 
 from __future__ import annotations
 

@@ -33,7 +33,7 @@ from solidgear.machine.threads import pinned
 from solidgear.solve.condensed import Condensed, Coupled
 from solidgear.solve.factor import USUAL, Factor, factorise
 from solidgear.solve.inertia_relief import elastic_fields
-from solidgear.solve.symmetry import folded
+from solidgear.solve.symmetry import factor_by_symmetry
 
 if TYPE_CHECKING:
     from solidgear.body.supports import Holding
@@ -105,7 +105,7 @@ def factors(body: Body) -> list[Factor]:
     FactorError
         As :func:`~solidgear.solve.factor.factorise`.
     """
-    return body.kept.get(Factored, lambda: _factored(body)).of_block
+    return body.cache.get(Factored, lambda: _factored(body)).of_block
 
 
 def _factored(body: Body) -> Factored:
@@ -123,7 +123,7 @@ def _factor(block: Block, shift: float, factoring: Factoring) -> Factor:
         from solidgear.solve.petsc import factor_on_ranks
 
         return factor_on_ranks(block, matrix, factoring)
-    in_pieces = folded(matrix, block.reflections) if factoring == USUAL else None
+    in_pieces = factor_by_symmetry(matrix, block.reflections) if factoring == USUAL else None
     return in_pieces or factorise(
         matrix,
         planar=block.planar,
@@ -153,7 +153,7 @@ def flexibility(body: Body, tolerance: float = 1e-12) -> Flexibility:
     SolidgearError
         If the static solution is not finite.
     """
-    return body.kept.get(Flexibility, lambda: _flexibility(body, tolerance))
+    return body.cache.get(Flexibility, lambda: _flexibility(body, tolerance))
 
 
 def of_twin(body: Body, block: Block, matrix: np.ndarray) -> np.ndarray:

@@ -17,7 +17,7 @@ import scipy.linalg as sla
 from solidgear.body import Body, Supports, component_rows
 from solidgear.solve.coupling import decoupled, groups
 from solidgear.solve.inertia_relief import elastic_fields
-from solidgear.solve.mass_update import Laden
+from solidgear.solve.mass_update import MassUpdate
 from solidgear.solve.statics import SHIFT, factors
 from solidgear.springs import root_of
 
@@ -72,10 +72,10 @@ class Supported:
         self.scale, self.shift = body.scale, SHIFT * body.scale
         self._spring, self._seats = self._on_seats(body, supports, spring)
         self.heavy = np.zeros((self.size, 0))
-        self._alone: Laden | None = None
+        self._alone: MassUpdate | None = None
         masses = self._root_on_ports(body, supports, supports.masses)
         if masses.shape[1]:
-            self._alone = Laden(self, masses)
+            self._alone = MassUpdate(self, masses)
             self.heavy = masses
         self.rigid = self.orthonormal_rigid()
         self.mass_rigid = self.mass(self.rigid)

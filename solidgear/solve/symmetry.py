@@ -31,7 +31,7 @@ from solidgear.solve.factored import Factor
 ALIKE = 1e-11
 
 
-def folded(matrix: sp.csr_matrix, reflections: Sequence[Reflection]) -> Factor | None:
+def factor_by_symmetry(matrix: sp.csr_matrix, reflections: Sequence[Reflection]) -> Factor | None:
     """Factor of a symmetric positive definite matrix by its pieces.
 
     Parameters
@@ -57,14 +57,14 @@ def folded(matrix: sp.csr_matrix, reflections: Sequence[Reflection]) -> Factor |
     Three equal masses in a row, which the mirror turns end for end:
 
     >>> matrix = sp.csr_matrix(np.array([[3.0, -1.0, 0.0], [-1.0, 3.0, -1.0], [0.0, -1.0, 3.0]]))
-    >>> found = folded(matrix, [(np.array([2, 1, 0]), np.ones(3))])
+    >>> found = factor_by_symmetry(matrix, [(np.array([2, 1, 0]), np.ones(3))])
     >>> bool(np.allclose(matrix @ found.solve(np.arange(3.0)), np.arange(3.0)))
     True
     """
     if not reflections or not _alike(matrix, reflections):
         return None
     backend, reason = choice(matrix)
-    kinds = folds(matrix.shape[0], reflections[:2])
+    kinds = symmetric_bases(matrix.shape[0], reflections[:2])
     pieces = []
     for kind, fold in kinds.items():
         twin = kind[::-1] if len(reflections) == 3 and kind[0] != kind[-1] else None
@@ -97,7 +97,9 @@ def folded(matrix: sp.csr_matrix, reflections: Sequence[Reflection]) -> Factor |
     )
 
 
-def folds(n: int, reflections: Sequence[Reflection]) -> dict[tuple[float, ...], sp.csr_matrix]:
+def symmetric_bases(
+    n: int, reflections: Sequence[Reflection]
+) -> dict[tuple[float, ...], sp.csr_matrix]:
     """Orthonormal bases of the motions that are symmetric or antisymmetric to every plane.
 
     Parameters
@@ -158,7 +160,7 @@ def _first_of(fold: sp.csr_matrix) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _alike(matrix: sp.csr_matrix, reflections: Sequence[Reflection]) -> bool:
-    """Whether every reflection leaves a matrix as it is, to rounding."""
+    """True where every reflection leaves a matrix as it is, to rounding."""
     probe = np.random.default_rng(0).standard_normal(matrix.shape[0])
     seen = matrix @ np.column_stack([probe, *(s * probe[p] for p, s in reflections)])
     # row by row: what stands beside large entries is not lost in their sum

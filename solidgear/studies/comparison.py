@@ -222,7 +222,7 @@ def _run(scene: Scene, models, options, found: _Found, progress: Progress) -> No
             progress(f"lumped: synthesis from {model}")
             found.lumped |= synthesise_all(scene, {model: rung}, log.info)
         # Factors are the largest thing a body holds, and no further solution is needed.
-        rung.body.kept.clear()
+        rung.body.cache.clear()
     if found.rungs:
         progress("guards")
         found.guards = notices(scene, found.rungs)

@@ -1,4 +1,4 @@
-r"""How far the frequencies of a system of reduced parts are from those of the bodies themselves.
+r"""Bound between the frequencies of a system of reduced parts and those of the bodies themselves.
 
 Every Ritz frequency is too high.  By how much at most follows from what the parts tell of the
 fields Y they leave out (:mod:`solidgear.reduction.superelement`): y moves no port, whatever holds

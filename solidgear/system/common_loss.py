@@ -38,7 +38,7 @@ SAME = 1e-14
 
 @dataclass(frozen=True, eq=False)
 class CommonLoss:
-    """What all springs lose, and what some lose beside it.
+    """Loss that all springs share, and the rest that some have beside it.
 
     Attributes
     ----------

@@ -1,4 +1,4 @@
-"""What joins parts: springs between ports of any two parts, or of one and ground.
+"""Links between parts: springs between ports of any two parts, or of one and ground.
 
 A link kind is one class with the two members of :class:`Link`; nothing else needs to know of it.  A
 spring gives *strain rows* g on the coordinates of the system: its stiffness is ``g'g``, its energy
@@ -25,7 +25,7 @@ from solidgear.system.matrices import frozen, not_negative, spd
 
 
 class Link(Protocol):
-    """What a system asks of a link.
+    """Interface of a link.
 
     A link that carries mass may further have ``mass(*ends)``, (N, N) positive semidefinite.
     """

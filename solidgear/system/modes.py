@@ -1,4 +1,4 @@
-"""What the modes of a system are told as."""
+"""Modes of a system as a reader sees them."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a system is built of: anything with a mass, strain rows and ports.
+"""Parts of a system: anything with a mass, strain rows and ports.
 
 A part kind is one class with the three attributes of :class:`Part`; nothing else needs to know of
 it. :class:`solidgear.reduction.Superelement` is one; here are the simpler ones.
@@ -22,7 +22,7 @@ from solidgear.system.matrices import frozen, positive, spd
 
 
 class Part(Protocol):
-    """What a system asks of a part with n coordinates of its own.
+    """Interface of a part with n coordinates of its own.
 
     A part that stands for more than its coordinates say may further have ``truncation``, a
     :class:`solidgear.reduction.superelement.Truncation`: frequencies then come with their bound.
@@ -39,7 +39,7 @@ class Part(Protocol):
 
     @property
     def ports(self) -> Mapping[str, PortMotion]:
-        """Where links can act, by name."""
+        """Places where links can act, by name."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -177,7 +177,7 @@ class SteadyState:
         return out + free_motion(self.system, w2, load, rows).T
 
     def _one_by_one(self, frequency_hz, load, rows) -> np.ndarray:
-        """Where the loss depends on frequency, one solution in elastic modes for each."""
+        """One solution for each frequency where the loss depends on it, in elastic modes for each."""
         omega, shapes = self.system.elastic
         # unit strain energy, so that equations of very stiff and soft modes are alike
         scale = 1 / omega

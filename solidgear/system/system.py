@@ -99,7 +99,7 @@ class System:
         return max(place.stop for place in self._places.values())
 
     def place(self, part: str) -> slice:
-        """Where the coordinates of a part are."""
+        """Range of the coordinates of a part."""
         if part not in self._places:
             ends = [f"{name}.{part}" for name, one in self.parts.items() if part in one.ports]
             meant = f"; did you mean {' or '.join(ends)}?" if ends else "; there is "
@@ -199,7 +199,7 @@ class System:
 
     @cached_property
     def truncation(self) -> Truncation:
-        """What all reduced parts leave out."""
+        """Truncation of all reduced parts."""
         cut, defect = np.inf, np.zeros((self.size, self.size))
         for name, part in self.parts.items():
             own = getattr(part, "truncation", None)

@@ -35,7 +35,7 @@ def straightened(body, scene):
     from skfem import Basis, BilinearForm, ElementTetP2, MeshTet1
 
     from solidgear.body import Block
-    from solidgear.body.cache import Kept
+    from solidgear.body.cache import Cache
 
     curved = body.geometry.mesh
     basis = Basis(MeshTet1(curved.p[:, : curved.t.max() + 1], curved.t), ElementTetP2(), intorder=4)
@@ -82,7 +82,7 @@ def straightened(body, scene):
         None,
         False,
     )
-    return replace(body, blocks=(block,), ports=(), geometry=None, kept=Kept())
+    return replace(body, blocks=(block,), ports=(), geometry=None, cache=Cache())
 
 
 def _unit(a, b):

@@ -280,5 +280,5 @@ def _affordable(elements: Callable[[float], int], most: int) -> float:
 def _answered(build: Callable[[], Any], scene: sg.Scene) -> Answer:
     body = build()
     found = answered(body, as_supports(scene), (scene.port.name,), n=8, meter=Meter())
-    body.kept.clear()  # its factors
+    body.cache.clear()  # its factors
     return found

@@ -1,4 +1,4 @@
-"""How a beam is drawn: its profile as a body of revolution.
+"""Drawing of a beam: its profile as a body of revolution.
 
 A section of a beam is a rigid disc: the case U = V, W linear in r of
 :mod:`solidgear.body.revolution`.

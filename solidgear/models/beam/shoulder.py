@@ -1,4 +1,4 @@
-"""What a beam lacks at a sharp shoulder.
+"""Flexibility that a beam lacks at a sharp shoulder.
 
 Stress cannot fill the thick part right behind a step of the outer radius, as a beam lets it.  The
 solid is softer there, by what a short piece of the thin shaft would add.  How long that piece is,
@@ -50,7 +50,7 @@ SMALL_STEP, ALIKE = 1.2, 2.0
 
 
 def grown(ratio: float, thin: Material, thick: Material) -> tuple[float, float]:
-    """What the missing length of one material is to be multiplied by where there are two.
+    """Factor on the missing length of one material where there are two.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""How a harmonic solid is drawn: the outline of its meridian as a body of revolution."""
+"""Drawing of a harmonic solid: the outline of its meridian as a body of revolution."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What the blocks of a harmonic solid differ in: unknowns, energies, rigid and mean motions.
+"""Differences between the blocks of a harmonic solid: unknowns, energies, rigid and mean motions.
 
 In the unknowns of :mod:`solidgear.models.harmonic.blocks`; one set of integrals serves them all.
 """
@@ -15,7 +15,7 @@ from solidgear.models.harmonic.blocks import _energy
 
 @dataclass(frozen=True)
 class Family:
-    """What the blocks of a harmonic solid differ in.
+    """One family of motion of a harmonic solid.
 
     Attributes
     ----------

@@ -29,7 +29,7 @@ from solidgear.scene import Scene
 
 @dataclass(frozen=True)
 class Patch:
-    """Where teeth touch a shaft.
+    """Patch of a shaft that teeth touch.
 
     Attributes
     ----------

@@ -182,7 +182,7 @@ def cyclic_features(scene: Any) -> tuple[Any, ...]:
 
 
 def no_sector(scene: Any) -> str:
-    """Why the features of a scene have no sector that can be meshed, or nothing.
+    """Reason why the features of a scene have no sector that can be meshed, or nothing.
 
     Parameters
     ----------
@@ -228,7 +228,7 @@ def sectors_around(scene, given: Mapping[str, Any]) -> int:
 
 
 def halved(scene: Any, count: int) -> bool:
-    """Whether the middle of a sector can lie in a mirror plane of all features.
+    """True where the middle of a sector can lie in a mirror plane of all features.
 
     Parameters
     ----------

@@ -42,7 +42,7 @@ _TURN = sp.csr_matrix([[0.0, -1.0], [1.0, 0.0]])
 
 @dataclass(frozen=True)
 class Sector:
-    """How the nodes of a sector repeat themselves.
+    """Nodes of a sector and how they repeat themselves.
 
     Attributes
     ----------

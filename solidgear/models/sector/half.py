@@ -52,7 +52,7 @@ _MIRROR6 = np.diag([-1.0, 1.0, 1.0, 1.0, -1.0, -1.0])
 
 @dataclass(frozen=True)
 class HalfSector:
-    """Where the nodes of half a sector lie.
+    """Places of the nodes of half a sector.
 
     Attributes
     ----------

@@ -58,7 +58,7 @@ def _on_faces(parts: Iterable[tuple[np.ndarray, np.ndarray]], field: np.ndarray)
 
 
 def outline(geometry: SolidMesh) -> Outline:
-    """What all surfaces of a mesh have in common, whatever moves it."""
+    """Outline that all surfaces of a mesh share, whatever moves it."""
     refdom, element, dofs = geometry.mesh.refdom, geometry.element, geometry.dofs
     linear = len(dofs) == refdom.nnodes
     # Two pieces end at the nodes in the middle of edges; more only pay where the mesh is coarse

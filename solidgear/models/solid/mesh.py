@@ -71,7 +71,7 @@ class SolidMesh:
 
     @cached_property
     def outline(self) -> Outline:
-        """How the boundary is drawn."""
+        """Drawing of the boundary."""
         from solidgear.models.solid.drawing import outline
 
         return outline(self)

@@ -10,7 +10,7 @@ from typing import Any
 from solidgear.body import Body
 from solidgear.errors import SolidgearError
 from solidgear.kernel.counts import solved_as
-from solidgear.machine.isolated import ApartError, apart
+from solidgear.machine.isolated import IsolatedError, isolated
 from solidgear.meshing import step
 from solidgear.meshing.element_size import size_formulas
 from solidgear.meshing.mesh_file import mesh_from
@@ -103,10 +103,10 @@ def part_body(
 
 
 def _apart(file, function, *arguments) -> Any:
-    """What a process of its own makes of a file."""
+    """Mesh of a file, made in a process of its own."""
     try:
-        return apart(function, *arguments, seconds=MESH_SECONDS)
-    except ApartError as error:
+        return isolated(function, *arguments, seconds=MESH_SECONDS)
+    except IsolatedError as error:
         raise MeshError(f"{file.name} cannot be meshed: the mesher {error}") from None
     except MeshError as error:
         raise MeshError(f"{file.name} {error}") from None

@@ -147,7 +147,7 @@ def _lateral(mesh: SolidMesh, corners, on, s) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _plane(mesh: SolidMesh, corners, edge, places, straight) -> np.ndarray:
-    """Whether facets that share straight edges lie in one plane with all their nodes."""
+    """True where facets that share straight edges lie in one plane with all their nodes."""
     count = corners.shape[1]
     m, f = np.nonzero(straight)
     _, number = np.unique(edge[m, f], return_inverse=True)

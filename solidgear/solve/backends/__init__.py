@@ -38,7 +38,7 @@ INSTALL = {
 
 @lru_cache
 def missing(name: str) -> str:
-    """Whether a back end can be used.
+    """True where a back end can be used.
 
     Parameters
     ----------

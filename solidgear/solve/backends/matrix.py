@@ -1,4 +1,6 @@
-"""What every back end does with a matrix: its upper triangle, its size, and how a factor fails."""
+"""Steps that every back end takes with a matrix: its upper triangle, its size, and how a factor
+fails.
+"""
 
 from __future__ import annotations
 

@@ -15,7 +15,7 @@ from importlib.metadata import PackageNotFoundError, files
 import numpy as np
 import scipy.sparse as sp
 
-from solidgear.machine.threads import offered
+from solidgear.machine.threads import usable_cores
 from solidgear.solve.backends.matrix import FactorError, size_mb, upper_triangle
 
 
@@ -54,7 +54,7 @@ def _mkl_pardiso():
     library = _mkl()
     function = library["pardiso"]  # a handle of our own, without pypardiso's argument types
     function.restype = None
-    most = min(offered(), library.MKL_Get_Max_Threads())
+    most = min(usable_cores(), library.MKL_Get_Max_Threads())
 
     def on_its_threads(*arguments):
         before = library.MKL_Set_Num_Threads_Local(most)

@@ -41,12 +41,12 @@ def python() -> str:
 
 
 def launcher() -> list[str]:
-    """How ranks are started: ``SOLIDGEAR_MPIRUN``, such as ``mpirun --hostfile hosts``."""
+    """Command that starts ranks: ``SOLIDGEAR_MPIRUN``, such as ``mpirun --hostfile hosts``."""
     return shlex.split(os.environ.get("SOLIDGEAR_MPIRUN") or "mpirun")
 
 
 def elsewhere() -> bool:
-    """Whether ranks may run on other machines, so that their memory is not this one's."""
+    """True where ranks may run on other machines, so that their memory is not this one's."""
     return bool(os.environ.get("SOLIDGEAR_MPIRUN"))
 
 

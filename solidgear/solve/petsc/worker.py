@@ -1,5 +1,5 @@
-"""What every rank runs: a matrix from files, factored by MUMPS or set up for multigrid, then solutions
-and modes on request.
+"""Program of every rank: a matrix from files, factored by MUMPS or set up for multigrid, then
+solutions and modes on request.
 
     mpirun -n 2 /usr/bin/python3 worker.py FOLDER
 

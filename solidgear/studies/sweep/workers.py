@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterator, Sequence
 from typing import Any
 
 from solidgear.errors import SolidgearError
-from solidgear.machine.threads import offered
+from solidgear.machine.threads import usable_cores
 from solidgear.studies.sweep.task import Task
 
 Rows = list[dict[str, Any]]
@@ -34,7 +34,7 @@ def _here(task, parts):
 
 
 def _joblib(jobs: int) -> Workers:
-    most = 8 * offered()
+    most = 8 * usable_cores()
     if jobs > most:
         raise SolidgearError(
             f"--jobs {jobs}: give a whole number up to {most}, eight for each processor here"

@@ -17,7 +17,7 @@ import numpy as np
 TURN = 0.1
 
 
-def pits(mesh: Any) -> np.ndarray:
+def lost_elements(mesh: Any) -> np.ndarray:
     """Where the surface is as if an element were lost.
 
     Parameters
