@@ -1,4 +1,4 @@
-"""How results show themselves: in a line or a few, as a table of a notebook, as a picture.
+"""Display of results: in a line or a few, as a table of a notebook, as a picture.
 
 What is told of each is written in :mod:`solidgear.report.shown`, above all the rooms these objects
 live in; it is found by name when it is first needed, so that nothing below imports the report.

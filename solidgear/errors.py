@@ -173,7 +173,7 @@ def printable(text: str) -> str:
 
 
 def for_terminal(error: Exception) -> str:
-    """What a terminal shows of an error.
+    """Text of an error for a terminal.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""How the matrices of a body are factored, where the usual way takes more memory than there is."""
+"""Choices for the factors of a body, where the usual ones take more memory than there is."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ ENGINES = ("own", "petsc", "petsc-gamg")
 
 @dataclass(frozen=True)
 class Factoring:
-    """What a solver is asked for beyond the back end that it takes.
+    """Requests to a solver beyond the back end that it takes.
 
     Attributes
     ----------
@@ -40,7 +40,7 @@ class Factoring:
 
     @property
     def words(self) -> str:
-        """What is unusual about it, or nothing."""
+        """Its unusual settings in words, or nothing."""
         unusual = []
         if self.precision == "single":
             unusual.append("single precision")

@@ -163,7 +163,7 @@ def _solved(found: Answered) -> list[Step]:
 
 
 def sentences(found: Answered | Settled) -> list[str]:
-    """What was chosen, what was passed over and why, in plain text."""
+    """Plain text of the choice: the models passed over and why, the one that answered."""
     from solidgear.report.words import percent, seconds
 
     passed: dict[str, list[str]] = {}
@@ -215,7 +215,7 @@ def _absent(missing: Sequence[str]) -> str:
 
 
 def _places(scene: Scene, found: Answered) -> Whereabouts:
-    """Where the error of the number with the widest bar sits, on the finest mesh it was solved on.
+    """Places of the error of the number with the widest bar, on the finest mesh it was solved on.
 
     Raises
     ------
@@ -258,7 +258,9 @@ def _where_table(places: Whereabouts) -> Table:
 
 
 def _told(places: Whereabouts) -> str:
-    """Where most of the error sits, of how wide a bar, and what it cost to tell."""
+    """Sentences on the places with most of the error, the width of the bar, and the cost of
+    telling.
+    """
     from solidgear.report.words import percent, seconds
 
     total = percent(places.total, signed=False)
@@ -266,8 +268,8 @@ def _told(places: Whereabouts) -> str:
 
 
 def _plain(places: Whereabouts) -> dict[str, Any]:
-    """What ``--json`` says of the places: all but the mesh and the share of every cell, which only
-    a picture needs.
+    """Places as ``--json`` gives them: all but the mesh and the share of every cell, which only a
+    picture needs.
     """
     names = ("quantity", "order", "total", "sentence", "seconds")
     out = {name: getattr(places, name) for name in names}

@@ -1,4 +1,4 @@
-"""What the commands share: the application, its argument types, progress and error handling."""
+"""Parts that all commands share: the application, its argument types, progress and error handling."""
 
 from __future__ import annotations
 
@@ -56,7 +56,7 @@ def everywhere(
         bool, typer.Option("--quiet", "-q", help="No progress; give it before the command.")
     ] = False,
 ) -> None:
-    """What every command takes."""
+    """Options of every command."""
     Progress.silent = quiet
 
 

@@ -1,4 +1,4 @@
-"""What check prints of a shaft, and check on a train."""
+"""Printing of checks of a shaft and of a train."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""How commands that print no cautions of their own read a scene."""
+"""Reading of a scene for commands that print no cautions of their own."""
 
 from __future__ import annotations
 

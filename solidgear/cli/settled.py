@@ -1,4 +1,4 @@
-"""What commands share that choose the mesh by themselves: ``-f auto``."""
+"""Parts of commands that choose the mesh by themselves: ``-f auto``."""
 
 from __future__ import annotations
 
@@ -64,7 +64,7 @@ def settled_for(
     ask: str,
     points: Sequence[str] = (),
 ) -> Settled:
-    """What ``-f auto`` chooses; parameters as for :func:`body_for`."""
+    """Choice of ``-f auto``; parameters as for :func:`body_for`."""
     from solidgear.judge.settle import settle
 
     refuse_settings(pairs)
@@ -147,7 +147,7 @@ def without_bar(found: ModeSet, bars: Mapping[str, float]) -> list[str]:
 
 
 def beyond(bars: Mapping[str, float], settled: Settled | None) -> list[str]:
-    """What is to be said of bars that are not within the tolerance although what was judged is."""
+    """Sentences on bars that are not within the tolerance although those of what was judged are."""
     if settled is None or not settled.reached:
         return []
     from solidgear.report.words import percent
@@ -163,7 +163,7 @@ def beyond(bars: Mapping[str, float], settled: Settled | None) -> list[str]:
 
 
 def unjudged(names: Sequence[str], rung: str) -> list[str]:
-    """What is to be said of them."""
+    """Sentences on modes without a bar."""
     from solidgear.ladder.registry import LADDER
 
     if not names:

@@ -46,7 +46,7 @@ def _installed() -> list[Path]:
 
 
 def title(path: Path) -> str:
-    """What a scene file says it is.
+    """Description that a scene file gives of itself.
 
     Examples
     --------

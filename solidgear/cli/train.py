@@ -60,7 +60,7 @@ def workshop(
     max_frequency: float | None,
     local_harmonics: str | None = None,
 ):
-    """Where the bodies of a train are built, once the options that all commands share are sound."""
+    """Workshop of a train, once the options that all commands share are sound."""
     from solidgear.scene.toml_file import parse
     from solidgear.studies.loading import load_train
     from solidgear.studies.train.models import Workshop

@@ -42,9 +42,7 @@ def judge_system(
     units: UnitsOption = UNITS,
     as_json: JsonFlag = False,
 ) -> None:
-    """What compare does with a train, with further mixes and reductions, and no folder unless
-    asked for.
-    """
+    """Comparison of a train with further mixes and reductions, and no folder unless asked for."""
     more = [mix(text) for text in against or []]
     how = max_frequency, more, reduction, kept
     _judged(train, out, as_json, *how, renders=True, local=local_harmonics, units=units)

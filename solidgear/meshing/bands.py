@@ -120,7 +120,7 @@ def _move(radii, held, i: int, wanted: float, far=None) -> None:
 
 
 def _levels(surface, lengths, tol: float) -> list[int]:
-    """Which boundary the surface of every segment is.
+    """Boundary that the surface of every segment is.
 
     Of two neighbours the smaller one has the lower boundary, and the same where they meet.  Where
     two surfaces face each other across larger segments between them, one boundary runs from the one

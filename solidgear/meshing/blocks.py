@@ -105,7 +105,7 @@ class Joint:
         return self.zone(self.block_side(corner)).rows
 
     def shift(self, r: np.ndarray) -> np.ndarray:
-        """How far the line of the joint lies from it where both sides have material, m."""
+        """Distance of the line of the joint from it where both sides have material, m."""
         roots = sorted((c.r, c.side * c.axial) for c in self.corners if c.root)
         return np.interp(r, *np.array(roots).T) if roots else np.zeros(np.shape(r))
 
@@ -244,7 +244,9 @@ def _thicknesses(bands, left, right, band, first):
 
 
 def raised_by(joints) -> dict[tuple[int, str, str], float]:
-    """Where faces begin beyond a root, for :func:`solidgear.meshing.bands.radial_bands`, m."""
+    """Radii at which faces begin beyond a root, for :func:`solidgear.meshing.bands.radial_bands`,
+    m.
+    """
     out = {}
     for joint in joints:
         for c in joint.corners:
@@ -323,7 +325,7 @@ def split_bands(joints, bands, left, right, raised, strips, fractions):
 
 
 def _own(joints, segment, at, surface, boundary, bands) -> bool:
-    """Whether the boundary of a band is that of the root at this end of a segment."""
+    """True where the boundary of a band is that of the root at this end of a segment."""
     for joint in joints:
         for c in joint.corners:
             if c.root and c.surface == surface and joint.thick(c) == segment:

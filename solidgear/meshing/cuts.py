@@ -1,4 +1,6 @@
-"""What a feature cuts out of a shaft, as a solid of OCC and as a formula of element size."""
+"""Tools of features: the solid of OCC that one cuts out of a shaft, and its formula of element
+size.
+"""
 
 from __future__ import annotations
 

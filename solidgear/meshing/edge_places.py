@@ -1,4 +1,4 @@
-"""Where an edge stands in a list of edges, by the two vertices that it lies between."""
+"""Look-up of edges in a list of edges, by the two vertices that each lies between."""
 
 from __future__ import annotations
 

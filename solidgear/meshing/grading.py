@@ -1,4 +1,6 @@
-"""How fine a mesh is where: local lengths, cell sizes, and lines graded towards the two ends."""
+"""Fineness of a mesh from place to place: local lengths, cell sizes, and lines graded towards the
+two ends.
+"""
 
 from __future__ import annotations
 
@@ -25,8 +27,8 @@ ROUNDING = 1e-9
 
 @dataclass(frozen=True)
 class Grading:
-    """How fine a mesh is where, in local lengths, so that a small step at one place does not refine
-    another.
+    """Fineness of a mesh from place to place, in local lengths, so that a small step at one place
+    does not refine another.
 
     The local length of a segment is its outer radius, or the decay length of a shell where its wall
     is thin.
@@ -242,7 +244,7 @@ def segments_under(station, segments) -> list[int]:
 
 
 def ungraded_depth(segments, k: int) -> float:
-    """How deep the cells of a coarse mesh are under the surface of a segment.
+    """Depth of the cells of a coarse mesh under the surface of a segment.
 
     A shoulder grades the surface of its smaller side, and lines run on from there into the larger
     one: between them and a surface that no shoulder ends at there is nothing.

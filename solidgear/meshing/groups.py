@@ -1,4 +1,4 @@
-"""Which elements of a mesh file, or solids of a STEP file, have which material."""
+"""Materials of the elements of a mesh file, or of the solids of a STEP file, by groups."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Where mesh lines go in a shaft of revolution.
+"""Layout of the mesh lines of a shaft of revolution.
 
 Stress is singular at every shoulder and at every edge of a seat, so structured meshes are graded
 geometrically towards all of them, axially and radially. A refinement ``s`` multiplies the number of

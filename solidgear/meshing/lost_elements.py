@@ -18,7 +18,7 @@ TURN = 0.1
 
 
 def lost_elements(mesh: Any) -> np.ndarray:
-    """Where the surface is as if an element were lost.
+    """Places where the surface is as if an element were lost.
 
     Parameters
     ----------

@@ -175,7 +175,7 @@ def _foot(table: BodyTable) -> Triple:
 
 
 class _Found(NamedTuple):
-    """What a file holds, in the scene.
+    """Content of a file, in the scene.
 
     ``points`` (3, n) and ``triangles`` (3, t) of its surface and of what lies between groups;
     ``sides`` (2, t), group on each side, -1 outside; ``own_mesh``, fields of a :class:`BodyFile`.
@@ -192,7 +192,7 @@ class _Found(NamedTuple):
 
 
 def _surface(table: BodyTable, path: Path, place: Placing) -> _Found:
-    """What the file of a part holds."""
+    """Content of the file of a part."""
     named = tuple(table.materials)
     try:
         if table.step is not None:
@@ -235,7 +235,7 @@ def _skin(found: _Found) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _shared_out(found: _Found, walls) -> tuple[list[Share], list[int]]:
-    """What the frusta are made of, and the first group of each material that they speak of.
+    """Materials of the frusta, and the first group of each material that they speak of.
 
     Groups of one material are one; walls stay where they are.
     """
@@ -281,7 +281,7 @@ def _slip(ratio: float) -> str:
 
 
 def _not_round(table: BodyTable, place: Placing, points, triangles, found: RoundPart) -> str:
-    """Why a part is no shaft about its axis, and about which it would be."""
+    """Reason why a part is no shaft about its axis, and the axis about which it would be."""
     shares = {table.axis: found.share}
     # m from here on
     raw = place.back(points)

@@ -1,4 +1,4 @@
-"""Where a part lies in a scene: its axis turned to y, the lower end of it at y = 0."""
+"""Placing of a part in a scene: its axis turned to y, the lower end of it at y = 0."""
 
 from __future__ import annotations
 

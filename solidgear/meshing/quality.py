@@ -38,7 +38,7 @@ class MeshError(SolidgearError):
 
 @dataclass(frozen=True)
 class MeshQuality:
-    """What was measured on a mesh.
+    """Measures of a mesh.
 
     Attributes
     ----------

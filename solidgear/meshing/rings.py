@@ -1,4 +1,4 @@
-"""Where the ring lines of a meridian go: how every radial band is divided.
+"""Ring lines of a meridian: the division of every radial band.
 
 Bands are graded towards the surfaces that carry singular points. In a disc that is thinner than a
 band is high, cells along the band bend as a plate does, and near its free faces as the edge of one.

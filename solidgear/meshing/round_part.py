@@ -61,7 +61,7 @@ class Wall(NamedTuple):
 
 @dataclass(frozen=True)
 class RoundPart:
-    """What was recognised.
+    """The recognised part.
 
     Attributes
     ----------
@@ -148,7 +148,7 @@ def _between(points, triangles, surface: Lathe) -> float:
 
 
 def _narrow(points, triangles, near) -> bool:
-    """Whether triangles are as narrow around the axis as those of a mesh of something round."""
+    """True where triangles are as narrow around the axis as those of a mesh of something round."""
     x, z = points[0][triangles], points[2][triangles]
     turn = np.where(np.hypot(x, z) > near, np.arctan2(x, z), np.nan)
     gaps = np.abs((turn - np.roll(turn, 1, axis=0) + np.pi) % (2 * np.pi) - np.pi)

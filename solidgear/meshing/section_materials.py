@@ -1,4 +1,4 @@
-"""Which groups of a part its frusta are made of, and in what shares."""
+"""Groups of a part that its frusta are made of, and their shares."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ class Share(NamedTuple):
 
     @property
     def mixed(self) -> bool:
-        """Whether several groups meet inside it."""
+        """True where several groups meet inside it."""
         return len(self.groups) > 1
 
 

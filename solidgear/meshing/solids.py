@@ -212,7 +212,7 @@ def _touching(gmsh, pieces: list[list[int]]) -> None:
 
 
 def _no_solid(gmsh, solids: list[int]) -> str:
-    """Why a file does not hold one solid."""
+    """Reason why a file does not hold one solid."""
     if solids:
         each = [gmsh.model.occ.getCenterOfMass(3, tag) for tag in solids[:4]]
         places = "; ".join(f"at {mm(at)}" for at in each)

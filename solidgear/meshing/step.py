@@ -36,7 +36,7 @@ GROWTH = 0.5
 
 @dataclass(frozen=True)
 class Seen:
-    """What a part looks like.
+    """Look of a part.
 
     Attributes
     ----------
@@ -279,7 +279,7 @@ def _grade(gmsh, plan) -> None:
 
 
 def _concave(gmsh, edge: int) -> bool:
-    """Whether the material around the middle of an edge takes clearly more than half of a turn."""
+    """True where the material around the middle of an edge takes clearly more than half of a turn."""
     faces, _ = gmsh.model.getAdjacencies(1, edge)
     if len(faces) < 2:
         return False

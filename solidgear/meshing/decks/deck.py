@@ -1,4 +1,4 @@
-"""What a mesh file holds, whatever its format: nodes, elements of one kind, and groups of them."""
+"""Content of a mesh file, whatever its format: nodes, elements of one kind, and groups of them."""
 
 from __future__ import annotations
 
@@ -178,7 +178,7 @@ def one_kind(counts: dict[str, int]) -> str:
 
 
 class Lines:
-    """What a reader of lines collects: nodes, elements and sets, each with where it stands.
+    """Collection of a reader of lines: nodes, elements and sets, each with where it stands.
 
     Attributes
     ----------
