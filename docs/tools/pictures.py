@@ -18,8 +18,9 @@ PICTURES = DOCS / "pictures"
 #: name of the picture: its widest side, pixels
 WIDTHS = {"section": 900, "mode": 800, "response": 900, "turning": 1000}
 #: the state in which the page of mode shapes is taken
-POSE = """<script>addEventListener("load", () => solidgearViewer.ready.then(() => {
-solidgearViewer.frame(0.6); solidgearViewer.rotate(0.3, 0.12); }))</script>"""
+POSE = """<script>addEventListener("load", () => {
+const viewer = document.querySelector(".sg-turn").viewer;
+viewer.ready.then(() => { viewer.play(false); viewer.rotate(17, 7); }); })</script>"""
 
 
 def tutorial_scene() -> str:

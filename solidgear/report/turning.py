@@ -1,4 +1,4 @@
-"""Mode shapes ready to be turned: what a viewer draws of a body, in comparable planes and signs.
+"""Mode shapes ready to be turned: surfaces and motions of bodies, in comparable planes and signs.
 
 The two shapes of a pair span a plane of shapes, and which two a solver gives is chance. Drawn is the
 one that is symmetric about the plane of y and z, so that models side by side bend the same way.
@@ -22,8 +22,8 @@ if TYPE_CHECKING:
 
 #: slices along the axis in which the motions of two models are compared
 SLICES = 12
-#: a body of several turns about its axis if the mean square of that is so many times that of the rest
-TURNS = 10.0
+#: a body turns about its axis if the rest moves at most half as much: ratio of mean squares
+TURNS = 4.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -36,9 +36,9 @@ class Shape:
         Such as ``bending 1``.
     frequency_hz : float
     pair : bool
-        Whether there is a second shape at this frequency.
+        True if there is a second shape at this frequency.
     twists : bool
-        Whether sections turn about the axis: drawn enlarged, they are turned, and do not swell.
+        True if sections turn about the axis: drawn enlarged, they are turned, and do not swell.
     displacement : (n, 3) ndarray
         At the points of the mesh; the largest has length 1, of all bodies that move in the mode.
     """
@@ -76,12 +76,36 @@ class Turned:
     origin: np.ndarray = field(default_factory=lambda: np.zeros(3))
     along: tuple[Turned, ...] = ()
 
+    @property
+    def bodies(self) -> tuple[Turned, ...]:
+        """This body and those along with it."""
+        return (self, *self.along)
+
     def index(self, name: str) -> int:
         """Place of the shape of that name, also where bending is named by its plane; -1 if none."""
         names = [shape.name for shape in self.shapes]
         plain = name.replace("bending z ", "bending ").replace("bending x ", "bending ")
         found = [meant(wanted, names) for wanted in (name, plain)]
         return next((place for place in found if place is not None), -1)
+
+
+class Member(NamedTuple):
+    """A body among several that move together.
+
+    Attributes
+    ----------
+    body : Body
+    rotation : (3, 3) ndarray
+    origin : (3,) ndarray
+        As of :class:`Turned`.
+    vectors : sequence of sequence of mapping
+        Arguments of :meth:`Body.surface`, for every mode one, or the two of a pair.
+    """
+
+    body: Body
+    rotation: np.ndarray
+    origin: np.ndarray
+    vectors: Sequence[Sequence[Any]]
 
 
 def turned(
@@ -101,10 +125,6 @@ def turned(
     like : sequence of Turned, optional
         Models beside it: a shape takes the sign of theirs of the same name.
 
-    Returns
-    -------
-    Turned
-
     Raises
     ------
     SolidgearError
@@ -112,54 +132,16 @@ def turned(
     """
     chosen: Any = getattr(modes, "modes", modes)
     elastic = [mode for mode in chosen if mode.frequency_hz > 0]
-    if not elastic:
-        raise SolidgearError(f"the {body.fidelity} body has no elastic mode to draw")
-    mesh = mesh_of(body.surface({}))
-    shapes = []
-    for mode in elastic:
-        moved = _drawn(body, mode, mesh)
-        moved *= _sign(mesh.points, moved, _partner(mode.name, like))
-        pair, twists = len(mode.vectors) > 1, mode.family == "torsion"
-        shapes.append(Shape(mode.name, mode.frequency_hz, pair, twists, moved))
-    return Turned(title or body.fidelity, mesh, tuple(shapes))
-
-
-def _drawn(body: Body, mode: Mode, mesh: Mesh) -> np.ndarray:
-    """The displacement of a mode at the points, the largest of length 1."""
-    moved = [body.surface(vectors).displacement[mesh.source] for vectors in mode.vectors[:2]]
-    out = moved[0] if len(moved) == 1 else symmetric(mesh.points, *moved)
-    largest = np.linalg.norm(out, axis=1).max()
-    if not np.isfinite(largest) or not largest > 0:
-        raise SolidgearError(
-            f"mode {mode.name!r} of the {body.fidelity} body: the displacement is zero or not finite"
-        )
-    return out / largest
-
-
-class Member(NamedTuple):
-    """A body among several that move together.
-
-    Attributes
-    ----------
-    body : Body
-    rotation : (3, 3) ndarray
-    origin : (3,) ndarray
-        As of :class:`Turned`.
-    vectors : sequence of mapping
-        What :meth:`Body.surface` draws, a mode each.
-    """
-
-    body: Body
-    rotation: np.ndarray
-    origin: np.ndarray
-    vectors: Sequence[Any]
+    alone = Member(body, np.eye(3), np.zeros(3), [mode.vectors[:2] for mode in elastic])
+    named = [(mode.name, mode.frequency_hz) for mode in elastic]
+    return together(title or body.fidelity, named, [alone], like)
 
 
 def together(
     title: str,
     modes: Sequence[tuple[str, float]],
     members: Sequence[Member],
-    like: Turned | None = None,
+    like: Sequence[Turned] = (),
 ) -> Turned:
     """Several bodies that move in the same modes, each in its place.
 
@@ -169,8 +151,7 @@ def together(
     modes : sequence of (str, float)
         Name and frequency, Hz, of elastic modes.
     members : sequence of Member
-        Each with a vector for every mode.
-    like : Turned, optional
+    like : sequence of Turned, optional
         The same bodies by other models: a shape takes the sign of theirs of the same name.
 
     Returns
@@ -184,20 +165,21 @@ def together(
         For a body that carries no geometry, or no mode at all.
     """
     if not modes:
-        raise SolidgearError(f"{title}: no elastic mode to draw")
+        raise SolidgearError(f"the model {title} has no elastic mode to draw")
     meshes = [mesh_of(member.body.surface({})) for member in members]
     shapes: list[list[Shape]] = [[] for _ in members]
     for k, (name, hz) in enumerate(modes):
-        moved = [
-            m.body.surface(m.vectors[k]).displacement[w.source] for m, w in zip(members, meshes)
-        ]
+        moved = [_moved(m.body, m.vectors[k], mesh) for m, mesh in zip(members, meshes)]
         largest = max(np.linalg.norm(one, axis=1).max() for one in moved)
         if not np.isfinite(largest) or not largest > 0:
-            raise SolidgearError(f"mode {name!r}: the displacement is zero or not finite")
-        told = [sections(mesh.points, one) for mesh, one in zip(meshes, moved)]
-        scale = _sign_like(np.vstack(told), name, like) / largest
-        for own, one, section in zip(shapes, moved, told):
-            own.append(Shape(name, hz, False, _turns(section), scale * one))
+            raise SolidgearError(
+                f"{title}: the displacement of mode {name!r} is zero or not finite"
+            )
+        means = [sections(mesh.points, one) for mesh, one in zip(meshes, moved)]
+        scale = _sign(np.vstack(means), name, like) / largest
+        pair = len(members[0].vectors[k]) > 1
+        for own, one, mean in zip(shapes, moved, means):
+            own.append(Shape(name, hz, pair, _turns(mean), scale * one))
     bodies = [
         Turned(title, mesh, tuple(own), member.rotation, member.origin)
         for mesh, own, member in zip(meshes, shapes, members)
@@ -205,19 +187,10 @@ def together(
     return replace(bodies[0], along=tuple(bodies[1:]))
 
 
-def _sign_like(told: np.ndarray, name: str, like: Turned | None) -> float:
-    """The sign of the shape of that name of the same bodies; else the usual one."""
-    at = -1 if like is None else like.index(name)
-    if like is None or at < 0:
-        return _direction(told)
-    others = [sections(b.mesh.points, b.shapes[at].displacement) for b in (like, *like.along)]
-    return _sign_of(float((told * np.vstack(others)).sum()))
-
-
-def _turns(told: np.ndarray) -> bool:
-    """Whether the sections of a body do little but turn about its axis."""
-    across, swirl = (told[:, :3] ** 2).sum(), (told[:, 3] ** 2).sum()
-    return bool(swirl > TURNS * across)
+def _moved(body: Body, vectors: Sequence[Any], mesh: Mesh) -> np.ndarray:
+    """The displacement of a mode at the points of a mesh, up to a factor."""
+    moved = [body.surface(vector).displacement[mesh.source] for vector in vectors]
+    return moved[0] if len(moved) == 1 else symmetric(mesh.points, *moved)
 
 
 def symmetric(points: np.ndarray, one: np.ndarray, other: np.ndarray) -> np.ndarray:
@@ -255,28 +228,22 @@ def sections(points: np.ndarray, moved: np.ndarray) -> np.ndarray:
     return sums / np.maximum(count, 1)[:, None]
 
 
-def _partner(name: str, like: Sequence[Turned]) -> np.ndarray | None:
-    """Sections of the first shape of that name among models drawn before."""
-    for other in like:
-        at = other.index(name)
+def _turns(means: np.ndarray) -> bool:
+    """True if the sections of a body do little but turn about its axis."""
+    across, swirl = (means[:, :3] ** 2).sum(), (means[:, 3] ** 2).sum()
+    return bool(swirl > TURNS * across)
+
+
+def _sign(means: np.ndarray, name: str, like: Sequence[Turned]) -> float:
+    """As the same mode of a model before; else so that the largest section motion is positive."""
+    largest = means.ravel()[np.abs(means).argmax()]
+    for model in like:
+        at = model.index(name)
         if at >= 0:
-            return sections(other.mesh.points, other.shapes[at].displacement)
-    return None
-
-
-def _sign(points: np.ndarray, moved: np.ndarray, partner: np.ndarray | None) -> float:
-    """As its partner moves; else that the largest section motion is positive: up, along y or about y."""
-    own = sections(points, moved)
-    return _direction(own) if partner is None else _sign_of(float((own * partner).sum()))
-
-
-def _direction(told: np.ndarray) -> float:
-    """The sign that makes the largest section motion positive."""
-    return _sign_of(float(told.ravel()[np.abs(told).argmax()]))
-
-
-def _sign_of(value: float) -> float:
-    return -1.0 if value < 0 else 1.0
+            others = [sections(b.mesh.points, b.shapes[at].displacement) for b in model.bodies]
+            largest = (means * np.vstack(others)).sum()
+            break
+    return -1.0 if largest < 0 else 1.0
 
 
 def picks(models: Sequence[Turned]) -> list[Mapping[str, Any]]:

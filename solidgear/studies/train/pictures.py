@@ -162,7 +162,7 @@ def turned_beside(
             kept.append((its.rigid + j, names[found.rigid + partner[j]]))
         elif frequency <= limit:
             kept.append((its.rigid + j, f"{own[its.rigid + j]}, {_title(*second)} alone"))
-    return [base, _turned(workshop, second, other, its, kept, base)]
+    return [base, _turned(workshop, second, other, its, kept, [base])]
 
 
 def _title(pinion: str, gear: str) -> str:
@@ -175,11 +175,11 @@ def _turned(
     system: System,
     found: SystemModes,
     kept: Sequence[tuple[int, str]],
-    like: Turned | None = None,
+    like: Sequence[Turned] = (),
 ) -> Turned:
-    """One mix with modes of these numbers and names, in the signs of another."""
+    """One mix with modes of these numbers and names, in the signs of others."""
     members = [
-        Member(body, turn, origin, [system.expand(side, found.shapes[:, k]) for k, _ in kept])
+        Member(body, turn, origin, [[system.expand(side, found.shapes[:, k])] for k, _ in kept])
         for side, (body, turn, origin) in _bodies(workshop, system, rungs).items()
     ]
     modes = [(name, float(found.frequency_hz[k])) for k, name in kept]
