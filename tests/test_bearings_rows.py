@@ -125,6 +125,33 @@ def test_a_radial_row_of_many_rollers_meets_the_load_integral():
     assert row.load(np.array([5e-6, 0, 0, 0, 0, 0]))[0] == pytest.approx(load, rel=1e-6)
 
 
+@pytest.mark.parametrize("count", [4, 8, 12, 16])
+def test_rollers_at_right_angles_to_the_load_carry_nothing_and_stiffen_nothing(count):
+    """Pushed towards any roller, those a quarter turn away just touch, whatever rounding says."""
+    push = 5e-6
+    row = RollerRow(count, 9e-3, 10e-3, 46.5e-3, profile="straight")
+    # by whole numbers: rollers strictly within a quarter turn of the load
+    c = np.cos([2 * np.pi * k / count for k in range(-count, count) if 4 * abs(k) < count])
+    each = 10 / 9 * line_constant(10e-3) * (push * c) ** (1 / 9)
+    for turn in row.azimuth:
+        along, across = np.zeros((2, 6))
+        along[[0, 2]] = np.cos(turn), np.sin(turn)
+        across[[0, 2]] = -np.sin(turn), np.cos(turn)
+        motion = push * along
+        tangent = row.tangent(motion)
+        assert along @ tangent @ along == pytest.approx(each @ c**2, rel=1e-12)
+        stiffest = 1e-12 * each.sum()  # of four rollers only one is loaded
+        assert across @ tangent @ across == pytest.approx(each @ (1 - c**2), rel=1e-9, abs=stiffest)
+        assert np.count_nonzero(row.contacts(motion).load) == len(c)
+
+
+def test_a_roller_is_in_contact_however_little_the_ring_moves():
+    """Rounding is judged by the motion, not by a length: stiffness goes with its ninth root."""
+    row = RollerRow(12, 9e-3, 10e-3, 46.5e-3, profile="straight")
+    large, small = (row.tangent(np.array([push, 0, 0, 0, 0, 0])) for push in (1e-6, 1e-15))
+    assert np.allclose(10 * small, large, rtol=1e-9, atol=1e-12 * large[0, 0])
+
+
 @row_of_each_kind
 def test_load_is_the_slope_of_energy(row):
     motions, h = random_motions(50), 1e-9

@@ -414,6 +414,12 @@ def test_memory_that_runs_out_is_a_sentence(run, tmp_path, monkeypatch):
     monkeypatch.setattr(climb, "build", broken)
     refused(run("stiffness", SCENE), tmp_path, "not enough memory")
 
+    def unmapped(*_, **__):
+        raise ImportError("libfast.so: failed to map segment from shared object")
+
+    monkeypatch.setattr("solidgear.ladder.build", unmapped)
+    refused(run("stiffness", SCENE, *HARMONIC), tmp_path, "not enough memory")
+
 
 # --------------------------------------------------------------------------- help, back ends, imports
 def test_help_lists_the_commands(run):

@@ -12,7 +12,7 @@ import pytest
 from scipy.optimize import brentq
 
 import solidgear as sg
-from solidgear.scene import Scene, Segment
+from solidgear.scene import Fillet, Scene, Segment
 from validation.thesis.krylov import Span, Station, from_scene, krylov
 from validation.thesis.krylov_shaft import krylov_duncan
 
@@ -464,6 +464,58 @@ def test_a_cone_turns_like_its_cylinder():
     # Mean of 1 / r^4 along the cone: (1 / b^3 - 1 / a^3) / (3 (a - b)).
     second = np.pi / 4 * 3 * (a - b) / (b**-3 - a**-3)
     assert span.bending_stiffness == pytest.approx(cone.material.E * second, rel=1e-12)
+
+
+def rod_with(**more):
+    rod = Segment.cylinder("rod", length=1.0, diameter=0.04)
+    clamp = sg.Bearing(name="wall", y=0.0, seat_width=0.02, hold="clamped", face="start")
+    port = sg.Port(name="tip", y=1.0, lo=0.98, hi=1.0)
+    return Scene.from_parts([rod], bearings=[clamp], port=port, **more)
+
+
+def test_a_held_end_and_a_mass_at_the_other_are_those_of_the_scene():
+    """Roots of ``1 + cos b cosh b + m b (cos b sinh b - sin b cosh b)``, m the mass at the tip over
+    that of the rod.
+    """
+    scene = rod_with(masses=[sg.PointMass(name="lump", mass=7.0, on="tip")])
+    (span,), stations = from_scene(scene)
+    share = 7.0 / span.mass_per_length
+    roots = [
+        brentq(
+            lambda b: (
+                1
+                + np.cos(b) * np.cosh(b)
+                + share * b * (np.cos(b) * np.sinh(b) - np.sin(b) * np.cosh(b))
+            ),
+            *limits,
+        )
+        for limits in ((0.5, 2.0), (3.5, 5.0))
+    ]
+    wave = np.sqrt(span.bending_stiffness / span.mass_per_length) / (2 * np.pi)
+    found = krylov([span], stations, 2).frequency_hz
+    assert found == pytest.approx(np.square(roots) * wave, rel=1e-9)
+
+
+def test_a_mass_with_a_seat_of_its_own_is_there_with_its_inertia():
+    disc = sg.PointMass(name="disc", mass=5.0, inertia=(0.02, 0.03, 0.02), y=0.6, seat_width=0.01)
+    scene = rod_with(masses=[disc]).with_attachment("section")
+    modes = krylov(*from_scene(scene), 3)
+    assert modes.lumped[1] > 0.1
+    np.testing.assert_allclose(modes.frequency_hz, bending_z(scene, elements=60)[:3], rtol=1e-6)
+
+
+def test_what_the_model_has_no_place_for_is_refused():
+    off = sg.PointMass(name="off", mass=5.0, offset=(0.0, 0.01, 0.0), on="tip")
+    stand = sg.Housing(stiffness={"kxx": 1e8, "kyy": 1e8, "kzz": 1e8, "kthx": 1e6, "kthz": 1e6})
+    cases = {"offset": {"masses": [off]}, "housing": {"housing": stand}}
+    for words, more in cases.items():
+        with pytest.raises(sg.SolidgearError, match=words):
+            from_scene(rod_with(**more))
+    rod = Segment.cylinder("rod", length=1.0, diameter=0.04)
+    middle = sg.Port(y=0.5, lo=0.4, hi=0.6)
+    edge = Fillet(name="edge", y=1.0, radius=0.002)
+    with pytest.raises(sg.SolidgearError, match="fillets"):
+        from_scene(Scene.from_parts([rod], port=middle, blends=[edge]))
 
 
 # ------------------------------------------------------------------------------------------- refusals

@@ -8,12 +8,13 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from scipy.integrate import quad
 
 import solidgear as sg
 from solidgear.ladder.size import estimated_unknowns
 from solidgear.meshing.closed_form import volume_of
 from solidgear.meshing.sector import volume_of_sector
-from solidgear.meshing.teeth import section_area, section_polar
+from solidgear.meshing.teeth import half_outline, outline, section_area, section_polar
 from solidgear.models.sector.body import meshed_sector, sector, whole
 from solidgear.models.sector.cyclic import Sector, basis, doubled
 from solidgear.scene import BoltCircle, Keyway, Spline, Teeth
@@ -320,6 +321,54 @@ def test_bad_bolt_circles(change, says):
 def test_teeth_without_height_are_refused():
     with pytest.raises(sg.SceneError, match="leave the feature out"):
         Teeth(name="t", segment="head", count=14, addendum=0, dedendum=0)
+
+
+def with_arcs(teeth):
+    """Area and polar moment of the section with arcs for tips and lands: ``r^2 / 2`` and ``r^4 / 4``
+    over the angle, the flank by its line.
+    """
+    half = math.pi / teeth.count
+    ends = np.array([[teeth.root, teeth.root_half], [teeth.tip, teeth.tip_half]])
+    (x, z), (tx, tz) = ((r * math.sin(t), r * math.cos(t)) for r, t in ends)
+    across = np.array([tz - z, x - tx])
+
+    def flank(angle, power):
+        return (across @ [x, z] / (across @ [math.sin(angle), math.cos(angle)])) ** power
+
+    found = []
+    for power in (2, 4):
+        between = quad(flank, teeth.tip_half, teeth.root_half, args=(power,))[0]
+        arcs = teeth.tip**power * teeth.tip_half + teeth.root**power * (half - teeth.root_half)
+        found.append(2 * teeth.count * (between + arcs) / power)
+    return np.array(found)
+
+
+def test_what_chords_take_from_few_and_many_teeth_is_as_told():
+    """The numbers of the guide and of the limits."""
+    usual = TEETH.with_changes(count=14, dedendum=1.2)
+    lack = 1 - np.array([section_area(usual), section_polar(usual)]) / with_arcs(usual)
+    assert lack == pytest.approx([0.0010, 0.0025], abs=5e-5)
+    low = {"addendum": 0.1, "dedendum": 0.1, "flank_angle": 0.0}
+    for count in (3, 4, 5, 7, 12, 20, 60):
+        few = Teeth(name="t", segment="s", count=count, **low)
+        lack = 1 - np.array([section_area(few), section_polar(few)]) / with_arcs(few)
+        assert (0 < lack).all()
+        assert (lack < [0.004, 0.008]).all()
+
+
+def test_a_border_and_a_mirror_plane_meet_a_row_of_chords_in_the_middle_of_one():
+    few = Teeth(name="t", segment="s", count=6, addendum=0.2, dedendum=0.2)
+    for count in (6, 3):
+        angle, radius = outline(few, count)
+        assert np.allclose(angle, -angle[::-1])
+        assert np.allclose(radius, radius[::-1])
+        assert angle[-1] == pytest.approx(math.pi / count)
+        spans = np.diff(angle[(radius == few.tip) | (radius == few.root)])
+        assert spans.max() <= 0.15
+        half_angle, half_radius = half_outline(few, count)
+        turned = half_radius * np.cos(half_angle), half_radius * np.sin(half_angle)
+        twice = (turned[0][1:] * turned[1][:-1] - turned[0][:-1] * turned[1][1:]).sum()
+        assert abs(twice) * count == pytest.approx(section_area(few))
 
 
 def test_a_spline_is_a_cylinder_with_teeth():

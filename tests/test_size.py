@@ -1,5 +1,6 @@
 """Unknowns and memory told before anything is meshed."""
 
+import builtins
 import json
 import subprocess
 import sys
@@ -9,7 +10,7 @@ import numpy as np
 import pytest
 
 import solidgear as sg
-from solidgear.ladder import size as sizes
+from solidgear.ladder import remedies as ways
 from solidgear.ladder.size import estimated_size, estimated_unknowns
 from solidgear.meshing.element_size import estimated_counts
 
@@ -129,7 +130,7 @@ def test_refused_before_meshing(monkeypatch, model, options, lower):
 
 
 def test_more_entries_than_can_be_numbered(monkeypatch):
-    monkeypatch.setattr(sizes, "available_mb", lambda: 1e9)
+    monkeypatch.setattr(ways, "available_mb", lambda: 1e9)
     for model, options in (
         ("solid", {"refinement": 20}),
         ("harmonic", {"order": 12, "refinement": 20}),
@@ -150,12 +151,43 @@ def test_beams_are_never_refused_for_want_of_memory(monkeypatch):
 def test_what_fits_is_built(monkeypatch):
     need = estimated_size(SCENES["pinion_overhung"], "harmonic").peak_mb
     for share, fits in ((1.01, True), (0.99, False)):
-        monkeypatch.setattr(sizes, "available_mb", lambda share=share: share * need)
+        monkeypatch.setattr(ways, "available_mb", lambda share=share: share * need)
         if fits:
-            assert sizes.refuse_too_large(SCENES["pinion_overhung"], "harmonic").peak_mb == need
+            assert ways.refuse_too_large(SCENES["pinion_overhung"], "harmonic").peak_mb == need
         else:
             with pytest.raises(sg.SolidgearError, match="MB are free"):
-                sizes.refuse_too_large(SCENES["pinion_overhung"], "harmonic")
+                ways.refuse_too_large(SCENES["pinion_overhung"], "harmonic")
+
+
+def test_a_refusal_needs_no_module_that_is_not_there_yet(monkeypatch):
+    """Where memory has run out nothing can be imported; the sentence comes all the same."""
+
+    def used_up():
+        def without_memory(*_, **__):
+            raise MemoryError
+
+        monkeypatch.setattr(builtins, "__import__", without_memory)
+        return 100.0
+
+    monkeypatch.setattr("solidgear.machine.memory.available_mb", used_up)
+    for module in ("size", "ways"):
+        name = f"solidgear.ladder.{module}.available_mb"
+        monkeypatch.setattr(name, used_up, raising=False)
+    with pytest.raises(sg.SolidgearError) as refusal:
+        try:
+            sg.build(SCENES["pinion_overhung"], "solid", refinement=3.0)
+        finally:
+            monkeypatch.undo()
+    assert "100 MB are free; lower refinement" in str(refusal.value)
+
+
+def test_a_builder_that_runs_out_of_memory_says_what_to_lower(monkeypatch):
+    def broken(*_, **__):
+        raise MemoryError
+
+    monkeypatch.setattr("solidgear.models.solid.body._hexes", broken)
+    with pytest.raises(sg.SolidgearError, match=r"unknowns did not fit into memory; lower refine"):
+        sg.build(SCENES["pinion_overhung"], "solid", refinement=0.3)
 
 
 # ------------------------------------------------------------------------------------------------- peaks

@@ -167,6 +167,53 @@ def test_response_on_four_thousand_frequencies(beams, whole):
     assert moved.shape == (4000, 6)
 
 
+def eliminated(system, hertz, load, loss):
+    """Each frequency by itself, in the coordinates of the system, equations of one size."""
+    rows, where = system.strains
+    factor = np.ones(len(rows), complex)
+    for name, eta in loss.items():
+        factor[where[name]] += 1j * eta
+    elastic = rows.T @ (factor[:, None] * rows)
+    for f in hertz:
+        inertia = (2 * np.pi * f) ** 2 * system.mass
+        size = np.sqrt(np.diag(elastic).real + np.diag(inertia))
+        dynamic = (elastic - inertia) / np.outer(size, size)
+        yield np.linalg.solve(dynamic, load / size) / size
+
+
+@pytest.mark.parametrize("mixed", [False, True], ids=["one loss but few", "many losses"])
+def test_a_response_to_a_transmission_error_has_eight_digits(beams, mixed):
+    """The mesh drives its stiff spring, and what the shafts do is a difference of large terms.
+
+    A sum over modes whose rounding is that of the highest keeps seven digits here, one whose
+    rounding is that of the lowest nine.
+    """
+    system = drive(*beams, n=16)
+    names = [*system.strains[1]]
+    loss = {n: 0.01 * (1 + k % 3 * mixed) for k, n in enumerate(names)} | {"mesh": 0.12}
+    pinion, gear = (system.motion(end) for end in ("pinion.pinion", "gear.gear"))
+    push = pinion.T @ ON_PINION.vector - gear.T @ ON_GEAR.vector
+    seen = np.vstack([pinion[:3], gear[:3]])
+    hertz = [10.0, 60.0, 580.0, 1500.0, 3000.0]
+    exact = np.array([seen @ q for q in eliminated(system, hertz, push, loss)])
+    found = system.response(hertz, push, loss=loss) @ seen.T
+    np.testing.assert_allclose(found, exact, rtol=5e-9)
+
+
+def test_twins_that_lose_at_one_bearing_answer_as_they_do_in_full():
+    """Bending in two planes at one frequency: any two shapes of that plane may be its modes."""
+    scene = sg.load("geometry/shaft_stepped.toml")
+    shaft = sg.rubin(sg.build(scene, "timoshenko"), n=8)
+    system = sg.System({"shaft": shaft}, sg.grounded("shaft", scene))
+    loss = {"shaft": 0.004, "shaft.A": 0.05, "shaft.B": 0.02}
+    push = system.load({"shaft.port": [1.0, 0.3, 0.5, 0.01, 0.0, 0.02]})
+    hertz = [10.0, 580.0, 1500.0]
+    exact = np.array([*eliminated(system, hertz, push, loss)])
+    seen = system.motion("shaft.port")[[0, 1, 2, 3, 5]]
+    found = system.response(hertz, push, loss=loss)
+    np.testing.assert_allclose(found @ seen.T, exact @ seen.T, rtol=1e-9)
+
+
 # -- parts and links by hand -------------------------------------------------------------------------------------------------
 def test_structural_damping_of_one_mass():
     system = sg.System(
@@ -180,6 +227,8 @@ def test_structural_damping_of_one_mass():
         z = system.motion("mass")[2, 0] * found
         want = 1 / (800 * (1 + 0.02j) - 2 * np.array([0.0, 20.0, 40.0]) ** 2)
         np.testing.assert_allclose(z, want, rtol=1e-10)
+    with pytest.raises(sg.SolidgearError, match="nothing damps it"):
+        system.response([own], push)
 
 
 def test_free_masses_answer_with_their_inertia():
@@ -374,7 +423,7 @@ def test_bad_systems_are_one_sentence(make, words):
         "reduction.craig_bampton",
         "system.parts",
         "system.system",
-        "system.response",
+        "system.steady",
     ],
 )
 def test_what_the_docstrings_show(name):

@@ -167,6 +167,26 @@ def test_a_wrench_leaves_its_pitch_and_nothing_else():
     assert wrench.left_over(wrench.thesis_point) > must
 
 
+def test_the_point_of_the_thesis_balances_two_moments_and_leaves_that_about_x():
+    """Hua (2010), 3.2.1, equation 3, with its own sums over cells."""
+    wrench = contact_wrench(CELLS, ANGLES, FORCES)
+    x, y, z = wrench.thesis_point
+    (rx, ry, rz), (nx, ny, nz) = CELLS.T, ANGLES.T
+    total = FORCES @ ANGLES
+    assert y == pytest.approx(FORCES @ ry / FORCES.sum())
+    assert z * total[0] - x * total[2] == pytest.approx(FORCES @ (nx * rz - nz * rx))
+    assert x * total[1] - y * total[0] == pytest.approx(FORCES @ (ny * rx - nx * ry))
+    left = wrench.moment - np.cross([x, y, z], total)
+    assert abs(left[0]) > 1e6 * np.abs(left[1:]).max()
+
+
+@pytest.mark.parametrize("axis", ["x", "y"])
+def test_the_formulas_of_the_thesis_need_a_force_to_divide_by(axis):
+    normal = {"x": [0.0, 0.6, 0.8], "y": [0.6, 0.0, 0.8]}[axis]
+    with pytest.raises(sg.SolidgearError, match=f"the force along {axis}"):
+        _ = contact_wrench(CELLS, [normal] * 3, FORCES).thesis_point
+
+
 def test_cells_of_one_normal_close_to_rounding():
     wrench = contact_wrench(CELLS, np.tile(ANGLES[0], (3, 1)), FORCES)
     assert wrench.left_over(wrench.point) < 1e-12 * np.linalg.norm(wrench.moment)

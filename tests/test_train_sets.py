@@ -86,9 +86,7 @@ def test_losses_in_real_modes_are_those_of_the_full_matrices(shop, changes, rows
         seen = np.vstack([drive.row, drive.system.motion("pinion.2"), drive.system.motion("load")])
         modal, direct = steady.motion(HZ, load, seen), steady.solved(HZ, load, seen)
         largest = np.abs(direct).max(axis=0)
-        # real modes have the digits of an elimination; complex ones lose some at low frequencies
-        within = 1e-9 if rows is not None else 1e-6
-        assert np.all(np.abs(modal - direct) <= within * largest + 1e-30)
+        assert np.all(np.abs(modal - direct) <= 1e-9 * largest + 1e-30)
 
 
 def test_the_series_of_far_modes_leaves_nothing(shop):

@@ -44,6 +44,10 @@ if _hears:
     signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
+#: what the loader says of a library that finds no room
+NOT_MAPPED = ("failed to map segment", "annot allocate memory")
+
+
 def main() -> None:
     """Entry point: errors raised on purpose become one sentence (a scene's, one for each problem)
     and exit code 1.
@@ -69,9 +73,18 @@ def _run() -> None:
         print(f"solidgear: cannot write the output ({error.strerror or error})", file=sys.stderr)
         os._exit(1)  # flushing at exit would fail again
     except MemoryError:
-        print(
-            "solidgear: not enough memory for this model; use a coarser one (--set "
-            "refinement=0.5) or the harmonic model",
-            file=sys.stderr,
-        )
-        sys.exit(1)
+        _stop_without_memory()
+    except ImportError as error:
+        if not any(words in str(error) for words in NOT_MAPPED):
+            raise
+        _stop_without_memory()
+
+
+def _stop_without_memory() -> None:
+    """Whatever this says is here already: nothing can be imported any more."""
+    print(
+        "solidgear: not enough memory for this model; use a coarser one (--set refinement=0.5) or "
+        "the harmonic model",
+        file=sys.stderr,
+    )
+    sys.exit(1)

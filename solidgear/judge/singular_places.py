@@ -11,6 +11,7 @@ import numpy as np
 
 from solidgear.meshing.corners import filled_at
 from solidgear.meshing.grading import corner_length
+from solidgear.scene.stations import attached_stations
 
 if TYPE_CHECKING:
     from solidgear.scene import Scene, Segment
@@ -71,7 +72,7 @@ def singular_places(scene: Scene, attachments: tuple[str, ...] | None = None) ->
             reach = min(corner_length(a), corner_length(b))
             found += _around("change of material", a.y1, min(a.outer1, b.outer0), a, b, reach)
     for station in scene.stations:
-        ties = attachments or (station.attachment,)
+        ties = [tie for _, tie in attached_stations([station], attachments)]
         if "section" in ties:
             here = _segment(scene, station.y)
             r = _outer(here, station.y)

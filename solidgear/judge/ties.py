@@ -18,7 +18,7 @@ def rigid_seats(scene: Scene) -> Scene:
     Only seats are compared in the literature on RBE2 against RBE3; a rigid head would be another
     model.
     """
-    bearings = tuple(b.with_changes(attachment="rigid") for b in scene.bearings)
+    bearings = tuple(b.attached("rigid") for b in scene.bearings)
     port, *further = (
         port.with_changes(attachment="average") if port.attachment == "rigid" else port
         for port in scene.ports

@@ -51,7 +51,7 @@ def build(scene: Shaft, fidelity: str, **options) -> Body:
     >>> bool(np.isclose(body.mass_matrix()[0, 0], 7850 * np.pi * 0.01**2 * 0.6))  # kg
     True
     """
-    from solidgear.ladder.size import refuse_too_large
+    from solidgear.ladder.remedies import refuse_too_large
 
     if fidelity not in LADDER.bodies:
         raise SolidgearError(
@@ -65,8 +65,13 @@ def build(scene: Shaft, fidelity: str, **options) -> Body:
         use = f"use {' or '.join(fit)}" if fit else NO_MODEL
         raise SolidgearError(f"{unfit}; {use}")
     options = rung.checked(rung.given(scene, options))
-    refuse_too_large(scene, fidelity, options)
+    size = refuse_too_large(scene, fidelity, options)
     assert rung.build is not None  # as every rung of LADDER.bodies
     own, factoring = rung.split(options)
-    body = rung.build(scene, **{**rung.preset, **own})
+    try:
+        body = rung.build(scene, **{**rung.preset, **own})
+    except MemoryError:
+        raise SolidgearError(
+            f"{fidelity}: about {size.unknowns} unknowns did not fit into memory; {size.lower}"
+        ) from None
     return replace(body, fidelity=fidelity, factoring=factoring)

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, NamedTuple
 
 from solidgear.factoring import Factoring
+from solidgear.scene.stations import attached_stations
 
 if TYPE_CHECKING:
     from solidgear.scene.shaft import Shaft
@@ -49,7 +50,7 @@ def parts_of(
     -------
     Parts
     """
-    ties = {tie for s in scene.stations for tie in attachments or (s.attachment,)}
+    ties = {tie for _, tie in attached_stations(scene.stations, attachments)}
     mirrors = element.startswith("hex") and "rigid" not in ties
     return PIECES if mirrors and factoring == Factoring() else WHOLE
 

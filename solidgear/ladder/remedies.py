@@ -1,5 +1,5 @@
-"""What to do with a 3D solid that does not fit into memory: other models and other factors of the
-same scene, each with the memory it would take.
+"""Models that do not fit into memory: the sentence that refuses one, and for a 3D solid the ways
+out, other models and other factors of the same scene, each with the memory it would take.
 """
 
 from __future__ import annotations
@@ -11,10 +11,15 @@ from typing import TYPE_CHECKING, Any
 from solidgear.errors import SolidgearError
 from solidgear.ladder.registry import LADDER
 from solidgear.ladder.size import Size, estimated_size
+from solidgear.machine.memory import available_mb, expect
 
 if TYPE_CHECKING:
     from solidgear.scene.shaft import Shaft
 
+#: entries that 32-bit indices can number, less some for what is numbered beside them
+MOST_ENTRIES = 2_000_000_000
+#: what is not refused for want of memory, MB: a beam, or a coarse solid
+SMALL_MB = 25.0
 #: models whose memory goes into the factor of a 3D mesh
 LARGE = ("solid", "sector")
 #: a mesh with less of this refinement answers for nothing
@@ -161,3 +166,37 @@ def offered(ways: list[Way], free: float) -> str:
     if large:
         text += f"; too large as well: {'; '.join(large)}"
     return text
+
+
+def refuse_too_large(scene: Shaft, model: str, options: dict | None = None) -> Size:
+    """The estimated size, if the machine can take it; it is noted as expected in the run
+    (:func:`solidgear.machine.memory.one_run`).
+
+    Raises
+    ------
+    SolidgearError
+        With the number of unknowns, the memory needed, the memory free and what to lower.
+    """
+    size = estimated_size(scene, model, options)
+    what = f"{model}: about {size.unknowns} unknowns"
+    if size.largest > MOST_ENTRIES:
+        raise SolidgearError(
+            f"{what} make {size.largest:.2g} matrix entries, more than the {MOST_ENTRIES:.0e} "
+            f"that can be numbered; {size.lower}"
+        )
+    free = available_mb()
+    if free is not None and size.peak_mb > max(free, SMALL_MB):
+        raise SolidgearError(
+            f"{what} need about {size.peak_mb:.0f} MB for mesh, matrices and factor, {free:.0f} "
+            f"MB are free; {size.lower}{_offers(scene, model, options or {}, free)}"
+        )
+    expect(size.peak_mb)
+    return size
+
+
+def _offers(scene, model: str, options: Mapping[str, Any], free: float) -> str:
+    """Ways out in a list; nothing where not even their sizes can be worked out any more."""
+    try:
+        return offered(ways_out(scene, model, options, free), free)
+    except (MemoryError, ImportError):
+        return ""

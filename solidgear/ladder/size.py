@@ -16,17 +16,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from solidgear.errors import SolidgearError
 from solidgear.ladder.registry import LADDER
-from solidgear.machine.memory import available_mb, expect
 
 if TYPE_CHECKING:
     from solidgear.scene.shaft import Shaft
-
-#: entries that 32-bit indices can number, less some for what is numbered beside them
-MOST_ENTRIES = 2_000_000_000
-#: what is not refused for want of memory, MB: a beam, or a coarse solid
-SMALL_MB = 25.0
 
 
 @dataclass(frozen=True)
@@ -87,32 +80,3 @@ def estimated_size(scene: Shaft, model: str, options: dict | None = None) -> Siz
     rung = LADDER[model]
     assert rung.size is not None  # of a rung that builds a body
     return rung.size(scene, rung.defaults() | rung.checked(options or {}))
-
-
-def refuse_too_large(scene: Shaft, model: str, options: dict | None = None) -> Size:
-    """The estimated size, if the machine can take it; it is noted as expected in the run
-    (:func:`solidgear.machine.memory.one_run`).
-
-    Raises
-    ------
-    SolidgearError
-        With the number of unknowns, the memory needed, the memory free and what to lower.
-    """
-    size = estimated_size(scene, model, options)
-    what = f"{model}: about {size.unknowns} unknowns"
-    if size.largest > MOST_ENTRIES:
-        raise SolidgearError(
-            f"{what} make {size.largest:.2g} matrix entries, more than the {MOST_ENTRIES:.0e} "
-            f"that can be numbered; {size.lower}"
-        )
-    free = available_mb()
-    if free is not None and size.peak_mb > max(free, SMALL_MB):
-        from solidgear.ladder.remedies import offered, ways_out
-
-        ways = offered(ways_out(scene, model, options or {}, free), free)
-        raise SolidgearError(
-            f"{what} need about {size.peak_mb:.0f} MB for mesh, matrices and factor, {free:.0f} "
-            f"MB are free; {size.lower}{ways}"
-        )
-    expect(size.peak_mb)
-    return size

@@ -19,6 +19,7 @@ from solidgear.meshing.blocks import blocks_beyond
 from solidgear.models.kinds import CUTS, CYCLIC
 from solidgear.scene.coned import coned
 from solidgear.scene.shaft import resolved
+from solidgear.scene.stations import attached_stations
 
 if TYPE_CHECKING:
     from solidgear.scene.body_file import BodyFile
@@ -304,7 +305,7 @@ def _tetrahedra(scene: Shaft, given: Mapping[str, Any], edges: bool = False) -> 
     from solidgear.meshing.element_size import estimated_counts
     from solidgear.models.solid.body import tetrahedra_plan
 
-    wanted = [(s, a) for s in scene.stations for a in (given["attachments"] or (s.attachment,))]
+    wanted = [*attached_stations(scene.stations, given["attachments"])]
     holes = [
         partial(around_cut, feature, scene.segments, given["refinement"], edges)
         for feature in resolved(scene)

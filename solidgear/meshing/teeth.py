@@ -9,6 +9,7 @@ import numpy as np
 
 from solidgear.meshing.cuts import ACROSS, GROWTH
 from solidgear.meshing.element_size import _num
+from solidgear.scene.cyclic_features import arc
 
 
 def outline(teeth: Any, count: int) -> tuple[np.ndarray, np.ndarray]:
@@ -33,18 +34,19 @@ def outline(teeth: Any, count: int) -> tuple[np.ndarray, np.ndarray]:
     (6, True)
     """
     pitch, many = 2 * pi / teeth.count, teeth.count // count
-    # the land between two teeth is a chord, which the cut planes meet in its middle
-    land = teeth.root * cos(pitch / 2 - teeth.root_half)
-    one = [
-        (-teeth.root_half, teeth.root),
-        (-teeth.tip_half, teeth.tip),
-        (teeth.tip_half, teeth.tip),
-        (teeth.root_half, teeth.root),
-    ]
+    tip = [(t, teeth.tip) for t in arc(teeth.tip_half)]
+    tooth = [(-teeth.root_half, teeth.root), *tip, (teeth.root_half, teeth.root)]
+    # between the ends of a land, which are corners of teeth
+    land = [(t, teeth.root) for t in arc(teeth.land_half)[1:-1]]
     border = pitch * many / 2
-    corners = [(-border, land)]
-    corners += [(t - border + pitch * (j + 0.5), r) for j in range(many) for t, r in one]
-    angle, radius = np.array([*corners, (border, land)]).T
+    # cut planes meet the middle of a chord
+    corners = [(-border, teeth.land)]
+    for j in range(many):
+        gap = pitch * j - border
+        corners += [(gap + t, r) for t, r in land if j or t > 0]
+        corners += [(gap + pitch / 2 + t, r) for t, r in tooth]
+    corners += [(border + t, r) for t, r in land if t < 0]
+    angle, radius = np.array([*corners, (border, teeth.land)]).T
     return angle, radius
 
 
@@ -71,7 +73,7 @@ def half_outline(teeth: Any, count: int) -> tuple[np.ndarray, np.ndarray]:
     """
     angle, radius = outline(teeth, count)
     beyond = angle > 0.0
-    # a tip or a land, whose chord the plane meets in its middle
+    # a tip or a land: the plane meets the middle of a chord
     k = int(np.argmax(beyond))
     return np.r_[0.0, angle[beyond]], np.r_[radius[k] * cos(angle[k]), radius[beyond]]
 

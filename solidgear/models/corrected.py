@@ -38,6 +38,7 @@ from solidgear.models.modal import Modal, alike_turn, modal
 from solidgear.models.solid.body import tetrahedra_plan, usual_size
 from solidgear.models.solid.featured import featured_body, meshed
 from solidgear.models.solid.halves import PARTS
+from solidgear.scene.stations import attached_stations
 
 #: free modes kept, twins counted twice: these hold the supported modes of a plain pinion to 2e-7
 #: (bending 1) and 3e-5 (bending 3)
@@ -119,7 +120,7 @@ def corrected(
         relative_size=harmonic_size,
         attachments=attachments,
     )
-    wanted = [(s, a) for s in scene.stations for a in (attachments or (s.attachment,))]
+    wanted = [*attached_stations(scene.stations, attachments)]
     plan = tetrahedra_plan(scene, wanted, refinement=refinement, around=12, **sizes(scene))
     made = meshed(scene, plan, refinement, True, edges=True)
     without = featured_body(scene, wanted, made, refinement, plain=True)

@@ -6,6 +6,7 @@ import math
 from collections.abc import Iterator, Sequence
 from typing import Annotated, Any, Literal
 
+import numpy as np
 from pydantic import Field, model_validator
 
 from solidgear.errors import SceneError
@@ -20,6 +21,9 @@ MOST_TEETH = 400
 #: least land between two teeth, and least top of a tooth, in pitches; smaller ones ask for meshes
 #: without end
 LEAST_LAND = 0.02
+#: rad; a chord of a tip, or of the land between two teeth, spans no more. A circle of such chords
+#: lacks 0.4 % of its area; of 14 usual teeth every tip is one chord
+LONGEST_CHORD = 0.15
 
 Count = Annotated[int, Field(strict=True, ge=FEWEST, le=MOST_TEETH)]
 
@@ -37,6 +41,20 @@ def _ratio(low: float, high: float, what: str) -> Any:
 
 
 Height = Annotated[float, _ratio(0.0, 3.0, "modules")]
+
+
+def arc(half: float) -> np.ndarray:
+    """Angles of the corners of an arc of 2 `half` in chords, from its middle.
+
+    Their number is odd: a plane through the middle of the arc meets the middle of a chord.
+
+    Examples
+    --------
+    >>> [len(arc(half)) - 1 for half in (0.07, 0.08, 0.225, 0.23)]
+    [1, 3, 3, 5]
+    """
+    chords = 2 * math.ceil((2 * half / LONGEST_CHORD - 1 - 1e-9) / 2) + 1
+    return np.linspace(-half, half, max(chords, 1) + 1)
 
 
 class _Toothed(OnSegment):
@@ -103,6 +121,18 @@ class _Toothed(OnSegment):
         """Half angle of a tooth at its root, rad."""
         return self._half(self.root)
 
+    @property
+    def land_half(self) -> float:
+        """Half angle of the land between two teeth, rad."""
+        return math.pi / self.count - self.root_half
+
+    @property
+    def land(self) -> float:
+        """Least radius of the land between two teeth, where a chord is nearest to the axis, over the
+        pitch radius.
+        """
+        return self.root * math.cos(arc(self.land_half)[-1] / (len(arc(self.land_half)) - 1))
+
     def _half(self, radius: float) -> float:
         """Half angle where the straight flank crosses a circle; radius over that of the pitch."""
         half, t = 2 * math.pi * self.half_thickness / self.count, math.tan(self.flank_angle)
@@ -135,7 +165,9 @@ class Teeth(_Toothed):
 
     Every section is the same trapezoid with straight flanks, in proportion to the radius of the
     segment there, which is the pitch radius. Heights are measured in the section, along its radius,
-    in modules of the section, ``2 r / count``.
+    in modules of the section, ``2 r / count``. Tips and the lands between teeth are chords of at
+    most `LONGEST_CHORD` with their ends on their circles: 14 usual teeth lack 0.1 % of the area and
+    0.25 % of the polar moment that arcs would have, and no teeth more than 0.4 and 0.8 %.
 
     Attributes
     ----------

@@ -80,8 +80,7 @@ def _in_teeth(teeth: Teeth | Spline, bolts: BoltCircle, here: Segment) -> str:
             "twisted, and straight holes would be with it; give the holes a segment of their own"
         )
     low = min(here.outer0, here.outer1)
-    # the land between two teeth is a chord
-    root = teeth.root * math.cos(math.pi / teeth.count - teeth.root_half) * low
+    root = teeth.land * low
     reach = (bolts.circle + bolts.diameter) / 2
     if reach > root - SMALLEST * low:
         return (

@@ -235,7 +235,7 @@ class Scene(Displayed, Model):
         return super().with_changes(**changes)
 
     def with_attachment(self, attachment: str) -> Scene:
-        """The same scene with ports, bearings and masses attached in one way.
+        """The same scene with ports, bearings and masses attached in one way; faces stay sections.
 
         Parameters
         ----------
@@ -252,8 +252,9 @@ class Scene(Displayed, Model):
         """
         changes = {
             key: tuple(one.with_changes(attachment=attachment) for one in getattr(self, key))
-            for key in ("bearings", "masses", "further_ports")
+            for key in ("masses", "further_ports")
         }
+        changes["bearings"] = tuple(b.attached(attachment) for b in self.bearings)
         port = self.port.with_changes(attachment=attachment)
         return self.with_changes(port=port, **changes)
 

@@ -88,7 +88,9 @@ def bearing_of(
             **held,
         )
     except SceneError as error:
-        key = "stiffness" if item.matrix is None else "matrix"
+        key = error.path[0] if error.path else "matrix"
+        if key == "matrix" and item.matrix is None:
+            key = "stiffness"
         raise SceneError(error.reason, path=("bearing", index, key), value=error.value) from None
     datums[f"bearing.{item.name}"] = bearing.y
     return bearing

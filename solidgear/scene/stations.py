@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Iterator, Sequence
 from typing import Annotated, Any, Literal
 
 import numpy as np
@@ -100,12 +101,13 @@ class Bearing(Model):
     hold : {'clamped', 'pinned'} or None
         In place of a stiffness: nothing moves, or nothing moves but turns.
     face : {'start', 'end'} or None
-        The end face whose middle it holds; the seat is then the rim beside that face.
+        The end face whose middle it holds, as a section; the seat is then the rim beside that face.
 
     Raises
     ------
     SceneError
-        A matrix that is not symmetric, is indefinite, or holds springs too soft to be any.
+        A matrix that is not symmetric, is indefinite, or holds springs too soft to be any; a face
+        attached in another way than as a section.
 
     Examples
     --------
@@ -136,6 +138,8 @@ class Bearing(Model):
             data["matrix"] = data.pop("stiffness")
         if data.get("hold") in HOLDS and "matrix" not in data:
             data["matrix"] = held_matrix(data["hold"])
+        if data.get("face") is not None:
+            data.setdefault("attachment", "section")
         super().__init__(**data)
 
     @model_validator(mode="after")
@@ -152,6 +156,20 @@ class Bearing(Model):
                     path=("matrix",),
                 )
         return self
+
+    @model_validator(mode="after")
+    def _a_face_is_a_section(self) -> Bearing:
+        if self.face is not None and self.attachment != "section":
+            raise SceneError(
+                "a face is held in its middle, as a section: leave attachment out, or for the rim "
+                "beside the face write position and from in place of face",
+                path=("attachment",),
+            )
+        return self
+
+    def attached(self, attachment: str) -> Bearing:
+        """The same bearing with its seat attached in another way; one on a face as it is."""
+        return self if self.face else self.with_changes(attachment=attachment)
 
     @property
     def lo(self) -> float:
@@ -256,3 +274,33 @@ class Port(Model):
     lo: Position
     hi: Position
     attachment: Attachment = "average"
+
+
+def attached_stations(
+    stations: Iterable[Any], attachments: Sequence[str] | None = None
+) -> Iterator[tuple[Any, str]]:
+    """Stations with the ways in which a body is to attach them, one port each.
+
+    Parameters
+    ----------
+    stations : iterable of Port, Bearing or PointMass
+    attachments : sequence of str, optional
+        Ways in place of their own; the middle of an end face is a section all the same.
+
+    Yields
+    ------
+    station : Port, Bearing or PointMass
+    attachment : {'average', 'rigid', 'section'}
+
+    Examples
+    --------
+    >>> tip = Port(name="tip", y=1.0, lo=0.9, hi=1.0)
+    >>> wall = Bearing(name="wall", y=0.0, seat_width=0.02, hold="clamped", face="start")
+    >>> [(s.name, way) for s, way in attached_stations([tip, wall], ["average", "rigid"])]
+    [('tip', 'average'), ('tip', 'rigid'), ('wall', 'section')]
+    """
+    for station in stations:
+        own = (station.attachment,)
+        on_face = getattr(station, "face", None) is not None
+        for attachment in own if on_face or not attachments else attachments:
+            yield station, attachment

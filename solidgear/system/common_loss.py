@@ -17,11 +17,14 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from solidgear.errors import SolidgearError
-from solidgear.system.system import System
+
+if TYPE_CHECKING:
+    from solidgear.system.system import System
 
 #: rows that may differ; with more, complex modes are cheaper
 MOST_ROWS = 4

@@ -9,8 +9,12 @@ left, ``M . n``, is a moment about the line of action that *no* mesh point carri
 the pitch of the wrench.  Points that leave nothing else are those of the central axis, ``r = F x M
 / F^2 + t n``.
 
-Hua (2010), 3.2.1, takes y from the forces, ``y = sum f_i y_i / sum f_i``, and then x and z from
-the moments about z and x; its M_y is left as it comes.
+Hua (2010), 3.2.1, equation 3, takes y from the forces, x from the moment about z and z from that
+about y,
+
+    y = sum f_i y_i / sum f_i,      x = (M_z + F_x y) / F_y,      z = (M_y + F_z x) / F_x,
+
+and leaves M_x as it comes.
 """
 
 from __future__ import annotations
@@ -75,16 +79,18 @@ class ContactWrench:
         Raises
         ------
         SolidgearError
-            If the force has no component along y, by which they divide.
+            If the force has no component along x or y, by which they divide.
         """
         fx, fy, fz = self.force
-        if abs(fy) < 1e-9 * np.linalg.norm(self.force):
+        if min(abs(fx), abs(fy)) < 1e-9 * np.linalg.norm(self.force):
+            axis = "x" if abs(fx) < abs(fy) else "y"
             raise SolidgearError(
-                "the formulas of the thesis divide by the axial force, and the cells have none; "
-                "use the point on the central axis"
+                f"the formulas of the thesis divide by the force along {axis}, and the cells have "
+                "none; use the point on the central axis"
             )
         y = self.centre[1]
-        return np.array([(self.moment[2] + y * fx) / fy, y, (y * fz - self.moment[0]) / fy])
+        x = (self.moment[2] + fx * y) / fy
+        return np.array([x, y, (self.moment[1] + fz * x) / fx])
 
     def left_over(self, point: ArrayLike) -> float:
         """Size of the moment that the force at a point does not balance, N m."""

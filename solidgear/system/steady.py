@@ -9,9 +9,16 @@ A loss factor eta_j of a part or link makes its stiffness complex,
 ``C = zeta K`` with a *ratio* zeta, as Hua (2010) writes it (equations 8 and 19), is viscous damping
 with the loss factor zeta at w0 = 1 rad/s, so that zeta counts as seconds.
 
-Hysteretic and modal losses have complex modes ``mu_r`` that serve all frequencies: what is asked
-for is ``sum_r a_r / (mu_r - w^2)``, smooth but within some half-widths ``Im mu_r / (2 sqrt(Re
-mu_r))`` of a pole.  So a grid with points at every pole and around it can miss no peak; between
+Hysteretic and modal losses have complex modes ``mu_r`` that serve all frequencies, all modes of the
+system and those of residual fields among them, so that no static remainder is missing.  With H the
+lost stiffness in elastic modes they are those of its flexibility,
+
+    (diag(w_r^2) + i H)^-1 = W (I + i W H W)^-1 W = V diag(1 / mu_r) V^-1,      W = diag(1 / w_r),
+
+whose largest entries are those of the lowest modes: rounding is that of the softest motion, not of
+the stiffest spring.  Twins share their mu, and any two vectors of their plane may come out, so that
+those on the left are the rows of V^-1 and not V' again.  What is asked for is ``sum_r a_r / (mu_r -
+w^2)``, smooth but within some half-widths ``Im mu_r / (2 sqrt(Re mu_r))`` of a pole.  So a grid with points at every pole and around it can miss no peak; between
 them intervals are halved until their middles are foretold.
 
 Where all but a few springs share one loss factor, real modes do without the complex ones
@@ -23,14 +30,16 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from solidgear.errors import SolidgearError
 from solidgear.machine.threads import pinned
 from solidgear.system.common_loss import CommonLoss, common_loss, in_real_modes
-from solidgear.system.response import free_motion, lost_stiffness
-from solidgear.system.system import System
+
+if TYPE_CHECKING:
+    from solidgear.system.system import System
 
 KINDS = ("hysteretic", "viscous", "modal")
 #: grid points around a pole, in half-widths
@@ -47,6 +56,10 @@ HALVINGS, MOST_POINTS = 12, 6_000
 NOISE = 1e-10
 #: frequencies that are solved at once, one by one in modes
 BATCH = 64
+#: work of a load on a free motion, relative to the largest it could do, that is rounding
+UNBALANCED = 1e-9
+#: distance of a frequency from that of a mode, relative, in the square, that is rounding
+ON_A_POLE = 8 * float(np.finfo(float).eps)
 
 
 @dataclass(frozen=True, eq=False)
@@ -118,11 +131,14 @@ class SteadyState:
         return common_loss(self.system, self.loss) if self.kind == "hysteretic" else None
 
     @cached_property
-    def _complex(self) -> tuple[np.ndarray, np.ndarray]:
-        """mu (m,) and shapes (N, m) with ``v'v = 1``, no conjugation."""
+    def _complex(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """mu (m,), shapes (N, m) and what a load does on them (m, N)."""
         omega, elastic = self.system.elastic
-        value, turn = np.linalg.eig(np.diag(omega**2) + 1j * self._lost)
-        return value, elastic @ (turn / np.sqrt(np.einsum("ij,ij->j", turn, turn)))
+        soft = 1 / omega
+        damped = np.eye(len(omega)) + 1j * soft[:, None] * self._lost * soft
+        flexible = soft[:, None] * np.linalg.solve(damped, np.diag(soft))
+        value, turn = np.linalg.eig((flexible + flexible.T) / 2)
+        return 1 / value, elastic @ turn, np.linalg.solve(turn, elastic.T)
 
     @cached_property
     def poles(self) -> tuple[np.ndarray, np.ndarray]:
@@ -167,13 +183,13 @@ class SteadyState:
         elif self._common is not None:
             out = in_real_modes(self.system, self._common, w2, load, rows)
         else:
-            value, shapes = self._complex
+            value, shapes, work = self._complex
             gap = value[:, None] - w2
-            if np.any(gap == 0):
+            if np.any(np.abs(gap) <= ON_A_POLE * w2):
                 raise SolidgearError(
-                    "a frequency is that of a mode, and nothing damps it; give it a loss"
+                    "a frequency is that of a mode, and nothing damps it; give damping or a loss"
                 )
-            out = ((rows @ shapes) @ ((shapes.T @ load)[:, None] / gap)).T
+            out = ((rows @ shapes) @ ((work @ load)[:, None] / gap)).T
         return out + free_motion(self.system, w2, load, rows).T
 
     def _one_by_one(self, frequency_hz, load, rows) -> np.ndarray:
@@ -199,8 +215,8 @@ class SteadyState:
         """The same as :meth:`motion`, each frequency solved by itself.
 
         Between ends far from each other a sum over modes cancels: engine to load of a train at
-        4 kHz is 1e-14 of its terms. Two digits are left of a sum over complex modes, five of one
-        over real ones, all of an elimination.
+        4 kHz is 1e-14 of its terms. Five digits are left of a sum over modes, all of an
+        elimination.
 
         Parameters
         ----------
@@ -275,6 +291,35 @@ class SteadyState:
             was = np.repeat(again, 1 + np.isin(np.arange(len(again)), left))
             fresh = was
         return points
+
+
+def free_motion(
+    system: System, w2: np.ndarray, load: np.ndarray, rows: np.ndarray | None = None
+) -> np.ndarray:
+    """Accelerations of free motions, twice integrated; of all coordinates, or seen by some rows."""
+    push = system.free.T @ load
+    if np.any(w2 == 0):
+        if np.abs(push).max(initial=0.0) > UNBALANCED * np.linalg.norm(system.elastic[1].T @ load):
+            raise SolidgearError(
+                "at 0 Hz the load drives a motion that nothing resists; leave 0 Hz out"
+            )
+    moving = np.where(w2 > 0, w2, 1.0)
+    free = system.free if rows is None else rows @ system.free
+    return free @ (push[:, None] * (w2 > 0) / -moving)
+
+
+def lost_stiffness(system: System, loss: Mapping[str, float]) -> np.ndarray:
+    """``sum eta_j K_j`` in elastic modes."""
+    g, where = system.strains
+    shapes = system.elastic[1]
+    out = np.zeros((shapes.shape[1],) * 2)
+    for name, eta in loss.items():
+        if name not in system.parts and name not in system.links:
+            raise SolidgearError(f"a loss factor for {name!r}, which is no part and no link")
+        if name in where:
+            stretch = g[where[name]] @ shapes
+            out += eta * (stretch.T @ stretch)
+    return out
 
 
 def peaks(size: np.ndarray) -> np.ndarray:

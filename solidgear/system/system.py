@@ -30,16 +30,15 @@ from functools import cached_property
 import numpy as np
 import scipy.linalg as sla
 from numpy.typing import ArrayLike
-from scipy.linalg import lapack
 
 from solidgear.errors import SolidgearError
 from solidgear.machine.threads import pinned
 from solidgear.reduction.superelement import PortMotion, Truncation
 from solidgear.system.bound import frequency_bound
 from solidgear.system.links import Link
-from solidgear.system.modes import TINY, SystemModes, relative_residual
+from solidgear.system.modes import TINY, SystemModes, relative_residual, singular
 from solidgear.system.parts import Part
-from solidgear.system.response import UNBALANCED, response
+from solidgear.system.steady import UNBALANCED, SteadyState
 
 #: A row that moves rigid parts by less than this of what it moves at all is rounding.
 ROUNDING = 1e-9
@@ -248,7 +247,7 @@ class System:
         held = np.linalg.qr(still, mode="complete")[0][:, still.shape[1] :]
         if not held.shape[1]:
             return np.zeros(0), np.zeros((self.size, 0))
-        omega, turn = _singular(rows @ held)
+        omega, turn = singular(rows @ held)
         shapes = sla.solve_triangular(lower.T, held @ turn.T, lower=False)
         return omega[::-1], shapes[:, ::-1]
 
@@ -337,11 +336,50 @@ class System:
         damping: float = 0.0,
         loss: Mapping[str, float] | None = None,
     ) -> np.ndarray:
-        """Steady motion under a load that oscillates: (f, N), complex.
+        """Steady motion of all coordinates under a load that oscillates, with structural damping.
 
-        See :func:`solidgear.system.response.response` for what the arguments are.
+        A damping ratio zeta counts as loss factor 2 zeta of all parts and links, which is what
+        viscous damping is at resonance; see :class:`solidgear.system.steady.SteadyState` for other
+        losses, and for few motions of many coordinates.
+
+        Parameters
+        ----------
+        frequency_hz : (f,) array_like
+            Not negative.
+        load : (N,) array_like
+            Amplitudes, complex for phases; as from :meth:`load`.
+        damping : float
+            Damping ratio zeta of every elastic mode.
+        loss : mapping of str to float
+            Loss factor eta of parts and links.
+
+        Returns
+        -------
+        (f, N) complex ndarray
+            Amplitudes q of ``q exp(i w t)``: times ``system.motion(end).T`` the motion of a port.
+
+        Raises
+        ------
+        SolidgearError
+            At 0 Hz if a free motion is driven, on a resonance without damping, for an unknown name,
+            or numbers that are not.
+
+        Examples
+        --------
+        >>> from solidgear.system import Inertia, System, torsion_spring
+        >>> fan = System({"fan": Inertia(2.0)}, {"shaft": torsion_spring("fan", 400.0)})
+        >>> push = fan.load({"fan": [0, 0, 0, 0, 1, 0]})
+        >>> still = fan.response([0.0], push, loss={"shaft": 0.75})
+        >>> round(float(abs(still[0, 0])) * 400, 12)  # 1 / |1 + 0.75 i|
+        0.8
         """
-        return response(self, np.asarray(frequency_hz, float), load, damping, loss or {})
+        if not (np.isfinite(damping) and damping >= 0):
+            raise SolidgearError(f"damping is {damping}; damping is finite and not negative")
+        every = dict.fromkeys(self.strains[1], 2 * damping)
+        every |= {name: every.get(name, 0.0) + eta for name, eta in (loss or {}).items()}
+        return SteadyState(self, every).motion(
+            np.asarray(frequency_hz, float), load, np.eye(self.size)
+        )
 
 
 def _unit(rows: np.ndarray) -> np.ndarray:
@@ -355,20 +393,3 @@ def _null(rows: np.ndarray) -> np.ndarray:
     _, s, vt = np.linalg.svd(rows)
     null = vt[int((s > ROUNDING).sum()) :].T
     return np.where(np.abs(null) < TINY, 0.0, null)
-
-
-def _singular(rows: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Singular values, descending, and right vectors (rows) of a matrix of full column rank.
-
-    Jacobi's method with pivoting (Drmac and Veselic 2008): rows of very different size, springs of
-    1 and of 1e20 N/m, cost no digits of the small values, where bidiagonalisation rounds by 1e-16
-    of the largest.
-    """
-    order = np.argsort(-np.abs(rows).max(axis=1), kind="stable")
-    # "F": accurate for badly scaled rows and columns; no left vectors, all right ones
-    value, _, right, scale, _, failed = lapack.dgejsv(rows[order], joba=2, jobu=3, jobv=0)
-    if failed:
-        raise SolidgearError(
-            "the modes of the system do not converge; check stiffnesses and masses"
-        )
-    return value * (scale[0] / scale[1]), right.T

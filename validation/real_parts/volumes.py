@@ -84,6 +84,14 @@ def _rigid_mass(x, y, z, weight) -> np.ndarray:
     return np.einsum("kin,kjn,n->ij", rows, rows, weight)
 
 
+def _chords(p, q) -> list[tuple[float, float]]:
+    """Corners of the fewest chords of an odd number, none above 0.15 rad, from p to q on a circle."""
+    radius, (start, end) = math.hypot(*p), (math.atan2(*p), math.atan2(*q))
+    count = next(n for n in range(1, 99, 2) if (end - start) / n <= 0.15)
+    angles = [start + (end - start) * k / count for k in range(count + 1)]
+    return [(radius * math.sin(t), radius * math.cos(t)) for t in angles]
+
+
 def toothed_area(teeth: Any) -> tuple[float, float]:
     """Area and polar moment of a toothed section of unit pitch radius, from the definition of its
     trapezoids.
@@ -105,10 +113,9 @@ def toothed_area(teeth: Any) -> tuple[float, float]:
         a, b, c = along @ along, start @ along, start @ start - radius**2
         corners.append(start + (-b + math.sqrt(b * b - a * c)) / a * along)
     (x0, z0), (x1, z1) = corners
-    tooth = [(-x0, z0), (-x1, z1), (x1, z1), (x0, z0)]
     c, s = math.cos(pitch), math.sin(pitch)
-    after = (c * -x0 + s * z0, c * z0 - s * -x0)  # the root of the next tooth, along a chord
-    points = np.array([*tooth, after])
+    after = (c * -x0 + s * z0, c * z0 - s * -x0)  # the root of the next tooth
+    points = np.array([(-x0, z0), *_chords((-x1, z1), (x1, z1)), *_chords((x0, z0), after)])
     p, q = points[:-1], points[1:]
     twice = p[:, 1] * q[:, 0] - p[:, 0] * q[:, 1]
     square = (p * p).sum(axis=1) + (q * q).sum(axis=1) + (p * q).sum(axis=1)

@@ -239,7 +239,8 @@ def from_scene(scene, *, pieces: int = 1) -> tuple[tuple[Span, ...], tuple[Stati
 
     Cones become cylinders with the mean mass and the mean ``1 / (E I)`` of their pieces, so that
     mass, and the turn under a uniform moment, are exact; the error falls with the square of
-    `pieces`.  Couplings of a bearing between this plane and the rest are left out.
+    `pieces`.  Couplings of a bearing between this plane and the rest are left out.  A held end is a
+    spring as stiff as on every other model.
 
     Parameters
     ----------
@@ -251,7 +252,13 @@ def from_scene(scene, *, pieces: int = 1) -> tuple[tuple[Span, ...], tuple[Stati
     -------
     spans : tuple of Span
     stations : tuple of Station
-        The lumped point first, without a mass of its own; bearings follow.
+        The lumped points first, without a mass of their own; bearings and rigid masses follow.
+
+    Raises
+    ------
+    SolidgearError
+        For masses off their stations, a housing around the bearings, or a shaft that is not of
+        plain segments: nothing of them fits into the model.
 
     Examples
     --------
@@ -261,6 +268,7 @@ def from_scene(scene, *, pieces: int = 1) -> tuple[tuple[Span, ...], tuple[Stati
     ([0.12, 0.16, 0.14], 3)
     """
     number("krylov", "pieces", pieces, least=1, whole=True)
+    _refuse_what_is_left_out(scene)
     spans = []
     for segment in scene.segments:
         tapered = (segment.outer0, segment.inner0) != (segment.outer1, segment.inner1)
@@ -275,10 +283,32 @@ def from_scene(scene, *, pieces: int = 1) -> tuple[tuple[Span, ...], tuple[Stati
             Span(segment.length / count, of.E * float(i), of.density * float(a))
             for i, a in zip(second, area)
         ]
+    places = {station.name: station.y for station in (*scene.ports, *scene.bearings)}
     return tuple(spans), (
-        Station(scene.port.y),
+        *(Station(port.y) for port in scene.ports),
         *(Station(b.y, b.stiffness[2:4, 2:4]) for b in scene.bearings),
+        *(
+            Station(places.get(m.station, m.y), mass=m.mass, inertia=m.inertia[0])
+            for m in scene.masses
+        ),
     )
+
+
+def _refuse_what_is_left_out(scene) -> None:
+    """One sentence where a scene has what is neither a span nor a station."""
+    lacking = {
+        "features": scene.features,
+        "fillets or chamfers": scene.blends,
+        "a part from a file": scene.body,
+        "a housing around its bearings": scene.housing,
+        "masses with an offset from their stations": [m for m in scene.masses if any(m.offset)],
+    }
+    found = [name for name, there in lacking.items() if there]
+    if found:
+        raise SolidgearError(
+            f"krylov: the scene {scene.name} has {' and '.join(found)}, and this model is of plain "
+            "segments, springs and centred masses; ask another model"
+        )
 
 
 def _given(what, name, value, **limits):

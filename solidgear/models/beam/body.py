@@ -21,6 +21,7 @@ from solidgear.models.beam.element import Fields, Section, bending_matrices, rod
 from solidgear.models.beam.shoulder import Hinge, hinges
 from solidgear.models.options import BEAM_OPTIONS, checked
 from solidgear.models.spectrum import elastic_scale
+from solidgear.scene.stations import attached_stations
 
 # Shortest Euler element over the length of the shaft.
 SHORTEST = 3e-4
@@ -97,7 +98,7 @@ def beam(
         raise SolidgearError(
             "kappa: 'cowper' is given for solid sections only; use 'hutchinson' for a hollow shaft"
         )
-    wanted = [(s, a) for s in scene.stations for a in (attachments or (s.attachment,))]
+    wanted = [*attached_stations(scene.stations, attachments)]
     nodes, owner = mesh(scene, elements, wanted)
     n = len(nodes)
     if not shear:

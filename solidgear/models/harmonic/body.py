@@ -26,6 +26,7 @@ from solidgear.models.limits import countable
 from solidgear.models.options import HARMONIC_OPTIONS, checked
 from solidgear.models.spectrum import elastic_scale
 from solidgear.scene.coned import coned
+from solidgear.scene.stations import attached_stations
 
 
 @dataclass(frozen=True)
@@ -149,12 +150,8 @@ def harmonic(
     element = _element(order)
     dofs = unknowns(mesh, element)
     work = _Work(scene, mesh, element, dofs, flat, order)
-    ports, wanted = [], []
-    for station in scene.stations:
-        for attachment in attachments or (station.attachment,):
-            ports.append(Port(station.name, station.y, attachment))
-            wanted.append((station, attachment))
-
+    wanted = [*attached_stations(scene.stations, attachments)]
+    ports = [Port(station.name, station.y, attachment) for station, attachment in wanted]
     chosen = families or HARMONIC_OPTIONS["families"].choices
     blocks = []
     if "bending" in chosen:

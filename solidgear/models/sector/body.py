@@ -35,6 +35,7 @@ from solidgear.models.solid.mesh import SolidMesh, _isoparametric
 from solidgear.models.spectrum import elastic_scale
 from solidgear.scene.cyclic_features import Spline, Teeth
 from solidgear.scene.cyclic_rules import mirror_angle, no_common_sector
+from solidgear.scene.stations import attached_stations
 
 #: strips of a tooth that cells do not reach across, from its root outwards: its flanks and the middles of
 #: land and gap. 20 shafts of 1 to 12 teeth in a sector come out with 0.79 to 1.12 of their cells at
@@ -95,7 +96,7 @@ def sector(
     own = {"size": size, "graded_size": graded_size, "refinement": refinement}
     given = {**own, "ovalising": ovalising, "attachments": attachments, "half": half}
     attachments = checked("sector", given, SECTOR_OPTIONS)["attachments"]
-    wanted = [(s, a) for s in scene.stations for a in (attachments or (s.attachment,))]
+    wanted = [*attached_stations(scene.stations, attachments)]
     features = cyclic_features(scene)
     ends = (scene.port.lo, scene.port.hi) if material_port else ()
     made = meshed_sector(scene, wanted, features, ends, count=count, **own)
@@ -262,7 +263,7 @@ def sector_counts(scene, given: Mapping[str, Any]) -> tuple[float, float, float,
     -------
     vertices, edges, faces, cells : float
     """
-    wanted = [(s, a) for s in scene.stations for a in (given["attachments"] or (s.attachment,))]
+    wanted = [*attached_stations(scene.stations, given["attachments"])]
     refinement = given["refinement"]
     sizes = {"size": given["size"], "graded_size": given["graded_size"]}
     plan = tetrahedra_plan(scene, wanted, refinement=refinement, around=16, **sizes)

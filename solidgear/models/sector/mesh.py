@@ -53,8 +53,8 @@ def seats(mesh: SolidMesh, straight: np.ndarray, scene, features) -> Facets:
             if s.name in toothed:
                 teeth = toothed[s.name]
                 pitch = s.outer0 + (s.outer1 - s.outer0) * (y - s.y0) / s.length
-                # chords of roots run below their circle by this at most; bores and holes lie deeper
-                least = teeth.root * np.cos(np.pi / teeth.count - teeth.root_half) * (1 - 1e-6)
+                # no chord of a root runs deeper; bores and holes do
+                least = teeth.land * (1 - 1e-6)
                 here = (low > s.y0 - tolerance) & (high < s.y1 + tolerance)
                 on |= here & (r > least * pitch).all(axis=0)
         inside = (low >= station.lo - tolerance) & (high <= station.hi + tolerance)

@@ -20,6 +20,7 @@ from solidgear.models.solid.block import free_block, mirrored, seat_facets
 from solidgear.models.solid.mesh import _isoparametric
 from solidgear.models.spectrum import elastic_scale
 from solidgear.scene.shaft import named, resolved
+from solidgear.scene.stations import attached_stations
 
 
 def solid(
@@ -99,7 +100,7 @@ def solid(
         raise SolidgearError(
             f"solid: around = {around} does not fit an O-grid; use a multiple of 4"
         )
-    wanted = [(s, a) for s in scene.stations for a in (attachments or (s.attachment,))]
+    wanted = [*attached_stations(scene.stations, attachments)]
     features = resolved(scene)
     if features:
         if element != "tet10":

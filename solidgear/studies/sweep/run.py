@@ -12,7 +12,7 @@ from solidgear.body import Body
 from solidgear.errors import SolidgearError
 from solidgear.ladder import build as build_any
 from solidgear.ladder.registry import LADDER
-from solidgear.ladder.size import refuse_too_large
+from solidgear.ladder.remedies import refuse_too_large
 from solidgear.models.limits import number
 from solidgear.reduction.moments import LEVELS, Reduced, reduce
 from solidgear.scene import Scene
