@@ -170,9 +170,7 @@ def test_a_refusal_needs_no_module_that_is_not_there_yet(monkeypatch):
         return 100.0
 
     monkeypatch.setattr("solidgear.machine.memory.available_mb", used_up)
-    for module in ("size", "ways"):
-        name = f"solidgear.ladder.{module}.available_mb"
-        monkeypatch.setattr(name, used_up, raising=False)
+    monkeypatch.setattr("solidgear.ladder.remedies.available_mb", used_up)
     with pytest.raises(sg.SolidgearError) as refusal:
         try:
             sg.build(SCENES["pinion_overhung"], "solid", refinement=3.0)
