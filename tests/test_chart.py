@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import csv
-import html
 import json
 import re
 from dataclasses import asdict, replace
@@ -18,7 +17,8 @@ from solidgear.judge.race.pareto import Race, Row
 from solidgear.judge.race.timing import race
 from solidgear.report import race_figure, race_rows, race_style
 from solidgear.report.html import render_page, write_report
-from solidgear.report.race_figure import draw, figure
+from solidgear.report.panel import SHAPES
+from solidgear.report.race_figure import draw, race_chart
 from solidgear.report.race_rows import (
     MACHINE,
     PICTURE,
@@ -30,6 +30,7 @@ from solidgear.report.race_rows import (
     write_rows,
 )
 from solidgear.report.race_tables import front_rows, section
+from tests.charted import texts_of, words_of
 from tests.made_up_run import fixture_results
 
 ROOT = Path(__file__).parent.parent
@@ -83,8 +84,15 @@ def undrawn(monkeypatch):
     monkeypatch.setattr(race_figure, "draw", lambda found, path: path)
 
 
-def marks(ax, marker):
-    return [line for line in ax.lines if line.get_marker() == marker]
+def panels(found):
+    """Rows of panels of a race, without the legend."""
+    return [panel for row in race_chart(found).rows[:-1] for panel in row]
+
+
+def marks(panel, shape):
+    """Places of the markers of a shape, and the looks of the last of them."""
+    layers = [(mark, rows) for mark, rows, _ in panel.layers if mark.get("shape") == SHAPES[shape]]
+    return [row for _, rows in layers for row in rows]
 
 
 # ------------------------------------------------------------------------------------------------- files
@@ -137,20 +145,18 @@ def test_a_damaged_file_is_no_race_and_no_crash(raced, tmp_path, name, text):
 
 
 # ------------------------------------------------------------------------------------------------- figure
-def test_figure_has_both_quantities_over_both_costs(raced):
-    axes = figure(raced).axes
-    assert len(axes) == 4
-    assert {ax.get_ylabel() for ax in axes} - {""} == {
-        "error of port compliance C_zz",
-        "error of first bending frequency",
-    }
-    assert all(ax.get_xscale() == ax.get_yscale() == "log" for ax in axes)
+def test_both_quantities_are_charted_over_both_costs(raced):
+    found = panels(raced)
+    assert len(found) == 4
+    names = {panel.y.title for panel in found}
+    assert names == {"error of port compliance C_zz", "error of first bending frequency"}
+    assert all(panel.x.log and panel.y.log for panel in found)
 
 
 def test_failures_are_crosses_where_their_cost_is_known(raced):
-    over_seconds, over_unknowns = figure(raced).axes[:2]
+    over_seconds, over_unknowns = panels(raced)[:2]
     (cross,) = marks(over_seconds, "x")
-    assert cross.get_xdata()[0] == raced.rows[3].samples[0]
+    assert cross["x"] == raced.rows[3].samples[0]
     assert not marks(over_unknowns, "x")
 
 
@@ -176,28 +182,22 @@ def test_a_number_that_is_missing_is_a_cross_in_its_own_panels():
         "bands": {"C_zz": 1e-6, "bending 1": 1e-6},
     }
     made = Race({}, reference, [row], {}, 1, 10, 1.0)
-    assert [len(marks(ax, "x")) for ax in figure(made).axes] == [0, 0, 1, 1]
+    assert [len(marks(panel, "x")) for panel in panels(made)] == [0, 0, 1, 1]
 
 
 def test_points_below_the_band_stand_on_it(raced):
-    ax = figure(raced).axes[0]
+    panel = panels(raced)[0]
     band = raced.reference["bands"]["C_zz"]
-    heights = [line.get_ydata()[0] for line in marks(ax, "D")]
-    assert heights == [band]
-    assert all(
-        line.get_ydata()[0] >= band
-        for line in ax.lines
-        if line.get_marker() not in ("", "None", None, "*") and len(line.get_ydata())
-    )
+    assert [row["y"] for row in marks(panel, "D")] == [band]
+    for mark, rows, _ in panel.layers:
+        if mark["type"] == "point" and mark["shape"] != SHAPES["*"]:
+            assert all(row["y"] >= band for row in rows)
 
 
 def test_beams_show_like_for_like_beside_their_own_error(raced):
-    ax = figure(raced).axes[0]
     row = raced.rows[1]
-    assert [line.get_ydata()[0] for line in marks(ax, "s")] == [
-        row.errors["C_zz"],
-        row.like_for_like["C_zz"],
-    ]
+    heights = [mark["y"] for mark in marks(panels(raced)[0], "s")]
+    assert heights == [row.errors["C_zz"], row.like_for_like["C_zz"]]
 
 
 def test_the_automatic_choice_is_charted_at_its_largest_system():
@@ -222,8 +222,7 @@ def test_the_automatic_choice_is_a_line_of_its_own_and_within_its_tolerance():
     for row in found.rows:
         assert max(row.errors.values()) < row.options["tol"]
         assert row.unknowns > 0
-    panel = figure(found).axes[0]
-    assert {"10 %", "1 %"} <= {text.get_text() for text in panel.texts}
+    assert {"10 %", "1 %"} <= set(texts_of(panels(found)[0]))
 
 
 def test_picture_is_a_png(raced, tmp_path):
@@ -248,11 +247,10 @@ def test_left_out_names_the_first_level_of_each_series(raced):
 
 def test_an_unknown_family_is_drawn_in_grey_and_named_in_the_legend(raced):
     row = Row("shells", "S4 graded", 1, "shell", {}, "ok", "", 90, [0.3], {}, {"C_zz": 0.01})
-    found = figure(Race({}, raced.reference, [row], {}, 1, 10, 1.0))
-    (mark,) = marks(found.axes[0], "o")
-    assert mark.get_color() == race_style.GREY
-    words = [text.get_text() for text in found.legends[0].get_texts()]
-    assert words[:2] == ["SHELLS", "S4 graded"]
+    chart = race_chart(Race({}, raced.reference, [row], {}, 1, 10, 1.0))
+    colours = {mark["stroke"] for mark, *_ in chart.rows[0][0].layers if mark.get("size") == 45}
+    assert colours == {race_style.GREY}
+    assert texts_of(chart.rows[-1][0])[:2] == ["SHELLS", "S4 graded"]
 
 
 # ------------------------------------------------------------------------------------------------- report
@@ -264,11 +262,10 @@ def test_report_has_the_section_when_its_folder_has_a_race_of_the_scene(raced, t
     assert SPEED in page and "The Pareto front over wall time" in page
     # what is read off it is what the table says
     chart = page[page.index(SPEED) :]
-    told = json.loads(html.unescape(re.search(r'"readings">(.*?)</metadata>', chart, re.S)[1]))
     row = next(row for row in raced.rows if row.status == "ok")
-    of_row = [one["told"] for one in told if one["name"] == row.series]
-    (found,) = {str(words) for words in of_row if words[0][0] == "error of C_zz"}
-    assert error_text(raced, row, "C_zz") in found and f"'{row.unknowns}'" in found
+    (found,) = {w for w in words_of(chart) if w.startswith(f"{row.series}\nerror of C_zz")}
+    assert f"C_zz: {error_text(raced, row, 'C_zz')}\n" in found
+    assert f"unknowns: {row.unknowns}" in found
     assert "order 99" in page
     other = {"scene": raced.scene | {"name": "another"}, "models": {}}
     assert SPEED not in render_page(other, tmp_path)

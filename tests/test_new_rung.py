@@ -13,10 +13,11 @@ from solidgear.judge.race.cases import plan
 from solidgear.judge.race.timing import race
 from solidgear.ladder.registry import LADDER
 from solidgear.report.html import render_page
-from solidgear.report.race_figure import figure
+from solidgear.report.race_figure import race_chart
 from solidgear.report.terminal import final_table
 from solidgear.report.write import render_mode
 from solidgear.studies.check import check_scene
+from tests.charted import texts_of
 
 ROOT = Path(__file__).parent.parent
 LIGHT = {"harmonic": {"order": 3, "layers": 1}}
@@ -101,7 +102,7 @@ def test_it_is_charted(ladder, scene):
     against = {"order": 3, "layers": 1, "edge_layers": 0}
     done = race(scene, rows, runs=1, budget=100.0, against=against)
     assert done.rows[0].status == "ok" and 0 < done.rows[0].errors["bending 1"] < 0.2
-    texts = [t.get_text() for ax in figure(done).axes for t in ax.texts]
+    texts = texts_of(race_chart(done))
     assert any("coarse" in text for text in texts)
 
 

@@ -17,7 +17,7 @@ import solidgear as sg
 from solidgear.errors import SolidgearError
 from solidgear.judge.record import SCHEMA, Record
 from solidgear.judge.recording import recorded
-from solidgear.report import charts, input_tables, readout
+from solidgear.report import charts, input_tables
 from solidgear.report.html import render_page, write_report
 from solidgear.report.terminal import (
     final_table,
@@ -55,7 +55,7 @@ def shown(renderable, width=80):
 
 # ------------------------------------------------------------------------------------------------- the page
 #: the one script of the page
-READS = f"<script>\n{(Path(readout.__file__).parent / 'readout.js').read_text().rstrip()}</script>"
+READS = f"<script>\n{(Path(charts.__file__).parent / 'readout.js').read_text().rstrip()}</script>"
 
 
 def test_page_needs_no_other_file_and_no_network(page):
@@ -255,7 +255,7 @@ def test_chart_that_fails_costs_only_itself(monkeypatch):
         raise ValueError("no pen")
 
     monkeypatch.setattr(
-        charts, "CHARTS", dict.fromkeys(charts.CHARTS, broken) | {"causes": charts.cause_chart}
+        charts, "CHARTS", dict.fromkeys(charts.CHARTS, broken) | {"causes": charts.CHARTS["causes"]}
     )
     page = render_page(fixture_results())
     assert "no pen" in page and page.count("<svg") == 2 and "</html>" in page

@@ -69,6 +69,12 @@ function measure(frame) {
   found.charts = charts(page, view);
   return found;
 }
+// what the filter of a drawing makes of its colours in the dark: invert(0.9) hue-rotate(180deg)
+function filtered(colour, dark) {
+  if (!dark) return colour;
+  const [r, g, b] = parse(colour).slice(0, 3).map(v => 229.5 - 0.8 * v), sum = 0.426 * r + 1.43 * g + 0.144 * b;
+  return "rgb(" + [sum - r, sum - g, sum - b].map(v => Math.min(Math.max(v, 0), 255)).join() + ")";
+}
 function charts(page, view) { // what is seen of every chart
   return [...page.querySelectorAll(".paper")].map(paper => {
     const shown = [...paper.querySelectorAll("svg")].filter(svg => svg.getClientRects().length), svg = shown[0];
@@ -77,7 +83,7 @@ function charts(page, view) { // what is seen of every chart
     const back = light(behind(paper, view));
     for (const text of svg.querySelectorAll("text")) {
       if (!text.textContent.trim()) continue;
-      const style = view.getComputedStyle(text), b = text.getBoundingClientRect(), ink = light(style.fill);
+      const style = view.getComputedStyle(text), b = text.getBoundingClientRect(), ink = light(filtered(style.fill, view.getComputedStyle(svg).filter !== "none"));
       said.least = Math.min(said.least, scale * parseFloat(style.fontSize));
       if (b.left < box.left - 1 || b.right > box.right + 1 || b.top < box.top - 1 || b.bottom > box.bottom + 1) said.outside.push(text.textContent);
       const ratio = (Math.max(ink, back) + 0.05) / (Math.min(ink, back) + 0.05);

@@ -68,7 +68,7 @@ def answer(
     from solidgear.judge.answer import answer as solve
 
     if picture is not None:
-        from solidgear.report.where_chart import check_ending
+        from solidgear.report.plot import check_ending
 
         check_ending(picture)  # before anything is solved
     loaded = load(scene)

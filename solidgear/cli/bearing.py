@@ -59,7 +59,7 @@ def bearing(
     from solidgear.studies.loading import explained, shaft
 
     if out is not None:
-        from solidgear.report.where_chart import check_ending
+        from solidgear.report.plot import check_ending
 
         check_ending(out)
     ranges = _ranges(load_range, preload_range)

@@ -8,11 +8,15 @@ from typing import NamedTuple
 
 import numpy as np
 
-from solidgear.report.chart_style import new_figure
-from solidgear.report.where_chart import write_picture
+from solidgear.report.panel import GREY, Axis, Panel, Series, log_ticks
+from solidgear.report.plot import WIDE, Chart
 from solidgear.report.words import engineering
 
 COLOURS = {"x": "#1f5fa8", "y": "#b2561a", "z": "#2b7a4b"}
+#: of rows of elements
+ROWS = ("#444444", "#a03070")
+#: px; height of panels, and width of the one of elements
+TALL, WIDTH = 290.0, 330.0
 
 
 class BearingPanel(NamedTuple):
@@ -51,58 +55,77 @@ def draw_bearings(file: Path, panels: Sequence[BearingPanel]) -> None:
     SolidgearError
         For another ending, or a file that cannot be written.
     """
-    write_picture(file, lambda: _figure(panels), "bearings")
+    Chart([[_stiffness(panel), _shares(panel)] for panel in panels]).write(file)
 
 
-def _figure(panels: Sequence[BearingPanel]):
-    figure = new_figure(9.0, 3.4 * len(panels))
-    for k, panel in enumerate(panels):
-        _stiffness(figure.add_subplot(len(panels), 2, 2 * k + 1), panel)
-        _shares(figure.add_subplot(len(panels), 2, 2 * k + 2, projection="polar"), panel)
-    return figure
-
-
-def _stiffness(ax, panel: BearingPanel) -> None:
-    from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
-
+def _stiffness(panel: BearingPanel) -> Panel:
+    """Stiffness over load, and its range."""
+    seen = [values[values > 0] for values in (panel.middle, panel.low, panel.high)]
+    known = np.concatenate(seen) if any(map(len, seen)) else np.ones(1)
+    ends = known.min() / 1.3, known.max() * 1.3
+    ticks = {size: engineering(size, 3) for size in log_ticks(*ends)}
+    drawn = Panel(
+        Axis("load over that of the scene", (min(panel.factors), max(panel.factors)), log=True),
+        Axis("stiffness, N/m", ends, log=True, ticks=ticks),
+        TALL,
+        panel.title,
+        series={f"K_{name}{name}": Series(colour) for name, colour in COLOURS.items()},
+        legend={"orient": "top", "symbolType": "stroke", "symbolStrokeWidth": 3},
+    )
     for k, (name, colour) in enumerate(COLOURS.items()):
-        values = np.where(panel.middle[:, k] > 0, panel.middle[:, k], np.nan)
-        if np.all(np.isnan(values)):
+        if not np.any(panel.middle[:, k] > 0):
             continue
-        ax.fill_between(
-            panel.factors,
-            np.where(panel.low[:, k] > 0, panel.low[:, k], np.nan),
-            np.where(panel.high[:, k] > 0, panel.high[:, k], np.nan),
-            color=colour,
-            alpha=0.18,
-            linewidth=0,
-        )
-        ax.plot(panel.factors, values, color=colour, label=f"K_{name}{name}")
-    ax.axvline(1.0, color="#777777", linewidth=0.8, linestyle="--")
-    ax.set_xscale("log")
-    ax.set_yscale("log")
-    ax.set_xlabel("load over that of the scene")
-    ax.set_ylabel("stiffness, N/m")
-    ax.set_title(panel.title)
-    ax.xaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
-    ax.xaxis.set_major_formatter(FuncFormatter(lambda v, _: f"{v:g}"))
-    ax.yaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
-    ax.yaxis.set_major_formatter(FuncFormatter(lambda v, _: engineering(v, 3)))
-    ax.xaxis.set_minor_formatter(NullFormatter())
-    ax.yaxis.set_minor_formatter(NullFormatter())
-    ax.legend(loc="best")
+        columns = panel.factors, panel.low[:, k], panel.high[:, k], panel.middle[:, k]
+        places = list(zip(*(column.tolist() for column in columns)))
+        band = [{"x": x, "y": low, "y2": high} for x, low, high, _ in places]
+        drawn.draw({"type": "area", "opacity": 0.18, "color": colour}, band)
+        named = f"K_{name}{name}"
+        curve = [{"x": x, "y": middle, "name": named} for x, _, _, middle in places]
+        drawn.draw("line", curve)
+    drawn.draw({"type": "rule", "color": GREY, "strokeDash": [5, 3]}, [{"x": 1.0}])
+    return drawn
 
 
-def _shares(ax, panel: BearingPanel) -> None:
+def _shares(panel: BearingPanel) -> Panel:
+    """Load of every element as spokes: x to the right, z up, rings at round loads."""
     names = ("row",) if len(panel.rows) == 1 else ("lower row", "upper row")
-    for (azimuth, load), name, colour in zip(panel.rows, names, ("#444444", "#a03070")):
-        width = 0.55 * 2 * np.pi / len(azimuth)
-        ax.bar(azimuth, load, width=width, color=colour, alpha=0.75, label=name)
-    ax.set_xticks(np.arange(4) * np.pi / 2, ["x", "z", "-x", "-z"])
-    ax.set_title("load of every element, N")
-    ax.tick_params(labelsize=7)
+    largest = max((load.max() for _, load in panel.rows), default=0.0) or 1.0
+    step = 10.0 ** np.floor(np.log10(largest))
+    step *= next(part for part in (0.2, 0.5, 1.0, 2.0, 5.0) if largest <= 5 * step * part)
+    rings = np.arange(step, largest + step, step)
+    reach = 1.25 * rings[-1]
+    wide = reach * WIDTH / TALL
+    drawn = Panel(
+        Axis("", (-wide, wide), shown=False),
+        Axis("", (-reach, reach), shown=False),
+        TALL,
+        "load of every element, N",
+        series={name: Series(colour) for name, colour in zip(names, ROWS)},
+        legend={"orient": "top"} if len(names) > 1 else None,
+        right=WIDE / 2 - WIDTH - 80,
+    )
+    round_it = np.linspace(0, 2 * np.pi, 73)
+    for ring in rings.tolist():
+        x, y = (ring * np.cos(round_it)).tolist(), (ring * np.sin(round_it)).tolist()
+        circle = {"type": "line", "color": "#e3e3e3", "strokeWidth": 1}
+        drawn.draw(circle, [{"x": a, "y": b} for a, b in zip(x, y)])
+    for (azimuth, load), (name, look) in zip(panel.rows, drawn.series.items()):
+        half = 0.55 * np.pi / len(azimuth)
+        wedges = [
+            {"x": far * np.cos(turn), "y": far * np.sin(turn), "detail": k, "name": name}
+            for k, (middle, size) in enumerate(zip(azimuth, load))
+            for far, turn in ((0.0, 0.0), (size, middle - half), (size, middle + half))
+        ]
+        mark = {"type": "line", "interpolate": "linear-closed", "fill": look.colour}
+        drawn.draw(mark | {"strokeWidth": 0.5, "opacity": 0.75}, wedges)
     # between the spokes, on the side that carries least
     total = np.sum([load @ np.exp(1j * azimuth) for azimuth, load in panel.rows])
-    ax.set_rlabel_position(float(np.degrees(np.angle(-total))) if abs(total) > 0 else 22.5)
-    if len(panel.rows) > 1:
-        ax.legend(loc="lower left", bbox_to_anchor=(-0.25, -0.05), fontsize=7)
+    side = -total / abs(total) if abs(total) > 0 else np.exp(0.4j)
+    words = [{"x": r * side.real, "y": r * side.imag, "text": f"{r:g}"} for r in rings.tolist()]
+    drawn.draw({"type": "text", "baseline": "middle", "color": GREY}, words)
+    far = 1.1 * rings[-1]
+    ends = [("x", far, 0.0), ("z", 0.0, far), ("-x", -far, 0.0), ("-z", 0.0, -far)]
+    drawn.draw(
+        {"type": "text", "baseline": "middle"}, [dict(zip(("text", "x", "y"), e)) for e in ends]
+    )
+    return drawn

@@ -1,29 +1,44 @@
-"""The list of charts in the report: each one SVG in bytes, None where there is nothing to draw.
+"""The list of charts in the report: each an SVG in bytes, None where there is nothing to draw.
 
-They are drawn through figure objects, never through a display, and the same results give the same
-bytes. matplotlib is imported when the first one is drawn: a terminal run has no use for it.
+The same results give the same bytes. What draws them is imported when the first one is drawn: a
+terminal run has no use for it.
 """
 
 from __future__ import annotations
 
-from solidgear.report import sketch as scene_sketch
+from collections.abc import Callable, Mapping
+from typing import Any
+
+from solidgear.judge.record import Record
+from solidgear.report.border import as_record
 from solidgear.report.change_charts import attachment_chart, cause_chart
-from solidgear.report.chart_style import Chart, as_svg
 from solidgear.report.convergence_chart import convergence_chart
 from solidgear.report.cost_chart import cost_chart
 from solidgear.report.mode_charts import mac_chart, mode_chart
+from solidgear.report.plot import Chart, page_svg
+from solidgear.report.sketch_page import sketch_svg
 from solidgear.report.where_chart import where_chart
 
+#: a chart of the report: from what a run found to an SVG
+Drawing = Callable[[Record | Mapping[str, Any]], bytes | None]
 
-@as_svg
-def sketch(record):
+
+def sketch(found: Record | Mapping[str, Any]) -> bytes | None:
     """The scene as a dimensioned section: shaft, seats, springs, lumped point."""
-    return scene_sketch.draw(record.scene)
+    return sketch_svg("sketch", as_record(found).scene)
 
 
-#: heading -> chart, in the order of the report; what each picture says in words is up to the page
-CHARTS: dict[str, Chart] = {
-    "sketch": sketch,
+def _drawn(name: str, make: Callable[..., Chart | None]) -> Drawing:
+    """From a function that describes a chart to one that draws it."""
+
+    def draw(found: Record | Mapping[str, Any]) -> bytes | None:
+        record = as_record(found)
+        return page_svg(name, lambda width: make(record, width))
+
+    return draw
+
+
+_DESCRIBED = {
     "modes": mode_chart,
     "mac": mac_chart,
     "convergence": convergence_chart,
@@ -31,4 +46,9 @@ CHARTS: dict[str, Chart] = {
     "causes": cause_chart,
     "cost": cost_chart,
     "attachments": attachment_chart,
+}
+#: heading -> chart, in the order of the report; what each picture says in words is up to the page
+CHARTS: dict[str, Drawing] = {
+    "sketch": sketch,
+    **{name: _drawn(name, make) for name, make in _DESCRIBED.items()},
 }

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 from solidgear.judge.race.pareto import CHARTED
 from solidgear.judge.record import BandRecord, LevelRecord, ModelRecord, Record
 from solidgear.report.cells import whole_number
-from solidgear.report.chart_style import as_svg, new_figure, percent_decades
+from solidgear.report.panel import GREY, PERCENT, SHAPES, Axis, Panel, told
+from solidgear.report.plot import WIDE, Chart, in_columns
 from solidgear.report.reading import model_name
-from solidgear.report.readout import readable
 from solidgear.report.words import percent
 
 #: what the meshes differ in -> label of the axis
@@ -20,29 +20,18 @@ AXIS = {
 }
 
 
-@as_svg
-def convergence_chart(record: Record):
+def convergence_chart(record: Record, width: float = WIDE) -> Chart | None:
     """Distance from the extrapolated value over mesh size or unknowns, log-log, with the band and
     both orders.
     """
-    panels = []
+    found = []
     for key, model in record.models.items():
-        panels += _panels(model_name(record, key), model)
-    if not panels:
-        return None
-    columns = min(len(panels), 2)
-    rows = -(-len(panels) // columns)
-    figure = new_figure(10.4, 2.9 * rows)
-    axes = figure.subplots(rows, columns, squeeze=False).ravel()
-    for ax, panel in zip(axes, panels):
-        _draw(ax, panel)
-    for ax in axes[len(panels) :]:
-        ax.axis("off")
-    return figure
+        found += _quantities(model_name(record, key), model)
+    return Chart(in_columns([_panel(one) for one in found], 2), width) if found else None
 
 
 @dataclass(frozen=True)
-class _Panel:
+class _Quantity:
     """One quantity of one model over its meshes.
 
     ``along`` is what the meshes differ in: ``h``, ``order`` or ``dofs``; ``spots`` are (place along
@@ -57,13 +46,13 @@ class _Panel:
     band: BandRecord
 
 
-def _panels(name: str, model: ModelRecord) -> list[_Panel]:
-    """The panels of one model: those of its quantities that two meshes or more distinguish."""
+def _quantities(name: str, model: ModelRecord) -> list[_Quantity]:
+    """Those of a model that two meshes or more distinguish."""
     if model.convergence is None:
         return []
     levels = model.convergence.levels
     along = _distinguished_by(levels)
-    panels = []
+    found = []
     for quantity in CHARTED:
         band = model.convergence.quantities.get(quantity, BandRecord())
         if not band.extrapolated:
@@ -77,10 +66,9 @@ def _panels(name: str, model: ModelRecord) -> list[_Panel]:
             if distance > 0:
                 spots.append((_on_axis(along, place), distance, level))
         if len(spots) >= 2:
-            panels.append(
-                _Panel(name, model, quantity, along, sorted(spots, key=lambda spot: spot[:2]), band)
-            )
-    return panels
+            spots.sort(key=lambda spot: spot[:2])
+            found.append(_Quantity(name, model, quantity, along, spots, band))
+    return found
 
 
 def _size(level: LevelRecord, along: str) -> float | None:
@@ -105,63 +93,61 @@ def _on_axis(along: str, value: float) -> float:
     return 1e3 * value if along == "h" else value
 
 
-def _draw(ax, panel: _Panel) -> None:
-    xs, ys, levels = zip(*panel.spots)
-    colour, band = panel.model.colour, panel.band
-    ax.loglog(xs, ys, panel.model.marker + "-", color=colour, ms=6, lw=1.2)
-    told = {
-        f"{panel.quantity}, from extrapolated": ("", [percent(y, signed=False) for y in ys]),
-        "mesh": ("", [str(level.mesh.get("element") or "") for level in levels]),
-        "size h": ("mm", [f"{1e3 * level.h:.3g}" if level.h else "" for level in levels]),
-        "unknowns": ("", [whole_number(level.dofs) for level in levels]),
-    }
-    readable(ax, xs, ys, panel.name, told, colour=colour)
+def _panel(one: _Quantity) -> Panel:
+    xs, ys, _ = zip(*one.spots)
     low, high = min(ys) / 3, max(ys) * 3
-    if band.gci is not None and band.gci > 0:
-        low, high = min(low, band.gci / 3), max(high, band.gci * 2)
-        _shade(ax, low, band, colour)
-    if band.expected_order is not None and panel.along != "dofs":
-        slope = [ys[-1] * (x / xs[-1]) ** band.expected_order for x in xs]
-        ax.loglog(xs, slope, color="#888888", lw=0.9, ls=":")
-    ax.set_ylim(low, high)
-    _log_ticks(ax, xs, [_tick(panel.along, x) for x in xs])
-    words = []
-    if band.observed_order is not None:
-        words.append(f"observed order {band.observed_order:.2f}")
-    if band.expected_order is not None:
-        words.append(f"expected {band.expected_order:.2f}")
-    ax.set_title(f"{panel.name}, {panel.quantity}\n{', '.join(words)}")
-    ax.set(xlabel=AXIS[panel.along], ylabel="distance from extrapolated")
-
-
-def _shade(ax, low: float, band: BandRecord, colour: str) -> None:
-    """The band, from the bottom of the panel up."""
-    ax.axhspan(low, band.gci, color=colour, alpha=0.12, lw=0)
-    ax.axhline(band.gci, color=colour, lw=0.8, ls="--")
-    ax.annotate(
-        f"band {percent(band.gci, signed=False)}, factor {band.factor}",
-        (0.01, band.gci),
-        xycoords=("axes fraction", "data"),
-        xytext=(0, 2),
-        textcoords="offset points",
-        ha="left",
-        va="bottom",
-        fontsize=8,
+    band = one.band.gci
+    if band:
+        low, high = min(low, band / 3), max(high, band * 2)
+    ticks = {x: _tick(one.along, x) for x in xs}  # at the meshes: three seldom span a decade
+    ends = min(xs) / 1.25, max(xs) * 1.25
+    panel = Panel(
+        Axis(AXIS[one.along], ends, log=True, ticks=ticks),
+        Axis("distance from extrapolated", (low, high), log=True, label=PERCENT),
+        180,
+        f"{one.name}, {one.quantity}\n{_orders(one.band)}",
     )
+    if band:
+        _shade(panel, low, one)
+    expected, colour = one.band.expected_order, one.model.colour
+    if expected is not None and one.along != "dofs":
+        slope = [{"x": x, "y": ys[-1] * (x / xs[-1]) ** expected} for x in xs]
+        panel.draw({"type": "line", "color": GREY, "strokeDash": [2, 3], "strokeWidth": 1}, slope)
+    rows = [{"x": x, "y": y, "told": _words(one, y, level)} for x, y, level in one.spots]
+    line = {"type": "line", "color": colour, "strokeWidth": 1.5}
+    panel.draw(line, [{"x": x, "y": y} for x, y, _ in one.spots])
+    shape = SHAPES.get(one.model.marker, "circle")
+    panel.draw({"type": "point", "filled": True, "color": colour, "shape": shape, "size": 55}, rows)
+    return panel
+
+
+def _orders(band: BandRecord) -> str:
+    known = {"observed order": band.observed_order, "expected": band.expected_order}
+    return ", ".join(f"{what} {order:.2f}" for what, order in known.items() if order is not None)
+
+
+def _words(one: _Quantity, distance: float, level: LevelRecord) -> str:
+    """What is to be read at one mesh."""
+    return told(
+        one.name,
+        (f"{one.quantity}, from extrapolated", percent(distance, signed=False), ""),
+        ("mesh", str(level.mesh.get("element") or ""), ""),
+        ("size h", f"{1e3 * level.h:.3g}" if level.h else "", "mm"),
+        ("unknowns", whole_number(level.dofs), ""),
+    )
+
+
+def _shade(panel: Panel, low: float, one: _Quantity) -> None:
+    """The band, from the bottom of the panel up."""
+    band, colour = one.band.gci, one.model.colour
+    panel.draw({"type": "rect", "color": colour, "opacity": 0.12}, [{"y": low, "y2": band}])
+    panel.draw({"type": "rule", "color": colour, "strokeDash": [5, 3]}, [{"y": band}])
+    words = f"band {percent(band, signed=False)}, factor {one.band.factor}"
+    name = {"type": "text", "align": "left", "dy": -7, "dx": 4}
+    panel.draw(name, [{"y": band, "text": words}], x={"value": 0})
 
 
 def _tick(along: str, x: float) -> str:
     if along == "order":
         return f"1/{1 / x:.0f}"
     return f"{x:.3g}" if x < 1e4 else f"{x / 1e3:.3g}k"
-
-
-def _log_ticks(ax, xs, labels) -> None:
-    """Ticks at the meshes themselves: three meshes seldom span a decade."""
-    from matplotlib.ticker import NullFormatter, NullLocator
-
-    ax.set_xticks(list(xs), labels)
-    ax.xaxis.set_minor_locator(NullLocator())
-    ax.xaxis.set_minor_formatter(NullFormatter())
-    percent_decades(ax)
-    ax.set_xlim(min(xs) / 1.25, max(xs) * 1.25)

@@ -7,7 +7,8 @@ from dataclasses import dataclass
 from solidgear.judge.race.pareto import CHARTED
 from solidgear.judge.record import ModelRecord, Record
 from solidgear.report.cells import whole_number
-from solidgear.report.chart_style import as_svg, new_figure, percent_decades, tolerance_line
+from solidgear.report.panel import PERCENT, SHAPES, Axis, Panel, told, tolerance_line
+from solidgear.report.plot import WIDE, Chart
 from solidgear.report.reading import (
     answer_seconds,
     headline,
@@ -15,47 +16,21 @@ from solidgear.report.reading import (
     model_name,
     reference_of,
 )
-from solidgear.report.readout import readable
 from solidgear.report.words import percent, seconds
 
 
-@as_svg
-def cost_chart(record: Record):
+def cost_chart(record: Record, width: float = WIDE) -> Chart | None:
     """Seconds against deviation from the reference, log-log, one point a model.
 
     The reference has no deviation; it stands at its own band, hollow, like every deviation that is
     not resolved.
     """
-    from matplotlib.ticker import FuncFormatter, NullFormatter
-
     spots = {quantity: _spots(record, quantity) for quantity in CHARTED}
-    if not any(spots.values()):
-        return None
-    figure = new_figure(10.4, 3.6)
     tolerance = record.verdict.tolerance
     if tolerance is not None and tolerance <= 0:
         tolerance = None
-    for ax, (quantity, points) in zip(figure.subplots(1, 2), spots.items()):
-        for point in points:
-            _draw(ax, point, quantity)
-        ax.set(
-            xscale="log",
-            yscale="log",
-            xlabel="building and solving, s",
-            ylabel=f"{quantity}: distance from reference",
-        )
-        ax.xaxis.set_major_formatter(FuncFormatter(lambda v, _: f"{v:g}"))
-        ax.xaxis.set_minor_formatter(NullFormatter())
-        percent_decades(ax)
-        if tolerance is not None:
-            tolerance_line(ax, tolerance, lw=0.9, ls="--")
-        if points:
-            times, errors = [p.seconds for p in points], [p.error for p in points]
-            if tolerance is not None:
-                errors.append(tolerance)
-            ax.set_xlim(min(times) / 3, max(times) * 15)  # room for the last label
-            ax.set_ylim(min(errors) / 2.5, max(errors) * 5)
-    return figure
+    panels = [_panel(quantity, own, tolerance) for quantity, own in spots.items() if own]
+    return Chart([panels], width) if panels else None
 
 
 @dataclass(frozen=True)
@@ -103,34 +78,49 @@ def _own_band(model: ModelRecord, quantity: str) -> float | None:
     return band if band is not None and band > 0 else None
 
 
-def _draw(ax, spot: _Spot, quantity: str) -> None:
-    colour = spot.model.colour
-    ax.plot(
-        [spot.seconds],
-        [spot.error],
-        "x" if spot.rejected else spot.model.marker,
-        ms=8,
-        color=colour,
-        mfc="white" if spot.hollow else colour,
-        mew=2 if spot.rejected or spot.hollow else 1,
+def _panel(quantity: str, spots: list[_Spot], tolerance: float | None) -> Panel:
+    times, errors = [spot.seconds for spot in spots], [spot.error for spot in spots]
+    if tolerance is not None:
+        errors.append(tolerance)
+    panel = Panel(
+        # with room for the last name
+        Axis("building and solving, s", (min(times) / 3, max(times) * 15), log=True),
+        Axis(
+            f"{quantity}: distance from reference",
+            (min(errors) / 2.5, max(errors) * 5),
+            log=True,
+            label=PERCENT,
+        ),
+        230,
     )
+    if tolerance is not None:
+        tolerance_line(panel, tolerance)
+    for spot in spots:
+        _draw(panel, spot, quantity)
+    return panel
+
+
+def _draw(panel: Panel, spot: _Spot, quantity: str) -> None:
     remarks = [spot.remark] if spot.remark else []
     if spot.rejected:
         remarks.append("rejected")
-    told = {
-        f"{quantity}, from reference": ("", [percent(spot.error, signed=False)]),
-        "building and solving": ("s", [seconds(spot.seconds)]),
-        "unknowns": ("", [whole_number(spot.model.dofs)]),
-        "remark": ("", [", ".join(remarks)]),
-    }
-    readable(ax, [spot.seconds], [spot.error], spot.name, told, colour=colour)
-    remark = f"\n({', '.join(remarks)})" if remarks else ""
-    ax.annotate(
-        spot.name + remark,
-        (spot.seconds, spot.error),
-        xytext=(9, 0),
-        textcoords="offset points",
-        ha="left",
-        va="center",
-        fontsize=8,
+    words = told(
+        spot.name,
+        (f"{quantity}, from reference", percent(spot.error, signed=False), ""),
+        ("building and solving", seconds(spot.seconds), "s"),
+        ("unknowns", whole_number(spot.model.dofs), ""),
+        ("remark", ", ".join(remarks), ""),
     )
+    colour, place = spot.model.colour, {"x": spot.seconds, "y": spot.error}
+    mark = {
+        "type": "point",
+        "shape": SHAPES["x"] if spot.rejected else SHAPES.get(spot.model.marker, "circle"),
+        "stroke": colour,
+        "fill": "#ffffff" if spot.hollow else colour,
+        "strokeWidth": 2,
+        "size": 80,
+    }
+    panel.draw(mark, [{**place, "told": words}])
+    name = spot.name + (f"\n({', '.join(remarks)})" if remarks else "")
+    text = {"type": "text", "align": "left", "baseline": "middle", "dx": 10}
+    panel.draw(text, [{**place, "text": name}])

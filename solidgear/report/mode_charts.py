@@ -3,21 +3,23 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from typing import Any
 
 from solidgear.judge.record import MacTable, ModelRecord, ModeRecord, Record
-from solidgear.report.chart_style import as_svg, legend_columns, new_figure, paper_width
-from solidgear.report.reading import model_name, model_of, reference_of, relative_change
-from solidgear.report.readout import readable
+from solidgear.report.panel import GREY, INK, PERCENT, SHAPES, Axis, Panel, Series, told
+from solidgear.report.plot import NARROW, WIDE, Chart, in_columns
+from solidgear.report.reading import model_name, reference_of, relative_change
 from solidgear.report.words import hertz, percent
 
-#: in; and how crowded a matrix is on narrow paper, where it has the whole width
-WIDTH, ALONE = 10.4, 0.67
 #: families of modes along the axis
 FAMILIES = {"bending": 0, "axial": 1, "torsion": 2}
+#: px; height of frequencies, of differences, and of a row of a matrix
+TALL, LOW, ROW = 215.0, 130.0, 24.0
+#: px; of the longest name of a mode beside a matrix
+LONGEST = 76.0
 
 
-@as_svg
-def mode_chart(record: Record):
+def mode_chart(record: Record, width: float = WIDE) -> Chart | None:
     """Natural frequencies of all models side by side, and below them how far each is from the
     reference.
     """
@@ -29,47 +31,80 @@ def mode_chart(record: Record):
     if not names:
         return None
     base = modes.get(reference or "")
-    relative = base is not None and len(models) > 1
-    if relative:
-        figure = new_figure(WIDTH, 5.0)
-        axes = list(figure.subplots(2, 1, sharex=True, height_ratios=(3, 2)))
-    else:
-        figure = new_figure(WIDTH, 3.2)
-        axes = [figure.subplots()]
     step = 0.7 / max(len(models), 1)
+    rows: list[dict[str, Any]] = []
     for k, key in enumerate(models):
         shift = (k - (len(models) - 1) / 2) * step
-        spots = [(i + shift, name) for i, name in enumerate(names) if name in modes[key]]
-        model = record.models[key]
-        places = [x for x, _ in spots]
-        frequencies = [modes[key][name].frequency_hz or 0.0 for _, name in spots]
-        _stems(axes[0], model, places, frequencies, label=model_name(record, key))
         compared = base if key != reference and base is not None else {}
-        told = _told([name for _, name in spots], modes[key], compared)
-        readable(axes[0], places, frequencies, model_name(record, key), told, colour=model.colour)
-        if relative and compared:
-            shared = [(x, name) for x, name in spots if name in compared]
-            told = _told([name for _, name in shared], modes[key], compared)
-            at, apart = [x for x, _ in shared], _apart(shared, modes[key], compared)
-            _stems(axes[1], model, at, apart)
-            readable(axes[1], at, apart, model_name(record, key), told, colour=model.colour)
-    axes[0].set(ylabel="frequency, Hz", ylim=(0, None))
-    axes[0].legend(
-        ncols=legend_columns(4), loc="lower left", bbox_to_anchor=(0, 1.02), borderaxespad=0
-    )
+        for i, name in enumerate(names):
+            if name in modes[key]:
+                rows.append(
+                    {"x": i + shift, **_row(model_name(record, key), modes[key][name], compared)}
+                )
+    series = {
+        model_name(record, key): Series(model.colour, SHAPES.get(model.marker, "circle"))
+        for key, model in record.models.items()
+        if key in models
+    }
+    pairs = {name for key in models for name, m in modes[key].items() if m.multiplicity > 1}
+    labels = {float(i): name + "\n(pair)" * (name in pairs) for i, name in enumerate(names)}
+    families = [known[name].family for name in names]
+    legend = {"orient": "top", "columns": 5 if width > NARROW else 2}
+    turned = len(names) > (9 if width > NARROW else 3)
+    relative = base is not None and len(models) > 1
+    over = Axis("frequency, Hz", (0.0, 1.06 * max(row["y"] for row in rows)))
+    hidden = dict.fromkeys(labels, "") if relative else labels
+    panels = [_stems(over, TALL, hidden, families, rows, series, legend, turned)]
     if relative and reference is not None:
-        _as_differences(axes[1], record, reference)
-    for ax in axes:
-        _part_families(ax, [known[name].family for name in names])
-    pairs = {name for key in models for name in _pairs(modes[key])}
-    axes[-1].set_xticks(
-        range(len(names)),
-        [name + ("\n(pair)" if name in pairs else "") for name in names],
-        rotation=0 if len(names) <= 10 else 40,
-        fontsize=8.5,
+        apart = [{**row, "y": row["apart"]} for row in rows if row["apart"] is not None]
+        sizes = [row["y"] for row in apart] or [0.0]
+        reach = 0.08 * (max(0.0, *sizes) - min(0.0, *sizes)) or 1.0
+        ends = min(0.0, *sizes) - reach, max(0.0, *sizes) + reach
+        words = f"against {model_name(record, reference)}"
+        panels.append(
+            _stems(
+                Axis(words, ends, label=PERCENT), LOW, labels, families, apart, series, None, turned
+            )
+        )
+    return Chart(in_columns(panels, 1), width)
+
+
+def _row(model: str, mode: ModeRecord, reference: Mapping[str, ModeRecord]) -> dict[str, Any]:
+    """One mode of one model: its frequency, how far it is from that of the reference, and what is
+    to be read of it.
+    """
+    base = reference[mode.name].frequency_hz if mode.name in reference else None
+    change = relative_change(mode.frequency_hz, base)
+    words = told(
+        model,
+        ("mode", mode.name, ""),
+        ("frequency", hertz(mode.frequency_hz), "Hz"),
+        ("from reference", percent(change, nothing=""), ""),
     )
-    axes[-1].set_xlim(-0.6, len(names) - 0.4)
-    return figure
+    return {"y": mode.frequency_hz or 0.0, "apart": change, "name": model, "told": words}
+
+
+def _stems(
+    over: Axis,
+    height: float,
+    labels: Mapping[float, str],
+    families: list[str],
+    rows: list[dict[str, Any]],
+    series: Mapping[str, Series],
+    legend: Mapping[str, Any] | None,
+    turned: bool,
+) -> Panel:
+    """A stem with its marker for every row, and a dotted line wherever the next family begins."""
+    along = Axis("", (-0.6, len(labels) - 0.4), ticks=labels, grid=False)
+    panel = Panel(along, over, height, series=series, legend=legend, turned=turned)
+    ends = [i - 0.5 for i in range(1, len(families)) if families[i] != families[i - 1]]
+    panel.draw({"type": "rule", "color": GREY, "strokeDash": [2, 3]}, [{"x": x} for x in ends])
+    panel.draw({"type": "rule", "color": GREY}, [{"y": 0.0}])
+    stems = [{"x": row["x"], "y": 0.0, "y2": row["y"], "name": row["name"]} for row in rows]
+    panel.draw({"type": "rule", "strokeWidth": 1.4}, stems)
+    kept = [{key: row[key] for key in ("x", "y", "name", "told")} for row in rows]
+    panel.draw({"type": "point", "filled": True, "size": 60}, kept)
+    return panel
 
 
 def _elastic_by_name(model: ModelRecord) -> dict[str, ModeRecord]:
@@ -91,131 +126,65 @@ def _place(mode: ModeRecord) -> tuple:
     return FAMILIES.get(mode.family, len(FAMILIES)), mode.family, mode.frequency_hz
 
 
-def _pairs(modes: Mapping[str, ModeRecord]) -> list[str]:
-    return [name for name, mode in modes.items() if mode.multiplicity > 1]
-
-
-def _stems(ax, model: ModelRecord, xs: list, ys: list, **label) -> None:
-    ax.vlines(xs, 0, ys, color=model.colour, lw=1.4)
-    ax.plot(xs, ys, model.marker, color=model.colour, ms=5, lw=0, **label)
-
-
-def _apart(
-    spots: list[tuple[float, str]],
-    own: Mapping[str, ModeRecord],
-    reference: Mapping[str, ModeRecord],
-) -> list[float]:
-    """How far frequencies of one model are from those of the reference, which both have."""
-    changes = []
-    for _, name in spots:
-        change = relative_change(own[name].frequency_hz, reference[name].frequency_hz)
-        changes.append(float("nan") if change is None else change)
-    return changes
-
-
-def _told(
-    names: list[str], own: Mapping[str, ModeRecord], reference: Mapping[str, ModeRecord]
-) -> dict[str, tuple[str, list[str]]]:
-    """What is to be read of modes of one model."""
-    from_reference = []
-    for name in names:
-        base = reference[name].frequency_hz if name in reference else None
-        from_reference.append(percent(relative_change(own[name].frequency_hz, base), nothing=""))
-    return {
-        "mode": ("", names),
-        "frequency": ("Hz", [hertz(own[name].frequency_hz) for name in names]),
-        "from reference": ("", from_reference),
-    }
-
-
-def _as_differences(ax, record: Record, reference: str) -> None:
-    from matplotlib.ticker import PercentFormatter
-
-    ax.axhline(0, color=model_of(record, reference).colour, lw=1.2)
-    ax.set_ylabel(f"against {model_name(record, reference)}")
-    ax.yaxis.set_major_formatter(PercentFormatter(1.0, decimals=None, symbol=" %"))
-
-
-def _part_families(ax, families: list[str]) -> None:
-    """A dotted line wherever the next family of modes begins."""
-    ax.grid(axis="x", visible=False)
-    for i in range(1, len(families)):
-        if families[i] != families[i - 1]:
-            ax.axvline(i - 0.5, color="#999999", lw=0.7, ls=":")
-
-
-@as_svg
-def mac_chart(record: Record):
+def mac_chart(record: Record, width: float = WIDE) -> Chart | None:
     """MAC matrices against the reference as annotated heat maps."""
     if record.mac is None:
         return None
-    models = {key: m for key, m in record.mac.models.items() if m.values and m.values[0]}
-    if not models:
-        return None
-    across = min(len(models), 3)
-    rows = -(-len(models) // across)
-    widest = max(len(m.values[0]) for m in models.values())
-    tallest = max(len(m.values) for m in models.values())
-    figure = new_figure(WIDTH, rows * min(max(1.2 + 0.33 * tallest, 2.6), 6.5))
-    axes = figure.subplots(rows, across, squeeze=False).ravel()
-    size = _text_size(widest * ALONE if paper_width(WIDTH) < WIDTH else widest)
     reference = model_name(record, record.mac.reference)
-    for ax, (key, found) in zip(axes, models.items()):
-        _draw_mac(ax, found, size, model_name(record, key), reference)
-        ax.set_title(f"{model_name(record, key)} (rows) against {reference}", fontsize=8.5)
-    for ax in axes[len(models) :]:
-        ax.axis("off")
-    return figure
+    panels = [
+        _matrix(found, model_name(record, key), reference)
+        for key, found in record.mac.models.items()
+        if found.values and found.values[0]
+    ]
+    return Chart(in_columns(panels, 3), width) if panels else None
 
 
-def _draw_mac(ax, found: MacTable, size: float, name: str, reference: str) -> None:
-    """One matrix, a mode of the model a row; figures of `size` pt in its cells."""
-    values = [[float("nan") if v is None else v for v in row] for row in found.values]
-    ax.pcolormesh(values, cmap="Blues", vmin=0, vmax=1, edgecolors="white", linewidth=0.5)
-    ax.invert_yaxis()
-    spots = [(i, j) for i, row in enumerate(values) for j in range(len(row))]
-    rows = found.rows or [""] * len(values)
-    columns = found.columns or [""] * len(values[0])
-    told = {
-        "mode": ("", [rows[i] for i, _ in spots]),
-        f"against, of the {reference}": ("", [columns[j] for _, j in spots]),
-        "MAC": ("", [f"{values[i][j]:.4f}" for i, j in spots]),
-    }
-    places = [j + 0.5 for _, j in spots], [i + 0.5 for i, _ in spots]
-    readable(ax, *places, name, told, colour="#1f5f99")
-    for i, row in enumerate(values):
+def _matrix(found: MacTable, name: str, reference: str) -> Panel:
+    """One matrix, a mode of the model a row."""
+    rows = found.rows or [""] * len(found.values)
+    columns = found.columns or [""] * len(found.values[0])
+    panel = Panel(
+        Axis("", (-0.5, len(columns) - 0.5), ticks=_numbered(columns), grid=False),
+        Axis("", (len(rows) - 0.5, -0.5), ticks=_numbered(rows), grid=False),
+        ROW * len(rows),
+        f"{name} (rows) against {reference}",
+        left=LONGEST,
+        turned=True,
+    )
+    cells = []
+    for i, row in enumerate(found.values):
         for j, value in enumerate(row):
-            if value >= 0.005:
-                ax.text(
-                    j + 0.5,
-                    i + 0.5,
-                    _mac_text(value),
-                    ha="center",
-                    va="center",
-                    fontsize=size,
-                    color="white" if value > 0.6 else "#222222",
-                )
-    ax.set_xticks(
-        [j + 0.5 for j in range(len(values[0]))],
-        columns,
-        rotation=60,
-        ha="right",
-        rotation_mode="anchor",
-        fontsize=7.5,
-    )
-    ax.set_yticks(
-        [i + 0.5 for i in range(len(values))],
-        rows,
-        fontsize=7.5,
-    )
-    ax.grid(visible=False)
+            if value is None:
+                continue
+            against = (f"against, of the {reference}", columns[j], "")
+            words = told(name, ("mode", rows[i], ""), against, ("MAC", f"{value:.4f}", ""))
+            place: dict[str, Any] = {"x": j - 0.5, "x2": j + 0.5, "y": i - 0.5, "y2": i + 0.5}
+            cells.append({**place, "told": words, "fill": _blue(value)})
+    panel.draw({"type": "rect", "stroke": "#ffffff", "strokeWidth": 0.5}, cells)
+    for white in (False, True):
+        text = {"type": "text", "color": "#ffffff" if white else INK, "baseline": "middle"}
+        panel.draw(text | {"fontSize": 10}, _figures(found, white))
+    return panel
 
 
-def _text_size(columns: float) -> float:
-    """Size of the figures in a map of so many columns, pt."""
-    if columns <= 9:
-        return 7.5
-    return 6 if columns <= 12 else 5
+def _numbered(names: list[str]) -> dict[float, str]:
+    return {float(i): name for i, name in enumerate(names)}
+
+
+def _figures(found: MacTable, white: bool) -> list[dict[str, Any]]:
+    """Figures of the dark cells of a map, or of the others; none where there is next to nothing."""
+    return [
+        {"x": j, "y": i, "text": _mac_text(value)}
+        for i, row in enumerate(found.values)
+        for j, value in enumerate(row)
+        if value is not None and value >= 0.005 and (value > 0.6) == white
+    ]
+
+
+def _blue(value: float) -> str:
+    """From nearly white at 0 to dark blue at 1."""
+    ends = zip((247, 251, 255), (8, 48, 107))
+    return "#" + "".join(f"{round(a + (b - a) * value):02x}" for a, b in ends)
 
 
 def _mac_text(value: float) -> str:

@@ -9,22 +9,26 @@ from typing import Any
 import numpy as np
 
 from solidgear.machine.whole_file import whole
-from solidgear.report.chart_style import new_figure, styled
-from solidgear.report.readout import readable
+from solidgear.report.panel import INK, Axis, Panel, read_places, told
+from solidgear.report.plot import NARROW, WIDE, Chart
 from solidgear.report.units import ENGINEERING, Units, plain
 from solidgear.report.words import hertz
 
-#: least distance of two names beside the chart, of its height
-APART = 0.021
 #: widest line, pt, and how many decades of force below the largest are told apart
 WIDEST, DECADES = 5.0, 2.0
-#: places at which a line without a force is read
-PLACES = 101
+#: places at which a line is read, and pieces of which one is drawn
+PLACES, PIECES = 60, 120
+#: px; right of the chart for the names of modes, on a wide and on a narrow page
+NAMES, NARROW_NAMES = 190.0, 135.0
+#: of natural frequencies
+MODE = "#9aa4ad"
 PLAIN = {"mesh": "#666666", "pinion": "#b3305c", "gear": "#5a3e8c"}
 HEAD = ("order", "mode", "frequency [Hz]", "pinion speed [rpm]", "mesh force [N]")
 
 
-def order_figure(found: Any, title: str, teeth: int, units: Units = ENGINEERING):
+def order_chart(
+    found: Any, title: str, teeth: int, units: Units = ENGINEERING, width: float = WIDE
+) -> Chart:
     """Order lines and natural frequencies.
 
     Parameters
@@ -34,62 +38,57 @@ def order_figure(found: Any, title: str, teeth: int, units: Units = ENGINEERING)
     teeth : int
         Of the pinion, for the upper axis.
     units : Units, optional
-
-    Returns
-    -------
-    matplotlib Figure
+    width : float
+        px.
     """
-    with styled():
-        figure = new_figure(9.6, 7.2)
-        axis: Any = figure.subplots()
-        axis.set(xlim=(0, found.highest_rpm), ylim=(0, found.highest_hz))
-        axis.set(xlabel="pinion speed in rpm", ylabel="frequency in Hz")
-        for mode in found.modes:
-            axis.axhline(mode.frequency_hz, color="#9aa4ad", lw=0.8, zorder=2)
-        _mode_names(axis, found)
-        loaded = [line for line in found.lines if line.force is not None]
-        largest = max((line.force.max() for line in loaded), default=1.0)
-        for line in found.lines:
-            _line(axis, line, found, largest, units)
-        if loaded:
-            _scale(figure, axis, units.value(largest, "N") or largest, units.unit("N"))
-        at = [c for c in found.crossings if c.force is not None]
-        axis.plot(
-            [c.rpm for c in at],
-            [c.frequency_hz for c in at],
-            "o",
-            mfc="white",
-            mec="black",
-            ms=3.5,
-            zorder=5,
-        )
-        _read_crossings(axis, found, units)
-        upper = axis.secondary_xaxis(
-            "top", functions=(lambda n: n * teeth / 60, lambda f: 60 * f / teeth)
-        )
-        upper.set_xlabel("first order of the mesh in Hz")
-        figure.suptitle(title, fontsize=10.5, x=0.01, ha="left")
-        return figure
+    high, narrow = found.highest_rpm, width <= NARROW
+    panel = Panel(
+        Axis("pinion speed in rpm", (0.0, high)),
+        Axis("frequency in Hz", (0.0, found.highest_hz)),
+        400 if narrow else 520,
+        right=NARROW_NAMES if narrow else NAMES,
+        upper=Axis(
+            "first order of the mesh in Hz",
+            (0.0, high),
+            ticks={60 * hz / teeth: f"{hz:g}" for hz in _rounds(high * teeth / 60)},
+            grid=False,
+        ),
+    )
+    places = [{"y": mode.frequency_hz} for mode in found.modes]
+    panel.draw({"type": "rule", "color": MODE}, places)
+    _mode_names(panel, found, 9 if narrow else 10)
+    forces = [line.force.max() for line in found.lines if line.force is not None]
+    largest = max(forces, default=1.0)
+    for line in found.lines:
+        _line(panel, line, found, largest, units)
+    _crossings(panel, found, units)
+    return Chart([[panel]], width, title)
 
 
-def _mode_names(axis, found: Any) -> None:
+def _rounds(high: float) -> np.ndarray:
+    """Some round numbers from zero to an end."""
+    decade = 10.0 ** np.floor(np.log10(high))
+    step = next(decade * part for part in (0.1, 0.2, 0.5, 1.0, 2.0) if high <= 8 * decade * part)
+    return np.arange(0.0, high, step)
+
+
+def _mode_names(panel: Panel, found: Any, letter: int) -> None:
     """Names right of their lines, moved apart where frequencies are close."""
-    places = np.array([mode.frequency_hz / found.highest_hz for mode in found.modes])
-    order = np.argsort(places)
-    shown = spread(places[order], APART)
-    for k, height in zip(order, shown):
-        mode = found.modes[k]
-        axis.annotate(
-            f"{mode.name}  {mode.frequency_hz:.0f} Hz",
-            (1.0, places[k]),
-            xytext=(1.025, height),
-            xycoords="axes fraction",
-            textcoords="axes fraction",
-            fontsize=7.5,
-            va="center",
-            arrowprops={"arrowstyle": "-", "color": "#9aa4ad", "lw": 0.6},
-            annotation_clip=False,
-        )
+    order = sorted(found.modes, key=lambda mode: mode.frequency_hz)
+    shares = np.array([mode.frequency_hz / found.highest_hz for mode in order])
+    heights = found.highest_hz * spread(shares, letter * 1.25 / panel.height)
+    end = found.highest_rpm
+    rows = [
+        {"x": end, "x2": 1.02 * end, "y": mode.frequency_hz, "y2": height}
+        for mode, height in zip(order, heights.tolist())
+    ]
+    panel.draw({"type": "rule", "color": MODE, "clip": False}, rows)
+    names = [
+        {"x": row["x2"], "y": row["y2"], "text": f"{mode.name}  {mode.frequency_hz:.0f} Hz"}
+        for mode, row in zip(order, rows)
+    ]
+    look = {"type": "text", "align": "left", "baseline": "middle", "dx": 3, "fontSize": letter}
+    panel.draw(look, names)
 
 
 def spread(places: np.ndarray, apart: float) -> np.ndarray:
@@ -123,93 +122,101 @@ def spread(places: np.ndarray, apart: float) -> np.ndarray:
     return np.minimum(out, below)
 
 
-def _read_crossings(axis, found: Any, units: Units) -> None:
-    """Every crossing, to be read with the mode that is met."""
-    for name in dict.fromkeys(c.line for c in found.crossings):
-        met = [c for c in found.crossings if c.line == name]
-        speeds, heights = [c.rpm for c in met], [c.frequency_hz for c in met]
-        told = {"meets": ("", [c.mode for c in met])}
-        told |= _told(speeds, heights, [c.force for c in met], units)
-        readable(axis, speeds, heights, name, told, colour=PLAIN[name.split()[0]])
+def _crossings(panel: Panel, found: Any, units: Units) -> None:
+    """Every crossing, to be read with the mode that is met; a ring where there is a force."""
+    for seen in (True, False):
+        rows = [
+            {
+                "x": c.rpm,
+                "y": c.frequency_hz,
+                "told": told(
+                    c.line, ("meets", c.mode, ""), *_facts(c.rpm, c.frequency_hz, c.force, units)
+                ),
+            }
+            for c in found.crossings
+            if (c.force is not None) == seen
+        ]
+        ring = {"type": "point", "fill": "#ffffff", "stroke": INK, "strokeWidth": 1}
+        panel.draw(ring | {"size": 18 if seen else 0}, rows)
 
 
-def _told(rpm, hz, force, units: Units) -> dict[str, tuple[str, list[str]]]:
-    """What is to be read along an order; no force where there is none."""
-    return {
-        "pinion speed": ("rpm", [f"{v:.0f}" for v in rpm]),
-        "frequency": ("Hz", [hertz(float(v)) for v in hz]),
-        "mesh force": (
-            units.unit("N"),
-            ["" if v is None else plain(units.value(float(v), "N"), 4) for v in force],
-        ),
-    }
+def _facts(rpm: float, hz: float, force: float | None, units: Units) -> list[tuple[str, str, str]]:
+    """The words on a place of an order; no force where there is none."""
+    size = "" if force is None else plain(units.value(float(force), "N"), 4)
+    return [
+        ("pinion speed", f"{rpm:.0f}", "rpm"),
+        ("frequency", hertz(float(hz)), "Hz"),
+        ("mesh force", size, units.unit("N")),
+    ]
 
 
-def _line(axis, line: Any, found: Any, largest: float, units: Units) -> None:
-    from matplotlib.collections import LineCollection
-
+def _line(panel: Panel, line: Any, found: Any, largest: float, units: Units) -> None:
+    """An order, where it has a force as wide and as dark as that is, and its name."""
     kind = line.name.split()[0]
-    rpm = min(found.highest_rpm, 60 * found.highest_hz / line.per_turn)
-    hz = rpm * line.per_turn / 60
+    end = min(found.highest_rpm, 60 * found.highest_hz / line.per_turn)
     if line.force is None:
-        style = "--" if kind == "mesh" else ":"
-        axis.plot([0, rpm], [0, hz], style, color=PLAIN[kind], lw=1.0, zorder=3)
-        speeds, force = np.linspace(0, rpm, PLACES), [None] * PLACES
-    else:
-        speeds, force = line.rpm, line.force
-        points = np.column_stack([line.rpm, line.rpm * line.per_turn / 60])
-        share = 1 + np.log10(np.maximum(line.force / largest, 10**-DECADES)) / DECADES
-        wide = 0.8 + (WIDEST - 0.8) * share
-        pieces = LineCollection(
-            list(np.stack([points[:-1], points[1:]], axis=1)),
-            cmap="viridis_r",
-            norm=_norm(largest),
-            linewidths=(wide[:-1] + wide[1:]) / 2,
-            capstyle="round",
-            zorder=4,
+        dash = [6, 4] if kind == "mesh" else [2, 3]
+        ends = [{"x": rpm, "y": rpm * line.per_turn / 60} for rpm in (0.0, end)]
+        panel.draw(
+            {"type": "line", "color": PLAIN[kind], "strokeDash": dash, "strokeWidth": 1}, ends
         )
-        pieces.set_array(np.sqrt(line.force[:-1] * line.force[1:]))
-        axis.add_collection(pieces)
-    heights = speeds * line.per_turn / 60
-    told = _told(speeds, heights, force, units)
-    readable(axis, speeds, heights, line.name, told, colour=PLAIN[kind], marked=False)
+        speeds, forces = np.linspace(0, end, PLACES), [None] * PLACES
+    else:
+        speeds, forces = line.rpm, line.force
+        _pieces(panel, line, largest, units)
+    rows = []
+    kept = range(PLACES) if line.force is None else read_places(speeds, forces, PLACES)
+    for k in kept:
+        rpm = float(speeds[k])
+        words = told(line.name, *_facts(rpm, rpm * line.per_turn / 60, forces[k], units))
+        rows.append({"x": rpm, "y": rpm * line.per_turn / 60, "told": words})
+    panel.read(rows, PLAIN[kind])
     # names are staggered: lines of one kind run close together
     steps = -0.06 if kind == "mesh" else 0.13
-    place = (0.93 if kind == "mesh" else 0.67) + steps * (int(line.name.split()[1]) % 3)
-    axis.annotate(
-        line.name,
-        (place * rpm, place * hz),
-        xytext=(-3, 5),
-        textcoords="offset points",
-        fontsize=8,
-        ha="right",
-        color="black" if kind == "mesh" else PLAIN[kind],
-        zorder=6,
+    share = (0.93 if kind == "mesh" else 0.67) + steps * (int(line.name.split()[1]) % 3)
+    colour = INK if kind == "mesh" else PLAIN[kind]
+    name = {"type": "text", "align": "right", "color": colour, "dx": -4, "dy": -6}
+    place = {"x": share * end, "y": share * end * line.per_turn / 60}
+    panel.draw(name, [{**place, "text": line.name}])
+
+
+def _pieces(panel: Panel, line: Any, largest: float, units: Units) -> None:
+    """A line in pieces, each in the colour and width of its force."""
+    kept = np.unique(
+        [*read_places(line.rpm, line.force, PIECES), *np.flatnonzero(line.force == largest)]
     )
-
-
-def _norm(largest: float):
-    from matplotlib.colors import LogNorm
-
-    return LogNorm(largest * 10**-DECADES, largest)
-
-
-def _scale(figure, axis, largest: float, unit: str) -> None:
-    """The bar that tells what a colour is."""
-    from matplotlib.cm import ScalarMappable
-    from matplotlib.ticker import FuncFormatter, NullFormatter
-
-    bar = figure.colorbar(
-        ScalarMappable(_norm(largest), "viridis_r"),
-        ax=axis,
-        location="bottom",
-        shrink=0.5,
-        aspect=40,
-        pad=0.02,
+    rpm, force = line.rpm[kept], line.force[kept]
+    middle = np.sqrt(force[:-1] * force[1:])
+    share = 1 + np.log10(np.maximum(middle / largest, 10**-DECADES)) / DECADES
+    rows = [
+        {
+            "x": rpm[k],
+            "x2": rpm[k + 1],
+            "y": rpm[k] * line.per_turn / 60,
+            "y2": rpm[k + 1] * line.per_turn / 60,
+            "force": units.value(float(middle[k]), "N"),
+            "strokeWidth": round(0.8 + (WIDEST - 0.8) * float(share[k]), 2),
+        }
+        for k in range(len(middle))
+    ]
+    top = units.value(float(largest), "N") or largest
+    scale = {"type": "log", "scheme": "viridis", "reverse": True, "clamp": True}
+    legend = {
+        "orient": "bottom",
+        "title": f"mesh force along an order, {units.unit('N')}",
+        "gradientLength": 250,
+        "tickCount": 4,
+    }
+    panel.draw(
+        {"type": "rule", "strokeCap": "round"},
+        rows,
+        color={
+            "field": "force",
+            "type": "quantitative",
+            "scale": scale | {"domain": [top * 10**-DECADES, top]},
+            "legend": legend,
+        },
     )
-    bar.set_label(f"mesh force along an order, {unit}", fontsize=8)
-    bar.ax.xaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
-    bar.ax.xaxis.set_minor_formatter(NullFormatter())
 
 
 def write_crossings(path: Path, found: Any) -> None:

@@ -2,18 +2,27 @@
 
 from __future__ import annotations
 
-import io
 from pathlib import Path
 from typing import Any
 
 from solidgear.judge.race.pareto import AUTOMATIC, Race, Row
 from solidgear.report.cells import whole_number
-from solidgear.report.chart_style import new_figure, percent_decades, styled, tolerance_line
+from solidgear.report.panel import (
+    COUNT,
+    GREY,
+    NUMBER,
+    PERCENT,
+    SHAPES,
+    Axis,
+    Panel,
+    told,
+    tolerance_line,
+)
+from solidgear.report.plot import WIDE, Chart
 from solidgear.report.race_legend import FRONT, footer, legend
-from solidgear.report.race_rows import COSTS, error_text, options_text, replace_file
+from solidgear.report.race_rows import COSTS, error_text, options_text
 from solidgear.report.race_style import REFERENCE, Look
-from solidgear.report.readout import readable
-from solidgear.report.words import count, is_number, percent, seconds
+from solidgear.report.words import is_number, percent, seconds
 
 QUANTITY = {"C_zz": "port compliance C_zz", "bending 1": "first bending frequency"}
 #: the series whose orders are written beside its points
@@ -21,87 +30,56 @@ ORDERS = "harmonic p graded"
 
 
 def draw(race: Race, path) -> Path:
-    """Draw the figure of a race as a PNG.
+    """Draw a race as a PNG.
 
     Returns
     -------
     pathlib.Path
     """
-    with styled():
-        target = io.BytesIO()
-        figure(race).savefig(target, format="png", dpi=150, metadata={"Software": None})
-    replace_file(Path(path), target.getvalue())
-    return Path(path)
+    return race_chart(race).write(Path(path))
 
 
-def figure(race: Race):
+def race_chart(race: Race, width: float = WIDE) -> Chart:
     """Panels of error over seconds and over unknowns, one line of panels a quantity, log-log."""
-    quantities = list(race.reference["values"])
-    out = new_figure(13.2, 1.5 + 4.1 * len(quantities))
-    axes = out.subplots(len(quantities), len(COSTS), squeeze=False, sharex="col", sharey="row")
-    for line, quantity in zip(axes, quantities):
-        for ax, cost in zip(line, COSTS):
-            _panel(ax, race, quantity, cost)
-        line[0].set_ylabel(f"error of {QUANTITY.get(quantity, quantity)}")
-    for ax, words in zip(axes[-1], COSTS.values()):
-        ax.set_xlabel(words)
+    panels = [[_panel(race, q, cost) for cost in COSTS] for q in race.reference["values"]]
     title = race.scene.get("title") or race.scene.get("name", "")
-    out.suptitle(
-        f"{title}: error against cost" + ("" if race.complete else " (interrupted)"),
-        x=0.01,
-        ha="left",
-        fontsize=12,
-        weight="bold",
-    )
-    out.legend(
-        handles=legend(race),
-        loc="outside right upper",
-        fontsize=8.5,
-        handlelength=3.2,
-        labelspacing=0.45,
-    )
-    out.supxlabel(footer(race), x=0.01, ha="left", fontsize=8, color="#444444", linespacing=1.45)
-    return out
+    words = f"{title}: error against cost" + ("" if race.complete else " (interrupted)")
+    return Chart([*panels, [legend(race, width)]], width, words, footer(race))
 
 
-def _panel(ax, race: Race, quantity: str, cost: str) -> None:
-    ax.set(xscale="log", yscale="log")
-    left, right = _reach(race, cost)
+def _panel(race: Race, quantity: str, cost: str) -> Panel:
     low, top = _heights(race, quantity)
-    floor = max(race.reference["bands"][quantity], low)
-    _band(ax, race.reference["bands"][quantity], low)
+    band, setup = race.reference["bands"][quantity], sum(race.setup.values())
+    panel = Panel(
+        Axis(
+            COSTS[cost], _reach(race, cost), log=True, label=COUNT if cost == "unknowns" else NUMBER
+        ),
+        Axis(f"error of {QUANTITY.get(quantity, quantity)}", (low, top), log=True, label=PERCENT),
+        290.0,
+        left=72.0,
+    )
+    left, right = panel.x.ends
+    _band(panel, band, low)
     tolerance = (race.scene.get("ask") or {}).get("tolerance")
     if is_number(tolerance) and low < tolerance < top:
-        tolerance_line(ax, tolerance, x=0.995, size=7.5, lw=0.8, ls=":")
-    _front(ax, race, quantity, cost, (right, top))
+        tolerance_line(panel, tolerance)
+    _front(panel, race, quantity, cost)
     for name in dict.fromkeys(row.series for row in race.rows):
         rows = [row for row in race.rows if row.series == name]
-        _series(ax, race, rows, quantity, cost)
-        _crosses(ax, rows, quantity, cost, top / 1.5)
+        _series(panel, race, rows, quantity, cost)
+        _crosses(panel, rows, quantity, cost, top / 1.5)
     if cost in race.reference:
-        place = race.reference[cost]
-        style: dict[str, Any] = {"ms": 11, "color": REFERENCE, "mfc": "white"}
-        ax.plot([place], [floor], "*", zorder=4, clip_on=False, **style)
-        band = percent(race.reference["bands"][quantity], signed=False)
-        told = {
-            "own band": ("", [band]),
-            "time": ("s", [seconds(race.reference["seconds"])]),
-            "unknowns": ("", [whole_number(race.reference["unknowns"])]),
-        }
-        readable(ax, [place], [floor], "reference, harmonic solid", told, colour=REFERENCE)
-        right = max(right, 1.5 * place)
-    ax.set(xlim=(left, right), ylim=(low, top))
-    _ticks(ax, cost)
-    setup = sum(race.setup.values())
+        _reference(panel, race, quantity, cost, max(band, low))
     if cost == "seconds" and left < setup < right:
-        _setup(ax, setup)
+        _setup(panel, setup)
+    return panel
 
 
 def _reach(race: Race, cost: str) -> tuple[float, float]:
     """Both ends of the axis of a cost."""
     costs = [getattr(row, cost) for row in race.rows if row.status in ("ok", "failed")]
     known = [value for value in costs if value] or [1.0]
-    return min(known) / 2.2, max(known) * 2.2
+    return min(known) / 2.2, max(max(known) * 2.2, 1.5 * race.reference.get(cost, 0.0))
 
 
 def _heights(race: Race, quantity: str) -> tuple[float, float]:
@@ -122,164 +100,136 @@ def _heights(race: Race, quantity: str) -> tuple[float, float]:
     return max(band / 2.5, min(known) / 40), max(known) * 4
 
 
-def _band(ax, band: float, low: float) -> None:
+def _band(panel: Panel, band: float, low: float) -> None:
     """What the reference does not resolve."""
     floor = max(band, low)
     if band > 0:
-        ax.axhspan(low, floor, color="#00805e", alpha=0.13, lw=0)
+        panel.draw({"type": "rect", "color": "#00805e", "opacity": 0.13}, [{"y": low, "y2": floor}])
     below = "" if band > low else ", below this axis"
-    ax.annotate(
-        f"band of the reference {percent(band, signed=False)}{below}",
-        (0.01, floor),
-        xycoords=("axes fraction", "data"),
-        xytext=(0, 3),
-        textcoords="offset points",
-        fontsize=7.5,
-        color=REFERENCE,
-        va="bottom",
+    words = f"band of the reference {percent(band, signed=False)}{below}"
+    look = {"type": "text", "color": REFERENCE, "align": "left", "dx": 4, "dy": -7, "fontSize": 10}
+    panel.draw(look, [{"y": floor, "text": words}], x={"value": 0})
+
+
+def _reference(panel: Panel, race: Race, quantity: str, cost: str, floor: float) -> None:
+    """The reference itself, at its own band."""
+    words = told(
+        "reference, harmonic solid",
+        ("own band", percent(race.reference["bands"][quantity], signed=False), ""),
+        ("time", seconds(race.reference["seconds"]), "s"),
+        ("unknowns", whole_number(race.reference["unknowns"]), ""),
     )
+    star = {"type": "point", "shape": SHAPES["*"], "size": 110, "stroke": REFERENCE}
+    place = {"x": race.reference[cost], "y": floor, "told": words}
+    panel.draw(star | {"fill": "#ffffff", "strokeWidth": 1}, [place])
 
 
-def _front(ax, race: Race, quantity: str, cost: str, corner: tuple[float, float]) -> None:
+def _front(panel: Panel, race: Race, quantity: str, cost: str) -> None:
     """The Pareto front as steps, from the top of the panel to its right end."""
     steps = race.front(quantity, cost)
     if not steps:
         return
-    right, top = corner
     xs = [getattr(row, cost) for row in steps]
     ys = [race.sure_error(row, quantity) for row in steps]
-    ax.step(
-        [xs[0], *xs, right],
-        [top, *ys, ys[-1]],
-        where="post",
-        color=FRONT,
-        lw=5,
-        alpha=0.45,
-        solid_joinstyle="miter",
-        zorder=1.5,
-    )
+    places = zip([xs[0], *xs, panel.x.ends[1]], [panel.y.ends[1], *ys, ys[-1]])
+    look = {"type": "line", "interpolate": "step-after", "color": FRONT}
+    panel.draw(look | {"strokeWidth": 5, "opacity": 0.45}, [{"x": x, "y": y} for x, y in places])
 
 
-def _ticks(ax, cost: str) -> None:
-    from matplotlib.ticker import FuncFormatter, NullFormatter
-
-    def figures(value: float, _) -> str:
-        return f"{value:g}" if cost == "seconds" else count(value)
-
-    ax.xaxis.set_major_formatter(FuncFormatter(figures))
-    ax.xaxis.set_minor_formatter(NullFormatter())
-    percent_decades(ax)
+def _setup(panel: Panel, spent: float) -> None:
+    """Time that a process pays once, as an upright line."""
+    panel.draw({"type": "rule", "color": GREY, "strokeDash": [1, 2]}, [{"x": spent}])
+    name = {"type": "text", "angle": -90, "align": "right", "dy": -6, "fontSize": 10, "color": GREY}
+    panel.draw(name, [{"x": spent, "text": "set-up, once a process"}], y={"value": 4})
 
 
-def _setup(ax, spent: float) -> None:
-    """What a process pays once, as an upright line."""
-    ax.axvline(spent, color="#777777", lw=0.9, ls=(0, (1, 2)))
-    ax.annotate(
-        "set-up, once a process",
-        (spent, 0.985),
-        xycoords=("data", "axes fraction"),
-        xytext=(-3, 0),
-        textcoords="offset points",
-        rotation=90,
-        ha="right",
-        va="top",
-        fontsize=7.5,
-        color="#666666",
-    )
-
-
-def _series(ax, race: Race, rows: list[Row], quantity: str, cost: str) -> None:
+def _series(panel: Panel, race: Race, rows: list[Row], quantity: str, cost: str) -> None:
     """A line through the levels of a series, and their points."""
     look = Look(rows[0].series, rows[0].family)
     spots = []
     for row in rows:
         error = race.error(row, quantity)
-        if error is not None:
-            spots.append((row, getattr(row, cost), error))
-    told = {
-        f"error of {quantity}": ("", [error_text(race, row, quantity) for row, _, _ in spots]),
-        "time": ("s", [seconds(row.seconds) for row, _, _ in spots]),
-        "unknowns": ("", [whole_number(row.unknowns) for row, _, _ in spots]),
-        "setting": ("", [options_text(row) for row, _, _ in spots]),
-    }
-    xs, ys = [x for _, x, _ in spots], [y for _, _, y in spots]
-    readable(ax, xs, ys, look.series, told, colour=look.colour)
-    if not look.converges:
-        likes = [row.like_for_like.get(quantity) or float("nan") for row, _, _ in spots]
-        readable(ax, xs, likes, f"{look.series}, like for like", told, colour=look.colour)
-    ax.plot(
-        xs,
-        ys,
-        ls=look.dashes,
-        color=look.colour,
-        lw=look.width,
-        alpha=0.75 if look.uniform else 1.0,
-        zorder=2,
-    )
-    for row, x, y in spots:
-        ax.plot([x], [y], look.marker, ms=5.5, color=look.colour, mfc=look.fill, mew=1.0, zorder=3)
-        if not race.resolved(row, quantity):
-            _arrow(ax, (x, y), look.colour)
-        if cost == "seconds" and len(row.samples) > 1:
-            fastest, slowest = min(row.samples), max(row.samples)
-            ax.hlines(y, fastest, slowest, color=look.colour, lw=0.9, alpha=0.45, zorder=1.8)
-        if look.series == ORDERS:
-            _beside(ax, (x, y), f"p{row.options['order']}", look.colour)
-        if look.family == AUTOMATIC:
-            _beside(ax, (x, y), f"{100 * row.options['tol']:g} %", look.colour)
-        like = row.like_for_like.get(quantity)
-        if like and not look.converges:
-            ax.plot([x, x], [y, like], ":", color=look.colour, lw=1.1, zorder=1.9)
-            ax.plot(
-                [x], [like], look.marker, ms=5.5, color=look.colour, mfc="white", mew=1.1, zorder=3
-            )
+        if error is not None and getattr(row, cost):
+            place = {"x": getattr(row, cost), "y": error}
+            spots.append((row, {**place, "told": _words(race, row, look.series, quantity)}))
+    line = {"type": "line", "color": look.colour, "strokeWidth": look.width}
+    line |= {"strokeDash": look.dash, "opacity": 0.75 if look.uniform else 1.0}
+    panel.draw(line, [{"x": at["x"], "y": at["y"]} for _, at in spots])
+    if cost == "seconds":
+        panel.draw(
+            {"type": "rule", "color": look.colour, "opacity": 0.45},
+            [
+                {"x": min(row.samples), "x2": max(row.samples), "y": at["y"]}
+                for row, at in spots
+                if len(row.samples) > 1
+            ],
+        )
+    panel.draw(look.marks, [at for _, at in spots])
+    unresolved = [at for row, at in spots if not race.resolved(row, quantity)]
+    _arrows(panel, unresolved, look.colour)
+    beside = [(at, _beside(look, row)) for row, at in spots]
+    text = {"type": "text", "color": look.colour, "fontSize": 10}
+    names = [{"x": at["x"], "y": at["y"], "text": words} for at, words in beside if words]
+    panel.draw(text | {"align": "right", "dx": -6, "dy": 9}, names)
     if spots and not look.converges:
-        # levels that do not converge to the reference coincide: one name will do
-        _, x, y = spots[-1]
-        _name(ax, look, (x, y))
+        _like_for_like(panel, race, look, spots, quantity)
+        # levels that do not converge to the reference coincide: one name will do, and that of a
+        # lumped model, which lies close to that of a beam, below it
+        place = {"align": "left", "dx": 8, "dy": -8}
+        if look.family == "lumped":
+            place = {"align": "center", "dy": 16}
+        at = spots[-1][1]
+        panel.draw(text | place, [{"x": at["x"], "y": at["y"], "text": look.series}])
 
 
-def _arrow(ax, spot: tuple[float, float], colour: str) -> None:
-    """Below a point on the band: the error may be smaller."""
-    ax.annotate(
-        "",
-        spot,
-        xytext=(0, -13),
-        textcoords="offset points",
-        zorder=3,
-        arrowprops={"arrowstyle": "<|-", "color": colour, "lw": 1.1, "shrinkB": 3},
+def _words(race: Race, row: Row, name: str, quantity: str) -> str:
+    """What is to be read at one level of a series."""
+    return told(
+        name,
+        (f"error of {quantity}", error_text(race, row, quantity), ""),
+        ("time", seconds(row.seconds), "s"),
+        ("unknowns", whole_number(row.unknowns), ""),
+        ("setting", options_text(row), ""),
     )
 
 
-def _beside(ax, spot: tuple[float, float], text: str, colour: str) -> None:
-    ax.annotate(
-        text,
-        spot,
-        xytext=(-4, -3),
-        textcoords="offset points",
-        ha="right",
-        va="top",
-        fontsize=7,
-        color=colour,
-    )
+def _beside(look: Look, row: Row) -> str:
+    """The order or the tolerance of a level, written beside it."""
+    if look.series == ORDERS:
+        return f"p{row.options['order']}"
+    return f"{100 * row.options['tol']:g} %" if look.family == AUTOMATIC else ""
 
 
-def _name(ax, look: Look, spot: tuple[float, float]) -> None:
-    """The name of a series beside its last point; a lumped model's, which lies close to that of a
-    beam, below it.
-    """
-    place: dict[str, Any] = {"xytext": (6, 5)}
-    if look.family == "lumped":
-        place = {"xytext": (0, -8), "ha": "center", "va": "top"}
-    ax.annotate(
-        look.series, spot, textcoords="offset points", fontsize=8, color=look.colour, **place
-    )
+def _arrows(panel: Panel, spots: list[dict[str, Any]], colour: str) -> None:
+    """Below points on the band: the error may be smaller."""
+    head = {"type": "point", "shape": "triangle-down", "color": colour, "filled": True, "size": 30}
+    for size, dy in ((head, 13), ({**head, "shape": "stroke", "angle": 90, "size": 60}, 8)):
+        panel.draw({**size, "yOffset": dy}, [{"x": at["x"], "y": at["y"]} for at in spots])
 
 
-def _crosses(ax, rows: list[Row], quantity: str, cost: str, height: float) -> None:
+def _like_for_like(panel: Panel, race: Race, look: Look, spots: list, quantity: str) -> None:
+    """Errors against the solid with the same ties, hollow at the other end of a dotted line."""
+    rows = [
+        {"x": at["x"], "y": at["y"], "y2": row.like_for_like.get(quantity), "told": at["told"]}
+        for row, at in spots
+    ]
+    known = [row for row in rows if row["y2"]]
+    dots = {"type": "rule", "color": look.colour, "strokeDash": [2, 2]}
+    panel.draw(dots, [{key: row[key] for key in ("x", "y", "y2")} for row in known])
+    hollow = [
+        {"x": row["x"], "y": row["y2"], "told": row["told"].replace("\n", ", like for like\n", 1)}
+        for row in known
+    ]
+    panel.draw({**look.marks, "fill": "#ffffff"}, hollow)
+
+
+def _crosses(panel: Panel, rows: list[Row], quantity: str, cost: str, height: float) -> None:
     """Rows that failed, or have no such number, at the top."""
     colour = Look(rows[0].series, rows[0].family).colour
-    for row in rows:
-        failed = row.status == "failed" or (row.status == "ok" and quantity not in row.errors)
-        if failed and getattr(row, cost):
-            ax.plot([getattr(row, cost)], [height], "x", ms=8, mew=2, color=colour, zorder=4)
+    missing = [
+        {"x": getattr(row, cost), "y": height}
+        for row in rows
+        if row.status == "failed" or (row.status == "ok" and quantity not in row.errors)
+    ]
+    cross = {"type": "point", "shape": SHAPES["x"], "stroke": colour, "strokeWidth": 2, "size": 60}
+    panel.draw(cross, missing)

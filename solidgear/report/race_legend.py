@@ -1,91 +1,79 @@
-"""Beside and below the panels of a race: the legend, and where its numbers come from."""
+"""Below the panels of a race: the legend, and where its numbers come from."""
 
 from __future__ import annotations
 
-import textwrap
 from typing import Any
 
 from solidgear.judge.race.pareto import AUTOMATIC, Race
+from solidgear.report.panel import INK, SHAPES, Axis, Panel
 from solidgear.report.race_rows import left_out
-from solidgear.report.race_style import FAMILIES, REFERENCE, Look, family_name, looks
+from solidgear.report.race_style import FAMILIES, REFERENCE, family_name, looks
 from solidgear.report.words import seconds
 
 #: grey of the Pareto front, and of marks that any family may have
 FRONT, MARK = "#9a9a9a", "#555555"
-#: letters in a line of the footer
-WIDTH = 190
+#: px; of a line of the legend, and the least width of its columns
+LINE, COLUMN = 17.0, 215.0
+#: what marks mean: words, line, marker, both in Vega-Lite
+MARKS: tuple[tuple[str, Any, Any], ...] = (
+    (
+        "like for like:\nsection ties on both sides",
+        {"color": FAMILIES["beam"][1], "strokeDash": [2, 2]},
+        {"stroke": FAMILIES["beam"][1], "fill": "#ffffff", "shape": "square"},
+    ),
+    (
+        "Pareto front,\ncancellations not counted",
+        {"color": FRONT, "strokeWidth": 5, "opacity": 0.45},
+        None,
+    ),
+    (
+        "the reference itself",
+        None,
+        {"stroke": REFERENCE, "fill": "#ffffff", "shape": SHAPES["*"], "size": 80},
+    ),
+    (
+        "below the band: not resolved",
+        None,
+        {"fill": MARK, "stroke": MARK, "shape": "triangle-down"},
+    ),
+    ("failed, or no such number", None, {"stroke": MARK, "shape": SHAPES["x"], "strokeWidth": 2}),
+)
 
 
-def legend(race: Race) -> list:
-    """Handles: a head for each family and its series, then what marks mean."""
-    from matplotlib.lines import Line2D
-
-    handles = []
+def legend(race: Race, width: float) -> Panel:
+    """A head for each family and its series, then what marks mean, in columns."""
+    entries: list[tuple[str, Any, Any]] = []
     for family, series in looks(race).items():
         if family not in ("lumped", AUTOMATIC):  # their one series has their name
-            handles.append(Line2D([], [], ls="", label=family_name(family).upper()))
-        handles += [_series(look) for look in series]
-    handles.append(Line2D([], [], ls="", label=""))
-    handles += [Line2D([], [], **mark) for mark in _marks()]
-    return handles
-
-
-def _series(look: Look):
-    from matplotlib.lines import Line2D
-
-    return Line2D(
-        [],
-        [],
-        color=look.colour,
-        mfc=look.fill,
-        marker=look.marker,
-        ms=5.5,
-        label=look.name,
-        ls=look.dashes if look.converges else "",
-        lw=look.width,
+            entries.append((family_name(family).upper(), None, None))
+        for look in series:
+            line = {"color": look.colour, "strokeDash": look.dash, "strokeWidth": look.width}
+            entries.append((look.name, line if look.converges else None, look.marks))
+    entries += MARKS
+    columns = max(1, int(width / COLUMN))
+    lines = [entry[0].count("\n") + 1 for entry in entries]
+    high = -(-sum(lines) // columns) + 1
+    panel = Panel(
+        Axis("", (0.0, columns), shown=False),
+        Axis("", (high, -1.0), shown=False),
+        LINE * (high + 1),
     )
+    column, row = 0, 0
+    for (words, line, marker), count in zip(entries, lines):
+        if row + count > high:
+            column, row = column + 1, 0
+        _entry(panel, column, float(row), words, line, marker)
+        row += count
+    return panel
 
 
-def _marks() -> list[dict[str, Any]]:
-    return [
-        {
-            "ls": ":",
-            "marker": "s",
-            "mfc": "white",
-            "color": FAMILIES["beam"][1],
-            "ms": 5.5,
-            "label": "like for like:\nsection ties on both sides",
-        },
-        {
-            "color": FRONT,
-            "lw": 5,
-            "alpha": 0.45,
-            "label": "Pareto front,\ncancellations not counted",
-        },
-        {
-            "ls": "",
-            "marker": "*",
-            "ms": 11,
-            "mfc": "white",
-            "color": REFERENCE,
-            "label": "the reference itself",
-        },
-        {
-            "ls": "",
-            "marker": 7,
-            "ms": 8,
-            "color": MARK,
-            "label": "below the band: not resolved",
-        },
-        {
-            "ls": "",
-            "marker": "x",
-            "ms": 8,
-            "mew": 2,
-            "color": MARK,
-            "label": "failed, or no such number",
-        },
-    ]
+def _entry(panel: Panel, x: float, y: float, words: str, line: Any, marker: Any) -> None:
+    if line:
+        panel.draw({"type": "rule", **line}, [{"x": x, "x2": x + 0.12, "y": y}])
+    if marker:
+        panel.draw({"size": 45, **marker, "type": "point"}, [{"x": x + 0.06, "y": y}])
+    text = {"type": "text", "align": "left", "baseline": "middle", "color": INK}
+    panel.draw(text, [{"x": x + (0.15 if line or marker else 0.0), "y": y, "text": words}])
 
 
 def footer(race: Race) -> str:
@@ -98,8 +86,9 @@ def footer(race: Race) -> str:
         f"the whole chart took {race.seconds:.0f} s.",
     ]
     if left_out(race):
-        words = f"Left out ({race.budget:g} s allowed): {left_out(race)}; reasons in rows.csv."
-        lines += textwrap.wrap(words, WIDTH)
+        lines.append(
+            f"Left out ({race.budget:g} s allowed): {left_out(race)}; reasons in rows.csv."
+        )
     return "\n".join(lines)
 
 

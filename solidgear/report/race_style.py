@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from solidgear.judge.race.pareto import AUTOMATIC, Race
+from solidgear.report.panel import SHAPES
 
 #: of a family that is not listed
 GREY = "#777777"
@@ -20,7 +21,7 @@ FAMILIES = {
     "hexahedra": ("3D, hexahedra", "#5a3e8c"),
     AUTOMATIC: ("automatic choice", "#111111"),
 }
-#: series without its grading -> marker
+#: series without its grading -> shape, by the letters of ``plot.SHAPES``
 MARKERS = {
     "lumped": "P",
     AUTOMATIC: "*",
@@ -50,9 +51,9 @@ class Look:
         return FAMILIES[self.family][1] if self.family in FAMILIES else GREY
 
     @property
-    def marker(self) -> str:
+    def shape(self) -> str:
         kind = self.series.removesuffix(" uniform").removesuffix(" graded")
-        return MARKERS.get(kind, "o")
+        return SHAPES[MARKERS.get(kind, "o")]
 
     @property
     def uniform(self) -> bool:
@@ -68,17 +69,22 @@ class Look:
         return 1.0 if self.uniform else 1.5
 
     @property
-    def dashes(self) -> str:
-        return "--" if self.uniform else "-"
+    def dash(self) -> list[float]:
+        return [5, 3] if self.uniform else [1, 0]
 
     @property
-    def fill(self) -> Any:
+    def fill(self) -> str:
         """Inside of its markers; an empty one means like for like."""
-        from matplotlib.colors import to_rgb
-
         if not self.uniform:
             return self.colour
-        return tuple(0.35 * c + 0.65 for c in to_rgb(self.colour))
+        parts = (int(self.colour[k : k + 2], 16) for k in (1, 3, 5))
+        return "#" + "".join(f"{round(0.35 * part + 0.65 * 255):02x}" for part in parts)
+
+    @property
+    def marks(self) -> dict[str, Any]:
+        """Its markers, in Vega-Lite."""
+        look = {"type": "point", "shape": self.shape, "stroke": self.colour, "fill": self.fill}
+        return look | {"size": 45, "strokeWidth": 1}
 
     @property
     def name(self) -> str:

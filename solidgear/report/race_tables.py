@@ -6,8 +6,8 @@ from collections.abc import Mapping
 
 from solidgear.judge.race.pareto import Race, Row
 from solidgear.report.cells import whole_number
-from solidgear.report.chart_style import svg_of
-from solidgear.report.race_figure import figure
+from solidgear.report.plot import page_svg
+from solidgear.report.race_figure import race_chart
 from solidgear.report.race_rows import error_text, options_text, read_race
 from solidgear.report.table import Table
 from solidgear.report.words import count, seconds
@@ -85,7 +85,7 @@ def chart(folder, scene: Mapping) -> bytes | None:
     this scene.
     """
     race = _of_scene(folder, scene)
-    return None if race is None else svg_of("speed", lambda: figure(race))
+    return None if race is None else page_svg("speed", lambda width: race_chart(race, width))
 
 
 def _of_scene(folder, scene: Mapping) -> Race | None:

@@ -1,120 +1,83 @@
-// Reads values off charts: what readout.py put into each SVG, under a mouse, a finger or the arrow keys.
-// A chart has two drawings, a wide one and one for a phone; what is read is the one that is shown.
+// Reads values off charts: the words (aria-label) of the nearest mark under a mouse, a finger or the arrow keys.
 (() => {
 "use strict";
-const STEPS = 10; // of a place, as in readout.py
 const REACH = 44; // px; nothing is read farther away
-const MARKED = 8; // px that a marker is taken before a curve
+const SAME = 1; // px; of marks that are as near, the one drawn last is read: the top of a curve before the curve
+const part = name => Object.assign(document.body.appendChild(document.createElement("div")), { className: name, hidden: true });
+const box = part("readout"), ring = part("readmark");
+box.setAttribute("role", "status");
 
 class Reading {
   constructor(paper) {
-    this.paper = paper;
-    this.drawings = [...paper.querySelectorAll("svg metadata.readings")].map(data => ({ svg: data.closest("svg"), series: JSON.parse(data.textContent) }));
-    // From left to right is what the arrow keys go.
-    for (const { series } of this.drawings)
-      series.forEach(s => { s.order = s.told[0][2].map((_, k) => k).sort((a, b) => s.at[2 * a] - s.at[2 * b] || a - b); });
-    this.drawing = this.shown();
-    this.box = this.part("readout"); this.mark = this.part("readmark");
-    this.box.setAttribute("role", "status");
+    this.paper = paper; this.at = null;
     paper.classList.add("reading");
     paper.tabIndex = 0;
     paper.setAttribute("role", "application");
     paper.setAttribute("aria-label", paper.getAttribute("aria-label") + " Arrow keys read values.");
     const caption = paper.closest("figure").querySelector(".reads");
     if (caption) caption.hidden = false;
-    const at = e => this.point(e.clientX, e.clientY);
-    paper.addEventListener("pointermove", e => { if (e.pointerType === "mouse") at(e); });
-    paper.addEventListener("click", at); // a finger that scrolls does not click
-    paper.addEventListener("pointerleave", e => { if (e.pointerType === "mouse" && document.activeElement !== paper) this.hide(); });
-    paper.addEventListener("focus", () => { if (paper.matches(":focus-visible") && this.box.hidden) this.step(0); });
-    paper.addEventListener("blur", () => this.hide());
+    const point = e => this.show(this.near(e.clientX, e.clientY));
+    paper.addEventListener("pointermove", e => { if (e.pointerType === "mouse") point(e); });
+    paper.addEventListener("click", point); // a finger that scrolls does not click
+    paper.addEventListener("pointerleave", e => { if (e.pointerType === "mouse" && document.activeElement !== paper) this.show(null); });
+    paper.addEventListener("focus", () => { if (paper.matches(":focus-visible") && box.hidden) this.show(this.at ?? this.places()[0]); });
+    paper.addEventListener("blur", () => this.show(null));
     paper.addEventListener("keydown", e => this.key(e));
-    new ResizeObserver(() => this.resized()).observe(paper);
   }
-  get svg() { return this.drawing.svg; }
-  get series() { return this.drawing.series; }
-  shown() { return this.drawings.find(one => one.svg.getClientRects().length) ?? this.drawings[0]; }
-  resized() {
-    const shown = this.shown();
-    if (shown !== this.drawing) { this.drawing = shown; this.s = this.k = undefined; this.hide(); }
-    else if (!this.box.hidden) this.show(this.s, this.k);
-  }
-  part(name) {
-    const element = document.createElement("div");
-    element.className = name; element.hidden = true;
-    return this.paper.appendChild(element);
-  }
-  scale() { // px of the page in a step of a place
-    return this.svg.getBoundingClientRect().width / this.svg.viewBox.baseVal.width / STEPS;
-  }
-  point(x, y) { // the nearest place to one on the screen
-    const box = this.svg.getBoundingClientRect(), scale = this.scale();
-    let best = REACH, found = null;
-    this.series.forEach((s, i) => {
-      for (let k = 0; 2 * k < s.at.length; k++) {
-        const far = Math.hypot(scale * s.at[2 * k] - (x - box.left), scale * s.at[2 * k + 1] - (y - box.top)) - (s.marked ? MARKED : 0);
-        if (far < best) { best = far; found = [i, k]; }
-      }
+  places() { // of the drawing that is shown, from left to right
+    const svg = [...this.paper.querySelectorAll("svg")].find(one => one.getClientRects().length);
+    const layers = [];
+    return [...svg.querySelectorAll("[aria-label]")].map(mark => {
+      const b = mark.getBoundingClientRect(), words = mark.getAttribute("aria-label"), name = words.split("\n")[0], layer = mark.parentNode;
+      if (!layers.includes(layer)) layers.push(layer);
+      return { mark, b, words, name, series: `${layers.indexOf(layer)} ${name}`, x: (b.left + b.right) / 2, y: (b.top + b.bottom) / 2 };
     });
-    if (found) this.show(...found); else this.hide();
+  }
+  near(x, y) {
+    let best = REACH, found = null;
+    for (const one of this.places()) {
+      const far = Math.hypot(Math.max(one.b.left - x, 0, x - one.b.right), Math.max(one.b.top - y, 0, y - one.b.bottom));
+      if (far <= best + SAME) { found = one; best = Math.min(best, far); }
+    }
+    return found;
   }
   key(e) {
-    const steps = { ArrowLeft: () => this.step(-1), ArrowRight: () => this.step(1), ArrowUp: () => this.other(-1), ArrowDown: () => this.other(1),
-      PageUp: () => this.top(-1), PageDown: () => this.top(1), Home: () => this.step(-Infinity), End: () => this.step(Infinity), Escape: () => this.hide() };
+    const all = this.places(), was = all.find(one => one.mark === this.at?.mark) ?? all[0];
+    const along = all.filter(one => one.series === was.series).sort((a, b) => a.x - b.x), k = along.indexOf(was);
+    const to = n => along[Math.min(Math.max(n, 0), along.length - 1)];
+    const top = by => { // the next top or dip
+      let n = k + by;
+      while (n > 0 && n < along.length - 1 && (along[n].y - along[n - 1].y) * (along[n + 1].y - along[n].y) > 0) n += by;
+      return to(n);
+    };
+    const other = by => { // the next series, where it is nearest
+      const names = [...new Set(all.map(one => one.series))], next = names.at((names.indexOf(was.series) + by) % names.length);
+      return all.filter(one => one.series === next).reduce((a, b) => Math.hypot(b.x - was.x, b.y - was.y) < Math.hypot(a.x - was.x, a.y - was.y) ? b : a);
+    };
+    const steps = { ArrowLeft: () => to(k - 1), ArrowRight: () => to(k + 1), ArrowUp: () => other(-1), ArrowDown: () => other(1),
+      PageUp: () => top(-1), PageDown: () => top(1), Home: () => to(0), End: () => to(along.length - 1), Escape: () => null };
     if (!steps[e.key] || e.ctrlKey || e.metaKey || e.altKey) return;
-    e.preventDefault(); steps[e.key]();
+    e.preventDefault(); this.show(steps[e.key]());
   }
-  place() { // of the place that is read, along its series
-    if (this.s === undefined) { this.s = 0; this.k = this.series[0].order[0]; }
-    return this.series[this.s].order.indexOf(this.k);
-  }
-  step(by) {
-    const order = this.series[this.s ?? 0].order, at = this.place() + by;
-    this.go(this.s, order[Math.min(Math.max(at, 0), order.length - 1)]);
-  }
-  top(by) { // the next top or dip
-    const { order, at } = this.series[(this.place(), this.s)], y = n => at[2 * order[n] + 1];
-    let n = this.place() + by;
-    while (n > 0 && n < order.length - 1 && (y(n) - y(n - 1)) * (y(n + 1) - y(n)) > 0) n += by;
-    this.go(this.s, order[Math.min(Math.max(n, 0), order.length - 1)]);
-  }
-  other(by) { // the next series, where it is nearest
-    this.place();
-    const was = this.series[this.s], x = was.at[2 * this.k], y = was.at[2 * this.k + 1], i = (this.s + by + this.series.length) % this.series.length;
-    const far = k => Math.hypot(this.series[i].at[2 * k] - x, this.series[i].at[2 * k + 1] - y);
-    this.go(i, this.series[i].order.reduce((a, b) => far(b) < far(a) ? b : a));
-  }
-  go(i, k) { // with keys, to a place that may have to be brought into sight
-    const view = this.paper.parentElement, x = this.scale() * this.series[i].at[2 * k];
-    if (x < view.scrollLeft + 20 || x > view.scrollLeft + view.clientWidth - 20) view.scrollLeft = x - view.clientWidth / 2;
-    this.show(i, k);
-  }
-  show(i, k) {
-    this.s = i; this.k = k;
-    const s = this.series[i], scale = this.scale(), x = scale * s.at[2 * k], y = scale * s.at[2 * k + 1];
-    const head = document.createElement("b"), list = document.createElement("dl");
-    head.textContent = s.name;
-    for (const [what, unit, values] of s.told) {
-      if (!values[k]) continue;
-      list.append(Object.assign(document.createElement("dt"), { textContent: what }));
-      list.append(Object.assign(document.createElement("dd"), { textContent: unit ? `${values[k]} ${unit}` : values[k] }));
+  show(one) {
+    box.hidden = ring.hidden = !one;
+    if (!one) return;
+    this.at = one;
+    const [name, ...facts] = one.words.split("\n"), head = document.createElement("b"), list = document.createElement("dl");
+    head.textContent = name;
+    for (const fact of facts) {
+      const end = fact.indexOf(": ");
+      list.append(Object.assign(document.createElement("dt"), { textContent: fact.slice(0, end) }), Object.assign(document.createElement("dd"), { textContent: fact.slice(end + 2) }));
     }
-    this.box.replaceChildren(head, list);
-    this.box.style.borderLeftColor = s.colour;
-    this.box.hidden = this.mark.hidden = false;
-    this.mark.style.transform = `translate(${x}px, ${y}px)`;
-    // Beside the place, inside what is seen of the chart.
-    const view = this.paper.parentElement, left = view.scrollLeft, right = left + Math.min(view.clientWidth, this.paper.clientWidth);
-    const wide = this.box.offsetWidth, high = this.box.offsetHeight, room = this.paper.clientHeight - high;
-    const beside = x + 16 + wide <= right ? x + 16 : x - 16 - wide >= left ? x - 16 - wide : Math.max(left, right - wide);
-    const over = beside < x + 16 && beside > x - 16 - wide; // no room on either side: above or below it
-    const up = over ? (y - 16 - high >= 0 ? y - 16 - high : y + 16) : y - high / 2;
-    this.box.style.transform = `translate(${beside}px, ${Math.min(Math.max(up, 0), Math.max(room, 0))}px)`;
+    box.replaceChildren(head, list);
+    box.style.borderLeftColor = [one.mark.getAttribute("stroke"), one.mark.getAttribute("fill")].find(c => c && c !== "none") ?? "";
+    const x = one.x + scrollX, y = one.y + scrollY, wide = box.offsetWidth, right = scrollX + document.documentElement.clientWidth;
+    const beside = x + 16 + wide <= right, room = beside || x - 16 - wide >= scrollX; // else above it
+    ring.style.transform = `translate(${x}px, ${y}px)`;
+    box.style.transform = `translate(${beside ? x + 16 : Math.max(x - 16 - wide, scrollX)}px, ${room ? y - box.offsetHeight / 2 : y - 16 - box.offsetHeight}px)`;
   }
-  hide() { this.box.hidden = this.mark.hidden = true; }
 }
 
-const all = window.solidgearReadings = [];
-for (const paper of document.querySelectorAll(".paper"))
-  if (paper.querySelector("svg metadata.readings")) all.push(new Reading(paper));
+window.solidgearReadings = [...document.querySelectorAll(".paper")].filter(paper => paper.querySelector("svg [aria-label]")).map(paper => new Reading(paper));
+addEventListener("resize", () => { box.hidden = ring.hidden = true; });
 })();

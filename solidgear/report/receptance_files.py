@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import json
 from collections.abc import Mapping, Sequence
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -12,7 +13,7 @@ import numpy as np
 
 from solidgear.machine.whole_file import whole
 from solidgear.report import train_tables
-from solidgear.report.train_chart import label, receptance_figure
+from solidgear.report.train_chart import label, receptance_chart
 from solidgear.report.train_files import write_charts
 from solidgear.report.train_sheet import write_sheet
 from solidgear.report.units import ENGINEERING, Units, units_named
@@ -59,19 +60,17 @@ def write_receptance(
     head += [f"real part [{unit}]", f"imaginary part [{unit}]"]
     polar = [np.abs(value), np.degrees(np.angle(value))]
     rows = np.column_stack([hz, 60 * hz / teeth, *polar, value.real, value.imag])
-    with whole(files[0]) as partial, partial.open("w", newline="", encoding="utf-8") as file:
+    with whole(files[0]) as half, half.open("w", newline="", encoding="utf-8") as file:
         writer = csv.writer(file)
         writer.writerow(head)
         writer.writerows([f"{v:.9g}" for v in row] for row in rows)
-    with whole(files[1]) as partial:
+    with whole(files[1]) as half:
         data = {"title": title, "unit": unit, "models": [_plain(one) for one in found], **notes}
-        partial.write_text(json.dumps(data, indent=1, allow_nan=False), encoding="utf-8")
+        half.write_text(json.dumps(data, indent=1, allow_nan=False), encoding="utf-8")
     shown = units_named(units)
 
-    def draw() -> Any:
-        return receptance_figure(found, title, teeth, shown)
-
-    files += write_charts(folder / STEM, draw())
+    draw = partial(receptance_chart, found, title, teeth, shown)
+    files += write_charts(folder / STEM, draw)
     if train is None:
         return files
     page = write_sheet(

@@ -6,7 +6,6 @@ from collections.abc import Mapping
 from typing import Any
 
 from solidgear.report import sketch_details as details
-from solidgear.report.chart_style import paper_width
 from solidgear.report.sketch_details import FILL, INK, MASS
 from solidgear.report.sketch_features import draw_feature
 from solidgear.report.words import is_number
@@ -23,7 +22,7 @@ LINE = 0.17  # from one line of letters to the next
 HANDLE = 0.5
 
 
-def draw(scene: Mapping[str, Any]) -> Any:
+def draw(scene: Mapping[str, Any], width: float = WIDTH) -> Any:
     """The figure, or None when the scene has no segments.
 
     The upper half is cut (hatched), the lower half shows the surface. Radii are to the same scale
@@ -37,7 +36,6 @@ def draw(scene: Mapping[str, Any]) -> Any:
         return None
     length = max(s["y1"] for s in segments)
     radius = max(max(s["outer0"], s["outer1"]) for s in segments)
-    width = paper_width(WIDTH)
     drawn = width - 2 * (BESIDE if width == WIDTH else NARROWLY)
     inch = min(drawn / length, TALLEST / radius)  # inches per metre
     enlarged = 1.0 if radius * inch >= FLATTEST else FLATTEST / (radius * inch)

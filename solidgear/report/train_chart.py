@@ -5,24 +5,20 @@ a receptance.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
-from solidgear.report.chart_style import new_figure, styled
-from solidgear.report.readout import readable
+from solidgear.report.panel import Axis, Panel, Series, log_ticks, read_places, told
+from solidgear.report.plot import NARROW, WIDE, Chart, in_columns
 from solidgear.report.units import ENGINEERING, Units, plain
 from solidgear.report.words import hertz
 
 COLOURS = ("#00805e", "#0072b2", "#c98a00", "#b3305c", "#5a3e8c", "#444444", "#1f9bb8", "#8a6d3b")
-#: labels of peaks closer than this share of a decade would lie on one another
-APART = 0.028
-#: room for the names of peaks above the curves, in decades over those of the curves
-ROOM = 0.55
-#: ticks of a decade
-TICKS = (1.0, 2.0, 5.0)
-#: how far up the dotted lines of departures reach, of the panel
-DEPARTS = 0.5
+#: of the band around the first model
+BAND = "#d0e8e1"
+#: px; names of peaks that are closer would lie on one another, and what one takes over the curves
+APART, ROOM = 14.0, 130.0
 #: column of a response, its name on a panel, and its SI unit
 PANELS = (
     ("mesh force [N]", "mesh force", "N"),
@@ -30,14 +26,15 @@ PANELS = (
 )
 
 
-def response_figure(
+def response_chart(
     responses: Sequence[Any],
     title: str,
     teeth: int,
     band: float,
     marks: Mapping[str, float],
     units: Units = ENGINEERING,
-):
+    width: float = WIDE,
+) -> Chart:
     """Mesh force and dynamic transmission error over frequency, the first response the reference.
 
     Parameters
@@ -52,41 +49,47 @@ def response_figure(
     marks : mapping of str to float
         Where a model leaves the band, Hz, by label.
     units : Units, optional
-
-    Returns
-    -------
-    matplotlib Figure
+    width : float
+        px.
     """
-    with styled():
-        figure = new_figure(9.0, 7.4)
-        axes = figure.subplots(2, 1, sharex=True, height_ratios=(1.7, 1))
-        last = responses[0].frequency_hz[-1]
-        # where models differ is the upper end; below half the first departure they are one line
-        first = max(responses[0].frequency_hz[0], min(marks.values(), default=0.0) / 2)
-        for axis, (column, words, si) in zip(axes, PANELS):
-            sizes = [units.values(np.abs(r.columns[column]), si) for r in responses]
-            _curves(axis, responses, sizes, band)
-            for k, (response, size) in enumerate(zip(responses, sizes)):
-                told = _told(response.frequency_hz, size, teeth, words, units.unit(si))
-                _read(axis, k, response, response.frequency_hz, size, told)
-            axis.set_ylabel(f"{words} in {units.unit(si)}")
-            axis.set_xlim(first, last)
-            axis.set_ylim(_ends(responses, sizes, first))
-        tops = [
-            _tops([(p.frequency_hz, p.force, p.mode) for p in r.peaks], "N", units)
-            for r in responses
+    last = responses[0].frequency_hz[-1]
+    # where models differ is the upper end; below half the first departure they are one line
+    first = max(responses[0].frequency_hz[0], min(marks.values(), default=0.0) / 2)
+    models, panels = _models(responses), []
+    if len(responses) > 1:
+        models |= {f"{band:g} dB around it": Series(BAND)}
+    words = f"mesh frequency in Hz{_cut(responses[0], first)}"
+    for k, (column, what, si) in enumerate(PANELS):
+        unit, top = units.unit(si), k == 0
+        sizes = [units.values(np.abs(r.columns[column]), si) for r in responses]
+        curves = [
+            _Curve(label(r), r.frequency_hz, size, ((what, unit, size),))
+            for r, size in zip(responses, sizes)
         ]
-        _named(axes[0], tops[0], first)
-        _read_tops(axes[0], responses, tops, teeth, "mesh force", units.unit("N"))
-        for k, response in enumerate(responses[1:], start=1):
-            if label(response) in marks:
-                colour = COLOURS[k % len(COLOURS)]
-                place = marks[label(response)]
-                axes[0].axvline(place, ymax=DEPARTS, color=colour, lw=1.2, ls=":")
-        for axis in axes:
-            _plain(axis.yaxis, (1.0,))
-        _finish(figure, axes, f"mesh frequency in Hz{_cut(responses[0], first)}", title, teeth)
-        return figure
+        height = 340.0 if top else 200.0
+        ends = _ends([s[r.frequency_hz >= first] for r, s in zip(responses, sizes)])
+        panel = Panel(
+            _hertz("" if top else words, (first, last)),
+            Axis(f"{what} in {unit}", _with_room(ends, height) if top else ends, log=True),
+            height,
+            series=models,
+            legend=_legend(width) if top else None,
+            upper=_speed(teeth, (first, last)) if top else None,
+        )
+        if len(responses) > 1:
+            _shade(panel, responses[0].frequency_hz, sizes[0], band)
+        _curves(panel, curves, teeth, width)
+        if top:
+            dots = {"type": "rule", "strokeDash": [2, 3], "strokeWidth": 1.4}
+            lines = [{"x": hz, "y": ends[0], "y2": ends[1], "name": n} for n, hz in marks.items()]
+            panel.draw(dots, [line for line in lines if line["name"] in models])
+            tops = [
+                _tops([(p.frequency_hz, p.force, p.mode) for p in r.peaks], "N", units)
+                for r in responses
+            ]
+            _peaks(panel, responses, tops, teeth, (what, unit), width)
+        panels.append(panel)
+    return Chart(in_columns(panels, 1), width, title)
 
 
 def _cut(response: Any, first: float) -> str:
@@ -98,7 +101,13 @@ def _cut(response: Any, first: float) -> str:
     return f", from half of where the first model leaves the band{peaks}"
 
 
-def receptance_figure(found: Sequence[Any], title: str, teeth: int, units: Units = ENGINEERING):
+def receptance_chart(
+    found: Sequence[Any],
+    title: str,
+    teeth: int,
+    units: Units = ENGINEERING,
+    width: float = WIDE,
+) -> Chart:
     """Amplitude and phase of a receptance over frequency, the peaks of the first model named.
 
     Parameters
@@ -109,59 +118,86 @@ def receptance_figure(found: Sequence[Any], title: str, teeth: int, units: Units
     teeth : int
         Of the pinion, for the upper axis in rpm.
     units : Units, optional
-
-    Returns
-    -------
-    matplotlib Figure
+    width : float
+        px.
     """
-    with styled():
-        figure, unit = new_figure(9.0, 6.6), units.unit(found[0].unit)
-        axes = figure.subplots(2, 1, sharex=True, height_ratios=(2.2, 1))
-        for k, one in enumerate(found):
-            look = {"color": COLOURS[k % len(COLOURS)], "lw": 1.6 if k == 0 else 1.0}
-            look["zorder"] = 9 - k
-            hz, size = one.frequency_hz, units.values(np.abs(one.value), one.unit)
-            phase = np.degrees(np.angle(one.value))
-            axes[0].loglog(hz, size, label=label(one), **look)
-            axes[1].semilogx(hz, phase, ".", ms=1.5, **look)
-            told = _told(hz, size, teeth, "receptance", unit)
-            told["phase"] = ("degrees", [f"{v:.1f}" for v in phase])
-            _read(axes[0], k, one, hz, size, told)
-            _read(axes[1], k, one, hz, phase, told)
-        axes[0].set_ylabel(f"receptance in {unit}")
-        axes[1].set_ylabel("phase in degrees")
-        axes[1].set_ylim(-185, 185)
-        axes[1].set_yticks((-180, -90, 0, 90, 180))
-        axes[1].set_xlim(found[0].frequency_hz[0], found[0].frequency_hz[-1])
-        _plain(axes[0].yaxis, (1.0,))
-        tops = [_tops(one.peaks, one.unit, units) for one in found]
-        _named(axes[0], tops[0], found[0].frequency_hz[0])
-        _read_tops(axes[0], found, tops, teeth, "receptance", unit)
-        _finish(figure, axes, "frequency in Hz", title, teeth)
-        return figure
-
-
-def _finish(figure, axes, words: str, title: str, teeth: int) -> None:
-    """What two panels over frequency share: axes in Hz and in rpm, title and legend."""
-    axes[1].set_xlabel(words)
-    upper = axes[0].secondary_xaxis(
-        "top", functions=(lambda f: 60 * f / teeth, lambda n: n * teeth / 60)
+    unit, models = units.unit(found[0].unit), _models(found)
+    sizes = [units.values(np.abs(one.value), one.unit) for one in found]
+    phases = [np.degrees(np.angle(one.value)) for one in found]
+    ends = found[0].frequency_hz[0], found[0].frequency_hz[-1]
+    amplitude = Panel(
+        _hertz("", ends),
+        Axis(f"receptance in {unit}", _with_room(_ends(sizes), 360.0), log=True),
+        360.0,
+        series=models,
+        legend=_legend(width),
+        upper=_speed(teeth, ends),
     )
-    upper.set_xlabel("pinion speed in rpm at which the teeth mesh at it")
-    for axis in (*(a.xaxis for a in axes), upper.xaxis):
-        _plain(axis, TICKS)
-    figure.suptitle(title, fontsize=10.5, x=0.01, ha="left")
-    handles, labels = axes[0].get_legend_handles_labels()
-    figure.legend(handles, labels, loc="outside lower center", fontsize=7.5, ncols=3)
+    turns = {float(v): str(v) for v in (-180, -90, 0, 90, 180)}
+    phase = Panel(
+        _hertz("frequency in Hz", ends),
+        Axis("phase in degrees", (-185.0, 185.0), ticks=turns),
+        150.0,
+        series=models,
+    )
+    for panel, values in ((amplitude, sizes), (phase, phases)):
+        curves = [
+            _Curve(
+                label(one),
+                one.frequency_hz,
+                value,
+                (("receptance", unit, size), ("phase", "degrees", angle)),
+            )
+            for one, value, size, angle in zip(found, values, sizes, phases)
+        ]
+        _curves(panel, curves, teeth, width, 180.0 if panel is phase else np.inf)
+    tops = [_tops(one.peaks, one.unit, units) for one in found]
+    _peaks(amplitude, found, tops, teeth, ("receptance", unit), width)
+    return Chart(in_columns([amplitude, phase], 1), width, title)
 
 
-def _plain(axis, subs) -> None:
-    """Ticks of a logarithmic axis as plain numbers, few enough to be read."""
-    from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
+class _Curve(NamedTuple):
+    """A model over frequency; ``read`` is (what, unit, values) at every place."""
 
-    axis.set_major_locator(LogLocator(subs=subs, numticks=20))
-    axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
-    axis.set_minor_formatter(NullFormatter())
+    name: str
+    hz: np.ndarray
+    y: np.ndarray
+    read: tuple[tuple[str, str, np.ndarray], ...]
+
+
+def _models(found: Sequence[Any]) -> dict[str, Series]:
+    """Models by their labels, the colours in turn."""
+    return {label(one): Series(COLOURS[k % len(COLOURS)]) for k, one in enumerate(found)}
+
+
+def _legend(width: float) -> dict[str, Any]:
+    columns = 3 if width > NARROW else 1
+    return {"orient": "top", "columns": columns, "symbolType": "stroke", "symbolStrokeWidth": 3}
+
+
+def _hertz(title: str, ends: tuple[float, float]) -> Axis:
+    return Axis(title, ends, log=True)
+
+
+def _speed(teeth: int, ends: tuple[float, float]) -> Axis:
+    """The upper axis: round speeds of the pinion, at the frequencies where its teeth mesh."""
+    rounds = log_ticks(60 * ends[0] / teeth, 60 * ends[1] / teeth)
+    ticks = {rpm * teeth / 60: f"{rpm:g}" for rpm in rounds}
+    words = "pinion speed in rpm at which the teeth mesh at it"
+    return Axis(words, ends, log=True, ticks=ticks, grid=False)
+
+
+def _ends(sizes: Sequence[np.ndarray]) -> tuple[float, float]:
+    """Least and largest amplitude, with room."""
+    seen = np.concatenate(sizes)
+    seen = seen[seen > 0] if np.any(seen > 0) else np.ones(1)
+    return 0.6 * seen.min(), 1.8 * seen.max()
+
+
+def _with_room(ends: tuple[float, float], height: float) -> tuple[float, float]:
+    """Ends of an axis with room for names over the curves."""
+    low, high = ends
+    return low, high * (high / low) ** (ROOM / (height - ROOM))
 
 
 def label(response: Any) -> str:
@@ -169,17 +205,45 @@ def label(response: Any) -> str:
     return f"pinion {response.pinion}, gear {response.gear}"
 
 
-def _told(hz, size, teeth: int, what: str, unit: str) -> dict[str, tuple[str, list[str]]]:
-    """What is to be read of a curve over frequency."""
-    return {
-        "frequency": ("Hz", [hertz(float(v)) for v in hz]),
-        "pinion speed": ("rpm", [f"{60 * v / teeth:.0f}" for v in hz]),
-        what: (unit, [plain(float(v), 4) for v in size]),
-    }
+def _words(name: str, hz: float, teeth: int, *facts: tuple[str, str, str]) -> str:
+    """The words on a place of a model over frequency."""
+    speed = ("pinion speed", f"{60 * hz / teeth:.0f}", "rpm")
+    return told(name, ("frequency", hertz(hz), "Hz"), speed, *facts)
 
 
-def _read(axis, k: int, one: Any, x, y, told: Mapping) -> None:
-    readable(axis, x, y, label(one), told, colour=COLOURS[k % len(COLOURS)], marked=False)
+def _curves(
+    panel: Panel, curves: Sequence[_Curve], teeth: int, width: float, jump: float = np.inf
+) -> None:
+    """Curves, the first in front, and what is to be read along them; broken where one jumps."""
+    first, last = panel.x.ends
+    for k, curve in reversed(list(enumerate(curves))):
+        seen = np.flatnonzero((curve.hz >= first) & (curve.hz <= last))
+        x, y = curve.hz[seen], curve.y[seen]
+        turns = np.cumsum(np.abs(np.diff(y, prepend=y[0])) > jump)
+        places = zip(x.tolist(), y.tolist(), turns.tolist())
+        rows = [{"x": a, "y": b, "detail": part, "name": curve.name} for a, b, part in places]
+        panel.draw({"type": "line", "strokeWidth": 1.8 if k == 0 else 1.1}, rows)
+        read = []
+        for i in read_places(x, y, int(width / APART), log=True):
+            facts = [(what, _figure(what, v[seen[i]]), unit) for what, unit, v in curve.read]
+            words = _words(curve.name, float(x[i]), teeth, *facts)
+            read.append({"x": x[i], "y": y[i], "told": words})
+        panel.read(read, panel.series[curve.name].colour)
+
+
+def _figure(what: str, value: float) -> str:
+    return f"{value:.1f}" if what == "phase" else plain(float(value), 4)
+
+
+def _shade(panel: Panel, hz: np.ndarray, size: np.ndarray, band: float) -> None:
+    """The band in decibels around a curve."""
+    factor, seen = 10 ** (band / 20), hz >= panel.x.ends[0]
+    ends = ((size[seen] / factor).tolist(), (size[seen] * factor).tolist())
+    rows = [
+        {"x": x, "y": low, "y2": high, "name": f"{band:g} dB around it"}
+        for x, low, high in zip(hz[seen].tolist(), *ends)
+    ]
+    panel.draw({"type": "area", "opacity": 0.7}, rows)
 
 
 def _tops(peaks: Sequence[tuple[float, float, str]], si: str, units: Units) -> list:
@@ -187,61 +251,30 @@ def _tops(peaks: Sequence[tuple[float, float, str]], si: str, units: Units) -> l
     return [(hz, units.value(size, si), mode) for hz, size, mode in peaks]
 
 
-def _read_tops(axis, models, tops: Sequence, teeth: int, what: str, unit: str) -> None:
-    """The peaks of every model, to be read with the modes that make them."""
-    for k, (one, peaks) in enumerate(zip(models, tops)):
-        hz, sizes, modes = [p[0] for p in peaks], [p[1] for p in peaks], [p[2] for p in peaks]
-        told = {"peak of": ("", modes), **_told(hz, sizes, teeth, what, unit)}
-        readable(axis, hz, sizes, label(one), told, colour=COLOURS[k % len(COLOURS)])
-
-
-def _curves(axis, responses, sizes, band) -> None:
-    for k, (response, size) in enumerate(zip(responses, sizes)):
-        colour = COLOURS[k % len(COLOURS)]
-        text = label(response)
-        width = 1.6 if k == 0 else 1.0
-        axis.loglog(response.frequency_hz, size, color=colour, lw=width, label=text, zorder=9 - k)
-        if k == 0 and len(responses) > 1:
-            factor = 10 ** (band / 20)
-            axis.fill_between(
-                response.frequency_hz,
-                size / factor,
-                size * factor,
-                color=colour,
-                alpha=0.15,
-                lw=0,
-                label=f"{band:g} dB around it",
-            )
-
-
-def _ends(responses, sizes, first: float) -> tuple[float, float]:
-    """Least and largest amplitude from a frequency on, with room."""
-    seen = [size[r.frequency_hz >= first] for r, size in zip(responses, sizes)]
-    return 0.6 * min(s.min() for s in seen), 1.8 * max(s.max() for s in seen)
-
-
-def _named(axis, tops: Sequence[tuple[float, float, str]], first: float) -> None:
-    """Names over the peaks (Hz, size, mode); one that would lie on its neighbour is left to the
-    table.
+def _peaks(
+    panel: Panel,
+    models: Sequence[Any],
+    tops: Sequence[list],
+    teeth: int,
+    what: tuple[str, str],
+    width: float,
+) -> None:
+    """The peaks of every model, to be read with the modes that make them, and over those of the
+    first their names; one that would lie on its neighbour is left to the table.
     """
-    last = -np.inf
-    low, high = axis.get_ylim()
-    axis.set_ylim(low, high * (high / low) ** ROOM)
-    for hz, size, mode in tops:
-        place = np.log10(hz)
-        if hz < first:
-            continue
-        if place - last < APART:
-            continue
-        last = place
-        axis.annotate(
-            f"{mode}  {hz:.0f} Hz",
-            (hz, size),
-            xytext=(0, 6),
-            textcoords="offset points",
-            rotation=90,
-            ha="center",
-            va="bottom",
-            fontsize=7.5,
-            zorder=20,
-        )
+    for one, peaks in zip(models, tops):
+        rows = []
+        for hz, size, mode in peaks:
+            facts = ("peak of", mode, ""), (what[0], plain(float(size), 4), what[1])
+            words = _words(label(one), float(hz), teeth, *facts)
+            rows.append({"x": hz, "y": size, "told": words})
+        panel.read(rows, panel.series[label(one)].colour)
+    first, last = panel.x.ends
+    pixel = np.log(last / first) / (width - panel.beside - panel.right)
+    named, before = [], -np.inf
+    for hz, size, mode in tops[0]:
+        if hz >= first and np.log(hz) - before >= APART * pixel:
+            before = np.log(hz)
+            named.append({"x": hz, "y": size, "text": f"{mode}  {hz:.0f} Hz"})
+    look = {"type": "text", "angle": -90, "align": "left", "baseline": "middle", "dx": 7}
+    panel.draw(look | {"fontSize": 10}, named)

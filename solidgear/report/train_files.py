@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import csv
 import json
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -12,8 +13,9 @@ import numpy as np
 
 from solidgear.machine.whole_file import whole
 from solidgear.report import train_tables
-from solidgear.report.order_chart import order_figure, write_crossings
-from solidgear.report.train_chart import label, response_figure
+from solidgear.report.order_chart import order_chart, write_crossings
+from solidgear.report.plot import WIDE, Make
+from solidgear.report.train_chart import label, response_chart
 from solidgear.report.train_sheet import write_sheet
 from solidgear.report.units import ENGINEERING, Units, units_named
 
@@ -45,19 +47,19 @@ def write_response(
     peaks = [
         {"pinion": r.pinion, "gear": r.gear, "peaks": [vars(p) for p in r.peaks]} for r in responses
     ]
-    with whole(files[1]) as partial:
+    with whole(files[1]) as half:
         data = {"title": title, "responses": peaks, **notes}
-        partial.write_text(json.dumps(data, indent=1, allow_nan=False), encoding="utf-8")
+        half.write_text(json.dumps(data, indent=1, allow_nan=False), encoding="utf-8")
     shown = units_named(units)
-    charts: dict[str, Callable[[], Any]] = {
-        "response": lambda: response_figure(responses, title, teeth, band, {}, shown)
+    charts: dict[str, Make] = {
+        "response": partial(response_chart, responses, title, teeth, band, {}, shown)
     }
     if orders is not None:
         write_crossings(folder / "orders.csv", orders)
         files += [folder / "orders.csv"]
-        charts["orders"] = lambda: order_figure(orders, title, teeth, shown)
-    for name, figure in charts.items():
-        files += write_charts(folder / name, figure())
+        charts["orders"] = partial(order_chart, orders, title, teeth, shown)
+    for name, make in charts.items():
+        files += write_charts(folder / name, make)
     if train is None:
         return files
     first = responses[0]
@@ -77,13 +79,11 @@ def write_response(
     return [page, *files]
 
 
-def write_charts(stem: Path, figure: Any) -> list[Path]:
-    """A figure as PNG and SVG beside each other."""
+def write_charts(stem: Path, make: Make) -> list[Path]:
+    """A chart as PNG and SVG beside each other."""
+    chart = make(WIDE)
     files = [stem.with_suffix(f".{kind}") for kind in ("png", "svg")]
-    for target in files:
-        with whole(target) as partial:
-            figure.savefig(partial, format=target.suffix[1:], dpi=150)
-    return files
+    return [chart.write(file) for file in files] if chart else []
 
 
 def write_table(path: Path, response: Any, teeth: int) -> None:
@@ -94,7 +94,7 @@ def write_table(path: Path, response: Any, teeth: int) -> None:
         text, _, unit = name.partition(" [")
         head += [f"{text} [{unit}", f"{text} phase [deg]"]
         rows += [np.abs(value), np.degrees(np.angle(value))]
-    with whole(path) as partial, partial.open("w", newline="", encoding="utf-8") as file:
+    with whole(path) as half, half.open("w", newline="", encoding="utf-8") as file:
         writer = csv.writer(file)
         writer.writerow(head)
         for line in np.column_stack(rows):

@@ -7,19 +7,21 @@ from __future__ import annotations
 import json
 import os
 from collections.abc import Callable, Mapping, Sequence
+from functools import partial
 from pathlib import Path
 from typing import Any
 
 from solidgear.errors import SolidgearError
 from solidgear.machine.whole_file import whole
-from solidgear.report import input_tables, sketch, train_tables
+from solidgear.report import input_tables, train_tables
 from solidgear.report.cells import DASH, capital
-from solidgear.report.chart_style import svg_of
 from solidgear.report.folder import clear, held
 from solidgear.report.html import data_uri, template
-from solidgear.report.order_chart import order_figure, write_crossings
+from solidgear.report.order_chart import order_chart, write_crossings
+from solidgear.report.plot import Make, page_svg
 from solidgear.report.run_tables import pairs_of
-from solidgear.report.train_chart import response_figure
+from solidgear.report.sketch_page import sketch_svg
+from solidgear.report.train_chart import response_chart
 from solidgear.report.train_files import write_charts, write_table
 from solidgear.report.units import ENGINEERING, Units, units_named
 from solidgear.report.words import seconds
@@ -70,11 +72,11 @@ def write_train(
     """
     verdict, train = results["verdict"], results["train"]
     teeth, chosen = train["pinion"]["teeth"], units_named(units)
-    charts: dict[str, Callable[[], Any]] = {
-        "response": lambda: response_figure(
-            responses, train["title"], teeth, verdict["decibels"], marks, chosen
+    charts: dict[str, Make] = {
+        "response": partial(
+            response_chart, responses, train["title"], teeth, verdict["decibels"], marks, chosen
         ),
-        "orders": lambda: order_figure(orders, train["title"], teeth, chosen),
+        "orders": partial(order_chart, orders, train["title"], teeth, chosen),
     }
     with held(out) as folder:
         try:
@@ -87,14 +89,14 @@ def write_train(
             _write_json(folder / "results.json", {**results, "files": files})
             write_table(folder / "response.csv", responses[0], teeth)
             write_crossings(folder / "orders.csv", orders)
-            for name, figure in charts.items():
-                write_charts(folder / name, figure())
+            for name, make in charts.items():
+                write_charts(folder / name, make)
             results = {**results, **(draw(folder) if draw else {"pictures": {}, "left_out": []})}
             files += results["pictures"].values()
             _write_json(folder / "results.json", {**results, "files": files})
             page = _page(results, charts, folder, chosen, viewer)
-            with whole(folder / "report.html") as partial:
-                partial.write_text(page, encoding="utf-8")
+            with whole(folder / "report.html") as half:
+                half.write_text(page, encoding="utf-8")
         except OSError as error:
             raise SolidgearError(
                 f"--out {out}: writing stopped ({error.strerror or error}); "
@@ -104,13 +106,13 @@ def write_train(
 
 
 def _write_json(path: Path, results: Mapping[str, Any]) -> None:
-    with whole(path) as partial:
-        partial.write_text(json.dumps(results, indent=1, allow_nan=False) + "\n", encoding="utf-8")
+    with whole(path) as half:
+        half.write_text(json.dumps(results, indent=1, allow_nan=False) + "\n", encoding="utf-8")
 
 
 def _page(
     results: Mapping[str, Any],
-    charts: Mapping[str, Callable[[], Any]],
+    charts: Mapping[str, Make],
     folder: Path,
     units: Units,
     viewer: str,
@@ -118,8 +120,8 @@ def _page(
     from markupsafe import Markup
 
     train, verdict = results["train"], results["verdict"]
-    drawn = {f"{side}": lambda side=side: sketch.draw(train[side]["scene"]) for side in SIDES}
-    svg = {name: svg_of(name, make) for name, make in {**charts, **drawn}.items()}
+    svg = {name: page_svg(name, make) for name, make in charts.items()}
+    svg |= {side: sketch_svg(side, train[side]["scene"]) for side in SIDES}
     best, pictures = verdict["cheapest"], results["pictures"]
     both = f"both shafts {best['gear']}"
     mixed = f"pinion {best['pinion']}, gear {best['gear']}"

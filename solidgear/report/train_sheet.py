@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
-from typing import Any
 
 from solidgear.machine.whole_file import write_page
-from solidgear.report.chart_style import svg_of
 from solidgear.report.html import template
+from solidgear.report.plot import Make, page_svg
 from solidgear.report.table import Table
 
 #: what charts of a train say in words, by their names
@@ -29,7 +28,7 @@ def write_sheet(
     lead: str,
     tables: Iterable[Table],
     *,
-    charts: Mapping[str, Callable[[], Any]] | None = None,
+    charts: Mapping[str, Make] | None = None,
     viewer: str = "",
     notes: Sequence[str] = (),
     cautions: Sequence[str] = (),
@@ -43,7 +42,7 @@ def write_sheet(
         What is shown, and with which models.
     tables : iterable of Table
     charts : mapping of str to callable, optional
-        A matplotlib figure each, by its name in ``WORDS``.
+        A chart each, by its name in ``WORDS``.
     viewer : str
         HTML that shows mode shapes, taken as it is: none of it may come from a file unescaped.
     notes, cautions : sequence of str
@@ -55,7 +54,7 @@ def write_sheet(
     """
     from markupsafe import Markup
 
-    drawn = {name: svg_of(name, make) for name, make in (charts or {}).items()}
+    drawn = {name: page_svg(name, make) for name, make in (charts or {}).items()}
     page = template("train_sheet.html").render(
         title=title,
         lead=lead,

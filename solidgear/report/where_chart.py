@@ -2,17 +2,14 @@
 
 from __future__ import annotations
 
-import io
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from solidgear.errors import SolidgearError
-from solidgear.machine.whole_file import whole
-from solidgear.report.chart_style import STYLE, as_svg, new_figure, paper_width
-from solidgear.report.readout import readable
+from solidgear.report.panel import GREY, PERCENT, Axis, Panel, told
+from solidgear.report.plot import BETWEEN, WIDE, Chart
 from solidgear.report.words import percent
 
 if TYPE_CHECKING:
@@ -22,17 +19,10 @@ if TYPE_CHECKING:
 LEAST = 1e-4
 #: a shaft that is more slender than this is drawn with its radius stretched
 SLENDEREST = 7.0
-#: in; and the most that a half section gets
-WIDTH, HIGHEST = 9.0, 4.0
-#: in; the names of the places need so much
-NARROWEST = 4.0
-FORMATS = (".png", ".svg")
-#: in; of paper that the number of a place takes
-DIGIT = 0.19
-#: in; a picture from close by of cells at a place whose corners are nearer than this share of the length
-CLOSE, SMALL = 2.2, 0.02
-#: lines of the mesh
-LINE = "#00000080"
+#: px; the most that a half section gets, and of paper that the number of a place takes
+HIGHEST, DIGIT = 330.0, 20.0
+#: px, least and most; a picture from close by of cells at a place whose corners are nearer than this share of the length
+CLOSE, LARGEST, SMALL = 170.0, 200.0, 0.02
 #: places that are named, and the share from which on they are
 MOST_PLACES, WORTH_NAMING = 5, 5e-4
 
@@ -65,154 +55,86 @@ def draw_where(
     SolidgearError
         For another ending, or a file that cannot be written.
     """
-    write_picture(file, lambda: _figure(points, cells, shares, rows, title), "where")
+    _chart(points, cells, shares, rows, title, WIDE).write(file)
 
 
-def write_picture(file: Path, make: Callable[[], Any], name: str) -> None:
-    """Write a figure as a picture.
-
-    Parameters
-    ----------
-    file : Path
-        Its ending, ``.png`` or ``.svg``, says what it becomes.
-    make : callable
-        Returns a matplotlib figure.
-    name : str
-        Of the kind of picture, for identifiers in an SVG.
-
-    Raises
-    ------
-    SolidgearError
-        For another ending, or a file that cannot be written.
-    """
-    import matplotlib
-
-    ending = check_ending(file)
-    with matplotlib.rc_context():
-        matplotlib.rcdefaults()  # the user's own matplotlibrc must not change a picture
-        matplotlib.rcParams.update({**STYLE, "svg.hashsalt": f"solidgear {name}"})
-        target = io.BytesIO()
-        without: dict[str, Any] = {"Date": None} if ending == ".svg" else {"Software": None}
-        make().savefig(target, format=ending[1:], dpi=150, metadata=without)
-    try:
-        with whole(file) as half:
-            half.write_bytes(target.getvalue())
-    except OSError as error:
-        raise SolidgearError(f"{file}: cannot be written ({error.strerror or error})") from error
-
-
-def check_ending(file: Path) -> str:
-    """The ending of a picture's name.
-
-    Parameters
-    ----------
-    file : Path
-
-    Raises
-    ------
-    SolidgearError
-        For one that is no picture.
-
-    Examples
-    --------
-    >>> check_ending(Path("error.PNG"))
-    '.png'
-    """
-    ending = file.suffix.lower()
-    if ending not in FORMATS:
-        raise SolidgearError(f"{file}: no picture ends like that; use {' or '.join(FORMATS)}")
-    return ending
-
-
-def _figure(points, cells, shares, rows, title: str):
-    from matplotlib.ticker import FuncFormatter
-
+def _chart(points, cells, shares, rows, title: str, width: float) -> Chart:
     places = [p for p in worth_naming(rows) if p.y is not None and p.r is not None]
     r, y = 1e3 * points
     length, radius = np.ptp(y), r.max()
     stretch = max(1.0, length / (SLENDEREST * radius))
-    shape = 1.25 * stretch * radius / length
-    widest = paper_width(WIDTH)
-    height = min(0.8 * widest * shape, HIGHEST)
-    width = min(widest, max(height / shape + 2.0, NARROWEST))
-    close = _close(points, places)[: int(width / CLOSE)]
-    below = max(height, 1.0) + 1.0 + 0.16 * len(places)
-    figure = new_figure(width, below + CLOSE * bool(close))
-    heights = [below, CLOSE] if close else [below]
-    grid = figure.add_gridspec(len(heights), max(len(close), 1), height_ratios=heights)
-    ax = figure.add_subplot(grid[0, :])
     corners = np.stack([y[cells], r[cells]], axis=-1).transpose(1, 0, 2)
-    drawn = _drawn(ax, corners, shares)
-    ax.set_aspect(stretch)
-    ax.set_xlim(y.min() - 0.02 * length, y.max() + 0.02 * length)
-    ax.set_ylim(0, 1.25 * radius)
-    scale = 0.8 * width / length  # in on paper, about
+    room = width - 80.0
+    scale = min(room / (1.04 * length), HIGHEST / (1.1 * stretch * radius))  # px of a millimetre
     spots = [(1e3 * scale * p.y, 1e3 * scale * stretch * p.r) for p in places]
-    raised = _raised(spots)
-    over = [y + 2 * DIGIT + up - scale * shape * length for (_, y), up in zip(spots, raised)]
-    for number, (place, up) in enumerate(zip(places, raised), 1):
-        ax.annotate(
-            str(number),
-            (1e3 * place.y, 1e3 * place.r),
-            xytext=(0, 14 + 72 * up),
-            textcoords="offset points",
-            ha="center",
-            va="center",
-            fontsize=9,
-            fontweight="bold",
-            bbox={"boxstyle": "circle,pad=0.15", "fc": "#ffffff", "ec": "#555555", "lw": 0.5},
-            arrowprops={"arrowstyle": "-", "lw": 0.6},
-        )
+    heights = [height / scale / stretch for height in _raised(spots)]
+    top = max([1.05 * radius, *(height + DIGIT / scale / stretch for height in heights)])
+    panel = Panel(
+        Axis("y, mm", (y.min() - 0.02 * length, y.max() + 0.02 * length), grid=False),
+        Axis("r, mm", (0.0, top), grid=False),
+        scale * stretch * top,
+        right=12 + room - 1.04 * scale * length,
+    )
+    legend: dict[str, Any] = {"orient": "top", "title": "share of the cell", "labelExpr": PERCENT}
+    legend["values"] = np.geomspace(LEAST, 1.0, 5).tolist()
+    _draw(panel, corners, shares, legend | {"gradientLength": min(room, 300.0)})
+    numbers = [
+        {"x": 1e3 * place.y, "y": 1e3 * place.r, "y2": height, "text": str(number)}
+        for number, (place, height) in enumerate(zip(places, heights), 1)
+    ]
+    panel.draw("rule", [{key: row[key] for key in ("x", "y", "y2")} for row in numbers])
+    over = [{"x": row["x"], "y": row["y2"], "text": row["text"]} for row in numbers]
+    panel.draw({"type": "point", "size": 300, "fill": "#ffffff", "stroke": GREY}, over)
+    panel.draw({"type": "text", "baseline": "middle", "fontWeight": "bold"}, over)
     names = [
         f"{number}: {place.what}, y = {1e3 * place.y:.4g} mm, {100 * place.share:.2g} %"
         for number, place in enumerate(places, 1)
     ]
     drawn_as = "" if stretch == 1.0 else f"radius drawn {stretch:.2g} times as large"
-    ax.set_xlabel("\n".join(["y, mm", *names]))
-    ax.set_ylabel("r, mm")
-    ax.set_title("; ".join(filter(None, (title, drawn_as))), pad=72 * max([0.08, *over]))
-    bar = figure.colorbar(drawn, ax=ax, pad=0.01, aspect=12)
-    bar.ax.yaxis.set_major_formatter(FuncFormatter(lambda v, _: f"{100 * v:g} %"))
-    bar.set_label("share of the cell")
-    for k, (number, half) in enumerate(close):
-        place, inset = places[number - 1], figure.add_subplot(grid[1, k])
-        centre = 1e3 * np.array([place.y, place.r])
-        low, high = corners.min(axis=1), corners.max(axis=1)
-        seen = np.all((low < centre + 1e3 * half) & (high > centre - 1e3 * half), axis=1)
-        _drawn(inset, corners[seen], shares[seen])
-        inset.set_aspect(1.0)
-        inset.set_xlim(*(centre[0] + 1e3 * half * np.array([-1, 1])))
-        inset.set_ylim(*(centre[1] + 1e3 * half * np.array([-1, 1])))
-        inset.locator_params(nbins=3)
-        inset.tick_params(labelsize=7)
-        inset.ticklabel_format(useOffset=False)
-        inset.set_title(f"{number}, {2e3 * half:.2g} mm wide")
-    return figure
+    close = _close(points, places)[: int(width / CLOSE)]
+    insets = [_inset(corners, shares, places[n - 1], n, half) for n, half in close]
+    one = (width - BETWEEN * (len(insets) - 1)) / max(len(insets), 1)
+    for inset in insets:  # as wide as high, beside axes as wide as those above
+        inset.height = min(one - panel.beside - inset.right, LARGEST)
+        inset.right = one - panel.beside - inset.height
+    rows_of = [[panel], insets] if insets else [[panel]]
+    return Chart(rows_of, width, "; ".join(filter(None, (title, drawn_as))), "\n".join(names))
 
 
-def _drawn(ax, corners, shares):
-    """Draw all cells in the colours of their shares, which can be read off."""
-    from matplotlib.collections import PolyCollection
-    from matplotlib.colors import LogNorm
+def _inset(corners, shares, place: Any, number: int, half: float) -> Panel:
+    """Cells at a place from close by, so many metres to either side."""
+    centre = 1e3 * np.array([place.y, place.r])
+    low, high = centre - 1e3 * half, centre + 1e3 * half
+    seen = np.all((corners.min(axis=1) < high) & (corners.max(axis=1) > low), axis=1)
+    across, up = (Axis("", ends, grid=False) for ends in zip(low.tolist(), high.tolist()))
+    panel = Panel(across, up, CLOSE, f"{number}, {2e3 * half:.2g} mm wide", least=CLOSE)
+    _draw(panel, corners[seen], shares[seen], None)
+    return panel
 
-    drawn = PolyCollection(
-        list(corners),
-        array=np.abs(shares).clip(LEAST, None),
-        norm=LogNorm(LEAST, 1.0),
-        cmap="YlOrRd",
-        edgecolor=LINE,
-        linewidth=0.4,
-    )
-    ax.add_collection(drawn)
-    ax.grid(False)
-    at = corners.mean(axis=1).T
-    told = {
-        "share of the error": ("", [percent(abs(share), signed=False) for share in shares]),
-        "y": ("mm", [f"{v:.4g}" for v in at[0]]),
-        "r": ("mm", [f"{v:.4g}" for v in at[1]]),
-    }
-    readable(ax, at[0], at[1], "cell", told)
-    return drawn
+
+def _draw(panel: Panel, corners, shares, legend: Any) -> None:
+    """Draw cells in the colours of their shares, which can be read off."""
+    scale = {"type": "log", "domain": [LEAST, 1.0], "scheme": "yelloworangered", "clamp": True}
+    shade = {"field": "share", "type": "quantitative", "scale": scale, "legend": legend}
+    sizes = np.abs(shares).clip(LEAST, None).tolist()
+    rows = [
+        {"x": x, "y": y, "detail": k, "share": sizes[k]}
+        for k, cell in enumerate(corners.tolist())
+        for x, y in cell
+    ]
+    mark = {"type": "line", "interpolate": "linear-closed", "stroke": "#808080"}
+    panel.draw(mark | {"strokeWidth": 0.5}, rows, fill=shade)
+    places = [
+        {"x": x, "y": y, "told": _words(x, y, share)}
+        for (x, y), share in zip(corners.mean(axis=1).tolist(), shares)
+    ]
+    panel.read(places, "#444444")
+
+
+def _words(y: float, r: float, share: float) -> str:
+    size = percent(abs(share), signed=False)
+    places = ("y", f"{y:.4g}", "mm"), ("r", f"{r:.4g}", "mm")
+    return told("cell", ("share of the error", size, ""), *places)
 
 
 def _close(points: np.ndarray, places: Sequence[Any]) -> list[tuple[int, float]]:
@@ -229,23 +151,23 @@ def _close(points: np.ndarray, places: Sequence[Any]) -> list[tuple[int, float]]
 
 
 def _raised(spots: Sequence[tuple[float, float]]) -> list[float]:
-    """How far the number over each spot (inches) is to be raised so that it lies on none before."""
+    """Heights (px) of the numbers of places, over them and none on another."""
     taken: list[tuple[float, float]] = []
     for x, y in spots:
+        y += DIGIT
         while any(abs(x - a) < DIGIT and abs(y - b) < DIGIT for a, b in taken):
             y += 1.01 * DIGIT
         taken.append((x, y))
-    return [y - base for (_, y), (_, base) in zip(taken, spots)]
+    return [y for _, y in taken]
 
 
-@as_svg
-def where_chart(record: Record):
-    """Where the error of the judge sits; None without a record of it."""
+def where_chart(record: Record, width: float = WIDE) -> Chart | None:
+    """Places of the error of the judge; None without a record of them."""
     where = record.where
     if where is None or not where.cells:
         return None
     cells = np.array(where.points), np.array(where.cells), np.array(where.shares)
-    return _figure(*cells, where.rows, "")
+    return _chart(*cells, where.rows, "", width)
 
 
 def worth_naming(rows: Sequence[Any]) -> list[Any]:

@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path
 
-from solidgear.report.chart_style import new_figure, percent_decades, styled, tolerance_line
+from solidgear.report.panel import PERCENT, SHAPES, Axis, Panel, Series, tolerance_line
+from solidgear.report.plot import Chart
 from validation.real_speed_accuracy import lines
 from validation.real_speed_accuracy.ratios import QUANTITIES, Row, errors, references
 
@@ -18,10 +19,12 @@ LOOK = {
     lines.DIFFERENCE: ("#a05a00", "^"),
     lines.HEAVY: ("#c98a00", "P"),
     lines.PLAIN: ("#00805e", "o"),
-    lines.CALCULIX: ("#222222", "X"),
+    lines.CALCULIX: ("#222222", "<"),
 }
 TITLES = {"keyed": "Keyed pinion", "toothed": "Toothed pinion", "step": "Shaft from a STEP file"}
 WORDS = {"C_zz": "error of C_zz", "bending_1": "error of first bending"}
+#: of the errors drawn
+HEIGHTS = (3e-5, 6e-2)
 COSTS = {"cpu_s": "processor seconds, scene to answer, one thread", "peak_MB": "peak memory, MB"}
 
 
@@ -36,35 +39,35 @@ def draw(rows: Sequence[Row], part: str, path: Path, target: float = 1e-3) -> No
     target : float
         The error that ratios are taken at.
     """
-    from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
-
     truth = references(rows, part)
-    with styled():
-        figure = new_figure(9.6, 6.8)
-        axes = figure.subplots(2, 2, sharex="col", sharey="row")
-        for i, what in enumerate(QUANTITIES):
-            for j, (cost, words) in enumerate(COSTS.items()):
-                ax = axes[i][j]
-                for line in lines.LINES[part]:
-                    own = [r for r in rows if r["part"] == part and r["line"] == line]
-                    if line == lines.REFERENCE or not own:
-                        continue
-                    colour, marker = LOOK[line]
-                    style = {"color": colour, "marker": marker, "markersize": 5, "linewidth": 1.2}
-                    e = errors(rows, part, line, what)
-                    ax.loglog([r[cost] for r in own], e, label=line, **style)
-                ax.axhspan(1e-9, truth[what].doubt, color="#e8e8e8", zorder=0)
-                tolerance_line(ax, target, x=0.99, size=7, linewidth=0.8, linestyle="--")
-                ax.set_ylim(3e-5, 6e-2)
-                percent_decades(ax)
-                ax.xaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
-                ax.xaxis.set_major_formatter(FuncFormatter(lambda v, _: f"{v:g}"))
-                ax.xaxis.set_minor_formatter(NullFormatter())
-                if i:
-                    ax.set_xlabel(words)
-            axes[i][0].set_ylabel(WORDS[what])
-        handles, names = axes[0][0].get_legend_handles_labels()
-        figure.legend(handles, names, loc="outside lower center", ncols=3, fontsize=8)
-        said = "grey: the reference knows no better"
-        figure.suptitle(f"{TITLES[part]}: error against cost ({said})", fontsize=10.5)
-        figure.savefig(path, dpi=110)
+    own = [r for r in rows if r["part"] == part and r["line"] in lines.LINES[part]]
+    own = [r for r in own if r["line"] != lines.REFERENCE]
+    series = {
+        line: Series(colour, SHAPES[marker])
+        for line, (colour, marker) in LOOK.items()
+        if any(r["line"] == line for r in own)
+    }
+    panels = []
+    for what in QUANTITIES:
+        panels.append([])
+        for cost, words in COSTS.items():
+            costs = [r[cost] for r in own]
+            panel = Panel(
+                Axis(words, (min(costs) / 1.5, max(costs) * 1.5), log=True),
+                Axis(WORDS[what], HEIGHTS, log=True, label=PERCENT),
+                250.0,
+                series=series,
+                legend=None if len(panels) > 1 or panels[0] else {"orient": "top", "columns": 2},
+            )
+            floor = [{"y": HEIGHTS[0], "y2": max(truth[what].doubt, HEIGHTS[0])}]
+            panel.draw({"type": "rect", "color": "#e8e8e8"}, floor)
+            tolerance_line(panel, target)
+            for line in series:
+                levels = [r for r in own if r["line"] == line]
+                found = zip(levels, errors(rows, part, line, what))
+                places = [{"x": r[cost], "y": error, "name": line} for r, error in found]
+                panel.draw({"type": "line", "strokeWidth": 1.2}, places)
+                panel.draw({"type": "point", "filled": True, "size": 40, "clip": True}, places)
+            panels[-1].append(panel)
+    said = "grey: the reference knows no better"
+    Chart(panels, title=f"{TITLES[part]}: error against cost ({said})").write(path)

@@ -16,6 +16,19 @@ from pathlib import Path
 from validation.common import ROOT, results_folder, show, write_rows
 
 FOLDER = Path(__file__).resolve().parent
+#: how charts look, whatever the user's own matplotlibrc says
+STYLE = {
+    "font.size": 9,
+    "axes.spines.top": False,
+    "axes.spines.right": False,
+    "axes.titlesize": 9.5,
+    "axes.titlelocation": "left",
+    "axes.grid": True,
+    "axes.axisbelow": True,
+    "grid.color": "#e3e3e3",
+    "grid.linewidth": 0.6,
+    "legend.frameon": False,
+}
 __all__ = ["FOLDER", "ROOT", "Finding", "crossing", "main", "publish"]
 
 
@@ -89,13 +102,9 @@ def publish(finding: Finding, draw: Callable | None) -> Path:
         import matplotlib
         from matplotlib.figure import Figure
 
-        from solidgear.report.chart_style import STYLE
-
         with matplotlib.rc_context():
             matplotlib.rcdefaults()
-            matplotlib.rcParams.update(
-                STYLE | {"text.parse_math": True}
-            )  # powers of ten on logarithmic axes
+            matplotlib.rcParams.update(STYLE)
             figure = Figure(figsize=(8.0, 4.4), dpi=150, layout="constrained")
             axes = figure.subplots()
             draw(finding, axes)
