@@ -1,5 +1,5 @@
 """Bands of solids from their last meshes: what sets them, piece by piece.  Whether they hold the
-truth is asked by validation/attack.
+truth is asked by validation/campaign.
 """
 
 import pytest

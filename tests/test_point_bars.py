@@ -32,11 +32,11 @@ from solidgear.scene import Bearing, Port, Scene, Segment
 from solidgear.studies.guards.data import split_pair
 from solidgear.studies.guards.models import beam_against_solid
 from solidgear.studies.guards.probe import Probe
-from validation.attack.corner_mesh import corner_mesh
-from validation.attack.judge import SMALL
-from validation.attack.points import judged, scene_of, solutions
-from validation.attack.reference import RATIO, SIZE, Reference
-from validation.attack.spectral import spectral
+from validation.campaign.cases.points import judged, scene_of, solutions
+from validation.campaign.rows import SMALL
+from validation.campaign.truths.corner_mesh import corner_mesh
+from validation.campaign.truths.reference import RATIO, SIZE, Reference
+from validation.campaign.truths.spectral import spectral
 
 GEOMETRY = Path(__file__).parent.parent / "geometry"
 PATH = GEOMETRY / "intermediate_shaft.toml"
@@ -127,12 +127,13 @@ def test_bars_hold_on_random_shafts_with_two_points(seed):
     """Against orders 5 and more on graded corners; seeds of a light reference, of three kinds."""
     scene = scene_of(seed)
     found = solutions(scene, most=2)
-    truth = light_truth(scene)
-    for one in found.values():
-        crossed = [band for band in judged(one, truth) if points_of(band.quantity)]
-        assert len(crossed) >= 9 and all(band.held for band in crossed if band.judged)
+    truth = {"spectral": light_truth(scene)}
+    for mesh, one in found.items():
+        rows = judged(one["said"], truth, scene.title, mesh)
+        crossed = [row for row in rows if points_of(row.quantity)]
+        assert len(crossed) >= 9 and all(row.held for row in crossed if row.judged)
         # errors that are there: a bar that any number would meet is no bar
-        assert max(abs(band.error) for band in crossed) > SMALL
+        assert max(row.off for row in crossed) > SMALL
 
 
 def test_a_term_that_symmetry_forbids_has_a_bar():

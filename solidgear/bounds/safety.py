@@ -1,7 +1,7 @@
 """The few constants that decide a bar and are measured, not derived.
 
 They stand in ``safety.json`` with the date and the shafts that they were measured on. That of local
-problems is judged by ``python -m validation.bounds``. Nothing else that is measured widens or narrows
+problems is judged by ``python -m validation.campaign answers``. Nothing else that is measured widens or narrows
 a bar.
 """
 

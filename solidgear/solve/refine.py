@@ -271,7 +271,7 @@ def _columns(a, b):
 
 def _rounding(supported, u, rest, stretch):
     """Rounding of each energy by products and by the matrix itself, rad^2/s^2 (held to dense
-    solutions by validation/attack/modes.py).
+    solutions by validation/campaign/cases/modes.py).
     """
     own = np.linalg.norm(supported.diagonal[:, None] * rest**2, axis=0)
     # A stretch that came from the load (see Supported.stretch) is good to the digits that the

@@ -1,1 +1,0 @@
-"""Error bars held against references, on bodies drawn to break them."""

@@ -1,0 +1,216 @@
+"""Do the bars of models with features hold, and is what they call valid within the tolerance?"""
+
+from __future__ import annotations
+
+import argparse
+import hashlib
+import itertools
+import json
+import tempfile
+import time
+from dataclasses import asdict, dataclass
+from pathlib import Path
+
+import solidgear as sg
+from solidgear.judge.quantities import JUDGED, size
+from solidgear.judge.sequence_bars import sequence_bands
+from solidgear.judge.solution import Solution
+from solidgear.judge.study import study
+from solidgear.judge.ties import SCENE
+from solidgear.ladder.registry import LADDER
+from solidgear.ladder.size import estimated_size
+from validation.campaign.case import Case, Run
+from validation.campaign.rows import (
+    DECIDED,
+    FALSE_VALID,
+    Cost,
+    Found,
+    Row,
+    Verdict,
+    sorted_verdict,
+    within,
+)
+from validation.campaign.scenes.parts import SORTS, draw
+from validation.campaign.truths.features import PAIR, Numbers, numbers, truth
+
+#: meshes of each model that are judged: one after the other, as a user would come to them
+MESHES = {"corrected": 3, "sector": 3, "solid": 3}
+#: unknowns of the last mesh of a model above which it is left out
+HEAVY = {"corrected": 18_500, "sector": 170_000, "solid": 10_000}
+#: what is asked for, so that no mesh is the last before its time
+NEVER = 1e-7
+#: tolerances at which a model is called valid
+TOLERANCES = (1e-3, 3e-3, 1e-2, 3e-2)
+
+
+class Features(Case):
+    """Models of parts with features on their first meshes, against finer meshes of another kind."""
+
+    name, question = "features", "bars and verdicts of models with features"
+    parts, details = ((), ("model",)), (("part", "model"),)
+    seeds = (1, 20)
+    seconds = 1800.0
+    tag_of_costs = "model"
+
+    def options(self, parser: argparse.ArgumentParser) -> None:
+        parser.add_argument("--sort", choices=SORTS)
+        parser.add_argument("--parts", type=int, help="from the first seed on, instead of the last")
+
+    def bodies(self, given: argparse.Namespace) -> list[tuple[int]]:
+        first, last = given.seeds
+        seeds = range(first, last + 1) if given.parts is None else itertools.count(first)
+        fit_for_this = ((seed,) for seed in seeds if _light(draw(seed, given.sort).text))
+        return list(itertools.islice(fit_for_this, given.parts))
+
+    def asked(self, given: argparse.Namespace) -> str:
+        if given.parts is None:
+            return super().asked(given)
+        sort = f" of sort {given.sort}" if given.sort else ""
+        return f"{given.parts} parts{sort} from seed {given.seeds[0]} on"
+
+    def judge(self, run: Run, seed: int) -> Found:
+        drawn = draw(seed, run.given.sort)
+        scene = loaded(drawn.text)
+        kept = run.folder / "features"
+        kept.mkdir(parents=True, exist_ok=True)
+        true, problem = run.call(truth, scene, drawn.text, kept)
+        if problem:
+            return Found(problems=[f"{seed}, {drawn.words}: no reference: {problem}"])
+        body = f"{seed} {drawn.words} ({max(map(abs, true.effect.values())):.1%})"
+        out = Found()
+        for model in fit(scene):
+            if heavy(scene, model):
+                out.problems.append(f"{body}: {model} left out, too large")
+                continue
+            meshes, problem = _kept(run, kept, scene, model, drawn.text)
+            if problem:
+                out.problems.append(f"{body}: {model} left out: {problem}")
+                continue
+            out.costs.append(Cost(body, {"model": model}, meshes[-1].seconds))
+            for mesh in range(1, len(meshes) + 1):
+                judged(out, scene, model, meshes[:mesh], true, body)
+        return out
+
+
+@dataclass(frozen=True)
+class Mesh:
+    """Numbers of a model on one mesh.
+
+    Attributes
+    ----------
+    numbers : dict of str to float
+        With the first bending pair by plane or by frequency.
+    quantities, solver : dict of str to float
+        As bars ask for them.
+    split : bool
+        "bending 2" is the second of the first pair.
+    mesh : dict
+        Facts.
+    seconds : float
+        Of processor time up to here.
+    """
+
+    numbers: dict[str, float]
+    quantities: dict[str, float]
+    solver: dict[str, float]
+    split: bool
+    mesh: dict
+    seconds: float
+
+
+def loaded(text: str) -> sg.Scene:
+    """The scene of a file."""
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "part.toml"
+        path.write_text(text)
+        return sg.load(path)
+
+
+def fit(scene: sg.Scene) -> list[str]:
+    """Models of a part with features that have bars of their own."""
+    out = [n for n in MESHES if not LADDER[n].unfit(scene) and n in LADDER.fit(scene)]
+    # all copies of a sector are the same numbers as one of them
+    return [n for n in out if n != "solid" or "sector" not in out]
+
+
+def heavy(scene: sg.Scene, model: str) -> bool:
+    """The last mesh of a model takes more time than there is."""
+    last = dict(LADDER[model].meshes(_options(model)).levels[MESHES[model] - 1])
+    return estimated_size(scene, model, LADDER[model].given(scene, last)).unknowns > HEAVY[model]
+
+
+def _light(text: str) -> bool:
+    """A part fits together, and a model with bars for its features is not too large."""
+    try:
+        scene = loaded(text)
+    except sg.SolidgearError:
+        return False
+    return any(n != "solid" and not heavy(scene, n) for n in fit(scene))
+
+
+def _options(model: str) -> dict:
+    return {"element": "tet10"} if model == "solid" else {}
+
+
+def _kept(run: Run, folder: Path, scene: sg.Scene, model: str, text: str) -> tuple[list[Mesh], str]:
+    """Meshes of a model, as it said the last time where only bars are asked for anew."""
+    path = folder / f"{hashlib.sha256((model + text).encode()).hexdigest()[:16]}_said.json"
+    if run.given.again and path.exists():
+        return [Mesh(**one) for one in json.loads(path.read_text())], ""
+    found, problem = run.call(said, scene, model)
+    if not problem:
+        path.write_text(json.dumps([asdict(one) for one in found]))
+    return found, problem
+
+
+def said(scene: sg.Scene, model: str) -> list[Mesh]:
+    """A model on its first meshes."""
+    asked = scene.with_changes(ask=scene.ask.with_changes(tolerance=NEVER))
+    out: list[Mesh] = []
+    start = time.process_time()
+
+    def keep(one: Solution) -> None:
+        found, mesh = one.ties[SCENE], one.body.mesh
+        given = found.numbers
+        split = "bending z 1" not in {m.name for m in one.modes.modes}
+        facts = {k: v for k, v in mesh.items() if isinstance(v, (int, float, str))}
+        spent = time.process_time() - start
+        out.append(Mesh(numbers(found), given.quantities, given.solver, split, facts, spent))
+
+    more = {"most": MESHES[model], "evidence": False, "counted": False, "keep": keep}
+    study(asked, model, _options(model), **more)
+    return out
+
+
+def judged(
+    out: Found, scene: sg.Scene, model: str, meshes: list[Mesh], true: Numbers, body: str
+) -> None:
+    """Hold the bars that some meshes give, and what is valid by them, against the truth."""
+    rung, last, label = LADDER[model], meshes[-1], f"{model} {len(meshes)}"
+    bands = sequence_bands(
+        scene,
+        rung.meshes(_options(model)),
+        rung,
+        [one.quantities for one in meshes],
+        last.solver,
+        [one.mesh.get("representative_size") for one in meshes],
+    )
+    own, tags = last.numbers, {"model": label, "part": body}
+    errors = {q: (own[q] - v) / size(true.values, q) for q, v in true.values.items() if q in own}
+    split = "bending 2" in bands and last.split
+    called = {"pair 1": "bending 1", **({"pair 2": "bending 2"} if split else {})}
+    for q, error in errors.items():
+        band = bands.get(called.get(q, q))
+        if band is not None and q != PAIR[1]:
+            told = {"how": "finer meshes", "rule": DECIDED}
+            out.rows.append(Row(body, q, tags, band.gci, error, true.doubt[q], **told))
+    names = {q: "pair 1" if q == "bending 1" else q for q in JUDGED}
+    asked = {q: n for q, n in names.items() if n in errors}
+    if not asked or any(q not in bands for q in asked):
+        return
+    found = {n: (errors[n], true.doubt[n]) for n in asked.values()}
+    for tolerance in TOLERANCES:
+        valid = all(bands[q].gci <= tolerance for q in asked)
+        sort = sorted_verdict(valid, within(found, tolerance))
+        why = "a bar is within the tolerance, its error is not" if sort == FALSE_VALID else ""
+        out.verdicts.append(Verdict(body, label, tolerance, sort, why))
