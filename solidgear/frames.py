@@ -62,62 +62,6 @@ def shift(offset: ArrayLike) -> np.ndarray:
     return out
 
 
-def move_stiffness(stiffness: ArrayLike, offset: ArrayLike) -> np.ndarray:
-    """6x6 stiffness seen from a displaced reference point.
-
-    The two points are joined rigidly; ``K_new = T^-T K_old T^-1`` with
-    ``T = shift(offset)``, and the inverse of a shift is the opposite shift.
-
-    Parameters
-    ----------
-    stiffness : (6, 6) array_like
-        N/m, N/rad and N m/rad, order (x, y, z, thx, thy, thz).
-    offset : (3,) array_like
-        Vector from the old to the new reference point, in m.
-
-    Returns
-    -------
-    (6, 6) ndarray
-
-    Examples
-    --------
-    A spring of 1e6 N/m along z resists a tilt about a point 0.1 m away with 1e6 x 0.1^2 N m/rad:
-
-    >>> import numpy as np
-    >>> moved = move_stiffness(np.diag([0.0, 0.0, 1e6, 0.0, 0.0, 0.0]), [0.0, 0.1, 0.0])
-    >>> round(float(moved[3, 3]), 6)
-    10000.0
-    """
-    back = shift(-np.asarray(offset, float))
-    return back.T @ np.asarray(stiffness, float) @ back
-
-
-def move_compliance(compliance: ArrayLike, offset: ArrayLike) -> np.ndarray:
-    """6x6 compliance seen from a displaced reference point, ``T C T'`` with ``T = shift(offset)``.
-
-    Parameters
-    ----------
-    compliance : (6, 6) array_like
-        m/N, rad/N and rad/(N m), order (x, y, z, thx, thy, thz).
-    offset : (3,) array_like
-        Vector from the old to the new reference point, in m.
-
-    Returns
-    -------
-    (6, 6) ndarray
-
-    Examples
-    --------
-    >>> import numpy as np
-    >>> stiffness = np.diag([1e8, 1e8, 1e8, 1e5, 1e5, 1e5])
-    >>> there = move_compliance(np.linalg.inv(stiffness), [0.0, 0.1, 0.0])
-    >>> np.allclose(there @ move_stiffness(stiffness, [0.0, 0.1, 0.0]), np.eye(6))
-    True
-    """
-    forth = shift(offset)
-    return forth @ np.asarray(compliance, float) @ forth.T
-
-
 def rotation(axis: int, angle: float) -> np.ndarray:
     """Rotation of motions and loads about a coordinate axis.
 

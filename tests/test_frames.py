@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from solidgear.frames import cross_matrix, move_compliance, move_stiffness, rotation, shift
+from solidgear.frames import cross_matrix, rotation, shift
 
 # Every identity here is a handful of products of numbers of order one: 1e-14 is fifty roundings.
 ROUNDING = 1e-14
@@ -15,11 +15,6 @@ ROUNDING = 1e-14
 @pytest.fixture
 def rng():
     return np.random.default_rng(7)
-
-
-def random_stiffness(rng):
-    a = rng.standard_normal((6, 6))
-    return a @ a.T + np.eye(6)
 
 
 def test_cross_matrix_is_the_cross_product(rng):
@@ -64,45 +59,6 @@ def test_power_does_not_depend_on_the_reference_point(rng):
     assert (t @ motion) @ load_new == pytest.approx(
         motion @ (t.T @ load_new), rel=1e-13
     )  # two sums of a dozen products
-
-
-def test_energy_does_not_depend_on_the_reference_point(rng):
-    offset, stiffness, motion = (
-        rng.standard_normal(3),
-        random_stiffness(rng),
-        rng.standard_normal(6),
-    )
-    there = shift(offset) @ motion
-    moved = move_stiffness(stiffness, offset)
-    # quadratic forms of a well conditioned 6x6: a few hundred roundings
-    assert there @ moved @ there == pytest.approx(motion @ stiffness @ motion, rel=1e-12)
-
-
-def test_moved_compliance_is_the_inverse_of_the_moved_stiffness(rng):
-    offset, stiffness = rng.standard_normal(3), random_stiffness(rng)
-    product = move_stiffness(stiffness, offset) @ move_compliance(np.linalg.inv(stiffness), offset)
-    # the inverse of a matrix with condition number below 1e3 costs three digits
-    assert np.allclose(product, np.eye(6), rtol=0, atol=1e-11)
-
-
-def test_radial_spring_seen_from_a_distance():
-    # A spring k on z at y = 0, seen from y = d: lifting needs k, tilting k d^2, and a lift couples
-    # to the tilt by -k d.
-    k, d = 3.0, 0.5
-    stiffness = np.zeros((6, 6))
-    stiffness[2, 2] = k
-    moved = move_stiffness(stiffness, (0.0, d, 0.0))
-    expected = np.zeros((6, 6))
-    expected[2, 2], expected[3, 3], expected[2, 3], expected[3, 2] = k, k * d * d, -k * d, -k * d
-    assert np.allclose(moved, expected, rtol=0, atol=ROUNDING)
-
-
-def test_moving_there_and_back_changes_nothing(rng):
-    offset, stiffness = rng.standard_normal(3), random_stiffness(rng)
-    back = move_stiffness(move_stiffness(stiffness, offset), -offset)
-    assert np.allclose(
-        back, stiffness, rtol=0, atol=1e-12
-    )  # four products, entries up to a hundred
 
 
 @pytest.mark.parametrize("axis", [0, 1, 2])

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from solidgear.errors import SolidgearError
-from solidgear.frames import move_stiffness
+from solidgear.frames import shift
 from solidgear.system.gear_mesh import MeshVector, line_of_action, mesh_point, to_gear_frame
 from validation.thesis.highest_frequency import consistency, rayleigh_bound
 from validation.thesis.identify import Unknown, identify, torsion_springs
@@ -32,6 +32,12 @@ RATIO = 45 / 14
 CLOSE = 1e-11
 AXIAL = MeshVector([0, 1, 0], [0, 0, 0])  # line of action along both shafts: no torque, no tilt
 NOTHING = np.zeros((6, 6))
+
+
+def moved_by(matrix, offset):
+    """A 6x6 stiffness or mass seen from a displaced reference point."""
+    back = shift(-np.asarray(offset))
+    return back.T @ matrix @ back
 
 
 @pytest.fixture
@@ -125,7 +131,7 @@ def test_signs_of_the_shaft_stiffness_are_those_of_a_spring_behind_the_lumped_po
     # A bearing at y = +L holds the shaft against x and z: seen from the lumped point it is the
     # shifted spring.
     k, length = 3e9, 0.1
-    behind = move_stiffness(np.diag([k, 0, k, 0, 0, 0]), (0, -length, 0))
+    behind = moved_by(np.diag([k, 0, k, 0, 0, 0]), (0, -length, 0))
     assert np.allclose(shaft_stiffness(k, 0, k * length**2, -k * length), behind, rtol=1e-14)
 
 
@@ -227,10 +233,8 @@ def test_moving_a_lumped_point_changes_no_frequency(pair):
     offset = np.array([0.0, 0.07, 0.0])
     moved = replace(
         pair,
-        pinion_mass=move_stiffness(
-            pair.pinion_mass, offset
-        ),  # a mass matrix moves as a stiffness does
-        pinion_support=move_stiffness(pair.pinion_support, offset),
+        pinion_mass=moved_by(pair.pinion_mass, offset),
+        pinion_support=moved_by(pair.pinion_support, offset),
         pinion_mesh=MeshVector(pair.pinion_mesh.normal, pair.pinion_mesh.point - offset),
     )
     assert moved.pinion_mass[0, 5] != 0
