@@ -351,7 +351,7 @@ def _plain_words(one: Mapping, data: Any) -> str:
         "int_type": "must be a whole number",
         "list_type": "must be a list in square brackets",
         "tuple_type": "must be a list in square brackets",
-        "dict_type": "must be a table",
+        "dict_type": "must be a table of keys",
         "model_type": "must be a table of keys",
         "model_attributes_type": "must be a table of keys",
         "union_tag_not_found": "this key is missing; "
@@ -363,7 +363,7 @@ def _plain_words(one: Mapping, data: Any) -> str:
         "union_tag_invalid": f"unknown kind; write one of {ctx.get('expected_tags')}",
         "literal_error": f"must be {ctx.get('expected')}",
     }
-    if kind in ("model_type", "model_attributes_type") and isinstance(
+    if kind in ("model_type", "model_attributes_type", "dict_type") and isinstance(
         _name_and_value(one["loc"], data)[1], list
     ):
         return f"must be a table of keys, given once: write [{one['loc'][-1]}] with single brackets"

@@ -49,6 +49,14 @@ def test_numbers_are_those_of_the_result(told):
     assert "bore 50 mm" in repr(told["scene"]) and "80 to 120 mm" in repr(told["scene"])
 
 
+def test_a_mass_is_shown_where_it_sits():
+    """Also one that moves with a bearing or a lumped point and has no seat of its own."""
+    scene = sg.load(ROOT / "geometry" / "rotor_disc.toml")
+    rows = {row[0]: row for row in scene.table().rows}
+    assert rows["disc"][2:4] == rows["fan"][2:4] and rows["disc"][4] == "22 kg"
+    assert rows["coupling"][3] - rows["coupling"][2] == pytest.approx(24.0)
+
+
 class _Balanced(HTMLParser):
     def __init__(self):
         super().__init__()

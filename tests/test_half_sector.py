@@ -18,7 +18,7 @@ from solidgear.models.sector.body import meshed_sector, sector, whole
 from solidgear.models.sector.half import HalfSector, basis, half_sector_solid
 from solidgear.models.solid.matrices import _matrices
 from solidgear.scene import Spline
-from solidgear.scene.cyclic_rules import mirror_angle
+from solidgear.scene.features.around import mirror_angle
 
 #: equal to rounding whatever the mesh
 COARSE = 0.1

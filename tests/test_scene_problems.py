@@ -339,3 +339,11 @@ TRAPS = {
 def test_what_a_length_may_not_be(written, tmp_path):
     (found,) = sentences(spoilt(('diameter = "90 mm"', f"diameter = {written}")), tmp_path)
     assert found.startswith('segment[2] "shaft".diameter = ') and TRAPS[written] in found
+
+
+def test_a_fillet_beside_a_feature_on_no_segment_is_told_of_the_segment(tmp_path):
+    """A feature without a place was asked for it by every fillet, which ended in a traceback."""
+    feature = '[[feature]]\nkind = "flat"\nsegment = "shift"\nlength = 0.02\ndepth = 0.004\n'
+    fillet = '[[feature]]\nkind = "fillet"\nat = "head.end"\nradius = "1 mm"\n\n'
+    (told,) = sentences(spoilt(("[ask]", f"{feature}{fillet}[ask]")), tmp_path)
+    assert told.startswith("feature[1].segment") and 'did you mean "shaft"' in told

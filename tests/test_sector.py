@@ -18,7 +18,7 @@ from solidgear.meshing.teeth import half_outline, outline, section_area, section
 from solidgear.models.sector.body import meshed_sector, sector, whole
 from solidgear.models.sector.cyclic import Sector, basis, doubled
 from solidgear.scene import BoltCircle, Keyway, Spline, Teeth
-from solidgear.scene.cyclic_rules import no_common_sector
+from solidgear.scene.features.around import no_common_sector
 
 ROOT = Path(__file__).parent.parent
 TOOTHED = ROOT / "geometry" / "pinion_toothed.toml"

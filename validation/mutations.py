@@ -219,7 +219,7 @@ MUTATIONS = (
     ),
     Mutation(
         "hand of a spiral turned",
-        "solidgear/scene/cyclic_features.py",
+        "solidgear/scene/features/toothed.py",
         "_Toothed.twist",
         "1 if self.hand == 'right' else -1",
         "-1 if self.hand == 'right' else 1",
@@ -467,10 +467,10 @@ MUTATIONS = (
     ),
     Mutation(
         "lumped point 1 mm off",
-        "solidgear/scene/places.py",
-        "_lay_out",
-        "(segments[-1].y0 + y) / 2",
-        "(segments[-1].y0 + y) / 2 + 1e-3",
+        "solidgear/scene/shapes.py",
+        "lay_out",
+        "(lo + hi) / 2",
+        "(lo + hi) / 2 + 1e-3",
         "tests/test_scene.py::test_overhung_pinion_is_the_shaft_of_the_reference_numbers",
     ),
     Mutation(

@@ -64,8 +64,8 @@ def clearance_range(data: Catalogue) -> tuple[float, float]:
     """
     if not isinstance(data.clearance, str):
         return data.clearance, data.clearance
-    table = _BALLS if data.kind == "deep_groove" else _ROLLERS
-    if data.kind not in ("deep_groove", "cylindrical", "needle"):
+    table = _BALLS if data.balls else _ROLLERS
+    if data.angled:
         raise SceneError(
             f"{data.kind.replace('_', ' ')} bearings have no clearance class; write a length, or a "
             "preload",

@@ -29,9 +29,6 @@ if TYPE_CHECKING:
 #: exponent at the end of a rigid seat, a clamp on a smooth surface (Williams 1952, clamped-free at
 #: 180 degrees)
 RIGID_EDGE = 0.5
-#: kinds of features with right-angled re-entrant corners, where the meridian has none: teeth end at
-#: the next segment or in its face, holes and keyways have a bottom
-NOTCHED = frozenset({"teeth", "spline", "bolt_circle", "keyway", "flat"})
 #: rung that tells what features change, on its usual mesh: shares are taken of it
 PLAIN = "harmonic"
 
@@ -80,7 +77,7 @@ def sequence_bands(
     if not all(a > b > 0 for a, b in zip(last, last[1:])):
         return {}
     held = any(s.attachment == "rigid" for s in scene.stations)
-    notched = bool({f.kind for f in scene.features} & NOTCHED)
+    notched = any(f.notched for f in scene.features)
     exponent = min(
         sharpest_corner(scene)[1], RIGID_EDGE if held else 1.0, SHOULDER if notched else 1.0
     )

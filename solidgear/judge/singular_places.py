@@ -11,7 +11,7 @@ import numpy as np
 
 from solidgear.meshing.corners import filled_at
 from solidgear.meshing.grading import corner_length
-from solidgear.scene.stations import attached_stations
+from solidgear.scene.attached import attached_stations
 
 if TYPE_CHECKING:
     from solidgear.scene import Scene, Segment

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, NamedTuple
 
 from solidgear.factoring import Factoring
-from solidgear.scene.stations import attached_stations
+from solidgear.scene.attached import attached_stations
 
 if TYPE_CHECKING:
     from solidgear.scene.shaft import Shaft

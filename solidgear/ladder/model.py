@@ -90,16 +90,16 @@ class Rung:
     series : callable, optional
         ``series(scene, full)`` gives the lines of a chart of error against cost; by default its
         one usual mesh.
-    holds : tuple of frozenset of str
-        Kinds of features (`CUTS`, `CYCLIC`), or of files of a part (`PARTS`), that its body holds,
-        in sets that cannot be mixed; a body of revolution holds none.
+    holds : tuple of str
+        Sorts of features (`CUTS`, `CYCLIC`), or a part from a file (`PARTS`), that its body holds,
+        one of them at a time; a body of revolution holds none.
     nature : str
         What its body is, where a feature does not fit it: ``of revolution``.
     limits : callable, optional
-        ``limits(scene)`` tells why a scene whose features are of kinds that it holds does not fit
+        ``limits(scene)`` tells why a scene whose features are of sorts that it holds does not fit
         it all the same, or nothing; asked of scenes with features of `CYCLIC` only.
-    copies : frozenset of str
-        Kinds of features for which its mesh is made of copies of another rung's: no second opinion,
+    copies : str
+        Sort of features for which its mesh is made of copies of another rung's: no second opinion,
         and solved only where it is asked for by name.
     for_features : bool
         Whether it is made for the features that it holds, and for nothing else.
@@ -127,10 +127,10 @@ class Rung:
     mass_tolerance: float = 1e-9
     most_seats: int = 12
     series: Callable[[Any, bool], list[Series]] | None = None
-    holds: tuple[frozenset[str], ...] = ()
+    holds: tuple[str, ...] = ()
     nature: str = "of revolution"
     limits: Callable[[Any], str] | None = None
-    copies: frozenset[str] = frozenset()
+    copies: str = ""
     for_features: bool = False
     featured: Mapping[str, Any] = field(default_factory=dict)
     colour: str = "#777777"
@@ -148,30 +148,27 @@ class Rung:
         ----------
         scene : Scene
         """
+        from solidgear.scene.features import FEATURES
         from solidgear.scene.shaft import named, resolved
 
-        features, held = resolved(scene), [f"{k}".replace("_", " ") for k in sorted(self._kinds)]
-        every = getattr(scene, "features", ())
-        if self.for_features and not any(f.kind in self._kinds for f in every):
+        features, every = resolved(scene), getattr(scene, "features", ())
+        if self.for_features and not any(f.sort in self.holds for f in every):
+            held = sorted(kind for kind, one in FEATURES.items() if one.sort in self.holds)
             return (
-                f"the {self.title} is made for features, and the scene has none of: {listed(held)}"
+                f"the {self.title} is made for features, and the scene has none of: "
+                f"{listed(kind.replace('_', ' ') for kind in held)}"
             )
-        kinds = {f.kind for f in features}
-        held_here = {f.kind for f in every} if self.for_features and not kinds else kinds
-        if not kinds or any(kinds <= own for own in self.holds):
-            return self.limits(scene) if self.limits and held_here & CYCLIC else ""
+        sorts = {f.sort for f in features}
+        held_here = {f.sort for f in every} if self.for_features and not sorts else sorts
+        if len(sorts) < 2 and sorts <= set(self.holds):
+            return self.limits(scene) if self.limits and CYCLIC in held_here else ""
         if not self.holds and all(f.round for f in features):
             return ""
-        strange = [f for f in features if f.kind not in self._kinds]
+        strange = [f for f in features if f.sort not in self.holds]
         unfit = f"the {self.title} is {self.nature} and the scene has {named(strange or features)}"
         if not self.holds:
             return f"{unfit}: it would answer for the plain part"
         return unfit if strange else f"{unfit}, which no mesh holds together"
-
-    @property
-    def _kinds(self) -> set[str]:
-        """All kinds of features that it holds."""
-        return {kind for own in self.holds for kind in own}
 
     def concerns(self, scene: Any) -> bool:
         """Whether it is among the models that one asks of a scene without naming any.
@@ -182,10 +179,10 @@ class Rung:
         """
         from solidgear.scene.shaft import resolved
 
-        kinds = {f.kind for f in resolved(scene)}
+        sorts = {f.sort for f in resolved(scene)}
         if self.for_features:
-            return bool(kinds & self._kinds)
-        return not kinds & self.copies
+            return not sorts.isdisjoint(self.holds)
+        return self.copies not in sorts
 
     def meshes_of(self, scene: Any, options: Mapping[str, Any]) -> Sequence:
         """Meshes for a scene, coarse to fine; see ``meshes``.

@@ -17,9 +17,9 @@ from solidgear.ladder.factor_memory import ENTRY, MB, parts_of, solid_factor_mb
 from solidgear.ladder.size import Size
 from solidgear.meshing.blocks import blocks_beyond
 from solidgear.models.kinds import CUTS, CYCLIC
+from solidgear.scene.attached import attached_stations
 from solidgear.scene.coned import coned
 from solidgear.scene.shaft import resolved
-from solidgear.scene.stations import attached_stations
 
 if TYPE_CHECKING:
     from solidgear.scene.body_file import BodyFile
@@ -159,7 +159,7 @@ def solid_size(scene: Shaft, given: Mapping[str, Any]) -> Size:
     if body is not None and body.counts is not None:
         return _given_mesh(scene, given, body)
     features = resolved(scene)
-    if features and {f.kind for f in features} <= CYCLIC:
+    if features and all(f.sort == CYCLIC for f in features):
         return _whole_teeth(scene, given)
     if given["element"].startswith("tet"):
         return _tetrahedra(scene, given)
@@ -309,7 +309,7 @@ def _tetrahedra(scene: Shaft, given: Mapping[str, Any], edges: bool = False) -> 
     holes = [
         partial(around_cut, feature, scene.segments, given["refinement"], edges)
         for feature in resolved(scene)
-        if feature.kind in CUTS
+        if feature.sort == CUTS
     ]
     counts = estimated_counts(
         scene.segments,
@@ -331,7 +331,7 @@ def has_mirror_plane(scene: Shaft) -> bool:
     from solidgear.meshing.cuts import mirror_plane
 
     cuts = resolved(scene)
-    return bool(cuts) and {f.kind for f in cuts} <= CUTS and mirror_plane(cuts) is not None
+    return bool(cuts) and all(f.sort == CUTS for f in cuts) and mirror_plane(cuts) is not None
 
 
 def _solid(

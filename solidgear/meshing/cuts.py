@@ -4,13 +4,14 @@ size.
 
 from __future__ import annotations
 
-from math import cos, pi, sin, sqrt
+from math import cos, pi, sin
 from typing import TYPE_CHECKING, Any
 
 from solidgear.meshing.element_size import _num
+from solidgear.scene.features.cut import Frame
 
 if TYPE_CHECKING:
-    from solidgear.scene.features import CrossHole, CutFeature
+    from solidgear.scene.features.cut import Cut
 
 #: elements across the smaller size of a feature, at the size asked for
 ACROSS = 2.0
@@ -25,7 +26,7 @@ GROWTH = 1.0
 BEYOND = 0.2
 
 
-def tool(occ: Any, feature: CutFeature, radius: float) -> int:
+def tool(occ: Any, feature: Cut, radius: float) -> int:
     """The solid that cuts a feature.
 
     Parameters
@@ -41,53 +42,13 @@ def tool(occ: Any, feature: CutFeature, radius: float) -> int:
     int
         Tag of the volume; it reaches out of the shaft, and is not yet cut with it.
     """
-    lo, hi = feature.reach
-    top = BEYOND * radius
-    if feature.kind == "cross_hole":
-        made = occ.addCylinder(
-            0, feature.y, -radius - top, 0, 0, 2 * (radius + top), feature.diameter / 2
-        )
-    elif feature.kind == "flat":
-        floor = radius - feature.depth
-        wide = 2 * (radius + top)
-        made = occ.addBox(-wide / 2, lo, floor, wide, hi - lo, radius + top - floor)
-    else:
-        made = _slot(occ, feature, radius - feature.depth, feature.depth + top)
+    made = feature.tool(occ, radius, BEYOND * radius)
     if feature.angle:
         occ.rotate([(3, made)], 0, 0, 0, 0, 1, 0, feature.angle)
     return made
 
 
-def _slot(occ, key, floor: float, height: float) -> int:
-    """A keyway drawn on its floor and pulled outwards."""
-    lo, hi = key.reach
-    half = key.width / 2
-    a, b = (lo + half, hi - half) if key.ends == "round" else (lo, hi)
-    points = [occ.addPoint(x, y, floor) for x, y in ((-half, a), (half, a), (half, b), (-half, b))]
-    sides = [occ.addLine(points[1], points[2]), occ.addLine(points[3], points[0])]
-    if key.ends == "round":
-        ends = []
-        for first, middle, last, y, tip in (
-            (points[0], None, points[1], a, lo),
-            (points[2], None, points[3], b, hi),
-        ):
-            centre, middle = occ.addPoint(0, y, floor), occ.addPoint(0, tip, floor)
-            ends.append(
-                [occ.addCircleArc(first, centre, middle), occ.addCircleArc(middle, centre, last)]
-            )
-        loop = [*ends[0], sides[0], *ends[1], sides[1]]
-    else:
-        loop = [
-            occ.addLine(points[0], points[1]),
-            sides[0],
-            occ.addLine(points[2], points[3]),
-            sides[1],
-        ]
-    face = occ.addPlaneSurface([occ.addCurveLoop(loop)])
-    return next(tag for dim, tag in occ.extrude([(2, face)], 0, 0, height) if dim == 3)
-
-
-def volume(feature: CutFeature, outer: float, inner: float) -> float | None:
+def volume(feature: Cut, outer: float, inner: float) -> float | None:
     """Volume that a feature takes from its segment, where a closed form is known.
 
     Parameters
@@ -110,32 +71,11 @@ def volume(feature: CutFeature, outer: float, inner: float) -> float | None:
     >>> round(volume(deep, 0.1, 0.0) / (pi * 0.1**2), 6)
     0.5
     """
-    from scipy.integrate import quad
-
-    if feature.kind == "cross_hole":
-        return None
-    floor = outer - feature.depth
-    if floor < inner:
-        return None
-
-    def height(x):
-        return sqrt(outer**2 - x * x) - floor
-
-    if feature.kind == "flat":
-        half = sqrt(outer**2 - floor**2)
-        return 2 * quad(height, 0, half, epsabs=0, epsrel=1e-12)[0] * feature.length
-    half = feature.width / 2
-
-    def along(x):
-        if feature.ends == "square":
-            return feature.length
-        return feature.length - 2 * half + 2 * sqrt(half**2 - x * x)
-
-    return 2 * quad(lambda x: height(x) * along(x), 0, half, epsabs=0, epsrel=1e-12)[0]
+    return feature.volume(outer, inner)
 
 
 def feature_size(
-    feature: CutFeature, radius: float, refinement: float, finer: float = 1.0
+    feature: Cut, radius: float, refinement: float, finer: float = 1.0
 ) -> tuple[str, float]:
     """Formula of the element edge around a feature, and its least value.
 
@@ -156,29 +96,14 @@ def feature_size(
     least : float
         m.
     """
-    lo, hi = feature.reach
-    across, up = _towards(feature)
-    along = f"Max(0,Max({_num(lo)}-y,y-{_num(hi)}))"
-    if feature.kind == "cross_hole":
-        least, distance = pi * feature.diameter / 8, _from_hole(feature)
-    else:
-        floor = radius - feature.depth
-        wide = feature.width / 2 if feature.kind == "keyway" else sqrt(radius**2 - floor**2)
-        least = min(feature.depth, wide) if feature.kind == "keyway" else wide / 2
-        below = f"Max(0,{_num(floor)}-{up})"
-        beside = f"Max(0,{across}-{_num(wide)})"
-        distance = f"Sqrt({below}^2+{beside}^2+{along}^2)"
+    straight, curved = feature.edges(radius)
     divided = ACROSS * refinement
-    # a circle of fewer than eight edges is no hole: it loses a fifteenth of its volume; nor is half
-    # of one of fewer than four the end of a keyway, which five leave room for
-    least = least / (max(1.0, divided) if feature.kind == "cross_hole" else divided)
-    if feature.kind == "keyway" and feature.ends == "round":
-        least = min(least, pi * feature.width / 10 / max(1.0, divided))
-    least /= finer
-    return f"{_num(least)}+{_num(GROWTH)}*{distance}", least
+    # what is curved is round at any refinement
+    least = min(straight / divided, curved / max(1.0, divided)) / finer
+    return f"{_num(least)}+{_num(GROWTH)}*{feature.distance(radius, _frame(feature))}", least
 
 
-def edge_size(feature: CutFeature, radius: float, refinement: float) -> tuple[str, float]:
+def edge_size(feature: Cut, radius: float, refinement: float) -> tuple[str, float]:
     """Formula of the element edge where stresses around a feature are highest: at the re-entrant
     edges of the floor of a keyway and of the ends of a flat, at the wall of a hole.
 
@@ -205,42 +130,22 @@ def edge_size(feature: CutFeature, radius: float, refinement: float) -> tuple[st
     >>> round(edge_size(flat, 0.03, 1.0)[1], 12)
     0.001
     """
-    if feature.kind == "cross_hole":
-        least = pi * feature.diameter / (8 * max(1.0, refinement / LEAST))
-        return f"{_num(least)}+{_num(GROWTH)}*{_from_hole(feature)}", least
-    lo, hi = feature.reach
-    across, up = _towards(feature)
-    floor = radius - feature.depth
-    if feature.kind == "flat":
-        half = sqrt(radius**2 - floor**2)
-        ends = f"Min(Sqrt((y-{_num(lo)})^2),Sqrt((y-{_num(hi)})^2))"
-        away = f"Sqrt({ends}^2+Max(0,{across}-{_num(half)})^2)"
+    at_edges = feature.from_edges(radius, _frame(feature))
+    if at_edges is None:
+        away = feature.distance(radius, _frame(feature))
+        least = feature.edges(radius)[1] / max(1.0, refinement / LEAST)
     else:
-        half = feature.width / 2
-        if feature.ends == "round":
-            beyond = f"Max(0,Max({_num(lo + half)}-y,y-{_num(hi - half)}))"
-            away = f"(Sqrt({across}^2+{beyond}^2)-{_num(half)})"
-        else:
-            aside, beyond = f"({across}-{_num(half)})", f"Max({_num(lo)}-y,y-{_num(hi)})"
-            outside = f"Sqrt(Max(0,{aside})^2+Max(0,{beyond})^2)"
-            away = f"({outside}+Min(0,Max({aside},{beyond})))"
-    least = min(feature.depth, half) / (ACROSS * EDGES * refinement)
-    return f"{_num(least)}+{_num(GROWTH)}*Sqrt({away}^2+({up}-{_num(floor)})^2)", least
+        away, least = at_edges
+        least /= ACROSS * EDGES * refinement
+    return f"{_num(least)}+{_num(GROWTH)}*{away}", least
 
 
-def _towards(feature: CutFeature) -> tuple[str, str]:
-    """Formulas of the distance from the middle plane of a feature, and of the height towards it."""
+def _frame(feature: Cut) -> Frame:
     c, s = _num(cos(feature.angle)), _num(sin(feature.angle))
-    return f"Sqrt((x*{c}-z*{s})^2)", f"(z*{c}+x*{s})"
+    return Frame(f"Sqrt((x*{c}-z*{s})^2)", f"(z*{c}+x*{s})", _num)
 
 
-def _from_hole(hole: CrossHole) -> str:
-    """Formula of the distance from the wall of a cross hole."""
-    off = f"Sqrt({_towards(hole)[0]}^2+(y-{_num(hole.y)})^2)"
-    return f"Max(0,{off}-{_num(hole.diameter / 2)})"
-
-
-def mirror_plane(features: tuple[CutFeature, ...]) -> int | None:
+def mirror_plane(features: tuple[Cut, ...]) -> int | None:
     """The plane that all features are symmetric about.
 
     Parameters
@@ -263,7 +168,7 @@ def mirror_plane(features: tuple[CutFeature, ...]) -> int | None:
         quarter = [(feature.angle - first) / (pi / 2) for feature in features]
         straight = [abs(q - round(q)) < 1e-9 for q in quarter]
         own = [ok and round(q) % 2 == 0 for ok, q in zip(straight, quarter)]
-        across = [ok and f.kind == "cross_hole" for ok, f in zip(straight, features)]
+        across = [ok and f.through for ok, f in zip(straight, features)]
         if all(a or b for a, b in zip(own, across)):
             return plane
     return None

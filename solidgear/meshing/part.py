@@ -19,7 +19,8 @@ from solidgear.meshing.quality import MeshError
 from solidgear.meshing.round_part import ON_LINE, RoundPart, Wall, round_part
 from solidgear.meshing.section_materials import Share, shared_out
 from solidgear.meshing.step import look
-from solidgear.scene.body_file import UNITS, BodyFile, BodyTable, PartGroup, Recognised
+from solidgear.scene.body_file import UNITS, BodyFile, BodyTable, PartGroup
+from solidgear.scene.recognised import Recognised
 
 #: seconds after which a file is given up
 LOOK_SECONDS = 25.0

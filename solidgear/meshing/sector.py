@@ -29,7 +29,7 @@ from solidgear.meshing.quality import MeshError, MeshQuality, check_mesh
 from solidgear.meshing.sector_drawing import draw_sector, drill, pair_faces
 from solidgear.meshing.teeth import section_area, tooth_size, turn_at
 from solidgear.meshing.tetrahedra import filled
-from solidgear.scene.cyclic_rules import middle, mirror_angle, no_common_sector
+from solidgear.scene.features.around import middle, mirror_angle, no_common_sector
 
 #: of the length of the shaft: cut faces whose nodes match no better than this do not match
 MATCH = 1e-9
@@ -138,14 +138,14 @@ def sector_mesh(
     gmsh = import_gmsh()
     shapes = [Frustum.of(s) for s in segments]
     tolerance = tolerance_of(shapes)
-    toothed = {f.segment: f for f in features if f.kind != "bolt_circle"}
+    toothed = {f.segment: f for f in features if f.toothed}
     plane = mirror_angle(features, count)
     half = plane is not None
     first = next((middle(teeth, count) for teeth in toothed.values()), plane or 0.0)
     twists = [(s, toothed[s.name]) for s in segments if s.name in toothed]
     with Session(gmsh):
         own = draw_sector(gmsh, segments, shapes, toothed, planes, circles, count, half)
-        holes = [f for f in features if f.kind == "bolt_circle"]
+        holes = [f for f in features if not f.toothed]
         own = drill(gmsh, own, holes, segments, twists, count, first)
         gmsh.model.occ.fragment(own[:1], own[1:]) if len(own) > 1 else None
         gmsh.model.occ.synchronize()
@@ -186,7 +186,7 @@ def tooth_sizes(segments, features, refinement: float) -> list[str]:
     list of str
     """
     of = {s.name: s for s in segments}
-    return [tooth_size(f, of[f.segment], refinement) for f in features if f.kind != "bolt_circle"]
+    return [tooth_size(f, of[f.segment], refinement) for f in features if f.toothed]
 
 
 def hole_sizes(segments, features, refinement: float) -> list[tuple[Any, Any, Hole]]:
@@ -203,7 +203,7 @@ def hole_sizes(segments, features, refinement: float) -> list[tuple[Any, Any, Ho
     list of (BoltCircle, Segment, Hole)
     """
     of = {s.name: s for s in segments}
-    found = [(f, of[f.segment]) for f in features if f.kind == "bolt_circle"]
+    found = [(f, of[f.segment]) for f in features if not f.toothed]
     return [(f, here, hole_of(f, here, refinement)) for f, here in found]
 
 
@@ -222,7 +222,7 @@ def volume_of_sector(segments, features, count: int) -> float:
     float
         m^3.
     """
-    toothed = {f.segment: f for f in features if f.kind != "bolt_circle"}
+    toothed = {f.segment: f for f in features if f.toothed}
     total = 0.0
     for s in segments:
         area = section_area(toothed[s.name]) if s.name in toothed else pi
@@ -231,7 +231,7 @@ def volume_of_sector(segments, features, count: int) -> float:
         )
         total += (area * outer - pi * inner) * (s.y1 - s.y0)
     for f in features:
-        if f.kind == "bolt_circle":
+        if not f.toothed:
             lo, hi = f.reach(next(s for s in segments if s.name == f.segment))
             total -= f.count * pi * f.diameter**2 / 4 * (hi - lo)
     return total / count

@@ -9,7 +9,7 @@ import numpy as np
 
 from solidgear.meshing.cuts import ACROSS, GROWTH
 from solidgear.meshing.element_size import _num
-from solidgear.scene.cyclic_features import arc
+from solidgear.scene.features.toothed import arc
 
 
 def outline(teeth: Any, count: int) -> tuple[np.ndarray, np.ndarray]:

@@ -38,7 +38,7 @@ from solidgear.models.modal import Modal, alike_turn, modal
 from solidgear.models.solid.body import tetrahedra_plan, usual_size
 from solidgear.models.solid.featured import featured_body, meshed
 from solidgear.models.solid.halves import PARTS
-from solidgear.scene.stations import attached_stations
+from solidgear.scene.attached import attached_stations
 
 #: free modes kept, twins counted twice: these hold the supported modes of a plain pinion to 2e-7
 #: (bending 1) and 3e-5 (bending 3)

@@ -31,8 +31,10 @@ def scene(told: Any) -> Table:
         rows.append((f.name, f.what, 1e3 * lo, 1e3 * hi, f"on {f.segment}"))
     for b in told.bearings:
         rows.append((b.name, "bearing", 1e3 * b.lo, 1e3 * b.hi, b.attachment))
+    seats = {s.name: s for s in told.stations}
     for m in told.masses:
-        rows.append((m.name, "mass", 1e3 * m.lo, 1e3 * m.hi, f"{m.mass:.6g} kg"))
+        seat = seats[m.station]
+        rows.append((m.name, "mass", 1e3 * seat.lo, 1e3 * seat.hi, f"{m.mass:.6g} kg"))
     for c in told.corners:
         rows.append(
             (c.name, c.kind, *(1e3 * y for y in c.span), f"on {told.segments[c.owner].name}")

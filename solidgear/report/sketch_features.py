@@ -21,9 +21,9 @@ def draw_feature(pen: Any, feature: Mapping[str, Any], segments: Sequence[Mappin
     segments : sequence of mapping
     """
     here = next(s for s in segments if s["name"] == feature["segment"])
-    if feature["kind"] in ("teeth", "spline"):
+    if "addendum" in feature:
         _teeth(pen, feature, here)
-    elif feature["kind"] == "bolt_circle":
+    elif "circle" in feature:
         _holes(pen, feature, here)
     else:
         _cut(pen, feature, here)
@@ -53,7 +53,7 @@ def _label(pen, x: float, height: float, text: str) -> None:
 def _cut(pen, cut: Mapping, here: Mapping) -> None:
     """What is cut out of a segment."""
     lo, hi = cut["y"], cut["y"] + cut.get("length", 0.0)
-    if cut["kind"] == "cross_hole":
+    if "diameter" in cut:
         lo, hi = lo - cut["diameter"] / 2, lo + cut["diameter"] / 2
     radius = here["outer0"]
     floor = radius - cut["depth"] if "depth" in cut else -radius

@@ -1,10 +1,17 @@
-"""What is modelled and what is asked: data only."""
+"""The scene: shapes, supports, features and questions, as data only."""
 
 from solidgear.scene.ask import Ask, Quantity
 from solidgear.scene.blends import Blend, Chamfer, Corner, Fillet
 from solidgear.scene.catalogue import BearingDisplacement, BearingLoad, Catalogue
-from solidgear.scene.cyclic_features import BoltCircle, Spline, Teeth
-from solidgear.scene.features import CrossHole, Feature, Flat, Keyway
+from solidgear.scene.features import (
+    BoltCircle,
+    CrossHole,
+    Feature,
+    Flat,
+    Keyway,
+    Spline,
+    Teeth,
+)
 from solidgear.scene.housing import Elastic, Housing
 from solidgear.scene.model import Scene
 from solidgear.scene.parts import STEEL, Material, Segment

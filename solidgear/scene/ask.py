@@ -1,4 +1,4 @@
-"""What is asked of a scene."""
+"""Questions that a scene asks."""
 
 from __future__ import annotations
 
@@ -7,8 +7,8 @@ from typing import Annotated, Any, Literal
 from pydantic import Field, ValidatorFunctionWrapHandler, WrapValidator
 
 from solidgear.errors import SceneError
-from solidgear.scene.parts import Model
 from solidgear.scene.rules import AT, MOST_MODES
+from solidgear.scene.typed import Model
 from solidgear.scene.units import Frequency, Tolerance
 
 #: what a model can be judged by: compliance and stiffness at the lumped point, first modes

@@ -34,23 +34,8 @@ STIFFNESS_NAMES = _entry_names()
 
 
 def stiffness_matrix(entries: Mapping[str, Any]) -> np.ndarray:
-    """Symmetric 6x6 from named entries (`STIFFNESS_NAMES`); the ones not named are zero.
-
-    Parameters
-    ----------
-    entries : mapping
-        For example ``{"kxx": "8.8e9 N/m", "kx_thz": 1.45e8}``; plain numbers are SI (N/m, N/rad, N
-        m/rad).
-
-    Returns
-    -------
-    (6, 6) ndarray
-        Order x y z thx thy thz.
-
-    Raises
-    ------
-    SceneError
-        Unknown name, or an entry that is not a quantity of its dimension.
+    """Symmetric (6, 6) ndarray from named entries (`STIFFNESS_NAMES`); the ones not named are zero,
+    and plain numbers are SI (N/m, N/rad, N m/rad).
 
     Examples
     --------
@@ -81,16 +66,7 @@ def stiffness_matrix(entries: Mapping[str, Any]) -> np.ndarray:
 
 
 def stiffness_entries(K: Any) -> dict[str, float]:
-    """Named non-zero entries of a symmetric 6x6: the inverse of `stiffness_matrix`.
-
-    Parameters
-    ----------
-    K : (6, 6) array_like
-        SI.
-
-    Returns
-    -------
-    dict of str to float
+    """Named non-zero entries (SI) of a symmetric 6x6: the inverse of `stiffness_matrix`.
 
     Examples
     --------
@@ -102,21 +78,8 @@ def stiffness_entries(K: Any) -> dict[str, float]:
 
 
 def checked_matrix(value: Any) -> tuple[tuple[float, ...], ...]:
-    """A checked 6x6 stiffness, hashable and comparable.
-
-    Parameters
-    ----------
-    value : mapping, (6, 6) ndarray or sequence of rows
-        Named entries as for `stiffness_matrix`, or numbers in SI.
-
-    Returns
-    -------
-    tuple of tuple of float
-
-    Raises
-    ------
-    SceneError
-        Not 6 rows of 6 finite numbers, not symmetric (to 1e-9), or not positive semidefinite.
+    """A checked 6x6 stiffness, hashable and comparable, of named entries or of rows in SI: six of
+    six finite numbers, symmetric to 1e-9 and positive semidefinite.
     """
     if isinstance(value, Mapping):
         K = stiffness_matrix(value)
@@ -127,7 +90,8 @@ def checked_matrix(value: Any) -> tuple[tuple[float, ...], ...]:
             and len(rows) == 6
             and all(isinstance(r, Sequence) and len(r) == 6 for r in rows)
         ):
-            raise SceneError("must be 6 rows of 6 numbers, order x y z thx thy thz")
+            named = "" if isinstance(rows, (list, tuple)) else "named entries such as kxx, or "
+            raise SceneError(f"must be {named}6 rows of 6 numbers, order x y z thx thy thz")
         K = np.zeros((6, 6))
         for i, row in enumerate(rows):
             for j, entry in enumerate(row):

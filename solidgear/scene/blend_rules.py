@@ -1,4 +1,4 @@
-"""Whether fillets and chamfers fit their shaft: every problem in a sentence of its own."""
+"""Rules for fillets and chamfers on their shaft: every problem in a sentence of its own."""
 
 from __future__ import annotations
 
@@ -24,21 +24,7 @@ def blend_problems(
     stations: Sequence[Any] = (),
     features: Sequence[Any] = (),
 ) -> Iterator[SceneError]:
-    """Fillets and chamfers that do not fit their shaft.
-
-    Parameters
-    ----------
-    segments : sequence of Segment
-    blends : sequence of Fillet or Chamfer
-    stations : sequence
-        What sits on the shaft: name, y, lo and hi each.
-    features : sequence of Keyway, Flat or CrossHole
-
-    Yields
-    ------
-    SceneError
-        One for each problem, with the path of a scene.
-    """
+    """Fillets and chamfers that do not fit their shaft, what sits on it, or its features."""
     if len(blends) > MOST_BLENDS:
         reason = (
             f"{len(blends)} fillets and chamfers are more than the {MOST_BLENDS} a shaft may have"

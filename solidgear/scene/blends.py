@@ -8,15 +8,17 @@ the cylinder beside it, along an arc or straight.
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Annotated, Any, Literal, TypeAlias
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, TypeAlias
 
 from pydantic import BeforeValidator
 
 from solidgear.errors import SceneError
-from solidgear.scene.parts import Model, Segment
+from solidgear.scene.parts import Segment
+from solidgear.scene.places import Placed, Places
 from solidgear.scene.rules import TOUCH
+from solidgear.scene.typed import Model
 from solidgear.scene.units import Position, PositiveLength, quantity
 
 Surface = Literal["outer", "bore"]
@@ -105,18 +107,34 @@ class Corner:
         return [self.on_face, *found[1:-1], self.on_cylinder]
 
 
-class _Blend(Model):
-    """What fillets and chamfers have in common."""
+class _At(Model):
+    """Of a file: the datum of the edge."""
+
+    at: str
+
+
+class _Blend(Placed):
+    """Base of fillets and chamfers."""
+
+    Words: ClassVar = _At
+    sources: ClassVar = {"y": ("at",)}
+
+    if TYPE_CHECKING:
+        kind: str  # a field of every subclass, in its own order
 
     name: str
     y: Position
     surface: Surface = "outer"
     edge: Edge | None = None
 
+    @classmethod
+    def place(cls, words: Any, table: Mapping[str, Any], places: Places) -> dict[str, Any]:
+        return {"y": places.of(words.at, "at")}
+
     @property
     def what(self) -> str:
         """Its kind in words."""
-        return getattr(self, "kind")  # noqa: B009  # of every subclass
+        return self.kind
 
     @property
     def extents(self) -> tuple[float, float]:
@@ -298,6 +316,7 @@ class Chamfer(_Blend):
 
 #: either of them
 Blend: TypeAlias = Fillet | Chamfer
+BLENDS: dict[str, type[_Blend]] = {"fillet": Fillet, "chamfer": Chamfer}
 
 
 def corners_of_blends(segments: Sequence[Segment], blends: Sequence[Blend]) -> tuple[Corner, ...]:

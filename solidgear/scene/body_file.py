@@ -6,27 +6,20 @@ the file was read.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from pathlib import Path
-from typing import Annotated, Any, Literal, NamedTuple
+from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import BeforeValidator, Field, model_validator
 
 from solidgear.errors import SceneError, listed
 from solidgear.scene.materials import by_name
-from solidgear.scene.parts import Material, Model, Segment
-from solidgear.scene.units import Length, Mass, PositiveLength, quantity
+from solidgear.scene.parts import Material
+from solidgear.scene.typed import Model
+from solidgear.scene.units import Mass, PositiveLength, quantity
 
 #: units of length of a file, m
 UNITS = {"mm": 1e-3, "cm": 1e-2, "m": 1.0, "inch": 0.0254, "in": 0.0254}
 Unit = Literal["mm", "cm", "m", "inch", "in"]
 Axis = Literal["x", "y", "z", "-x", "-y", "-z"]
-#: least share of the cylinder of a seat that must be there
-LEAST_SEAT = 0.5
-#: relative difference of the mass of a part from what it is checked against
-MASS_CHECK = 1e-2
-#: relative difference of diameters that are one
-SAME_DIAMETER = 1e-3
 #: share of the surface and relative difference of volume to which a part is its segments
 ALL_ROUND, SAME_VOLUME = 1 - 1e-9, 1e-6
 
@@ -86,25 +79,11 @@ class BodyTable(Model):
         return self.step if self.step is not None else str(self.mesh)
 
 
-class SeatTable(Model):
-    """A stretch of a cylinder of the part, counted from the origin of the body."""
-
-    diameter: PositiveLength
-    from_: Length = Field(alias="from")
-    to: Length
-
-    @model_validator(mode="after")
-    def _long(self):
-        if self.to <= self.from_:
-            raise SceneError("must lie beyond from", path=("to",))
-        return self
-
-
 Triple = tuple[float, float, float]
 
 
 class PartGroup(Model):
-    """What of a part from a file is of one material.
+    """Share of a part from a file that is of one material.
 
     Attributes
     ----------
@@ -182,6 +161,8 @@ class BodyFile(Model):
     ('shaft_step.step', False)
     """
 
+    sort: ClassVar[str] = "part"
+
     kind: Literal["step", "mesh"]
     name: str
     path: str = Field(exclude=True, repr=False)
@@ -202,12 +183,12 @@ class BodyFile(Model):
 
     @property
     def what(self) -> str:
-        """What it is in words."""
+        """Its kind in words."""
         return "part of several materials side by side," if self.mixed else "part"
 
     @property
     def round(self) -> bool:
-        """Whether it is its segments, and nothing else."""
+        """True where it is its segments, and nothing else."""
         if self.mixed:
             return False
         off = abs(self.round_volume - 1)
@@ -225,34 +206,18 @@ class BodyFile(Model):
         return tuple(out)
 
     def materials(self, usual: Material) -> tuple[Material, ...]:
-        """Of its groups in their order.
-
-        Parameters
-        ----------
-        usual : Material
-            That of the scene.
-        """
+        """Of its groups in their order, in a scene of a material."""
         return tuple(g.material or usual for g in self.groups) or (usual,)
 
     def mass(self, usual: Material) -> float:
-        """Of the whole part, kg.
-
-        Parameters
-        ----------
-        usual : Material
-            That of the scene.
-        """
+        """Of the whole part, kg, in a scene of a material."""
         if not self.groups:
             return usual.density * self.volume
         return sum(m.density * g.volume for m, g in zip(self.materials(usual), self.groups))
 
     def with_material(self, **changes: Any) -> BodyFile:
-        """The same part with constants replaced in the materials of its groups.
-
-        Parameters
-        ----------
-        **changes
-            `E`, `nu` or `density`.
+        """The same part with constants (`E`, `nu`, `density`) replaced in the materials of its
+        groups.
         """
         groups = tuple(
             g.with_changes(material=g.material.with_changes(**changes)) if g.material else g
@@ -262,135 +227,5 @@ class BodyFile(Model):
 
     @property
     def one_mesh(self) -> bool:
-        """Whether its mesh is what it is, and no finer one can be made."""
+        """True where its mesh is what it is, and no finer one can be made."""
         return self.kind == "mesh"
-
-
-def mean_material(materials: Sequence[Material], shares: Sequence[tuple[int, float]]) -> Material:
-    """One material for several side by side: stretched together they are as stiff and as heavy.
-
-    Parameters
-    ----------
-    materials : sequence of Material
-    shares : sequence of (int, float)
-        Places of materials, and shares of the volume that add up to 1.
-
-    Examples
-    --------
-    >>> steel = Material(E=200e9, nu=0.3, density=8000)
-    >>> light = Material(E=100e9, nu=0.3, density=2000)
-    >>> mean = mean_material([steel, light], [(0, 0.25), (1, 0.75)])
-    >>> mean.E, mean.density
-    (125000000000.0, 3500.0)
-    """
-    if len(shares) == 1:
-        return materials[shares[0][0]]
-    parts = [(materials[place], share) for place, share in shares]
-    modulus = sum(share * m.E for m, share in parts)
-    return Material(
-        E=modulus,
-        nu=sum(share * m.E * m.nu for m, share in parts) / modulus,
-        density=sum(share * m.density for m, share in parts),
-    )
-
-
-class Recognised(NamedTuple):
-    """A part and the body of revolution inside it.
-
-    Attributes
-    ----------
-    body : BodyFile
-    walls : sequence of (y0, y1, outer0, outer1, inner0, inner1)
-        Frusta end to end from y = 0, m.
-    origin : float
-        Where the origin of the body lies, m from the lower end.
-    cylinders : sequence of (diameter, y0, y1)
-        Of its surface, m.
-    seat_share : callable
-        ``seat_share(radius, lo, hi)``: area of the surface that lies on a cylinder between two
-        places, over that of the cylinder.
-    shares : tuple of tuple of (int, float)
-        Of each frustum: groups of the body and their shares; empty for a body without groups.
-    """
-
-    body: BodyFile
-    walls: tuple[tuple[float, ...], ...]
-    origin: float
-    cylinders: tuple[tuple[float, float, float], ...]
-    seat_share: Callable[[float, float, float], float]
-    shares: tuple[tuple[tuple[int, float], ...], ...] = ()
-
-    def segments(self, material: Material) -> list[Segment]:
-        """Its frusta, named s1, s2 and so on.
-
-        Parameters
-        ----------
-        material : Material
-            That of the scene.
-        """
-        names = ("y0", "y1", "outer0", "outer1", "inner0", "inner1")
-        materials = self.body.materials(material)
-        return [
-            Segment(
-                name=f"s{k}",
-                material=mean_material(materials, share),
-                **dict(zip(names, wall)),
-            )
-            for k, (wall, share) in enumerate(
-                zip(self.walls, self.shares or [((0, 1.0),)] * len(self.walls)), 1
-            )
-        ]
-
-    def span(self, seat: SeatTable) -> tuple[float, float]:
-        """Ends of a seat, m from the lower end.
-
-        Parameters
-        ----------
-        seat : SeatTable
-
-        Raises
-        ------
-        SceneError
-            Where the part has no such cylinder, or less than half of it.
-        """
-        lo, hi = seat.from_ + self.origin, seat.to + self.origin
-        near = [c for c in self.cylinders if abs(c[0] / seat.diameter - 1) <= SAME_DIAMETER]
-        if not near:
-            there = listed(
-                f"{1e3 * d:.6g} mm" for d in sorted({round(c[0], 7) for c in self.cylinders})
-            )
-            raise SceneError(
-                f"the part has no cylinder of this diameter; there are {there or 'none'}",
-                path=("diameter",),
-            )
-        share = self.seat_share(near[0][0] / 2, lo, hi)
-        if share < LEAST_SEAT:
-            raise SceneError(
-                f"only {100 * share:.0f} % of this cylinder is there, at least "
-                f"{100 * LEAST_SEAT:.0f} % is wanted; cylinders of this diameter reach from "
-                + ", ".join(
-                    f"{1e3 * (a - self.origin):.6g} to {1e3 * (b - self.origin):.6g} mm"
-                    for _, a, b in near
-                ),
-                path=("from",),
-            )
-        return lo, hi
-
-
-#: reads the part that a table of a file in some folder names
-Reader = Callable[[BodyTable, Path], Recognised]
-
-
-def unread(table: BodyTable, folder: Path) -> Recognised:
-    """A reader that reads no parts.
-
-    Raises
-    ------
-    SceneError
-        Always.
-    """
-    raise SceneError(
-        "a part from a file is read by solidgear.load alone; a train or a study of bearings takes "
-        "segments",
-        path=("body", table.key),
-    )

@@ -12,7 +12,7 @@ from pydantic import BeforeValidator, Field, model_validator
 
 from solidgear.errors import SceneError, show
 from solidgear.scene.designation import boundary
-from solidgear.scene.parts import Model
+from solidgear.scene.typed import Model
 from solidgear.scene.units import (
     Angle,
     AxialSpring,
@@ -97,7 +97,7 @@ class BearingDisplacement(Model):
 
 
 class Preload(Model):
-    """How a bearing is preloaded: by a force or by a displacement.
+    """Preload of a bearing: by a force or by a displacement.
 
     Attributes
     ----------
@@ -250,12 +250,17 @@ class Catalogue(Model):
 
     @property
     def one_sided(self) -> bool:
-        """Whether it holds the shaft in one direction along y only."""
-        return self.kind in ONE_SIDED and self.arrangement in ("single", "tandem")
+        """True where it holds the shaft in one direction along y only."""
+        return self.angled and self.arrangement in ("single", "tandem")
+
+    @property
+    def angled(self) -> bool:
+        """True where its kind has a contact angle."""
+        return self.kind in ONE_SIDED
 
     @property
     def balls(self) -> bool:
-        """Whether its elements are balls."""
+        """True where its elements are balls."""
         return self.kind in BALLS
 
     @property
@@ -263,7 +268,7 @@ class Catalogue(Model):
         """Inner dimensions that are not given, by their names here."""
         inner = ["elements", "element_diameter", "pitch_diameter"]
         inner.append("conformity" if self.balls else "element_length")
-        if self.kind in ONE_SIDED:
+        if self.angled:
             inner.append("contact_angle")
         return tuple(name for name in inner if getattr(self, name) is None)
 
@@ -308,7 +313,7 @@ def _problems(data: Catalogue):
 def _belongs(data: Catalogue):
     """Keys that the kind or the arrangement has no use for."""
     what = data.kind.replace("_", " ")
-    if data.kind not in ONE_SIDED:
+    if not data.angled:
         if data.contact_angle is not None:
             yield SceneError(
                 f"a {what} bearing has no contact angle of its own: leave it out, or write "
@@ -381,13 +386,3 @@ def _fits(data: Catalogue):
                 f"{data.element_diameter:.6g} m",
                 path=("elements",),
             )
-
-
-__all__ = [
-    "Arrangement",
-    "BearingDisplacement",
-    "BearingLoad",
-    "Catalogue",
-    "Kind",
-    "Preload",
-]

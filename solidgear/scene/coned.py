@@ -12,20 +12,12 @@ if TYPE_CHECKING:
 
 
 def coned(scene: Any) -> Any:
-    """The shaft of a scene with a cone of its own for every chamfer that fills a shoulder.
+    """The shaft of a scene with a cone of its own for every chamfer that fills a shoulder; the
+    scene as it was where there is none, or where another fillet or chamfer needs the length of the
+    cone.
 
-    Its two ends are corners of the outline like others then, to which meshes have layers.
-
-    Parameters
-    ----------
-    scene : Scene, or anything with segments
-        Its features do not count; where there are chamfers to exchange, the shaft has none.
-
-    Returns
-    -------
-    Scene
-        As it was where no chamfer fills a shoulder, or where another fillet or chamfer needs the
-        length of the cone.
+    Its two ends are corners of the outline like others then, to which meshes have layers; its
+    features do not count.
 
     Examples
     --------

@@ -88,7 +88,7 @@ _WRITTEN = (
 
 
 class Boundary(NamedTuple):
-    """What a designation stands for.
+    """Kind and sizes behind a designation.
 
     Attributes
     ----------
@@ -107,21 +107,8 @@ class Boundary(NamedTuple):
 
 
 def boundary(designation: str) -> Boundary:
-    """Kind and boundary dimensions of a bearing by its designation.
-
-    Parameters
-    ----------
-    designation : str
-        Such as ``6208``, ``7210 B``, ``NU 206``, ``32018 X`` or ``BK0810``.
-
-    Returns
-    -------
-    Boundary
-
-    Raises
-    ------
-    SceneError
-        A designation that is not understood.
+    """Kind and boundary dimensions of a bearing by its designation, such as ``6208``, ``7210 B``,
+    ``NU 206``, ``32018 X`` or ``BK0810``.
 
     Examples
     --------

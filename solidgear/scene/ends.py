@@ -26,16 +26,6 @@ def met(stations: Sequence[Station], segments: Sequence[Segment]) -> tuple[Stati
     """Stations with the ends of their seats moved onto the faces and joints that they miss by a
     hair; the same ones where there are none.
 
-    Parameters
-    ----------
-    stations : sequence of Bearing, Port or PointMass
-    segments : sequence of Segment
-        Of one shaft.
-
-    Returns
-    -------
-    tuple of Bearing, Port or PointMass
-
     Examples
     --------
     >>> from solidgear import Bearing, Segment

@@ -8,24 +8,94 @@ that are sound by themselves.
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Any, NamedTuple
 
-from solidgear.errors import SceneError, listed, nearest
-from solidgear.scene.body_file import Reader, Recognised, unread
+from pydantic import BeforeValidator, model_validator
+
+from solidgear.errors import SceneError
+from solidgear.scene.ask import Ask
+from solidgear.scene.between import problems_between
+from solidgear.scene.blends import BLENDS
+from solidgear.scene.body_file import BodyTable
+from solidgear.scene.catalogue import BearingLoad
+from solidgear.scene.features import FEATURES
+from solidgear.scene.housing import Housing, housing_of
+from solidgear.scene.materials import by_name
 from solidgear.scene.model import Scene
-from solidgear.scene.places import resolve
-from solidgear.scene.rules import MOST_BEARINGS, MOST_MASSES, MOST_SEGMENTS, too_many
-from solidgear.scene.segment_tables import KINDS
-from solidgear.scene.tables import FEATURES, PartTable, SceneTable, SoundTables
+from solidgear.scene.parts import STEEL, Material, Segment
+from solidgear.scene.places import Placed, Places
+from solidgear.scene.point_mass import PointMass
+from solidgear.scene.recognised import Reader, Recognised, unread, with_seats
+from solidgear.scene.rules import (
+    MOST_BEARINGS,
+    MOST_MASSES,
+    MOST_SEGMENTS,
+    no_such_point,
+    question_problems,
+    shaft_problems,
+    too_many,
+)
+from solidgear.scene.shapes import SHAPES, Cylinder, Shape, lay_out
+from solidgear.scene.stations import Attachment, Bearing, Port
 from solidgear.scene.toml_file import describes_train, name_of, parse, place_of
+from solidgear.scene.typed import Gathered, Holds, Model
+
+Table = dict[str, Any]
+#: entries of the lists of a file
+MOST = {"segment": MOST_SEGMENTS, "bearing": MOST_BEARINGS, "mass": MOST_MASSES}
 
 
-def _drop_tag(loc: tuple) -> tuple:
-    """pydantic puts the kind of a segment into its location; the file has no such key."""
-    tags = {"segment": KINDS, "feature": FEATURES}.get(loc[0], ()) if loc else ()
-    return (*loc[:2], *loc[3:]) if loc[2:3] and loc[2] in tags else loc
+class _Ask(Ask):
+    """The [ask], with the lumped point that is the main one."""
+
+    port: str | None = None
+
+
+def _several(ports: Any) -> Any:
+    """One [port] is a list of one."""
+    return [ports] if isinstance(ports, Mapping) else ports
+
+
+class _File(Model):
+    """A scene file, but for what is read once the shaft is known."""
+
+    title: str = ""
+    source: str = ""
+    attachment: Attachment = "average"
+    material: Annotated[Material, BeforeValidator(by_name)]
+    body: BodyTable | None = None
+    segment: list[Shape]
+    # what they describe is read once the shaft is known
+    bearing: Annotated[list[Table], Holds(Bearing)] = []
+    mass: Annotated[list[Table], Holds(PointMass)] = []
+    feature: list[Table] = []
+    housing: Annotated[Table | None, Holds(Housing)] = None
+    port: Annotated[list[Table], BeforeValidator(_several), Holds(Port)]
+    load: BearingLoad | None = None
+    ask: _Ask = _Ask()
+
+
+class _PartFile(_File):
+    """A scene file with a part from another file in place of segments."""
+
+    # not needed where the groups of the part have all their own
+    material: Annotated[Material | None, BeforeValidator(by_name)] = None  # type: ignore[assignment]
+    body: BodyTable
+    segment: list[Shape] = []
+
+    @model_validator(mode="after")
+    def _one_shaft(self) -> _PartFile:
+        if self.material is None and not self.body.materials:
+            raise SceneError("this key is missing", path=("material",))
+        for key, what in (("segment", "describes the shaft"), ("feature", "is cut into segments")):
+            if getattr(self, key):
+                raise SceneError(
+                    f"a [[{key}]] {what}, which a [body] does itself; leave one of both out",
+                    path=(key,),
+                )
+        return self
 
 
 def load(path: str | os.PathLike, part_of: Reader = unread) -> Scene:
@@ -63,7 +133,7 @@ def load(path: str | os.PathLike, part_of: Reader = unread) -> Scene:
             "system-modes, response or receptance on it, or read it with solidgear.load_train"
         ).located(raw, where=place_of(where))
     try:
-        return _read(raw, where, part_of)
+        return _Reading(raw, where, part_of).scene()
     except SceneError as error:
         found = error.problems
         if isinstance(raw.get("port"), Mapping):  # one [port] is a table and not a list of one
@@ -76,59 +146,219 @@ def load(path: str | os.PathLike, part_of: Reader = unread) -> Scene:
         raise SceneError.of(ordered).located(raw, where=place_of(where)) from None
 
 
+def _drop_tag(path: tuple) -> tuple:
+    """pydantic puts the kind of a segment into its location; the file has no such key."""
+    tagged = path[:1] == ("segment",) and path[2:3] and path[2] in SHAPES
+    return (*path[:2], *path[3:]) if tagged else path
+
+
 def _of_the_one_port(path: tuple) -> tuple:
     return ("port", *path[2:]) if path[:1] == ("port",) and path[1:2] == (0,) else path
 
 
-def _read(raw: dict[str, Any], where: str, part_of: Reader) -> Scene:
-    most_of = (("segment", MOST_SEGMENTS), ("bearing", MOST_BEARINGS), ("mass", MOST_MASSES))
-    for what, most in most_of:
-        if isinstance(raw.get(what), list) and len(raw[what]) > most:
-            raise SceneError(
-                too_many("masses" if what == "mass" else f"{what}s", len(raw[what]), most),
-                path=(what,),
-            )
-    problems: list[SceneError] = []
-    table, numbers = _tables(raw, problems)
-    part = None
-    if table is not None and table.body is not None:
+class _Row(NamedTuple):
+    """A thing that was read, or None without a place, and the table that it was read from."""
+
+    thing: Any
+    kind: type[Placed]
+    path: tuple
+    table: Table
+
+
+class _Reading:
+    """A file on its way to a scene; problems are gathered until the end."""
+
+    def __init__(self, raw: Table, where: str, part_of: Reader):
+        self.raw, self.where = raw, where
+        self.problems = Gathered()
+        self.file, self.spoilt = self._tables()
+        self.part: Recognised | None = None
+        if (body := self.file.body) is not None:
+            self.part = self.problems.read(lambda: part_of(body, Path(where).parent))
+            self.spoilt |= set() if self.part else {"body"}
+        self.places = Places(self.file.attachment, of_body="body" in raw, part=self.part)
+        self._name_datums()
+        sound = not {"segment", "material", "body"} & self.spoilt
+        self.segments = (self.problems.read(self._shaft) if sound else None) or []
+        if not self.segments:
+            self.places.forget()
+
+    def scene(self) -> Scene:
+        """The scene, once nothing is wrong with it."""
+        file, place = self.file, self.places
+        bearings = [self._bearing(k, table) for k, table in enumerate(file.bearing)]
+        housing = None
+        if (given := file.housing) is not None:
+            housing = self.problems.read(lambda: housing_of(given, place), ("housing",))
+        if not (file.port or "port" in self.spoilt):
+            self.problems.append(SceneError("a scene needs a [port]", path=("port",)))
+        ports = [self._row(Port, ("port", k), table) for k, table in enumerate(file.port)]
+        masses = [self._row(PointMass, ("mass", k), table) for k, table in enumerate(file.mass)]
+        features = [row for k, one in enumerate(file.feature) for row in self._feature(k, one)]
+        rows = {
+            "bearings": bearings,
+            "ports": self._main_first(ports),
+            "masses": masses,
+            "features": [row for row in features if row.kind in FEATURES.values()],
+            "blends": [row for row in features if row.kind in BLENDS.values()],
+        }
+        if self.segments:
+            self._judge(rows)
+        self.problems.tell()
+        things = {key: tuple(row.thing for row in of) for key, of in rows.items()}
+        main, *further = things.pop("ports")
+        stations = [main, *further, *things["bearings"], *things["masses"]]
+        return Scene.from_parts(
+            self.segments,
+            self._material(),
+            port=main,
+            further_ports=tuple(further),
+            **things,
+            title=file.title,
+            name=name_of(self.where),
+            source=file.source,
+            body=with_seats(self.part, stations, self.segments) if self.part else None,
+            housing_axial=housing if isinstance(housing, float) else None,
+            housing=None if isinstance(housing, float) else housing,
+            load=file.load,
+            ask=Ask(**{key: getattr(file.ask, key) for key in Ask.model_fields}),
+        )
+
+    def _tables(self) -> tuple[_File, set[str]]:
+        """The file without the keys that cannot be used, and these keys."""
+        raw, kind = self.raw, _PartFile if "body" in self.raw else _File
+        for key, most in MOST.items():
+            if isinstance(raw.get(key), list) and len(raw[key]) > most:
+                what = "masses" if key == "mass" else f"{key}s"
+                raise SceneError(too_many(what, len(raw[key]), most), path=(key,))
         try:
-            part = part_of(table.body, Path(where).parent)
+            return kind(**raw), set()
         except SceneError as error:
-            raise SceneError.of([*problems, error]) from None
-    problems += _unknown_names(raw, part)
-    if table is None:
-        raise SceneError.of(problems)
-    return resolve(table, numbers, name_of(where), problems, part)
+            found = [one.located(raw, path=_drop_tag(one.path)) for one in error.problems]
+        self.problems += found
+        spoilt = {str(one.path[0]) for one in found}
+        sound = {key: value for key, value in raw.items() if key not in spoilt}
+        needed = {"material": STEEL, "segment": [], "port": []}
+        return _File(**{**needed, **sound}), spoilt
+
+    def _name_datums(self) -> None:
+        """Tell what is called by which name, read from the file as it stands: a segment of a wrong
+        length still has its name.
+        """
+        places = self.places
+        shapes: Any = self.raw.get("segment")
+        if self.part is not None:
+            places.add("origin")
+            shapes = [{"name": f"s{k}"} for k in range(1, len(self.part.walls) + 1)]
+        whole = isinstance(shapes, list) and all(isinstance(one, Mapping) for one in shapes)
+        if (
+            not whole
+            or "bearing" in self.spoilt
+            or not all(isinstance(one.get("name"), str) for one in shapes)
+        ):
+            places.known = None  # without sound names, what refers to them cannot be judged
+        for k, one in enumerate(shapes if places.known is not None else ()):
+            if one["name"] in places.segments:
+                reason = "another segment has this name; each needs its own"
+                self.problems.append(SceneError(reason, path=("segment", k, "name")))
+            places.segments.append(one["name"])
+            for datum in SHAPES.get(str(one.get("kind")), Cylinder).datums:
+                places.add(f"{one['name']}.{datum}")
+
+    def _shaft(self) -> list[Segment]:
+        """Segments end to end, or those of the part."""
+        if self.part is None and not self.file.segment:
+            raise SceneError("a scene needs at least one [[segment]]", path=("segment",))
+        if (part := self.part) is not None and (body := self.file.body) is not None:
+            usual = self._material()
+            segments, path_of = part.laid(usual, self.places), self._part_path
+            self.problems.read(lambda: part.weigh(body.mass_check, usual))
+        else:
+            laid = lay_out(self.file.segment, self._material(), self.places)
+            segments, path_of = laid.segments, laid.path
+        found = shaft_problems(segments)
+        if found:
+            raise SceneError.of(one.located(None, path=path_of(one.path)) for one in found)
+        return segments
+
+    def _material(self) -> Material:
+        """The material of whatever has none of its own."""
+        return self.file.material or self.part.usual_material()  # type: ignore[union-attr]
+
+    def _part_path(self, path: tuple) -> tuple:
+        """The key that an entry of a segment of the part comes from."""
+        assert self.file.body is not None  # that the part was read from
+        return ("material", *path[3:]) if "material" in path else ("body", self.file.body.key)
+
+    def _row(self, kind: type[Placed], path: tuple, table: Table, **usual: Any) -> _Row:
+        thing = self.problems.read(lambda: kind.read(table, self.places, **usual), path)
+        return _Row(thing, kind, path, table)
+
+    def _bearing(self, index: int, table: Table) -> _Row:
+        """A bearing, whose middle is a datum of what follows."""
+        row = self._row(Bearing, ("bearing", index), table)
+        if isinstance(name := table.get("name"), str):
+            self.places.add(f"bearing.{name}", row.thing.y if row.thing else None)
+        return row
+
+    def _feature(self, index: int, table: Table) -> list[_Row]:
+        """A feature of a kind that there is; it may have no name."""
+        path, kinds = ("feature", index), {**FEATURES, **BLENDS}
+        kind = table.get("kind")
+        if isinstance(kind, str) and kind in kinds:
+            return [
+                self._row(kinds[kind], path, table, name=f"{kind.replace('_', ' ')} {index + 1}")
+            ]
+        reason = f"unknown kind; write one of {', '.join(map(repr, kinds))}"
+        if "kind" not in table:
+            reason = 'this key is missing; it says what the feature is, such as kind = "keyway"'
+        self.problems.append(SceneError(reason, path=(*path, "kind")))
+        return []
+
+    def _main_first(self, ports: list[_Row]) -> list[_Row]:
+        """Lumped points, the one first that the file calls the main one."""
+        wanted = self.file.ask.port
+        known = [row.table.get("name", Port.model_fields["name"].default) for row in ports]
+        named = not any(one.path[0] == "port" for one in self.problems)
+        if ports and named and wanted is not None and wanted not in known:
+            reason = no_such_point(wanted, known)
+            self.problems.append(SceneError(reason, path=("ask", "port")))
+        main = [row for row, name in zip(ports, known) if name == wanted][:1]
+        return main + [row for row in ports if row not in main]
+
+    def _judge(self, rows: dict[str, list[_Row]]) -> None:
+        """Gather what is wrong between things that are sound by themselves."""
+        # names are judged where all are known
+        whole = not {"bearing", "port"} & self.spoilt
+        whole &= all(row.thing for key in ("bearings", "ports") for row in rows[key])
+        sound = {key: [row for row in of if row.thing] for key, of in rows.items()}
+        things = {key: [row.thing for row in of] for key, of in sound.items()}
+        found = [*problems_between(self.segments, **things, whole=whole)]
+        if whole and things["ports"]:
+            found += question_problems(things["ports"], self.file.ask.quantities)
+        self.problems += [one.located(None, path=_in_file(one.path, sound)) for one in found]
 
 
-def _tables(raw: dict[str, Any], problems: list[SceneError]) -> tuple[SceneTable | None, list[int]]:
-    """The tables that are sound each by itself, and which bearings of the file are among them; None
-    without a whole shaft.
-    """
-    # masses are judged only where all of them are sound
-    count = len(raw["bearing"]) if isinstance(raw.get("bearing"), list) else 0
-    try:
-        return (PartTable if "body" in raw else SceneTable)(**raw), list(range(count))
-    except SceneError as error:
-        found = [one.located(raw, path=_drop_tag(one.path)) for one in error.problems]
-    problems += found
-    spoilt = {one.path[: 2 if one.path[0] in ("segment", "bearing") else 1] for one in found}
-    if ("bearing",) in spoilt or any(
-        place[0] in ("segment", "material", "body") for place in spoilt
-    ):
-        return None, []
-    numbers = [k for k in range(count) if ("bearing", k) not in spoilt]
-    sound = {
-        key: raw[key]
-        for key in ("material", "segment", "body", "attachment", "port", "ask")
-        if key in raw and (key,) not in spoilt
-    }
-    return SoundTables(**sound, bearing=[raw["bearing"][k] for k in numbers]), numbers
+#: lists of a scene by those of a file
+LISTS = {"bearings": "bearing", "ports": "port", "masses": "mass"}
+
+
+def _in_file(path: tuple, rows: Mapping[str, Sequence[_Row]]) -> tuple:
+    """The key of the file that an entry of a scene came from."""
+    if path[0] == "port":
+        path = ("ports", 0, *path[1:])
+    elif path[0] == "further_ports":
+        path = ("ports", path[1] + 1, *path[2:]) if path[1:] else ("ports",)
+    if path[0] not in rows:
+        return path
+    if len(path) == 1:
+        return (LISTS.get(path[0], "feature"),)
+    row = rows[path[0]][path[1]]
+    return (*row.path, *row.kind.key_path(path[2:], row.table))
 
 
 class _FileOrder:
-    """Where entries stand in a file."""
+    """Order of the entries of a file."""
 
     def __init__(self, raw: Mapping):
         self.raw = raw
@@ -153,73 +383,3 @@ def _keys(table: Any) -> Iterable:
     if isinstance(table, Mapping):
         return table
     return range(len(table)) if isinstance(table, list) else ()
-
-
-_PIECES = {"bevel_head": ("start", "end", "middle", "mid_face")}
-_EVERY_PIECE = ("start", "end", "middle")
-
-
-def _unknown_names(raw: dict[str, Any], part: Recognised | None) -> Iterator[SceneError]:
-    """Names of segments that are taken twice, and datums and segments that are asked for but are
-    not there.
-
-    Read from the file as it stands, since a segment of a wrong length still has its name.
-    """
-    pieces, bearings, masses, ports = (
-        _list_of_tables(raw.get("segment"))
-        if part is None
-        else [{"name": f"s{k}"} for k in range(1, len(part.walls) + 1)],
-        _list_of_tables(raw.get("bearing", [])),
-        _list_of_tables(raw.get("mass", [])),
-        _list_of_tables([given] if isinstance(given := raw.get("port"), Mapping) else given),
-    )
-    if pieces is None or not all(isinstance(piece.get("name"), str) for piece in pieces):
-        return  # without sound names, what refers to them cannot be judged
-    known, segments = ["start", "end", *(["origin"] if part is not None else [])], []
-    for i, piece in enumerate(pieces):
-        if piece["name"] in segments:
-            yield SceneError(
-                "another segment has this name; each needs its own", path=("segment", i, "name")
-            )
-        segments.append(piece["name"])
-        known += [
-            f"{piece['name']}.{part}" for part in _PIECES.get(str(piece.get("kind")), _EVERY_PIECE)
-        ]
-    for i, bearing in enumerate(bearings or ()):
-        yield from _unknown_datum(bearing.get("from"), known, ("bearing", i, "from"))
-        if isinstance(bearing.get("name"), str):
-            known.append(f"bearing.{bearing['name']}")
-    for i, mass in enumerate(masses or () if bearings is not None else ()):
-        yield from _unknown_datum(mass.get("from"), known, ("mass", i, "from"))
-    for i, feature in enumerate(_list_of_tables(raw.get("feature", [])) or ()):
-        for key in ("at", "from"):
-            yield from _unknown_datum(feature.get(key), known, ("feature", i, key))
-    if bearings is None:
-        return
-    housing = raw.get("housing")
-    if isinstance(housing, Mapping):
-        yield from _unknown_datum(housing.get("from"), known, ("housing", "from"))
-    for i, port in enumerate(ports or ()):
-        for key in ("at", "from"):
-            yield from _unknown_datum(port.get(key), known, ("port", i, key))
-        carrier = port.get("attach_to")
-        if isinstance(carrier, str) and carrier not in segments:
-            yield SceneError(
-                f"unknown segment{nearest(carrier, segments)}; known here: {listed(segments)}",
-                path=("port", i, "attach_to"),
-            )
-
-
-def _list_of_tables(value: Any) -> list[Mapping] | None:
-    return (
-        value
-        if isinstance(value, list) and all(isinstance(entry, Mapping) for entry in value)
-        else None
-    )
-
-
-def _unknown_datum(text: Any, known: list[str], path: tuple) -> Iterable[SceneError]:
-    if isinstance(text, str) and text not in known:
-        yield SceneError(
-            f"unknown datum{nearest(text, known)}; known here: {listed(known)}", path=path
-        )

@@ -1,4 +1,4 @@
-"""What bearings stand in: the elastic seat of one of them, and the housing of all.
+"""Supports that bearings stand in: the elastic seat of one of them, and the housing of all.
 
 A housing has no mass here.  A motion for which no stiffness is written is *rigid*, so that
 ``[housing] axial`` and a stiffness of ``kyy`` alone say the same; one of zero is free.
@@ -7,7 +7,7 @@ A housing has no mass here.  A motion for which no stiffness is written is *rigi
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import Annotated, Any
+from typing import Annotated, Any, ClassVar
 
 import numpy as np
 from pydantic import BeforeValidator, model_validator
@@ -15,31 +15,19 @@ from pydantic import BeforeValidator, model_validator
 from solidgear.errors import SceneError
 from solidgear.frames import DOF_NAMES, shift
 from solidgear.scene.bearing_stiffness import STIFFNESS_NAMES, checked_matrix, stiffness_entries
-from solidgear.scene.parts import Model
-from solidgear.scene.units import SOFTEST, Position
+from solidgear.scene.places import Along, Placed, Places
+from solidgear.scene.rules import ONE_HOUSING
+from solidgear.scene.typed import Model
+from solidgear.scene.units import SOFTEST, AxialSpring, Position
 from solidgear.springs import in_series
 
+EMPTY = "is empty; write entries of its stiffness such as kxx, or matrix = rows"
 #: names of the entries on the diagonal of a 6x6, in its order
 OWN = tuple(name for name, (i, j, _) in STIFFNESS_NAMES.items() if i == j)
 
 
 def rigid_motions(entries: Mapping[str, Any]) -> tuple[str, ...]:
-    """Motions of which named entries of a housing say nothing.
-
-    Parameters
-    ----------
-    entries : mapping
-        By `STIFFNESS_NAMES`.
-
-    Returns
-    -------
-    tuple of str
-        Of x y z thx thy thz.
-
-    Raises
-    ------
-    SceneError
-        If a coupling is of a motion that has no entry of its own.
+    """Motions of which named entries of a housing say nothing; refuses a coupling of one of them.
 
     Examples
     --------
@@ -144,7 +132,27 @@ class Elastic(Model):
         return in_series(stiffness, np.eye(6)[:, self.gives], self.own, what)
 
 
-class Housing(Elastic):
+def elastic(given: Any) -> Any:
+    """The housing of one bearing from the table of a file, named entries of a 6x6 or ``matrix``
+    alone; anything else as it is.
+    """
+    if not isinstance(given, Mapping) or "rigid" in given:
+        return given
+    if not given:
+        raise SceneError(EMPTY)
+    if "matrix" in given:
+        if len(given) > 1:
+            raise SceneError("give either matrix, or named entries, not both", path=("matrix",))
+        return given
+    try:
+        return Elastic(stiffness=given)
+    except SceneError as error:
+        raise SceneError.of(
+            SceneError(one.reason, path=one.path[1:], value=one.value) for one in error.problems
+        ) from None
+
+
+class Housing(Placed, Elastic):
     """A rigid housing of all bearings on a 6x6 spring to ground.
 
     Attributes
@@ -165,7 +173,32 @@ class Housing(Elastic):
     (1.0, 0.333333)
     """
 
+    class Words(Along):
+        """Of a file: a place, or a spring along the axis alone."""
+
+        axial: AxialSpring | None = None
+
+    sources: ClassVar = {
+        "y": ("position",),
+        "matrix": ("matrix", "stiffness"),
+        "rigid": ("stiffness",),
+    }
+
     y: Position = 0.0
+
+    @classmethod
+    def place(cls, words: Any, table: Mapping[str, Any], places: Places) -> dict[str, Any]:
+        words.refuse(ONE_HOUSING, "axial")
+        if not {"stiffness", "matrix"} & set(table):
+            how = "this key is missing; write stiffness = {kxx = ...} with position, or axial"
+            raise SceneError(how, path=("stiffness",))
+        if "stiffness" in table and "matrix" in table:
+            raise SceneError("give either stiffness or matrix", path=("stiffness",))
+        if table.get("stiffness") == {}:
+            raise SceneError(EMPTY, path=("stiffness",))
+        how = 'write position = "120 mm", the place that the stiffness is about, with from'
+        words.needs("position", how)
+        return {"y": words.y(places)}
 
     def moves(self, y: float) -> np.ndarray:
         """(6, k) motion of its bore at a place along the shaft, for unit motions in which it gives.
@@ -199,3 +232,21 @@ class Housing(Elastic):
         if not len(places) or not self.gives:
             return stiffness
         return in_series(stiffness, np.vstack([self.moves(y) for y in places]), self.own)
+
+
+class _AlongAxis(Along):
+    """A spring in place of a housing that moves along the axis only."""
+
+    axial: AxialSpring
+
+
+def housing_of(table: Mapping[str, Any], places: Places) -> Housing | float | None:
+    """Support of all bearings by the [housing] of a file: a housing, or a spring along the axis
+    (N/m); None where its place is not known.
+    """
+    if "axial" not in table or {"stiffness", "matrix"} & set(table):
+        return Housing.read(table, places)
+    spring = _AlongAxis(**table)
+    nowhere = "belongs to a stiffness; along the axis a spring has no place"
+    spring.refuse(nowhere, "position", "from_")
+    return spring.axial

@@ -66,15 +66,6 @@ NONE_OF_ITS_OWN = {
 def by_name(value: Any) -> Any:
     """Constants of a material that is given by its name; anything else as it is.
 
-    Parameters
-    ----------
-    value : str or mapping
-
-    Raises
-    ------
-    SceneError
-        For a name that is not known.
-
     Examples
     --------
     >>> by_name("42CrMo4")

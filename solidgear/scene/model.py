@@ -16,25 +16,24 @@ from pydantic import model_validator
 from solidgear.display import Displayed
 from solidgear.errors import SceneError
 from solidgear.scene.ask import Ask
-from solidgear.scene.blend_rules import blend_problems
+from solidgear.scene.between import problems_between
 from solidgear.scene.blends import Blend, Corner, corners_of_blends
 from solidgear.scene.body_file import BodyFile
 from solidgear.scene.catalogue import BearingLoad
 from solidgear.scene.ends import met
-from solidgear.scene.features import Feature, feature_problems
+from solidgear.scene.features import Feature
 from solidgear.scene.housing import Housing
-from solidgear.scene.parts import STEEL, Material, Model, Segment
+from solidgear.scene.parts import STEEL, Material, Segment
 from solidgear.scene.point_mass import PointMass
 from solidgear.scene.rules import (
     ONE_HOUSING,
-    mass_problems,
     no_such_point,
     question_problems,
     shaft_problems,
-    station_problems,
     steps,
 )
 from solidgear.scene.stations import Bearing, Port
+from solidgear.scene.typed import Model
 from solidgear.scene.units import AxialSpring
 
 
@@ -112,12 +111,14 @@ class Scene(Displayed, Model):
             for name in ("bearings", "masses", "further_ports"):
                 object.__setattr__(self, name, met(getattr(self, name), self.segments))
             object.__setattr__(self, "port", met([self.port], self.segments)[0])
-            bearings, masses = dict(enumerate(self.bearings)), dict(enumerate(self.masses))
-            ports = dict(enumerate(self.ports))
-            problems = list(station_problems(self.segments, ports, bearings, masses))
-            problems += mass_problems(self.ports, bearings, masses)
-            problems += feature_problems(self.segments, self.features)
-            problems += blend_problems(self.segments, self.blends, self.stations, self.features)
+            problems += problems_between(
+                self.segments,
+                ports=self.ports,
+                bearings=self.bearings,
+                masses=self.masses,
+                features=self.features,
+                blends=self.blends,
+            )
         problems += question_problems(self.ports, self.ask.quantities)
         if self.housing is not None and self.housing_axial is not None:
             problems.append(SceneError(ONE_HOUSING, path=("housing_axial",)))

@@ -1,16 +1,14 @@
-"""What a shaft is made of, each frozen and validated: material and segment."""
+"""Parts of a shaft, each frozen and validated: material and segment."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import Any, Literal, TypeVar, get_args
+from typing import Any, Literal
 
-from pydantic import BaseModel, ConfigDict, ValidationError, model_validator
-from pydantic.fields import FieldInfo
+from pydantic import model_validator
 
-from solidgear.errors import TOLD, SceneError, did_you_mean, near, scene_error
-from solidgear.scene.bearing_stiffness import STIFFNESS_NAMES
+from solidgear.errors import SceneError
 from solidgear.scene.rules import TOUCH
+from solidgear.scene.typed import Model
 from solidgear.scene.units import (
     Density,
     Modulus,
@@ -20,113 +18,6 @@ from solidgear.scene.units import (
     Thickness,
     quantity,
 )
-
-_Self = TypeVar("_Self", bound="Model")
-
-#: words of the field for what a scene calls otherwise
-OTHER_WORDS = {
-    "rho": "density",
-    "young": "E",
-    "youngs_modulus": "E",
-    "modulus": "E",
-    "poisson": "nu",
-    "poissons_ratio": "nu",
-    "poisson_ratio": "nu",
-    "name": "title",
-    "at": "position",
-    "y": "position",
-    "width": "seat_width",
-    "d": "diameter",
-    "dia": "diameter",
-    "od": "diameter",
-    "outer_diameter": "diameter",
-    "id": "bore",
-    "di": "bore",
-    "inner_diameter": "bore",
-    "bore_diameter": "bore",
-    "l": "length",
-    "m": "mass",
-    "k": "stiffness",
-}
-
-
-class Model(BaseModel):
-    """Frozen and validated; a refusal names every problem in a sentence of its own.
-
-    Raises
-    ------
-    SceneError
-        By the constructor: unknown keys, missing ones, and values out of their range.
-    """
-
-    model_config = ConfigDict(extra="forbid", frozen=True)
-
-    def __init__(self, /, **data: Any):
-        known = [field.alias or name for name, field in type(self).model_fields.items()]
-        strange = [key for key in data if key not in known]
-        meant = {key: self._meant(key, known) for key in strange[:TOLD]}
-        problems = [
-            SceneError(
-                f"unknown key{did_you_mean(meant.get(key)) or '; known here: ' + ', '.join(known)}",
-                path=(key,),
-            )
-            for key in strange
-        ]
-        try:
-            super().__init__(**{key: data[key] for key in data if key in known})
-        except ValidationError as error:
-            # where a key is misspelt, it is not also missing
-            absent = {(name,) for name in meant.values() if name not in data}
-            problems += [one for one in scene_error(error, data).problems if one.path not in absent]
-        if problems:
-            raise SceneError.of(one.located(data) for one in problems) from None
-
-    @classmethod
-    def _meant(cls, key: str, known: list[str]) -> str:
-        """The known key that a strange one stands for, as likely as not; empty for none."""
-        word = OTHER_WORDS.get(key.lower())
-        if word in known:
-            return word
-        if "stiffness" in known and key in STIFFNESS_NAMES:  # which stand in a table of their own
-            return f"stiffness.{key}"
-        inside = [name for name in known if key in _keys_of(cls.model_fields.get(name))]
-        return near(key, known) or (f"{inside[0]}.{key}" if inside else "")
-
-    def with_changes(self: _Self, **changes: Any) -> _Self:
-        """A validated copy with some fields replaced.
-
-        Parameters
-        ----------
-        **changes
-            Fields by name.
-
-        Returns
-        -------
-        Model
-            Of the same class.
-
-        Raises
-        ------
-        SceneError
-            As by the constructor.
-        """
-        fields = type(self).model_fields
-        given = {name: getattr(self, name) for name in fields} | changes
-        keys = {name: field.alias or name for name, field in fields.items()}
-        return type(self)(**{keys.get(name, name): value for name, value in given.items()})
-
-    def model_copy(
-        self: _Self, *, update: Mapping[str, Any] | None = None, deep: bool = False
-    ) -> _Self:
-        """As `with_changes` of `update`: pydantic's own copy would skip validation."""
-        return self.with_changes(**(update or {}))
-
-
-def _keys_of(field: FieldInfo | None) -> list[str]:
-    """Keys of the table that a field holds; none where it holds none."""
-    kinds = [field.annotation, *get_args(field.annotation)] if field else []
-    tables = [kind for kind in kinds if isinstance(kind, type) and issubclass(kind, Model)]
-    return [one.alias or name for table in tables for name, one in table.model_fields.items()]
 
 
 class Material(Model):

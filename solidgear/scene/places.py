@@ -1,328 +1,238 @@
-"""From the tables of a scene file to a `Scene`: segments laid end to end, datums resolved.
+"""Places along a shaft by the words of a file, and models that a file gives by them.
 
-A problem of a place is reported under the key of the file that it came from.
+A file says where a thing is in words, such as ``position = "28 mm"`` with ``from = "head.end"``; a
+scene holds where that is, in m. A model that is read (`Placed.read`) is checked whatever its place,
+and has one as far as the shaft that its words refer to is known.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Mapping
+from typing import Annotated, Any, ClassVar, TypeVar
 
-from solidgear.errors import SceneError
-from solidgear.scene.ask import Ask
-from solidgear.scene.blend_rules import blend_problems
-from solidgear.scene.body_file import MASS_CHECK, Recognised
-from solidgear.scene.feature_places import blend_of, feature_of
-from solidgear.scene.features import feature_problems
-from solidgear.scene.model import Scene
-from solidgear.scene.parts import Material, Segment
-from solidgear.scene.rules import (
-    mass_problems,
-    no_such_point,
-    question_problems,
-    shaft_problems,
-    station_problems,
-)
-from solidgear.scene.segment_tables import Piece
-from solidgear.scene.station_places import (
-    bearing_of,
-    housing_of,
-    main_first,
-    mass_of,
-    of_port,
-    port_of,
-    with_seats,
-)
-from solidgear.scene.tables import (
-    ChamferTable,
-    FilletTable,
-    SceneTable,
-)
+from pydantic import AfterValidator, Field
+from pydantic.fields import FieldInfo
+
+from solidgear.errors import SceneError, listed, nearest
+from solidgear.scene.recognised import Recognised, Seat
+from solidgear.scene.typed import Gathered, Model, by_key, not_meant, unknown_keys
+from solidgear.scene.units import Length
+
+#: in place of a place that is not known, m
+SOMEWHERE = 1.0
+_Thing = TypeVar("_Thing", bound="Placed")
 
 
-def resolve(
-    table: SceneTable,
-    numbers: list[int],
-    name: str,
-    problems: list[SceneError],
-    part: Recognised | None = None,
-) -> Scene:
-    """The scene of a file, once nothing is wrong with it.
+def plain_name(name: str) -> str:
+    """A name that datums can be made of, or a refusal."""
+    if not name.strip() or "." in name or len(name) > 60 or not name.isprintable():
+        raise SceneError("a name is a short text without a dot")
+    return name
 
-    Parameters
+
+Name = Annotated[str, AfterValidator(plain_name)]
+
+
+class Places:
+    """Places of the shaft of a file by their names.
+
+    Attributes
     ----------
-    table : SceneTable
-        Tables that are sound each by itself.
-    numbers : list of int
-        Place in the file of every bearing of `table`.
-    name : str
-        Of the scene.
-    problems : list of SceneError
-        What was found before; problems of places are added to it.
-    part : Recognised, optional
-        In place of segments.
-
-    Returns
-    -------
-    Scene
-
-    Raises
-    ------
-    SceneError
-        If anything is wrong with the places of its parts, or was before: all of it.
+    known : list of str or None
+        Datums in the order of the file, also those whose place is in doubt; None where names of
+        segments are in doubt themselves.
+    at : dict of str to float
+        Those whose place is known, m.
+    segments : list of str
+    surface : dict of str to (float, float)
+        Ends of a segment's surface that can carry a port, m.
+    attachment : str
+        Of what does not say its own.
+    of_body : bool
+        Whether the shaft is a part from a file.
+    part : Recognised or None
+        The part, once it is read.
     """
-    if not table.segment and part is None:
-        raise SceneError.of(
-            [*problems, SceneError("a scene needs at least one [[segment]]", path=("segment",))]
-        )
-    if part is None:
-        segments, owner, surface, datums = _lay_out(table, problems)
-    else:
-        usual = _usual(table, part)
-        segments, owner, surface, datums = _recognised(usual, part)
-        problems += _weighed(table, usual, part)
-    if segments is not None:
-        shaft = shaft_problems(segments)
-        problems += [one.located(None, path=_file_path(one.path, table, owner)) for one in shaft]
-        segments = None if shaft else segments
-    if segments is None:
-        raise SceneError.of(problems)
-    bearings = {}
-    for index, item in zip(numbers, table.bearing):
-        # a datum that is missing was reported before, or is a bearing that was refused
-        if (item.from_ or "start") in datums:
-            try:
-                bearings[index] = bearing_of(item, index, table.attachment, datums, part)
-            except SceneError as error:
-                problems.append(error)
-    order = main_first(table)
-    ports, known = {}, [item.name for item in table.port]
-    if table.port and table.ask.port is not None and table.ask.port not in known:
-        problems.append(SceneError(no_such_point(table.ask.port, known), path=("ask", "port")))
-    for place, index in enumerate(order):
+
+    def __init__(self, attachment: Any, *, of_body: bool = False, part: Recognised | None = None):
+        self.known: list[str] | None = ["start", "end"]
+        self.at: dict[str, float] = {}
+        self.segments: list[str] = []
+        self.surface: dict[str, tuple[float, float]] = {}
+        self.attachment, self.of_body, self.part = attachment, of_body, part
+
+    def add(self, name: str, y: float | None = None) -> None:
+        """A datum, and its place where that is known."""
+        if self.known is not None:
+            self.known.append(name)
+        if y is not None:
+            self.at[name] = y
+
+    def forget(self) -> None:
+        """Keep the names alone, of a shaft that is in doubt."""
+        self.at, self.surface = {}, {}
+
+    def of(self, name: str, key: str) -> float | None:
+        """Place of a datum, m; None where that is not known. A datum that there is not is refused
+        under the key.
+        """
+        if self.known is not None and name not in self.known:
+            raise SceneError(
+                f"unknown datum{nearest(name, self.known)}; known here: {listed(self.known)}",
+                path=(key,),
+            )
+        return self.at.get(name)
+
+    def span_of(self, segment: str, key: str) -> tuple[float, float] | None:
+        """Ends of a segment's surface, m, as :meth:`of` a datum."""
+        if self.known is not None and segment not in self.segments:
+            raise SceneError(
+                f"unknown segment{nearest(segment, self.segments)}; "
+                f"known here: {listed(self.segments)}",
+                path=(key,),
+            )
+        return self.surface.get(segment)
+
+    def span_of_seat(self, seat: Seat, instead: str) -> tuple[float, float] | None:
+        """Ends of a seat on the part, m, as :meth:`of` a datum; on segments it is told what to
+        write.
+        """
+        if not self.of_body:
+            raise SceneError(
+                "a seat by diameter is looked for on a part from a file ([body]); on segments "
+                f"write {instead}",
+                path=("seat",),
+            )
+        if self.part is None:
+            return None
         try:
-            port = port_of(table.port[index], index, table.attachment, datums, surface, part)
+            return self.part.span(seat)
         except SceneError as error:
-            problems.append(error)
-            continue
-        if port is not None:
-            ports[place] = port
-    housing = None
-    try:
-        housing = housing_of(table, datums)
-    except SceneError as error:
-        problems.append(error)
-    masses = {}
-    for index, heavy in enumerate(table.mass):
-        if (heavy.from_ or "start") in datums:
-            try:
-                masses[index] = mass_of(heavy, table.attachment, datums)
-            except SceneError as error:
-                problems.append(error.located(None, path=("mass", index, *error.path)))
-    features, cut_rows, blends, blend_rows = [], [], [], []
-    for index, entry in enumerate(table.feature):
-        # a datum that is missing was reported before
-        if isinstance(entry, FilletTable | ChamferTable):
-            if entry.at in datums:
-                blends.append(blend_of(entry, index, datums))
-                blend_rows.append(index)
-        elif getattr(entry, "from_", None) in (None, *datums):
-            try:
-                features.append(feature_of(entry, index, datums))
-                cut_rows.append(index)
-            except SceneError as error:
-                problems += error.problems
-    stations = [*ports.values(), *bearings.values(), *masses.values()]
-    seated = [s for s in stations if getattr(s, "on", None) is None]
-    of_edges = blend_problems(segments, blends, seated, features)
-    # names are judged where all are known
-    whole = len(bearings) == len(numbers) and bool(table.port)
-    if whole and len(ports) == len(table.port):
-        problems += question_problems([*ports.values()], table.ask.quantities)
-    problems += [
-        one.located(None, path=_file_path(of_port(one.path, order), table, owner))
-        for one in (
-            *station_problems(segments, ports, bearings, masses),
-            *(mass_problems([*ports.values()], bearings, masses) if whole else ()),
-            *_of_rows(feature_problems(segments, features), cut_rows),
-            *_of_rows(of_edges, blend_rows),
-        )
-    ]
-    if problems:
-        raise SceneError.of(problems)
-    return Scene.from_parts(
-        segments,
-        table.material if part is None else usual,
-        bearings.values(),
-        ports.pop(0),
-        title=table.title,
-        name=name,
-        source=table.source,
-        masses=tuple(masses.values()),
-        features=tuple(features),
-        body=with_seats(part, stations, segments) if part is not None else None,
-        blends=tuple(blends),
-        housing_axial=table.housing.axial if table.housing else None,
-        housing=housing,
-        further_ports=tuple(ports.values()),
-        load=table.load,
-        ask=Ask(**{key: getattr(table.ask, key) for key in Ask.model_fields}),
-    )
+            raise error.located(None, prefix=("seat",)) from None
 
 
-def _of_rows(problems: Iterable[SceneError], rows: Sequence[int]) -> Iterator[SceneError]:
-    """Problems of a list with the number of each entry among the [[feature]] of the file."""
-    for one in problems:
-        rest = (rows[one.path[1]], *one.path[2:]) if one.path[1:] else ()
-        yield one.located(None, path=(one.path[0], *rest))
+class NoWords(Model):
+    """Of a thing that has no place of its own."""
 
 
-def _lay_out(table: SceneTable, problems: list[SceneError]):
-    """Segments end to end (None if one cannot be); which [[segment]] each came from; the surface of
-    each by name; and all datums.
+class Along(Model):
+    """Words for a place along the shaft: so far from a datum."""
+
+    position: Length | None = None
+    from_: str | None = Field(None, alias="from")
+
+    def y(self, places: Places, datum: str = "start") -> float | None:
+        """The place (m) from a datum unless another is named; None where that is not known."""
+        start = places.of(self.from_, "from") if self.from_ is not None else places.at.get(datum)
+        return None if start is None else start + (self.position or 0.0)
+
+    def refuse(self, reason: str, *keys: str, beside: Mapping[str, Any] | None = None) -> None:
+        """Refuse the first of some words that is given, or of keys of the table beside them."""
+        for key in keys:
+            if getattr(self, key, None) is not None or key in (beside or ()):
+                raise SceneError(reason, path=(key.rstrip("_"),))
+
+    def needs(self, key: str, how: str, told: str = "") -> None:
+        """Refuse a table without a word, told under its own key or another."""
+        if getattr(self, key) is None:
+            raise SceneError(f"this key is missing; {how}", path=(told or key,))
+
+    def one_of(self, first: str, other: str, how: str) -> None:
+        """Refuse neither of two words, or both."""
+        if getattr(self, other) is None:
+            self.needs(first, how)
+        elif getattr(self, first) is not None:
+            raise SceneError(f"give either {first} or {other}, not both", path=(other,))
+
+
+class Placed(Model):
+    """A thing that a file puts on the shaft by words of its own, beside the fields that it has.
+
+    Attributes
+    ----------
+    Words : type of Model
+        The words.
+    sources : dict of str to tuple of str
+        Fields that come from other keys of a file than their own, and these keys.
     """
-    segments, owner, surface, datums, y = [], [], {}, {"start": 0.0}, 0.0
-    for index, piece in enumerate(table.segment):
-        material = table.material.with_changes(**piece.material.model_dump(exclude_none=True))
-        start = y
-        for part in piece.pieces():
-            if part.length <= 1e-9:
-                problems.append(
-                    SceneError(
-                        "is less than a nanometre along the shaft: probably wrong units",
-                        path=("segment", index, _LENGTH_KEY[part.part]),
-                    )
-                )
-                continue
-            try:
-                segments.append(_segment(part, y, piece.bore / 2, material))
-            except SceneError as error:
-                key = _file_path(("segments", index, error.path[0]), table, range(index + 1))
-                problems.append(error.located(None, path=key))
-                continue
-            owner.append(index)
-            y = segments[-1].y1
-            if part.part != "backcone":
-                surface[piece.name] = (segments[-1].y0, y)
-                if piece.kind == "bevel_head":
-                    datums[f"{piece.name}.mid_face"] = (segments[-1].y0 + y) / 2
-        datums |= {
-            f"{piece.name}.start": start,
-            f"{piece.name}.end": y,
-            f"{piece.name}.middle": (start + y) / 2,
-        }
-    whole = len(segments) == sum(len(piece.pieces()) for piece in table.segment)
-    return segments if whole else None, owner, surface, datums | {"end": y}
 
+    Words: ClassVar[type[Model]] = Along
+    sources: ClassVar[Mapping[str, tuple[str, ...]]] = {"y": ("position",)}
 
-def _usual(table: SceneTable, part: Recognised) -> Material:
-    """The material of whatever has none of its own."""
-    if table.material is not None:
-        return table.material
-    own = [g for g in part.body.groups if g.material is None]
-    if own:
-        raise SceneError(
-            f"{own[0].said}, {1e6 * own[0].volume:.4g} cm^3, has no material: name its groups "
-            "here, or write [material] for all the rest",
-            path=("body", "materials"),
-        )
-    # all groups have one of their own, so that this is nobody's
-    return next(g.material for g in part.body.groups if g.material is not None)
+    @classmethod
+    def place(cls, words: Any, table: Mapping[str, Any], places: Places) -> dict[str, Any]:
+        """Fields that follow from the words of a table, None where the shaft is not known; refuses
+        words that do not go together, or that name what is not there.
+        """
+        return {"y": words.y(places)} if cls.sources else {}
 
+    @classmethod
+    def read(
+        cls: type[_Thing], table: Mapping[str, Any], places: Places, **usual: Any
+    ) -> _Thing | None:
+        """The thing that a table of a file describes, with some fields that the table may leave
+        out; None where nothing is wrong with it, but its place is not known. Problems are told
+        under its keys.
+        """
+        words, known = by_key(cls.Words), cls.table_keys()
+        strange, meant = unknown_keys(table, known)
+        problems = Gathered(strange)
+        if isinstance(name := table.get("name"), str):
+            problems.read(lambda: plain_name(name), ("name",))
+        given = {key: table[key] for key in table if key in known and key not in words}
+        written = {key: table[key] for key in table if key in words}
+        place = problems.read(lambda: cls.place(cls.Words(**written), given, places))
+        found = cls._nowhere(table) if place is None else place
+        if "attachment" in known:
+            usual.setdefault("attachment", cls.usually_attached(table, places))
+        somewhere = {key: SOMEWHERE if value is None else value for key, value in found.items()}
+        thing = cls._made({**usual, **given, **somewhere}, table, problems)
+        Gathered(not_meant(problems, meant)).tell()
+        return None if None in found.values() else thing
 
-def _recognised(material: Material, part: Recognised):
-    """What :func:`_lay_out` gives, of a part from a file."""
-    segments = part.segments(material)
-    datums = {"start": 0.0, "end": segments[-1].y1, "origin": part.origin}
-    for s in segments:
-        middle = (s.y0 + s.y1) / 2
-        datums |= {f"{s.name}.start": s.y0, f"{s.name}.end": s.y1, f"{s.name}.middle": middle}
-    return segments, None, {s.name: (s.y0, s.y1) for s in segments}, datums
+    @classmethod
+    def usually_attached(cls, table: Mapping[str, Any], places: Places) -> str:
+        """Attachment of a thing whose table names none."""
+        return places.attachment
 
+    @classmethod
+    def _made(
+        cls: type[_Thing], fields: dict[str, Any], table: Mapping[str, Any], problems: Gathered
+    ) -> _Thing | None:
+        """The thing of some fields; problems of keys that nothing was said of join the others."""
+        try:
+            return cls(**fields)
+        except SceneError as error:
+            found = [
+                one.located(None, path=cls.key_path(one.path, table)) for one in error.problems
+            ]
+        told = {one.path for one in problems}
+        problems += [one for one in found if one.path not in told]
+        return None
 
-def _weighed(table: SceneTable, material: Material, part: Recognised) -> Iterator[SceneError]:
-    """The mass of a part against what the file says."""
-    assert table.body is not None  # it was read from there
-    said, mass = table.body.mass_check, part.body.mass(material)
-    if said is not None and abs(mass / said - 1) > MASS_CHECK:
-        yield SceneError(
-            f"the part has {mass:.5g} kg ({1e6 * part.body.volume:.5g} cm^3 of "
-            f"{mass / part.body.volume:.5g} kg/m^3), {100 * (mass / said - 1):+.3g} % from that",
-            path=("body", "mass_check"),
-        )
+    @classmethod
+    def key_path(cls, path: tuple, table: Mapping[str, Any]) -> tuple:
+        """The key of a table that a field came from, in a path to the field."""
+        keys = cls.sources.get(path[0], (path[0],)) if path else ()
+        return (next((key for key in keys if key in table), keys[-1]), *path[1:]) if path else ()
 
+    @classmethod
+    def table_keys(cls) -> dict[str, FieldInfo | None]:
+        """Keys of a table, with the fields that they hold; its words stand where its place does."""
+        fields, words = by_key(cls), by_key(cls.Words)
+        keys: dict[str, FieldInfo | None] = {}
+        for key, field in fields.items():
+            sources = cls.sources.get(key, (key,))
+            keys |= words if key not in sources else {}
+            keys |= {
+                one: field if one == key else fields.get(one) for one in sources if one not in keys
+            }
+        return keys | words
 
-_LENGTH_KEY = {"frustum": "face_width", "backcone": "backcone", "shaft": "length"}
-
-
-def _segment(piece: Piece, y: float, bore_radius: float, material: Material) -> Segment:
-    return Segment(
-        name=piece.name,
-        y0=y,
-        y1=y + piece.length,
-        outer0=piece.outer0,
-        outer1=piece.outer1,
-        inner0=bore_radius,
-        inner1=bore_radius,
-        material=material,
-        part=piece.part,
-    )
-
-
-def _file_path(path: tuple, table: SceneTable, owner: Sequence[int] | None) -> tuple:
-    """The key in the file that an entry of the resolved scene came from."""
-    if owner is None:
-        assert table.body is not None  # in place of segments
-        path = _part_path(path, table)
-        owner = ()
-    match path:
-        case ("segments", index, key):
-            kind = table.segment[owner[index]].kind
-            start, end = {
-                "cylinder": ("diameter",) * 2,
-                "cone": ("start_diameter", "end_diameter"),
-                "bevel_head": ("pitch_radius",) * 2,
-            }[kind]
-            length = "face_width" if kind == "bevel_head" else "length"
-            key = {
-                "outer0": start,
-                "outer1": end,
-                "inner0": "bore",
-                "inner1": "bore",
-                "y1": length,
-            }.get(key, key)
-            return ("segment", owner[index], key)
-        case ("segments", index, "material", key):
-            own = getattr(table.segment[owner[index]].material, key) is not None
-            return ("segment", owner[index], "material", key) if own else ("material", key)
-        case ("bearings", index, key):
-            return ("bearing", index, {"y": "position"}.get(key, key))
-        case ("masses", index, key):
-            return ("mass", index, {"y": "position"}.get(key, key))
-        case ("features", index, key):
-            return ("feature", index, {"y": "position"}.get(key, key))
-        case ("blends", index, key):
-            return ("feature", index, {"y": "at"}.get(key, key))
-        case ("features" | "blends",):
-            return ("feature",)
-        case ("port", index, "y"):
-            return ("port", index, "at" if table.port[index].at is not None else "position")
-        case ("port", index, "lo" | "hi"):
-            key = "span" if table.port[index].span is not None else "attach_to"
-            return ("port", index, key)
-        case ("housing_axial",):
-            return ("housing", "axial")
-    return path
-
-
-def _part_path(path: tuple, table: SceneTable) -> tuple:
-    """Of an entry that was recognised on a part, the key that named the file or the seat."""
-    match path:
-        case ("segments", _, "material", key):
-            return ("material", key)
-        case ("segments", *_):
-            return ("body", table.body.key if table.body is not None else "step")
-        case ("bearings", index, "seat_width") if table.bearing[index].seat is not None:
-            return ("bearings", index, "seat")
-        case ("port", index, "lo" | "hi") if table.port[index].seat is not None:
-            return ("port", index, "seat")
-    return path
+    @classmethod
+    def _nowhere(cls, table: Mapping[str, Any]) -> dict[str, None]:
+        """Fields of a place that is refused."""
+        own = cls.table_keys()
+        fields = [key for key, field in cls.model_fields.items() if field.is_required()]
+        seated = ["seat_width"] if "seat" in table and "seat_width" in fields else []
+        return dict.fromkeys([key for key in fields if key not in own] + seated)

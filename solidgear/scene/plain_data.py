@@ -11,12 +11,7 @@ if TYPE_CHECKING:
 
 
 def plain_data(scene: Scene) -> dict[str, Any]:
-    """See :meth:`Scene.as_dict`.
-
-    Parameters
-    ----------
-    scene : Scene
-    """
+    """See :meth:`Scene.as_dict`."""
     data = scene.model_dump(mode="json")
     for key in ("masses", "features", "blends", "further_ports"):
         if not data[key]:

@@ -2,34 +2,26 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Annotated, Any
 
 import numpy as np
-from pydantic import BeforeValidator, model_validator
+from pydantic import model_validator
 
 from solidgear.errors import SceneError
 from solidgear.frames import shift
-from solidgear.scene.parts import Model
+from solidgear.scene.places import Placed, Places
 from solidgear.scene.stations import Attachment
 from solidgear.scene.units import (
     POSITION_DECIMALS,
     Mass,
     Position,
     PositiveLength,
-    quantity,
+    three,
 )
 
 
-def _three(dimension: str, what: str) -> BeforeValidator:
-    def read(value: Any) -> tuple[float, ...]:
-        if not isinstance(value, (list, tuple)) or len(value) != 3:
-            raise SceneError(f"must be three quantities, {what}")
-        return tuple(quantity(entry, dimension) for entry in value)
-
-    return BeforeValidator(read)
-
-
-class PointMass(Model):
+class PointMass(Placed):
     """A rigid mass that moves with a port, a bearing seat or a seat of its own.
 
     Attributes
@@ -68,12 +60,12 @@ class PointMass(Model):
 
     name: str
     mass: Mass
-    inertia: Annotated[tuple[float, float, float], _three("inertia", "about x, y and z")] = (
+    inertia: Annotated[tuple[float, float, float], three("inertia", "about x, y and z")] = (
         0.0,
         0.0,
         0.0,
     )
-    offset: Annotated[tuple[float, float, float], _three("length", "along x, y and z")] = (
+    offset: Annotated[tuple[float, float, float], three("length", "along x, y and z")] = (
         0.0,
         0.0,
         0.0,
@@ -88,11 +80,23 @@ class PointMass(Model):
         check_inertia(self.inertia)
         if self.on is None and self.seat_width is None:
             raise SceneError(
-                "a mass sits on a station or on a seat of its own: "
-                "give on, or a position and a seat_width",
-                path=("on",),
+                "this key is missing: the width of the seat that carries the mass, unless on "
+                "names a port or bearing that does",
+                path=("seat_width",),
             )
         return self
+
+    @classmethod
+    def place(cls, words: Any, table: Mapping[str, Any], places: Places) -> dict[str, Any]:
+        if "on" not in table:
+            how = 'name the port or bearing that carries it, or write position = "28 mm"'
+            words.needs("position", how, "on")
+            return {"y": words.y(places)}
+        if words.position is not None:
+            raise SceneError("give either on or position, not both", path=("position",))
+        own = "belongs to a seat of its own; a mass on a station has that of the station"
+        words.refuse(own, "from_", "seat_width", "attachment", beside=table)
+        return {"attachment": "average"}
 
     @property
     def station(self) -> str:
@@ -122,17 +126,8 @@ class PointMass(Model):
 
 
 def check_inertia(inertia: tuple[float, float, float]) -> None:
-    """Refuse moments of inertia that no distribution of mass has.
-
-    Parameters
-    ----------
-    inertia : (float, float, float)
-        About three axes at right angles, kg m^2.
-
-    Raises
-    ------
-    SceneError
-        A negative one, or one larger than the sum of the other two.
+    """Refuse moments of inertia (kg m^2, about three axes at right angles) that no distribution of
+    mass has.
     """
     if min(inertia) < 0:
         raise SceneError("a moment of inertia must not be negative", path=("inertia",))

@@ -1,4 +1,4 @@
-"""What makes segments one shaft, and where ports and seats may lie on it: every problem in a
+"""Rules for segments of one shaft, and for ports and seats on it: every problem in a
 sentence of its own.
 
 Numbers in m. Paths of problems are those of a `Scene`.
@@ -6,7 +6,7 @@ Numbers in m. Paths of problems are those of a `Scene`.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from typing import TYPE_CHECKING
 
 from solidgear.errors import SceneError, listed, nearest, show
@@ -42,33 +42,15 @@ ONE_HOUSING = (
 
 
 def steps(segments: Sequence[Segment]) -> tuple[float, ...]:
-    """Places where the outer radius jumps, end faces left out.
-
-    Parameters
-    ----------
-    segments : sequence of Segment
-
-    Returns
-    -------
-    tuple of float
-        y, m.
-    """
+    """Places (m) where the outer radius jumps, end faces left out."""
     return tuple(
         b.y0 for a, b in zip(segments, segments[1:]) if abs(a.outer1 - b.outer0) > 1e-9 * a.outer1
     )
 
 
 def shaft_problems(segments: Sequence[Segment]) -> list[SceneError]:
-    """What is wrong with segments as one shaft.
-
-    Parameters
-    ----------
-    segments : sequence of Segment
-
-    Returns
-    -------
-    list of SceneError
-        Proportions are judged only of segments that lie end to end and have a sensible size.
+    """Problems of segments as one shaft; proportions are judged only of segments that lie end
+    to end and have a sensible size.
     """
     if not segments:
         return [SceneError("a scene needs at least one segment", path=("segments",))]
@@ -78,18 +60,7 @@ def shaft_problems(segments: Sequence[Segment]) -> list[SceneError]:
 
 
 def too_many(what: str, count: int, most: int) -> str:
-    """The reason to refuse a list longer than that of any shaft.
-
-    Parameters
-    ----------
-    what : {'segments', 'bearings', 'masses', 'ports'}
-    count, most : int
-        How many there are, and how many there may be.
-
-    Returns
-    -------
-    str
-    """
+    """The reason to refuse a list longer than that of any shaft."""
     hint = (
         "; let pieces that are one be one segment, and a few cones stand for a curve"
         if what == "segments"
@@ -183,26 +154,12 @@ def _unlike(first: Material, here: Material, i: int) -> Iterator[SceneError]:
 
 def station_problems(
     segments: Sequence[Segment],
-    ports: Mapping[int, Port],
-    bearings: Mapping[int, Bearing],
-    masses: Mapping[int, PointMass] | None = None,
+    ports: Sequence[Port],
+    bearings: Sequence[Bearing],
+    masses: Sequence[PointMass] = (),
 ) -> Iterator[SceneError]:
-    """Ports and seats lie on the shaft, on one smooth surface each, and seats do not overlap.
-
-    Parameters
-    ----------
-    segments : sequence of Segment
-    ports : mapping of int to Port
-        By their place in the scene, 0 for the main one.
-    bearings : mapping of int to Bearing
-        Likewise; those that cannot be used for another reason may be left out, and so may ports.
-    masses : mapping of int to PointMass, optional
-        Likewise; those that move with another station have no place of their own.
-
-    Yields
-    ------
-    SceneError
-        One for each problem.
+    """Ports (the main one first) and seats lie on the shaft, on one smooth surface each, and seats
+    do not overlap.
     """
     length, jumps = segments[-1].y1, steps(segments)
     for what, of, most in (("bearings", bearings, MOST_BEARINGS), ("ports", ports, MOST_PORTS)):
@@ -211,15 +168,17 @@ def station_problems(
             yield SceneError(too_many(what, len(of), most), path=(key,))
             return
     places: list[tuple[tuple[str | int, ...], Port | Bearing | PointMass, str]] = [
-        ((*_port_path(i), "hi"), port, "attached span") for i, port in ports.items()
+        ((*_port_path(i), "hi"), port, "attached span") for i, port in enumerate(ports)
     ]
-    places += [(("bearings", i, "seat_width"), bearing, "seat") for i, bearing in bearings.items()]
+    places += [
+        (("bearings", i, "seat_width"), bearing, "seat") for i, bearing in enumerate(bearings)
+    ]
     places += [
         (("masses", i, "seat_width"), mass, "seat")
-        for i, mass in (masses or {}).items()
+        for i, mass in enumerate(masses)
         if mass.on is None
     ]
-    for i, port in ports.items():
+    for i, port in enumerate(ports):
         if not -TOUCH <= port.y <= length + TOUCH:
             yield SceneError(
                 f"the port is at y = {port.y:.6g} m, outside the shaft (0 to {length:.6g} m)",
@@ -244,42 +203,19 @@ def station_problems(
 
 
 def _port_path(index: int) -> tuple[str | int, ...]:
-    """Where a lumped point is in a scene; the main one is the first."""
+    """Path of a lumped point in a scene; the main one is the first."""
     return ("further_ports", index - 1) if index else ("port",)
 
 
 def no_such_point(name: str, known: Iterable[str]) -> str:
-    """The reason to refuse the name of a lumped point.
-
-    Parameters
-    ----------
-    name : str
-    known : iterable of str
-        Those that there are.
-
-    Returns
-    -------
-    str
-    """
+    """The reason to refuse the name of a lumped point."""
     known = list(known)
     hint = nearest(name, known)
     return f"there is no lumped point {show(name, 40)}{hint}; the scene has {listed(known)}"
 
 
 def question_problems(ports: Sequence[Port], quantities: Sequence[str]) -> Iterator[SceneError]:
-    """Quantities are asked of lumped points that there are.
-
-    Parameters
-    ----------
-    ports : sequence of Port
-    quantities : sequence of str
-        Such as ``C_zz`` or ``C_zz@gear``.
-
-    Yields
-    ------
-    SceneError
-        One for each problem.
-    """
+    """Quantities, such as ``C_zz`` or ``C_zz@gear``, are asked of lumped points that there are."""
     known = [port.name for port in ports]
     for k, quantity in enumerate(quantities):
         base, at, point = quantity.partition(AT)
@@ -291,17 +227,8 @@ def question_problems(ports: Sequence[Port], quantities: Sequence[str]) -> Itera
 
 
 def no_term(base: str, points: Sequence[str]) -> str:
-    """The reason to refuse a quantity between points; empty where there is none.
-
-    Parameters
-    ----------
-    base : str
-        The quantity without its points.
-    points : sequence of str
-
-    Returns
-    -------
-    str
+    """The reason to refuse a quantity (without its points) between points; empty where there is
+    none.
     """
     if len(points) > 2:
         return f"a term is between two points; write for example {base}@{points[0]}@{points[1]}"
@@ -314,29 +241,16 @@ def no_term(base: str, points: Sequence[str]) -> str:
 
 
 def mass_problems(
-    ports: Sequence[Port], bearings: Mapping[int, Bearing], masses: Mapping[int, PointMass]
+    ports: Sequence[Port], bearings: Sequence[Bearing], masses: Sequence[PointMass]
 ) -> Iterator[SceneError]:
-    """Masses sit on a station that there is, and not too many of them.
-
-    Parameters
-    ----------
-    ports : sequence of Port
-        None where they cannot be used; then one of their names may be the one that is missing.
-    bearings, masses : mapping of int to Bearing or PointMass
-        By their place in the scene.
-
-    Yields
-    ------
-    SceneError
-        One for each problem.
-    """
+    """Masses sit on a station that there is, and not too many of them."""
     if len(masses) > MOST_MASSES:
         yield SceneError(too_many("masses", len(masses), MOST_MASSES), path=("masses",))
         return
-    known = [*(port.name for port in ports), *(b.name for b in bearings.values())]
+    known = [*(port.name for port in ports), *(b.name for b in bearings)]
     named = set()
-    for i, mass in masses.items():
-        if mass.on is not None and mass.on not in known and ports:
+    for i, mass in enumerate(masses):
+        if mass.on is not None and mass.on not in known:
             reason = f"no lumped point or bearing has this name; there are {', '.join(known)}"
             yield SceneError(reason, path=("masses", i, "on"))
         # on seats of their own they are stations, whose names are compared there
@@ -354,8 +268,8 @@ def _misplaced(
     length: float,
     jumps: Sequence[float],
 ) -> str:
-    """Why a station cannot be where it is, or nothing: the first reason, of which others may be a
-    consequence.
+    """Reason why a station cannot be where it is, or nothing: the first reason, of which others may
+    be a consequence.
     """
     if here.hi <= here.lo:
         return f"the span must end beyond its start at {here.lo:.6g} m"

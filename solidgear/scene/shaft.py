@@ -1,4 +1,4 @@
-"""What builders and meshes see of a scene."""
+"""The side of a scene that builders and meshes see."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ class Shaft(Protocol):
 
     @property
     def stations(self) -> tuple[Port | Bearing | PointMass, ...]:
-        """What is attached, the port first; each has name, y, lo, hi (m) and attachment."""
+        """Things attached, the port first; each has name, y, lo, hi (m) and attachment."""
 
     @property
     def corners(self) -> tuple[Corner, ...]:
@@ -33,18 +33,8 @@ class Shaft(Protocol):
 
 
 def resolved(scene: Any) -> tuple[Any, ...]:
-    """What a scene has beyond its segments, so that a model of revolution does not hold it:
-    features, but for teeth that are smeared into a cone, or a part from a file.
-
-    Parameters
-    ----------
-    scene : Scene, or anything with segments
-        Nothing more is there where it does not speak of it.
-
-    Returns
-    -------
-    tuple of Feature or BodyFile
-        Each with ``kind``, ``what``, ``name`` and ``round``.
+    """Features and parts of a scene beyond its segments, so that a model of revolution does not
+    hold it: features, but for teeth that are smeared into a cone, or a part from a file.
 
     Examples
     --------
@@ -59,15 +49,5 @@ def resolved(scene: Any) -> tuple[Any, ...]:
 
 
 def named(features: Iterable[Any]) -> str:
-    """Features in a sentence.
-
-    Parameters
-    ----------
-    features : iterable of Feature or BodyFile
-
-    Returns
-    -------
-    str
-        Such as ``keyway "key"``.
-    """
+    """Features in a sentence, such as ``keyway "key"``."""
     return ", ".join(f'{f.what} "{f.name}"' for f in features)

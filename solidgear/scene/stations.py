@@ -1,24 +1,27 @@
-"""What is attached to a shaft, each frozen and validated: bearing and port."""
+"""Things attached to a shaft, each frozen and validated: bearing and port."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
-from typing import Annotated, Any, Literal
+from collections.abc import Mapping
+from typing import Annotated, Any, ClassVar, Literal
 
 import numpy as np
-from pydantic import BeforeValidator, model_validator
+from pydantic import BeforeValidator, Field, model_validator
 
 from solidgear.errors import SceneError, show
 from solidgear.frames import DOF_NAMES
 from solidgear.scene.bearing_stiffness import checked_matrix
 from solidgear.scene.catalogue import Catalogue
-from solidgear.scene.housing import Elastic
-from solidgear.scene.parts import Model
+from solidgear.scene.housing import Elastic, elastic
+from solidgear.scene.places import Along, Placed, Places
+from solidgear.scene.recognised import Seat
 from solidgear.scene.rules import MOST_SPRINGS
+from solidgear.scene.typed import Gathered
 from solidgear.scene.units import (
     POSITION_DECIMALS,
     SOFTEST,
     AxialSpring,
+    Length,
     Position,
     PositiveLength,
 )
@@ -73,7 +76,7 @@ def _matrix(value: Any) -> Any:
     return None if value is None else checked_matrix(value)
 
 
-class Bearing(Model):
+class Bearing(Placed):
     """A bearing: a 6x6 stiffness between ground and the seat it sits on.
 
     Attributes
@@ -120,13 +123,24 @@ class Bearing(Model):
     (0.08, 0.12)
     """
 
+    class Words(Along):
+        """Of a file: along the shaft, or a cylinder of a part."""
+
+        seat: Seat | None = None
+
+    sources: ClassVar = {
+        "y": ("seat", "face", "position"),
+        "seat_width": ("seat", "seat_width"),
+        "matrix": ("matrix", "stiffness"),
+    }
+
     name: str
     y: Position
     seat_width: PositiveLength
     matrix: Annotated[tuple[tuple[float, ...], ...] | None, BeforeValidator(_matrix)] = None
     catalogue: Catalogue | None = None
     axial_series: AxialSeries = ()
-    housing: Elastic | None = None
+    housing: Annotated[Elastic | None, BeforeValidator(elastic)] = None
     attachment: Attachment = "average"
     status: Status = "assumed"
     note: str = ""
@@ -136,17 +150,50 @@ class Bearing(Model):
     def __init__(self, /, **data: Any):
         if "stiffness" in data:
             data["matrix"] = data.pop("stiffness")
-        if data.get("hold") in HOLDS and "matrix" not in data:
+        if data.get("hold") in tuple(HOLDS) and "matrix" not in data:
             data["matrix"] = held_matrix(data["hold"])
         if data.get("face") is not None:
             data.setdefault("attachment", "section")
         super().__init__(**data)
 
+    @classmethod
+    def place(cls, words: Any, table: Mapping[str, Any], places: Places) -> dict[str, Any]:
+        _one_stiffness(table)
+        face = table.get("face")
+        if words.seat is not None:
+            both = "a seat has its place and width in seat; leave one of both out"
+            words.refuse(both, "position", "from_", "face", "seat_width", beside=table)
+            lo, hi = places.span_of_seat(words.seat, "position and seat_width") or (None, None)
+            if lo is None or hi is None:
+                return {"y": None, "seat_width": None}
+            return {"y": (lo + hi) / 2, "seat_width": hi - lo}
+        if face is None:
+            words.needs("position", 'write position = "28 mm" with from, or face = "start"')
+            return {"y": words.y(places)}
+        words.refuse("give either face, or position with from, not both", "position", "from_")
+        return {"y": places.at.get(face) if face in ("start", "end") else None}
+
+    @classmethod
+    def usually_attached(cls, table: Mapping[str, Any], places: Places) -> str:
+        """The middle of an end face is a section; a seat would be the rim beside it."""
+        return "section" if "face" in table else super().usually_attached(table, places)
+
+    @model_validator(mode="after")
+    def _status_of_data(self) -> Bearing:
+        if self.catalogue is not None and "status" not in self.model_fields_set:
+            status = "estimated" if self.catalogue.estimated else "calculated"
+            object.__setattr__(self, "status", status)
+        return self
+
     @model_validator(mode="after")
     def _springs_or_none(self) -> Bearing:
         if self.matrix is None:
             if self.catalogue is None:
-                raise SceneError("this key is missing", path=("matrix",))
+                raise SceneError(
+                    "this key is missing; write stiffness = {kxx = ...}, matrix = 6 rows of 6 "
+                    'numbers, catalogue = {...}, or hold = "clamped"',
+                    path=("matrix",),
+                )
             return self
         for name, k in zip(DOF_NAMES, np.diag(self.matrix)):
             if 0 < k < SOFTEST:
@@ -245,7 +292,7 @@ class Bearing(Model):
         )
 
 
-class Port(Model):
+class Port(Placed):
     """The lumped point on the axis, attached to a span of the outer surface.
 
     Attributes
@@ -269,38 +316,66 @@ class Port(Model):
     0.058
     """
 
+    class Words(Along):
+        """Of a file: where the point is, and what carries it."""
+
+        at: str | None = None
+        attach_to: str | None = None
+        span: Annotated[list[Length], Field(min_length=2, max_length=2)] | None = None
+        seat: Seat | None = None
+
+    sources: ClassVar = {
+        "y": ("at", "position"),
+        "lo": ("seat", "span", "attach_to"),
+        "hi": ("seat", "span", "attach_to"),
+    }
+
     name: str = "port"
     y: Position
     lo: Position
     hi: Position
     attachment: Attachment = "average"
 
+    @classmethod
+    def place(cls, words: Any, table: Mapping[str, Any], places: Places) -> dict[str, Any]:
+        problems = Gathered()
+        y = problems.read(lambda: cls._y(words, places))
+        lo, hi = problems.read(lambda: cls._span(words, places)) or (None, None)
+        problems.tell()
+        if words.at is None and words.position is None and lo is not None and hi is not None:
+            y = (lo + hi) / 2
+        return {"y": y, "lo": lo, "hi": hi}
 
-def attached_stations(
-    stations: Iterable[Any], attachments: Sequence[str] | None = None
-) -> Iterator[tuple[Any, str]]:
-    """Stations with the ways in which a body is to attach them, one port each.
+    @staticmethod
+    def _y(words: Any, places: Places) -> float | None:
+        """Its place, m."""
+        if words.at is not None:
+            words.refuse("give either at, or position with from, not both", "position", "from_")
+            return places.of(words.at, "at")
+        if words.seat is None:
+            words.needs("position", 'write at = "<segment>.middle", or position with from', "at")
+        return words.y(places)
 
-    Parameters
-    ----------
-    stations : iterable of Port, Bearing or PointMass
-    attachments : sequence of str, optional
-        Ways in place of their own; the middle of an end face is a section all the same.
+    @staticmethod
+    def _span(words: Any, places: Places) -> tuple[float, float] | None:
+        """Ends of the surface that carries it, m."""
+        if words.seat is not None:
+            for key in ("attach_to", "span"):
+                words.refuse(f"give either seat or {key}, not both", key)
+            return places.span_of_seat(words.seat, "span, or attach_to with the name of a segment")
+        how = 'name the segment whose surface carries the port, or write span = ["0 mm", "58 mm"]'
+        words.one_of("attach_to", "span", how)
+        return words.span or places.span_of(words.attach_to, "attach_to")
 
-    Yields
-    ------
-    station : Port, Bearing or PointMass
-    attachment : {'average', 'rigid', 'section'}
 
-    Examples
-    --------
-    >>> tip = Port(name="tip", y=1.0, lo=0.9, hi=1.0)
-    >>> wall = Bearing(name="wall", y=0.0, seat_width=0.02, hold="clamped", face="start")
-    >>> [(s.name, way) for s, way in attached_stations([tip, wall], ["average", "rigid"])]
-    [('tip', 'average'), ('tip', 'rigid'), ('wall', 'section')]
-    """
-    for station in stations:
-        own = (station.attachment,)
-        on_face = getattr(station, "face", None) is not None
-        for attachment in own if on_face or not attachments else attachments:
-            yield station, attachment
+def _one_stiffness(table: Mapping[str, Any]) -> None:
+    """Refuse a bearing in a file that is described twice."""
+    given = [k for k in ("stiffness", "matrix", "catalogue", "hold") if k in table]
+    if len(given) > 1:
+        raise SceneError(f"give either {given[0]} or {given[-1]}, not both", path=(given[0],))
+    if "hold" in table and table.get("axial_series"):
+        raise SceneError(
+            "a spring in series needs a stiffness beside it; leave one of hold and axial_series "
+            "out",
+            path=("axial_series",),
+        )

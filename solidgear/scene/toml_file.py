@@ -25,21 +25,8 @@ STANDARD_INPUT = "-"
 
 
 def parse(where: str) -> dict[str, Any]:
-    """Tables of a TOML file.
-
-    Parameters
-    ----------
-    where : str
-        Path of the file.
-
-    Returns
-    -------
-    dict
-
-    Raises
-    ------
-    SceneError
-        No such file, no plain file, too large, no UTF-8 text or no TOML.
+    """Tables of a TOML file, or a refusal: no such file, no plain file, too large, no UTF-8 text or
+    no TOML.
     """
     try:
         text = _text(where)
@@ -65,21 +52,12 @@ def parse(where: str) -> dict[str, Any]:
 
 
 def describes_train(raw: Mapping[str, Any]) -> bool:
-    """Whether the tables of a file are those of a train of two shafts, and not of one shaft."""
+    """True for tables of a train of two shafts, and not of one shaft."""
     return "segment" not in raw and {"pinion", "gear"} <= set(raw)
 
 
 def is_train(path: str | os.PathLike) -> bool:
-    """Whether a file describes a train.
-
-    Parameters
-    ----------
-    path : str or path
-
-    Raises
-    ------
-    SceneError
-        As :func:`parse`.
+    """True for a file that describes a train.
 
     Examples
     --------
@@ -113,7 +91,7 @@ def place_of(where: str) -> str:
 
 @lru_cache(maxsize=1)
 def _standard_input(stream: TextIO) -> bytes:
-    """What standard input holds; a file is read more than once, to say where it is wrong."""
+    """Text of standard input; a file is read more than once, to say where it is wrong."""
     return stream.buffer.read(LARGEST + 1)
 
 

@@ -14,9 +14,9 @@ from pydantic import model_validator
 
 from solidgear.errors import SceneError, listed, nearest
 from solidgear.scene.model import Scene
-from solidgear.scene.parts import Model
 from solidgear.scene.stations import Bearing
 from solidgear.scene.train_tables import Losses, Member, Mesh, Rotor, TrainAsk
+from solidgear.scene.typed import Model
 
 SIDES = ("pinion", "gear")
 #: a ratio that is typed with four digits may differ from that of the teeth by this
@@ -137,8 +137,8 @@ class Train(Model):
         return {"pinion": self.pinion, "gear": self.gear}[side]
 
     def rotor(self, side: str) -> tuple[str, Rotor]:
-        """What turns with a shaft, and its name: the engine with the pinion, the load with the
-        gear.
+        """Rotor that turns with a shaft, and its name: the engine with the pinion, the load with
+        the gear.
         """
         return ("engine", self.engine) if side == "pinion" else ("load", self.load)
 
@@ -173,7 +173,7 @@ class Train(Model):
         return {k: s for k, s in self.statuses().items() if s in ("identified", "assumed")}
 
     def statuses(self) -> dict[str, str]:
-        """Where every value of the file that has a status comes from, by its key."""
+        """Status of every value of the file that has one, by its key."""
         mesh, out = self.mesh, {}
         line = "line_of_action" if mesh.line_of_action else "contact_cells"
         line = "pressure_angle" if not (mesh.line_of_action or mesh.contact_cells) else line

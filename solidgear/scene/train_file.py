@@ -112,22 +112,7 @@ def _with_cells(table: Mapping[str, Any], folder: Path) -> dict[str, Any]:
 
 def read_cells(path: str | os.PathLike) -> tuple[dict[str, Any], ...]:
     """Contact cells of a CSV file with the columns x, y, z (m), nx, ny, nz and force (N), as a
-    `Mesh` takes them.
-
-    Parameters
-    ----------
-    path : str or path
-
-    Returns
-    -------
-    tuple of dict
-        ``point``, ``normal`` (of unit length) and ``force``.
-
-    Raises
-    ------
-    SceneError
-        No such file, a column that is missing, a number that is none, a normal that is no unit
-        vector, a negative force, or no force at all.
+    `Mesh` takes them: ``point``, ``normal`` (of unit length) and ``force``.
     """
     where = os.fspath(path)
     try:

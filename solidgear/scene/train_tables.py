@@ -9,22 +9,25 @@ from pydantic import BeforeValidator, Field, model_validator
 
 from solidgear.errors import SceneError
 from solidgear.scene.model import Scene
-from solidgear.scene.parts import Model
 from solidgear.scene.stations import Status
-from solidgear.scene.train_units import (
+from solidgear.scene.typed import Model
+from solidgear.scene.units import (
+    Frequency,
     Inertia,
+    Length,
     Loss,
     Mass,
     MeshSpring,
-    Ordinate,
     PitchAngle,
+    PositiveLength,
     PressureAngle,
     ShaftAngle,
     SpiralAngle,
+    Thickness,
+    Tolerance,
     TorsionSpring,
-    Vector,
+    three,
 )
-from solidgear.scene.units import Frequency, Length, PositiveLength, Tolerance
 
 #: teeth that a wheel may have
 FEWEST_TEETH, MOST_TEETH = 3, 2000
@@ -32,6 +35,9 @@ FEWEST_TEETH, MOST_TEETH = 3, 2000
 Teeth = Annotated[int, Field(strict=True, ge=FEWEST_TEETH, le=MOST_TEETH)]
 #: nodal diameters; ports hold those below, and finer waves than the last are shorter than teeth
 FIRST_HARMONIC, LAST_HARMONIC = 2, 32
+Vector = Annotated[
+    tuple[float, float, float], three("length", 'such as ["-55 mm", "0 mm", "0 mm"]')
+]
 Harmonic = Annotated[int, Field(strict=True, ge=FIRST_HARMONIC, le=LAST_HARMONIC)]
 
 
@@ -146,8 +152,8 @@ class ErrorTable(Model):
     """
 
     frequency: tuple[Frequency, ...] = ()
-    amplitude: tuple[Ordinate, ...] = ()
-    orders: tuple[Ordinate, ...] = ()
+    amplitude: tuple[Thickness, ...] = ()
+    orders: tuple[Thickness, ...] = ()
 
     @model_validator(mode="after")
     def _one_kind(self):
@@ -225,8 +231,8 @@ class Mesh(Model):
     point: Vector | None = None
     contact_cells: tuple[Cell, ...] = ()
     gear_position: Vector | None = None
-    loaded_error: Ordinate | None = None
-    unloaded_error: Ordinate | None = None
+    loaded_error: Thickness | None = None
+    unloaded_error: Thickness | None = None
     transmission_error: Annotated[ErrorTable, BeforeValidator(_constant_or_table)]
     transmission_error_status: Status = "assumed"
     local_harmonics: tuple[Harmonic, ...] = ()

@@ -50,7 +50,7 @@ def _dimension(*, length: int = 0, mass: int = 0, time: int = 0) -> Dimension:
 _LENGTH, _ANGLE, _RATE = _dimension(length=1), _dimension(), _dimension(time=-1)
 _STRESS, _DENSITY = _dimension(mass=1, length=-1, time=-2), _dimension(mass=1, length=-3)
 _PER_LENGTH, _FORCE = _dimension(mass=1, time=-2), _dimension(mass=1, length=1, time=-2)
-_MOMENT = _dimension(mass=1, length=2, time=-2)
+_MOMENT, _INERTIA = _dimension(mass=1, length=2, time=-2), _dimension(mass=1, length=2)
 #: units that nearly every scene is written in: (SI units in one, power of the radian, dimension).
 #: What pint says of each (a test compares), without the half second that pint takes to start
 COMMON: dict[str, tuple[float, float, Dimension]] = {
@@ -70,6 +70,9 @@ COMMON: dict[str, tuple[float, float, Dimension]] = {
     "N/um": (1e6, 0.0, _PER_LENGTH),
     "N": (1.0, 0.0, _FORCE),
     "N/rad": (1.0, -1.0, _FORCE),
+    "kg": (1.0, 0.0, _dimension(mass=1)),
+    "kg*m^2": (1.0, 0.0, _INERTIA),
+    "kg m^2": (1.0, 0.0, _INERTIA),
     "N*m": (1.0, 0.0, _MOMENT),
     "N*m/rad": (1.0, -1.0, _MOMENT),
     "N m/rad": (1.0, -1.0, _MOMENT),
@@ -207,9 +210,9 @@ def _si_factor(unit: str) -> tuple[float, float, Dimension] | None:
     """(SI units in one `unit`, power of the radian in it, its dimensionality), or None when pint
     does not know it.
     """
-    if unit in COMMON:
-        return COMMON[unit]
-    return _by_pint(unit)
+    # m2 for m^2, as people write inertias
+    unit = re.sub(r"(?<=m)2\b", "^2", unit)
+    return COMMON[unit] if unit in COMMON else _by_pint(unit)
 
 
 def _by_pint(unit: str) -> tuple[float, float, Dimension] | None:
@@ -259,6 +262,37 @@ def _must(test: Callable[[float], bool], reason: str) -> AfterValidator:
         return value
 
     return AfterValidator(check)
+
+
+def _between(low: float, high: float, words: str) -> AfterValidator:
+    return _must(lambda v: low <= v <= high, f"must lie between {words}")
+
+
+def _loss(value: float) -> float:
+    if value > 1:
+        percent = f"; {value:g} per cent is written {value / 100:g}" if value <= 100 else ""
+        raise SceneError(f"a loss factor lies between 0 and 1{percent}")
+    if value < 0:
+        raise SceneError("a loss factor must not be negative")
+    return value
+
+
+def three(dimension: str, what: str) -> BeforeValidator:
+    """Reads three quantities of one dimension."""
+
+    def read(value: Any) -> tuple[float, ...]:
+        if not isinstance(value, (list, tuple)) or len(value) != 3:
+            raise SceneError(f"must be three quantities, {what}")
+        return tuple(_one_of_three(k, entry, dimension) for k, entry in enumerate(value))
+
+    return BeforeValidator(read)
+
+
+def _one_of_three(place: int, entry: Any, dimension: str) -> float:
+    try:
+        return quantity(entry, dimension)
+    except SceneError as error:
+        raise error.located(None, path=(place,)) from None
 
 
 _POSITIVE = _must(lambda v: v > 0, "must be greater than zero")
@@ -318,4 +352,22 @@ Tolerance = Annotated[
     float,
     _in("dimensionless"),
     _must(lambda v: 0 < v < 1, "must lie between 0 and 1; 0.05 is five per cent"),
+]
+
+# Quantities of a train.
+Inertia = Annotated[float, _in("inertia"), _POSITIVE]
+TorsionSpring = Annotated[float, _in("moment"), _POSITIVE]
+MeshSpring = Annotated[float, _in("force_per_length"), _POSITIVE]
+Loss = Annotated[float, _in("dimensionless"), AfterValidator(_loss)]
+SpiralAngle = Annotated[float, _in("angle"), _between(0.0, 1.4, "0 and 80 degrees (0 and 1.4 rad)")]
+PitchAngle = Annotated[
+    float, _in("angle"), _between(0.0, 1.56, "0 (cylindrical gears) and 89 degrees (1.56 rad)")
+]
+PressureAngle = Annotated[
+    float, _in("angle"), _between(0.05, 0.8, "3 and 45 degrees (0.05 and 0.8 rad)")
+]
+ShaftAngle = Annotated[
+    float,
+    _in("angle"),
+    _between(0.0, math.radians(175), "0 (parallel shafts) and 175 degrees"),
 ]

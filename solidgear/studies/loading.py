@@ -20,7 +20,8 @@ if TYPE_CHECKING:
     from solidgear.bearings.solved import Solved
     from solidgear.body import Body
     from solidgear.scene import Scene
-    from solidgear.scene.body_file import BodyTable, Recognised
+    from solidgear.scene.body_file import BodyTable
+    from solidgear.scene.recognised import Recognised
     from solidgear.scene.train import Train
 
 #: rung on which bearings and shaft find their equilibrium: loads in a shaft hang little on how its

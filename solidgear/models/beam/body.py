@@ -21,7 +21,7 @@ from solidgear.models.beam.element import Fields, Section, bending_matrices, rod
 from solidgear.models.beam.shoulder import Hinge, hinges
 from solidgear.models.options import BEAM_OPTIONS, checked
 from solidgear.models.spectrum import elastic_scale
-from solidgear.scene.stations import attached_stations
+from solidgear.scene.attached import attached_stations
 
 # Shortest Euler element over the length of the shaft.
 SHORTEST = 3e-4

@@ -25,8 +25,8 @@ from solidgear.models.harmonic.circumferential import Families
 from solidgear.models.limits import countable
 from solidgear.models.options import HARMONIC_OPTIONS, checked
 from solidgear.models.spectrum import elastic_scale
+from solidgear.scene.attached import attached_stations
 from solidgear.scene.coned import coned
-from solidgear.scene.stations import attached_stations
 
 
 @dataclass(frozen=True)

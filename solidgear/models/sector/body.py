@@ -33,9 +33,8 @@ from solidgear.models.solid.block import free_block
 from solidgear.models.solid.body import tetrahedra_plan
 from solidgear.models.solid.mesh import SolidMesh, _isoparametric
 from solidgear.models.spectrum import elastic_scale
-from solidgear.scene.cyclic_features import Spline, Teeth
-from solidgear.scene.cyclic_rules import mirror_angle, no_common_sector
-from solidgear.scene.stations import attached_stations
+from solidgear.scene.attached import attached_stations
+from solidgear.scene.features.around import mirror_angle, no_common_sector
 
 #: strips of a tooth that cells do not reach across, from its root outwards: its flanks and the middles of
 #: land and gap. 20 shafts of 1 to 12 teeth in a sector come out with 0.79 to 1.12 of their cells at
@@ -178,7 +177,7 @@ def cyclic_features(scene: Any) -> tuple[Any, ...]:
     -------
     tuple of Teeth, Spline or BoltCircle
     """
-    every = tuple(f for f in getattr(scene, "features", ()) if f.kind in CYCLIC)
+    every = tuple(f for f in getattr(scene, "features", ()) if f.sort == CYCLIC)
     return tuple(f for f in every if not f.smeared) or every
 
 
@@ -202,7 +201,7 @@ def no_sector(scene: Any) -> str:
     features = cyclic_features(scene)
     if features and scene.corners:
         names = ", ".join(f'{c.kind} "{c.name}"' for c in scene.corners)
-        teeth = all(isinstance(f, (Teeth, Spline)) for f in features)
+        teeth = all(f.toothed for f in features)
         return (
             f"a sector holds no fillets or chamfers yet, and the scene has {names}: leave them out"
             + ', or smear the teeth (model = "pitch_cone")' * teeth
@@ -275,7 +274,7 @@ def sector_counts(scene, given: Mapping[str, Any]) -> tuple[float, float, float,
         for _, here, hole in hole_sizes(scene.segments, features, refinement)
     ]
     around = sectors_of(features) * (2 if halved(scene, sectors_around(scene, given)) else 1)
-    toothed = [(of[f.segment], f) for f in features if f.kind != "bolt_circle"]
+    toothed = [(of[f.segment], f) for f in features if f.toothed]
     # along a shaft with teeth cells are held by both ends of every sector
     strips = partial(_strips, around * (2 if toothed else 1), toothed)
     return estimated_counts(scene.segments, **plan, more=more, holes=holes, sectors=strips)

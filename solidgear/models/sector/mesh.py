@@ -36,7 +36,7 @@ def seats(mesh: SolidMesh, straight: np.ndarray, scene, features) -> Facets:
     callable
         ``facets(station, attachment)``.
     """
-    toothed = {f.segment: f for f in features if f.kind != "bolt_circle"}
+    toothed = {f.segment: f for f in features if f.toothed}
     tolerance = 1e-7 * scene.length
     plain = [s for s in scene.segments if s.name not in toothed]
     on_cylinder = Seats(mesh, plain, clipped=False)

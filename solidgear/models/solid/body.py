@@ -19,8 +19,8 @@ from solidgear.models.options import SOLID_OPTIONS, checked
 from solidgear.models.solid.block import free_block, mirrored, seat_facets
 from solidgear.models.solid.mesh import _isoparametric
 from solidgear.models.spectrum import elastic_scale
+from solidgear.scene.attached import attached_stations
 from solidgear.scene.shaft import named, resolved
-from solidgear.scene.stations import attached_stations
 
 
 def solid(
@@ -109,12 +109,11 @@ def solid(
             )
         sizes: dict[str, Any] = {"size": size, "graded_size": graded_size}
         sizes["refinement"] = refinement
-        kinds = {f.kind for f in features}
-        if kinds <= PARTS:
+        if all(f.sort == PARTS for f in features):
             from solidgear.models.solid.part import part_body
 
             return part_body(scene, wanted, around=around, **sizes)
-        if kinds <= CYCLIC:
+        if all(f.sort == CYCLIC for f in features):
             from solidgear.models.sector.body import whole
 
             return whole(scene, wanted, **sizes)

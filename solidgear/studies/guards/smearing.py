@@ -9,13 +9,12 @@ quarter of what the stiffness is.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from solidgear.ladder.registry import LADDER
 from solidgear.meshing.closed_form import mass_properties
 from solidgear.meshing.teeth import lacking
 from solidgear.models.kinds import CYCLIC
-from solidgear.scene.cyclic_features import Spline, Teeth
 from solidgear.scene.shaft import named
 from solidgear.studies.guards.notice import Notice, Notices, everything
 
@@ -28,8 +27,8 @@ STIFFER = 0.05
 INERTIA, BY_STIFFNESS = 0.5, 0.25
 
 
-def _smeared(scene: Scene) -> list[Teeth | Spline]:
-    return [f for f in scene.features if isinstance(f, (Teeth, Spline)) and f.smeared]
+def _smeared(scene: Scene) -> list[Any]:
+    return [f for f in scene.features if f.smeared]
 
 
 def _lacking(scene: Scene) -> tuple[float, float]:
@@ -91,7 +90,7 @@ def smearing(scene: Scene) -> Notices:
     if max(stiffness, frequency) <= tolerance:
         yield Notice("fact", (), f"{cost}: no need of 3D at a tolerance of {100 * tolerance:g} %")
         return
-    round_ones = tuple(m for m in everything() if not LADDER[m].holds or LADDER[m].copies & CYCLIC)
+    round_ones = tuple(m for m in everything() if not LADDER[m].holds or LADDER[m].copies == CYCLIC)
     yield Notice(
         "caution",
         round_ones,

@@ -25,7 +25,7 @@ from solidgear.models.solid.featured import featured_body, meshed
 from validation.campaign.case import Case, Run
 from validation.campaign.cases.commands import spoken
 from validation.campaign.rows import CLAIM, Cost, Found, Row
-from validation.campaign.scenes.parts import CUTS, SORTS, draw
+from validation.campaign.scenes.parts import SORTS, draw
 from validation.campaign.truths.volumes import removed_mass, toothed_area
 
 #: meshes of one solve each, coarse
@@ -197,7 +197,7 @@ def softer(scene: sg.Scene, out: Part) -> None:
 
 def apart_from_seats(scene: sg.Scene) -> bool:
     """No cut touches a seat."""
-    spans = [f.span(scene.segments) for f in scene.features if f.kind in CUTS]
+    spans = [f.span(scene.segments) for f in scene.features if f.sort == "cut"]
     return all(hi < s.lo or lo > s.hi for lo, hi in spans for s in scene.stations)
 
 
@@ -207,7 +207,7 @@ def agreeing(scene: sg.Scene, out: Part) -> None:
     pair = [n for n in pair if not LADDER[n].unfit(scene)][:1]
     solved: dict[str, Any] = {}
     for name, most in ((pair[0], 3), ("solid", 3)) if pair else ():
-        if name == "solid" and LADDER["solid"].copies & {f.kind for f in scene.features}:
+        if name == "solid" and LADDER["solid"].copies in {f.sort for f in scene.features}:
             continue
         finest = {"element": "tet10", "refinement": 0.95}
         if name == "solid" and heavy(scene, name, finest):
@@ -255,7 +255,7 @@ def _claims(scene: sg.Scene, out: Part, bars: bool) -> Iterator[Callable[[], Non
     bodies = tried(scene, out)
     for name, body in bodies.items():
         yield partial(sound, scene, name, body, out)
-    if any(f.kind in CUTS for f in scene.features) and "corrected" in bodies:
+    if any(f.sort == "cut" for f in scene.features) and "corrected" in bodies:
         yield partial(softer, scene, out)
     if bars:
         yield partial(agreeing, scene, out)

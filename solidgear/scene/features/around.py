@@ -1,4 +1,4 @@
-"""What teeth and bolt circles must not be to one another: on one segment, and around one axis."""
+"""Rules between teeth and bolt circles: on one segment, and around one axis."""
 
 from __future__ import annotations
 
@@ -8,8 +8,9 @@ from itertools import combinations
 from typing import Any
 
 from solidgear.errors import SceneError
-from solidgear.scene.cyclic_features import FEWEST, BoltCircle, Spline, Teeth
-from solidgear.scene.feature import SMALLEST
+from solidgear.scene.features.base import FEWEST, SMALLEST
+from solidgear.scene.features.bolt_circle import BoltCircle
+from solidgear.scene.features.toothed import Spline, Teeth
 from solidgear.scene.parts import Segment
 
 #: of a pitch: gaps further apart than this do not lie behind each other, rad
@@ -19,25 +20,14 @@ SAME_ANGLE = 1e-9
 def meeting_problems(
     segments: Sequence[Segment], features: Sequence[Any]
 ) -> Iterator[tuple[int, SceneError]]:
-    """Teeth and bolt circles of one segment that cannot both be there.
-
-    Parameters
-    ----------
-    segments : sequence of Segment
-    features : sequence of Feature
-        Each of which fits by itself.
-
-    Yields
-    ------
-    int, SceneError
-        Number of the feature, and a problem with the path of its own fields.
+    """Teeth and bolt circles of one segment that cannot both be there, each of which fits by
+    itself: numbers of features, and problems with paths of their own fields.
     """
     of = {s.name: s for s in segments}
     for (_, a), (j, b) in combinations(enumerate(features), 2):
         if a.segment != b.segment:
             continue
-        kinds = (isinstance(a, (Teeth, Spline)), isinstance(b, (Teeth, Spline)))
-        if all(kinds):
+        if a.toothed and b.toothed:
             yield (
                 j,
                 SceneError(
@@ -52,15 +42,15 @@ def meeting_problems(
                     j,
                     SceneError(f'the holes run into those of "{a.name}"', path=("circle",)),
                 )
-        elif any(kinds) and BoltCircle in (type(a), type(b)):
-            teeth, bolts = (a, b) if kinds[0] else (b, a)
+        elif a.toothed != b.toothed and BoltCircle in (type(a), type(b)):
+            teeth, bolts = (a, b) if a.toothed else (b, a)
             reason = "" if teeth.smeared else _in_teeth(teeth, bolts, of[b.segment])
             if reason:
                 yield features.index(bolts), SceneError(reason, path=("circle",))
 
 
 def _touch(a: BoltCircle, b: BoltCircle, here: Segment) -> bool:
-    """Whether holes of two circles run into each other."""
+    """True where holes of two circles run into each other."""
     (lo, hi), (first, last) = a.reach(here), b.reach(here)
     if min(hi, last) <= max(lo, first):
         return False
@@ -73,7 +63,7 @@ def _touch(a: BoltCircle, b: BoltCircle, here: Segment) -> bool:
 
 
 def _in_teeth(teeth: Teeth | Spline, bolts: BoltCircle, here: Segment) -> str:
-    """Why holes do not fit a segment whose teeth are resolved, or nothing."""
+    """Reason why holes do not fit a segment whose teeth are resolved, or nothing."""
     if teeth.spiral_angle:
         return (
             f'"{here.name}" has the spiral {teeth.what} "{teeth.name}", along which its mesh is '
@@ -91,17 +81,8 @@ def _in_teeth(teeth: Teeth | Spline, bolts: BoltCircle, here: Segment) -> str:
 
 
 def no_common_sector(features: Sequence[Any], count: int | None = None) -> str:
-    """Why features do not repeat themselves together around the axis, or nothing.
-
-    Parameters
-    ----------
-    features : sequence of Teeth, Spline or BoltCircle
-    count : int, optional
-        Sectors around; by default as many as the features have in common.
-
-    Returns
-    -------
-    str
+    """Reason why features do not repeat themselves together around the axis, or nothing; in as many
+    sectors as they have in common unless told otherwise.
 
     Examples
     --------
@@ -119,7 +100,7 @@ def no_common_sector(features: Sequence[Any], count: int | None = None) -> str:
             f"{each} have no sector of a third of a turn or less in common: "
             "there is no cyclic symmetry to use"
         )
-    toothed = [f for f in features if not isinstance(f, BoltCircle)]
+    toothed = [f for f in features if f.toothed]
     for teeth in toothed[1:]:
         pitch = 2 * math.pi / teeth.count
         apart = (middle(teeth, count) - middle(toothed[0], count) + pitch / 2) % pitch - pitch / 2
@@ -135,36 +116,17 @@ def no_common_sector(features: Sequence[Any], count: int | None = None) -> str:
 
 
 def middle(teeth: Teeth | Spline, count: int) -> float:
-    """Angle of the middle of a sector whose borders run between teeth, rad.
-
-    Parameters
-    ----------
-    teeth : Teeth or Spline
-    count : int
-        Sectors around.
-    """
+    """Angle (rad) of the middle of a sector whose borders run between teeth."""
     # with an even number of teeth in a sector its middle lies between two of them
     return teeth.angle + (math.pi / teeth.count if teeth.count // count % 2 == 0 else 0.0)
 
 
 def mirror_angle(features: Sequence[Any], count: int) -> float | None:
-    """Angle of a mirror plane of all features in which the middle of a sector can lie, rad.
+    """Angle (rad) of a mirror plane of all features in which the middle of one of so many sectors
+    can lie, or None: of spiral teeth, or holes that lie unevenly beside teeth or other holes.
 
     Borders of sectors run between teeth, so that teeth decide; bolt circles alone have the plane
     through a hole, or the one between two.
-
-    Parameters
-    ----------
-    features : sequence of Teeth, Spline or BoltCircle
-        With a sector in common.
-    count : int
-        Sectors around.
-
-    Returns
-    -------
-    float or None
-        None where there is none: spiral teeth, or holes that lie unevenly beside teeth or other
-        holes.
 
     Examples
     --------
@@ -174,10 +136,10 @@ def mirror_angle(features: Sequence[Any], count: int) -> float | None:
     >>> mirror_angle([bolts, bolts.with_changes(name="c", circle=0.2, angle=0.4)], 6) is None
     True
     """
-    toothed = [f for f in features if not isinstance(f, BoltCircle)]
+    toothed = [f for f in features if f.toothed]
     if any(teeth.spiral_angle for teeth in toothed):
         return None
-    holes = [f for f in features if isinstance(f, BoltCircle)]
+    holes = [f for f in features if not f.toothed]
     if toothed:
         planes = [middle(toothed[0], count)]
     elif holes:
@@ -189,7 +151,7 @@ def mirror_angle(features: Sequence[Any], count: int) -> float | None:
 
 
 def _even(holes: BoltCircle, plane: float) -> bool:
-    """Whether a plane through the axis takes holes to holes: it runs through one or between two."""
+    """True where a plane through the axis runs through a hole or between two."""
     half = math.pi / holes.count
     apart = (plane - holes.angle + half / 2) % half - half / 2
     return abs(apart) < SAME_ANGLE

@@ -1,0 +1,37 @@
+"""Ways in which a body attaches its stations."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Sequence
+from typing import Any
+
+
+def attached_stations(
+    stations: Iterable[Any], attachments: Sequence[str] | None = None
+) -> Iterator[tuple[Any, str]]:
+    """Stations with the ways in which a body is to attach them, one port each.
+
+    Parameters
+    ----------
+    stations : iterable of Port, Bearing or PointMass
+    attachments : sequence of str, optional
+        Ways in place of their own; the middle of an end face is a section all the same.
+
+    Yields
+    ------
+    station : Port, Bearing or PointMass
+    attachment : {'average', 'rigid', 'section'}
+
+    Examples
+    --------
+    >>> from solidgear import Bearing, Port
+    >>> tip = Port(name="tip", y=1.0, lo=0.9, hi=1.0)
+    >>> wall = Bearing(name="wall", y=0.0, seat_width=0.02, hold="clamped", face="start")
+    >>> [(s.name, way) for s, way in attached_stations([tip, wall], ["average", "rigid"])]
+    [('tip', 'average'), ('tip', 'rigid'), ('wall', 'section')]
+    """
+    for station in stations:
+        own = (station.attachment,)
+        on_face = getattr(station, "face", None) is not None
+        for attachment in own if on_face or not attachments else attachments:
+            yield station, attachment

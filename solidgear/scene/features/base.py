@@ -1,0 +1,93 @@
+"""Base of every feature of a shaft: a name, a segment and a direction."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar
+
+from pydantic import BeforeValidator, Field
+
+from solidgear.errors import SceneError, nearest
+from solidgear.scene.parts import Segment
+from solidgear.scene.places import NoWords, Placed
+from solidgear.scene.typed import Model
+from solidgear.scene.units import quantity
+
+#: least size of a feature over the radius of the shaft; smaller ones ask for meshes without end
+SMALLEST = 1e-2
+
+#: a sector of less than a third of a turn is what cyclic symmetry needs
+FEWEST = 3
+MOST_TEETH = 400
+Count = Annotated[int, Field(strict=True, ge=FEWEST, le=MOST_TEETH)]
+
+
+def _turn(value: Any) -> float:
+    """An angle within one turn, rad; a plain number beyond it was meant in degrees."""
+    angle = quantity(value, "angle")
+    if not isinstance(value, str) and abs(angle) > 2 * math.pi * (1 + 1e-9):
+        raise SceneError(
+            f"is more than a turn of 2 pi: a plain number is in rad; for degrees write "
+            f'"{angle:.6g} deg"'
+        )
+    return angle % (2 * math.pi)
+
+
+Turn = Annotated[float, BeforeValidator(_turn)]
+
+
+class OnSegment(Placed):
+    """A feature of one segment, that looks to an angle: 0 is +z, a quarter turn is +x."""
+
+    Words: ClassVar[type[Model]] = NoWords
+    sources: ClassVar = {}
+    #: cut, at one place of a segment, or cyclic, repeating itself around the axis
+    sort: ClassVar[str]
+    #: whether it has right-angled re-entrant corners where the meridian has none: teeth end at the
+    #: next segment or in its face, holes and keyways have a bottom
+    notched: ClassVar[bool] = True
+    #: whether it is teeth all around its segment
+    toothed: ClassVar[bool] = False
+
+    if TYPE_CHECKING:
+        kind: str  # a field of every subclass, in its own order
+
+    name: str
+    segment: str
+    angle: Turn = 0.0
+
+    def problems(self, segments: Sequence[Segment]) -> Iterator[SceneError]:
+        """Reasons why it does not fit the shaft; paths are those of its own fields."""
+        here = next((s for s in segments if s.name == self.segment), None)
+        if here is None:
+            known = [s.name for s in segments]
+            yield SceneError(
+                f"unknown segment{nearest(self.segment, known)}; there are {', '.join(known)}",
+                path=("segment",),
+            )
+            return
+        yield from self._fits(here, segments)
+
+    def _fits(self, here: Segment, segments: Sequence[Segment]) -> Iterator[SceneError]:
+        raise NotImplementedError
+
+    @property
+    def what(self) -> str:
+        """Its kind in words."""
+        return self.kind.replace("_", " ")
+
+    def span(self, segments: Sequence[Segment]) -> tuple[float, float]:
+        """Its ends along a shaft that it fits, m."""
+        here = next(s for s in segments if s.name == self.segment)
+        return here.y0, here.y1
+
+    @property
+    def smeared(self) -> bool:
+        """True where the segment of revolution stands for it."""
+        return False
+
+    @property
+    def round(self) -> bool:
+        """True where it leaves the shaft one of revolution."""
+        return False

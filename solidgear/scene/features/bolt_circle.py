@@ -1,0 +1,119 @@
+"""Holes along the axis, on a circle."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from typing import ClassVar, Literal
+
+from solidgear.errors import SceneError
+from solidgear.scene.features.base import SMALLEST, Count, OnSegment
+from solidgear.scene.parts import Segment
+from solidgear.scene.rules import TOUCH
+from solidgear.scene.units import PositiveLength
+
+
+class BoltCircle(OnSegment):
+    """Holes along the axis, evenly spaced on a circle.
+
+    Attributes
+    ----------
+    name, segment : str
+    count : int
+        3 to 400.
+    diameter : float
+        Of a hole, m.
+    circle : float
+        Diameter of the circle of their middles, m.
+    depth : float or None
+        m; None for holes through the whole segment.
+    side : {'start', 'end'}
+        The face of the segment that they are drilled from.
+    angle : float
+        Where the first hole lies, rad: 0 is +z.
+
+    Raises
+    ------
+    SceneError
+        A size that is not positive.
+
+    Examples
+    --------
+    >>> from solidgear.scene import BoltCircle
+    >>> BoltCircle(name="bolts", segment="flange", count=6, diameter="11 mm", circle="90 mm").depth
+    """
+
+    sort: ClassVar[str] = "cyclic"
+
+    kind: Literal["bolt_circle"] = "bolt_circle"
+    count: Count
+    diameter: PositiveLength
+    circle: PositiveLength
+    depth: PositiveLength | None = None
+    side: Literal["start", "end"] = "start"
+
+    def _fits(self, here: Segment, segments: Sequence[Segment]) -> Iterator[SceneError]:
+        middle, radius = self.circle / 2, self.diameter / 2
+        least = SMALLEST * here.outer0
+        outer, inner = min(here.outer0, here.outer1), max(here.inner0, here.inner1)
+        if radius < least:
+            yield SceneError(
+                f"is under a hundredth of the diameter, {2 * here.outer0:.6g} m", path=("diameter",)
+            )
+        elif middle + radius > outer - least:
+            yield SceneError(
+                f'the holes reach {middle + radius:.6g} m from the axis, out of "{here.name}" of '
+                f"radius {outer:.6g} m",
+                path=("circle",),
+            )
+        elif middle - radius < inner + least:
+            into = "its bore" if inner else "the axis"
+            yield SceneError(f"the holes reach into {into}", path=("circle",))
+        elif self.diameter > 2 * middle * math.sin(math.pi / self.count) - least:
+            yield SceneError(
+                f"{self.count} holes of this size run into each other", path=("diameter",)
+            )
+        elif self.depth is not None and self.depth > here.length + TOUCH:
+            yield SceneError(
+                f'deeper than "{here.name}" is long, {here.length:.6g} m', path=("depth",)
+            )
+        else:
+            yield from self._open(here, segments)
+
+    def _open(self, here: Segment, segments: Sequence[Segment]) -> Iterator[SceneError]:
+        """The face that holes are drilled from is bare there."""
+        at = segments.index(here) + (-1 if self.side == "start" else 1)
+        if not 0 <= at < len(segments):
+            return
+        beside = segments[at]
+        outer, inner = (
+            (beside.outer1, beside.inner1)
+            if self.side == "start"
+            else (beside.outer0, beside.inner0)
+        )
+        middle, radius = self.circle / 2, self.diameter / 2
+        if middle - radius < outer and middle + radius > inner:
+            yield SceneError(
+                f'"{beside.name}", of radius {outer:.6g} m, covers the holes at the {self.side} of '
+                f'"{here.name}"; drill from the other side, or outside it',
+                path=("side",),
+            )
+
+    def reach(self, here: Segment) -> tuple[float, float]:
+        """Ends of the holes along the shaft.
+
+        Parameters
+        ----------
+        here : Segment
+            Its own.
+
+        Returns
+        -------
+        (float, float)
+            m.
+        """
+        if self.depth is None:
+            return here.y0, here.y1
+        if self.side == "start":
+            return here.y0, here.y0 + self.depth
+        return here.y1 - self.depth, here.y1

@@ -1,0 +1,176 @@
+"""Base of every cut into a cylinder: a place along the shaft, and a wall that it must leave."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple
+
+from solidgear.errors import SceneError
+from solidgear.scene.features.base import SMALLEST, OnSegment
+from solidgear.scene.parts import Segment
+from solidgear.scene.places import Along, Places
+from solidgear.scene.rules import TOUCH
+from solidgear.scene.typed import Model
+from solidgear.scene.units import Position, PositiveLength
+
+
+class Frame(NamedTuple):
+    """Frame in which formulas of element size see a cut that looks to some angle.
+
+    Attributes
+    ----------
+    across, up : str
+        Formulas of the distance from its middle plane, and of the height towards it, m.
+    num : callable
+        A number in a formula.
+    """
+
+    across: str
+    up: str
+    num: Callable[[float], str]
+
+    def outside(self, lo: float, hi: float) -> str:
+        """Formula of the distance along the shaft from a stretch of it."""
+        return f"Max(0,Max({self.num(lo)}-y,y-{self.num(hi)}))"
+
+
+class Cut(OnSegment):
+    """A feature cut into a cylinder at a place along the shaft."""
+
+    Words: ClassVar[type[Model]] = Along
+    sources: ClassVar = {"y": ("position",)}
+    sort: ClassVar[str] = "cut"
+    #: whether it goes through the axis, and so looks to both sides
+    through: ClassVar[bool] = False
+
+    y: Position
+
+    @classmethod
+    def place(cls, words: Any, table: Mapping[str, Any], places: Places) -> dict[str, Any]:
+        # along the segment, unless another datum is given
+        y = words.y(places, f"{table.get('segment')}.start")
+        strange = words.from_ is None and bool(places.at)  # which is told of the segment
+        return {"y": words.position or 0.0 if y is None and strange else y}
+
+    def _fits(self, here: Segment, segments: Sequence[Segment]) -> Iterator[SceneError]:
+        if here.outer0 != here.outer1:
+            yield SceneError(
+                f'"{here.name}" is a cone; a {self.what} is cut into a cylinder', path=("segment",)
+            )
+            return
+        if here.inner0 != here.inner1:
+            yield SceneError(
+                f'the bore of "{here.name}" is a cone; a {self.what} is cut into an even wall',
+                path=("segment",),
+            )
+            return
+        lo, hi = self.reach
+        if lo < here.y0 - TOUCH or hi > here.y1 + TOUCH:
+            yield SceneError(
+                f"the {self.what} reaches from {lo:.6g} to {hi:.6g} m, outside "
+                f'"{here.name}" ({here.y0:.6g} to {here.y1:.6g} m)',
+                path=("length" if hasattr(self, "length") else "y",),
+            )
+            return
+        yield from self._sized(here)
+
+    def _sized(self, here: Segment) -> Iterator[SceneError]:
+        raise NotImplementedError
+
+    @property
+    def reach(self) -> tuple[float, float]:
+        """Ends along the shaft, m."""
+        raise NotImplementedError
+
+    def span(self, segments: Sequence[Segment]) -> tuple[float, float]:
+        return self.reach
+
+    def tool(self, occ: Any, radius: float, top: float) -> int:
+        """The solid of OCC that cuts it out of a segment of a radius, as if it looked to +z; it
+        reaches out of the shaft by `top` (m).
+        """
+        raise NotImplementedError
+
+    def volume(self, outer: float, inner: float) -> float | None:
+        """Volume that it takes from its segment, m^3, where that is known in closed form."""
+        raise NotImplementedError
+
+    def edges(self, radius: float) -> tuple[float, float]:
+        """Largest element edges that show what is straight in it and what is curved, m."""
+        raise NotImplementedError
+
+    def distance(self, radius: float, frame: Frame) -> str:
+        """Formula of the distance from it, m."""
+        raise NotImplementedError
+
+    def from_edges(self, radius: float, frame: Frame) -> tuple[str, float] | None:
+        """Formula of the distance from its re-entrant edges and its least size beside them, m; None
+        where it has no such edges.
+        """
+        return None
+
+
+class Long(Cut):
+    """A cut that begins at its place and runs along the shaft, down to a plane floor."""
+
+    if TYPE_CHECKING:
+        depth: float  # a field of every subclass, in its own order
+
+    length: PositiveLength
+
+    @property
+    def reach(self) -> tuple[float, float]:
+        return self.y, self.y + self.length
+
+    def floor(self, radius: float) -> float:
+        """Height of its floor over the axis, m."""
+        return radius - self.depth
+
+    def half_width(self, radius: float) -> float:
+        """Half the width of its floor, m."""
+        raise NotImplementedError
+
+    @property
+    def rounded(self) -> bool:
+        """True where its ends are half circles."""
+        return False
+
+    def walls(self, radius: float, ends: int) -> tuple[float, float]:
+        """Area of its walls, m^2, and length of their edges, m, of which so many at its ends are no
+        ends of the shaft.
+        """
+        raise NotImplementedError
+
+    def edge_length(self, radius: float) -> float:
+        """Length of its re-entrant edges, m."""
+        raise NotImplementedError
+
+    def distance(self, radius: float, frame: Frame) -> str:
+        below = f"Max(0,{frame.num(self.floor(radius))}-{frame.up})"
+        beside = f"Max(0,{frame.across}-{frame.num(self.half_width(radius))})"
+        return f"Sqrt({below}^2+{beside}^2+{frame.outside(*self.reach)}^2)"
+
+    def from_edges(self, radius: float, frame: Frame) -> tuple[str, float]:
+        away, floor = self.beside_edges(radius, frame), self.floor(radius)
+        least = min(self.depth, self.half_width(radius))
+        return f"Sqrt({away}^2+({frame.up}-{frame.num(floor)})^2)", least
+
+    def beside_edges(self, radius: float, frame: Frame) -> str:
+        """Formula of the distance from its re-entrant edges as seen from above, m."""
+        raise NotImplementedError
+
+
+def deep(depth: float, here: Segment, what: str, least: float = 0.0) -> Iterator[SceneError]:
+    """A cut leaves some wall over the bore, and over the axis of a solid shaft."""
+    wall = here.outer0 - max(here.inner0, least)
+    if depth >= wall - TOUCH:
+        over = "the wall" if here.inner0 else "the radius"
+        yield SceneError(
+            f"a {what} as deep as this cuts through {over} of {wall:.6g} m", path=("depth",)
+        )
+    elif depth < SMALLEST * here.outer0:
+        yield SceneError(
+            f"a {what} under a hundredth of the radius, {here.outer0:.6g} m, is no feature: "
+            "leave it out, or look at the units",
+            path=("depth",),
+        )

@@ -1,0 +1,81 @@
+"""A flat."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from typing import Any, Literal
+
+from solidgear.errors import SceneError
+from solidgear.scene.features.cut import Frame, Long, deep
+from solidgear.scene.parts import Segment
+from solidgear.scene.units import PositiveLength
+
+
+class Flat(Long):
+    """A flat cut across a cylinder.
+
+    Attributes
+    ----------
+    name, segment : str
+    y, length : float
+        Start and length along the shaft, m.
+    depth : float
+        Below the crown of the cylinder, m.
+    angle : float
+        As for :class:`Keyway`.
+
+    Raises
+    ------
+    SceneError
+        A size that is not positive.
+
+    Examples
+    --------
+    >>> from solidgear.scene import Flat
+    >>> Flat(name="flat", segment="shaft", y=0.1, length=0.05, depth=0.004).reach[0]
+    0.1
+    """
+
+    kind: Literal["flat"] = "flat"
+    depth: PositiveLength
+
+    def _sized(self, here: Segment) -> Iterator[SceneError]:
+        yield from deep(self.depth, here, "flat")
+
+    def half_width(self, radius: float) -> float:
+        return math.sqrt(radius**2 - self.floor(radius) ** 2)
+
+    def tool(self, occ: Any, radius: float, top: float) -> int:
+        (lo, hi), wide, floor = self.reach, 2 * (radius + top), self.floor(radius)
+        return occ.addBox(-wide / 2, lo, floor, wide, hi - lo, radius + top - floor)
+
+    def volume(self, outer: float, inner: float) -> float | None:
+        from scipy.integrate import quad
+
+        floor = self.floor(outer)
+        if floor < inner:
+            return None
+
+        def height(x: float) -> float:
+            return math.sqrt(outer**2 - x * x) - floor
+
+        half = self.half_width(outer)
+        return 2 * quad(height, 0, half, epsabs=0, epsrel=1e-12)[0] * self.length
+
+    def edges(self, radius: float) -> tuple[float, float]:
+        return self.half_width(radius) / 2, math.inf
+
+    def walls(self, radius: float, ends: int) -> tuple[float, float]:
+        half = self.half_width(radius)
+        turned = math.asin(half / radius)
+        area = ends * (radius**2 * turned - half * self.floor(radius))
+        return area, 2 * self.length + ends * 2 * (half + radius * turned)
+
+    def edge_length(self, radius: float) -> float:
+        return 4 * self.half_width(radius)
+
+    def beside_edges(self, radius: float, frame: Frame) -> str:
+        (lo, hi), half = self.reach, frame.num(self.half_width(radius))
+        ends = f"Min(Sqrt((y-{frame.num(lo)})^2),Sqrt((y-{frame.num(hi)})^2))"
+        return f"Sqrt({ends}^2+Max(0,{frame.across}-{half})^2)"

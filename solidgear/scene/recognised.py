@@ -1,0 +1,192 @@
+"""A part from a file and the body of revolution inside it, as far as a scene asks for them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, NamedTuple
+
+from pydantic import Field, model_validator
+
+from solidgear.errors import SceneError, listed
+from solidgear.scene.body_file import BodyFile, BodyTable
+from solidgear.scene.parts import Material, Segment
+from solidgear.scene.typed import Model
+from solidgear.scene.units import Length, PositiveLength
+
+if TYPE_CHECKING:
+    from solidgear.scene.places import Places
+
+#: least share of the cylinder of a seat that must be there, and the share below which it is said
+#: what there is: chords of eight to a turn lack 2.6 %
+LEAST_SEAT, WHOLE_SEAT = 0.5, 0.97
+#: relative difference of the mass of a part from what it is checked against
+MASS_CHECK = 1e-2
+#: relative difference of diameters that are one
+SAME_DIAMETER = 1e-3
+
+
+class Seat(Model):
+    """A stretch of a cylinder of the part, counted from the origin of the body."""
+
+    diameter: PositiveLength
+    from_: Length = Field(alias="from")
+    to: Length
+
+    @model_validator(mode="after")
+    def _long(self):
+        if self.to <= self.from_:
+            raise SceneError("must lie beyond from", path=("to",))
+        return self
+
+
+def mean_material(materials: Sequence[Material], shares: Sequence[tuple[int, float]]) -> Material:
+    """One material for several side by side, by their places and shares of the volume: stretched
+    together they are as stiff and as heavy.
+
+    Examples
+    --------
+    >>> steel = Material(E=200e9, nu=0.3, density=8000)
+    >>> light = Material(E=100e9, nu=0.3, density=2000)
+    >>> mean = mean_material([steel, light], [(0, 0.25), (1, 0.75)])
+    >>> mean.E, mean.density
+    (125000000000.0, 3500.0)
+    """
+    if len(shares) == 1:
+        return materials[shares[0][0]]
+    parts = [(materials[place], share) for place, share in shares]
+    modulus = sum(share * m.E for m, share in parts)
+    return Material(
+        E=modulus,
+        nu=sum(share * m.E * m.nu for m, share in parts) / modulus,
+        density=sum(share * m.density for m, share in parts),
+    )
+
+
+class Recognised(NamedTuple):
+    """A part and the body of revolution inside it.
+
+    Attributes
+    ----------
+    body : BodyFile
+    walls : sequence of (y0, y1, outer0, outer1, inner0, inner1)
+        Frusta end to end from y = 0, m.
+    origin : float
+        Where the origin of the body lies, m from the lower end.
+    cylinders : sequence of (diameter, y0, y1)
+        Of its surface, m.
+    seat_share : callable
+        ``seat_share(radius, lo, hi)``: area of the surface that lies on a cylinder between two
+        places, over that of the cylinder.
+    shares : tuple of tuple of (int, float)
+        Of each frustum: groups of the body and their shares; empty for a body without groups.
+    """
+
+    body: BodyFile
+    walls: tuple[tuple[float, ...], ...]
+    origin: float
+    cylinders: tuple[tuple[float, float, float], ...]
+    seat_share: Callable[[float, float, float], float]
+    shares: tuple[tuple[tuple[int, float], ...], ...] = ()
+
+    def segments(self, material: Material) -> list[Segment]:
+        """Its frusta, named s1, s2 and so on, in a scene of some material."""
+        names = ("y0", "y1", "outer0", "outer1", "inner0", "inner1")
+        materials = self.body.materials(material)
+        return [
+            Segment(
+                name=f"s{k}",
+                material=mean_material(materials, share),
+                **dict(zip(names, wall)),
+            )
+            for k, (wall, share) in enumerate(
+                zip(self.walls, self.shares or [((0, 1.0),)] * len(self.walls)), 1
+            )
+        ]
+
+    def laid(self, usual: Material, places: Places) -> list[Segment]:
+        """Its frusta, and where they lie told to the places of a file."""
+        segments = self.segments(usual)
+        places.at |= {"start": 0.0, "end": segments[-1].y1, "origin": self.origin}
+        for s in segments:
+            middle = (s.y0 + s.y1) / 2
+            places.at |= {f"{s.name}.start": s.y0, f"{s.name}.end": s.y1}
+            places.at[f"{s.name}.middle"] = middle
+            places.surface[s.name] = (s.y0, s.y1)
+        return segments
+
+    def usual_material(self) -> Material:
+        """A material for a scene that has none, where all groups have one of their own."""
+        own = [g for g in self.body.groups if g.material is None]
+        if own:
+            raise SceneError(
+                f"{own[0].said}, {1e6 * own[0].volume:.4g} cm^3, has no material: name its groups "
+                "here, or write [material] for all the rest",
+                path=("body", "materials"),
+            )
+        return next(g.material for g in self.body.groups if g.material is not None)
+
+    def weigh(self, said: float | None, usual: Material) -> None:
+        """Refuse a part that does not have the mass (kg) that its file says."""
+        mass = self.body.mass(usual)
+        if said is not None and abs(mass / said - 1) > MASS_CHECK:
+            raise SceneError(
+                f"the part has {mass:.5g} kg ({1e6 * self.body.volume:.5g} cm^3 of "
+                f"{mass / self.body.volume:.5g} kg/m^3), {100 * (mass / said - 1):+.3g} % from that",
+                path=("body", "mass_check"),
+            )
+
+    def span(self, seat: Seat) -> tuple[float, float]:
+        """Ends of a seat, m from the lower end, on a cylinder that is there to half at least."""
+        lo, hi = seat.from_ + self.origin, seat.to + self.origin
+        near = [c for c in self.cylinders if abs(c[0] / seat.diameter - 1) <= SAME_DIAMETER]
+        if not near:
+            there = listed(
+                f"{1e3 * d:.6g} mm" for d in sorted({round(c[0], 7) for c in self.cylinders})
+            )
+            raise SceneError(
+                f"the part has no cylinder of this diameter; there are {there or 'none'}",
+                path=("diameter",),
+            )
+        share = self.seat_share(near[0][0] / 2, lo, hi)
+        if share < LEAST_SEAT:
+            raise SceneError(
+                f"only {100 * share:.0f} % of this cylinder is there, at least "
+                f"{100 * LEAST_SEAT:.0f} % is wanted; cylinders of this diameter reach from "
+                + ", ".join(
+                    f"{1e3 * (a - self.origin):.6g} to {1e3 * (b - self.origin):.6g} mm"
+                    for _, a, b in near
+                ),
+                path=("from",),
+            )
+        return lo, hi
+
+
+def with_seats(part: Recognised, stations: Iterable, segments: Sequence[Segment]) -> BodyFile:
+    """A part, and what is to be said of seats that are not whole."""
+    said = []
+    for s in stations:
+        under = [g for g in segments if g.y1 > s.lo and g.y0 < s.hi]
+        radii = {r for g in under for r in (g.outer0, g.outer1)}
+        if s.attachment == "section" or len(radii) != 1 or not s.hi > s.lo:
+            continue
+        share = part.seat_share(radii.pop(), s.lo, s.hi)
+        if share < WHOLE_SEAT:
+            said.append(
+                f"the seat of {s.name!r} has {100 * share:.3g} % of the area 2 pi r b of its cylinder; "
+                "its motion is the mean of what is there"
+            )
+    return part.body.model_copy(update={"remarks": (*part.body.remarks, *said)})
+
+
+#: reads the part that a table of a file in some folder names
+Reader = Callable[[BodyTable, Path], Recognised]
+
+
+def unread(table: BodyTable, folder: Path) -> Recognised:
+    """A reader that reads no parts."""
+    raise SceneError(
+        "a part from a file is read by solidgear.load alone; a train or a study of bearings takes "
+        "segments",
+        path=("body", table.key),
+    )

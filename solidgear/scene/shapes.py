@@ -1,0 +1,240 @@
+"""Shapes that a file describes a shaft by, and how they are laid end to end."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from typing import Annotated, ClassVar, Literal, NamedTuple, TypeAlias
+
+from pydantic import AfterValidator, BeforeValidator, Field, model_validator
+
+from solidgear.errors import SceneError
+from solidgear.scene.materials import by_name
+from solidgear.scene.parts import Material, Segment
+from solidgear.scene.places import Places, plain_name
+from solidgear.scene.typed import Model
+from solidgear.scene.units import Angle, Density, Modulus, Poisson, PositiveLength, Thickness
+
+NANOMETRE = 1e-9
+_WORDS = ("start", "end", "bearing")  # first words of datums, so no segment may be called that
+
+
+def _segment_name(name: str) -> str:
+    if name in _WORDS:
+        raise SceneError("this name is kept for datums; choose another")
+    return plain_name(name)
+
+
+class Frustum(NamedTuple):
+    """A part of a shape, by its radii at both ends, m."""
+
+    part: Literal["shaft", "frustum", "backcone"]
+    length: float
+    outer0: float
+    outer1: float
+
+    def turned(self) -> Frustum:
+        """End for end."""
+        return self._replace(outer0=self.outer1, outer1=self.outer0)
+
+
+class OtherMaterial(Model):
+    """Constants of a segment that are not those of the scene."""
+
+    E: Modulus | None = None
+    nu: Poisson | None = None
+    density: Density | None = None
+
+
+class _Shape(Model):
+    """A [[segment]] of a file, by itself; laid end to end with others it gives segments.
+
+    Attributes
+    ----------
+    keys : dict of str to str
+        Fields of its segments, and the keys that they come from.
+    datums : tuple of str
+        Places on it that others can be counted from.
+    """
+
+    keys: ClassVar[Mapping[str, str]]
+    datums: ClassVar[tuple[str, ...]] = ("start", "end", "middle")
+
+    name: Annotated[str, AfterValidator(_segment_name)]
+    bore: Thickness = 0.0
+    material: Annotated[OtherMaterial, BeforeValidator(by_name)] = OtherMaterial()
+
+    def _check_bore(self, *keys: str) -> None:
+        for key in keys:
+            if self.bore >= getattr(self, key):
+                raise SceneError(
+                    f"must be smaller than {key} ({getattr(self, key):.6g} m)", path=("bore",)
+                )
+
+    def frusta(self) -> list[Frustum]:
+        """Frusta that it is made of, in the order of the shaft."""
+        raise NotImplementedError
+
+    def key_of(self, field: str) -> str:
+        """The key that a field of one of its segments came from."""
+        return {"inner0": "bore", "inner1": "bore", **self.keys}.get(field, field)
+
+
+class Cylinder(_Shape):
+    """A cylinder."""
+
+    keys: ClassVar = {"outer0": "diameter", "outer1": "diameter", "y1": "length"}
+
+    kind: Literal["cylinder"]
+    length: PositiveLength
+    diameter: PositiveLength
+
+    @model_validator(mode="after")
+    def _wall(self) -> Cylinder:
+        self._check_bore("diameter")
+        return self
+
+    def frusta(self) -> list[Frustum]:
+        return [Frustum("shaft", self.length, self.diameter / 2, self.diameter / 2)]
+
+
+class Cone(_Shape):
+    """A cone."""
+
+    keys: ClassVar = {"outer0": "start_diameter", "outer1": "end_diameter", "y1": "length"}
+
+    kind: Literal["cone"]
+    length: PositiveLength
+    start_diameter: PositiveLength
+    end_diameter: PositiveLength
+
+    @model_validator(mode="after")
+    def _wall(self) -> Cone:
+        self._check_bore("start_diameter", "end_diameter")
+        return self
+
+    def frusta(self) -> list[Frustum]:
+        return [Frustum("shaft", self.length, self.start_diameter / 2, self.end_diameter / 2)]
+
+
+class BevelHead(_Shape):
+    """The pitch cone of a bevel gear with the cylinder behind it."""
+
+    keys: ClassVar = {"outer0": "pitch_radius", "outer1": "pitch_radius", "y1": "face_width"}
+    datums: ClassVar = ("start", "end", "middle", "mid_face")
+
+    kind: Literal["bevel_head"]
+    pitch_radius: PositiveLength
+    pitch_angle: Angle
+    face_width: PositiveLength
+    backcone: Thickness = 0.0
+    toe: Literal["start", "end"] = "start"
+
+    @property
+    def small_radius(self) -> float:
+        """Radius at the toe, m."""
+        return self.pitch_radius - self.face_width * math.sin(self.pitch_angle)
+
+    @model_validator(mode="after")
+    def _wall(self) -> BevelHead:
+        if self.small_radius <= 0:
+            longest = self.pitch_radius / math.sin(self.pitch_angle)
+            raise SceneError(
+                "passes the apex of the pitch cone; "
+                f"it must be shorter than the cone distance {longest:.6g} m",
+                path=("face_width",),
+            )
+        narrow = 2 * self.small_radius
+        if self.bore >= narrow:
+            raise SceneError(
+                f"must be smaller than the small end of the head (diameter {narrow:.6g} m)",
+                path=("bore",),
+            )
+        return self
+
+    def frusta(self) -> list[Frustum]:
+        axial = self.face_width * math.cos(self.pitch_angle)
+        large = self.pitch_radius
+        frusta = [Frustum("frustum", axial, self.small_radius, large)]
+        if self.backcone > 0:
+            frusta.append(Frustum("backcone", self.backcone, large, large))
+        return [one.turned() for one in reversed(frusta)] if self.toe == "end" else frusta
+
+
+#: any of them
+Shape: TypeAlias = Annotated[Cylinder | Cone | BevelHead, Field(discriminator="kind")]
+SHAPES: dict[str, type[_Shape]] = {"cylinder": Cylinder, "cone": Cone, "bevel_head": BevelHead}
+
+
+class Laid(NamedTuple):
+    """Shapes laid end to end.
+
+    Attributes
+    ----------
+    segments : list of Segment
+    shapes : list of (int, Shape)
+        Of each segment, with its place in the file.
+    """
+
+    segments: list[Segment]
+    shapes: list[tuple[int, Shape]]
+
+    def path(self, path: tuple) -> tuple:
+        """The key of the file that an entry of the segments came from."""
+        if not path[1:]:
+            return ("segment",)
+        _, place, key, *rest = path
+        index, shape = self.shapes[place]
+        if key == "material" and getattr(shape.material, rest[0]) is None:
+            return ("material", *rest)
+        return ("segment", index, shape.key_of(key), *rest)
+
+
+def lay_out(shapes: Sequence[Shape], usual: Material, places: Places) -> Laid:
+    """Lay shapes end to end from y = 0, and tell the places where they lie; problems have paths of
+    a file.
+    """
+    laid, problems, y = Laid([], []), [], 0.0
+    places.at["start"] = 0.0
+    for index, shape in enumerate(shapes):
+        start = y
+        material = usual.with_changes(**shape.material.model_dump(exclude_none=True))
+        for one in shape.frusta():
+            try:
+                segment = _segment(shape, one, y, material)
+            except SceneError as error:
+                problems += [
+                    problem.located(None, path=("segment", index, shape.key_of(problem.path[0])))
+                    for problem in error.problems
+                ]
+                continue
+            laid.segments.append(segment)
+            laid.shapes.append((index, shape))
+            y = segment.y1
+            if one.part != "backcone":
+                places.surface[shape.name] = (segment.y0, y)
+        lo, hi = places.surface.get(shape.name, (start, y))
+        own = {"start": start, "end": y, "middle": (start + y) / 2, "mid_face": (lo + hi) / 2}
+        places.at |= {f"{shape.name}.{datum}": own[datum] for datum in shape.datums}
+    places.at["end"] = y
+    if problems:
+        raise SceneError.of(problems)
+    return laid
+
+
+def _segment(shape: Shape, one: Frustum, y: float, material: Material) -> Segment:
+    if one.length <= NANOMETRE:
+        key = "backcone" if one.part == "backcone" else "y1"
+        reason = "is less than a nanometre along the shaft: probably wrong units"
+        raise SceneError(reason, path=(key,))
+    return Segment(
+        name=f"{shape.name}.backcone" if one.part == "backcone" else shape.name,
+        y0=y,
+        y1=y + one.length,
+        outer0=one.outer0,
+        outer1=one.outer1,
+        inner0=shape.bore / 2,
+        inner1=shape.bore / 2,
+        material=material,
+        part=one.part,
+    )
