@@ -60,7 +60,7 @@ def test_the_page_says_what_was_found_and_needs_no_other_file(compared):
     scripts = re.findall(r"<script[^>]*>(.*?)</script>", page, re.S)
     assert len(scripts) == page.count("<script") == 3
     assert not any(re.search(r"https?:|fetch\(|XMLHttp|import", text) for text in scripts)
-    assert '"along"' in page and "mesh force: " in page
+    assert 'aria-label="' in page and "mesh force: " in page
 
 
 def test_the_table_of_the_folder_is_the_judges_response(compared):

@@ -173,7 +173,7 @@ def test_a_force_of_rounding_alone_is_refused():
 def test_without_any_loss_a_peak_has_no_height():
     none = TRAIN.losses.with_changes(shafts=0, bearings=0, mesh=0, springs=0)
     bare = Workshop(TRAIN.with_changes(losses=none), settings=COARSE)
-    with pytest.raises(sg.SolidgearError, match="give it a loss"):
+    with pytest.raises(sg.SolidgearError, match="give damping or a loss"):
         respond(bare, *MIX)
 
 
