@@ -1,5 +1,8 @@
-"""Shafts that more than one test file meshes."""
+"""Shafts that more than one test file meshes, and a matrix seen from elsewhere."""
 
+import numpy as np
+
+from solidgear.frames import shift
 from solidgear.scene import Scene, Segment
 
 #: (length, outer at both ends, inner at both ends): steps up and down outside and in the bore,
@@ -28,3 +31,9 @@ def shaft(*parts, **rest):
     if "port" not in rest:
         return Scene.from_parts(segments, **rest)
     return Scene(segments=tuple(segments), **rest)
+
+
+def moved_by(matrix, offset):
+    """A 6x6 stiffness or mass seen from a displaced reference point that is joined rigidly."""
+    back = shift(-np.asarray(offset, float))
+    return back.T @ matrix @ back

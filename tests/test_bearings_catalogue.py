@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 import pytest
+from shafts import moved_by
 
 from solidgear.bearings.ball import BallRow
 from solidgear.bearings.catalogued import catalogued, state
@@ -14,7 +15,6 @@ from solidgear.bearings.roller import RollerRow
 from solidgear.bearings.rolling import RollingBearing
 from solidgear.bearings.spinning import SpinningBalls
 from solidgear.errors import SceneError
-from solidgear.frames import move_stiffness
 from solidgear.scene.catalogue import Catalogue
 
 #: designation, rating makers give, and the inside as published: balls, diameter, pitch, mm
@@ -116,7 +116,7 @@ def test_a_pair_is_two_single_bearings_joined_rigidly(arrangement, sides):
         there = motion + np.concatenate([np.cross(motion[3:], to), np.zeros(3)])
         own = alone.load(there)
         load += own + np.concatenate([np.zeros(3), np.cross(to, own[:3])])
-        stiffness += move_stiffness(alone.tangent(there), -to)
+        stiffness += moved_by(alone.tangent(there), -to)
     load[4] = 0.0
     assert pair.load(motion) == pytest.approx(load, rel=1e-10, abs=1e-7)
     size = np.sqrt(np.outer(np.diag(stiffness) + 1, np.diag(stiffness) + 1))

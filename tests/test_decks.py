@@ -10,7 +10,7 @@ from solidgear.meshing.decks import read
 from solidgear.meshing.mesh_file import mesh_from
 from solidgear.meshing.placing import TURNS, Placing
 from solidgear.meshing.quality import MeshError
-from validation.fuzz_decks import DECK_CHANGES, DECKS
+from validation.fuzz.decks import DECK_CHANGES, DECKS
 from validation.mesh_files import rod, write_mesh
 
 PLACE = Placing(1e-3, TURNS["y"], (0.0, 0.0, 0.0))

@@ -3,7 +3,9 @@ traceback, a hang or half an output.
 """
 
 import sys
+import warnings
 from collections import Counter
+from functools import partial
 from pathlib import Path
 
 import pytest
@@ -22,109 +24,116 @@ pytestmark = pytest.mark.skipif(
 
 @pytest.fixture(scope="module")
 def fuzz():
-    from validation import fuzz_scenes
+    """The kinds of input, and the rooms they are made and judged in."""
+    from validation.fuzz import case, commands, scenes
 
-    return fuzz_scenes
+    return case, commands, scenes
 
 
-def nothing_found(fuzz, cases, seed, **more):
-    rows = fuzz.run(cases, seed, **more)
-    found = [
-        f"case {r['case']} of seed {seed} ({r['what']}) at {r['stage']}: {r['sentence']}"
-        for r in rows
-        if r["outcome"] == "finding"
-    ]
+def nothing_found(run, kind, cases, seed=1):
+    """Counts of outcomes by stage, and of sorts of refusals."""
+    outcomes = run(kind, cases, seed)
+    found = [outcome.told() for outcome in outcomes if outcome.kind == "finding"]
     assert not found, "\n".join(found)
-    return Counter((r["outcome"], r["stage"]) for r in rows), Counter(
-        r["detail"] for r in rows if r["outcome"] == "refused"
-    )
+    stages = Counter((outcome.kind, outcome.stage) for outcome in outcomes)
+    return stages, {outcome.detail for outcome in outcomes if outcome.kind == "refused"}
 
 
 @pytest.mark.parametrize("cases", [50, pytest.param(100, marks=pytest.mark.long)])
 def test_spoilt_scenes_are_refused_or_solved(fuzz, cases):
-    outcomes, sentences = nothing_found(fuzz, cases, seed=1, commands=0.0, every_harmonic=10)
+    case, _, scenes = fuzz
+    kind = case.Fuzz("scenes", partial(scenes.scene, harmonic=0.2, command=0.1))
+    stages, sorts = nothing_found(case.run, kind, cases)
     # a fuzz that never gets past the parser, or never meets a refusal, tests nothing
-    assert outcomes["accepted", "euler"] > cases // 10 and outcomes["accepted", "harmonic"] > 0
-    assert len(sentences) > cases // 7
+    assert stages["accepted", "euler"] > cases // 10 and stages["accepted", "harmonic"] > 0
+    assert stages["accepted", "command"] > 0 and len(sorts) > cases // 7
 
 
 @pytest.mark.parametrize("cases", [10, pytest.param(30, marks=pytest.mark.long)])
 def test_command_lines_are_refused_or_answered(fuzz, cases):
-    outcomes, sentences = nothing_found(fuzz, cases, seed=1, commands=1.0)
-    assert sum(n for (outcome, _), n in outcomes.items() if outcome == "accepted") > cases // 7
-    assert len({stage for _, stage in outcomes}) > cases // 10 and len(sentences) > cases // 4
+    case, commands, _ = fuzz
+    stages, sorts = nothing_found(case.run, commands.COMMAND_LINES, cases)
+    assert sum(n for (kind, _), n in stages.items() if kind == "accepted") > cases // 7
+    assert len({stage for _, stage in stages}) > cases // 10 and len(sorts) > cases // 4
 
 
 @pytest.mark.slow
 def test_hundreds_of_files_and_command_lines(fuzz):
-    # ten thousand take a quarter of an hour: `python -m validation.fuzz_scenes`
-    nothing_found(fuzz, 250, seed=1, commands=0.4)
+    # ten thousand take a quarter of an hour: `python -m validation.fuzz --cases 10000`
+    case, commands, scenes = fuzz
+    nothing_found(case.run, scenes.SCENES, 150)
+    nothing_found(case.run, commands.COMMAND_LINES, 100)
 
 
 def test_a_case_follows_from_its_number(fuzz):
-    assert fuzz.mutant(3, 14) == fuzz.mutant(3, 14) != fuzz.mutant(3, 15)
-    assert fuzz.command_line(3, 14) == fuzz.command_line(3, 14) != fuzz.command_line(3, 15)
+    _, commands, scenes = fuzz
+    for kind in (commands.COMMAND_LINES, scenes.SCENES):
+        one, same, other = (kind.case(3, number) for number in (14, 14, 15))
+        assert (one.what, one.files) == (same.what, same.files)
+        assert (one.what, one.files) != (other.what, other.files)
 
 
 # ------------------------------------------------------------------------------------------------- the fuzz itself sees
+def raising(error):
+    def broken(path):
+        raise error
+
+    return broken
+
+
 @pytest.mark.parametrize(
     "broken, says",
     [
-        (lambda path: 1 / 0, "ZeroDivisionError"),
+        (raising(ZeroDivisionError()), "ZeroDivisionError"),
         (lambda path: [n for n in iter(int, 1)], "processor time"),
-        (lambda path: __import__("warnings").warn("overflow", RuntimeWarning), "RuntimeWarning"),
-        (lambda path: (_ for _ in ()).throw(SceneError("two\u2028lines", where=path.name)), ""),
-        (lambda path: (_ for _ in ()).throw(SceneError("of no file")), "does not name the file"),
-        (
-            lambda path: (_ for _ in ()).throw(SolidgearError(f"{path.name} rings \x07 the bell")),
-            "not fit for a terminal",
-        ),
+        (lambda path: warnings.warn("overflow", RuntimeWarning, stacklevel=1), "RuntimeWarning"),
+        (raising(SceneError("two\u2028lines", where="spoilt.toml")), ""),
+        (raising(SceneError("of no file")), "does not name the file"),
+        (raising(SolidgearError("spoilt.toml rings \x07 the bell")), "not fit for a terminal"),
     ],
 )
-def test_what_the_fuzz_calls_a_finding(fuzz, broken, says, monkeypatch, tmp_path):
-    monkeypatch.setattr(fuzz, "load", broken)
-    monkeypatch.setattr(fuzz, "LIMIT", 0.2)
-    outcome = fuzz.use(tmp_path / "spoilt.toml")
+def test_what_the_fuzz_calls_a_finding(fuzz, broken, says, monkeypatch):
+    case, _, scenes = fuzz
+    monkeypatch.setattr(scenes, "load", broken)
+    kind = case.Fuzz("scenes", scenes.scene, limits=case.Limits(cpu=0.2))
+    outcome = case.one(kind, case.Case("broken", {}, scenes.used))
     # the message of an error is made one line on purpose, whatever it quotes
     assert outcome.kind == ("finding" if says else "refused")
     assert says in outcome.sentence
 
 
+def leaves(name, text):
+    return lambda: Path(name).write_text(text)
+
+
+def prints_a_traceback():
+    print("Traceback (most recent call last):", file=sys.stderr)
+    sys.exit(1)
+
+
 @pytest.mark.parametrize(
-    "fault",
+    "main",
     [
-        "leaves a file",
-        "leaves a torn table",
-        "leaves an empty folder",
-        "prints half",
-        "exits with another code",
-        "prints a traceback",
-        "says nothing",
+        leaves("left.json", "{"),
+        leaves("left.csv", "a,b\n1,2\n3"),
+        lambda: Path("out").mkdir(),
+        lambda: print('{"stiffness": ['),
+        lambda: print('{"stiffness": NaN}'),
+        lambda: sys.exit(2),
+        prints_a_traceback,
+        lambda: None,
     ],
+    ids=["half a file", "torn table", "empty folder", "half an answer", "no number"]
+    + ["another code", "traceback", "nothing said"],
 )
-def test_what_the_fuzz_calls_a_bad_command(fuzz, fault, monkeypatch, tmp_path):
+def test_what_the_fuzz_calls_a_bad_command(fuzz, main, monkeypatch):
     import solidgear.cli
 
-    def main():
-        if fault == "leaves a file":
-            Path("left.json").write_text("{")
-        if fault == "leaves a torn table":
-            Path("left.csv").write_text("a,b\n1,2\n3")
-        if fault == "leaves an empty folder":
-            Path("out").mkdir()
-        if fault == "prints a traceback":
-            print("Traceback (most recent call last):", file=sys.stderr)
-            sys.exit(1)
-        if fault == "prints half":
-            print('{"stiffness": [')
-        if fault == "exits with another code":
-            sys.exit(2)
-
-    path = tmp_path / "spoilt.toml"
-    path.write_text(GOOD, encoding="utf-8")
-    assert fuzz.use_command(path, "accepted").kind == "accepted"
+    case, _, scenes = fuzz
+    good = case.Case("good", {scenes.FILE: GOOD.encode()}, partial(scenes.used, command=True))
+    assert case.one(scenes.SCENES, good).kind == "accepted"
     monkeypatch.setattr(solidgear.cli, "main", main)
-    assert fuzz.use_command(path, "accepted").kind == "finding"
+    assert case.one(scenes.SCENES, good).kind == "finding"
 
 
 # ------------------------------------------------------------------------------------------------- what it found

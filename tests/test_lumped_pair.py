@@ -8,9 +8,9 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from shafts import moved_by
 
 from solidgear.errors import SolidgearError
-from solidgear.frames import shift
 from solidgear.system.gear_mesh import MeshVector, line_of_action, mesh_point, to_gear_frame
 from validation.thesis.highest_frequency import consistency, rayleigh_bound
 from validation.thesis.identify import Unknown, identify, torsion_springs
@@ -32,12 +32,6 @@ RATIO = 45 / 14
 CLOSE = 1e-11
 AXIAL = MeshVector([0, 1, 0], [0, 0, 0])  # line of action along both shafts: no torque, no tilt
 NOTHING = np.zeros((6, 6))
-
-
-def moved_by(matrix, offset):
-    """A 6x6 stiffness or mass seen from a displaced reference point."""
-    back = shift(-np.asarray(offset))
-    return back.T @ matrix @ back
 
 
 @pytest.fixture

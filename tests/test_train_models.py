@@ -6,11 +6,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 import scipy.linalg as sla
+from shafts import moved_by
 from typer.testing import CliRunner
 
 import solidgear as sg
 from solidgear.cli import app
-from solidgear.frames import move_stiffness, shift
+from solidgear.frames import shift
 from solidgear.solve.statics import condense
 from solidgear.studies.train.models import Workshop
 from solidgear.studies.train.modes import train_modes
@@ -163,7 +164,7 @@ def test_rigid_shafts_are_the_fourteen_degrees_with_rigid_masses():
         y = scene.port.y
         back = shift([0.0, -y, 0.0])
         masses[side] = back.T @ body.mass_matrix() @ back
-        total = sum(move_stiffness(b.stiffness, [0, y - b.y, 0]) for b in scene.bearings)
+        total = sum(moved_by(b.stiffness, [0, y - b.y, 0]) for b in scene.bearings)
         if scene.housing_axial:
             total = total - np.outer(total[1], total[1]) / (scene.housing_axial + total[1, 1])
         stiffness[side] = total

@@ -1,21 +1,72 @@
-"""Small helpers of the validation scripts: rows to CSV, a table on the terminal, where results go."""
+"""What validation scripts share: tables to the terminal, to pages and to CSV, and results with
+what they were made with.
+"""
 
 from __future__ import annotations
 
 import csv
+import json
+import math
+import subprocess
+from collections.abc import Iterable, Sequence
 from pathlib import Path
+from typing import Any
 
+from solidgear.machine.environment import environment
 from solidgear.machine.threads import pin
 
 ROOT = Path(__file__).resolve().parent.parent
+RESULTS = ROOT / "validation" / "results"
 pin()
 
 
 def results_folder(name: str) -> Path:
     """Ignored folder for the output of one case."""
-    folder = ROOT / "validation" / "results" / name
+    folder = RESULTS / name
     folder.mkdir(parents=True, exist_ok=True)
     return folder
+
+
+def read_result(name: str) -> dict[str, Any]:
+    """What `kept` wrote; nothing where there is none."""
+    path = RESULTS / f"{name}.json"
+    return json.loads(path.read_text()) if path.exists() else {}
+
+
+def kept(name: str, records: dict[str, Any]) -> None:
+    """Records by key to `validation/results/NAME.json`; those of other keys stay there.
+
+    Numbers of numpy become those of Python, and those that are not finite become nothing.
+    """
+    path = RESULTS / f"{name}.json"
+    path.parent.mkdir(parents=True, exist_ok=True)
+    records = read_result(name) | plain(records)
+    text = json.dumps(records, indent=1, ensure_ascii=False, allow_nan=False)
+    path.write_text(text + "\n", encoding="utf-8")
+
+
+def plain(value: Any) -> Any:
+    """What JSON can hold of a value."""
+    if isinstance(value, dict):
+        return {str(k): plain(v) for k, v in value.items()}
+    if isinstance(value, list | tuple):
+        return [plain(v) for v in value]
+    if value is None or isinstance(value, str | bool | int):
+        return value
+    number = float(value)
+    return number if math.isfinite(number) else None
+
+
+def stamp() -> dict[str, Any]:
+    """Date, commit and machine of a result; a changed source is marked with a plus."""
+    machine = environment()
+    described = subprocess.run(
+        ["git", "describe", "--always", "--dirty=+", "--exclude=*"],
+        cwd=ROOT,
+        capture_output=True,
+        text=True,
+    )
+    return {"date": machine.pop("date"), "commit": described.stdout.strip(), "machine": machine}
 
 
 def write_rows(path: Path, rows: list[dict]) -> None:
@@ -27,26 +78,31 @@ def write_rows(path: Path, rows: list[dict]) -> None:
         writer.writerows(rows)
 
 
+def markdown(head: Sequence[str], rows: Iterable[Sequence[object]]) -> list[str]:
+    """Lines of a table for a page."""
+    lines = [head, ["---"] * len(head), *rows]
+    return ["| " + " | ".join(map(str, cells)).rstrip() + " |" for cells in lines]
+
+
 def show(title: str, rows: list[dict]) -> None:
     """Print rows as a table."""
     from rich.console import Console
+    from rich.markup import escape
     from rich.table import Table
 
     table = Table(title=title, title_justify="left")
-    columns = list(dict.fromkeys(key for row in rows for key in row))
+    columns = list(
+        dict.fromkeys(key for row in rows for key, v in row.items() if v not in (None, ""))
+    )
     for column in columns:
-        table.add_column(
-            column, justify="right" if column != columns[0] else "left", overflow="fold"
-        )
+        justify = "right" if column != columns[0] else "left"
+        table.add_column(column, justify=justify, overflow="fold")
     for row in rows:
-        table.add_row(
-            *(
-                ""
-                if row.get(c) is None
-                else f"{row[c]:.4g}"
-                if isinstance(row[c], float)
-                else str(row[c])
-                for c in columns
-            )
-        )
+        table.add_row(*(escape(_cell(row.get(column))) for column in columns))
     Console(width=140).print(table)
+
+
+def _cell(value: object) -> str:
+    if value is None:
+        return ""
+    return f"{value:.4g}" if isinstance(value, float) else str(value)

@@ -15,6 +15,7 @@ import re
 from collections.abc import Mapping
 from pathlib import Path
 
+from validation.common import markdown
 from validation.manual.case import Answer, Case, Line, Model
 
 FOLDER = Path(__file__).resolve().parent
@@ -75,10 +76,10 @@ def index(cases: Mapping[str, Case], answers: Mapping[str, Mapping[str, Answer]]
         "around the known deviation. *Most of a tolerance used* is the largest of a case; above 1 "
         "it is NOT OK.",
         "",
-        "| case | references | modellings | most of a tolerance used | |",
-        "| --- | --- | --- | --- | --- |",
     ]
-    return "\n".join([*head, *(_entry(case, answers[case.name]) for case in cases.values())]) + "\n"
+    columns = ("case", "references", "modellings", "most of a tolerance used", "")
+    rows = [_entry(case, answers[case.name]) for case in cases.values()]
+    return "\n".join([*head, *markdown(columns, rows)]) + "\n"
 
 
 def lines(case: Case, answers: Mapping[str, Answer]) -> list[tuple[str, Line]]:
@@ -112,15 +113,15 @@ def _section(title: str, text: str) -> str:
 
 
 def _references(case: Case) -> str:
-    rows = ["| quantity | value | unit | uncertainty | kind |", "| --- | --- | --- | --- | --- |"]
+    cells = []
     sources: dict[str, list[str]] = {}
     for r in case.references:
         kind = r.kind.replace("_", " ")
-        rows.append(
-            f"| {r.quantity} | {r.value:.{DIGITS}g} | {r.unit} | {r.uncertainty:.1g} | {kind} |"
-        )
+        value = f"{r.value:.{DIGITS}g}"
+        cells.append((r.quantity, value, r.unit, f"{r.uncertainty:.1g}", kind))
         told = f"{r.source}. Uncertainty: {r.limits}."
         sources.setdefault(told, []).append(r.quantity)
+    rows = markdown(("quantity", "value", "unit", "uncertainty", "kind"), cells)
     if len(sources) == 1:
         return "\n".join([*rows, "", *sources])
     listed = [f"- {', '.join(names)}: {source}" for source, names in sources.items()]
@@ -130,23 +131,19 @@ def _references(case: Case) -> str:
 def _modelling(case: Case, model: Model, answer: Answer) -> str:
     lines = case.lines(model, answer.values)
     shifted = any(line.known for line in lines)
-    head = "| quantity | reference | value | per cent |"
-    rule = "| --- | --- | --- | --- |"
-    if shifted:
-        head, rule = head + " known per cent |", rule + " --- |"
-    rows = [_row(line, shifted) for line in lines]
+    known = ["known per cent"] if shifted else []
+    head = ["quantity", "reference", "value", "per cent", *known, "tolerance, per cent", ""]
     told = [
         f"Unknowns: {answer.unknowns}. Declared time: {model.seconds:g} s.",
         "",
         f"Tolerance: {model.why}.",
         "",
-        head + " tolerance, per cent | |",
-        rule + " --- | --- |",
+        *markdown(head, (_row(line, shifted) for line in lines)),
     ]
-    return "\n".join([*told, *rows])
+    return "\n".join(told)
 
 
-def _row(line: Line, shifted: bool) -> str:
+def _row(line: Line, shifted: bool) -> list[str]:
     # judged and told as printed: the page says no more than can be checked on it
     text = as_printed(line)
     printed = line
@@ -160,8 +157,7 @@ def _row(line: Line, shifted: bool) -> str:
     ]
     if shifted:
         cells.append(_per_cent(line.known, line.tolerance))
-    cells += [f"{100 * line.tolerance:.3g}", verdict(printed.ok)]
-    return "| " + " | ".join(cells) + " |"
+    return [*cells, f"{100 * line.tolerance:.3g}", verdict(printed.ok)]
 
 
 def _per_cent(relative: float, tolerance: float) -> str:
@@ -173,17 +169,16 @@ def _per_cent(relative: float, tolerance: float) -> str:
     return text if float(text) else text[1:]
 
 
-def _entry(case: Case, answers: Mapping[str, Answer]) -> str:
+def _entry(case: Case, answers: Mapping[str, Answer]) -> list[str]:
     judged = lines(case, answers)
     letters = ", ".join(f"{letter} {model.name}" for letter, model in case.lettered)
     kinds = sorted({r.kind.replace("_", " ") for r in case.references})
     shares = [line.share for _, line in judged]
     most = f"{max(shares):.1g}" if all(map(math.isfinite, shares)) else "none"
-    cells = [
+    return [
         f"[{case.title}]({case.name}.md)",
         ", ".join(kinds),
         letters,
         most,
         verdict(all(line.ok for _, line in judged)),
     ]
-    return "| " + " | ".join(cells) + " |"

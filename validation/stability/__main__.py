@@ -12,7 +12,7 @@ import sys
 import time
 import traceback
 
-from validation.common import results_folder
+from validation.common import markdown, results_folder
 from validation.stability.frame import FOLDER, ROOT, findings, publish
 
 SCRIPTS = sorted(
@@ -46,16 +46,12 @@ def run(names, quick: bool = False):
 def report(done, failed) -> str:
     """The whole table and every finding, as Markdown."""
     whole = [f for name in sorted(done) for f in done[name]]
-    lines = [
-        "# Where methods fail",
-        "",
-        "| method | edge measured | what the program does |",
-        "| --- | --- | --- |",
-    ]
-    lines += [
-        f"| [{_cell(f.method)}](#{f.name.replace('_', '-')}) | {_cell(f.edge)} | {_cell(f.program)} |"
+    rows = [
+        (f"[{_cell(f.method)}](#{f.name.replace('_', '-')})", _cell(f.edge), _cell(f.program))
         for f in whole
     ]
+    head = ("method", "edge measured", "what the program does")
+    lines = ["# Where methods fail", "", *markdown(head, rows)]
     lines += ["", *(f"- `{name}` could not be measured: {why}" for name, why in failed.items()), ""]
     for f in whole:
         heading = f.name.replace("_", "-")

@@ -27,7 +27,7 @@ from solidgear.studies.train.models import Workshop
 from solidgear.studies.train.pairing import mac, seen_modes
 from solidgear.studies.train.respond import Drive, respond
 from solidgear.system.steady import peaks
-from validation.common import ROOT, results_folder, show, write_rows
+from validation.common import ROOT, markdown, results_folder, show, write_rows
 from validation.thesis.lumped_pair import diagonal_mass
 from validation.thesis.pair import CASES, DATA, gear_support, geared_pair
 
@@ -390,10 +390,9 @@ def page(rows: list[dict]) -> str:
         "Written by `python -m validation.thesis.claims`. What is not settled is taken in more than "
         f"one way: {ways}.",
         "",
-        "| figure | claim | verdict | found |",
-        "| --- | --- | --- | --- |",
     ]
-    lines += [f"| {r['figure']} | {r['claim']} | **{r['verdict']}** | {r['found']} |" for r in rows]
+    cells = [(r["figure"], r["claim"], f"**{r['verdict']}**", r["found"]) for r in rows]
+    lines += markdown(("figure", "claim", "verdict", "found"), cells)
     return "\n".join(lines) + "\n"
 
 
