@@ -21,10 +21,12 @@ from solidgear.judge.quantities import change
 from solidgear.judge.solving import Numbers, solve
 from solidgear.ladder.meshes import Sequence
 from solidgear.ladder.registry import LADDER
+from solidgear.quantity import C_ZZ, FIRST_BENDING, K_ZZ, Quantity
 from solidgear.scene import Bearing, BoltCircle
 
 ROOT = Path(__file__).parent.parent
 SCENES = ["pinion_overhung", "shaft_stepped", "shaft_hollow", "pinion_straddle"]
+C_YY = Quantity("C_yy")
 ALL = ("C_zz", "C_z,thx", "C_thx", "C_yy", "K_zz", "bending 1", "bending 2", "axial 1")
 
 
@@ -178,7 +180,13 @@ def test_a_mode_above_the_highest_frequency_of_the_scene_is_judged():
 def test_a_coupling_stands_in_the_middle_of_its_bar(scenes, truth):
     """Its two ends are what the mesh says and what its softest relative does."""
     scene = scenes["pinion_overhung"]
-    climb = Climb(scene, LADDER["harmonic"], ("C_z,thx", "C_zz", "C_thx"), 0.02, lambda _: None)
+    climb = Climb(
+        scene,
+        LADDER["harmonic"],
+        tuple(map(Quantity, ("C_z,thx", "C_zz", "C_thx"))),
+        0.02,
+        lambda _: None,
+    )
     climb.run()
     value, *diagonal = climb.values()
     band = climb.bands["C_z,thx"]
@@ -209,11 +217,11 @@ def test_what_holds_a_bar_back_is_named(two_meshes):
 
 
 def test_what_a_finer_mesh_finds_less_sure_again_is_solved_on(scenes):
-    climb = Climb(scenes["shaft_stepped"], MESHES, ("C_zz", "K_zz"), 1e-3, lambda _: None)
-    left = {"C_zz": 0.0, "K_zz": 0.0}
+    climb = Climb(scenes["shaft_stepped"], MESHES, (C_ZZ, K_ZZ), 1e-3, lambda _: None)
+    left = {C_ZZ: 0.0, K_ZZ: 0.0}
 
     def level(c, k):
-        climb.levels.append(Numbers({"C_zz": c, "K_zz": k}, left))
+        climb.levels.append(Numbers({C_ZZ: c, K_ZZ: k}, left))
         climb.judge()
         return [q for _, names in climb._questions() for q in names]
 
@@ -295,15 +303,15 @@ def test_a_rung_that_cannot_be_built_is_passed_over(scenes, monkeypatch):
 
 
 def test_a_frequency_that_rises_is_rounding_and_widens_the_bar(scenes):
-    climb = Climb(scenes["shaft_stepped"], MESHES, ("bending 1",), 1e-6, lambda _: None)
-    known = {"bending 1": 1e-12}
+    climb = Climb(scenes["shaft_stepped"], MESHES, (FIRST_BENDING,), 1e-6, lambda _: None)
+    known = {FIRST_BENDING: 1e-12}
     for value in (101.0, 100.0, 100.1):
-        climb.levels.append(Numbers({"bending 1": value}, known))
+        climb.levels.append(Numbers({FIRST_BENDING: value}, known))
     climb.judge()
-    assert climb.bar("bending 1") >= 2 * 1e-3 * 0.99  # twice a rise of 0.1 %
-    climb.levels[-1] = Numbers({"bending 1": 99.999}, known)
+    assert climb.bar(FIRST_BENDING) >= 2 * 1e-3 * 0.99  # twice a rise of 0.1 %
+    climb.levels[-1] = Numbers({FIRST_BENDING: 99.999}, known)
     climb.judge()
-    assert climb.bar("bending 1") < 1e-3
+    assert climb.bar(FIRST_BENDING) < 1e-3
 
 
 def test_a_climb_ends_where_no_mesh_makes_bars_narrow_enough():
@@ -317,9 +325,9 @@ def test_a_climb_ends_where_no_mesh_makes_bars_narrow_enough():
     c_zz, c_yy = 1.03 * plain[2, 2], 1.0001 * plain[1, 1]
 
     def climb(tol):
-        made = Climb(scene, LADDER["corrected"], ("C_zz", "C_yy"), tol, lambda _: None)
+        made = Climb(scene, LADDER["corrected"], (C_ZZ, C_YY), tol, lambda _: None)
         for off in (1e-5, 0.0):
-            made.levels.append(Numbers({"C_zz": c_zz * (1 + off), "C_yy": c_yy * (1 + off)}, {}))
+            made.levels.append(Numbers({C_ZZ: c_zz * (1 + off), C_YY: c_yy * (1 + off)}, {}))
             made.sizes.append(None)
         made.judge()
         return made
@@ -333,7 +341,7 @@ def test_a_climb_ends_where_no_mesh_makes_bars_narrow_enough():
     assert "of C_zz at best" in stuck._in_vain()
     assert not climb(1.4 * floor)._in_vain()
     # something else is open that a finer mesh will narrow: for that alone it is solved
-    stuck.levels[0] = Numbers({"C_zz": c_zz, "C_yy": c_yy * 1.01}, {})
+    stuck.levels[0] = Numbers({C_ZZ: c_zz, C_YY: c_yy * 1.01}, {})
     stuck.judge()
     assert not stuck._in_vain()
     assert [q for _, names in stuck._questions() for q in names] == ["C_yy"]
@@ -384,7 +392,7 @@ def test_what_does_not_exist_is_said_to_be_missing():
     assert found.missing == ("C_zz",) and [v.quantity for v in found.values] == ["bending 1"]
     (told,) = (line for line in sentences(found) if line.startswith("Not there"))
     assert told == "Not there: C_zz (a motion that no bearing resists)."
-    assert _absent(("C_zz", "K_thy", "torsion 1")) == (
+    assert _absent(list(map(Quantity, ("C_zz", "K_thy", "torsion 1")))) == (
         "C_zz, K_thy (motions that no bearing resists); torsion 1 (no such mode among the lowest)"
     )
     nothing = answer(free, 0.1, "C_zz")

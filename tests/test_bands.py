@@ -7,14 +7,17 @@ import pytest
 import solidgear as sg
 from solidgear.bounds.safety import FEATURES, LAYERS, LOCAL, REFINEMENT, Safety
 from solidgear.judge.bars import LEAST, moves_freely, step_bands
-from solidgear.judge.quantities import ACROSS, QUANTITIES
 from solidgear.judge.sequence_bars import feature_effect, sequence_bands
 from solidgear.judge.solving import solve
 from solidgear.ladder.meshes import Sequence
 from solidgear.ladder.registry import LADDER
+from solidgear.quantity import ACROSS, QUANTITIES, Quantity
 from solidgear.scene import Fillet, Spline
 
-FINEST = {"C_zz": 2.0, "C_thx": 8.0, "C_z,thx": 1.0, "bending 1": 100.0}
+FINEST = {
+    Quantity(name): value
+    for name, value in (("C_zz", 2.0), ("C_thx", 8.0), ("C_z,thx", 1.0), ("bending 1", 100.0))
+}
 SAFETY = Safety((2.0, 1.5))
 
 
@@ -53,7 +56,7 @@ def test_bands_of_a_corrected_solid_hold_a_share_of_what_features_change():
     safety = LADDER["corrected"].safety
     effect = {"bending 1": 0.05, "C_zz": 0.05, "axial 1": 0.05}
     for steps, left in (((0.0,), 1.0), ((0.0, 0.0), safety.shrinks)):
-        same = [level | {"axial 1": 10.0} for level in levels(*steps)]
+        same = [level | {Quantity("axial 1"): 10.0} for level in levels(*steps)]
         found = step_bands(same, {}, safety, effect=effect)
         for name in effect:
             share = safety.share_of_free_modes if name == "axial 1" else safety.share
@@ -65,7 +68,7 @@ def test_bands_of_a_corrected_solid_hold_a_share_of_what_features_change():
 
 def test_shares_are_of_every_number_in_both_planes_and_larger_where_a_motion_is_free():
     assert {q for q in (*QUANTITIES, *ACROSS) if moves_freely(q)} == {"axial 1", "torsion 1"}
-    assert not moves_freely("C_yy@tip") and not moves_freely("bending 2")
+    assert not moves_freely(Quantity("C_yy@tip")) and not moves_freely(Quantity("bending 2"))
 
 
 def test_what_features_change_is_told_by_the_nearest_bending_mode_of_the_plain_part():

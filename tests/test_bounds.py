@@ -25,8 +25,9 @@ from solidgear.bounds.harmonic import (
 from solidgear.bounds.safety import LOCAL
 from solidgear.judge.bars import Band
 from solidgear.judge.bounded import Statics, bounded
-from solidgear.judge.quantities import diagonals, measure, size
+from solidgear.judge.quantities import measure, size
 from solidgear.judge.solving import searched
+from solidgear.quantity import Quantity
 from solidgear.scene import STEEL, Fillet, Housing, Material
 from solidgear.scene.coned import coned
 from solidgear.solve.modes import Mode
@@ -39,7 +40,7 @@ FIRST = {"order": 3, "layers": 0, "edge_layers": 0, "relative_size": 4.0, "plain
 #: cuts of fine meshes, which leave 0.15^(2 a) each of what a corner of exponent a costs: of a rigid
 #: seat at a shoulder (a third) a hundredth, of the others less
 CUTS = {"rigid": 4, "re-entrant": 3, "section": 3, "material": 3, "load": 2}
-MODES = ("bending 1", "axial 1", "torsion 1")
+MODES = tuple(map(Quantity, ("bending 1", "axial 1", "torsion 1")))
 #: widest that a bound may be, in errors: by what hats overlap and orders do not see, of modes also by
 #: the gap to the next one; 0.9 to 1.1 is measured
 WIDEST = 1.6
@@ -152,11 +153,11 @@ def test_errors_are_within_bars_and_bars_hardly_wider(name):
         value, scale = one.values[q], size(one.truth, q)
         error = abs(value - one.truth[q]) / scale
         assert error <= band.gci, q
-        if diagonals(q) is None and error > UNSEEN:
+        if q.diagonals is None and error > UNSEEN:
             # compliances from below, all else from above
             assert (value < one.truth[q]) == q.startswith("C_"), q
             assert band.gci <= LOCAL * WIDEST * error, q
-        elif diagonals(q) is not None:
+        elif q.diagonals is not None:
             # about the middle of what is open there is half as much on either side
             assert abs(band.middle - one.truth[q]) <= band.about_middle * scale < band.gci * scale
 

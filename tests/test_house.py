@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 PACKAGE = Path(__file__).parent.parent / "solidgear"
-GROUND = {"errors", "factoring", "frames", "display", "springs"}
+GROUND = {"errors", "factoring", "frames", "display", "quantity", "springs"}
 
 #: room: what it may import, from the ground up
 MAY_IMPORT = {
@@ -17,6 +17,7 @@ MAY_IMPORT = {
     "factoring": set(),
     "springs": {"errors"},
     "display": set(),
+    "quantity": {"frames"},
     "machine": GROUND,
     "scene": GROUND,
     "body": GROUND,

@@ -14,17 +14,15 @@ from solidgear.cli.app import app
 from solidgear.judge.bars import step_bands
 from solidgear.judge.quantities import (
     between,
-    diagonals,
     measure,
     own_name,
-    points_of,
-    repeats,
     size,
 )
 from solidgear.judge.recording import recorded
 from solidgear.judge.settle import settle
 from solidgear.judge.study import study
 from solidgear.ladder.registry import LADDER
+from solidgear.quantity import C_ZZ, COMPLIANCE, Quantity
 from solidgear.report.front import numbers
 from solidgear.report.point_tables import points
 from solidgear.report.units import ENGINEERING
@@ -54,21 +52,24 @@ def settled(shaft):
 
 # --------------------------------------------------------------------------- names
 def test_a_term_between_points_is_related_to_what_each_has_of_its_own():
-    assert diagonals("C_z,thx@a@b") == ("C_zz@a@a", "C_thx@b@b")  # z of a, a moment on b
-    assert diagonals("K_thx@a@b") == ("K_thx@a@a", "K_thx@b@b")
-    assert diagonals("K_thx@a@a") is None
-    assert [q for q in ("C_zz@a@a", "K_zz@a@a", "C_zz@a@b", "C_zz@a", "C_zz") if repeats(q)] == [
-        "C_zz@a@a"
-    ]
-    assert points_of("C_zz@a") is None
+    # z of a, a moment on b
+    assert Quantity("C_z,thx@a@b").diagonals == ("C_zz@a@a", "C_thx@b@b")
+    assert Quantity("K_thx@a@b").diagonals == ("K_thx@a@a", "K_thx@b@b")
+    assert Quantity("K_thx@a@a").diagonals is None
+    names = map(Quantity, ("C_zz@a@a", "K_zz@a@a", "C_zz@a@b", "C_zz@a", "C_zz"))
+    assert [q for q in names if q.repeats] == ["C_zz@a@a"]
+    assert Quantity("C_zz@a").pair is None
 
 
 def test_names_as_they_are_asked(shaft):
-    assert own_name(shaft, "C_zz@pinion@wheel") == "C_zz@wheel@pinion"  # by reciprocity
-    # which of both moves and which is loaded matters
-    assert own_name(shaft, "C_z,thx@pinion@wheel") == "C_z,thx@pinion@wheel"
-    assert own_name(shaft, "C_zz@wheel@wheel") == "C_zz"
-    assert own_name(shaft, "C_zz@pinion@pinion") == "C_zz@pinion"
+    for asked, told in (
+        ("C_zz@pinion@wheel", "C_zz@wheel@pinion"),  # by reciprocity
+        # which of both moves and which is loaded matters
+        ("C_z,thx@pinion@wheel", "C_z,thx@pinion@wheel"),
+        ("C_zz@wheel@wheel", "C_zz"),
+        ("C_zz@pinion@pinion", "C_zz@pinion"),
+    ):
+        assert own_name(shaft, Quantity(asked)) == told
 
 
 @pytest.mark.parametrize(
@@ -93,7 +94,7 @@ def test_a_name_with_the_sign_between_names_is_refused_beside_others(shaft):
     with pytest.raises(sg.SceneError, match="has no @"):
         shaft.with_changes(further_ports=(odd,))
     alone = shaft.with_changes(port=shaft.port.with_changes(name="wh@el"), further_ports=())
-    assert own_name(alone, "C_zz@wh@el") == "C_zz"  # nothing to confuse it with
+    assert own_name(alone, Quantity("C_zz@wh@el")) == "C_zz"  # nothing to confuse it with
 
 
 def test_measured_terms_are_entries_of_the_matrices(shaft):
@@ -102,7 +103,7 @@ def test_measured_terms_are_entries_of_the_matrices(shaft):
     c, k = both.compliance, both.stiffness
     assert found["C_z,thx@wheel@pinion"] == c[2, 9] and found["C_z,thx@pinion@wheel"] == c[8, 3]
     assert found["K_z,thx@wheel@pinion"] == k[2, 9] and found["K_zz@wheel@wheel"] == k[2, 2]
-    assert set(between(["C_zz", "C_z,thx", "K_yy"], both.ports)) <= set(found)
+    assert set(between(map(Quantity, ["C_zz", "C_z,thx", "K_yy"]), both.ports)) <= set(found)
     assert not any(name.startswith("C_yy@wheel@wheel@") for name in found)
 
 
@@ -130,7 +131,7 @@ def test_bars_hold_on_random_shafts_with_two_points(seed):
     truth = {"spectral": light_truth(scene)}
     for mesh, one in found.items():
         rows = judged(one["said"], truth, scene.title, mesh)
-        crossed = [row for row in rows if points_of(row.quantity)]
+        crossed = [row for row in rows if Quantity(row.quantity).pair]
         assert len(crossed) >= 9 and all(row.held for row in crossed if row.judged)
         # errors that are there: a bar that any number would meet is no bar
         assert max(row.off for row in crossed) > SMALL
@@ -164,10 +165,10 @@ def test_bars_of_the_whole_matrix(settled):
         "C_zz@wheel@pinion",
     ):
         assert 0 < bars[name] <= 0.05 and name in bars
-    assert not any(repeats(name) for name in bars)
+    assert not any(name.repeats for name in bars)
     # the error of a compliance is a positive semidefinite matrix: between points no more than at them
     worst = max(bars[q] for q in ("C_zz", "C_thx", "C_zz@pinion", "C_thx@pinion"))
-    assert max(b for q, b in bars.items() if points_of(q) and q.startswith("C_")) <= worst
+    assert max(b for q, b in bars.items() if q.pair and q.kind == COMPLIANCE) <= worst
     assert settled.reached and "K_zz@wheel@wheel" not in settled.missing
 
 
@@ -181,7 +182,7 @@ def test_stiffness_between_points_carries_what_its_inverse_loses(shaft):
 
 
 def test_effects_of_features_count_at_every_point():
-    levels = [{"C_zz": 1.0, "C_zz@p": 1.0}] * 2
+    levels = [{C_ZZ: 1.0, C_ZZ.at("p"): 1.0}] * 2
     effect = {"C_zz": 0.2, "C_zz@p": 0.2}
     found = step_bands(levels, {}, LADDER["corrected"].safety, effect=effect)
     assert found["C_zz@p"].gci == found["C_zz"].gci > 0.01  # meshes that agree by accident
@@ -227,7 +228,7 @@ def test_judged_and_reported(shaft):
     assert row.relative == pytest.approx(
         apart / (solid["C_zz"] * solid["C_zz@pinion"]) ** 0.5, rel=1e-9
     )
-    assert row.band > 0 and not any(repeats(r.quantity) for r in record.deviations)
+    assert row.band > 0 and not any(r.quantity.repeats for r in record.deviations)
     first = {row[0]: row[1:] for row in numbers(record, ENGINEERING).rows}
     value, bar = first["Compliance across the shaft, wheel under loads on pinion, C_zz"]
     assert value[0].startswith("2.5") and bar.startswith("± ")

@@ -20,6 +20,7 @@ from solidgear.judge.quantities import at_points, between, change, measure
 from solidgear.judge.settle import Whole, settle
 from solidgear.judge.solving import Numbers, solve
 from solidgear.ladder.registry import LADDER
+from solidgear.quantity import QUANTITIES
 from solidgear.scene import Bearing
 from solidgear.solve.statics import condense
 from solidgear.studies.sweep.choice import settled_for_sweep
@@ -301,7 +302,7 @@ def test_features_are_held_against_the_plane_that_a_number_is_of():
     here, there = (condense(body, scene.plain, name) for name in ("pinion", "end"))
     both = condense(body, scene.plain, ("pinion", "end"))
     assert here.compliance[0, 0] > 1.5 * here.compliance[2, 2]
-    of_one = ("C_zz", "C_z,thx", "C_thx", "K_zz", "K_z,thx", "K_thx")
+    of_one = [q for q in QUANTITIES if {q.row, q.column} <= {2, 3}]
     wanted = (*at_points(of_one, ["end"]), *between(of_one, ["pinion", "end"]))
     climb = Whole(scene, LADDER["corrected"], wanted, 0.01, lambda _: None)
     values = Statics(here, {"end": there}, both).values()

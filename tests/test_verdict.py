@@ -7,21 +7,16 @@ import numpy as np
 import pytest
 
 import solidgear as sg
+from solidgear.body.mode_names import ModeName
 from solidgear.judge.bars import Band
+from solidgear.judge.deviations import BEYOND, OPEN, WITHIN, deviations, gap_verdict
 from solidgear.judge.quantities import JUDGED
+from solidgear.judge.record import GuardRecord, LevelRecord
 from solidgear.judge.solution import Solution
 from solidgear.judge.solving import Answer
 from solidgear.judge.ties import SCENE, SECTION
-from solidgear.judge.verdict import (
-    BEYOND,
-    OPEN,
-    WITHIN,
-    deviations,
-    gap_verdict,
-    judge,
-    percent,
-    trusted,
-)
+from solidgear.judge.verdict import judge, percent, trusted
+from solidgear.quantity import Quantity
 from solidgear.scene import Ask, Bearing, Scene, Segment
 from solidgear.solve.modes import Mode, ModeSet
 from solidgear.studies.comparison import compare
@@ -42,7 +37,9 @@ def mode(name, frequency):
     motions = np.zeros((len(components), len(STATIONS), 6))
     for row, c in enumerate(components):
         motions[row, :, c] = wave
-    return Mode(name, family, frequency, len(components), ({},) * len(components), motions, 1.0)
+    return Mode(
+        ModeName(name), family, frequency, len(components), ({},) * len(components), motions, 1.0
+    )
 
 
 def tied(c_zz=1.0, bending=100.0, **others):
@@ -57,7 +54,7 @@ def tied(c_zz=1.0, bending=100.0, **others):
         SimpleNamespace(size=10, mesh={}),
         SimpleNamespace(attachment="average", evidence={"residual": 0.0}),
         found,
-        {"C_zz": c_zz, "bending 1": bending, **others},
+        {Quantity(q): v for q, v in {"C_zz": c_zz, "bending 1": bending, **others}.items()},
     )
 
 
@@ -71,7 +68,7 @@ def rung(c_zz=1.0, bending=100.0, *, model="beam", band=None, section=None, **ot
         ties[SECTION] = tied(*section)
     bands = {} if band is None else {tie: banded(band, t.quantities) for tie, t in ties.items()}
     meter = SimpleNamespace(seconds={"build": 1.0, "statics": 0.5, "modes": 0.5, "band": 100.0})
-    return Solution(model, ties, meter, bands=bands, levels=[{}] * 3)
+    return Solution(model, ties, meter, bands=bands, levels=[LevelRecord()] * 3)
 
 
 def asking(tolerance, quantities=()):
@@ -87,7 +84,7 @@ def judged(rungs, tolerance, quantities=(), notices=()):
 
 
 def verdicts(gaps, model="solid"):
-    return {g["quantity"]: g["verdict"] for g in gaps if g["model"] == model}
+    return {g.quantity: g.verdict for g in gaps if g.model == model}
 
 
 # --------------------------------------------------------------------------- deviations
@@ -106,12 +103,12 @@ def verdicts(gaps, model="solid"):
 )
 def test_a_gap_inside_the_summed_bands_is_not_resolved(relative, mine, theirs, verdict):
     rungs = {"harmonic": rung(band=theirs), "solid": rung(c_zz=1 + relative, band=mine)}
-    (gap,) = [g for g in deviations(rungs, "harmonic") if g["quantity"] == "C_zz"]
-    assert gap["verdict"] == verdict
-    assert gap["relative"] == pytest.approx(relative, abs=1e-15)  # one subtraction
+    (gap,) = [g for g in deviations(rungs, "harmonic") if g.quantity == "C_zz"]
+    assert gap.verdict == verdict
+    assert gap.relative == pytest.approx(relative, abs=1e-15)  # one subtraction
     known = [b for b in (mine, theirs) if b is not None]
-    assert gap["band"] == (pytest.approx(sum(known), abs=1e-15) if known else None)
-    assert gap["model"] == "solid" and gap["reference"] == "harmonic" and gap["unit"] == "m/N"
+    assert gap.band == (pytest.approx(sum(known), abs=1e-15) if known else None)
+    assert gap.model == "solid" and gap.reference == "harmonic" and gap.quantity.unit == "m/N"
 
 
 def test_every_model_is_held_as_the_scene_is_tied_and_like_for_like():
@@ -120,15 +117,15 @@ def test_every_model_is_held_as_the_scene_is_tied_and_like_for_like():
         "harmonic": rung(1.0, 100.0, band=1e-3, section=(1.1, 95.0)),
     }
     gaps = deviations(rungs, "harmonic")
-    found = {(g["attachment"], g["quantity"]): g["relative"] for g in gaps}
+    found = {(g.attachment, g.quantity): g.relative for g in gaps}
     # quotients of the numbers above
     assert found[(SCENE, "C_zz")] == pytest.approx(-0.01, rel=1e-12)
     assert found[(SECTION, "C_zz")] == pytest.approx(1.08 / 1.1 - 1, rel=1e-12)
     assert found[(SECTION, "bending 1")] == pytest.approx(94 / 95 - 1, rel=1e-12)
-    assert all(g["model"] == "timoshenko" for g in gaps)  # the reference is not held against itself
+    assert all(g.model == "timoshenko" for g in gaps)  # the reference is not held against itself
     # without its own section means a model has no like-for-like partner
     rungs["timoshenko"].ties.pop(SECTION)
-    assert {g["attachment"] for g in deviations(rungs, "harmonic")} == {SCENE}
+    assert {g.attachment for g in deviations(rungs, "harmonic")} == {SCENE}
 
 
 def test_a_coupling_is_told_against_the_mean_of_its_diagonal_entries():
@@ -137,9 +134,9 @@ def test_a_coupling_is_told_against_the_mean_of_its_diagonal_entries():
         "timoshenko": rung(**(values | {"C_z,thx": 0.02})),
         "harmonic": rung(band=1e-3, **values),
     }
-    (gap,) = [g for g in deviations(rungs, "harmonic") if g["quantity"] == "C_z,thx"]
+    (gap,) = [g for g in deviations(rungs, "harmonic") if g.quantity == "C_z,thx"]
     # 0.02 over the root of 1 times 4: symmetry makes the coupling itself zero
-    assert gap["relative"] == pytest.approx(0.01, rel=1e-12)
+    assert gap.relative == pytest.approx(0.01, rel=1e-12)
 
 
 def test_quantities_that_one_side_lacks_are_left_out():
@@ -163,8 +160,8 @@ def test_tolerance_decides(tolerance, euler, timoshenko):
     verdict, validity = judged(rungs, tolerance)
     assert validity["euler"].valid is euler and validity["timoshenko"].valid is timoshenko
     assert validity["harmonic"].valid and validity["harmonic"].why_not is None
-    assert verdict["cheapest"] == ("euler" if euler else "timoshenko" if timoshenko else "harmonic")
-    assert verdict["trust"] == "harmonic" and verdict["tolerance"] == tolerance
+    assert verdict.cheapest == ("euler" if euler else "timoshenko" if timoshenko else "harmonic")
+    assert verdict.trust == "harmonic" and verdict.tolerance == tolerance
     for model, valid in (("euler", euler), ("timoshenko", timoshenko)):
         why = validity[model].why_not
         assert (why is None) is valid
@@ -179,7 +176,7 @@ def test_what_the_bands_leave_open_is_not_valid():
     verdict, validity = judged(rungs, 0.05)
     assert not validity["timoshenko"].valid and validity["timoshenko"].open
     assert "may or may not be within" in validity["timoshenko"].why_not
-    assert verdict["cheapest"] == "harmonic"
+    assert verdict.cheapest == "harmonic"
 
 
 def test_cheapest_does_not_depend_on_the_order_of_the_rungs():
@@ -190,11 +187,11 @@ def test_cheapest_does_not_depend_on_the_order_of_the_rungs():
         "euler": rung(0.5),
     }
     verdict, _ = judged(rungs, 0.05)
-    assert verdict["cheapest"] == "timoshenko"
+    assert verdict.cheapest == "timoshenko"
     # what it costs is building and solving it, not its evidence
     assert any(
         "Cheapest model within 5 %: Timoshenko beam (10 unknowns, 2 s)" in s
-        for s in verdict["sentences"]
+        for s in verdict.sentences
     )
 
 
@@ -228,7 +225,7 @@ def test_like_for_like_counts_too():
     )
     assert any(
         "seat flexibility" in s and "hides part of its excess stiffness" in s
-        for s in verdict["sentences"]
+        for s in verdict.sentences
     )
 
 
@@ -241,7 +238,7 @@ def test_the_tie_is_told_apart_from_the_beam():
     verdict, validity = judged(rungs, 0.05)
     assert not validity["timoshenko"].valid
     assert any(
-        "the tie, not the beam" in s and "12 %" in s and "1 %" in s for s in verdict["sentences"]
+        "the tie, not the beam" in s and "12 %" in s and "1 %" in s for s in verdict.sentences
     )
 
 
@@ -249,25 +246,23 @@ def test_only_what_is_asked_is_judged():
     rungs = {"timoshenko": rung(0.8, 101.0), "harmonic": rung(band=1e-3)}
     assert not judged(rungs, 0.05)[1]["timoshenko"].valid
     verdict, validity = judged(rungs, 0.05, quantities=("bending 1",))
-    assert validity["timoshenko"].valid and verdict["judged"] == ["bending 1"]
+    assert validity["timoshenko"].valid and verdict.judged == ["bending 1"]
 
 
 def test_stiffnesses_are_shown_but_not_judged():
     rungs = {"timoshenko": rung(K_zz=2.0), "harmonic": rung(K_zz=1.0, band=1e-3)}
     assert "K_zz" not in JUDGED
-    assert any(
-        g["quantity"] == "K_zz" and g["relative"] == 1.0 for g in deviations(rungs, "harmonic")
-    )
+    assert any(g.quantity == "K_zz" and g.relative == 1.0 for g in deviations(rungs, "harmonic"))
     assert judged(rungs, 0.05)[1]["timoshenko"].valid
 
 
 def test_solid_inside_the_bands_is_said_to_be_not_resolved():
     sentences = " ".join(
-        judged({"harmonic": rung(band=1e-3), "solid": rung(1.001, band=1e-3)}, 0.05)[0]["sentences"]
+        judged({"harmonic": rung(band=1e-3), "solid": rung(1.001, band=1e-3)}, 0.05)[0].sentences
     )
     assert "not resolved" in sentences and "agree" not in sentences
     sentences = " ".join(
-        judged({"harmonic": rung(band=1e-3), "solid": rung(1.01, band=1e-3)}, 0.05)[0]["sentences"]
+        judged({"harmonic": rung(band=1e-3), "solid": rung(1.01, band=1e-3)}, 0.05)[0].sentences
     )
     assert "not resolved" not in sentences and "beyond the bands in C_zz" in sentences
 
@@ -275,12 +270,12 @@ def test_solid_inside_the_bands_is_said_to_be_not_resolved():
 def test_a_solid_without_bands_is_not_said_to_be_beyond_them():
     """One mesh of a solid may err by all of its gap; of several quantities some may have a band."""
     alone = rung(1.01)
-    said = " ".join(judged({"harmonic": rung(band=1e-3), "solid": alone}, 0.05)[0]["sentences"])
+    said = " ".join(judged({"harmonic": rung(band=1e-3), "solid": alone}, 0.05)[0].sentences)
     assert "beyond" not in said and "inside the bands" not in said
     assert "within 1 % of it in every judged number; it has no bands of its own" in said
     half = rung(1.01, 101.0, band=1e-3)
     del half.bands[SCENE]["bending 1"]
-    said = " ".join(judged({"harmonic": rung(band=1e-3), "solid": half}, 0.05)[0]["sentences"])
+    said = " ".join(judged({"harmonic": rung(band=1e-3), "solid": half}, 0.05)[0].sentences)
     assert "beyond the bands in C_zz; of bending 1 it has no band of its own" in said
 
 
@@ -288,8 +283,8 @@ def test_a_solid_without_bands_is_not_said_to_be_beyond_them():
 def test_beams_alone_are_not_judged():
     for rungs in ({"euler": rung(0.9)}, {"euler": rung(0.9), "timoshenko": rung()}):
         verdict, validity = judged(rungs, 0.05)
-        assert verdict["trust"] is verdict["cheapest"] is None
-        assert verdict["sentences"] == [
+        assert verdict.trust is verdict.cheapest is None
+        assert verdict.sentences == [
             "Not judged: no solid was run, and a beam cannot judge itself."
         ]
         assert all(not v.valid and v.open for v in validity.values())
@@ -299,9 +294,7 @@ def test_a_solid_without_a_band_judges_nobody():
     lost = rung()
     lost.failed["finer mesh"] = "9 MB are free"
     verdict, validity = judged({"timoshenko": rung(), "harmonic": lost}, 0.05)
-    assert (
-        verdict["trust"] is None and "no band of its own (9 MB are free)" in verdict["sentences"][0]
-    )
+    assert verdict.trust is None and "no band of its own (9 MB are free)" in verdict.sentences[0]
     assert (
         not validity["timoshenko"].valid
         and validity["timoshenko"].open
@@ -313,37 +306,39 @@ def test_a_solid_without_a_band_judges_nobody():
 def test_a_band_above_the_tolerance_is_never_valid(band):
     verdict, validity = judged({"timoshenko": rung(), "harmonic": rung(band=band)}, 0.05)
     assert (
-        verdict["trust"] is None
+        verdict.trust is None
         and not validity["harmonic"].valid
         and not validity["timoshenko"].valid
     )
-    assert not any("Trust" in s for s in verdict["sentences"])
+    assert not any("Trust" in s for s in verdict.sentences)
 
 
 def test_the_3d_solid_judges_where_the_harmonic_one_is_missing():
     verdict, validity = judged({"timoshenko": rung(0.97), "solid": rung(band=1e-3)}, 0.05)
-    assert verdict["trust"] == "solid" and validity["timoshenko"].valid
-    assert verdict["sentences"][0].startswith("Trust the 3D solid: full 3D elasticity")
+    assert verdict.trust == "solid" and validity["timoshenko"].valid
+    assert verdict.sentences[0].startswith("Trust the 3D solid: full 3D elasticity")
 
 
 def test_a_guard_that_says_avoid_is_heard():
-    notice = {"level": "avoid", "models": ["timoshenko"], "sentence": "sections lose their shape"}
+    notice = GuardRecord(level="avoid", models=["timoshenko"], sentence="sections lose their shape")
     rungs = {"timoshenko": rung(), "harmonic": rung(band=1e-3)}
     verdict, validity = judged(rungs, 0.05, notices=[notice])
     assert (
         not validity["timoshenko"].valid
         and validity["timoshenko"].why_not == "sections lose their shape"
     )
-    assert verdict["cheapest"] == "harmonic"
+    assert verdict.cheapest == "harmonic"
     # a caution is told and does not decide
-    assert judged(rungs, 0.05, notices=[notice | {"level": "caution"}])[1]["timoshenko"].valid
+    assert judged(rungs, 0.05, notices=[notice.model_copy(update={"level": "caution"})])[1][
+        "timoshenko"
+    ].valid
 
 
 def test_nothing_solved():
     verdict, validity = judge(asking(0.05), {}, [])
     assert (
-        verdict["trust"] is verdict["cheapest"] is None
-        and verdict["sentences"] == ["No model could be solved."]
+        verdict.trust is verdict.cheapest is None
+        and verdict.sentences == ["No model could be solved."]
         and validity == {}
     )
 

@@ -427,9 +427,9 @@ MUTATIONS = (
     ),
     Mutation(
         "two points: a term between them related to itself",
-        "solidgear/judge/quantities.py",
-        "diagonals",
-        "pair is None or (base not in COUPLINGS and pair[0] == pair[1])",
+        "solidgear/quantity.py",
+        "Quantity.diagonals",
+        "not self.is_coupling and (pair is None or pair[0] == pair[1])",
         "True",
         "tests/test_point_bars.py::test_a_term_that_symmetry_forbids_has_a_bar",
     ),

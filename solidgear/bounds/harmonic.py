@@ -137,7 +137,7 @@ def harmonic_bounds(
     empty = np.zeros((cells if still else 0, size, size))
     of_ports = known or _OfPorts(empty, np.zeros((size, size)))
     modes = _asked(found, wanted)
-    energy = {mode.name: np.zeros(cells) for mode in modes}
+    energy: dict[str, np.ndarray] = {mode.name: np.zeros(cells) for mode in modes}
     lower = dict.fromkeys(energy, 0.0)
     every = () if found is None else found.solved
     for index, block in _originals(body, modes):

@@ -29,6 +29,7 @@ if TYPE_CHECKING:
     from solidgear.judge.answer import Answered, Step
     from solidgear.judge.settle import Settled
     from solidgear.judge.where import Whereabouts
+    from solidgear.quantity import Quantity
     from solidgear.scene import Scene
 
 
@@ -110,7 +111,6 @@ def _values(found: Answered, units: str) -> Table:
     from rich import box
     from rich.table import Table
 
-    from solidgear.judge.quantities import diagonals
     from solidgear.judge.steps import ABOVE, BELOW
     from solidgear.report.units import in_ascii, units_named
     from solidgear.report.words import bar_of
@@ -129,7 +129,7 @@ def _values(found: Answered, units: str) -> Table:
     notes = []
     if any(row.side in (ABOVE, BELOW) for row in found.values):
         notes.append("a bar with one sign: the exact answer lies on that side only")
-    if any(diagonals(row.quantity) for row in found.values):
+    if any(row.quantity.diagonals for row in found.values):
         notes.append(
             "bars of couplings are relative to the geometric mean of both diagonal entries"
         )
@@ -202,10 +202,10 @@ def _of_round_part(scene: Scene, found: Answered) -> list[str]:
     ]
 
 
-def _absent(missing: Sequence[str]) -> str:
+def _absent(missing: Sequence[Quantity]) -> str:
     """Quantities that a scene does not have, each kind with why."""
-    free = [q for q in missing if q.startswith(("C_", "K_"))]
-    modes = [q for q in missing if q not in free]
+    free = [q for q in missing if not q.is_frequency]
+    modes = [q for q in missing if q.is_frequency]
     one = len(free) == 1
     whys = [
         (free, f"{'a motion' if one else 'motions'} that no bearing resists"),

@@ -113,10 +113,10 @@ def _largest(settled: Settled, where: str) -> list[str]:
 
     if settled.largest is None:
         return []
-    from solidgear.judge.quantities import AT, in_words
+    from solidgear.judge.quantities import in_words
 
     quantity, bar = settled.largest
-    main = settled.point if any(AT in name for name in settled.bars) else ""
+    main = settled.point if any(name.points for name in settled.bars) else ""
     width = percent(bar, signed=False, nothing="unknown")
     return [f"Largest mesh bar{where}: +- {width}, of {in_words(quantity, main)}."]
 
@@ -131,6 +131,7 @@ def bars_of_modes(
     from solidgear.body import as_supports
     from solidgear.judge.bounded import mode_bars
     from solidgear.ladder.registry import LADDER
+    from solidgear.quantity import Quantity
 
     if settled is None:
         return {}
@@ -138,7 +139,8 @@ def bars_of_modes(
     if LADDER[body.fidelity].bounded:
         bars = mode_bars(scene, body, as_supports(scene), found)
     # what the mesh was chosen by keeps the bar it was chosen with
-    return bars | {m.name: settled.bars[m.name] for m in found.modes if m.name in settled.bars}
+    asked = [name for name in map(Quantity, found.names) if name in settled.bars]
+    return bars | {name: settled.bars[name] for name in asked}
 
 
 def without_bar(found: ModeSet, bars: Mapping[str, float]) -> list[str]:

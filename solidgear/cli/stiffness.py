@@ -172,24 +172,24 @@ def _bars(settled: Settled, found: Coupled) -> Table:
     from rich import box
     from rich.table import Table
 
-    from solidgear.judge.quantities import AT, points_of
+    from solidgear.quantity import COMPLIANCE, STIFFNESS
     from solidgear.report.words import band_percent
 
     largest: dict[tuple[str, ...], float] = {}
     for name, bar in settled.bars.items():
-        point = name.partition(AT)[2] or found.ports[0]
-        if points_of(name) or name.startswith(
-            "C_"
-        ):  # what one point resists alone is not told here
-            key = (name[0], *sorted(points_of(name) or (point, point), key=found.ports.index))
+        if name.pair or name.kind == COMPLIANCE:  # what one point resists alone is not told here
+            point = next(iter(name.points), found.ports[0])
+            key = (name.kind, *sorted(name.pair or (point, point), key=found.ports.index))
             largest[key] = max(bar, largest.get(key, 0.0))
     table = Table(box=box.SIMPLE_HEAD, pad_edge=False)
     table.add_column("largest mesh bar of a block")
-    for kind in ("stiffness", "compliance"):
+    for kind in (STIFFNESS, COMPLIANCE):
         table.add_column(kind, justify="right")
     for k, a in enumerate(found.ports):
         for b in found.ports[k:]:
-            cells = [band_percent(largest.get((kind, a, b)), "-") for kind in "KC"]
+            cells = [
+                band_percent(largest.get((kind, a, b)), "-") for kind in (STIFFNESS, COMPLIANCE)
+            ]
             where = f"between {a} and {b}" if a != b else f"{a} itself"
             table.add_row(where, *(f"+- {told}" if told != "-" else told for told in cells))
     table.caption = (

@@ -1,11 +1,11 @@
 """The cheapest answer to a question, with an error that it can be held to.
 
-A solid is solved on ever finer meshes until the band of every quantity asked for
+A solid is solved on ever finer meshes until the error bar of every quantity asked for
 (:mod:`solidgear.judge.bars`) is within the tolerance; only the families of motion that the
 question needs are built, statics only if a compliance or a stiffness is asked for, modes only if a
 frequency is.  A beam has no error of its own to show: what it lacks is known from a solid only,
 whose coarsest mesh with two orders costs about as much as the beam, so it is the answer as well.
-Rungs that were passed over, and why, are part of the answer.
+Models that were passed over, and why, are part of the answer.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, TypeVar
 from solidgear.display import Displayed
 from solidgear.errors import SolidgearError, nearest, show
 from solidgear.judge.climb import Climb
-from solidgear.judge.quantities import ACROSS, AT, QUANTITIES, described, judged, own_name
+from solidgear.judge.quantities import judged, own_name
 from solidgear.judge.refinement import Progress
 from solidgear.judge.steps import Step, Value
 from solidgear.ladder import NO_MODEL
@@ -28,6 +28,8 @@ from solidgear.ladder.model import BEAM, SOLID
 from solidgear.ladder.registry import LADDER
 from solidgear.machine.memory import one_run
 from solidgear.machine.threads import pinned
+from solidgear.quantity import ACROSS, FIRST_BENDING, QUANTITIES, Quantity
+from solidgear.solve.families import FAMILIES
 
 if TYPE_CHECKING:
     from solidgear.scene import Scene
@@ -35,9 +37,9 @@ if TYPE_CHECKING:
 C = TypeVar("C", bound=Climb)
 
 #: what tables head the first frequencies with
-SHORT = {"f1": "bending 1", "f2": "bending 2"}
+SHORT = {"f1": FIRST_BENDING, "f2": Quantity("bending 2")}
 #: short words for quantities
-WORDS = {"bending": "bending 1", "axial": "axial 1", "torsion": "torsion 1"}
+WORDS = {family: Quantity(f"{family} 1") for family in FAMILIES}
 #: below this, rounding of stiffness matrices decides what an answer is worth
 LEAST_TOLERANCE = 1e-9
 
@@ -57,7 +59,7 @@ class Answered(Displayed):
         Whether every bar is within the tolerance.
     rung : str
         That the values come from.
-    missing : tuple of str
+    missing : tuple of Quantity
         Quantities that do not exist for this scene, such as the compliance of a free motion.
     seconds : float
     """
@@ -70,7 +72,7 @@ class Answered(Displayed):
     steps: tuple[Step, ...]
     reached: bool
     rung: str
-    missing: tuple[str, ...]
+    missing: tuple[Quantity, ...]
     seconds: float
 
     def __getitem__(self, quantity: str) -> float:
@@ -98,7 +100,7 @@ def answer(
     *,
     progress: Progress = lambda _: None,
 ) -> Answered:
-    """Numbers within a tolerance, from the cheapest rung and mesh that can show it.
+    """Numbers within a tolerance, from the cheapest model and mesh that can show it.
 
     Parameters
     ----------
@@ -106,7 +108,7 @@ def answer(
     tol : float, optional
         Relative error that every quantity may have; by default the tolerance of the scene.
     ask : str or iterable of str, optional
-        Quantities (:data:`solidgear.judge.quantities.QUANTITIES`), or ``bending``, ``axial``,
+        Quantities (:data:`solidgear.quantity.QUANTITIES`), or ``bending``, ``axial``,
         ``torsion`` for the first frequency of a family; ``C_zz@name`` at a further lumped point; by
         default those the scene asks for.
     progress : callable
@@ -121,7 +123,7 @@ def answer(
     ------
     SolidgearError
         For a tolerance that is none or that arithmetic does not allow, an unknown quantity, or a
-        scene that no rung can answer.
+        scene that no model can answer.
 
     Examples
     --------
@@ -150,7 +152,11 @@ def answer(
 
 
 def climbed(
-    scene: Scene, tol: float, wanted: tuple[str, ...], kind: Callable[..., C], progress: Progress
+    scene: Scene,
+    tol: float,
+    wanted: tuple[Quantity, ...],
+    kind: Callable[..., C],
+    progress: Progress,
 ) -> tuple[C, list[Step]]:
     """The first solid of the ladder that can be solved at all, on the meshes that it takes.
 
@@ -158,7 +164,7 @@ def climbed(
     ----------
     scene : Scene
     tol : float
-    wanted : tuple of str
+    wanted : tuple of Quantity
     kind : type of Climb, or what makes one
     progress : callable
 
@@ -172,7 +178,7 @@ def climbed(
     Raises
     ------
     SolidgearError
-        If no rung can be solved.
+        If no model can be solved.
     """
     steps = [
         Step(
@@ -224,7 +230,7 @@ def usable(tol: float) -> float:
     return float(tol)
 
 
-def _quantities(scene: Scene, ask: Iterable[str] | str) -> tuple[str, ...]:
+def _quantities(scene: Scene, ask: Iterable[str] | str) -> tuple[Quantity, ...]:
     # C_z,thx has a comma of its own
     given = re.split(r",(?!\s*th[xz])", ask) if isinstance(ask, str) else list(ask)
     given = [name.strip() for name in given if name.strip()]
@@ -232,15 +238,16 @@ def _quantities(scene: Scene, ask: Iterable[str] | str) -> tuple[str, ...]:
         return judged(scene)
     out = []
     for name in given:
-        base, at, point = name.partition(AT)
-        word = WORDS.get(base, base.replace("_1", " 1").replace("_2", " 2"))
-        if at and word in QUANTITIES:
-            if described(word)[0] == "frequency":
+        asked = Quantity(name)
+        symbol = asked.symbol.replace("_1", " 1").replace("_2", " 2")
+        word = WORDS.get(asked.symbol) or Quantity(symbol)
+        if asked.points and word in QUANTITIES:
+            if word.is_frequency:
                 raise SolidgearError(f"ask: {name}: a frequency is not of a point; ask for {word}")
-            word = own_name(scene, f"{word}{AT}{point}")
-        elif at or word not in QUANTITIES | ACROSS:
+            word = own_name(scene, asked)
+        elif asked.points or word not in (*QUANTITIES, *ACROSS):
             known = (*QUANTITIES, *ACROSS, *WORDS)
-            meant = SHORT.get(base.lower(), "")
+            meant = SHORT.get(asked.symbol.lower(), "")
             hint = f'; did you mean "{meant}"?' if meant else nearest(name, known)
             raise SolidgearError(
                 f"ask: there is no quantity {show(name, 40)}{hint}; there are {', '.join(known)}"

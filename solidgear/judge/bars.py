@@ -1,9 +1,9 @@
-"""How sure a solid on a list of meshes is of its own numbers: one band a quantity.
+"""Error bars of a solid on a list of meshes, one a quantity.
 
 A change d from one mesh to the next leaves ``d / (r^(2a) - 1)`` where the cells shrink by r and the
 sharpest corner has the exponent a (Szabo and Babuska 1991, Finite Element Analysis, ch. 10); where
-layers towards the corners are added with every mesh, about as much as the change itself. The band is
-a measured factor (:mod:`solidgear.bounds.safety`) times that of the larger of the last two
+layers towards the corners are added with every mesh, about as much as the change itself. The error
+bar is a measured factor (:mod:`solidgear.bounds.safety`) times that of the larger of the last two
 changes, since one of them may be small by accident.
 
 Displacement elements are too stiff, so the error of a compliance is a positive semidefinite matrix
@@ -15,11 +15,13 @@ A harmonic solid needs none of this: :mod:`solidgear.judge.bounded`.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass
 
+from solidgear.body.mode_names import ModeName
 from solidgear.bounds.safety import Safety
-from solidgear.judge.quantities import change, described, diagonals, in_order
+from solidgear.judge.quantities import Values, change, in_order
+from solidgear.quantity import Quantity
 
 #: rounding: smaller differences mean nothing
 LEAST = 1e-10
@@ -27,26 +29,26 @@ LEAST = 1e-10
 
 @dataclass(frozen=True)
 class Band:
-    """Band of one quantity.
+    """Error bar of one quantity.
 
     Attributes
     ----------
     values : tuple of float
         Coarse to fine.
     gci : float
-        The band, relative to the finest value (couplings: to the geometric mean of their diagonal
-        entries).
+        The error bar, relative to the finest value (couplings: to the geometric mean of their
+        diagonal entries).
     change : float
         Last change, relative; of local problems the distance of the other end.
     reduction : float or None
         Last change over the one before.
     factor : float
-        Band over what it rests on.
+        Error bar over what it rests on.
     solver : float
-        Share of the solver in the band.
+        Share of the solver in the error bar.
     extrapolated : float
     method : str
-        Where the band comes from.
+        Where the error bar comes from.
     middle : float or None
         A better value than the finest one, half of `change` away from it, where there is one.
     """
@@ -63,15 +65,10 @@ class Band:
 
     @property
     def about_middle(self) -> float:
-        """The band about `middle`, which is narrower; about the finest value where there is none."""
+        """The error bar about `middle`, which is narrower; about the finest value where there is
+        none.
+        """
         return self.gci if self.middle is None else self.gci - self.change / 2
-
-    def as_dict(self) -> dict:
-        """Plain data for results.json."""
-        return asdict(self)
-
-
-Values = Mapping[str, float]
 
 
 def step_bands(
@@ -82,8 +79,8 @@ def step_bands(
     left_over: float | None = None,
     around: Values | None = None,
     effect: Values | None = None,
-) -> dict[str, Band]:
-    """Bands of the finest of two or more meshes.
+) -> dict[Quantity, Band]:
+    """Error bars of the finest of two or more meshes.
 
     Parameters
     ----------
@@ -92,7 +89,7 @@ def step_bands(
     solver : mapping
         Relative error the solver may have left in each quantity of the finest level.
     safety : Safety
-        Of the rung.
+        Of the model.
     left_over : float, optional
         What a change leaves of itself by plain refinement; None of meshes with layers.
     around : mapping, optional
@@ -102,11 +99,11 @@ def step_bands(
 
     Returns
     -------
-    dict of str to Band
+    dict of Quantity to Band
 
     Examples
     --------
-    >>> meshes = [{"C_zz": 1.0}, {"C_zz": 1.1}, {"C_zz": 1.12}]
+    >>> meshes = [{Quantity("C_zz"): value} for value in (1.0, 1.1, 1.12)]
     >>> band = step_bands(meshes, {}, Safety((3.0, 2.0)), left_over=1.0)["C_zz"]
     >>> round(band.gci, 4)  # twice the larger change
     0.1818
@@ -122,7 +119,7 @@ def step_bands(
     out = {}
     for name, known in steps.items():
         rests_on = max(known[-counted:])
-        pair = diagonals(name)
+        pair = name.diagonals
         if pair and all(d in steps for d in pair):
             one, two = (max(steps[d][-counted:]) for d in pair)
             rests_on = max(rests_on, (one * two) ** 0.5)
@@ -146,17 +143,16 @@ def step_bands(
     return out
 
 
-def moves_freely(name: str) -> bool:
-    """Whether a quantity is a frequency of a motion that bearings may leave free."""
-    place = described(name)[1]
-    return isinstance(place, str) and place.startswith(("axial", "torsion"))
+def moves_freely(name: Quantity) -> bool:
+    """Tell whether a quantity is a frequency of a motion that bearings may leave free."""
+    return name.is_frequency and ModeName(name).family in ("axial", "torsion")
 
 
-def _left_around(around: Values, name: str) -> float:
-    """What the cells around leave in a quantity; in a coupling as much as in its diagonal entries,
-    in one that was not measured as much as in the worst.
+def _left_around(around: Values, name: Quantity) -> float:
+    """Share that the cells around leave in a quantity; in a coupling as much as in its diagonal
+    entries, in one that was not measured as much as in the worst.
     """
-    if pair := diagonals(name):
+    if pair := name.diagonals:
         own = [around[d] for d in pair if d in around]
         return max([around.get(name, 0.0), (own[0] * own[1]) ** 0.5 if len(own) == 2 else 0.0])
     return around.get(name, max(around.values(), default=0.0))

@@ -18,17 +18,9 @@ from solidgear.body import Body, Supports
 from solidgear.bounds.harmonic import HarmonicBounds, harmonic_bounds, with_tail
 from solidgear.bounds.safety import LOCAL
 from solidgear.judge.bars import LEAST, Band
-from solidgear.judge.quantities import (
-    AT,
-    described,
-    diagonals,
-    in_order,
-    measure,
-    measure_across,
-    points_of,
-    size,
-)
+from solidgear.judge.quantities import Values, in_order, measure, size
 from solidgear.judge.solving import widened
+from solidgear.quantity import ACROSS, STIFFNESS, Quantity
 from solidgear.scene.coned import coned
 from solidgear.solve.condensed import Condensed, Coupled
 from solidgear.solve.modes import ModeSet, modes
@@ -37,7 +29,6 @@ from solidgear.solve.statics import condense
 if TYPE_CHECKING:
     from solidgear.scene import Scene
 
-Values = Mapping[str, float]
 #: where these bars come from, in words
 METHOD = "local problems"
 #: shapes above a list of modes that are looked at for its bars
@@ -46,7 +37,7 @@ ABOVE = 12
 
 @dataclass(frozen=True)
 class Statics:
-    """What was condensed of a body, or will be of its softest relative.
+    """Statics of a body, or of its softest relative.
 
     Attributes
     ----------
@@ -60,21 +51,20 @@ class Statics:
     coupled: Coupled | None = None
 
     @classmethod
-    def of(cls, scene: Scene, body: Body, supports: Supports, names: Sequence[str]) -> Statics:
-        """What some quantities need: the main point, further ones, and pairs of points together.
+    def of(cls, scene: Scene, body: Body, supports: Supports, names: Sequence[Quantity]) -> Statics:
+        """Statics that some quantities need: the main point, further ones, and pairs of points.
 
         Parameters
         ----------
         scene : Scene
         body : Body
         supports : Supports
-        names : sequence of str
-            Quantities.
+        names : sequence of Quantity
         """
         main = condense(body, supports, scene.port.name)
-        points = dict.fromkeys(q.partition(AT)[2] for q in names if AT in q and not points_of(q))
+        points = dict.fromkeys(q.points[0] for q in names if len(q.points) == 1)
         further = {point: condense(body, supports, point) for point in points}
-        pairs = {point for q in names for point in points_of(q) or ()}
+        pairs = {point for q in names for point in q.pair or ()}
         both = tuple(port.name for port in scene.ports if port.name in pairs)
         return cls(main, further, condense(body, supports, both) if pairs else None)
 
@@ -92,11 +82,10 @@ class Statics:
             coupled,
         )
 
-    def values(self) -> dict[str, float]:
+    def values(self) -> dict[Quantity, float]:
         """All numbers, those of the other plane and between points included."""
-        return measure(self.main, None, self.further, self.coupled) | measure_across(
-            self.further, self.coupled
-        )
+        both = self.further, self.coupled
+        return measure(self.main, None, *both) | measure(None, None, *both, ACROSS)
 
 
 @dataclass(frozen=True)
@@ -105,13 +94,13 @@ class Bounded:
 
     Attributes
     ----------
-    bands : dict of str to Band
-    scores : dict of str to ndarray
+    bands : dict of Quantity to Band
+    scores : dict of Quantity to ndarray
         Of every number, (ne,) shares of its bar by cells; in sum one.
     """
 
-    bands: dict[str, Band]
-    scores: dict[str, np.ndarray]
+    bands: dict[Quantity, Band]
+    scores: dict[Quantity, np.ndarray]
 
 
 def bounded(
@@ -120,8 +109,8 @@ def bounded(
     supports: Supports,
     statics: Statics | None,
     found: ModeSet | None,
-    names: Sequence[str],
-    solver: Mapping[str, float],
+    names: Sequence[Quantity],
+    solver: Values,
 ) -> Bounded:
     """Bars of a harmonic body by local problems.
 
@@ -133,12 +122,12 @@ def bounded(
     statics : Statics or None
         What was condensed, None where nothing static is asked for.
     found : ModeSet or None
-    names : sequence of str
-        Quantities whose bars are wanted.
+    names : sequence of Quantity
+        Those whose bars are wanted.
     solver : mapping
         Relative error that the solver may have left.
     """
-    asked = [place for q in names if isinstance(place := described(q)[1], str)]
+    asked = [q for q in names if q.is_frequency]
     bounds = harmonic_bounds(
         coned(scene),
         body,
@@ -147,23 +136,22 @@ def bounded(
         wanted=list(dict.fromkeys(asked)),
         safety=LOCAL,
     )
-    bands: dict[str, Band] = {}
-    scores: dict[str, np.ndarray] = {}
+    bands: dict[Quantity, Band] = {}
+    scores: dict[Quantity, np.ndarray] = {}
     if statics is not None:
         stiff = statics.values()
         two, one = (
             statics.again(bounds.softer(more), supports).values()
             for more in (bounds.more, bounds.less)
         )
-        for name in in_order({q: 0 for q in (*stiff, *names)}):
+        for name in in_order(dict.fromkeys((*stiff, *names))):
             known = all(name in end for end in (stiff, two, one))
-            if known and described(name)[0] != "frequency":
+            if known and not name.is_frequency:
                 bands[name] = _between(name, stiff, two, one, solver.get(name, 0.0))
         own = [q for q in names if q in bands]
         scores |= _static_scores(body, supports, bounds, statics, own)
     for name in names:
-        place = described(name)[1]
-        mode = found.named(place) if found is not None and isinstance(place, str) else None
+        mode = found.named(name) if found is not None and name.is_frequency else None
         if mode is None:
             continue
         least = bounds.frequency(mode)
@@ -174,7 +162,8 @@ def bounded(
 
 
 def mode_bars(scene: Scene, body: Body, supports: Supports, found: ModeSet) -> dict[str, float]:
-    """How far frequencies of a harmonic body may lie above the exact ones, all families included.
+    """Error bars of the frequencies of a harmonic body, which lie above the exact ones, of all
+    families.
 
     Parameters
     ----------
@@ -228,21 +217,21 @@ def _highest(found: ModeSet) -> dict[str, float]:
 
 
 def _all_below(found: ModeSet) -> bool:
-    """Whether a mode of its family was found above each of a list."""
+    """Tell whether a mode of its family was found above each of a list."""
     last = _highest(found)
     return all(m.frequency_hz < last[m.family] for m in found.modes if m.frequency_hz > 0)
 
 
-def _between(name: str, stiff: Values, two: Values, one: Values, solver: float) -> Band:
-    """Band of a static number from its ends: the number itself, and as soft as two orders more and one
-    order more see it.
+def _between(name: Quantity, stiff: Values, two: Values, one: Values, solver: float) -> Band:
+    """Error bar of a static number from its ends: the number itself, and as soft as two orders more
+    and one order more see it.
     """
     scale = size(stiff, name)
 
-    def move(q: str) -> float:
+    def move(q: Quantity) -> float:
         return LOCAL * with_tail(abs(two[q] - stiff[q]), abs(one[q] - stiff[q]))
 
-    pair = diagonals(name)
+    pair = name.diagonals
     if pair is None or not all(d in end for d in pair for end in (stiff, two, one)):
         other = stiff[name] + np.copysign(move(name), two[name] - stiff[name])
         return _band(stiff[name], move(name) / scale, solver, other, scale=scale)
@@ -282,27 +271,25 @@ def _static_scores(
     supports: Supports,
     bounds: HarmonicBounds,
     statics: Statics,
-    names: Sequence[str],
-) -> dict[str, np.ndarray]:
+    names: Sequence[Quantity],
+) -> dict[Quantity, np.ndarray]:
     """Shares of bars of compliances by cells: the energy of the local solutions under the load and
     what the bearings answer to it.
     """
     ports = [(port.name, port.attachment) for port in body.ports]
-    out: dict[str, np.ndarray] = {}
+    out: dict[Quantity, np.ndarray] = {}
     forces: dict[int, np.ndarray] = {}
     attached = {one.port: one.attachment for one in (statics.main, *statics.further.values())}
     if statics.coupled is not None:
         attached |= dict(zip(statics.coupled.ports, statics.coupled.attachments))
     for name in names:
-        kind, place, _ = described(name)
-        assert not isinstance(place, str)
-        one = name.partition(AT)[2] or statics.main.port
+        one = name.points[0] if name.points else statics.main.port
         total = np.zeros(len(bounds.of_ports))
-        for point, row in set(zip(points_of(name) or (one, one), place)):
+        for point, row in set(zip(name.pair or (one, one), name.place)):
             seat = statics.main if point == statics.main.port else statics.further.get(point)
             first = 6 * ports.index((point, attached[point]))
             loads = np.eye(6)[row]
-            if kind == "stiffness" and seat is not None:
+            if name.kind == STIFFNESS and seat is not None:
                 loads = np.nan_to_num(seat.stiffness[:, row], posinf=0.0, neginf=0.0)
             f = np.zeros(6 * len(ports))
             for c in map(int, np.flatnonzero(loads)):

@@ -1,47 +1,34 @@
-"""Why models differ: switch one assumption at a time and measure what moves."""
+"""Causes of differences: switch one assumption at a time and measure what moves."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from solidgear.errors import SolidgearError
-from solidgear.judge.quantities import change
+from solidgear.judge.quantities import Values, change
+from solidgear.judge.record import CauseRecord
 from solidgear.judge.solving import solve
+from solidgear.quantity import C_ZZ, FIRST_BENDING, K_ZZ, Quantity
 
 if TYPE_CHECKING:
     from solidgear.scene import Scene
 
 
-@dataclass(frozen=True)
-class Cause:
-    """Effect of one assumption: relative changes of quantities, None where one does not exist."""
-
-    cause: str
-    change: str
-    model: str
-    quantities: dict[str, float | None]
-
-
 #: what is shown of a cause
-SHOWN = ("C_zz", "K_zz", "bending 1")
+SHOWN = (C_ZZ, K_ZZ, FIRST_BENDING)
 
 
-def _solve(scene: Scene, rung: str, **options) -> dict[str, float]:
+def _solve(scene: Scene, rung: str, **options) -> Values:
     return solve(scene, rung, **options).quantities
 
 
-def _row(cause, text, model, new, old) -> Cause:
-    return Cause(
-        cause,
-        text,
-        model,
-        {name: change(new, old, name) for name in SHOWN},
-    )
+def _row(cause: str, text: str, model: str, new: Values, old: Values) -> CauseRecord:
+    moved = {name: change(new, old, name) for name in SHOWN}
+    return CauseRecord(cause=cause, change=text, model=model, quantities=moved)
 
 
-def beam_causes(scene: Scene) -> list[Cause]:
+def beam_causes(scene: Scene) -> list[CauseRecord]:
     """Assumptions inside the beam model, with the beam's own nodes for ports."""
     scene = scene.with_attachment("section")
     plain = _solve(scene, "euler")
@@ -75,7 +62,7 @@ def beam_causes(scene: Scene) -> list[Cause]:
     return out
 
 
-def attachment_causes(variants: dict[str, dict[str, float]], model: str) -> list[Cause]:
+def attachment_causes(variants: dict[str, Values], model: str) -> list[CauseRecord]:
     """Effect of the attachment, from results already at hand (``average``, ``rigid``, ``section``
     -> quantities).
     """
@@ -88,10 +75,10 @@ def attachment_causes(variants: dict[str, dict[str, float]], model: str) -> list
 
 def shoulder_cause(
     scene: Scene,
-    beam_gap: dict[str, float | None],
+    beam_gap: dict[Quantity, float | None],
     options: dict,
     tell: Callable[[str], None] = lambda _: None,
-) -> Cause | None:
+) -> CauseRecord | None:
     """Share of the beam-to-solid gap that the steps of the shaft are to blame for.
 
     The gap (Timoshenko over harmonic, section mean everywhere) of the scene, less the gap of the
@@ -108,7 +95,7 @@ def shoulder_cause(
 
     Returns
     -------
-    Cause or None
+    CauseRecord or None
         None when the shaft has no step, or the plain shaft cannot be made.
     """
     if not scene.steps:
@@ -131,9 +118,9 @@ def shoulder_cause(
         here, there = beam_gap.get(name), change(beam, solid, name)
         return None if here is None or there is None else here - there
 
-    return Cause(
-        "shoulder",
-        "gap to the solid with steps, less without",
-        "timoshenko",
-        {name: share(name) for name in SHOWN},
+    return CauseRecord(
+        cause="shoulder",
+        change="gap to the solid with steps, less without",
+        model="timoshenko",
+        quantities={name: share(name) for name in SHOWN},
     )

@@ -11,18 +11,17 @@ import numpy as np
 
 from solidgear.body import Body, as_supports
 from solidgear.judge.bounded import Statics, bounded
-from solidgear.judge.quantities import described
 from solidgear.judge.question import (
     Question,
     Solved,
     coupled_families,
     family_of,
-    is_frequency,
     shapes,
 )
 from solidgear.judge.refinement import Loop
 from solidgear.judge.solving import Numbers, numbers, searched
 from solidgear.ladder import build
+from solidgear.quantity import Quantity
 from solidgear.solve.condensed import Condensed
 from solidgear.solve.families import FAMILIES
 from solidgear.solve.modes import ModeSet
@@ -49,11 +48,11 @@ class Climb(Loop):
         self.compliances: dict[tuple[str, ...], Condensed] = {}
         self.modes: ModeSet | None = None
 
-    def _asked(self) -> tuple[str, ...]:
+    def _asked(self) -> tuple[Quantity, ...]:
         return tuple(q for _, names in self._questions() for q in names)
 
     def _questions(self) -> list[Question]:
-        """What the next mesh is solved for."""
+        """Questions that the next mesh is solved for."""
         if not self._started():
             families = None if self.groups is None else tuple(f for g in self.groups for f in g)
             return [(families, self.wanted)]
@@ -65,8 +64,8 @@ class Climb(Loop):
         return [(group, names) for group, names in by_group if names]
 
     def _solve(self, level: Mapping[str, Any]) -> Solved:
-        values: dict[str, float] = {}
-        solver: dict[str, float] = {}
+        values: dict[Quantity, float] = {}
+        solver: dict[Quantity, float] = {}
         unknowns, cells, body, score = 0, None, None, None
         for families, names in self._questions():
             body = self._body(level, families)
@@ -96,22 +95,21 @@ class Climb(Loop):
         return [group for group in found if set(group) & asked]
 
     def _numbers(
-        self, body: Body, families: tuple[str, ...] | None, names: tuple[str, ...]
+        self, body: Body, families: tuple[str, ...] | None, names: tuple[Quantity, ...]
     ) -> tuple[Numbers, np.ndarray | None]:
         """Values of a body, and where its open bars come from."""
         supports = as_supports(self.scene)
         if families is not None:
             supports = supports.on(c for f in families for c in FAMILIES[f])
-        kinds = {described(q)[0] for q in names}
+        wanted = [q for q in names if q.is_frequency]
         statics: Statics | None = None
         found: ModeSet | None = None
-        if kinds & {"compliance", "stiffness"}:
+        if len(wanted) < len(names):
             if self.rung.bounded:
                 flexibility(body, SOLVED)
             statics = Statics.of(self.scene, body, supports, names)
             self.compliances[families or tuple(FAMILIES)] = statics.main
-        if "frequency" in kinds:
-            wanted = [place for q in names if isinstance(place := described(q)[1], str)]
+        if wanted:
             found = self.modes = searched(
                 body,
                 supports,
@@ -137,13 +135,13 @@ class Climb(Loop):
         judged = bounded(self.scene, body, supports, statics, found, here, values.solver)
         self.bands |= {q: judged.bands[q] for q in here}
         # no value without its bar
-        kept = {q: v for q, v in values.quantities.items() if q in here or not is_frequency(q)}
+        kept = {q: v for q, v in values.quantities.items() if q in here or not q.is_frequency}
         values = Numbers(kept, values.solver)
         return values, self.score(judged, here)
 
-    def _judged_names(self, found: Numbers, names: tuple[str, ...]) -> list[str]:
+    def _judged_names(self, found: Numbers, names: tuple[Quantity, ...]) -> list[Quantity]:
         """Numbers that are there and get a bar: those of this question, and all of statics that are
         wanted, for which nothing more is solved.
         """
-        static = (q for q in self.wanted if not is_frequency(q))
+        static = (q for q in self.wanted if not q.is_frequency)
         return [q for q in dict.fromkeys((*names, *static)) if q in found.quantities]

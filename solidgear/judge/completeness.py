@@ -1,5 +1,5 @@
-"""What a list of modes is worth, in sentences: which families were counted, where the others begin,
-and whether the number asked for ends it early.
+"""Completeness of a list of modes, in sentences: which families were counted, where the others
+begin, and whether the number asked for ends it early.
 """
 
 from __future__ import annotations
@@ -41,7 +41,7 @@ def completeness(evidence: dict, fidelity: str) -> str:
 
 
 def cut_short(modes: Iterable[Mode], n: int, asked_hz: float | None, option: str = "") -> list[str]:
-    """What to say where the number of modes ends a list below the frequency asked for.
+    """Warning where the number of modes ends a list below the frequency asked for.
 
     Parameters
     ----------
@@ -58,7 +58,7 @@ def cut_short(modes: Iterable[Mode], n: int, asked_hz: float | None, option: str
     list of str
         One sentence, or none.
     """
-    elastic = [m for m in modes if not m.name.startswith("rigid")]
+    elastic = [m for m in modes if not m.name.rigid]
     if not asked_hz or not elastic or sum(m.multiplicity for m in elastic) < n:
         return []  # all that there are up to it
     return [

@@ -10,6 +10,7 @@ from itertools import combinations
 import numpy as np
 from scipy.sparse.csgraph import connected_components
 
+from solidgear.judge.record import MacTable, PartnerRecord
 from solidgear.solve.modes import Mode, ModeSet
 
 #: A partner is certain from this similarity on, if the next one is less alike by this much.
@@ -22,38 +23,6 @@ CLOSE, SAME_SPACE = 0.05, 0.9
 #: Families without section motions are paired by rank; the partner is certain if frequencies are
 #: this near, relative.
 RANKED = 0.15
-
-
-@dataclass(frozen=True)
-class Partner:
-    """A mode and the reference mode most like it."""
-
-    mode: str
-    partner: str
-    mac: float
-    frequency_hz: float
-    reference_hz: float
-    relative: float
-
-
-@dataclass(frozen=True)
-class Correlation:
-    """MAC matrix between two mode sets.
-
-    Attributes
-    ----------
-    rows, columns : tuple of str
-        Names of the modes of the model and of the reference.
-    values : (rows, columns) ndarray
-        0 to 1.
-    partners : tuple of Partner
-        One per row, rigid modes left out.
-    """
-
-    rows: tuple[str, ...]
-    columns: tuple[str, ...]
-    values: np.ndarray
-    partners: tuple[Partner, ...]
 
 
 @dataclass(frozen=True)
@@ -102,7 +71,7 @@ class Pairing:
 
 
 def pair_modes(model: ModeSet, reference: ModeSet) -> tuple[Pairing, ...]:
-    """Which mode of a model is which of the reference, by shape and not by name.
+    """Pair the modes of a model with those of the reference, by shape and not by name.
 
     Every elastic mode of the reference gets the mode whose section motions are most like its own,
     all at once (an assignment), shapes of pairs counted one by one, so that a pair may meet a split
@@ -148,7 +117,7 @@ def pair_modes(model: ModeSet, reference: ModeSet) -> tuple[Pairing, ...]:
 
 
 def _ranked(mode: Mode) -> tuple[int, str] | None:
-    """What modes must share to be paired by rank; None for those that section motions describe."""
+    """Key by which modes are paired by rank; None for those that section motions describe."""
     return (mode.waves, mode.family) if mode.waves > 1 or mode.family == "breathing" else None
 
 
@@ -311,8 +280,13 @@ def subspace_mac(a: np.ndarray, b: np.ndarray, gram: np.ndarray) -> float:
     return float(min(1.0, (cosines**2).sum() / min(len(qa), len(qb))))
 
 
-def correlate(model: ModeSet, reference: ModeSet) -> Correlation:
+def correlate(model: ModeSet, reference: ModeSet) -> MacTable:
     """Correlate two mode sets, with the section masses of the reference as weights.
+
+    Returns
+    -------
+    MacTable
+        Of elastic modes; partners are those most alike.
 
     Raises
     ------
@@ -321,33 +295,25 @@ def correlate(model: ModeSet, reference: ModeSet) -> Correlation:
     """
     if not np.allclose(model.stations, reference.stations):
         raise ValueError("the two mode sets were projected on different stations")
-
-    def elastic(s: ModeSet) -> list[Mode]:
-        return [m for m in s.modes if m.frequency_hz > 0]
-
-    mine, theirs = elastic(model), elastic(reference)
-    values = np.array(
-        [[subspace_mac(_rows(a), _rows(b), reference.gram) for b in theirs] for a in mine]
-    ).reshape(len(mine), len(theirs))
-    partners = []
-    for i, a in enumerate(mine):
-        if not theirs:
-            break
-        j = int(values[i].argmax())
-        b = theirs[j]
-        partners.append(
-            Partner(
-                a.name,
-                b.name,
-                float(values[i, j]),
-                a.frequency_hz,
-                b.frequency_hz,
-                a.frequency_hz / b.frequency_hz - 1,
+    mine, theirs = ([m for m in s.modes if m.frequency_hz > 0] for s in (model, reference))
+    values = [[subspace_mac(_rows(a), _rows(b), reference.gram) for b in theirs] for a in mine]
+    pairs = []
+    for a, row in zip(mine, values if theirs else ()):
+        mac = max(row)
+        b = theirs[row.index(mac)]
+        relative = a.frequency_hz / b.frequency_hz - 1
+        pairs.append(
+            PartnerRecord(
+                mode=a.name,
+                partner=b.name,
+                mac=mac,
+                frequency_hz=a.frequency_hz,
+                reference_hz=b.frequency_hz,
+                relative=relative,
             )
         )
-    return Correlation(
-        tuple(a.name for a in mine), tuple(b.name for b in theirs), values, tuple(partners)
-    )
+    rows, columns = ([m.name for m in modes] for modes in (mine, theirs))
+    return MacTable(rows=rows, columns=columns, values=values, pairs=pairs)
 
 
 def _rows(mode: Mode) -> np.ndarray:

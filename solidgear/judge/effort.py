@@ -1,4 +1,4 @@
-"""What the meshes of a solid will cost, before any of them is made."""
+"""Cost of the meshes of a solid, before any of them is made."""
 
 from __future__ import annotations
 
@@ -60,7 +60,7 @@ def foretold(scene: Scene, rung: Rung, level: Mapping[str, Any]) -> str:
 
 
 def heavy_meshes(scene: Scene, rung: Rung) -> Iterator[str]:
-    """What the two coarsest meshes of a solid cost, from which a bar is told, where that is much.
+    """Cost of the two coarsest meshes of a solid, from which a bar is told, where that is much.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""The lumped rung of a comparison: every synthesis from every body, and the one that stands for
+"""The lumped model of a comparison: every synthesis from every body, and the one that stands for
 them.
 """
 
@@ -11,9 +11,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from solidgear.body import as_supports
+from solidgear.body.mode_names import ModeName
 from solidgear.errors import SolidgearError
-from solidgear.judge.record import LumpedRecord, LumpedVariant, ModelRecord, ModeRecord
-from solidgear.judge.verdict import BEYOND, OPEN, Judgement, gap_verdict, spoken_against
+from solidgear.judge.deviations import BEYOND, OPEN, gap_verdict
+from solidgear.judge.record import GuardRecord, LumpedRecord, LumpedVariant, ModelRecord, ModeRecord
+from solidgear.judge.verdict import Judgement, spoken_against
 from solidgear.ladder.model import BEAM, LUMPED, SOLID
 from solidgear.ladder.registry import LADDER
 from solidgear.reduction.effective_mass import Synthesis, synthesise
@@ -22,19 +24,19 @@ if TYPE_CHECKING:
     from solidgear.judge.solution import Solution
     from solidgear.scene import Scene
 
-#: variants that may stand for the lumped rung, the preferred one first
+#: variants that may stand for the lumped model, the preferred one first
 PREFERRED = ("mode-matched", "guyan")
 
 
 def synthesise_all(
-    scene: Scene, rungs: Mapping[str, Solution], tell: Callable[[str], None] = lambda _: None
+    scene: Scene, solutions: Mapping[str, Solution], tell: Callable[[str], None] = lambda _: None
 ) -> dict[str, LumpedRecord]:
     """Lumped models of every solved body.
 
     Parameters
     ----------
     scene : Scene
-    rungs : mapping of str to Solution
+    solutions : mapping of str to Solution
 
     Returns
     -------
@@ -42,11 +44,11 @@ def synthesise_all(
         Per model; stiffness and first bending are those of the z plane.
     """
     out: dict[str, LumpedRecord] = {}
-    for model, rung in rungs.items():
+    for model, solution in solutions.items():
         start = time.perf_counter()
         try:
             supports = as_supports(scene).on_stations(scene.stations)
-            point, found = synthesise(rung.body, supports, scene.port.name, rung.modes)
+            point, found = synthesise(solution.body, supports, scene.port.name, solution.modes)
         except SolidgearError as error:
             tell(f"lumped from {model}: {error}")
             out[model] = LumpedRecord(why_not=str(error))
@@ -79,14 +81,14 @@ def _variant(s: Synthesis) -> LumpedVariant:
 
 
 def sources() -> tuple[str, ...]:
-    """Rungs whose bodies the lumped rung may rest on, the usual one of a lumped-parameter program
+    """Models whose bodies the lumped one may rest on, the usual one of a lumped-parameter program
     first: the best beam.
     """
     return (*reversed(LADDER.of(BEAM)), *LADDER.of(SOLID))
 
 
 def representative(lumped: Mapping[str, LumpedRecord]) -> tuple[str, str] | None:
-    """(source model, variant) that stands for the lumped rung."""
+    """(source model, variant) that stands for the lumped model."""
     for source in sources():
         variants = lumped[source].variants if source in lumped else {}
         for name in PREFERRED:
@@ -96,7 +98,7 @@ def representative(lumped: Mapping[str, LumpedRecord]) -> tuple[str, str] | None
 
 
 def preferred(made: Mapping[str, Synthesis]) -> Synthesis | None:
-    """The variant that stands for the lumped rung: mode-matched where it is physical and holds the
+    """The variant that stands for the lumped model: mode-matched where it is physical and holds the
     mode as its first, else Guyan; None where neither does.
     """
     for name in PREFERRED:
@@ -106,7 +108,7 @@ def preferred(made: Mapping[str, Synthesis]) -> Synthesis | None:
 
 
 def drawn(model: str) -> dict[str, str]:
-    """What a record keeps of a rung: its names, what it solves, and how charts draw it."""
+    """Facts of a model that a record keeps: its names, what it solves, and how charts draw it."""
     rung = LADDER[model]
     return {
         "title": rung.title,
@@ -124,23 +126,22 @@ def model_record(
     reference_hz: float | None,
     tolerance: float,
     band: float | None,
-    notices: Iterable[dict] = (),
+    notices: Iterable[GuardRecord] = (),
 ) -> ModelRecord | None:
-    """Record of the lumped rung among the models; its stiffness is its source's.
+    """Record of the lumped model among the others; its stiffness is its source's.
 
     Parameters
     ----------
     lumped : mapping of str to LumpedRecord
         From :func:`synthesise_all`.
     models : mapping of str to ModelRecord
-        Records of the other rungs.
+        Records of the others.
     reference_hz : float or None
         First bending of the reference model.
     tolerance : float
     band : float or None
         Of the reference's first bending; None where nothing may judge.
-    notices : iterable of dict
-        What the guards say: ``level``, ``models``, ``sentence``.
+    notices : iterable of GuardRecord
     """
     chosen = representative(lumped)
     if chosen is None:
@@ -166,7 +167,7 @@ def model_record(
         coupled=base.coupled,
         modes=[
             ModeRecord(
-                name="bending 1",
+                name=ModeName("bending 1"),
                 family="bending",
                 frequency_hz=own.frequency_hz,
                 multiplicity=2,
@@ -189,9 +190,9 @@ def _judged(
     reference_hz: float | None,
     tolerance: float,
     band: float | None,
-    notices: Iterable[dict],
+    notices: Iterable[GuardRecord],
 ) -> Judgement:
-    """What the lumped rung is worth: its source's stiffness, and its own first bending."""
+    """Judge the lumped model by its source's stiffness and its own first bending."""
     if not base.valid:
         state = base.why_not if base.open else f"which is out: {base.why_not}"
         why = f"its stiffness is that of the {LADDER[source].title}, {state}"

@@ -1,4 +1,4 @@
-"""Which frequency of one model answers for a mode of another: the mode of the same shape, or where
+"""Frequency of one model that answers for a mode of another: the mode of the same shape, or where
 none is certain the same place in the order.
 """
 
@@ -6,7 +6,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from solidgear.judge.correlation import pair_modes
+from solidgear.judge.correlation import Pairing, pair_modes
 from solidgear.solve.modes import ModeSet
 
 
@@ -20,7 +20,7 @@ class Partners:
 
     def __init__(self, model: ModeSet, reference: ModeSet):
         self.model, self.reference = model, reference
-        self.pairs = {p.reference.name: p for p in pair_modes(model, reference)}
+        self.pairs: dict[str, Pairing] = {p.reference.name: p for p in pair_modes(model, reference)}
 
     def frequency(self, name: str) -> tuple[float | None, str]:
         """Frequency (Hz) of the model that answers for a mode of the reference, and in words how it
@@ -63,7 +63,7 @@ def _ladder(modes: ModeSet) -> np.ndarray:
         [
             m.frequency_hz
             for m in own
-            if m.frequency_hz > 0 and not m.family.startswith("ovalising")
+            if m.frequency_hz > 0 and m.waves < 2
             for _ in range(m.multiplicity)
         ]
     )

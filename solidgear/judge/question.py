@@ -1,19 +1,20 @@
-"""What is asked of a mesh, and what it was solved for: families of motion that are solved together,
-how many modes, and both in words.
+"""Questions asked of a mesh, and what it was solved for: families of motion that are solved
+together, how many modes, and both in words.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from solidgear.body import Body, as_supports
-from solidgear.judge.quantities import described
+from solidgear.body.mode_names import ModeName
 from solidgear.judge.singular_places import singular_places
 from solidgear.judge.solving import ENOUGH, Numbers
+from solidgear.quantity import Quantity
 from solidgear.solve.families import FAMILIES
 from solidgear.solve.supported import decoupled, groups
 
@@ -31,20 +32,19 @@ SETTINGS = {
 #: what a mesh was solved for is named up to so many numbers
 FEW = 3
 #: families of motion that are solved together, None for all of them, and what is asked of them
-Question = tuple[tuple[str, ...] | None, tuple[str, ...]]
+Question = tuple[tuple[str, ...] | None, tuple[Quantity, ...]]
 
 
-def family_of(quantity: str) -> str:
+def family_of(quantity: Quantity) -> str:
     """The family of motion that a quantity belongs to."""
-    _, place, _ = described(quantity)
-    if isinstance(place, str):
-        return place.split()[0]
-    return next(name for name, components in FAMILIES.items() if set(place) <= set(components))
+    if quantity.is_frequency:
+        return ModeName(quantity).family
+    return next(name for name, own in FAMILIES.items() if set(quantity.place) <= set(own))
 
 
 @dataclass(frozen=True)
 class Solved:
-    """What one mesh was solved for.
+    """Solution of one mesh.
 
     Attributes
     ----------
@@ -64,11 +64,6 @@ class Solved:
     unknowns: int
     cell: float | None
     score: np.ndarray | None = None
-
-
-def is_frequency(quantity: str) -> bool:
-    """Whether a quantity is a natural frequency."""
-    return described(quantity)[0] == "frequency"
 
 
 def coupled_families(
@@ -123,14 +118,14 @@ def mesh_words(level: Mapping[str, Any]) -> str:
     return ", ".join(out)
 
 
-def few(names: tuple[str, ...]) -> str:
+def few(names: Sequence[str]) -> str:
     """Some names, or how many there are."""
     return ", ".join(names) if len(names) <= FEW else f"{len(names)} numbers"
 
 
-def shapes(families: tuple[str, ...] | None, names: tuple[str, ...]) -> int:
+def shapes(families: tuple[str, ...] | None, names: Iterable[Quantity]) -> int:
     """Elastic shapes that hold the modes asked for."""
     if families is None or len(families) > 1:
         return ENOUGH
-    places = [int(q.split()[1]) for q in names if described(q)[0] == "frequency"]
+    places = [ModeName(q).number or 1 for q in names if q.is_frequency]
     return 2 * max(places) + 2

@@ -1,9 +1,9 @@
-"""What ``results.json`` holds, typed.
+"""Content of ``results.json``, typed.
 
 Everything a run found is written by dumping a :class:`Record` and read by validating one; tables,
 charts and tests read its attributes.  Numbers are SI.  A number that does not exist is None: JSON
 knows neither NaN nor infinity.  Quantities are called as in
-:data:`solidgear.judge.quantities.QUANTITIES` everywhere.
+:data:`solidgear.quantity.QUANTITIES` everywhere.
 """
 
 from __future__ import annotations
@@ -21,6 +21,9 @@ from pydantic import (
     field_validator,
 )
 from pydantic_core import PydanticUseDefault
+
+from solidgear.body.mode_names import ModeName
+from solidgear.quantity import Quantity
 
 #: version of this layout; it rises when a field is renamed or removed
 SCHEMA = 3
@@ -67,7 +70,7 @@ class Part(BaseModel):
 class ModeRecord(Part):
     """A mode, its pair counted in ``multiplicity``."""
 
-    name: str = ""
+    name: ModeName = ModeName("")
     family: str = ""
     frequency_hz: Number = None
     multiplicity: int = 1
@@ -76,7 +79,7 @@ class ModeRecord(Part):
 
 
 class BandRecord(Part):
-    """Band of one quantity; see :class:`solidgear.judge.bars.Band`."""
+    """Error bar of one quantity; see :class:`solidgear.judge.bars.Band`."""
 
     values: Numbers = []
     gci: Number = None
@@ -92,7 +95,7 @@ class BandRecord(Part):
 
 
 class BandSummary(Part):
-    """How sure a model is of itself: relative bands of every quantity, and the worst compliance's."""
+    """Error bars of a model: relative, of every quantity, and the widest of a compliance."""
 
     compliance: Number = None
     method: str = ""
@@ -110,7 +113,7 @@ class LevelRecord(Part):
 
 
 class ConvergenceRecord(Part):
-    """Meshes from coarse to fine, and the band that each quantity has from them."""
+    """Meshes from coarse to fine, and the error bar that each quantity has from them."""
 
     levels: list[LevelRecord] = []
     quantities: dict[str, BandRecord] = {}
@@ -153,7 +156,7 @@ class CoupledRecord(Part):
 
 
 class ModelRecord(Part):
-    """One rung.
+    """One model.
 
     ``title``, ``short``, ``theory``, ``family``, ``colour`` and ``marker`` are those of the ladder
     (:class:`solidgear.ladder.model.Rung`), so that a record can be shown without it.
@@ -186,7 +189,7 @@ class ModelRecord(Part):
 
 
 class VariantRecord(Part):
-    """A rung with one attachment at every station."""
+    """A model with one attachment at every station."""
 
     quantities: Quantities = {}
     stiffness: Matrix | None = None
@@ -200,7 +203,7 @@ class DeviationRecord(Part):
     model: str = ""
     reference: str = ""
     attachment: str = ""
-    quantity: str = ""
+    quantity: Quantity = Quantity("")
     unit: str = ""
     value: Number = None
     reference_value: Number = None
@@ -247,18 +250,18 @@ class LumpedRecord(Part):
 
 
 class VerdictRecord(Part):
-    """Which model to trust, and which is the cheapest that will do."""
+    """Model to trust, and the cheapest that will do."""
 
     trust: str | None = None
     reference: str | None = None
     cheapest: str | None = None
     tolerance: Number = None
-    judged: list[str] = []
+    judged: list[Quantity] = []
     sentences: list[str] = []
 
 
 class GuardRecord(Part):
-    """What a guard says of some models."""
+    """Sentence of a guard on some models."""
 
     guard: str = ""
     level: str = ""
@@ -315,7 +318,7 @@ class PlaceRecord(Part):
 
 
 class WhereRecord(Part):
-    """Where the error of a solid sits; see :class:`solidgear.judge.where.Whereabouts`."""
+    """Places of the error of a solid; see :class:`solidgear.judge.where.Whereabouts`."""
 
     model: str = ""
     quantity: str = ""
@@ -332,7 +335,7 @@ class WhereRecord(Part):
 class Record(Part):
     """Everything a comparison found.
 
-    ``missing`` are titles of rungs that have a body of their own and no record here.  ``shown_in``
+    ``missing`` are titles of models that have a body of their own and no record here.  ``shown_in``
     is the choice of units of its page (:mod:`solidgear.report.units`); the record itself is in SI.
 
     Examples

@@ -6,9 +6,9 @@ from dataclasses import asdict
 from typing import TYPE_CHECKING
 
 from solidgear.frames import DOF_NAMES
-from solidgear.judge.causes import Cause
 from solidgear.judge.completeness import completeness, cut_short
 from solidgear.judge.correlation import correlate
+from solidgear.judge.deviations import Deviation, deviations
 from solidgear.judge.lumped import drawn, model_record
 from solidgear.judge.quantities import usual
 from solidgear.judge.record import (
@@ -20,26 +20,23 @@ from solidgear.judge.record import (
     DeviationRecord,
     EvidenceRecord,
     GuardRecord,
-    LevelRecord,
     LumpedRecord,
     MacRecord,
-    MacTable,
     ModelRecord,
     ModeRecord,
-    PartnerRecord,
     PointRecord,
     PortRecord,
     Record,
     VariantRecord,
-    VerdictRecord,
 )
 from solidgear.judge.solution import Solution
 from solidgear.judge.solving import ENOUGH, Answer
 from solidgear.judge.ties import SCENE
-from solidgear.judge.verdict import Judgement, deviations, judge, percent, trusted
+from solidgear.judge.verdict import Judgement, judge, percent, trusted
 from solidgear.ladder.model import LUMPED, SOLID
 from solidgear.ladder.registry import LADDER
 from solidgear.machine.environment import environment
+from solidgear.quantity import COMPLIANCE, FIRST_BENDING
 from solidgear.solve.mixtures import mixtures
 
 if TYPE_CHECKING:
@@ -49,11 +46,11 @@ if TYPE_CHECKING:
 
 def recorded(
     scene: Scene,
-    rungs: dict[str, Solution],
+    solutions: dict[str, Solution],
     failed: dict[str, str],
-    causes: list[Cause],
+    causes: list[CauseRecord],
     lumped: dict[str, LumpedRecord],
-    guards: list[dict],
+    guards: list[GuardRecord],
     complete: bool,
 ) -> Record:
     """Record of a comparison.
@@ -61,56 +58,57 @@ def recorded(
     Parameters
     ----------
     scene : Scene
-    rungs : dict of str to Solution
+    solutions : dict of str to Solution
     failed : dict of str to str
         Models that could not be solved, and why.
-    causes : list of Cause
+    causes : list of CauseRecord
     lumped : dict of str to LumpedRecord
         From :func:`solidgear.judge.lumped.synthesise_all`.
-    guards : list of dict
-        What the guards said: ``guard``, ``level``, ``models``, ``sentence``.
+    guards : list of GuardRecord
     complete : bool
         False after an interrupt.
     """
-    trust, _ = trusted(rungs, scene.ask.tolerance, usual(scene))
+    trust, _ = trusted(solutions, scene.ask.tolerance, usual(scene))
     # Where nothing may judge, the distances are still reported; they are no judgement.
-    reference = trust or next((m for m in LADDER.judges if m in rungs), None)
-    gaps = deviations(rungs, reference) if reference else []
-    verdict, validity = judge(scene, rungs, gaps, guards)
-    verdict["reference"] = reference
+    reference = trust or next((m for m in LADDER.judges if m in solutions), None)
+    gaps = deviations(solutions, reference) if reference else []
+    verdict, validity = judge(scene, solutions, gaps, guards)
+    verdict.reference = reference
     models: dict[str, ModelRecord] = {}
     for model in LADDER.bodies:
-        if model in rungs:
-            models[model] = _model_record(rungs[model], validity[model])
+        if model in solutions:
+            models[model] = _model_record(solutions[model], validity[model])
         elif model in failed:
             models[model] = ModelRecord(**drawn(model), valid=False, why_not=failed[model])
     out = Record(
         complete=complete,
         scene=scene.as_dict(),
-        port=_port_record(scene, rungs, 0),
-        further_ports=[_port_record(scene, rungs, k) for k in range(1, len(scene.ports)) if rungs],
-        attachments=_attachments(rungs),
-        mac=_mac(rungs, reference),
-        deviations=[DeviationRecord(**gap) for gap in gaps],
-        causes=[CauseRecord(**asdict(c)) for c in causes],
+        port=_port_record(scene, solutions, 0),
+        further_ports=[
+            _port_record(scene, solutions, k) for k in range(1, len(scene.ports)) if solutions
+        ],
+        attachments=_attachments(solutions),
+        mac=_mac(solutions, reference),
+        deviations=[_deviation_record(gap) for gap in gaps],
+        causes=causes,
         lumped=lumped,
-        verdict=VerdictRecord(**verdict),
-        guards=[GuardRecord(**g) for g in guards],
+        verdict=verdict,
+        guards=guards,
         environment=environment(),
         models=models,
         missing=[LADDER[model].title for model in LADDER.fit(scene) if model not in models],
     )
     if lumped and reference:
-        _add_lumped(out, rungs[reference], guards, scene.ask.tolerance, scene.ask.lumped)
-    out.warnings = _warnings(rungs, guards, out.models)
-    if listed := rungs.get(reference or next(reversed(rungs), "")):
+        _add_lumped(out, solutions[reference], guards, scene.ask.tolerance, scene.ask.lumped)
+    out.warnings = _warnings(solutions, guards, out.models)
+    if listed := solutions.get(reference or next(reversed(solutions), "")):
         n = max(scene.ask.modes, ENOUGH)
         out.warnings += cut_short(listed.modes.modes, n, scene.ask.max_frequency)
     return out
 
 
-def _port_record(scene: Scene, rungs: dict[str, Solution], k: int) -> PortRecord:
-    port, first = scene.ports[k], next(iter(rungs.values()), None)
+def _port_record(scene: Scene, solutions: dict[str, Solution], k: int) -> PortRecord:
+    port, first = scene.ports[k], next(iter(solutions.values()), None)
     found = None if first is None else first.ties[SCENE]
     there = None if found is None else [found.condensed, *found.further.values()][k]
     return PortRecord(
@@ -122,48 +120,52 @@ def _port_record(scene: Scene, rungs: dict[str, Solution], k: int) -> PortRecord
     )
 
 
-def _attachments(rungs: dict[str, Solution]) -> dict[str, dict[str, VariantRecord]]:
+def _deviation_record(gap: Deviation) -> DeviationRecord:
+    return DeviationRecord(**asdict(gap), unit=gap.quantity.unit, verdict=gap.verdict)
+
+
+def _attachments(solutions: dict[str, Solution]) -> dict[str, dict[str, VariantRecord]]:
     return {
-        model: {name: _variant_record(found) for name, found in rung.variants.items()}
-        for model, rung in rungs.items()
-        if rung.variants
+        model: {name: _variant_record(found) for name, found in solution.variants.items()}
+        for model, solution in solutions.items()
+        if solution.variants
     }
 
 
 def _warnings(
-    rungs: dict[str, Solution], guards: list[dict], models: dict[str, ModelRecord]
+    solutions: dict[str, Solution], guards: list[GuardRecord], models: dict[str, ModelRecord]
 ) -> list[str]:
     out = []
     for notice in guards:
         # What speaks against a model that is out anyway is in the record, and nobody's concern.
-        about = [m for m in notice["models"] if m in models and models[m].valid]
-        if about or not notice["models"]:
+        about = [m for m in notice.models if m in models and models[m].valid]
+        if about or not notice.models:
             named = ", ".join(models[m].title for m in about)
-            out.append(f"{named}: {notice['sentence']}" if about else notice["sentence"])
+            out.append(f"{named}: {notice.sentence}" if about else notice.sentence)
     out += [
         f"{LADDER[m].title}: {what}: {why}"
-        for m, r in rungs.items()
+        for m, r in solutions.items()
         for what, why in r.failed.items()
     ]
-    for model, rung in rungs.items():
-        for one, other, gap in rung.modes.evidence.get("torn_pairs", ()):
+    for model, solution in solutions.items():
+        for one, other, gap in solution.modes.evidence.get("torn_pairs", ()):
             out.append(
                 f"{LADDER[model].title}: {one} and {other} are twins that the mesh has split by "
                 f"{gap:.1e}: refine it, or use hexahedra"
             )
-        out += [f"{LADDER[model].title}: {one.sentence}" for one in mixtures(rung.modes)]
+        out += [f"{LADDER[model].title}: {one.sentence}" for one in mixtures(solution.modes)]
     return out
 
 
 def _add_lumped(
-    record: Record, base: Solution, guards: list[dict], tolerance: float, synthesis: bool
+    record: Record, base: Solution, guards: list[GuardRecord], tolerance: float, synthesis: bool
 ) -> None:
-    """The lumped rung among the models; what every synthesis is worth only where it is asked."""
-    band = base.bands.get(SCENE, {}).get("bending 1")
+    """The lumped model among the models; what every synthesis is worth only where it is asked."""
+    band = base.bands.get(SCENE, {}).get(FIRST_BENDING)
     own = model_record(
         record.lumped,
         record.models,
-        base.quantities.get("bending 1"),
+        base.quantities.get(FIRST_BENDING),
         tolerance,
         band.gci if band else None,
         guards,
@@ -210,25 +212,25 @@ def _error(relative: float) -> str:
     return "exact" if abs(relative) < 1e-9 else f"{100 * relative:+.2g} %"
 
 
-def _model_record(rung: Solution, judgement: Judgement) -> ModelRecord:
+def _model_record(solution: Solution, judgement: Judgement) -> ModelRecord:
     return ModelRecord(
-        **drawn(rung.model),
+        **drawn(solution.model),
         valid=judgement.valid,
         open=judgement.open,
         why_not=judgement.why_not,
-        compliance=rung.condensed.compliance,
-        stiffness=rung.condensed.stiffness,
-        points=_points(rung.ties[SCENE]),
-        coupled=_coupled(rung.ties[SCENE]),
-        modes=[_mode_record(m) for m in rung.modes.modes],
-        band=_band_summary(rung),
-        convergence=_convergence(rung),
-        dofs=rung.body.size,
-        seconds=rung.meter.total(),
-        peak_mb=rung.meter.peak_mb,
-        backend=rung.condensed.evidence["backend"],
-        mesh=rung.body.mesh,
-        evidence=_evidence(rung),
+        compliance=solution.condensed.compliance,
+        stiffness=solution.condensed.stiffness,
+        points=_points(solution.ties[SCENE]),
+        coupled=_coupled(solution.ties[SCENE]),
+        modes=[_mode_record(m) for m in solution.modes.modes],
+        band=_band_summary(solution),
+        convergence=_convergence(solution),
+        dofs=solution.body.size,
+        seconds=solution.meter.total(),
+        peak_mb=solution.meter.peak_mb,
+        backend=solution.condensed.evidence["backend"],
+        mesh=solution.body.mesh,
+        evidence=_evidence(solution),
     )
 
 
@@ -251,41 +253,40 @@ def _coupled(found: Answer) -> CoupledRecord | None:
     )
 
 
-def _band_summary(rung: Solution) -> BandSummary | None:
-    own = rung.bands.get(SCENE, {})
+def _band_summary(solution: Solution) -> BandSummary | None:
+    own = solution.bands.get(SCENE, {})
     if not own:
         return None
-    each = {name: band.gci for name, band in own.items()}
     method = next(iter(own.values())).method
     return BandSummary(
-        compliance=max((v for k, v in each.items() if k.startswith("C_")), default=None),
-        method=f"{method}, {len(rung.levels)} meshes",
-        each=each,
+        compliance=max((b.gci for q, b in own.items() if q.kind == COMPLIANCE), default=None),
+        method=f"{method}, {len(solution.levels)} meshes",
+        each={name: band.gci for name, band in own.items()},
     )
 
 
-def _convergence(rung: Solution) -> ConvergenceRecord | None:
-    own = rung.bands.get(SCENE, {})
+def _convergence(solution: Solution) -> ConvergenceRecord | None:
+    own = solution.bands.get(SCENE, {})
     if not own:
         return None
     return ConvergenceRecord(
-        levels=[LevelRecord(**level) for level in rung.levels],
+        levels=solution.levels,
         quantities={name: BandRecord(**asdict(band)) for name, band in own.items()},
     )
 
 
-def _evidence(rung: Solution) -> EvidenceRecord:
-    statics, found = rung.condensed.evidence, rung.modes.evidence
+def _evidence(solution: Solution) -> EvidenceRecord:
+    statics, found = solution.condensed.evidence, solution.modes.evidence
     return EvidenceRecord(
         asymmetry=statics["asymmetry"],
         refinement_residual=statics["residual"],
-        rigid_residual=rung.body.rigid_residual(),
+        rigid_residual=solution.body.rigid_residual(),
         modal_residual=found["residual"],
         orthogonality=found["orthogonality"],
         eigensolver=found["method"],
         mode_count=found.get("count", []),
         families=found.get("families", []),
-        complete=completeness(found, rung.model) if "count" in found else "",
+        complete=completeness(found, solution.model) if "count" in found else "",
         rigid_modes=found["rigid_modes"],
         coupling_bound=found["coupling_bound"],
         shift_rad2=float(found["shift_rad2"]),
@@ -312,19 +313,13 @@ def _variant_record(found: Answer) -> VariantRecord:
     )
 
 
-def _mac(rungs: dict[str, Solution], reference: str | None) -> MacRecord | None:
+def _mac(solutions: dict[str, Solution], reference: str | None) -> MacRecord | None:
     if reference is None:
         return None
-    base = rungs[reference].modes
-    tables = {}
-    for model, rung in rungs.items():
-        if model == reference:
-            continue
-        found = correlate(rung.modes, base)
-        tables[model] = MacTable(
-            rows=list(found.rows),
-            columns=list(found.columns),
-            values=found.values.tolist(),
-            pairs=[PartnerRecord(**asdict(p)) for p in found.partners],
-        )
+    base = solutions[reference].modes
+    tables = {
+        model: correlate(solution.modes, base)
+        for model, solution in solutions.items()
+        if model != reference
+    }
     return MacRecord(reference=reference, stations=base.stations.tolist(), models=tables)

@@ -24,12 +24,13 @@ from solidgear.errors import SolidgearError
 from solidgear.judge.bars import Band, moves_freely
 from solidgear.judge.bounded import Bounded
 from solidgear.judge.effort import foretold
-from solidgear.judge.quantities import described, diagonals, size
+from solidgear.judge.quantities import Values, size
 from solidgear.judge.question import Solved, few, mesh_words, most_of
 from solidgear.judge.sequence_bars import feature_effect, sequence_bands
 from solidgear.judge.solving import Numbers
 from solidgear.judge.steps import ABOVE, BELOW, BOTH, Step, Value
 from solidgear.ladder.model import Rung
+from solidgear.quantity import COMPLIANCE, Quantity
 
 if TYPE_CHECKING:
     from solidgear.scene import Scene
@@ -53,8 +54,8 @@ class Loop(ABC):
     scene : Scene
     rung : Rung
         A solid.
-    wanted : tuple of str
-        Quantities whose bars are wanted.
+    wanted : tuple of Quantity
+        Those whose bars are wanted.
     tol : float
         Relative.
     progress : callable
@@ -68,7 +69,7 @@ class Loop(ABC):
     ----------
     levels : list of Numbers
         Of every mesh, coarse to fine: what was solved for on it.
-    bands : dict of str to Band
+    bands : dict of Quantity to Band
         Of every quantity, on the finest mesh that was solved for it.
     """
 
@@ -81,7 +82,7 @@ class Loop(ABC):
         self,
         scene: Scene,
         rung: Rung,
-        wanted: tuple[str, ...],
+        wanted: tuple[Quantity, ...],
         tol: float,
         progress: Progress,
         options: Mapping[str, Any] | None = None,
@@ -97,27 +98,27 @@ class Loop(ABC):
         self.levels: list[Numbers] = []
         self.sizes: list[float | None] = []
         self.steps: list[Step] = []
-        self.bands: dict[str, Band] = {}
-        self.missing: set[str] = set()
-        self._changes: list[Mapping[str, float]] = []
+        self.bands: dict[Quantity, Band] = {}
+        self.missing: set[Quantity] = set()
+        self._changes: list[Values] = []
         self.last: Solved | None = None
         self.options: dict[str, Any] = {}
 
     @abstractmethod
     def _solve(self, level: Mapping[str, Any]) -> Solved:
-        """Solve a mesh; of a harmonic solid with its bands."""
+        """Solve a mesh; of a harmonic solid with its error bars."""
 
     def _spared(self, level: Mapping[str, Any], error: Exception) -> bool:
-        """Whether the loop goes on without a mesh that could not be solved."""
+        """Tell whether the loop goes on without a mesh that could not be solved."""
         return False
 
-    def _asked(self) -> tuple[str, ...]:
-        """What the next mesh is solved for."""
+    def _asked(self) -> tuple[Quantity, ...]:
+        """Quantities that the next mesh is solved for."""
         return self.wanted
 
     @property
     def called(self) -> str:
-        """What is solved, as it is told."""
+        """Name of what is solved, as it is told."""
         return self.rung.title
 
     @property
@@ -126,7 +127,7 @@ class Loop(ABC):
         return None if self.last is None else self.last.body
 
     def run(self) -> None:
-        """Climb until every band is within the tolerance, or there is no finer mesh."""
+        """Climb until every error bar is within the tolerance, or there is no finer mesh."""
         for level in self._meshes():
             start = time.perf_counter()
             asked = set(self._asked())
@@ -183,7 +184,7 @@ class Loop(ABC):
             yield self.mesh.options()
 
     def _stopped(self) -> str:
-        """Why there is no further mesh."""
+        """Reason for no further mesh."""
         if not self.rung.bounded:
             only_one = self.plan.fixed and len(self.plan.levels) == 1
             return (
@@ -205,12 +206,12 @@ class Loop(ABC):
         self._choose(f"the next mesh could not be solved: {why}")
 
     def values(self) -> tuple[Value, ...]:
-        """What was asked for, each from the finest mesh that was solved for it."""
+        """Numbers asked for, each from the finest mesh that was solved for it."""
         out = []
         for name in self._known():
             history = self._history(name)
             finest = history[-1].quantities
-            unit, scale = described(name)[2], size(finest, name)
+            unit, scale = name.unit, size(finest, name)
             band = self.bands.get(name)
             given = band.middle if band is not None and self.middles else None
             value = finest[name] if given is None else given
@@ -221,38 +222,38 @@ class Loop(ABC):
             )
         return tuple(out)
 
-    def _known(self) -> list[str]:
-        """What was asked for and is there."""
+    def _known(self) -> list[Quantity]:
+        """Quantities asked for that are there."""
         return [q for q in self.wanted if q not in self.missing and self._history(q)]
 
-    def _history(self, name: str) -> list[Numbers]:
+    def _history(self, name: Quantity) -> list[Numbers]:
         """The meshes that a quantity was solved on, coarse to fine."""
         return [level for level in self.levels if name in level.quantities]
 
-    def _side(self, name: str) -> str:
-        """Where the exact answer lies.
+    def _side(self, name: Quantity) -> str:
+        """Side on which the exact answer lies.
 
         Of all admissible displacements the exact ones store the least energy under given motions of
         the ports, and the most under given loads; a Rayleigh quotient is least at the exact mode.
         """
         exact = self.rung.bounded and not self.scene.corners
-        if not exact or diagonals(name) or name not in self.bands:
+        if not exact or name.diagonals or name not in self.bands:
             return BOTH
         # what the solver leaves, and couplings that were left out, may go either way
         if max(self.bands[name].solver, self.left_out) > SOLVER_SHARE * self.bar(name):
             return BOTH
-        return ABOVE if described(name)[0] == "compliance" else BELOW
+        return ABOVE if name.kind == COMPLIANCE else BELOW
 
     def _started(self) -> bool:
-        """Whether there is a bar of everything already."""
+        """Tell whether there is a bar of everything already."""
         return len(self.levels) >= (1 if self.rung.bounded else 2)
 
-    def _open(self) -> list[str]:
-        """What is there, and not yet within the tolerance."""
+    def _open(self) -> list[Quantity]:
+        """Quantities that are there, and not yet within the tolerance."""
         return [q for q in self._known() if not self.bar(q) <= self.tol]
 
-    def floors(self) -> dict[str, float]:
-        """Least bars on the finest mesh: a share of what features change, where the rung has one."""
+    def floors(self) -> dict[Quantity, float]:
+        """Least bars on the finest mesh: a share of what features change, where the model has one."""
         safety = self.rung.safety
         if safety is None or not safety.share:
             return {}
@@ -263,7 +264,7 @@ class Loop(ABC):
         return {q: safety.least_share(moves_freely(q), meshes) * c for q, c in finest.items()}
 
     def _in_vain(self) -> str:
-        """Why no finer mesh would help, if none would."""
+        """Reason for which no finer mesh would help, if none would."""
         bars = [step.bar for step in self.steps if step.bar is not None]
         if self.rung.bounded and len(bars) > 3 and bars[-1] > FUTILE * bars[-3]:
             return f"finer meshes no longer help; most of the bar comes from {self.stops_at()}"
@@ -272,20 +273,20 @@ class Loop(ABC):
             return ""
         top = max(open_, key=floors.__getitem__)
         return (
-            f"no mesh makes bars of {few(tuple(open_))} as narrow: the {self.rung.title} is sure "
+            f"no mesh makes bars of {few(open_)} as narrow: the {self.rung.title} is sure "
             "of a quantity to a share of what features change of it, here to "
             f"{100 * floors[top]:.2g} % of {top} at best"
         )
 
-    def score(self, judged: Bounded, names: Iterable[str]) -> np.ndarray | None:
-        """Where on a meridian the bars come from that are not within the tolerance, if any."""
+    def score(self, judged: Bounded, names: Iterable[Quantity]) -> np.ndarray | None:
+        """Weights of the cells of a meridian by the bars beyond the tolerance, if any."""
         open_ = [q for q in names if q in judged.scores and not self.bar(q) <= self.tol]
         if not open_:
             return None
         return np.max([self.bar(q) * judged.scores[q] for q in open_], axis=0)
 
     def judge(self) -> float | None:
-        """Bands of what the finest mesh was solved for, and the largest bar of all that was asked."""
+        """Error bars of what the finest mesh was solved for; the largest of all that was asked."""
         if not self._started():
             return None
         if not self.rung.bounded:
@@ -293,12 +294,12 @@ class Loop(ABC):
         bars = [self.bar(q) for q in self._known()]
         return max(bars, default=None) if self.bands else None
 
-    def bands_of(self, levels: list[Numbers]) -> dict[str, Band]:
-        """Bands of the finest of two or more meshes of a list."""
+    def bands_of(self, levels: list[Numbers]) -> dict[Quantity, Band]:
+        """Error bars of the finest of two or more meshes of a list."""
         values = [x.quantities for x in levels], levels[-1].solver
         return sequence_bands(self.scene, self.plan, self.rung, *values, self.sizes)
 
-    def bar(self, name: str) -> float:
+    def bar(self, name: Quantity) -> float:
         """Relative bar of a quantity; infinite where nothing is known."""
         if name not in self.bands:
             return math.inf
@@ -306,10 +307,10 @@ class Loop(ABC):
         width = band.about_middle if self.middles else band.gci
         return max(width, RISE * self._rise(name)) + self.left_out
 
-    def _rise(self, name: str) -> float:
-        """How much a frequency has risen at the last step of a list, beyond what the solver leaves."""
+    def _rise(self, name: Quantity) -> float:
+        """Rise of a frequency at the last step of a list, beyond what the solver leaves."""
         history = self._history(name)
-        if self.rung.bounded or described(name)[0] != "frequency" or len(history) < 2:
+        if self.rung.bounded or not name.is_frequency or len(history) < 2:
             return 0.0
         before, last = history[-2:]
         rise = last.quantities[name] / before.quantities[name] - 1

@@ -1,23 +1,19 @@
-"""Bands of the finest mesh of a list, by the rule that its meshes allow."""
+"""Error bars of the finest mesh of a list, by the rule that its meshes allow."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from collections.abc import Sequence as Listed
 from functools import lru_cache
 from typing import TYPE_CHECKING
 
+from solidgear.body.mode_names import BENDING, ModeName
 from solidgear.bounds.safety import LAYERS, REFINEMENT
 from solidgear.judge.bars import Band, step_bands
-from solidgear.judge.quantities import (
-    measure,
-    measure_across,
-    points_of,
-    size,
-)
+from solidgear.judge.quantities import Values, measure, size
 from solidgear.judge.solving import solve
 from solidgear.ladder.meshes import HARMONIC
 from solidgear.meshing.corners import SHOULDER, sharpest_corner
+from solidgear.quantity import ACROSS, Quantity
 from solidgear.solve.statics import condense
 
 if TYPE_CHECKING:
@@ -29,7 +25,7 @@ if TYPE_CHECKING:
 #: exponent at the end of a rigid seat, a clamp on a smooth surface (Williams 1952, clamped-free at
 #: 180 degrees)
 RIGID_EDGE = 0.5
-#: rung that tells what features change, on its usual mesh: shares are taken of it
+#: model that tells what features change, on its usual mesh: shares are taken of it
 PLAIN = "harmonic"
 
 
@@ -37,12 +33,12 @@ def sequence_bands(
     scene: Scene,
     plan: Sequence,
     rung: Rung,
-    levels: Listed[Mapping[str, float]],
-    solver: Mapping[str, float],
+    levels: Listed[Values],
+    solver: Values,
     sizes: Listed[float | None],
-    around: Mapping[str, float] | None = None,
-) -> dict[str, Band]:
-    """Bands of the finest of some meshes.
+    around: Values | None = None,
+) -> dict[Quantity, Band]:
+    """Error bars of the finest of some meshes.
 
     Parameters
     ----------
@@ -63,7 +59,7 @@ def sequence_bands(
 
     Returns
     -------
-    dict of str to Band
+    dict of Quantity to Band
         Empty of a single level, of meshes that are not ever finer, and of layered hexahedra beside a
         fillet or a chamfer, where no layers lead to the corners.
     """
@@ -85,45 +81,47 @@ def sequence_bands(
     return step_bands(levels, solver, safety, left_over=left_over)
 
 
-def feature_effect(scene: Scene, safety: Safety, values: Mapping[str, float]) -> dict[str, float]:
-    """What features change of the quantities that a rung has shares of.
+def feature_effect(scene: Scene, safety: Safety, values: Values) -> dict[Quantity, float]:
+    """Changes by features of the quantities that a model has shares of.
 
     Parameters
     ----------
     scene : Scene
         With features.
     safety : Safety
-        Of the rung.
+        Of the model.
     values : mapping
         What it says of the quantities.
 
     Returns
     -------
-    dict of str to float
-        Relative and positive; empty where the rung has no shares. A bending frequency is held
+    dict of Quantity to float
+        Relative and positive; empty where the model has no shares. A bending frequency is held
         against the nearest one of the plain part: features may change their order and their names.
     """
     if not safety.share:
         return {}
-    asked = list(values)
-    pairs = {point for q in asked for point in points_of(q) or ()}
+    pairs = {point for q in values for point in q.pair or ()}
     both = tuple(port.name for port in scene.ports if port.name in pairs)
     plain, bending = _plain(scene.plain, both)
     out = {}
-    for name in asked:
-        known = bending if name.startswith("bending") else [plain[name]] if name in plain else []
+    for name in values:
+        bends = name.is_frequency and ModeName(name).family == BENDING
+        known = bending if bends else [plain[name]] if name in plain else []
         if known:
             out[name] = float(min(abs(values[name] - v) for v in known) / size(values, name))
     return out
 
 
 @lru_cache(maxsize=8)
-def _plain(plain: Scene, points: tuple[str, ...]) -> tuple[dict[str, float], list[float]]:
+def _plain(plain: Scene, points: tuple[str, ...]) -> tuple[Values, list[float]]:
     """Quantities of a plain part, those between some points included, and all bending frequencies;
     every finer mesh asks for them.
     """
     found = solve(plain, PLAIN, **HARMONIC)
-    bending = [m.frequency_hz for m in found.modes.modes if m.name.startswith("bending")]
+    bending = [
+        m.frequency_hz for m in found.modes.modes if m.family == BENDING and m.frequency_hz > 0
+    ]
     coupled = condense(found.body, plain, points) if points else None
-    across = measure_across(found.further, coupled)
+    across = measure(None, None, found.further, coupled, ACROSS)
     return found.quantities | measure(None, None, None, coupled) | across, bending

@@ -6,10 +6,10 @@ list of modes, or for a sweep over its bearings.
 
 The error of a compliance matrix of displacement elements is positive semidefinite, and so is that
 of a stiffness matrix, from the other side: no entry errs by more than the geometric mean of its two
-diagonal entries' errors.  Bands of all six diagonal entries therefore hold all of the matrix.
-:data:`~solidgear.judge.quantities.QUANTITIES` names one bending plane and axial motion; where
+diagonal entries' errors.  Error bars of all six diagonal entries therefore hold all of the matrix.
+:data:`~solidgear.quantity.QUANTITIES` names one bending plane and axial motion; where
 bearings differ between planes, the other one may rest on the mesh far more than the first, so it is
-measured as well, and torsion with it (:data:`~solidgear.judge.quantities.ACROSS`).
+measured as well, and torsion with it (:data:`~solidgear.quantity.ACROSS`).
 """
 
 from __future__ import annotations
@@ -25,28 +25,22 @@ from solidgear.bounds.refining import Meshed
 from solidgear.errors import SolidgearError, show
 from solidgear.judge.answer import climbed, usable
 from solidgear.judge.climb import Climb
-from solidgear.judge.quantities import (
-    QUANTITIES,
-    at_points,
-    between,
-    described,
-    in_order,
-    repeats,
-)
+from solidgear.judge.quantities import at_points, between, in_order
 from solidgear.judge.question import Question
 from solidgear.judge.refinement import Progress
 from solidgear.judge.solving import Numbers
 from solidgear.judge.steps import Step
 from solidgear.machine.threads import pinned
+from solidgear.quantity import COMPLIANCE, FREQUENCY, QUANTITIES, STIFFNESS, Quantity
 
 if TYPE_CHECKING:
     from solidgear.scene import Scene
 
 #: what may be asked of a body, and the kinds of quantities by which it is judged
 QUESTIONS: dict[str, tuple[str, ...]] = {
-    "stiffness": ("compliance", "stiffness"),
-    "modes": ("frequency",),
-    "all": ("compliance", "stiffness", "frequency"),
+    "stiffness": (COMPLIANCE, STIFFNESS),
+    "modes": (FREQUENCY,),
+    "all": (COMPLIANCE, STIFFNESS, FREQUENCY),
 }
 #: bars closer than this part of themselves are equal
 SAME = 1e-6
@@ -62,19 +56,19 @@ class Settled:
     tolerance : float
     rung : str
     options : dict
-        Of the builder: with these, the rung gives the same body again.
+        Of the builder: with these, the model gives the same body again.
     body : Body
         With all families of motion.
-    bars : dict of str to float
-        By quantity, relative; of couplings, to the geometric mean of their diagonal entries.
+    bars : dict of Quantity to float
+        Relative; of couplings, to the geometric mean of their diagonal entries.
         Infinite where nothing is known.
     steps : tuple of Step
         What was passed over and tried.
     reached : bool
         Whether every bar is within the tolerance. A scene that nothing holds has a stiffness of
         exactly zero, and no bar to meet.
-    missing : tuple of str
-        Quantities that do not exist for this scene.
+    missing : tuple of Quantity
+        Those that do not exist for this scene.
     judged_on : int
         Bearing sets that the bars were taken over.
     point : str
@@ -88,10 +82,10 @@ class Settled:
     rung: str
     options: dict[str, Any]
     body: Body
-    bars: dict[str, float]
+    bars: dict[Quantity, float]
     steps: tuple[Step, ...]
     reached: bool
-    missing: tuple[str, ...]
+    missing: tuple[Quantity, ...]
     judged_on: int = 1
     point: str = ""
     mesh: Meshed | None = None
@@ -102,7 +96,7 @@ class Settled:
         return next(step.setting for step in self.steps if step.chosen)
 
     @property
-    def largest(self) -> tuple[str, float] | None:
+    def largest(self) -> tuple[Quantity, float] | None:
         """The quantity with the largest bar, and the bar; None where nothing is judged.
 
         Twins of the two planes have equal bars but for rounding: the first listed is named.
@@ -135,7 +129,7 @@ def settle(
     before: Settled | None = None,
     progress: Progress = lambda _: None,
 ) -> Settled:
-    """The cheapest body whose bands of all that is asked are within a tolerance.
+    """The cheapest body whose error bars of all that is asked are within a tolerance.
 
     Parameters
     ----------
@@ -162,7 +156,7 @@ def settle(
     ------
     SolidgearError
         For a tolerance that is none or that arithmetic does not allow, another question, or a scene
-        that no rung can answer.
+        that no model can answer.
 
     Examples
     --------
@@ -177,7 +171,7 @@ def settle(
     tol = usable(scene.ask.tolerance if tol is None else tol)
     if ask not in QUESTIONS:
         raise SolidgearError(f"settle: ask = {show(ask, 40)}; use one of {', '.join(QUESTIONS)}")
-    wanted = tuple(q for q, (kind, _, _) in QUANTITIES.items() if kind in QUESTIONS[ask])
+    wanted = tuple(q for q in QUANTITIES if q.kind in QUESTIONS[ask])
     if points:
         both = {scene.port.name, *points}
         crossed = between(wanted, [port.name for port in scene.ports if port.name in both])
@@ -224,22 +218,22 @@ class Whole(Climb):
             return self.before.body
         return super()._body(level, families)
 
-    def bars(self) -> dict[str, float]:
-        """Relative bars by quantity, those of the other plane and of torsion included."""
+    def bars(self) -> dict[Quantity, float]:
+        """Relative bars, those of the other plane and of torsion included."""
         names = [q for q in in_order(self.levels[-1].quantities) if q in self._wanted_here()]
         return {q: self.bar(q) for q in names}
 
-    def _wanted_here(self) -> set[str]:
-        """What was asked for, and all static numbers that come with it."""
-        static = {described(q)[0] for q in self.wanted} - {"frequency"}
+    def _wanted_here(self) -> set[Quantity]:
+        """Quantities asked for, and all static ones that come with them."""
+        static = {q.kind for q in self.wanted} - {FREQUENCY}
         every = (q for level in self.levels for q in level.quantities)
-        return set(self.wanted) | {q for q in every if described(q)[0] in static and not repeats(q)}
+        return set(self.wanted) | {q for q in every if q.kind in static and not q.repeats}
 
-    def _known(self) -> list[str]:
+    def _known(self) -> list[Quantity]:
         known = super()._known()
         return [*known, *sorted(self._wanted_here() - set(self.wanted))]
 
-    def _open(self) -> list[str]:
+    def _open(self) -> list[Quantity]:
         # the body is wanted, and one number that no mesh makes sure enough is enough to refuse it
         floors, open_ = self.floors(), super()._open()
         return [q for q in open_ if floors.get(q, 0.0) > self.tol] or open_
@@ -250,10 +244,6 @@ class Whole(Climb):
     def _questions(self) -> list[Question]:
         return [(None, self.wanted)]
 
-    def _judged_names(self, found: Numbers, names: tuple[str, ...]) -> list[str]:
-        static = {described(q)[0] for q in names} - {"frequency"}
-        return [
-            q
-            for q in found.quantities
-            if q in names or described(q)[0] in static and not repeats(q)
-        ]
+    def _judged_names(self, found: Numbers, names: tuple[Quantity, ...]) -> list[Quantity]:
+        static = {q.kind for q in names} - {FREQUENCY}
+        return [q for q in found.quantities if q in names or q.kind in static and not q.repeats]

@@ -1,5 +1,5 @@
-"""Where stress in a shaft is singular on its model: re-entrant corners, ends of seats, planes of
-section ties, changes of material.
+"""Places in a shaft where stress is singular on its model: re-entrant corners, ends of seats,
+planes of section ties, changes of material.
 """
 
 from __future__ import annotations

@@ -1,5 +1,5 @@
-"""One model of one scene, solved with the ties of the scene and like for like, with the bands of a
-solid.
+"""One model of one scene, solved with the ties of the scene and like for like, with the error bars
+of a solid.
 
 The *ties of the scene* are what its bearings and its port say.  *Like for like* means mean motions
 of cross-sections at every station: what a beam knows of a solid.
@@ -16,33 +16,35 @@ import numpy as np
 from solidgear.body import Body
 from solidgear.judge.bars import Band
 from solidgear.judge.quantities import JUDGED
+from solidgear.judge.record import LevelRecord
 from solidgear.judge.solving import Answer
 from solidgear.judge.ties import SCENE
 from solidgear.machine.meter import Meter
+from solidgear.quantity import Quantity
 from solidgear.solve.condensed import Condensed
 from solidgear.solve.modes import ModeSet
 
 
 @dataclass
 class Solution:
-    """One rung of one scene, solved with its evidence.
+    """One model of one scene, solved with its evidence.
 
     Attributes
     ----------
     model : str
-        The rung.
+        Its name.
     ties : dict of str to Answer
         ``as scene`` and ``section``, as far as they could be solved.
-    bands : dict of str to dict of str to Band
-        The same keys; empty for a model without a band of its own.
-    scores : dict of str to ndarray
-        By quantity with the ties of the scene, (ne,) shares of its bar by cells of a meridian; of a
+    bands : dict of str to dict of Quantity to Band
+        The same keys; empty for a model without an error bar of its own.
+    scores : dict of Quantity to ndarray
+        With the ties of the scene, (ne,) shares of its bar by cells of a meridian; of a
         model whose bars are computed.
     variants : dict of str to Answer
         The scene with each attachment everywhere: ``average``, ``rigid`` (bearing seats only),
         ``section``.
-    levels : list of dict
-        Facts about every mesh, coarse to fine.
+    levels : list of LevelRecord
+        Coarse to fine.
     failed : dict of str to str
         What was left out, and why.
     """
@@ -50,10 +52,10 @@ class Solution:
     model: str
     ties: dict[str, Answer]
     meter: Meter
-    bands: dict[str, dict[str, Band]] = field(default_factory=dict)
-    scores: dict[str, np.ndarray] = field(default_factory=dict)
+    bands: dict[str, dict[Quantity, Band]] = field(default_factory=dict)
+    scores: dict[Quantity, np.ndarray] = field(default_factory=dict)
     variants: dict[str, Answer] = field(default_factory=dict)
-    levels: list[dict] = field(default_factory=list)
+    levels: list[LevelRecord] = field(default_factory=list)
     failed: dict[str, str] = field(default_factory=dict)
     options: dict[str, Any] = field(default_factory=dict)
 
@@ -73,11 +75,13 @@ class Solution:
         return self.ties[SCENE].modes
 
     @property
-    def quantities(self) -> dict[str, float]:
+    def quantities(self) -> dict[Quantity, float]:
         """Compared numbers with the ties of the scene."""
         return self.ties[SCENE].quantities
 
-    def worst_band(self, names: Iterable[str] = JUDGED) -> float | None:
-        """Largest band with the ties of the scene over some quantities; None where there is none."""
+    def worst_band(self, names: Iterable[Quantity] = JUDGED) -> float | None:
+        """Largest error bar over some quantities, tied as in the scene; None where there is
+        none.
+        """
         own = self.bands.get(SCENE, {})
         return max((own[n].gci for n in names if n in own), default=None)

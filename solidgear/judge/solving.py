@@ -1,4 +1,4 @@
-"""What one rung answers about one scene: build, condense, modes, measure."""
+"""Answer of one model about one scene: build, condense, modes, measure."""
 
 from __future__ import annotations
 
@@ -7,9 +7,10 @@ from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any
 
 from solidgear.body import Body, Supports, as_supports
-from solidgear.judge.quantities import QUANTITIES, described, measure, measure_across, points_of
+from solidgear.judge.quantities import measure
 from solidgear.ladder import build
 from solidgear.machine.meter import Meter
+from solidgear.quantity import QUANTITIES, STIFFNESS, Quantity
 from solidgear.solve.condensed import Condensed, Coupled
 from solidgear.solve.modes import ModeSet, modes
 from solidgear.solve.statics import condense
@@ -26,18 +27,18 @@ ENOUGH = 10
 
 @dataclass(frozen=True)
 class Numbers:
-    """What an answer says, without the body behind it.
+    """Numbers of an answer, without the body behind it.
 
     Attributes
     ----------
-    quantities : dict of str to float
+    quantities : dict of Quantity to float
         The compared numbers; see :mod:`solidgear.judge.quantities`.
-    solver : dict of str to float
+    solver : dict of Quantity to float
         Relative error that the solver may have left in every one of them.
     """
 
-    quantities: dict[str, float]
-    solver: dict[str, float]
+    quantities: dict[Quantity, float]
+    solver: dict[Quantity, float]
 
 
 def numbers(
@@ -51,29 +52,20 @@ def numbers(
     return Numbers(values, _left(statics, found, coupled, values))
 
 
-def numbers_across(
-    statics: Condensed, further: Mapping[str, Condensed], coupled: Coupled | None = None
-) -> Numbers:
-    """Those of the other bending plane and of torsion away from the main point, by their own names."""
-    values = measure_across(further, coupled)
-    return Numbers(values, _left(statics, None, coupled, values))
-
-
 def _left(
     statics: Condensed | None,
     found: ModeSet | None,
     coupled: Coupled | None,
-    values: Iterable[str],
-) -> dict[str, float]:
+    values: Iterable[Quantity],
+) -> dict[Quantity, float]:
     """Relative error that the solver may have left in every quantity."""
     solver = {}
     for name in dict.fromkeys((*QUANTITIES, *values)):
-        kind, place, _ = described(name)
-        if kind == "frequency":
-            mode = found.named(place) if found is not None and isinstance(place, str) else None
+        if name.is_frequency:
+            mode = found.named(name) if found is not None else None
             if mode is not None:
                 solver[name] = mode.error
-        elif coupled is not None and points_of(name) and kind == "stiffness":
+        elif coupled is not None and name.pair and name.kind == STIFFNESS:
             solver[name] = coupled.evidence["stiffness_error"]
         elif statics is not None:
             solver[name] = statics.evidence["residual"]
@@ -90,7 +82,7 @@ class Answer:
     condensed : Condensed
         Statics at the lumped point.
     modes : ModeSet
-    quantities : dict of str to float
+    quantities : dict of Quantity to float
         The compared numbers; see :mod:`solidgear.judge.quantities`.
     further : dict of str to Condensed
         Statics at further lumped points.
@@ -103,7 +95,7 @@ class Answer:
     body: Body
     condensed: Condensed
     modes: ModeSet
-    quantities: dict[str, float]
+    quantities: dict[Quantity, float]
     further: dict[str, Condensed] = field(default_factory=dict)
     coupled: Coupled | None = None
     supports: Supports | None = None
@@ -178,7 +170,7 @@ def _widest(found: ModeSet) -> ModeSet:
 
 
 def _held(found: ModeSet, name: str, spare: bool) -> bool:
-    """Whether a mode is there, and one above it of the same motion."""
+    """Tell whether a mode is there, and one above it of the same motion."""
     every = _widest(found)
     mode = every.named(name)
     if mode is None or not spare:
@@ -198,7 +190,7 @@ def solve(
     meter: Meter | None = None,
     **options: Any,
 ) -> Answer:
-    """Build one rung of a scene and solve it as the scene is tied.
+    """Build one model of a scene and solve it as the scene is tied.
 
     Parameters
     ----------
@@ -259,7 +251,7 @@ def answered(
     spare: bool = False,
     meter: Meter,
 ) -> Answer:
-    """What a body answers on some supports; parameters as for :func:`solve`.
+    """Answer of a body on some supports; parameters as for :func:`solve`.
 
     Parameters
     ----------

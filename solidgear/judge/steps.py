@@ -6,6 +6,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
+from solidgear.quantity import Quantity
+
 #: bars that the solution on one mesh tells by itself
 METHOD = "local problems"
 #: a coupling this small against its diagonal entries is zero
@@ -20,7 +22,8 @@ class Value:
 
     Attributes
     ----------
-    quantity, unit : str
+    quantity : Quantity
+    unit : str
     value : float
         SI.
     bar : float
@@ -37,7 +40,7 @@ class Value:
         Where the bar comes from.
     """
 
-    quantity: str
+    quantity: Quantity
     value: float
     unit: str
     bar: float
@@ -48,14 +51,14 @@ class Value:
 
     @property
     def how(self) -> str:
-        """Where the bar comes from, in words."""
+        """Origin of the bar, in words."""
         if self.method == METHOD:
             return METHOD
         return f"{self.meshes} meshes" if self.meshes > 1 else "one mesh only, not judged"
 
     @property
     def zero(self) -> bool:
-        """Whether it is nothing but rounding, as a coupling that symmetry forbids."""
+        """Tell whether it is nothing but rounding, as a coupling that symmetry forbids."""
         return abs(self.value) <= ROUNDING * self.size
 
 
@@ -77,7 +80,7 @@ class Step:
     unknowns : int or None
     seconds : float
     chosen : bool
-    only : tuple of str
+    only : tuple of Quantity
         What was still open, where a mesh was not solved for everything asked for.
     options : dict
         Of the mesh, for its builder.
@@ -91,5 +94,5 @@ class Step:
     unknowns: int | None = None
     seconds: float = 0.0
     chosen: bool = False
-    only: tuple[str, ...] = ()
+    only: tuple[Quantity, ...] = ()
     options: Mapping[str, Any] = field(default_factory=dict)

@@ -1,4 +1,6 @@
-"""All that a comparison knows of one model of a scene, a solid on as many meshes as its bands need."""
+"""Study of one model of a scene for a comparison, a solid on as many meshes as its error bars
+need.
+"""
 
 from __future__ import annotations
 
@@ -14,17 +16,19 @@ from solidgear.judge.bars import Band
 from solidgear.judge.bounded import Bounded, Statics, bounded
 from solidgear.judge.quantities import change, usual
 from solidgear.judge.question import Solved, mesh_words
+from solidgear.judge.record import LevelRecord
 from solidgear.judge.refinement import Loop, Progress
 from solidgear.judge.sequence_bars import sequence_bands
 from solidgear.judge.solution import Solution
 from solidgear.judge.solving import ENOUGH, Answer, Numbers, searched
-from solidgear.judge.tied import facts_of, judged_modes, solved_ties, tied_answer
+from solidgear.judge.tied import judged_modes, level_of, solved_ties, tied_answer
 from solidgear.judge.ties import SCENE, SECTION, rigid_seats
 from solidgear.ladder import build
 from solidgear.ladder.meshes import HEAVY
 from solidgear.ladder.registry import LADDER
 from solidgear.machine.meter import Meter
 from solidgear.models.options import ATTACHMENTS
+from solidgear.quantity import Quantity
 
 if TYPE_CHECKING:
     from solidgear.scene import Scene
@@ -45,7 +49,7 @@ def study(
     progress: Progress = lambda _: None,
     keep: Keep = lambda _: None,
 ) -> Solution:
-    """Solve one model of a scene, a solid on as many meshes as its bands need.
+    """Solve one model of a scene, a solid on as many meshes as its error bars need.
 
     Parameters
     ----------
@@ -56,8 +60,8 @@ def study(
         Builder options; where they speak of the mesh, that mesh is solved, and of a solid on a list of
         meshes two coarser ones.
     share : float, optional
-        Bands of the judged quantities are wanted below the tolerance of the scene divided by this;
-        by default what its rung asks for, 10 for the harmonic solid, which judges.
+        Error bars of the judged quantities are wanted below the tolerance of the scene divided by
+        this; by default what its model asks for, 10 for the harmonic solid, which judges.
     most : int, optional
         Levels to stop at.
     evidence : bool
@@ -79,16 +83,16 @@ def study(
         meter = Meter()
         progress(f"{model}: build, statics, modes")
         ties = solved_ties(scene, model, options, meter, 0 if evidence and counted else math.inf)
-        rung = Solution(model, ties, meter, options=options)
-        keep(rung)
+        solution = Solution(model, ties, meter, options=options)
+        keep(solution)
     else:
         tol = scene.ask.tolerance / (share or own.share)
         loop = Tied(scene, own, usual(scene), tol, progress, options, most)
         loop.counted, loop.keep = evidence and counted, keep
-        rung = loop.studied()
+        solution = loop.studied()
     if evidence:
-        _add_variants(scene, rung, progress)
-    return rung
+        _add_variants(scene, solution, progress)
+    return solution
 
 
 class Tied(Loop):
@@ -114,15 +118,15 @@ class Tied(Loop):
         self.meter = Meter()
         self.failed: dict[str, str] = {}
         self.solved: list[dict[str, Numbers]] = []
-        self.facts: list[dict] = []
-        self.around: dict[str, dict[str, float]] = {}
+        self.meshes: list[LevelRecord] = []
+        self.around: dict[str, dict[Quantity, float]] = {}
 
     @property
     def called(self) -> str:
         return self.rung.name
 
     def studied(self) -> Solution:
-        """What the last mesh that could be solved says."""
+        """Solution of the last mesh that could be solved."""
         try:
             self.run()
         except (SolidgearError, MemoryError) as error:
@@ -148,21 +152,21 @@ class Tied(Loop):
             _book_as_evidence(self.meter, before)
         found = ties[SCENE]
         self.solved.append({tie: one.numbers for tie, one in ties.items()})
-        self.facts.append(facts_of(found))
-        self.solution = rung = Solution(self.rung.name, ties, self.meter)
-        rung.levels, rung.failed, rung.options = self.facts, self.failed, dict(level)
+        self.meshes.append(level_of(found))
+        self.solution = solution = Solution(self.rung.name, ties, self.meter)
+        solution.levels, solution.failed, solution.options = self.meshes, self.failed, dict(level)
         score = None
         with self.meter.stage("band"):
             if self.rung.bounded:
                 told = _judged(self.scene, found, self.wanted)
-                rung.bands, rung.scores = {SCENE: told.bands}, told.scores
+                solution.bands, solution.scores = {SCENE: told.bands}, told.scores
                 self.bands = told.bands
                 score = self.score(told, self.wanted)
             else:
                 self._turn()
-                rung.bands = self._bands()
-        self.keep(rung)
-        return Solved(found.body, found.numbers, found.body.size, self.facts[-1]["h"], score)
+                solution.bands = self._bands()
+        self.keep(solution)
+        return Solved(found.body, found.numbers, found.body.size, self.meshes[-1].h, score)
 
     def _counted_from(self, k: int) -> float:
         """Unknowns from which on modes of a mesh of a list are counted."""
@@ -181,13 +185,13 @@ class Tied(Loop):
         return max(bars, default=None) if self._enough() else None
 
     def _enough(self) -> bool:
-        """Whether there are meshes enough for bands to end the loop: of a list three, or two large
-        ones.
+        """Tell whether there are meshes enough for bars to end the loop: of a list three, or two
+        large ones.
         """
         k = len(self.levels)
         if self.rung.bounded or self.plan.fixed:
             return self.rung.bounded or k == len(self.plan.levels)
-        return k > 2 or k == 2 and self.facts[-1]["dofs"] > HEAVY
+        return k > 2 or k == 2 and self.last is not None and self.last.unknowns > HEAVY
 
     def _spared(self, level: Mapping[str, Any], error: Exception) -> bool:
         coarser = self.plan.fixed and level is not self.plan.levels[-1]
@@ -208,15 +212,15 @@ class Tied(Loop):
             left = self.plan.left_around
             self.around[tie] = {q: left * abs(c) for q, c in changes.items() if c is not None}
 
-    def _bands(self) -> dict[str, dict[str, Band]]:
-        """Bands of the finest mesh of a list for every way of tying that the last ones have."""
+    def _bands(self) -> dict[str, dict[Quantity, Band]]:
+        """Error bars of the finest mesh of a list by way of tying, of those the last ones have."""
         out = {}
         for tie in (SCENE, SECTION):
             known = [s for s in self.solved if tie in s]
             if len(known) < 2 or tie not in self.solved[-1]:
                 continue
             values, solver = [s[tie].quantities for s in known], known[-1][tie].solver
-            sizes = [f["mesh"].get("representative_size") for f in self.facts]
+            sizes = [level.mesh.get("representative_size") for level in self.meshes]
             tied = self.scene if tie == SCENE else self.scene.with_attachment("section")
             around = self.around.get(tie)
             found = sequence_bands(tied, self.plan, self.rung, values, solver, sizes, around)
@@ -224,17 +228,19 @@ class Tied(Loop):
                 out[tie] = found
         return out
 
-    def _finish(self, rung: Solution) -> None:
+    def _finish(self, solution: Solution) -> None:
         """Bars with section ties, and modes counted."""
-        scene, found, tied = self.scene, rung.ties[SCENE], rung.ties.get(SECTION)
+        scene, found, tied = self.scene, solution.ties[SCENE], solution.ties.get(SECTION)
         self.progress(f"{self.called}: section ties")
         if tied is not None:
             plain = scene.with_attachment("section")
             with self.meter.stage("band"):
                 own = (
-                    rung.bands[SCENE] if tied is found else _judged(plain, tied, self.wanted).bands
+                    solution.bands[SCENE]
+                    if tied is found
+                    else _judged(plain, tied, self.wanted).bands
                 )
-            rung.bands[SECTION] = own
+            solution.bands[SECTION] = own
         if self.counted:
             assert found.supports is not None  # of what was just answered
             with self.meter.stage("count"):
@@ -249,7 +255,7 @@ class Tied(Loop):
                 )
 
 
-def _judged(scene: Scene, found: Answer, names: Listed[str]) -> Bounded:
+def _judged(scene: Scene, found: Answer, names: Listed[Quantity]) -> Bounded:
     """Bars of an answer by local problems."""
     statics = Statics(found.condensed, found.further, found.coupled)
     known = [q for q in dict.fromkeys((*names, *found.quantities)) if q in found.quantities]
@@ -259,33 +265,35 @@ def _judged(scene: Scene, found: Answer, names: Listed[str]) -> Bounded:
 
 
 def _book_as_evidence(meter: Meter, before: dict[str, float]) -> None:
-    """What coarser levels cost is evidence; the price of the answer is that of the last level."""
+    """Book the cost of coarser levels as evidence; the price of the answer is that of the last
+    level.
+    """
     earlier = {stage: before.get(stage, 0.0) for stage in ("build", "statics", "modes", "count")}
     for stage, seconds in earlier.items():
         meter.move(stage, "band", seconds)
 
 
-def _add_variants(scene: Scene, rung: Solution, progress: Progress) -> None:
+def _add_variants(scene: Scene, solution: Solution, progress: Progress) -> None:
     """The same scene with each attachment everywhere; a 3D solid only with those its mesh carries."""
     given = {s.attachment for s in scene.stations}
     spare = Meter()
-    progress(f"{rung.model}: attachments")
-    with rung.meter.stage("attachments"):
+    progress(f"{solution.model}: attachments")
+    with solution.meter.stage("attachments"):
         for attachment in ATTACHMENTS:
             try:
                 if given == {attachment}:
-                    rung.variants[attachment] = rung.ties[SCENE]
-                elif attachment == "section" and SECTION in rung.ties:
-                    rung.variants[attachment] = rung.ties[SECTION]
-                elif LADDER[rung.model].section_ties:
+                    solution.variants[attachment] = solution.ties[SCENE]
+                elif attachment == "section" and SECTION in solution.ties:
+                    solution.variants[attachment] = solution.ties[SECTION]
+                elif LADDER[solution.model].section_ties:
                     changed = (
                         rigid_seats(scene)
                         if attachment == "rigid"
                         else scene.with_attachment(attachment)
                     )
-                    body = build(changed, rung.model, **rung.options)
-                    rung.variants[attachment] = tied_answer(
+                    body = build(changed, solution.model, **solution.options)
+                    solution.variants[attachment] = tied_answer(
                         changed, body, as_supports(changed), None, spare, False
                     )
             except SolidgearError as error:
-                log.info("%s: attachment %s left out: %s", rung.model, attachment, error)
+                log.info("%s: attachment %s left out: %s", solution.model, attachment, error)

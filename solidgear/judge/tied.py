@@ -1,4 +1,4 @@
-"""What one mesh answers, tied as in the scene and by section means."""
+"""Answers of one mesh, tied as in the scene and by section means."""
 
 from __future__ import annotations
 
@@ -7,12 +7,14 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 from solidgear.body import Body, Supports, as_supports
-from solidgear.judge.quantities import described, judged, usual
+from solidgear.judge.quantities import judged, usual
+from solidgear.judge.record import LevelRecord
 from solidgear.judge.solving import ENOUGH, Answer, answered
 from solidgear.judge.ties import SCENE, SECTION
 from solidgear.ladder import build
 from solidgear.ladder.registry import LADDER
 from solidgear.machine.meter import Meter
+from solidgear.quantity import C_ZZ, FIRST_BENDING, Quantity
 from solidgear.solve.statics import SOLVED, flexibility
 
 if TYPE_CHECKING:
@@ -27,7 +29,7 @@ def solved_ties(
     counted_from: float = math.inf,
     spare: bool = False,
 ) -> dict[str, Answer]:
-    """What one mesh answers, tied as in the scene and by section means; modes are counted from
+    """Answers of one mesh, tied as in the scene and by section means; modes are counted from
     so many unknowns on.
     """
     given = {s.attachment for s in scene.stations}
@@ -85,7 +87,7 @@ def tied_answer(
     spare: bool = False,
 ) -> Answer:
     # Families of two waves and more are reported for the mesh that is; bearings do not move them,
-    # nor do bands rest on them.
+    # nor do error bars rest on them.
     return answered(
         body,
         supports,
@@ -101,23 +103,23 @@ def tied_answer(
     )
 
 
-def judged_modes(scene: Scene) -> list[str]:
+def judged_modes(scene: Scene) -> list[Quantity]:
     """Names of the modes that models are judged by."""
-    judged_by = dict.fromkeys((*usual(scene), *judged(scene)))
-    return [place for q in judged_by if isinstance(place := described(q)[1], str)]
+    return [q for q in dict.fromkeys((*usual(scene), *judged(scene))) if q.is_frequency]
 
 
-def facts_of(found: Answer) -> dict:
+def level_of(found: Answer) -> LevelRecord:
+    """One mesh of a sequence."""
     body = found.body
     order = body.mesh.get("order")
-    return {
-        "dofs": body.size,
-        "h": None if order else body.mesh.get("representative_size"),
-        "order": order,
-        "quantities": {
+    return LevelRecord(
+        dofs=body.size,
+        h=None if order else body.mesh.get("representative_size"),
+        order=order,
+        quantities={
             name: found.quantities[name]
-            for name in ("C_zz", "bending 1")
+            for name in (C_ZZ, FIRST_BENDING)
             if name in found.quantities
         },
-        "mesh": body.mesh,
-    }
+        mesh=body.mesh,
+    )

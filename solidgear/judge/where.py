@@ -1,4 +1,4 @@
-"""Where the error of a number sits.
+"""Places of the error of a number.
 
 A bar is made of the energies of local solutions, cell by cell of the meridian
 (:mod:`solidgear.judge.bounded`): each shoulder, seat end or other singular place has what the cells
@@ -21,14 +21,7 @@ from solidgear.bounds.refining import Meshed, corner_strength
 from solidgear.errors import SolidgearError, nearest, show
 from solidgear.judge.bars import LEAST, Band
 from solidgear.judge.bounded import Statics, bounded
-from solidgear.judge.quantities import (
-    ACROSS,
-    AT,
-    QUANTITIES,
-    described,
-    own_name,
-    usual,
-)
+from solidgear.judge.quantities import own_name, usual
 from solidgear.judge.record import PlaceRecord, WhereRecord
 from solidgear.judge.singular_places import Place, singular_places
 from solidgear.judge.solving import ENOUGH, numbers, searched
@@ -37,6 +30,7 @@ from solidgear.ladder import build
 from solidgear.machine.memory import one_run
 from solidgear.machine.threads import pinned
 from solidgear.meshing.meridian import Meridian
+from solidgear.quantity import ACROSS, QUANTITIES, Quantity
 from solidgear.scene.coned import coned
 from solidgear.solve.modes import ModeSet
 from solidgear.solve.statics import SOLVED, flexibility
@@ -79,11 +73,11 @@ class Row:
 
 @dataclass(frozen=True, eq=False)
 class Whereabouts:
-    """Where the error of a number sits.
+    """Places of the error of a number.
 
     Attributes
     ----------
-    quantity : str
+    quantity : Quantity
     order : int
         Of the elements.
     total : float
@@ -101,11 +95,11 @@ class Whereabouts:
     --------
     >>> rows = (Row("shoulder", 0.186, 0.03, 0.97), Row(ELSEWHERE, 0.05, 0.02, 0.03))
     >>> none = np.zeros((0, 0))
-    >>> print(Whereabouts("C_zz", 3, 4e-4, rows, none, none, none, 0.1).sentence)
+    >>> print(Whereabouts(Quantity("C_zz"), 3, 4e-4, rows, none, none, none, 0.1).sentence)
     97 % of what is left in C_zz sits at the shoulder at y = 186 mm
     """
 
-    quantity: str
+    quantity: Quantity
     order: int
     total: float
     rows: tuple[Row, ...]
@@ -116,7 +110,7 @@ class Whereabouts:
 
     @property
     def sentence(self) -> str:
-        """Where most of it sits."""
+        """Place of most of it, in words."""
         first, *rest = self.rows
         said = f"{_percent(first)} of what is left in {self.quantity} sits {_at(first)}"
         if first.share >= 0.5 or not rest:
@@ -156,24 +150,24 @@ def where(
     ('shoulder', 1.0)
     """
     start = time.perf_counter()
-    quantity = _known(scene, quantity)
+    asked = _known(scene, Quantity(quantity))
     options = Meshed().options() if options is None else options
     with one_run():
         body, supports = build(scene, "harmonic", **options), as_supports(scene)
-        statics, found = _solved(scene, body, supports, quantity)
-        band, shares = _shares(scene, body, supports, statics, found, quantity)
+        statics, found = _solved(scene, body, supports, asked)
+        band, shares = _shares(scene, body, supports, statics, found, asked)
         # a body with several attachments answers with the first
         places = singular_places(scene, (options.get("attachments") or ())[:1] or None)
-        return _whereabouts(scene, body, places, quantity, band.gci, shares, start)
+        return _whereabouts(scene, body, places, asked, band.gci, shares, start)
 
 
-def recorded_places(scene: Scene, rung: Solution) -> WhereRecord | None:
+def recorded_places(scene: Scene, solution: Solution) -> WhereRecord | None:
     """Places of the error of the least certain number of a harmonic solid, for the record.
 
     Parameters
     ----------
     scene : Scene
-    rung : Solution
+    solution : Solution
         Of the harmonic solid.
 
     Returns
@@ -182,18 +176,18 @@ def recorded_places(scene: Scene, rung: Solution) -> WhereRecord | None:
         None where the error has no place: nothing is judged, or what is left is rounding.
     """
     start = time.perf_counter()
-    bands = rung.bands.get(SCENE, {})
+    bands = solution.bands.get(SCENE, {})
     judged = [q for q in usual(scene) if q in bands]
     if not judged:
         return None
     quantity = max(judged, key=lambda q: bands[q].gci)
     if _rounding(bands[quantity]):
         return None
-    shares, places = rung.scores[quantity], singular_places(scene)
+    shares, places = solution.scores[quantity], singular_places(scene)
     total = bands[quantity].gci
-    found = _whereabouts(scene, rung.body, places, quantity, total, shares, start)
+    found = _whereabouts(scene, solution.body, places, quantity, total, shares, start)
     return WhereRecord(
-        model=rung.model,
+        model=solution.model,
         quantity=quantity,
         order=found.order,
         total=found.total,
@@ -217,27 +211,27 @@ def _at(row: Row) -> str:
     return f"at the {row.what} at {place}"
 
 
-def _known(scene: Scene, quantity: str) -> str:
+def _known(scene: Scene, quantity: Quantity) -> Quantity:
     """A quantity as results call it."""
-    base, at, _ = quantity.partition(AT)
-    names = {**QUANTITIES, **ACROSS}
-    if base not in names:
+    names = (*QUANTITIES, *ACROSS)
+    if quantity.symbol not in names:
         raise SolidgearError(
-            f"there is no quantity {show(quantity, 40)}{nearest(base, tuple(names))}; "
+            f"there is no quantity {show(quantity, 40)}{nearest(quantity.symbol, names)}; "
             f"there are {', '.join(names)}"
         )
-    if at and described(base)[0] == "frequency":
-        raise SolidgearError(f"{quantity}: a frequency is not of a point; ask for {base}")
+    if quantity.points and quantity.is_frequency:
+        raise SolidgearError(
+            f"{quantity}: a frequency is not of a point; ask for {quantity.symbol}"
+        )
     return own_name(scene, quantity)
 
 
 def _solved(
-    scene: Scene, body: Body, supports: Supports, quantity: str
+    scene: Scene, body: Body, supports: Supports, quantity: Quantity
 ) -> tuple[Statics | None, ModeSet | None]:
-    """What a quantity needs: statics at its points, or modes."""
-    _, place, _ = described(quantity)
-    if isinstance(place, str):
-        return None, searched(body, supports, ENOUGH, [place], spare=True, ovalising=False)
+    """Statics at the points of a quantity, or modes, whichever it needs."""
+    if quantity.is_frequency:
+        return None, searched(body, supports, ENOUGH, [quantity], spare=True, ovalising=False)
     flexibility(body, SOLVED)
     return Statics.of(scene, body, supports, [quantity]), None
 
@@ -248,7 +242,7 @@ def _shares(
     supports: Supports,
     statics: Statics | None,
     found: ModeSet | None,
-    quantity: str,
+    quantity: Quantity,
 ) -> tuple[Band, np.ndarray]:
     """Bar of a quantity that is solved, and (m,) shares of it by cells."""
     _exists(quantity, statics, found)
@@ -266,7 +260,7 @@ def _shares(
 
 
 def _rounding(band: Band) -> bool:
-    """Whether a bar is no more than rounding, and has no place."""
+    """Tell whether a bar is no more than rounding, and has no place."""
     return band.gci - band.solver - LEAST < ROUNDING
 
 
@@ -274,7 +268,7 @@ def _whereabouts(
     scene: Scene,
     body: Body,
     places: tuple[Place, ...],
-    quantity: str,
+    quantity: Quantity,
     total: float,
     shares: np.ndarray,
     start: float,
@@ -287,11 +281,10 @@ def _whereabouts(
     return Whereabouts(quantity, order, total, rows, flat.points, flat.cells, shares, spent)
 
 
-def _exists(quantity: str, statics: Statics | None, found: ModeSet | None) -> None:
+def _exists(quantity: Quantity, statics: Statics | None, found: ModeSet | None) -> None:
     """Refuse a quantity that is not there."""
-    _, place, _ = described(quantity)
-    if isinstance(place, str):
-        if found is None or found.named(place) is None:
+    if quantity.is_frequency:
+        if found is None or found.named(quantity) is None:
             raise SolidgearError(f"{quantity} is not among the lowest modes of this scene")
     elif statics is None or quantity not in statics.values():
         raise SolidgearError(f"{quantity} does not exist in this scene: the motion is free")

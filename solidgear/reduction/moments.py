@@ -191,7 +191,7 @@ def _reduce_block(body: Body, index: int, count: int, steps: int) -> ReducedBloc
     found = [
         (v[0], m.family)
         for m in modes(alone, (), n=min(count + 1, block.size)).modes
-        if not m.name.startswith("rigid")
+        if not m.name.rigid
         for v in m.vectors
     ]
     basis = free_shapes(block, [vector for vector, _ in found])

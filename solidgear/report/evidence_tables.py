@@ -14,25 +14,25 @@ from solidgear.judge.record import (
     Record,
 )
 from solidgear.judge.ties import SCENE
+from solidgear.quantity import (
+    C_ZZ,
+    COMPLIANCE,
+    FIRST_BENDING,
+    FREQUENCY,
+    K_ZZ,
+    STIFFNESS,
+    Quantity,
+)
 from solidgear.report.cells import DASH, capital, pct, short_percent, small, whole_number
 from solidgear.report.reading import is_resolved, model_name, reference_of, relative_change
 from solidgear.report.table import Table
 from solidgear.report.units import ENGINEERING, Units
 from solidgear.report.words import band_percent, hertz
 
-#: rank of a frequency among the quantities
-FREQUENCY = 2
-#: quantities shown of causes and attachments -> unit in SI
-SHOWN = {"C_zz": "m/N", "K_zz": "N/m", "bending 1": "Hz"}
-#: how a column calls one
-HEADS = {"bending 1": "first bending"}
-
-
-def _rank(quantity: str) -> int:
-    """Compliances first, then stiffnesses, then frequencies."""
-    if quantity.startswith("C_"):
-        return 0
-    return 1 if quantity.startswith("K_") else FREQUENCY
+#: quantities shown of causes and attachments -> how a column calls them
+SHOWN = {C_ZZ: C_ZZ, K_ZZ: K_ZZ, FIRST_BENDING: "first bending"}
+#: the order of the kinds of quantities
+RANKS = (COMPLIANCE, STIFFNESS, FREQUENCY)
 
 
 def _named(record: Record, key: str) -> str:
@@ -46,10 +46,12 @@ def deviations(record: Record, units: Units = ENGINEERING) -> Table:
     pairs = list(dict.fromkeys((r.model, r.attachment) for r in record.deviations))
     found = {(r.model, r.attachment, r.quantity): r for r in record.deviations}
     rows = []
-    for quantity in sorted(dict.fromkeys(r.quantity for r in record.deviations), key=_rank):
+    for quantity in sorted(
+        dict.fromkeys(r.quantity for r in record.deviations), key=lambda q: RANKS.index(q.kind)
+    ):
         own = [found.get((*pair, quantity)) for pair in pairs]
         first = next(r for r in own if r is not None)
-        si = first.unit or ("Hz" if _rank(quantity) == FREQUENCY else "")
+        si = quantity.unit
         scene = next((r for r in own if r and r.attachment == SCENE), first)
         value = scene.reference_value
         figure = hertz(value, DASH) if si == "Hz" else units.number(value, si, nothing=DASH)
@@ -95,7 +97,7 @@ def causes(record: Record) -> Table:
         )
     return Table(
         "One assumption switched at a time",
-        ["cause", "what is switched", "in", "C_zz", "K_zz", "first bending"],
+        ["cause", "what is switched", "in", *SHOWN.values()],
         rows,
     )
 
@@ -107,15 +109,15 @@ def attachments(record: Record, units: Units = ENGINEERING) -> Table:
         average = ties["average"].quantities if "average" in ties else {}
         for tie, variant in ties.items():
             cells: list[Any] = [f"{_named(record, key)}, {tie}"]
-            for name, si in SHOWN.items():
+            for name in SHOWN:
                 value = variant.quantities.get(name)
-                cells.append(_figure(value, si, units))
+                cells.append(_figure(value, name.unit, units))
                 change = relative_change(value, average.get(name))
                 cells.append(DASH if tie == "average" else pct(change))
             rows.append(cells)
     head = ["model, ties"]
-    for name, si in SHOWN.items():
-        head += [f"{HEADS.get(name, name)}, {units.unit(si)}", "change"]
+    for name, called in SHOWN.items():
+        head += [f"{called}, {units.unit(name.unit)}", "change"]
     return Table("Three ways to hold the same surfaces", head, rows)
 
 
@@ -130,14 +132,14 @@ def levels(record: Record, units: Units = ENGINEERING) -> Table:
     for key, model in record.models.items():
         meshes = model.convergence.levels if model.convergence else []
         for n, level in enumerate(meshes, start=1):
-            bending = level.quantities.get("bending 1")
+            bending = level.quantities.get(FIRST_BENDING)
             rows.append(
                 [
                     f"{_named(record, key)}, {n}",
                     whole_number(level.dofs),
                     units.number(level.h, "m", 4, DASH),
                     str(level.order or DASH),
-                    units.number(level.quantities.get("C_zz"), "m/N", 7, DASH),
+                    units.number(level.quantities.get(C_ZZ), "m/N", 7, DASH),
                     DASH if bending is None else f"{bending:.3f}",
                 ]
             )
@@ -160,11 +162,11 @@ def orders(record: Record) -> Table:
     rows = []
     for key, model in record.models.items():
         bands = model.convergence.quantities if model.convergence else {}
-        judged = record.verdict.judged or list(bands)
+        judged = record.verdict.judged
         for name, band in bands.items():
-            if name not in judged:
+            if judged and name not in judged:
                 continue
-            label = f"{name}, Hz" if _rank(name) == FREQUENCY else name
+            label = f"{name}, Hz" if Quantity(name).is_frequency else name
             rows.append([f"{_named(record, key)}: {label}", *_band(band)])
     return Table(
         "Changes and bands",

@@ -9,9 +9,10 @@ import json
 from collections.abc import Iterable, Mapping
 from typing import Any
 
-from solidgear.judge.quantities import AT
+from solidgear.body.mode_names import ModeName
 from solidgear.judge.record import ModelRecord, Record, VerdictRecord
 from solidgear.judge.ties import SCENE
+from solidgear.quantity import COMPLIANCE, FIRST_BENDING, Quantity
 from solidgear.report.cells import DASH, short_percent
 from solidgear.report.reading import (
     BEAM,
@@ -20,36 +21,35 @@ from solidgear.report.reading import (
     first_frequency,
     is_resolved,
     left_open,
-    matrix_of,
     mode_of,
     model_name,
     model_of,
     reference_of,
     relative_change,
     validity,
+    value_of,
 )
 from solidgear.report.table import Table
 from solidgear.report.units import Units, digits_for
 from solidgear.report.words import band_percent, percent
 
-#: of page one -> (what it is in words, symbol, matrix or family of modes, entry, SI unit)
-Row = tuple[str, str, str, tuple[int, int] | None, str]
-ROWS: dict[str, Row] = {
-    "bending 1": ("First bending mode", "f1", "bending", None, "Hz"),
-    "axial 1": ("First axial mode", "", "axial", None, "Hz"),
-    "K_zz": ("Stiffness across the shaft", "K_zz", "stiffness", (2, 2), "N/m"),
-    "K_yy": ("Stiffness along the shaft", "K_yy", "stiffness", (1, 1), "N/m"),
-    "K_thx": ("Stiffness against tilting", "K_thx", "stiffness", (3, 3), "N m/rad"),
-    "C_zz": ("Compliance across the shaft", "C_zz", "compliance", (2, 2), "m/N"),
-    "C_yy": ("Compliance along the shaft", "C_yy", "compliance", (1, 1), "m/N"),
-    "C_thx": ("Compliance against tilting", "C_thx", "compliance", (3, 3), "rad/(N m)"),
+#: quantities of page one -> in words
+ROWS: dict[str, str] = {
+    "bending 1": "First bending mode, f1",
+    "axial 1": "First axial mode",
+    "K_zz": "Stiffness across the shaft",
+    "K_yy": "Stiffness along the shaft",
+    "K_thx": "Stiffness against tilting",
+    "C_zz": "Compliance across the shaft",
+    "C_yy": "Compliance along the shaft",
+    "C_thx": "Compliance against tilting",
 }
 #: told only where the scene asks for them
-ON_REQUEST: dict[str, Row] = {
-    "K_z,thx": ("Stiffness, motion across with tilting", "K_z,thx", "stiffness", (2, 3), "N/rad"),
-    "C_z,thx": ("Compliance, motion across with tilting", "C_z,thx", "compliance", (2, 3), "rad/N"),
-    "bending 2": ("Second bending mode", "", "bending", None, "Hz"),
-    "torsion 1": ("First torsion mode", "", "torsion", None, "Hz"),
+ON_REQUEST: dict[str, str] = {
+    "K_z,thx": "Stiffness, motion across with tilting",
+    "C_z,thx": "Compliance, motion across with tilting",
+    "bending 2": "Second bending mode",
+    "torsion 1": "First torsion mode",
 }
 #: the two directions across a shaft are told apart from here on
 ALIKE = 0.01
@@ -83,10 +83,10 @@ def numbers(record: Record, units: Units) -> Table:
     key = shown_model(record)
     model = model_of(record, key)
     asked = (record.scene.get("ask") or {}).get("quantities") or []
-    rows: dict[str, Row] = {**ROWS, **{q: ON_REQUEST[q] for q in asked if q in ON_REQUEST}}
+    names = [Quantity(q) for q in (*ROWS, *(q for q in asked if q in ON_REQUEST))]
     # by the names that results have: a scene may write those of points in another way
-    rows |= {q: _at_points(q) for q in (record.verdict.judged if asked else ()) if AT in q}
-    cells = [_number(model, name, row, units) for name, row in rows.items()]
+    names += [q for q in (record.verdict.judged if asked else ()) if q.points]
+    cells = [_number(model, name, _label(name), units) for name in dict.fromkeys(names)]
     cells += _other_direction(model, units)
     caption = f"At the lumped point {(record.scene.get('port') or {}).get('name', '')}".strip()
     if key:
@@ -103,32 +103,28 @@ def numbers(record: Record, units: Units) -> Table:
     )
 
 
-def _at_points(quantity: str) -> Row:
-    """The row of a quantity at a further point or between two."""
-    base, _, where = quantity.partition(AT)
-    words, symbol, kind, place, si = {**ROWS, **ON_REQUEST}[base]
-    told = " under loads on ".join(where.split(AT))
-    return f"{words}, {told}", symbol, kind, place, si
+def _label(name: Quantity) -> str:
+    """A quantity in words, with its points, and its symbol."""
+    words = {**ROWS, **ON_REQUEST}[name.symbol]
+    if name.points:
+        words += f", {' under loads on '.join(name.points)}"
+    return words if name.is_frequency else f"{words}, {name.symbol}"
 
 
-def _number(model: ModelRecord, name: str, row: Row, units: Units) -> list[Any]:
+def _number(model: ModelRecord, name: Quantity, label: str, units: Units) -> list[Any]:
     """The cells of one quantity; none where there is no such number."""
-    words, symbol, kind, place, si = row
-    value = _value(model, name, kind, place)
+    value = _frequency(model, name) if name.is_frequency else value_of(model, name)
     if value is None or value == 0:
         return []
     bar = model.band.each.get(name) if model.band else None
-    label = f"{words}, {symbol}" if symbol else words
-    told = units.text(value, si, digits_for(bar))
+    told = units.text(value, name.unit, digits_for(bar))
     return [label, (told, "strong"), f"± {band_percent(bar)}" if bar is not None else "no bar"]
 
 
-def _value(model: ModelRecord, name: str, kind: str, place: tuple[int, int] | None) -> float | None:
-    if place is not None:
-        return entry(matrix_of(model, name, kind), *place)
-    mode = mode_of(model, name)
+def _frequency(model: ModelRecord, name: Quantity) -> float | None:
+    mode, asked = mode_of(model, name), ModeName(name)
     exact = mode.frequency_hz if mode else None
-    return exact if exact is not None or name.endswith("2") else first_frequency(model, kind)
+    return exact if exact is not None or asked.number != 1 else first_frequency(model, asked.family)
 
 
 def _other_direction(model: ModelRecord, units: Units) -> Iterable[list[Any]]:
@@ -137,8 +133,7 @@ def _other_direction(model: ModelRecord, units: Units) -> Iterable[list[Any]]:
     change = relative_change(other, one)
     if change is None or abs(change) <= ALIKE:
         return []
-    row: Row = ("Stiffness across, other direction", "K_xx", "stiffness", (0, 0), "N/m")
-    return [_number(model, "K_xx", row, units)]
+    return [_number(model, Quantity("K_xx"), "Stiffness across, other direction, K_xx", units)]
 
 
 def reasons(record: Record) -> list[str]:
@@ -157,9 +152,9 @@ def _own(record: Record) -> str:
     model = model_of(record, trust)
     solves = f", which solves {model.theory}," if model.theory else ""
     bars = model.band.each if model.band else {}
-    judged = record.verdict.judged or list(bars)
-    c = max((bars[q] or 0.0 for q in judged if q.startswith("C_") and q in bars), default=None)
-    sure = [(c, "compliance"), (bars.get("bending 1"), "first bending")]
+    judged = record.verdict.judged or list(map(Quantity, bars))
+    c = max((bars[q] or 0.0 for q in judged if q.kind == COMPLIANCE and q in bars), default=None)
+    sure = [(c, "compliance"), (bars.get(FIRST_BENDING), "first bending")]
     told = [f"{band_percent(bar)} in {what}" for bar, what in sure if bar is not None]
     asked = short_percent(record.verdict.tolerance)
     wanted = f"; {asked} was asked for" if asked else ""

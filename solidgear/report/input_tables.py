@@ -6,22 +6,16 @@ from collections.abc import Mapping
 from typing import Any
 
 from solidgear.judge.record import Record
+from solidgear.quantity import Quantity
 from solidgear.report.bearing_words import catalogue, load_row, without_column
 from solidgear.report.cells import DASH, short_percent
-from solidgear.report.reading import model_name
+from solidgear.report.reading import entry, model_name
 from solidgear.report.table import Table
 from solidgear.report.units import ENGINEERING, Units
 from solidgear.report.words import engineering, hertz, is_number, percent
 
-#: of a bearing's 6x6 -> its place and unit
-BEARING_ENTRIES = {
-    "K_xx": (0, 0, "N/m"),
-    "K_yy": (1, 1, "N/m"),
-    "K_zz": (2, 2, "N/m"),
-    "K_z,thx": (2, 3, "N/rad"),
-    "K_thx": (3, 3, "N m/rad"),
-    "K_thz": (5, 5, "N m/rad"),
-}
+#: of a bearing's 6x6
+BEARING_ENTRIES = tuple(map(Quantity, ("K_xx", "K_yy", "K_zz", "K_z,thx", "K_thx", "K_thz")))
 #: lengths that a feature can have
 SIZES = ("y", "length", "width", "depth", "diameter", "radius", "size", "height")
 
@@ -155,7 +149,7 @@ def bearings(scene: Mapping, units: Units = ENGINEERING) -> Table:
     rows = []
     for b in scene.get("bearings") or []:
         stiffness = b.get("stiffness") or [[None] * 6] * 6
-        shown = [(stiffness[i][j], si) for i, j, si in BEARING_ENTRIES.values()]
+        shown = [(entry(stiffness, *name.place), name.unit) for name in BEARING_ENTRIES]
         # what is held has the stiffness of nothing real
         cells = [b["hold"] if value else DASH for value, _ in shown] if b.get("hold") else None
         status = b.get("status") or "not stated"
@@ -175,7 +169,7 @@ def bearings(scene: Mapping, units: Units = ENGINEERING) -> Table:
         f"y, {units.unit('m')}",
         f"seat, {units.unit('m')}",
         "attachment",
-        *(f"{name}, {units.unit(si)}" for name, (_, _, si) in BEARING_ENTRIES.items()),
+        *(f"{name}, {units.unit(name.unit)}" for name in BEARING_ENTRIES),
         "status",
         "note",
     ]
@@ -186,9 +180,7 @@ def bearings(scene: Mapping, units: Units = ENGINEERING) -> Table:
         note=(
             "Status says where the stiffness comes from: published, measured, identified (fitted), "
             "assumed, or from catalogue data: calculated, or estimated where the inner geometry is. "
-            + without_column(
-                scene.get("bearings") or [], [(i, j) for i, j, _ in BEARING_ENTRIES.values()]
-            )
+            + without_column(scene.get("bearings") or [], [name.place for name in BEARING_ENTRIES])
         ).strip(),
     )
 

@@ -67,8 +67,8 @@ def records(race: Race) -> list[dict]:
         record["samples"] = " ".join(repr(s) for s in row.samples)
         for q in CHARTED:
             record[_column(q)] = row.values.get(q)
-        for q in (*CHARTED, WHOLE):
-            record[f"error_{_column(q)}"] = row.errors.get(q)
+        for what in (*CHARTED, WHOLE):
+            record[f"error_{_column(what)}"] = row.errors.get(what)
         for q in CHARTED:
             record[f"like_for_like_{_column(q)}"] = row.like_for_like.get(q)
         for q in race.reference["values"]:

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from solidgear.body.mode_names import meant
-from solidgear.judge.quantities import AT
 from solidgear.judge.record import (
     CoupledRecord,
     DeviationRecord,
@@ -15,6 +14,7 @@ from solidgear.judge.record import (
     Record,
 )
 from solidgear.judge.ties import SCENE, SECTION
+from solidgear.quantity import FIRST_BENDING, Quantity
 from solidgear.report.words import NOTHING, hertz, is_number, percent
 
 #: families of models, as the ladder has them
@@ -38,7 +38,7 @@ def left_open(record: Record) -> str:
     none.
     """
     bounds = record.bearing_range.get("bounds") or []
-    first = next((b for b in bounds if b["mode"] == "bending 1"), None)
+    first = next((b for b in bounds if b["mode"] == FIRST_BENDING), None)
     if first is None:
         return ""
     middle, low, high = first["frequency_hz"], first["low"], first["high"]
@@ -69,16 +69,14 @@ def entry(matrix: Sequence[Sequence[float | None]] | None, i: int, j: int) -> fl
     return matrix[i][j]
 
 
-def matrix_of(model: ModelRecord, quantity: str, kind: str) -> Matrix | None:
-    """The 6x6 that a quantity of a point, or a term between points, stands in."""
-    _, _, where = quantity.partition(AT)
-    if not where:
-        return getattr(model, kind)
-    if AT in where:
-        one, other = where.split(AT)
-        return block(model.coupled, one, other, kind)
-    found = model.points.get(where)
-    return getattr(found, kind) if found else None
+def value_of(model: ModelRecord, quantity: Quantity) -> float | None:
+    """The value of an entry of a matrix, at the main point, a further one or between points."""
+    if quantity.pair:
+        found = block(model.coupled, *quantity.pair, quantity.kind)
+    else:
+        there = model.points.get(quantity.points[0]) if quantity.points else model
+        found = getattr(there, quantity.kind, None)
+    return entry(found, *quantity.place)
 
 
 def block(found: CoupledRecord | None, a: str, b: str, kind: str) -> Matrix | None:
@@ -105,9 +103,8 @@ def is_nothing(value: float | None, one: float | None, other: float | None) -> b
 def first_mode(model: ModelRecord, family: str) -> ModeRecord | None:
     """The lowest elastic mode of a family ('bending', 'axial', 'torsion'), or None."""
     for mode in model.modes:
-        of_family = mode.family == family or mode.name.startswith(family)
-        elastic = not mode.name.startswith("rigid")
-        if of_family and elastic and mode.frequency_hz is not None:
+        of_family = family in (mode.family, mode.name.family)
+        if of_family and not mode.name.rigid and mode.frequency_hz is not None:
             return mode
     return None
 

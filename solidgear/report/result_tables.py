@@ -5,10 +5,11 @@ frequencies.
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any
+from typing import Any, NamedTuple
 
 from solidgear.frames import DOF_NAMES
 from solidgear.judge.record import Matrix, ModelRecord, ModeRecord, Record
+from solidgear.quantity import BLOCK_UNITS, C_ZZ, FIRST_BENDING, K_ZZ, Quantity
 from solidgear.report.cells import DASH, capital, pct, short_percent, whole_number
 from solidgear.report.reading import (
     LUMPED,
@@ -25,10 +26,11 @@ from solidgear.report.reading import (
     reference_of,
     relative_change,
     validity,
+    value_of,
 )
 from solidgear.report.table import Table
 from solidgear.report.units import ENGINEERING, Units
-from solidgear.report.words import BLOCK_UNITS, band_percent, by_plane, hertz, seconds
+from solidgear.report.words import band_percent, by_plane, hertz, seconds
 
 #: a text, or a text and its css class
 Cell = str | tuple[str, str]
@@ -48,13 +50,13 @@ def summary(record: Record, units: Units = ENGINEERING) -> Table:
     def row(label: str, cell: Callable[[ModelRecord], Cell]) -> list[Cell]:
         return [label, *(cell(model) for model in record.models.values())]
 
-    def value(name: str, kind: str, place: int, si: str) -> list[Cell]:
+    def value(name: Quantity) -> list[Cell]:
         return row(
-            f"{name}, {units.unit(si)}",
-            lambda m: units.number(entry(getattr(m, kind), place, place), si, nothing=DASH),
+            f"{name}, {units.unit(name.unit)}",
+            lambda m: units.number(value_of(m, name), name.unit, nothing=DASH),
         )
 
-    def from_reference(label: str, quantity: str) -> list[Cell]:
+    def from_reference(label: str, quantity: Quantity) -> list[Cell]:
         return [label, *(apart(record, key, quantity) for key in record.models)]
 
     def band(label: str, values: list[float | None]) -> list[Cell]:
@@ -64,14 +66,11 @@ def summary(record: Record, units: Units = ENGINEERING) -> Table:
     bands = [model.band for model in record.models.values()]
     rows = [
         row("valid for this scene", lambda m: WORTH[validity(m)]),
-        value("K_zz", "stiffness", 2, "N/m"),
-        value("C_zz", "compliance", 2, "m/N"),
-        value("K_yy", "stiffness", 1, "N/m"),
-        value("K_thx", "stiffness", 3, "N m/rad"),
-        from_reference("C_zz against reference", "C_zz"),
-        from_reference("first bending against reference", "bending 1"),
+        *map(value, (K_ZZ, C_ZZ, Quantity("K_yy"), Quantity("K_thx"))),
+        from_reference("C_zz against reference", C_ZZ),
+        from_reference("first bending against reference", FIRST_BENDING),
         band("band, worst compliance", [b.compliance if b else None for b in bands]),
-        band("band, first bending", [b.each.get("bending 1") if b else None for b in bands]),
+        band("band, first bending", [b.each.get(FIRST_BENDING) if b else None for b in bands]),
         row("degrees of freedom", lambda m: whole_number(m.dofs)),
     ]
     note = (
@@ -96,8 +95,8 @@ def models(record: Record) -> Table:
                 capital(model_name(record, key)),
                 WORTH[validity(model)],
                 hertz(first_frequency(model, "bending"), DASH),
-                apart(record, key, "bending 1"),
-                apart(record, key, "C_zz"),
+                apart(record, key, FIRST_BENDING),
+                apart(record, key, C_ZZ),
                 seconds(answer_seconds(model), DASH),
                 (model.why_not or "", "text"),
             ]
@@ -147,7 +146,15 @@ def _band(record: Record, key: str, value: float | None) -> Cell:
     return band_percent(value, DASH)
 
 
-def matrices(record: Record, units: Units = ENGINEERING) -> dict[str, list[dict]]:
+class MatrixTable(NamedTuple):
+    """A 6x6 as a page shows it: units and rows of cells of its upper and its lower half."""
+
+    caption: str
+    names: tuple[str, ...]
+    blocks: list[tuple[tuple[str, str], list[tuple[str, list[Cell]]]]]
+
+
+def matrices(record: Record, units: Units = ENGINEERING) -> dict[str, list[MatrixTable]]:
     """The matrices of every model; the lumped one stands on those of another, shown there."""
     out = {}
     for key, model in record.models.items():
@@ -171,7 +178,7 @@ def matrix(
     free: list[str],
     units: Units = ENGINEERING,
     sizes: Any = None,
-) -> dict:
+) -> MatrixTable:
     """A 6x6 with a unit over each of its four blocks.
 
     Parameters
@@ -191,7 +198,7 @@ def matrix(
     same, mixed, turn = BLOCK_UNITS[kind]
     rows = []
     for i, direction in enumerate(DOF_NAMES):
-        cells = []
+        cells: list[Cell] = []
         for j, other in enumerate(DOF_NAMES):
             value = entry(values, i, j)
             if value is None or direction in free or other in free:
@@ -204,11 +211,8 @@ def matrix(
             cells.append((text, "faint" if faint else ""))
         rows.append((direction, cells))
     same, mixed, turn = (units.unit(si) for si in (same, mixed, turn))
-    return {
-        "caption": capital(caption),
-        "names": DOF_NAMES,
-        "blocks": [((same, mixed), rows[:3]), ((mixed, turn), rows[3:])],
-    }
+    halves = [((same, mixed), rows[:3]), ((mixed, turn), rows[3:])]
+    return MatrixTable(capital(caption), DOF_NAMES, halves)
 
 
 def own_frequencies(record: Record, key: str | None) -> Table:

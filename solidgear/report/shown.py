@@ -9,8 +9,9 @@ import numpy as np
 
 from solidgear.display import Table
 from solidgear.frames import DOF_NAMES
+from solidgear.quantity import BLOCK_UNITS
 from solidgear.report.reading import mode_of
-from solidgear.report.words import BLOCK_UNITS, bar_of, percent
+from solidgear.report.words import bar_of, percent
 
 if TYPE_CHECKING:
     from solidgear.body import Body

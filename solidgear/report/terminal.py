@@ -16,6 +16,7 @@ from rich.text import Text
 
 from solidgear.frames import DOF_NAMES
 from solidgear.judge.record import ModelRecord, ModeRecord, Record, VerdictRecord
+from solidgear.quantity import BLOCK_UNITS, C_ZZ, FIRST_BENDING
 from solidgear.report import reading, words
 from solidgear.report.border import as_record
 from solidgear.report.units import SI, Units, in_ascii, units_named
@@ -76,7 +77,7 @@ def final_table(
         table.add_column(head, justify="right", no_wrap=True)
     unresolved = False
     for key, model in record.models.items():
-        cells = [_against_reference(record, key, quantity) for quantity in ("C_zz", "bending 1")]
+        cells = [_against_reference(record, key, quantity) for quantity in (C_ZZ, FIRST_BENDING)]
         unresolved = unresolved or NOT_RESOLVED in cells
         table.add_row(
             Text(reading.heading(record, key)[:10]),
@@ -129,7 +130,7 @@ def _further_points(record: Record, units: Units) -> list[str]:
             found = model.points.get(port.name)
             own = reading.entry(found.compliance, 2, 2) if found else None
             value = in_ascii(units.number(own, "m/N", 4))
-            apart = _against_reference(record, key, f"C_zz@{port.name}")
+            apart = _against_reference(record, key, C_ZZ.at(port.name))
             told.append(f"{reading.heading(record, key)} {value} ({apart})")
         lines.append(f"C_zz at {port.name}, {in_ascii(units.unit('m/N'))}: {', '.join(told)}")
     return lines
@@ -227,7 +228,7 @@ def matrix_table(
     rich.table.Table
     """
     chosen = units_named(units)
-    same, mixed, turn = words.BLOCK_UNITS[kind]
+    same, mixed, turn = BLOCK_UNITS[kind]
     rows = matrix.tolist() if hasattr(matrix, "tolist") else matrix
     table = Table(
         box=box.SIMPLE_HEAD,

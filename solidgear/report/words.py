@@ -6,11 +6,6 @@ import math
 from collections.abc import Iterable
 from typing import Any, TypeGuard
 
-#: kind -> unit of the blocks (translation, translation), (mixed), (rotation, rotation)
-BLOCK_UNITS = {
-    "stiffness": ("N/m", "N/rad", "N m/rad"),
-    "compliance": ("m/N", "rad/N", "rad/(N m)"),
-}
 NOTHING = "-"
 
 
@@ -91,9 +86,9 @@ def count(value: float | None, nothing: str = NOTHING) -> str:
 
 def by_plane(names: Iterable[str]) -> str:
     """A sentence, led by a space, on what bending 1 is where modes have the names of planes."""
-    from solidgear.body.mode_names import BY_PLANE  # which brings NumPy
+    from solidgear.body.mode_names import ModeName  # which brings NumPy
 
-    if not any(map(BY_PLANE.fullmatch, names)):
+    if not any(ModeName(name).plane for name in names):
         return ""
     return (
         " Bending z and bending x are those in the plane of y and z and in that of x and y; bending 1 "

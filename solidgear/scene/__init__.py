@@ -1,6 +1,7 @@
 """The scene: shapes, supports, features and questions, as data only."""
 
-from solidgear.scene.ask import Ask, Quantity
+from solidgear.quantity import Quantity
+from solidgear.scene.ask import Ask
 from solidgear.scene.blends import Blend, Chamfer, Corner, Fillet
 from solidgear.scene.catalogue import BearingDisplacement, BearingLoad, Catalogue
 from solidgear.scene.features import (

@@ -2,46 +2,34 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any
 
-from pydantic import Field, ValidatorFunctionWrapHandler, WrapValidator
+from pydantic import BeforeValidator, Field
 
 from solidgear.errors import SceneError
-from solidgear.scene.rules import AT, MOST_MODES
+from solidgear.quantity import AT, QUANTITIES, Quantity
+from solidgear.scene.rules import MOST_MODES
 from solidgear.scene.typed import Model
 from solidgear.scene.units import Frequency, Tolerance
 
-#: what a model can be judged by: compliance and stiffness at the lumped point, first modes
-Quantity = Literal[
-    "C_zz",
-    "C_z,thx",
-    "C_thx",
-    "C_yy",
-    "K_zz",
-    "K_z,thx",
-    "K_thx",
-    "K_yy",
-    "bending 1",
-    "bending 2",
-    "axial 1",
-    "torsion 1",
-]
+_KNOWN = ", ".join(f"'{name}'" for name in QUANTITIES[:-1]) + f" or '{QUANTITIES[-1]}'"
 
 
-def _at_a_point(value: Any, judge: ValidatorFunctionWrapHandler) -> Any:
+def _asked(value: Any) -> Quantity:
     """A quantity, or one of the lumped points by ``quantity@name``."""
-    name, at, point = value.partition(AT) if isinstance(value, str) else (value, "", "")
-    judge(name)
-    if at and not name.startswith(("C_", "K_")):
+    name = Quantity(value) if isinstance(value, str) else None
+    if name is None or name.symbol not in QUANTITIES:
+        raise SceneError(f"must be {_KNOWN}")
+    if name.points and name.is_frequency:
         raise SceneError(
-            f"only compliances and stiffnesses are of a point; write {name} without {AT}"
+            f"only compliances and stiffnesses are of a point; write {name.symbol} without {AT}"
         )
-    if at and not point:
-        raise SceneError(f"names no point behind {AT}; write for example {name}{AT}gear")
-    return value
+    if name.points == ("",):
+        raise SceneError(f"names no point behind {AT}; write for example {name.at('gear')}")
+    return name
 
 
-Asked = Annotated[Quantity, WrapValidator(_at_a_point)]
+Asked = Annotated[Quantity, BeforeValidator(_asked)]
 
 
 class Ask(Model):
@@ -55,8 +43,8 @@ class Ask(Model):
         Hz; None is no limit.
     tolerance : float
         Relative, between 0 and 1.
-    quantities : tuple of str
-        What models are judged by, names of `Quantity`, those of a further lumped point as
+    quantities : tuple of Quantity
+        What models are judged by, from `QUANTITIES`, those of a further lumped point as
         ``C_zz@name``; empty is the usual set, compliances at every point with first bending and
         first axial mode.
 

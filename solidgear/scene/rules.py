@@ -10,6 +10,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from typing import TYPE_CHECKING
 
 from solidgear.errors import SceneError, listed, nearest, show
+from solidgear.quantity import AT, STIFFNESS, Quantity
 
 if TYPE_CHECKING:
     from solidgear.scene import Bearing, Material, PointMass, Port, Segment
@@ -26,8 +27,6 @@ SLIMMEST, SHORTEST, THINNEST = 1e-3, 1e-6, 1e-4
 #: frequencies rise above 1e-4 and searches do not end
 MOST_UNLIKE = 1e5
 
-#: between a quantity and the lumped point that it is of
-AT = "@"
 #: elastic modes that can be asked for; of the last of them no mesh here has a digit
 MOST_MODES = 500
 
@@ -214,28 +213,30 @@ def no_such_point(name: str, known: Iterable[str]) -> str:
     return f"there is no lumped point {show(name, 40)}{hint}; the scene has {listed(known)}"
 
 
-def question_problems(ports: Sequence[Port], quantities: Sequence[str]) -> Iterator[SceneError]:
+def question_problems(
+    ports: Sequence[Port], quantities: Sequence[Quantity]
+) -> Iterator[SceneError]:
     """Quantities, such as ``C_zz`` or ``C_zz@gear``, are asked of lumped points that there are."""
     known = [port.name for port in ports]
     for k, quantity in enumerate(quantities):
-        base, at, point = quantity.partition(AT)
-        asked = [point] if point in known else point.split(AT)
-        unknown = [name for name in asked if at and name not in known]
-        reason = no_such_point(unknown[0], known) if unknown else no_term(base, asked)
+        asked = quantity.points_among(known)
+        unknown = [name for name in asked if name not in known]
+        reason = no_such_point(unknown[0], known) if unknown else no_term(quantity, asked)
         if reason:
             yield SceneError(reason, path=("ask", "quantities", k))
 
 
-def no_term(base: str, points: Sequence[str]) -> str:
-    """The reason to refuse a quantity (without its points) between points; empty where there is
+def no_term(quantity: Quantity, points: Sequence[str]) -> str:
+    """The reason to refuse a quantity between the points that it is asked for; empty where there is
     none.
     """
     if len(points) > 2:
-        return f"a term is between two points; write for example {base}@{points[0]}@{points[1]}"
-    if len(points) == 2 and base.startswith("K_"):
+        return f"a term is between two points; write for example {quantity.at(*points[:2])}"
+    if len(points) == 2 and quantity.kind == STIFFNESS:
+        compliance = f"C{quantity.symbol[1:]}{AT}{AT.join(points)}"
         return (
             "a stiffness between points depends on which of them are held; ask for the compliance, "
-            f"C{base[1:]}@{'@'.join(points)}, or run solidgear stiffness --port {','.join(points)}"
+            f"{compliance}, or run solidgear stiffness --port {','.join(points)}"
         )
     return ""
 

@@ -1,4 +1,4 @@
-"""Families of motion: which block moves in which, and how modes are numbered within one."""
+"""Families of motion, and those that a block moves in."""
 
 from __future__ import annotations
 
@@ -65,27 +65,3 @@ def family_of(block: Block) -> str:
     own = [name for name, known in FAMILIES.items() if set(block.components) & set(known)]
     # a block of a part with a mirror plane holds several
     return " and ".join(own)
-
-
-def numbered(families: list[str]) -> list[str]:
-    """Names of modes from their families, in the order given.
-
-    Parameters
-    ----------
-    families : list of str
-
-    Returns
-    -------
-    list of str
-
-    Examples
-    --------
-    >>> numbered(["bending", "axial", "bending"])
-    ['bending 1', 'axial 1', 'bending 2']
-    """
-    count: dict[str, int] = {}
-    out = []
-    for family in families:
-        count[family] = count.get(family, 0) + 1
-        out.append(f"{family} {count[family]}")
-    return out

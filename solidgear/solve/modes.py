@@ -15,12 +15,11 @@ from typing import TYPE_CHECKING, ClassVar
 import numpy as np
 
 from solidgear.body import FURTHER, Body, as_supports
-from solidgear.body.mode_names import meant
+from solidgear.body.mode_names import BENDING, ModeName, meant, numbered
 from solidgear.display import Displayed
 from solidgear.errors import SolidgearError
 from solidgear.machine.threads import pinned
 from solidgear.solve.eigen import Raw
-from solidgear.solve.families import numbered
 from solidgear.solve.groups import (
     Part,
     complete,
@@ -47,7 +46,7 @@ class Mode:
 
     Attributes
     ----------
-    name : str
+    name : ModeName
         Such as ``bending 1``, ``axial 1``, ``rigid torsion``.
     family : str
     frequency_hz : float
@@ -68,7 +67,7 @@ class Mode:
         (not that of the mesh).
     """
 
-    name: str
+    name: ModeName
     family: str
     frequency_hz: float
     multiplicity: int
@@ -130,7 +129,7 @@ class ModeSet(Displayed):
         return np.array([m.frequency_hz for m in self.modes])
 
     @property
-    def names(self) -> tuple[str, ...]:
+    def names(self) -> tuple[ModeName, ...]:
         """Names in the order of ``frequency_hz``."""
         return tuple(m.name for m in self.modes)
 
@@ -295,14 +294,14 @@ def _rigid(names: Names, raw: list[Raw]):
             "rigid (combined)" if sum(s > 0.01 for s in shares.values()) > 1 else f"rigid {family}"
         )
         yield Mode(
-            name,
+            ModeName(name),
             family,
             0.0,
             1,
             (r.vectors,),
             motion[None],
             sum(shares.values()),
-            int(family == "bending"),
+            int(family == BENDING),
         )
 
 

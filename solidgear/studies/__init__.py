@@ -1,1 +1,1 @@
-"""What is done with models: comparing, checking, sweeping."""
+"""Uses of models: comparing, checking, sweeping."""

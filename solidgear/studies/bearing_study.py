@@ -1,5 +1,4 @@
-"""What a scene's catalogue bearings do: at their load, over load, and what their ranges leave
-open."""
+"""Catalogue bearings of a scene: at their load, over load, and what their ranges leave open."""
 
 from __future__ import annotations
 

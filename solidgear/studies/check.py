@@ -1,8 +1,8 @@
-"""What will not hold: mass closed, free body free, and every guard on the scene."""
+"""Checks of a scene: mass closed, free body free, and every guard on the scene."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
@@ -11,6 +11,7 @@ import numpy as np
 from solidgear.body import Body
 from solidgear.errors import SolidgearError
 from solidgear.judge.effort import heavy_meshes
+from solidgear.judge.record import GuardRecord
 from solidgear.judge.solution import Solution
 from solidgear.ladder.model import BEAM, LUMPED, SOLID
 from solidgear.ladder.registry import LADDER
@@ -90,10 +91,7 @@ def check_scene(scene: Scene, body: Body, probe: Probe | None = None) -> dict:
     said += [("round_part", notice) for notice in described(scene)]
     for name in GUARDS:
         said += [(name, notice) for notice in _heard(name, probe)]
-    records = [
-        {"guard": name, "level": n.level, "models": list(n.models), "sentence": n.sentence}
-        for name, n in said
-    ]
+    records = [_record(name, notice, notice.models) for name, notice in said]
     out = {
         kind: [n.sentence for _, n in said if n.level in levels]
         for kind, levels in (
@@ -103,15 +101,15 @@ def check_scene(scene: Scene, body: Body, probe: Probe | None = None) -> dict:
         )
     }
     return out | {
-        "records": records,
+        "records": [record.model_dump() for record in records],
         "verdicts": {model: _verdict(model, records) for model in (*beams(), *_solids(scene))},
     }
 
 
 def notices(
     scene: Scene, rungs: dict[str, Solution], names: tuple[str, ...] | None = None
-) -> list[dict]:
-    """What the guards have to say of models that are solved, facts left out.
+) -> list[GuardRecord]:
+    """Notices of the guards on models that are solved, facts left out.
 
     Parameters
     ----------
@@ -122,40 +120,32 @@ def notices(
 
     Returns
     -------
-    list of dict
-        ``guard``, ``level``, ``models`` (those that are solved; empty where it is about the data)
-        and ``sentence``.
+    list of GuardRecord
+        Models are those that are solved; none where it is about the data.
     """
     plain = scene.plain
     # quick solutions are of the plain part; what is solved with features is no stand-in for them
     known = rungs if plain is scene else {}
     probes = [Probe(plain, r.body, known, scene) for r in rungs.values()]
-    out: dict[str, dict] = {}
+    out: dict[str, GuardRecord] = {}
     if names is None and scene.body is not None and probes:
         heard = [*described(scene), *against_the_part(scene, rungs, probes[-1])]
         for notice in (n for n in heard if n.level != "fact"):
-            out[notice.sentence] = {
-                "guard": "round_part",
-                "level": notice.level,
-                "models": _about(notice, rungs),
-                "sentence": notice.sentence,
-            }
+            out[notice.sentence] = _record("round_part", notice, _about(notice, rungs))
     for name in names or tuple(n for n in GUARDS if n not in NOT_IN_COMPARISONS):
         for probe in probes if name in OF_A_MESH else probes[-1:]:
             for notice in _heard(name, probe):
                 about = _about(notice, rungs)
                 mine = name not in OF_A_MESH or probe.body.fidelity in notice.models
                 if notice.level != "fact" and mine and (about or not notice.models):
-                    out.setdefault(
-                        notice.sentence,
-                        {
-                            "guard": name,
-                            "level": notice.level,
-                            "models": about,
-                            "sentence": notice.sentence,
-                        },
-                    )
+                    out.setdefault(notice.sentence, _record(name, notice, about))
     return list(out.values())
+
+
+def _record(guard: str, notice: Notice, models: Iterable[str]) -> GuardRecord:
+    return GuardRecord(
+        guard=guard, level=notice.level, models=list(models), sentence=notice.sentence
+    )
 
 
 def _about(notice: Notice, rungs: dict[str, Solution]) -> list[str]:
@@ -168,7 +158,7 @@ def _about(notice: Notice, rungs: dict[str, Solution]) -> list[str]:
 
 
 def cautions(scene: Scene, body: Body, fidelity: str | None = None) -> list[str]:
-    """What the guards have to say before the numbers of one model are used, in sentences; facts and
+    """Sentences of the guards to be heard before the numbers of one model are used; facts and
     what concerns other models left out.
 
     Parameters
@@ -196,7 +186,7 @@ def cautions(scene: Scene, body: Body, fidelity: str | None = None) -> list[str]
 
 
 def _heard(name: str, probe: Probe) -> list[Notice]:
-    """What a guard says; one that cannot be run must not hide what the others have to say."""
+    """Notices of a guard; one that cannot be run must not hide what the others have to say."""
     try:
         return _of_this_lumped(GUARDS[name](probe), name, probe)
     except (
@@ -233,23 +223,19 @@ def _solids(scene: Scene) -> list[str]:
     return [m for m in LADDER.of(SOLID) if m in fit or not LADDER[m].unfit(scene)]
 
 
-def _verdict(model: str, records: list[dict]) -> dict:
+def _verdict(model: str, records: list[GuardRecord]) -> dict:
     own = [
-        r
-        for r in records
-        if model in r["models"] or (r["guard"] == "free_motions" and r["level"] != "fact")
+        r for r in records if model in r.models or (r.guard == "free_motions" and r.level != "fact")
     ]
-    worst = max((r["level"] for r in own), key=LEVELS.index, default="fact")
+    worst = max((r.level for r in own), key=LEVELS.index, default="fact")
     return {
         "verdict": VERDICTS[worst],
-        "guards": list(
-            dict.fromkeys(r["guard"] for r in own if r["level"] == worst and worst != "fact")
-        ),
+        "guards": list(dict.fromkeys(r.guard for r in own if r.level == worst and worst != "fact")),
     }
 
 
 def _beyond_the_segments(scene: Scene) -> Iterator[Notice]:
-    """Which models answer for the plain part only."""
+    """Models that answer for the plain part only."""
     yield from smearing(scene)
     features = resolved(scene)
     if not features:

@@ -12,10 +12,10 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 from solidgear.display import Displayed
 from solidgear.errors import SolidgearError
-from solidgear.judge.causes import SHOWN, Cause, attachment_causes, beam_causes, shoulder_cause
+from solidgear.judge.causes import SHOWN, attachment_causes, beam_causes, shoulder_cause
 from solidgear.judge.lumped import synthesise_all
 from solidgear.judge.quantities import change
-from solidgear.judge.record import LumpedRecord, Record, WhereRecord
+from solidgear.judge.record import CauseRecord, GuardRecord, LumpedRecord, Record, WhereRecord
 from solidgear.judge.recording import recorded
 from solidgear.judge.solution import Solution
 from solidgear.judge.study import study
@@ -166,7 +166,7 @@ def compare(
 
 
 def _bearing_range(scene: Scene, progress) -> dict[str, Any]:
-    """What the loads, preloads and insides of catalogue bearings leave open, as plain data."""
+    """Range that loads, preloads and insides of catalogue bearings leave open, as plain data."""
     if all(bearing.catalogue is None for bearing in scene.bearings):
         return {}
     from solidgear.bearings.bounds import USUAL
@@ -181,13 +181,13 @@ def _bearing_range(scene: Scene, progress) -> dict[str, Any]:
 
 @dataclass
 class _Found:
-    """What a comparison has so far; an interrupt leaves it whole."""
+    """Findings of a comparison so far; an interrupt leaves it whole."""
 
     rungs: dict[str, Solution]
     failed: dict[str, str]
-    causes: list[Cause]
+    causes: list[CauseRecord]
     lumped: dict[str, LumpedRecord]
-    guards: list[dict]
+    guards: list[GuardRecord]
     where: WhereRecord | None = None
 
 
@@ -233,7 +233,7 @@ def _run(scene: Scene, models, options, found: _Found, progress: Progress) -> No
 
 
 def _after_a_solid(model: str, done: Collection[str]) -> bool:
-    """Whether a model is a solid and another one is done."""
+    """Tell whether a model is a solid and another one is done."""
     solids = LADDER.of(SOLID)
     return model in solids and any(s in done for s in solids if s != model)
 

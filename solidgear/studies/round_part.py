@@ -1,4 +1,4 @@
-"""Whether the body of revolution inside a part will do in its place, with the numbers of both."""
+"""Body of revolution inside a part: whether it will do in its place, with the numbers of both."""
 
 from __future__ import annotations
 
@@ -6,11 +6,11 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from solidgear.errors import listed
-from solidgear.judge import quantities
+from solidgear.judge.deviations import BEYOND, WITHIN, gap_verdict
 from solidgear.judge.quantities import change, judged
 from solidgear.judge.solution import Solution
 from solidgear.judge.ties import SCENE
-from solidgear.judge.verdict import BEYOND, WITHIN, gap_verdict, percent
+from solidgear.judge.verdict import percent
 from solidgear.ladder.model import SOLID
 from solidgear.ladder.registry import LADDER
 from solidgear.models.kinds import PARTS
@@ -24,7 +24,7 @@ ROUND_MODEL = "harmonic"
 
 
 def described(scene: Scene) -> Iterator[Notice]:
-    """What of the part of a scene is round.
+    """Round portion of the part of a scene.
 
     Parameters
     ----------
@@ -67,7 +67,7 @@ def described(scene: Scene) -> Iterator[Notice]:
 
 
 def _of_materials(scene: Scene) -> Iterator[Notice]:
-    """What of the part is of which material, and what its round part makes of that."""
+    """Materials of the part, and what its round part makes of them."""
     body = scene.body
     assert body is not None  # asked of parts
     if not body.groups:
@@ -117,9 +117,8 @@ def against_the_part(scene: Scene, rungs: dict[str, Solution], probe: Probe) -> 
                 continue
             bands = [r.bands.get(SCENE, {}).get(name) for r in (mine, theirs)]
             band = sum(b.gci for b in bands if b is not None)
-            unit = quantities.described(name)[2]
             told.append(
-                f"{name} {mine.quantities[name]:.5g} {unit} ({'+' * (gap > 0)}{percent(gap)}"
+                f"{name} {mine.quantities[name]:.5g} {name.unit} ({'+' * (gap > 0)}{percent(gap)}"
                 + (f" +- {percent(band)})" if all(bands) else ", part without a band)")
             )
             verdicts.append(gap_verdict(gap, band, tolerance))

@@ -14,10 +14,10 @@ import numpy as np
 
 from solidgear.judge.answer import climbed
 from solidgear.judge.climb import Climb
-from solidgear.judge.quantities import QUANTITIES
 from solidgear.judge.race.pareto import AUTOMATIC, Row
 from solidgear.judge.race.timing import answer
 from solidgear.judge.solving import Answer
+from solidgear.quantity import QUANTITIES
 from solidgear.solve.condensed import Condensed
 from solidgear.solve.families import FAMILIES
 
@@ -45,7 +45,7 @@ def automatic_rows() -> list[Row]:
 
 
 def solved(scene: Scene, model: str, options: dict, n: int) -> Answer:
-    """What a row of a chart answers, the automatic ones included; a solver for
+    """Answer of a row of a chart, the automatic ones included; a solver for
     :func:`solidgear.judge.race.timing.race`.
 
     Raises
@@ -55,7 +55,7 @@ def solved(scene: Scene, model: str, options: dict, n: int) -> Answer:
     """
     if model != AUTO:
         return answer(scene, model, options, n)
-    climb, _ = climbed(scene, options["tol"], tuple(QUANTITIES), _Charted, lambda _: None)
+    climb, _ = climbed(scene, options["tol"], QUANTITIES, _Charted, lambda _: None)
     assert climb.largest is not None and climb.modes is not None  # everything was asked
     values = {v.quantity: v.value for v in climb.values()}
     return Answer(climb.largest, _together(climb), climb.modes, values)

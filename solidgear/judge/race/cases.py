@@ -72,8 +72,8 @@ print(json.dumps(seconds))
 
 
 def setup_seconds() -> dict[str, float]:
-    """What a fresh interpreter pays once before the first model, s by what for; empty where none
-    can be started.
+    """Seconds that a fresh interpreter pays once before the first model, by what for; empty where
+    none can be started.
     """
     try:
         done = subprocess.run(

@@ -1,7 +1,7 @@
 """Error against cost: discretisations of one scene, and those that no other beats in both.
 
-The error is that against a refined harmonic solid, whose own band (grid convergence index over its
-order) is the floor: what lies below it is not resolved.
+The error is that against a refined harmonic solid, whose own error bar (grid convergence index over
+its order) is the floor: what lies below it is not resolved.
 """
 
 from __future__ import annotations
@@ -13,9 +13,10 @@ from statistics import median
 import numpy as np
 
 from solidgear.machine.environment import environment
+from solidgear.quantity import C_ZZ, FIRST_BENDING
 
 #: what is charted, as named in `quantities`
-CHARTED = ("C_zz", "bending 1")
+CHARTED = (C_ZZ, FIRST_BENDING)
 #: the family and the series of the automatic choice
 AUTOMATIC = "automatic"
 
@@ -102,7 +103,7 @@ class Race:
     environment: dict = field(default_factory=environment)
 
     def error(self, row: Row, quantity: str) -> float | None:
-        """Error of a row, never below the band of the reference; None where the row has none."""
+        """Error of a row, never below the bar of the reference; None where the row has none."""
         found = row.errors.get(quantity)
         return (
             None
@@ -129,7 +130,7 @@ class Race:
         return max(found, row.like_for_like.get(quantity, 0.0), *finer)
 
     def resolved(self, row: Row, quantity: str) -> bool:
-        """Whether the error of a row lies above the band of the reference."""
+        """Tell whether the error of a row lies above the error bar of the reference."""
         return row.errors.get(quantity, 0.0) > self.reference["bands"][quantity]
 
     def front(self, quantity: str, cost: str = "seconds") -> list[Row]:

@@ -25,6 +25,7 @@ from solidgear.judge.solving import Answer, solve
 from solidgear.ladder.model import BEAM, LUMPED
 from solidgear.ladder.registry import LADDER
 from solidgear.meshing.corners import sharpest_corner
+from solidgear.quantity import FIRST_BENDING
 from solidgear.reduction.effective_mass import synthesise
 
 log = logging.getLogger(__name__)
@@ -146,7 +147,7 @@ def race(
 
 
 def answer(scene, model: str, options: dict, n: int) -> Answer:
-    """What one model answers; the lumped one rests on the best beam, and has a first bending of its
+    """Answer of one model; the lumped one rests on the best beam, and has a first bending of its
     own.
 
     Raises
@@ -163,7 +164,7 @@ def answer(scene, model: str, options: dict, n: int) -> Answer:
         raise SolidgearError(
             "no lumped mass is positive and has the first bending mode as its first"
         )
-    return replace(found, quantities={**found.quantities, "bending 1": chosen.frequency_hz})
+    return replace(found, quantities={**found.quantities, FIRST_BENDING: chosen.frequency_hz})
 
 
 def scaled_error(compliance: np.ndarray, reference: np.ndarray) -> float | None:
@@ -179,7 +180,7 @@ def scaled_error(compliance: np.ndarray, reference: np.ndarray) -> float | None:
 
 
 def _reference(scene, options: dict, n: int, progress) -> tuple[dict, np.ndarray]:
-    """Record of the refined harmonic solid with the band from its two lower orders, and its
+    """Record of the refined harmonic solid with the error bar from its two lower orders, and its
     compliance.
     """
     top = options["order"]

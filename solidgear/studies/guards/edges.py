@@ -1,4 +1,4 @@
-"""What a model leaves out at fillets and chamfers."""
+"""Fillets and chamfers that a model leaves out."""
 
 from __future__ import annotations
 

@@ -14,6 +14,7 @@ from solidgear.ladder.factor_memory import solid_factor_mb
 from solidgear.ladder.registry import LADDER
 from solidgear.machine.memory import available_mb
 from solidgear.meshing.corners import sharpest_corner
+from solidgear.quantity import C_ZZ, FIRST_BENDING, Quantity
 from solidgear.solve.backends import BACKENDS, INSTALL, missing
 from solidgear.solve.factor import FASTEST, SMALL
 from solidgear.studies.guards.notice import Notice, Notices, beyond, everything, solids
@@ -47,7 +48,7 @@ def narrow_seat(probe: Probe) -> Notices:
 
 
 def rigid_seats(probe: Probe) -> Notices:
-    """What rigid seats move against averaged ones; they are the stiff bound."""
+    """Motion of numbers by rigid seats against averaged ones; they are the stiff bound."""
     if not probe.scene.bearings:
         return
     chosen = [repr(s.name) for s in probe.scene.stations if s.attachment == "rigid"]
@@ -59,7 +60,7 @@ def rigid_seats(probe: Probe) -> Notices:
         return
     moved = {
         name: value
-        for name in ("C_zz", "C_thx", "bending 1")
+        for name in (C_ZZ, Quantity("C_thx"), FIRST_BENDING)
         if (value := change(stiff, probe.tied("average"), name)) is not None
     }
     words = ", ".join(
@@ -170,7 +171,7 @@ GOOD_TO = 1.5  # of the laws, whose estimate over measured is 0.68 to 1.41
 
 
 def memory(probe: Probe) -> Notices:
-    """What will factor the 3D solid, and whether it will fit."""
+    """Factor of the 3D solid: by whom, and whether it will fit."""
     matrices = probe.solid_matrices
     size = sum(unknowns for unknowns, *_ in matrices)
     largest = max(unknowns for unknowns, *_ in matrices)
@@ -204,7 +205,7 @@ def memory(probe: Probe) -> Notices:
 
 
 def renderer(probe: Probe) -> Notices:
-    """Whether pictures can be drawn at all."""
+    """Tell whether pictures can be drawn at all."""
     if find_spec("pyvista") is None:
         yield Notice(
             "fact",

@@ -9,15 +9,16 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from solidgear.errors import SolidgearError
-from solidgear.judge import verdict
+from solidgear.judge import deviations
+from solidgear.judge.deviations import TIES, gap_verdict
 from solidgear.judge.lumped import preferred
-from solidgear.judge.quantities import diagonals, in_words
+from solidgear.judge.quantities import in_words
 from solidgear.judge.ties import SCENE
-from solidgear.judge.verdict import TIES, gap_verdict
 from solidgear.ladder.model import BEAM, LUMPED
 from solidgear.ladder.registry import LADDER
 from solidgear.meshing.corners import sharpest_corner
 from solidgear.models.beam.shoulder import MISSING, grown
+from solidgear.quantity import COMPLIANCE, FIRST_BENDING
 from solidgear.studies.guards.notice import Notice, Notices, against, beams, beyond
 from solidgear.studies.guards.probe import Probe
 
@@ -48,31 +49,29 @@ def beam_against_solid(probe: Probe) -> Notices:
         if not gaps:
             continue
         found = {
-            kind: [
-                g for g in gaps if gap_verdict(g["relative"], g["band"] or 0.0, tolerance) == kind
-            ]
-            for kind in (verdict.BEYOND, verdict.OPEN, verdict.WITHIN)
+            kind: [gap for gap in gaps if gap.standing(tolerance) == kind]
+            for kind in (deviations.BEYOND, deviations.OPEN, deviations.WITHIN)
         }
         kind, worst = next((kind, rows[0]) for kind, rows in found.items() if rows)
-        name, gap = worst["quantity"], worst["relative"]
-        if diagonals(name):  # a share of their mean is no ratio of the two numbers
+        name, gap = worst.quantity, worst.relative
+        if name.diagonals:  # a share of their mean is no ratio of the two numbers
             share = f"{abs(gap):.3g} times" if abs(gap) > 1 else f"{100 * abs(gap):.3g} % of"
             told = f"{share} the geometric mean of its two diagonal entries away from"
         else:
-            words = ("larger", "smaller") if name.startswith("C_") else ("higher", "lower")
+            words = ("larger", "smaller") if name.kind == COMPLIANCE else ("higher", "lower")
             told = against(gap, *words)
         called = in_words(name, probe.main)
         text = (
             f"{called} of the {LADDER[model].title} is {told} that of a "
-            f"light harmonic solid {TIES[worst['attachment']]}{_sure(worst['band'])}"
+            f"light harmonic solid {TIES[worst.attachment]}{_sure(worst.band)}"
         )
-        if kind == verdict.BEYOND:
+        if kind == deviations.BEYOND:
             yield Notice(
                 "avoid",
                 concerned,
                 f"{text}, more than the {100 * tolerance:g} % asked for; use {probe.instead()}",
             )
-        elif kind == verdict.OPEN:
+        elif kind == deviations.OPEN:
             yield Notice(
                 "open",
                 concerned,
@@ -309,7 +308,7 @@ ENERGY = 0.95
 
 
 def effective_mass(probe: Probe) -> Notices:
-    """Which lumped model there is, and whether the first mode is nearly the static shape it rests
+    """Lumped model that there is, and whether the first mode is nearly the static shape it rests
     on.
     """
     try:
@@ -355,24 +354,24 @@ def lumped_against_solid(probe: Probe) -> Notices:
     except SolidgearError:
         return  # `effective_mass` says so
     lumped, solid = preferred(found), probe.rung("harmonic")
-    truth, tolerance = solid.quantities.get("bending 1"), probe.scene.ask.tolerance
+    truth, tolerance = solid.quantities.get(FIRST_BENDING), probe.scene.ask.tolerance
     if not truth or lumped is None or lumped.frequency_hz is None:
         return
     gap = lumped.frequency_hz / truth - 1
     bands = solid.bands.get(SCENE, {})
-    band = bands["bending 1"].gci if "bending 1" in bands else 0.0
+    band = bands[FIRST_BENDING].gci if FIRST_BENDING in bands else 0.0
     kind = gap_verdict(gap, band, tolerance)
     text = (
         f"first bending of the lumped model is {against(gap, 'higher', 'lower')} "
         f"that of a light harmonic solid{_sure(band)}"
     )
-    if kind == verdict.BEYOND:
+    if kind == deviations.BEYOND:
         yield Notice(
             "avoid",
             ("lumped",),
             f"{text}, more than the {100 * tolerance:g} % asked for; use {probe.instead(BEAM_OR_SOLID, *beams())}",
         )
-    elif kind == verdict.OPEN:
+    elif kind == deviations.OPEN:
         yield Notice(
             "open",
             ("lumped",),

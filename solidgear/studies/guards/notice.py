@@ -1,4 +1,4 @@
-"""What a guard says."""
+"""Notices of guards."""
 
 from __future__ import annotations
 
@@ -58,7 +58,7 @@ def beyond(error: float, tolerance: float) -> str:
 def slip_in_units(
     found: Iterable[tuple[str, float, str]], sound: Mapping[str, tuple[float, float]], legend: str
 ) -> str:
-    """What is to be said of numbers whose order of magnitude no part has; nothing if there are none.
+    """Sentence on numbers whose order of magnitude no part has; nothing if there are none.
 
     Parameters
     ----------
@@ -89,7 +89,7 @@ def slip_in_units(
 
 
 def against(gap: float, more: str, less: str) -> str:
-    """What a number is of another, by the gap between them as a share of the other: in per cent,
+    """Ratio of a number to another in words, by the gap as a share of the other: in per cent,
     and as a factor where it is more than twice as large.
 
     Examples

@@ -19,17 +19,18 @@ import scipy.sparse.linalg as spla
 from solidgear.body import Body, Supports, as_supports
 from solidgear.errors import SolidgearError
 from solidgear.factoring import Factoring
-from solidgear.judge.quantities import judged
+from solidgear.judge.deviations import Deviation, deviations
+from solidgear.judge.quantities import Values, judged
 from solidgear.judge.solution import Solution
 from solidgear.judge.solving import ENOUGH, solve
 from solidgear.judge.study import study
 from solidgear.judge.ties import rigid_seats
-from solidgear.judge.verdict import deviations
 from solidgear.ladder import build
 from solidgear.ladder.factor_memory import PIECES, WHOLE, Parts, parts_of
 from solidgear.ladder.meshes import HARMONIC
 from solidgear.ladder.model import BEAM, SOLID
 from solidgear.ladder.registry import LADDER
+from solidgear.quantity import FIRST_BENDING
 from solidgear.reduction.effective_mass import Synthesis, synthesise
 from solidgear.reduction.lumped_point import LumpedPoint
 from solidgear.scene.rules import TOUCH
@@ -80,7 +81,7 @@ class Probe:
         self.tied, self.gaps = cache(self._tied), cache(self._gaps)
 
     def instead(self, usual: str = "the harmonic solid", *models: str) -> str:
-        """What to use in place of a model that does not hold: the usual advice, or, where features
+        """Advice in place of a model that does not hold: the usual advice, or, where features
         of the scene forbid its models, those that hold them.
 
         Parameters
@@ -96,7 +97,7 @@ class Probe:
 
     @property
     def beam_fits(self) -> bool:
-        """Whether a beam models the scene; where none does, a lumped model rests on a solid."""
+        """Tell whether a beam models the scene; else a lumped model rests on a solid."""
         return any(not LADDER[m].unfit(self.whole) for m in LADDER.of(BEAM))
 
     @property
@@ -148,12 +149,12 @@ class Probe:
             return self.body.mesh
         return self.rungs[model].body.mesh if model in self.rungs else {}
 
-    def beam(self, model: str) -> tuple[Body, ModeSet, dict[str, float]]:
+    def beam(self, model: str) -> tuple[Body, ModeSet, Values]:
         """A beam tied as in the scene: body, modes and compared numbers."""
         rung = self.rung(model)
         return rung.body, rung.modes, rung.quantities
 
-    def _tied(self, attachment: str | None) -> dict[str, float]:
+    def _tied(self, attachment: str | None) -> Values:
         """Numbers of a harmonic solid, on one mesh for all, with one attachment (``rigid``: at the
         bearings), or as the scene has it (None).
         """
@@ -167,17 +168,17 @@ class Probe:
         n, upto = max(scene.ask.modes, ENOUGH), scene.ask.max_frequency
         return solve(scene, "harmonic", n, max_frequency=upto, **HARMONIC).quantities
 
-    def _gaps(self, model: str) -> list[dict]:
+    def _gaps(self, model: str) -> list[Deviation]:
         """Deviations of a beam from the light solid in what is judged, the largest first."""
         rungs = {model: self.rung(model), "harmonic": self.rung("harmonic")}
         names = judged(self.scene)
-        found = [g for g in deviations(rungs, "harmonic") if g["quantity"] in names]
-        return sorted(found, key=lambda g: -abs(g["relative"]))
+        found = [g for g in deviations(rungs, "harmonic") if g.quantity in names]
+        return sorted(found, key=lambda g: -g.size)
 
     @property
     def first_bending(self) -> float | None:
         """First bending of the Timoshenko beam on its bearings, Hz."""
-        return self.beam("timoshenko")[2].get("bending 1")
+        return self.beam("timoshenko")[2].get(FIRST_BENDING)
 
     @cached_property
     def lumped(self) -> tuple[LumpedPoint, dict[str, Synthesis]]:
@@ -316,7 +317,7 @@ class Probe:
 
     @property
     def meshed(self) -> Scene:
-        """What a 3D solid is of: all of the scene, or its plain part where no mesh holds all."""
+        """Scene that a 3D solid is of: all of it, or its plain part where no mesh holds all."""
         return self.scene if LADDER["solid"].unfit(self.whole) else self.whole
 
     @property

@@ -1,4 +1,4 @@
-"""What smearing teeth into their pitch cone costs, and whether that matters at a tolerance.
+"""Price of smearing teeth into their pitch cone, and whether that matters at a tolerance.
 
 Measured on an overhung pinion with 10 to 45 teeth of several proportions, straight and of 35
 degrees, by cyclic sectors (`python -m validation.teeth`): the cone is too stiff, by up to 0.05 of

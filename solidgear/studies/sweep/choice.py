@@ -15,6 +15,7 @@ import numpy as np
 
 from solidgear.errors import SceneError
 from solidgear.judge.settle import Settled, settle
+from solidgear.quantity import Quantity
 from solidgear.studies.sweep.run import variants_of
 
 if TYPE_CHECKING:
@@ -79,7 +80,7 @@ def settled_for_sweep(
         last[_seats(one)] = own
         found.append(own)
     finest = max(found, key=lambda settled: settled.body.size)
-    bars: dict[str, float] = {}
+    bars: dict[Quantity, float] = {}
     for settled in found:
         for quantity, bar in settled.bars.items():
             bars[quantity] = max(bar, bars.get(quantity, 0.0))
@@ -92,7 +93,7 @@ def settled_for_sweep(
 
 
 def _seats(scene: Scene) -> tuple:
-    """Where stations are, and how they are tied."""
+    """Places of stations, and their ties."""
     return tuple((s.name, s.y, s.lo, s.hi, s.attachment) for s in scene.stations)
 
 

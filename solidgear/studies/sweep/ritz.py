@@ -37,6 +37,7 @@ import numpy as np
 import scipy.linalg as sla
 
 from solidgear.body import Supports, component_rows
+from solidgear.body.mode_names import numbered
 from solidgear.reduction.moments import Reduced, ReducedBlock, residual_basis
 from solidgear.solve.naming import ALIKE, OVAL_TOLERANCE, alike
 from solidgear.solve.supported import decoupled, groups
@@ -302,7 +303,7 @@ def _bound(part: _Group, count: int, last: float, shift: float, slack: float) ->
 
 
 def _tolerances(reduced: Reduced, supports: Supports) -> tuple[float, float]:
-    """How near eigenvalues of one pair lie, relative, for bending and for more waves around; as
+    """Distance of eigenvalues of one pair, relative, for bending and for more waves around; as
     :meth:`solidgear.solve.naming.Names.pairs` has it.
     """
     own, bearings = reduced.pair_tolerance, alike(supports)
@@ -314,27 +315,17 @@ def _tolerances(reduced: Reduced, supports: Supports) -> tuple[float, float]:
 
 def _names(value, family, tolerances) -> tuple[str, ...]:
     """Names as :mod:`solidgear.solve.naming` gives them."""
-    count: dict[str, int] = {}
-    out: list[str] = []
-    paired = False
+    firsts: list[int] = []
     for k, name in enumerate(family):
-        tolerance = (
-            tolerances[0]
-            if name == "bending"
-            else tolerances[1]
-            if name.startswith("ovalising")
-            else -1.0
-        )
-        if (
-            k
-            and not paired
-            and family[k - 1] == name
-            and value[k] - value[k - 1] <= tolerance * value[k - 1]
-        ):
-            out.append(out[-1])
-            paired = True
-            continue
-        paired = False
-        count[name] = count.get(name, 0) + 1
-        out.append(f"{name} {count[name]}")
-    return tuple(out)
+        tolerance = -1.0
+        if name == "bending":
+            tolerance = tolerances[0]
+        elif name.startswith("ovalising"):
+            tolerance = tolerances[1]
+        # of two twins the first stands for both
+        alone = not firsts or firsts[-1] != k - 1 or family[k - 1] != name
+        twin = not alone and value[k] - value[k - 1] <= tolerance * value[k - 1]
+        firsts.append(k - 1 if twin else k)
+    own = list(dict.fromkeys(firsts))
+    named = dict(zip(own, numbered(family[k] for k in own)))
+    return tuple(named[k] for k in firsts)

@@ -132,7 +132,7 @@ class RowFile:
 
     # ---------------------------------------------------------------------------- what is there
     def _compare(self, overwrite: bool) -> None:
-        """What the file is to the store."""
+        """Compare the file with the store."""
         for left in self.path.parent.glob(f".{glob.escape(self.path.name)}.*.part"):
             with suppress(OSError):
                 left.unlink()  # of a process that was killed; nobody else writes here now
@@ -242,7 +242,7 @@ def _csv_line(values: Iterable[Any]) -> str:
 
 
 def _text(value: Any) -> Any:
-    """What stands in a CSV field: full precision, nothing for what does not exist."""
+    """Text of a CSV field: full precision, nothing for what does not exist."""
     if value is None or (isinstance(value, float) and math.isnan(value)):
         return ""
     return float.__repr__(value) if isinstance(value, float) else value

@@ -30,7 +30,7 @@ PROBES = 24
 
 @dataclass(frozen=True)
 class Summary:
-    """What a sweep did.
+    """Account of a sweep.
 
     Attributes
     ----------

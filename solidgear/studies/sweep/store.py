@@ -204,7 +204,7 @@ class Store:
         return key, facts, sound and key is not None
 
     def _is_other(self, key: Mapping[str, Any]) -> bool:
-        """Whether a key is that of another sweep; refused if there are rows of it."""
+        """Tell whether a key is that of another sweep; refused if there are rows of it."""
         # as texts, for a number that is none is not equal to itself
         names = sorted({*key, *self._key})
         differ = [name for name in names if _json(key.get(name)) != _json(self._key.get(name))]
@@ -218,7 +218,7 @@ class Store:
         return bool(differ)
 
     def _is_sound(self) -> bool:
-        """Whether the structure and all rows are intact; `done` has the numbers then."""
+        """Tell whether the structure and all rows are intact; `done` has the numbers then."""
         try:
             if self._one("PRAGMA integrity_check(1)") != "ok":
                 return False

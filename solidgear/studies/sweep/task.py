@@ -1,4 +1,4 @@
-"""What one variant of a sweep comes to: statics at the lumped point and first modes, as a row."""
+"""Solution of one variant of a sweep: statics at the lumped point and first modes, as a row."""
 
 from __future__ import annotations
 
@@ -111,7 +111,7 @@ class Task:
         return row | _modal(found.frequency_hz, found.names)
 
     def weak(self, row: dict[str, Any]) -> bool:
-        """Whether the error bound of a row exceeds the tolerance."""
+        """Tell whether the error bound of a row exceeds the tolerance."""
         return row["status"] == "ok" and not row["error_bound"] <= self.tolerance
 
     def in_full(self, row: dict[str, Any], body: Body) -> dict[str, Any]:
@@ -121,7 +121,7 @@ class Task:
         shapes = [
             (m.frequency_hz, m.name)
             for m in found.modes
-            if not m.name.startswith("rigid")
+            if not m.name.rigid
             for _ in range(m.multiplicity)
         ][: self.n]
         # the residual bounds the error of an eigenvalue, twice that of a frequency

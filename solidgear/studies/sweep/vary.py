@@ -1,4 +1,5 @@
-"""What a sweep varies: ``bearing.NAME.FIELD=SPEC`` texts, their full product or a Latin hypercube.
+"""Varied fields of a sweep: ``bearing.NAME.FIELD=SPEC`` texts, their full product or a Latin
+hypercube.
 
 ``bearing.NAME.housing.FIELD=SPEC`` varies an entry of the housing of one bearing,
 ``housing.FIELD=SPEC`` one of the housing of all, or its ``axial`` spring: entries of motions that
@@ -65,7 +66,7 @@ class Axis:
 
     @property
     def place(self) -> tuple[int | None, bool]:
-        """What the field is of: a bearing, its housing, or that of all."""
+        """Owner of the field: a bearing, its housing, or that of all."""
         return self.bearing, self.housed
 
     @property
@@ -193,7 +194,9 @@ def _of_the_housing(scene: Scene, text: str, field: str, spec: str) -> Axis:
 
 
 def _varied_of(housing: Elastic) -> tuple[str, ...]:
-    """What of a housing can be varied: entries of motions in which it gives, and all together."""
+    """Fields of a housing that can be varied: entries of motions in which it gives, and all
+    together.
+    """
     gives = {name: {i, j} <= set(housing.gives) for name, (i, j, _) in STIFFNESS_NAMES.items()}
     return (*(name for name, varied in gives.items() if varied), "scale")
 

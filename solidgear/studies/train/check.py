@@ -1,4 +1,4 @@
-"""What will not hold of a train, before anything large is solved: the guards of both shafts, and
+"""Checks of a train, before anything large is solved: the guards of both shafts, and
 what concerns the system.
 
 Both shafts are looked at up to the frequency and to the tolerance that the train asks for; the

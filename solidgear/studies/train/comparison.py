@@ -24,7 +24,7 @@ PICTURES = 4
 
 @dataclass(frozen=True, eq=False)
 class TrainComparison:
-    """What was found about a train.
+    """Findings about a train.
 
     Attributes
     ----------
@@ -51,7 +51,7 @@ class TrainComparison:
 
     @property
     def marks(self) -> dict[str, float]:
-        """Where the mesh force of a mix leaves its band, Hz, by its label."""
+        """Frequencies at which the mesh force of a mix leaves its band, Hz, by its label."""
         mixes = self.verdict.mixes
         return {m.label: m.force_to_hz for m in mixes if m.force_to_hz is not None}
 

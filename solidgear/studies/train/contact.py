@@ -1,4 +1,4 @@
-"""Where the teeth of a train touch and along which line they push, on both shafts."""
+"""Contact of the teeth of a train, on both shafts: where they touch, and their line of push."""
 
 from __future__ import annotations
 
@@ -193,7 +193,7 @@ def _given_line(train: Train) -> np.ndarray:
 
 
 def _cones(train: Train) -> list[str]:
-    """Whether the pitch angle is that of the teeth."""
+    """Tell whether the pitch angle is that of the teeth."""
     angle, shaft = train.pinion.pitch_angle, train.mesh.shaft_angle
     if angle is None:
         return []
@@ -208,7 +208,7 @@ def _cones(train: Train) -> list[str]:
 
 
 def _apexes(train: Train) -> list[str]:
-    """Whether the pitch apex lies where the head of the scene is narrowest."""
+    """Tell whether the pitch apex lies where the head of the scene is narrowest."""
     if abs(sin(train.mesh.shaft_angle)) < 1e-6:
         return []  # parallel shafts have none
     out = []

@@ -1,4 +1,4 @@
-"""Which shaft of a train needs the solid, and from which frequency on: every mix of models against
+"""Shaft of a train that needs the solid, and from which frequency on: every mix of models against
 both shafts solid.
 
 A mix leaves the band of the modes at the first mode of the judge that it moves by more than the
@@ -49,7 +49,7 @@ RELAXED = {
 
 @dataclass(frozen=True)
 class Departure:
-    """Where one mix leaves the judge.
+    """Frequencies at which one mix leaves the judge.
 
     Attributes
     ----------
@@ -150,7 +150,7 @@ class Verdict:
         }
 
     def sentences(self) -> list[str]:
-        """What follows from the table."""
+        """Conclusions from the table."""
         sure = (
             "how sure their meshes are is not told with local harmonics"
             if self.judge_bar is None
@@ -264,7 +264,7 @@ def _with_cause(found: dict[tuple[str, str], Departure], mix: tuple[str, str]) -
 
 
 def _further(other: Departure, own: Departure) -> bool:
-    """Whether a mix holds clearly further, in its modes or in the force."""
+    """Tell whether a mix holds clearly further, in its modes or in the force."""
 
     def end(hz):
         return np.inf if hz is None else hz
@@ -332,7 +332,7 @@ class _Judge:
         return first[0], first[1]
 
     def bar(self) -> float | None:
-        """How far the judge's frequencies may be from those of the exact solids."""
+        """Largest relative error that the judge's meshes may leave in its frequencies."""
         count = len(self.found.frequency_hz) - self.found.rigid
         bars = mesh_bars(self.workshop, self.system, dict.fromkeys(SIDES, JUDGE), count)
         return None if bars is None else float(bars.max())

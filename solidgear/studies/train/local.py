@@ -46,8 +46,8 @@ FEW = 8
 
 
 def patch_of(train: Train, side: str, scene: Scene, point: np.ndarray) -> Patch:
-    """Where teeth push on a shaft: one tooth pitch around the mesh point, over the seat of the
-    lumped point.
+    """Patch of a shaft that teeth push on: one tooth pitch around the mesh point, over the seat of
+    the lumped point.
 
     Parameters
     ----------
@@ -109,7 +109,7 @@ def waves_of(part: Part) -> dict[int, np.ndarray]:
 
 
 def local_give(workshop: Workshop, system: System) -> dict[str, float]:
-    """How far the harmonics at the mesh point give way under a constant mesh force, m/N, by shaft
+    """Compliance of the harmonics at the mesh point under a constant mesh force, m/N, by shaft
     that has any.
     """
     give = {}
@@ -122,7 +122,7 @@ def local_give(workshop: Workshop, system: System) -> dict[str, float]:
 
 
 def local_lines(workshop: Workshop, system: System) -> tuple[str, ...]:
-    """What the harmonics at the mesh point add, in words; empty without any."""
+    """Share of the harmonics at the mesh point, in words; empty without any."""
     asked = workshop.train.mesh.local_harmonics
     if not asked:
         return ()

@@ -1,4 +1,4 @@
-"""How sure the meshes of harmonic shafts leave the frequencies of a train.
+"""Error bars that the meshes of harmonic shafts leave in the frequencies of a train.
 
 The bound is that of one shaft (:mod:`solidgear.bounds.harmonic`): a mode of the train moves
 every shaft, what the other parts do to it are forces on its ports, and the local problems of all

@@ -103,7 +103,7 @@ class TrainModes:
         return asdict(self)
 
     def heading(self) -> list[str]:
-        """What was solved."""
+        """Name of what was solved."""
         kept = ", ".join(f"{side} {n} of {self.unknowns[side]}" for side, n in self.kept.items())
         return [
             f"{self.train}: pinion {self.pinion}, gear {self.gear}",
@@ -111,11 +111,11 @@ class TrainModes:
         ]
 
     def remarks(self) -> list[str]:
-        """What to know of the numbers, cautions included."""
+        """Remarks on the numbers, cautions included."""
         return self.notes() + [f"caution: {text}" for text in self.cautions]
 
     def notes(self) -> list[str]:
-        """What to know of the numbers."""
+        """Notes on the numbers."""
         lines, meshed = [], any(mode.mesh is not None for mode in self.modes)
         if self.rigid == 1 and not self.free:
             lines.append("The whole train turns freely: one motion at exactly 0 Hz.")
@@ -165,7 +165,7 @@ def unpublished_lines(unpublished: dict[str, str]) -> list[str]:
 
 
 def wrench_lines(met: Contact) -> tuple[str, ...]:
-    """What contact cells come to, and the moment that no mesh point carries."""
+    """Resultant of contact cells, and the moment that no mesh point carries."""
     wrench = met.wrench
     if wrench is None:
         return ()
@@ -284,7 +284,7 @@ def refuse_unresolved(workshop: Workshop, system: System, limit: float) -> None:
 
 
 def free_motions(workshop: Workshop, system: System) -> tuple[str, ...]:
-    """What moves freely, in words, unless it is the one rotation of the whole train."""
+    """Free motions in words, unless it is the one rotation of the whole train."""
     count = system.free.shape[1]
     if count == 0:
         return ("Nothing turns freely: a bearing resists the rotation of a shaft.",)

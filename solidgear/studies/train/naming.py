@@ -18,12 +18,12 @@ from solidgear.body import Body
 from solidgear.frames import shift
 from solidgear.scene.train import SIDES
 from solidgear.solve.circumference import of_body
+from solidgear.solve.families import FAMILIES
 from solidgear.studies.train.local import waves_of
 from solidgear.studies.train.models import Workshop
 from solidgear.system.modes import SystemModes
 from solidgear.system.system import System
 
-FAMILIES = {"bending": (0, 2, 3, 5), "axial": (1,), "torsion": (4,)}
 #: a share of the kinetic energy that names a mode alone
 ALONE = 0.4
 TRAIN = "train rotation"
@@ -65,7 +65,7 @@ def shares(workshop: Workshop, system: System, shapes: np.ndarray) -> dict[str, 
 
 
 def _still(workshop: Workshop, system: System, part: str, mass, own, shapes) -> np.ndarray:
-    """Which modes move no port of a shaft by anything beside their own energy."""
+    """Mask of the modes that move no port of a shaft by anything beside their own energy."""
     moved = np.zeros(shapes.shape[1])
     for station in workshop.scenes[part].stations:
         motion = system.motion(f"{part}.{station.name}") @ shapes

@@ -45,7 +45,7 @@ class OrderLine:
 
 @dataclass(frozen=True)
 class Crossing:
-    """Where an order meets a natural frequency.
+    """Crossing of an order and a natural frequency.
 
     Attributes
     ----------

@@ -1,6 +1,4 @@
-"""Which modes of two mixes of models of a train are the same: paired by the motions of all ports, not
-by number.
-"""
+"""Pairs of modes of two mixes of models of a train, by motions of all ports and not by number."""
 
 from __future__ import annotations
 

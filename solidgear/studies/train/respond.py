@@ -292,7 +292,7 @@ class Drive:
 
 
 def stands_out(size: np.ndarray, k: int) -> bool:
-    """Whether a local maximum rises by more than a ripple above the dips beside it."""
+    """Tell whether a local maximum rises by more than a ripple above the dips beside it."""
     left, right = size[:k][::-1], size[k + 1 :]
     least = size[k] / 10 ** (STANDS_OUT / 20)
 

@@ -10,7 +10,7 @@ from functools import partial
 
 import solidgear as sg
 from solidgear.errors import SolidgearError
-from solidgear.judge.quantities import described, diagonals
+from solidgear.quantity import Quantity
 from solidgear.scene import Scene
 from solidgear.scene.coned import coned
 from validation.campaign.case import Case, Run
@@ -150,9 +150,10 @@ def _row(
 
 def kind_of(quantity: str) -> str:
     """Sort a quantity: a mode, a coupling between two motions, or static."""
-    if described(quantity)[0] == "frequency":
+    name = Quantity(quantity)
+    if name.is_frequency:
         return "mode"
-    return "static" if diagonals(quantity) is None else "coupling"
+    return "static" if name.diagonals is None else "coupling"
 
 
 def unsettled(row: Row, finest: float = FINEST) -> bool:

@@ -19,6 +19,7 @@ from solidgear.judge.study import study
 from solidgear.judge.ties import SCENE
 from solidgear.ladder.registry import LADDER
 from solidgear.ladder.size import estimated_size
+from solidgear.quantity import Quantity
 from validation.campaign.case import Case, Run
 from validation.campaign.rows import (
     DECIDED,
@@ -191,7 +192,7 @@ def judged(
         scene,
         rung.meshes(_options(model)),
         rung,
-        [one.quantities for one in meshes],
+        [{Quantity(q): v for q, v in one.quantities.items()} for one in meshes],
         last.solver,
         [one.mesh.get("representative_size") for one in meshes],
     )

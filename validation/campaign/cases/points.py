@@ -9,10 +9,11 @@ from __future__ import annotations
 import argparse
 import time
 
-from solidgear.judge.quantities import AT, points_of, repeats, size
+from solidgear.judge.quantities import Values, size
 from solidgear.judge.solution import Solution
 from solidgear.judge.study import study
 from solidgear.judge.ties import SCENE
+from solidgear.quantity import COMPLIANCE, Quantity
 from solidgear.scene import Scene
 from validation.campaign.case import Case, Run
 from validation.campaign.cases.shafts import FINE, MOST_UNKNOWNS, SHARE
@@ -67,9 +68,11 @@ def scene_of(seed: int) -> Scene:
 
 def sort_of(name: str) -> str:
     """Kind of term."""
-    if points_of(name):
-        return "compliance between two points" if name.startswith("C_") else "stiffness, both held"
-    return "at the second point" if AT in name else "at the main point"
+    term = Quantity(name)
+    if term.pair:
+        soft = term.kind == COMPLIANCE
+        return "compliance between two points" if soft else "stiffness, both held"
+    return "at the second point" if term.points else "at the main point"
 
 
 def solutions(scene: Scene, most: int | None = None) -> dict[int, dict]:
@@ -89,8 +92,8 @@ def solutions(scene: Scene, most: int | None = None) -> dict[int, dict]:
     return out
 
 
-def _statics(values: dict[str, float], bands: dict) -> list[Said]:
-    names = [q for q in bands if q in values and q.startswith(("C_", "K_")) and not repeats(q)]
+def _statics(values: Values, bands: dict) -> list[Said]:
+    names = [q for q in bands if q in values and not q.is_frequency and not q.repeats]
     return [Said(q, values[q], bands[q].gci, size(values, q)) for q in names]
 
 

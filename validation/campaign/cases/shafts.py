@@ -6,8 +6,9 @@ import argparse
 from functools import partial
 from typing import Any
 
-from solidgear.judge.quantities import JUDGED, QUANTITIES, size
+from solidgear.judge.quantities import JUDGED, size
 from solidgear.ladder import build
+from solidgear.quantity import QUANTITIES
 from solidgear.scene import Scene
 from solidgear.studies.check import check_scene
 from solidgear.studies.comparison import compare
@@ -239,8 +240,8 @@ def _values(record: dict) -> dict[str, float]:
     """Compared numbers of a model's record; those that do not exist are left out."""
     named = {m["name"]: m["frequency_hz"] for m in record["modes"]}
     out = {}
-    for name, (kind, place, _) in QUANTITIES.items():
-        value = named.get(place) if kind == "frequency" else record[kind][place[0]][place[1]]
+    for name in QUANTITIES:
+        value = named.get(name) if name.is_frequency else record[name.kind][name.row][name.column]
         if value:
             out[name] = float(value)
     return out

@@ -26,7 +26,7 @@ from typing import Any
 
 import solidgear as sg
 from solidgear.body import as_supports
-from solidgear.judge.quantities import QUANTITIES, size
+from solidgear.judge.quantities import size
 from solidgear.judge.sequence_bars import RIGID_EDGE
 from solidgear.judge.solving import Answer, answered, solve
 from solidgear.ladder.registry import LADDER
@@ -37,6 +37,7 @@ from solidgear.meshing.cuts import mirror_plane
 from solidgear.models.sector.body import sector
 from solidgear.models.solid.body import tetrahedra_plan
 from solidgear.models.solid.featured import featured_body, meshed
+from solidgear.quantity import QUANTITIES
 from solidgear.scene.shaft import resolved
 from solidgear.solve.mixtures import mixtures
 
@@ -65,7 +66,7 @@ AHEAD = 1.6
 DOUBT = (1.2, 0.4)
 #: frequencies of a pair of bending modes; with a mirror plane those of its two planes
 PAIR = ("pair 1", "pair 2")
-ADDED = tuple(q for q, (kind, *_) in QUANTITIES.items() if kind != "frequency")
+ADDED = tuple(q for q in QUANTITIES if not q.is_frequency)
 
 
 @dataclass(frozen=True)

@@ -22,8 +22,9 @@ from typing import Any
 import numpy as np
 
 from solidgear.judge.correlation import subspace_mac
-from solidgear.judge.quantities import described, size
+from solidgear.judge.quantities import size
 from solidgear.machine.whole_file import whole
+from solidgear.quantity import Quantity
 from solidgear.scene import Ask, Scene
 from validation.campaign.rows import Truth
 from validation.campaign.truths.product import product_reference
@@ -81,7 +82,7 @@ def _finest(levels: list[Truth]) -> Truth:
 def _truth_in(
     name: str, answered: float, kind: str, reference: Reference, shape: Shape
 ) -> Truth | None:
-    if described(name)[0] != "frequency":
+    if not Quantity(name).is_frequency:
         if name not in reference.values:
             return None
         scale = size(reference.values, name)

@@ -23,7 +23,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from solidgear.body import as_supports
-from solidgear.judge.quantities import QUANTITIES, measure, points_of, size
+from solidgear.judge.quantities import measure, size
+from solidgear.quantity import QUANTITIES, STIFFNESS
 from solidgear.scene import Scene
 from solidgear.solve.modes import modes
 from solidgear.solve.statics import condense
@@ -132,7 +133,7 @@ def _settled(scene: Scene, mesh, order: int, layers: int) -> Reference:
     for name in dict.fromkeys((*QUANTITIES, *runs[-1]["values"])):
         if all(name in r["values"] for r in (*runs, shallow)):
             four = [r["values"][name] for r in (*runs, shallow)]
-            left = inverted if points_of(name) and name.startswith("K_") else noise
+            left = inverted if name.pair and name.kind == STIFFNESS else noise
             values[name], uncertainty[name] = settle(*four, size(runs[-1]["values"], name), left)
     last = runs[-1]
     told = _spectrum(runs, shallow, noise), last["gram"], [order + 2, layers], last["unknowns"]
