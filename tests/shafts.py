@@ -19,9 +19,10 @@ NASTY = (
 
 
 def shaft(*parts, **rest):
-    """A scene of parts end to end: (length, outer at both ends, inner at both ends), m."""
+    """A scene of parts end to end: (length, outer at both ends, inner at both ends or none), m."""
     segments, y = [], 0.0
-    for k, (length, a, b, i, j) in enumerate(parts):
+    for k, (length, a, b, *bore) in enumerate(parts):
+        i, j = bore or (0.0, 0.0)
         segments.append(
             Segment(
                 name=f"s{k}", y0=y, y1=round(y + length, 9), outer0=a, outer1=b, inner0=i, inner1=j

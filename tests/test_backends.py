@@ -12,7 +12,6 @@ import scipy.sparse as sp
 import solidgear as sg
 from solidgear.solve import factor
 from solidgear.solve.backends import missing
-from solidgear.solve.backends.matrix import upper_triangle
 from solidgear.solve.factor import factorise, indefinite, negative_pivots
 from solidgear.solve.statics import flexibility
 
@@ -141,15 +140,6 @@ def test_cholmod_hands_the_count_on(monkeypatch):
     monkeypatch.setenv("SOLIDGEAR_BACKEND", "cholmod")
     found = indefinite(sp.diags([-1.0, 2.0, 3.0]).tocsr())
     assert found.negative == 1 and found.backend != "cholmod"
-
-
-# --------------------------------------------------------------------------- plumbing
-def test_upper_triangle_is_that_of_scipy():
-    matrix = sp.random(
-        40, 40, 0.1, random_state=1, format="csr"
-    )  # some rows are empty above the diagonal
-    matrix.sort_indices()
-    assert (upper_triangle(matrix) != sp.triu(matrix, format="csr")).nnz == 0
 
 
 @pytest.mark.parametrize("backend", [pytest.param(name, marks=needs(name)) for name in NAMES])

@@ -238,25 +238,11 @@ def test_mean_head_is_the_cylinder_of_mean_radius():
     )  # as for the uniform cantilever, more elements
 
 
-# --------------------------------------------------------------------------- shear coefficient
-@pytest.mark.parametrize("nu", [0.0, 0.3, 0.5])
-def test_shear_coefficient_of_a_solid_circle(nu):
-    # one rational function of nu: rounding
-    assert shear_coefficient(nu, 0.04, 0.0) == pytest.approx(kappa_solid(nu), rel=1e-14)
-    assert shear_coefficient(nu, 0.04, 1e-9) == pytest.approx(kappa_solid(nu), rel=1e-12)
-
-
 @pytest.mark.parametrize("nu", [0.0, 0.3, 0.5])
 def test_shear_coefficient_of_a_thin_tube(nu):
     # Hutchinson's limit (1 + nu) / (2 + nu); the correction is of first order in the thickness
     # squared
     assert shear_coefficient(nu, 1.0, 1 - 1e-6) == pytest.approx((1 + nu) / (2 + nu), rel=1e-6)
-
-
-def test_shear_coefficient_does_not_depend_on_size():
-    assert shear_coefficient(0.3, 0.4, 0.1) == pytest.approx(
-        shear_coefficient(0.3, 0.04, 0.01), rel=1e-14
-    )
 
 
 # --------------------------------------------------------------------------- mass

@@ -4,7 +4,6 @@ import json
 
 import numpy as np
 import pytest
-from typer.testing import CliRunner
 
 import solidgear as sg
 from solidgear.bearings.ball import BallRow
@@ -13,13 +12,14 @@ from solidgear.bearings.equilibrium import Linear, Mounted, equilibrium
 from solidgear.bearings.roller import RollerRow
 from solidgear.bearings.rolling import RollingBearing
 from solidgear.bearings.solved import solved
-from solidgear.cli import app
 from solidgear.errors import SceneError, SolidgearError
 from solidgear.report.front import numbers
 from solidgear.report.terminal import closing_lines
 from solidgear.report.units import ENGINEERING
 from solidgear.scene.file import load as read
 from solidgear.studies.bearing_study import bearing_range, over_load
+from tests.command import command
+from tests.dense import whole
 
 SCENE = "geometry/gearbox_catalogue.toml"
 BALLS = RollingBearing((BallRow(count=9, diameter=9.525e-3, pitch=46e-3, clearance=8e-6),))
@@ -51,14 +51,7 @@ def by_hand(body, bearings, port, load):
     """Picard's iteration on the full matrices of a beam: springs stand still, what contacts press
     beyond them is a load.
     """
-    size = sum(block.size for block in body.blocks)
-    stiffness, ports = np.zeros((size, size)), np.zeros((6 * len(body.ports), size))
-    at = 0
-    for block in body.blocks:
-        here = slice(at, at + block.size)
-        stiffness[here, here] = block.stiffness.toarray()
-        ports[body.rows(block), here] = block.ports.toarray()
-        at += block.size
+    stiffness, _, ports = whole(body)
     rows = {p.name: ports[6 * k : 6 * k + 6] for k, p in enumerate(body.ports)}
     turning = np.zeros(6)
     turning[4] = 1e3  # thy is free: a spring that takes nothing
@@ -68,7 +61,7 @@ def by_hand(body, bearings, port, load):
     for name, spring in springs.items():
         held = held + rows[name].T @ spring @ rows[name]
     inverse = np.linalg.inv(held)
-    u = np.zeros(size)
+    u = np.zeros(len(stiffness))
     for _ in range(4000):
         force = rows[port].T @ np.asarray(load, float)
         for name, (bearing, _) in bearings.items():
@@ -131,7 +124,7 @@ def test_a_scene_without_load_is_told_without_rounding(tmp_path):
     for line in load:
         text = text.replace(line, line[:5] + '0 N"')
     path.write_text(text)
-    done = run("bearing", path)
+    done = command("bearing", path)
     assert done.exit_code == 0, done.output
     assert done.output.count("Load: none") == 2 and "e-" not in done.output
 
@@ -216,16 +209,12 @@ def test_the_report_tells_the_range_beside_the_models():
     ).record.bearing_range  # springs as given have none
 
 
-def run(*args):
-    return CliRunner().invoke(app, [str(a) for a in args], catch_exceptions=True)
-
-
 def test_the_command(tmp_path):
     chart = tmp_path / "bearings.png"
-    done = run("bearing", SCENE, "--out", chart)
+    done = command("bearing", SCENE, "--out", chart)
     assert done.exit_code == 0, done.output
     assert "4 of 13 elements carry" in done.output and chart.stat().st_size > 20_000
-    other = run("bearing", SCENE, "--bearing", "A", "--load", "z=9 kN", "--json")
+    other = command("bearing", SCENE, "--bearing", "A", "--load", "z=9 kN", "--json")
     (row,) = json.loads(other.stdout)["bearings"]
     assert row["load"][2] == pytest.approx(9e3) and row["status"] == "estimated"
 
@@ -241,19 +230,19 @@ def test_the_command(tmp_path):
     ],
 )
 def test_bad_options_end_in_one_sentence(args, sentence):
-    done = run("bearing", SCENE, *args)
+    done = command("bearing", SCENE, *args)
     assert done.exit_code != 0 and sentence in str(done.exception)
 
 
 def test_a_pair_that_is_pushed_apart_is_told(tmp_path):
     path = tmp_path / "loose.toml"
     path.write_text(open(SCENE).read().replace('preload = "400 N"', 'load = {y = "2 kN"}'))
-    done = run("bearing", path, "--bearing", "B")
+    done = command("bearing", path, "--bearing", "B")
     assert "the row at the upper end of y carries nothing" in " ".join(done.output.split())
 
 
 def test_scenes_without_catalogue_bearings_say_so():
-    done = run("bearing", "geometry/shaft_stepped.toml")
+    done = command("bearing", "geometry/shaft_stepped.toml")
     assert "no bearing is described by catalogue data" in str(done.exception)
 
 
@@ -281,5 +270,5 @@ def test_a_bearing_without_load_tells_no_empty_range(tmp_path):
     text = text[: text.index("[load]")].replace('preload = "400 N"', "")
     path = tmp_path / "idle.toml"
     path.write_text(text + '[load]\nx = "0 N"\n')
-    told = run("bearing", path, "--bearing", "A").output
+    told = command("bearing", path, "--bearing", "A").output
     assert "carries nothing" in told and "softer to its stiffer end" not in told

@@ -259,23 +259,6 @@ def test_turning_the_frame_by_one_pitch_changes_nothing(row):
     assert np.allclose(row.tangent(motions @ q.T), turned, rtol=1e-9, atol=1e-3)
 
 
-@row_of_each_kind
-def test_energy_is_conserved_around_a_closed_path(row):
-    t, weight = np.polynomial.legendre.leggauss(40)
-    corners = random_motions(5, seed=3)
-    corners = np.vstack([corners, corners[:1]])
-    work = gross = 0.0
-    for a, b in zip(corners, corners[1:]):
-        pieces = np.linspace(0, 1, 41)
-        for low, high in zip(pieces, pieces[1:]):
-            along = low + (high - low) * (t + 1) / 2
-            power = row.load(a + along[:, None] * (b - a)) @ (b - a)
-            part = weight @ power * (high - low) / 2
-            work, gross = work + part, gross + abs(part)
-    # what the quadrature leaves where contacts begin inside a piece
-    assert abs(work) < 1e-8 * gross
-
-
 @pytest.mark.parametrize("name, power", [("angular", 1 / 3), ("tapered", 1 / 10)])
 def test_stiffness_grows_with_load(name, power):
     # balls: k ~ F^(1/3), until the contact angle turns; rollers: F^(1/10), once the profile is

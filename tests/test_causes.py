@@ -148,21 +148,6 @@ def test_shoulder_explains_the_beams_gap_in_compliance(overhung):
     assert found.quantities["K_zz"] > 0 and found.quantities["bending 1"] > 0
 
 
-def test_share_is_the_gap_less_that_of_the_plain_shaft(overhung):
-    one = shoulder_cause(
-        overhung, {"C_zz": -0.05, "K_zz": 0.1, "bending 1": 0.0}, {"order": 2, "layers": 0}
-    )
-    two = shoulder_cause(
-        overhung, {"C_zz": -0.02, "K_zz": None, "bending 1": 0.0}, {"order": 2, "layers": 0}
-    )
-    assert two.quantities["C_zz"] - one.quantities["C_zz"] == pytest.approx(
-        0.03, abs=1e-9
-    )  # arithmetic on the same two solutions
-    assert one.quantities["K_zz"] is not None and two.quantities["K_zz"] is None
-    # its own gap does not go into the plain shaft's
-    assert two.quantities["bending 1"] == pytest.approx(one.quantities["bending 1"], abs=1e-9)
-
-
 def test_what_is_taken_off_is_the_gap_of_the_plain_shaft(overhung):
     options = {"order": 2, "layers": 0}
     found = shoulder_cause(overhung, {"C_zz": 0.0, "K_zz": 0.0, "bending 1": 0.0}, options)

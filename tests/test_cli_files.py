@@ -7,27 +7,21 @@ import tomllib
 from pathlib import Path
 
 import pytest
-from typer.testing import CliRunner
 
 import solidgear as sg
 from solidgear.cli import shipped
-from solidgear.cli.app import app
 from solidgear.cli.starts import STARTS, start
 from solidgear.errors import SolidgearError
 from solidgear.ladder.registry import LADDER
 from solidgear.scene.file import load
+from tests.command import command
 
 ROOT = Path(__file__).parent.parent
 
 
-def run(*arguments, text=None):
-    done = CliRunner().invoke(app, [str(a) for a in arguments], input=text)
-    return done
-
-
 @pytest.mark.parametrize("kind", STARTS)
 def test_a_new_scene_runs(kind, tmp_path):
-    done = run("new", tmp_path / "deep" / "my fan 2", "--kind", kind)
+    done = command("new", tmp_path / "deep" / "my fan 2", "--kind", kind)
     assert done.exit_code == 0 and "solidgear check" in done.stdout
     scene = sg.load(tmp_path / "deep" / "my fan 2.toml")
     assert scene.title == "my fan 2"
@@ -37,7 +31,7 @@ def test_a_new_scene_runs(kind, tmp_path):
 
 def test_a_new_scene_is_never_written_over_another(tmp_path):
     (tmp_path / "a.toml").write_text("mine")
-    done = run("new", tmp_path / "a")
+    done = command("new", tmp_path / "a")
     assert isinstance(done.exception, SolidgearError)
     assert "there is such a file already" in str(done.exception)
     assert (tmp_path / "a.toml").read_text() == "mine"
@@ -58,14 +52,14 @@ def test_no_scene_of_another_kind_or_name(kind, name, words):
 
 
 def test_shipped_scenes_are_copied_with_what_they_refer_to(tmp_path):
-    listed = run("scenes")
+    listed = command("scenes")
     assert "pinion_overhung" in listed.stdout and "Overhung pinion on two" in listed.stdout
-    done = run("scenes", "axle_overhung", "--to", tmp_path / "new")
+    done = command("scenes", "axle_overhung", "--to", tmp_path / "new")
     assert done.exit_code == 0
     assert sg.load_train(tmp_path / "new" / "axle_overhung.toml").pinion.teeth == 14
-    again = run("scenes", "gear_shaft", "--to", tmp_path / "new")
+    again = command("scenes", "gear_shaft", "--to", tmp_path / "new")
     assert "there is such a file already" in str(again.exception)
-    wrong = run("scenes", "gearshaft")
+    wrong = command("scenes", "gearshaft")
     assert 'did you mean "gear_shaft"?' in str(wrong.exception)
 
 
@@ -92,23 +86,23 @@ def test_a_scene_from_standard_input(monkeypatch):
 
 
 def test_version_quiet_and_exit_codes(tmp_path):
-    assert run("--version").stdout == "solidgear 0.1.0\n"
-    assert "3 the tolerance is not reached" in run("--help").stdout.replace("\n ", "")
+    assert command("--version").stdout == "solidgear 0.1.0\n"
+    assert "3 the tolerance is not reached" in command("--help").stdout.replace("\n ", "")
     scene = ROOT / "geometry" / "cylinder_free.toml"
-    loud = run("answer", scene, "--ask", "bending")
-    still = run("--quiet", "answer", scene, "--ask", "bending", "--json")
+    loud = command("answer", scene, "--ask", "bending")
+    still = command("--quiet", "answer", scene, "--ask", "bending", "--json")
     assert "harmonic solid" in loud.stderr and still.stderr == ""
     assert json.loads(still.stdout)["reached"]
 
 
 def test_every_option_is_listed_with_its_default(monkeypatch):
     monkeypatch.setenv("COLUMNS", "200")
-    said = run("options").stdout
+    said = command("options").stdout
     for name in LADDER.bodies:
         assert f"{name}: {LADDER[name].title}" in said
         for key, option in LADDER[name].options.items():
             assert key in said and option.meaning[:40] in said
-    assert "a whole number between 1 and 12" in run("options", "harmonic").stdout
+    assert "a whole number between 1 and 12" in command("options", "harmonic").stdout
 
 
 def test_one_version_everywhere():

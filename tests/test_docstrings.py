@@ -13,7 +13,7 @@ ROOT = Path(__file__).parent.parent
 PACKAGE = ROOT / "solidgear"
 WITH_EXAMPLES = sorted(p for p in PACKAGE.rglob("*.py") if ">>>" in p.read_text())
 #: some seconds; the tests of trains and of sweeps do the same by default
-DEAR = {PACKAGE / "studies" / "axle" / "check.py", PACKAGE / "studies" / "sweep" / "choice.py"}
+DEAR = {PACKAGE / "studies" / "train" / "check.py", PACKAGE / "studies" / "sweep" / "choice.py"}
 NOUNS = [name for name in sg.__all__ if callable(getattr(sg, name))]
 
 

@@ -8,7 +8,6 @@ import pytest
 import solidgear as sg
 
 FOLDER = Path(__file__).parent.parent / "examples"
-ROOT = FOLDER.parent
 
 
 def run(name):
@@ -128,9 +127,3 @@ def test_every_example_is_tested_and_short():
     for name, text in scripts.items():
         assert f"def test_{name}(" in tests, name
         assert "It illustrates how to:" in text and len(text.splitlines()) < 60, name
-
-
-def test_the_package_shows_its_nouns():
-    assert {"Scene", "Segment", "Bearing", "Port", "Body", "Supports", "compare"} <= set(dir(sg))
-    for name in sg.__all__:
-        assert getattr(sg, name) is not None

@@ -5,13 +5,12 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-import scipy.sparse as sp
 
 import solidgear as sg
 from solidgear.models.solid.block import mirrored
 from solidgear.solve.factor import factorise
 from solidgear.solve.statics import SHIFT, factors
-from solidgear.solve.symmetry import factor_by_symmetry, symmetric_bases
+from solidgear.solve.symmetry import factor_by_symmetry
 
 GEOMETRY = Path(__file__).parent.parent / "geometry"
 COARSE = {"refinement": 0.5, "layers": 1, "edge_layers": 0, "radial_layers": 1, "around": 8}
@@ -53,13 +52,6 @@ def test_pieces_solve_as_the_whole_does(body, matrix, planes):
     # back ends add up one right-hand side in another order than several
     one, several = found.solve(load[:, 0]), found.solve(load)[:, 0]
     assert np.abs(one - several).max() < 1e-8 * np.abs(several).max()
-
-
-def test_kinds_of_motion_are_all_motions_and_orthonormal(body):
-    n = body.size
-    every = sp.hstack(list(symmetric_bases(n, body.blocks[0].reflections[:2]).values()))
-    assert every.shape == (n, n)
-    assert abs(every.T @ every - sp.identity(n)).max() < 1e-15
 
 
 def test_a_matrix_that_one_entry_spoils_is_not_folded(body, matrix):

@@ -27,12 +27,6 @@ def parts(n, member):
     return n[1], -side * n[0], -side * n[2]
 
 
-@pytest.mark.parametrize("hand, side, member", ALL)
-def test_line_of_action_is_a_unit_vector(hand, side, member):
-    n = line_of_action(PITCH, SPIRAL, PRESSURE, hand, side, member)
-    assert abs(n @ n - 1) < ROUNDING
-
-
 def test_pinion_of_the_thesis():
     # Left hand, concave side loaded. The reference is given to two digits: half a unit of the last
     # one, and a bit.
@@ -55,34 +49,6 @@ def test_components_are_the_textbook_ones(hand, side, member):
         (tan * cos - sign * np.sin(SPIRAL) * sin) / np.cos(SPIRAL), rel=1e-13
     )
     assert (tangential > 0) == ((hand, side) in {("left", "concave"), ("right", "convex")})
-
-
-@pytest.mark.parametrize("hand, side, member", ALL)
-def test_no_spiral_is_a_straight_bevel_gear(hand, side, member):
-    axial, inward, tangential = parts(
-        line_of_action(PITCH, 0.0, PRESSURE, hand, side, member), member
-    )
-    assert axial == pytest.approx(np.sin(PRESSURE) * np.sin(PITCH), abs=ROUNDING)
-    assert inward == pytest.approx(np.sin(PRESSURE) * np.cos(PITCH), abs=ROUNDING)
-    assert abs(tangential) == pytest.approx(np.cos(PRESSURE), abs=ROUNDING)
-
-
-def test_no_pitch_angle_is_a_helical_gear():
-    axial, inward, tangential = parts(
-        line_of_action(0.0, SPIRAL, PRESSURE, "left", "concave"), "pinion"
-    )
-    assert axial == pytest.approx(np.cos(PRESSURE) * np.sin(SPIRAL), abs=ROUNDING)
-    assert inward == pytest.approx(np.sin(PRESSURE), abs=ROUNDING)
-    assert tangential == pytest.approx(np.cos(PRESSURE) * np.cos(SPIRAL), abs=ROUNDING)
-
-
-def test_hand_flips_the_axial_force_of_the_spiral():
-    # Same direction of load, other hand (so the other flank). Without pressure angle only the
-    # spiral pushes along the axis.
-    left = parts(line_of_action(PITCH, SPIRAL, 0.0, "left", "concave"), "pinion")
-    right = parts(line_of_action(PITCH, SPIRAL, 0.0, "right", "convex"), "pinion")
-    assert left[2] == right[2] > 0
-    assert left[0] == -right[0] > 0
 
 
 @pytest.mark.parametrize("pitch", [0.302, 0.391, np.pi / 4])
@@ -120,13 +86,6 @@ def test_mesh_vector_is_the_rows_of_equation_22():
     assert np.allclose(MeshVector(n, [x, y, z]).vector, want, rtol=0, atol=ROUNDING)
 
 
-def test_moving_the_mesh_point_along_the_line_of_action_changes_nothing():
-    n, r = np.array([2.0, 3.0, 6.0]) / 7, np.array([0.1, 0.2, 0.3])
-    assert np.allclose(
-        MeshVector(n, r).vector, MeshVector(n, r + 5 * n).vector, rtol=0, atol=ROUNDING
-    )
-
-
 def test_mean_radius():
     assert mean_radius(0.067, 0.391, 0.063) == pytest.approx(0.067 - 0.0315 * 0.38111, abs=1e-6)
 
@@ -140,25 +99,15 @@ def test_a_mesh_vector_cannot_be_changed_afterwards():
     "make, words",
     [
         (lambda: MeshVector([0, 1, 2e-3], [0, 0, 0]), "unit vector"),
-        (lambda: MeshVector([0.23, 0.55, 0.81], [0, 0, 0]), "unit vector"),
         (lambda: MeshVector([0, 1], [0, 0, 0]), "three components"),
-        (lambda: MeshVector([0, 1, 0], [0, float("nan"), 0]), "finite"),
-        (lambda: MeshVector("up", [0, 0, 0]), "three numbers"),
         (lambda: line_of_action(2.0, 0.4, 0.4, "left", "concave"), "pitch_angle is 2.0 rad"),
-        (lambda: line_of_action(0.4, -0.4, 0.4, "left", "concave"), "spiral_angle is -0.4 rad"),
-        (
-            lambda: line_of_action(0.4, 0.4, float("nan"), "left", "concave"),
-            "pressure_angle is nan rad",
-        ),
         (lambda: line_of_action(0.4, 0.4, 0.4, "Left", "concave"), "write 'right' or 'left'"),
-        (lambda: line_of_action(0.4, 0.4, 0.4, "left", "drive"), "write 'concave' or 'convex'"),
         (
             lambda: line_of_action(0.4, 0.4, 0.4, "left", "concave", "wheel"),
             "write 'pinion' or 'gear'",
         ),
         (lambda: mesh_point(0.0), "mean_radius > |height|"),
         (lambda: mesh_point(0.05, height=0.05), "mean_radius > |height|"),
-        (lambda: mesh_point(0.05, axial=float("inf")), "finite length"),
         (lambda: mean_radius(0.01, 0.4, 0.063), "past the apex"),
     ],
 )
@@ -168,8 +117,3 @@ def test_bad_input_is_one_sentence(make, words):
     text = str(caught.value)
     assert words in text
     assert "\n" not in text and len(text) < 200
-
-
-def test_unit_tolerance_accepts_six_digits():
-    n = np.round(line_of_action(PITCH, SPIRAL, PRESSURE, "left", "concave"), 7)
-    assert MeshVector(n, [0, 0, 0]).vector.shape == (6,)

@@ -2,25 +2,21 @@
 frustum integrals, Hutchinson's beam.
 """
 
-from pathlib import Path
-
 import numpy as np
 import pytest
 import scipy.sparse.linalg as spla
-from scipy.integrate import quad
 from scipy.optimize import brentq
 from scipy.special import jv, jvp
 from skfem import Basis
 
 import solidgear as sg
 from solidgear.body import as_supports
-from solidgear.meshing.closed_form import mass_properties
 from solidgear.scene import STEEL, Port, Scene, Segment
 from solidgear.solve.eigen import lowest
 from solidgear.solve.supported import Supported, decoupled
+from tests.dense import mass_matrix
 from validation.shipped import shafts_of_revolution
 
-GEOMETRY = Path(__file__).parent.parent / "geometry"
 SCENES = shafts_of_revolution()
 RADIUS, LENGTH = 0.03, 0.3
 E, NU, RHO = STEEL.E, STEEL.nu, STEEL.density
@@ -55,39 +51,10 @@ def test_mass_matrix_of_shipped_scenes(path):
     scene = sg.load(path)
     # sides on a circle are of the order of the element
     m = sg.build(scene, "harmonic", order=7 if scene.blends else 2).mass_matrix()
-    p = mass_properties(scene.segments, scene.corners)
-    expected = np.diag(
-        [p.mass, p.mass, p.mass, p.ixx + p.mass * p.centre**2, p.iyy, p.ixx + p.mass * p.centre**2]
-    )
-    expected[2, 3] = expected[3, 2] = p.mass * p.centre
-    expected[0, 5] = expected[5, 0] = -p.mass * p.centre
+    expected = mass_matrix(scene)
     # r^5 on straight-sided cells is a polynomial within the degree of the rule: rounding only
     size = np.sqrt(np.diag(expected))
     assert np.abs((m - expected) / np.outer(size, size)).max() < 1e-13
-
-
-def test_mass_matrix_of_the_hollow_shaft_by_quadrature():
-    # own slice integrals of tube (400 mm, 80/50 mm) and flare (60 mm, 80 to 120 mm, bore 50 mm),
-    # 7850 kg/m^3
-    outer = lambda y: 0.040 if y < 0.4 else 0.040 + (y - 0.4) / 0.06 * 0.020  # noqa: E731
-
-    def integral(f):
-        return sum(
-            quad(lambda y: 7850 * f(outer(y), 0.025, y), a, b, epsrel=1e-13)[0]
-            for a, b in ((0, 0.4), (0.4, 0.46))
-        )
-
-    mass = integral(lambda a, b, y: np.pi * (a**2 - b**2))
-    first = integral(lambda a, b, y: np.pi * (a**2 - b**2) * y)
-    polar = integral(lambda a, b, y: np.pi / 2 * (a**4 - b**4))
-    cross = integral(lambda a, b, y: np.pi * (a**2 - b**2) * y**2 + np.pi / 4 * (a**4 - b**4))
-    m = sg.build(
-        sg.load(next(p for p in SCENES if p.stem == "shaft_hollow")), "harmonic", order=2
-    ).mass_matrix()
-    # both sides are polynomials integrated exactly
-    assert [m[0, 0], m[1, 1], m[2, 3], -m[0, 5], m[4, 4], m[3, 3], m[5, 5]] == pytest.approx(
-        [mass, mass, first, first, polar, cross, cross], rel=1e-11
-    )
 
 
 # --------------------------------------------------------------------------- Pochhammer-Chree

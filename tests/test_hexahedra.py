@@ -65,23 +65,6 @@ def frustum(s, power):
     )
 
 
-def test_right_handed(case):
-    _, _, mesh, _ = case
-    det, _, _ = integrals(mesh)
-    assert det.min() > 0
-    assert (
-        mesh.mapping()
-        .detDF(
-            np.array(
-                [[0, 1, 0, 1, 0, 1, 0, 1], [0, 0, 1, 1, 0, 0, 1, 1], [0, 0, 0, 0, 1, 1, 1, 1]],
-                float,
-            )
-        )
-        .min()
-        > 0
-    )
-
-
 def test_volume_is_exact_segment_by_segment(case):
     scene, _, mesh, segment = case
     _, volume, _ = integrals(mesh)

@@ -2,7 +2,6 @@
 no code, in its limits, under catalogue bearings and in a sweep.
 """
 
-import csv
 from pathlib import Path
 
 import numpy as np
@@ -17,6 +16,8 @@ from solidgear.scene import Bearing, Elastic, Housing
 from solidgear.springs import in_series
 from solidgear.studies.sweep import vary
 from solidgear.studies.sweep.run import sweep, variants_of
+from tests.command import table
+from tests.dense import relative, whole
 
 GEOMETRY = Path(__file__).parent.parent / "geometry"
 COARSE = {"harmonic": {"order": 2, "layers": 0}}
@@ -40,12 +41,6 @@ def shaft():
     return sg.load(GEOMETRY / "intermediate_shaft.toml")
 
 
-def relative(a, b):
-    d = np.sqrt(np.abs(np.diag(b)))
-    d[~(d > 0)] = 1.0
-    return np.nanmax(np.abs(a - b) / np.outer(d, d))
-
-
 def rigid_at(y):
     out = np.eye(6)
     for k in range(3):
@@ -62,18 +57,8 @@ def dense(body, scene, ports):
     """Whole beam or solid with rings and housing as unknowns of their own, everything dense;
     turning about the axis left out. Returns K, M and the rows of some ports.
     """
-    blocks = [b for b in body.blocks if b.name != "torsion"]
-    n = sum(b.stiffness.shape[0] for b in blocks)
-    k = sla.block_diag(*[b.stiffness.toarray() for b in blocks])
-    m = sla.block_diag(*[np.asarray(b.mass @ np.eye(b.stiffness.shape[0])) for b in blocks])
-    g = np.zeros((6 * len(body.ports), n))
-    at = 0
-    for b in blocks:
-        rows, wide = np.asarray(b.ports.todense()), len(b.components)
-        for p in range(len(body.ports)):
-            for i, c in enumerate(b.components):
-                g[6 * p + c, at : at + rows.shape[1]] = rows[wide * p + i]
-        at += rows.shape[1]
+    k, m, g = whole(body, without=("torsion",))
+    n = len(k)
     names = [p.name for p in body.ports]
     around = gives(scene.housing.entries) if scene.housing else []
     rings = [gives(b.housing.entries) if b.housing else [] for b in scene.bearings]
@@ -267,7 +252,7 @@ def test_a_sweep_over_the_housing(shaft, tmp_path):
     out = tmp_path / "rows.csv"
     texts = ["housing.kzz=4e8,1e9", "bearing.B.kzz=3e8,5e8"]
     sweep(shaft, texts, out, fidelity="timoshenko", n=2)
-    rows = list(csv.DictReader(out.open()))
+    rows = table(out)
     body = sg.build(shaft, "timoshenko")
     assert len(rows) == 4
     for row in rows:
@@ -294,7 +279,7 @@ def test_a_sweep_over_what_one_bearing_stands_in(shaft, tmp_path):
         "housing.scale=1,4",
     ]
     sweep(shaft, texts, out, fidelity="harmonic", options=COARSE["harmonic"], n=2)
-    rows = list(csv.DictReader(out.open()))
+    rows = table(out)
     assert len(rows) == 16 and {row["how"] for row in rows} == {"reduced"}  # nothing factored anew
     body = sg.build(shaft, "harmonic", **COARSE["harmonic"])
     a, b = shaft.bearings

@@ -133,10 +133,6 @@ def test_without_layers_lines_are_uniform():
     assert np.allclose(np.diff(graded(0.1, 0.03, 0.3, 0.02, 1.0, 0, 0)), 0.025, rtol=1e-12)
 
 
-def test_very_many_layers_still_end_where_they_should():
-    assert graded(0.1, 0.02, 0.2, 0.02, 1.0, 14, 14)[-1] == 0.1
-
-
 # --------------------------------------------------------------------------- layout
 def test_axial_lines_mark_everything_that_matters(scene):
     plan = layout(scene, Grading(**PLAN))
@@ -248,33 +244,6 @@ def test_the_plane_of_a_section_tie_is_graded_towards_the_bore_too():
     plan = layout(scene, Grading(layers=2, edge_layers=2), ("section",))
     rings = np.diff(plan.rings(0, (0.0, 0.4), 0.2))
     assert rings[0] == pytest.approx(rings[-1]) and rings[0] < 0.05 * rings.max()
-
-
-def test_neighbours_share_the_radii_of_their_common_face(scene):
-    plan = layout(scene, Grading(**PLAN))
-    for i, (a, b) in enumerate(pairwise(scene.segments)):
-        low, high = (f(x, y) for f, x, y in zip((max, min), plan.bands[i], plan.bands[i + 1]))
-        assert low < high
-        mine = plan.right[i][low - plan.bands[i][0] : high - plan.bands[i][0] + 1]
-        theirs = plan.left[i + 1][low - plan.bands[i + 1][0] : high - plan.bands[i + 1][0] + 1]
-        # one face, one set of radii: rounding
-        assert np.allclose(mine, theirs, rtol=0, atol=1e-15)
-        assert mine[0] == pytest.approx(max(a.inner1, b.inner0), abs=1e-15)
-        assert mine[-1] == pytest.approx(min(a.outer1, b.outer0), abs=1e-15)
-
-
-def test_bands_fill_every_segment_from_bore_to_surface(scene):
-    plan = layout(scene, Grading(**PLAN))
-    for s, (low, high), left, right in zip(scene.segments, plan.bands, plan.left, plan.right):
-        assert len(left) == len(right) == high - low + 1
-        assert np.all(np.diff(left) > 0) and np.all(np.diff(right) > 0)
-        # rounding
-        assert np.allclose(
-            [left[0], left[-1], right[0], right[-1]],
-            [s.inner0, s.outer0, s.inner1, s.outer1],
-            rtol=0,
-            atol=1e-15,
-        )
 
 
 # --------------------------------------------------------------------------- meridian

@@ -3,10 +3,8 @@
 import numpy as np
 import pytest
 import scipy.sparse.linalg as spla
-from typer.testing import CliRunner
 
 import solidgear as sg
-from solidgear.cli import app
 from solidgear.errors import SolidgearError
 from solidgear.models.harmonic.patch import Patch, PatchMotion
 from solidgear.reduction.waves import local_compliance, own_waves, with_waves
@@ -15,6 +13,7 @@ from solidgear.studies.train.local import TEETH, patch_of, undriven
 from solidgear.studies.train.models import Workshop
 from solidgear.studies.train.modes import train_modes
 from solidgear.studies.train.respond import Drive
+from tests.command import command
 
 AXLE = "geometry/axle_overhung.toml"
 #: moves no number here by more than 1e-3
@@ -257,6 +256,6 @@ def test_rigid_seats_have_no_waves(train):
 
 @pytest.mark.parametrize("text", ["1,2", "2,2", "", "33", "two"])
 def test_a_wrong_harmonic_is_one_sentence(text):
-    done = CliRunner().invoke(app, ["system-modes", AXLE, "--local-harmonics", text])
+    done = command("system-modes", AXLE, "--local-harmonics", text)
     assert done.exit_code != 0
     assert "whole numbers from 2 to 32, each once" in str(done.exception) + done.output

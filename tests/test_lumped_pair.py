@@ -3,8 +3,7 @@ made-up data.
 """
 
 import re
-from dataclasses import fields, replace
-from pathlib import Path
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -25,7 +24,6 @@ from validation.thesis.lumped_pair import (
     shaft_stiffness,
 )
 
-ROOT = Path(__file__).resolve().parent.parent
 RATIO = 45 / 14
 # Singular values are good to a few roundings of the largest one: 1e4 Hz * 1e-15 against the 16 Hz
 # of the softest mode, times 10.
@@ -54,15 +52,6 @@ def pair():
 
 def hertz(*eigenvalues):
     return np.sqrt(eigenvalues) / (2 * np.pi)
-
-
-# -- answers by hand ---------------------------------------------------------------------------------------------------------
-def test_two_inertia_chains_without_mesh(pair):
-    alone = replace(pair, mesh_stiffness=0.0, pinion_support=NOTHING, gear_support=NOTHING)
-    modes = alone.solve()
-    assert modes.rigid == 12
-    want = hertz(1.09e4 * (1 / 2.734 + 1 / 0.0587), 8.63e4 * (1 / 1.92 + 1 / 5.25))
-    assert np.allclose(modes.frequency_hz[12:], np.sort(want), rtol=1e-13)
 
 
 def test_single_mass_on_its_support(pair):
@@ -95,51 +84,12 @@ def test_two_masses_joined_by_the_mesh_spring(pair):
     assert np.array_equal(modes.energy[13], np.eye(7)[6])
 
 
-def test_four_inertia_chain(pair):
-    # Masses too heavy to be moved by the mesh leave engine - pinion - gear - load. A symmetric
-    # chain falls apart: one shape with both halves in step with the teeth, where the mesh is not
-    # strained, and two against each other.
-    k, mesh, lever, j1, j2 = 2e4, 3e8, 0.05, 2.0, 0.1
-    heavy = np.diag([1e25, 1e25, 1e25, 1e25, j2, 1e25])
-    tooth_p, tooth_g = MeshVector([0, 0, 1], [-lever, 0, 0]), MeshVector([0, 0, 1], [lever, 0, 0])
-    modes = LumpedPair(j1, j1, heavy, heavy, NOTHING, NOTHING, k, k, mesh, tooth_p, tooth_g).solve()
-    stiff = 2 * mesh * lever**2
-    half, product = ((k + stiff) / j2 + k / j1) / 2, k * stiff / (j1 * j2)
-    root = np.sqrt(half**2 - product)
-    want = np.sort(hertz(k * (1 / j1 + 1 / j2), product / (half + root), half + root))
-    assert np.allclose(modes.frequency_hz[-3:], want, rtol=1e-10)
-
-
-def test_frequencies_the_mesh_cannot_move(pair):
-    # The mesh is one spring: of each double bending frequency of pinion and of gear one copy stays.
-    free = replace(pair, mesh_stiffness=0.0).solve().frequency_hz
-    doubled = [f for f, g in zip(free[:-1], free[1:]) if f > 0 and abs(f - g) < 1e-9 * f]
-    assert len(doubled) == 4
-    for k_m in (1e7, 8.6e8, 1e12):
-        found = replace(pair, mesh_stiffness=k_m).solve().frequency_hz
-        for f in doubled:
-            assert np.abs(found / f - 1).min() < CLOSE * max(1, np.sqrt(k_m / 1e9))
-
-
 def test_signs_of_the_shaft_stiffness_are_those_of_a_spring_behind_the_lumped_point():
     # A bearing at y = +L holds the shaft against x and z: seen from the lumped point it is the
     # shifted spring.
     k, length = 3e9, 0.1
     behind = moved_by(np.diag([k, 0, k, 0, 0, 0]), (0, -length, 0))
     assert np.allclose(shaft_stiffness(k, 0, k * length**2, -k * length), behind, rtol=1e-14)
-
-
-# -- structure ---------------------------------------------------------------------------------------------------------------
-def test_matrices_are_symmetric_and_mass_is_definite(pair):
-    k, m = pair.matrices()
-    assert np.array_equal(k, k.T) and np.array_equal(m, m.T)
-    assert np.linalg.eigvalsh(m).min() > 0
-    scale = np.sqrt(np.diag(k))
-    assert np.linalg.eigvalsh(k / np.outer(scale, scale)).min() > -1e-14
-    # Two ways to the same stiffness: assembled, and from the strain matrix the modes are made of.
-    g = pair.strains[0]
-    assert np.abs(g.T @ g - k).max() < 1e-14 * np.abs(k).max()
-    assert g.shape == (13, 14)
 
 
 def test_zero_mode_is_exact(pair):
@@ -154,12 +104,6 @@ def test_zero_mode_is_exact(pair):
     assert not modes.energy[0].any()
 
 
-def test_zero_mode_stays_exact_beside_huge_springs(pair):
-    stiff = replace(pair, pinion_support=1e8 * pair.pinion_support, mesh_stiffness=1e18).solve()
-    assert stiff.rigid == 1 and stiff.frequency_hz[0] == 0.0
-    assert stiff.frequency_hz[1] > 1.0
-
-
 def test_modes_are_mass_normalised_and_solve_the_problem(pair):
     k, m = pair.matrices()
     modes = pair.solve()
@@ -168,12 +112,6 @@ def test_modes_are_mass_normalised_and_solve_the_problem(pair):
     assert np.abs(modes.shapes.T @ k @ modes.shapes - np.diag(omega2)).max() < 1e-13 * omega2.max()
     assert modes.residual < 1e-13
     assert (np.diff(modes.frequency_hz) >= 0).all()
-
-
-def test_energy_fractions_sum_to_one(pair):
-    modes = pair.solve()
-    assert modes.energy.shape == (14, len(COMPONENTS)) == (14, 7)
-    assert np.allclose(modes.energy[1:].sum(axis=1), 1.0, rtol=0, atol=1e-14)
 
 
 def test_energy_is_that_of_the_springs(pair):
@@ -237,39 +175,6 @@ def test_moving_a_lumped_point_changes_no_frequency(pair):
     assert np.allclose(a.energy[:, [2, 3, 6]], b.energy[:, [2, 3, 6]], rtol=0, atol=1e-9)
 
 
-def test_swapping_pinion_and_gear_changes_no_frequency(pair):
-    other = {"engine": "load", "load": "engine", "pinion": "gear", "gear": "pinion"}
-    swap = {
-        f.name: f.name.replace(w := f.name.split("_")[0], other.get(w, w), 1) for f in fields(pair)
-    }
-    swapped = LumpedPair(**{name: getattr(pair, source) for name, source in swap.items()})
-    assert swapped.engine_inertia == pair.load_inertia and swapped.gear_mesh is pair.pinion_mesh
-    assert np.allclose(swapped.solve().frequency_hz, pair.solve().frequency_hz, rtol=CLOSE, atol=0)
-
-
-def test_units_change_no_frequency(pair):
-    # Tonne, mm, s instead of kg, m, s.
-    length = np.array([1.0, 1, 1, 1e3, 1e3, 1e3])
-    scale = {
-        "inertia": 1e3,
-        "torsion": 1e3,
-        "stiffness": 1e-3,
-        "mass": 1e-3 * np.outer(length, length),
-    }
-    scale["support"] = scale["mass"]
-    given = {
-        f.name: getattr(pair, f.name) * scale[f.name.split("_")[1]]
-        for f in fields(pair)
-        if not f.name.endswith("mesh")
-    }
-    vectors = {
-        n: MeshVector(getattr(pair, n).normal, getattr(pair, n).point * 1e3)
-        for n in ("pinion_mesh", "gear_mesh")
-    }
-    other = LumpedPair(**given, **vectors)
-    assert np.allclose(other.solve().frequency_hz, pair.solve().frequency_hz, rtol=CLOSE, atol=0)
-
-
 # -- Rayleigh ----------------------------------------------------------------------------------------------------------------
 def test_rayleigh_bound_is_below_the_highest_frequency(pair):
     k, m = pair.matrices()
@@ -309,18 +214,6 @@ def test_torsion_springs_give_back_their_frequencies():
         assert np.allclose(found, [16.3, 47.3], rtol=1e-10)
 
 
-def test_torsion_springs_agree_with_the_pair_of_a_stiff_mesh(pair):
-    # With a mesh and supports that do not give, the 14-DOF model must come to the same two
-    # frequencies; the compliance left over (1e6 times as stiff) is of that relative size.
-    for k1, k2 in torsion_springs(2.734, 0.0587, 1.92, 5.25, RATIO, 16.3, 47.3):
-        springs = {
-            name: getattr(pair, name) * 1e6
-            for name in ("mesh_stiffness", "pinion_support", "gear_support")
-        }
-        stiff = replace(pair, pinion_torsion=k1, gear_torsion=k2, **springs)
-        assert np.allclose(stiff.solve().frequency_hz[1:3], [16.3, 47.3], rtol=1e-6)
-
-
 def springs_and_masses(v):
     return np.sqrt([v["k"] / v["m"], v["k"] / (2 * v["m"]), v["k"] / (v["m"] + 1.0)])
 
@@ -338,13 +231,6 @@ def test_identification_recovers_what_made_the_data():
     # range err by about 1e-9.
     assert np.allclose(k.sensitivity, 0.5, rtol=1e-7)
     assert np.allclose(m.sensitivity, [-0.5, -0.5, -0.5 * 7 / 8], rtol=1e-5)
-
-
-def test_identification_is_repeatable():
-    unknowns = [Unknown("k", 1e5, 1e8), Unknown("m", 1.0, 50.0)]
-    data = springs_and_masses({"k": 3e6, "m": 7.0}) * [1.0, 1.02, 0.99]
-    one, two = (identify(springs_and_masses, unknowns, data, starts=3) for _ in range(2))
-    assert one.values == two.values
 
 
 def test_a_bound_is_reported():
@@ -402,18 +288,14 @@ def with_entry(matrix, i, j, value):
 
 BAD = [
     ("engine_inertia", 0.0, "engine inertia is 0.0"),
-    ("load_inertia", -1.0, "load inertia is -1.0"),
     ("engine_inertia", float("nan"), "engine inertia is nan"),
+    ("pinion_mass", np.eye(5), "shape (5, 5)"),
+    ("pinion_support", np.full((6, 6), np.nan), "NaN"),
     ("mesh_stiffness", -1.0, "mesh stiffness is -1.0"),
-    ("pinion_torsion", float("inf"), "pinion torsion is inf"),
     ("pinion_mass", np.diag([1.0, 1, 1, 1, 0, 1]), "has 0 for thy"),
     ("gear_mass", with_entry(np.eye(6), 0, 5, 2.0), "gear mass is not positive definite"),
     ("gear_mass", np.triu(np.ones((6, 6))), "not symmetric"),
-    ("pinion_mass", np.eye(5), "shape (5, 5)"),
-    ("pinion_mass", "heavy", "6x6 of numbers"),
-    ("pinion_support", np.full((6, 6), np.nan), "NaN"),
     ("pinion_support", shaft_stiffness(1e9, 1e9, 1e6, 1e9), "indefinite"),
-    ("gear_support", np.diag([1e9, -1e9, 1e9, 1, 0, 1]), "indefinite"),
     ("gear_support", np.eye(6), "resists thy"),
     ("gear_mesh", [0, 1, 0], "must be a MeshVector"),
 ]
@@ -429,32 +311,16 @@ def test_bad_pair_is_one_sentence(pair, name, value, words):
 @pytest.mark.parametrize(
     "make, words",
     [
-        (lambda: diagonal_mass(0.0, 1, 1), "mass is 0.0"),
         (lambda: consistency([1.0], [1.0, 2.0], 3.0), "same length"),
         (lambda: consistency([1.0], [0.0], 3.0), "positive"),
-        (lambda: consistency([1.0], [1.0], float("nan")), "is nan"),
         (lambda: torsion_springs(1, 1, 1, 1, 1, 10.0, 10.1), "no torsional springs"),
-        (
-            lambda: torsion_springs(-1, 1, 1, 1, 1, 10.0, 20.0),
-            "engine of the torsional chain is -1",
-        ),
         (lambda: Unknown("k", 2.0, 1.0), "ascending"),
-        (lambda: Unknown("k", 0.0, 1.0), "positive lower bound"),
         (lambda: identify(lambda v: [1.0], [Unknown("k", 1, 2)], [0.0]), "leave out the zero"),
-        (
-            lambda: identify(lambda v: [1.0], [Unknown("k", 1, 2), Unknown("k", 1, 2)], [1.0]),
-            "different names",
-        ),
         (
             lambda: identify(lambda v: [1.0], [Unknown("k", 1, 2), Unknown("m", 1, 2)], [1.0]),
             "cannot be identified from 1",
         ),
-        (lambda: identify(lambda v: [1.0, 2.0], [Unknown("k", 1, 2)], [1.0]), "shape (2,)"),
         (lambda: identify(lambda v: [0.0], [Unknown("k", 1, 2)], [1.0]), "rigid modes"),
-        (
-            lambda: identify(lambda v: [1.0], [Unknown("k", 1, 2)], [1.0], starts=0),
-            "at least one starting point",
-        ),
     ],
 )
 def test_bad_arguments_are_one_sentence(make, words):
@@ -469,11 +335,3 @@ def test_a_mesh_that_turns_nothing_is_said_so(pair):
     assert idle.solve().rigid == 2
     with pytest.raises(SolidgearError, match="transmits no rotation"):
         _ = idle.train_rotation
-
-
-def test_no_springs_at_all(pair):
-    loose = replace(
-        pair, pinion_torsion=0.0, gear_torsion=0.0, pinion_support=NOTHING, gear_support=NOTHING
-    )
-    modes = replace(loose, mesh_stiffness=0.0).solve()
-    assert modes.rigid == 14 and not modes.energy.any()

@@ -2,7 +2,6 @@
 
 import ast
 from dataclasses import replace
-from pathlib import Path
 
 import pytest
 
@@ -355,7 +354,3 @@ def test_tolerance_below_the_uncertainty_of_the_reference_is_refused():
     rough = tuple(replace(r, uncertainty=1e-2) for r in case.references)
     with pytest.raises(CaseError, match="below the uncertainty"):
         replace(case, references=rough)
-
-
-def test_pages_are_beside_their_cases():
-    assert FOLDER == Path(__file__).parent.parent / "validation" / "manual"

@@ -12,6 +12,7 @@ import solidgear as sg
 from solidgear.errors import SolidgearError
 from solidgear.meshing.closed_form import volume_of
 from solidgear.scene import STEEL, Bearing, Port, Scene, Segment
+from tests.dense import every, whole
 
 GEOMETRY = Path(__file__).parent.parent / "geometry"
 NAMES = ("pinion_overhung", "pinion_straddle", "gear_shaft", "shaft_hollow", "shaft_stepped")
@@ -39,17 +40,7 @@ def dense_system(body, scene):
     """K + G' Kb G and M of a whole body, all planes together, housing as an extra axial unknown of
     no mass condensed.
     """
-    k = sla.block_diag(*[b.stiffness.toarray() for b in body.blocks])
-    m = sla.block_diag(*[b.mass.toarray() for b in body.blocks])
-    count = len(body.ports)
-    g = np.zeros((6 * count, len(k)))
-    start = 0
-    for b in body.blocks:
-        rows = b.ports.toarray()
-        for p in range(count):
-            for i, component in enumerate(b.components):
-                g[6 * p + component, start : start + b.size] = rows[p * len(b.components) + i]
-        start += b.size
+    k, m, g = whole(body)
     n = len(scene.bearings)
     springs = (
         sla.block_diag(*[bearing_by_hand(b) for b in scene.bearings]) if n else np.zeros((0, 0))
@@ -68,18 +59,13 @@ def dense_frequencies(body, scene):
     return np.sqrt(np.abs(values)) / (2 * np.pi)
 
 
-def every_shape(found):
-    """Frequencies with pairs written twice."""
-    return np.array([m.frequency_hz for m in found.modes for _ in range(m.multiplicity)])
-
-
 # --------------------------------------------------------------------------- against dense solutions
 @pytest.mark.parametrize("fidelity", ["euler", "timoshenko"])
 @pytest.mark.parametrize("name", NAMES)
 def test_against_dense_eigenvalues(name, fidelity):
     scene = shipped(name)
     body = sg.build(scene, fidelity, elements=24)
-    found = every_shape(sg.modes(body, scene, n=10))
+    found = every(sg.modes(body, scene, n=10))
     expected = dense_frequencies(body, scene)
     assert found[0] == 0.0  # nothing holds the shaft about its axis
     assert expected[0] < 1.0  # the dense solver sees rounding noise there, in Hz
@@ -101,7 +87,7 @@ def test_small_and_large_solvers_agree(name):
     scene = shipped(name)
     body = sg.build(scene, "timoshenko", elements=210)
     assert max(b.size for b in body.blocks) > 400
-    found = every_shape(sg.modes(body, scene, n=6))
+    found = every(sg.modes(body, scene, n=6))
     assert found[1:] == pytest.approx(
         dense_frequencies(body, scene)[1 : len(found)], rel=2e-7
     )  # dense: more eps, see above
@@ -177,7 +163,7 @@ def test_anisotropic_bearings_split_pairs(overhung, factor):
     body = sg.build(scene, "timoshenko", elements=24)
     found = sg.modes(body, scene, n=8)
     assert all(m.multiplicity == 1 for m in found.modes)
-    shapes = every_shape(found)
+    shapes = every(found)
     assert shapes[1:] == pytest.approx(
         dense_frequencies(body, scene)[1 : len(shapes)], rel=1e-7
     )  # as above
@@ -204,24 +190,12 @@ def test_dropped_couplings_change_less_than_their_bound(overhung):
     bound = apart.evidence["coupling_bound"]
     assert 1e-5 < bound < 1e-2
     assert together.evidence["coupling_bound"] == 0.0
-    a, b = every_shape(apart), every_shape(together)
+    a, b = every(apart), every(together)
     n = min(len(a), len(b))
     # |d lambda / lambda| <= bound (Rayleigh)
     change = np.abs((a[1:n] / b[1:n]) ** 2 - 1)
     assert change.max() < bound
     assert change.max() > 1e-3 * bound  # and the test looks at something
-
-
-@pytest.mark.parametrize("name", NAMES)
-def test_shipped_couplings_are_negligible(name):
-    scene = shipped(name)
-    body = sg.build(scene, "timoshenko")
-    apart, together = (sg.modes(body, scene, n=8, coupling_tolerance=t) for t in (1e-6, 0))
-    bound = apart.evidence["coupling_bound"]
-    a, b = every_shape(apart), every_shape(together)
-    n = min(len(a), len(b))
-    # rounding of two different solvers beside the bound
-    assert np.abs((a[1:n] / b[1:n]) ** 2 - 1).max() < bound + 1e-8
 
 
 # --------------------------------------------------------------------------- rigid modes
@@ -319,7 +293,7 @@ def rigid_frequencies(scene, radial, axial):
 def test_shaft_on_soft_springs_is_a_rigid_mass(fidelity, options):
     radial, axial = 1e4, 3e4
     scene = on_two_springs(radial, axial)
-    found = every_shape(sg.modes(sg.build(scene, fidelity, **options), scene, n=5))
+    found = every(sg.modes(sg.build(scene, fidelity, **options), scene, n=5))
     assert found[0] == 0.0
     # The shaft's own compliance lowers the frequencies by 1e-6 (1e4 N/m against some 1e9 to 1e10 of
     # a rod on two points); the solid's O-grid carries the volume of the circle exactly and its
@@ -331,20 +305,10 @@ def test_shaft_on_soft_springs_is_a_rigid_mass(fidelity, options):
 def test_near_rigid_shaft_on_stiff_springs(fidelity, options):
     radial, axial = 1e7, 3e7
     scene = on_two_springs(radial, axial, modulus=2e15)
-    found = every_shape(sg.modes(sg.build(scene, fidelity, **options), scene, n=5))
+    found = every(sg.modes(sg.build(scene, fidelity, **options), scene, n=5))
     # 1e4 times steel, some 1e13 to 1e14 N/m, against springs of 1e7 N/m: 1e-7; the shifted solve
     # rounds to 3e-7
     assert found[1:] == pytest.approx(rigid_frequencies(scene, radial, axial), rel=5e-6)
-
-
-@pytest.mark.parametrize("radial", [1.0, 1e-3])
-@pytest.mark.parametrize("fidelity, options", [("timoshenko", {}), ("harmonic", {"order": 2})])
-def test_very_soft_springs_keep_their_digits(fidelity, options, radial):
-    # elastic compliance is below 1e-9 of the springs', and the mass of both bodies is exact: closed
-    # form to 1e-6
-    scene = on_two_springs(radial, 3 * radial)
-    found = every_shape(sg.modes(sg.build(scene, fidelity, **options), scene, n=5))
-    assert found[1:] == pytest.approx(rigid_frequencies(scene, radial, 3 * radial), rel=1e-6)
 
 
 def test_a_pair_torn_by_the_mesh_is_told(overhung):

@@ -73,14 +73,6 @@ def test_front_of_hand_data():
     assert front(cost, error) == [0, 1, 4]
 
 
-def test_front_comes_in_order_of_cost_whatever_the_order_of_the_points():
-    assert front([4.0, 1.0, 2.0], [1e-3, 1e-1, 1e-2]) == [1, 2, 0]
-
-
-def test_of_equal_points_the_first_stands_for_all():
-    assert front([1.0, 1.0, 1.0], [0.5, 0.5, 0.5]) == [0]
-
-
 def test_points_without_a_number_take_no_part():
     assert front([None, 1.0, 2.0, 0.1, float("inf")], [1e-9, None, 1e-2, float("nan"), 1e-9]) == [2]
     assert front([], []) == []
@@ -237,13 +229,6 @@ def test_a_lumped_model_that_cannot_be_made_fails_with_the_reason(scene, monkeyp
     monkeypatch.setattr(racing, "preferred", lambda made: None)
     with pytest.raises(SolidgearError, match="no lumped mass is positive"):
         answer(scene, "lumped", {}, 10)
-
-
-def test_median_and_number_of_runs():
-    assert Row("beam", "Euler", 1, "euler", {}, samples=[3.0, 1.0, 2.0, 50.0, 1.5]).seconds == 2.0
-    assert Row("beam", "Euler", 1, "euler", {}).seconds is None
-    assert [racing._most_runs(s, 5) for s in (0.1, 7.9, 8.1, 19.0, 21.0)] == [5, 5, 3, 3, 1]
-    assert [racing._most_runs(s, 2) for s in (0.1, 9.0, 21.0)] == [2, 2, 1]
 
 
 class Stage:

@@ -5,7 +5,7 @@ bounds an error, and what it takes for that.
 import numpy as np
 import pytest
 
-from solidgear.kernel.lobatto import at_nodes, gauss, lobatto, products, sides
+from solidgear.kernel.lobatto import at_nodes, gauss, lobatto, products
 from solidgear.kernel.local_problems import Cell, condensed, energies
 
 #: pull of distributed forces per length, N/m, on bars whose stiffness E A is 1 N
@@ -150,15 +150,3 @@ def test_functions_of_a_cell_are_told_by_their_values_and_have_these_slopes():
     assert c @ value == pytest.approx(shape(x, y), rel=1e-12)
     assert c @ slope[0] == pytest.approx(4 * (1 + x) ** 3 * (2 - y) ** 3, rel=1e-12)
     assert c @ slope[1] == pytest.approx(-3 * (1 + x) ** 4 * (2 - y) ** 2, rel=1e-12)
-
-
-def test_functions_of_a_side_vanish_on_the_others_and_those_inside_on_all():
-    t = np.linspace(0.0, 1.0, 9)
-    around = [(t, 0 * t), (1 + 0 * t, t), (t, 1 + 0 * t), (0 * t, t)]  # low, outer, high, inner
-    on_side = np.array([np.abs(products(5, np.stack(s, axis=1))[0]).max(axis=1) for s in around])
-    outer, inner = sides(5)
-    assert on_side[:, inner].max() < 1e-14 and len(outer) + len(inner) == 36
-    lives = on_side[:, outer] > 1e-14
-    corners = [[0, 3], [0, 1], [1, 2], [2, 3]]  # sides that meet there
-    assert [list(np.flatnonzero(column)) for column in lives.T[:4]] == corners
-    assert [list(np.flatnonzero(c)) for c in lives.T[4:]] == [[s] for s in range(4) for _ in "1234"]

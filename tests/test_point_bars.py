@@ -7,10 +7,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from typer.testing import CliRunner
 
 import solidgear as sg
-from solidgear.cli.app import app
 from solidgear.judge.bars import step_bands
 from solidgear.judge.quantities import (
     between,
@@ -30,6 +28,7 @@ from solidgear.scene import Bearing, Port, Scene, Segment
 from solidgear.studies.guards.data import split_pair
 from solidgear.studies.guards.models import beam_against_solid
 from solidgear.studies.guards.probe import Probe
+from tests.command import command
 from validation.campaign.cases.points import judged, scene_of, solutions
 from validation.campaign.rows import SMALL
 from validation.campaign.truths.corner_mesh import corner_mesh
@@ -189,17 +188,13 @@ def test_effects_of_features_count_at_every_point():
 
 
 # --------------------------------------------------------------------------- where they are told
-def run(*args):
-    return CliRunner().invoke(app, [str(a) for a in args])
-
-
 def test_the_command_tells_the_bar_of_every_block(settled):
-    told = run("stiffness", PATH, "--port", "pinion,wheel", "--tol", "0.05")
+    told = command("stiffness", PATH, "--port", "pinion,wheel", "--tol", "0.05")
     assert told.exit_code == 0
     for words in ("pinion itself", "between pinion and wheel", "wheel itself", "geometric mean"):
         assert words in told.stdout
     found = json.loads(
-        run("stiffness", PATH, "--port", "wheel,pinion", "--tol", "0.05", "--json").stdout
+        command("stiffness", PATH, "--port", "wheel,pinion", "--tol", "0.05", "--json").stdout
     )
     assert found["bars"].keys() == settled.bars.keys()
 

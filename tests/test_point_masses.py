@@ -2,7 +2,6 @@
 and closed forms, on every rung and in a sweep.
 """
 
-import csv
 import math
 from dataclasses import replace
 from pathlib import Path
@@ -17,6 +16,8 @@ from solidgear.body import as_supports
 from solidgear.body.cache import Cache
 from solidgear.reduction.effective_mass import synthesise
 from solidgear.studies.sweep.run import sweep
+from tests.command import table
+from tests.dense import every, whole
 
 ROOT = Path(__file__).parent.parent
 LIGHT = {
@@ -42,10 +43,6 @@ def rows_of(body, block, name):
     """Port rows of a block."""
     c, p = len(block.components), body.port_index(name)
     return block.ports[[c * p + k for k in range(c)]]
-
-
-def shapes(found, n):
-    return np.repeat(found.frequency_hz, found.multiplicity)[:n]
 
 
 def with_mass_in_the_matrix(body, supports):
@@ -74,7 +71,7 @@ def test_low_rank_equals_mass_in_the_matrix(bodies, scene, rung):
     # both solve one eigenproblem: what is left is the rounding they report themselves (1e-13 to
     # 2e-12 measured, 2e-9 for the Euler beam, whose mass matrix is nearly singular)
     left = max(1e-9, low.evidence["error"] + high.evidence["error"])
-    assert np.abs(shapes(low, 8) / shapes(high, 8) - 1).max() < left < 1e-8
+    assert np.abs(every(low)[:8] / every(high)[:8] - 1).max() < left < 1e-8
     plain = sg.modes(bodies[rung], replace(supports, inertia=None), n=8, ovalising=False)
     assert abs(plain.named("bending 1").frequency_hz / low.named("bending 1").frequency_hz) > 2
 
@@ -199,23 +196,12 @@ def test_an_offset_mass_couples_what_a_centred_one_does_not(bodies, scene):
     body = sg.build(odd, "timoshenko", elements=8)
     found = sg.modes(body, odd, n=8)
     supports = as_supports(odd)
-    k = sla.block_diag(*(b.stiffness.toarray() for b in body.blocks))
-    m = sla.block_diag(*(b.mass.toarray() for b in body.blocks))
-    for matrix, to in ((supports.stiffness, k), (supports.masses, m)):
-        rows = []
-        for i in range(len(supports.ports)):
-            for c in range(6):
-                row = [
-                    rows_of(body, b, supports.ports[i])[list(b.components).index(c)].toarray()
-                    if c in b.components
-                    else np.zeros((1, b.size))
-                    for b in body.blocks
-                ]
-                rows.append(np.hstack(row)[0])
-        g = np.array(rows)
-        to += g.T @ matrix @ g
+    k, m, g = whole(body)
+    seats = np.vstack([g[6 * body.port_index(name) :][:6] for name in supports.ports])
+    k += seats.T @ supports.stiffness @ seats
+    m += seats.T @ supports.masses @ seats
     exact = np.sqrt(sla.eigh(k, m, eigvals_only=True, subset_by_index=[0, 7])) / (2 * np.pi)
-    assert shapes(found, 8) == pytest.approx(exact, rel=1e-9)
+    assert every(found)[:8] == pytest.approx(exact, rel=1e-9)
     assert max(found.multiplicity) == 1  # no plane is like the other: nothing is a pair
 
 
@@ -224,14 +210,13 @@ def test_the_sweep_carries_masses(scene, tmp_path):
     options = LIGHT["harmonic"]
     vary = ["bearing.roller.scale=log:0.1:10:3"]
     sweep(scene, vary, out, fidelity="harmonic", options=options, n=8)
-    with open(out) as file:
-        rows = list(csv.DictReader(file))
+    rows = table(out)
     body = sg.build(scene, "harmonic", **options)
     for row in rows:
         assert row["how"] == "reduced" and float(row["error_bound"]) < 1e-6
         scaled = scene.bearings[1].scaled(float(row["bearing.roller.scale"]))
         here = scene.with_changes(bearings=(scene.bearings[0], scaled))
-        wanted = shapes(sg.modes(body, here, n=8, ovalising=False), 8)
+        wanted = every(sg.modes(body, here, n=8, ovalising=False))[:8]
         assert [float(row[f"f{k}_hz"]) for k in range(1, 9)] == pytest.approx(wanted, rel=1e-6)
 
 
@@ -246,9 +231,8 @@ def test_a_free_disc_leaves_rigid_motions_exact(scene, tmp_path):
     assert found.names[0] == "rigid torsion" and found.frequency_hz[0] == 0.0
     out = tmp_path / "rows.csv"
     sweep(loose, ["bearing.S.scale=1:2:2"], out, fidelity="timoshenko", n=10)
-    with open(out) as file:
-        row = next(csv.DictReader(file))
-    wanted = shapes(found, 11)[1:]
+    row, *_ = table(out)
+    wanted = every(found)[:11][1:]
     assert [float(row[f"f{k}_hz"]) for k in range(1, 11)] == pytest.approx(wanted, rel=1e-6)
 
 

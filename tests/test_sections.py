@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 
 import solidgear as sg
-from solidgear.body.sections import hats
 
 STATIONS = 13
 GEOMETRY = Path(__file__).parent.parent / "geometry"
@@ -95,11 +94,3 @@ def test_one_mode_is_the_same_on_long_cells_and_on_short_ones():
         x, y = a.motions[0].ravel(), b.motions[0].ravel()
         # a shape at these settings is good to 1e-3, and a MAC is off by its square
         assert (x @ gram @ y) ** 2 / (x @ gram @ x) / (y @ gram @ y) > 1 - 1e-4
-
-
-def test_hats_sum_to_one_and_interpolate():
-    stations = np.array([0.0, 0.1, 0.4, 1.0])
-    y = np.array([0.0, 0.05, 0.1, 0.25, 1.0])
-    hat = hats(y, stations)
-    assert hat @ np.ones(4) == pytest.approx(np.ones(5))
-    assert hat @ stations == pytest.approx(y)

@@ -9,6 +9,7 @@ import pytest
 
 import solidgear as sg
 from solidgear.scene import Scene, Segment
+from tests.dense import mass_matrix
 
 GEOMETRY = Path(__file__).parent.parent / "geometry"
 SMALL = {
@@ -44,44 +45,12 @@ def light(overhung):
 
 
 # --------------------------------------------------------------------------- mass
-def frustum_moments(y0, y1, a, b, density):
-    """Mass, first and second axial moment and polar inertia of a solid frustum, closed form, about
-    y = 0.
-    """
-    # r = a + (b - a) t: moments of r^2 t^k and r^4 over 0..1
-    d, h = b - a, y1 - y0
-    square = [a * a / (k + 1) + 2 * a * d / (k + 2) + d * d / (k + 3) for k in range(3)]
-    fourth = sum(c * a ** (4 - i) * d**i / (i + 1) for i, c in enumerate((1, 4, 6, 4, 1)))
-    m = density * np.pi * h
-    return np.array(
-        [
-            m * square[0],
-            m * (y0 * square[0] + h * square[1]),
-            m * (y0 * y0 * square[0] + 2 * y0 * h * square[1] + h * h * square[2]),
-            m / 2 * fourth,
-        ]
-    )
-
-
-def closed_form_mass(scene):
-    """(6, 6) mass matrix about the origin."""
-    mass, first, second, polar = sum(
-        frustum_moments(s.y0, s.y1, s.outer0, s.outer1, s.material.density)
-        - (frustum_moments(s.y0, s.y1, s.inner0, s.inner1, s.material.density) if s.inner0 else 0)
-        for s in scene.segments
-    )
-    out = np.diag([mass, mass, mass, second + polar / 2, polar, second + polar / 2])
-    out[2, 3] = out[3, 2] = first
-    out[0, 5] = out[5, 0] = -first
-    return out
-
-
 @pytest.mark.parametrize("name", ["pinion_overhung", "shaft_hollow"])
 @pytest.mark.parametrize("element", ["tet10", "hex20", "hex27"])
 def test_mass_centre_and_inertia(name, element):
     scene = sg.load(GEOMETRY / f"{name}.toml")
     m = sg.build(scene, "solid", element=element, **SMALL[element]).mass_matrix()
-    expected = closed_form_mass(scene)
+    expected = mass_matrix(scene)
     size = np.sqrt(np.diag(expected))
     error = np.abs((m - expected) / np.outer(size, size))
     # 16 quadratic edges around lose a^4 / 30 = 5e-5 of the area (half angle a = pi / 16) and twice
@@ -99,7 +68,7 @@ def test_mass_of_straight_sides_is_short():
     m = sg.build(scene, "solid", element="tet4", size=0.02, graded_size=0.02).mass_matrix()
     # sixteen and more chords around: short by less than 1 - sin(2 pi / 16) / (2 pi / 16), which is
     # 2.5 %
-    assert 0.002 < 1 - m[0, 0] / closed_form_mass(scene)[0, 0] < 0.026
+    assert 0.002 < 1 - m[0, 0] / mass_matrix(scene)[0, 0] < 0.026
 
 
 # --------------------------------------------------------------------------- rigid motions
@@ -164,31 +133,6 @@ def test_light_hexahedra_are_near_the_reference(overhung, light):
     # 14k unknowns: the graded mesh is above the reference, as displacement elements are, by less
     # than half a per cent
     assert 0 < k[2, 2] / K_ZZ - 1 < 5e-3
-
-
-@pytest.mark.long
-def test_light_hexahedra_keep_the_pair(overhung, light):
-    k = sg.condense(light, overhung, "pinion").stiffness
-    # the O-grid has fourfold symmetry, hence equal planes to rounding; bearings' weak couplings
-    # enter squared
-    assert k[0, 0] == pytest.approx(k[2, 2], rel=1e-10)
-    assert k[0, 5] == pytest.approx(-k[2, 3], rel=1e-10)
-    found = sg.modes(light, overhung, n=6)
-    first = found.named("bending 1")
-    assert first.multiplicity == 2
-    values = []
-    for vectors in first.vectors:
-        u = vectors[0]
-        block = light.blocks[0]
-        rows = block.ports.toarray()
-        energy = u @ (block.stiffness @ u)
-        for p, bearing in enumerate(overhung.bearings, start=1):
-            d = rows[6 * p : 6 * p + 6] @ u
-            energy += d @ bearing.stiffness @ d
-        values.append(energy / (u @ (block.mass @ u)))
-    # Rayleigh quotients of the two shapes, formed here: degenerate to 1e-8, as the symmetry says
-    assert values[0] == pytest.approx(values[1], rel=1e-8)
-    assert first.frequency_hz == pytest.approx(np.sqrt(np.mean(values)) / (2 * np.pi), rel=1e-8)
 
 
 def test_light_hexahedra_bend_near_the_reference(overhung, light):

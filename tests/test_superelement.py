@@ -5,6 +5,7 @@ import pytest
 
 import solidgear as sg
 from solidgear.solve.statics import flexibility
+from tests.dense import every
 
 SCENE = sg.load("geometry/pinion_overhung.toml")
 LIGHT = {
@@ -26,11 +27,6 @@ def body(request):
 @pytest.fixture(scope="module", params=REDUCTIONS)
 def part(request, body):
     return REDUCTIONS[request.param](body, n=24)
-
-
-def every(found):
-    """Frequencies of `modes`, twins twice."""
-    return np.array([m.frequency_hz for m in found.modes for _ in range(m.multiplicity)])
 
 
 def on_bearings(part, supports):

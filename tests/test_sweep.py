@@ -9,15 +9,14 @@ from contextlib import closing
 
 import numpy as np
 import pytest
-from typer.testing import CliRunner
 
 import solidgear as sg
-from solidgear.cli import app
 from solidgear.errors import SolidgearError
 from solidgear.studies.sweep import run as runner
 from solidgear.studies.sweep import sweep
 from solidgear.studies.sweep.run import variants_of
 from solidgear.studies.sweep.task import ENTRIES
+from tests.command import command
 
 SCENE = sg.load("geometry/pinion_overhung.toml")
 VARY = [
@@ -342,19 +341,16 @@ def test_missing_packages_are_named(tmp_path, monkeypatch):
 
 # ------------------------------------------------------------------------------------------------- the command
 def call(*arguments):
-    return CliRunner().invoke(
-        app,
-        [
-            "sweep",
-            "geometry/pinion_overhung.toml",
-            "-f",
-            "timoshenko",
-            "--set",
-            "elements=40",
-            "-n",
-            "6",
-            *arguments,
-        ],
+    return command(
+        "sweep",
+        "geometry/pinion_overhung.toml",
+        "-f",
+        "timoshenko",
+        "--set",
+        "elements=40",
+        "-n",
+        "6",
+        *arguments,
     )
 
 

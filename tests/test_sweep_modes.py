@@ -10,6 +10,7 @@ from solidgear.reduction import moments as reduction
 from solidgear.reduction.moments import reduce
 from solidgear.studies.sweep.ritz import Seats, _bound, _Group, ritz_modes
 from solidgear.studies.sweep.run import variants_of
+from tests.dense import whole
 
 SCENE = sg.load("geometry/pinion_overhung.toml")
 #: overlapping candidate seats, among them two that share no mesh line
@@ -103,15 +104,7 @@ def dense(body, supports, n):
     """All eigenvalues of ``K + G' Kb G`` assembled in full, LAPACK's generalised solver: shares
     nothing with the package.
     """
-    k, m = (
-        sla.block_diag(*(b.stiffness.toarray() for b in body.blocks)),
-        sla.block_diag(*(b.mass.toarray() for b in body.blocks)),
-    )
-    g = np.zeros((6 * len(body.ports), len(k)))
-    start = 0
-    for block in body.blocks:
-        g[body.rows(block), start : start + block.size] = block.ports.toarray()
-        start += block.size
+    k, m, g = whole(body)
     g = g[supports.rows(body)]
     return sla.eigh(
         k + g.T @ supports.stiffness @ g, m, eigvals_only=True, subset_by_index=[0, n - 1]

@@ -221,9 +221,3 @@ def test_a_sweep_says_at_which_load_catalogue_bearings_are_taken(tmp_path):
     assert "bearing.A.scale varies from there, with the loads" in settling("bearing.A.scale=1,2")
     plain = sweep(SCENE, ["bearing.1.scale=1,2"], tmp_path / "p.csv", fidelity="timoshenko")
     assert plain.settling == ""
-
-
-@pytest.mark.parametrize("scale", ["0", "-1"])
-def test_a_scale_that_is_none_is_told_with_its_value(scale):
-    with pytest.raises(SceneError, match=rf'bearing "2": scale = {scale}: must be greater'):
-        variants_of(SCENE, [f"bearing.2.scale={scale},1"]).of(0)

@@ -3,13 +3,12 @@
 import json
 
 import pytest
-from typer.testing import CliRunner
 
 import solidgear as sg
-from solidgear.cli import app
 from solidgear.studies.train import check as checked
 from solidgear.studies.train.check import check_train
 from solidgear.studies.train.models import Workshop
+from tests.command import command
 
 AXLE = "geometry/axle_overhung.toml"
 TRAIN = sg.load_train(AXLE)
@@ -95,15 +94,15 @@ def test_local_harmonics_are_not_called_undriven(no_shafts):
 
 def test_the_command_on_a_train(monkeypatch, found):
     monkeypatch.setattr(checked, "check_train", lambda shop: found)
-    done = CliRunner().invoke(app, ["check", AXLE])
+    done = command("check", AXLE)
     assert done.exit_code == 0
     assert done.output.index("== pinion") < done.output.index("== gear")
     assert "Holds with caution: solid (gear)." in done.output.split("== train")[1]
-    told = json.loads(CliRunner().invoke(app, ["check", AXLE, "--json"]).output)
+    told = json.loads(command("check", AXLE, "--json").output)
     assert told["verdicts"]["solid"]["shafts"] == ["gear"]
 
 
 def test_options_of_one_shaft_are_refused():
-    done = CliRunner().invoke(app, ["check", AXLE, "--set", "order=3"])
+    done = command("check", AXLE, "--set", "order=3")
     assert done.exit_code != 0
     assert "--set is for one shaft" in str(done.exception) + done.output

@@ -7,15 +7,15 @@ import numpy as np
 import pytest
 import scipy.linalg as sla
 from shafts import moved_by
-from typer.testing import CliRunner
 
 import solidgear as sg
-from solidgear.cli import app
 from solidgear.frames import shift
 from solidgear.solve.statics import condense
 from solidgear.studies.train.models import Workshop
 from solidgear.studies.train.modes import train_modes
 from solidgear.studies.train.naming import TRAIN, mode_names
+from tests.command import command
+from tests.dense import whole
 from validation.thesis.lumped_pair import LumpedPair
 
 OVERHUNG = Path(__file__).parent.parent / "geometry" / "axle_overhung.toml"
@@ -32,31 +32,18 @@ def assembled(shop, rungs, losses=None):
     lost = {"shafts": 0.0, "bearings": 0.0, "mesh": 0.0, "springs": 0.0}
     if losses is not None:
         lost = {name: 1j * getattr(losses, name) for name in lost}
-    k, m, ports = [], [], {}
-    start = 0
-    for side, rung in rungs.items():
-        body = sg.build(shop.scenes[side], rung, **COARSE[rung])
-        for block in body.blocks:
-            rows = block.ports.toarray()
-            c = len(block.components)
-            for i, port in enumerate(body.ports):
-                target = ports.setdefault(f"{side}.{port.name}", {})
-                for j, component in enumerate(block.components):
-                    target[component] = (start, rows[i * c + j])
-            k.append(block.stiffness.toarray())
-            m.append(block.mass.toarray())
-            start += block.size
-    k += [np.zeros((1, 1))] * 2
-    m += [np.array([[train.engine.inertia]]), np.array([[train.load.inertia]])]
-    ports |= {"engine": {4: (start, np.ones(1))}, "load": {4: (start + 1, np.ones(1))}}
-    k, m = (1 + lost["shafts"]) * sla.block_diag(*k), sla.block_diag(*m)
+    bodies = {s: sg.build(shop.scenes[s], rung, **COARSE[rung]) for s, rung in rungs.items()}
+    (k1, m1, one), (k2, m2, two) = map(whole, bodies.values())
+    k = (1 + lost["shafts"]) * sla.block_diag(k1, k2, np.zeros((2, 2)))
+    m = sla.block_diag(m1, m2, train.engine.inertia, train.load.inertia)
     size = len(k)
+    rows = sla.block_diag(one, two, np.zeros((12, 2)))
+    rows[-8, -2] = rows[-2, -1] = 1.0  # engine and load turn about y
+    names = [f"{side}.{port.name}" for side, body in bodies.items() for port in body.ports]
+    names += ["engine", "load"]
 
     def motion(port):
-        out = np.zeros((6, size))
-        for component, (place, row) in ports[port].items():
-            out[component, place : place + len(row)] = row
-        return out
+        return rows[6 * names.index(port) :][:6].copy()
 
     for side, rotor, at in (("pinion", train.engine, size - 2), ("gear", train.load, size - 1)):
         scene = shop.scenes[side]
@@ -287,10 +274,10 @@ def test_a_reduced_body_is_asked_for_a_port_it_does_not_have():
 
 def test_the_command_prints_a_table_and_json():
     args = ["system-modes", str(OVERHUNG), "--pinion", "euler", "--gear", "timoshenko"]
-    table = CliRunner().invoke(app, args)
+    table = command(*args)
     assert table.exit_code == 0
     assert "train rotation" in table.stdout and "Identified, not published" in table.stdout
-    data = json.loads(CliRunner().invoke(app, [*args, "--json"]).stdout)
+    data = json.loads(command(*args, "--json").stdout)
     assert data["rigid"] == 1 and data["reduction"] == "rubin"
     assert data["modes"][0]["frequency_hz"] == 0.0
     assert data["unpublished"]["mesh.stiffness"] == "identified"
@@ -302,7 +289,7 @@ def test_a_mesh_that_cannot_be_names_the_file_and_the_key(tmp_path):
         text = text.replace(f'"{name}.toml"', f'"{OVERHUNG.parent / name}.toml"')
     path = tmp_path / "wide.toml"
     path.write_text(text)
-    done = CliRunner().invoke(app, ["system-modes", str(path)])
+    done = command("system-modes", str(path))
     assert done.exit_code != 0
     assert "wide.toml: pinion.face_width" in str(done.exception)
     assert "reaches past the apex" in str(done.exception)

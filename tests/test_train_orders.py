@@ -1,19 +1,16 @@
 """Order lines over speed: where they cross natural frequencies, and what the mesh force is there."""
 
-import csv
-
 import numpy as np
 import pytest
 from test_train_models import COARSE, OVERHUNG
-from typer.testing import CliRunner
 
 import solidgear as sg
-from solidgear.cli import app
 from solidgear.report.order_chart import spread
 from solidgear.studies.train.models import Workshop
 from solidgear.studies.train.modes import train_modes
 from solidgear.studies.train.orders import order_map
 from solidgear.studies.train.respond import Drive
+from tests.command import command, table
 
 TRAIN = sg.load_train(OVERHUNG)
 MIX = ("timoshenko", "timoshenko")
@@ -85,10 +82,9 @@ def test_names_are_moved_apart_and_stay_in_order():
 @pytest.mark.long
 def test_the_command_writes_the_map(tmp_path):
     args = ["response", str(OVERHUNG), "--pinion", "euler", "--gear", "euler", "--out"]
-    done = CliRunner().invoke(app, [*args, str(tmp_path), "--orders", "2"])
+    done = command(*args, str(tmp_path), "--orders", "2")
     assert done.exit_code == 0, done.output
-    with (tmp_path / "orders.csv").open(encoding="utf-8") as file:
-        rows = list(csv.DictReader(file))
+    rows = table(tmp_path / "orders.csv")
     assert {row["order"] for row in rows if row["order"].startswith("mesh")} == {"mesh 1", "mesh 2"}
     assert all((row["mesh force [N]"] != "") == (row["order"] == "mesh 1") for row in rows)
     assert "pinion speed in rpm" in (tmp_path / "orders.svg").read_text(encoding="utf-8")

@@ -3,15 +3,14 @@
 import numpy as np
 import pytest
 from test_train_models import COARSE, OVERHUNG
-from typer.testing import CliRunner
 
 import solidgear as sg
-from solidgear.cli import app
 from solidgear.report.folder import clear
 from solidgear.report.turning import sections
 from solidgear.studies.train.models import Workshop
 from solidgear.studies.train.naming import mode_names
 from solidgear.studies.train.pictures import draw_modes, system_surface, turned_beside, turned_modes
+from tests.command import command
 
 TRAIN = sg.load_train(OVERHUNG)
 FINE = {**COARSE, "harmonic": {"order": 2, "layers": 1}}
@@ -116,7 +115,7 @@ def test_modes_are_drawn_with_four_phases(shop, tmp_path):
 def test_without_a_renderer_there_is_a_sentence(tmp_path, monkeypatch):
     monkeypatch.setenv("SOLIDGEAR_RENDERER", "none")
     args = ["system-modes", str(OVERHUNG), "--pinion", "euler", "--gear", "euler"]
-    done = CliRunner().invoke(app, [*args, "--pictures", str(tmp_path), "--mode", "3"])
+    done = command(*args, "--pictures", str(tmp_path), "--mode", "3")
     assert done.exit_code == 0 and "OpenGL is mended by" in done.output
     assert not list(tmp_path.iterdir())
 
@@ -132,7 +131,7 @@ def test_without_a_renderer_there_is_a_sentence(tmp_path, monkeypatch):
 def test_wrong_modes_are_told(more, words, tmp_path, monkeypatch):
     args = ["system-modes", str(OVERHUNG), "--pinion", "euler", "--gear", "euler"]
     monkeypatch.chdir(tmp_path)
-    done = CliRunner().invoke(app, [*args, *more])
+    done = command(*args, *more)
     assert done.exit_code == 1 and words in str(done.exception)
     assert not list(tmp_path.iterdir())
 
@@ -187,15 +186,15 @@ def test_the_page_of_system_modes_has_modes_to_turn_and_units(tmp_path):
     page = tmp_path / "modes.html"
     told = ["system-modes", str(OVERHUNG), "--pinion", "euler", "--gear", "timoshenko"]
     told += ["--max-frequency", "700"]
-    done = CliRunner().invoke(app, [*told, "--turn", str(page), "--units", "us"])
+    done = command(*told, "--turn", str(page), "--units", "us")
     assert done.exit_code == 0, done.output
     text = page.read_text(encoding="utf-8")
     assert "sg-turn" in text and text.count('"triangles"') == 2 and "gear bending 1" in text
     # 250 N/um: 250e6 / 4.4482216152605 * 0.0254 lbf/in
     assert "1\u00a0428\u00a0000 lbf/in" in text and "78.7402 µin" in text
-    refused = CliRunner().invoke(app, [*told, "--units", "us"])
+    refused = command(*told, "--units", "us")
     assert refused.exit_code == 1 and "add --turn model.html" in str(refused.exception)
-    nothing = CliRunner().invoke(app, [*told[:3], "lumped", "--turn", str(tmp_path / "no.html")])
+    nothing = command(*told[:3], "lumped", "--turn", str(tmp_path / "no.html"))
     assert nothing.exit_code == 1
     assert "lumped of the pinion has no shape" in str(nothing.exception)
     assert not (tmp_path / "no.html").exists()

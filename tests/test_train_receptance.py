@@ -1,21 +1,19 @@
 """Receptance between two ports of a train: against the full matrices, reciprocal, no peak missed."""
 
-import csv
 import json
 
 import numpy as np
 import pytest
 from test_train_models import COARSE, OVERHUNG, assembled
-from typer.testing import CliRunner
 
 import solidgear as sg
-from solidgear.cli import app
 from solidgear.frames import DOF_NAMES
 from solidgear.studies.train.models import Workshop
 from solidgear.studies.train.naming import mode_names
 from solidgear.studies.train.receptance import receptance
 from solidgear.studies.train.respond import NO_MODE, Drive
 from solidgear.system.steady import peaks
+from tests.command import command, table
 
 TRAIN = sg.load_train(OVERHUNG)
 MIX = ("timoshenko", "timoshenko")
@@ -116,14 +114,13 @@ ARGS = ["receptance", str(OVERHUNG), "--pinion", "euler", "--gear", "timoshenko"
 def test_the_command_writes_a_table_and_charts(tmp_path):
     out = tmp_path / "out"
     args = [*ARGS, "--from", "gear.gear:z", "--to", "pinion.pinion:thx", "--out", str(out)]
-    done = CliRunner().invoke(app, [*args, "--against", "euler+euler", "--json"])
+    done = command(*args, "--against", "euler+euler", "--json")
     assert done.exit_code == 0, done.output
     kinds = ("csv", "html", "json", "png", "svg")
     assert {p.name for p in out.iterdir()} == {f"receptance.{kind}" for kind in kinds}
     told = json.loads(done.stdout)
     assert told["unit"] == "rad/N" and len(told["models"]) == 2
-    with (out / "receptance.csv").open(encoding="utf-8") as file:
-        rows = list(csv.DictReader(file))
+    rows = table(out / "receptance.csv")
     for row in rows[:: len(rows) // 7]:
         whole = complex(float(row["real part [rad/N]"]), float(row["imaginary part [rad/N]"]))
         assert abs(whole) == pytest.approx(float(row["amplitude [rad/N]"]), rel=1e-7)
@@ -144,7 +141,7 @@ def test_the_command_writes_a_table_and_charts(tmp_path):
 )
 def test_bad_ends_are_told_and_nothing_is_written(from_, to, words, tmp_path):
     out = tmp_path / "out"
-    done = CliRunner().invoke(app, [*ARGS, "--from", from_, "--to", to, "--out", str(out)])
+    done = command(*ARGS, "--from", from_, "--to", to, "--out", str(out))
     assert done.exit_code == 1
     assert words in str(done.exception)
     assert not out.exists() or not list(out.iterdir())

@@ -9,15 +9,14 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from typer.testing import CliRunner
 
 import solidgear as sg
-from solidgear.cli import app
 from solidgear.errors import SolidgearError
 from solidgear.meshing.closed_form import volume_of
 from solidgear.report import viewer
 from solidgear.report.packing import mesh_of
 from solidgear.report.turning import picks, turned
+from tests.command import command
 
 ROOT = Path(__file__).parents[1]
 KINDS = {"timoshenko": {}, "harmonic": {"order": 4}, "solid": {"refinement": 0.5}}
@@ -228,13 +227,13 @@ def test_a_comparison_puts_it_into_its_report(tmp_path, monkeypatch):
 def test_the_command_writes_a_page_also_where_nothing_can_be_drawn(tmp_path, monkeypatch):
     monkeypatch.setenv("SOLIDGEAR_RENDERER", "none")
     scene, target = str(ROOT / "geometry" / "pinion_overhung.toml"), tmp_path / "model.html"
-    command = ["render", scene, "-f", "timoshenko", "--beside", "euler", "--mode", "torsion 1"]
-    done = CliRunner().invoke(app, [*command, "--turn", str(target)])
+    words = ["render", scene, "-f", "timoshenko", "--beside", "euler", "--mode", "torsion 1"]
+    done = command(*words, "--turn", str(target))
     assert done.exit_code == 0, done.output
     assert "no picture for print in model.html" in done.stderr
     data = told(target.read_text())
     assert [m["title"] for m in data["models"]] == ["Timoshenko beam", "Euler beam"]
     assert data["models"][0]["shapes"][data["first"]]["name"] == "torsion 1"
     assert not list(tmp_path.glob("*.png"))
-    refused = CliRunner().invoke(app, command)
+    refused = command(*words)
     assert refused.exit_code == 1 and isinstance(refused.exception, SolidgearError)

@@ -5,11 +5,9 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from typer.testing import CliRunner
 
 import solidgear as sg
 from solidgear.bounds.refining import Meshed
-from solidgear.cli.app import app
 from solidgear.errors import SolidgearError
 from solidgear.judge.quantities import usual
 from solidgear.judge.singular_places import singular_places
@@ -17,6 +15,7 @@ from solidgear.judge.study import study
 from solidgear.judge.ties import SCENE
 from solidgear.judge.where import ELSEWHERE, Row, recorded_places, where
 from solidgear.report.where_chart import draw_where
+from tests.command import command
 
 ROOT = Path(__file__).parent.parent
 RADIAL = {"kxx": "5e8 N/m", "kzz": "5e8 N/m"}
@@ -240,7 +239,7 @@ def test_the_picture_is_of_the_mesh_and_names_the_places(tmp_path):
 
 def test_command_line(tmp_path):
     def run(*arguments):
-        return CliRunner().invoke(app, ["answer", *map(str, arguments)])
+        return command("answer", *map(str, arguments))
 
     scene, file = ROOT / "geometry" / "pinion_overhung.toml", tmp_path / "error.png"
     done = run(scene, "--tol", 1e-4, "--ask", "torsion", "--picture", file, "--json")

@@ -1,0 +1,18 @@
+"""The command in this process, and the tables that it leaves."""
+
+import csv
+
+from typer.testing import CliRunner
+
+from solidgear.cli import app
+
+
+def command(*words, **how):
+    """Run `solidgear` with these words: exit code, output and exception."""
+    return CliRunner().invoke(app, [str(word) for word in words], **how)
+
+
+def table(path):
+    """Rows of a CSV file by the names of its columns."""
+    with open(path, newline="", encoding="utf-8") as file:
+        return list(csv.DictReader(file))

@@ -1,0 +1,44 @@
+"""Whole bodies as dense matrices, and what is read off a solution to be compared with theirs."""
+
+import numpy as np
+import scipy.linalg as sla
+
+from solidgear.meshing.closed_form import mass_properties
+
+
+def whole(body, without=()):
+    """K and M of the blocks of a body side by side, and six rows a port that give its motion."""
+    blocks = [b for b in body.blocks if b.name not in without]
+    k = sla.block_diag(*(b.stiffness.toarray() for b in blocks))
+    m = sla.block_diag(*(b.mass.toarray() for b in blocks))
+    rows = np.zeros((6 * len(body.ports), len(k)))
+    start = 0
+    for block in blocks:
+        own, c = block.ports.toarray(), len(block.components)
+        for p in range(len(body.ports)):
+            at = [6 * p + i for i in block.components]
+            rows[at, start : start + block.size] = own[c * p : c * p + c]
+        start += block.size
+    return k, m, rows
+
+
+def every(found):
+    """Frequencies of modes, twins twice."""
+    return np.array([m.frequency_hz for m in found.modes for _ in range(m.multiplicity)])
+
+
+def relative(a, b):
+    """Largest difference of two 6x6, forces and moments made comparable by the diagonal of the second."""
+    d = np.sqrt(np.abs(np.diag(b)))
+    d[~(d > 0)] = 1.0 if not (d > 0).any() else np.nanmin(d[d > 0])
+    return np.nanmax(np.abs(a - b) / np.outer(d, d))
+
+
+def mass_matrix(scene):
+    """(6, 6) about the origin, by the closed form that tests/test_mesh_quality.py holds to quadrature."""
+    p = mass_properties(scene.segments, scene.corners)
+    tilt, first = p.ixx + p.mass * p.centre**2, p.mass * p.centre
+    out = np.diag([p.mass, p.mass, p.mass, tilt, p.iyy, tilt])
+    out[2, 3] = out[3, 2] = first
+    out[0, 5] = out[5, 0] = -first
+    return out
