@@ -7,82 +7,12 @@ live in; it is found by name when it is first needed, so that nothing below impo
 from __future__ import annotations
 
 import importlib
-from collections.abc import Sequence
-from dataclasses import dataclass
-from html import escape
-from typing import Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
-#: rows of a table that a `repr` shows
-MOST_ROWS = 24
+if TYPE_CHECKING:
+    from solidgear.report.table import Table
+
 TELLING = "solidgear.report.shown"
-
-
-@dataclass(frozen=True, eq=False)
-class Table:
-    """A small table of a result.
-
-    Attributes
-    ----------
-    title : str
-    heads : tuple of str
-        With units.
-    rows : sequence of tuple
-        Numbers, texts, and None for what is not known.
-
-    Examples
-    --------
-    >>> Table("two modes", ("mode", "Hz"), [("bending 1", 2758.0042), ("axial 1", 1388.5)])
-    two modes
-      mode       Hz
-      bending 1  2758.00
-      axial 1    1388.50
-    """
-
-    title: str
-    heads: tuple[str, ...]
-    rows: Sequence[tuple[Any, ...]]
-
-    def __repr__(self) -> str:
-        shown = [self.heads, *(tuple(map(_text, row)) for row in self.rows[:MOST_ROWS])]
-        if not self.rows:
-            return self.title
-        widths = [max(len(row[k]) for row in shown) for k in range(len(self.heads))]
-        lines = ["  ".join(c.ljust(w) for c, w in zip(row, widths)).rstrip() for row in shown]
-        left = len(self.rows) - MOST_ROWS
-        more = [f"  and {left} more"] if left > 0 else []
-        return "\n".join([self.title, *(f"  {line}" for line in lines), *more])
-
-    def _repr_html_(self) -> str:
-        def row(cells: Sequence[str], tag: str) -> str:
-            return "<tr>" + "".join(f"<{tag}>{escape(c)}</{tag}>" for c in cells) + "</tr>"
-
-        body = "".join(row([_text(c) for c in one], "td") for one in self.rows)
-        return (
-            f"<table><caption>{escape(self.title)}</caption>"
-            f"<thead>{row(self.heads, 'th')}</thead><tbody>{body}</tbody></table>"
-        )
-
-    def to_dataframe(self) -> Any:
-        """As a data frame of pandas.
-
-        Raises
-        ------
-        ImportError
-            Where pandas is not installed; nothing else of solidgear needs it.
-        """
-        import pandas
-
-        return pandas.DataFrame(list(self.rows), columns=list(self.heads))
-
-
-def _text(value: Any) -> str:
-    if value is None:
-        return "-"
-    if isinstance(value, bool):
-        return "yes" if value else "no"
-    if isinstance(value, float):
-        return f"{value:.2f}" if 1000 <= abs(value) < 1e5 else f"{value:.6g}"
-    return str(value)
 
 
 class Displayed:

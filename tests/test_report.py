@@ -398,8 +398,8 @@ def test_modes_table_lists_pairs():
         (-2.40131e8, "-240.13e6"),
         (9.999999e5, "1.0000e6"),
         (0.0, "0"),
-        (None, "-"),
-        (float("nan"), "-"),
+        (None, "–"),
+        (float("nan"), "–"),
         (53.93, "53.930"),
         (5.96e-10, "596.00e-12"),
     ],
@@ -417,7 +417,7 @@ def test_engineering(value, text):
         (3.2e-5, "+0.0032 %"),
         (0.0, "0 %"),
         (-4.7e-15, "<1e-6 %"),
-        (None, "-"),
+        (None, "–"),
     ],
 )
 def test_percent(value, text):

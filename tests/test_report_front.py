@@ -88,8 +88,8 @@ def test_stiffness_times_compliance_is_one_in_consistent_units(units):
         (1.5e-3, "0.0015000"),
         (2e-5, "20.000e-6"),
         (1.5e9, "1.5000e9"),
-        (None, "-"),
-        (float("nan"), "-"),
+        (None, "–"),
+        (float("nan"), "–"),
     ],
 )
 def test_numbers_with_all_their_digits(value, told):

@@ -18,18 +18,17 @@ from solidgear.cli.app import (
     SceneFile,
     UnitsOption,
     command,
-    console,
+    say,
     share,
 )
 from solidgear.errors import SolidgearError
 
 if TYPE_CHECKING:
-    from rich.table import Table
-
     from solidgear.judge.answer import Answered, Step
     from solidgear.judge.settle import Settled
     from solidgear.judge.where import Whereabouts
     from solidgear.quantity import Quantity
+    from solidgear.report.table import Table
     from solidgear.scene import Scene
 
 
@@ -91,41 +90,25 @@ def answer(
             out["where"] = {"error": unplaced} if places is None else _plain(places)
         print(json.dumps(out, allow_nan=False))
     else:
-        terminal = console()
-        terminal.print(_values(found, units))
-        terminal.print(_path(found))
-        for line in [*sentences(found), *_of_round_part(loaded, found)]:
-            terminal.print(line, markup=False, soft_wrap=True)
+        say(_values(found, units), _path(found))
+        say(*sentences(found), *_of_round_part(loaded, found))
         if places is not None:
-            terminal.print(_where_table(places))
-            terminal.print(_told(places), markup=False, soft_wrap=True)
+            say(_where_table(places), _told(places))
         if unplaced:
-            terminal.print(f"Where the error sits: {unplaced}.", markup=False, soft_wrap=True)
+            say(f"Where the error sits: {unplaced}.")
         if places is not None and picture is not None:
-            terminal.print(f"Picture: {picture}", markup=False, soft_wrap=True)
+            say(f"Picture: {picture}")
     if not found.reached:
         raise typer.Exit(NOT_REACHED)
 
 
 def _values(found: Answered, units: str) -> Table:
-    from rich import box
-    from rich.table import Table
-
     from solidgear.judge.steps import ABOVE, BELOW
-    from solidgear.report.units import in_ascii, units_named
+    from solidgear.report.table import Column, Table, text
+    from solidgear.report.units import units_named
     from solidgear.report.words import bar_of
 
     chosen = units_named(units)
-    table = Table(box=box.SIMPLE_HEAD, pad_edge=False)
-    table.add_column("quantity")
-    table.add_column("value", justify="right")
-    table.add_column("unit")
-    table.add_column("bar", justify="right")
-    table.add_column("from")
-    for row in found.values:
-        value = "0" if row.zero else in_ascii(chosen.number(row.value, row.unit, 6))
-        unit = in_ascii(chosen.unit(row.unit))
-        table.add_row(row.quantity, value, unit, bar_of(row), row.how)
     notes = []
     if any(row.side in (ABOVE, BELOW) for row in found.values):
         notes.append("a bar with one sign: the exact answer lies on that side only")
@@ -133,29 +116,28 @@ def _values(found: Answered, units: str) -> Table:
         notes.append(
             "bars of couplings are relative to the geometric mean of both diagonal entries"
         )
-    if notes:
-        table.caption = "\n".join(notes)
-        table.caption_justify = "left"
-    return table
+    columns = [
+        text("quantity", lambda row: row.quantity),
+        Column("value", lambda row: "0" if row.zero else chosen.number(row.value, row.unit, 6)),
+        text("unit", lambda row: chosen.unit(row.unit)),
+        Column("bar", bar_of),
+        text("from", lambda row: row.how),
+    ]
+    return Table("", columns, found.values, "\n".join(notes))
 
 
 def _path(found: Answered) -> Table:
-    from rich import box
-    from rich.table import Table
-
+    from solidgear.report.table import Column, Table, text
     from solidgear.report.words import count, percent, seconds
 
-    table = Table(box=box.SIMPLE_HEAD, pad_edge=False)
-    table.add_column("tried")
-    table.add_column("mesh")
-    table.add_column("dofs", justify="right")
-    table.add_column("bar", justify="right")
-    table.add_column("time, s", justify="right")
-    for step in _solved(found):
-        name = f"{step.rung}, chosen" if step.chosen else step.rung
-        bar = percent(step.bar, signed=False)
-        table.add_row(name, step.setting, count(step.unknowns), bar, seconds(step.seconds))
-    return table
+    columns = [
+        text("tried", lambda step: f"{step.rung}, chosen" if step.chosen else step.rung),
+        text("mesh", lambda step: step.setting),
+        Column("dofs", lambda step: step.unknowns, count),
+        Column("bar", lambda step: percent(step.bar, signed=False)),
+        Column("time, s", lambda step: step.seconds, seconds),
+    ]
+    return Table("", columns, _solved(found))
 
 
 def _solved(found: Answered) -> list[Step]:
@@ -197,7 +179,7 @@ def _of_round_part(scene: Scene, found: Answered) -> list[str]:
         return []
     return [
         f"Numbers of the round part of {body.name}, whose volume is "
-        f"{percent(body.round_volume - 1, nothing='0 %')} from that of its mesh; the mesh itself is solved "
+        f"{percent(body.round_volume - 1)} from that of its mesh; the mesh itself is solved "
         "by -f solid of stiffness and modes, without a bar."
     ]
 
@@ -239,22 +221,20 @@ def _places(scene: Scene, found: Answered) -> Whereabouts:
 
 def _where_table(places: Whereabouts) -> Table:
     """Places of the error with their shares of it, the largest first."""
-    from rich import box
-    from rich.table import Table
-
+    from solidgear.report.table import Column, Table
     from solidgear.report.where_chart import worth_naming
 
-    table = Table(box=box.SIMPLE_HEAD, pad_edge=False)
-    table.add_column(f"error of {places.quantity}")
-    table.add_column("y, mm", justify="right")
-    table.add_column("r, mm", justify="right")
-    table.add_column("within, mm", justify="right")
-    table.add_column("share", justify="right")
-    for row in worth_naming(places.rows):
-        lengths = (row.y, row.r, row.reach)
-        at = [f"{1e3 * x:.4g}" if x is not None else "" for x in lengths]
-        table.add_row(row.what, *at, f"{100 * row.share:.1f} %")
-    return table
+    def millimetres(value: float) -> str:
+        return f"{1e3 * value:.4g}"
+
+    columns = [
+        Column(f"error of {places.quantity}", lambda row: row.what),
+        Column("y, mm", lambda row: row.y, millimetres),
+        Column("r, mm", lambda row: "" if row.r is None else row.r, millimetres),
+        Column("within, mm", lambda row: "" if row.reach is None else row.reach, millimetres),
+        Column("share", lambda row: row.share, lambda share: f"{100 * share:.1f} %"),
+    ]
+    return Table("", columns, worth_naming(places.rows))
 
 
 def _told(places: Whereabouts) -> str:

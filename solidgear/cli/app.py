@@ -17,7 +17,7 @@ from solidgear.ladder.registry import LADDER
 from solidgear.report.units import ENGINEERING, SYSTEMS
 
 if TYPE_CHECKING:
-    from rich.console import Console
+    from rich.console import RenderableType
     from rich.status import Status
 
     from solidgear.body import Body
@@ -200,12 +200,20 @@ def build_body(scene: Scene, fidelity: str, pairs: list[str] | None) -> Body:
     return build(scene, fidelity, **LADDER[fidelity].checked(options(pairs)))
 
 
-def console() -> Console:
-    """Terminal for tables on standard output."""
+def say(*told: RenderableType, soft_wrap: bool = True) -> None:
+    """Print tables, and texts as they stand: a line of any length each, or broken at the width of
+    the terminal without `soft_wrap`.
+    """
     from rich.console import Console
 
     # Without a terminal rich assumes 80 columns; a pipe can take more, but 80 is what people paste.
-    return Console(highlight=False)
+    terminal = Console(highlight=False, markup=False, emoji=False)
+    for one in told:
+        terminal.print(one, soft_wrap=soft_wrap and isinstance(one, str))
+
+
+def caution(text: str) -> str:
+    return f"caution: {text}"
 
 
 class Progress:

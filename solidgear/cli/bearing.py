@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from solidgear.cli.app import JsonFlag, SceneFile, command, console
+from solidgear.cli.app import JsonFlag, SceneFile, command, say
 from solidgear.errors import SceneError, SolidgearError, show
 
 if TYPE_CHECKING:
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
     from solidgear.bearings.bounds import Ranges
     from solidgear.scene import Scene
-    from solidgear.studies.bearing_study import BearingFacts, BearingRange
+    from solidgear.studies.bearing_study import BearingFacts, BearingRange, Bound
 
 #: what a torque of a gearbox and the preload of a bearing do, unless told
 USUAL_LOAD, USUAL_PRELOAD = "0.2:1.2", "0.7:1.3"
@@ -83,13 +83,12 @@ def bearing(
             record["range"] = found.as_dict()
         print(json.dumps(record, allow_nan=False))
         return
-    terminal = console()
     for fact in facts:
-        _print(terminal, fact)
+        _print(fact)
     if found is not None:
-        _print_range(terminal, found)
+        _print_range(found)
     if out is not None:
-        terminal.print(f"Chart: {out}", markup=False, soft_wrap=True)
+        say(f"Chart: {out}")
 
 
 def _components(text: str) -> dict[str, str | float]:
@@ -142,16 +141,13 @@ def _draw(out: Path, scene: Scene, body, facts: Sequence[BearingFacts]) -> None:
     draw_bearings(out, panels)
 
 
-def _print(terminal, fact: BearingFacts) -> None:
+def _print(fact: BearingFacts) -> None:
     import numpy as np
 
     from solidgear.bearings.rolling import UNITS
     from solidgear.frames import DOF_NAMES
     from solidgear.report.terminal import matrix_table
     from solidgear.report.words import engineering
-
-    def say(text: str) -> None:
-        terminal.print(text, markup=False, soft_wrap=True)
 
     what = fact.designation or fact.kind.replace("_", " ")
     say(f"Bearing {fact.name!r}: {what}, {fact.status}")
@@ -182,7 +178,7 @@ def _print(terminal, fact: BearingFacts) -> None:
     say(f"Displacement: {', '.join(moved) or 'none'}")
     own = np.sqrt(np.abs(np.diag(fact.stiffness)))
     told = np.where(np.abs(fact.stiffness) > 1e-12 * np.outer(own, own), fact.stiffness, 0.0)
-    terminal.print(matrix_table(told, "stiffness"))
+    say(matrix_table(told, "stiffness"))
     # a bearing that carries nothing has no stiffness at either end
     if fact.spread is not None and np.any(fact.spread[1] > 0):
         ends = [
@@ -209,23 +205,28 @@ def _print(terminal, fact: BearingFacts) -> None:
         say(f"caution: bearing {fact.name!r}: {note}")
 
 
-def _print_range(terminal, found: BearingRange) -> None:
-    from rich import box
-    from rich.table import Table
+def _print_range(found: BearingRange) -> None:
+    from solidgear.report.table import Column, Table
 
-    table = Table(box=box.SIMPLE_HEAD, pad_edge=False)
-    for head in ("mode", "Hz", "from", "to", "band"):
-        table.add_column(head, justify="left" if head == "mode" else "right")
-    for b in found.bounds:
-        band = f"{100 * (b.low / b.middle - 1):+.1f} / {100 * (b.high / b.middle - 1):+.1f} %"
-        table.add_row(b.mode, f"{b.middle:.1f}", f"{b.low:.1f}", f"{b.high:.1f}", band)
-    terminal.print(table)
-    said = found.ranges.told
-    terminal.print(f"Over {found.points} points: {said}.", markup=False, soft_wrap=True)
+    def hertz(value: float) -> str:
+        return f"{value:.1f}"
+
+    def change(end: float, bound: Bound) -> str:
+        return f"{100 * (end / bound.middle - 1):+.1f}"
+
+    columns = [
+        Column("mode", lambda b: b.mode),
+        Column("Hz", lambda b: b.middle, hertz),
+        Column("from", lambda b: b.low, hertz),
+        Column("to", lambda b: b.high, hertz),
+        Column("band", lambda b: f"{change(b.low, b)} / {change(b.high, b)} %"),
+    ]
+    say(Table("", columns, found.bounds))
+    say(f"Over {found.points} points: {found.ranges.told}.")
     for name in found.lost:
-        terminal.print(f"caution: bearing {name!r} carries nothing somewhere in this range.")
+        say(f"caution: bearing {name!r} carries nothing somewhere in this range.")
     for reason in found.refused:
-        terminal.print(f"caution: left out: {reason}", markup=False, soft_wrap=True)
+        say(f"caution: left out: {reason}")
 
 
 def _plain(fact: BearingFacts) -> dict[str, Any]:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from solidgear.cli.app import JsonFlag, Progress, SceneFile, command, console
+from solidgear.cli.app import JsonFlag, Progress, SceneFile, command, say
 from solidgear.errors import SolidgearError
 
 if TYPE_CHECKING:
@@ -64,24 +64,15 @@ def chart(
         }
         print(json.dumps(record, allow_nan=False))
     else:
-        terminal = console()
-        terminal.print(front_table(found))
-        for row in found.rows:
-            if row.status == "failed":
-                terminal.print(
-                    f"failed: {row.series}, level {row.level}: {row.reason}", markup=False
-                )
+        say(*front_table(found), soft_wrap=False)
+        failed = [row for row in found.rows if row.status == "failed"]
+        told = (f"failed: {row.series}, level {row.level}: {row.reason}" for row in failed)
+        say(*told, soft_wrap=False)
         if left_out(found):
-            terminal.print(
-                f"left out ({found.budget:g} s allowed; reasons in {out / 'rows.csv'}): {left_out(found)}",
-                markup=False,
-                soft_wrap=True,
+            say(
+                f"left out ({found.budget:g} s allowed; reasons in {out / 'rows.csv'}): {left_out(found)}"
             )
-        terminal.print(
-            f"Chart: {out / PICTURE}" + (f", and in {out / 'report.html'}" if reported else ""),
-            markup=False,
-            soft_wrap=True,
-        )
+        say(f"Chart: {out / PICTURE}" + (f", and in {out / 'report.html'}" if reported else ""))
     if not found.complete:
         raise typer.Exit(130)
 

@@ -7,13 +7,15 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from solidgear.cli.app import command, console
+from solidgear.cli.app import command, say
 from solidgear.cli.starts import STARTS, start
 from solidgear.errors import SolidgearError, nearest, show
 from solidgear.ladder.registry import LADDER
 
 if TYPE_CHECKING:
+    from solidgear.ladder.registry import Rung
     from solidgear.models.options import Option
+    from solidgear.report.table import Table
 
 KINDS = "; ".join(f"{kind}: {what}" for kind, what in STARTS.items())
 
@@ -51,14 +53,10 @@ def scenes(
             )
     asked = [one.removesuffix(".toml") for one in names or there]
     if to is None:
-        from rich.table import Table
+        from solidgear.report.table import Table, text
 
-        table = Table(show_edge=False)
-        table.add_column("scene")
-        table.add_column("what it is")
-        for one in asked:
-            table.add_row(one, title(there[one]))
-        console().print(table)
+        columns = [text("scene", str), text("what it is", lambda one: title(there[one]))]
+        say(Table("", columns, asked, style="ruled"))
         return
     files = sorted({file for one in asked for file in needed(there[one])})
     for file in files:
@@ -75,22 +73,21 @@ def options(
     ] = "",
 ) -> None:
     """List what --set takes: every builder option, its default, its limits and what it means."""
-    from rich import box
-    from rich.table import Table
-
     for name in (LADDER[model].name,) if model else LADDER.bodies:
-        rung = LADDER[name]
-        defaults = rung.defaults()
-        table = Table(
-            title=f"{name}: {rung.title}", title_justify="left", box=box.SIMPLE_HEAD, pad_edge=False
-        )
-        table.add_column("option", no_wrap=True)
-        table.add_column("default", no_wrap=True)
-        table.add_column("may be")
-        table.add_column("what it is")
-        for key, option in rung.options.items():
-            table.add_row(key, _default(defaults.get(key)), _may_be(option), option.meaning)
-        console().print(table)
+        say(_options(LADDER[name]))
+
+
+def _options(rung: Rung) -> Table:
+    from solidgear.report.table import Table, text, word
+
+    defaults, known = rung.defaults(), rung.options
+    columns = [
+        word("option", str),
+        word("default", lambda key: _default(defaults.get(key))),
+        text("may be", lambda key: _may_be(known[key])),
+        text("what it is", lambda key: known[key].meaning),
+    ]
+    return Table(f"{rung.name}: {rung.title}", columns, list(known))
 
 
 def _may_be(option: Option) -> str:

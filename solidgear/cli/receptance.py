@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from solidgear.cli.app import FIDELITY, UNITS, JsonFlag, UnitsOption, command
+from solidgear.cli.app import FIDELITY, UNITS, JsonFlag, UnitsOption, caution, command, say
 from solidgear.cli.train import (
     Against,
     Damping,
@@ -19,11 +19,9 @@ from solidgear.cli.train import (
     PinionRung,
     Reduction,
     TrainFile,
-    caution,
     end_of,
     mix,
     print_peaks,
-    say,
     workshop,
 )
 
@@ -52,7 +50,7 @@ def receptance(
 ) -> None:
     """Receptance between any two ports of a train: table, chart, and peaks with their modes."""
     from solidgear.report.folder import held
-    from solidgear.report.receptance_files import write_receptance
+    from solidgear.report.train_files import write_receptance
     from solidgear.studies.train.comparison import described
     from solidgear.studies.train.modes import unpublished_lines
     from solidgear.studies.train.receptance import receptance as run

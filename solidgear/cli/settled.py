@@ -109,7 +109,7 @@ def over_the_sweep(settled: Settled | None) -> list[str]:
 
 
 def _largest(settled: Settled, where: str) -> list[str]:
-    from solidgear.report.words import percent
+    from solidgear.report.words import is_number, percent
 
     if settled.largest is None:
         return []
@@ -117,7 +117,7 @@ def _largest(settled: Settled, where: str) -> list[str]:
 
     quantity, bar = settled.largest
     main = settled.point if any(name.points for name in settled.bars) else ""
-    width = percent(bar, signed=False, nothing="unknown")
+    width = percent(bar, signed=False) if is_number(bar) else "unknown"
     return [f"Largest mesh bar{where}: +- {width}, of {in_words(quantity, main)}."]
 
 

@@ -24,9 +24,10 @@ from solidgear.cli.app import (
     Tolerance,
     UnitsOption,
     build_body,
+    caution,
     command,
-    console,
     options_by_model,
+    say,
     with_engine,
 )
 from solidgear.cli.settled import (
@@ -120,12 +121,8 @@ def compare(
     else:
         from solidgear.report.terminal import closing_lines, final_table, verdict_text
 
-        terminal = console()
-        terminal.print(final_table(found.record))
-        terminal.print(verdict_text(found.record), markup=False)
-        for line in closing_lines(found.record):
-            terminal.print(line, markup=False, soft_wrap=True)
-        terminal.print(f"Report: {out / 'report.html'}", markup=False, soft_wrap=True)
+        say(final_table(found.record), verdict_text(found.record), soft_wrap=False)
+        say(*closing_lines(found.record), f"Report: {out / 'report.html'}")
     if not found.record.complete:
         raise typer.Exit(130)
     if not found.rungs:
@@ -210,44 +207,42 @@ def modes(
     from solidgear.report.words import by_plane
     from solidgear.solve.mixtures import mixtures
 
-    terminal = console()
-    terminal.print(heading(loaded, body, settled), markup=False)
-    terminal.print(modes_table(rows, bars))
+    say(heading(loaded, body, settled), modes_table(rows, bars), soft_wrap=False)
     if len(rows) > MANY:
         shapes = sum(m.multiplicity for m in found.modes)
-        terminal.print(f"{shapes} shapes up to {found.frequency_hz[-1]:.6g} Hz.")
+        say(f"{shapes} shapes up to {found.frequency_hz[-1]:.6g} Hz.")
     planes = by_plane(found.names)
     if planes:
-        terminal.print(planes.strip(), markup=False, soft_wrap=True)
+        say(planes.strip())
     e = found.evidence
-    terminal.print(
+    say(
         f"Residual {e['residual']:.1e}, orthogonality {e['orthogonality']:.1e}, rigid modes "
-        f"{e['rigid_modes']}, {e['method']} on {e['backend']}."
+        f"{e['rigid_modes']}, {e['method']} on {e['backend']}.",
+        soft_wrap=False,
     )
     for one, other, gap in e.get("torn_pairs", []):
-        terminal.print(
+        say(
             f"caution: {one} and {other} are twins that the mesh has split by {gap:.1e}: refine "
-            "it, or use hexahedra or the harmonic model."
+            "it, or use hexahedra or the harmonic model.",
+            soft_wrap=False,
         )
-    for mixture in mixtures(found):
-        terminal.print(f"caution: {mixture.sentence}.", markup=False, soft_wrap=True)
+    say(*(f"caution: {mixture.sentence}." for mixture in mixtures(found)))
     if e["error"] > 1e-6:
-        terminal.print(
+        say(
             f"caution: rounding leaves frequencies good to {e['error']:.0e} only: the smallest "
-            "cells are that stiff beside the shaft; a coarser mesh has less of it."
+            "cells are that stiff beside the shaft; a coarser mesh has less of it.",
+            soft_wrap=False,
         )
     if count:
         from solidgear.judge.completeness import completeness
 
-        terminal.print(completeness(e, body.fidelity), markup=False)
+        say(completeness(e, body.fidelity), soft_wrap=False)
     lines = told(settled)
     if bars:
         lines += unjudged(without_bar(found, bars), body.fidelity)
     lines += beyond(bars, settled)
-    for line in lines:
-        terminal.print(line, markup=False, soft_wrap=True)
-    for sentence in said:
-        terminal.print(f"caution: {sentence}", markup=False)
+    say(*lines)
+    say(*map(caution, said), soft_wrap=False)
     ended(settled)
 
 

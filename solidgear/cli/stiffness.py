@@ -17,16 +17,16 @@ from solidgear.cli.app import (
     Settings,
     Tolerance,
     UnitsOption,
+    caution,
     command,
-    console,
+    say,
     with_engine,
 )
 from solidgear.cli.settled import body_for, ended, heading, told
 
 if TYPE_CHECKING:
-    from rich.table import Table
-
     from solidgear.judge.settle import Settled
+    from solidgear.report.table import Table
     from solidgear.scene import Scene
     from solidgear.solve.condensed import Condensed, Coupled
 
@@ -79,18 +79,15 @@ def stiffness(
         print(json.dumps(record))
         ended(settled)
         return
-    terminal = console()
     head = heading(loaded, body, settled)
     if coupled is None:
-        _tell(terminal, head, loaded, found, units)
+        _tell(head, loaded, found, units)
     else:
-        _tell_coupled(terminal, head, loaded, coupled, units)
+        _tell_coupled(head, loaded, coupled, units)
         if settled is not None:
-            terminal.print(_bars(settled, coupled))
-    for line in told(settled):
-        terminal.print(line, markup=False, soft_wrap=True)
-    for sentence in said:
-        terminal.print(f"caution: {sentence}", markup=False)
+            say(_bars(settled, coupled))
+    say(*told(settled))
+    say(*map(caution, said), soft_wrap=False)
     ended(settled)
 
 
@@ -147,33 +144,31 @@ def _plain_coupled(found: Coupled) -> dict[str, Any]:
     }
 
 
-def _tell(terminal, head: str, scene: Scene, found: Condensed, units: str) -> None:
+def _tell(head: str, scene: Scene, found: Condensed, units: str) -> None:
     from solidgear.frames import DOF_NAMES
     from solidgear.report.terminal import matrix_table
 
-    terminal.print(
+    say(
         f"{head}, port {found.port!r} at y = {1e3 * scene.port.y:.3f} mm ({found.attachment})",
-        markup=False,
+        matrix_table(found.stiffness, "stiffness", units),
+        matrix_table(found.compliance, "compliance", units),
+        soft_wrap=False,
     )
-    terminal.print(matrix_table(found.stiffness, "stiffness", units))
-    terminal.print(matrix_table(found.compliance, "compliance", units))
     if found.free_names:
-        terminal.print(f"Free: {', '.join(found.free_names)} (stiffness exactly zero).")
+        say(f"Free: {', '.join(found.free_names)} (stiffness exactly zero).")
     for motion in found.oblique.T:
         moved = [(v, n) for v, n in zip(motion, DOF_NAMES) if abs(v) > 1e-9]
         parts = ", ".join(f"{v:.4g} {n}" for v, n in moved)
         names = " and ".join(n for _, n in moved)
         line = f"Free: the motion ({parts}), m and rad; a compliance of {names} does not exist."
-        terminal.print(line, markup=False, soft_wrap=True)
+        say(line)
 
 
 def _bars(settled: Settled, found: Coupled) -> Table:
     """The largest mesh bar of every block."""
-    from rich import box
-    from rich.table import Table
-
     from solidgear.quantity import COMPLIANCE, STIFFNESS
-    from solidgear.report.words import band_percent
+    from solidgear.report.table import Column, Table
+    from solidgear.report.words import plus_minus
 
     largest: dict[tuple[str, ...], float] = {}
     for name, bar in settled.bars.items():
@@ -181,25 +176,24 @@ def _bars(settled: Settled, found: Coupled) -> Table:
             point = next(iter(name.points), found.ports[0])
             key = (name.kind, *sorted(name.pair or (point, point), key=found.ports.index))
             largest[key] = max(bar, largest.get(key, 0.0))
-    table = Table(box=box.SIMPLE_HEAD, pad_edge=False)
-    table.add_column("largest mesh bar of a block")
-    for kind in (STIFFNESS, COMPLIANCE):
-        table.add_column(kind, justify="right")
-    for k, a in enumerate(found.ports):
-        for b in found.ports[k:]:
-            cells = [
-                band_percent(largest.get((kind, a, b)), "-") for kind in (STIFFNESS, COMPLIANCE)
-            ]
-            where = f"between {a} and {b}" if a != b else f"{a} itself"
-            table.add_row(where, *(f"+- {told}" if told != "-" else told for told in cells))
-    table.caption = (
-        "couplings: relative to the geometric mean of what both motions have of their own"
-    )
-    table.caption_justify = "left"
-    return table
+    pairs = [(a, b) for k, a in enumerate(found.ports) for b in found.ports[k:]]
+    columns = [
+        Column(
+            "largest mesh bar of a block",
+            lambda pair: (
+                "{} itself".format(*pair)
+                if pair[0] == pair[1]
+                else "between {} and {}".format(*pair)
+            ),
+        ),
+        Column(STIFFNESS, lambda pair: largest.get((STIFFNESS, *pair)), plus_minus),
+        Column(COMPLIANCE, lambda pair: largest.get((COMPLIANCE, *pair)), plus_minus),
+    ]
+    note = "couplings: relative to the geometric mean of what both motions have of their own"
+    return Table("", columns, pairs, note)
 
 
-def _tell_coupled(terminal, head: str, scene: Scene, found: Coupled, units: str) -> None:
+def _tell_coupled(head: str, scene: Scene, found: Coupled, units: str) -> None:
     import numpy as np
 
     from solidgear.report.terminal import matrix_table
@@ -209,7 +203,7 @@ def _tell_coupled(terminal, head: str, scene: Scene, found: Coupled, units: str)
         f"{name!r} at y = {places[name]:.3f} mm ({kind})"
         for name, kind in zip(found.ports, found.attachments)
     )
-    terminal.print(f"{head}, ports {at}", markup=False)
+    say(f"{head}, ports {at}", soft_wrap=False)
     pairs = [(a, b) for k, a in enumerate(found.ports) for b in found.ports[k:]]
     stiff = bool(np.isfinite(found.stiffness).all())
     for kind in ("stiffness", "compliance") if stiff else ("compliance",):
@@ -218,8 +212,7 @@ def _tell_coupled(terminal, head: str, scene: Scene, found: Coupled, units: str)
             other = {"stiffness": "motion of", "compliance": "load on"}[kind]
             caption = f"{kind}: {words} {a}, {other} {b}"
             own = [np.diag(found.between(one, one, kind)).tolist() for one in (a, b)]
-            table = matrix_table(found.between(a, b, kind), kind, units, caption, own)
-            terminal.print(table)
+            say(matrix_table(found.between(a, b, kind), kind, units, caption, own))
     several = "both points" if len(found.ports) == 2 else "all points"
     if stiff:
         line = f"Stiffness holds {several}: one moves, all else is held. The blocks left out are the transposed ones."
@@ -227,11 +220,11 @@ def _tell_coupled(terminal, head: str, scene: Scene, found: Coupled, units: str)
         line = (
             "The points all but move as one: a stiffness between them does not exist to any digits."
         )
-    terminal.print(line, markup=False, soft_wrap=True)
+    say(line)
     if found.free_names:
         names = ", ".join(found.free_names)
         line = (
             f"Free: {names} of {several} together; only what the points do against each other is "
             "resisted, and has no entry of its own in the compliance."
         )
-        terminal.print(line, markup=False, soft_wrap=True)
+        say(line)

@@ -8,7 +8,7 @@ from typing import Annotated
 
 import typer
 
-from solidgear.cli.app import FIDELITY, UNITS, JsonFlag, UnitsOption, command, console
+from solidgear.cli.app import FIDELITY, UNITS, JsonFlag, UnitsOption, caution, command, say
 from solidgear.errors import SceneError, SolidgearError, show
 from solidgear.ladder.registry import LADDER
 
@@ -49,8 +49,6 @@ LocalHarmonics = Annotated[
     ),
 ]
 MOST_KEPT = 200
-#: relative; no frequency is printed with a smaller bound, whatever the proof says
-ROUNDING = 1e-12
 
 
 def workshop(
@@ -141,6 +139,7 @@ def system_modes(
     as_json: JsonFlag = False,
 ) -> None:
     """Natural frequencies of a geared rotor system, each with its name and its proven bound."""
+    from solidgear.report.train_tables import modes
     from solidgear.studies.train.modes import train_modes
 
     shop = workshop(train, reduction, kept, max_frequency, local_harmonics)
@@ -158,9 +157,7 @@ def system_modes(
     if as_json:
         print(json.dumps(found.as_dict(), allow_nan=False))
         return
-    say(*found.heading())
-    console().print(_modes_table(found))
-    say(*found.remarks(), *drawn)
+    say(*found.heading(), modes(found.as_dict(), numbered=True), *found.remarks(), *drawn)
 
 
 def _drawn(shop, pinion: str, gear: str, folder: Path, numbers: list[int] | None, found):
@@ -201,43 +198,6 @@ def _turned(shop, found, path: Path, max_frequency: float | None, units: str) ->
         cautions=found.cautions,
     )
     return [*filter(None, [said]), f"Written: {path}"]
-
-
-def say(*sentences: str) -> None:
-    terminal = console()
-    for sentence in sentences:
-        terminal.print(sentence, markup=False, soft_wrap=True)
-
-
-def caution(text: str) -> str:
-    return f"caution: {text}"
-
-
-def _modes_table(found):
-    from rich.table import Table
-
-    table = Table(show_edge=False)
-    table.add_column("", justify="right")
-    table.add_column("mode")
-    table.add_column("Hz", justify="right")
-    table.add_column("pinion rpm", justify="right")
-    table.add_column("most strain energy")
-    table.add_column("bound", justify="right")
-    meshed = any(mode.mesh is not None for mode in found.modes)
-    if meshed:
-        table.add_column("mesh", justify="right")
-    for number, mode in enumerate(found.modes, start=1):
-        bound = "exact" if mode.frequency_hz == 0 else f"{max(mode.bound, ROUNDING):.0e}"
-        table.add_row(
-            str(number),
-            mode.name,
-            f"{mode.frequency_hz:.2f}",
-            f"{mode.rpm:.0f}",
-            mode.strained,
-            bound,
-            *(["" if mode.mesh is None else f"{mode.mesh:.0e}"] * meshed),
-        )
-    return table
 
 
 @command
@@ -297,8 +257,7 @@ def response(
     if as_json:
         print((out / "response.json").read_text(encoding="utf-8"))
         return
-    terminal = console()
-    terminal.print(f"{title}: pinion {pinion}, gear {gear}, {damping} losses", markup=False)
+    say(f"{title}: pinion {pinion}, gear {gear}, {damping} losses", soft_wrap=False)
     tops = [(p.frequency_hz, p.force, p.mode) for p in found[0].peaks]
     print_peaks(tops, "mesh force", "N", teeth, units)
     say(*unpublished_lines(unpublished), *map(caution, found[0].cautions))
@@ -349,19 +308,8 @@ def end_of(option: str, text: str, more: str = "") -> tuple[str, str]:
 
 def print_peaks(found, what: str, si: str, teeth: int, units: str) -> None:
     """Print peaks (Hz, size in an SI unit, mode), or that there is none."""
-    from rich.table import Table
-
     from solidgear.report.train_tables import peaks
-    from solidgear.report.units import in_ascii, units_named
+    from solidgear.report.units import units_named
 
     told = peaks(found, what, si, teeth, units_named(units))
-    terminal = console()
-    if not told:
-        terminal.print(f"{told.caption}: none in this range.", markup=False)
-        return
-    table = Table(title=told.caption, title_justify="left", show_edge=False)
-    for k, head in enumerate(told.head):
-        table.add_column(in_ascii(head), justify="right" if k else "left")
-    for row in told.rows:
-        table.add_row(*map(in_ascii, row))
-    terminal.print(table)
+    say(told if told else f"{told.title}: none in this range.", soft_wrap=False)

@@ -10,17 +10,15 @@ from typing import Annotated
 
 import typer
 
-from solidgear.cli.app import UNITS, JsonFlag, Progress, UnitsOption, command, console
+from solidgear.cli.app import UNITS, JsonFlag, Progress, UnitsOption, caution, command, say
 from solidgear.cli.train import (
     Kept,
     LocalHarmonics,
     MaxFrequency,
     Reduction,
     TrainFile,
-    caution,
     mix,
     refuse_given,
-    say,
     workshop,
 )
 
@@ -99,9 +97,9 @@ def _judged(
     if as_json:
         print(json.dumps(results, allow_nan=False))
         return
-    verdict, terminal = found.verdict, console()
-    terminal.print(f"{verdict.train}, up to {verdict.highest_hz:g} Hz", markup=False)
-    terminal.print(_verdict_table(verdict))
+    verdict = found.verdict
+    heading = f"{verdict.train}, up to {verdict.highest_hz:g} Hz"
+    say(heading, _verdict_table(verdict), soft_wrap=False)
     say(*verdict.sentences(), *unpublished_lines(verdict.unpublished))
     say(*map(caution, verdict.cautions))
     if out:
@@ -109,29 +107,27 @@ def _judged(
 
 
 def _verdict_table(found):
-    from rich.table import Table
+    from solidgear.report.table import Column, Table, text
 
-    title = "Within the band up to, in Hz"
-    table = Table(title=title, title_justify="left", box=None, padding=(0, 1, 0, 0))
-    table.add_column("pinion + gear")
-    for head in (
-        f"modes\n{100 * found.tolerance:g} %",
-        f"force\n{found.decibels:g} dB",
-        f"force\n{100 * found.tolerance:g} %",
-    ):
-        table.add_column(head, justify="right")
-    table.add_column("first mode off")
-    table.add_column("by")
-    table.add_column("s", justify="right")
-    for one in found.mixes:
-        ends = [
-            f"{found.highest_hz:.0f}+" if hz is None else f"{hz:.0f}"
-            for hz in (one.modes_to_hz, one.force_to_hz, one.close_to_hz)
-        ]
-        off = "" if not one.mode else f"{one.mode} gone"
-        if one.error is not None:
-            digits = 1 if abs(one.error) < 0.0995 else 0
-            off = f"{one.mode} {100 * one.error:+.{digits}f} %"
-        name = f"{one.pinion} + {one.gear}" if one.pinion != one.gear else f"both {one.gear}"
-        table.add_row(name, *ends, off, one.cause, f"{one.seconds:.1f}")
-    return table
+    def end(hz: float | None) -> str:
+        return f"{found.highest_hz:.0f}+" if hz is None else f"{hz:.0f}"
+
+    def off(mix) -> str:
+        if mix.error is None:
+            return f"{mix.mode} gone" if mix.mode else ""
+        digits = 1 if abs(mix.error) < 0.0995 else 0
+        return f"{mix.mode} {100 * mix.error:+.{digits}f} %"
+
+    columns = [
+        text(
+            "pinion + gear",
+            lambda m: f"{m.pinion} + {m.gear}" if m.pinion != m.gear else f"both {m.gear}",
+        ),
+        Column(f"modes\n{100 * found.tolerance:g} %", lambda m: end(m.modes_to_hz)),
+        Column(f"force\n{found.decibels:g} dB", lambda m: end(m.force_to_hz)),
+        Column(f"force\n{100 * found.tolerance:g} %", lambda m: end(m.close_to_hz)),
+        text("first mode off", off),
+        text("by", lambda m: m.cause),
+        Column("s", lambda m: f"{m.seconds:.1f}"),
+    ]
+    return Table("Within the band up to, in Hz", columns, found.mixes, style="bare")

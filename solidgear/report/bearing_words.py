@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from solidgear.report.cells import DASH
 from solidgear.report.units import Units
 from solidgear.report.words import is_number
 
@@ -57,7 +56,7 @@ def catalogue(data: Mapping[str, Any] | None, units: Units) -> str:
         return ""
     length = units.unit("m")
     sizes = " x ".join(
-        units.given(data.get(name), "m", DASH) for name in ("bore", "outer_diameter", "width")
+        units.given(data.get(name), "m") for name in ("bore", "outer_diameter", "width")
     )
     name = data.get("designation") or str(data.get("kind", "")).replace("_", " ")
     words = [f"{name}, {sizes} {length}"]

@@ -6,11 +6,10 @@ from dataclasses import dataclass
 
 from solidgear.judge.race.pareto import CHARTED
 from solidgear.judge.record import BandRecord, LevelRecord, ModelRecord, Record
-from solidgear.report.cells import whole_number
 from solidgear.report.panel import GREY, PERCENT, SHAPES, Axis, Panel, told
 from solidgear.report.plot import WIDE, Chart, in_columns
 from solidgear.report.reading import model_name
-from solidgear.report.words import percent
+from solidgear.report.words import grouped, percent
 
 #: what the meshes differ in -> label of the axis
 AXIS = {
@@ -133,7 +132,7 @@ def _words(one: _Quantity, distance: float, level: LevelRecord) -> str:
         (f"{one.quantity}, from extrapolated", percent(distance, signed=False), ""),
         ("mesh", str(level.mesh.get("element") or ""), ""),
         ("size h", f"{1e3 * level.h:.3g}" if level.h else "", "mm"),
-        ("unknowns", whole_number(level.dofs), ""),
+        ("unknowns", grouped(level.dofs), ""),
     )
 
 

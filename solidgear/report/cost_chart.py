@@ -6,7 +6,6 @@ from dataclasses import dataclass
 
 from solidgear.judge.race.pareto import CHARTED
 from solidgear.judge.record import ModelRecord, Record
-from solidgear.report.cells import whole_number
 from solidgear.report.panel import PERCENT, SHAPES, Axis, Panel, told, tolerance_line
 from solidgear.report.plot import WIDE, Chart
 from solidgear.report.reading import (
@@ -16,7 +15,7 @@ from solidgear.report.reading import (
     model_name,
     reference_of,
 )
-from solidgear.report.words import percent, seconds
+from solidgear.report.words import grouped, percent, seconds
 
 
 def cost_chart(record: Record, width: float = WIDE) -> Chart | None:
@@ -108,7 +107,7 @@ def _draw(panel: Panel, spot: _Spot, quantity: str) -> None:
         spot.name,
         (f"{quantity}, from reference", percent(spot.error, signed=False), ""),
         ("building and solving", seconds(spot.seconds), "s"),
-        ("unknowns", whole_number(spot.model.dofs), ""),
+        ("unknowns", grouped(spot.model.dofs), ""),
         ("remark", ", ".join(remarks), ""),
     )
     colour, place = spot.model.colour, {"x": spot.seconds, "y": spot.error}

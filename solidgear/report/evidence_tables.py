@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from functools import partial
 from typing import Any
 
 from solidgear.judge.correlation import FOREIGN
@@ -9,7 +11,6 @@ from solidgear.judge.record import (
     BandRecord,
     DeviationRecord,
     EvidenceRecord,
-    ModelRecord,
     PartnerRecord,
     Record,
 )
@@ -23,11 +24,20 @@ from solidgear.quantity import (
     STIFFNESS,
     Quantity,
 )
-from solidgear.report.cells import DASH, capital, pct, short_percent, small, whole_number
 from solidgear.report.reading import is_resolved, model_name, reference_of, relative_change
-from solidgear.report.table import Table
+from solidgear.report.table import Cell, Column, Table, quantity, text, word
 from solidgear.report.units import ENGINEERING, Units
-from solidgear.report.words import band_percent, hertz
+from solidgear.report.words import (
+    band_percent,
+    capital,
+    grouped,
+    hertz,
+    percent,
+    short_percent,
+    small,
+)
+
+unsigned = partial(percent, signed=False)
 
 #: quantities shown of causes and attachments -> how a column calls them
 SHOWN = {C_ZZ: C_ZZ, K_ZZ: K_ZZ, FIRST_BENDING: "first bending"}
@@ -45,24 +55,35 @@ def deviations(record: Record, units: Units = ENGINEERING) -> Table:
     reference, tolerance = reference_of(record), record.verdict.tolerance
     pairs = list(dict.fromkeys((r.model, r.attachment) for r in record.deviations))
     found = {(r.model, r.attachment, r.quantity): r for r in record.deviations}
-    rows = []
-    for quantity in sorted(
-        dict.fromkeys(r.quantity for r in record.deviations), key=lambda q: RANKS.index(q.kind)
-    ):
-        own = [found.get((*pair, quantity)) for pair in pairs]
-        first = next(r for r in own if r is not None)
-        si = quantity.unit
-        scene = next((r for r in own if r and r.attachment == SCENE), first)
-        value = scene.reference_value
-        figure = hertz(value, DASH) if si == "Hz" else units.number(value, si, nothing=DASH)
-        cells: list[Any] = [quantity, (units.unit(si), "word text"), figure]
-        rows.append(cells + [_deviation(row, tolerance) for row in own])
-    names = [f"{_named(record, model)}, {_ties(tie)}" for model, tie in pairs]
+
+    def first(name: Quantity) -> DeviationRecord:
+        """The deviation that the value of a quantity is taken from."""
+        own = [r for r in record.deviations if r.quantity == name]
+        return next((r for r in own if r.attachment == SCENE), own[0])
+
+    def apart(model: str, tie: str) -> Column:
+        return Column(
+            f"{_named(record, model)}, {_ties(tie)}",
+            lambda name: _deviation(found.get((model, tie, name)), tolerance),
+            percent,
+        )
+
+    columns = [
+        Column("quantity", lambda name: name),
+        word("unit", lambda name: units.unit(name.unit)),
+        Column(
+            model_name(record, reference),
+            lambda name: _figure(first(name).reference_value, name.unit, units),
+        ),
+        *(apart(*pair) for pair in pairs),
+    ]
     within = f" Bold: beyond the {short_percent(tolerance)} asked for." if tolerance else ""
     return Table(
         f"Differences from the {model_name(record, reference)}",
-        ["quantity", "unit", model_name(record, reference), *names],
-        rows,
+        columns,
+        sorted(
+            dict.fromkeys(r.quantity for r in record.deviations), key=lambda q: RANKS.index(q.kind)
+        ),
         "In brackets and cursive: not resolved, smaller than the bands of the two models." + within,
     )
 
@@ -75,86 +96,78 @@ def _ties(attachment: str) -> str:
 def _deviation(row: DeviationRecord | None, tolerance: float | None) -> Any:
     """The cell of one difference."""
     if row is None:
-        return DASH
-    text = pct(row.relative)
+        return None
     if not is_resolved(row):
-        return (f"not resolved ({text})", "unresolved")
+        return Cell(f"not resolved ({percent(row.relative)})", "unresolved")
     beyond = tolerance is not None and row.relative is not None and abs(row.relative) > tolerance
-    return (text, "bad") if beyond else text
+    return Cell(row.relative, "bad" if beyond else "")
 
 
 def causes(record: Record) -> Table:
     """What each assumption alone changes."""
-    rows = []
-    for cause in record.causes:
-        rows.append(
-            [
-                cause.cause,
-                (cause.change, "text"),
-                (model_name(record, cause.model), "text"),
-                *(pct(cause.quantities.get(name)) for name in SHOWN),
-            ]
-        )
-    return Table(
-        "One assumption switched at a time",
-        ["cause", "what is switched", "in", *SHOWN.values()],
-        rows,
-    )
+    columns = [
+        Column("cause", lambda cause: cause.cause),
+        text("what is switched", lambda cause: cause.change),
+        text("in", lambda cause: model_name(record, cause.model)),
+        *(_changed(*shown) for shown in SHOWN.items()),
+    ]
+    return Table("One assumption switched at a time", columns, record.causes)
+
+
+def _changed(name: Quantity, called: str) -> Column:
+    return Column(called, lambda cause: cause.quantities.get(name), percent)
 
 
 def attachments(record: Record, units: Units = ENGINEERING) -> Table:
     """What the way of holding the seats changes."""
-    rows = []
-    for key, ties in record.attachments.items():
-        average = ties["average"].quantities if "average" in ties else {}
-        for tie, variant in ties.items():
-            cells: list[Any] = [f"{_named(record, key)}, {tie}"]
-            for name in SHOWN:
-                value = variant.quantities.get(name)
-                cells.append(_figure(value, name.unit, units))
-                change = relative_change(value, average.get(name))
-                cells.append(DASH if tie == "average" else pct(change))
-            rows.append(cells)
-    head = ["model, ties"]
-    for name, called in SHOWN.items():
-        head += [f"{called}, {units.unit(name.unit)}", "change"]
-    return Table("Three ways to hold the same surfaces", head, rows)
+    rows = [(key, tie) for key, ties in record.attachments.items() for tie in ties]
+
+    def value(name: Quantity, key: str, tie: str) -> float | None:
+        there = record.attachments[key].get(tie)
+        return there.quantities.get(name) if there else None
+
+    def change(name: Quantity, key: str, tie: str) -> float | None:
+        if tie == "average":
+            return None
+        return relative_change(value(name, key, tie), value(name, key, "average"))
+
+    def both(name: Quantity, called: str) -> list[Column]:
+        figure = partial(_figure, si=name.unit, units=units)
+        return [
+            Column(f"{called}, {units.unit(name.unit)}", lambda row: value(name, *row), figure),
+            Column("change", lambda row: change(name, *row), percent),
+        ]
+
+    columns = [Column("model, ties", lambda row: f"{_named(record, row[0])}, {row[1]}")]
+    columns += [column for shown in SHOWN.items() for column in both(*shown)]
+    return Table("Three ways to hold the same surfaces", columns, rows)
 
 
-def _figure(value: float | None, si: str, units: Units, digits: int = 5) -> str:
+def _figure(value: float | None, si: str, units: Units) -> str:
     """A value for a column that names its unit."""
-    return hertz(value, DASH) if si == "Hz" else units.number(value, si, digits, DASH)
+    return hertz(value) if si == "Hz" else units.number(value, si)
 
 
 def levels(record: Record, units: Units = ENGINEERING) -> Table:
     """The meshes that the bands come from."""
-    rows = []
-    for key, model in record.models.items():
-        meshes = model.convergence.levels if model.convergence else []
-        for n, level in enumerate(meshes, start=1):
-            bending = level.quantities.get(FIRST_BENDING)
-            rows.append(
-                [
-                    f"{_named(record, key)}, {n}",
-                    whole_number(level.dofs),
-                    units.number(level.h, "m", 4, DASH),
-                    str(level.order or DASH),
-                    units.number(level.quantities.get(C_ZZ), "m/N", 7, DASH),
-                    DASH if bending is None else f"{bending:.3f}",
-                ]
-            )
-    return Table(
-        "The discretisations",
-        [
-            "model",
-            "degrees of freedom",
-            f"element size h, {units.unit('m')}",
-            "element order",
-            f"C_zz, {units.unit('m/N')}",
+    rows = [
+        (f"{_named(record, key)}, {n}", level)
+        for key, model in record.models.items()
+        for n, level in enumerate(model.convergence.levels if model.convergence else [], start=1)
+    ]
+    columns = [
+        Column("model", lambda row: row[0]),
+        Column("degrees of freedom", lambda row: row[1].dofs, grouped),
+        quantity("element size h", "m", units, lambda row: row[1].h, 4),
+        Column("element order", lambda row: row[1].order or None),
+        quantity("C_zz", "m/N", units, lambda row: row[1].quantities.get(C_ZZ), 7),
+        Column(
             "first bending, Hz",
-        ],
-        rows,
-    )
+            lambda row: row[1].quantities.get(FIRST_BENDING),
+            lambda hz: f"{hz:.3f}",
+        ),
+    ]
+    return Table("The discretisations", columns, rows)
 
 
 def orders(record: Record) -> Table:
@@ -164,81 +177,58 @@ def orders(record: Record) -> Table:
         bands = model.convergence.quantities if model.convergence else {}
         judged = record.verdict.judged
         for name, band in bands.items():
-            if judged and name not in judged:
-                continue
-            label = f"{name}, Hz" if Quantity(name).is_frequency else name
-            rows.append([f"{_named(record, key)}: {label}", *_band(band)])
+            if not judged or name in judged:
+                label = f"{name}, Hz" if Quantity(name).is_frequency else name
+                rows.append((f"{_named(record, key)}: {label}", band))
+    columns = [
+        Column("quantity", lambda row: row[0]),
+        word("band from", lambda row: row[1].method or None),
+        Column("last change", lambda row: row[1].change, unsigned),
+        Column("over the one before", lambda row: row[1].reduction, small),
+        Column("order observed, expected", lambda row: _orders(row[1])),
+        Column("factor", lambda row: row[1].factor, small),
+        Column("of the solver", lambda row: row[1].solver, unsigned),
+        Column("band", lambda row: row[1].gci, band_percent),
+    ]
     return Table(
         "Changes and bands",
-        [
-            "quantity",
-            "band from",
-            "last change",
-            "over the one before",
-            "order observed, expected",
-            "factor",
-            "of the solver",
-            "band",
-        ],
+        columns,
         rows,
         "Layers: errors shrink by a nearly fixed share, and the factor is measured on random "
         "shafts. Of a coupling: shares of the geometric mean of its two diagonal entries.",
     )
 
 
-def _band(band: BandRecord) -> list:
-    """The cells of the band of one quantity."""
-    orders = DASH
-    if band.observed_order is not None and band.expected_order is not None:
-        orders = f"{band.observed_order:.2f} of {band.expected_order:.2f}"
-    return [
-        (band.method or DASH, "word text"),
-        pct(band.change, signed=False),
-        small(band.reduction),
-        orders,
-        small(band.factor),
-        pct(band.solver, signed=False),
-        band_percent(band.gci, DASH),
-    ]
+def _orders(band: BandRecord) -> str | None:
+    if band.observed_order is None or band.expected_order is None:
+        return None
+    return f"{band.observed_order:.2f} of {band.expected_order:.2f}"
 
 
 def algebra(record: Record) -> Table:
     """Residuals and counts that need no second mesh."""
-    rows = []
-    for key, model in record.models.items():
-        if model.evidence != EvidenceRecord():
-            rows.append([_named(record, key), *_checks(model)])
-    head = [
-        "model",
-        "asymmetry of the flexibility",
-        "rigid motion, residual",
-        "modes, residual",
-        "modes, M-orthogonality",
-        "rigid modes found",
-        "eigensolver",
-        "no mode missed below, Hz",
+    rows = [
+        (_named(record, key), model.evidence)
+        for key, model in record.models.items()
+        if model.evidence != EvidenceRecord()
+    ]
+    columns = [
+        Column("model", lambda row: row[0]),
+        Column("asymmetry of the flexibility", lambda row: row[1].asymmetry, small),
+        Column("rigid motion, residual", lambda row: row[1].rigid_residual, small),
+        Column("modes, residual", lambda row: row[1].modal_residual, small),
+        Column("modes, M-orthogonality", lambda row: row[1].orthogonality, small),
+        Column("rigid modes found", lambda row: row[1].rigid_modes, small),
+        text("eigensolver", lambda row: row[1].eigensolver or None),
+        Column("no mode missed below, Hz", lambda row: _counted_below(row[1])),
     ]
     return Table(
         "Algebraic checks of this run (relative; the smaller the better, but for the counts)",
-        head,
+        columns,
         rows,
         "No mode missed: as many eigenvalues lie below as were found, by the inertia of a second "
         "factor (Sylvester).",
     )
-
-
-def _checks(model: ModelRecord) -> list:
-    """The cells of the algebraic checks of one model."""
-    evidence = model.evidence
-    return [
-        small(evidence.asymmetry),
-        small(evidence.rigid_residual),
-        small(evidence.modal_residual),
-        small(evidence.orthogonality),
-        small(evidence.rigid_modes),
-        (evidence.eigensolver or DASH, "text"),
-        _counted_below(evidence),
-    ]
 
 
 def _counted_below(evidence: EvidenceRecord) -> str:
@@ -259,21 +249,27 @@ def pairs(record: Record) -> Table:
         for key, table in record.mac.models.items()
         if table.pairs
     }
-    names = dict.fromkeys(name for found in own.values() for name in found)
-    rows = [[name, *(_pair(found.get(name)) for found in own.values())] for name in names]
+
+    def partner_in(found: dict[str, PartnerRecord]) -> Callable[[str], str | None]:
+        return lambda name: _pair(found.get(name))
+
+    columns = [
+        Column("mode", lambda name: name),
+        *(Column(_named(record, key), partner_in(found)) for key, found in own.items()),
+    ]
     return Table(
         f"MAC of every mode with its partner in the {reference}",
-        ["mode", *(_named(record, key) for key in own)],
-        rows,
+        columns,
+        list(dict.fromkeys(name for found in own.values() for name in found)),
         "In brackets: the partner, where it has another name; less alike than "
         f"{FOREIGN:g} is none.",
     )
 
 
-def _pair(pair: PartnerRecord | None) -> str:
+def _pair(pair: PartnerRecord | None) -> str | None:
     """How like its partner a mode is."""
     if pair is None or pair.mac is None:
-        return DASH
+        return None
     if pair.mac < FOREIGN:
         return f"{pair.mac:.4f} (none)"
     other = "" if pair.partner == pair.mode else f" ({pair.partner or 'none'})"

@@ -13,7 +13,6 @@ from solidgear.body.mode_names import ModeName
 from solidgear.judge.record import ModelRecord, Record, VerdictRecord
 from solidgear.judge.ties import SCENE
 from solidgear.quantity import COMPLIANCE, FIRST_BENDING, Quantity
-from solidgear.report.cells import DASH, short_percent
 from solidgear.report.reading import (
     BEAM,
     LUMPED,
@@ -29,9 +28,9 @@ from solidgear.report.reading import (
     validity,
     value_of,
 )
-from solidgear.report.table import Table
+from solidgear.report.table import Cell, Table
 from solidgear.report.units import Units, digits_for
-from solidgear.report.words import band_percent, percent
+from solidgear.report.words import DASH, band_percent, percent, plus_minus, short_percent
 
 #: quantities of page one -> in words
 ROWS: dict[str, str] = {
@@ -99,7 +98,7 @@ def numbers(record: Record, units: Units) -> Table:
         [row for row in cells if row],
         "K holds all other motions still, C leaves them free. The bar is what mesh and solver "
         f"leave open; it says nothing of bearings or load. {open_too}".strip(),
-        css="numbers",
+        style="numbers",
     )
 
 
@@ -118,7 +117,7 @@ def _number(model: ModelRecord, name: Quantity, label: str, units: Units) -> lis
         return []
     bar = model.band.each.get(name) if model.band else None
     told = units.text(value, name.unit, digits_for(bar))
-    return [label, (told, "strong"), f"± {band_percent(bar)}" if bar is not None else "no bar"]
+    return [label, Cell(told, "strong"), "no bar" if bar is None else plus_minus(bar)]
 
 
 def _frequency(model: ModelRecord, name: Quantity) -> float | None:

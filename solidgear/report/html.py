@@ -29,11 +29,10 @@ from solidgear.report import (
     run_tables,
 )
 from solidgear.report.border import as_record
-from solidgear.report.cells import DASH, capital
 from solidgear.report.lumped import lumped_tables
 from solidgear.report.reading import model_name, reference_of
 from solidgear.report.units import Units, units_named
-from solidgear.report.words import percent, seconds
+from solidgear.report.words import capital, percent, seconds
 
 log = logging.getLogger(__name__)
 
@@ -287,7 +286,7 @@ def _tables(record: Record, units: Units) -> dict[str, Any]:
         "provenance": run_tables.provenance(record),
         "environment": run_tables.pairs_of(record.environment, "Environment of the run"),
         "mesh": run_tables.mesh(record),
-        "total": seconds(record.seconds_total, DASH),
+        "total": seconds(record.seconds_total),
     }
 
 

@@ -2,17 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from typing import Any
 
 from solidgear.judge.record import Record
 from solidgear.quantity import Quantity
 from solidgear.report.bearing_words import catalogue, load_row, without_column
-from solidgear.report.cells import DASH, short_percent
 from solidgear.report.reading import entry, model_name
-from solidgear.report.table import Table
+from solidgear.report.table import Column, Table, given, text, word
+from solidgear.report.train_tables import mark
 from solidgear.report.units import ENGINEERING, Units
-from solidgear.report.words import engineering, hertz, is_number, percent
+from solidgear.report.words import DASH, engineering, hertz, is_number, percent, short_percent
 
 #: of a bearing's 6x6
 BEARING_ENTRIES = tuple(map(Quantity, ("K_xx", "K_yy", "K_zz", "K_z,thx", "K_thx", "K_thz")))
@@ -27,7 +27,7 @@ def scene_facts(record: Record, units: Units = ENGINEERING) -> Table:
     free = record.port.free if record.port else []
     rows = [
         ["source", scene.get("source") or "not given"],
-        ["length", f"{units.given(scene.get('length'), 'm', DASH)} {units.unit('m')}"],
+        ["length", f"{units.given(scene.get('length'), 'm')} {units.unit('m')}"],
         ["material", _material(material, units)],
         ["lumped point", _lumped_point(record, units)],
         ["free motions there", ", ".join(free) or "none"],
@@ -36,12 +36,12 @@ def scene_facts(record: Record, units: Units = ENGINEERING) -> Table:
         *load_row(scene, units),
         ["asked for", _asked(scene.get("ask") or {})],
     ]
-    return Table("Scene", ["item", "value"], rows if scene else [], css="facts")
+    return Table("Scene", ["item", text("value")], rows if scene else [], style="facts")
 
 
 def _material(material: Mapping[str, Any], units: Units) -> str:
-    modulus = f"{units.given(material.get('E'), 'Pa', DASH)} {units.unit('Pa')}"
-    density = units.given(material.get("density"), "kg/m³", DASH)
+    modulus = f"{units.given(material.get('E'), 'Pa')} {units.unit('Pa')}"
+    density = units.given(material.get("density"), "kg/m³")
     return f"E = {modulus}, nu = {material.get('nu', DASH)}, density = {density} kg/m³"
 
 
@@ -60,12 +60,12 @@ def _further_points(scene: Mapping, units: Units) -> list[list[str]]:
 
 
 def _placed(port: Mapping, units: Units) -> str:
-    y = units.given(port.get("y"), "m", DASH)
+    y = units.given(port.get("y"), "m")
     return f"{port.get('name', '')} on the axis at y = {y} {units.unit('m')}"
 
 
 def _carried(port: Mapping, units: Units) -> str:
-    lo, hi = (units.given(port.get(name), "m", DASH) for name in ("lo", "hi"))
+    lo, hi = (units.given(port.get(name), "m") for name in ("lo", "hi"))
     return (
         f"carried by the outer surface from {lo} to {hi} {units.unit('m')}, "
         f"attachment {port.get('attachment', DASH)}"
@@ -76,10 +76,13 @@ def _housing(scene: Mapping, units: Units) -> list[str]:
     """What all bearings stand in."""
     around, spring = scene.get("housing"), scene.get("housing_axial")
     if not around:
-        return ["housing spring along y", units.text(spring, "N/m", nothing="none")]
+        return [
+            "housing spring along y",
+            units.text(spring, "N/m") if is_number(spring) else "none",
+        ]
     found = around["entries"].items()
     entries = ", ".join(f"{name} {engineering(value, 4)}" for name, value in found)
-    y = units.given(around["y"], "m", DASH)
+    y = units.given(around["y"], "m")
     return [
         "housing of all bearings",
         f"6x6 about y = {y} {units.unit('m')}, SI: {entries}; rigid in every other motion, no mass",
@@ -99,90 +102,69 @@ def _asked(ask: Mapping) -> str:
 def segments(scene: Mapping, units: Units = ENGINEERING) -> Table:
     """The shaft, a segment a row."""
     default = scene.get("material") or {}
-    rows = []
-    for s in scene.get("segments") or []:
-        hollow = s.get("inner0") or s.get("inner1")
-        rows.append(
-            [
-                str(s.get("name", "")),
-                (s.get("part", "shaft"), "word text"),
-                units.given(s.get("y0"), "m", DASH),
-                units.given(s.get("y1"), "m", DASH),
-                units.given(s.get("length", s["y1"] - s["y0"]), "m", DASH),
-                _diameters(s, "outer", units),
-                _diameters(s, "inner", units) if hollow else DASH,
-                (_own_material(s.get("material") or default, default, units), "word text"),
-            ]
-        )
-    return Table(
-        "Shaft segments, from the first end face (y = 0)",
-        [
-            "segment",
-            "part",
-            f"from y, {units.unit('m')}",
-            f"to y, {units.unit('m')}",
-            f"length, {units.unit('m')}",
-            f"outer diameter, {units.unit('m')}",
-            f"bore, {units.unit('m')}",
-            "material",
-        ],
-        rows,
-    )
+    length = units.unit("m")
+
+    def bore(s: Mapping) -> str | None:
+        return _diameters(s, "inner", units) if s.get("inner0") or s.get("inner1") else None
+
+    columns = [
+        Column("segment", lambda s: str(s.get("name", ""))),
+        word("part", lambda s: s.get("part", "shaft")),
+        given("from y", "m", units, lambda s: s.get("y0")),
+        given("to y", "m", units, lambda s: s.get("y1")),
+        given("length", "m", units, lambda s: s.get("length", s["y1"] - s["y0"])),
+        Column(f"outer diameter, {length}", lambda s: _diameters(s, "outer", units)),
+        Column(f"bore, {length}", bore),
+        word("material", lambda s: _own_material(s.get("material") or default, default, units)),
+    ]
+    title = "Shaft segments, from the first end face (y = 0)"
+    return Table(title, columns, scene.get("segments") or [])
 
 
 def _diameters(segment: Mapping, side: str, units: Units) -> str:
     """Diameters at both ends of the outer or inner surface; one where they are the same."""
-    ends = [units.given(2 * segment[side + end], "m", DASH) for end in "01"]
+    ends = [units.given(2 * segment[side + end], "m") for end in "01"]
     return " → ".join(dict.fromkeys(ends))
 
 
 def _own_material(material: Mapping, default: Mapping, units: Units) -> str:
     if material == default:
         return "default"
-    modulus = f"{units.given(material.get('E'), 'Pa', DASH)} {units.unit('Pa')}"
-    density = units.given(material.get("density"), "kg/m³", DASH)
+    modulus = f"{units.given(material.get('E'), 'Pa')} {units.unit('Pa')}"
+    density = units.given(material.get("density"), "kg/m³")
     return f"E {modulus}, nu {material.get('nu')}, density {density} kg/m³"
 
 
 def bearings(scene: Mapping, units: Units = ENGINEERING) -> Table:
     """The bearings with the stiffness they are solved with."""
-    rows = []
-    for b in scene.get("bearings") or []:
-        stiffness = b.get("stiffness") or [[None] * 6] * 6
-        shown = [(entry(stiffness, *name.place), name.unit) for name in BEARING_ENTRIES]
-        # what is held has the stiffness of nothing real
-        cells = [b["hold"] if value else DASH for value, _ in shown] if b.get("hold") else None
-        status = b.get("status") or "not stated"
-        rows.append(
-            [
-                str(b.get("name", "")),
-                units.given(b.get("y"), "m", DASH),
-                units.given(b.get("seat_width"), "m", DASH),
-                (b.get("attachment", DASH), "word text"),
-                *(cells or (units.number(value, si, 4, DASH) for value, si in shown)),
-                (status, f"word text mark {status}"),
-                (_note(b, units), "text"),
-            ]
-        )
-    head = [
-        "bearing",
-        f"y, {units.unit('m')}",
-        f"seat, {units.unit('m')}",
-        "attachment",
-        *(f"{name}, {units.unit(name.unit)}" for name in BEARING_ENTRIES),
-        "status",
-        "note",
+    found = scene.get("bearings") or []
+    columns = [
+        Column("bearing", lambda b: str(b.get("name", ""))),
+        given("y", "m", units, lambda b: b.get("y")),
+        given("seat", "m", units, lambda b: b.get("seat_width")),
+        word("attachment", lambda b: b.get("attachment")),
+        *(_stiffness(name, units) for name in BEARING_ENTRIES),
+        word("status", lambda b: mark(b.get("status") or "not stated")),
+        text("note", lambda b: _note(b, units)),
     ]
-    return Table(
-        "Bearings, series springs included",
-        head,
-        rows,
-        note=(
-            "Status says where the stiffness comes from: published, measured, identified (fitted), "
-            "assumed, or from catalogue data: calculated, or estimated where the inner geometry is. "
-            + without_column(scene.get("bearings") or [], [name.place for name in BEARING_ENTRIES])
-        ).strip(),
+    note = (
+        "Status says where the stiffness comes from: published, measured, identified (fitted), "
+        "assumed, or from catalogue data: calculated, or estimated where the inner geometry is. "
+        + without_column(found, [name.place for name in BEARING_ENTRIES])
     )
+    return Table("Bearings, series springs included", columns, found, note.strip())
+
+
+def _stiffness(name: Quantity, units: Units) -> Column:
+    """A column of one entry; what is held has the stiffness of nothing real."""
+
+    def told(bearing: Mapping) -> str | None:
+        value = entry(bearing.get("stiffness"), *name.place)
+        if bearing.get("hold"):
+            return bearing["hold"] if value else None
+        return units.number(value, name.unit, 4)
+
+    return Column(f"{name}, {units.unit(name.unit)}", told)
 
 
 def _note(bearing: Mapping, units: Units) -> str:
@@ -200,67 +182,65 @@ def bearing_range(record: Record) -> Table:
     those of mesh and model.
     """
     found = record.bearing_range
-    rows = []
-    for b in found.get("bounds") or []:
-        middle, low, high = b["frequency_hz"], b["low"], b["high"]
-        band = f"{percent(low / middle - 1)} / {percent(high / middle - 1)}"
-        rows.append([str(b["mode"]), *(hertz(f) for f in (middle, low, high)), band])
+
+    def band(b: Mapping) -> str:
+        return " / ".join(percent(b[end] / b["frequency_hz"] - 1) for end in ("low", "high"))
+
+    columns = [
+        Column("mode", lambda b: str(b["mode"])),
+        Column("at the scene's load", lambda b: b["frequency_hz"], hertz),
+        Column("from", lambda b: b["low"], hertz),
+        Column("to", lambda b: b["high"], hertz),
+        Column("band", band),
+    ]
     lost = [f"Bearing {name} carries nothing somewhere in it." for name in found.get("lost") or []]
     note = (
         f"Of the {model_name(record, found.get('model'))} over {found.get('points')} points: "
         f"{found.get('varied')}. {' '.join(lost)}"
     )
-    return Table(
-        "What the bearings leave open, natural frequencies in Hz",
-        ["mode", "at the scene's load", "from", "to", "band"],
-        rows,
-        note=note.strip(),
-    )
+    title = "What the bearings leave open, natural frequencies in Hz"
+    return Table(title, columns, found.get("bounds") or [], note.strip())
 
 
 def features(scene: Mapping, units: Units = ENGINEERING) -> Table:
     """What is cut out of the shaft, stands on it or rounds its edges."""
-    rows = []
-    for found in [*(scene.get("features") or []), *(scene.get("blends") or [])]:
-        where = str(found.get("segment") or found.get("at") or DASH)
+
+    def kind(found: Mapping) -> str:
+        return str(found.get("kind", "")).replace("_", " ")
+
+    def sizes(found: Mapping) -> str:
         number = [f"{found['count']} of them"] if found.get("count") else []
-        sizes = number + [
+        told = (
             f"{name.replace('_', ' ')} {units.given(found[name], 'm')} {units.unit('m')}"
             for name in SIZES
             if is_number(found.get(name))
-        ]
-        kind = str(found.get("kind", "")).replace("_", " ")
-        rows.append(
-            [str(found.get("name") or kind), kind, (where, "word text"), (", ".join(sizes), "text")]
         )
-    return Table("Features", ["feature", "kind", "on", "place and size"], rows)
+        return ", ".join([*number, *told])
+
+    columns = [
+        Column("feature", lambda f: str(f.get("name") or kind(f))),
+        Column("kind", kind),
+        word("on", lambda f: f.get("segment") or f.get("at") or None),
+        text("place and size", sizes),
+    ]
+    return Table(
+        "Features", columns, [*(scene.get("features") or []), *(scene.get("blends") or [])]
+    )
 
 
 def masses(scene: Mapping, units: Units = ENGINEERING) -> Table:
     """The rigid masses on ports."""
-    rows = [
-        [
-            str(mass.get("name", "")),
-            str(mass.get("on") or "a seat of its own"),
-            units.given(mass.get("y"), "m", DASH),
-            units.given(mass.get("mass"), "kg", DASH),
-            ", ".join(units.given(value, "kg m²", DASH) for value in mass.get("inertia", ())),
-            ", ".join(units.given(value, "m", DASH) for value in mass.get("offset", ())),
-        ]
-        for mass in scene.get("masses") or []
+
+    def several(name: str, si: str) -> Callable[[Mapping], str]:
+        return lambda mass: ", ".join(units.given(v, si) for v in mass.get(name, ()))
+
+    columns = [
+        Column("mass", lambda mass: str(mass.get("name", ""))),
+        Column("moves with", lambda mass: str(mass.get("on") or "a seat of its own")),
+        given("y", "m", units, lambda mass: mass.get("y")),
+        Column("mass, kg", lambda mass: units.given(mass.get("mass"), "kg")),
+        Column("inertia x, y, z, kg m²", several("inertia", "kg m²")),
+        Column(f"offset, {units.unit('m')}", several("offset", "m")),
     ]
-    length = units.unit("m")
-    head = [
-        "mass",
-        "moves with",
-        f"y, {length}",
-        "mass, kg",
-        "inertia x, y, z, kg m²",
-        f"offset, {length}",
-    ]
-    return Table(
-        "Rigid masses",
-        head,
-        rows,
-        note="Inertia about the centre of mass; offset of that centre from the station.",
-    )
+    note = "Inertia about the centre of mass; offset of that centre from the station."
+    return Table("Rigid masses", columns, scene.get("masses") or [], note)

@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 from solidgear.judge.record import LumpedRecord, LumpedVariant, Record
-from solidgear.report.cells import DASH
 from solidgear.report.reading import entry, model_name
-from solidgear.report.table import Table
-from solidgear.report.words import engineering, hertz, percent
+from solidgear.report.table import Column, Table, text
+from solidgear.report.words import DASH, engineering, hertz, percent
+
+#: a method and what it made
+Item = tuple[str, LumpedVariant]
 
 
 def lumped_tables(record: Record) -> list[Table]:
@@ -17,20 +21,18 @@ def lumped_tables(record: Record) -> list[Table]:
     if not lumped or not (record.scene.get("ask") or {}).get("lumped"):
         return []
     methods = list(next(iter(lumped.values())).variants)
-    rows = []
-    for key, found in lumped.items():
-        cells = [_first(found.variants.get(method)) for method in methods]
-        rows.append([f"from the {model_name(record, key)}", hertz(found.frequency_hz), *cells])
-    out = [
-        Table(
-            "First bending, Hz: each body and the lumped models made from it",
-            ["source", "body itself", *methods],
-            rows,
-        )
+    columns = [
+        Column("source", lambda item: f"from the {model_name(record, item[0])}"),
+        Column("body itself", lambda item: item[1].frequency_hz, hertz),
+        *(_method(method) for method in methods),
     ]
-    for key, found in lumped.items():
-        out.append(_detail(model_name(record, key), found))
-    return out
+    title = "First bending, Hz: each body and the lumped models made from it"
+    details = [_detail(model_name(record, key), found) for key, found in lumped.items()]
+    return [Table(title, columns, list(lumped.items())), *details]
+
+
+def _method(name: str) -> Column:
+    return Column(name, lambda item: _first(item[1].variants.get(name)))
 
 
 def _first(variant: LumpedVariant | None) -> str:
@@ -45,37 +47,25 @@ def _first(variant: LumpedVariant | None) -> str:
 
 def _detail(name: str, found: LumpedRecord) -> Table:
     """The synthesis from one body, a method a row."""
-    rows = []
-    for method, variant in found.variants.items():
-        mass = [entry(variant.mass, i, j) for i, j in ((0, 0), (1, 1), (0, 1))]
-        rows.append(
-            [
-                method,
-                *(engineering(value, nothing=DASH) for value in mass),
-                percent(variant.slope_error, nothing=DASH),
-                percent(variant.kinetic_error, nothing=DASH),
-                hertz(variant.valid_to_hz, DASH),
-                (variant.verdict, "text"),
-            ]
-        )
-    share = DASH if found.static_share is None else f"{found.static_share:.4f}"
-    note = (
-        "Share of the mode's strain energy that a static shape with the same lumped-point motion "
-        f"holds: {share}; equations 52 and 53 need exactly 1."
-    )
-    head = [
-        "mass matrix",
-        "M, kg",
-        "I, kg m\u00b2",
-        "coupling, kg m",
-        "slope phi/z",
-        "kinetic energy",
-        "valid to, Hz",
-        "verdict",
+
+    def mass(i: int, j: int) -> Callable[[Item], float | None]:
+        return lambda item: entry(item[1].mass, i, j)
+
+    columns = [
+        Column("mass matrix", lambda item: item[0]),
+        Column("M, kg", mass(0, 0), engineering),
+        Column("I, kg m²", mass(1, 1), engineering),
+        Column("coupling, kg m", mass(0, 1), engineering),
+        Column("slope phi/z", lambda item: item[1].slope_error, percent),
+        Column("kinetic energy", lambda item: item[1].kinetic_error, percent),
+        Column("valid to, Hz", lambda item: item[1].valid_to_hz, hertz),
+        text("verdict", lambda item: item[1].verdict),
     ]
+    share = DASH if found.static_share is None else f"{found.static_share:.4f}"
     return Table(
         f"Lumped from the {name}: slope and kinetic energy against its first bending mode",
-        head,
-        rows,
-        note,
+        columns,
+        list(found.variants.items()),
+        "Share of the mode's strain energy that a static shape with the same lumped-point motion "
+        f"holds: {share}; equations 52 and 53 need exactly 1.",
     )

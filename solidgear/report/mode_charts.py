@@ -79,7 +79,7 @@ def _row(model: str, mode: ModeRecord, reference: Mapping[str, ModeRecord]) -> d
         model,
         ("mode", mode.name, ""),
         ("frequency", hertz(mode.frequency_hz), "Hz"),
-        ("from reference", percent(change, nothing=""), ""),
+        ("from reference", percent(change) if change is not None else "", ""),
     )
     return {"y": mode.frequency_hz or 0.0, "apart": change, "name": model, "told": words}
 

@@ -2,13 +2,10 @@
 
 from __future__ import annotations
 
-import csv
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from solidgear.machine.whole_file import whole
 from solidgear.report.panel import INK, Axis, Panel, read_places, told
 from solidgear.report.plot import NARROW, WIDE, Chart
 from solidgear.report.units import ENGINEERING, Units, plain
@@ -23,7 +20,6 @@ NAMES, NARROW_NAMES = 190.0, 135.0
 #: of natural frequencies
 MODE = "#9aa4ad"
 PLAIN = {"mesh": "#666666", "pinion": "#b3305c", "gear": "#5a3e8c"}
-HEAD = ("order", "mode", "frequency [Hz]", "pinion speed [rpm]", "mesh force [N]")
 
 
 def order_chart(
@@ -217,19 +213,3 @@ def _pieces(panel: Panel, line: Any, largest: float, units: Units) -> None:
             "legend": legend,
         },
     )
-
-
-def write_crossings(path: Path, found: Any) -> None:
-    """The crossings of an order map as a table.
-
-    Parameters
-    ----------
-    path : Path
-    found : OrderMap
-    """
-    with whole(path) as partial, partial.open("w", newline="", encoding="utf-8") as file:
-        writer = csv.writer(file)
-        writer.writerow(HEAD)
-        for c in found.crossings:
-            force = "" if c.force is None else f"{c.force:.9g}"
-            writer.writerow([c.line, c.mode, f"{c.frequency_hz:.9g}", f"{c.rpm:.9g}", force])

@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 from solidgear.judge.record import Record
 from solidgear.quantity import C_ZZ, COMPLIANCE, STIFFNESS, Quantity
-from solidgear.report.cells import DASH, capital
+from solidgear.report.matrices import block as matrix
 from solidgear.report.reading import LUMPED, block, entry, model_name, value_of
-from solidgear.report.result_tables import Cell, MatrixTable, apart, matrix
+from solidgear.report.result_tables import across, apart
 from solidgear.report.table import Table
 from solidgear.report.units import ENGINEERING, Units
-from solidgear.report.words import band_percent
+from solidgear.report.words import capital, plus_minus
 
 #: what is told of every point in the summary
 SUMMED = (C_ZZ, Quantity("C_yy"), Quantity("C_thx"))
@@ -17,33 +19,36 @@ SUMMED = (C_ZZ, Quantity("C_yy"), Quantity("C_thx"))
 
 def points(record: Record, units: Units = ENGINEERING) -> Table:
     """The further points in short: quantities down, models across."""
-    rows: list[list[Cell]] = []
+    rows: list[list[Any]] = []
     main = record.port.name if record.port else ""
+    every = record.models.values()
+
+    def add(quantity: Quantity, label: str) -> None:
+        cells = [units.number(value_of(m, quantity), quantity.unit) for m in every]
+        rows.append([f"{label}, {units.unit(quantity.unit)}", *cells])
+        rows.append(["against reference", *(apart(record, k, quantity) for k in record.models)])
+        bands = [m.band.each.get(quantity) if m.band else None for m in every]
+        rows.append(["bar", *(None if bar is None else plus_minus(bar) for bar in bands)])
+
     for port in record.further_ports:
         for name in SUMMED:
-            rows += _told(record, units, name.at(port.name), f"{name} at {port.name}")
+            add(name.at(port.name), f"{name} at {port.name}")
     for a, b in _pairs(record):
         for name in SUMMED:
             load = "a moment" if name.place[1] > 2 else "a load"
-            rows += _told(record, units, name.at(a, b), f"{name}, {a} for {load} on {b}")
+            add(name.at(a, b), f"{name}, {a} for {load} on {b}")
     note = (
         f"Headlines, lumped models and attachments above are those of {main}, the main point; "
         "compliances of every point are judged unless the scene asks for others. Bars and "
         "differences of terms between points are shares of the geometric mean of what both points "
         "have of their own, for such a term may vanish."
     )
-    return Table(
-        "Further lumped points",
-        ["quantity", *(capital(model_name(record, key)) for key in record.models)],
-        rows,
-        note,
-        css="summary",
-    )
+    return across(record, "Further lumped points", rows, note, "quantity")
 
 
-def matrices(record: Record, units: Units = ENGINEERING) -> list[tuple[str, list[MatrixTable]]]:
+def matrices(record: Record, units: Units = ENGINEERING) -> list[tuple[str, list[Table]]]:
     """The matrices of every further point and between points, a heading and its matrices."""
-    out: list[tuple[str, list[MatrixTable]]] = []
+    out: list[tuple[str, list[Table]]] = []
     models = {k: m for k, m in record.models.items() if m.family != LUMPED and m.coupled}
     for port in record.further_ports:
         shown = []
@@ -53,7 +58,7 @@ def matrices(record: Record, units: Units = ENGINEERING) -> list[tuple[str, list
                 values = getattr(found, kind)
                 if values:
                     caption = f"{model_name(record, key)}: {kind} at {port.name}"
-                    shown.append(matrix(caption, kind, values, port.free, units))
+                    shown.append(matrix(values, kind, units, capital(caption), port.free))
         out.append((f"At {port.name}", shown))
     for a, b in _pairs(record):
         shown = []
@@ -62,11 +67,11 @@ def matrices(record: Record, units: Units = ENGINEERING) -> list[tuple[str, list
                 there = block(model.coupled, a, b, kind)
                 own = [block(model.coupled, one, one, kind) for one in (a, b)]
                 sizes = [[entry(one, k, k) for k in range(6)] for one in own]
-                words = ("load on", "motion of")
+                words = ["load on", "motion of"]
                 first, second = words if kind == STIFFNESS else reversed(words)
                 caption = f"{model_name(record, key)}: {kind}, {first} {a}, {second} {b}"
                 if there and any(v is not None for row in there for v in row):
-                    shown.append(matrix(caption, kind, there, [], units, sizes))
+                    shown.append(matrix(there, kind, units, capital(caption), sizes=sizes))
         out.append((f"Between {a} and {b}", shown))
     return out
 
@@ -75,18 +80,3 @@ def _pairs(record: Record) -> list[tuple[str, str]]:
     """Names of points, two by two."""
     names = [port.name for port in (record.port, *record.further_ports) if port is not None]
     return [(a, b) for k, a in enumerate(names) for b in names[k + 1 :]]
-
-
-def _told(record: Record, units: Units, quantity: Quantity, label: str) -> list[list[Cell]]:
-    """A quantity by every model, how far each is from the reference, and how sure of its own."""
-    values = [value_of(model, quantity) for model in record.models.values()]
-    bands = [m.band.each.get(quantity) if m.band else None for m in record.models.values()]
-    bars: list[Cell] = [f"± {band_percent(bar)}" if bar is not None else DASH for bar in bands]
-    return [
-        [
-            f"{label}, {units.unit(quantity.unit)}",
-            *(units.number(value, quantity.unit, nothing=DASH) for value in values),
-        ],
-        ["against reference", *(apart(record, key, quantity) for key in record.models)],
-        ["bar", *bars],
-    ]

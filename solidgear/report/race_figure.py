@@ -6,7 +6,6 @@ from pathlib import Path
 from typing import Any
 
 from solidgear.judge.race.pareto import AUTOMATIC, Race, Row
-from solidgear.report.cells import whole_number
 from solidgear.report.panel import (
     COUNT,
     GREY,
@@ -22,7 +21,7 @@ from solidgear.report.plot import WIDE, Chart
 from solidgear.report.race_legend import FRONT, footer, legend
 from solidgear.report.race_rows import COSTS, error_text, options_text
 from solidgear.report.race_style import REFERENCE, Look
-from solidgear.report.words import is_number, percent, seconds
+from solidgear.report.words import grouped, is_number, percent, seconds
 
 QUANTITY = {"C_zz": "port compliance C_zz", "bending 1": "first bending frequency"}
 #: the series whose orders are written beside its points
@@ -117,7 +116,7 @@ def _reference(panel: Panel, race: Race, quantity: str, cost: str, floor: float)
         "reference, harmonic solid",
         ("own band", percent(race.reference["bands"][quantity], signed=False), ""),
         ("time", seconds(race.reference["seconds"]), "s"),
-        ("unknowns", whole_number(race.reference["unknowns"]), ""),
+        ("unknowns", grouped(race.reference["unknowns"]), ""),
     )
     star = {"type": "point", "shape": SHAPES["*"], "size": 110, "stroke": REFERENCE}
     place = {"x": race.reference[cost], "y": floor, "told": words}
@@ -188,7 +187,7 @@ def _words(race: Race, row: Row, name: str, quantity: str) -> str:
         name,
         (f"error of {quantity}", error_text(race, row, quantity), ""),
         ("time", seconds(row.seconds), "s"),
-        ("unknowns", whole_number(row.unknowns), ""),
+        ("unknowns", grouped(row.unknowns), ""),
         ("setting", options_text(row), ""),
     )
 

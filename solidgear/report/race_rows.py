@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 import csv
-import io
 import json
 import logging
 from collections.abc import Iterable, Mapping
 from dataclasses import asdict, fields
+from operator import itemgetter
 from pathlib import Path
 
 from solidgear.judge.race.pareto import CHARTED, Race, Row
 from solidgear.machine.whole_file import whole
+from solidgear.report.table import Column, Table
 from solidgear.report.words import percent
 
 log = logging.getLogger(__name__)
@@ -33,8 +34,9 @@ def write_rows(race: Race, folder: Path) -> None:
     if sum(len(row.samples) for row in race.rows) <= 1:
         for name in (MACHINE, PICTURE):
             (folder / name).unlink(missing_ok=True)
-    replace_file(folder / ROWS, _csv(race).encode())
-    replace_file(folder / MACHINE, (json.dumps(record, indent=1, allow_nan=False) + "\n").encode())
+    _table(race).write(folder / ROWS)
+    with whole(folder / MACHINE) as half:
+        half.write_text(json.dumps(record, indent=1, allow_nan=False) + "\n", encoding="utf-8")
 
 
 def read_race(folder) -> Race | None:
@@ -112,13 +114,10 @@ def _column(quantity: str) -> str:
     return quantity.replace(" ", "_")
 
 
-def _csv(race: Race) -> str:
-    rows, target = records(race), io.StringIO()
-    if rows:
-        writer = csv.DictWriter(target, list(rows[0]), lineterminator="\n")
-        writer.writeheader()
-        writer.writerows(rows)
-    return target.getvalue()
+def _table(race: Race) -> Table:
+    rows = records(race)
+    columns = [Column(name, itemgetter(name), str) for name in (rows[0] if rows else ())]
+    return Table("", columns, rows)
 
 
 def _row(line: Mapping[str, str]) -> Row:
@@ -154,11 +153,6 @@ def _value(text: str):
         return json.loads(text)
     except ValueError:
         return text
-
-
-def replace_file(path: Path, data: bytes) -> None:
-    with whole(path) as partial:
-        partial.write_bytes(data)
 
 
 def left_out(race: Race) -> str:

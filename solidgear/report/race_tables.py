@@ -5,12 +5,11 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from solidgear.judge.race.pareto import Race, Row
-from solidgear.report.cells import whole_number
 from solidgear.report.plot import page_svg
 from solidgear.report.race_figure import race_chart
 from solidgear.report.race_rows import error_text, options_text, read_race
-from solidgear.report.table import Table
-from solidgear.report.words import count, seconds
+from solidgear.report.table import Column, Table, text, word
+from solidgear.report.words import count, grouped, seconds
 
 CAPTION = (
     "Error against the refined harmonic solid with the attachments of the scene, over wall time "
@@ -41,43 +40,43 @@ def front_rows(race: Race) -> list[tuple[Row, list[str]]]:
     return sorted(rows, key=lambda pair: pair[0].seconds or 0.0)
 
 
-def front_table(race: Race):
-    """The Pareto front over seconds as a rich table of 80 columns."""
-    from rich import box
-    from rich.console import Group
-    from rich.table import Table as RichTable
-    from rich.text import Text
+def front_columns(race: Race, narrow: bool = False) -> list[Column]:
+    """Columns of the front, for a page or, narrow, for a terminal."""
+    names = {"bending 1": "f1"} if narrow else {}
 
-    names = {"bending 1": "f1"}
-    table = RichTable(
-        box=box.SIMPLE_HEAD,
-        padding=0,
-        collapse_padding=True,
-        pad_edge=False,
-        title="Pareto front over wall time",
-        title_justify="left",
-    )
-    table.add_column("model", no_wrap=True)
-    table.add_column("options")
-    for head in ("DOFs", "s", *(f"error {names.get(q, q)}" for q in race.reference["values"])):
-        table.add_column(head, justify="right", no_wrap=True)
-    for row, on in front_rows(race):
-        errors = []
-        for q in race.reference["values"]:
-            mark = "*" if q in on else " "
-            errors.append(error_text(race, row, q).replace(" %", "%") + mark)
-        table.add_row(
-            Text(row.series),
-            Text(options_text(row) or "default"),
-            count(row.unknowns),
-            seconds(row.seconds),
-            *errors,
-        )
+    def error(q: str) -> Column:
+        def of(row: tuple[Row, list[str]]) -> str:
+            told = error_text(race, row[0], q)
+            if not narrow:
+                return told
+            return told.replace(" %", "%") + ("*" if q in row[1] else " ")
+
+        return Column(f"error {'' if narrow else 'of '}{names.get(q, q)}", of)
+
+    columns = [
+        word("model", lambda row: row[0].series),
+        text("options", lambda row: options_text(row[0]) or "default"),
+        Column(
+            "DOFs" if narrow else "unknowns",
+            lambda row: row[0].unknowns,
+            count if narrow else grouped,
+        ),
+        Column("s" if narrow else "seconds", lambda row: row[0].seconds, seconds),
+        *map(error, race.reference["values"]),
+    ]
+    if narrow:
+        return columns
+    return [*columns, text("on the front of", lambda row: ", ".join(row[1]))]
+
+
+def front_table(race: Race) -> tuple[Table, str]:
+    """The Pareto front over seconds in 80 columns, and what its marks mean."""
+    title = "Pareto front over wall time"
     notes = (
         "*: on the front of this quantity; <: below the band of the reference\n"
         "after the stroke: like for like, section ties on both sides; no cancellation counts"
     )
-    return Group(table, Text(notes))
+    return Table(title, front_columns(race, True), front_rows(race), style="narrow"), notes
 
 
 def chart(folder, scene: Mapping) -> bytes | None:
@@ -100,49 +99,29 @@ def section(folder, scene: Mapping) -> dict | None:
     race = _of_scene(folder, scene)
     if race is None:
         return None
-    head = [
-        "model",
-        "options",
-        "unknowns",
-        "seconds",
-        *(f"error of {q}" for q in race.reference["values"]),
-        "on the front of",
-    ]
     note = (
         "“<”: below the band of the reference, which is shown instead. After the stroke: "
         "like for like, with section ties on both sides. No cancellation counts on the front."
     )
-    rows = []
-    for r, on in front_rows(race):
-        errors = (error_text(race, r, q) for q in race.reference["values"])
-        rows.append(
-            [
-                r.series,
-                (options_text(r) or "default", "text"),
-                whole_number(r.unknowns),
-                seconds(r.seconds),
-                *errors,
-                (", ".join(on), "text"),
-            ]
-        )
     lost = [
-        [f"{r.series}, level {r.level}", (options_text(r), "text"), r.status, (r.reason, "text")]
-        for r in race.rows
-        if r.status != "ok" or r.reason
+        word("case", lambda r: f"{r.series}, level {r.level}"),
+        text("options", options_text),
+        Column("status", lambda r: r.status),
+        text("reason", lambda r: r.reason),
     ]
     return {
         "caption": CAPTION,
         "tables": [
-            Table("The Pareto front over wall time", head, rows, note),
+            Table("The Pareto front over wall time", front_columns(race), front_rows(race), note),
             Table(
                 "Set-up, once a process and in none of the times",
-                ["what", "seconds"],
-                [[k, seconds(v)] for k, v in race.setup.items()],
+                ["what", Column("seconds", write=seconds)],
+                list(race.setup.items()),
             ),
             Table(
                 "Failed, left out, or with something missing",
-                ["case", "options", "status", "reason"],
                 lost,
+                [r for r in race.rows if r.status != "ok" or r.reason],
             ),
         ],
     }

@@ -15,7 +15,7 @@ from solidgear.judge.record import (
 )
 from solidgear.judge.ties import SCENE, SECTION
 from solidgear.quantity import FIRST_BENDING, Quantity
-from solidgear.report.words import NOTHING, hertz, is_number, percent
+from solidgear.report.words import DASH, hertz, is_number, percent
 
 #: families of models, as the ladder has them
 LUMPED, BEAM = "lumped", "beam"
@@ -30,7 +30,7 @@ def model_of(record: Record, key: str | None) -> ModelRecord:
 
 def model_name(record: Record, key: str | None) -> str:
     """The name of a model in a sentence; one without a title is called by its key."""
-    return model_of(record, key).title or key or NOTHING
+    return model_of(record, key).title or key or DASH
 
 
 def left_open(record: Record) -> str:
@@ -86,11 +86,6 @@ def block(found: CoupledRecord | None, a: str, b: str, kind: str) -> Matrix | No
         return None
     i, j = 6 * found.ports.index(a), 6 * found.ports.index(b)
     return [row[j : j + 6] for row in values[i : i + 6]]
-
-
-def is_faint(matrix: Sequence[Sequence[float | None]] | None, i: int, j: int) -> bool:
-    """Whether a coupling is next to nothing beside its two diagonal entries."""
-    return i != j and is_nothing(entry(matrix, i, j), entry(matrix, i, i), entry(matrix, j, j))
 
 
 def is_nothing(value: float | None, one: float | None, other: float | None) -> bool:

@@ -4,21 +4,18 @@ frequencies.
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from typing import Any, NamedTuple
+from collections.abc import Callable, Iterable
+from typing import Any
 
-from solidgear.frames import DOF_NAMES
-from solidgear.judge.record import Matrix, ModelRecord, ModeRecord, Record
-from solidgear.quantity import BLOCK_UNITS, C_ZZ, FIRST_BENDING, K_ZZ, Quantity
-from solidgear.report.cells import DASH, capital, pct, short_percent, whole_number
+from solidgear.judge.record import ModelRecord, ModeRecord, Record
+from solidgear.quantity import C_ZZ, FIRST_BENDING, K_ZZ, Quantity
+from solidgear.report.matrices import block
 from solidgear.report.reading import (
     LUMPED,
     answer_seconds,
-    entry,
     first_frequency,
     headline,
     is_beam,
-    is_nothing,
     is_resolved,
     mode_of,
     model_name,
@@ -28,93 +25,91 @@ from solidgear.report.reading import (
     validity,
     value_of,
 )
-from solidgear.report.table import Table
+from solidgear.report.table import Cell, Column, Table, text, word
 from solidgear.report.units import ENGINEERING, Units
-from solidgear.report.words import band_percent, by_plane, hertz, seconds
+from solidgear.report.words import (
+    band_percent,
+    by_plane,
+    capital,
+    grouped,
+    hertz,
+    percent,
+    plus_minus,
+    seconds,
+    short_percent,
+)
 
-#: a text, or a text and its css class
-Cell = str | tuple[str, str]
-
+#: a frequency of a motion without strain
+RIGID = "0 (rigid)"
 #: validity -> cell
-WORTH: dict[str, Cell] = {
-    "yes": ("yes", "good"),
-    "no": ("no", "bad"),
-    "open": ("not judged", "quiet"),
-    "unknown": DASH,
+WORTH = {
+    "yes": Cell("yes", "good"),
+    "no": Cell("no", "bad"),
+    "open": Cell("not judged", "quiet"),
+    "unknown": Cell(None),
 }
 
 
-def summary(record: Record, units: Units = ENGINEERING) -> Table:
+def across(record: Record, title: str, rows: list[list[Any]], note: str, head: str) -> Table:
     """Quantities down, models across: four models fit a page, thirteen columns do not."""
+    names = [capital(model_name(record, key)) for key in record.models]
+    return Table(title, [head, *names], rows if names else [], note, "summary")
 
-    def row(label: str, cell: Callable[[ModelRecord], Cell]) -> list[Cell]:
-        return [label, *(cell(model) for model in record.models.values())]
 
-    def value(name: Quantity) -> list[Cell]:
+def summary(record: Record, units: Units = ENGINEERING) -> Table:
+    """The results of every model in short."""
+
+    def row(label: str, cell: Callable[[str, ModelRecord], Any]) -> list[Any]:
+        return [label, *(cell(key, model) for key, model in record.models.items())]
+
+    def value(name: Quantity) -> list[Any]:
         return row(
             f"{name}, {units.unit(name.unit)}",
-            lambda m: units.number(value_of(m, name), name.unit, nothing=DASH),
+            lambda _, m: units.number(value_of(m, name), name.unit),
         )
 
-    def from_reference(label: str, quantity: Quantity) -> list[Cell]:
-        return [label, *(apart(record, key, quantity) for key in record.models)]
+    def band(key: str, model: ModelRecord, name: str = "") -> Any:
+        if model.band is None:
+            # beams are solved on one mesh
+            return Cell("none given", "quiet") if is_beam(record, key) else None
+        return band_percent(model.band.each.get(name) if name else model.band.compliance)
 
-    def band(label: str, values: list[float | None]) -> list[Cell]:
-        pairs = zip(record.models, values)
-        return [label, *(_band(record, key, value) for key, value in pairs)]
-
-    bands = [model.band for model in record.models.values()]
     rows = [
-        row("valid for this scene", lambda m: WORTH[validity(m)]),
+        row("valid for this scene", lambda _, m: WORTH[validity(m)]),
         *map(value, (K_ZZ, C_ZZ, Quantity("K_yy"), Quantity("K_thx"))),
-        from_reference("C_zz against reference", C_ZZ),
-        from_reference("first bending against reference", FIRST_BENDING),
-        band("band, worst compliance", [b.compliance if b else None for b in bands]),
-        band("band, first bending", [b.each.get(FIRST_BENDING) if b else None for b in bands]),
-        row("degrees of freedom", lambda m: whole_number(m.dofs)),
+        row("C_zz against reference", lambda key, _: apart(record, key, C_ZZ)),
+        row("first bending against reference", lambda key, _: apart(record, key, FIRST_BENDING)),
+        row("band, worst compliance", band),
+        row("band, first bending", lambda key, m: band(key, m, FIRST_BENDING)),
+        row("degrees of freedom", lambda _, m: grouped(m.dofs)),
     ]
     note = (
         "“Against reference” compares beams with section ties on both sides, where they have a "
         "like-for-like partner, and solids as the scene has them."
     )
-    return Table(
-        "Results at the lumped point, attachments of the scene",
-        ["quantity", *(capital(model_name(record, key)) for key in record.models)],
-        rows if record.models else [],
-        note,
-        css="summary",
+    return across(
+        record, "Results at the lumped point, attachments of the scene", rows, note, "quantity"
     )
 
 
 def models(record: Record) -> Table:
     """Which models may be used, and why the others not: a model a row."""
-    rows = []
-    for key, model in record.models.items():
-        rows.append(
-            [
-                capital(model_name(record, key)),
-                WORTH[validity(model)],
-                hertz(first_frequency(model, "bending"), DASH),
-                apart(record, key, FIRST_BENDING),
-                apart(record, key, C_ZZ),
-                seconds(answer_seconds(model), DASH),
-                (model.why_not or "", "text"),
-            ]
-        )
-    tolerance = short_percent(record.verdict.tolerance)
-    head = [
-        "model",
-        f"within {tolerance}" if tolerance else "valid",
-        "first bending, Hz",
-        "first bending off",
-        "C_zz off",
-        "time, s",
-        "why not",
+    of, tolerance = record.models, short_percent(record.verdict.tolerance)
+    columns = [
+        Column("model", lambda key: capital(model_name(record, key))),
+        Column(
+            f"within {tolerance}" if tolerance else "valid", lambda key: WORTH[validity(of[key])]
+        ),
+        Column("first bending, Hz", lambda key: first_frequency(of[key], "bending"), hertz),
+        Column("first bending off", lambda key: apart(record, key, FIRST_BENDING)),
+        Column("C_zz off", lambda key: apart(record, key, C_ZZ)),
+        Column("time, s", lambda key: answer_seconds(of[key]), seconds),
+        text("why not", lambda key: of[key].why_not or ""),
     ]
-    return Table("Models of this scene", head, rows)
+    return Table("Models of this scene", columns, list(of))
 
 
-def apart(record: Record, key: str, quantity: str) -> Cell:
+def apart(record: Record, key: str, quantity: str) -> Cell | None:
     """How far a model is from the reference.
 
     Parameters
@@ -127,34 +122,21 @@ def apart(record: Record, key: str, quantity: str) -> Cell:
 
     Returns
     -------
-    str or (str, str)
-        A cell, said with less weight where bars do not tell the models apart.
+    Cell or None
+        Said with less weight where bars do not tell the models apart.
     """
     if key == reference_of(record):
-        return ("reference", "quiet")
+        return Cell("reference", "quiet")
     found = headline(record, key, quantity)
     if found is None:
-        return DASH
-    difference = pct(found.relative)
-    return difference if is_resolved(found) else (f"not resolved ({difference})", "quiet")
+        return None
+    difference = percent(found.relative)
+    if is_resolved(found):
+        return Cell(difference)
+    return Cell(f"not resolved ({difference})", "quiet")
 
 
-def _band(record: Record, key: str, value: float | None) -> Cell:
-    """A band of a model; beams are solved on one mesh and have none."""
-    if record.models[key].band is None and is_beam(record, key):
-        return ("none given", "quiet")
-    return band_percent(value, DASH)
-
-
-class MatrixTable(NamedTuple):
-    """A 6x6 as a page shows it: units and rows of cells of its upper and its lower half."""
-
-    caption: str
-    names: tuple[str, ...]
-    blocks: list[tuple[tuple[str, str], list[tuple[str, list[Cell]]]]]
-
-
-def matrices(record: Record, units: Units = ENGINEERING) -> dict[str, list[MatrixTable]]:
+def matrices(record: Record, units: Units = ENGINEERING) -> dict[str, list[Table]]:
     """The matrices of every model; the lumped one stands on those of another, shown there."""
     out = {}
     for key, model in record.models.items():
@@ -164,78 +146,40 @@ def matrices(record: Record, units: Units = ENGINEERING) -> dict[str, list[Matri
         both = (("stiffness", model.stiffness), ("compliance", model.compliance))
         free = record.port.free if record.port else []
         shown = [
-            matrix(f"{name}: {kind}", kind, values, free, units) for kind, values in both if values
+            block(values, kind, units, capital(f"{name}: {kind}"), free)
+            for kind, values in both
+            if values
         ]
         if shown:
             out[key] = shown
     return out
 
 
-def matrix(
-    caption: str,
-    kind: str,
-    values: Matrix,
-    free: list[str],
-    units: Units = ENGINEERING,
-    sizes: Any = None,
-) -> MatrixTable:
-    """A 6x6 with a unit over each of its four blocks.
-
-    Parameters
-    ----------
-    caption : str
-    kind : {'stiffness', 'compliance'}
-    values : (6, 6) rows of numbers
-    free : list of str
-        Components that are shown as a dash.
-    units : Units
-    sizes : two lists of six numbers, optional
-        Entries of the diagonal beside which a coupling may be next to nothing; by default those of
-        the matrix.
-    """
-    own = [entry(values, k, k) for k in range(6)]
-    across, along = sizes or (own, own)
-    same, mixed, turn = BLOCK_UNITS[kind]
-    rows = []
-    for i, direction in enumerate(DOF_NAMES):
-        cells: list[Cell] = []
-        for j, other in enumerate(DOF_NAMES):
-            value = entry(values, i, j)
-            if value is None or direction in free or other in free:
-                cells.append((DASH, "quiet"))
-                continue
-            faint = (i != j or sizes is not None) and is_nothing(value, across[i], along[j])
-            si = mixed if (i < 3) != (j < 3) else same if i < 3 else turn
-            # without exponents a coupling of nothing would fill its cell with zeros
-            text = "0" if faint and not units.exponents else units.number(value, si)
-            cells.append((text, "faint" if faint else ""))
-        rows.append((direction, cells))
-    same, mixed, turn = (units.unit(si) for si in (same, mixed, turn))
-    halves = [((same, mixed), rows[:3]), ((mixed, turn), rows[3:])]
-    return MatrixTable(capital(caption), DOF_NAMES, halves)
-
-
 def own_frequencies(record: Record, key: str | None) -> Table:
     """Natural frequencies of one model with their bars."""
     model = model_of(record, key)
-    each, rows = model.band.each if model.band else {}, []
+    each = model.band.each if model.band else {}
     # in two planes that differ, the first ones of both are judged
     judged = {id(mode_of(model, name)): name for name in each}
-    for mode in sorted(model.modes, key=lambda m: m.frequency_hz or 0.0):
-        bar = each.get(judged.get(id(mode), mode.name))
-        told = "0 (rigid)" if mode.frequency_hz == 0 else hertz(mode.frequency_hz, DASH)
-        cell = DASH if bar is None else f"± {band_percent(bar)}"
-        rows.append([mode.name, told, str(mode.multiplicity), cell])
-    note = "Two shapes: a pair of the same frequency in two planes."
-    if any(row[-1] == DASH and row[1] != "0 (rigid)" for row in rows):
-        note += " A dash: no bar of its own; the higher a mode, the more it asks of a mesh."
-    note += by_plane(mode.name for mode in model.modes)
-    return Table(
-        f"Natural frequencies of the {model_name(record, key)}",
-        ["mode", "Hz", "shapes", "bar"],
-        rows,
-        note,
+    columns = [
+        Column("mode", lambda m: m.name),
+        Column("Hz", lambda m: RIGID if m.frequency_hz == 0 else m.frequency_hz, hertz),
+        Column("shapes", lambda m: m.multiplicity),
+        Column("bar", lambda m: each.get(judged.get(id(m), m.name)), plus_minus),
+    ]
+    found = Table(
+        f"Natural frequencies of the {model_name(record, key)}", columns, in_order(model.modes)
     )
+    found.note = "Two shapes: a pair of the same frequency in two planes."
+    if any(bar is None and hz != RIGID for _, hz, _, bar in found.rows):
+        found.note += " A dash: no bar of its own; the higher a mode, the more it asks of a mesh."
+    found.note += by_plane(mode.name for mode in model.modes)
+    return found
+
+
+def in_order(modes: Iterable[ModeRecord]) -> list[ModeRecord]:
+    """Modes from the lowest up."""
+    return sorted(modes, key=lambda m: m.frequency_hz or 0.0)
 
 
 def frequencies(record: Record) -> Table:
@@ -247,18 +191,20 @@ def frequencies(record: Record) -> Table:
     for key in sorted(modes, key=lambda k: k != reference):
         for name, mode in modes[key].items():
             ordered.setdefault(name, mode)
-    rows = []
-    for mode in sorted(ordered.values(), key=lambda m: m.frequency_hz or 0.0):
-        base = modes.get(reference or "", {}).get(mode.name)
-        cells: list[Any] = [
-            mode.name,
-            (mode.family or DASH, "word text"),
-            str(mode.multiplicity),
-        ]
-        for key, own in modes.items():
-            partner = None if key == reference else base
-            cells.append(_frequency(own.get(mode.name), partner))
-        rows.append(cells)
+
+    def column(key: str) -> Column:
+        base = {} if key == reference else modes.get(reference or "", {})
+        return Column(
+            capital(model_name(record, key)),
+            lambda mode: _frequency(modes[key].get(mode.name), base.get(mode.name)),
+        )
+
+    columns = [
+        Column("mode", lambda mode: mode.name),
+        word("family", lambda mode: mode.family or None),
+        Column("shapes", lambda mode: mode.multiplicity),
+        *map(column, modes),
+    ]
     note = ""
     if reference:
         note = (
@@ -266,19 +212,15 @@ def frequencies(record: Record) -> Table:
             "same frequency in two planes. A dash: not among the modes asked for."
         )
         note += by_plane(ordered)
-    return Table(
-        "Natural frequencies in Hz, attachments as in the scene",
-        ["mode", "family", "shapes", *(capital(model_name(record, key)) for key in modes)],
-        rows,
-        note,
-    )
+    title = "Natural frequencies in Hz, attachments as in the scene"
+    return Table(title, columns, in_order(ordered.values()), note)
 
 
-def _frequency(mode: ModeRecord | None, base: ModeRecord | None) -> str:
+def _frequency(mode: ModeRecord | None, base: ModeRecord | None) -> str | None:
     """The frequency of a mode, and in brackets how far it is from that of `base`."""
     if mode is None:
-        return DASH
+        return None
     if mode.frequency_hz == 0:
-        return "0 (rigid)"
+        return RIGID
     apart = relative_change(mode.frequency_hz, base.frequency_hz if base else None)
-    return hertz(mode.frequency_hz, DASH) + ("" if apart is None else f" ({pct(apart)})")
+    return hertz(mode.frequency_hz) + ("" if apart is None else f" ({percent(apart)})")

@@ -5,38 +5,31 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from solidgear.judge.record import ModelRecord, Record
-from solidgear.report.cells import DASH, capital, megabytes
+from solidgear.judge.record import Record
 from solidgear.report.reading import model_name, reference_of
-from solidgear.report.table import Table
-from solidgear.report.words import seconds
+from solidgear.report.table import Cell, Column, Table, text
+from solidgear.report.words import DASH, capital, seconds, whole
 
 
 def cost(record: Record) -> Table:
     """Seconds of every stage and peak memory."""
-    stages: list[str] = []
-    for model in record.models.values():
-        stages += [s for s in model.seconds if s not in stages and s != "total"]
-    rows = []
-    for key, model in record.models.items():
-        rows.append(
-            [
-                capital(model_name(record, key)),
-                *_times(model, [*stages, "total"]),
-                megabytes(model.peak_mb),
-                (model.backend or DASH, "text"),
-            ]
-        )
+    stages = dict.fromkeys(s for m in record.models.values() for s in m.seconds if s != "total")
+    columns = [
+        Column("model", lambda item: capital(model_name(record, item[0]))),
+        *(_stage(stage) for stage in (*stages, "total")),
+        Column("peak MB", lambda item: item[1].peak_mb, whole),
+        text("linear algebra", lambda item: item[1].backend or None),
+    ]
     return Table(
         "Wall time in s and peak memory",
-        ["model", *stages, "total", "peak MB", "linear algebra"],
-        rows,
+        columns,
+        list(record.models.items()),
         "Times of a single run on the machine named below: good for orders of magnitude.",
     )
 
 
-def _times(model: ModelRecord, stages: list[str]) -> list[str]:
-    return [seconds(model.seconds.get(stage), DASH) for stage in stages]
+def _stage(name: str) -> Column:
+    return Column(name, lambda item: item[1].seconds.get(name), seconds)
 
 
 def provenance(record: Record) -> Table:
@@ -54,13 +47,13 @@ def provenance(record: Record) -> Table:
         ["causes, attachments", "this run: the same model solved again with one thing switched"],
         ["bands", "this run: solution verification on related meshes of the same model"],
         ["expected orders, free motions", "closed form"],
-        ["experiment", ("none: nothing in this report is validated against experiment", "strong")],
+        [
+            "experiment",
+            Cell("none: nothing in this report is validated against experiment", "strong"),
+        ],
     ]
     return Table(
-        "Where each class of number comes from",
-        ["class", "origin"],
-        [[a, b if isinstance(b, tuple) else (b, "text")] for a, b in rows],
-        css="facts",
+        "Where each class of number comes from", ["class", text("origin")], rows, style="facts"
     )
 
 
@@ -76,15 +69,15 @@ def _flat(value: Any) -> str:
 
 def pairs_of(mapping: Mapping[str, Any], caption: str) -> Table:
     """A table of a mapping, an entry a row."""
-    rows = [[str(key), (_flat(value), "text")] for key, value in mapping.items()]
-    return Table(caption, ["item", "value"], rows, css="facts")
+    rows = [[str(key), _flat(value)] for key, value in mapping.items()]
+    return Table(caption, ["item", text("value")], rows, style="facts")
 
 
 def mesh(record: Record) -> Table:
     """What is known of every mesh, a model a row."""
     rows = [
-        [capital(model_name(record, key)), (_flat(model.mesh), "text")]
+        [capital(model_name(record, key)), _flat(model.mesh)]
         for key, model in record.models.items()
         if model.mesh
     ]
-    return Table("Meshes", ["model", "mesh"], rows, css="facts")
+    return Table("Meshes", ["model", text("mesh")], rows, style="facts")

@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from solidgear.display import Table
 from solidgear.frames import DOF_NAMES
 from solidgear.quantity import BLOCK_UNITS
 from solidgear.report.reading import mode_of
+from solidgear.report.table import Table
 from solidgear.report.words import bar_of, percent
 
 if TYPE_CHECKING:

@@ -1,30 +1,29 @@
 """The run in a terminal: the final table, the verdict, matrices and modes.
 
-Everything fits 80 columns and says the same without colour. Texts out of a scene go through
-`rich.text.Text`, so that a name with brackets in it stays a name.
+Everything fits 80 columns and says the same without colour.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
-from rich import box
 from rich.console import Group, RenderableType
-from rich.table import Table
 from rich.text import Text
 
-from solidgear.frames import DOF_NAMES
 from solidgear.judge.record import ModelRecord, ModeRecord, Record, VerdictRecord
-from solidgear.quantity import BLOCK_UNITS, C_ZZ, FIRST_BENDING
+from solidgear.quantity import C_ZZ, FIRST_BENDING, K_ZZ, Quantity
 from solidgear.report import reading, words
 from solidgear.report.border import as_record
+from solidgear.report.matrices import block
+from solidgear.report.table import MARK, Column, Table, text, word
 from solidgear.report.units import SI, Units, in_ascii, units_named
-from solidgear.report.words import NOTHING
 
 if TYPE_CHECKING:
     import numpy as np
 
+#: tells something of a model by its key
+Tell = Callable[[str], Any]
 NOT_RESOLVED = "n.r."
 #: figures of a coupling that is next to nothing
 WEAK = 3
@@ -69,31 +68,43 @@ def final_table(
     """
     record = as_record(found)
     chosen = units_named(units or record.shown_in)
-    table = Table(box=box.SIMPLE_HEAD, padding=0, pad_edge=False)
-    table.add_column("model", no_wrap=True)
-    table.add_column("valid", justify="center", no_wrap=True)
-    for name, si in COLUMNS.items():
-        head = f"{name}\n{in_ascii(chosen.unit(si))}" if si else name.replace(" ", "\n")
-        table.add_column(head, justify="right", no_wrap=True)
-    unresolved = False
-    for key, model in record.models.items():
-        cells = [_against_reference(record, key, quantity) for quantity in (C_ZZ, FIRST_BENDING)]
-        unresolved = unresolved or NOT_RESOLVED in cells
-        table.add_row(
-            Text(reading.heading(record, key)[:10]),
-            VALID[reading.validity(model)],
-            in_ascii(chosen.number(reading.entry(model.stiffness, 2, 2), "N/m", 4)),
-            in_ascii(chosen.number(reading.entry(model.compliance, 2, 2), "m/N", 4)),
-            words.hertz(reading.first_frequency(model, "bending")),
-            *cells,
-            words.band_percent(model.band.compliance if model.band else None),
-            words.count(model.dofs),
-            words.seconds(reading.answer_seconds(model)),
-        )
-    notes = [Text(note) for note in _notes(record, unresolved)]
-    notes += [Text(line) for line in _further_points(record, chosen)]
+    table = Table("", _columns(record, chosen), list(record.models), style="narrow")
+    unresolved = any(NOT_RESOLVED in row for row in table.rows)
+    notes = [*_notes(record, unresolved), *_further_points(record, chosen)]
     reasons = [_reason(record, key, model) for key, model in record.models.items()]
-    return Group(table, *notes, *(reason for reason in reasons if reason is not None))
+    return Group(table, *map(Text, notes), *(Text(reason) for reason in reasons if reason))
+
+
+def _columns(record: Record, units: Units) -> list[Column]:
+    """Columns of the final table, which tell of a model by its key."""
+    models = record.models
+
+    def entry(name: Quantity) -> Tell:
+        return lambda key: units.number(reading.value_of(models[key], name), name.unit, 4)
+
+    def band(key: str) -> float | None:
+        found = models[key].band
+        return found.compliance if found else None
+
+    tells: dict[str, tuple[Tell, Callable[[Any], str]]] = {
+        "K_zz": (entry(K_ZZ), str),
+        "C_zz": (entry(C_ZZ), str),
+        "f1": (lambda key: reading.first_frequency(models[key], "bending"), words.hertz),
+        "dC_zz": (lambda key: _against_reference(record, key, C_ZZ), str),
+        "df1": (lambda key: _against_reference(record, key, FIRST_BENDING), str),
+        "band C": (band, words.band_percent),
+        "DOFs": (lambda key: models[key].dofs, words.count),
+        "time": (lambda key: reading.answer_seconds(models[key]), words.seconds),
+    }
+    return [
+        word("model", lambda key: reading.heading(record, key)[:10]),
+        Column("valid", lambda key: VALID[reading.validity(models[key])], kind=MARK),
+        *(Column(_head(name, si, units), *tells[name]) for name, si in COLUMNS.items()),
+    ]
+
+
+def _head(name: str, si: str, units: Units) -> str:
+    return f"{name}\n{units.unit(si)}" if si else name.replace(" ", "\n")
 
 
 def _notes(record: Record, unresolved: bool) -> list[str]:
@@ -127,22 +138,21 @@ def _further_points(record: Record, units: Units) -> list[str]:
     for port in record.further_ports:
         told = []
         for key, model in record.models.items():
-            found = model.points.get(port.name)
-            own = reading.entry(found.compliance, 2, 2) if found else None
-            value = in_ascii(units.number(own, "m/N", 4))
-            apart = _against_reference(record, key, C_ZZ.at(port.name))
+            name = C_ZZ.at(port.name)
+            value = units.number(reading.value_of(model, name), name.unit, 4)
+            apart = _against_reference(record, key, name)
             told.append(f"{reading.heading(record, key)} {value} ({apart})")
-        lines.append(f"C_zz at {port.name}, {in_ascii(units.unit('m/N'))}: {', '.join(told)}")
+        lines.append(in_ascii(f"C_zz at {port.name}, {units.unit('m/N')}: {', '.join(told)}"))
     return lines
 
 
-def _reason(record: Record, key: str, model: ModelRecord) -> Text | None:
+def _reason(record: Record, key: str, model: ModelRecord) -> str:
     """Why a model must not be trusted, or cannot be judged."""
     worth = reading.validity(model)
     if worth not in ("no", "open"):
-        return None
+        return ""
     why = model.why_not or "not valid for this scene"
-    return Text(f"{VALID[worth]:<4}{reading.model_name(record, key)}: {why}")
+    return f"{VALID[worth]:<4}{reading.model_name(record, key)}: {why}"
 
 
 def _against_reference(record: Record, key: str, quantity: str) -> str:
@@ -151,7 +161,7 @@ def _against_reference(record: Record, key: str, quantity: str) -> str:
         return "ref."
     row = reading.headline(record, key, quantity)
     if row is None:
-        return NOTHING
+        return words.DASH
     return words.percent(row.relative) if reading.is_resolved(row) else NOT_RESOLVED
 
 
@@ -225,39 +235,13 @@ def matrix_table(
 
     Returns
     -------
-    rich.table.Table
+    Table
     """
     chosen = units_named(units)
-    same, mixed, turn = BLOCK_UNITS[kind]
     rows = matrix.tolist() if hasattr(matrix, "tolist") else matrix
-    table = Table(
-        box=box.SIMPLE_HEAD,
-        padding=0,
-        pad_edge=False,
-        title=Text(
-            f"{title or kind}, {chosen.title}",
-            "table.title",
-        ),
-        title_justify="left",
-    )
-    table.add_column("")
-    for name in DOF_NAMES:
-        table.add_column(name, justify="right", no_wrap=True)
-    for block, pair in enumerate(((same, mixed), (mixed, turn))):
-        left, right = (in_ascii(chosen.unit(si)) for si in pair)
-        table.add_row("", "", left, "", "", right, "", style="dim")
-        for i in range(3 * block, 3 * block + 3):
-            cells = []
-            for j, value in enumerate(rows[i]):
-                # a weak coupling has few figures that mean something, and a row has 80 columns
-                faint = (
-                    reading.is_nothing(value, sizes[0][i], sizes[1][j])
-                    if sizes
-                    else reading.is_faint(rows, i, j)
-                )
-                digits = WEAK if not chosen.exponents and faint else 5
-                cells.append(in_ascii(chosen.number(value, pair[j // 3], digits)))
-            table.add_row(DOF_NAMES[i], *cells, end_section=i == 2)
+    # a weak coupling has few figures that mean something, and a row has 80 columns
+    table = block(rows, kind, chosen, sizes=sizes, faint_digits=WEAK)
+    table.title = f"{title or kind}, {chosen.title}"
     return table
 
 
@@ -267,20 +251,17 @@ def modes_table(
     """Natural frequencies with names and multiplicity, and relative bars by name where there are
     any.
     """
-    table = Table(box=box.SIMPLE_HEAD, pad_edge=False)
-    table.add_column("mode")
-    table.add_column("family")
-    table.add_column("frequency, Hz", justify="right")
-    table.add_column("shapes", justify="right")
+    columns = [
+        text("mode", lambda m: m.name or None),
+        text("family", lambda m: m.family or None),
+        Column("frequency, Hz", lambda m: m.frequency_hz, words.hertz),
+        Column("shapes", lambda m: m.multiplicity),
+    ]
     if bars:
-        table.add_column("bar", justify="right")
-    for mode in map(ModeRecord.model_validate, modes):
-        bar = (bars or {}).get(mode.name or "")
-        table.add_row(
-            Text(mode.name or NOTHING),
-            Text(mode.family or NOTHING),
-            words.hertz(mode.frequency_hz),
-            str(mode.multiplicity),
-            *(["" if bar is None else words.percent(bar, signed=False)] * bool(bars)),
-        )
-    return table
+
+        def bar(mode: ModeRecord) -> str:
+            own = bars.get(mode.name or "")
+            return "" if own is None else words.percent(own, signed=False)
+
+        columns.append(Column("bar", bar))
+    return Table("", columns, list(map(ModeRecord.model_validate, modes)))

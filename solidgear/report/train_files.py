@@ -1,8 +1,9 @@
-"""The files of a response: a table, its chart as PNG and SVG, and a page to read it."""
+"""The files of a response and of a receptance: numbers, charts as PNG and SVG, and a page to read
+them.
+"""
 
 from __future__ import annotations
 
-import csv
 import json
 from collections.abc import Mapping, Sequence
 from functools import partial
@@ -13,9 +14,10 @@ import numpy as np
 
 from solidgear.machine.whole_file import whole
 from solidgear.report import train_tables
-from solidgear.report.order_chart import order_chart, write_crossings
+from solidgear.report.order_chart import order_chart
 from solidgear.report.plot import WIDE, Make
-from solidgear.report.train_chart import label, response_chart
+from solidgear.report.table import Column, Table
+from solidgear.report.train_chart import label, receptance_chart, response_chart
 from solidgear.report.train_sheet import write_sheet
 from solidgear.report.units import ENGINEERING, Units, units_named
 
@@ -41,42 +43,114 @@ def write_response(
     -------
     list of Path
     """
-    folder.mkdir(parents=True, exist_ok=True)
-    files = [folder / name for name in ("response.csv", "response.json")]
-    write_table(files[0], responses[0], teeth)
-    peaks = [
-        {"pinion": r.pinion, "gear": r.gear, "peaks": [vars(p) for p in r.peaks]} for r in responses
-    ]
-    with whole(files[1]) as half:
-        data = {"title": title, "responses": peaks, **notes}
-        half.write_text(json.dumps(data, indent=1, allow_nan=False), encoding="utf-8")
-    shown = units_named(units)
+    first, shown = responses[0], units_named(units)
+    tables = {"response": over_frequency(first, teeth)}
     charts: dict[str, Make] = {
         "response": partial(response_chart, responses, title, teeth, band, {}, shown)
     }
+    tops = [(p.frequency_hz, p.force, p.mode) for p in first.peaks]
+    told = [train_tables.peaks(tops, "mesh force", "N", teeth, shown, label(first))]
     if orders is not None:
-        write_crossings(folder / "orders.csv", orders)
-        files += [folder / "orders.csv"]
+        tables["orders"] = crossings(orders)
         charts["orders"] = partial(order_chart, orders, title, teeth, shown)
-    for name, make in charts.items():
-        files += write_charts(folder / name, make)
+        told.append(train_tables.crossings([vars(c) for c in orders.crossings], shown))
+    peaks = [
+        {"pinion": r.pinion, "gear": r.gear, "peaks": [vars(p) for p in r.peaks]} for r in responses
+    ]
+    files = _write(folder, tables, {"title": title, "responses": peaks, **notes}, charts)
     if train is None:
         return files
-    first = responses[0]
-    tops = [(p.frequency_hz, p.force, p.mode) for p in first.peaks]
-    tables = [train_tables.peaks(tops, "mesh force", "N", teeth, shown, label(first))]
-    if orders is not None:
-        crossings = [vars(c) for c in orders.crossings]
-        tables.append(train_tables.crossings(crossings, shown))
     page = write_sheet(
         folder / "response.html",
         title,
         f"Steady response, {first.damping} losses; tables of {label(first)}.",
-        [*tables, train_tables.facts(train, shown)],
+        [*told, train_tables.facts(train, shown)],
         charts=charts,
         cautions=first.cautions,
     )
     return [page, *files]
+
+
+def write_receptance(
+    folder: Path,
+    found: Sequence[Any],
+    title: str,
+    teeth: int,
+    notes: Mapping[str, Any],
+    train: Mapping[str, Any] | None = None,
+    units: str | Units = ENGINEERING,
+) -> list[Path]:
+    """``receptance.csv`` of the first model, ``receptance.png``, ``receptance.svg`` of all, and
+    ``receptance.json`` with the peaks and what else is told; with `train` also the page
+    ``receptance.html``.
+
+    Parameters
+    ----------
+    folder : Path
+    found : sequence of TrainReceptance
+        Of the same two ends.
+    title : str
+    teeth : int
+        Of the pinion.
+    notes : mapping
+    train : mapping, optional
+        What is known of the train, as plain data.
+    units : str or Units
+        Of chart and page; all else is SI.
+
+    Returns
+    -------
+    list of Path
+    """
+    first, shown = found[0], units_named(units)
+    unit, value = first.unit, first.value
+    table = _numbers(
+        first.frequency_hz,
+        teeth,
+        {
+            f"amplitude [{unit}]": np.abs(value),
+            "phase [deg]": np.degrees(np.angle(value)),
+            f"real part [{unit}]": value.real,
+            f"imaginary part [{unit}]": value.imag,
+        },
+    )
+    charts: dict[str, Make] = {"receptance": partial(receptance_chart, found, title, teeth, shown)}
+    data = {"title": title, "unit": unit, "models": [_plain(one) for one in found], **notes}
+    files = _write(folder, {"receptance": table}, data, charts)
+    if train is None:
+        return files
+    page = write_sheet(
+        folder / "receptance.html",
+        title,
+        f"Steady motion for a unit force, {first.damping} losses; table of {label(first)}.",
+        [
+            train_tables.peaks(first.peaks, "receptance", unit, teeth, shown),
+            train_tables.facts(train, shown),
+        ],
+        charts=charts,
+        cautions=notes.get("cautions", ()),
+    )
+    return [page, *files]
+
+
+def _plain(one: Any) -> dict[str, Any]:
+    keys = ("frequency_hz", "amplitude", "mode")
+    peaks = [dict(zip(keys, peak)) for peak in one.peaks]
+    return {"pinion": one.pinion, "gear": one.gear, "damping": one.damping, "peaks": peaks}
+
+
+def _write(
+    folder: Path, tables: Mapping[str, Table], data: Mapping[str, Any], charts: Mapping[str, Make]
+) -> list[Path]:
+    """Tables as CSV and charts, by their names, and the data, by that of the first table."""
+    folder.mkdir(parents=True, exist_ok=True)
+    first, *others = [table.write(folder / f"{name}.csv") for name, table in tables.items()]
+    files = [first, first.with_suffix(".json"), *others]
+    with whole(files[1]) as half:
+        half.write_text(json.dumps(data, indent=1, allow_nan=False), encoding="utf-8")
+    for name, make in charts.items():
+        files += write_charts(folder / name, make)
+    return files
 
 
 def write_charts(stem: Path, make: Make) -> list[Path]:
@@ -86,16 +160,35 @@ def write_charts(stem: Path, make: Make) -> list[Path]:
     return [chart.write(file) for file in files] if chart else []
 
 
-def write_table(path: Path, response: Any, teeth: int) -> None:
+def over_frequency(response: Any, teeth: int) -> Table:
     """Amplitude and phase of every column over frequency; the unit stands in brackets."""
-    hz = response.frequency_hz
-    head, rows = ["frequency [Hz]", "pinion speed [rpm]"], [hz, 60 * hz / teeth]
+    columns = {}
     for name, value in response.columns.items():
-        text, _, unit = name.partition(" [")
-        head += [f"{text} [{unit}", f"{text} phase [deg]"]
-        rows += [np.abs(value), np.degrees(np.angle(value))]
-    with whole(path) as half, half.open("w", newline="", encoding="utf-8") as file:
-        writer = csv.writer(file)
-        writer.writerow(head)
-        for line in np.column_stack(rows):
-            writer.writerow([f"{v:.9g}" if np.isfinite(v) else "" for v in line])
+        what, _, unit = name.partition(" [")
+        columns[f"{what} [{unit}"] = np.abs(value)
+        columns[f"{what} phase [deg]"] = np.degrees(np.angle(value))
+    return _numbers(response.frequency_hz, teeth, columns)
+
+
+def crossings(orders: Any) -> Table:
+    """Where order lines meet natural frequencies, in SI."""
+    columns = [
+        Column("order", lambda c: c.line),
+        Column("mode", lambda c: c.mode),
+        Column("frequency [Hz]", lambda c: c.frequency_hz, figures),
+        Column("pinion speed [rpm]", lambda c: c.rpm, figures),
+        Column("mesh force [N]", lambda c: c.force, figures),
+    ]
+    return Table("", columns, orders.crossings)
+
+
+def _numbers(hz: np.ndarray, teeth: int, columns: Mapping[str, np.ndarray]) -> Table:
+    """Columns over frequency and speed."""
+    there = {"frequency [Hz]": hz, "pinion speed [rpm]": 60 * hz / teeth, **columns}
+    rows = np.column_stack(list(there.values())).tolist()
+    return Table("", [Column(head, write=figures) for head in there], rows)
+
+
+def figures(value: float) -> str:
+    """A number for other programs."""
+    return f"{value:.9g}"

@@ -14,17 +14,16 @@ from typing import Any
 from solidgear.errors import SolidgearError
 from solidgear.machine.whole_file import whole
 from solidgear.report import input_tables, train_tables
-from solidgear.report.cells import DASH, capital
 from solidgear.report.folder import clear, held
 from solidgear.report.html import data_uri, template
-from solidgear.report.order_chart import order_chart, write_crossings
+from solidgear.report.order_chart import order_chart
 from solidgear.report.plot import Make, page_svg
 from solidgear.report.run_tables import pairs_of
 from solidgear.report.sketch_page import sketch_svg
 from solidgear.report.train_chart import response_chart
-from solidgear.report.train_files import write_charts, write_table
+from solidgear.report.train_files import crossings, over_frequency, write_charts
 from solidgear.report.units import ENGINEERING, Units, units_named
-from solidgear.report.words import seconds
+from solidgear.report.words import capital, seconds
 
 SIDES = ("pinion", "gear")
 
@@ -87,8 +86,8 @@ def write_train(
             files += [f"{name}.{kind}" for name in charts for kind in ("png", "svg")]
             # Numbers first: whatever happens to pictures, they are there.
             _write_json(folder / "results.json", {**results, "files": files})
-            write_table(folder / "response.csv", responses[0], teeth)
-            write_crossings(folder / "orders.csv", orders)
+            over_frequency(responses[0], teeth).write(folder / "response.csv")
+            crossings(orders).write(folder / "orders.csv")
             for name, make in charts.items():
                 write_charts(folder / name, make)
             results = {**results, **(draw(folder) if draw else {"pictures": {}, "left_out": []})}
@@ -148,5 +147,5 @@ def _page(
         renders=[(capital(told), data_uri(told, folder / name)) for told, name in pictures.items()],
         viewer=Markup(viewer),
         environment=pairs_of(results["environment"], "Environment of the run"),
-        total=seconds(results["seconds_total"], DASH),
+        total=seconds(results["seconds_total"]),
     )

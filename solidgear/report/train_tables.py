@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from math import degrees
 from typing import Any
 
-from solidgear.report.cells import DASH, pct, whole_number
-from solidgear.report.table import Table
+from solidgear.report.table import NUMBER, Cell, Column, Table, quantity, text, word
 from solidgear.report.units import ENGINEERING, GROUP, Units
-from solidgear.report.words import hertz, seconds
+from solidgear.report.words import grouped, hertz, percent, seconds, whole
 
 SIDES = ("pinion", "gear")
 #: relative; no frequency is shown with a smaller bound, whatever the proof says
@@ -41,20 +40,21 @@ def facts(train: Mapping[str, Any], units: Units = ENGINEERING) -> Table:
         rows.append([f"{name} spring", spring, f"{name}.spring.stiffness"])
     losses = ", ".join(f"{name} {value:g}" for name, value in train["losses"].items())
     rows.append(["loss factors", losses, "losses"])
-    return Table(
-        "Train",
-        ["item", "value", "status"],
-        [[item, (text, "text"), _mark(status.get(key, ""))] for item, text, key in rows],
-        css="facts",
-        note="Status says where a value comes from: published, measured, identified or assumed.",
-    )
+    columns = [
+        text("item", lambda row: row[0]),
+        text("value", lambda row: row[1]),
+        word("status", lambda row: mark(status.get(row[2], ""))),
+    ]
+    note = "Status says where a value comes from: published, measured, identified or assumed."
+    return Table("Train", columns, rows, note, style="facts")
 
 
 _MESH = ("mesh.stiffness", "mesh.transmission_error")
 
 
-def _mark(status: str) -> tuple[str, str]:
-    return status, f"word text mark {status}".rstrip()
+def mark(status: str) -> Cell:
+    """The status of an input, in its colour."""
+    return Cell(status, f"mark {status}".rstrip())
 
 
 def _vector(values, digits: int) -> str:
@@ -85,77 +85,79 @@ def _error(table: Mapping[str, Any], units: Units) -> str:
 
 def verdict(found: Mapping[str, Any]) -> Table:
     """Every mix of models: up to where it holds, why no further, and its cost."""
-    rows = []
-    for mix in found["mixes"]:
-        ends = [_end(mix[k], found) for k in ("modes_to_hz", "force_to_hz", "close_to_hz")]
-        same = mix["pinion"] == mix["gear"]
-        name = f"both {mix['gear']}" if same else f"{mix['pinion']} + {mix['gear']}"
-        off = DASH
-        if mix["mode"]:
-            by = "no counterpart" if mix["error"] is None else pct(mix["error"]).replace(" ", GROUP)
-            off = f"{mix['mode']}: {by}"
-        best = {"pinion": mix["pinion"], "gear": mix["gear"]} == found["cheapest"]
-        rows.append(
-            [
-                f"{name}, cheapest" if best else name,
-                *ends,
-                (off, "text"),
-                (mix["cause"] or DASH, "text"),
-                whole_number(mix["unknowns"]),
-                seconds(mix["seconds"]),
-            ]
-        )
-    tolerance = 100 * found["tolerance"]
-    head = [
-        "pinion + gear",
-        f"modes within {tolerance:g} %, Hz",
-        f"mesh force within {found['decibels']:g} dB, Hz",
-        f"mesh force within {tolerance:g} %, Hz",
-        "first mode off",
-        "because of",
-        "unknowns",
-        "build and reduce, s",
+
+    def end(key: str) -> Callable[[Mapping], str]:
+        beyond = f"{found['highest_hz']:.0f}+"
+        return lambda mix: beyond if mix[key] is None else whole(mix[key])
+
+    tolerance = f"{100 * found['tolerance']:g} %"
+    columns = [
+        Column("pinion + gear", lambda mix: _mix(mix, found["cheapest"])),
+        Column(f"modes within {tolerance}, Hz", end("modes_to_hz")),
+        Column(f"mesh force within {found['decibels']:g} dB, Hz", end("force_to_hz")),
+        Column(f"mesh force within {tolerance}, Hz", end("close_to_hz")),
+        text("first mode off", _off),
+        text("because of", lambda mix: mix["cause"] or None),
+        Column("unknowns", lambda mix: mix["unknowns"], grouped),
+        Column("build and reduce, s", lambda mix: mix["seconds"], seconds),
     ]
     return Table(
         "Up to where every mix of models holds against both shafts solid, cheapest first",
-        head,
-        rows,
-        note=(
-            "The cause is the shaft whose model, put back to the solid alone, carries the mix "
-            "furthest; of a lumped model, the assumption. The force within the tolerance is left "
-            "by any peak or dip that moves a little."
-        ),
+        columns,
+        found["mixes"],
+        "The cause is the shaft whose model, put back to the solid alone, carries the mix "
+        "furthest; of a lumped model, the assumption. The force within the tolerance is left "
+        "by any peak or dip that moves a little.",
     )
 
 
-def _end(hz: float | None, found: Mapping[str, Any]) -> str:
-    return f"{found['highest_hz']:.0f}+" if hz is None else f"{hz:.0f}"
+def _mix(mix: Mapping[str, Any], cheapest: Mapping[str, str]) -> str:
+    same = mix["pinion"] == mix["gear"]
+    name = f"both {mix['gear']}" if same else f"{mix['pinion']} + {mix['gear']}"
+    best = {"pinion": mix["pinion"], "gear": mix["gear"]} == cheapest
+    return f"{name}, cheapest" if best else name
+
+
+def _off(mix: Mapping[str, Any]) -> str | None:
+    if not mix["mode"]:
+        return None
+    by = "no counterpart" if mix["error"] is None else percent(mix["error"]).replace(" ", GROUP)
+    return f"{mix['mode']}: {by}"
 
 
 def modes(
-    found: Mapping[str, Any], caption: str = "Natural frequencies, both shafts solid"
+    found: Mapping[str, Any],
+    title: str = "Natural frequencies, both shafts solid",
+    numbered: bool = False,
 ) -> Table:
-    """Natural frequencies of a train."""
-    rows = []
-    for mode in found["modes"]:
-        hz = mode["frequency_hz"]
-        rows.append(
-            [
-                mode["name"],
-                f"{hz:.2f}",
-                f"{mode['rpm']:.0f}",
-                (mode["strained"] or DASH, "text"),
-                "exact" if hz == 0 else f"{max(mode['bound'], ROUNDING):.0e}",
-                DASH if mode["mesh"] is None else f"{mode['mesh']:.0e}",
-            ]
+    """Natural frequencies of a train, for a page or, numbered, for a terminal."""
+    rows = found["modes"]
+    missing = "" if numbered else None
+
+    def bound(mode: Mapping[str, Any]) -> str:
+        return "exact" if mode["frequency_hz"] == 0 else f"{max(mode['bound'], ROUNDING):.0e}"
+
+    def mesh(mode: Mapping[str, Any]) -> Any:
+        return missing if mode["mesh"] is None else mode["mesh"]
+
+    columns = [
+        word("mode", lambda m: m["name"]),
+        Column("Hz", lambda m: m["frequency_hz"], lambda hz: f"{hz:.2f}"),
+        Column("pinion rpm", lambda m: m["rpm"], whole),
+        text("most strain energy", lambda m: m["strained"] or missing),
+        Column("bound", bound),
+        Column("mesh", mesh, lambda share: f"{share:.0e}"),
+    ]
+    if not numbered:
+        note = (
+            "Pinion rpm: the speed at which its teeth mesh at this frequency. Bound: what the "
+            "reduction leaves at most. Mesh: what meshes of harmonic solids leave at most."
         )
-    return Table(
-        caption,
-        ["mode", "Hz", "pinion rpm", "most strain energy", "bound", "mesh"],
-        rows,
-        note="Pinion rpm: the speed at which its teeth mesh at this frequency. Bound: what the "
-        "reduction leaves at most. Mesh: what meshes of harmonic solids leave at most.",
-    )
+        return Table(title, columns, rows, note)
+    meshed = any(mode["mesh"] is not None for mode in rows)
+    numbers = {id(mode): number for number, mode in enumerate(rows, start=1)}
+    counted = Column("", lambda m: numbers[id(m)], kind=NUMBER)
+    return Table("", [counted, *columns[: 6 if meshed else 5]], rows, style="ruled")
 
 
 def peaks(
@@ -184,25 +186,23 @@ def peaks(
         The model.
     """
     units = units.fitting([size for _, size, _ in found], si)
-    rows = [
-        [mode, hertz(hz), f"{60 * hz / teeth:.0f}", units.number(size, si, 4)]
-        for hz, size, mode in found
+    columns = [
+        text("mode that makes it", lambda peak: peak[2]),
+        Column("Hz", lambda peak: peak[0], hertz),
+        Column("pinion rpm", lambda peak: 60 * peak[0] / teeth, whole),
+        quantity(what, si, units, lambda peak: peak[1], 4),
     ]
-    head = ["mode that makes it", "Hz", "pinion rpm", f"{what}, {units.unit(si)}"]
-    return Table(f"Peaks of the {what}{', ' + of if of else ''}", head, rows)
+    return Table(f"Peaks of the {what}{', ' + of if of else ''}", columns, found, style="ruled")
 
 
 def crossings(found: list[Mapping[str, Any]], units: Units = ENGINEERING) -> Table:
     """Where orders meet natural frequencies."""
-    rows = []
-    for c in found:
-        force = units.number(c["force"], "N", 4, DASH)
-        rows.append([c["line"], (c["mode"], "text"), hertz(c["frequency_hz"])])
-        rows[-1] += [f"{c['rpm']:.0f}", force]
-    head = ["order", "mode", "Hz", "pinion rpm", f"mesh force, {units.unit('N')}"]
-    return Table(
-        "Where orders meet natural frequencies",
-        head,
-        rows,
-        note="A dash: the transmission error has no such order.",
-    )
+    columns = [
+        text("order", lambda c: c["line"]),
+        text("mode", lambda c: c["mode"]),
+        Column("Hz", lambda c: c["frequency_hz"], hertz),
+        Column("pinion rpm", lambda c: c["rpm"], whole),
+        quantity("mesh force", "N", units, lambda c: c["force"], 4),
+    ]
+    note = "A dash: the transmission error has no such order."
+    return Table("Where orders meet natural frequencies", columns, found, note)

@@ -14,7 +14,7 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from solidgear.errors import SolidgearError, nearest
-from solidgear.report.words import NOTHING, engineering, is_number
+from solidgear.report.words import DASH, engineering, is_number
 
 if TYPE_CHECKING:
     import numpy as np
@@ -24,6 +24,8 @@ INCH, POUND = 0.0254, 4.4482216152605
 POUND_MASS = 0.45359237
 #: between groups of three digits: the page must not break a number there
 GROUP = "\u00a0"
+#: letter -> how terminals that know none but ASCII have it
+ASCII = str.maketrans({"µ": "u", GROUP: " ", "±": "+-", "–": "-"})
 #: sizes, as powers of ten, that are written without an exponent
 SMALLEST, LARGEST = -3, 8
 
@@ -67,7 +69,7 @@ class Units:
         """Values of SI in this unit."""
         return values * self.of.get(si, (si, 1.0))[1]
 
-    def number(self, value: float | None, si: str, digits: int = 5, nothing: str = NOTHING) -> str:
+    def number(self, value: float | None, si: str, digits: int = 5) -> str:
         """A value of SI in this unit, without its name.
 
         Examples
@@ -77,14 +79,14 @@ class Units:
         """
         here = self.value(value, si)
         if self.exponents:
-            return engineering(here, digits, nothing)
-        return plain(here, digits, nothing)
+            return engineering(here, digits)
+        return plain(here, digits)
 
-    def given(self, value: float | None, si: str, nothing: str = NOTHING) -> str:
+    def given(self, value: float | None, si: str) -> str:
         """A number out of a scene: as it was given, without zeros behind it."""
         here = self.value(value, si)
         if here is None:
-            return nothing
+            return DASH
         written = f"{here:.6g}"
         return engineering(here, 4) if "e" in written else written
 
@@ -104,18 +106,18 @@ class Units:
         prefix, finer = ("n", 1e3) if top * 1e3 >= 1 else ("p", 1e6)
         return replace(self, of={**self.of, si: (prefix + name[1:], factor * finer)})
 
-    def text(self, value: float | None, si: str, digits: int = 5, nothing: str = NOTHING) -> str:
+    def text(self, value: float | None, si: str, digits: int = 5) -> str:
         """The number with its unit."""
-        number = self.number(value, si, digits, nothing)
-        return number if number == nothing else f"{number} {self.unit(si)}"
+        number = self.number(value, si, digits)
+        return number if number == DASH else f"{number} {self.unit(si)}"
 
 
-def plain(value: float | None, digits: int = 5, nothing: str = NOTHING) -> str:
+def plain(value: float | None, digits: int = 5) -> str:
     """A number with all its digits, in groups of three from five digits on; an exponent only for
     what is extremely large or small.
     """
     if not is_number(value):
-        return nothing
+        return DASH
     if value == 0:
         return "0"
     value = float(f"{value:.{digits - 1}e}")
@@ -138,7 +140,8 @@ def in_ascii(text: str) -> str:
     two columns.
     """
     # between digits it groups; elsewhere it keeps a unit on one line
-    return re.sub(rf"(?<=\d){GROUP}(?=\d)", "", text).replace("µ", "u").replace(GROUP, " ")
+    ungrouped = re.sub(rf"(?<=\d){GROUP}(?=\d)", "", text)
+    return ungrouped.translate(ASCII)
 
 
 ENGINEERING = Units(

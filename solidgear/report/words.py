@@ -6,7 +6,13 @@ import math
 from collections.abc import Iterable
 from typing import Any, TypeGuard
 
-NOTHING = "-"
+#: kind -> unit of the blocks (translation, translation), (mixed), (rotation, rotation)
+BLOCK_UNITS = {
+    "stiffness": ("N/m", "N/rad", "N m/rad"),
+    "compliance": ("m/N", "rad/N", "rad/(N m)"),
+}
+#: for what is not there
+DASH = "–"
 
 
 def is_number(value: Any) -> TypeGuard[float]:
@@ -14,12 +20,12 @@ def is_number(value: Any) -> TypeGuard[float]:
     return isinstance(value, (int, float)) and not isinstance(value, bool) and math.isfinite(value)
 
 
-def engineering(value: float | None, digits: int = 5, nothing: str = NOTHING) -> str:
+def engineering(value: float | None, digits: int = 5) -> str:
     """`value` with an exponent that is a multiple of three, such as ``240.05e6``; exact zeros are
     ``0``.
     """
     if not is_number(value):
-        return nothing
+        return DASH
     if value == 0:
         return "0"
     # rounded first: 999.999 is 1.0000e3, not 1000.0
@@ -30,10 +36,10 @@ def engineering(value: float | None, digits: int = 5, nothing: str = NOTHING) ->
     return f"{mantissa:.{decimals}f}" + (f"e{exponent}" if exponent else "")
 
 
-def percent(value: float | None, signed: bool = True, nothing: str = NOTHING) -> str:
+def percent(value: float | None, signed: bool = True) -> str:
     """A fraction in per cent, to a resolution that suits its size."""
     if not is_number(value):
-        return nothing
+        return DASH
     p = 100 * value
     size = abs(p)
     if size < 1e-6:
@@ -54,17 +60,17 @@ def bar_of(value: Any) -> str:
     return f"{sign}{percent(value.bar, signed=False)}"
 
 
-def hertz(value: float | None, nothing: str = NOTHING) -> str:
+def hertz(value: float | None) -> str:
     """A frequency to five or six figures, without its unit."""
     if not is_number(value):
-        return nothing
+        return DASH
     return f"{value:.1f}" if abs(value) >= 100 else f"{value:.5g}"
 
 
-def seconds(value: float | None, nothing: str = NOTHING) -> str:
+def seconds(value: float | None) -> str:
     """A duration in s, to about three figures, without its unit."""
     if not is_number(value):
-        return nothing
+        return DASH
     if value >= 100:
         return f"{value:.0f}"
     if value >= 10:
@@ -74,14 +80,53 @@ def seconds(value: float | None, nothing: str = NOTHING) -> str:
     return f"{value:.1g}"
 
 
-def count(value: float | None, nothing: str = NOTHING) -> str:
+def count(value: float | None) -> str:
     """A large number in a small cell, such as ``94.1k``."""
     if not is_number(value):
-        return nothing
+        return DASH
     for size, mark in ((1e6, "M"), (1e3, "k")):
         if value >= 9.9995 * size / 10:
             return f"{value / size:.3g}{mark}"
     return f"{value:.0f}"
+
+
+def plus_minus(bar: float) -> str:
+    """A bar that lies on both sides."""
+    return f"± {band_percent(bar)}"
+
+
+def as_text(value: Any) -> str:
+    """A value as it is told where nothing says how."""
+    if isinstance(value, bool):
+        return "yes" if value else "no"
+    if isinstance(value, float):
+        return f"{value:.2f}" if 1000 <= abs(value) < 1e5 else f"{value:.6g}"
+    return str(value)
+
+
+def small(value: float) -> str:
+    """A residual, to two figures."""
+    return f"{value:.2g}"
+
+
+def whole(value: float) -> str:
+    """The nearest whole number."""
+    return f"{value:.0f}"
+
+
+def grouped(value: int | None) -> str:
+    """A count with its thousands apart."""
+    return f"{value:,}".replace(",", " ") if is_number(value) else DASH
+
+
+def short_percent(value: float | None) -> str | None:
+    """A tolerance in per cent; None where there is none."""
+    return f"{100 * value:.4g} %" if is_number(value) else None
+
+
+def capital(text: str) -> str:
+    """The same text, its first letter large."""
+    return text[:1].upper() + text[1:]
 
 
 def by_plane(names: Iterable[str]) -> str:
@@ -96,8 +141,8 @@ def by_plane(names: Iterable[str]) -> str:
     )
 
 
-def band_percent(value: float | None, nothing: str = NOTHING) -> str:
+def band_percent(value: float | None) -> str:
     """A band in per cent; one beyond 100 % says nothing but that."""
     if is_number(value) and value > 1:
         return "> 100 %"
-    return percent(value, signed=False, nothing=nothing)
+    return percent(value, signed=False)
