@@ -51,10 +51,11 @@ def write(folder: Path, content: dict[str, object]) -> Path:
 
 
 def read(folder: Path = FOLDER) -> list[dict]:
-    """All results of a folder with their names, the newest first."""
+    """Results of campaigns in a folder with their names, the newest first; races write there too."""
     paths = sorted(folder.glob("*.json"))
     found = [json.loads(path.read_text()) | {"name": path.stem} for path in paths]
-    return sorted(found, key=lambda one: one["date"], reverse=True)
+    campaigns = [one for one in found if "campaign" in one]
+    return sorted(campaigns, key=lambda one: one["date"], reverse=True)
 
 
 def commit() -> str:
