@@ -1,6 +1,5 @@
 """The cheapest answer with a bar: whether the bar holds, what it costs, and what is passed over."""
 
-import dataclasses
 import json
 import subprocess
 import sys
@@ -19,6 +18,7 @@ from solidgear.judge.answer import answer
 from solidgear.judge.climb import Climb
 from solidgear.judge.quantities import change
 from solidgear.judge.solving import Numbers, solve
+from solidgear.ladder.harmonic import Harmonic
 from solidgear.ladder.meshes import Sequence
 from solidgear.ladder.registry import LADDER
 from solidgear.quantity import C_ZZ, FIRST_BENDING, K_ZZ, Quantity
@@ -51,12 +51,18 @@ COARSE, MIDDLE, FINE = (
     {"order": p, "layers": p - 2, "edge_layers": max(p - 3, 0), "relative_size": 4.0}
     for p in (3, 4, 5)
 )
-#: a rung that is solved on a list of ever finer meshes, two of which make a bar
-MESHES = dataclasses.replace(
-    LADDER["harmonic"],
-    bounded=False,
-    meshes=lambda options: Sequence((COARSE, MIDDLE, FINE), False, True),
-)
+
+
+class Listed(Harmonic):
+    """Solved on a list of ever finer meshes, two of which make a bar."""
+
+    bounded = False
+
+    def meshes(self, options):
+        return Sequence((COARSE, MIDDLE, FINE), False, True)
+
+
+MESHES = Listed()
 #: an overhung head and a plain shaft; the others differ in their seats and bores
 FEW = [
     SCENES[0],
@@ -358,9 +364,7 @@ def test_what_heavy_meshes_cost_is_told_before_they_are_made():
         return list(heavy_meshes(scene, LADDER["sector"]))
 
     (sentence,) = told(0.0005)
-    assert (
-        "its coarsest mesh takes about" in sentence and "without which there is no bar" in sentence
-    )
+    assert "its coarsest mesh takes " in sentence and "without which there is no bar" in sentence
     assert "unknowns" in sentence and "GB" in sentence and "min" in sentence
     assert not told(0.012)
 

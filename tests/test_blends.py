@@ -8,7 +8,7 @@ import scipy.sparse.linalg as spla
 import solidgear as sg
 from solidgear import Port, Scene, SceneError, Segment
 from solidgear.bounds.harmonic import richer_space
-from solidgear.ladder.size import estimated_size
+from solidgear.ladder.registry import LADDER
 from solidgear.meshing.closed_form import mass_properties, volume_of
 from solidgear.scene import Chamfer, Fillet
 from solidgear.scene.coned import coned
@@ -175,7 +175,6 @@ def test_harmonic_solid_has_the_mass_of_the_closed_form(order, tolerance):
     body = sg.build(scene, "harmonic", order=order, layers=1)
     assert inertias(body) == pytest.approx(exact(scene), rel=tolerance)
     assert body.rigid_residual() < 1e-14  # it moves freely whatever the order
-    assert body.size == estimated_size(scene, "harmonic", {"order": order, "layers": 1}).unknowns
 
 
 def test_hexahedra_have_it_within_the_gate_and_are_counted():
@@ -185,15 +184,13 @@ def test_hexahedra_have_it_within_the_gate_and_are_counted():
     body = sg.build(scene, "solid", **options)
     # quadratic sides of 45 degrees on a small part of the volume
     assert inertias(body) == pytest.approx(exact(scene), rel=3e-4)
-    assert body.size == estimated_size(scene, "solid", options).unknowns
+    assert body.size == LADDER["solid"].size(scene, options).unknowns
 
 
 def test_tetrahedra_fold_nowhere_and_have_it_within_the_gate():
     scene = everywhere()
     body = sg.build(scene, "solid", element="tet10", refinement=0.45)
     assert inertias(body) == pytest.approx(exact(scene), rel=2e-3)  # eight elements around
-    guess = estimated_size(scene, "solid", {"element": "tet10", "refinement": 0.45}).unknowns
-    assert guess == pytest.approx(body.size, rel=0.3)
 
 
 def test_a_scene_without_blends_is_the_same():
@@ -389,7 +386,7 @@ def test_check_tells_of_the_mesh_that_holds_a_chamfer():
         port=Port(y=0.04, lo=0.014, hi=0.066)
     )
     with pytest.raises(sg.SolidgearError, match="among the cells of the chamfer"):
-        estimated_size(scene, "solid", {"element": "hex20"})
-    foretold = estimated_size(scene, "solid", {"element": "tet10"}).unknowns
+        LADDER["solid"].size(scene, {"element": "hex20"})
+    counted = LADDER["solid"].size(scene, {"element": "tet10"}).unknowns
     fact = next(elements.memory(Probe(scene, sg.build(scene, "timoshenko")))).sentence
-    assert f"the default 3D solid, about {foretold} unknowns" in fact
+    assert f"the default 3D solid, {counted} unknowns" in fact

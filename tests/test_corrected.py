@@ -156,8 +156,8 @@ def test_a_stub_is_corrected_on_its_coarsest_mesh():
     the flat changes is what the two 3D solids say all the same, in both planes: no mode stands for
     one of the other plane. The change itself is 0.4 to 0.8 %, of which the square is left out.
     """
-    from solidgear.models.solid.body import tetrahedra_plan
     from solidgear.models.solid.featured import featured_body, meshed
+    from solidgear.models.solid.plan import tetrahedra_plan
     from solidgear.scene import Flat
 
     stub = [

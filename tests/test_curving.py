@@ -14,7 +14,7 @@ from solidgear.meshing.quality import element_volumes
 from solidgear.meshing.sector import volume_of_sector
 from solidgear.meshing.tetrahedra import tetrahedra
 from solidgear.models.sector.body import cyclic_features, meshed_sector
-from solidgear.models.solid.body import tetrahedra_plan
+from solidgear.models.solid.plan import tetrahedra_plan
 
 GEOMETRY = Path(__file__).parents[1] / "geometry"
 

@@ -244,8 +244,8 @@ def test_sound_parts_have_no_pits():
     from solidgear.meshing.featured import without
     from solidgear.meshing.lost_elements import lost_elements
     from solidgear.meshing.tetrahedra import tetrahedra
-    from solidgear.models.solid.body import tetrahedra_plan
     from solidgear.models.solid.featured import meshed
+    from solidgear.models.solid.plan import tetrahedra_plan
 
     keyed, hollow = (sg.load(f"geometry/{n}.toml") for n in ("pinion_keyed", "shaft_hollow"))
     keyed = keyed.with_changes(

@@ -11,9 +11,12 @@ import scipy.sparse as sp
 
 import solidgear as sg
 from solidgear.errors import SolidgearError
+from solidgear.machine.memory import NoRoom
+from solidgear.solve import choice as choosing
 from solidgear.solve import factor
 from solidgear.solve.backends import missing
-from solidgear.solve.factor import SMALL, FactorError, factorise
+from solidgear.solve.choice import SMALL
+from solidgear.solve.factor import FactorError, factorise
 
 GEOMETRY = Path(__file__).parent.parent / "geometry"
 
@@ -114,11 +117,11 @@ def test_small_and_planar_matrices_take_superlu():
 
 def test_large_matrices_take_the_fastest_there_and_say_what_is_missing(monkeypatch):
     absent = {"pardiso": "pypardiso is not usable (ImportError)", "cholmod": "", "mumps": ""}
-    monkeypatch.setattr(factor, "missing", lambda name: absent.get(name, ""))
+    monkeypatch.setattr(choosing, "missing", lambda name: absent.get(name, ""))
     matrix = sp.identity(SMALL + 1, format="csr")
-    assert factor.choice(matrix, None, False)[0] == "cholmod"
+    assert choosing.choice(*matrix.shape, None, False)[0] == "cholmod"
     absent["cholmod"] = "scikit-sparse is not usable (ImportError)"
-    assert factor.choice(matrix, None, False)[0] == "mumps"
+    assert choosing.choice(*matrix.shape, None, False)[0] == "mumps"
     absent["mumps"] = "python-mumps is not usable (ImportError)"
     found = factorise(matrix)
     assert found.backend == "superlu" and str(SMALL) in found.reason
@@ -127,13 +130,13 @@ def test_large_matrices_take_the_fastest_there_and_say_what_is_missing(monkeypat
     with pytest.raises(FactorError, match=r"pardiso was asked for but pypardiso is not usable"):
         factorise(sp.identity(3, format="csr"), "pardiso")
     absent.clear()
-    assert factor.choice(matrix, None, False) == (
+    assert choosing.choice(*matrix.shape, None, False) == (
         "pardiso",
         f"{SMALL + 1} unknowns are above {SMALL}",
     )
     # planar matrices too large for SuperLU's indices are treated like solids
-    monkeypatch.setattr(factor, "LARGE_PLANAR", SMALL)
-    assert factor.choice(matrix, None, True)[0] == "pardiso"
+    monkeypatch.setattr(choosing, "LARGE_PLANAR", SMALL)
+    assert choosing.choice(*matrix.shape, None, True)[0] == "pardiso"
 
 
 def test_environment_forces_a_backend(monkeypatch, plane):
@@ -218,9 +221,10 @@ def test_what_will_not_fit_is_refused_before_it_is_factored(plane, backend, plan
     monkeypatch.setattr(
         factor.BACKENDS[backend], "factor", lambda self: pytest.fail("the numbers were begun")
     )
+    monkeypatch.setattr("solidgear.machine.memory.SMALL_MB", 0.0)
     monkeypatch.setenv("SOLIDGEAR_MEMORY_MB", "0.5")
     with pytest.raises(
-        FactorError,
+        NoRoom,
         match=rf"^{plane.shape[0]} unknowns need about [\d.]+ MB to factor by {backend}, 0.5 MB are free; use a coarser",
     ):
         factorise(plane, backend, planar=planar)

@@ -16,10 +16,10 @@ from solidgear.meshing.cuts import volume
 from solidgear.meshing.featured import FeaturedMesh, without
 from solidgear.meshing.quality import MeshError, check_mesh
 from solidgear.models.solid.block import free_block
-from solidgear.models.solid.body import tetrahedra_plan
 from solidgear.models.solid.featured import featured_body, meshed
 from solidgear.models.solid.halves import half_blocks
 from solidgear.models.solid.mesh import _isoparametric
+from solidgear.models.solid.plan import tetrahedra_plan
 from solidgear.models.solid.seat_faces import Seats
 from solidgear.report.reading import mode_of
 from solidgear.scene import CrossHole, Flat, Keyway

@@ -9,8 +9,8 @@ import pytest
 import solidgear as sg
 from solidgear.models.solid.block import mirrored
 from solidgear.solve.factor import factorise
-from solidgear.solve.statics import SHIFT, factors
-from solidgear.solve.symmetry import factor_by_symmetry
+from solidgear.solve.shifted import SHIFT, factors
+from solidgear.solve.symmetry import planned_by_symmetry
 
 GEOMETRY = Path(__file__).parent.parent / "geometry"
 COARSE = {"refinement": 0.5, "layers": 1, "edge_layers": 0, "radial_layers": 1, "around": 8}
@@ -44,7 +44,7 @@ def test_hexahedra_have_three_planes_and_are_factored_by_them(body):
 
 @pytest.mark.parametrize("planes", [1, 2, 3])
 def test_pieces_solve_as_the_whole_does(body, matrix, planes):
-    found = factor_by_symmetry(matrix, body.blocks[0].reflections[:planes])
+    found = planned_by_symmetry(matrix, body.blocks[0].reflections[:planes]).make()
     load = np.random.default_rng(3).standard_normal((matrix.shape[0], 3))
     whole = factorise(matrix).solve(load)
     # what rounding leaves of a matrix whose condition is about 1e7
@@ -58,8 +58,8 @@ def test_a_matrix_that_one_entry_spoils_is_not_folded(body, matrix):
     off_the_planes = int(np.argmax(np.abs(body.geometry.nodes[0]) + np.abs(body.geometry.nodes[2])))
     spoilt = matrix.tolil()
     spoilt[3 * off_the_planes, 3 * off_the_planes] *= 1 + 1e-6
-    assert factor_by_symmetry(spoilt.tocsr(), body.blocks[0].reflections) is None
-    assert factor_by_symmetry(matrix, ()) is None
+    assert planned_by_symmetry(spoilt.tocsr(), body.blocks[0].reflections) is None
+    assert planned_by_symmetry(matrix, ()) is None
 
 
 def test_nodes_without_an_image_are_in_no_mirror():

@@ -6,11 +6,9 @@ import numpy as np
 import pytest
 from test_sector import BOLTS, shaft
 
-import solidgear as sg
-from solidgear.ladder.size import estimated_size
+from solidgear.ladder.registry import LADDER
 from solidgear.meshing.holes import FULL_SHARE, hole_of, hole_places, hole_size
 from solidgear.models.sector.body import meshed_sector, sector
-from solidgear.scene import BoltCircle, Teeth
 
 SMALL = BOLTS.with_changes(count=4, diameter=0.003, depth=0.008, angle=0.3)
 SCENE = shaft(SMALL)
@@ -74,36 +72,10 @@ def test_elements_at_holes_are_refined_by_the_share_they_take():
 
 
 @pytest.mark.parametrize("half", [True, pytest.param(False, marks=pytest.mark.long)])
-def test_the_size_is_foretold(half):
-    """Within a quarter, as that of all tetrahedra: most of this mesh is at its holes."""
+def test_the_size_is_counted_on_the_mesh(half):
     scene = shaft(SMALL.with_changes(depth=None, diameter=0.002))
     given = {"refinement": 0.3, "half": half}
-    assert estimated_size(scene, "sector", given).unknowns == pytest.approx(
-        sector(scene, **given).size, rel=0.25
-    )
-
-
-def test_teeth_crowd_cells_where_they_are():
-    """Many teeth in a sector: in the web and along the shaft cells reach across as in any sector of six.
-    Strips of all teeth down to the axis foretold two and a half times the unknowns.
-    """
-    rod, wheel, end = (
-        sg.Segment.cylinder(name, length=length, diameter=diameter, y0=y0)
-        for name, length, diameter, y0 in (
-            ("rod", 0.08, 0.05, 0.0),
-            ("wheel", 0.03, 0.168, 0.08),
-            ("end", 0.08, 0.05, 0.11),
-        )
-    )
-    scene = sg.Scene.from_parts(
-        [rod, wheel, end],
-        port=sg.Port(name="gear", y=0.095, lo=0.08, hi=0.11),
-        features=[
-            Teeth(name="teeth", segment="wheel", count=42, model="sector"),
-            BoltCircle(name="holes", segment="wheel", count=6, diameter=0.02, circle=0.096),
-        ],
-    )
-    given = {"refinement": 0.3}
-    assert estimated_size(scene, "sector", given).unknowns == pytest.approx(
-        sector(scene, **given).size, rel=0.3
-    )
+    found = LADDER["sector"].size(scene, given)
+    assert found.unknowns == sector(scene, **given).size
+    # the rough number that it is refused by before: most of this mesh is at its holes
+    assert 1 / 4 < LADDER["sector"].rough_unknowns(scene, given) / found.unknowns < 4

@@ -1,6 +1,5 @@
-"""A rung is one object: added to the ladder it is in every command, table, chart and picture."""
+"""A model is one class: added to the ladder it is in every command, table, chart and picture."""
 
-import dataclasses
 import os
 import subprocess
 import sys
@@ -11,6 +10,8 @@ import pytest
 import solidgear as sg
 from solidgear.judge.race.cases import plan
 from solidgear.judge.race.timing import race
+from solidgear.ladder.beams import Timoshenko
+from solidgear.ladder.model import Model
 from solidgear.ladder.registry import LADDER
 from solidgear.report.html import render_page
 from solidgear.report.race_figure import race_chart
@@ -21,23 +22,24 @@ from tests.charted import texts_of
 
 ROOT = Path(__file__).parent.parent
 LIGHT = {"harmonic": {"order": 3, "layers": 1}}
-#: the Timoshenko beam on a quarter of its elements
-COARSE = dataclasses.replace(
-    LADDER["timoshenko"],
-    name="coarse",
-    title="coarse beam",
-    short="coarse",
-    preset={"elements": 6},
-    series=None,
-    colour="#123456",
-    marker="X",
-)
+
+
+class Coarse(Timoshenko):
+    """The Timoshenko beam on a quarter of its elements."""
+
+    name = "coarse"
+    title = "coarse beam"
+    heading = "coarse"
+    preset = {"elements": 6}
+    colour = "#123456"
+    marker = "X"
+    series = Model.series
 
 
 @pytest.fixture(scope="module")
 def ladder():
     patch = pytest.MonkeyPatch()
-    patch.setattr(LADDER, "rungs", (*LADDER.rungs[:1], COARSE, *LADDER.rungs[1:]))
+    patch.setattr(LADDER, "models", (*LADDER.models[:1], Coarse(), *LADDER.models[1:]))
     yield LADDER
     patch.undo()
 
@@ -92,7 +94,7 @@ def test_it_is_drawn_and_written(found, ladder, tmp_path):
 def test_guards_have_a_verdict_on_it(ladder, scene):
     verdicts = check_scene(scene, sg.build(scene, "coarse"))["verdicts"]
     # what is made for features alone has no verdict on a scene without
-    assert set(verdicts) == {rung.name for rung in ladder if not rung.for_features}
+    assert set(verdicts) == {model.name for model in ladder if not model.for_features}
 
 
 @pytest.mark.long
@@ -114,10 +116,12 @@ def test_it_has_its_own_colour(found):
 @pytest.mark.long
 def test_it_is_in_the_help_and_among_the_choices():
     code = (
-        "import dataclasses, sys\n"
+        "import sys\n"
+        "from solidgear.ladder.beams import Timoshenko\n"
         "from solidgear.ladder.registry import LADDER\n"
-        "beam = LADDER['timoshenko']\n"
-        "LADDER.rungs += (dataclasses.replace(beam, name='coarse', title='coarse beam'),)\n"
+        "class Coarse(Timoshenko):\n"
+        "    name, title = 'coarse', 'coarse beam'\n"
+        "LADDER.models += (Coarse(),)\n"
         "from solidgear.cli import main\n"
         "for line in sys.argv[1:]:\n"
         "    sys.argv = ['solidgear', *line.split()]\n"

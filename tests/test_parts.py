@@ -467,9 +467,9 @@ def test_a_keyed_mesh_has_no_seat_on_the_floor_of_the_key():
     cylinder less the opening.
     """
     from solidgear.meshing.featured import without
-    from solidgear.models.solid.body import tetrahedra_plan
     from solidgear.models.solid.featured import meshed
     from solidgear.models.solid.mesh import _isoparametric
+    from solidgear.models.solid.plan import tetrahedra_plan
     from solidgear.models.solid.seat_faces import Seats
 
     rod = sg.Segment.cylinder("rod", length=0.2, diameter=0.06)

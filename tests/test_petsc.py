@@ -8,7 +8,7 @@ import pytest
 import solidgear as sg
 from solidgear.solve import petsc
 from solidgear.solve.factor import FactorError
-from solidgear.solve.statics import factors
+from solidgear.solve.shifted import factors
 
 SCENE = sg.load(Path(__file__).parents[1] / "geometry" / "pinion_overhung.toml")
 SMALL = {"element": "tet10", "refinement": 0.3}

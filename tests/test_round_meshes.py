@@ -8,7 +8,6 @@ import pytest
 import solidgear as sg
 from solidgear.cli.answer import _of_round_part
 from solidgear.ladder.registry import LADDER
-from solidgear.ladder.size import estimated_unknowns
 from solidgear.meshing.round_part import round_part
 from solidgear.studies.guards import Probe, elements
 from solidgear.studies.round_part import described
@@ -137,5 +136,5 @@ def test_check_tells_of_the_mesh_of_the_file(tmp_path):
     scene = scene_of(tmp_path, 24)
     probe = Probe(scene.plain, sg.build(scene.plain, "timoshenko"), whole=scene)
     fact = next(elements.memory(probe)).sentence
-    assert f"the 3D solid, about {sg.build(scene, 'solid').size} unknowns" in fact
-    assert estimated_unknowns(scene.plain, "solid") > 3 * probe.solid_matrices[0][0]
+    assert f"the 3D solid, {sg.build(scene, 'solid').size} unknowns" in fact
+    assert LADDER["solid"].size(scene.plain, {}).unknowns > 3 * probe.solid_size.unknowns

@@ -11,7 +11,7 @@ import pytest
 from scipy.integrate import quad
 
 import solidgear as sg
-from solidgear.ladder.size import estimated_unknowns
+from solidgear.ladder.registry import LADDER
 from solidgear.meshing.closed_form import volume_of
 from solidgear.meshing.sector import volume_of_sector
 from solidgear.meshing.teeth import half_outline, outline, section_area, section_polar
@@ -271,13 +271,10 @@ def test_who_holds_what():
         sg.build(shaft(TEETH, BOLTS), "sector")
 
 
-def test_the_size_is_known_before_meshing():
-    """Within a third, as for other tetrahedra whose features are fine."""
+def test_the_size_is_counted_on_the_mesh():
     for scene in (PARTS["straight"], PARTS["bolts"]):
         made = sg.build(scene, "sector", refinement=0.6).size
-        assert estimated_unknowns(scene, "sector", {"refinement": 0.6}) == pytest.approx(
-            made, rel=0.35
-        )
+        assert LADDER["sector"].size(scene, {"refinement": 0.6}).unknowns == made
 
 
 BAD = {

@@ -1,4 +1,4 @@
-"""Unknowns and memory told before anything is meshed."""
+"""Sizes are counted on the mesh, and what does not fit is refused before its numbers are computed."""
 
 import builtins
 import json
@@ -6,157 +6,165 @@ import subprocess
 import sys
 from pathlib import Path
 
-import numpy as np
 import pytest
 
 import solidgear as sg
-from solidgear.ladder import remedies as ways
-from solidgear.ladder.size import estimated_size, estimated_unknowns
-from solidgear.meshing.element_size import estimated_counts
+from solidgear.kernel import room
+from solidgear.ladder.registry import LADDER
+from solidgear.machine import memory
+from solidgear.machine.memory import NoRoom
+from solidgear.meshing.element_size import rough_cells
+from solidgear.models.size import of_body
+from solidgear.solve.backends import missing
+from solidgear.solve.shifted import factors, needed_mb
 
 GEOMETRY = Path(__file__).parents[1] / "geometry"
 SCENES = {
     name: sg.load(GEOMETRY / f"{name}.toml")
-    for name in ("pinion_overhung", "shaft_hollow", "shaft_stepped", "gear_shaft", "cylinder_free")
+    for name in (
+        "pinion_overhung",
+        "pinion_keyed",
+        "pinion_toothed",
+        "pinion_spiral",
+        "shaft_hollow",
+        "cylinder_free",
+    )
 }
-LIGHT = (
-    ("euler", {}),
-    ("euler", {"elements": 77}),
-    ("timoshenko", {}),
-    ("timoshenko", {"mass": "lumped", "rotary_inertia": False}),
-    ("harmonic", {"order": 1, "layers": 2}),
-    ("harmonic", {"order": 2, "ovalising": (2, 3)}),
-    ("harmonic", {"order": 4, "edge_layers": 2, "refinement": 0.6}),
-    ("solid", {"element": "hex8", "refinement": 0.7}),
-    ("solid", {"element": "hex20", "refinement": 0.4}),
-    ("solid", {"element": "hex27", "refinement": 0.3, "around": 16}),
+COUNTED = (
+    ("pinion_overhung", "timoshenko", {}),
+    ("pinion_overhung", "euler", {"elements": 77}),
+    ("shaft_hollow", "harmonic", {"order": 2, "ovalising": (2, 3)}),
+    ("pinion_overhung", "solid", {"element": "hex8", "refinement": 0.7}),
+    ("shaft_hollow", "solid", {"element": "hex20", "refinement": 0.4}),
+    ("cylinder_free", "solid", {"element": "hex27", "refinement": 0.3, "around": 16}),
+    ("shaft_hollow", "solid", {"element": "tet10", "refinement": 0.5}),
+    ("cylinder_free", "solid", {"element": "tet4", "refinement": 0.6}),
+    ("pinion_keyed", "solid", {"refinement": 0.3}),
+    ("pinion_keyed", "solid", {"refinement": 0.3, "half": False}),
+    ("pinion_toothed", "solid", {"refinement": 0.3}),
+    ("pinion_toothed", "sector", {"refinement": 0.5}),
+    ("pinion_toothed", "sector", {"refinement": 0.5, "half": False}),
+    ("pinion_spiral", "sector", {"refinement": 0.5}),
 )
 
 
-@pytest.mark.parametrize("scene", ["pinion_overhung", "shaft_hollow", "cylinder_free"])
-@pytest.mark.parametrize("model, options", LIGHT)
-def test_unknowns_are_counted_exactly(scene, model, options):
+@pytest.mark.parametrize("scene, model, options", COUNTED)
+def test_unknowns_are_those_of_the_body(scene, model, options):
     body = sg.build(SCENES[scene], model, **options)
-    size = estimated_size(SCENES[scene], model, options)
-    assert size.unknowns == estimated_unknowns(SCENES[scene], model, options) == body.size
-    entries = sum(block.stiffness.nnz for block in body.blocks if block.mirror is None)
-    # rows that conditions on the axis or numbers that happen to be zero take out, at most half of
-    # the smallest meshes' entries
-    assert (
-        entries <= size.entries + 36
-        and size.entries < (1.01 if model == "solid" else 1.6) * entries
-    )
+    size = LADDER[model].size(SCENES[scene], options)
+    assert size.unknowns == body.size
+    # entries of nodes on mirror planes and cut faces, where they are eliminated: up to a third of
+    # those of coarse meshes
+    held = of_body(body).entries
+    assert held <= size.entries < 1.6 * held
+    whole = model == "solid" and len(body.blocks) == 1
+    assert not whole or size.entries == held
 
 
-def test_entries_of_hexahedra_are_exact_but_for_the_genus():
-    # 18 entries are what a body without a hole has more than Euler's formula for one with a hole: 9
-    # for each of two vertices
-    for name, more in (("pinion_overhung", 18), ("shaft_hollow", 0)):
-        body = sg.build(SCENES[name], "solid", element="hex20", refinement=0.4)
-        assert (
-            body.blocks[0].stiffness.nnz
-            - estimated_size(SCENES[name], "solid", {"refinement": 0.4}).entries
-            == more
-        )
+@pytest.mark.parametrize("name, least", [("pinion_overhung", 1 / 3), ("cylinder_free", 1 / 3)])
+def test_rough_numbers_are_good_to_a_factor_of_three(name, least):
+    given = {"element": "tet10", "refinement": 0.6}
+    solid = LADDER["solid"]
+    rough = solid.rough_unknowns(SCENES[name], given)
+    assert least < rough / solid.size(SCENES[name], given).unknowns < 3
 
 
+def test_small_elements_at_edges_make_many():
+    rod = SCENES["cylinder_free"].segments
+    plain, graded = (rough_cells(rod, size=0.01, graded_size=h) for h in (None, 1e-6))
+    assert graded > 1000 * plain
+
+
+@pytest.mark.skipif(bool(missing("pardiso")), reason="what the analysis of PARDISO says is held")
 @pytest.mark.parametrize(
     "scene, options",
     [
-        ("shaft_stepped", {"refinement": 0.5}),
-        ("shaft_hollow", {"refinement": 0.5}),
-        ("cylinder_free", {"refinement": 0.6}),
+        ("pinion_overhung", {"refinement": 0.7}),
+        ("shaft_hollow", {"element": "tet10"}),
+        ("pinion_keyed", {}),
+        ("pinion_toothed", {"refinement": 0.5}),
     ],
 )
-def test_tetrahedra_are_estimated(scene, options):
-    options = {"element": "tet10", **options}
+def test_the_law_is_near_the_analysis(scene, options):
+    """0.75 to 1.2 of it on ten bodies of 15,000 to 146,000 unknowns."""
     body = sg.build(SCENES[scene], "solid", **options)
-    # the constants were fitted to 21 meshes within 17 %
-    assert estimated_unknowns(SCENES[scene], "solid", options) == pytest.approx(body.size, rel=0.2)
-
-
-def test_counts_of_tetrahedra_hang_together():
-    rod = SCENES["cylinder_free"].segments
-    counts = {h: np.array(estimated_counts(rod, size=h)) for h in (0.01, 0.001)}
-    vertices, edges, faces, cells = counts[0.001]
-    # Euler's formula, which the fitted constants keep to their three digits
-    assert abs(vertices - edges + faces - cells) < 2e-3 * vertices
-    # a thousandfold, but for the surface, where the coarser mesh is held to 16 cells around besides
-    assert np.all(counts[0.001] < 1000 * counts[0.01]) and np.all(
-        counts[0.001] > 300 * counts[0.01]
-    )
-
-
-def test_twins_share_their_memory():
-    one, two = (
-        estimated_size(SCENES["pinion_overhung"], "harmonic", {"ovalising": waves})
-        for waves in ((), (2,))
-    )
-    assert two.unknowns > one.unknowns and two.peak_mb > 1.2 * one.peak_mb
+    told = of_body(body).factors_mb
+    assert 0.65 < told / needed_mb(body, body.factoring) < 1.4
 
 
 # ------------------------------------------------------------------------------------------------- refusals
-BIG = (
-    (
-        "harmonic",
-        {"order": 8, "layers": 4, "edge_layers": 2, "ovalising": (2, 3)},
-        "fewer ovalising harmonics",
-    ),
-    ("harmonic", {"order": 1, "refinement": 20}, "lower order, refinement or layers"),
-    (
-        "solid",
-        {},
-        "lower refinement, around or the layers, or raise size, or use the harmonic model",
-    ),
-    ("solid", {"element": "tet10", "refinement": 1.5}, "raise size and graded_size"),
+@pytest.mark.parametrize("model, options", [("harmonic", {}), ("solid", {"refinement": 0.7})])
+def test_factors_are_refused_before_a_number_is_computed(monkeypatch, model, options):
+    scene = SCENES["pinion_overhung"]
+    body = sg.build(scene, model, **options)
+    need = needed_mb(body, body.factoring)
+    for share, fits in ((0.98, False), (1.02, True)):
+        monkeypatch.setenv("SOLIDGEAR_MEMORY_MB", str(share * need))
+        if fits:
+            factors(body)
+            continue
+        for backend in ("Pardiso", "SuperLU"):
+            monkeypatch.setattr(
+                f"solidgear.solve.backends.{backend}.factor",
+                lambda self: pytest.fail("the numbers were begun"),
+            )
+        with pytest.raises(NoRoom) as caught:
+            factors(body)
+        monkeypatch.undo()
+        message = str(caught.value)
+        total = sum({id(b.stiffness): b.size for b in body.blocks}.values())
+        assert message.startswith(
+            f"{model}: {total} unknowns need about {need:.0f} MB to factor by"
+        )
+        assert "MB are free; lower " in message and "\n" not in message
+
+
+def test_all_factors_of_a_body_are_refused_together(monkeypatch):
+    """Each half of a keyed part would fit by itself."""
+    body = sg.build(SCENES["pinion_keyed"], "solid", refinement=0.5)
+    need = needed_mb(body, body.factoring)
+    monkeypatch.setenv("SOLIDGEAR_MEMORY_MB", str(0.8 * need))
+    with pytest.raises(NoRoom):
+        factors(body)
+
+
+ABSURD = (
+    ("solid", {"refinement": 20}),
+    ("harmonic", {"order": 12, "refinement": 20}),
+    ("solid", {"element": "tet10", "graded_size": 1e-9}),
+    ("solid", {"element": "tet10", "refinement": 20}),
 )
 
 
-@pytest.mark.parametrize("model, options, lower", BIG)
-def test_refused_before_meshing(monkeypatch, model, options, lower):
+@pytest.fixture
+def no_mesh(monkeypatch):
     def meshed(*_, **__):
-        pytest.fail("meshed before the estimate")
+        pytest.fail("meshed")
 
-    monkeypatch.setenv("SOLIDGEAR_MEMORY_MB", "250")
     monkeypatch.setattr("solidgear.models.harmonic.body.meridian", meshed)
     monkeypatch.setattr("solidgear.meshing.hexahedra.hexahedra", meshed)
     monkeypatch.setattr("solidgear.meshing.tetrahedra.tetrahedra", meshed)
-    size = estimated_size(SCENES["pinion_overhung"], model, options)
-    with pytest.raises(sg.SolidgearError) as caught:
+
+
+@pytest.mark.parametrize("model, options", ABSURD)
+def test_what_cannot_be_numbered_is_refused_before_meshing(no_mesh, monkeypatch, model, options):
+    monkeypatch.setattr(memory, "available_mb", lambda: 1e9)
+    monkeypatch.setattr("solidgear.ladder.remedies.LARGE", ())
+    with pytest.raises(NoRoom, match=r"more than the 2e\+09 that can be numbered; lower"):
         sg.build(SCENES["pinion_overhung"], model, **options)
-    message = str(caught.value)
-    assert f"{model}: about {size.unknowns} unknowns need about {size.peak_mb:.0f} MB" in message
-    assert "250 MB are free" in message and lower in message
 
 
-def test_more_entries_than_can_be_numbered(monkeypatch):
-    monkeypatch.setattr(ways, "available_mb", lambda: 1e9)
-    for model, options in (
-        ("solid", {"refinement": 20}),
-        ("harmonic", {"order": 12, "refinement": 20}),
-        ("solid", {"element": "tet10", "graded_size": 1e-9}),
-    ):
-        with pytest.raises(
-            sg.SolidgearError,
-            match=r"matrix entries, more than the 2e\+09 that can be numbered; lower",
-        ):
-            sg.build(SCENES["pinion_overhung"], model, **options)
-
-
-def test_beams_are_never_refused_for_want_of_memory(monkeypatch):
-    monkeypatch.setenv("SOLIDGEAR_MEMORY_MB", "1")
-    assert sg.build(SCENES["pinion_overhung"], "timoshenko").size == 446
-
-
-def test_what_fits_is_built(monkeypatch):
-    need = estimated_size(SCENES["pinion_overhung"], "harmonic").peak_mb
-    for share, fits in ((1.01, True), (0.99, False)):
-        monkeypatch.setattr(ways, "available_mb", lambda share=share: share * need)
-        if fits:
-            assert ways.refuse_too_large(SCENES["pinion_overhung"], "harmonic").peak_mb == need
-        else:
-            with pytest.raises(sg.SolidgearError, match="MB are free"):
-                ways.refuse_too_large(SCENES["pinion_overhung"], "harmonic")
+@pytest.mark.parametrize(
+    "model, options",
+    [("solid", {"refinement": 2}), ("solid", {"element": "tet10", "refinement": 3})],
+)
+def test_a_mesh_that_would_not_fit_is_refused_before_it_is_made(
+    no_mesh, monkeypatch, model, options
+):
+    monkeypatch.setattr("solidgear.ladder.remedies.LARGE", ())
+    monkeypatch.setenv("SOLIDGEAR_MEMORY_MB", "100")
+    with pytest.raises(NoRoom, match="elements need about [0-9]* MB, 100 MB are free; lower"):
+        sg.build(SCENES["pinion_overhung"], model, **options)
 
 
 def test_a_refusal_needs_no_module_that_is_not_there_yet(monkeypatch):
@@ -169,9 +177,8 @@ def test_a_refusal_needs_no_module_that_is_not_there_yet(monkeypatch):
         monkeypatch.setattr(builtins, "__import__", without_memory)
         return 100.0
 
-    monkeypatch.setattr("solidgear.machine.memory.available_mb", used_up)
-    monkeypatch.setattr("solidgear.ladder.remedies.available_mb", used_up)
-    with pytest.raises(sg.SolidgearError) as refusal:
+    monkeypatch.setattr(memory, "available_mb", used_up)
+    with pytest.raises(NoRoom) as refusal:
         try:
             sg.build(SCENES["pinion_overhung"], "solid", refinement=3.0)
         finally:
@@ -184,8 +191,38 @@ def test_a_builder_that_runs_out_of_memory_says_what_to_lower(monkeypatch):
         raise MemoryError
 
     monkeypatch.setattr("solidgear.models.solid.body._hexes", broken)
-    with pytest.raises(sg.SolidgearError, match=r"unknowns did not fit into memory; lower refine"):
+    with pytest.raises(sg.SolidgearError, match=r"matrices did not fit into memory; lower refine"):
         sg.build(SCENES["pinion_overhung"], "solid", refinement=0.3)
+
+
+def test_matrices_that_would_not_fit_are_refused_before_they_are_made(monkeypatch):
+    monkeypatch.setattr("solidgear.ladder.remedies.LARGE", ())
+    scene, options = SCENES["pinion_overhung"], {"refinement": 0.7}
+    size = LADDER["solid"].size(scene, options)
+    monkeypatch.setenv("SOLIDGEAR_MEMORY_MB", str(0.95 * size.matrices_mb))
+    with pytest.raises(NoRoom, match=f"solid: matrices of {size.unknowns} unknowns need about"):
+        sg.build(scene, "solid", **options)
+
+
+def test_beams_are_never_refused_for_want_of_memory(monkeypatch):
+    monkeypatch.setenv("SOLIDGEAR_MEMORY_MB", "1")
+    body = sg.build(SCENES["pinion_overhung"], "timoshenko")
+    assert body.size == 446 and factors(body)
+
+
+def test_what_is_small_is_assembled_whatever_there_is(monkeypatch):
+    monkeypatch.setenv("SOLIDGEAR_MEMORY_MB", "1")
+    room.assemblable(1000, 20)
+    with pytest.raises(NoRoom):
+        room.assemblable(100_000, 20)
+
+
+def test_whoever_listens_is_told_before_factors_are_made():
+    body = sg.build(SCENES["pinion_overhung"], "solid", refinement=0.3)
+    said = []
+    with memory.listening(lambda *one: said.append(one)):
+        factors(body)
+    assert said == [(body.size, pytest.approx(needed_mb(body, body.factoring)))]
 
 
 # ------------------------------------------------------------------------------------------------- peaks
@@ -194,21 +231,21 @@ import json, resource, sys
 from solidgear.machine.threads import pin
 pin()
 import solidgear as sg
-from solidgear.ladder.size import estimated_size
-from solidgear.solve.factor import pardiso_missing
+from solidgear.machine.memory import one_run
+from solidgear.solve.choice import pardiso_missing
 path, model, options = sys.argv[1], sys.argv[2], json.loads(sys.argv[3])
 scene = sg.load(path)
 pardiso_missing()
 sg.condense(sg.build(scene, "timoshenko"), scene, scene.port.name)
 import solidgear.models.harmonic.body, solidgear.models.solid.body
-held = int(open("/proc/self/statm").read().split()[1]) * resource.getpagesize() / 2**20
-body = sg.build(scene, model, **options)
-sg.condense(body, scene, scene.port.name)
-sg.modes(body, scene, n=10)
+with one_run() as run:
+    body = sg.build(scene, model, **options)
+    sg.condense(body, scene, scene.port.name)
+    sg.modes(body, scene, n=10)
 # of this program alone: ru_maxrss is inherited from the process that started it
 status = open("/proc/self/status").read()
-peak = int(status.split("VmHWM:")[1].split()[0]) / 1024 - held
-print(json.dumps([estimated_size(scene, model, options).peak_mb, peak]))
+peak = int(status.split("VmHWM:")[1].split()[0]) / 1024
+print(json.dumps([run.expected_mb - run.base_mb, peak - run.base_mb]))
 """
 
 
@@ -230,7 +267,7 @@ print(json.dumps([estimated_size(scene, model, options).peak_mb, peak]))
         ("pinion_overhung", "harmonic", {"order": 2, "refinement": 6}),
     ],
 )
-def test_estimated_peak_within_a_third(name, model, options):
+def test_the_expected_peak_is_within_a_third(name, model, options):
     arguments = [
         sys.executable,
         "-c",
@@ -239,11 +276,11 @@ def test_estimated_peak_within_a_third(name, model, options):
         model,
         json.dumps(options),
     ]
-    estimate, peak = json.loads(
+    expected, peak = json.loads(
         subprocess.run(arguments, capture_output=True, text=True, check=True).stdout
     )
-    # fitted within 1.2 on one machine; allocators and back ends of others differ
-    assert peak > 180 and 1 / 1.3 < estimate / peak < 1.3
+    # allocators and back ends differ from machine to machine
+    assert peak > 180 and 1 / 1.35 < expected / peak < 1.35
 
 
 WHOLE = """
@@ -266,8 +303,8 @@ def test_peak_of_a_whole_comparison_within_a_third(name):
     told = subprocess.run(
         [sys.executable, "-c", WHOLE, str(scene)], capture_output=True, text=True, check=True
     ).stdout
-    estimate, peak = json.loads(told)
-    assert 1 / 1.3 < estimate / peak < 1.3
+    expected, peak = json.loads(told)
+    assert 1 / 1.3 < expected / peak < 1.3
     # 1500 MB on two of them; the rotor needs a third mesh of 71,000 unknowns in 3D for its 3 %
     assert peak < (1900 if name == "motor_rotor" else 1500)
 
@@ -277,8 +314,6 @@ def test_a_comparison_stays_below_the_limit(monkeypatch):
     """A finer mesh that would not fit is refused with its number, and what was solved before is
     kept.
     """
-    import solidgear as sg
-
     monkeypatch.setenv("SOLIDGEAR_MEMORY_MB", "150")
     scene = sg.load(GEOMETRY / "pinion_overhung.toml")
     results = sg.compare(

@@ -14,9 +14,8 @@ import solidgear as sg
 from solidgear.judge.completeness import completeness
 from solidgear.judge.study import study
 from solidgear.judge.ties import SCENE
-from solidgear.ladder.meshes import HEXAHEDRA
 from solidgear.ladder.registry import LADDER
-from solidgear.ladder.size import estimated_size
+from solidgear.ladder.solid import HEXAHEDRA
 from solidgear.scene import Bearing, Port, Scene, Segment
 from solidgear.studies.check import check_scene
 from solidgear.studies.comparison import compare
@@ -178,8 +177,8 @@ def test_an_ordinary_shaft_needs_no_large_mesh(name):
     # a judge must be surer than what it judges
     share = LADDER["harmonic"].share
     assert judge.worst_band() <= scene.ask.tolerance / share and judge.body.size < 65_000
-    third = estimated_size(scene, "solid", {**HEXAHEDRA[2], "around": 8})
-    assert third.unknowns < 75_000 and third.peak_mb < 1500
+    third = LADDER["solid"].size(scene, {**HEXAHEDRA[2], "around": 8})
+    assert third.unknowns < 75_000 and third.mb < 1200
 
 
 @pytest.mark.slow

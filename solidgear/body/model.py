@@ -7,7 +7,7 @@ they are :class:`~solidgear.body.supports.Supports` that act on ports.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any, ClassVar
@@ -218,6 +218,8 @@ class Body(Displayed):
         What solvers have worked out about this body, such as its factors.
     factoring : Factoring
         How its matrices are to be factored.
+    ways_out : callable, optional
+        ``ways_out(body, error)`` adds to a refusal of its factors what to do instead.
 
     Examples
     --------
@@ -242,6 +244,7 @@ class Body(Displayed):
     further: Any = None
     cache: Cache = field(default_factory=Cache, repr=False)
     factoring: Factoring = Factoring()
+    ways_out: Callable[..., SolidgearError] | None = None
 
     @property
     def size(self) -> int:

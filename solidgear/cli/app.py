@@ -14,6 +14,7 @@ import typer
 
 from solidgear.errors import SolidgearError, show
 from solidgear.ladder.registry import LADDER
+from solidgear.machine.memory import one_command
 from solidgear.report.units import ENGINEERING, SYSTEMS
 
 if TYPE_CHECKING:
@@ -258,7 +259,8 @@ def command(function: Callable[P, R]) -> Callable[P, R]:
     @functools.wraps(function)
     def quiet(*args: P.args, **kwargs: P.kwargs) -> R:
         try:
-            return function(*args, **kwargs)
+            with one_command():
+                return function(*args, **kwargs)
         except KeyboardInterrupt:
             print("solidgear: interrupted", file=sys.stderr)
             raise typer.Exit(130) from None

@@ -13,7 +13,7 @@ from solidgear.errors import SolidgearError, nearest, show
 from solidgear.ladder.registry import LADDER
 
 if TYPE_CHECKING:
-    from solidgear.ladder.registry import Rung
+    from solidgear.ladder.model import Model
     from solidgear.models.options import Option
     from solidgear.report.table import Table
 
@@ -77,17 +77,17 @@ def options(
         say(_options(LADDER[name]))
 
 
-def _options(rung: Rung) -> Table:
+def _options(model: Model) -> Table:
     from solidgear.report.table import Table, text, word
 
-    defaults, known = rung.defaults(), rung.options
+    defaults, known = model.defaults(), model.options
     columns = [
         word("option", str),
         word("default", lambda key: _default(defaults.get(key))),
         text("may be", lambda key: _may_be(known[key])),
         text("what it is", lambda key: known[key].meaning),
     ]
-    return Table(f"{rung.name}: {rung.title}", columns, list(known))
+    return Table(f"{model.name}: {model.title}", columns, list(known))
 
 
 def _may_be(option: Option) -> str:

@@ -159,7 +159,7 @@ class ModelRecord(Part):
     """One model.
 
     ``title``, ``short``, ``theory``, ``family``, ``colour`` and ``marker`` are those of the ladder
-    (:class:`solidgear.ladder.model.Rung`), so that a record can be shown without it.
+    (:class:`solidgear.ladder.model.Model`), so that a record can be shown without it.
     """
 
     title: str = ""

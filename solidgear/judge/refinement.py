@@ -23,13 +23,14 @@ from solidgear.bounds.refining import MOST_MESHES, Meshed, refined
 from solidgear.errors import SolidgearError
 from solidgear.judge.bars import Band, moves_freely
 from solidgear.judge.bounded import Bounded
-from solidgear.judge.effort import foretold
+from solidgear.judge.effort import HEAVY, told
 from solidgear.judge.quantities import Values, size
 from solidgear.judge.question import Solved, few, mesh_words, most_of
 from solidgear.judge.sequence_bars import feature_effect, sequence_bands
 from solidgear.judge.solving import Numbers
 from solidgear.judge.steps import ABOVE, BELOW, BOTH, Step, Value
-from solidgear.ladder.model import Rung
+from solidgear.ladder.model import Model
+from solidgear.machine.memory import listening
 from solidgear.quantity import COMPLIANCE, Quantity
 
 if TYPE_CHECKING:
@@ -52,7 +53,7 @@ class Loop(ABC):
     Parameters
     ----------
     scene : Scene
-    rung : Rung
+    rung : Model
         A solid.
     wanted : tuple of Quantity
         Those whose bars are wanted.
@@ -81,7 +82,7 @@ class Loop(ABC):
     def __init__(
         self,
         scene: Scene,
-        rung: Rung,
+        rung: Model,
         wanted: tuple[Quantity, ...],
         tol: float,
         progress: Progress,
@@ -90,7 +91,6 @@ class Loop(ABC):
     ):
         self.scene, self.rung, self.wanted, self.tol = scene, rung, wanted, tol
         self.progress = progress
-        assert rung.meshes is not None  # as every solid
         self.plan = rung.meshes_of(scene, options or {})
         self.most = most
         #: of a harmonic solid, the one it begins with, and later the last one
@@ -134,10 +134,10 @@ class Loop(ABC):
             part = len(asked) < len(self.wanted)
             only = tuple(q for q in self.wanted if part and q in asked)
             setting = mesh_words(level) + (f", for {few(only)}" if only else "")
-            cost = "" if self.rung.unfit(self.scene) else foretold(self.scene, self.rung, level)
-            self.progress(f"{self.called}: {setting}{cost}")
+            self.progress(f"{self.called}: {setting}")
             try:
-                self.last = self._solve(level)
+                with listening(self._tell):
+                    self.last = self._solve(level)
             except (SolidgearError, MemoryError) as error:
                 if not self._spared(level, error):
                     raise
@@ -170,6 +170,11 @@ class Loop(ABC):
                 self._choose(why)
                 return
         self._choose(self._stopped())
+
+    def _tell(self, unknowns: int, mb: float) -> None:
+        """Tell what a heavy factor will cost, before it is made."""
+        if unknowns >= HEAVY:
+            self.progress(f"{self.called}: {told(unknowns, mb)}")
 
     def _meshes(self) -> Iterator[Mapping[str, Any]]:
         """All meshes, coarse to fine."""

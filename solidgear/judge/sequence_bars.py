@@ -19,7 +19,7 @@ from solidgear.solve.statics import condense
 if TYPE_CHECKING:
     from solidgear.bounds.safety import Safety
     from solidgear.ladder.meshes import Sequence
-    from solidgear.ladder.model import Rung
+    from solidgear.ladder.model import Model
     from solidgear.scene import Scene
 
 #: exponent at the end of a rigid seat, a clamp on a smooth surface (Williams 1952, clamped-free at
@@ -32,7 +32,7 @@ PLAIN = "harmonic"
 def sequence_bands(
     scene: Scene,
     plan: Sequence,
-    rung: Rung,
+    rung: Model,
     levels: Listed[Values],
     solver: Values,
     sizes: Listed[float | None],
@@ -46,7 +46,7 @@ def sequence_bands(
         Tied as the levels are.
     plan : Sequence
         That the meshes are of.
-    rung : Rung
+    rung : Model
         With a :class:`~solidgear.bounds.safety.Safety`.
     levels : sequence of mappings
         Quantity to value, coarse to fine.

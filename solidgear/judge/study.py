@@ -25,6 +25,7 @@ from solidgear.judge.tied import judged_modes, level_of, solved_ties, tied_answe
 from solidgear.judge.ties import SCENE, SECTION, rigid_seats
 from solidgear.ladder import build
 from solidgear.ladder.meshes import HEAVY
+from solidgear.ladder.model import SOLID
 from solidgear.ladder.registry import LADDER
 from solidgear.machine.meter import Meter
 from solidgear.models.options import ATTACHMENTS
@@ -79,7 +80,7 @@ def study(
         If the first mesh cannot be solved; later ones that cannot are in ``failed``.
     """
     options, own = dict(options or {}), LADDER[model]
-    if own.meshes is None:
+    if own.family != SOLID:
         meter = Meter()
         progress(f"{model}: build, statics, modes")
         ties = solved_ties(scene, model, options, meter, 0 if evidence and counted else math.inf)

@@ -15,6 +15,8 @@ import scipy.sparse as sp
 from skfem import Element, Mesh
 from skfem.assembly import Dofs
 
+from solidgear.kernel.room import assemblable, assembled
+
 BATCH_BYTES = 4e6
 # Rounding of coordinates puts the nodes of a straight element off by 1e-14 to 1e-13 of its least
 # extent; a bend changes the entries by about its own size.  Elements bent by more go through
@@ -282,6 +284,7 @@ class Pattern:
     def __init__(self, dofs: np.ndarray):
         self.n = int(dofs.max()) + 1
         nb, ne = dofs.shape
+        assemblable(ne, nb)
         of = np.ascontiguousarray(dofs.T, np.int32)
         # Element entries row by row, each row being an unknown of an element.  A transposition is a
         # counting sort by column that leaves rows in order; the pattern is symmetric, so each entry
@@ -325,7 +328,9 @@ class Sum:
 
     def __init__(self, pattern: Pattern, components: int):
         self.pattern, self.c = pattern, components
-        self.data = np.zeros(len(pattern.indices) * components**2)
+        entries = len(pattern.indices) * components**2
+        assembled(entries, pattern.n * components)
+        self.data = np.zeros(entries)
 
     def add(self, elements: slice | np.ndarray, values: np.ndarray) -> None:
         """Add element matrices.

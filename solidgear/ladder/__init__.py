@@ -1,12 +1,15 @@
-"""One builder a file; ``build`` picks one from the ladder by name."""
+"""One model a file; ``build`` picks one from the ladder by name."""
 
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import partial
 from typing import TYPE_CHECKING
 
 from solidgear.errors import SolidgearError, nearest, show
 from solidgear.ladder.registry import LADDER
+from solidgear.ladder.remedies import refusal
+from solidgear.machine.memory import NoRoom, begin
 from solidgear.machine.threads import pinned
 
 if TYPE_CHECKING:
@@ -25,7 +28,7 @@ def build(scene: Shaft, fidelity: str, **options) -> Body:
     ----------
     scene : Scene
     fidelity : str
-        A rung of the ladder that builds a body: euler, timoshenko, harmonic, solid.
+        A model of the ladder that builds a body: euler, timoshenko, harmonic, solid.
     **options
         Passed to the builder: see :func:`solidgear.models.beam.body.beam`,
         :func:`solidgear.models.harmonic.body.harmonic`, :func:`solidgear.models.solid.body.solid`.
@@ -38,7 +41,10 @@ def build(scene: Shaft, fidelity: str, **options) -> Body:
     ------
     SolidgearError
         For an unknown fidelity, an option it does not have or cannot use
-        (the options of its rung), or a model that will not fit into memory.
+        (the options of its model).
+    NoRoom
+        For a mesh or matrices that will not fit into memory. Whether factors do is found out when
+        they are first asked for.
 
     Examples
     --------
@@ -51,27 +57,28 @@ def build(scene: Shaft, fidelity: str, **options) -> Body:
     >>> bool(np.isclose(body.mass_matrix()[0, 0], 7850 * np.pi * 0.01**2 * 0.6))  # kg
     True
     """
-    from solidgear.ladder.remedies import refuse_too_large
-
     if fidelity not in LADDER.bodies:
         raise SolidgearError(
             f"fidelity {show(fidelity, 40)} is unknown{nearest(fidelity, LADDER.bodies)}; "
             f"use one of {', '.join(LADDER.bodies)}"
         )
-    rung = LADDER[fidelity]
-    unfit = rung.unfit(scene)
+    model = LADDER[fidelity]
+    unfit = model.unfit(scene)
     if unfit:
-        fit = [r.name for r in LADDER if r.build is not None and not r.unfit(scene)]
+        fit = [name for name in LADDER.bodies if not LADDER[name].unfit(scene)]
         use = f"use {' or '.join(fit)}" if fit else NO_MODEL
         raise SolidgearError(f"{unfit}; {use}")
-    options = rung.checked(rung.given(scene, options))
-    size = refuse_too_large(scene, fidelity, options)
-    assert rung.build is not None  # as every rung of LADDER.bodies
-    own, factoring = rung.split(options)
+    options = model.checked(model.given(scene, options))
+    own, factoring = model.split(options)
+    model.builder()  # large libraries are no part of what the body takes
+    begin()
     try:
-        body = rung.build(scene, **{**rung.preset, **own})
+        body = model.build(scene, **own)
+    except NoRoom as error:
+        raise refusal(scene, fidelity, options, None, error) from None
     except MemoryError:
         raise SolidgearError(
-            f"{fidelity}: about {size.unknowns} unknowns did not fit into memory; {size.lower}"
+            f"{fidelity}: its matrices did not fit into memory; {model.coarser}"
         ) from None
-    return replace(body, fidelity=fidelity, factoring=factoring)
+    told = partial(refusal, scene, fidelity, options)
+    return replace(body, fidelity=fidelity, factoring=factoring, ways_out=told)

@@ -10,48 +10,22 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from solidgear.models.options import FACTORING_OPTIONS
+
+if TYPE_CHECKING:
+    from solidgear.scene.shaft import Shaft
 
 Options = dict[str, Any]
 
 
-def _harmonic(order: int, layers: int, edge_layers: int, relative_size: float) -> Options:
-    return {
-        "order": order,
-        "layers": layers,
-        "edge_layers": edge_layers,
-        "relative_size": relative_size,
-    }
-
-
-def _hexahedra(layers: int, edge_layers: int, relative_size: float) -> Options:
-    return {
-        "layers": layers,
-        "radial_layers": layers,
-        "edge_layers": edge_layers,
-        "relative_size": relative_size,
-    }
-
-
 #: a usual mesh of the harmonic solid, good to some 1e-3: where no bar is asked for
-HARMONIC: Options = _harmonic(3, 1, 0, 4.0)
-HEXAHEDRA: tuple[Options, ...] = (
-    _hexahedra(0, 0, 1.5),
-    _hexahedra(1, 1, 1.0),
-    _hexahedra(2, 2, 0.7),
-    _hexahedra(3, 3, 0.5),
-    _hexahedra(4, 4, 0.35),
-)
-TETRAHEDRA: tuple[Options, ...] = tuple({"refinement": r} for r in (0.45, 0.65, 0.95, 1.4, 2.0))
-LINEAR: tuple[Options, ...] = tuple({"refinement": r} for r in (0.6, 0.9, 1.35, 2.0))
-
+HARMONIC: Options = {"order": 3, "layers": 1, "edge_layers": 0, "relative_size": 4.0}
 # What leaves the choice of meshes to the program although it is given.
 FREE = ("element", "around", "ovalising", "attachments", "material_port", *FACTORING_OPTIONS)
-#: cells around of hexahedra that bend as a whole: eight are good to some 6e-4, and the error falls
-#: with the fourth power
-AROUND, ORDER_AROUND = 8, 4
+#: error of the cells around a hexahedral mesh that bends as a whole: with this power of their size
+ORDER_AROUND = 4
 #: unknowns of the second level above which a third one, some three times as large, is solved only
 #: if the band needs it
 HEAVY = 15_000
@@ -92,99 +66,25 @@ class Sequence:
         return 1 / (1 - ratio**ORDER_AROUND)
 
 
-#: free modes kept on the coarsest mesh, whose supported modes err by more than those left out give
-FEWER = 10
-#: defect correction: the harmonic solid and the 3D mesh finer together
-CORRECTED: tuple[Options, ...] = (
-    {"order": 3, "layers": 1, "edge_layers": 1, "refinement": 0.35, "modes": FEWER},
-    *(
-        {"order": order, "layers": layers, "edge_layers": edges, "refinement": refinement}
-        for order, layers, edges, refinement in (
-            (4, 2, 2, 0.5),
-            (5, 3, 2, 0.7),
-            (6, 4, 3, 1.0),
-        )
-    ),
-)
-
-
-def corrected_meshes(options: Mapping[str, Any]) -> Sequence:
-    """Meshes on which to correct a harmonic solid; options as for :func:`harmonic_meshes`."""
-    if set(options) - set(FREE):
-        finest = {**CORRECTED[1], **options}
-        coarser = {**finest, "refinement": finest["refinement"] / 1.4}
-        return Sequence((coarser, finest), True, True)
-    return Sequence(tuple({**level, **options} for level in CORRECTED), False, True)
-
-
-#: one sector holds meshes that are finer than those of a whole shaft
-SECTOR: tuple[Options, ...] = tuple({"refinement": r} for r in (0.7, 1.0, 1.4, 2.0, 2.8))
-
-
-def sector_meshes(options: Mapping[str, Any]) -> Sequence:
-    """Meshes of a cyclic sector; options as for :func:`harmonic_meshes`."""
-    if set(options) - set(FREE):
-        return _refinements(dict(options))
-    return Sequence(tuple({**level, **options} for level in SECTOR), False, False)
-
-
-def _turned(level: Options) -> Options:
-    return {**level, "around": 4 * -(-3 * level["around"] // 8)}
-
-
-def harmonic_meshes(options: Mapping[str, Any]) -> Sequence:
-    """Meshes on which to solve a harmonic solid: the one that was asked for, or those that follow its
-    bars (:mod:`solidgear.bounds.refining`).
+def fixed_refinements(options: Mapping[str, Any]) -> Sequence:
+    """The mesh that was asked for, and two coarser ones by plain refinement.
 
     Parameters
     ----------
     options : mapping
         Builder options that were asked for.
     """
-    if set(options) - set(FREE):
-        return Sequence((dict(options),), True, False)
-    return Sequence((dict(options),), False, False)
-
-
-def solid_meshes(options: Mapping[str, Any]) -> Sequence:
-    """Meshes on which to solve a 3D solid; options as for :func:`harmonic_meshes`."""
-    element = str(options.get("element", "hex20"))
-    layered = element in ("hex20", "hex27")
-    if set(options) - set(FREE):
-        if layered and "refinement" not in options:
-            return _below_hexahedra(dict(options))
-        return _refinements(dict(options))
-    if layered:
-        around = {"around": AROUND, **options}
-        levels = tuple({**level, **around} for level in HEXAHEDRA)
-        return Sequence(levels, False, True, _turned(levels[0]))
-    known = TETRAHEDRA if element == "tet10" else LINEAR
-    return Sequence(tuple({**level, **options} for level in known), False, False)
-
-
-def _below_hexahedra(options: Options) -> Sequence:
-    finest = {
-        "layers": 4,
-        "radial_layers": 4,
-        "edge_layers": 1,
-        "relative_size": 0.4,
-        "around": 12,
-        **options,
-    }
-    coarser = []
-    for k in (2, 1):
-        fewer = {
-            name: max(finest[name] - k, 0) for name in ("layers", "radial_layers", "edge_layers")
-        }
-        larger = {"relative_size": finest["relative_size"] * 1.5**k}
-        if finest.get("size"):
-            larger = {"size": finest["size"] * 1.5**k}
-        coarser.append({**finest, **fewer, **larger})
-    return Sequence((*coarser, finest), True, True, _turned(coarser[0]))
-
-
-def _refinements(options: Options) -> Sequence:
     given = options.get("refinement", 1.0)
     return Sequence(
         tuple({**options, "refinement": given * s} for s in (0.4, 0.65, 1.0)), True, False
     )
+
+
+def levels(quick: tuple, more: tuple, full: bool) -> tuple:
+    """Levels of a chart, quick or full."""
+    return quick + more if full else quick
+
+
+def least_radius(scene: Shaft) -> float:
+    """Least outer radius of a shaft, m."""
+    return min(min(s.outer0, s.outer1) for s in scene.segments)

@@ -1,51 +1,39 @@
-"""What a rung of the ladder of models is: everything the program must know of a model that it does
-not know of all models.
-"""
+"""A model of the ladder: everything the program must know of one that it does not know of all."""
 
 from __future__ import annotations
 
-import importlib
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import asdict, dataclass, field
-from typing import TYPE_CHECKING, Any
+from dataclasses import asdict
+from typing import TYPE_CHECKING, Any, ClassVar
 
 from solidgear.errors import SolidgearError, listed, nearest, show
 from solidgear.factoring import Factoring
-from solidgear.models.kinds import CYCLIC, PARTS
+from solidgear.models.kinds import CYCLIC
 from solidgear.models.options import FACTORING_OPTIONS, Option, checked
 
 if TYPE_CHECKING:
     from solidgear.body import Body
     from solidgear.bounds.safety import Safety
     from solidgear.ladder.meshes import Sequence
-    from solidgear.ladder.size import Size
-    from solidgear.scene.shaft import Shaft
+    from solidgear.models.size import Size
 
 LUMPED, BEAM, SOLID = "lumped", "beam", "solid"
+Options = Mapping[str, Any]
 #: a line of a chart: family, label, builder options from the cheapest level on
 Series = tuple[str, str, list[dict[str, Any]]]
 
 
-@dataclass(frozen=True)
-class Later:
-    """A function of a module that is imported when the function is first called: the ladder is read
-    by every command, and builders bring large libraries.
+def features_of(scene: Any) -> tuple[Any, ...]:
+    """Features of a scene that are not smeared; see :func:`solidgear.scene.shaft.resolved`, which
+    is imported here, for the ladder is read by every command.
     """
+    from solidgear.scene.shaft import resolved
 
-    module: str
-    name: str
-
-    def load(self) -> Callable[..., Any]:
-        """The function itself."""
-        return getattr(importlib.import_module(self.module), self.name)
-
-    def __call__(self, *args: Any, **kwargs: Any) -> Any:
-        return self.load()(*args, **kwargs)
+    return resolved(scene)
 
 
-@dataclass(frozen=True)
-class Rung:
-    """One model of the ladder.
+class Model:
+    """One model of the ladder; a subclass fills in what is not as usual.
 
     Attributes
     ----------
@@ -53,93 +41,137 @@ class Rung:
         What scenes, commands and records call it.
     title : str
         In a sentence, such as ``harmonic solid``.
-    short : str
-        At the head of a narrow column.
+    heading : str
+        At the head of a narrow column; the title unless told otherwise.
     family : str
-        ``lumped`` (rests on another rung's body), ``beam`` or ``solid``. Solids judge the others.
-    build : callable or None
-        ``build(scene, **options)`` gives the free :class:`~solidgear.body.Body`; None for a lumped
-        model.
+        ``lumped`` (rests on another model's body), ``beam`` or ``solid``. Solids judge the others.
+    theory : str
+        What it solves, in a sentence: ``Trust the ...: exact 3D elasticity ...``.
+    colour, marker : str
+        In charts.
     options : mapping of str to Option
         Of the builder, with their limits.
     preset : mapping
-        Options that make this rung of a builder that several share.
-    size : callable
-        ``size(scene, options)`` gives the :class:`~solidgear.ladder.size.Size` of the body before
-        it is built; all options are given.
-    meshes : callable, optional
-        ``meshes(options)`` gives the :class:`~solidgear.ladder.meshes.Sequence` of its coarser
-        and finer relatives; None for a rung that is solved once and has no band of its own.
-    safety : Safety, optional
-        Of a band over these meshes, where it is not that of meshes with layers or of plain refinement.
-    share : float
-        Bands are wanted below the tolerance asked for divided by this.
-    theory : str
-        What it solves, in a sentence: ``Trust the ...: exact 3D elasticity ...``.
-    section_ties : bool
-        Whether its mesh carries the mean motion of any section; otherwise it is not compared like
-        for like.
+        Options that make this model of a builder that several share.
+    coarser : str
+        What to change where it is too large.
+    holds : tuple of str
+        Sorts of features (`CUTS`, `CYCLIC`), or a part from a file (`PARTS`), that its body holds,
+        one of them at a time; a body of revolution holds none.
+    for_features : bool
+        Whether it is made for the features that it holds, and for nothing else.
     bounded : bool
         Whether every mesh tells its own error by local problems: its displacements are admissible on
         the exact geometry, integrated exactly. Such a body is too stiff, so that compliances come
         from below, stiffnesses and frequencies from above.
+    share : float
+        Bands are wanted below the tolerance asked for divided by this.
+    section_ties : bool
+        Whether its mesh carries the mean motion of any section; otherwise it is not compared like
+        for like.
     mass_tolerance : float
         Closure of mass and inertia that it owes to the closed form.
     most_seats : int
         Seats that one body carries in a sweep.
-    series : callable, optional
-        ``series(scene, full)`` gives the lines of a chart of error against cost; by default its
-        one usual mesh.
-    holds : tuple of str
-        Sorts of features (`CUTS`, `CYCLIC`), or a part from a file (`PARTS`), that its body holds,
-        one of them at a time; a body of revolution holds none.
-    nature : str
-        What its body is, where a feature does not fit it: ``of revolution``.
-    limits : callable, optional
-        ``limits(scene)`` tells why a scene whose features are of sorts that it holds does not fit
-        it all the same, or nothing; asked of scenes with features of `CYCLIC` only.
-    copies : str
-        Sort of features for which its mesh is made of copies of another rung's: no second opinion,
-        and solved only where it is asked for by name.
-    for_features : bool
-        Whether it is made for the features that it holds, and for nothing else.
-    featured : mapping
-        Options of the builder for a scene that is more than its segments: with features, fillets or
-        chamfers, or from a file.
-    colour, marker : str
-        In charts.
+    safety : Safety or None
+        Of a band over its meshes, where it is not that of meshes with layers or of plain refinement.
     """
 
-    name: str
-    title: str
-    family: str
-    build: Callable[..., Body] | None = None
-    options: Mapping[str, Option] = field(default_factory=dict)
-    size: Callable[[Shaft, Mapping[str, Any]], Size] | None = None
-    short: str = ""
-    preset: Mapping[str, Any] = field(default_factory=dict)
-    meshes: Callable[[Mapping[str, Any]], Sequence] | None = None
-    safety: Safety | None = None
-    share: float = 1.0
-    theory: str = ""
-    section_ties: bool = True
-    bounded: bool = False
-    mass_tolerance: float = 1e-9
-    most_seats: int = 12
-    series: Callable[[Any, bool], list[Series]] | None = None
-    holds: tuple[str, ...] = ()
-    nature: str = "of revolution"
-    limits: Callable[[Any], str] | None = None
-    copies: str = ""
-    for_features: bool = False
-    featured: Mapping[str, Any] = field(default_factory=dict)
-    colour: str = "#777777"
-    marker: str = "P"
+    name: ClassVar[str]
+    title: ClassVar[str]
+    heading: ClassVar[str]
+    family: ClassVar[str]
+    theory: ClassVar[str] = ""
+    colour: ClassVar[str] = "#777777"
+    marker: ClassVar[str] = "P"
+    options: ClassVar[Mapping[str, Option]] = {}
+    preset: ClassVar[Options] = {}
+    coarser: ClassVar[str] = "use a coarser mesh"
+    holds: ClassVar[tuple[str, ...]] = ()
+    for_features: ClassVar[bool] = False
+    bounded: ClassVar[bool] = False
+    share: ClassVar[float] = 1.0
+    section_ties: ClassVar[bool] = True
+    mass_tolerance: ClassVar[float] = 1e-9
+    most_seats: ClassVar[int] = 12
+    safety: ClassVar[Safety | None] = None
+    #: what its body is, where a feature does not fit it
+    _nature: ClassVar[str] = "of revolution"
 
-    @property
-    def heading(self) -> str:
-        """Its name at the head of a narrow column."""
-        return self.short or self.title
+    def builder(self) -> Callable[..., Body]:
+        """``builder(scene, **options)`` gives the free body; it is imported here, for the ladder is
+        read by every command and builders bring large libraries.
+        """
+        raise NotImplementedError(f"the {self.title} has no body of its own")
+
+    def build(self, scene: Any, **options: Any) -> Body:
+        """The free body of a scene.
+
+        Parameters
+        ----------
+        scene : Scene
+        **options
+            Of the builder, within their limits.
+        """
+        return self.builder()(scene, **{**self.preset, **options})
+
+    def size(self, scene: Any, options: Options) -> Size:
+        """How large it will be, counted on the mesh.
+
+        Parameters
+        ----------
+        scene : Scene
+        options : mapping
+            Builder options that were asked for.
+        """
+        return self._size(scene, self.defaults() | self.checked(self.given(scene, options)))
+
+    def _size(self, scene: Any, options: dict[str, Any]) -> Size:
+        """With all options given; of a body that is cheap it is counted there."""
+        from solidgear.models.size import of_body
+
+        return of_body(self.builder()(scene, **self.split(options)[0]))
+
+    def rough_unknowns(self, scene: Any, options: Options) -> float:
+        """Unknowns of tetrahedra to within a factor of three or so, without meshing; none unless told
+        otherwise.
+        """
+        return 0.0
+
+    def can_halve(self, scene: Any, options: Options) -> bool:
+        """Whether an option ``half`` makes it smaller."""
+        return False
+
+    def meshes(self, options: Options) -> Sequence:
+        """Its coarser and finer relatives; of solids.
+
+        Parameters
+        ----------
+        options : mapping
+            Builder options that were asked for.
+        """
+        raise NotImplementedError(f"the {self.title} is solved once")
+
+    def meshes_of(self, scene: Any, options: Options) -> Sequence:
+        """Meshes for a scene, coarse to fine; parameters as for :meth:`size`."""
+        return self.meshes(self.given(scene, options))
+
+    def series(self, scene: Any, full: bool) -> list[Series]:
+        """Lines of a chart of error against cost; its one usual mesh unless told otherwise.
+
+        Parameters
+        ----------
+        scene : Scene
+        full : bool
+            More levels.
+        """
+        return [(self.family, self.heading, [{}])]
+
+    def limits(self, scene: Any) -> str:
+        """Why a scene whose features are of sorts that it holds does not fit it all the same, or
+        nothing; asked of scenes with features of `CYCLIC` only.
+        """
+        return ""
 
     def unfit(self, scene: Any) -> str:
         """Why it does not model a scene, or nothing.
@@ -149,9 +181,9 @@ class Rung:
         scene : Scene
         """
         from solidgear.scene.features import FEATURES
-        from solidgear.scene.shaft import named, resolved
+        from solidgear.scene.shaft import named
 
-        features, every = resolved(scene), getattr(scene, "features", ())
+        features, every = features_of(scene), getattr(scene, "features", ())
         if self.for_features and not any(f.sort in self.holds for f in every):
             held = sorted(kind for kind, one in FEATURES.items() if one.sort in self.holds)
             return (
@@ -161,11 +193,11 @@ class Rung:
         sorts = {f.sort for f in features}
         held_here = {f.sort for f in every} if self.for_features and not sorts else sorts
         if len(sorts) < 2 and sorts <= set(self.holds):
-            return self.limits(scene) if self.limits and CYCLIC in held_here else ""
+            return self.limits(scene) if CYCLIC in held_here else ""
         if not self.holds and all(f.round for f in features):
             return ""
         strange = [f for f in features if f.sort not in self.holds]
-        unfit = f"the {self.title} is {self.nature} and the scene has {named(strange or features)}"
+        unfit = f"the {self.title} is {self._nature} and the scene has {named(strange or features)}"
         if not self.holds:
             return f"{unfit}: it would answer for the plain part"
         return unfit if strange else f"{unfit}, which no mesh holds together"
@@ -177,47 +209,20 @@ class Rung:
         ----------
         scene : Scene
         """
-        from solidgear.scene.shaft import resolved
+        sorts = {f.sort for f in features_of(scene)}
+        return not self.for_features or not sorts.isdisjoint(self.holds)
 
-        sorts = {f.sort for f in resolved(scene)}
-        if self.for_features:
-            return not sorts.isdisjoint(self.holds)
-        return self.copies not in sorts
-
-    def meshes_of(self, scene: Any, options: Mapping[str, Any]) -> Sequence:
-        """Meshes for a scene, coarse to fine; see ``meshes``.
-
-        Parameters
-        ----------
-        scene : Scene
-        options : mapping
-            Builder options that were asked for.
-        """
-        from solidgear.ladder.meshes import Sequence
-
-        assert self.meshes is not None  # asked of rungs that have them
-        given = self.given(scene, options)
-        # what is of revolution is meshed from the segments of the round part, coarse to fine
-        own = PARTS in self.holds
-        if own and getattr(getattr(scene, "body", None), "one_mesh", False):
-            return Sequence((given,), True, False)
-        return self.meshes(given)
-
-    def given(self, scene: Any, options: Mapping[str, Any]) -> dict[str, Any]:
-        """Options for the builder of a scene: those asked for over those of its features.
+    def given(self, scene: Any, options: Options) -> dict[str, Any]:
+        """Options for the builder of a scene: those asked for over those that its features ask for.
 
         Parameters
         ----------
         scene : Scene
         options : mapping
         """
-        from solidgear.scene.shaft import resolved
+        return dict(options)
 
-        # layered hexahedra converge too slowly beside fillets for their bands
-        special = resolved(scene) or getattr(scene, "corners", ())
-        return {**(self.featured if special else {}), **options}
-
-    def checked(self, options: Mapping[str, Any]) -> dict[str, Any]:
+    def checked(self, options: Options) -> dict[str, Any]:
         """Options for the builder within their limits; see
         :func:`solidgear.models.options.checked`.
         """
@@ -227,14 +232,12 @@ class Rung:
         """Every option of the builder with the value it has unless told otherwise."""
         from inspect import signature
 
-        assert self.build is not None
-        builder = self.build.load() if isinstance(self.build, Later) else self.build
-        parameters = signature(builder).parameters.values()
+        parameters = signature(self.builder()).parameters.values()
         own = {p.name: p.default for p in parameters if p.default is not p.empty}
         usual = {k: v for k, v in asdict(Factoring()).items() if k in self.options}
         return own | dict(self.preset) | usual
 
-    def split(self, options: Mapping[str, Any]) -> tuple[dict[str, Any], Factoring]:
+    def split(self, options: Options) -> tuple[dict[str, Any], Factoring]:
         """What of the options the builder takes, and how the matrices are to be factored."""
         own = {k: v for k, v in options.items() if k not in FACTORING_OPTIONS}
         factoring = Factoring(**{k: v for k, v in options.items() if k in FACTORING_OPTIONS})
@@ -250,11 +253,11 @@ class Rung:
 
 
 class Ladder:
-    """Rungs by name, cheapest first.
+    """Models by name, cheapest first.
 
     Parameters
     ----------
-    rungs : Rung
+    models : Model
 
     Examples
     --------
@@ -265,19 +268,19 @@ class Ladder:
     ('euler', 'timoshenko')
     """
 
-    def __init__(self, *rungs: Rung):
-        self.rungs = rungs
+    def __init__(self, *models: Model):
+        self.models = models
 
-    def __iter__(self) -> Iterator[Rung]:
-        return iter(self.rungs)
+    def __iter__(self) -> Iterator[Model]:
+        return iter(self.models)
 
     def __contains__(self, name: object) -> bool:
-        return any(rung.name == name for rung in self.rungs)
+        return any(model.name == name for model in self.models)
 
-    def __getitem__(self, name: str) -> Rung:
-        for rung in self.rungs:
-            if rung.name == name:
-                return rung
+    def __getitem__(self, name: str) -> Model:
+        for model in self.models:
+            if model.name == name:
+                return model
         raise SolidgearError(
             f"model {show(name, 40)} is unknown{nearest(name, self.names)}; "
             f"use one of {', '.join(self.names)}"
@@ -285,27 +288,27 @@ class Ladder:
 
     @property
     def names(self) -> tuple[str, ...]:
-        """All rungs."""
-        return tuple(rung.name for rung in self.rungs)
+        """All models."""
+        return tuple(m.name for m in self.models)
 
     @property
     def bodies(self) -> tuple[str, ...]:
-        """Rungs that build a body of their own."""
-        return tuple(rung.name for rung in self.rungs if rung.build is not None)
+        """Models that build a body of their own."""
+        return tuple(m.name for m in self.models if m.family != LUMPED)
 
     def fit(self, scene: Any) -> tuple[str, ...]:
-        """Those with a body of their own, without rungs that are made for features of kinds that a
+        """Those with a body of their own, without models that are made for features of kinds that a
         scene does not have.
         """
         return tuple(n for n in self.bodies if self[n].concerns(scene))
 
     @property
     def judges(self) -> tuple[str, ...]:
-        """Rungs from the one that judges best to the one that judges worst: solids, the cheaper
+        """Models from the one that judges best to the one that judges worst: solids, the cheaper
         first, then beams, the better first.
         """
         return (*self.of(SOLID), *reversed(self.of(BEAM)))
 
     def of(self, *families: str) -> tuple[str, ...]:
-        """Rungs of some families."""
-        return tuple(rung.name for rung in self.rungs if rung.family in families)
+        """Models of some families."""
+        return tuple(m.name for m in self.models if m.family in families)

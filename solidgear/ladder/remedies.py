@@ -1,33 +1,36 @@
-"""Models that do not fit into memory: the sentence that refuses one, and for a 3D solid the ways
-out, other models and other factors of the same scene, each with the memory it would take.
+"""What to do with a model that does not fit into memory: other models and other factors of the same
+scene, each with the memory it would take.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 from solidgear.errors import SolidgearError
+from solidgear.factoring import Factoring
 from solidgear.ladder.registry import LADDER
-from solidgear.ladder.size import Size, estimated_size
-from solidgear.machine.memory import available_mb, expect
+from solidgear.machine.memory import NoRoom, anew
 
 if TYPE_CHECKING:
+    from solidgear.body import Body
+    from solidgear.ladder.model import Model
+    from solidgear.models.size import Size
     from solidgear.scene.shaft import Shaft
 
-#: entries that 32-bit indices can number, less some for what is numbered beside them
-MOST_ENTRIES = 2_000_000_000
-#: what is not refused for want of memory, MB: a beam, or a coarse solid
-SMALL_MB = 25.0
 #: models whose memory goes into the factor of a 3D mesh
 LARGE = ("solid", "sector")
 #: a mesh with less of this refinement answers for nothing
 COARSEST = 0.1
-#: share of the memory that a coarser mesh is made to fill
-FILLED = 0.9
-#: halvings of the interval in which refinement is sought: to a thousandth
-STEPS = 10
+#: share of the memory that a coarser mesh may fill, for the law is good to a tenth between meshes of one
+#: scene; what is aimed at; and meshes that are tried for it
+FILLED, AIM, TRIED = 0.85, 0.75, 4
+#: refinements are offered in such steps
+STEP = 0.05
+#: memory goes with the power 4/3 of unknowns, and these with the cube of the refinement
+BY_REFINEMENT = 4
 
 
 @dataclass(frozen=True)
@@ -39,7 +42,7 @@ class Way:
     words : str
         What to ask for.
     mb : float
-        What it is estimated to take.
+        What it would take, about.
     note : str
         What there is to be known of it.
     """
@@ -54,106 +57,146 @@ class Way:
         return f"{self.words} (about {self.mb:.0f} MB{', ' if self.note else ''}{self.note})"
 
 
-def ways_out(scene: Shaft, model: str, options: Mapping[str, Any], free: float) -> list[Way]:
-    """Ways to solve a scene whose model does not fit, those first that cost least accuracy and work.
+def refusal(
+    scene: Shaft, name: str, options: Mapping[str, Any], body: Body | None, error: NoRoom
+) -> NoRoom:
+    """A refusal with the ways out, those that fit first.
 
     Parameters
     ----------
     scene : Scene
-    model : str
-        A rung.
+    name : str
+        A model.
     options : mapping
         Of its builder, as asked for.
-    free : float
-        MB there are.
+    body : Body or None
+        If it could be built.
+    error : NoRoom
+        What its mesh, its matrices or its factors said.
 
     Returns
     -------
-    list of Way
-        Whether they fit or not; none for a model whose memory does not go into the factor of a 3D
-        mesh.
+    NoRoom
     """
-    if model not in LARGE:
-        return []
-    return list(_ways(scene, model, LADDER[model].given(scene, options), free))
-
-
-def _ways(scene, model: str, options: dict, free: float) -> Iterator[Way]:
-    yield from _halves(scene, model, options)
-    for other in ("sector", "corrected", "harmonic"):
-        yield from _other(scene, model, other)
-    yield from _coarser(scene, model, options, free)
-    single, files = {"precision": "single"}, {"out_of_core": True}
-    now = _sized(scene, model, options)
-    for words, more, note in (
-        ("--set precision=single", single, "same digits, solutions refined in double"),
-        ("--set out_of_core=true", files, "the factor in files, several times slower"),
-        ("--set precision=single --set out_of_core=true", {**single, **files}, ""),
-    ):
-        if any(options.get(name) != value for name, value in more.items()):
-            size = _sized(scene, model, {**options, **more})
-            # a factor in double precision may fall into pieces by mirror planes, others do not
-            if size is not None and (now is None or size.peak_mb < now.peak_mb):
-                yield Way(words, size.peak_mb, note)
-    if options.get("engine", "own") == "own":
-        size = _sized(scene, model, {**options, "engine": "petsc"})
-        if size is not None:
-            note = "MUMPS in PETSc on two ranks of this machine; SOLIDGEAR_MPIRUN names others"
-            yield Way("--engine petsc", size.peak_mb, note)
-
-
-def _halves(scene, model: str, options: dict) -> Iterator[Way]:
-    """Half models, or half a sector, where there is a mirror plane that was not used."""
-    from solidgear.ladder.size_laws import has_mirror_plane
-    from solidgear.models.sector.body import halved, sectors_around
-
-    if options.get("half", True):
-        return
-    sector = model == "sector"
-    if halved(scene, sectors_around(scene, options)) if sector else has_mirror_plane(scene):
-        size = _sized(scene, model, {**options, "half": True})
-        if size is not None:
-            yield Way(
-                "--set half=true", size.peak_mb, "half a sector" if sector else "two half models"
-            )
-
-
-def _other(scene, model: str, other: str) -> Iterator[Way]:
-    rung = LADDER[other]
-    if other == model or rung.unfit(scene):
-        return
-    size = _sized(scene, other, rung.given(scene, {}))
-    if size is not None:
-        yield Way(f"-f {other}", size.peak_mb, f"the {rung.title}, {size.unknowns} unknowns")
-
-
-def _coarser(scene, model: str, options: dict, free: float) -> Iterator[Way]:
-    """The finest mesh of the same kind that fits."""
-    body = getattr(scene, "body", None)
-    if body is not None and body.counts is not None:
-        return  # a mesh that is given
-    least, most = COARSEST, float(options.get("refinement", 1.0))
-    found: Size | None = None
-    for _ in range(STEPS):
-        middle = (least * most) ** 0.5
-        size = _sized(scene, model, {**options, "refinement": middle})
-        if size is not None and size.peak_mb < FILLED * free:
-            least, found = middle, size
-        else:
-            most = middle
-    if found is not None:
-        # to two digits, downwards
-        refinement = int(100 * least) / 100 if least < 1 else int(10 * least) / 10
-        found = _sized(scene, model, {**options, "refinement": refinement}) or found
-        note = f"{found.unknowns} unknowns, with a wider band"
-        yield Way(f"--set refinement={refinement:g}", found.peak_mb, note)
-
-
-def _sized(scene, model: str, options: dict) -> Size | None:
+    model = LADDER[name]
+    if name not in LARGE:
+        return error.told(name, model.coarser)
     try:
-        return estimated_size(scene, model, options)
-    except SolidgearError:
-        return None
+        with anew():
+            found = _Ways(scene, model, model.given(scene, options), body, error)
+            ways = offered([*found.all()], found.room)
+    except (MemoryError, ImportError):
+        ways = ""  # where memory has run out, nothing can be counted any more
+    return error.told(name, f"{model.coarser}{ways}")
+
+
+@dataclass(frozen=True)
+class _Ways:
+    """Ways out of one refusal, those first that cost least accuracy and work."""
+
+    scene: Any
+    model: Model
+    options: dict[str, Any]
+    body: Body | None
+    error: NoRoom
+
+    @cached_property
+    def _now(self) -> Size | None:
+        from solidgear.models.size import of_body
+
+        return None if self.body is None else of_body(self.body)
+
+    @property
+    def _held(self) -> float:
+        """MB of matrices, which another mesh or model would not have beside its own."""
+        return 0.0 if self._now is None else self._now.matrices_mb
+
+    @property
+    def room(self) -> float:
+        """MB for matrices and factors."""
+        return self.error.free_mb + self._held
+
+    def all(self) -> Iterator[Way]:
+        """Whether they fit or not."""
+        yield from self.half()
+        yield from self.other_models()
+        yield from self.coarser()
+        if self.body is not None:
+            yield from self.other_factors(self.body)
+
+    def _sized(self, model: Model, options: dict) -> tuple[int, float] | None:
+        """Unknowns and memory (MB) of a mesh that is made and counted; that of factors is as much off
+        the law as what was refused.
+        """
+        try:
+            size = model.size(self.scene, options)
+        except SolidgearError:
+            return None
+        off = 1.0
+        if model is self.model and self._now is not None:
+            off = self.error.need_mb / self._now.factors_mb
+        return size.unknowns, size.matrices_mb + off * size.factors_mb
+
+    def half(self) -> Iterator[Way]:
+        """A half of it, where there is a mirror plane that was not used."""
+        if self.options.get("half", True) or not self.model.can_halve(self.scene, self.options):
+            return
+        found = self._sized(self.model, {**self.options, "half": True})
+        what = "half a sector" if self.model.name == "sector" else "two half models"
+        if found is not None:
+            yield Way("--set half=true", found[1], what)
+
+    def other_models(self) -> Iterator[Way]:
+        """Other models of the same scene."""
+        for other in (LADDER[name] for name in ("sector", "corrected", "harmonic")):
+            if other is self.model or other.unfit(self.scene):
+                continue
+            found = self._sized(other, {})
+            if found is not None:
+                note = f"the {other.title}, {found[0]} unknowns"
+                yield Way(f"-f {other.name}", found[1], note)
+
+    def coarser(self) -> Iterator[Way]:
+        """A mesh of the same kind that fits."""
+        if getattr(getattr(self.scene, "body", None), "one_mesh", False):
+            return  # a mesh that is given
+        refinement = float(self.options.get("refinement", 1.0))
+        mb = self.error.need_mb + self._held
+        for _ in range(TRIED):
+            share = (AIM * self.room / mb) ** (1 / BY_REFINEMENT)
+            refinement = round(STEP * int(min(refinement * share, refinement - STEP / 2) / STEP), 2)
+            if refinement < COARSEST:
+                return
+            found = self._sized(self.model, {**self.options, "refinement": refinement})
+            if found is None:
+                return
+            unknowns, mb = found
+            if mb <= FILLED * self.room:
+                note = f"{unknowns} unknowns, with a wider band"
+                yield Way(f"--set refinement={refinement:g}", mb, note)
+                return
+
+    def other_factors(self, body: Body) -> Iterator[Way]:
+        """Factors of the same matrices that take less, by their own analysis, and by other programs."""
+        from solidgear.solve.shifted import needed_mb
+
+        single, files = {"precision": "single"}, {"out_of_core": True}
+        for words, more, note in (
+            ("--set precision=single", single, "same digits, solutions refined in double"),
+            ("--set out_of_core=true", files, "the factor in files, several times slower"),
+            ("--set precision=single --set out_of_core=true", {**single, **files}, ""),
+        ):
+            try:
+                mb = needed_mb(body, replace(body.factoring, **more))
+            except SolidgearError:
+                continue  # no back end here makes it
+            # a factor in double precision may fall into pieces by mirror planes, others do not
+            if mb < self.error.need_mb:
+                yield Way(words, self._held + mb, note)
+        if body.factoring.engine == "own":
+            note = "MUMPS in PETSc on two ranks of this machine; SOLIDGEAR_MPIRUN names others"
+            mb = needed_mb(body, Factoring(engine="petsc"))
+            yield Way("--engine petsc", self._held + mb, note)
 
 
 def offered(ways: list[Way], free: float) -> str:
@@ -166,37 +209,3 @@ def offered(ways: list[Way], free: float) -> str:
     if large:
         text += f"; too large as well: {'; '.join(large)}"
     return text
-
-
-def refuse_too_large(scene: Shaft, model: str, options: dict | None = None) -> Size:
-    """The estimated size, if the machine can take it; it is noted as expected in the run
-    (:func:`solidgear.machine.memory.one_run`).
-
-    Raises
-    ------
-    SolidgearError
-        With the number of unknowns, the memory needed, the memory free and what to lower.
-    """
-    size = estimated_size(scene, model, options)
-    what = f"{model}: about {size.unknowns} unknowns"
-    if size.largest > MOST_ENTRIES:
-        raise SolidgearError(
-            f"{what} make {size.largest:.2g} matrix entries, more than the {MOST_ENTRIES:.0e} "
-            f"that can be numbered; {size.lower}"
-        )
-    free = available_mb()
-    if free is not None and size.peak_mb > max(free, SMALL_MB):
-        raise SolidgearError(
-            f"{what} need about {size.peak_mb:.0f} MB for mesh, matrices and factor, {free:.0f} "
-            f"MB are free; {size.lower}{_offers(scene, model, options or {}, free)}"
-        )
-    expect(size.peak_mb)
-    return size
-
-
-def _offers(scene, model: str, options: Mapping[str, Any], free: float) -> str:
-    """Ways out in a list; nothing where not even their sizes can be worked out any more."""
-    try:
-        return offered(ways_out(scene, model, options, free), free)
-    except (MemoryError, ImportError):
-        return ""

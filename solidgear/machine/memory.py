@@ -6,7 +6,7 @@ from __future__ import annotations
 
 import mmap
 import os
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from contextvars import ContextVar
 from dataclasses import dataclass
@@ -16,6 +16,56 @@ from solidgear.errors import SolidgearError
 from solidgear.machine.control_groups import control_groups, text_of
 
 
+class NoRoom(SolidgearError):
+    """What was asked for does not fit into memory, or cannot be numbered.
+
+    Attributes
+    ----------
+    what : str
+        What was asked for, what it would take and what there is, in words.
+    need_mb, free_mb : float
+        Infinite for what no memory would hold, and where the system does not tell.
+    """
+
+    def __init__(
+        self, what: str, need_mb: float, free_mb: float, instead: str = "use a coarser mesh"
+    ):
+        self.what, self.need_mb, self.free_mb = what, need_mb, free_mb
+        super().__init__(f"{what}; {instead}")
+
+    def told(self, model: str, instead: str) -> NoRoom:
+        """The same of a model, with what to do instead."""
+        return NoRoom(f"{model}: {self.what}", self.need_mb, self.free_mb, instead)
+
+
+def megabytes(amount: float) -> str:
+    """A number of megabytes, to what it is worth."""
+    return f"{amount:.0f}" if amount >= 10 else f"{amount:.2g}"
+
+
+def require(need_mb: float, what: str, by: str = "", free: float | None = None) -> None:
+    """Refuse what does not fit, unless it is small.
+
+    Parameters
+    ----------
+    need_mb : float
+    what : str
+        What needs it, such as ``120 unknowns``.
+    by : str
+        What factors them.
+    free : float, optional
+        MB, of what was free before a part of the need was taken; by default what is free now.
+
+    Raises
+    ------
+    NoRoom
+    """
+    free = available_mb() if free is None else free
+    if free is not None and need_mb > max(free, SMALL_MB):
+        needs = f"{what} need about {megabytes(need_mb)} MB{f' to factor by {by}' * bool(by)}"
+        raise NoRoom(f"{needs}, {megabytes(free)} MB are free", need_mb, free)
+
+
 @dataclass
 class Run:
     """Memory of one run.
@@ -23,16 +73,22 @@ class Run:
     Attributes
     ----------
     base_mb : float or None
-        What the process held when it began; None where the system does not tell.
+        What the process held when it began; None before that, and where the system does not tell.
     expected_mb : float or None
-        The largest peak that was estimated beforehand (see :func:`expect`).
+        The largest peak that was told beforehand (see :func:`expect`).
     """
 
-    base_mb: float | None
+    base_mb: float | None = None
     expected_mb: float | None = None
 
 
 _run: ContextVar[Run | None] = ContextVar("the run that this is part of", default=None)
+
+#: what is not refused for want of memory, MB: a beam, or a coarse solid
+SMALL_MB = 25.0
+#: told of unknowns, and of memory in MB
+Listener = Callable[[int, float], None]
+_listener: ContextVar[Listener | None] = ContextVar("who is told what factors take", default=None)
 
 # cgroup v1 writes "no limit" as the largest multiple of a page; anything above an exabyte is none.
 UNLIMITED = 2**60
@@ -88,12 +144,65 @@ def one_run() -> Iterator[Run]:
     ------
     Run
     """
-    run = _run.get() or Run(resident_mb())
+    with one_command() as run:
+        begin()
+        yield run
+
+
+@contextmanager
+def one_command() -> Iterator[Run]:
+    """The same, of a run that begins with its first body (:func:`begin`): what large libraries take is
+    not counted.
+
+    Yields
+    ------
+    Run
+    """
+    run = _run.get() or Run()
     token = _run.set(run)
     try:
         yield run
     finally:
         _run.reset(token)
+
+
+@contextmanager
+def anew() -> Iterator[None]:
+    """Within it, what the run has taken so far does not count: for what would be in its place."""
+    token = _run.set(Run(resident_mb()))
+    try:
+        yield
+    finally:
+        _run.reset(token)
+
+
+def begin() -> None:
+    """From here on count what the run takes, if it has not begun."""
+    run = _run.get()
+    if run is not None and run.base_mb is None:
+        run.base_mb = resident_mb()
+
+
+@contextmanager
+def listening(hear: Listener) -> Iterator[None]:
+    """Within it, ``hear(unknowns, mb)`` is told of every factor before it is made.
+
+    Parameters
+    ----------
+    hear : callable
+    """
+    token = _listener.set(hear)
+    try:
+        yield
+    finally:
+        _listener.reset(token)
+
+
+def tell(unknowns: int, more_mb: float) -> None:
+    """Tell whoever listens of a factor that will be made."""
+    hear = _listener.get()
+    if hear is not None:
+        hear(unknowns, more_mb)
 
 
 def expect(more_mb: float) -> None:

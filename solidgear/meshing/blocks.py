@@ -152,18 +152,6 @@ def _size(joint: Joint, zone: Zone, grading: Grading, ends, marks) -> None:
     zone.knots += [(c.r, depth) for c in roots]
 
 
-def blocks_beyond(joints: Sequence[Joint]) -> tuple[int, int, int]:
-    """Points, sides and cells of the meridian that fillets and chamfers add to lines and rings."""
-    count = [0, 0, 0]
-    for joint in joints:
-        for corner in joint.corners:
-            rows = joint.cells(corner)
-            k, sign = (rows, 1) if corner.root else (rows // 2, -1)
-            for at, more in enumerate((k * k + k, 2 * k * k + k, k * k)):
-                count[at] += sign * more
-    return count[0], count[1], count[2]
-
-
 def layers_at(
     joint: Joint | None, a, b, surface: str, layers: int, reach: float, ratio: float
 ) -> int:

@@ -140,6 +140,21 @@ def edge_size(feature: Cut, radius: float, refinement: float) -> tuple[str, floa
     return f"{_num(least)}+{_num(GROWTH)}*{away}", least
 
 
+def fine_lines(
+    feature: Cut, radius: float, refinement: float, edges: bool
+) -> tuple[float, float, float]:
+    """A cut as edges that elements grow from: see
+    :func:`solidgear.meshing.element_size.rough_cells`; parameters as for :func:`edge_size`, and
+    whether that is asked for.
+    """
+    least = (edge_size if edges else feature_size)(feature, radius, refinement)[1]
+    lo, hi = feature.reach
+    if feature.through:
+        # around a wall there are more than along a line by its radius over that of an element
+        return 4 * radius * (1 + (hi - lo) / 2 * GROWTH / least), least, GROWTH
+    return 2 * (hi - lo), least, GROWTH
+
+
 def _frame(feature: Cut) -> Frame:
     c, s = _num(cos(feature.angle)), _num(sin(feature.angle))
     return Frame(f"Sqrt((x*{c}-z*{s})^2)", f"(z*{c}+x*{s})", _num)

@@ -1,12 +1,10 @@
-"""Holes along the axis: where they lie in a sector, element sizes at them, and how many elements
-these sizes make.
-"""
+"""Holes along the axis: where they lie in a sector, and element sizes at them."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
-from math import cos, hypot, pi, sin, sqrt
+from math import cos, pi, sin, sqrt
 from typing import Any
 
 import numpy as np
@@ -20,11 +18,6 @@ Place = tuple[float, float]
 #: What elements leave at a hole is of second order and counts by that share: the edge may grow with
 #: its root. Eight edges instead of sixteen around holes of 0.7 and 3 % changed no number by 1e-4
 FULL_SHARE = 0.1
-#: how many more elements lie around a hole than the sums say, whose size changes within few of them:
-#: fitted to 12 half sectors of 24,000 to 156,000 unknowns, which come out within 7 %
-CROWD = 1.75
-#: points of the sums of :func:`around_holes`: along a ray from a hole, rays, and along the hole
-_RAY, _RAYS, _ALONG = 48, 32, 6
 
 
 @dataclass(frozen=True)
@@ -135,46 +128,10 @@ def hole_size(hole: Hole, places: Sequence[Place]) -> str:
     return f"{_num(hole.least)}+{_num(GROWTH)}*Sqrt({across}^2+{along}^2)"
 
 
-def around_holes(
-    hole: Hole, inner: float, outer: float, beside: Callable[[Any, Any], Any]
-) -> tuple[float, ...]:
-    """What holes add to the sums of :func:`solidgear.meshing.element_size.estimated_counts`, where
-    elements beside them are of a size.
-
-    Parameters
-    ----------
-    hole : Hole
-    inner, outer : float
-        Radii of the wall that they go through, m.
-    beside : callable
-        Element edge without holes, from radius and y.
-
-    Returns
-    -------
-    volume, surface, rim : float
-        Integrals of h^-3, h^-2 and h^-1 over all holes, less those without holes.
+def fine_lines(hole: Hole) -> tuple[float, float, float]:
+    """Holes as edges that elements grow from: see
+    :func:`solidgear.meshing.element_size.rough_cells`.
     """
-    # as far as half the way to the next hole, and to the walls; rays from the middle of a hole
-    far = hypot(outer, hole.circle)
-    ends = np.geomspace(hole.radius, far, _RAY + 1)
-    s, wide = np.sqrt(ends[1:] * ends[:-1])[:, None], np.diff(ends)[:, None]
-    t = (np.arange(_RAYS) + 0.5) * pi / _RAYS
-    x, z = s * np.sin(t), hole.circle + s * np.cos(t)
-    r = np.hypot(x, z)
-    own = (r < outer) & (r > inner) & (np.abs(np.arctan2(x, z)) < pi / hole.count)
-    area = 2 * hole.count * own * s * wide * (pi / _RAYS)
-    steps = (np.arange(_ALONG) + 0.5) / _ALONG
-    length = hole.hi - hole.lo
-    volume = surface = rim = 0.0
-    for y in hole.lo + length * steps:
-        without = beside(r, np.array(y))
-        with_ = np.minimum(without, hole.least + GROWTH * (s - hole.radius))
-        volume += (area * (with_**-3.0 - without**-3.0)).sum() * length / _ALONG
-        at_wall = min(hole.least, float(beside(np.array(hole.circle), np.array(y))))
-        surface += 2 * pi * hole.radius * hole.count / at_wall**2 * length / _ALONG
-    for y in (hole.lo, hole.hi):
-        without = beside(r, np.array(y))
-        with_ = np.minimum(without, hole.least + GROWTH * (s - hole.radius))
-        surface += (area * (with_**-2.0 - without**-2.0)).sum()
-        rim += 2 * pi * hole.radius * hole.count / hole.least
-    return tuple(CROWD * float(part) for part in (volume, surface, rim))
+    # around a wall of radius a there are a growth / least as many more as along a line
+    wider = 1 + hole.radius * GROWTH / hole.least
+    return 2 * hole.count * (hole.hi - hole.lo) * wider, hole.least, GROWTH

@@ -114,6 +114,11 @@ class Layout:
         """Number of ring lines: every one of :meth:`ring_numbers` is below it."""
         return max(self._offsets.values()) + 1
 
+    @property
+    def cells(self) -> int:
+        """Number of cells, but for those at fillets and chamfers."""
+        return sum(len(self.ring_numbers(k)) - 1 for k in self.segment)
+
     def ring_numbers(self, segment: int) -> np.ndarray:
         """Numbers of a segment's ring lines, the same as its neighbours' where they share a band.
 

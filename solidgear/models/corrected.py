@@ -33,10 +33,10 @@ from solidgear.body import Block, Body
 from solidgear.body.sections import Sections
 from solidgear.body.surface import Drawing, Surface, Volume
 from solidgear.errors import SolidgearError
+from solidgear.models.corrected_mesh import meshed_cuts
 from solidgear.models.harmonic.body import harmonic
 from solidgear.models.modal import Modal, alike_turn, modal
-from solidgear.models.solid.body import tetrahedra_plan, usual_size
-from solidgear.models.solid.featured import featured_body, meshed
+from solidgear.models.solid.featured import featured_body
 from solidgear.models.solid.halves import PARTS
 from solidgear.scene.attached import attached_stations
 
@@ -57,20 +57,7 @@ NOTHING = 1e-9
 TWIN = 1e-6
 #: fewest of them that are worth a body
 FEWEST = 2
-#: how many times smaller elements are at seat ends and shoulders
-GRADED = 2.0
 Families = list[tuple[str, tuple[int, ...]]]
-
-
-def sizes(scene) -> dict[str, float]:
-    """Element edges away from everything, and at seat ends and shoulders, m, of the 3D mesh at
-    refinement 1.
-
-    What a mesh lacks at seat ends and shoulders drops out of the difference, but for what a feature
-    close to them changes there; what it lacks at the edges of features does not.
-    """
-    size = usual_size(scene)
-    return {"size": size, "graded_size": size / GRADED}
 
 
 def corrected(
@@ -121,8 +108,7 @@ def corrected(
         attachments=attachments,
     )
     wanted = [*attached_stations(scene.stations, attachments)]
-    plan = tetrahedra_plan(scene, wanted, refinement=refinement, around=12, **sizes(scene))
-    made = meshed(scene, plan, refinement, True, edges=True)
+    made = meshed_cuts(scene, refinement, attachments)
     without = featured_body(scene, wanted, made, refinement, plain=True)
     with_ = featured_body(scene, wanted, made, refinement)
     exact = modal(base, modes)

@@ -20,7 +20,8 @@ from scipy.sparse.csgraph import min_weight_full_bipartite_matching
 from solidgear.body import Body
 from solidgear.solve.inertia_relief import elastic_fields
 from solidgear.solve.modes import modes
-from solidgear.solve.statics import factors, of_twin
+from solidgear.solve.shifted import factors
+from solidgear.solve.statics import of_twin
 
 #: stations by whose motions modes of two meshes are recognised
 STATIONS = 25

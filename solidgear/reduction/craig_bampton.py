@@ -43,7 +43,7 @@ from solidgear.reduction.superelement import (
 )
 from solidgear.solve.inertia_relief import elastic_fields
 from solidgear.solve.modes import modes
-from solidgear.solve.statics import factors
+from solidgear.solve.shifted import factors
 
 #: Stiffness of the springs that hold ports fast in a first step, over that of the body there.
 FAST = 1e6

@@ -32,7 +32,8 @@ from solidgear.body.mass import ScalarMass
 from solidgear.machine.threads import pinned
 from solidgear.solve.families import FAMILIES
 from solidgear.solve.modes import modes
-from solidgear.solve.statics import SHIFT, Factored, factors, flexibility
+from solidgear.solve.shifted import SHIFT, Factored, factors
+from solidgear.solve.statics import flexibility
 
 Mass: TypeAlias = sp.csr_matrix | ScalarMass
 

@@ -47,7 +47,7 @@ from solidgear.reduction.superelement import (
 from solidgear.solve.factor import Factor
 from solidgear.solve.inertia_relief import elastic_fields
 from solidgear.solve.modes import ModeSet, modes
-from solidgear.solve.statics import factors
+from solidgear.solve.shifted import factors
 
 #: Relative error of the energy of a field; displacements are good to its root.
 FINE = 1e-24

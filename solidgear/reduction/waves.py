@@ -27,7 +27,7 @@ from solidgear.reduction.moments import free_shapes
 from solidgear.reduction.rubin import lowest_shapes, residual_block
 from solidgear.reduction.superelement import PortMotion, ReducedMotions, Superelement, assemble
 from solidgear.solve.modes import modes
-from solidgear.solve.statics import factors
+from solidgear.solve.shifted import factors
 
 #: free modes of every harmonic that are kept
 KEPT = 6

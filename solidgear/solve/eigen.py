@@ -16,6 +16,7 @@ import scipy.sparse.linalg as spla
 
 from solidgear.body import Block
 from solidgear.errors import SolidgearError
+from solidgear.machine.memory import NoRoom
 from solidgear.solve.backends.matrix import FactorError
 from solidgear.solve.factor import indefinite
 from solidgear.solve.lanczos import block_lanczos
@@ -283,7 +284,10 @@ def count_below(supported: Supported, solved: Solved, reach: float) -> Count | N
                 planar=block.planar,
                 border=block.border,
             )
-        except FactorError:  # no room for a second factor, say: the result stands without the count
+        except (
+            FactorError,
+            NoRoom,
+        ):  # no room for a second factor, say: the result stands without the count
             factor = None
         if factor is None:
             return None

@@ -6,15 +6,17 @@ negative eigenvalues are counted. The back ends themselves are in :mod:`solidgea
 
 from __future__ import annotations
 
-import os
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 import scipy.sparse as sp
 
 from solidgear.factoring import Factoring
-from solidgear.machine.memory import available_mb
-from solidgear.solve.backends import BACKENDS, INSTALL, OUT_OF_CORE, SINGLE, missing
+from solidgear.machine.memory import available_mb, expect, require, tell
+from solidgear.solve.backends import BACKENDS, missing
 from solidgear.solve.backends.matrix import FactorError
+from solidgear.solve.choice import FORCED, USUAL, choice
 from solidgear.solve.factored import Factor, Indefinite, heard
 from solidgear.solve.inertia_relief import Linear
 from solidgear.solve.schur import any_corner, bordered, definite_corner
@@ -24,35 +26,19 @@ __all__ = [
     "Factor",
     "FactorError",
     "Indefinite",
+    "Planned",
+    "factored",
     "factorise",
     "indefinite",
     "negative_pivots",
-    "pardiso_missing",
+    "planned",
 ]
 
-# SuperLU's indices overflow on the factors of planar meshes of very high order ("not enough
-# memory").
-LARGE_PLANAR = 30_000_000  # entries
-# Solids below this size: what PARDISO gains is what it costs to load MKL (0.2 s, once). A corrected
-# solid of four halves of 4,000 to 5,000 unknowns gains 0.25 s.
-SMALL = 3_500
-# Fastest first, for solids. Factorisation against PARDISO at 41 000 (HEX20) and 93 000 unknowns
-# (TET10), two runs in turn on two busy cores: CHOLMOD 0.65 to 1.3, MUMPS 1.4 to 1.8 with OpenBLAS;
-# 2.7 and 5 with the reference BLAS (TET10, one run); SuperLU about 14 (HEX20, one run apart from
-# these).
-FASTEST = ("pardiso", "cholmod", "mumps", "superlu")
 COUNTING = ("pardiso", "mumps", "superlu")
 # Normwise backward error (Rigal and Gaches) of one solve.  Solids give 1e-17, since their solutions
 # lie in the low modes; it must be far below the ratio of the lowest eigenvalues to the norm, about
 # 1e-9 there, for the signs of those to mean anything.
 SOUND = 1e-14
-#: a factor in double precision, in memory
-USUAL = Factoring()
-
-
-def pardiso_missing() -> str:
-    """Empty if PARDISO can be used, else the reason why not."""
-    return missing("pardiso")
 
 
 def factorise(
@@ -90,8 +76,10 @@ def factorise(
     Raises
     ------
     FactorError
-        If the matrix holds NaN, is not positive definite to the back end, will not fit into memory,
-        or the back end is not there or cannot do what is asked of the factor.
+        If the matrix holds NaN, is not positive definite to the back end, or the back end is not
+        there or cannot do what is asked of the factor.
+    NoRoom
+        If the factor will not fit into memory.
 
     Examples
     --------
@@ -100,26 +88,109 @@ def factorise(
     >>> bool(np.allclose(matrix @ factor.solve(np.ones(2)), 1.0))
     True
     """
+    free = available_mb()
+    return factored([planned(matrix, backend, planar, border, factoring, product)], free)[0]
+
+
+@dataclass(frozen=True)
+class Planned:
+    """A factor that is not made yet.
+
+    Attributes
+    ----------
+    unknowns : int
+    backend : str
+        That will make it.
+    estimate_mb : float
+        Memory that it will take, by the back end's own analysis where it has one.
+    make : callable
+        The :class:`Factor`; once.
+    """
+
+    unknowns: int
+    backend: str
+    estimate_mb: float
+    make: Callable[[], Factor]
+
+
+def planned(
+    matrix: sp.spmatrix,
+    backend: str | None = None,
+    planar: bool = False,
+    border: int = 0,
+    factoring: Factoring = USUAL,
+    product: Linear | None = None,
+) -> Planned:
+    """Analyse a matrix and leave its numbers alone; parameters as for :func:`factorise`.
+
+    Returns
+    -------
+    Planned
+
+    Raises
+    ------
+    FactorError
+        If the matrix holds NaN, or the back end is not there or cannot do what is asked.
+
+    Examples
+    --------
+    >>> planned(sp.identity(4, format="csr"), backend="superlu").make().solve(np.ones(4))
+    array([1., 1., 1., 1.])
+    """
     matrix = _canonical(matrix)
+    n = matrix.shape[0]
     # a shaft that rigid seats hold from end to end is nothing but border
-    if 0 < border < matrix.shape[0]:
+    if 0 < border < n:
         whole = product or matrix.__matmul__
 
         def inner_product(u):
             return whole(np.pad(u, ((0, border), (0, 0))))[:-border]
 
-        return bordered(
-            matrix,
-            border,
-            lambda inner: factorise(inner, backend, planar, 0, factoring, inner_product),
-            definite_corner,
-        )
-    name, reason = choice(matrix, backend, planar, factoring)
-    work = _factored(name, matrix, planar, True, factoring)
-    if factoring.precision == "double":
-        return Factor(name, reason, work.solve, work.estimate_mb, work.nnz, factoring)
-    refining = Refining(product or matrix.__matmul__, work.solve)
-    return Factor(name, reason, refining.solve, work.estimate_mb, work.nnz, factoring, refining)
+        inner = planned(matrix[:-border, :-border], backend, planar, 0, factoring, inner_product)
+
+        def make_bordered():
+            return bordered(matrix, border, lambda _: inner.make(), definite_corner)
+
+        return Planned(n, inner.backend, inner.estimate_mb, make_bordered)
+    name, reason = choice(n, matrix.nnz, backend, planar, factoring)
+    work = _analysed(name, matrix, planar, True, factoring)
+
+    def make():
+        heard(n, work.factor)
+        about = (work.estimate_mb, work.nnz, factoring)
+        if factoring.precision == "double":
+            return Factor(name, reason, work.solve, *about)
+        refining = Refining(product or matrix.__matmul__, work.solve)
+        return Factor(name, reason, refining.solve, *about, refining)
+
+    return Planned(n, name, work.estimate_mb, make)
+
+
+def factored(plans: Sequence[Planned], free: float | None = None) -> list[Factor]:
+    """Make factors that will all be held, if they fit into memory together.
+
+    Parameters
+    ----------
+    plans : sequence of Planned
+    free : float, optional
+        MB before they were analysed, which takes a part of what they need.
+
+    Returns
+    -------
+    list of Factor
+
+    Raises
+    ------
+    NoRoom
+        With unknowns, the memory they need and the memory free, before a number is computed.
+    FactorError
+        If a matrix is not positive definite to its back end.
+    """
+    unknowns, need = sum(p.unknowns for p in plans), sum(p.estimate_mb for p in plans)
+    require(need, f"{unknowns} unknowns", plans[0].backend, free)
+    expect(need)
+    tell(unknowns, need)
+    return [plan.make() for plan in plans]
 
 
 def indefinite(
@@ -147,7 +218,9 @@ def indefinite(
     Raises
     ------
     FactorError
-        If the matrix holds NaN, will not fit into memory, or the back end is not there.
+        If the matrix holds NaN, or the back end is not there.
+    NoRoom
+        If its factor will not fit into memory.
 
     Examples
     --------
@@ -159,20 +232,21 @@ def indefinite(
         return bordered(
             matrix, border, lambda inner: indefinite(inner, backend, planar), any_corner
         )
-    chosen, reason = choice(matrix, backend, planar)
+    chosen, reason = choice(matrix.shape[0], matrix.nnz, backend, planar)
     forced = reason == FORCED and chosen in COUNTING
     others = () if forced else (other for other in COUNTING if other != chosen)
     for name in (chosen, *others):
         if name not in COUNTING or missing(name):
             continue
         try:
-            work = _factored(name, matrix, planar, False, USUAL)
+            free = available_mb()
+            work = _analysed(name, matrix, planar, False, USUAL)
+            require(work.estimate_mb, f"{matrix.shape[0]} unknowns", name, free)
+            heard(matrix.shape[0], work.factor)
             if work.negative is not None and _backward_error(matrix, work.solve) < SOUND:
                 return Indefinite(
                     name, reason, work.solve, work.estimate_mb, work.nnz, negative=work.negative
                 )
-        except NoRoom:
-            raise
         except FactorError:
             pass
         reason = f"no sound factor by {name}"
@@ -197,14 +271,6 @@ def negative_pivots(matrix: sp.spmatrix, backend: str | None = None) -> tuple[in
     return None if found is None else (found.negative, found.backend)
 
 
-# --------------------------------------------------------------------------- choice
-FORCED = "asked for"
-
-
-class NoRoom(FactorError):
-    """A factor that will not fit into memory."""
-
-
 def _canonical(matrix):
     if not np.all(np.isfinite(matrix.data)):
         raise FactorError(
@@ -217,113 +283,11 @@ def _canonical(matrix):
     return matrix
 
 
-def choice(
-    matrix: sp.csr_matrix,
-    backend: str | None = None,
-    planar: bool = False,
-    factoring: Factoring = USUAL,
-) -> tuple[str, str]:
-    """The back end that will factor a matrix.
-
-    Parameters
-    ----------
-    matrix : (n, n) sparse
-        Its size and number of entries count.
-    backend, planar, factoring
-        As for :func:`factorise`.
-
-    Returns
-    -------
-    name, reason : str
-
-    Raises
-    ------
-    FactorError
-        If the one asked for is unknown, not there, or cannot do it.
-
-    Examples
-    --------
-    >>> choice(sp.identity(100, format="csr"), backend="superlu")
-    ('superlu', 'asked for')
-    """
-    backend = backend or os.environ.get("SOLIDGEAR_BACKEND") or None
-    n = matrix.shape[0]
-    if backend is not None:
-        if backend not in BACKENDS:
-            raise FactorError(
-                f"unknown back end {backend!r}; use " + ", ".join(map(repr, BACKENDS))
-            )
-        why = _missing(backend)
-        if why:
-            raise FactorError(f"back end {backend} was asked for but {why}")
-        if backend not in _able(factoring):
-            raise FactorError(
-                f"back end {backend} was asked for but makes no factor in {factoring.words}; "
-                f"{' or '.join(_able(factoring)) or 'none'} does"
-            )
-        return backend, FORCED
-    if factoring.out_of_core:
-        return _out_of_core(factoring)
-    if planar and matrix.nnz < LARGE_PLANAR:
-        return "superlu", "a planar mesh fills in little"
-    if n <= SMALL:
-        return "superlu", f"{n} unknowns are not above {SMALL}"
-    absent = []
-    for name in (name for name in FASTEST if name in _able(factoring)):
-        why = _missing(name)
-        if not why:
-            break
-        absent.append(f"{why}; {INSTALL[name]}")
-    return name, f"{n} unknowns are above {SMALL}" + "".join(
-        f"; faster but absent: {why}" for why in absent
-    )
-
-
-def _able(factoring: Factoring) -> tuple[str, ...]:
-    """Back ends that make such a factor, fastest first."""
-    single, files = factoring.precision == "single", factoring.out_of_core
-    return tuple(
-        name
-        for name in FASTEST
-        if (not single or name in SINGLE) and (not files or name in OUT_OF_CORE)
-    )
-
-
-def _out_of_core(factoring: Factoring) -> tuple[str, str]:
-    absent = []
-    for name in _able(factoring):
-        why = _missing(name)
-        if not why:
-            return name, "it keeps its factor in files"
-        absent.append(f"{why}: {INSTALL[name]}")
-    raise FactorError(f"no back end here makes a factor in {factoring.words}: {'; '.join(absent)}")
-
-
-def _missing(name):
-    return pardiso_missing() if name == "pardiso" else missing(name)
-
-
-def _factored(name, matrix, planar, definite, factoring):
-    free = available_mb()
+def _analysed(name, matrix, planar, definite, factoring):
     options = {"planar": planar} if name in ("cholmod", "superlu") else {}
     options |= {"single": True} if factoring.precision == "single" else {}
     options |= {"out_of_core": True} if factoring.out_of_core else {}
-    n = matrix.shape[0]
-    work = heard(n, BACKENDS[name], matrix, definite=definite, **options)
-    if free is not None and work.estimate_mb > free:
-        raise NoRoom(
-            f"{n} unknowns need about {_mb(work.estimate_mb)} MB to factor by {name}, "
-            f"{_mb(free)} MB are free; "
-            "use a coarser mesh, or the harmonic model, which needs far less"
-            + f"; {less_memory(factoring)}"
-            * bool(definite and not planar and less_memory(factoring))
-        )
-    heard(n, work.factor)
-    return work
-
-
-def _mb(amount):
-    return f"{amount:.0f}" if amount >= 10 else f"{amount:.2g}"
+    return heard(matrix.shape[0], BACKENDS[name], matrix, definite=definite, **options)
 
 
 def _backward_error(matrix, solve):
@@ -334,10 +298,3 @@ def _backward_error(matrix, solve):
     # Frobenius: bounds the 2-norm from above, by no more than the bandwidth's root
     largest = np.linalg.norm(matrix.data)
     return np.linalg.norm(matrix @ x - rhs) / (largest * np.linalg.norm(x) + np.linalg.norm(rhs))
-
-
-def less_memory(factoring: Factoring) -> str:
-    """Settings of a factor that takes less memory than it does so far, or nothing."""
-    more = [] if factoring.precision == "single" else ["precision = single"]
-    more += [] if factoring.out_of_core else ["out_of_core = true"]
-    return f"a 3D solid also takes {' or '.join(more)}" if more else ""

@@ -29,8 +29,8 @@ from solidgear.solve.groups import (
     solved_parts,
 )
 from solidgear.solve.naming import Names, Projection
+from solidgear.solve.shifted import SHIFT, factors
 from solidgear.solve.soundness import sound
-from solidgear.solve.statics import SHIFT, factors
 from solidgear.solve.supported import decoupled
 from solidgear.solve.whole import whole_to
 

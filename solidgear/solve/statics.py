@@ -28,12 +28,10 @@ import scipy.sparse as sp
 from solidgear.body import Block, Body, as_supports
 from solidgear.body.supports import separated
 from solidgear.errors import SolidgearError, show
-from solidgear.factoring import Factoring
 from solidgear.machine.threads import pinned
 from solidgear.solve.condensed import Condensed, Coupled
-from solidgear.solve.factor import USUAL, Factor, factorise
 from solidgear.solve.inertia_relief import elastic_fields
-from solidgear.solve.symmetry import factor_by_symmetry
+from solidgear.solve.shifted import factors
 
 if TYPE_CHECKING:
     from solidgear.body.supports import Holding
@@ -45,10 +43,6 @@ ROUNDING, APART = 1e-14, 1e-4
 LAST_DIGIT = 1e-15
 # Relative error of the energy of fields that local problems look at.
 SOLVED = 1e-26
-# Of the lowest elastic eigenvalue.  Rounding in the factor is amplified by the highest eigenvalue
-# of the mesh over the shift: 1e-3 left 5e-3 of the frequencies of slender tubes wrong, 3e-2 leaves
-# what refinement can mend.  Statics takes a solve more for it.
-SHIFT = 0.03
 
 
 @dataclass(frozen=True)
@@ -73,65 +67,6 @@ class Flexibility:
     residual: float
     backend: str
     fields: Mapping[int, np.ndarray] = field(default_factory=dict)
-
-
-@dataclass(frozen=True)
-class Factored:
-    """Factors of the shifted stiffness of a body.
-
-    Attributes
-    ----------
-    of_block : list of Factor
-        One per block, twins sharing theirs.
-    """
-
-    of_block: list[Factor]
-
-
-def factors(body: Body) -> list[Factor]:
-    """One factor of ``K + sigma M`` per block, kept with the body.
-
-    Parameters
-    ----------
-    body : Body
-
-    Returns
-    -------
-    list of Factor
-        Twins share theirs.
-
-    Raises
-    ------
-    FactorError
-        As :func:`~solidgear.solve.factor.factorise`.
-    """
-    return body.cache.get(Factored, lambda: _factored(body)).of_block
-
-
-def _factored(body: Body) -> Factored:
-    made: dict[int, Factor] = {}
-    for block in body.blocks:
-        key = id(block.stiffness)
-        if key not in made:
-            made[key] = _factor(block, SHIFT * body.scale, body.factoring)
-    return Factored([made[id(block.stiffness)] for block in body.blocks])
-
-
-def _factor(block: Block, shift: float, factoring: Factoring) -> Factor:
-    matrix = (block.stiffness + shift * block.mass).tocsr()
-    if factoring.engine != "own":
-        from solidgear.solve.petsc import factor_on_ranks
-
-        return factor_on_ranks(block, matrix, factoring)
-    in_pieces = factor_by_symmetry(matrix, block.reflections) if factoring == USUAL else None
-    return in_pieces or factorise(
-        matrix,
-        planar=block.planar,
-        border=block.border,
-        factoring=factoring,
-        # by what the body holds anyway, not by a copy
-        product=lambda u: block.stiffness @ u + shift * (block.mass @ u),
-    )
 
 
 def flexibility(body: Body, tolerance: float = 1e-12) -> Flexibility:

@@ -18,7 +18,7 @@ from solidgear.body import Body, Supports, component_rows
 from solidgear.solve.coupling import decoupled, groups
 from solidgear.solve.inertia_relief import elastic_fields
 from solidgear.solve.mass_update import MassUpdate
-from solidgear.solve.statics import SHIFT, factors
+from solidgear.solve.shifted import SHIFT, factors
 from solidgear.springs import root_of
 
 # The motion of a seat that comes out below this part of the largest one has no digits left that

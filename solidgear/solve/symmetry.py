@@ -23,7 +23,8 @@ import numpy as np
 import scipy.sparse as sp
 
 from solidgear.body import Reflection
-from solidgear.solve.factor import choice, factorise
+from solidgear.solve.choice import choice
+from solidgear.solve.factor import Planned, planned
 from solidgear.solve.factored import Factor
 
 #: A row of a matrix and of its reflection may differ by so much of it. Assembling leaves 2e-15 to
@@ -31,8 +32,8 @@ from solidgear.solve.factored import Factor
 ALIKE = 1e-11
 
 
-def factor_by_symmetry(matrix: sp.csr_matrix, reflections: Sequence[Reflection]) -> Factor | None:
-    """Factor of a symmetric positive definite matrix by its pieces.
+def planned_by_symmetry(matrix: sp.csr_matrix, reflections: Sequence[Reflection]) -> Planned | None:
+    """Analyse a symmetric positive definite matrix by its pieces.
 
     Parameters
     ----------
@@ -44,26 +45,26 @@ def factor_by_symmetry(matrix: sp.csr_matrix, reflections: Sequence[Reflection])
 
     Returns
     -------
-    Factor or None
+    Planned or None
         None where there is no reflection, or one does not leave the matrix as it is.
 
     Raises
     ------
     FactorError
-        As :func:`~solidgear.solve.factor.factorise`.
+        As :func:`~solidgear.solve.factor.planned`.
 
     Examples
     --------
     Three equal masses in a row, which the mirror turns end for end:
 
     >>> matrix = sp.csr_matrix(np.array([[3.0, -1.0, 0.0], [-1.0, 3.0, -1.0], [0.0, -1.0, 3.0]]))
-    >>> found = factor_by_symmetry(matrix, [(np.array([2, 1, 0]), np.ones(3))])
+    >>> found = planned_by_symmetry(matrix, [(np.array([2, 1, 0]), np.ones(3))]).make()
     >>> bool(np.allclose(matrix @ found.solve(np.arange(3.0)), np.arange(3.0)))
     True
     """
     if not reflections or not _alike(matrix, reflections):
         return None
-    backend, reason = choice(matrix)
+    backend, reason = choice(matrix.shape[0], matrix.nnz)
     kinds = symmetric_bases(matrix.shape[0], reflections[:2])
     pieces = []
     for kind, fold in kinds.items():
@@ -75,7 +76,24 @@ def factor_by_symmetry(matrix: sp.csr_matrix, reflections: Sequence[Reflection])
         first, size = _first_of(fold)
         small = (sp.diags(np.sqrt(size)) @ matrix[first]) @ fold
         small.sort_indices()
-        pieces.append((both, [f.T.tocsr() for f in both], factorise(small, backend)))
+        pieces.append((both, [f.T.tocsr() for f in both], planned(small, backend)))
+    estimate = sum(plan.estimate_mb for *_, plan in pieces)
+
+    def make():
+        made = [(both, back, plan.make()) for both, back, plan in pieces]
+        return Factor(
+            made[0][2].backend,
+            f"{reason}; in {len(made)} pieces by mirror planes",
+            _solver(made),
+            estimate,
+            _total(factor.nnz for *_, factor in made),
+        )
+
+    return Planned(matrix.shape[0], backend, estimate, make)
+
+
+def _solver(pieces):
+    """Solutions from those of all pieces."""
 
     def solve(rhs):
         columns = rhs.reshape(len(rhs), -1)
@@ -87,14 +105,7 @@ def factor_by_symmetry(matrix: sp.csr_matrix, reflections: Sequence[Reflection])
                 out += fold @ found[:, i * width : (i + 1) * width]
         return out.reshape(rhs.shape)
 
-    made = [factor for _, _, factor in pieces]
-    return Factor(
-        made[0].backend,
-        f"{reason}; in {len(made)} pieces by mirror planes",
-        solve,
-        _total(factor.estimate_mb for factor in made),
-        _total(factor.nnz for factor in made),
-    )
+    return solve
 
 
 def symmetric_bases(

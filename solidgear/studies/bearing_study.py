@@ -252,7 +252,7 @@ class BearingRange:
     refused : tuple of str
         Why points could not be solved, each reason once.
     model : str
-        Rung that was solved.
+        Model that was solved.
     """
 
     bounds: tuple[Bound, ...]

@@ -252,16 +252,16 @@ def _beyond_the_segments(scene: Scene) -> Iterator[Notice]:
         (),
         f"not of revolution{known}: {names}; all that is told of the shaft is of its plain part",
     )
-    fit = [r.name for r in LADDER if r.build is not None and not r.unfit(scene)]
+    fit = [name for name in LADDER.bodies if not LADDER[name].unfit(scene)]
     use = f"use {' or '.join(fit)}" if fit else "no model holds all of them"
     for model in (m for m in unfit if LADDER[m].holds):
         yield Notice("avoid", (model,), f"{LADDER[model].unfit(scene)}; {use}")
     for model in (m for m in fit if m in LADDER.fit(scene)):
-        for sentence in heavy_meshes(scene, LADDER[model]):
+        for sentence in heavy_meshes(scene, LADDER[model]) if LADDER[model].holds else ():
             small = "features that are small beside the part make cells as small around them"
             yield Notice("fact", (model,), f"{sentence}; {small}")
-    blind = tuple(m for m in unfit if LADDER[m].build is not None and not LADDER[m].holds)
-    lumped = tuple(m for m in unfit if LADDER[m].build is None)
+    lumped = tuple(m for m in unfit if LADDER[m].family == LUMPED)
+    blind = tuple(m for m in unfit if m not in lumped and not LADDER[m].holds)
     if lumped:
         on = " or ".join(m for m in fit if LADDER[m].family == SOLID)
         rests = f"the scene has {names}: a lumped model of it rests on a solid that holds "

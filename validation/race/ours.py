@@ -65,7 +65,7 @@ def solve(scene, fidelity: str, options: dict, modes: int = 10, *, free: bool = 
         Modes of the free shaft and no loads.
     """
     import solidgear as sg
-    from solidgear.solve.statics import factors
+    from solidgear.solve.shifted import factors
 
     gc.collect()
     clock, static = Clock(), None

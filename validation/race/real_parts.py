@@ -18,7 +18,7 @@ from typing import Any
 import numpy as np
 
 import solidgear as sg
-from solidgear.solve.statics import factors
+from solidgear.solve.shifted import factors
 from validation.common import ROOT
 from validation.race import calculix
 from validation.race import real_lines as lines

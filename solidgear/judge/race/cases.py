@@ -14,7 +14,6 @@ from solidgear.judge.race.pareto import Row
 from solidgear.ladder.registry import LADDER
 
 if TYPE_CHECKING:
-    from solidgear.ladder.model import Rung, Series
     from solidgear.scene import Scene
 
 log = logging.getLogger(__name__)
@@ -32,16 +31,10 @@ def plan(scene: Scene, full: bool = False) -> list[Row]:
     rows = [
         Row(family, label, level, rung.name, options)
         for rung in LADDER
-        for family, label, all_options in _series(rung, scene, full)
+        for family, label, all_options in rung.series(scene, full)
         for level, options in enumerate(all_options, start=1)
     ]
     return sorted(rows, key=lambda row: row.level)
-
-
-def _series(rung: Rung, scene: Scene, full: bool) -> list[Series]:
-    if rung.series is None:
-        return [(rung.family, rung.heading, [{}])]
-    return rung.series(scene, full)
 
 
 _SETUP = """

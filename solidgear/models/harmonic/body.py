@@ -17,6 +17,7 @@ from skfem.element import ElementQuadP
 from solidgear.body import Body, Port
 from solidgear.body.surface import Surface
 from solidgear.kernel.assembly import unknowns
+from solidgear.kernel.room import assemblable
 from solidgear.meshing.grading import Grading
 from solidgear.meshing.layout import Layout, layout
 from solidgear.meshing.meridian import Cut, Meridian, cut_meridian, drawn_across, meridian
@@ -140,6 +141,7 @@ def harmonic(
     # chamfers in shoulders as cones, to whose ends layers lead
     scene = coned(scene)
     plan = harmonic_layout(scene, attachments, **grading, plain=plain)
+    assemblable(plan.cells, (order + 1) ** 2)
     uncut = flat = meridian(scene, plan)
     parent = np.arange(flat.cells.shape[1])
     if given["across"]:

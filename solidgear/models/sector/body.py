@@ -9,12 +9,14 @@ from functools import partial
 from typing import Any
 
 import numpy as np
+from skfem import MeshTet2
 
 from solidgear.body import Block, Body, Port
 from solidgear.errors import SolidgearError
 from solidgear.kernel.attachment import tie_rigidly
-from solidgear.meshing.element_size import estimated_counts
-from solidgear.meshing.holes import around_holes
+from solidgear.kernel.room import assemblable
+from solidgear.meshing.element_size import rough_cells
+from solidgear.meshing.holes import fine_lines
 from solidgear.meshing.sector import (
     SectorMesh,
     hole_sizes,
@@ -22,24 +24,20 @@ from solidgear.meshing.sector import (
     replicated,
     sector_mesh,
     sectors_of,
-    tooth_sizes,
 )
 from solidgear.models.kinds import CYCLIC
 from solidgear.models.options import SECTOR_OPTIONS, checked
 from solidgear.models.sector.cyclic import cyclic_blocks
 from solidgear.models.sector.half import half_sector_blocks, half_sector_solid
 from solidgear.models.sector.mesh import seats, sector_solid
+from solidgear.models.size import Size, of_mesh
 from solidgear.models.solid.block import free_block
-from solidgear.models.solid.body import tetrahedra_plan
 from solidgear.models.solid.mesh import SolidMesh, _isoparametric
+from solidgear.models.solid.plan import tetrahedra_plan
 from solidgear.models.spectrum import elastic_scale
 from solidgear.scene.attached import attached_stations
 from solidgear.scene.features.around import mirror_angle, no_common_sector
 
-#: strips of a tooth that cells do not reach across, from its root outwards: its flanks and the middles of
-#: land and gap. 20 shafts of 1 to 12 teeth in a sector come out with 0.79 to 1.12 of their cells at
-#: refinements of 0.3 to 1; strips of teeth all the way to the axis made up to four times as many
-OF_TEETH = 4
 #: eigenvalues of pairs in a real matrix made of a complex one differ by rounding
 PAIRS = 1e-9
 
@@ -156,13 +154,22 @@ def whole(scene: Any, wanted: Sequence, *, refinement: float, **own: Any) -> Bod
         As :func:`sector`.
     """
     features = cyclic_features(scene)
-    made = mirrored(meshed_sector(scene, wanted, features, refinement=refinement, **own))
-    mesh, segment = replicated(made)
+    mesh, segment, made = whole_mesh(scene, wanted, refinement=refinement, **own)
     solid = _isoparametric(mesh, "tet10", segment)
     block, ties = free_block(solid, scene, wanted, seats(solid, mesh.p, scene, features))
     facts = _facts(made, solid, features, refinement) | {"pair_tolerance": 1e-6}
     del facts["solved_part"]
     return _body("solid", scene, wanted, (tie_rigidly(block, ties),), facts, solid)
+
+
+def whole_mesh(
+    scene: Any, wanted: Sequence, **sizes: Any
+) -> tuple[MeshTet2, np.ndarray, SectorMesh]:
+    """The mesh of all sectors, the segment of each element, and the sector that it is copied from;
+    parameters as for :func:`whole`.
+    """
+    made = mirrored(meshed_sector(scene, wanted, cyclic_features(scene), **sizes))
+    return (*replicated(made), made)
 
 
 def cyclic_features(scene: Any) -> tuple[Any, ...]:
@@ -215,9 +222,9 @@ def meshed_sector(
     """The mesh of one sector of a scene, divided at the planes ``ends`` too; parameters as for
     :func:`sector`.
     """
-    plan = tetrahedra_plan(
-        scene, wanted, size=size, graded_size=graded_size, refinement=refinement, around=16
-    )
+    sizes = {"size": size, "graded_size": graded_size, "refinement": refinement}
+    assemblable(rough_sector(scene, wanted, count=count, **sizes), 10)
+    plan = tetrahedra_plan(scene, wanted, around=16, **sizes)
     plan["planes"] = sorted({*plan["planes"], *ends})
     return sector_mesh(scene.segments, features, **plan, refinement=refinement, count=count)
 
@@ -249,47 +256,50 @@ def halved(scene: Any, count: int) -> bool:
     return mirror_angle(cyclic_features(scene), count) is not None
 
 
-def sector_counts(scene, given: Mapping[str, Any]) -> tuple[float, float, float, float]:
-    """Vertices, edges, faces and cells of the whole shaft at the sizes of its sector, estimated.
+def sector_size(
+    scene,
+    *,
+    ovalising: tuple[int, ...],
+    attachments: tuple[str, ...] | None,
+    count: int | None,
+    half: bool,
+    material_port: bool,
+    **sizes: Any,
+) -> Size:
+    """Mesh one sector and count; parameters as for :func:`sector`.
 
-    Parameters
-    ----------
-    scene : Scene
-    given : mapping
-        Options of :func:`sector`, or of the solid.
-
-    Returns
-    -------
-    vertices, edges, faces, cells : float
+    A wave around takes as many complex unknowns as the sector has, or, of half a sector, real ones.
+    Motions that are alike in all sectors are real, and of half a sector fall into two.
     """
-    wanted = [*attached_stations(scene.stations, given["attachments"])]
-    refinement = given["refinement"]
-    sizes = {"size": given["size"], "graded_size": given["graded_size"]}
+    wanted = [*attached_stations(scene.stations, attachments)]
+    ends = (scene.port.lo, scene.port.hi) if material_port else ()
+    made = meshed_sector(scene, wanted, cyclic_features(scene), ends, count=count, **sizes)
+    made = made if half else mirrored(made)
+    mesh: Any = _solved_part(made)[0]
+    (_, entries), n, own = of_mesh(mesh.dofs).matrices[0], mesh.nodes.shape[1], mesh.sector
+    axis, waves = len(own.axis), 1 + len(ovalising)
+    if made.half:
+        planes = len(own.middle) + len(own.cut)
+        rows = 6 * (n - planes - axis) + 3 * planes + axis
+        # the two planes of bending are twins, of one matrix
+        matrices, twins = [(rows // 2, entries)] * 2 + [(rows, 2 * entries)] * waves, rows
+    else:
+        rows = 3 * (n - len(own.slave) - axis) + axis
+        matrices, twins = [(rows, entries)] + [(2 * rows, 4 * entries)] * waves, 0
+    total = sum(count for count, _ in matrices) + twins + rows % 2 * made.half
+    return Size(total, tuple(matrices), sum(held for _, held in matrices))
+
+
+def rough_sector(scene, wanted, *, refinement: float, count: int | None = None, **sizes) -> float:
+    """Roughly how many tetrahedra there will be in half a sector, without meshing; parameters as for
+    :func:`meshed_sector`.
+    """
     plan = tetrahedra_plan(scene, wanted, refinement=refinement, around=16, **sizes)
     features = cyclic_features(scene)
-    more = tooth_sizes(scene.segments, features, refinement)
-    of = {s.name: s for s in scene.segments}
-    holes = [
-        partial(around_holes, hole, here.inner0, here.outer0)
-        for _, here, hole in hole_sizes(scene.segments, features, refinement)
-    ]
-    around = sectors_of(features) * (2 if halved(scene, sectors_around(scene, given)) else 1)
-    toothed = [(of[f.segment], f) for f in features if f.toothed]
-    # along a shaft with teeth cells are held by both ends of every sector
-    strips = partial(_strips, around * (2 if toothed else 1), toothed)
-    return estimated_counts(scene.segments, **plan, more=more, holes=holes, sectors=strips)
-
-
-def _strips(around: int, toothed: Sequence, r: np.ndarray, y: np.ndarray) -> np.ndarray:
-    """Strips around that cells do not reach across: of sectors, and of teeth where these are."""
-    shape = np.broadcast_shapes(r.shape, y.shape)
-    out = np.full(shape, float(around))
-    for segment, teeth in toothed:
-        share = np.clip((y - segment.y0) / (segment.y1 - segment.y0), 0.0, 1.0)
-        pitch = segment.outer0 + share * (segment.outer1 - segment.outer0)
-        inside = (y > segment.y0) & (y < segment.y1) & (r > teeth.root * pitch)
-        out = np.where(inside, np.maximum(out, OF_TEETH * teeth.count), out)
-    return out
+    fine = [fine_lines(hole) for *_, hole in hole_sizes(scene.segments, features, refinement)]
+    around = count or max(1, sectors_of(features))
+    own = {name: plan[name] for name in ("circles", "size", "graded_size")}
+    return rough_cells(scene.segments, fine=fine, **own) / (2 * around)
 
 
 def _body(fidelity, scene, wanted, blocks, facts, drawing) -> Body:

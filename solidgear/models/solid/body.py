@@ -12,12 +12,12 @@ from typing import Any
 from solidgear.body import Body, Port, Reflection
 from solidgear.errors import SolidgearError
 from solidgear.kernel.attachment import tie_rigidly
-from solidgear.meshing.grading import Grading
+from solidgear.kernel.room import assemblable
 from solidgear.models.kinds import CYCLIC, PARTS
-from solidgear.models.limits import countable
 from solidgear.models.options import SOLID_OPTIONS, checked
 from solidgear.models.solid.block import free_block, mirrored, seat_facets
 from solidgear.models.solid.mesh import _isoparametric
+from solidgear.models.solid.plan import hexahedra_layout, tetrahedra_of, tetrahedra_plan
 from solidgear.models.spectrum import elastic_scale
 from solidgear.scene.attached import attached_stations
 from solidgear.scene.shaft import named, resolved
@@ -159,85 +159,13 @@ def solid(
     )
 
 
-def hexahedra_layout(
-    scene,
-    attachments=None,
-    *,
-    relative_size,
-    size,
-    layers,
-    edge_layers,
-    radial_layers,
-    ratio,
-    around,
-    refinement,
-):
-    """Mesh lines of :func:`solid` in hexahedra and cells around, before anything is meshed;
-    parameters as there.
-    """
-    from solidgear.meshing.layout import layout
-
-    countable(
-        "solid",
-        scene,
-        size or relative_size * min(min(s.outer0, s.outer1) for s in scene.segments),
-        refinement,
-    )
-    grading = Grading(
-        layers,
-        edge_layers,
-        radial_layers,
-        ratio,
-        relative_size,
-        size,
-        reach=0.7,
-        radial_reach=0.5,
-        refinement=refinement,
-        core=True,
-        # quadratic sides: what layers do at a sharp corner, more of them do at a round one
-        corner_cells=max(1, layers),
-    )
-    return layout(scene, grading, attachments), max(8, 4 * int(round(around * refinement / 4)))
-
-
-def usual_size(scene) -> float:
-    """Element edge of tetrahedra at refinement 1, away from everything, m."""
-    return max(max(s.outer0, s.outer1) for s in scene.segments) / 3
-
-
-def tetrahedra_plan(scene, wanted, *, size, graded_size, refinement, around) -> dict:
-    """Arguments of :func:`~solidgear.meshing.tetrahedra.tetrahedra` for the stations ``wanted``
-    with their attachments.
-    """
-    size = (
-        countable(
-            "solid",
-            scene,
-            size or usual_size(scene),
-            refinement,
-        )
-        / refinement
-    )
-    graded_size = (graded_size / refinement) if graded_size else size / 4
-    planes = sorted({s.y for s, a in wanted if a == "section"})
-    circles = sorted({y for s, a in wanted if a != "section" for y in (s.lo, s.hi)})
-    # Meshes of one sequence are similar only if the circumference is refined with the rest.
-    turns = max(8, int(round(max(16, around) * refinement)))
-    return {
-        "planes": planes,
-        "circles": circles,
-        "size": size,
-        "graded_size": None if graded_size >= size else graded_size,
-        "around": turns,
-    }
-
-
 def _hexes(scene, wanted, grading):
     from solidgear.meshing.closed_form import volume_of
     from solidgear.meshing.hexahedra import hexahedra
     from solidgear.meshing.quality import check_mesh
 
     plan, turns = hexahedra_layout(scene, tuple(dict.fromkeys(a for _, a in wanted)), **grading)
+    assemblable(plan.cells * turns, 20)
     mesh, segment = hexahedra(scene, plan, turns)
     return (
         mesh,
@@ -254,6 +182,7 @@ def _tets(scene, wanted, element, size, graded_size, refinement, around):
     plan = tetrahedra_plan(
         scene, wanted, size=size, graded_size=graded_size, refinement=refinement, around=around
     )
+    assemblable(tetrahedra_of(scene, plan, refinement), 10)
     made = tetrahedra(scene.segments, blends=scene.corners, **plan)
     if element == "tet10":
         return made.mesh, made.segment, made.quality

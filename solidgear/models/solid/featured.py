@@ -10,11 +10,13 @@ import numpy as np
 
 from solidgear.body import Block, Body, Port
 from solidgear.kernel.attachment import tie_rigidly
+from solidgear.kernel.room import assemblable
 from solidgear.meshing.featured import FeaturedMesh, featured_mesh, without
 from solidgear.meshing.quality import check_mesh
 from solidgear.models.solid.block import free_block
 from solidgear.models.solid.halves import HalfDrawing, half_blocks
 from solidgear.models.solid.mesh import SolidMesh, _isoparametric
+from solidgear.models.solid.plan import tetrahedra_of
 from solidgear.models.solid.seat_faces import Seats
 from solidgear.models.spectrum import elastic_scale
 from solidgear.scene.shaft import resolved
@@ -24,6 +26,7 @@ def meshed(scene, plan: dict, refinement: float, half: bool, edges: bool = False
     """The mesh of a scene with features; ``plan`` holds planes, circles and sizes, and ``edges``
     asks for smaller elements at the re-entrant edges of features.
     """
+    assemblable(tetrahedra_of(scene, plan, refinement, edges=edges), 10)
     return featured_mesh(
         scene.segments,
         resolved(scene),

@@ -9,7 +9,7 @@ from typing import Any
 
 from solidgear.body import Body
 from solidgear.errors import SolidgearError
-from solidgear.kernel.counts import solved_as
+from solidgear.kernel.room import assemblable
 from solidgear.machine.isolated import IsolatedError, isolated
 from solidgear.meshing import step
 from solidgear.meshing.element_size import size_formulas
@@ -18,9 +18,12 @@ from solidgear.meshing.outline import Frustum, corners_of, slabs_between, tolera
 from solidgear.meshing.placing import Placing
 from solidgear.meshing.quality import MeshError, check_mesh
 from solidgear.models.solid.own_mesh import solid_body
+from solidgear.models.solid.plan import tetrahedra_of, tetrahedra_plan
 
 #: seconds after which a mesh is given up
 MESH_SECONDS = 900.0
+#: elements of first order that a file may have, by those that they are solved with
+SOLVED_AS = {"tet4": "tet10"}
 #: planes across a part reach beyond its largest radius by this factor
 BEYOND = 1.1
 
@@ -71,7 +74,7 @@ def part_body(
         # flat elements of first order are taken as the shape only, since they lock in bending: on a
         # rod of 16 faces around they miss the deflection by -7.7 %, those of second order with straight
         # sides by +2.3 %, which is what the flat faces take from the section
-        element = solved_as(found.element)
+        element = SOLVED_AS.get(found.element, found.element)
         if element != found.element:
             facts["file_element"] = found.element
         return solid_body(
@@ -127,11 +130,10 @@ def step_plan(scene, wanted: Sequence, *, size, graded_size, refinement, around)
     dict
         For :func:`solidgear.meshing.step.mesh`.
     """
-    from solidgear.models.solid.body import tetrahedra_plan
-
     plan = tetrahedra_plan(
         scene, wanted, size=size, graded_size=graded_size, refinement=refinement, around=around
     )
+    assemblable(tetrahedra_of(scene, plan, refinement), 10)
     shapes = [Frustum.of(s) for s in scene.segments]
     tolerance = tolerance_of(shapes)
     slabs = slabs_between(shapes, plan["planes"], tolerance)

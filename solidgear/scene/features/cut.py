@@ -135,16 +135,6 @@ class Long(Cut):
         """True where its ends are half circles."""
         return False
 
-    def walls(self, radius: float, ends: int) -> tuple[float, float]:
-        """Area of its walls, m^2, and length of their edges, m, of which so many at its ends are no
-        ends of the shaft.
-        """
-        raise NotImplementedError
-
-    def edge_length(self, radius: float) -> float:
-        """Length of its re-entrant edges, m."""
-        raise NotImplementedError
-
     def distance(self, radius: float, frame: Frame) -> str:
         below = f"Max(0,{frame.num(self.floor(radius))}-{frame.up})"
         beside = f"Max(0,{frame.across}-{frame.num(self.half_width(radius))})"

@@ -66,15 +66,6 @@ class Flat(Long):
     def edges(self, radius: float) -> tuple[float, float]:
         return self.half_width(radius) / 2, math.inf
 
-    def walls(self, radius: float, ends: int) -> tuple[float, float]:
-        half = self.half_width(radius)
-        turned = math.asin(half / radius)
-        area = ends * (radius**2 * turned - half * self.floor(radius))
-        return area, 2 * self.length + ends * 2 * (half + radius * turned)
-
-    def edge_length(self, radius: float) -> float:
-        return 4 * self.half_width(radius)
-
     def beside_edges(self, radius: float, frame: Frame) -> str:
         (lo, hi), half = self.reach, frame.num(self.half_width(radius))
         ends = f"Min(Sqrt((y-{frame.num(lo)})^2),Sqrt((y-{frame.num(hi)})^2))"

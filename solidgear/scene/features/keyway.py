@@ -119,17 +119,6 @@ class Keyway(Long):
         curved = math.pi * self.width / 10 if self.rounded else math.inf
         return min(self.depth, self.width / 2), curved
 
-    def walls(self, radius: float, ends: int) -> tuple[float, float]:
-        half, around = self.width / 2, self.edge_length(radius)
-        side = self.depth - (radius - math.sqrt(radius**2 - half**2)) / 2
-        return around * side, 2 * around + 4 * side * (not self.rounded)
-
-    def edge_length(self, radius: float) -> float:
-        lo, hi = self.reach
-        if self.rounded:
-            return 2 * (hi - lo - self.width) + math.pi * self.width
-        return 2 * (hi - lo) + 2 * self.width
-
     def beside_edges(self, radius: float, frame: Frame) -> str:
         (lo, hi), half, num = self.reach, self.width / 2, frame.num
         if self.rounded:

@@ -29,7 +29,7 @@ class Cholmod:
 
         upper = upper_triangle(matrix)
         self.lower = sp.csc_matrix((upper.data, upper.indices, upper.indptr), shape=upper.shape)
-        self.estimate_mb = law("cholmod", matrix, planar) + size_mb(self.lower)
+        self.estimate_mb = law("cholmod", matrix.shape[0], matrix.nnz, planar) + size_mb(self.lower)
         self.nnz = None
         self.symbolic = analyze(self.lower, mode="supernodal", ordering_method="metis")
 

@@ -1,48 +1,32 @@
-"""Peak memory of a factorisation, estimated for back ends that cannot say it themselves."""
+"""Memory of a factor by back ends that cannot say it themselves, and before there is a matrix.
+
+Nested dissection of a mesh in three dimensions leaves a factor of the order of the square of its
+largest separator. That holds ``n^(2/3)`` unknowns, times the cube root of the entries of a row,
+since separators are as thick as an element: fill goes with ``(n nnz)^(2/3)``. On planar meshes of
+orders 1 to 12 memory was seen to go with ``n nnz^(1/4)``.
+"""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
-import scipy.sparse as sp
-
-# Peak memory of a factorisation in MB = c (n / 1e4)^a (entries / 1e6)^b, fitted to peaks of
-# resident memory measured on the shipped overhung pinion: solids of all element types with 4 800 to
-# 92 000 unknowns, harmonic blocks of 10 000 to 51 000 (order 2 to 8). Estimate over measured:
-# superlu 0.68 to 1.41 (ten solids), 0.97 to 1.04 (five planar); cholmod 0.75 to 1.16 (eleven), 0.97
-# to 1.02. Graded hexahedra are at the low end: fitted without the largest of them, its memory came
-# out as 0.47 (superlu) and 0.64 (cholmod) of the measured. So these separate a model that fits from
-# one that is hopeless; they do not decide whether one just fits.
-LAWS = {
-    ("superlu", False): (74.9, 0.778, 0.540),
-    ("superlu", True): (18.6, 0.0, 0.836),
-    ("cholmod", False): (46.7, 0.455, 0.631),
-    ("cholmod", True): (18.6, 0.0, 0.924),
-}
+MB = 2.0**20
+#: bytes by (n nnz)^(2/3), of a solid. PARDISO's analysis says 6.6 to 10.7 for 19 matrices of 5,000
+#: to 146,000 unknowns, hexahedra and tetrahedra; peaks of SuperLU (minimum degree) were 11 to 18 on
+#: four solids, of CHOLMOD 7 to 10; MUMPS's analysis says 1.5 to 1.8 times what CHOLMOD takes
+SOLID = {"pardiso": 8.0, "cholmod": 8.5, "mumps": 14.0, "superlu": 14.0}
+#: bytes by n nnz^(1/4), of a planar matrix: peaks of SuperLU on six harmonic solids of 4,000 to
+#: 130,000 unknowns were 47 to 70
+PLANAR = 57.0
 
 
-@dataclass(frozen=True)
-class Outline:
-    """A matrix that is not there yet: how large it will be.
-
-    Attributes
-    ----------
-    shape : (float, float)
-    nnz : float
-        Entries.
-    """
-
-    shape: tuple[float, float]
-    nnz: float
-
-
-def law(name: str, matrix: sp.csr_matrix | Outline, planar: bool) -> float:
-    """Estimated peak memory of a back end that gives no estimate itself.
+def law(name: str, unknowns: float, entries: float, planar: bool = False) -> float:
+    """Peak memory of factoring a matrix, about.
 
     Parameters
     ----------
-    name : {'superlu', 'cholmod'}
-    matrix : (n, n) sparse or Outline
+    name : {'pardiso', 'cholmod', 'mumps', 'superlu'}
+        Back end.
+    unknowns, entries : float
+        Rows of the matrix, and what is in them, both triangles.
     planar : bool
         Whether it comes from a 1D or 2D mesh.
 
@@ -50,6 +34,15 @@ def law(name: str, matrix: sp.csr_matrix | Outline, planar: bool) -> float:
     -------
     float
         MB.
+
+    Examples
+    --------
+    Of one shape, factors of solids grow with the power 4/3 of their unknowns:
+
+    >>> one, eight = (law("superlu", n, 80 * n) for n in (10_000, 80_000))
+    >>> round(eight / one, 6)
+    16.0
     """
-    factor, by_unknowns, by_entries = LAWS[name, planar]
-    return factor * (matrix.shape[0] / 1e4) ** by_unknowns * (matrix.nnz / 1e6) ** by_entries
+    if planar:
+        return PLANAR * unknowns * entries**0.25 / MB
+    return SOLID[name] * (unknowns * entries) ** (2 / 3) / MB

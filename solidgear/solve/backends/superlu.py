@@ -51,7 +51,7 @@ class SuperLU:
         self.checked = definite and matrix.shape[0] <= (CHECKED_PLANAR if planar else CHECKED)
         copies = 2 if self.checked or not definite else 1
         share = SINGLE_SHARE if single else 1.0
-        self.estimate_mb = copies * share * law("superlu", matrix, planar)
+        self.estimate_mb = copies * share * law("superlu", matrix.shape[0], matrix.nnz, planar)
 
     def factor(self):
         """Factor; :class:`FactorError` if memory ends, or the matrix is not what it should be."""

@@ -8,15 +8,14 @@ from importlib.util import find_spec
 import numpy as np
 
 from solidgear.errors import SolidgearError, listed
-from solidgear.factoring import Factoring
 from solidgear.judge.quantities import change, in_words
-from solidgear.ladder.factor_memory import solid_factor_mb
 from solidgear.ladder.registry import LADDER
 from solidgear.machine.memory import available_mb
 from solidgear.meshing.corners import sharpest_corner
 from solidgear.quantity import C_ZZ, FIRST_BENDING, Quantity
 from solidgear.solve.backends import BACKENDS, INSTALL, missing
-from solidgear.solve.factor import FASTEST, SMALL
+from solidgear.solve.backends.memory_law import law
+from solidgear.solve.choice import FASTEST, SMALL
 from solidgear.studies.guards.notice import Notice, Notices, beyond, everything, solids
 from solidgear.studies.guards.probe import Probe
 
@@ -167,21 +166,19 @@ def uniform_at_shoulder(probe: Probe) -> Notices:
         )
 
 
-GOOD_TO = 1.5  # of the laws, whose estimate over measured is 0.68 to 1.41
+GOOD_TO = 1.5  # of the laws, whose estimate over what analysis or measurement say is 0.75 to 1.35
 
 
 def memory(probe: Probe) -> Notices:
     """Factor of the 3D solid: by whom, and whether it will fit."""
-    matrices = probe.solid_matrices
-    size = sum(unknowns for unknowns, *_ in matrices)
-    largest = max(unknowns for unknowns, *_ in matrices)
+    size = probe.solid_size
+    largest = max(unknowns for unknowns, _ in size.matrices)
     absent, forced = [], os.environ.get("SOLIDGEAR_BACKEND")
     for name in (forced,) if forced in BACKENDS else FASTEST if largest > SMALL else ("superlu",):
         if not (why := missing(name)):
             break
         absent.append(f"{why}; {INSTALL[name]}")
-    parts = probe.solid_parts
-    need = sum(solid_factor_mb(*matrix, Factoring(), parts, name) for matrix in matrices)
+    need = sum(law(name, *matrix) for matrix in size.matrices)
     free = available_mb()
     smaller = "the harmonic solid, or --set refinement=0.7"
     if LADDER["harmonic"].unfit(probe.whole):
@@ -192,7 +189,7 @@ def memory(probe: Probe) -> Notices:
     yield Notice(
         "fact",
         ("solid",),
-        f"{which} 3D solid, about {size:.0f} unknowns, is factored by {name} in about {need:.0f} MB"
+        f"{which} 3D solid, {size.unknowns} unknowns, is factored by {name} in about {need:.0f} MB"
         + "".join(f"; faster but absent: {why}" for why in absent),
     )
     if free is not None and GOOD_TO * need > free:

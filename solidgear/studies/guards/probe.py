@@ -18,7 +18,6 @@ import scipy.sparse.linalg as spla
 
 from solidgear.body import Body, Supports, as_supports
 from solidgear.errors import SolidgearError
-from solidgear.factoring import Factoring
 from solidgear.judge.deviations import Deviation, deviations
 from solidgear.judge.quantities import Values, judged
 from solidgear.judge.solution import Solution
@@ -26,10 +25,10 @@ from solidgear.judge.solving import ENOUGH, solve
 from solidgear.judge.study import study
 from solidgear.judge.ties import rigid_seats
 from solidgear.ladder import build
-from solidgear.ladder.factor_memory import PIECES, WHOLE, Parts, parts_of
 from solidgear.ladder.meshes import HARMONIC
 from solidgear.ladder.model import BEAM, SOLID
 from solidgear.ladder.registry import LADDER
+from solidgear.models.size import Size, of_body
 from solidgear.quantity import FIRST_BENDING
 from solidgear.reduction.effective_mass import Synthesis, synthesise
 from solidgear.reduction.lumped_point import LumpedPoint
@@ -92,7 +91,7 @@ class Probe:
         """
         if not any(LADDER[m].unfit(self.whole) for m in models or ("harmonic",)):
             return usual
-        fit = [r.name for r in LADDER if r.build is not None and not r.unfit(self.whole)]
+        fit = [name for name in LADDER.bodies if not LADDER[name].unfit(self.whole)]
         return " or ".join(fit) or "a scene with fewer of its features"
 
     @property
@@ -295,35 +294,15 @@ class Probe:
         return len(np.unique(np.round(np.arctan2(x[rim], z[rim]) % (2 * np.pi), 6)))
 
     @cached_property
-    def solid_matrices(self) -> list[tuple[float, float, float]]:
-        """Unknowns, entries and entries of the factor of every matrix of the 3D solid: of the body if it
-        is one, else estimated for the mesh that the scene has by default, with all that is cut out
-        of it. Fill is estimated in both cases.
+    def solid_size(self) -> Size:
+        """Of the 3D solid: of the body if it is one, else of the mesh that the scene has by default,
+        with all that is cut out of it.
         """
-        from solidgear.ladder.size import estimated_size
-        from solidgear.ladder.size_laws import has_mirror_plane
-
-        built = self.body.fidelity == "solid"
-        own = {k: v for k, v in self.body.mesh.items() if built and k in ("element", "refinement")}
-        size = estimated_size(self.meshed, "solid", LADDER["solid"].given(self.meshed, own))
-        if built:
-            # of one shape the fill goes with the unknowns to the power 1.3
-            fill = size.fill * (self.body.size / size.unknowns) ** 1.3
-            blocks = [(b.size, b.stiffness.nnz) for b in self.body.blocks]
-            whole = sum(entries for _, entries in blocks)
-            return [(rows, entries, fill * entries / whole) for rows, entries in blocks]
-        halves = 2 if has_mirror_plane(self.meshed) else 1
-        return [(size.unknowns / halves, size.entries / halves, size.fill / halves)] * halves
+        if self.body.fidelity == "solid":
+            return of_body(self.body)
+        return LADDER["solid"].size(self.meshed, {})
 
     @property
     def meshed(self) -> Scene:
         """Scene that a 3D solid is of: all of it, or its plain part where no mesh holds all."""
         return self.scene if LADDER["solid"].unfit(self.whole) else self.whole
-
-    @property
-    def solid_parts(self) -> Parts:
-        """In how many pieces the matrices of that solid are factored."""
-        if self.body.fidelity == "solid":
-            return WHOLE if not self.body.blocks[0].reflections else PIECES
-        element = LADDER["solid"].given(self.meshed, {}).get("element", "hex20")
-        return parts_of(self.meshed, element, None, Factoring())

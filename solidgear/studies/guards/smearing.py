@@ -14,7 +14,6 @@ from typing import TYPE_CHECKING, Any
 from solidgear.ladder.registry import LADDER
 from solidgear.meshing.closed_form import mass_properties
 from solidgear.meshing.teeth import lacking
-from solidgear.models.kinds import CYCLIC
 from solidgear.scene.shaft import named
 from solidgear.studies.guards.notice import Notice, Notices, everything
 
@@ -90,7 +89,7 @@ def smearing(scene: Scene) -> Notices:
     if max(stiffness, frequency) <= tolerance:
         yield Notice("fact", (), f"{cost}: no need of 3D at a tolerance of {100 * tolerance:g} %")
         return
-    round_ones = tuple(m for m in everything() if not LADDER[m].holds or LADDER[m].copies == CYCLIC)
+    round_ones = tuple(m for m in everything() if not LADDER[m].for_features)
     yield Notice(
         "caution",
         round_ones,

@@ -12,7 +12,6 @@ from solidgear.body import Body
 from solidgear.errors import SolidgearError
 from solidgear.ladder import build as build_any
 from solidgear.ladder.registry import LADDER
-from solidgear.ladder.remedies import refuse_too_large
 from solidgear.models.limits import number
 from solidgear.reduction.moments import LEVELS, Reduced, reduce
 from solidgear.scene import Scene
@@ -136,7 +135,6 @@ def sweep(
     number("sweep", "tolerance", tolerance, above=0, below=1)
     variants = variants_of(scene, vary_texts, sample, seed)
     team = workers(jobs, dask)
-    refuse_too_large(variants.shaft(), fidelity, options)  # before a file of rows is begun
     plan = _plan(variants, sample, seed, fidelity, options, n, tolerance)
     repairs: list[str] = []
 

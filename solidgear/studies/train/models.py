@@ -22,7 +22,6 @@ from numpy.typing import ArrayLike
 
 from solidgear.body import Body, as_supports
 from solidgear.errors import SolidgearError, listed, nearest, show
-from solidgear.kernel.counts import KINDS
 from solidgear.ladder import build
 from solidgear.ladder.registry import LADDER
 from solidgear.reduction.condensed import condensed_shaft
@@ -166,7 +165,8 @@ class Workshop:
         cell = model.body.mesh.get("representative_size") if model is not None else None
         if model is None or not cell:
             return np.inf
-        order = model.body.mesh.get("order") or KINDS[model.body.mesh["element"]].order
+        facts = model.body.mesh
+        order = facts.get("order") or (1 if facts["element"] in ("tet4", "hex8") else 2)
         materials = {segment.material for segment in self.scenes[side].segments}
         shear = min(np.sqrt(m.shear_modulus / m.density) for m in materials)
         return float(order * shear / (8 * np.pi * cell))
@@ -197,7 +197,7 @@ class Workshop:
         part : Part
             With the ports of the shaft.
         like : str
-            Rung of the body it stands for.
+            Model of the body it stands for.
         """
         under = self.shaft(side, like)
         self._made[side, name] = ShaftModel(

@@ -18,10 +18,10 @@ from solidgear.judge.study import study
 from solidgear.judge.ties import SCENE
 from solidgear.ladder.model import SOLID
 from solidgear.ladder.registry import LADDER
-from solidgear.ladder.size import estimated_size
 from solidgear.meshing.closed_form import mass_properties
-from solidgear.models.solid.body import tetrahedra_plan
+from solidgear.models.kinds import CYCLIC
 from solidgear.models.solid.featured import featured_body, meshed
+from solidgear.models.solid.plan import tetrahedra_plan
 from validation.campaign.case import Case, Run
 from validation.campaign.cases.commands import spoken
 from validation.campaign.rows import CLAIM, Cost, Found, Row
@@ -108,7 +108,7 @@ def tried(scene: sg.Scene, out: Part) -> dict[str, sg.Body]:
 
 def heavy(scene: sg.Scene, name: str, options: dict[str, Any]) -> bool:
     """A model takes more time than there is."""
-    return estimated_size(scene, name, LADDER[name].given(scene, options)).unknowns > HEAVY
+    return LADDER[name].size(scene, options).unknowns > HEAVY
 
 
 def sound(scene: sg.Scene, name: str, body: sg.Body, out: Part) -> None:
@@ -207,7 +207,7 @@ def agreeing(scene: sg.Scene, out: Part) -> None:
     pair = [n for n in pair if not LADDER[n].unfit(scene)][:1]
     solved: dict[str, Any] = {}
     for name, most in ((pair[0], 3), ("solid", 3)) if pair else ():
-        if name == "solid" and LADDER["solid"].copies in {f.sort for f in scene.features}:
+        if name == "solid" and CYCLIC in {f.sort for f in scene.features}:
             continue
         finest = {"element": "tet10", "refinement": 0.95}
         if name == "solid" and heavy(scene, name, finest):

@@ -18,7 +18,6 @@ from solidgear.judge.solution import Solution
 from solidgear.judge.study import study
 from solidgear.judge.ties import SCENE
 from solidgear.ladder.registry import LADDER
-from solidgear.ladder.size import estimated_size
 from solidgear.quantity import Quantity
 from validation.campaign.case import Case, Run
 from validation.campaign.rows import (
@@ -137,7 +136,7 @@ def fit(scene: sg.Scene) -> list[str]:
 def heavy(scene: sg.Scene, model: str) -> bool:
     """The last mesh of a model takes more time than there is."""
     last = dict(LADDER[model].meshes(_options(model)).levels[MESHES[model] - 1])
-    return estimated_size(scene, model, LADDER[model].given(scene, last)).unknowns > HEAVY[model]
+    return LADDER[model].size(scene, last).unknowns > HEAVY[model]
 
 
 def _light(text: str) -> bool:

@@ -30,13 +30,12 @@ from solidgear.judge.quantities import size
 from solidgear.judge.sequence_bars import RIGID_EDGE
 from solidgear.judge.solving import Answer, answered, solve
 from solidgear.ladder.registry import LADDER
-from solidgear.ladder.size import estimated_size
 from solidgear.machine.meter import Meter
 from solidgear.meshing.corners import SHOULDER
 from solidgear.meshing.cuts import mirror_plane
 from solidgear.models.sector.body import sector
-from solidgear.models.solid.body import tetrahedra_plan
 from solidgear.models.solid.featured import featured_body, meshed
+from solidgear.models.solid.plan import tetrahedra_plan
 from solidgear.quantity import QUANTITIES
 from solidgear.scene.shaft import resolved
 from solidgear.solve.mixtures import mixtures
@@ -188,8 +187,8 @@ def _cuts(scene: sg.Scene) -> Iterator[tuple[Answer, Answer]]:
 
 
 def _of_sectors(scene: sg.Scene) -> Numbers:
-    size_of = LADDER["sector"].given(scene, {"refinement": SECTOR_LEVELS[0][0]})
-    large = estimated_size(scene, "sector", size_of).unknowns > MOST_OF_SECTORS
+    coarsest = LADDER["sector"].size(scene, {"refinement": SECTOR_LEVELS[0][0]})
+    large = coarsest.unknowns > MOST_OF_SECTORS
     found = []
     for refinement in SECTOR_LEVELS[large]:
         one = _answered(partial(sector, scene, refinement=refinement), scene)

@@ -1,0 +1,82 @@
+"""Defect correction: the harmonic solid and the 3D mesh finer together."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any
+
+from solidgear.bounds.safety import FEATURES
+from solidgear.ladder.meshes import FREE, Sequence
+from solidgear.ladder.model import Options, Series
+from solidgear.ladder.volume import PER_TETRAHEDRON, Volume
+from solidgear.models.kinds import CUTS
+from solidgear.models.options import CORRECTED_OPTIONS
+
+if TYPE_CHECKING:
+    from solidgear.body import Body
+    from solidgear.models.size import Size
+
+#: free modes kept on the coarsest mesh, whose supported modes err by more than those left out give
+FEWER = 10
+CORRECTED: tuple[dict[str, Any], ...] = (
+    {"order": 3, "layers": 1, "edge_layers": 1, "refinement": 0.35, "modes": FEWER},
+    *(
+        {"order": order, "layers": layers, "edge_layers": edges, "refinement": refinement}
+        for order, layers, edges, refinement in (
+            (4, 2, 2, 0.5),
+            (5, 3, 2, 0.7),
+            (6, 4, 3, 1.0),
+        )
+    ),
+)
+
+
+class Corrected(Volume):
+    """The harmonic solid of the plain part, with what features change in 3D."""
+
+    name = "corrected"
+    title = "corrected harmonic solid"
+    heading = "corrected"
+    theory = "exact 3D elasticity of the plain part, corrected by what features change in 3D"
+    colour = "#a05a00"
+    marker = "^"
+    options = CORRECTED_OPTIONS
+    coarser = "lower refinement, order or layers"
+    holds = (CUTS,)
+    for_features = True
+    share = 3.0
+    safety = FEATURES
+    _nature = "made of two meshes, with cuts and without,"
+
+    def builder(self) -> Callable[..., Body]:
+        from solidgear.models.corrected import corrected
+
+        return corrected
+
+    def _size(self, scene: Any, options: dict[str, Any]) -> Size:
+        from solidgear.models.corrected_mesh import corrected_size
+
+        return corrected_size(scene, options["refinement"], options["attachments"])
+
+    def rough_unknowns(self, scene: Any, options: Options) -> float:
+        """Of one of its 3D solids, roughly."""
+        from solidgear.models.corrected_mesh import plan_of
+        from solidgear.models.solid.plan import tetrahedra_of
+
+        given = self.defaults() | self.given(scene, options)
+        plan = plan_of(scene, given["refinement"], given["attachments"])
+        return PER_TETRAHEDRON * tetrahedra_of(scene, plan, given["refinement"], edges=True)
+
+    def meshes(self, options: Options) -> Sequence:
+        """The mesh that was asked for and a coarser one, or a list."""
+        if set(options) - set(FREE):
+            finest = {**CORRECTED[1], **options}
+            coarser = {**finest, "refinement": finest["refinement"] / 1.4}
+            return Sequence((coarser, finest), True, True)
+        return Sequence(tuple({**level, **options} for level in CORRECTED), False, True)
+
+    def series(self, scene: Any, full: bool) -> list[Series]:
+        """Its meshes, for a scene with such features."""
+        if not self.concerns(scene):
+            return []
+        return [("solid", self.title, [dict(x) for x in CORRECTED[: None if full else 3]])]

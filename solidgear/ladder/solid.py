@@ -1,0 +1,190 @@
+"""The 3D solid, of hexahedra or tetrahedra, coarse to fine."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any
+
+from solidgear.ladder.meshes import FREE, Sequence, fixed_refinements, least_radius, levels
+from solidgear.ladder.model import Options, Series, features_of
+from solidgear.ladder.volume import PER_TETRAHEDRON, Volume
+from solidgear.models.kinds import CUTS, CYCLIC, PARTS
+from solidgear.models.options import SOLID_OPTIONS
+
+if TYPE_CHECKING:
+    from solidgear.body import Body
+    from solidgear.models.size import Size
+
+Level = dict[str, Any]
+
+
+def _hexahedra(layers: int, edge_layers: int, relative_size: float) -> Level:
+    return {
+        "layers": layers,
+        "radial_layers": layers,
+        "edge_layers": edge_layers,
+        "relative_size": relative_size,
+    }
+
+
+HEXAHEDRA: tuple[Level, ...] = (
+    _hexahedra(0, 0, 1.5),
+    _hexahedra(1, 1, 1.0),
+    _hexahedra(2, 2, 0.7),
+    _hexahedra(3, 3, 0.5),
+    _hexahedra(4, 4, 0.35),
+)
+TETRAHEDRA: tuple[Level, ...] = tuple({"refinement": r} for r in (0.45, 0.65, 0.95, 1.4, 2.0))
+LINEAR: tuple[Level, ...] = tuple({"refinement": r} for r in (0.6, 0.9, 1.35, 2.0))
+#: cells around of hexahedra that bend as a whole: eight are good to some 6e-4, and the error falls
+#: with the fourth power
+AROUND = 8
+#: element -> refinements of a quick chart, and those that a full one has on top
+_GRADED_TETRAHEDRA = {
+    "tet4": ((0.5, 0.8, 1.25), (1.8, 2.4)),
+    "tet10": ((0.4, 0.6, 0.9), (1.2, 1.6)),
+}
+_UNIFORM_TETRAHEDRA = {
+    "tet4": ((1.0, 1.8, 2.6), (3.4, 4.4)),
+    "tet10": ((0.7, 1.3, 1.8), (2.4, 3.0)),
+}
+_GRADED_HEXAHEDRA = {
+    "hex8": ((0.65, 1.0, 1.5), (2.0, 2.6)),
+    "hex20": ((0.35, 0.65, 1.0), (1.4, 1.9)),
+    "hex27": ((0.35, 0.65, 0.85), (1.0, 1.4)),
+}
+_UNIFORM_HEXAHEDRA = {
+    "hex8": ((1.0, 1.5, 2.2), (3.0, 3.8)),
+    "hex20": ((0.5, 1.0, 1.5), (2.0, 2.8)),
+    "hex27": ((0.5, 1.0, 1.3), (1.6, 2.2)),
+}
+
+
+class Solid(Volume):
+    """Full 3D elasticity on one mesh."""
+
+    name = "solid"
+    title = heading = "3D solid"
+    theory = "full 3D elasticity"
+    colour = "#5a3e8c"
+    marker = "D"
+    options = SOLID_OPTIONS
+    coarser = "lower refinement or the layers, or raise size"
+    holds = (CUTS, CYCLIC, PARTS)
+    _nature = "one mesh of tetrahedra,"
+
+    def builder(self) -> Callable[..., Body]:
+        from solidgear.models.solid.body import solid
+
+        return solid
+
+    def _size(self, scene: Any, options: dict[str, Any]) -> Size:
+        from solidgear.models.solid.size import solid_size
+
+        return solid_size(scene, **self.split(options)[0])
+
+    def rough_unknowns(self, scene: Any, options: Options) -> float:
+        """Of tetrahedra, roughly."""
+        from solidgear.models.solid.plan import tetrahedra_of, tetrahedra_plan
+
+        given = self.defaults() | self.given(scene, options)
+        if not given["element"].startswith("tet"):
+            return 0.0
+        sizes = {n: given[n] for n in ("size", "graded_size", "refinement", "around")}
+        plan = tetrahedra_plan(scene, self.wanted(scene, given), **sizes)
+        return PER_TETRAHEDRON * tetrahedra_of(scene, plan, given["refinement"])
+
+    def can_halve(self, scene: Any, options: Options) -> bool:
+        """Whether all that is cut out of a shaft has one mirror plane."""
+        from solidgear.meshing.cuts import mirror_plane
+
+        cuts = features_of(scene)
+        return bool(cuts) and all(f.sort == CUTS for f in cuts) and mirror_plane(cuts) is not None
+
+    def concerns(self, scene: Any) -> bool:
+        """Not where its mesh is made of copies of a sector's: no second opinion, and solved only
+        where it is asked for by name.
+        """
+        return CYCLIC not in {f.sort for f in features_of(scene)}
+
+    def given(self, scene: Any, options: Options) -> dict[str, Any]:
+        """Tetrahedra in a scene that is more than its segments, with features, fillets or chamfers,
+        or from a file: layered hexahedra converge too slowly beside fillets for their bands.
+        """
+        special = features_of(scene) or getattr(scene, "corners", ())
+        return {**({"element": "tet10"} if special else {}), **options}
+
+    def meshes_of(self, scene: Any, options: Options) -> Sequence:
+        """The one mesh of a file, or a list."""
+        given = self.given(scene, options)
+        if getattr(getattr(scene, "body", None), "one_mesh", False):
+            return Sequence((given,), True, False)
+        return self.meshes(given)
+
+    def meshes(self, options: Options) -> Sequence:
+        """Meshes with ever more layers towards corners, or plain refinement of tetrahedra."""
+        element = str(options.get("element", "hex20"))
+        layered = element in ("hex20", "hex27")
+        if set(options) - set(FREE):
+            if layered and "refinement" not in options:
+                return _below_hexahedra(dict(options))
+            return fixed_refinements(options)
+        if layered:
+            around = {"around": AROUND, **options}
+            own = tuple({**level, **around} for level in HEXAHEDRA)
+            return Sequence(own, False, True, _turned(own[0]))
+        known = TETRAHEDRA if element == "tet10" else LINEAR
+        return Sequence(tuple({**level, **options} for level in known), False, False)
+
+    def series(self, scene: Any, full: bool) -> list[Series]:
+        """Every element type, on uniform and on graded meshes."""
+        from solidgear.models.solid.plan import usual_size
+
+        size = usual_size(scene)
+        even_tetrahedra = {"size": size, "graded_size": size}
+        even_hexahedra = {
+            "layers": 0,
+            "edge_layers": 0,
+            "size": 0.6 * least_radius(scene),
+            "radial_layers": 0,
+        }
+        return [
+            *_elements("tetrahedra", "uniform", _UNIFORM_TETRAHEDRA, even_tetrahedra, full),
+            *_elements("tetrahedra", "graded", _GRADED_TETRAHEDRA, {}, full),
+            *_elements("hexahedra", "uniform", _UNIFORM_HEXAHEDRA, even_hexahedra, full),
+            *_elements("hexahedra", "graded", _GRADED_HEXAHEDRA, {}, full),
+        ]
+
+
+def _elements(family: str, grading: str, steps: dict, extra: dict, full: bool) -> list[Series]:
+    out = []
+    for element, (quick, more) in steps.items():
+        refinements = levels(quick, more, full)
+        options = [{"element": element, **extra, "refinement": s} for s in refinements]
+        out.append((family, f"{element.upper()} {grading}", options))
+    return out
+
+
+def _turned(level: Level) -> Level:
+    return {**level, "around": 4 * -(-3 * level["around"] // 8)}
+
+
+def _below_hexahedra(options: Level) -> Sequence:
+    finest = {
+        "layers": 4,
+        "radial_layers": 4,
+        "edge_layers": 1,
+        "relative_size": 0.4,
+        "around": 12,
+        **options,
+    }
+    coarser = []
+    for k in (2, 1):
+        fewer = {
+            name: max(finest[name] - k, 0) for name in ("layers", "radial_layers", "edge_layers")
+        }
+        larger = {"relative_size": finest["relative_size"] * 1.5**k}
+        if finest.get("size"):
+            larger = {"size": finest["size"] * 1.5**k}
+        coarser.append({**finest, **fewer, **larger})
+    return Sequence((*coarser, finest), True, True, _turned(coarser[0]))

@@ -1,0 +1,82 @@
+"""How large the 3D solid of a scene is, counted on its mesh."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from solidgear.kernel.assembly import unknowns
+from solidgear.meshing.featured import without
+from solidgear.models.kinds import CUTS, CYCLIC, PARTS
+from solidgear.models.sector.body import whole_mesh
+from solidgear.models.size import Size, of_mesh
+from solidgear.models.solid.body import _hexes, _tets
+from solidgear.models.solid.featured import meshed
+from solidgear.models.solid.mesh import ELEMENTS
+from solidgear.models.solid.part import SOLVED_AS
+from solidgear.models.solid.plan import tetrahedra_plan
+from solidgear.scene.attached import attached_stations
+from solidgear.scene.shaft import resolved
+
+#: entries of element matrices that no other element has
+OWN_ENTRIES = 0.5
+
+
+def solid_size(
+    scene: Any,
+    *,
+    element: str,
+    size: float | None,
+    graded_size: float | None,
+    refinement: float,
+    around: int,
+    half: bool,
+    attachments: tuple[str, ...] | None,
+    **grading: Any,
+) -> Size:
+    """Mesh the 3D solid of a scene and count; parameters as for
+    :func:`solidgear.models.solid.body.solid`.
+
+    In place of a part from a STEP file its round part is meshed, at the same sizes; a mesh file
+    tells how many of everything it has.
+    """
+    wanted = [*attached_stations(scene.stations, attachments)]
+    sorts = {f.sort for f in resolved(scene)}
+    sizes = {"size": size, "graded_size": graded_size, "refinement": refinement}
+    if PARTS in sorts and scene.body.counts is not None:
+        return _of_file(scene.body)
+    if CYCLIC in sorts:
+        mesh, _, _ = whole_mesh(scene, wanted, **sizes)
+        return of_mesh(unknowns(mesh, ELEMENTS["tet10"]()))
+    if CUTS in sorts:
+        plan = tetrahedra_plan(scene, wanted, around=around, **sizes)
+        return cut_size(meshed(scene, plan, refinement, half))
+    if element.startswith("tet"):
+        mesh, _, _ = _tets(scene, wanted, element, around=around, **sizes)
+        return of_mesh(unknowns(mesh, ELEMENTS[element]()))
+    grading |= {"around": around, "size": size, "refinement": refinement}
+    mesh, _, _ = _hexes(scene, wanted, grading)
+    rigid = any(a == "rigid" for _, a in wanted)
+    return of_mesh(unknowns(mesh, ELEMENTS[element]()), mirrors=not rigid)
+
+
+def cut_size(made: Any) -> Size:
+    """Of a :class:`~solidgear.meshing.featured.FeaturedMesh` without what is cut out of it."""
+    mesh = without(made.mesh, ~made.cut)
+    dofs = unknowns(mesh, ELEMENTS["tet10"]())
+    if made.plane is None:
+        return of_mesh(dofs)
+    both = of_mesh(dofs, parts=2)
+    # of a node on the mirror plane one half has one component and the other two
+    on_plane = int((np.abs(mesh.doflocs[made.plane]) < 1e-9).sum())
+    return replace(both, unknowns=both.unknowns - 3 * on_plane)
+
+
+def _of_file(file: Any) -> Size:
+    kind = ELEMENTS[SOLVED_AS.get(file.element, file.element)]()
+    on = kind.nodal_dofs, kind.edge_dofs, kind.facet_dofs, kind.interior_dofs
+    count = 3 * int(np.dot(on, file.counts))
+    entries = int(OWN_ENTRIES * 9 * len(kind.doflocs) ** 2 * file.counts[3])
+    return Size(count, ((count, entries),), entries)
