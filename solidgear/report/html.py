@@ -8,8 +8,6 @@ file; its one script turns the mode shapes, and without it pictures stand there.
 
 from __future__ import annotations
 
-import base64
-import functools
 import logging
 import os
 from collections.abc import Mapping
@@ -30,6 +28,7 @@ from solidgear.report import (
 )
 from solidgear.report.border import as_record
 from solidgear.report.lumped import lumped_tables
+from solidgear.report.page_parts import data_uri, template
 from solidgear.report.reading import model_name, reference_of
 from solidgear.report.units import Units, units_named
 from solidgear.report.words import capital, percent, seconds
@@ -290,21 +289,6 @@ def _tables(record: Record, units: Units) -> dict[str, Any]:
     }
 
 
-@functools.cache
-def template(name: str):
-    """A page beside this file, ready to be filled."""
-    from jinja2 import Environment, FileSystemLoader, StrictUndefined
-
-    loader = FileSystemLoader(Path(__file__).parent)
-    return Environment(
-        loader=loader,
-        autoescape=True,
-        undefined=StrictUndefined,
-        trim_blocks=True,
-        lstrip_blocks=True,
-    ).get_template(name)
-
-
 def _pictures(
     record: Record, folder: str | os.PathLike | None, images: Mapping[str, Picture] | None
 ) -> dict[str, list[tuple[str, str | None]]]:
@@ -338,26 +322,3 @@ def _named_images(record: Record, folder: str | os.PathLike | None) -> dict[str,
     if folder is None:
         return {}
     return {key: Path(folder) / Path(name).name for key, name in record.images.items()}
-
-
-def data_uri(key: str, image: Any) -> str | None:
-    """A picture in bytes or in a file as a data URI; None if it cannot be had or is none."""
-    try:
-        in_memory = isinstance(image, (bytes, bytearray, memoryview))
-        data = bytes(image) if in_memory else Path(image).read_bytes()
-    except OSError as error:
-        log.warning("render of %s: %s", key, error)
-        return None
-    kind = _picture_kind(data)
-    if kind is None:
-        return None
-    return f"data:image/{kind};base64,{base64.b64encode(data).decode()}"
-
-
-def _picture_kind(data: bytes) -> str | None:
-    """The kind of a picture by its first bytes."""
-    if data[:4] == b"\x89PNG":
-        return "png"
-    if data[:2] == b"\xff\xd8":
-        return "jpeg"
-    return "svg+xml" if b"<svg" in data[:1000] else None

@@ -210,7 +210,7 @@ class Table:
 
     # ---------------------------------------------------------------------- a page
     def _repr_html_(self) -> str:
-        from solidgear.report.html import template
+        from solidgear.report.page_parts import template
 
         return str(template("parts.html").module.table(self))
 

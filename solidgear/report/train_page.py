@@ -15,8 +15,8 @@ from solidgear.errors import SolidgearError
 from solidgear.machine.whole_file import whole
 from solidgear.report import input_tables, train_tables
 from solidgear.report.folder import clear, held
-from solidgear.report.html import data_uri, template
 from solidgear.report.order_chart import order_chart
+from solidgear.report.page_parts import data_uri, template
 from solidgear.report.plot import Make, page_svg
 from solidgear.report.run_tables import pairs_of
 from solidgear.report.sketch_page import sketch_svg

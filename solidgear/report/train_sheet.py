@@ -6,7 +6,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 
 from solidgear.machine.whole_file import write_page
-from solidgear.report.html import template
+from solidgear.report.page_parts import template
 from solidgear.report.plot import Make, page_svg
 from solidgear.report.table import Table
 

@@ -139,7 +139,7 @@ def viewer_fragment(models: Sequence[Turned], *, still: str = "", first: str = "
     """
     from markupsafe import Markup
 
-    from solidgear.report.html import template
+    from solidgear.report.page_parts import template
 
     kept = list(_within_budget(models))
     models = models[: len(kept)]
@@ -170,7 +170,7 @@ def viewer_page(
     """The viewer alone as a page; parameters as those of :func:`viewer_fragment`."""
     from markupsafe import Markup
 
-    from solidgear.report.html import template
+    from solidgear.report.page_parts import template
 
     fragment = viewer_fragment(models, still=still, first=first)
     return template("viewer_page.html").render(

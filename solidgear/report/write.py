@@ -157,7 +157,7 @@ def _note(record: Record, jobs: Iterable[str], results: Iterable[RenderResult]) 
 
 def _write_turned(comparison: Comparison, folder: Path) -> None:
     """The page of mode shapes, the most detailed models first."""
-    from solidgear.report.html import data_uri
+    from solidgear.report.page_parts import data_uri
     from solidgear.report.reading import model_name
     from solidgear.report.turning import Turned, turned
     from solidgear.report.viewer import TURNED, Turning
@@ -248,7 +248,7 @@ def turn_modes(
     SolidgearError
         If there is no such mode, or the page cannot be written.
     """
-    from solidgear.report.html import data_uri
+    from solidgear.report.page_parts import data_uri
     from solidgear.report.turning import Turned, turned
     from solidgear.report.viewer import Turning
 

@@ -15,17 +15,17 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 import scipy.sparse.linalg as spla
-from skfem import MeshQuad1
+from skfem import ElementQuad2, MeshQuad1
 
 from solidgear.body import Block
 from solidgear.kernel.assembly import unknowns
 from solidgear.meshing.grading import Grading
 from solidgear.meshing.layout import layout
 from solidgear.meshing.meridian import meridian
+from solidgear.models.harmonic.blocks import _Work
 from solidgear.models.spectrum import overhangs
 
 if TYPE_CHECKING:
-    from solidgear.models.harmonic.body import _Work
     from solidgear.scene.shaft import Shaft
 
 #: What carries a disc is no clamp: part of the stiffness of a clamped strip that it gets.  On 72
@@ -78,16 +78,13 @@ class Families:
         return self._found[n]
 
     def _light_work(self):
-        from solidgear.models.harmonic.blocks import _Work
-        from solidgear.models.harmonic.body import _element
-
         if self._work is None:
             s = self._scene
             thick = max(max(p.outer0, p.outer1) for p in s.segments)
             flat = meridian(
                 s, layout(s, Grading(layers=0, edge_layers=0, size=max(s.length / 12, thick / 3)))
             )
-            mesh, element = MeshQuad1(flat.points, flat.cells, sort_t=False), _element(2)
+            mesh, element = MeshQuad1(flat.points, flat.cells, sort_t=False), ElementQuad2()
             self._work = _Work(s, mesh, element, unknowns(mesh, element), flat, 2)
         return self._work
 

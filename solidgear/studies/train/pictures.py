@@ -15,7 +15,7 @@ from solidgear.body.surface import Surface
 from solidgear.errors import SolidgearError, listed
 from solidgear.ladder.registry import LADDER
 from solidgear.report.folder import prepare
-from solidgear.report.html import data_uri
+from solidgear.report.page_parts import data_uri
 from solidgear.report.render import RenderJob, RenderResult, render_modes
 from solidgear.report.turning import Member, Turned, together
 from solidgear.scene.train import SIDES

@@ -1,0 +1,49 @@
+"""Templates of pages, and pictures inside them."""
+
+from __future__ import annotations
+
+import base64
+import functools
+import logging
+from pathlib import Path
+from typing import Any
+
+log = logging.getLogger(__name__)
+
+
+@functools.cache
+def template(name: str):
+    """A page beside this file, ready to be filled."""
+    from jinja2 import Environment, FileSystemLoader, StrictUndefined
+
+    loader = FileSystemLoader(Path(__file__).parent)
+    return Environment(
+        loader=loader,
+        autoescape=True,
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    ).get_template(name)
+
+
+def data_uri(key: str, image: Any) -> str | None:
+    """A picture in bytes or in a file as a data URI; None if it cannot be had or is none."""
+    try:
+        in_memory = isinstance(image, (bytes, bytearray, memoryview))
+        data = bytes(image) if in_memory else Path(image).read_bytes()
+    except OSError as error:
+        log.warning("render of %s: %s", key, error)
+        return None
+    kind = _picture_kind(data)
+    if kind is None:
+        return None
+    return f"data:image/{kind};base64,{base64.b64encode(data).decode()}"
+
+
+def _picture_kind(data: bytes) -> str | None:
+    """The kind of a picture by its first bytes."""
+    if data[:4] == b"\x89PNG":
+        return "png"
+    if data[:2] == b"\xff\xd8":
+        return "jpeg"
+    return "svg+xml" if b"<svg" in data[:1000] else None
