@@ -15,6 +15,7 @@ import scipy.linalg as sla
 import solidgear as sg
 from solidgear.cli import main
 from solidgear.judge.study import study
+from solidgear.ladder.registry import LADDER
 from solidgear.scene import STEEL, Ask, Bearing, Fillet, Port, Scene, Segment
 from solidgear.studies import check, guards
 from solidgear.studies.check import cautions, check_scene, notices
@@ -503,6 +504,16 @@ def test_memory(monkeypatch, allowed, level):
     # the analysis of PARDISO says 253 MB for the three pieces of this mesh; the law is 0.75 to 1.2 of it
     assert "the default 3D solid, 52704 unknowns" in found[0].sentence
     assert float(found[0].sentence.split()[-2]) == pytest.approx(253, rel=0.2)
+
+
+def test_a_part_that_cannot_be_meshed_is_told_and_the_rest_is_checked(monkeypatch):
+    def unmeshed(self, scene, options):
+        raise sg.SolidgearError("gmsh could not mesh the shaft: change refinement a little")
+
+    monkeypatch.setattr(type(LADDER["solid"]), "size", unmeshed)
+    found = list(elements.memory(Probe(OVERHUNG, sg.build(OVERHUNG, "timoshenko"))))
+    assert [(n.level, n.models) for n in found] == [("avoid", ("solid",))]
+    assert "change refinement a little" in found[0].sentence
 
 
 def test_back_ends_that_are_missing_are_named(monkeypatch):

@@ -171,7 +171,11 @@ GOOD_TO = 1.5  # of the laws, whose estimate over what analysis or measurement s
 
 def memory(probe: Probe) -> Notices:
     """Factor of the 3D solid: by whom, and whether it will fit."""
-    size = probe.solid_size
+    try:
+        size = probe.solid_size
+    except SolidgearError as error:
+        yield Notice("avoid", ("solid",), f"the 3D solid has no mesh: {error}")
+        return
     largest = max(unknowns for unknowns, _ in size.matrices)
     absent, forced = [], os.environ.get("SOLIDGEAR_BACKEND")
     for name in (forced,) if forced in BACKENDS else FASTEST if largest > SMALL else ("superlu",):

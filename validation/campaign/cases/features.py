@@ -140,12 +140,14 @@ def heavy(scene: sg.Scene, model: str) -> bool:
 
 
 def _light(text: str) -> bool:
-    """A part fits together, and a model with bars for its features is not too large."""
+    """A part fits together and can be meshed, and a model with bars for its features is not too
+    large.
+    """
     try:
         scene = loaded(text)
-    except sg.SolidgearError:
+        return any(n != "solid" and not heavy(scene, n) for n in fit(scene))
+    except sg.SolidgearError:  # of the file, or of a mesh that cannot be made
         return False
-    return any(n != "solid" and not heavy(scene, n) for n in fit(scene))
 
 
 def _options(model: str) -> dict:
