@@ -8,7 +8,8 @@ import pytest
 import solidgear as sg
 from solidgear.bearings.ball import BallRow
 from solidgear.bearings.bounds import Ranges
-from solidgear.bearings.equilibrium import Linear, Mounted, equilibrium
+from solidgear.bearings.balance import Linear, Mounted
+from solidgear.bearings.equilibrium import equilibrium
 from solidgear.bearings.roller import RollerRow
 from solidgear.bearings.rolling import RollingBearing
 from solidgear.bearings.solved import solved

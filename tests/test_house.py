@@ -29,7 +29,7 @@ MAY_IMPORT = {
     "ladder": GROUND | {"machine", "scene", "meshing", "solve", "kernel", "models", "bounds"},
     "reduction": GROUND | {"machine", "body", "solve"},
     "bearings": GROUND | {"scene", "body", "solve"},
-    "system": GROUND | {"machine", "body", "reduction"},
+    "system": GROUND | {"machine", "scene", "body", "reduction", "bearings"},
     "judge": GROUND
     | {"machine", "scene", "body", "meshing", "solve", "models", "bounds", "ladder", "reduction"},
     "report": GROUND | {"machine", "body", "judge"},

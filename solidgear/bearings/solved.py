@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from solidgear.bearings.balance import Linear, Mounted
 from solidgear.bearings.catalogued import Catalogued, End, catalogued, state
-from solidgear.bearings.equilibrium import Equilibrium, Linear, Mounted, equilibrium
+from solidgear.bearings.equilibrium import Equilibrium, equilibrium
 from solidgear.errors import SceneError
 from solidgear.scene import Scene
 
@@ -108,16 +109,7 @@ def solved(
     1400.0
     """
     places = {b.name: k for k, b in enumerate(scene.bearings) if b.catalogue is not None}
-    made: dict[str, Catalogued] = {}
-    for name, k in places.items():
-        data = scene.bearings[k].catalogue
-        assert data is not None
-        try:
-            made[name] = catalogued(
-                data, choice.end, clearance_share=choice.clearance, preload_factor=choice.preload
-            )
-        except SceneError as error:
-            raise located(error, k) from None
+    made = made_of(scene, choice)
     settled = None
     if body is not None and wants_equilibrium(scene):
         settled = _settled(scene, body, made, choice, start)
@@ -140,6 +132,39 @@ def solved(
             raise located(_unloaded(), k)
     bearings = tuple(_with(b, tangent) for b in scene.bearings)
     return Solved(scene.with_changes(bearings=bearings), made, motion, settled)
+
+
+def made_of(scene: Scene, choice: Choice = AS_TOLD) -> dict[str, Catalogued]:
+    """Bearings of a scene that catalogue data describe, by name.
+
+    Parameters
+    ----------
+    scene : Scene
+    choice : Choice
+
+    Returns
+    -------
+    dict of str to Catalogued
+
+    Raises
+    ------
+    SceneError
+        Data that make no bearing.
+    """
+    made = {}
+    for k, bearing in enumerate(scene.bearings):
+        if bearing.catalogue is None:
+            continue
+        try:
+            made[bearing.name] = catalogued(
+                bearing.catalogue,
+                choice.end,
+                clearance_share=choice.clearance,
+                preload_factor=choice.preload,
+            )
+        except SceneError as error:
+            raise located(error, k) from None
+    return made
 
 
 def _unloaded() -> SceneError:

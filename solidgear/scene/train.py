@@ -8,12 +8,13 @@ along its shaft from the pitch apex towards its back, the mesh on its -x side, z
 from __future__ import annotations
 
 from collections.abc import Iterator
-from math import isclose
+from math import isclose, pi
 
 from pydantic import model_validator
 
 from solidgear.errors import SceneError, listed, nearest
 from solidgear.scene.model import Scene
+from solidgear.scene.operation import OperatingPoint, Operation, operation_problems
 from solidgear.scene.stations import Bearing
 from solidgear.scene.train_tables import Losses, Member, Mesh, Rotor, TrainAsk
 from solidgear.scene.typed import Model
@@ -33,13 +34,16 @@ class Train(Model):
     mesh : Mesh
     engine, load : Rotor
     losses : Losses
+    operation : tuple of OperatingPoint
+        Torques and speeds at which it runs; bearings of catalogue data settle at the first.
     ask : TrainAsk
 
     Raises
     ------
     SceneError
         Every problem of its parts, names that both shafts use, hands that cannot mesh, a ratio
-        that is not that of the teeth, and springs on ports that are not there.
+        that is not that of the teeth, springs on ports that are not there, operating points that
+        the teeth contradict, and shafts that a torque cannot turn.
 
     Examples
     --------
@@ -60,11 +64,12 @@ class Train(Model):
     engine: Rotor
     load: Rotor
     losses: Losses = Losses()
+    operation: Operation = ()
     ask: TrainAsk = TrainAsk()
 
     @model_validator(mode="after")
     def _hangs_together(self) -> Train:
-        problems = [*self._names(), *self._teeth(), *self._springs()]
+        problems = [*self._names(), *self._teeth(), *self._springs(), *self._operation()]
         if problems:
             raise SceneError.of(problems)
         return self
@@ -126,6 +131,42 @@ class Train(Model):
         except SceneError as error:
             reason = f"is no place on the {side}'s shaft: {error.problems[0].reason}"
             yield SceneError(reason, path=(rotor, "spring", "position"))
+
+    def _operation(self) -> Iterator[SceneError]:
+        if not self.operation:
+            return
+        ports = {side: [s.name for s in self.member(side).scene.stations] for side in SIDES}
+        yield from operation_problems(self.operation, self.ratio, ports)
+        for side in SIDES:
+            scene = self.member(side).scene
+            held = [b.name for b in scene.bearings if b.matrix is not None and b.matrix[4][4] > 0]
+            if held:
+                yield SceneError(
+                    f"a torque has to turn the {side}'s shaft, and {listed(held)} of its scene "
+                    "holds its rotation: leave kthy out, or hold it in another way than clamped",
+                    path=("operation",),
+                )
+            yield from self._speeds(side, scene)
+
+    def _speeds(self, side: str, scene: Scene) -> Iterator[SceneError]:
+        """Speeds that bearings of a shaft name and that it does not have."""
+        for bearing in scene.bearings:
+            own = bearing.catalogue.speed if bearing.catalogue is not None else 0.0
+            for k, point in enumerate(self.operation):
+                speed = point.speed_of(side, self.ratio)
+                if own and speed is not None and not isclose(own, speed, rel_tol=RATIO_TYPED):
+                    yield SceneError(
+                        f"turns the {side}'s shaft at {speed * 30 / pi:.6g} rpm, and the "
+                        f"catalogue data of its bearing {bearing.name} name {own * 30 / pi:.6g} "
+                        "rpm; correct one, or leave the bearing's speed out",
+                        path=("operation", k, "speed"),
+                    )
+                    break
+
+    @property
+    def point(self) -> OperatingPoint | None:
+        """Operating point at which its bearings have settled: the first; None without any."""
+        return self.operation[0] if self.operation else None
 
     @property
     def ratio(self) -> float:

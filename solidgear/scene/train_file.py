@@ -24,8 +24,12 @@ NORMAL_TYPED = 1e-3
 MOST_CELLS = 100_000
 
 
+def _as_written(path: str | os.PathLike, alone: bool) -> Scene:
+    return load(path)
+
+
 def load_train(
-    path: str | os.PathLike, shaft: Callable[[str | os.PathLike], Scene] = load
+    path: str | os.PathLike, shaft: Callable[[str | os.PathLike, bool], Scene] = _as_written
 ) -> Train:
     """Read a train file; the shafts it names lie relative to it.
 
@@ -34,8 +38,10 @@ def load_train(
     path : str or path
         A TOML file; ``geometry/axle_overhung.toml`` describes the format.
     shaft : callable, optional
-        Reads the scene of a shaft from its file; by default as it is written, without a stiffness
-        of catalogue bearings, which :func:`solidgear.load_train` works out.
+        Reads the scene of a shaft from its file, and is told whether it stands alone: bearings of a
+        shaft whose train has an [operation] settle with the train. By default scenes are read as
+        they are written, without a stiffness of catalogue bearings, which
+        :func:`solidgear.load_train` works out.
 
     Returns
     -------
@@ -64,10 +70,10 @@ def load_train(
                 "geometry/axle_overhung.toml",
                 path=("segment",),
             )
-        data = {**raw}
+        data, alone = {**raw}, "operation" not in raw
         for side in SIDES:
             if isinstance(raw.get(side), Mapping):
-                data[side] = _with_scene(raw[side], folder, side, shaft)
+                data[side] = _with_scene(raw[side], folder, side, lambda p: shaft(p, alone))
         if isinstance(raw.get("mesh"), Mapping) and "contact_cells" in raw["mesh"]:
             data["mesh"] = _with_cells(raw["mesh"], folder)
         for rotor in ("engine", "load"):
@@ -76,7 +82,17 @@ def load_train(
     except SceneError as error:
         if error.where:
             raise
+        if isinstance(raw.get("operation"), Mapping):
+            error = _of_one_table(error, "operation")
         raise error.located(raw, where=where) from None
+
+
+def _of_one_table(error: SceneError, key: str) -> SceneError:
+    """Problems of the one entry of a list told as those of a table."""
+    return SceneError.of(
+        one.located(None, path=(key, *one.path[2:])) if one.path[:2] == (key, 0) else one
+        for one in error.problems
+    )
 
 
 def _with_scene(table: Mapping[str, Any], folder: Path, side: str, shaft) -> dict[str, Any]:

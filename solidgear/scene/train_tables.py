@@ -75,6 +75,9 @@ class Member(Model):
     apex : {'start', 'end'}
         Towards which end of the shaft the pitch apex lies.
     head : HeadInertia or None
+    scene_load : {'added', 'replaced'} or None
+        Of a train with an operating point, the [load] of the scene: acts beside the mesh force, or
+        gives way to it; where neither is said it must be the mesh force.
     """
 
     scene: Scene
@@ -87,6 +90,7 @@ class Member(Model):
     spiral_angle: SpiralAngle | None = None
     apex: Literal["start", "end"] = "start"
     head: HeadInertia | None = None
+    scene_load: Literal["added", "replaced"] | None = None
 
 
 class TorsionSpringTable(Model):

@@ -65,7 +65,8 @@ def load(path: str | os.PathLike) -> Scene:
 
 def load_train(path: str | os.PathLike) -> Train:
     """Read a train file; the shafts it names lie relative to it, and the stiffness of their
-    catalogue bearings is worked out at the load of each shaft's own file.
+    catalogue bearings is worked out: at the first operating point of the train, or, without any, at
+    the load of each shaft's own file.
 
     Parameters
     ----------
@@ -90,7 +91,18 @@ def load_train(path: str | os.PathLike) -> Train:
     """
     from solidgear.scene import train_file
 
-    return train_file.load_train(path, load)
+    train = train_file.load_train(path, _shaft_of_train)
+    if not train.operation:
+        return train
+    from solidgear.studies.train.operation import at_first_point
+
+    with explained(path):
+        return at_first_point(train)
+
+
+def _shaft_of_train(path: str | os.PathLike, alone: bool) -> Scene:
+    """Scene of a shaft: settled by itself, or to be settled with its train."""
+    return load(path) if alone else file.load(path, _part)
 
 
 def read(path: str | os.PathLike, scene: Scene | None = None) -> Solved:

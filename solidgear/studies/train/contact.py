@@ -67,12 +67,14 @@ class Contact:
     cautions: tuple[str, ...]
 
 
-def contact(train: Train) -> Contact:
+def contact(train: Train, coast: bool | None = None) -> Contact:
     """Mesh vectors of a train.
 
     Parameters
     ----------
     train : Train
+    coast : bool, optional
+        True for the flank that the file does not name; by default that of its operating point.
 
     Raises
     ------
@@ -100,6 +102,8 @@ def contact(train: Train) -> Contact:
         normal, point = _given_line(train), np.array(mesh.point)
     else:
         normal, point = _of_teeth(train, mesh.pressure_angle), mesh_point(_mean_radius(train))
+    if coast if coast is not None else train.point is not None and train.point.coast:
+        normal = _other_flank(train, normal, point)
     origin = _gear_position(train, point)
     n_gear = to_gear_frame(normal, mesh.shaft_angle)
     r_gear = to_gear_frame(point - origin, mesh.shaft_angle)
@@ -114,6 +118,25 @@ def contact(train: Train) -> Contact:
         stiffness = wrench.mesh_stiffness(mesh.loaded_error, mesh.unloaded_error)
     own = [_in_scene(train.member(s).apex, v) for s, v in zip(("pinion", "gear"), found)]
     return Contact(own[0], own[1], stiffness, origin, wrench, tuple(cautions))
+
+
+def _other_flank(train: Train, normal: np.ndarray, point: np.ndarray) -> np.ndarray:
+    """Line of action of the other flank of the same tooth, in the pinion's frame: mirrored at the
+    normal of the pitch cone where they touch.
+    """
+    if train.mesh.contact_cells:
+        raise SceneError(
+            "are those of one flank; a torque on the other one (coast, below zero) needs a file "
+            "with its own cells",
+            path=("mesh", "contact_cells"),
+        )
+    angle = train.pinion.pitch_angle
+    if angle is None and abs(sin(train.mesh.shaft_angle)) > 1e-6:
+        _needs(train, "pitch_angle", what="the line of action of the other flank (coast)")
+    gamma = angle or 0.0
+    outward = np.array([point[0], 0.0, point[2]]) / np.hypot(point[0], point[2])
+    across = -cos(gamma) * outward + sin(gamma) * np.array([0.0, 1.0, 0.0])
+    return 2 * (normal @ across) * across - normal
 
 
 def _in_scene(apex: str, vector: MeshVector) -> MeshVector:

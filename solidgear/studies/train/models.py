@@ -137,6 +137,8 @@ class Workshop:
         self.bars: dict[tuple[str, ...], np.ndarray] = {}
         self.scenes: dict[str, Scene] = {side: self.train.shaft(side) for side in SIDES}
         self.contact: Contact = contact(self.train)
+        point = self.train.point
+        self._flanks: dict[bool, Workshop] = {point is not None and point.coast: self}
 
     def shaft(self, side: str, rung: str) -> ShaftModel:
         """Model of a shaft, made when it is first asked for."""
@@ -241,6 +243,7 @@ class Workshop:
         # bodies are free of their bearings; what is condensed on them is not
         kept = {k: m for k, m in self._made.items() if k[1].partition("/")[0] not in LUMPED}
         out._made, out.scenes, out.bars = kept, {}, {}
+        out._flanks = {}
         for side, scene in self.scenes.items():
             bearings = [
                 bearing.with_changes(
@@ -254,6 +257,20 @@ class Workshop:
             ]
             out.scenes[side] = scene.with_changes(bearings=tuple(bearings))
         return out
+
+    def on_flank(self, coast: bool) -> Workshop:
+        """The same train with one of the two flanks of its teeth in contact.
+
+        Parameters
+        ----------
+        coast : bool
+            True for the flank that the file does not name.
+        """
+        if coast not in self._flanks:
+            other = copy(self)
+            other.contact, other.bars = contact(self.train, coast), {}
+            self._flanks[coast] = other
+        return self._flanks[coast]
 
     def _from_body(self, side: str, rung: str, kind: str, base: str) -> ShaftModel:
         under = self.shaft(side, base)
@@ -291,13 +308,15 @@ class Workshop:
             mass[np.ix_(plane, plane)] = np.diag(np.diag(matched.mass))
         return whole.with_mass(mass)
 
-    def system(self, pinion: str, gear: str) -> System:
+    def system(self, pinion: str, gear: str, bearings: bool = True) -> System:
         """The train with its shafts at two rungs.
 
         Parameters
         ----------
         pinion, gear : str
             Rungs.
+        bearings : bool
+            False leaves them out: what rests on them is then free.
 
         Returns
         -------
@@ -315,7 +334,7 @@ class Workshop:
         }
         links: dict[str, Link] = {}
         for side in SIDES:
-            links |= grounded(side, self.scenes[side])
+            links |= self._ground(side, bearings)
             name, rotor = train.rotor(side)
             at = f"{side}.{train.spring_port(side)}"
             links[f"{name} spring"] = torsion_spring(at, rotor.spring.stiffness, name)
@@ -328,6 +347,14 @@ class Workshop:
         ]
         links["mesh"] = mesh_spring(*ends[0], *ends[1], met.stiffness)
         return System(parts, links)
+
+    def _ground(self, side: str, bearings: bool) -> dict[str, Link]:
+        """Links of a shaft to ground, and masses on its ports."""
+        scene = self.scenes[side]
+        if not bearings:
+            free = [b.with_changes(matrix=np.zeros((6, 6)), hold=None) for b in scene.bearings]
+            scene = scene.with_changes(bearings=tuple(free), housing=None, housing_axial=None)
+        return grounded(side, scene)
 
     def part(self, side: str, rung: str) -> Part:
         """Model of a shaft with the harmonics that its teeth drive, if the train asks for any."""

@@ -1,0 +1,334 @@
+"""Balance of bearings on something elastic: contacts and springs that press, on one energy.
+
+Motions d of the ports, of a ring on a spring or in a housing of its own, w, and of a housing of
+several, h, on its 6x6 H, which moves the outer ring of bearing i by ``E_i h``, are unknown. With the
+contacts' energy V and the stiffness K between the ports
+
+    K d + sum of V'(d - w - E h) = load,      k_w w = V',      H h = sum of E' V',
+
+the gradient of one convex energy: one equilibrium (:mod:`solidgear.bearings.newton`), however many
+bearings there are.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any, NamedTuple, Protocol, TypeVar
+
+import numpy as np
+import scipy.linalg as sla
+
+from solidgear.bearings.newton import NothingHolds, Settled, settle
+from solidgear.bearings.rolling import UNITS
+from solidgear.errors import SolidgearError
+from solidgear.frames import DOF_NAMES
+from solidgear.scene.housing import Elastic, Housing
+
+E = TypeVar("E", bound=Elastic)
+
+#: components of a port that are solved for
+FIVE = (0, 1, 2, 3, 5)
+#: of the largest: flexibility between ports that is none
+RIGID = 1e-13
+#: of the load
+LEFT = 1e-8
+
+
+class Holds(Protocol):
+    """Carrier of load at a port: a rolling bearing, or a spring."""
+
+    def load(self, motion: np.ndarray) -> np.ndarray:
+        """Load (6,) that holds the shaft's seat at a motion (6,)."""
+
+    def tangent(self, motion: np.ndarray) -> np.ndarray:
+        """Its derivative, (6, 6)."""
+
+    def at_work(self, motion: np.ndarray) -> float:
+        """Forces inside it at a motion, N, also those that balance each other."""
+
+
+@dataclass(frozen=True)
+class Linear:
+    """A bearing of constant stiffness.
+
+    Attributes
+    ----------
+    stiffness : (6, 6) ndarray
+    """
+
+    stiffness: np.ndarray
+
+    def load(self, motion: np.ndarray) -> np.ndarray:
+        """``K q``."""
+        return motion @ self.stiffness
+
+    def tangent(self, motion: np.ndarray) -> np.ndarray:
+        """``K``."""
+        return self.stiffness
+
+    def at_work(self, motion: np.ndarray) -> float:
+        """None: a spring has no preload."""
+        return 0.0
+
+
+@dataclass(frozen=True)
+class Foot:
+    """Something elastic that the outer ring of a bearing stands on.
+
+    Attributes
+    ----------
+    moves : (6, k) ndarray
+        Motion of the ring for unit motions in which it gives.
+    stiffness : (k, k) ndarray
+        Against these.
+    """
+
+    moves: np.ndarray
+    stiffness: np.ndarray
+
+
+def foot_of(housing: Elastic, moves: np.ndarray | None = None) -> Foot:
+    """A housing as the equilibrium takes it.
+
+    Parameters
+    ----------
+    housing : Elastic
+    moves : (6, k) ndarray, optional
+        Of the ring for unit motions in which the housing gives; by default both are at one point.
+
+    Returns
+    -------
+    Foot
+        Without turning about y where nothing resists that: no bearing brings a torque.
+    """
+    moves = np.eye(6)[:, housing.gives] if moves is None else moves
+    keep = [k for k, c in enumerate(housing.gives) if c != 4 or housing.own[k, k] > 0]
+    return Foot(moves[:, keep], housing.own[np.ix_(keep, keep)])
+
+
+@dataclass(frozen=True)
+class Mounted:
+    """Carrier at a port.
+
+    Attributes
+    ----------
+    port : str
+    bearing : Holds
+    attachment : str or None
+        Of the port; None takes the body's first.
+    spring : float or None
+        In series with it along y, N/m.
+    housing : Elastic or None
+        That its outer ring alone stands in.
+    """
+
+    port: str
+    bearing: Holds
+    attachment: str | None = None
+    spring: float | None = None
+    housing: Elastic | None = None
+
+    @property
+    def feet(self) -> tuple[Foot, ...]:
+        """Stiffness to ground of the shaft by itself."""
+        spring = () if self.spring is None else (_along_y(Elastic, self.spring),)
+        own = () if self.housing is None else (self.housing,)
+        return tuple(foot_of(one) for one in (*spring, *own))
+
+
+class Between(NamedTuple):
+    """Elastic behaviour of something free between n places where it is seen.
+
+    Attributes
+    ----------
+    basis : (n, r) ndarray
+        Motions of the places that are possible at all, one a column.
+    stiffness : (r,) ndarray
+        Against each of them, N/m; zero for rigid motions.
+    size : (n,) ndarray
+        Motion of each place that counts as one metre.
+    """
+
+    basis: np.ndarray
+    stiffness: np.ndarray
+    size: np.ndarray
+
+
+def between(soft: np.ndarray, rigid: np.ndarray, size: np.ndarray) -> Between:
+    """Principal stiffnesses of something free, ``Q (Q' F Q)^-1 Q'`` between places.
+
+    Parameters
+    ----------
+    soft : (n, n) ndarray
+        Flexibility F under loads in equilibrium.
+    rigid : (n, z) ndarray
+        Motions P that strain nothing, ``P' Q = 0``.
+    size : (n,) ndarray
+        Motion of each place that counts as one metre.
+
+    Returns
+    -------
+    Between
+
+    Examples
+    --------
+    A spring of 1e6 N/m with two ends, which both flexibilities of inertia relief make:
+
+    >>> import numpy as np
+    >>> pair = np.array([[1.0, -1.0], [-1.0, 1.0]])
+    >>> basis, stiffness, _ = between(2.5e-7 * pair, np.ones((2, 1)), np.ones(2))
+    >>> bool(np.allclose(basis * stiffness @ basis.T, 1e6 * pair))
+    True
+    """
+    left, value, _ = np.linalg.svd(rigid / size[:, None])
+    rank = int((value > 1e-9 * value.max(initial=0.0)).sum())
+    free = left[:, rank:]
+    inner = free.T @ (soft / np.outer(size, size)) @ free
+    own, vector = np.linalg.eigh((inner + inner.T) / 2)
+    gives = own > RIGID * own.max(initial=0.0)
+    basis = np.hstack([left[:, :rank], free @ vector[:, gives]])
+    return Between(size[:, None] * basis, np.r_[np.zeros(rank), 1 / own[gives]], size)
+
+
+def _along_y(kind: type[E], spring: float) -> E:
+    """A housing that gives along y only."""
+    given: dict[str, Any] = {"stiffness": {"kyy": spring}}
+    return kind(**given)
+
+
+class Balance:
+    """Unknowns, loads and tangents of bearings on something elastic.
+
+    Unknown are its motions between the places of the bearings, then those of what the outer rings
+    stand in.
+
+    Parameters
+    ----------
+    elastic : Between
+        Between places of five components each.
+    bearings : sequence of Mounted
+        On the first places, in their order.
+    around : sequence of mapping of int to Foot
+        Housings of several bearings.
+    """
+
+    def __init__(
+        self,
+        elastic: Between,
+        bearings: Sequence[Mounted],
+        around: Sequence[Mapping[int, Foot]] = (),
+    ):
+        self.elastic, self.bearings = elastic, tuple(bearings)
+        self.motions = len(elastic.stiffness)
+        feet = [foot for bearing in self.bearings for foot in bearing.feet]
+        commons = [next(iter(own.values())) for own in around]
+        own = [foot.stiffness for foot in (*feet, *commons)]
+        self.own = sla.block_diag(np.diag(elastic.stiffness), *own)
+        self.count = len(self.own)
+        self.reads = [np.zeros((6, self.count)) for _ in self.bearings]
+        at = self.motions
+        for k, (read, bearing) in enumerate(zip(self.reads, self.bearings)):
+            read[FIVE, : self.motions] = elastic.basis[5 * k : 5 * k + 5]
+            for foot in bearing.feet:
+                read[:, at : at + len(foot.stiffness)] = -foot.moves
+                at += len(foot.stiffness)
+        for common, each in zip(commons, around):
+            for k, foot in each.items():
+                self.reads[k][:, at : at + len(foot.stiffness)] = -foot.moves
+            at += len(common.stiffness)
+
+    def places(self, at: np.ndarray) -> np.ndarray:
+        """(n,) motions of the places."""
+        return self.elastic.basis @ at[: self.motions]
+
+    def load(self, at: np.ndarray) -> np.ndarray:
+        """Gradient of the energy without the loads'."""
+        out = self.own @ at
+        for bearing, read in zip(self.bearings, self.reads):
+            out = out + read.T @ bearing.bearing.load(read @ at)
+        return out
+
+    def at_work(self, at: np.ndarray | None) -> float:
+        """Forces inside the bearings, N; at rest those of their preloads."""
+        at = np.zeros(self.count) if at is None else at
+        return sum(b.bearing.at_work(read @ at) for b, read in zip(self.bearings, self.reads))
+
+    def tangent(self, at: np.ndarray) -> np.ndarray:
+        """Its Hessian."""
+        out = self.own.copy()
+        for bearing, read in zip(self.bearings, self.reads):
+            out = out + read.T @ bearing.bearing.tangent(read @ at) @ read
+        return out
+
+    def settle(self, target: np.ndarray, start: np.ndarray | None = None) -> Settled:
+        """Motion at which loads (r,) on the motions between the places are carried.
+
+        Raises
+        ------
+        NothingHolds
+            If no bearing holds against them; its direction is that of the places, in metres.
+        SolidgearError
+            If the search ends with a load left over.
+        """
+        begin = start if start is not None and start.size == self.count else None
+        goal = np.r_[target, np.zeros(self.count - self.motions)]
+        size = np.ones(self.count)
+        try:
+            found = settle(self.load, self.tangent, goal, size, begin, self.at_work(begin))
+        except NothingHolds as error:
+            went = self.places(error.direction) / self.elastic.size
+            raise NothingHolds(str(error), went) from None
+        if found.unbalanced > LEFT:
+            raise SolidgearError(
+                f"shaft and bearings find no equilibrium: {found.unbalanced:.1e} of the load is left"
+            )
+        return found
+
+    def carried(self, at: np.ndarray) -> tuple[list[np.ndarray], list[np.ndarray]]:
+        """Motion (6,) of each bearing's inner ring against its outer one, and its load (6,)."""
+        relative = [read @ at for read in self.reads]
+        return relative, [b.bearing.load(q) for b, q in zip(self.bearings, relative)]
+
+
+def common_feet(
+    housing: float | Housing | None, places: Mapping[int, float]
+) -> list[Mapping[int, Foot]]:
+    """Feet of bearings in a housing of all of them.
+
+    Parameters
+    ----------
+    housing : float or Housing or None
+        A number is a spring along y, N/m.
+    places : mapping of int to float
+        Place along the shaft, m, of each bearing.
+
+    Returns
+    -------
+    list of mapping of int to Foot
+        As :class:`Balance` takes them: one, or none without a housing.
+    """
+    if housing is None or not places:
+        return []
+    around = housing if isinstance(housing, Housing) else _along_y(Housing, housing)
+    return [{k: foot_of(around, around.moves(y)) for k, y in places.items()}]
+
+
+def not_held(sums: np.ndarray, direction: np.ndarray) -> str:
+    """Sentence on a load that no bearing holds.
+
+    Parameters
+    ----------
+    sums : (5,) ndarray
+        Of all loads on the shaft, N and N m, in the order of `FIVE`.
+    direction : (5 p,) ndarray
+        In which its places went.
+    """
+    component = DOF_NAMES[FIVE[int(np.argmax(np.abs(direction))) % 5]]
+    pushes = " and ".join(
+        f"{v:.6g} {UNITS[c]} in {DOF_NAMES[c]}" for c, v in zip(FIVE, sums) if v != 0.0
+    )
+    return (
+        f"no bearing holds the shaft in {component} under {pushes or 'its preloads'}: "
+        "it is pushed out of its bearings; turn one round, or preload them"
+    )

@@ -1,0 +1,346 @@
+r"""A train at an operating point: mesh force, settled bearings, and how all parts lie.
+
+A torque T on one shaft is carried by the teeth with ``F = |T| / |h|`` along their line of action, h
+the lever of that shaft (the fifth component of its mesh vector), and leaves by the other shaft's
+rotor.  Displacements are small against all lengths, so that the line of action stays where it is;
+bearings of catalogue data settle together with the deflection of both shafts and of the mesh
+(:mod:`solidgear.system.equilibrium`).
+
+A positive torque loads the flank that the file names, a negative one the other: its normal is the
+first one mirrored at the normal m of the pitch surface, ``n' = 2 (n . m) m - n``, which turns the
+tangential and the spiral part of a tooth force round and leaves the part of the pressure angle.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+
+import numpy as np
+
+from solidgear.bearings.balance import Mounted
+from solidgear.bearings.catalogued import Catalogued
+from solidgear.bearings.solved import AS_TOLD, Choice, made_of, mounted
+from solidgear.errors import SceneError, SolidgearError
+from solidgear.scene import Scene
+from solidgear.scene.operation import OperatingPoint
+from solidgear.scene.train import SIDES, Train
+from solidgear.studies.train.models import Workshop
+from solidgear.system.equilibrium import OnBearings, Seats, SystemEquilibrium, weight
+from solidgear.system.system import System
+
+#: model of both shafts on which bearings settle: loads hang little on how shoulders are modelled
+SHAFT = "timoshenko"
+#: a [load] of a scene that is off the mesh force by less, of it, is that force written down
+SAME_LOAD = 0.05
+
+
+@dataclass(frozen=True, eq=False)
+class OperatingState:
+    """A train at rest at one operating point.
+
+    Attributes
+    ----------
+    point : OperatingPoint
+    pinion, gear : str
+        Models of both shafts.
+    mesh_force : float
+        Along the line of action, N.
+    equilibrium : SystemEquilibrium
+        Of all parts; the spring port of the engine does not turn.
+    system : System
+        Without the bearings, in whose coordinates the equilibrium is told.
+    made : dict of str to Catalogued
+        Bearings of catalogue data, by ``side.name``.
+    notes : tuple of str
+        What is to be said of it, one sentence each.
+    """
+
+    point: OperatingPoint
+    pinion: str
+    gear: str
+    mesh_force: float
+    equilibrium: SystemEquilibrium
+    system: System = field(repr=False)
+    made: dict[str, Catalogued] = field(repr=False)
+    notes: tuple[str, ...] = ()
+
+    def motion(self, end: str) -> np.ndarray:
+        """Motion (6,) of a port such as ``pinion.A``, m and rad, in the axes of its scene."""
+        return self.system.motion(end) @ self.equilibrium.coordinates
+
+
+class Operating:
+    """A train with its shafts at two models, to be settled at any operating point.
+
+    Parameters
+    ----------
+    workshop : Workshop
+        Its bearings of catalogue data may have no stiffness yet.
+    pinion, gear : str
+        Models of both shafts: bodies or ``rigid``.
+    choice : Choice
+        Place in the ranges of catalogue data.
+
+    Raises
+    ------
+    SceneError
+        For bearings with a load of their own, or data that describe none.
+
+    Examples
+    --------
+    >>> import solidgear as sg
+    >>> from solidgear.scene.operation import OperatingPoint
+    >>> shop = Workshop(sg.load_train("geometry/axle_straddle.toml"))
+    >>> found = Operating(shop).at(OperatingPoint(torque=100.0))
+    >>> lever = shop.contact.pinion.lever
+    >>> round(found.mesh_force * abs(lever), 9)
+    100.0
+    """
+
+    def __init__(
+        self, workshop: Workshop, pinion: str = SHAFT, gear: str = SHAFT, choice: Choice = AS_TOLD
+    ):
+        self.workshop, self.pinion, self.gear, self.choice = workshop, pinion, gear, choice
+        train = workshop.train
+        for side in SIDES:
+            refuse_own_loads(side, train.member(side).scene)
+
+    @cached_property
+    def made(self) -> dict[str, Catalogued]:
+        """Bearings of catalogue data, by ``side.name``."""
+        out: dict[str, Catalogued] = {}
+        for side in SIDES:
+            try:
+                own = made_of(self.workshop.train.member(side).scene, self.choice)
+            except SceneError as error:
+                raise error.located(None, prefix=(side, "scene")) from None
+            out |= {f"{side}.{name}": one for name, one in own.items()}
+        return out
+
+    @cached_property
+    def _seats(self) -> tuple[Seats, ...]:
+        return tuple(self._of_shaft(side) for side in SIDES)
+
+    def _of_shaft(self, side: str) -> Seats:
+        scene = self.workshop.scenes[side]
+        made = {b.name: self.made[f"{side}.{b.name}"] for b in scene.bearings if b.catalogue}
+        holding = [one for one in mounted(scene, made) if _holds(one)]
+        places = {b.name: b.y for b in scene.bearings}
+        around = scene.housing or scene.housing_axial
+        return Seats(side, tuple(holding), tuple(places[one.port] for one in holding), around)
+
+    @cached_property
+    def _flanks(self) -> dict[bool, tuple[Workshop, OnBearings]]:
+        return {}
+
+    def _on(self, coast: bool) -> tuple[Workshop, OnBearings]:
+        """The train with the flank that carries, without its bearings, and what it rests on."""
+        if coast not in self._flanks:
+            shop = self.workshop.on_flank(coast)
+            system = shop.system(self.pinion, self.gear, bearings=False)
+            self._flanks[coast] = shop, OnBearings(system, self._seats)
+        return self._flanks[coast]
+
+    def at(self, point: OperatingPoint, start: OperatingState | None = None) -> OperatingState:
+        """The train at an operating point.
+
+        Parameters
+        ----------
+        point : OperatingPoint
+        start : OperatingState, optional
+            One of the same train to begin at.
+
+        Returns
+        -------
+        OperatingState
+
+        Raises
+        ------
+        SolidgearError
+            If nothing holds a shaft under its loads.
+        """
+        shop, held = self._on(point.coast)
+        force = mesh_force(shop, point)
+        loads, notes = self._loads(shop, point, force)
+        total = held.system.load(loads)
+        if point.weight is not None:
+            total = total + weight(held.system, point.gravity)
+        same = start is not None and start.point.coast == point.coast
+        begin = start.equilibrium if same and start is not None else None
+        try:
+            found = held.equilibrium(total, begin)
+        except SolidgearError as error:
+            raise SolidgearError(f"at {point.label}: {error}") from None
+        found = _engine_still(found, held.system, shop.train)
+        notes += list(_told(found, held.system, point))
+        return OperatingState(
+            point, self.pinion, self.gear, force, found, held.system, self.made, tuple(notes)
+        )
+
+    def _loads(
+        self, shop: Workshop, point: OperatingPoint, force: float
+    ) -> tuple[dict[str, np.ndarray], list[str]]:
+        """Loads at ports beside the mesh force, which the torques of both rotors bring about."""
+        lever = {"engine": shop.contact.pinion.lever, "load": -shop.contact.gear.lever}
+        loads = {name: np.array([0, 0, 0, 0, -force * h, 0.0]) for name, h in lever.items()}
+        notes = []
+        for outside in point.force:
+            loads[outside.at] = loads.get(outside.at, np.zeros(6)) + outside.six
+        for side in SIDES:
+            scene = shop.scenes[side]
+            added, said = scene_load(shop, side, force)
+            notes += said
+            if added is not None:
+                end = f"{side}.{scene.port.name}"
+                loads[end] = loads.get(end, np.zeros(6)) + added
+        return loads, notes
+
+
+def mesh_force(workshop: Workshop, point: OperatingPoint) -> float:
+    """Force of the teeth along their line of action, N."""
+    vector = workshop.contact.pinion if point.of == "pinion" else workshop.contact.gear
+    return abs(point.torque / vector.lever)
+
+
+def refuse_own_loads(side: str, scene: Scene) -> None:
+    """Refuse bearings whose load is told by themselves where a torque brings it.
+
+    Raises
+    ------
+    SceneError
+    """
+    for bearing in scene.bearings:
+        data = bearing.catalogue
+        if data is None:
+            continue
+        for key in ("load", "displacement"):
+            if getattr(data, key) is not None:
+                reason = (
+                    f"bearing {bearing.name} has a {key} of its own, and in a train with an "
+                    "[operation] the torque brings its load: leave it out"
+                )
+                raise SceneError(reason, path=(side, "scene"))
+
+
+def scene_load(workshop: Workshop, side: str, force: float) -> tuple[np.ndarray | None, list[str]]:
+    """Load (6,) that the [load] of a shaft's scene adds to the mesh force, and what is to be said.
+
+    Raises
+    ------
+    SceneError
+        If it is neither the mesh force nor said to be added or replaced.
+    """
+    train, scene = workshop.train, workshop.scenes[side]
+    if scene.load is None:
+        return None, []
+    own, word = np.array(scene.load.six), train.member(side).scene_load
+    if word == "added":
+        return own, [f"the [load] of the {side}'s scene is added to the mesh force"]
+    if word == "replaced":
+        return None, []
+    wanted = [
+        _force_on(workshop.on_flank(p.coast), side, mesh_force(workshop, p))
+        for p in train.operation
+    ]
+    wanted.append(_force_on(workshop, side, force))
+    if any(np.linalg.norm(own[:3] - f) <= SAME_LOAD * np.linalg.norm(f) for f in wanted):
+        return None, [f"the [load] of the {side}'s scene is its mesh force, and is not added"]
+    raise SceneError(
+        f"the [load] of the {side}'s scene is ({_newtons(own[:3])}) N at its lumped point, and the "
+        f"mesh force is ({_newtons(wanted[0])}) N: leave [load] out of the scene, or write "
+        f'scene_load = "replaced" under [{side}], or "added" where it acts beside the teeth',
+        path=(side, "scene_load"),
+    )
+
+
+def _force_on(workshop: Workshop, side: str, force: float) -> np.ndarray:
+    """(3,) force of the teeth on a shaft, in the axes of its scene, N."""
+    met = workshop.contact
+    return force * met.pinion.normal if side == "pinion" else -force * met.gear.normal
+
+
+def _newtons(force: np.ndarray) -> str:
+    return ", ".join(f"{v:.0f}" for v in force)
+
+
+def _holds(one: Mounted) -> bool:
+    """False for a free station, whose stiffness is zero."""
+    stiffness = getattr(one.bearing, "stiffness", None)
+    return stiffness is None or bool(np.any(stiffness))
+
+
+def _engine_still(found: SystemEquilibrium, system: System, train: Train) -> SystemEquilibrium:
+    """The same with the train turned until the pinion's spring port has no rotation."""
+    turning = _rotation(system)
+    row = system.motion(f"pinion.{train.spring_port('pinion')}")[4]
+    moved = float(row @ turning)
+    if moved == 0.0:
+        return found
+    share = float(row @ found.coordinates) / moved
+    return replace(found, coordinates=found.coordinates - share * turning)
+
+
+def _rotation(system: System) -> np.ndarray:
+    """(N,) free motion of the train that moves no seat of a bearing but about its axis."""
+    free = system.free
+    ends = [f"{side}.{p}" for side in SIDES for p in system.parts[side].ports]
+    still = np.vstack([system.motion(end)[[0, 1, 2, 3, 5]] for end in ends]) @ free
+    _, _, vectors = np.linalg.svd(still)
+    return free @ vectors[-1]
+
+
+def _told(found: SystemEquilibrium, system: System, point: OperatingPoint) -> Iterator[str]:
+    for end in found.lost:
+        yield (
+            f"at {point.label} bearing {end} carries nothing: its clearance is not taken up, and it "
+            "has no stiffness"
+        )
+
+
+def settled(train: Train, state: OperatingState) -> Train:
+    """A train at one operating point, its bearings with the stiffness that they have there.
+
+    Parameters
+    ----------
+    train : Train
+    state : OperatingState
+
+    Returns
+    -------
+    Train
+        With that point alone.
+    """
+    members = {}
+    for side in SIDES:
+        member = train.member(side)
+        bearings = [
+            b if b.catalogue is None else b.with_changes(matrix=_symmetric(state, side, b.name))
+            for b in member.scene.bearings
+        ]
+        scene = member.scene.with_changes(bearings=tuple(bearings))
+        members[side] = member.with_changes(scene=scene)
+    point = state.point.with_changes(share=None, hours=None)
+    return train.with_changes(operation=(point,), **members)
+
+
+def _symmetric(state: OperatingState, side: str, name: str) -> np.ndarray:
+    """Tangent of a bearing; friction at speed leaves a part that is no spring."""
+    tangent = state.equilibrium.tangent[f"{side}.{name}"]
+    return (tangent + tangent.T) / 2
+
+
+def at_first_point(train: Train) -> Train:
+    """A train as read, with all its points, and its bearings settled at the first of them.
+
+    Parameters
+    ----------
+    train : Train
+
+    Returns
+    -------
+    Train
+    """
+    state = Operating(Workshop(train)).at(train.operation[0])
+    return settled(train, state).with_changes(operation=train.operation)
