@@ -184,9 +184,10 @@ def between(soft: np.ndarray, rigid: np.ndarray, size: np.ndarray) -> Between:
     left, value, _ = np.linalg.svd(rigid / size[:, None])
     rank = int((value > 1e-9 * value.max(initial=0.0)).sum())
     free = left[:, rank:]
-    inner = free.T @ (soft / np.outer(size, size)) @ free
+    scaled = soft / np.outer(size, size)
+    inner = free.T @ scaled @ free
     own, vector = np.linalg.eigh((inner + inner.T) / 2)
-    gives = own > RIGID * own.max(initial=0.0)
+    gives = own > RIGID * np.abs(scaled).max(initial=0.0)
     basis = np.hstack([left[:, :rank], free @ vector[:, gives]])
     return Between(size[:, None] * basis, np.r_[np.zeros(rank), 1 / own[gives]], size)
 
